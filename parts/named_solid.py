@@ -1,0 +1,89 @@
+"""A CAD solid whose faces bear the names of the edges that swept them."""
+
+import os
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import cadquery as cq
+from OCP.BRep import BRep_Builder
+from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeFace
+from OCP.BRepPrimAPI import BRepPrimAPI_MakePrism
+from OCP.gp import gp_Dir, gp_Pln, gp_Pnt, gp_Vec
+from OCP.TopoDS import TopoDS_Wire
+
+from tol3d.errors import GeometryError, RunError
+
+FRONT, BACK = "front", "back"
+
+
+@dataclass(frozen=True)
+class NamedEdge:
+    """An edge of an outline, oriented along it, and the name of the face that it will sweep."""
+
+    name: str
+    edge: cq.Edge
+
+
+@dataclass(frozen=True)
+class NamedSolid:
+    """One closed solid [mm] and its faces by name, oriented as in the solid (outwards)."""
+
+    solid: cq.Solid
+    faces: Mapping[str, cq.Face]
+
+
+def extruded(outline: Sequence[NamedEdge], holes: Sequence[NamedEdge], width: float) -> NamedSolid:
+    """Sweep an outline along +z, from its plane z = -width/2 to +width/2 [mm].
+
+    Names come from the sweep's own history, not from positions. The end at +z is the face "front"
+    (seen from +z it lies in front), the other "back".
+
+    Args:
+        outline: edges in order, counter-clockwise seen from +z, sharing their vertices.
+        holes: closed edges, clockwise; one hole each.
+        width: along z [mm].
+
+    Raises:
+        GeometryError: the outline makes no valid solid.
+    """
+    plane = gp_Pln(gp_Pnt(0.0, 0.0, -width / 2), gp_Dir(0.0, 0.0, 1.0))
+    face = BRepBuilderAPI_MakeFace(plane, _wire(outline), True)
+    for hole in holes:
+        face.Add(_wire([hole]))
+    if not face.IsDone():
+        raise GeometryError("the outline of the part does not close into one face")
+    prism = BRepPrimAPI_MakePrism(face.Face(), gp_Vec(0.0, 0.0, width))
+    solid = cq.Solid(prism.Shape())
+    if not solid.isValid():
+        raise GeometryError("the outline of the part crosses itself: its solid is not valid")
+    swept = {named.name: cq.Face(next(iter(prism.Generated(named.edge.wrapped)))) for named in (*outline, *holes)}
+    ends = {FRONT: cq.Face(prism.LastShape()), BACK: cq.Face(prism.FirstShape())}
+    # history returns each face as it was made; the solid holds the same face turned outwards
+    outward = {face: face for face in solid.Faces()}
+    return NamedSolid(solid, {name: outward[face] for name, face in (swept | ends).items()})
+
+
+def _wire(edges: Sequence[NamedEdge]) -> TopoDS_Wire:
+    builder, wire = BRep_Builder(), TopoDS_Wire()
+    builder.MakeWire(wire)
+    for named in edges:
+        builder.Add(wire, named.edge.wrapped)
+    wire.Closed(True)
+    return wire
+
+
+def to_step(part: NamedSolid, path: Path) -> None:
+    """Write the solid as STEP (AP214, mm); the file appears whole or not at all.
+
+    Raises:
+        RunError: the file cannot be written.
+    """
+    unfinished = path.with_name(f"{path.name}.{os.getpid()}.partial")
+    try:
+        part.solid.exportStep(str(unfinished))
+        os.replace(unfinished, path)
+    except OSError as error:
+        raise RunError(f"{path}: the STEP file cannot be written ({error.strerror})") from error
+    finally:
+        unfinished.unlink(missing_ok=True)

@@ -1,0 +1,1 @@
+"""Scenes that ship with tol3d: examples and tests at once."""

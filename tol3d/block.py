@@ -1,0 +1,205 @@
+"""One block of trials, from draws to columns: what every worker and every replay runs.
+
+Columns are in the user's units (um, mrad, K, deg, arcmin), trial on axis 0; a curve has positions on axis 1.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tol3d import trials
+from tol3d.analytic import analytic_backlash
+from tol3d.build import Build, build
+from tol3d.engines import Engine
+from tol3d.measures import measure_backlash
+from tol3d.model import Measure, Mesh, Model, Positions
+from tol3d.model.contributor import INTERNAL_PER_UNIT
+from tol3d.moves import OK, STATUS_TEXT, MeshSeat, seat_mesh
+
+Array = NDArray[np.float64]
+Columns = Mapping[str, NDArray[np.generic]]
+
+ROWS_AT_ONCE = 8192  # trials x positions; keeps poses and gaps of a turn's curves in a few megabytes
+
+
+@dataclass(frozen=True)
+class Block:
+    """Deviations (trials, components) [internal units] of consecutive trials and where their meshes stand.
+
+    Args:
+        deviations: (trials, components), columns as in `model.component_slices`.
+        random_angle: for each mesh, the driver's angle [rad] (trials,) of measures at a random position.
+    """
+
+    deviations: Array
+    random_angle: Mapping[str, Array]
+
+    def __len__(self) -> int:
+        return len(self.deviations)
+
+    def part(self, first: int, last: int) -> "Block":
+        """Trials first ... last - 1 of the block."""
+        angles = {mesh: angle[first:last] for mesh, angle in self.random_angle.items()}
+        return Block(self.deviations[first:last], angles)
+
+
+def drawn_block(model: Model, seed: int, first: int, count: int) -> Block:
+    """Trials first ... first + count - 1 as the seed draws them."""
+    angles = {mesh.name: trials.random_driver_angle(mesh, seed, first, count) for mesh in model.meshes}
+    return Block(trials.deviations(model, seed, first, count), angles)
+
+
+def mean_block(model: Model) -> Block:
+    """One trial with every contributor at its mean, drivers at 0."""
+    return Block(trials.mean_deviations(model), {mesh.name: np.zeros(1) for mesh in model.meshes})
+
+
+def nominal_block(model: Model) -> Block:
+    """One trial without deviations, drivers at 0."""
+    return Block(np.zeros((1, model.component_count)), {mesh.name: np.zeros(1) for mesh in model.meshes})
+
+
+def driver_angles(positions: Positions, random_angle: Array) -> Array:
+    """Driver angles [rad] at which a measure is read, (trials, positions)."""
+    if positions.fixed is None:
+        return random_angle[:, None]
+    return np.broadcast_to(np.array(positions.fixed), (len(random_angle), len(positions.fixed)))
+
+
+@dataclass(frozen=True)
+class Seats:
+    """Builds of a block and its seated meshes, kept by the positions at which measures read them.
+
+    Args:
+        build: one row a trial.
+        seats: by mesh name and positions; rows are trials x positions, positions fastest.
+    """
+
+    build: Build
+    seats: Mapping[tuple[str, Positions], MeshSeat] = field(default_factory=dict)
+
+
+def seat_block(model: Model, engine: Engine, block: Block) -> Seats:
+    """Build the trials and seat every mesh at every set of positions that some measure wants."""
+    made = build(model, block.deviations)
+    seats: dict[tuple[str, Positions], MeshSeat] = {}
+    for measure in model.measures:
+        key = (measure.kind.mesh, measure.positions)
+        if key not in seats:
+            angles = driver_angles(measure.positions, block.random_angle[measure.kind.mesh])
+            repeated = made.repeated(angles.shape[1])
+            seats[key] = seat_mesh(engine, model, model.mesh(measure.kind.mesh), repeated, angles.ravel())
+    return Seats(made, seats)
+
+
+def geometric_values(model: Model, engine: Engine, measure: Measure, seats: Seats) -> Array:
+    """Values of a measure on the geometric road [mm or rad], (trials, positions)."""
+    count = positions_count(measure)
+    seat = seats.seats[measure.kind.mesh, measure.positions]
+    return measure_backlash(engine, model, measure.kind, seats.build.repeated(count), seat).reshape(-1, count)
+
+
+def analytic_values(model: Model, measure: Measure, block: Block) -> Array:
+    """Values of a measure on the analytic road [mm or rad], (trials, positions)."""
+    angles = driver_angles(measure.positions, block.random_angle[measure.kind.mesh])
+    repeated = np.repeat(block.deviations, angles.shape[1], axis=0)
+    return analytic_backlash(model, measure.kind, repeated, angles.ravel()).reshape(angles.shape)
+
+
+def positions_count(measure: Measure) -> int:
+    """At how many positions a measure is read in one trial."""
+    return 1 if measure.positions.fixed is None else len(measure.positions.fixed)
+
+
+def taken(measure: Measure, values: Array) -> Array:
+    """What a measure takes of its values (trials, positions): (trials,), or all of them for a curve.
+
+    Extremes are those of a parabola through the extreme sample and its neighbours on the closed period,
+    which is 1e-3 of the once-per-turn part at 24 positions, where the sample itself is 1e-2 off.
+    """
+    if measure.take == "curve":
+        return values
+    if measure.take == "value":
+        return values[:, 0]
+    highest = _parabola_peak(values)
+    lowest = -_parabola_peak(-values)
+    return {"max": highest, "min": lowest, "range": highest - lowest}[measure.take]
+
+
+def _parabola_peak(values: Array) -> Array:
+    if values.shape[1] < 3:
+        return np.asarray(values.max(axis=1))
+    rows = np.arange(len(values))
+    peak = np.argmax(values, axis=1)
+    at = values[rows, peak]
+    before, after = values[rows, peak - 1], values[rows, (peak + 1) % values.shape[1]]
+    bend = 2 * at - before - after
+    rise = np.where(bend > 0.0, (after - before) ** 2 / (8 * np.where(bend > 0.0, bend, 1.0)), 0.0)
+    return np.asarray(at + rise)
+
+
+def simulate_block(model: Model, engine: Engine | None, block: Block) -> dict[str, NDArray[np.generic]]:
+    """All columns of a block; without an engine only the analytic ones.
+
+    Returns:
+        deviations, `position:<mesh> [deg]`, `analytic:<measure>`, and with an engine
+        `geometric:<measure>`, `contact:<mesh>.x|y|z [mm]`, `contact:<mesh>.tooth` and `status`.
+    """
+    rows = max(1, ROWS_AT_ONCE // max(positions_count(measure) for measure in model.measures))
+    pieces = [
+        _simulate_piece(model, engine, block.part(first, first + rows)) for first in range(0, len(block), rows)
+    ]
+    return {name: np.concatenate([piece[name] for piece in pieces]) for name in pieces[0]}
+
+
+def _simulate_piece(model: Model, engine: Engine | None, block: Block) -> dict[str, NDArray[np.generic]]:
+    columns: dict[str, NDArray[np.generic]] = {}
+    for contributor in model.contributors:
+        own = block.deviations[:, model.component_slices[contributor.name]]
+        for k, name in enumerate(contributor.columns):
+            columns[name] = own[:, k] / INTERNAL_PER_UNIT[contributor.unit]
+    for mesh in model.meshes:
+        columns[position_column(mesh)] = np.degrees(block.random_angle[mesh.name])
+    for measure in model.measures:
+        columns[f"analytic:{measure.name}"] = taken(measure, analytic_values(model, measure, block)) * (
+            measure.per_internal
+        )
+    if engine is None:
+        return columns
+    seats = seat_block(model, engine, block)
+    for measure in model.measures:
+        values = taken(measure, geometric_values(model, engine, measure, seats))
+        columns[f"geometric:{measure.name}"] = values * measure.per_internal
+    for mesh in model.meshes:
+        columns.update(_contact_columns(mesh, seats, len(block)))
+    columns["status"] = _status_column(seats, len(block))
+    return columns
+
+
+def position_column(mesh: Mesh) -> str:
+    """Name of the column with a mesh's random driver position."""
+    return f"position:{mesh.name} [deg]"
+
+
+def _contact_columns(mesh: Mesh, seats: Seats, trials_count: int) -> dict[str, NDArray[np.generic]]:
+    """First contact of a mesh, at the first of its measures' positions."""
+    seat = next((seat for (name, _), seat in seats.seats.items() if name == mesh.name), None)
+    if seat is None:
+        return {}
+    point, tooth = seat.contact
+    first = slice(None, None, len(point) // trials_count)
+    columns: dict[str, NDArray[np.generic]] = {
+        f"contact:{mesh.name}.{axis} [mm]": point[first, k] for k, axis in enumerate("xyz")
+    }
+    columns[f"contact:{mesh.name}.tooth"] = tooth[first] % mesh.pair.pinion.teeth
+    return columns
+
+
+def _status_column(seats: Seats, trials_count: int) -> NDArray[np.generic]:
+    worst = np.full(trials_count, OK, dtype=np.int8)
+    for seat in seats.seats.values():
+        worst = np.maximum(worst, seat.status.reshape(trials_count, -1).max(axis=1))
+    return np.array([STATUS_TEXT[code] for code in range(len(STATUS_TEXT))])[worst]
+

@@ -1,0 +1,161 @@
+"""Model and deviations to a Build: where every part's axis lies, and how its flanks deviate.
+
+A Build knows nothing of positions: the poses at a turn come from `world_from_gear`.
+"""
+
+from dataclasses import dataclass
+from functools import singledispatch
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tol3d import frames
+from tol3d.model import AxisOffset, AxisTilt, Effect, Model, Temperature, ToothThickness, TurningOffset
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Build:
+    """Virtual builds of a block of trials; axis 1 follows `model.gears`.
+
+    Args:
+        world_from_shaft: (trials, gears, 4, 4), the axis at rest: its z is the rotation axis.
+        centre: (trials, gears, 2) [mm], the gear's centre off its axis, in the gear's frame (turns with it).
+        thickness: (trials, gears) [mm], deviation of the tooth thickness, arc at the reference circle.
+        scale: (trials, gears), thermal growth of the whole gear, 1 at the reference temperature.
+    """
+
+    world_from_shaft: Array
+    centre: Array
+    thickness: Array
+    scale: Array
+
+    @property
+    def trials(self) -> int:
+        """Number of builds."""
+        return len(self.thickness)
+
+    def repeated(self, count: int) -> "Build":
+        """Each build `count` times in a row, for as many positions; shape (trials * count, ...)."""
+        if count == 1:
+            return self
+        return self.rows(np.repeat(np.arange(self.trials), count))
+
+    def rows(self, rows: NDArray[np.intp] | NDArray[np.bool_]) -> "Build":
+        """The builds of some rows."""
+        return Build(self.world_from_shaft[rows], self.centre[rows], self.thickness[rows], self.scale[rows])
+
+    def axis(self, gear: int) -> tuple[Array, Array]:
+        """Rotation axis of a gear in the world: a point on it and its unit direction, each (trials, 3)."""
+        return self.world_from_shaft[:, gear, :3, 3], self.world_from_shaft[:, gear, :3, 2]
+
+    def world_from_gear(self, gear: int, angle: Array) -> Array:
+        """Pose of a gear at a turn about its axis [rad] (trials,): (trials, 4, 4).
+
+        world_from_shaft @ turn(angle) @ shaft_from_gear; the last one is the offset of the centre.
+        """
+        rotation, origin = self.tooth_pose(gear, angle, np.zeros_like(angle)[:, None])
+        return frames.transform(rotation[:, 0], origin)
+
+    def tooth_pose(self, gear: int, angle: Array, turn: Array) -> tuple[Array, Array]:
+        """Pose of parts of a gear that are turned about the gear's own centre.
+
+        Args:
+            gear: index of the gear.
+            angle: turn of the shaft [rad], (trials,).
+            turn: turns within the gear [rad], (trials, parts): a tooth's place, half its thickness.
+
+        Returns:
+            rotations (trials, parts, 3, 3) and their common origin (trials, 3) [mm], in the world.
+        """
+        shaft = self.world_from_shaft[:, gear, :3, :3]
+        rotation = frames.matmul(shaft[:, None], frames.about_z(angle[:, None] + turn))
+        cos, sin = np.cos(angle), np.sin(angle)
+        x, y = self.centre[:, gear, 0], self.centre[:, gear, 1]
+        offset = np.stack([cos * x - sin * y, sin * x + cos * y, np.zeros_like(x)], axis=-1)
+        return rotation, self.world_from_shaft[:, gear, :3, 3] + frames.apply(shaft, offset)
+
+
+@dataclass
+class _Sums:
+    """What the contributors add up to, before poses are made of it."""
+
+    axis_offset: Array  # (trials, gears, 3) mm
+    axis_turn: Array  # (trials, gears, 3) rad, rotation vector
+    centre: Array  # (trials, gears, 2) mm
+    thickness: Array  # (trials, gears) mm
+    temperature: dict[str, Array]  # part -> (trials,) K
+
+
+def build(model: Model, deviations: Array) -> Build:
+    """Builds of the trials with these deviations.
+
+    Args:
+        model: what is built.
+        deviations: (trials, components) [mm, rad, K], columns as in `model.component_slices`.
+    """
+    trials, gears = len(deviations), len(model.gears)
+    sums = _Sums(
+        axis_offset=np.zeros((trials, gears, 3)),
+        axis_turn=np.zeros((trials, gears, 3)),
+        centre=np.zeros((trials, gears, 2)),
+        thickness=np.zeros((trials, gears)),
+        temperature={},
+    )
+    for contributor in model.contributors:
+        columns = deviations[:, model.component_slices[contributor.name]]
+        _add(contributor.effect, columns, sums, model)
+
+    def growth(part: str) -> Array | float:
+        return sums.temperature.get(part, 0.0) * model.expansions[part]
+
+    origin = sums.axis_offset.copy()
+    for mesh in model.meshes:
+        housing = growth(mesh.housing) if mesh.housing else 0.0
+        origin[:, model.gear_index[mesh.driven], 0] += mesh.pair.centre_distance * (1.0 + housing)
+    scale = np.ones((trials, gears))
+    for part in model.gears:
+        scale[:, model.gear_index[part.name]] += growth(part.name)
+    return Build(
+        world_from_shaft=frames.transform(frames.about_vector(sums.axis_turn), origin),
+        centre=sums.centre,
+        thickness=sums.thickness,
+        scale=scale,
+    )
+
+
+@singledispatch
+def _add(effect: Effect, columns: Array, sums: _Sums, model: Model) -> None:
+    """Add one contributor's deviations (trials, components); one function an effect."""
+    raise TypeError(f"build.py has no function for the effect {type(effect).__name__}")
+
+
+@_add.register
+def _(effect: ToothThickness, columns: Array, sums: _Sums, model: Model) -> None:
+    sums.thickness[:, model.gear_index[effect.part]] += columns[:, 0]
+
+
+@_add.register
+def _(effect: TurningOffset, columns: Array, sums: _Sums, model: Model) -> None:
+    sums.centre[:, model.gear_index[effect.part]] += columns
+
+
+@_add.register
+def _(effect: AxisOffset, columns: Array, sums: _Sums, model: Model) -> None:
+    gear = model.gear_index[effect.part]
+    if columns.shape[1] == 2:
+        sums.axis_offset[:, gear, :2] += effect.factor * columns
+    else:
+        sums.axis_offset[:, gear] += effect.factor * columns * np.array(effect.direction)
+
+
+@_add.register
+def _(effect: AxisTilt, columns: Array, sums: _Sums, model: Model) -> None:
+    sums.axis_turn[:, model.gear_index[effect.part]] += effect.per_length * columns * np.array(effect.axis)
+
+
+@_add.register
+def _(effect: Temperature, columns: Array, sums: _Sums, model: Model) -> None:
+    for part in effect.parts:
+        sums.temperature[part] = sums.temperature.get(part, 0.0) + columns[:, 0]

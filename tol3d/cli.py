@@ -1,0 +1,254 @@
+"""The command line: arguments, exit codes, progress. The only place that prints.
+
+Exit codes: 0 done, 1 limits failed (with --fail-on-limits), 2 wrong input, 3 a fault of tol3d, 130 interrupted.
+Imports stand inside the functions here, so that `tol3d --help` loads no numpy, no CAD and no plotting.
+"""
+
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from enum import Enum
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+from rich.console import Console
+
+if TYPE_CHECKING:
+    from tol3d.result import Run
+
+DONE, LIMITS_FAILED, WRONG_INPUT, FAULT, INTERRUPTED = 0, 1, 2, 3, 130
+
+app = typer.Typer(
+    name="tol3d",
+    help="Open 3D tolerance simulator for gears and robots: thousands of virtual builds on real geometry, "
+    "beside an independent analytic model.",
+    no_args_is_help=True,
+    add_completion=False,
+    pretty_exceptions_enable=False,
+)
+out_console = Console(highlight=False, soft_wrap=False)
+err_console = Console(stderr=True, highlight=False, soft_wrap=True)
+
+SceneArgument = Annotated[
+    str, typer.Argument(metavar="SCENE", help="A scene file, or the name of one that tol3d brings along (spur_pair).")
+]
+RunArgument = Annotated[Path, typer.Argument(metavar="RUN", help="The folder of a finished run.")]
+TrustParts = Annotated[
+    bool, typer.Option("--trust-parts", help="Allow the scene to read files outside its own folder.")
+]
+
+
+class EngineName(str, Enum):
+    """Engines that a run may choose."""
+
+    FCL = "fcl"
+    ANALYTIC = "analytic"
+
+
+class MeshFormat(str, Enum):
+    """Files that an export may write."""
+
+    STL = "stl"
+    PLY = "ply"
+    GLB = "glb"
+    STEP = "step"
+
+
+@app.command()
+def run(
+    scene: SceneArgument,
+    trials: Annotated[int | None, typer.Option(min=1, help="Number of trials instead of the scene's.")] = None,
+    seed: Annotated[int | None, typer.Option(min=0, help="Seed instead of the scene's.")] = None,
+    engine: Annotated[EngineName | None, typer.Option(help="Engine instead of the scene's.")] = None,
+    out: Annotated[Path | None, typer.Option(help="The run's folder; runs/<scene> by default.")] = None,
+    workers: Annotated[
+        int | None, typer.Option(min=1, help="Processes; by default one, or all cores for a long study.")
+    ] = None,
+    fail_on_limits: Annotated[bool, typer.Option(help="Exit with 1 when a trial is out of limits or failed.")] = False,
+    trust_parts: TrustParts = False,
+) -> None:
+    """Simulate a scene: analytic model and 3D simulation side by side."""
+    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
+
+    from tol3d.execution import suggested_workers
+    from tol3d.report import draw_histogram, run_report
+    from tol3d.simulate import Overrides, effective_model, load, run_scene
+
+    path = scene_path(scene)
+    overrides = Overrides(trials, seed, engine.value if engine else None)
+    folder = out or Path("runs") / path.stem
+    loaded = load(path, trust_parts=trust_parts)
+    model = effective_model(loaded, overrides)
+    for warning in model.warnings:
+        err_console.print(f"warning: {warning}", style="yellow")
+    columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn())
+    with Progress(*columns, console=err_console, transient=True) as progress:
+        bar = progress.add_task("scene", total=model.study.trials)
+        try:
+            finished = run_scene(
+                loaded,
+                overrides=overrides,
+                out=folder,
+                workers=workers or suggested_workers(model.study.trials),
+                on_stage=lambda text: progress.update(bar, description=text),
+                on_progress=lambda done: progress.advance(bar, done),
+                finisher=lambda place, summary: draw_histogram(summary, place / "histogram.png"),
+            )
+        except KeyboardInterrupt:
+            progress.stop()
+            err_console.print(f"stopped; finished blocks are kept in {folder}.partial: the same command goes on there")
+            raise typer.Exit(INTERRUPTED) from None
+    out_console.print(run_report(finished.summary))
+    out_console.print(f"run: {finished.path}    picture: {finished.path / 'histogram.png'}")
+    if fail_on_limits and _out_of_limits(finished):
+        err_console.print("limits failed", style="red")
+        raise typer.Exit(LIMITS_FAILED)
+
+
+def _out_of_limits(run: "Run") -> bool:
+    road = "analytic" if run.summary["engine"] == "analytic" else "geometric"
+    samples = [measure[road] for measure in run.summary["measures"].values() if road in measure]
+    ppm = [sample[key] or 0.0 for sample in samples for key in ("below_limit_ppm", "above_limit_ppm", "failed_ppm")]
+    return any(ppm) or any(count for text, count in run.summary["status"].items() if text != "ok")
+
+
+@app.command()
+def check(scene: SceneArgument, trust_parts: TrustParts = False) -> None:
+    """Read a scene and show what it means: parts, moves, measures, contributors with their coefficients."""
+    from tol3d.report import check_report
+    from tol3d.simulate import effective_model, load
+
+    out_console.print(check_report(effective_model(load(scene_path(scene), trust_parts=trust_parts))))
+
+
+@app.command()
+def schema() -> None:
+    """Print the JSON Schema of scenes, for editors."""
+    import json
+
+    from tol3d.scene import Scene
+
+    typer.echo(json.dumps(Scene.model_json_schema(), indent=2, ensure_ascii=False))
+
+
+@app.command()
+def compare(
+    runs: Annotated[list[Path], typer.Argument(metavar="RUN...", help="Folders of finished runs.")],
+    out: Annotated[Path, typer.Option(help="The picture to write.")] = Path("comparison.png"),
+) -> None:
+    """Lay the histograms of both roads of one or several runs over each other, with the per-trial difference."""
+    from tol3d.report import comparison_report, draw_comparison
+    from tol3d.result import open_run
+
+    opened = [open_run(path) for path in runs]
+    draw_comparison(opened, out)
+    out_console.print(comparison_report(opened))
+    out_console.print(f"picture: {out}")
+
+
+TrialOption = Annotated[int | None, typer.Option(min=0, help="This trial.")]
+WorstOption = Annotated[bool, typer.Option("--worst", help="The trial nearest to a limit, or furthest beyond it.")]
+NominalOption = Annotated[bool, typer.Option("--nominal", help="The build without deviations.")]
+MeanOption = Annotated[bool, typer.Option("--mean", help="The build with every contributor at its mean.")]
+MagnifyOption = Annotated[float, typer.Option(min=0.0, help="Scale the deviations and seat again.")]
+
+
+@app.command()
+def export(
+    run: RunArgument,
+    trial: TrialOption = None,
+    worst: WorstOption = False,
+    nominal: NominalOption = False,
+    mean: MeanOption = False,
+    format: Annotated[MeshFormat, typer.Option(help="stl and ply: a file a part; glb and step: one.")] = MeshFormat.GLB,
+    magnify: MagnifyOption = 1.0,
+    out: Annotated[Path, typer.Option(help="Folder to write into.")] = Path("."),
+    trust_parts: TrustParts = False,
+) -> None:
+    """Write the perturbed parts of a trial where they ended up."""
+    from tol3d.report import export_run
+    from tol3d.result import open_run
+
+    which = _which(trial, worst=worst, nominal=nominal, mean=mean)
+    exported = export_run(open_run(run), which, format.value, magnify=magnify, out=out, trust_parts=trust_parts)
+    for note in exported.notes:
+        err_console.print(note, style="yellow")
+    for path in exported.files:
+        out_console.print(str(path))
+
+
+@app.command()
+def view(
+    run: RunArgument,
+    trial: TrialOption = None,
+    worst: WorstOption = False,
+    nominal: NominalOption = False,
+    mean: MeanOption = False,
+    magnify: MagnifyOption = 1.0,
+    screenshot: Annotated[Path | None, typer.Option(help="Write a picture instead of opening a window.")] = None,
+    trust_parts: TrustParts = False,
+) -> None:
+    """Show a trial in 3D, with its contact and gap marked."""
+    from tol3d.report.view import view_run
+    from tol3d.result import open_run
+
+    which = _which(trial, worst=worst, nominal=nominal, mean=mean)
+    for note in view_run(open_run(run), which, screenshot=screenshot, magnify=magnify, trust_parts=trust_parts):
+        err_console.print(note, style="yellow")
+    if screenshot:
+        out_console.print(str(screenshot))
+
+
+def _which(trial: int | None, *, worst: bool, nominal: bool, mean: bool) -> "int | str":
+    """The one build that was asked for; the worst when nothing was said."""
+    from tol3d.errors import InputError
+
+    words = [word for word, said in (("worst", worst), ("nominal", nominal), ("mean", mean)) if said]
+    if len(words) + (trial is not None) > 1:
+        raise InputError("expected one of --trial, --worst, --nominal, --mean, got several")
+    return trial if trial is not None else (words[0] if words else "worst")
+
+
+def scene_path(text: str) -> Path:
+    """A scene's file: the path itself, or the scene of that name that tol3d brings along."""
+    from importlib.resources import files
+
+    path = Path(text)
+    if path.exists() or path.suffix or len(path.parts) > 1:
+        return path
+    brought = Path(str(files("tol3d.scenes") / f"{text}.yaml"))
+    return brought if brought.is_file() else path
+
+
+@contextmanager
+def _exit_codes() -> Iterator[None]:
+    from tol3d.errors import InputError
+
+    try:
+        yield
+    except InputError as error:
+        err_console.print(str(error), markup=False)
+        sys.exit(WRONG_INPUT)
+    except KeyboardInterrupt:
+        err_console.print("stopped")
+        sys.exit(INTERRUPTED)
+    except BrokenPipeError:
+        sys.exit(DONE)
+    except Exception as error:
+        import traceback
+
+        err_console.print(f"a fault in tol3d, not in your scene: {type(error).__name__}: {error}", markup=False)
+        err_console.print("please report it with the scene and these lines:", markup=False)
+        err_console.print("".join(traceback.format_exception(error)[-3:]).rstrip(), markup=False)
+        sys.exit(FAULT)
+
+
+def main() -> None:
+    """Entry point of the `tol3d` command."""
+    with _exit_codes():
+        app()
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,111 @@
+"""What every distribution of a deviation offers, and what every spec of one in a scene checks."""
+
+from abc import ABC, abstractmethod
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Self
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import model_validator
+from pydantic_core import PydanticCustomError
+
+from tol3d.strict import Strict
+from tol3d.units import Quantity
+
+Array = NDArray[np.float64]
+
+LOW_PROBABILITY = 0.00135  # the 0.135 % percentile, where a normal has mean - 3 sigma; ISO 22514-2
+HIGH_PROBABILITY = 1 - LOW_PROBABILITY
+LARGEST_DEVIATION = 1e9  # mm, rad or K; keeps squares and differences of what a user writes finite
+
+
+@dataclass(frozen=True, eq=False)
+class Distribution(ABC):
+    """The law of one deviation [mm, rad or K]; frozen.
+
+    Everything here is elementwise: the bits of `ppf(u)[i]` depend on `u[i]` alone, so that one
+    trial can be replayed without the others.
+    """
+
+    @abstractmethod
+    def ppf(self, u: Array) -> Array:
+        """The inverse transform: probabilities (n,) in (0, 1) to deviations (n,)."""
+
+    @abstractmethod
+    def cdf(self, x: Array) -> Array:
+        """The probability of a deviation of at most x; (n,) to (n,)."""
+
+    @property
+    @abstractmethod
+    def mean(self) -> float:
+        """The expected deviation, in closed form."""
+
+    @property
+    @abstractmethod
+    def variance(self) -> float:
+        """The variance [mm^2, rad^2 or K^2], in closed form."""
+
+    @property
+    def low(self) -> float:
+        """The lower limit for worst cases: a stated limit, or else the 0.135 % percentile."""
+        return float(self.ppf(np.array([LOW_PROBABILITY]))[0])
+
+    @property
+    def high(self) -> float:
+        """The upper limit for worst cases: a stated limit, or else the 99.865 % percentile."""
+        return float(self.ppf(np.array([HIGH_PROBABILITY]))[0])
+
+    @property
+    def sigma(self) -> float:
+        """The standard deviation."""
+        return float(np.sqrt(self.variance))
+
+
+class DistributionSpec(Strict, ABC):
+    """A distribution as a scene writes it; the tolerance that holds it fixes the dimension."""
+
+    def quantities(self) -> dict[str, Quantity]:
+        """Every dimensioned number that was given, by its field, for the tolerance to check."""
+        values = {name: getattr(self, name) for name in type(self).model_fields}
+        return {name: value for name, value in values.items() if isinstance(value, Quantity)}
+
+    @abstractmethod
+    def resolve(self, folder: Path) -> Distribution:
+        """What the spec means, in mm, rad or K; relative file names start at `folder`.
+
+        Raises:
+            SceneError: a file that it names cannot be used; the text names file and line.
+        """
+
+    @model_validator(mode="after")
+    def _refuse_mixed_or_huge(self) -> Self:
+        quantities = self.quantities()
+        first = next(iter(quantities.values()), None)
+        for field, quantity in quantities.items():
+            if first is not None and quantity.dimension != first.dimension:
+                raise refused(field, f"the dimension of {first} ({first.dimension})", quantity)
+            if not abs(quantity.internal) <= LARGEST_DEVIATION:
+                raise refused(field, "a deviation of less than 1e9 mm, rad or K", quantity)
+        return self
+
+    def _refuse_unless_ordered(self, below: str, above: str) -> None:
+        """Refuse unless the quantity `below` is less than the quantity `above`."""
+        quantities = self.quantities()
+        if not quantities[below].internal < quantities[above].internal:
+            raise refused(below, f"less than {above} ({quantities[above]})", quantities[below])
+
+    def _refuse_unless_positive(self, field: str) -> None:
+        quantity = self.quantities()[field]
+        if not quantity.internal > 0.0:
+            raise refused(field, "more than 0 (for no spread at all write kind: constant)", quantity)
+
+
+def refused(field: str, expected: str, got: object) -> PydanticCustomError:
+    """The error of a validator that refuses one field; a quantity is shown in quotes, as it was written."""
+    shown = repr(str(got)) if isinstance(got, Quantity) else str(got)
+    return PydanticCustomError(
+        "value_refused",
+        "{field}: expected {expected}, got {got}",
+        {"field": field, "expected": expected, "got": shown},
+    )

@@ -1,0 +1,56 @@
+"""A deviation that does not vary."""
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Literal
+
+import numpy as np
+
+from tol3d.distributions.base import Array, Distribution, DistributionSpec
+from tol3d.units import Quantity
+
+
+@dataclass(frozen=True)
+class Constant(Distribution):
+    """All probability at `value`."""
+
+    value: float
+
+    def ppf(self, u: Array) -> Array:
+        """The value, whatever u."""
+        return np.full_like(u, self.value)
+
+    def cdf(self, x: Array) -> Array:
+        """0 below the value, 1 from it on."""
+        return np.where(x >= self.value, 1.0, 0.0)
+
+    @property
+    def mean(self) -> float:
+        """The value."""
+        return self.value
+
+    @property
+    def variance(self) -> float:
+        """0."""
+        return 0.0
+
+    @property
+    def low(self) -> float:
+        """The value."""
+        return self.value
+
+    @property
+    def high(self) -> float:
+        """The value."""
+        return self.value
+
+
+class ConstantSpec(DistributionSpec):
+    """`{value}`."""
+
+    kind: Literal["constant"]
+    value: Quantity
+
+    def resolve(self, folder: Path) -> Constant:
+        """The law in mm, rad or K."""
+        return Constant(self.value.internal)

@@ -1,0 +1,161 @@
+"""A distribution taken from measured values: a column of a CSV file."""
+
+import csv
+import io
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import Literal, Self
+
+import numpy as np
+from pydantic import model_validator
+
+from tol3d.distributions.base import LARGEST_DEVIATION, Array, Distribution, DistributionSpec, refused
+from tol3d.errors import SceneError
+from tol3d.units import BARE_NUMBER, MICRO_SIGNS, UNITS, Quantity
+
+LARGEST_FILE = 20_000_000  # bytes; about two million values, seconds to read
+
+
+@dataclass(frozen=True, eq=False)
+class Empirical(Distribution):
+    """The law whose quantiles run linearly between the order statistics of a sample.
+
+    Q(k / (n - 1)) is the k-th of the n sorted values, k = 0 .. n - 1, and Q is linear in between
+    (Hyndman and Fan 1996, type 7, as numpy.quantile). Mean and variance are those of this law,
+    exactly; they differ from the sample's own by terms of order 1/n, since the law has the
+    sample's smallest and largest value as its ends. Two of them are equal only if they are one object.
+
+    Args:
+        values: (n,) the sorted sample, n >= 2.
+    """
+
+    values: Array
+
+    def ppf(self, u: Array) -> Array:
+        """Q(u): linear between the two order statistics about u (n - 1)."""
+        position = u * (len(self.values) - 1)
+        below = np.minimum(position.astype(np.int64), len(self.values) - 2)
+        start = self.values[below]
+        value: Array = start + (position - below) * (self.values[below + 1] - start)
+        return value
+
+    def cdf(self, x: Array) -> Array:
+        """The inverse of Q; where values repeat it jumps, and takes the upper end."""
+        probability: Array = np.interp(x, self.values, np.arange(len(self.values)) / (len(self.values) - 1))
+        return np.where(x < self.values[0], 0.0, probability)
+
+    @cached_property
+    def _moments(self) -> tuple[float, float]:
+        # each segment of Q is uniform between its ends a, b: E = (a + b)/2, E of the square = (a^2 + ab + b^2)/3
+        start = self.values[0]
+        a, b = self.values[:-1] - start, self.values[1:] - start
+        mean = float(np.mean((a + b) / 2))
+        a, b = a - mean, b - mean
+        return float(start + mean), float(np.mean((a * a + a * b + b * b) / 3))
+
+    @property
+    def mean(self) -> float:
+        """Mean of the middles of the segments between order statistics."""
+        return self._moments[0]
+
+    @property
+    def variance(self) -> float:
+        """Mean over the segments (a, b) of (a^2 + a b + b^2) / 3, a and b taken from the mean."""
+        return self._moments[1]
+
+
+class EmpiricalSpec(DistributionSpec):
+    """`{file, column, unit}`: a CSV file with a header row; commas or semicolons between the cells."""
+
+    kind: Literal["empirical"]
+    file: str
+    column: str
+    unit: str
+
+    @model_validator(mode="after")
+    def _refuse_nonsense(self) -> Self:
+        if not self.file.strip() or "\0" in self.file:
+            raise refused("file", "the name of a CSV file", repr(self.file))
+        return self
+
+    @model_validator(mode="before")
+    @classmethod
+    def _refuse_unknown_unit(cls, data: object) -> object:
+        unit = data.get("unit") if isinstance(data, dict) else None
+        if isinstance(unit, str) and unit.translate(MICRO_SIGNS) not in UNITS:
+            raise refused("unit", f"one of {', '.join(UNITS)}", repr(unit))
+        return data
+
+    def quantities(self) -> dict[str, Quantity]:
+        """One of the unit, under the field `unit`."""
+        return {"unit": Quantity(1.0, self.unit.translate(MICRO_SIGNS))}
+
+    def resolve(self, folder: Path) -> Empirical:
+        """Read the column.
+
+        Raises:
+            SceneError: the file is missing, too large or no CSV, or a cell is no number; the
+                text names file and line.
+        """
+        sample = np.array(_column(folder / self.file, self.column)) * self.quantities()["unit"].internal
+        if not np.all(np.abs(sample) <= LARGEST_DEVIATION):
+            raise SceneError(f"{folder / self.file}: expected deviations of less than 1e9 mm, rad or K")
+        sample = np.sort(sample)
+        sample.flags.writeable = False
+        return Empirical(sample)
+
+
+def _column(path: Path, column: str) -> list[float]:
+    """The numbers under the header `column`, at least two."""
+    rows = _rows(path)
+    header_line, header = next(rows, (1, []))
+    names = [name.strip() for name in header]
+    if names.count(column.strip()) != 1:
+        found = ", ".join(repr(name) for name in names) or "an empty file"
+        raise SceneError(f"{path}:{header_line}: expected one column named {column!r} in the header, got {found}")
+    index = names.index(column.strip())
+    values = [_number(row, index, f"{path}:{line}: column {column!r}") for line, row in rows]
+    if len(values) < 2:
+        raise SceneError(f"{path}: expected at least two values in column {column!r}, got {len(values)}")
+    return values
+
+
+def _number(row: list[str], index: int, place: str) -> float:
+    cell = row[index] if index < len(row) else ""
+    number = float(cell) if BARE_NUMBER.fullmatch(cell) else math.nan
+    if not math.isfinite(number):
+        shown = repr(cell if len(cell) <= 60 else cell[:57] + "…") if cell.strip() else "an empty cell"
+        raise SceneError(f"{place}: expected a number such as 4.5, got {shown}")
+    return number
+
+
+def _rows(path: Path) -> Iterator[tuple[int, list[str]]]:
+    """The rows of a CSV file that are not blank, with their line numbers."""
+    text = _text(path)
+    header = text.lstrip().partition("\n")[0]
+    reader = csv.reader(io.StringIO(text, newline=""), delimiter=";" if ";" in header else ",", strict=True)
+    try:
+        for row in reader:
+            if any(cell.strip() for cell in row):
+                yield reader.line_num, row
+    except csv.Error as error:
+        raise SceneError(f"{path}:{reader.line_num}: expected comma-separated values, got {error}") from None
+
+
+def _text(path: Path) -> str:
+    try:
+        if not path.is_file():
+            raise SceneError(f"{path}: expected a CSV file, got {'a folder' if path.is_dir() else 'no such file'}")
+        with path.open("rb") as stream:
+            content = stream.read(LARGEST_FILE + 1)
+        if len(content) > LARGEST_FILE:
+            raise SceneError(f"{path}: expected at most {LARGEST_FILE // 10**6} MB")
+        return content.decode("utf-8-sig")
+    except OSError as error:
+        raise SceneError(f"{path}: expected a file that can be read, got: {error.strerror}") from None
+    except UnicodeDecodeError as error:
+        line = content[: error.start].count(b"\n") + 1
+        raise SceneError(f"{path}:{line}: expected UTF-8 text, got a byte that is none") from None

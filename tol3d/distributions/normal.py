@@ -1,0 +1,86 @@
+"""The normal distribution, by its limits or by mean and sigma."""
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Literal, Self
+
+from pydantic import model_validator
+
+from tol3d.distributions import standard_normal
+from tol3d.distributions.base import Array, Distribution, DistributionSpec, refused
+from tol3d.units import Quantity
+
+
+@dataclass(frozen=True)
+class Normal(Distribution):
+    """A normal law about `location` with standard deviation `scale`.
+
+    `limits` are the low and high that were stated (draws go beyond them); None means +-3 sigma.
+    """
+
+    location: float
+    scale: float
+    limits: tuple[float, float] | None = None
+
+    def ppf(self, u: Array) -> Array:
+        """location + scale * Phi^-1(u)."""
+        return self.location + self.scale * standard_normal.ppf(u)
+
+    def cdf(self, x: Array) -> Array:
+        """Phi((x - location) / scale)."""
+        return standard_normal.cdf((x - self.location) / self.scale)
+
+    @property
+    def mean(self) -> float:
+        """The location."""
+        return self.location
+
+    @property
+    def variance(self) -> float:
+        """The scale, squared."""
+        return self.scale**2
+
+    @property
+    def low(self) -> float:
+        """The stated lower limit, or mean - 3 sigma."""
+        return self.limits[0] if self.limits else self.location - 3 * self.scale
+
+    @property
+    def high(self) -> float:
+        """The stated upper limit, or mean + 3 sigma."""
+        return self.limits[1] if self.limits else self.location + 3 * self.scale
+
+
+class NormalSpec(DistributionSpec):
+    """`{lower, upper, sigmas}`: limits at +-sigmas about their middle; or `{mean, sigma}`."""
+
+    kind: Literal["normal"]
+    lower: Quantity | None = None
+    upper: Quantity | None = None
+    sigmas: float = 3.0
+    mean: Quantity | None = None
+    sigma: Quantity | None = None
+
+    @model_validator(mode="after")
+    def _refuse_nonsense(self) -> Self:
+        given = self.quantities()
+        if given.keys() == {"lower", "upper"}:
+            self._refuse_unless_ordered("lower", "upper")
+            if not self.sigmas > 0.0:
+                raise refused("sigmas", "a number above 0", self.sigmas)
+        elif given.keys() == {"mean", "sigma"}:
+            self._refuse_unless_positive("sigma")
+            if "sigmas" in self.model_fields_set:
+                raise refused("sigmas", "it beside lower and upper only", self.sigmas)
+        else:
+            got = " and ".join(given) or "none of them"
+            raise refused("kind", "either lower and upper, or mean and sigma", got)
+        return self
+
+    def resolve(self, folder: Path) -> Normal:
+        """The law in mm, rad or K."""
+        values = {name: quantity.internal for name, quantity in self.quantities().items()}
+        if "sigma" in values:
+            return Normal(values["mean"], values["sigma"])
+        lower, upper = values["lower"], values["upper"]
+        return Normal((lower + upper) / 2, (upper - lower) / (2 * self.sigmas), (lower, upper))

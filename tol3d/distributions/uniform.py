@@ -1,0 +1,64 @@
+"""The uniform distribution: every deviation between two limits alike."""
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Literal, Self
+
+import numpy as np
+from pydantic import model_validator
+
+from tol3d.distributions.base import Array, Distribution, DistributionSpec
+from tol3d.units import Quantity
+
+
+@dataclass(frozen=True)
+class Uniform(Distribution):
+    """Constant density between `lower` and `upper`."""
+
+    lower: float
+    upper: float
+
+    def ppf(self, u: Array) -> Array:
+        """lower + u (upper - lower)."""
+        return self.lower + u * (self.upper - self.lower)
+
+    def cdf(self, x: Array) -> Array:
+        """(x - lower) / (upper - lower) between the limits."""
+        return np.clip((x - self.lower) / (self.upper - self.lower), 0.0, 1.0)
+
+    @property
+    def mean(self) -> float:
+        """The middle."""
+        return (self.lower + self.upper) / 2
+
+    @property
+    def variance(self) -> float:
+        """(upper - lower)^2 / 12."""
+        return (self.upper - self.lower) ** 2 / 12
+
+    @property
+    def low(self) -> float:
+        """The lower limit."""
+        return self.lower
+
+    @property
+    def high(self) -> float:
+        """The upper limit."""
+        return self.upper
+
+
+class UniformSpec(DistributionSpec):
+    """`{lower, upper}`."""
+
+    kind: Literal["uniform"]
+    lower: Quantity
+    upper: Quantity
+
+    @model_validator(mode="after")
+    def _refuse_nonsense(self) -> Self:
+        self._refuse_unless_ordered("lower", "upper")
+        return self
+
+    def resolve(self, folder: Path) -> Uniform:
+        """The law in mm, rad or K."""
+        return Uniform(self.lower.internal, self.upper.internal)

@@ -1,0 +1,116 @@
+"""The witness: distances between measuring strips of the CAD flanks, by the Flexible Collision Library.
+
+One BVH a tooth flank, as full-width strips. FCL tells no depth of overlap, so the strips are pulled
+inward by SLACK along their normals and the gap is the distance less the slack of both: the flanks may
+overlap by up to twice the slack and the distance stays away from zero.
+"""
+
+from collections.abc import Mapping
+from functools import lru_cache
+
+import fcl
+import numpy as np
+from numpy.typing import NDArray
+
+from tol3d import frames
+from tol3d.build import Build
+from tol3d.engines.gaps import Array, Gaps, Teeth
+from tol3d.gears import Flank
+from tol3d.model import Mesh, Model
+from tol3d.solids import FlankStrips, strip_mesh
+
+SLACK = 0.030  # mm a flank; deep enough for any start of the turn, small against the curvature radius
+MESHES_KEPT = 64  # grown strips kept for reuse; a constant temperature needs one a flank
+OUT_OF_REACH = 1e-3  # mm; a distance below this has lost its normal: the overlap is as deep as the slack
+
+
+class FclEngine:
+    """Gaps from the measuring strips of every gear of a model.
+
+    Args:
+        model: gears and meshes.
+        strips: measuring strips of each gear by name, sampled from its solid.
+
+    FCL's objects do not pickle: make the engine in the worker.
+    """
+
+    def __init__(self, model: Model, strips: Mapping[str, FlankStrips]) -> None:
+        self._model = model
+        self._strips = strips
+        self._request = fcl.DistanceRequest(enable_nearest_points=True)
+        self._object = lru_cache(maxsize=MESHES_KEPT)(self._make_object)
+
+    @property
+    def depth(self) -> float:
+        """Overlap [mm] that can still be measured: the slack of both flanks."""
+        return 2 * SLACK - OUT_OF_REACH
+
+    @property
+    def chord_error(self) -> float:
+        """Largest sagitta [mm] of a strip's steps; a pair's gap is at most the sum of two too large."""
+        return max(strips.chord_error for strips in self._strips.values())
+
+    def _make_object(self, gear: str, flank: Flank, scale: float) -> fcl.CollisionObject:
+        vertices, triangles = strip_mesh(self._strips[gear], flank, SLACK, scale)
+        hierarchy = fcl.BVHModel()
+        hierarchy.beginModel(len(vertices), len(triangles))
+        hierarchy.addSubModel(vertices, triangles)
+        hierarchy.endModel()
+        return fcl.CollisionObject(hierarchy, fcl.Transform())
+
+    def gaps(
+        self,
+        build: Build,
+        mesh: Mesh,
+        flank: Flank,
+        angles: tuple[Array, Array],
+        driver_teeth: Teeth,
+        wanted: NDArray[np.bool_],
+    ) -> Gaps:
+        """See Engine.gaps."""
+        driver, driven = self._model.gear_index[mesh.driver], self._model.gear_index[mesh.driven]
+        driven_teeth = mesh.pair.mating_teeth(driver_teeth, flank)
+        driver_rotation, driver_origin = self._flank_poses(build, driver, angles[0], driver_teeth, flank)
+        driven_rotation, driven_origin = self._flank_poses(build, driven, angles[1], driven_teeth, flank)
+        world_to_driver = frames.transposed(driver_rotation)
+        rotation = frames.matmul(world_to_driver, driven_rotation)
+        translation = frames.apply(world_to_driver, (driven_origin - driver_origin)[:, None])
+
+        distance = np.full(wanted.shape, np.nan)
+        points = np.full((*wanted.shape, 2, 3), np.nan)
+        request = self._request
+        scales = build.scale
+        for row, pair in zip(*np.nonzero(wanted), strict=True):
+            fixed = self._object(mesh.driver, flank, scales[row, driver])
+            moved = self._object(mesh.driven, flank, scales[row, driven])
+            moved.setTransform(fcl.Transform(rotation[row, pair], translation[row, pair]))
+            result = fcl.DistanceResult()
+            distance[row, pair] = fcl.distance(fixed, moved, request, result)
+            points[row, pair] = result.nearest_points
+        return self._gaps(distance, points, (driver_rotation, driver_origin), driver_teeth)
+
+    def _flank_poses(self, build: Build, gear: int, angle: Array, teeth: Teeth, flank: Flank) -> tuple[Array, Array]:
+        """Poses of the flanks of some teeth: the tooth's place, turned by half its thickness deviation.
+
+        For an involute that turn is the deviation exactly: parallel involutes are one involute turned.
+        """
+        part = self._model.gears[gear].gear
+        half = build.thickness[:, gear] / (2 * part.reference_radius)
+        return build.tooth_pose(gear, angle, part.angular_pitch * teeth - flank * half[:, None])
+
+    @staticmethod
+    def _gaps(distance: Array, points: Array, driver_pose: tuple[Array, Array], driver_teeth: Teeth) -> Gaps:
+        deep = distance < OUT_OF_REACH
+        safe = np.where(deep | np.isnan(distance), np.nan, distance)
+        rotation, origin = driver_pose
+        first = frames.apply(rotation, points[..., 0, :]) + origin[:, None]
+        second = frames.apply(rotation, points[..., 1, :]) + origin[:, None]
+        normal = (second - first) / safe[..., None]
+        return Gaps(
+            value=safe - 2 * SLACK,
+            deep=deep,
+            driver_point=first + SLACK * normal,
+            driven_point=second - SLACK * normal,
+            normal=normal,
+            driver_teeth=driver_teeth,
+        )

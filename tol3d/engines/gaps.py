@@ -1,0 +1,92 @@
+"""What an engine offers: signed gaps of candidate tooth pairs, with contact points and normals."""
+
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tol3d.build import Build
+from tol3d.gears import Flank
+from tol3d.model import Mesh
+
+Array = NDArray[np.float64]
+Teeth = NDArray[np.int64]
+
+
+@dataclass(frozen=True)
+class Gaps:
+    """Gaps between one flank side of two gears, for each trial and candidate tooth pair.
+
+    Args:
+        value: (trials, pairs) [mm], shortest distance, negative where the flanks overlap;
+            nan where the pair was not asked for or overlaps deeper than the engine can tell.
+        deep: (trials, pairs), True in that last case.
+        driver_point, driven_point: (trials, pairs, 3) [mm], the nearest points on the flanks, world.
+        normal: (trials, pairs, 3), unit vector from the driver's flank to the driven's.
+        driver_teeth: (trials, pairs), which tooth of the driver each pair is.
+    """
+
+    value: Array
+    deep: NDArray[np.bool_]
+    driver_point: Array
+    driven_point: Array
+    normal: Array
+    driver_teeth: Teeth
+
+    def rows(self, rows: NDArray[np.intp]) -> "Gaps":
+        """The gaps of some trials."""
+        arrays = (self.value, self.deep, self.driver_point, self.driven_point, self.normal, self.driver_teeth)
+        return Gaps(*(array[rows] for array in arrays))
+
+    def per_turn(self, axis_point: Array, axis: Array, *, of_driver: bool) -> Array:
+        """Derivative of the gaps by the turn of one gear [mm/rad], (trials, pairs).
+
+        Args:
+            axis_point, axis: the gear's rotation axis, each (trials, 3).
+            of_driver: the driver turns (its flank is behind the normal), else the driven.
+        """
+        point = self.driver_point if of_driver else self.driven_point
+        moved = np.cross(axis[:, None], point - axis_point[:, None])
+        rate = np.asarray((moved * self.normal).sum(axis=-1))
+        return -rate if of_driver else rate
+
+    def smallest(self) -> Array:
+        """Smallest gap of each trial [mm], (trials,); nan where any pair is too deep to tell."""
+        least = np.min(np.where(np.isnan(self.value), np.inf, self.value), axis=1)
+        return np.where(self.deep.any(axis=1) | np.isinf(least), np.nan, least)
+
+
+class Engine(Protocol):
+    """Anything that can tell gaps."""
+
+    @property
+    def depth(self) -> float:
+        """How deep an overlap [mm] the engine can still measure."""
+        ...
+
+    @property
+    def chord_error(self) -> float:
+        """Largest distance [mm] between its flanks and the mathematical ones."""
+        ...
+
+    def gaps(
+        self,
+        build: Build,
+        mesh: Mesh,
+        flank: Flank,
+        angles: tuple[Array, Array],
+        driver_teeth: Teeth,
+        wanted: NDArray[np.bool_],
+    ) -> Gaps:
+        """Gaps of one flank side.
+
+        Args:
+            build: virtual builds, one a row.
+            mesh: which gears.
+            flank: the driver's flank; the driven's mating one follows from the pair.
+            angles: turn of driver and driven [rad], each (trials,).
+            driver_teeth: (trials, pairs) candidate teeth of the driver.
+            wanted: (trials, pairs); the others stay nan.
+        """
+        ...

@@ -1,0 +1,211 @@
+"""Two spur gears on parallel axes: working pressure angle, backlash, path of contact.
+
+Exact for rigid involute teeth. Sources: ISO 21771-1:2024, 5.3 (pair geometry) and 5.6 (backlash).
+"""
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tol3d.errors import GeometryError
+from tol3d.gears.flank import Flank
+from tol3d.gears.involute import inverse_involute, involute
+from tol3d.gears.spur_gear import SpurGear
+
+SAME_LENGTH = 1e-9  # relative; two modules written alike are equal in this sense
+CONTACT_MARGIN = 0.15  # pitches beyond the path of contact; teeth further off are open by over 20 um
+
+
+@dataclass(frozen=True)
+class SpurPair:
+    """Pinion (driver) and wheel (driven) at a centre distance [mm].
+
+    Raises:
+        GeometryError: modules or pressure angles differ, or the base circles do not leave room.
+
+    >>> alpha = math.radians(20)
+    >>> pinion = SpurGear(28, 2.5, alpha, 20.0)
+    >>> wheel = SpurGear(110, 2.5, alpha, 20.0)
+    >>> pair = SpurPair(pinion, wheel, 172.5)
+    >>> abs(pair.normal_backlash) < 1e-12, round(pair.contact_ratio, 4)
+    (True, 1.7503)
+    """
+
+    pinion: SpurGear
+    wheel: SpurGear
+    centre_distance: float
+
+    def __post_init__(self) -> None:
+        for name, unit in (("module", "mm"), ("pressure_angle", "rad")):
+            first, second = getattr(self.pinion, name), getattr(self.wheel, name)
+            if not math.isclose(first, second, rel_tol=SAME_LENGTH):
+                raise GeometryError(
+                    f"the gears of a pair need the same {name}, got {first:g} {unit} and {second:g} {unit}"
+                )
+        if self.centre_distance <= self.base_radii:
+            raise GeometryError(
+                f"centre distance {self.centre_distance:g} mm: the teeth interfere, the base circles alone "
+                f"need more than {self.base_radii:.4f} mm"
+            )
+
+    @property
+    def base_radii(self) -> float:
+        """r_b1 + r_b2 [mm]."""
+        return self.pinion.base_radius + self.wheel.base_radius
+
+    @property
+    def ratio(self) -> float:
+        """z2 / z1."""
+        return self.wheel.teeth / self.pinion.teeth
+
+    @property
+    def long_period_turns(self) -> int:
+        """Turns of the pinion until the same teeth meet again in the same places: z2 / gcd(z1, z2)."""
+        return self.wheel.teeth // math.gcd(self.pinion.teeth, self.wheel.teeth)
+
+    @cached_property
+    def working_pressure_angle(self) -> float:
+        """alpha_w with cos alpha_w = (r_b1 + r_b2)/a [rad]."""
+        return math.acos(self.base_radii / self.centre_distance)
+
+    @property
+    def working_radii(self) -> tuple[float, float]:
+        """r_w of pinion and wheel [mm]: r_b / cos alpha_w."""
+        cos = math.cos(self.working_pressure_angle)
+        return self.pinion.base_radius / cos, self.wheel.base_radius / cos
+
+    # backlash -----------------------------------------------------------------------------------
+
+    @cached_property
+    def zero_backlash_involute(self) -> float:
+        """inv alpha_w at which the teeth would touch on both flanks.
+
+        From tooth + tooth = pitch on the working circle:
+        inv alpha + [s1 + s2 - pi m] cos alpha / (2 (r_b1 + r_b2)).
+        """
+        alpha = self.pinion.pressure_angle
+        thicker = self.pinion.tooth_thickness + self.wheel.tooth_thickness - math.pi * self.pinion.module
+        return involute(alpha) + thicker * math.cos(alpha) / (2 * self.base_radii)
+
+    @property
+    def zero_backlash_centre_distance(self) -> float:
+        """Centre distance [mm] without backlash; nan where even touching base circles leave some."""
+        if self.zero_backlash_involute < 0.0:
+            return math.nan
+        return self.base_radii / math.cos(inverse_involute(self.zero_backlash_involute))
+
+    @property
+    def normal_backlash(self) -> float:
+        """j_bn [mm], shortest distance of the non-working flanks; negative: the teeth interfere.
+
+        2 (r_b1 + r_b2)(inv alpha_w - inv alpha_w0), exact for parallel axes.
+        """
+        return 2 * self.base_radii * (involute(self.working_pressure_angle) - self.zero_backlash_involute)
+
+    @property
+    def circumferential_backlash(self) -> float:
+        """j_wt = j_bn / cos alpha_w, free arc on the working pitch circles [mm]."""
+        return self.normal_backlash / math.cos(self.working_pressure_angle)
+
+    @property
+    def radial_backlash(self) -> float:
+        """j_r [mm]: how far the axes may approach until both flanks touch; exact, not j_wt/(2 tan alpha_w)."""
+        return self.centre_distance - self.zero_backlash_centre_distance
+
+    @property
+    def angular_backlash(self) -> tuple[float, float]:
+        """Free turn of the pinion (wheel held) and of the wheel (pinion held) [rad]: j_bn / r_b."""
+        return self.normal_backlash / self.pinion.base_radius, self.normal_backlash / self.wheel.base_radius
+
+    # path of contact ------------------------------------------------------------------------------
+
+    @property
+    def start_roll(self) -> float:
+        """Roll [rad] of the pinion's flank where the wheel's tip circle begins the path of contact."""
+        along = self.centre_distance * math.sin(self.working_pressure_angle)
+        return (along - self.wheel.base_radius * self.wheel.tip_roll) / self.pinion.base_radius
+
+    @property
+    def contact_ratio(self) -> float:
+        """epsilon_alpha: length of the path of contact over the base pitch."""
+        return (self.pinion.tip_roll - self.start_roll) / self.pinion.angular_pitch
+
+    def refuse_interference(self) -> None:
+        """Raise unless tips clear roots and the path of contact stays on both involutes.
+
+        Raises:
+            GeometryError: with the radii and what to change.
+        """
+        mirrored = SpurPair(self.wheel, self.pinion, self.centre_distance)
+        for pair, name, mate in ((self, "driver", "driven"), (mirrored, "driven", "driver")):
+            gear, other = pair.pinion, pair.wheel
+            clearance = self.centre_distance - gear.root_radius - other.tip_radius
+            if clearance <= 0.0:
+                raise GeometryError(
+                    f"the teeth interfere at centre distance {self.centre_distance:g} mm: the {mate} gear's tip "
+                    f"digs {-clearance:.4f} mm into the root of the {name} gear"
+                )
+            start = gear.base_radius * math.hypot(1.0, max(pair.start_roll, 0.0))
+            if pair.start_roll < gear.form_roll:
+                where = f"{2 * start:.4f} mm" if pair.start_roll > 0 else "below the base circle"
+                raise GeometryError(
+                    f"the teeth interfere: the {mate} gear's tip would touch the {name} gear at {where}, "
+                    f"but its involute begins at {2 * gear.form_radius:.4f} mm; "
+                    "lower addendum or root_fillet, or add profile_shift"
+                )
+            if start < gear.undercut_radius:
+                raise GeometryError(
+                    f"undercut reaches the flank in use: a rack of addendum 1 cuts the {name} gear's involute up to "
+                    f"{2 * gear.undercut_radius:.4f} mm, contact begins at {2 * start:.4f} mm; give "
+                    f"profile_shift of at least {gear.undercut_limit_shift:.4f} (it has {gear.profile_shift:g})"
+                )
+        if self.contact_ratio < 1.0:
+            raise GeometryError(
+                f"contact ratio {self.contact_ratio:.4f} is below 1 at centre distance "
+                f"{self.centre_distance:g} mm: the teeth lose touch"
+            )
+
+    # positions --------------------------------------------------------------------------------------
+
+    def driven_angle(self, driver_angle: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Wheel's turn [rad] with its space centred on the pinion's tooth: pi + pi/z2 - (z1/z2) theta_1."""
+        return math.pi + math.pi / self.wheel.teeth - driver_angle / self.ratio
+
+    def candidate_teeth(
+        self, driver_angle: NDArray[np.float64], flank: Flank
+    ) -> tuple[NDArray[np.int64], NDArray[np.bool_]]:
+        """Pinion teeth that may touch on that flank.
+
+        Args:
+            driver_angle: pinion's turn [rad], shape (trials,).
+            flank: the pinion's flank.
+
+        Returns:
+            (trials, pairs) tooth numbers (any integer; tooth k is turned by 2 pi k/z), consecutive,
+            and (trials, pairs) whether each may touch. A tooth at azimuth psi touches at the roll
+            t = alpha_w + eta_b - sigma psi: on the path of contact or within CONTACT_MARGIN pitches of it.
+        """
+        gear = self.pinion
+        offset = self.working_pressure_angle + gear.base_half_angle
+        margin = CONTACT_MARGIN * gear.angular_pitch
+        pairs = math.floor(self.contact_ratio + 2 * CONTACT_MARGIN) + 1
+        # sigma psi runs from offset - (tip roll + margin) up to offset - (start roll - margin)
+        lowest = (offset - gear.tip_roll - margin - flank * driver_angle) / gear.angular_pitch
+        highest = (offset - self.start_roll + margin - flank * driver_angle) / gear.angular_pitch
+        steps = np.ceil(lowest).astype(np.int64)[:, None] + np.arange(pairs)
+        return np.asarray(flank * steps), steps <= highest[:, None]
+
+    def mating_teeth(self, driver_teeth: NDArray[np.int64], flank: Flank) -> NDArray[np.int64]:
+        """The wheel's tooth that each of those pinion flanks meets: -k on the right flank, -k - 1 on the left."""
+        return -driver_teeth - (0 if flank == 1 else 1)
+
+    def opening_sense(self, flank: Flank) -> Flank:
+        """Sense in which either gear's turn opens that flank side: sigma, for external gears.
+
+        The driver's right flank faces -y at the mesh: the driven tooth there leaves it by turning
+        counter-clockwise, and so does the driver.
+        """
+        return flank

@@ -1,0 +1,37 @@
+"""What a scene means: parts, contributors, moves and measures in mm and rad. Nothing here is text any more."""
+
+from tol3d.model.contributor import (
+    AxisOffset,
+    AxisTilt,
+    Contributor,
+    Effect,
+    Planar,
+    Scalar,
+    Temperature,
+    ToothThickness,
+    TurningOffset,
+)
+from tol3d.model.measure import Backlash, Measure, Positions
+from tol3d.model.model import GearPart, Mesh, Model, Study
+
+from tol3d.model.from_scene import model_from_scene  # isort: skip  (needs the names above)
+
+__all__ = [
+    "AxisOffset",
+    "AxisTilt",
+    "Backlash",
+    "Contributor",
+    "Effect",
+    "GearPart",
+    "Measure",
+    "Mesh",
+    "Model",
+    "Planar",
+    "Positions",
+    "Scalar",
+    "Study",
+    "Temperature",
+    "ToothThickness",
+    "TurningOffset",
+    "model_from_scene",
+]

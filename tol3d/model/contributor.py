@@ -1,0 +1,140 @@
+"""A contributor: one toleranced deviation, how it is drawn, and what it does to the parts.
+
+Every tolerance kind of a scene comes down to one of five effects. The geometric road (build.py)
+and the analytic road (analytic/) each say for themselves what an effect does.
+"""
+
+import math
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tol3d.distributions import Distribution
+
+Array = NDArray[np.float64]
+Unit = Literal["um", "mrad", "K"]
+
+INTERNAL_PER_UNIT: dict[Unit, float] = {"um": 1e-3, "mrad": 1e-3, "K": 1.0}
+
+
+@dataclass(frozen=True)
+class ToothThickness:
+    """Deviation of the tooth thickness of a gear: an arc at the reference circle [mm], positive is thicker."""
+
+    part: str
+
+
+@dataclass(frozen=True)
+class TurningOffset:
+    """Offset (x, y) [mm] of a gear's centre from its rotation axis, in the gear's frame; it turns with the gear."""
+
+    part: str
+
+
+@dataclass(frozen=True)
+class AxisOffset:
+    """Shift of a gear's rotation axis in the world of its mesh [mm].
+
+    Scalar: `direction` (unit vector times a factor) times the deviation. Planar (components x, y):
+    `factor` times the vector.
+    """
+
+    part: str
+    direction: tuple[float, float, float] = (1.0, 0.0, 0.0)
+    factor: float = 1.0
+
+
+@dataclass(frozen=True)
+class AxisTilt:
+    """Turn of a gear's axis about its face centre: the deviation [rad] times `axis` (world unit vector).
+
+    `per_length` [1/mm] makes an angle of a deviation that is given as a length over a face width.
+    """
+
+    part: str
+    axis: tuple[float, float, float]
+    per_length: float = 1.0
+
+
+@dataclass(frozen=True)
+class Temperature:
+    """Temperature of some parts above the reference 20 degC [K]; each grows by its own coefficient."""
+
+    parts: tuple[str, ...]
+
+
+Effect = ToothThickness | TurningOffset | AxisOffset | AxisTilt | Temperature
+
+
+@dataclass(frozen=True)
+class Scalar:
+    """One component, drawn straight from the distribution."""
+
+    distribution: Distribution
+
+    uniforms = 1
+    components = ("",)
+
+    def deviations(self, uniforms: Array) -> Array:
+        """Uniforms (trials, 1) in (0, 1) to deviations (trials, 1) [mm, rad or K]."""
+        return self.distribution.ppf(uniforms[:, 0])[:, None]
+
+
+@dataclass(frozen=True)
+class Planar:
+    """A length in a direction of the transverse plane: components x, y.
+
+    `direction` None draws it uniform over the circle (a Rayleigh length then makes x and y two
+    independent normals); an angle [rad] fixes it.
+    """
+
+    distribution: Distribution
+    direction: float | None
+
+    components = ("x", "y")
+
+    @property
+    def uniforms(self) -> int:
+        """How many uniforms a trial takes: the length, and the direction unless it is fixed."""
+        return 1 if self.direction is not None else 2
+
+    def deviations(self, uniforms: Array) -> Array:
+        """Uniforms (trials, 1 or 2) in (0, 1) to (x, y), shape (trials, 2) [mm]."""
+        length = self.distribution.ppf(uniforms[:, 0])
+        if self.direction is not None:
+            return np.stack([length * math.cos(self.direction), length * math.sin(self.direction)], axis=1)
+        angle = 2 * math.pi * uniforms[:, 1]
+        return np.stack([length * np.cos(angle), length * np.sin(angle)], axis=1)
+
+
+@dataclass(frozen=True)
+class Contributor:
+    """A tolerance as the simulation sees it.
+
+    Args:
+        name: as in the scene.
+        kind: the tolerance's kind, the scene's word.
+        effect: what a deviation does.
+        draw: how its components come from uniforms.
+        unit: unit of its columns in results ("um", "mrad", "K").
+        description: the scene's own words.
+    """
+
+    name: str
+    kind: str
+    effect: Effect
+    draw: Scalar | Planar
+    unit: Unit
+    description: str = ""
+
+    @property
+    def columns(self) -> tuple[str, ...]:
+        """Column names in results: `name.component [unit]`."""
+        return tuple(f"{self.name}{'.' + c if c else ''} [{self.unit}]" for c in self.draw.components)
+
+    @property
+    def distribution(self) -> Distribution:
+        """The law of the deviation, or of its length where it has a direction."""
+        return self.draw.distribution

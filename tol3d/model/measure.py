@@ -1,0 +1,71 @@
+"""What is measured, over which positions, and what is taken of it."""
+
+import math
+from dataclasses import dataclass
+from typing import Literal
+
+Quantity = Literal["normal_backlash", "circumferential_backlash", "angular_backlash"]
+Take = Literal["value", "min", "max", "range", "curve"]
+
+
+@dataclass(frozen=True)
+class Backlash:
+    """A backlash of a mesh: normal and circumferential [mm], or angular [rad] of one gear, the other held."""
+
+    quantity: Quantity
+    mesh: str
+    gear: str
+
+    @property
+    def is_angle(self) -> bool:
+        """Whether the value is an angle [rad] rather than a length [mm]."""
+        return self.quantity == "angular_backlash"
+
+
+@dataclass(frozen=True)
+class Positions:
+    """Driver positions at which a measure is read.
+
+    Args:
+        over: "random" (uniform over the long period, one a trial), "at" (one angle), "turn" or
+            "long_period" (`count` positions, evenly spaced, the first at 0).
+        turns: turns of the driver that the positions span.
+        count: positions a trial.
+        angle: the driver's angle for "at" [rad].
+    """
+
+    over: Literal["random", "at", "turn", "long_period"]
+    turns: int
+    count: int
+    angle: float = 0.0
+
+    @property
+    def fixed(self) -> tuple[float, ...] | None:
+        """The driver angles [rad] that every trial shares; None for random ones."""
+        if self.over == "random":
+            return None
+        if self.over == "at":
+            return (self.angle,)
+        return tuple(2 * math.pi * self.turns * k / self.count for k in range(self.count))
+
+
+@dataclass(frozen=True)
+class Measure:
+    """A measure with its limits [mm or rad]."""
+
+    name: str
+    kind: Backlash
+    positions: Positions
+    take: Take
+    lower_limit: float | None = None
+    upper_limit: float | None = None
+
+    @property
+    def unit(self) -> str:
+        """Unit of its columns and of summary.json: "um" or "arcmin"."""
+        return "arcmin" if self.kind.is_angle else "um"
+
+    @property
+    def per_internal(self) -> float:
+        """What one mm or rad is in that unit."""
+        return 10800 / math.pi if self.kind.is_angle else 1000.0

@@ -1,0 +1,150 @@
+"""The mesh move: the driven gear turns until the working flanks touch."""
+
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tol3d.build import Build
+from tol3d.engines import Engine, Gaps
+from tol3d.gears import Flank
+from tol3d.gears.flank import opposite
+from tol3d.model import Mesh, Model
+
+Array = NDArray[np.float64]
+Status = NDArray[np.int8]
+
+OK: Final = 0
+INTERFERES: Final = 1
+NO_CONTACT: Final = 2
+STATUS_TEXT: Final = {OK: "ok", INTERFERES: "interferes", NO_CONTACT: "no contact"}
+
+LAST_STEP = 0.5e-3  # mm; the gap is linear in the turn to 1e-6 mm over such a step, so it may be the last
+TURN_STEPS = 40  # steps; Newton takes two or three, backing out of an overlap one for each engine depth
+TIE = 2e-3  # mm; a pair that has this much further to go than the first one is not asked again,
+TIE_SHARE = 0.02  # of the step itself, for the gaps' curvature: (0.4 mm)^2/(2 x 20 mm) is 1 % of 0.4 mm
+ROOT_FINDING_NOISE = 1e-6  # mm; a free play above minus this is called free
+
+
+@dataclass(frozen=True)
+class MeshSeat:
+    """Where a mesh came to rest: one row a trial and position.
+
+    Args:
+        driver_angle, driven_angle: turns [rad], (rows,).
+        working: gaps of the working flanks at rest; the touching pair's is 0.
+        non_working: gaps of the other flanks of the driver's teeth in their spaces.
+        status: (rows,), OK, INTERFERES (the non-working flanks overlap) or NO_CONTACT.
+    """
+
+    driver_angle: Array
+    driven_angle: Array
+    working: Gaps
+    non_working: Gaps
+    status: Status
+
+    @property
+    def contact(self) -> tuple[Array, NDArray[np.int64]]:
+        """Point on the driver [mm] (rows, 3), world, and the driver's tooth (rows,) that touches first."""
+        gaps = np.where(np.isnan(self.working.value), np.inf, self.working.value)
+        first = np.argmin(gaps, axis=1)
+        rows = np.arange(len(first))
+        return self.working.driver_point[rows, first], self.working.driver_teeth[rows, first]
+
+
+def seat_mesh(engine: Engine, model: Model, mesh: Mesh, build: Build, driver_angle: Array) -> MeshSeat:
+    """Hold the driver at its angles, turn the driven gear into contact on the working flank.
+
+    Args:
+        build: one row for each driver angle.
+        driver_angle: [rad], (rows,).
+    """
+    start = mesh.pair.driven_angle(driver_angle)
+    angles, working, touched = turn_to_contact(
+        engine, model, mesh, build, flank=mesh.working_flank, angles=(driver_angle, start), turn_driver=False
+    )
+    other = opposite(mesh.working_flank)
+    teeth, near = mesh.pair.candidate_teeth(driver_angle, other)
+    non_working = engine.gaps(build, mesh, other, angles, teeth, near & touched[:, None])
+    play = non_working.smallest()
+    overlap = non_working.deep.any(axis=1) | (play < -ROOT_FINDING_NOISE)
+    status = np.select([~touched, overlap], [NO_CONTACT, INTERFERES], OK).astype(np.int8)
+    return MeshSeat(driver_angle, angles[1], working, non_working, status)
+
+
+def turn_to_contact(
+    engine: Engine,
+    model: Model,
+    mesh: Mesh,
+    build: Build,
+    *,
+    flank: Flank,
+    angles: tuple[Array, Array],
+    turn_driver: bool,
+    known: Gaps | None = None,
+) -> tuple[tuple[Array, Array], Gaps, NDArray[np.bool_]]:
+    """Turn one gear until a flank side touches at its first pair.
+
+    Newton on the smallest gap: each pair's gap and its derivative by the turn come from the engine, so
+    the step is the one after which the first pair touches. From an overlap too deep to measure, back out
+    by the engine's depth.
+
+    Args:
+        flank: the driver's flank that shall touch.
+        angles: where to start, driver and driven [rad], each (rows,).
+        turn_driver: the driver turns and the driven is held, or the other way round.
+        known: the gaps at the start where they have been measured already.
+
+    Returns:
+        angles of both gears at contact, the gaps there, and which rows reached contact.
+    """
+    gear = model.gear_index[mesh.driver if turn_driver else mesh.driven]
+    base_radius = model.gears[gear].gear.base_radius
+    axis_point, axis = build.axis(gear)
+    opening = float(mesh.pair.opening_sense(flank))
+    teeth, wanted = mesh.pair.candidate_teeth(angles[0], flank)
+    turned = [angles[0].copy(), angles[1].copy()]
+    mover = turned[0 if turn_driver else 1]
+    at_rest = _AtRest(teeth)
+    rows = np.arange(len(mover))
+    for _ in range(TURN_STEPS):
+        at = (turned[0][rows], turned[1][rows])
+        gaps = known or engine.gaps(build.rows(rows), mesh, flank, at, teeth[rows], wanted[rows])
+        known = None
+        rate = np.abs(gaps.per_turn(axis_point[rows], axis[rows], of_driver=turn_driver))
+        reach = np.where(np.isnan(gaps.value), np.inf, gaps.value / rate)
+        deep = gaps.deep.any(axis=1)
+        step = np.where(deep, -engine.depth / base_radius, reach.min(axis=1))
+        mover[rows] -= opening * step
+        resting = ~deep & (np.abs(step) * base_radius < LAST_STEP)
+        at_rest.keep(rows[resting], gaps, resting, rate * step[:, None])
+        tie = (TIE + TIE_SHARE * np.abs(step) * base_radius) / base_radius
+        wanted[rows] &= deep[:, None] | (reach <= (step + tie)[:, None])
+        rows = rows[~resting]
+        if not len(rows):
+            break
+    touched = np.ones(len(mover), dtype=bool)
+    touched[rows] = False
+    return (turned[0], turned[1]), at_rest.gaps(), touched
+
+
+class _AtRest:
+    """Collects the gaps of each row in the round in which it comes to rest."""
+
+    def __init__(self, teeth: NDArray[np.int64]) -> None:
+        self._teeth = teeth
+        self._value = np.full(teeth.shape, np.nan)
+        self._deep = np.zeros(teeth.shape, dtype=bool)
+        self._vectors = np.full((3, *teeth.shape, 3), np.nan)
+
+    def keep(self, rows: NDArray[np.intp], gaps: Gaps, chosen: NDArray[np.bool_], closed: Array) -> None:
+        """Keep the chosen rows; `closed` [mm] is what the last step takes off each gap."""
+        self._value[rows] = (gaps.value - closed)[chosen]
+        for kept, vectors in zip(self._vectors, (gaps.driver_point, gaps.driven_point, gaps.normal), strict=True):
+            kept[rows] = vectors[chosen]
+
+    def gaps(self) -> Gaps:
+        """The gaps at rest; nan for pairs that could not touch first and for rows that found no rest."""
+        driver_point, driven_point, normal = self._vectors
+        return Gaps(self._value, self._deep, driver_point, driven_point, normal, self._teeth)

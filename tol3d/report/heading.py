@@ -1,0 +1,42 @@
+"""What a measure is, in one line of words."""
+
+from collections.abc import Mapping
+from typing import Any
+
+from tol3d.report.number import UNIT_SIGNS, given_text
+
+QUANTITY_WORDS: Mapping[str, str] = {
+    "normal_backlash": "normal backlash",
+    "circumferential_backlash": "circumferential backlash",
+    "angular_backlash": "angular backlash",
+}
+TAKE_WORDS: Mapping[str, str] = {"value": "", "min": "smallest ", "max": "largest ", "range": "range of ", "curve": ""}
+OVER_WORDS: Mapping[str, str] = {
+    "random": "at a random position of the driver each trial",
+    "at": "at one position of the driver",
+    "turn": "over one turn of the driver",
+    "long_period": "over the long period",
+}
+
+
+def heading(measure: Mapping[str, Any]) -> str:
+    """Quantity, mesh and positions of a measure's summary.
+
+    >>> heading({"kind": "normal_backlash", "of": "gear pair", "gear": "wheel", "over": "turn", "take": "min"})
+    'smallest normal backlash of gear pair over one turn of the driver'
+    """
+    gear = f" of {measure['gear']} in" if measure["kind"] == "angular_backlash" else " of"
+    quantity = TAKE_WORDS[measure["take"]] + QUANTITY_WORDS[measure["kind"]]
+    return f"{quantity}{gear} {measure['of']} {OVER_WORDS[measure['over']]}"
+
+
+def limits_text(measure: Mapping[str, Any]) -> str:
+    """The limits of a measure's summary, with their unit."""
+    unit = measure["unit"]
+    sign = "" if unit == "arcmin" else f" {UNIT_SIGNS[unit]}"
+    given = [
+        f"{word} limit {given_text(measure[key], unit)}{sign}"
+        for word, key in (("lower", "lower_limit"), ("upper", "upper_limit"))
+        if measure.get(key) is not None
+    ]
+    return ", ".join(given) or "no limits"

@@ -1,0 +1,78 @@
+"""Numbers as a reader wants them: lengths in um, angles in minutes and seconds of arc."""
+
+import math
+from typing import Final
+
+from tol3d.units import angle_text
+
+NOTHING: Final = "–"
+UNIT_SIGNS: Final = {"um": "µm", "arcmin": "′", "mrad": "mrad", "K": "K"}
+RAD_PER_ARCMIN: Final = math.pi / 10800
+MANY_UM: Final = 1000.0  # um; from there on a nanometre says nothing
+
+
+def value_text(value: float | None, unit: str) -> str:
+    """A value of a measure, with its unit only where that is part of the notation.
+
+    >>> value_text(53.3966, "um"), value_text(1.42, "arcmin"), value_text(None, "um")
+    ('53.397', '1′25.2″', '–')
+    """
+    if value is None:
+        return NOTHING
+    if unit == "arcmin":
+        return angle_text(value * RAD_PER_ARCMIN)
+    return _unsigned_zero(f"{value:.3f}" if abs(value) < MANY_UM else f"{value:.1f}")
+
+
+def measured_text(value: float | None, unit: str) -> str:
+    """A value with its unit, for sentences: `53.397 µm`."""
+    text = value_text(value, unit)
+    return text if unit == "arcmin" or value is None else f"{text} {UNIT_SIGNS[unit]}"
+
+
+def given_text(value: float | None, unit: str) -> str:
+    """A value that somebody else gave, with no more digits than it came with.
+
+    >>> given_text(53.0, "um"), given_text(15.000000000000002, "um")
+    ('53', '15')
+    """
+    if value is None or unit == "arcmin":
+        return value_text(value, unit)
+    return f"{value:.6g}"
+
+
+def difference_text(value: float | None, unit: str) -> str:
+    """A small difference with its unit: thousandths of a um, hundredths of an arc second.
+
+    >>> difference_text(0.0871, "um"), difference_text(0.002, "arcmin")
+    ('0.087 µm', '0.12″')
+    """
+    if value is None:
+        return NOTHING
+    if unit == "arcmin":
+        return f"{_unsigned_zero(f'{60 * value:.2f}')}″"
+    return f"{_unsigned_zero(f'{value:.3f}')} {UNIT_SIGNS.get(unit, unit)}"
+
+
+def percent_text(value: float | None) -> str:
+    """A share in percent, one decimal.
+
+    >>> percent_text(-0.01), percent_text(22.04)
+    ('0.0', '22.0')
+    """
+    return NOTHING if value is None else _unsigned_zero(f"{value:.1f}")
+
+
+def ppm_text(value: float | None) -> str:
+    """Parts per million, three digits at least: `1500`, `0.052`.
+
+    >>> ppm_text(1500.0), ppm_text(0.0519), ppm_text(0.0)
+    ('1500', '0.0519', '0')
+    """
+    if value is None:
+        return NOTHING
+    return f"{value:.0f}" if value >= 100 else f"{value:.3g}"
+
+
+def _unsigned_zero(text: str) -> str:
+    return text.removeprefix("-") if not text.strip("-0.") else text

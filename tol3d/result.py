@@ -1,0 +1,215 @@
+"""The run on disk: summary.json, trials/ in Parquet, the scene and every file it read.
+
+A run is written into `<name>.partial` and renamed at the end, so a folder of that name is always whole.
+"""
+
+import hashlib
+import json
+import os
+import shutil
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pyarrow as pa
+import pyarrow.parquet as pq
+from numpy.typing import NDArray
+
+from tol3d.errors import RunError
+
+Columns = dict[str, NDArray[np.generic]]
+
+SUMMARY = "summary.json"
+SCENE = "scene.yaml"
+TRIALS = "trials"
+FINGERPRINT = "fingerprint.json"
+
+
+@dataclass(frozen=True)
+class Run:
+    """A finished run.
+
+    Args:
+        path: its folder.
+        summary: what summary.json holds (DESIGN: statistics of each measure, contributors, timing, versions).
+    """
+
+    path: Path
+    summary: Mapping[str, Any]
+
+    @property
+    def trials(self) -> int:
+        """How many trials it holds."""
+        return int(self.summary["trials"])
+
+    @property
+    def column_names(self) -> tuple[str, ...]:
+        """Names of the columns of trials/."""
+        return tuple(pq.read_schema(_blocks(self.path)[0]).names)
+
+    def columns(self, *names: str) -> dict[str, NDArray[np.generic]]:
+        """Columns as numpy arrays, trial on axis 0 (a curve: positions on axis 1); all of them by default.
+
+        Raises:
+            RunError: no such column, or the files are damaged.
+        """
+        unknown = [name for name in names if name not in self.column_names]
+        if unknown:
+            raise RunError(f"{self.path}: no column {unknown[0]!r}; there are: {', '.join(self.column_names)}")
+        pieces = [read_columns(path, names or None) for path in _blocks(self.path)]
+        return {name: np.concatenate([piece[name] for piece in pieces]) for name in pieces[0]}
+
+    @property
+    def scene_path(self) -> Path:
+        """The scene as it was when the run was made."""
+        return self.path / SCENE
+
+
+def open_run(path: Path) -> Run:
+    """Open a run's folder; executes nothing of it.
+
+    Raises:
+        RunError: not a run, or damaged.
+    """
+    try:
+        summary = json.loads((path / SUMMARY).read_text(encoding="utf-8"))
+    except FileNotFoundError:
+        hint = "; it was not finished: run the scene again to go on" if path.name.endswith(".partial") else ""
+        raise RunError(f"{path}: expected a run's folder with {SUMMARY} in it{hint}") from None
+    except (OSError, ValueError) as error:
+        raise RunError(f"{path / SUMMARY}: cannot be read ({error})") from None
+    if not isinstance(summary, dict) or not {"trials", "measures", "study"} <= summary.keys():
+        raise RunError(f"{path / SUMMARY}: expected the summary of a tol3d run")
+    if not _blocks(path):
+        raise RunError(f"{path / TRIALS}: expected Parquet files with the trials, found none")
+    return Run(path, summary)
+
+
+def _blocks(path: Path) -> list[Path]:
+    return sorted((path / TRIALS).glob("block-*.parquet"))
+
+
+def read_columns(path: Path, names: tuple[str, ...] | None = None) -> Columns:
+    """Columns of one Parquet file.
+
+    Raises:
+        RunError: it is damaged.
+    """
+    try:
+        table = pq.read_table(path, columns=list(names) if names else None, partitioning=None)
+    except (OSError, pa.ArrowException) as error:
+        raise RunError(f"{path}: damaged or unreadable ({error})") from None
+    return {name: _to_numpy(table.column(name)) for name in table.column_names}
+
+
+def _to_numpy(column: pa.ChunkedArray) -> NDArray[np.generic]:
+    if pa.types.is_fixed_size_list(column.type):
+        flat = column.combine_chunks().flatten().to_numpy(zero_copy_only=False)
+        return np.asarray(flat).reshape(len(column), -1)
+    if pa.types.is_dictionary(column.type) or pa.types.is_string(column.type):
+        return np.array(column.to_pylist())
+    return np.asarray(column.to_numpy())
+
+
+def _to_arrow(values: NDArray[np.generic]) -> pa.Array:
+    if values.ndim == 2:
+        return pa.FixedSizeListArray.from_arrays(pa.array(values.ravel()), values.shape[1])
+    if values.dtype.kind == "U":
+        return pa.array(values.tolist()).dictionary_encode()
+    return pa.array(values)
+
+
+class RunWriter:
+    """Writes a run: blocks as they come, the rest at the end. Implements execution.BlockStore.
+
+    Args:
+        path: the run's folder to be; an older run there is replaced at the end, anything else refused.
+        fingerprint: what makes the blocks of an interrupted run this run's own.
+        units: unit of each column, kept in the files' metadata.
+
+    Raises:
+        RunError: the folder is something else, or cannot be written.
+    """
+
+    def __init__(self, path: Path, fingerprint: Mapping[str, Any], units: Mapping[str, str]) -> None:
+        self.path = path
+        self._units = units
+        self._partial = path.with_name(path.name + ".partial")
+        if path.exists() and not (path / SUMMARY).is_file():
+            raise RunError(f"{path}: exists and is not a tol3d run; choose another folder with --out")
+        try:
+            self._open_partial(fingerprint)
+        except OSError as error:
+            raise RunError(f"{self._partial}: cannot be written ({error.strerror}); choose another --out") from None
+
+    def _open_partial(self, fingerprint: Mapping[str, Any]) -> None:
+        mark = self._partial / FINGERPRINT
+        text = json.dumps(fingerprint, sort_keys=True, indent=1)
+        if self._partial.exists() and (not mark.is_file() or mark.read_text(encoding="utf-8") != text):
+            if not mark.is_file() and any(self._partial.iterdir()):
+                raise RunError(f"{self._partial}: exists and is not an interrupted run; move it away")
+            shutil.rmtree(self._partial)
+        (self._partial / TRIALS).mkdir(parents=True, exist_ok=True)
+        _write_whole(mark, text)
+
+    def _block_path(self, index: int) -> Path:
+        return self._partial / TRIALS / f"block-{index:06d}.parquet"
+
+    def read(self, index: int) -> Columns | None:
+        """A block that an interrupted run has finished, or None; a damaged one counts as none."""
+        path = self._block_path(index)
+        if not path.exists():
+            return None
+        try:
+            return read_columns(path)
+        except RunError:
+            return None
+
+    def write(self, index: int, columns: Columns) -> None:
+        """Write a block beside its place and rename it there."""
+        path = self._block_path(index)
+        fields, arrays = [], []
+        for name, values in columns.items():
+            array = _to_arrow(values)
+            arrays.append(array)
+            fields.append(pa.field(name, array.type, metadata={"unit": self._units.get(name, "")}))
+        beside = path.with_suffix(".writing")
+        try:
+            pq.write_table(pa.Table.from_arrays(arrays, schema=pa.schema(fields)), beside)
+            os.replace(beside, path)
+        except OSError as error:
+            raise RunError(f"{path}: cannot be written ({error.strerror or error})") from None
+
+    def add_file(self, name: str, source: Path) -> str:
+        """Copy a file that the run read; its SHA-256."""
+        content = source.read_bytes()
+        target = self._partial / name
+        target.parent.mkdir(parents=True, exist_ok=True)
+        target.write_bytes(content)
+        return hashlib.sha256(content).hexdigest()
+
+    def picture_path(self, name: str) -> Path:
+        """Where a picture of the run goes."""
+        return self._partial / name
+
+    def finish(self, summary: Mapping[str, Any]) -> Run:
+        """Write the summary and put the run in its place."""
+        _write_whole(self._partial / SUMMARY, json.dumps(summary, indent=1, ensure_ascii=False, allow_nan=False) + "\n")
+        (self._partial / FINGERPRINT).unlink()
+        if self.path.exists():
+            old = self.path.with_name(self.path.name + ".old")
+            shutil.rmtree(old, ignore_errors=True)
+            os.replace(self.path, old)
+            os.replace(self._partial, self.path)
+            shutil.rmtree(old, ignore_errors=True)
+        else:
+            os.replace(self._partial, self.path)
+        return Run(self.path, json.loads(json.dumps(summary)))
+
+
+def _write_whole(path: Path, text: str) -> None:
+    beside = path.with_name(path.name + ".writing")
+    beside.write_text(text, encoding="utf-8")
+    os.replace(beside, path)

@@ -1,0 +1,18 @@
+"""Circumferential backlash of a mesh."""
+
+from typing import ClassVar, Literal
+
+from pydantic import Field
+
+from tol3d.scene.measures.measure import LengthLimit, MeasureSpec
+from tol3d.units import Dimension
+
+
+class CircumferentialBacklashSpec(MeasureSpec):
+    """j_wt, a length: the free arc on the working pitch circle."""
+
+    dimension: ClassVar[Dimension] = "length"
+
+    kind: Literal["circumferential_backlash"]
+    lower_limit: LengthLimit | None = Field(None, description="less than this is out of limits")
+    upper_limit: LengthLimit | None = Field(None, description="more than this is out of limits")

@@ -1,0 +1,77 @@
+"""What every kind of measure has in common: of what, over which positions, what is taken, its limits."""
+
+from abc import ABC
+from collections.abc import Iterator, Mapping
+from typing import Annotated, ClassVar, Literal, Self
+
+from pydantic import Discriminator, Field, Tag, model_validator
+
+from tol3d.scene.direction import At, FixedAngle, known_word, shape
+from tol3d.scene.moves import MoveSpec
+from tol3d.scene.name import Name
+from tol3d.scene.reference import Contradiction, Reference
+from tol3d.strict import Strict, refused
+from tol3d.units import Dimension, Of, Quantity
+
+FEWEST_POSITIONS = 4
+MOST_POSITIONS = 1000
+
+Over = Annotated[
+    Annotated[Literal["random", "turn", "long_period"], Tag("word")] | FixedAngle,
+    Discriminator(shape),
+    known_word("random", "turn", "long_period"),
+]
+Take = Literal["value", "min", "max", "range", "curve"]
+LengthLimit = Annotated[Quantity, Of("length")]
+AngleLimit = Annotated[Quantity, Of("angle")]
+
+
+class MeasureSpec(Strict, ABC):
+    """A measure as a scene writes it; a number a trial, or a curve."""
+
+    dimension: ClassVar[Dimension]
+
+    lower_limit: Quantity | None
+    upper_limit: Quantity | None
+    of: Name = Field(description="the mesh move")
+    over: Over = Field(
+        "random",
+        description="positions of the driver: random (uniform over the long period), {at: angle}, turn (one of the "
+        "driver) or long_period (until the same teeth meet again)",
+    )
+    take: Take = Field("value", description="what of them: value at one position; min, max, range or curve of several")
+    positions: int = Field(
+        24, ge=FEWEST_POSITIONS, le=MOST_POSITIONS, description="positions a turn of the driver, for turn and long_period"
+    )
+    description: str = Field("", description="the user's own words, shown in reports")
+
+    @property
+    def several_positions(self) -> bool:
+        """Whether a trial is read at several positions."""
+        return self.over in ("turn", "long_period")
+
+    def references(self) -> tuple[Reference, ...]:
+        """Every name that the measure uses: the mesh."""
+        return (Reference(("of",), self.of, ("mesh",)),)
+
+    def contradictions(self, moves: Mapping[str, MoveSpec]) -> Iterator[Contradiction]:
+        """What does not fit the moves that it names; asked only when every name exists."""
+        return iter(())
+
+    @model_validator(mode="after")
+    def _refuse_take_without_over(self) -> Self:
+        over = "{at: …}" if isinstance(self.over, At) else self.over
+        if self.several_positions and self.take == "value":
+            got = "take: value" if "take" in self.model_fields_set else "no take"
+            raise refused("take", f"min, max, range or curve beside over: {over}", got)
+        for field in ("take", "positions"):
+            if not self.several_positions and field in self.model_fields_set and (field, self.take) != ("take", "value"):
+                raise refused(field, "over: turn or over: long_period beside it", f"over: {over}")
+        return self
+
+    @model_validator(mode="after")
+    def _refuse_reversed_limits(self) -> Self:
+        lower, upper = self.lower_limit, self.upper_limit
+        if lower is not None and upper is not None and not lower.internal < upper.internal:
+            raise refused("lower_limit", f"less than the upper_limit ({upper})", lower)
+        return self

@@ -1,0 +1,18 @@
+"""Normal backlash of a mesh."""
+
+from typing import ClassVar, Literal
+
+from pydantic import Field
+
+from tol3d.scene.measures.measure import LengthLimit, MeasureSpec
+from tol3d.units import Dimension
+
+
+class NormalBacklashSpec(MeasureSpec):
+    """j_bn, a length: shortest distance of the non-working flanks while the working flanks touch."""
+
+    dimension: ClassVar[Dimension] = "length"
+
+    kind: Literal["normal_backlash"]
+    lower_limit: LengthLimit | None = Field(None, description="less than this is out of limits")
+    upper_limit: LengthLimit | None = Field(None, description="more than this is out of limits")

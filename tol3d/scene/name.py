@@ -1,0 +1,30 @@
+"""The names that a user gives to parts, tolerances, moves, measures and columns."""
+
+import unicodedata
+from typing import Annotated
+
+from pydantic import AfterValidator, Field
+
+from tol3d.strict import refused
+from tol3d.units import shown
+
+LONGEST_NAME = 80  # characters; names become columns of tables and headings of reports
+FORBIDDEN = "/\\:"  # they would make paths, and mark the road in the columns of a result
+INVISIBLE = {"Cc", "Cf", "Cs", "Zl", "Zp"}  # Unicode categories: control, format, surrogates, line and paragraph ends
+COMPONENT_ENDINGS = (".x", ".y")  # columns of a result end so where a contributor has two components
+
+
+def _checked(name: str) -> str:
+    if not name or name != name.strip():
+        raise refused("", "a name without blanks around it", shown(name))
+    if len(name) > LONGEST_NAME:
+        raise refused("", f"a name of up to {LONGEST_NAME} characters", f"{len(name)} of them")
+    if any(c in FORBIDDEN or unicodedata.category(c) in INVISIBLE for c in name):
+        raise refused("", r"a name without / \ : and without line breaks or invisible characters", shown(name))
+    if name.endswith(COMPONENT_ENDINGS):
+        raise refused("", 'a name that does not end in ".x" or ".y" (columns of results do)', shown(name))
+    return unicodedata.normalize("NFC", name)
+
+
+Name = Annotated[str, AfterValidator(_checked), Field(json_schema_extra={"minLength": 1, "maxLength": LONGEST_NAME})]
+"""Any text of 1 to 80 characters without / \\ : or invisible characters, NFC-normalised."""

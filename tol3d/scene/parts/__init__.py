@@ -1,0 +1,13 @@
+"""Kinds of part, one file each."""
+
+from typing import Annotated
+
+from pydantic import Field
+
+from tol3d.scene.parts.housing import HousingSpec
+from tol3d.scene.parts.part import PartSpec
+from tol3d.scene.parts.spur_gear import SpurGearSpec
+
+PartUnion = Annotated[SpurGearSpec | HousingSpec, Field(discriminator="kind")]
+
+__all__ = ["HousingSpec", "PartSpec", "PartUnion", "SpurGearSpec"]

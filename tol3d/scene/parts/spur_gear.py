@@ -1,0 +1,34 @@
+"""An external involute spur gear."""
+
+from typing import Annotated, ClassVar, Literal
+
+from pydantic import Field
+
+from tol3d.scene.parts.part import PartSpec
+from tol3d.scene.reference import Sort
+from tol3d.units import Of, Positive, Quantity
+
+MOST_TEETH = 10_000  # far more than anyone hobs; keeps a slip of the finger from building for days
+
+Length = Annotated[Quantity, Of("length"), Positive()]
+
+
+class SpurGearSpec(PartSpec):
+    """A spur gear by the words of ISO 21771-1; profile_shift, addendum and dedendum count in modules."""
+
+    sort: ClassVar[Sort] = "gear"
+
+    kind: Literal["spur_gear"]
+    teeth: int = Field(ge=1, le=MOST_TEETH, description="number of teeth z")
+    module: Length = Field(description="module m")
+    pressure_angle: Annotated[Quantity, Of("angle"), Positive()] = Field(
+        Quantity(20.0, "deg"), description="pressure angle at the reference circle"
+    )
+    face_width: Length = Field(description="face width b")
+    profile_shift: float = Field(0.0, description="profile shift coefficient x, in modules; positive is a thicker tooth")
+    addendum: float = Field(1.0, gt=0.0, description="addendum factor, in modules")
+    dedendum: float = Field(1.25, gt=0.0, description="dedendum factor, in modules")
+    root_fillet: Length | None = Field(
+        None, description="radius between flank and root circle; 0.38 m (ISO 53) or the full round if not given"
+    )
+    bore: Length | None = Field(None, description="diameter of the bore; none if not given")

@@ -1,0 +1,67 @@
+"""Where in its file a value of a scene stands."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from tol3d.errors import SceneError
+
+KeyPath = tuple[str | int, ...]
+"""Keys (and positions in lists) from the top of a scene to a value."""
+
+
+@dataclass(frozen=True)
+class Place:
+    """A line and a column of a file, both from 1."""
+
+    line: int
+    column: int
+
+
+@dataclass(frozen=True)
+class Origin:
+    """The file that a scene was read from.
+
+    Args:
+        source: the file.
+        text: its content.
+        places: where the key of each key path stands (the value, for an item of a list).
+    """
+
+    source: Path = Path("scene")
+    text: str = ""
+    places: Mapping[KeyPath, Place] = field(default_factory=dict)
+
+    def place(self, path: KeyPath) -> Place:
+        """Where the key path stands, or the nearest key above it; the top of the file at last."""
+        for length in range(len(path), 0, -1):
+            if path[:length] in self.places:
+                return self.places[path[:length]]
+        return Place(1, 1)
+
+    def message(self, path: KeyPath, sentence: str, place: Place | None = None) -> str:
+        """`file:line: place: sentence`, on one line."""
+        line = (place or self.place(path)).line
+        return ": ".join(part for part in (f"{self.source}:{line}", path_text(path), sentence) if part)
+
+    def error(self, path: KeyPath, sentence: str, place: Place | None = None) -> SceneError:
+        """That message as the error to raise."""
+        return SceneError(self.message(path, sentence, place))
+
+
+def path_text(path: KeyPath) -> str:
+    """A key path for people.
+
+    >>> path_text(("tolerances", "oil film", "of", 0))
+    'tolerances.oil film.of[0]'
+    """
+    text = ""
+    for key in path:
+        text += f"[{key}]" if isinstance(key, int) else f".{key_text(key)}"
+    return text.removeprefix(".")
+
+
+def key_text(key: str) -> str:
+    """A key, shortened, and with an escape for each character that a terminal would not print."""
+    short = key if len(key) <= 80 else key[:79] + "…"
+    return "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in short)

@@ -1,0 +1,185 @@
+"""What pydantic finds wrong, said in the user's words and with its place."""
+
+import re
+from collections.abc import Callable, Mapping
+from typing import Any, Final, get_args
+
+from pydantic import ValidationError
+from pydantic_core import ErrorDetails
+
+from tol3d.scene.nearest import hint, nearest
+from tol3d.scene.place import KeyPath, Origin, key_text
+from tol3d.scene.tolerances import ToleranceSpec, ToleranceUnion
+from tol3d.units import EXAMPLES, FACTORS, Dimension, expectation, shown
+
+MOST_PROBLEMS = 8  # what a screen shows and a person mends in one go
+QUOTED_WORD = re.compile(r"'((?:[^'\\]|\\.)*)'")
+
+TOLERANCE_DIMENSIONS: Final[dict[str, tuple[Dimension, ...]]] = {
+    get_args(spec.model_fields["kind"].annotation)[0]: spec.dimensions
+    for spec in get_args(get_args(ToleranceUnion)[0])
+    if issubclass(spec, ToleranceSpec)
+}
+"""What the quantities of a distribution measure, by the kind of the tolerance that holds it."""
+
+
+def messages(error: ValidationError, data: Mapping[str, Any], origin: Origin) -> list[str]:
+    """One message for each problem, in the order of the file, at most MOST_PROBLEMS of them.
+
+    Args:
+        error: pydantic's findings.
+        data: the plain values that it was given.
+        origin: where they stand.
+    """
+    found: dict[str, int] = {}
+    for details in error.errors(include_url=False):
+        path, sentence = _path(details["loc"], data), _sentence(details)
+        context = details.get("ctx", {})
+        if details["type"] == "unknown_key":
+            path = (*path, context["key"])
+        elif details["type"] == "union_tag_invalid":
+            path = (*path, "kind")
+        elif context.get("field"):
+            path = (*path, *str(context["field"]).split("."))
+        found.setdefault(origin.message(path, sentence), origin.place(path).line)
+    ordered = sorted(found, key=lambda message: found[message])
+    return first_few(ordered)
+
+
+def first_few(problems: list[str]) -> list[str]:
+    """The problems that are worth showing at once."""
+    left = len(problems) - MOST_PROBLEMS
+    return problems if left <= 0 else [*problems[:MOST_PROBLEMS], f"… and {left} more"]
+
+
+def _path(loc: tuple[int | str, ...], data: Any) -> KeyPath:
+    """Pydantic's location without the tags of unions, as far as the data go.
+
+    A tag stands behind the keys of the mapping whose `kind` it is; other tags are no key at all.
+    """
+    path: list[str | int] = []
+    tag_expected = True
+    for step in loc:
+        if isinstance(data, dict) and tag_expected and path and data.get("kind") == step:
+            tag_expected = False
+        elif (isinstance(data, dict) and step in data) or (
+            isinstance(data, list) and isinstance(step, int) and step < len(data)
+        ):
+            path.append(step)
+            data, tag_expected = data[step], True
+    return tuple(path)
+
+
+def _dimensions(loc: tuple[int | str, ...]) -> tuple[Dimension, ...]:
+    """What a quantity of a distribution should measure: the tolerance's kind stands third in its location."""
+    return TOLERANCE_DIMENSIONS.get(str(loc[2]), ()) if len(loc) > 3 and loc[0] == "tolerances" else ()
+
+
+# sentences ----------------------------------------------------------------------------------------
+
+
+def _sentence(details: ErrorDetails) -> str:
+    return SENTENCES.get(details["type"], _unexpected)(details)
+
+
+def _got(expected: str) -> Callable[[ErrorDetails], str]:
+    def sentence(details: ErrorDetails) -> str:
+        return f"expected {expected}, got {shown(details['input'])}"
+
+    return sentence
+
+
+def _text_expected(details: ErrorDetails) -> str:
+    value = details["input"]
+    advice = "; put it into quotes" if isinstance(value, bool | int | float) else ""
+    return f"expected text, got {shown(value)}{advice}"
+
+
+def _unknown_key(details: ErrorDetails) -> str:
+    key = details["ctx"]["key"]
+    return f'unknown key "{key_text(key)}"{hint(key, details["ctx"]["known"])}'
+
+
+def _missing(details: ErrorDetails) -> str:
+    return f'expected the key "{details["loc"][-1]}" here, found none'
+
+
+def _missing_kind(details: ErrorDetails) -> str:
+    return 'expected the key "kind" here, found none'
+
+
+def _unknown_kind(details: ErrorDetails) -> str:
+    known = QUOTED_WORD.findall(details["ctx"]["expected_tags"])
+    tag = details["input"].get("kind") if isinstance(details["input"], dict) else details["ctx"]["tag"]
+    return _word_expected(tag, known)
+
+
+def _literal(details: ErrorDetails) -> str:
+    return _word_expected(details["input"], QUOTED_WORD.findall(details["ctx"]["expected"]))
+
+
+def _word_expected(value: object, known: list[str]) -> str:
+    listed = " or ".join(known) if len(known) < 3 else f"one of {', '.join(known)}"
+    return f"expected {listed}, got {shown(value)}{nearest(value, known) if isinstance(value, str) else ''}"
+
+
+def _quantity(details: ErrorDetails) -> str:
+    context = details["ctx"]
+    dimensions = context["expected"] or _dimensions(details["loc"])
+    expected = expectation(*dimensions) if dimensions else f'a number with its unit, such as "{EXAMPLES["length"]}"'
+    advice = ""
+    if "unknown unit" in context["reason"]:
+        units = [unit for dimension in dimensions or FACTORS for unit in FACTORS[dimension]]
+        advice = f"; units are {', '.join(units)}"
+    return f"expected {expected}, {context['reason']}{advice}"
+
+
+def _wrong_dimension(details: ErrorDetails) -> str:
+    context = details["ctx"]
+    return f"expected {expectation(*context['expected'])}, got {context['got']}, which is {context['came']}"
+
+
+def _refused(details: ErrorDetails) -> str:
+    return f"expected {details['ctx']['expected']}, got {details['ctx']['got']}"
+
+
+def _bound(words: str, limit: str) -> Callable[[ErrorDetails], str]:
+    def sentence(details: ErrorDetails) -> str:
+        return f"expected a number of {words} {details['ctx'][limit]:g}, got {shown(details['input'])}"
+
+    return sentence
+
+
+def _unexpected(details: ErrorDetails) -> str:
+    """For what no scene has brought up yet: true, if plain."""
+    return f"expected another value here, got {shown(details['input'])}"
+
+
+_keys = _got('keys with values, such as "name: {…}"')
+_number = _got("a number")
+_whole_number = _got("a whole number")
+
+SENTENCES: Final[dict[str, Callable[[ErrorDetails], str]]] = {
+    "unknown_key": _unknown_key,
+    "quantity": _quantity,
+    "wrong_dimension": _wrong_dimension,
+    "value_refused": _refused,
+    "missing": _missing,
+    "literal_error": _literal,
+    "union_tag_not_found": _missing_kind,
+    "union_tag_invalid": _unknown_kind,
+    "model_type": _keys,
+    "model_attributes_type": _keys,
+    "dict_type": _keys,
+    "mapping_type": _keys,
+    "string_type": _text_expected,
+    "int_type": _whole_number,
+    "int_from_float": _whole_number,
+    "int_parsing_size": _whole_number,
+    "float_type": _number,
+    "finite_number": _number,
+    "greater_than": _bound("more than", "gt"),
+    "greater_than_equal": _bound("at least", "ge"),
+    "less_than_equal": _bound("at most", "le"),
+    "too_short": _got("at least one entry"),
+}

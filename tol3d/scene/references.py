@@ -1,0 +1,141 @@
+"""Names across a scene: each given once, each use of one existing and of the right sort."""
+
+from collections.abc import Iterator
+from pathlib import Path
+from stat import S_ISREG
+from typing import Final
+
+from tol3d.errors import SceneError
+from tol3d.scene.nearest import hint
+from tol3d.scene.place import KeyPath
+from tol3d.scene.problems import first_few
+from tol3d.scene.reference import SORT_WORDS, Contradiction, Reference
+from tol3d.scene.schema import Scene
+from tol3d.units import expectation, shown
+
+SECTIONS: Final = ("parts", "tolerances", "moves", "measures")
+
+
+def refuse_loose_ends(scene: Scene, trust_parts: bool) -> None:
+    """Raise unless every name and file of the scene can be found.
+
+    Args:
+        scene: a scene that is right field by field.
+        trust_parts: whether files outside its folder may be read.
+
+    Raises:
+        SceneError: with the first few of what does not hold together.
+    """
+    problems = list(_repeated(scene)) or list(_unknown(scene)) or list(_contradicted(scene))
+    problems += [*_unpublished(scene), *_files(scene, trust_parts)]
+    if problems:
+        ordered = sorted(problems, key=lambda problem: scene.place(problem[0]).line)
+        raise SceneError(*first_few([str(scene.refuse(path, sentence)) for path, sentence in ordered]))
+
+
+Problem = tuple[KeyPath, str]
+
+
+def _repeated(scene: Scene) -> Iterator[Problem]:
+    first: dict[str, KeyPath] = {}
+    for section in SECTIONS:
+        for name in getattr(scene, section):
+            here: KeyPath = (section, name)
+            if name in first:
+                there = f"{first[name][0]} (line {scene.place(first[name]).line})"
+                yield here, f"expected a name of its own, got {name!r}, which already stands in {there}; rename one"
+            else:
+                first[name] = here
+
+
+def _references(scene: Scene) -> Iterator[tuple[KeyPath, Reference]]:
+    for section, entries in (("tolerances", scene.tolerances), ("moves", scene.moves), ("measures", scene.measures)):
+        for name, entry in entries.items():
+            for reference in entry.references():
+                yield (section, name, *reference.path), reference
+
+
+def _unknown(scene: Scene) -> Iterator[Problem]:
+    sorts = {name: entry.sort for entries in (scene.parts, scene.moves) for name, entry in entries.items()}
+    for path, reference in _references(scene):
+        if sorts.get(reference.name) in reference.sorts:
+            continue
+        expected = " or ".join(SORT_WORDS[sort] for sort in reference.sorts)
+        fitting = [name for name, sort in sorts.items() if sort in reference.sorts]
+        section = next((s for s in SECTIONS if reference.name in getattr(scene, s)), None)
+        if reference.name in sorts:
+            got = f"{reference.name!r}, which is {SORT_WORDS[sorts[reference.name]]}"
+        elif section is not None:
+            got = f"{reference.name!r}, which stands in {section}"
+        else:
+            got = f"{reference.name!r}, which is not in the scene"
+        yield path, f"expected the name of {expected}, got {got}{hint(reference.name, fitting)}"
+
+
+def _contradicted(scene: Scene) -> Iterator[Problem]:
+    found: list[tuple[str, str, Iterator[Contradiction]]] = [
+        *(("tolerances", name, entry.contradictions(scene.parts, scene.moves)) for name, entry in scene.tolerances.items()),
+        *(("measures", name, entry.contradictions(scene.moves)) for name, entry in scene.measures.items()),
+    ]
+    for section, name, contradictions in found:
+        for it in contradictions:
+            near = hint(it.got.strip("'"), it.known)
+            yield (section, name, *it.path), f"expected {it.expected}, got {it.got}{near}"
+
+
+def _unpublished(scene: Scene) -> Iterator[Problem]:
+    """What a published column says of measures and contributors that the scene does not have."""
+    for column, measures in scene.published.items():
+        for name, values in measures.items():
+            path: KeyPath = ("published", column, name)
+            measure = scene.measures.get(name)
+            if measure is None:
+                yield path, f"expected the name of a measure, got {name!r}{hint(name, scene.measures)}"
+                continue
+            for field, quantity in values.quantities().items():
+                if quantity.dimension != measure.dimension:
+                    expected = f"{expectation(measure.dimension)} ({name!r} is of kind {measure.kind})"
+                    yield (*path, field), f"expected {expected}, got {str(quantity)!r}"
+            for contributor in values.contributors:
+                if contributor not in scene.tolerances:
+                    near = hint(contributor, scene.tolerances)
+                    yield (
+                        (*path, "contributors", contributor),
+                        f"expected the name of a tolerance, got {contributor!r}{near}",
+                    )
+
+
+def _files(scene: Scene, trust_parts: bool) -> Iterator[Problem]:
+    for name, tolerance in scene.tolerances.items():
+        file = getattr(tolerance.distribution, "file", None)
+        if file is None:
+            continue
+        sentence = _file_problem(scene.folder, file, trust_parts)
+        if sentence:
+            yield ("tolerances", name, "distribution", "file"), sentence
+
+
+def _file_problem(folder: Path, file: str, trust_parts: bool) -> str:
+    """Why the file cannot be read, or nothing."""
+    try:
+        path = (folder / file).resolve()
+        inside = path.is_relative_to(folder.resolve())
+        if not inside and not trust_parts:
+            return (
+                f"expected a file in the scene's own folder, got {shown(file)}, which lies outside; "
+                "copy it there, or say --trust-parts if you trust the scene"
+            )
+        mode = path.stat().st_mode
+    except FileNotFoundError:
+        return f"expected a file, got {shown(file)}, which is not there{_near(folder, file)}"
+    except (OSError, RuntimeError, ValueError) as error:  # RuntimeError: a ring of links; ValueError: a NUL
+        return f"expected a file that can be read, got {shown(file)}: {getattr(error, 'strerror', None) or error}"
+    return "" if S_ISREG(mode) else f"expected a file, got {shown(file)}, which is a folder or a device"
+
+
+def _near(folder: Path, file: str) -> str:
+    suffix = Path(file).suffix
+    try:
+        return hint(file, sorted(entry.name for entry in folder.iterdir() if entry.suffix == suffix))
+    except OSError:
+        return ""

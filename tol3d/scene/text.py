@@ -1,0 +1,286 @@
+"""From a file to plain values with their places: the only door to YAML.
+
+Grammar: YAML 1.2 by ruamel.yaml's parser, whose events are turned into values here in one pass, so
+that no input costs more than the limits below, and every key keeps its line. Plain scalars follow
+the core schema of YAML 1.2.2, 10.3.2 (ruamel's own also takes `1_000` and dates).
+"""
+
+import difflib
+import re
+import unicodedata
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any, Final, NoReturn
+
+from ruamel.yaml import YAML
+from ruamel.yaml.error import MarkedYAMLError
+from ruamel.yaml.events import (
+    AliasEvent,
+    DocumentStartEvent,
+    Event,
+    MappingEndEvent,
+    ScalarEvent,
+    SequenceEndEvent,
+    SequenceStartEvent,
+    StreamEndEvent,
+)
+from ruamel.yaml.reader import ReaderError
+
+from tol3d.errors import SceneError
+from tol3d.scene.place import KeyPath, Origin, Place
+from tol3d.units import shown
+
+MAX_BYTES: Final = 1_000_000  # thirty times a scene of a hundred parts; parses in seconds
+MAX_DEPTH: Final = 40  # levels; the grammar needs nine, and pydantic and JSON would recurse
+MAX_NODES: Final = 50_000  # values with every alias written out; an honest scene has a few hundred
+MAX_DIGITS: Final = 300  # a longer number is kept as text and refused by the field
+
+NULL: Final = frozenset(("", "~", "null", "Null", "NULL"))
+TRUTH: Final = {"true": True, "True": True, "TRUE": True, "false": False, "False": False, "FALSE": False}
+INTEGER: Final = re.compile(r"[-+]?[0-9]+")
+OCTAL_OR_HEX: Final = re.compile(r"0o[0-7]+|0x[0-9a-fA-F]+")
+FLOAT: Final = re.compile(r"[-+]?(?:\.[0-9]+|[0-9]+(?:\.[0-9]*)?)(?:[eE][-+]?[0-9]+)?")
+INFINITE_OR_NAN: Final = re.compile(r"([-+]?)\.(?:inf|Inf|INF)|\.(?:nan|NaN|NAN)")
+
+HINTS: Final = {
+    "mapping values are not allowed": 'a ":" too many or a wrong indent; text with ": " inside needs quotes',
+    r"character '\t'": "indent with blanks, not with tabs",
+    "expected <block end>": "look at the indents: keys of one level start in one column",
+    "could not find expected ':'": 'a key needs ":" and a blank behind it',
+    "expected ',' or": "a comma or a closing bracket is missing",
+    "unexpected end of stream": "a quote is opened and never closed",
+    "found '<stream end>'": "a bracket is opened and never closed",
+    "cannot start any token": "put text that starts with such a character into quotes",
+    "undefined alias": "put the anchor (&name) before its use (*name)",
+}
+
+
+def read_scene_text(path: Path) -> tuple[dict[str, Any], Origin]:
+    """Read a scene's file to plain values.
+
+    Args:
+        path: the file, UTF-8.
+
+    Returns:
+        The top-level mapping (keys are text; values dict, list, text, int, float, bool or None), and
+        where it came from.
+
+    Raises:
+        SceneError: it cannot be read, is no YAML 1.2, repeats a key or exceeds a limit above.
+    """
+    text = _content(path)
+    origin = Origin(path, text)
+    # composed characters from here on, so that equal-looking names are equal
+    top = _Composer(origin, _events(origin, unicodedata.normalize("NFC", text))).document()
+    if not isinstance(top.value, dict):
+        raise origin.error((), f"expected keys such as scene:, parts:, moves:, measures:, got {shown(top.value)}")
+    places: dict[KeyPath, Place] = {}
+    _collect_places(top, (), places)
+    return top.value, Origin(path, text, places)
+
+
+# the file ---------------------------------------------------------------------------------------
+
+
+def _content(path: Path) -> str:
+    if path.is_dir():
+        raise SceneError(f"{path}: expected a scene file, got a folder{_scene_inside(path)}")
+    try:
+        with path.open("rb") as stream:
+            content = stream.read(MAX_BYTES + 1)
+    except FileNotFoundError:
+        raise SceneError(f"{path}: expected a scene file, found no file of that name{_near_file(path)}") from None
+    except (OSError, ValueError) as error:  # ValueError: a NUL in the name
+        reason = getattr(error, "strerror", None) or error
+        raise SceneError(f"{path}: expected a scene file that can be read, got: {reason}") from None
+    if len(content) > MAX_BYTES:
+        raise SceneError(f"{path}:1: expected a scene of at most {MAX_BYTES // 10**6} MB, got a larger file")
+    try:
+        return content.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        line = content[: error.start].count(b"\n") + 1
+        raise SceneError(
+            f"{path}:{line}: expected UTF-8 text, got the byte 0x{content[error.start]:02x}, which is none"
+        ) from None
+
+
+def _scene_inside(folder: Path) -> str:
+    names = sorted(entry.name for entry in folder.glob("*.yaml"))
+    return f"; give a file in it, such as {folder / names[0]}" if names else ""
+
+
+def _near_file(path: Path) -> str:
+    try:
+        names = [entry.name for entry in path.parent.iterdir()]
+    except OSError:
+        return ""
+    near = difflib.get_close_matches(path.name, names, n=1)
+    return f"; did you mean {path.parent / near[0]}?" if near else ""
+
+
+# its YAML ---------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class _Node:
+    """A value and the places of what is in it; `size` and `height` count aliases written out."""
+
+    value: Any
+    place: Place
+    children: tuple[tuple[str | int, Place, "_Node"], ...] = ()
+    size: int = 1
+    height: int = 1
+
+
+def _collect_places(node: _Node, path: KeyPath, places: dict[KeyPath, Place]) -> None:
+    for key, place, child in node.children:
+        places[(*path, key)] = place
+        _collect_places(child, (*path, key), places)
+
+
+def _place(event: Event) -> Place:
+    return Place(event.start_mark.line + 1, event.start_mark.column + 1)
+
+
+def _events(origin: Origin, text: str) -> Iterator[Event]:
+    """The parser's events; whatever it trips over is one message."""
+    try:
+        yield from YAML(typ="safe", pure=True).parse(text)
+    except ReaderError as error:
+        line = text[: error.position].count("\n") + 1
+        character = f"U+{ord(text[error.position]):04X}"
+        raise origin.error((), f"not YAML: the character {character} is not allowed", Place(line, 1)) from None
+    except MarkedYAMLError as error:
+        mark = error.problem_mark or error.context_mark
+        place = Place(mark.line + 1, mark.column + 1) if mark else Place(1, 1)
+        problem = " ".join(str(error.problem or error.context).split())
+        advice = next((f"; {advice}" for words, advice in HINTS.items() if words in problem), "")
+        raise origin.error((), f"not YAML: {problem} (column {place.column}){advice}", place) from None
+    except (ValueError, OverflowError) as error:  # escapes beyond Unicode, such as "\UFFFFFFFF"
+        raise origin.error((), f"not YAML: {error}") from None
+
+
+@dataclass
+class _Composer:
+    """One pass over the events of a document: values, places, limits."""
+
+    origin: Origin
+    events: Iterator[Event]
+    anchors: dict[str, _Node] = field(default_factory=dict)
+    nodes: int = 0
+
+    def document(self) -> _Node:
+        """The only document of the file."""
+        next(self.events)  # the start of the stream
+        if not isinstance(next(self.events), DocumentStartEvent):
+            raise self.origin.error((), "expected a scene (scene:, parts:, moves:, measures:), got an empty file")
+        top = self._node(next(self.events), ())
+        next(self.events)  # the end of the document
+        following = next(self.events)
+        if not isinstance(following, StreamEndEvent):
+            self._refuse((), 'expected one scene in a file, got a second document ("---")', _place(following))
+        return top
+
+    def _refuse(self, path: KeyPath, sentence: str, place: Place) -> NoReturn:
+        raise self.origin.error(path, sentence, place)
+
+    def _node(self, event: Event, path: KeyPath) -> _Node:
+        place = _place(event)
+        if isinstance(event, AliasEvent):
+            return self._alias(event, path)
+        if event.tag is not None:
+            tag = shown(str(event.tag).replace("tag:yaml.org,2002:", "!!"))
+            self._refuse(path, f"expected no tags, got {tag}; put text into quotes instead", place)
+        if len(path) >= MAX_DEPTH:
+            self._refuse(path[:3], f"expected at most {MAX_DEPTH} levels of brackets and indents, got more", place)
+        self._count(1, path, place)
+        if isinstance(event, ScalarEvent):
+            node = _Node(self._scalar(event, path), place)
+        elif isinstance(event, SequenceStartEvent):
+            node = self._list(path, place)
+        else:
+            node = self._mapping(path, place)
+        if event.anchor is not None:
+            self.anchors[event.anchor] = node
+        return node
+
+    def _count(self, nodes: int, path: KeyPath, place: Place) -> None:
+        self.nodes += nodes
+        if self.nodes > MAX_NODES:
+            self._refuse(
+                path[:3], f"expected at most {MAX_NODES} values (aliases count written out), got more", place
+            )
+
+    def _alias(self, event: AliasEvent, path: KeyPath) -> _Node:
+        place = _place(event)
+        node = self.anchors.get(event.anchor)
+        if node is None:
+            sentence = f"the alias *{event.anchor} has no anchor (&{event.anchor}) before it"
+            self._refuse(path, sentence[:200], place)
+        if len(path) + node.height > MAX_DEPTH:
+            self._refuse(path[:3], f"expected at most {MAX_DEPTH} levels, aliases written out, got more", place)
+        self._count(node.size, path, place)
+        return node
+
+    def _scalar(self, event: ScalarEvent, path: KeyPath) -> Any:
+        text = event.value
+        if any("\ud800" <= c <= "\udfff" for c in text):
+            self._refuse(path, "expected Unicode text, got half of a surrogate pair", _place(event))
+        return core_value(text) if event.implicit[0] else text
+
+    def _list(self, path: KeyPath, place: Place) -> _Node:
+        children: list[tuple[str | int, Place, _Node]] = []
+        while not isinstance(event := next(self.events), SequenceEndEvent):
+            children.append((len(children), _place(event), self._node(event, (*path, len(children)))))
+        return self._branch([child.value for _, _, child in children], place, children)
+
+    def _mapping(self, path: KeyPath, place: Place) -> _Node:
+        children: list[tuple[str | int, Place, _Node]] = []
+        first: dict[str, Place] = {}
+        while not isinstance(event := next(self.events), MappingEndEvent):
+            key, here = self._key(event, path), _place(event)
+            if key in first:
+                lines = f"first in line {first[key].line}, again in line {here.line}"
+                self._refuse((*path, key), f"the key stands twice, {lines}; remove one", here)
+            first[key] = here
+            children.append((key, here, self._node(next(self.events), (*path, key))))
+        return self._branch({key: child.value for key, _, child in children}, place, children)
+
+    def _key(self, event: Event, path: KeyPath) -> str:
+        key = self._scalar(event, path) if isinstance(event, ScalarEvent) and event.tag is None else None
+        if not isinstance(key, str):
+            got = f"{shown(key)}; put it into quotes" if isinstance(event, ScalarEvent) else "something else"
+            self._refuse(path, f"expected a key that is text, got {got}", _place(event))
+        if key == "<<":
+            self._refuse(path, "merge keys (<<) are not used here; write the keys out", _place(event))
+        return key
+
+    @staticmethod
+    def _branch(value: Any, place: Place, children: list[tuple[str | int, Place, _Node]]) -> _Node:
+        size = 1 + sum(child.size for _, _, child in children)
+        height = 1 + max((child.height for _, _, child in children), default=0)
+        return _Node(value, place, tuple(children), size, height)
+
+
+def core_value(text: str) -> str | int | float | bool | None:
+    """A plain scalar by the core schema of YAML 1.2.2, 10.3.2.
+
+    >>> core_value("1e-3"), core_value("no"), core_value("0x1F"), core_value("~")
+    (0.001, 'no', 31, None)
+    """
+    if text in NULL:
+        return None
+    if text in TRUTH:
+        return TRUTH[text]
+    if len(text) > MAX_DIGITS:
+        return text
+    if INTEGER.fullmatch(text):
+        return int(text)
+    if OCTAL_OR_HEX.fullmatch(text):
+        return int(text, 0)
+    if FLOAT.fullmatch(text):
+        return float(text)
+    if special := INFINITE_OR_NAN.fullmatch(text):
+        return float(f"{special[1]}inf") if special[1] is not None else float("nan")
+    return text

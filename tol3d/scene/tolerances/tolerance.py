@@ -1,0 +1,68 @@
+"""What every kind of tolerance has in common."""
+
+from abc import ABC, abstractmethod
+from collections.abc import Iterator, Mapping
+from typing import Annotated, ClassVar, Literal, Self
+
+from pydantic import Discriminator, Field, Tag, model_validator
+
+from tol3d.distributions import DistributionUnion
+from tol3d.scene.direction import FixedAngle, known_word, shape
+from tol3d.scene.moves import MoveSpec
+from tol3d.scene.name import Name
+from tol3d.scene.parts import PartSpec
+from tol3d.scene.reference import Contradiction, Reference
+from tol3d.strict import Strict
+from tol3d.units import Dimension, refuse_dimension
+
+RandomOrFixed = Annotated[
+    Annotated[Literal["random"], Tag("word")] | FixedAngle, Discriminator(shape), known_word("random")
+]
+"""Direction of an offset that turns with its gear: uniform over the circle, or at an angle in the gear's frame."""
+
+
+class ToleranceSpec(Strict, ABC):
+    """A tolerance (a contributor) as a scene writes it: one deviation and its distribution."""
+
+    dimensions: ClassVar[tuple[Dimension, ...]] = ("length",)
+
+    distribution: DistributionUnion = Field(description="the law of the deviation")
+    description: str = Field("", description="the user's own words, shown in reports")
+
+    @abstractmethod
+    def references(self) -> tuple[Reference, ...]:
+        """Every name that the tolerance uses."""
+
+    def contradictions(
+        self, parts: Mapping[str, PartSpec], moves: Mapping[str, MoveSpec]
+    ) -> Iterator[Contradiction]:
+        """What does not fit the parts and moves that it names; asked only when every name exists."""
+        return iter(())
+
+    @model_validator(mode="after")
+    def _refuse_other_dimensions(self) -> Self:
+        expected = self.dimensions
+        for field, quantity in self.distribution.quantities().items():
+            refuse_dimension(quantity, expected, f"distribution.{field}")
+            expected = (quantity.dimension,)  # the first decides where the kind leaves a choice
+        return self
+
+
+class GearToleranceSpec(ToleranceSpec):
+    """A tolerance of one gear, or of what carries it."""
+
+    of: Name = Field(description="the gear")
+
+    def references(self) -> tuple[Reference, ...]:
+        """The gear."""
+        return (Reference(("of",), self.of, ("gear",)),)
+
+
+class MeshToleranceSpec(ToleranceSpec):
+    """A tolerance of how two axes lie to each other."""
+
+    of: Name = Field(description="the mesh move")
+
+    def references(self) -> tuple[Reference, ...]:
+        """The mesh."""
+        return (Reference(("of",), self.of, ("mesh",)),)

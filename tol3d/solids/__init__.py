@@ -1,0 +1,7 @@
+"""From a part's CAD solid to measuring strips, display meshes and STEP; cached, so a warm run loads no CAD."""
+
+from tol3d.solids.display_mesh import DisplayMesh, display_mesh
+from tol3d.solids.flank_strips import FlankStrips, measuring_strips, strip_mesh
+from tol3d.solids.step import PosedGear, export_step
+
+__all__ = ["DisplayMesh", "FlankStrips", "PosedGear", "display_mesh", "export_step", "measuring_strips", "strip_mesh"]

@@ -1,0 +1,52 @@
+"""Display meshes: the whole solid of a gear as triangles, closed, for pictures and files, not for measuring."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tol3d.gears import SpurGear
+from tol3d.solids.cache import cached
+from tol3d.solids.door import cad
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class DisplayMesh:
+    """A closed triangle mesh in the gear's frame.
+
+    Args:
+        vertices: (n, 3) [mm].
+        triangles: (m, 3) vertex numbers, turned outwards.
+        side: (n,) which side of its tooth a vertex lies on (flank, radial line or fillet): RIGHT, LEFT
+            or 0 for neither (tip, root, bore, ends).
+        chord_error: largest distance [mm] between the mesh and the solid's faces.
+    """
+
+    vertices: Array
+    triangles: NDArray[np.int64]
+    side: NDArray[np.int8]
+    chord_error: float
+
+    def thickened(self, half_angle: float) -> Array:
+        """Vertices (n, 3) with each side of the teeth turned outwards by an angle [rad] about the axis.
+
+        With half_angle = tooth thickness deviation / (2 r) this is the gear of that deviation: an
+        involute turned is its own parallel, fillets turn along, and tip and root stay on their circles.
+        """
+        azimuth = -half_angle * self.side
+        cos, sin = np.cos(azimuth), np.sin(azimuth)
+        x, y, z = self.vertices.T
+        return np.stack([cos * x - sin * y, sin * x + cos * y, z], axis=-1)
+
+
+def display_mesh(gear: SpurGear, deflection: float) -> DisplayMesh:
+    """Mesh of a gear whose faces are followed within about `deflection` [mm]; see its chord_error for the truth."""
+    arrays = cached("display", gear, {"deflection": deflection}, lambda: cad().tessellate(gear, deflection))
+    return DisplayMesh(
+        vertices=arrays["vertices"].astype(np.float64),
+        triangles=arrays["triangles"].astype(np.int64),
+        side=arrays["side"].astype(np.int8),
+        chord_error=float(arrays["chord_error"]),
+    )

@@ -1,0 +1,53 @@
+"""The one door to CadQuery: importing it costs seconds, so it is opened only when a solid must be built."""
+
+import importlib
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Protocol, cast
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tol3d.gears import SpurGear
+
+Arrays = dict[str, NDArray[np.generic]]
+
+
+class Posed(Protocol):
+    """A gear, its name and its pose (4, 4) in the world."""
+
+    @property
+    def name(self) -> str:
+        """The part's name."""
+        ...
+
+    @property
+    def gear(self) -> SpurGear:
+        """Its geometry."""
+        ...
+
+    @property
+    def world_from_part(self) -> NDArray[np.float64]:
+        """(4, 4) rotation and translation [mm]."""
+        ...
+
+
+class Cad(Protocol):
+    """What tol3d.solids.cad does."""
+
+    def sample_flanks(self, gear: SpurGear, steps: int) -> Arrays:
+        """Arrays of FlankStrips."""
+        ...
+
+    def tessellate(self, gear: SpurGear, deflection: float) -> Arrays:
+        """Arrays of DisplayMesh."""
+        ...
+
+    def write_step(self, parts: Sequence[Posed], path: Path) -> None:
+        """Write an assembly."""
+        ...
+
+
+def cad() -> Cad:
+    """The module that talks to CadQuery, imported at the first call."""
+    return cast(Cad, importlib.import_module("tol3d.solids.cad"))

@@ -1,0 +1,22 @@
+"""Estimates from the values of trials, with their errors: pure functions, gathered block by block."""
+
+from tol3d.statistics.agreement import Agreement
+from tol3d.statistics.grid import Grid, Histogram
+from tol3d.statistics.limits import LimitCounts, Proportion, pp, ppk
+from tol3d.statistics.moments import Moments
+from tol3d.statistics.variance_shares import FeatureSums, Share, Shares, shares
+
+__all__ = [
+    "Agreement",
+    "FeatureSums",
+    "Grid",
+    "Histogram",
+    "LimitCounts",
+    "Moments",
+    "Proportion",
+    "Share",
+    "Shares",
+    "pp",
+    "ppk",
+    "shares",
+]

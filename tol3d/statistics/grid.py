@@ -1,0 +1,142 @@
+"""Integer counts on a fine grid: quantiles and pictures of a sample without its values."""
+
+import math
+from dataclasses import dataclass
+from typing import Self
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+Counts = NDArray[np.int64]
+
+BINS = 2**17  # 1 MB of counts; over 40 sigma one bin is 0.0003 sigma, far under the sampling error of a percentile
+
+
+@dataclass(frozen=True)
+class Histogram:
+    """Counts between edges, for a picture.
+
+    Args:
+        edges: (bins + 1,) in the unit of the values, evenly spaced.
+        counts: (bins,) values at or above one edge and below the next.
+    """
+
+    edges: Array
+    counts: Counts
+
+
+@dataclass(frozen=True, eq=False)
+class Grid:
+    """Counts of values in `bins` equal bins from `lower` on; bin k holds lower + [k, k + 1) width.
+
+    The grid is fixed beforehand (by the model, not by the sample), so that counts of blocks add
+    up to the same integers in any order. What falls outside is counted too.
+
+    Args:
+        lower: lower edge of the first bin.
+        width: of a bin, in the unit of the values.
+        counts: (bins,) values in each bin.
+        underflow, overflow: values below the first and above the last bin, infinite ones included.
+    """
+
+    lower: float
+    width: float
+    counts: Counts
+    underflow: int = 0
+    overflow: int = 0
+
+    @classmethod
+    def empty(cls, lower: float, upper: float, bins: int = BINS) -> Self:
+        """A grid without values from `lower` to `upper`.
+
+        Raises:
+            ValueError: `upper` is not above `lower`, or too close for floats to tell the edges apart.
+        """
+        width = (upper - lower) / bins
+        if not (math.isfinite(width) and lower + width > lower and upper - width < upper):
+            raise ValueError(f"a grid of {bins} bins from {lower} to {upper} has no width")
+        return cls(lower, width, np.zeros(bins, dtype=np.int64))
+
+    def add(self, values: Array) -> Self:
+        """This grid with the values (n,) counted.
+
+        Raises:
+            ValueError: a value is NaN; failed trials are left out, and counted, by the caller.
+        """
+        if np.any(np.isnan(values)):
+            raise ValueError("NaN has no place on a grid")
+        bins = len(self.counts)
+        position = np.floor((values - self.lower) / self.width)
+        below, above = position < 0, position >= bins
+        index = position[~(below | above)].astype(np.int64)
+        return type(self)(
+            self.lower,
+            self.width,
+            self.counts + np.bincount(index, minlength=bins),
+            self.underflow + int(np.count_nonzero(below)),
+            self.overflow + int(np.count_nonzero(above)),
+        )
+
+    def merge(self, other: Self) -> Self:
+        """The counts of both.
+
+        Raises:
+            ValueError: they are not the same grid.
+        """
+        if (self.lower, self.width, len(self.counts)) != (other.lower, other.width, len(other.counts)):
+            raise ValueError("only counts on the same grid can be merged")
+        return type(self)(
+            self.lower,
+            self.width,
+            self.counts + other.counts,
+            self.underflow + other.underflow,
+            self.overflow + other.overflow,
+        )
+
+    @property
+    def total(self) -> int:
+        """Values counted, wherever they fell."""
+        return int(np.sum(self.counts)) + self.underflow + self.overflow
+
+    def quantile(self, p: float) -> float | None:
+        """The value below which a share p of the sample lies, 0 < p < 1; linear inside its bin.
+
+        It lies in the same bin as the ceil(p n)-th smallest value, so it is off by one `width` at
+        most. None where that value fell outside the grid (only the extremes bound it then) or
+        nothing was counted.
+        """
+        rank = p * self.total - self.underflow
+        below = np.cumsum(self.counts)
+        if not 0 < rank <= below[-1]:
+            return None
+        index = int(np.searchsorted(below, rank))
+        inside = 1 - (below[index] - rank) / self.counts[index]
+        return float(self.lower + (index + inside) * self.width)
+
+    def histogram(self, bins: int, span: tuple[float, float] | None = None) -> Histogram:
+        """At most `bins` coarse bins, each of equally many fine ones, over a span of values.
+
+        The span grows to whole fine bins and is cut at the grid's ends; None takes what is occupied.
+        The same grid, bins and span always give the same edges, so that pictures can be laid over
+        each other. Values outside the span, under- and overflow are left out.
+        """
+        first, last = self._occupied() if span is None else self._bins_over(span)
+        factor = -(-(last - first) // bins)
+        coarse = -(-(last - first) // factor)
+        fine = np.zeros(coarse * factor, dtype=np.int64)
+        inside = self.counts[first:last]
+        fine[: len(inside)] = inside
+        edges = self.lower + self.width * np.arange(first, first + factor * coarse + 1, factor, dtype=np.float64)
+        return Histogram(edges, fine.reshape(coarse, factor).sum(axis=1))
+
+    def _occupied(self) -> tuple[int, int]:
+        occupied = np.flatnonzero(self.counts)
+        return (int(occupied[0]), int(occupied[-1]) + 1) if len(occupied) else (0, len(self.counts))
+
+    def _bins_over(self, span: tuple[float, float]) -> tuple[int, int]:
+        """The first bin of a span and the one after its last, at least one bin."""
+        bins = len(self.counts)
+        first = math.floor(min(max((span[0] - self.lower) / self.width, 0), bins - 1))
+        last = math.ceil(min(max((span[1] - self.lower) / self.width, 0), bins))
+        return first, max(last, first + 1)

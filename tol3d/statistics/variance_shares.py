@@ -1,0 +1,146 @@
+"""Which group of features a measure's variance comes from, by least squares on the trials."""
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Self
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+CONSTANT_RTOL = 1e-12  # of the mean; a column whose sigma is less holds rounding errors only
+RANK_RTOL = 1e-10  # of the largest eigenvalue of the correlations; columns closer than that say the same
+
+
+@dataclass(frozen=True, eq=False)
+class FeatureSums:
+    """Count, means and co-moments of columns, gathered block by block.
+
+    A column is a feature (a component of a contributor, or a power of it) or a target (a measure).
+
+    Args:
+        count: number of rows.
+        means: (columns,).
+        comoments: (columns, columns) sums over rows of (x_i - mean_i)(x_j - mean_j).
+    """
+
+    count: int
+    means: Array
+    comoments: Array
+
+    @classmethod
+    def of(cls, columns: Array) -> Self:
+        """The sums of one block (trials, columns) without NaN: the caller leaves failed trials out.
+
+        Sums by numpy alone: a BLAS product's bits would depend on threads and shapes.
+        """
+        if len(columns) == 0:
+            width = columns.shape[1]
+            return cls(0, np.zeros(width), np.zeros((width, width)))
+        # from the first value, so that a constant column has no spread at all, not a rounding error's;
+        # a row each, for the order of a sum, and so its bits, follow the layout in memory
+        rows = np.array((columns - columns[0]).T, order="C")
+        means = np.mean(rows, axis=1)
+        rows -= means[:, None]
+        comoments = np.empty((len(rows), len(rows)))
+        for i, row in enumerate(rows):
+            comoments[i, i:] = comoments[i:, i] = np.sum(row * rows[i:], axis=1)
+        return cls(len(columns), columns[0] + means, comoments)
+
+    def merge(self, other: Self) -> Self:
+        """The sums of both blocks together; Pebay, SAND2008-6212, 2008 (covariances)."""
+        if self.count == 0 or other.count == 0:
+            return other if self.count == 0 else self
+        count = self.count + other.count
+        delta = other.means - self.means
+        between = delta[:, None] * delta * (self.count * other.count / count)
+        return type(self)(count, self.means + delta * (other.count / count), self.comoments + other.comoments + between)
+
+
+@dataclass(frozen=True)
+class Share:
+    """The fraction of a variance that a group explains, with its standard error."""
+
+    value: float
+    se: float
+
+
+@dataclass(frozen=True)
+class Shares:
+    """The share of each group, and the fraction that no group explains.
+
+    Together they add up to 1 unless the target is constant.
+    """
+
+    groups: Mapping[str, Share]
+    unexplained: float
+
+
+def shares(sums: FeatureSums, groups: Mapping[str, Sequence[int]], target: int) -> Shares:
+    """Split the variance of the column `target` among groups of feature columns.
+
+    One least-squares fit on all features; the share of a group is cov(its part of the fit, y) /
+    var(y). With independent groups this tends to the group's fraction of the variance; it may come
+    out slightly negative by chance. What no feature follows (interactions, higher powers, noise of
+    the engine) is unexplained. Constant columns have no share; of columns that say the same each
+    takes its part. q columns of mere noise explain about q / n of what would be unexplained.
+
+    A constant target has nothing to share: all zeros. With no more rows than the fit has unknowns
+    it says nothing: all NaN.
+
+    Args:
+        groups: for each name its columns in `sums`; no column in two groups.
+        target: the column that is explained.
+    """
+    features = [column for columns in groups.values() for column in columns]
+    if sums.count <= len(features) + 1:
+        return Shares(dict.fromkeys(groups, Share(math.nan, math.nan)), math.nan)
+    sigma = _sigmas(sums)
+    if sigma[target] == 0:
+        return Shares(dict.fromkeys(groups, Share(0.0, 0.0)), 0.0)
+    explained = _explained(sums, sigma, [column for column in features if sigma[column] > 0], target)
+    values = {name: float(np.sum(explained[list(columns)])) for name, columns in groups.items()}
+    unexplained = max(1 - sum(values.values()), 0.0)
+    errors = {name: _standard_error(value, unexplained, sums.count) for name, value in values.items()}
+    return Shares({name: Share(value, errors[name]) for name, value in values.items()}, unexplained)
+
+
+def _sigmas(sums: FeatureSums) -> Array:
+    """Standard deviation of each column, exactly 0 for one that holds rounding errors only."""
+    sigma: Array = np.sqrt(np.diagonal(sums.comoments) / sums.count)
+    return np.where(sigma > CONSTANT_RTOL * np.abs(sums.means), sigma, 0.0)
+
+
+def _explained(sums: FeatureSums, sigma: Array, used: list[int], target: int) -> Array:
+    """The fraction of the target's variance that each column explains in the joint fit on `used`.
+
+    In standardised columns the fit solves R b = r, R the correlations among the features and r
+    those with the target; column i explains b_i r_i. R is inverted on its eigenvectors of
+    eigenvalue not zero, which gives the shortest b where columns depend on each other.
+    """
+    explained = np.zeros(len(sigma))
+    if not used:
+        return explained
+    columns = [*used, target]
+    scale = sigma[columns]
+    correlation = sums.comoments[np.ix_(columns, columns)] / sums.count / scale / scale[:, None]
+    r = correlation[:-1, -1]
+    eigenvalues, eigenvectors = np.linalg.eigh(correlation[:-1, :-1])
+    kept = eigenvalues > RANK_RTOL * eigenvalues[-1]
+    modes = eigenvectors[:, kept]
+    along = np.sum(modes * r[:, None], axis=0) / eigenvalues[kept]
+    explained[used] = np.sum(modes * along, axis=1) * r
+    return explained
+
+
+def _standard_error(share: float, unexplained: float, count: int) -> float:
+    """sqrt((S (1 - S) + S U (3 - 4 S)) / n), S the share and U the unexplained fraction.
+
+    First order in 1 / sqrt(n), for independent normal contributors that act linearly: with U = 0
+    it is sqrt(S (1 - S) / n), with a single contributor (U = 1 - S) the 2 r (1 - r^2) / sqrt(n) of
+    a squared correlation. Heavier tails make it larger.
+    """
+    share = min(max(share, 0.0), 1.0)
+    return math.sqrt(max(share * (1 - share) + share * unexplained * (3 - 4 * share), 0.0) / count)

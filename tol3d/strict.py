@@ -1,0 +1,44 @@
+"""The base of everything a user writes: unknown keys are refused, nothing changes after reading."""
+
+from typing import Any
+
+from pydantic import BaseModel, ConfigDict, model_validator
+from pydantic_core import PydanticCustomError
+
+from tol3d.units import Quantity
+
+
+class Strict(BaseModel):
+    """A frozen pydantic model that names the nearest known key when it meets an unknown one."""
+
+    model_config = ConfigDict(
+        extra="forbid",
+        frozen=True,
+        strict=True,
+        allow_inf_nan=False,
+        defer_build=True,  # a model inside another is built once, with it; building each at import costs 0.1 s
+    )
+
+    @model_validator(mode="before")
+    @classmethod
+    def _refuse_unknown_keys(cls, data: Any) -> Any:
+        if isinstance(data, dict):
+            known = [field.alias or name for name, field in cls.model_fields.items()]
+            for key in data:
+                if key not in known:
+                    raise PydanticCustomError("unknown_key", "unknown key", {"key": str(key), "known": known})
+        return data
+
+
+def refused(field: str, expected: str, got: object) -> PydanticCustomError:
+    """The error with which a validator refuses a value, in the user's words.
+
+    Args:
+        field: dotted name of the field below what is validated; "" is that itself.
+        expected: what would do, such as "more than 0".
+        got: what came; a quantity is shown in quotes, as it was written.
+    """
+    came = repr(str(got)) if isinstance(got, Quantity) else str(got)
+    return PydanticCustomError(
+        "value_refused", "expected {expected}, got {got}", {"field": field, "expected": expected, "got": came}
+    )

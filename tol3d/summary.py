@@ -1,0 +1,129 @@
+"""A run's summary: what summary.json holds, in the measures' units."""
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from tol3d.analytic import closed_form, per_normal_backlash
+from tol3d.block import Block, mean_block, nominal_block, simulate_block
+from tol3d.engines import Engine
+from tol3d.model import Backlash, Measure, Model
+from tol3d.tally import Tally, histograms, sample_summary, share_percents
+
+
+def measure_summaries(model: Model, engine: Engine | None, tally: Tally) -> dict[str, Any]:
+    """The measures as summary.json shows them: statistics of both roads, contributors, published columns."""
+    nominal, mean = (_single(model, engine, block) for block in (nominal_block(model), mean_block(model)))
+    return {
+        measure.name: {
+            "kind": measure.kind.quantity,
+            "of": measure.kind.mesh,
+            "gear": measure.kind.gear,
+            "over": measure.positions.over,
+            "take": measure.take,
+            "unit": measure.unit,
+            **_lost_motion(model, measure),
+            "lower_limit": _scaled(measure, measure.lower_limit),
+            "upper_limit": _scaled(measure, measure.upper_limit),
+            "nominal": nominal[measure.name],
+            "mean_build": mean[measure.name],
+            **_statistics(model, measure, tally),
+            "published": _published(model, measure),
+        }
+        for measure in model.measures
+    }
+
+
+def _lost_motion(model: Model, measure: Measure) -> Mapping[str, Any]:
+    """For a normal backlash: the turn of the driven gear that it leaves free, per um."""
+    if measure.kind.quantity != "normal_backlash":
+        return {}
+    driven = model.mesh(measure.kind.mesh).driven
+    turn = per_normal_backlash(model, Backlash("angular_backlash", measure.kind.mesh, driven))
+    return {"lost_motion": {"of": driven, "arcmin_per_um": turn * np.degrees(60) / 1000}}
+
+
+def _scaled(measure: Measure, value: float | None) -> float | None:
+    return None if value is None else value * measure.per_internal
+
+
+def _single(model: Model, engine: Engine | None, block: Block) -> dict[str, dict[str, Any]]:
+    """Both roads' values of one build, None where it does not seat."""
+    columns = simulate_block(model, engine, block)
+
+    def value(road: str, name: str) -> Any:
+        column = columns.get(f"{road}:{name}")
+        if column is None or np.isnan(np.asarray(column, dtype=np.float64)).any():
+            return None
+        return column[0].tolist()
+
+    return {m.name: {road: value(road, m.name) for road in ("analytic", "geometric")} for m in model.measures}
+
+
+def _statistics(model: Model, measure: Measure, tally: Tally) -> dict[str, Any]:
+    if measure.take == "curve":
+        return _curve(model, measure, tally)
+    own = tally.measures[measure.name]
+    summary: dict[str, Any] = {"analytic": sample_summary(measure, own.analytic)}
+    form = closed_form(model, measure)
+    if form is not None:
+        mean, sigma = form.mean * measure.per_internal, form.sigma * measure.per_internal
+        summary["analytic_closed_form"] = {
+            "mean": mean,
+            "sigma": sigma,
+            "low_3sigma": mean - 3 * sigma,
+            "high_3sigma": mean + 3 * sigma,
+        }
+    summary["histogram"] = histograms(own)
+    if own.geometric is not None and own.agreement is not None:
+        summary["geometric"] = sample_summary(measure, own.geometric)
+        seen = own.agreement.count > 0
+        summary["agreement"] = {
+            "max_abs_difference": own.agreement.max_abs if seen else None,
+            "rms_difference": own.agreement.rms if seen else None,
+            "mean_difference": own.agreement.mean if seen else None,
+            "compared": own.agreement.count,
+        }
+    by_sample = share_percents(model, own.analytic_features)
+    geometric = share_percents(model, own.geometric_features)
+    summary["contributors"] = [
+        {
+            "name": contributor.name,
+            "analytic_percent": form.percent(contributor.name) if form else by_sample[contributor.name][0],
+            "geometric_percent": geometric[contributor.name][0],
+            "geometric_percent_se": geometric[contributor.name][1],
+        }
+        for contributor in model.contributors
+    ]
+    return summary
+
+
+def _curve(model: Model, measure: Measure, tally: Tally) -> dict[str, Any]:
+    own = tally.curves[measure.name]
+    roads = {"analytic": own.analytic, **({"geometric": own.geometric} if own.geometric else {})}
+    return {
+        "position_deg": np.degrees(measure.positions.fixed or ()).tolist(),
+        "curve": {
+            road: {
+                "mean": [m.mean if m.count else None for m in moments],
+                "sigma": [m.sigma if m.count > 1 else None for m in moments],
+                "min": [m.minimum if m.count else None for m in moments],
+                "max": [m.maximum if m.count else None for m in moments],
+            }
+            for road, moments in roads.items()
+        },
+        "contributors": [],
+    }
+
+
+def _published(model: Model, measure: Measure) -> dict[str, Any]:
+    """Other people's columns for this measure, in its unit."""
+    return {
+        column: {
+            key: value if key == "contributors" else value * measure.per_internal
+            for key, value in measures[measure.name].items()
+        }
+        for column, measures in model.published.items()
+        if measure.name in measures
+    }

@@ -1,0 +1,234 @@
+"""Statistics of a run, folded block by block: memory does not grow with the number of trials."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tol3d.analytic import ClosedForm, closed_form
+from tol3d.features import feature_groups, features
+from tol3d.model import Measure, Model, Positions
+from tol3d.moves import STATUS_TEXT
+from tol3d.statistics import Agreement, FeatureSums, Grid, LimitCounts, Moments, pp, ppk, shares
+from tol3d.statistics.grid import BINS
+
+Array = NDArray[np.float64]
+Columns = Mapping[str, NDArray[np.generic]]
+
+GRID_SIGMAS = 12.0  # the grid spans the mean +- this many sigma of the stack-up: bins of 1.8e-4 sigma, 1.3 nm
+LEAST_SPAN = 1e-3  # mm or rad; for a model in which nothing varies
+HISTOGRAM_BINS = 64  # bars kept in summary.json for pictures
+QUANTILES = {"p0.135": 0.00135, "p50": 0.5, "p99.865": 0.99865}
+
+
+def reference_form(model: Model, measure: Measure) -> ClosedForm | None:
+    """Closed form of the measure, or of its value at a random position where it takes an extreme."""
+    at_random = Positions("random", 1, 1)
+    return closed_form(model, measure) or closed_form(
+        model, Measure(measure.name, measure.kind, at_random, "value")
+    )
+
+
+@dataclass(frozen=True)
+class Sample:
+    """One road's sample of one measure: moments, limits, a fine grid of counts."""
+
+    moments: Moments
+    grid: Grid
+    limits: LimitCounts
+
+    @classmethod
+    def of(cls, measure: Measure, values: Array, centre: float, half_span: float) -> "Sample":
+        """Sample of a block; values (trials,) in the measure's unit, nan where a trial failed."""
+        good = values[~np.isnan(values)]
+        per = measure.per_internal
+        lower = None if measure.lower_limit is None else measure.lower_limit * per
+        upper = None if measure.upper_limit is None else measure.upper_limit * per
+        return cls(
+            moments=Moments.of(good),
+            grid=Grid.empty(centre - half_span, 2 * half_span / BINS, BINS).add(good),
+            limits=LimitCounts.of(values, lower=lower, upper=upper),
+        )
+
+    def merge(self, other: "Sample") -> "Sample":
+        """Both samples as one."""
+        return Sample(
+            self.moments.merge(other.moments), self.grid.merge(other.grid), self.limits.merge(other.limits)
+        )
+
+
+@dataclass(frozen=True)
+class MeasureTally:
+    """All that is kept of one measure."""
+
+    analytic: Sample
+    geometric: Sample | None
+    agreement: Agreement | None
+    analytic_features: FeatureSums
+    geometric_features: FeatureSums | None
+
+    def merge(self, other: "MeasureTally") -> "MeasureTally":
+        """Both tallies as one."""
+        return MeasureTally(
+            self.analytic.merge(other.analytic),
+            self.geometric.merge(other.geometric) if self.geometric and other.geometric else None,
+            self.agreement.merge(other.agreement) if self.agreement and other.agreement else None,
+            self.analytic_features.merge(other.analytic_features),
+            self.geometric_features.merge(other.geometric_features)
+            if self.geometric_features and other.geometric_features
+            else None,
+        )
+
+
+def tally_measure(model: Model, measure: Measure, columns: Columns) -> MeasureTally:
+    """Tally of one block of columns."""
+    analytic = np.asarray(columns[f"analytic:{measure.name}"], dtype=np.float64)
+    form = reference_form(model, measure)
+    centre = (form.mean if form else 0.0) * measure.per_internal
+    half_span = max(GRID_SIGMAS * form.sigma if form else 0.0, LEAST_SPAN) * measure.per_internal
+    seen = features(model, measure, columns)
+    geometric = columns.get(f"geometric:{measure.name}")
+    if geometric is None:
+        return MeasureTally(
+            Sample.of(measure, analytic, centre, half_span), None, None, FeatureSums.of(seen, analytic), None
+        )
+    values = np.asarray(geometric, dtype=np.float64)
+    good = ~np.isnan(values)
+    return MeasureTally(
+        Sample.of(measure, analytic, centre, half_span),
+        Sample.of(measure, values, centre, half_span),
+        Agreement.of(values, analytic),
+        FeatureSums.of(seen, analytic),
+        FeatureSums.of(seen[good], values[good]),
+    )
+
+
+@dataclass(frozen=True)
+class CurveTally:
+    """A curve measure: moments at each position, for both roads."""
+
+    analytic: tuple[Moments, ...]
+    geometric: tuple[Moments, ...] | None
+
+    @classmethod
+    def of(cls, measure: Measure, columns: Columns) -> "CurveTally":
+        """Tally of one block of columns."""
+
+        def moments(road: str) -> tuple[Moments, ...] | None:
+            values = columns.get(f"{road}:{measure.name}")
+            if values is None:
+                return None
+            curves = np.asarray(values, dtype=np.float64)
+            return tuple(Moments.of(column[~np.isnan(column)]) for column in curves.T)
+
+        return cls(moments("analytic") or (), moments("geometric"))
+
+    def merge(self, other: "CurveTally") -> "CurveTally":
+        """Both tallies as one."""
+
+        def merged(mine: tuple[Moments, ...], its: tuple[Moments, ...]) -> tuple[Moments, ...]:
+            return tuple(a.merge(b) for a, b in zip(mine, its, strict=True))
+
+        return CurveTally(
+            merged(self.analytic, other.analytic),
+            merged(self.geometric, other.geometric) if self.geometric and other.geometric else None,
+        )
+
+
+@dataclass(frozen=True)
+class Tally:
+    """Statistics of a whole run so far."""
+
+    trials: int
+    status: Mapping[str, int]
+    measures: Mapping[str, MeasureTally]
+    curves: Mapping[str, CurveTally]
+
+    @classmethod
+    def of(cls, model: Model, columns: Columns) -> "Tally":
+        """Tally of one block."""
+        trials = len(next(iter(columns.values())))
+        status = columns.get("status")
+        counts = {text: trials if text == "ok" else 0 for text in STATUS_TEXT.values()}
+        if status is not None:
+            counts = {text: int(np.count_nonzero(status == text)) for text in STATUS_TEXT.values()}
+        scalars = [measure for measure in model.measures if measure.take != "curve"]
+        curves = [measure for measure in model.measures if measure.take == "curve"]
+        return cls(
+            trials,
+            counts,
+            {measure.name: tally_measure(model, measure, columns) for measure in scalars},
+            {measure.name: CurveTally.of(measure, columns) for measure in curves},
+        )
+
+    def merge(self, other: "Tally") -> "Tally":
+        """Both tallies as one; fold blocks in their order."""
+        return Tally(
+            self.trials + other.trials,
+            {text: count + other.status[text] for text, count in self.status.items()},
+            {name: tally.merge(other.measures[name]) for name, tally in self.measures.items()},
+            {name: tally.merge(other.curves[name]) for name, tally in self.curves.items()},
+        )
+
+
+def sample_summary(measure: Measure, sample: Sample) -> dict[str, Any]:
+    """A sample as summary.json shows it, in the measure's unit."""
+    moments, limits = sample.moments, sample.limits
+    per = measure.per_internal
+    lower = None if measure.lower_limit is None else measure.lower_limit * per
+    upper = None if measure.upper_limit is None else measure.upper_limit * per
+    summary: dict[str, Any] = {
+        "count": moments.count,
+        "mean": moments.mean,
+        "sigma": moments.sigma,
+        "low_3sigma": moments.mean - 3 * moments.sigma,
+        "high_3sigma": moments.mean + 3 * moments.sigma,
+        "sample_min": moments.minimum,
+        "sample_max": moments.maximum,
+        **{name: sample.grid.quantile(p) for name, p in QUANTILES.items()},
+        "quantile_error": sample.grid.width,
+        "below_limit_ppm": limits.below_limit.ppm,
+        "below_limit_ppm_95": limits.below_limit.interval_ppm() if moments.count else None,
+        "above_limit_ppm": limits.above_limit.ppm,
+        "above_limit_ppm_95": limits.above_limit.interval_ppm() if moments.count else None,
+        "failed_ppm": limits.failures.ppm,
+        "mean_se": moments.mean_se,
+        "sigma_se": moments.sigma_se,
+        "skewness": moments.skewness,
+        "kurtosis": moments.excess_kurtosis,
+        "pp": pp(lower, upper, moments.sigma),
+        "ppk": ppk(lower, upper, moments.mean, moments.sigma),
+    }
+    return {key: _finite(value) for key, value in summary.items()}
+
+
+def _finite(value: Any) -> Any:
+    """JSON has no nan: what cannot be told (a sigma of one trial) is null."""
+    return None if isinstance(value, float) and not np.isfinite(value) else value
+
+
+def histograms(tally: MeasureTally) -> dict[str, Any]:
+    """Counts of both roads over the same bars, for pictures; in the measure's unit."""
+    samples = {"analytic": tally.analytic, **({"geometric": tally.geometric} if tally.geometric else {})}
+    filled = [sample.moments for sample in samples.values() if sample.moments.count]
+    if not filled:
+        return {}
+    span = (min(m.minimum for m in filled), max(m.maximum for m in filled))
+    drawn = {road: sample.grid.histogram(HISTOGRAM_BINS, span) for road, sample in samples.items()}
+    edges = drawn["analytic"].edges
+    return {
+        "lower_edge": float(edges[0]),
+        "bin_width": float(edges[1] - edges[0]),
+        "counts": {road: histogram.counts.tolist() for road, histogram in drawn.items()},
+    }
+
+
+def share_percents(model: Model, sums: FeatureSums | None) -> dict[str, tuple[float | None, float | None]]:
+    """Share of the variance [%] of each contributor by regression and its standard error; None where unknown."""
+    groups = feature_groups(model)
+    if sums is None:
+        return dict.fromkeys(groups, (None, None))
+    found = shares(sums, groups)
+    return {name: (_finite(100 * found.share[name]), _finite(100 * found.standard_error[name])) for name in groups}

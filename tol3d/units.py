@@ -1,0 +1,231 @@
+"""Numbers with their units, as a user writes them: `2.5 mm`, `-19 um`, `20 deg`, `11.5e-6 1/K`.
+
+The grammar is strict on purpose: one number, a blank, one unit of the table below. Inside tol3d
+lengths are mm, angles rad, temperature differences K, expansion coefficients 1/K.
+"""
+
+import math
+import re
+from dataclasses import dataclass
+from typing import Any, Final, Literal
+
+from pydantic import GetCoreSchemaHandler, GetJsonSchemaHandler
+from pydantic_core import PydanticCustomError, core_schema
+
+Dimension = Literal["length", "angle", "temperature", "expansion"]
+
+FACTORS: Final[dict[Dimension, dict[str, float]]] = {
+    "length": {"mm": 1.0, "um": 1e-3, "nm": 1e-6, "m": 1e3, "cm": 10.0},
+    "angle": {
+        "rad": 1.0,
+        "mrad": 1e-3,
+        "urad": 1e-6,
+        "deg": math.pi / 180,
+        "arcmin": math.pi / 10800,
+        "arcsec": math.pi / 648000,
+    },
+    "temperature": {"K": 1.0},
+    "expansion": {"1/K": 1.0, "/K": 1.0, "um/m/K": 1e-6, "ppm/K": 1e-6},
+}
+"""What one of each unit is in mm, rad, K or 1/K."""
+
+EXAMPLES: Final[dict[Dimension, str]] = {
+    "length": "4.5 um",
+    "angle": "20 deg",
+    "temperature": "20 K",
+    "expansion": "11.5e-6 1/K",
+}
+DIMENSION_WORDS: Final[dict[Dimension, str]] = {
+    "length": "length",
+    "angle": "angle",
+    "temperature": "temperature difference",
+    "expansion": "expansion coefficient",
+}
+MICRO_SIGNS: Final = str.maketrans({"µ": "u", "μ": "u"})
+NUMBER: Final = r"[+-]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][+-]?[0-9]+)?"  # YAML 1.2 core schema, 10.3.2
+NUMBER_UNIT: Final = re.compile(rf"\s*({NUMBER})\s+(\S+)\s*")
+BARE_NUMBER: Final = re.compile(rf"\s*{NUMBER}\s*")
+LONGEST_TEXT: Final = 100  # characters of a quantity; seventeen digits and a unit are far shorter
+UNITS: Final[dict[str, Dimension]] = {unit: dimension for dimension, table in FACTORS.items() for unit in table}
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """A number and its unit as the user wrote them.
+
+    >>> Quantity.parse("-19 um").internal
+    -0.019
+    """
+
+    number: float
+    unit: str
+
+    @property
+    def dimension(self) -> Dimension:
+        """What the unit measures."""
+        return UNITS[self.unit]
+
+    @property
+    def internal(self) -> float:
+        """The value in mm, rad, K or 1/K."""
+        return self.number * FACTORS[self.dimension][self.unit]
+
+    def __str__(self) -> str:
+        """As a user may write it, with as few digits as give the same number back."""
+        short = f"{self.number:g}"
+        return f"{short if float(short) == self.number else repr(self.number)} {self.unit}"
+
+    @classmethod
+    def parse(cls, text: object) -> "Quantity":
+        """Read `number unit`.
+
+        Raises:
+            ValueError: a bare number, an unknown unit or anything else; the text says which.
+        """
+        if isinstance(text, Quantity):
+            return text
+        if isinstance(text, bool) or not isinstance(text, str | int | float):
+            raise ValueError(f"got {shown(text)}")
+        if isinstance(text, int | float) or BARE_NUMBER.fullmatch(text[:LONGEST_TEXT]):
+            raise ValueError(f"got {shown(text)}, a bare number without its unit")
+        match = NUMBER_UNIT.fullmatch(text) if len(text) <= LONGEST_TEXT else None
+        if match is None:
+            raise ValueError(f"got {shown(text)}")
+        number, unit = float(match[1]), match[2].translate(MICRO_SIGNS)
+        if unit not in UNITS:
+            raise ValueError(f"got {shown(text)}: unknown unit {unit!r}")
+        quantity = cls(number, unit)
+        if not math.isfinite(number) or not math.isfinite(quantity.internal):
+            raise ValueError(f"got {shown(text)}: too large a number")
+        return quantity
+
+    @classmethod
+    def __get_pydantic_core_schema__(cls, source: Any, handler: GetCoreSchemaHandler) -> core_schema.CoreSchema:
+        return _quantity_schema(())
+
+    @classmethod
+    def __get_pydantic_json_schema__(cls, schema: Any, handler: GetJsonSchemaHandler) -> dict[str, Any]:
+        return _json_schema(*FACTORS)
+
+
+@dataclass(frozen=True)
+class Of:
+    """Marks a Quantity field with the dimensions it accepts: `Annotated[Quantity, Of("length")]`."""
+
+    dimensions: tuple[Dimension, ...]
+
+    def __init__(self, *dimensions: Dimension) -> None:
+        object.__setattr__(self, "dimensions", dimensions)
+
+    def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> core_schema.CoreSchema:
+        return _quantity_schema(self.dimensions)
+
+    def __get_pydantic_json_schema__(self, schema: Any, handler: GetJsonSchemaHandler) -> dict[str, Any]:
+        return _json_schema(*self.dimensions)
+
+
+@dataclass(frozen=True)
+class Positive:
+    """Marks a Quantity field that must be more than zero: `Annotated[Quantity, Of("length"), Positive()]`."""
+
+    def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> core_schema.CoreSchema:
+        return core_schema.no_info_after_validator_function(self._checked, handler(source))
+
+    def _checked(self, quantity: Quantity) -> Quantity:
+        if not quantity.number > 0.0:
+            raise PydanticCustomError(
+                "value_refused",
+                "expected {expected}, got {got}",
+                {"expected": f"a {quantity.dimension} of more than zero", "got": repr(str(quantity))},
+            )
+        return quantity
+
+
+def refuse_dimension(quantity: Quantity, expected: tuple[Dimension, ...], field: str = "") -> None:
+    """Raise unless the quantity has one of the expected dimensions.
+
+    Args:
+        quantity: what came.
+        expected: what would do.
+        field: dotted name of the field below the one that is validated; "" is that one itself.
+
+    Raises:
+        PydanticCustomError: "wrong_dimension", for a pydantic validator to pass on.
+    """
+    if quantity.dimension not in expected:
+        raise PydanticCustomError(
+            "wrong_dimension",
+            "got {got}, which is {came}",
+            {
+                "got": repr(str(quantity)),
+                "came": _with_article(quantity.dimension),
+                "expected": expected,
+                "field": field,
+            },
+        )
+
+
+def expectation(*dimensions: Dimension) -> str:
+    """What such a field takes, for messages.
+
+    >>> expectation("length")
+    'a length with its unit, such as "4.5 um"'
+    """
+    return " or ".join(f'{_with_article(d)} with its unit, such as "{EXAMPLES[d]}"' for d in dimensions)
+
+
+def shown(value: object) -> str:
+    """A value that came, short and printable, for messages."""
+    if value is None:
+        return "nothing"
+    if isinstance(value, bool):
+        return str(value).lower()
+    if isinstance(value, dict):
+        return "keys with values" if value else "an empty mapping"
+    if isinstance(value, list | tuple):
+        return "a list" if value else "an empty list"
+    text = repr(value[:LONGEST_TEXT]) if isinstance(value, str) else str(value)
+    return text if len(text) <= 60 else text[:57] + "…"
+
+
+def _with_article(dimension: Dimension) -> str:
+    return f"{'an' if dimension[0] in 'ae' else 'a'} {DIMENSION_WORDS[dimension]}"
+
+
+def _quantity_schema(dimensions: tuple[Dimension, ...]) -> core_schema.CoreSchema:
+    def quantity_or_error(text: object) -> Quantity:
+        try:
+            quantity = Quantity.parse(text)
+        except ValueError as error:
+            raise PydanticCustomError(
+                "quantity", "{reason}", {"reason": str(error), "expected": dimensions}
+            ) from None
+        if dimensions:
+            refuse_dimension(quantity, dimensions)
+        return quantity
+
+    return core_schema.no_info_plain_validator_function(
+        quantity_or_error, serialization=core_schema.plain_serializer_function_ser_schema(str)
+    )
+
+
+def _json_schema(*dimensions: Dimension) -> dict[str, Any]:
+    units = "|".join(re.escape(unit) for dimension in dimensions for unit in FACTORS[dimension])
+    return {
+        "type": "string",
+        "title": " or ".join(dimensions),
+        "pattern": rf"^\s*{NUMBER}\s+({units})\s*$",
+        "examples": [EXAMPLES[dimension] for dimension in dimensions],
+    }
+
+
+def angle_text(angle: float) -> str:
+    """An angle [rad] as gear people read it, minutes and seconds of arc.
+
+    >>> angle_text(math.radians(1 / 60 + 25.2 / 3600))
+    '1′25.2″'
+    """
+    seconds = round(abs(angle) * 648000 / math.pi, 1)
+    minutes, rest = divmod(seconds, 60)
+    sign = "-" if angle < 0 and seconds > 0 else ""
+    return f"{sign}{int(minutes)}′{rest:04.1f}″" if minutes else f"{sign}{rest:.1f}″"
