@@ -15,6 +15,7 @@ from scipy import integrate, stats
 from tol3d.distributions import (
     Constant,
     Distribution,
+    DistributionSpec,
     DistributionUnion,
     Empirical,
     Normal,
@@ -55,8 +56,9 @@ VARYING = [name for name in LAWS if name != "constant"]
 U = np.concatenate([[1e-9, 1e-4], np.linspace(0.001, 0.999, 199), [1 - 1e-4, 1 - 1e-9]])
 
 
-def spec_of(**fields: object):  # type: ignore[no-untyped-def]
-    return UNION.validate_python(fields)
+def spec_of(**fields: object) -> DistributionSpec:
+    spec: DistributionSpec = UNION.validate_python(fields)
+    return spec
 
 
 def law_of(**fields: object) -> Distribution:
@@ -332,7 +334,9 @@ def test_every_kind_has_a_json_schema() -> None:
 def read(folder: Path, content: str | bytes, column: str = "e", unit: str = "um") -> Empirical:
     data = content if isinstance(content, bytes) else content.encode()
     (folder / "measured.csv").write_bytes(data)
-    return spec_of(kind="empirical", file="measured.csv", column=column, unit=unit).resolve(folder)
+    law = spec_of(kind="empirical", file="measured.csv", column=column, unit=unit).resolve(folder)
+    assert isinstance(law, Empirical)
+    return law
 
 
 @pytest.mark.parametrize(

@@ -80,7 +80,7 @@ def test_a_nan_is_not_hidden() -> None:
 def test_bits_of_a_block_do_not_depend_on_its_memory_layout() -> None:
     table = np.random.default_rng(2).normal(size=(4097, 5))
     assert Moments.of(table[:, 3]) == Moments.of(table[:, 3].copy())
-    by_row, by_column = (FeatureSums.of(t) for t in (table, np.asfortranarray(table)))
+    by_row, by_column = (FeatureSums.of(t[:, :4], t[:, 4]) for t in (table, np.asfortranarray(table)))
     np.testing.assert_array_equal(by_row.comoments, by_column.comoments)
     np.testing.assert_array_equal(by_row.means, by_column.means)
 
@@ -107,7 +107,7 @@ def test_sigma_se_of_a_normal_is_sigma_over_root_2n() -> None:
 
 @given(values_of, st.floats(0.001, 0.999))
 def test_quantile_is_within_a_bin_of_the_order_statistic(values: Array, p: float) -> None:
-    grid = Grid.empty(-101.0, 101.0, 500).add(values)
+    grid = Grid.empty(-101.0, 202 / 500, 500).add(values)
     exact = np.sort(values)[math.ceil(p * len(values)) - 1]
     quantile = grid.quantile(p)
     assert quantile is not None
@@ -116,7 +116,7 @@ def test_quantile_is_within_a_bin_of_the_order_statistic(values: Array, p: float
 
 @given(values_of, cuts_of)
 def test_grids_of_blocks_add_up_to_that_of_the_whole(values: Array, cuts: list[int]) -> None:
-    empty = Grid.empty(-50.0, 70.0, 64)
+    empty = Grid.empty(-50.0, 120 / 64, 64)
     whole = empty.add(values)
     parts = [empty.add(block) for block in blocks(values, cuts)]
     for merged in (reduce(Grid.merge, parts), reduce(Grid.merge, reversed(parts))):
@@ -137,7 +137,7 @@ def on_an_edge(values: Array) -> NDArray[np.bool_]:
 
 
 def test_quantile_is_linear_inside_a_bin() -> None:
-    grid = Grid.empty(0.0, 10.0, 10).add(np.array([2.0, 2.5, 2.9, 2.1, 7.5, 7.6]))
+    grid = Grid.empty(0.0, 1.0, 10).add(np.array([2.0, 2.5, 2.9, 2.1, 7.5, 7.6]))
     assert grid.quantile(1 / 6) == pytest.approx(2.25)
     assert grid.quantile(4 / 6) == pytest.approx(3.0)
     assert grid.quantile(5 / 6) == pytest.approx(7.5)
@@ -145,40 +145,40 @@ def test_quantile_is_linear_inside_a_bin() -> None:
 
 def test_quantile_of_a_normal_sample() -> None:
     values = np.random.default_rng(6).normal(size=200_000)
-    grid = Grid.empty(-20.0, 20.0).add(values)
+    grid = Grid.empty(-20.0, 40 / 2**17).add(values)
     for p in (0.00135, 0.5, 0.99865):
         assert grid.quantile(p) == pytest.approx(np.quantile(values, p, method="inverted_cdf"), abs=grid.width)
 
 
 def test_a_quantile_outside_the_grid_is_none() -> None:
-    grid = Grid.empty(0.0, 1.0, 4).add(np.array([-3.0, 0.1, 0.2, math.inf]))
+    grid = Grid.empty(0.0, 0.25, 4).add(np.array([-3.0, 0.1, 0.2, math.inf]))
     assert (grid.underflow, grid.overflow, grid.total) == (1, 1, 4)
     assert grid.quantile(0.2) is None
     assert grid.quantile(0.8) is None
     assert grid.quantile(0.5) == pytest.approx(0.125)
-    assert Grid.empty(0.0, 1.0, 4).quantile(0.5) is None
+    assert Grid.empty(0.0, 0.25, 4).quantile(0.5) is None
 
 
 def test_values_at_edges_fall_into_the_bin_they_open() -> None:
-    grid = Grid.empty(0.0, 4.0, 4).add(np.array([0.0, 1.0, 3.0, 4.0]))
+    grid = Grid.empty(0.0, 1.0, 4).add(np.array([0.0, 1.0, 3.0, 4.0]))
     np.testing.assert_array_equal(grid.counts, [1, 1, 0, 1])
     assert grid.overflow == 1
 
 
 def test_a_grid_refuses_what_it_cannot_count() -> None:
-    grid = Grid.empty(0.0, 1.0, 4)
+    grid = Grid.empty(0.0, 0.25, 4)
     with pytest.raises(ValueError, match="NaN"):
         grid.add(np.array([0.5, math.nan]))
     with pytest.raises(ValueError, match="same grid"):
-        grid.merge(Grid.empty(0.0, 2.0, 4))
-    for lower, upper in ((1.0, 1.0), (2.0, 1.0), (1.0, 1.0 + 1e-15), (0.0, math.inf), (0.0, math.nan)):
+        grid.merge(Grid.empty(0.0, 0.5, 4))
+    for lower, width in ((1.0, 0.0), (2.0, -1.0), (1.0, 1e-17), (0.0, math.inf), (0.0, math.nan)):
         with pytest.raises(ValueError, match="no width"):
-            Grid.empty(lower, upper, 100)
+            Grid.empty(lower, width, 100)
 
 
 @given(values_of, st.integers(1, 30))
 def test_a_histogram_keeps_every_value_and_its_place(values: Array, bins: int) -> None:
-    grid = Grid.empty(-101.0, 101.0, 1000).add(values)
+    grid = Grid.empty(-101.0, 0.202, 1000).add(values)
     picture = grid.histogram(bins)
     assert len(picture.counts) <= bins
     assert len(picture.edges) == len(picture.counts) + 1
@@ -190,7 +190,7 @@ def test_a_histogram_keeps_every_value_and_its_place(values: Array, bins: int) -
 
 def test_histograms_over_one_span_share_their_edges() -> None:
     random = np.random.default_rng(8)
-    empty = Grid.empty(-10.0, 10.0, 4000)
+    empty = Grid.empty(-10.0, 0.005, 4000)
     one, other = empty.add(random.normal(0, 1, 500)), empty.add(random.normal(0.3, 1.2, 500))
     span = (-2.0013, 3.1)
     picture, beside = one.histogram(40, span), other.histogram(40, span)
@@ -267,7 +267,7 @@ def test_performance_indices() -> None:
 
 @given(nps.arrays(np.float64, st.tuples(st.integers(1, 30), st.just(3)), elements=st.floats(-10, 10)), cuts_of)
 def test_feature_sums_of_blocks_merge_to_those_of_the_whole(rows: Array, cuts: list[int]) -> None:
-    merged = reduce(FeatureSums.merge, (FeatureSums.of(block) for block in blocks(rows, cuts)))
+    merged = reduce(FeatureSums.merge, (FeatureSums.of(block[:, :2], block[:, 2]) for block in blocks(rows, cuts)))
     deviations = rows - rows.mean(axis=0)
     assert merged.count == len(rows)
     np.testing.assert_allclose(merged.means, rows.mean(axis=0), rtol=0, atol=1e-13)
@@ -275,8 +275,9 @@ def test_feature_sums_of_blocks_merge_to_those_of_the_whole(rows: Array, cuts: l
 
 
 def test_another_feature_leaves_the_sums_of_the_others_as_they_were() -> None:
-    x = np.random.default_rng(9).normal(size=(5000, 6))
-    np.testing.assert_array_equal(FeatureSums.of(x).comoments[:4, :4], FeatureSums.of(x[:, :4]).comoments)
+    x, y = np.random.default_rng(9).normal(size=(5000, 6)), np.random.default_rng(10).normal(size=5000)
+    seen, without = FeatureSums.of(x, y).comoments, FeatureSums.of(x[:, :4], y).comoments
+    np.testing.assert_array_equal(seen[np.ix_([0, 1, 2, 3, -1], [0, 1, 2, 3, -1])], without)
 
 
 def test_shares_are_those_of_least_squares_on_the_whole_sample() -> None:
@@ -284,22 +285,22 @@ def test_shares_are_those_of_least_squares_on_the_whole_sample() -> None:
     x = random.normal(5.0, 2.0, size=(n, 4))
     y = 3 * x[:, 0] - x[:, 1] + 0.5 * x[:, 2] ** 2 + np.sin(x[:, 3]) + random.normal(0, 0.3, n)
     features = np.column_stack([x[:, 0], x[:, 1], x[:, 2], x[:, 2] ** 2, x[:, 3]])
-    parts = np.array_split(np.column_stack([features, y]), 5)
-    groups = {"a": [0], "b": [1], "c": [2, 3], "d": [4]}
-    result = shares(reduce(FeatureSums.merge, (FeatureSums.of(part) for part in parts)), groups, target=5)
+    parts = zip(np.array_split(features, 5), np.array_split(y, 5), strict=True)
+    groups = {"a": slice(0, 1), "b": slice(1, 2), "c": slice(2, 4), "d": slice(4, 5)}
+    result = shares(reduce(FeatureSums.merge, (FeatureSums.of(*part) for part in parts)), groups)
     fit = np.linalg.lstsq(np.column_stack([np.ones(n), features]), y, rcond=None)[0][1:]
     for name, group in groups.items():
         part = features[:, group] @ fit[group]
         # x and x^2 are correlated by 0.98, which costs two digits
-        assert result.groups[name].value == pytest.approx(np.cov(part, y)[0, 1] / np.var(y, ddof=1), abs=1e-10)
-    assert result.unexplained + sum(share.value for share in result.groups.values()) == pytest.approx(1, abs=1e-12)
+        assert result.share[name] == pytest.approx(np.cov(part, y)[0, 1] / np.var(y, ddof=1), abs=1e-10)
+    assert result.unexplained + sum(result.share.values()) == pytest.approx(1, abs=1e-12)
 
 
 def test_shares_of_a_quadratic_law_tend_to_its_closed_form() -> None:
     random, n = np.random.default_rng(11), 50_000
     x, z = random.normal(size=(2, n))
-    sums = FeatureSums.of(np.column_stack([x, x**2, z, 2 * x + x**2 + z]))
-    result = shares(sums, {"x": [0, 1], "z": [2]}, target=3)
+    sums = FeatureSums.of(np.column_stack([x, x**2, z]), 2 * x + x**2 + z)
+    result = shares(sums, {"x": slice(0, 2), "z": slice(2, 3)})
     # var(2x) = 4, var(x^2) = 2, var(z) = 1; 4 errors of a share, tails of x^2 doubling them
     assert result.share["x"] == pytest.approx(6 / 7, abs=8 * math.sqrt(6 / 49 / n))
     assert result.share["z"] == pytest.approx(1 / 7, abs=8 * math.sqrt(6 / 49 / n))
@@ -310,15 +311,14 @@ def test_shares_of_a_quadratic_law_tend_to_its_closed_form() -> None:
 def test_share_error_is_the_spread_of_shares_over_repeated_samples(noise: float) -> None:
     repeats, n, coefficients = 2000, 500, np.array([0.8, 0.5, 0.3])
     random = np.random.default_rng(12)
-    names = {"a": [0], "b": [1], "c": [2]}
+    groups = {"a": slice(0, 1), "b": slice(1, 2), "c": slice(2, 3)}
     results = []
     for _ in range(repeats):
         x = random.normal(size=(n, 3))
-        y = x @ coefficients + noise * random.normal(size=n)
-        results.append(shares(FeatureSums.of(np.column_stack([x, y])), names, target=3))
-    for name in names:
-        spread = np.std([result.groups[name].value for result in results])
-        stated = np.mean([result.groups[name].se for result in results])
+        results.append(shares(FeatureSums.of(x, x @ coefficients + noise * random.normal(size=n)), groups))
+    for name in groups:
+        spread = np.std([result.share[name] for result in results])
+        stated = np.mean([result.standard_error[name] for result in results])
         # 4 errors of a standard deviation of 2000 (6.3 %), and terms of order 1/n in small shares (5 %)
         assert stated == pytest.approx(spread, rel=0.115)
 
@@ -327,54 +327,54 @@ def test_share_error_of_one_contributor_is_that_of_a_squared_correlation() -> No
     random, n = np.random.default_rng(13), 2000
     x = random.normal(size=n)
     y = x + random.normal(size=n)
-    share = shares(FeatureSums.of(np.column_stack([x, y])), {"x": [0]}, target=1).groups["x"]
+    result = shares(FeatureSums.of(x[:, None], y), {"x": slice(0, 1)})
     r = np.corrcoef(x, y)[0, 1]
-    assert share.value == pytest.approx(r**2, rel=1e-12)
-    assert share.se == pytest.approx(2 * r * (1 - r**2) / math.sqrt(n), rel=1e-12)
+    assert result.share["x"] == pytest.approx(r**2, rel=1e-12)
+    assert result.standard_error["x"] == pytest.approx(2 * r * (1 - r**2) / math.sqrt(n), rel=1e-12)
 
 
 def test_constant_features_have_no_share() -> None:
     random = np.random.default_rng(14)
     x = random.normal(size=1000)
     noise_of_rounding = 172.5 + np.spacing(172.5) * random.integers(0, 2, 1000)
-    sums = FeatureSums.of(np.column_stack([x, np.full(1000, 0.1), noise_of_rounding, 2 * x]))
-    result = shares(sums, {"x": [0], "constant": [1], "rounding": [2]}, target=3)
-    assert result.groups["x"].value == pytest.approx(1, abs=1e-12)
-    assert (result.groups["constant"].value, result.groups["rounding"].value) == (0.0, 0.0)
-    nothing = shares(sums, {"constant": [1]}, target=3)
-    assert (nothing.groups["constant"].value, nothing.unexplained) == (0.0, 1.0)
+    sums = FeatureSums.of(np.column_stack([x, np.full(1000, 0.1), noise_of_rounding]), 2 * x)
+    result = shares(sums, {"x": slice(0, 1), "constant": slice(1, 2), "rounding": slice(2, 3)})
+    assert result.share["x"] == pytest.approx(1, abs=1e-12)
+    assert (result.share["constant"], result.share["rounding"]) == (0.0, 0.0)
+    nothing = shares(sums, {"constant": slice(1, 2)})
+    assert (nothing.share["constant"], nothing.unexplained) == (0.0, 1.0)
 
 
 def test_features_that_say_the_same_share_alike() -> None:
     x, z = np.random.default_rng(15).normal(size=(2, 1000))
-    sums = FeatureSums.of(np.column_stack([x, 3 * x - 7, z, x + z]))
-    twice = shares(sums, {"x": [0], "same": [1], "z": [2]}, target=3).groups
-    once = shares(sums, {"x": [0], "z": [2]}, target=3).groups
-    assert twice["x"].value == pytest.approx(once["x"].value / 2, abs=1e-10)
-    assert twice["same"].value == pytest.approx(once["x"].value / 2, abs=1e-10)
-    assert twice["z"].value == pytest.approx(once["z"].value, abs=1e-10)
+    sums = FeatureSums.of(np.column_stack([x, 3 * x - 7, z]), x + z)
+    twice = shares(sums, {"x": slice(0, 1), "same": slice(1, 2), "z": slice(2, 3)}).share
+    once = shares(sums, {"x": slice(0, 1), "z": slice(2, 3)}).share
+    assert twice["x"] == pytest.approx(once["x"] / 2, abs=1e-10)
+    assert twice["same"] == pytest.approx(once["x"] / 2, abs=1e-10)
+    assert twice["z"] == pytest.approx(once["z"], abs=1e-10)
 
 
-def test_a_constant_target_and_too_few_rows_are_said() -> None:
-    x = np.random.default_rng(16).normal(size=100)
-    still = shares(FeatureSums.of(np.column_stack([x, np.full(100, 5.0)])), {"x": [0]}, target=1)
-    assert (still.groups["x"].value, still.groups["x"].se, still.unexplained) == (0.0, 0.0, 0.0)
-    for rows in (0, 1, 2):
-        few = shares(FeatureSums.of(np.column_stack([x, x])[:rows]), {"x": [0]}, target=1)
-        assert math.isnan(few.groups["x"].value)
+def test_a_constant_target_and_too_few_trials_are_said() -> None:
+    x, groups = np.random.default_rng(16).normal(size=(100, 1)), {"x": slice(0, 1)}
+    still = shares(FeatureSums.of(x, np.full(100, 5.0)), groups)
+    assert (still.share["x"], still.standard_error["x"], still.unexplained) == (0.0, 0.0, 0.0)
+    for trials in (0, 1, 2):
+        few = shares(FeatureSums.of(x[:trials], x[:trials, 0]), groups)
+        assert math.isnan(few.share["x"])
         assert math.isnan(few.unexplained)
-    enough = shares(FeatureSums.of(np.column_stack([x, x])[:3]), {"x": [0]}, target=1)
-    assert enough.groups["x"].value == pytest.approx(1.0, rel=1e-12)
+    enough = shares(FeatureSums.of(x[:3], x[:3, 0]), groups)
+    assert enough.share["x"] == pytest.approx(1.0, rel=1e-12)
 
 
 @given(st.floats(1e-6, 1e6), st.floats(1e-6, 1e6), st.floats(-1e3, 1e3))
 def test_shares_do_not_depend_on_units(scale: float, target_scale: float, shift: float) -> None:
     x, z = np.random.default_rng(17).normal(size=(2, 200))
-    groups, y = {"x": [0], "z": [1]}, x + 2 * z
+    groups, y = {"x": slice(0, 1), "z": slice(1, 2)}, x + 2 * z
     assume(abs(shift) < 1e6 * scale)  # a shift of more leaves too few digits of x
-    plain = shares(FeatureSums.of(np.column_stack([x, z, y])), groups, target=2)
-    scaled = shares(FeatureSums.of(np.column_stack([scale * x + shift, z, target_scale * y])), groups, target=2)
-    assert scaled.groups["x"].value == pytest.approx(plain.groups["x"].value, abs=1e-8)
+    plain = shares(FeatureSums.of(np.column_stack([x, z]), y), groups)
+    scaled = shares(FeatureSums.of(np.column_stack([scale * x + shift, z]), target_scale * y), groups)
+    assert scaled.share["x"] == pytest.approx(plain.share["x"], abs=1e-8)
 
 
 # agreement --------------------------------------------------------------------------------------

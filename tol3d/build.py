@@ -70,11 +70,15 @@ class Build:
             rotations (trials, parts, 3, 3) and their common origin (trials, 3) [mm], in the world.
         """
         shaft = self.world_from_shaft[:, gear, :3, :3]
-        rotation = frames.matmul(shaft[:, None], frames.about_z(angle[:, None] + turn))
+        return frames.matmul(shaft[:, None], frames.about_z(angle[:, None] + turn)), self.centre_of(gear, angle)
+
+    def centre_of(self, gear: int, angle: Array) -> Array:
+        """Where a gear's own centre lies in the world at a turn of its shaft [rad] (trials,): (trials, 3) [mm]."""
+        shaft = self.world_from_shaft[:, gear, :3, :3]
         cos, sin = np.cos(angle), np.sin(angle)
         x, y = self.centre[:, gear, 0], self.centre[:, gear, 1]
         offset = np.stack([cos * x - sin * y, sin * x + cos * y, np.zeros_like(x)], axis=-1)
-        return rotation, self.world_from_shaft[:, gear, :3, 3] + frames.apply(shaft, offset)
+        return self.world_from_shaft[:, gear, :3, 3] + frames.apply(shaft, offset)
 
 
 @dataclass

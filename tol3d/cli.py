@@ -7,7 +7,7 @@ Imports stand inside the functions here, so that `tol3d --help` loads no numpy, 
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
-from enum import Enum
+from enum import StrEnum
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -39,14 +39,14 @@ TrustParts = Annotated[
 ]
 
 
-class EngineName(str, Enum):
+class EngineName(StrEnum):
     """Engines that a run may choose."""
 
     FCL = "fcl"
     ANALYTIC = "analytic"
 
 
-class MeshFormat(str, Enum):
+class MeshFormat(StrEnum):
     """Files that an export may write."""
 
     STL = "stl"

@@ -98,7 +98,7 @@ def refuse_interfering_mean(scene: Scene, model: Model) -> None:
             mesh = model.mesh(measure.kind.mesh)
             nominal = float(analytic_values(model, measure, nominal_block(model)).min())
             unit, per = measure.unit, measure.per_internal
-            raise scene.refusal(
+            raise scene.refuse(
                 ("moves", mesh.name, "centre_distance"),
                 f"the teeth interfere at the mean build: {measure.name} is {value * per:.3f} {unit} there "
                 f"(nominal {nominal * per:.3f} {unit}); zero backlash needs a centre distance of "
@@ -229,7 +229,7 @@ def _versions() -> dict[str, str]:
 
 
 def _column_units(model: Model) -> dict[str, str]:
-    units = {name: c.unit for c in model.contributors for name in c.columns}
+    units: dict[str, str] = {name: c.unit for c in model.contributors for name in c.columns}
     for measure in model.measures:
         units |= {f"{road}:{measure.name}": measure.unit for road in ("analytic", "geometric")}
     return units

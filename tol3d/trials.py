@@ -11,7 +11,7 @@ import unicodedata
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.model import Mesh, Model
+from tol3d.model import Mesh, Model, Planar
 
 Array = NDArray[np.float64]
 
@@ -56,7 +56,7 @@ def mean_deviations(model: Model) -> Array:
     for contributor in model.contributors:
         columns = model.component_slices[contributor.name]
         mean = contributor.distribution.mean
-        if contributor.draw.components == ("",):
+        if not isinstance(contributor.draw, Planar):
             row[:, columns] = mean
         elif contributor.draw.direction is not None:
             angle = contributor.draw.direction

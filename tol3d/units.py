@@ -210,7 +210,9 @@ def _quantity_schema(dimensions: tuple[Dimension, ...]) -> core_schema.CoreSchem
 
 
 def _json_schema(*dimensions: Dimension) -> dict[str, Any]:
-    units = "|".join(re.escape(unit) for dimension in dimensions for unit in FACTORS[dimension])
+    units = "|".join(
+        re.sub("^u", "[uµμ]", re.escape(unit)) for dimension in dimensions for unit in FACTORS[dimension]
+    )
     return {
         "type": "string",
         "title": " or ".join(dimensions),

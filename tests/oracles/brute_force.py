@@ -53,22 +53,18 @@ def distances(mesh: Mesh, driver_angle, driven_angle, flank) -> tuple[np.ndarray
     # the driven tooth that fills the space beside that flank: on rolling circles, half a pitch further
     azimuth = driver_angle[:, None] + mesh.driver.pitch * (teeth - flank / 2)
     mates = np.round((np.pi - azimuth * mesh.driver.teeth / mesh.driven.teeth - driven_angle[:, None]) / mesh.driven.pitch)
-    pose = mesh.driven_from_driver(driver_angle, driven_angle)[:, None, None, None]
+    pose = mesh.driven_from_driver(driver_angle, driven_angle)
 
     def distance(string, z):
         points = mesh.driver.flank_points(string, z[..., None], teeth[..., None, None], flank)
-        moved = (pose[..., :3, :3] @ points[..., None])[..., 0] + pose[..., :3, 3]
-        return mesh.driven.signed_distance(moved, mates[..., None, None], flank)
+        flat = points.reshape(len(points), -1, 3) @ np.swapaxes(pose[:, :3, :3], 1, 2) + pose[:, None, :3, 3]
+        return mesh.driven.signed_distance(flat.reshape(points.shape), mates[..., None, None], flank)
 
     def along_the_face(z):
-        lowest = zoomed_minimum(
-            distance_at := lambda string: distance(string, z),
-            np.zeros(z.shape),
-            np.full(z.shape, mesh.driver.tip_string),
-            (ROLL_POINTS, ROLL_ZOOMS),
+        string_end = np.full(z.shape, mesh.driver.tip_string)
+        return zoomed_minimum(
+            lambda string: distance(string, z), np.zeros(z.shape), string_end, (ROLL_POINTS, ROLL_ZOOMS)
         )
-        del distance_at
-        return lowest
 
     half = np.full(teeth.shape, mesh.driver.face_width / 2)
     return teeth, zoomed_minimum(along_the_face, -half, half, (FACE_POINTS, FACE_ZOOMS)), mates

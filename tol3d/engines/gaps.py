@@ -36,8 +36,14 @@ class Gaps:
 
     def rows(self, rows: NDArray[np.intp]) -> "Gaps":
         """The gaps of some trials."""
-        arrays = (self.value, self.deep, self.driver_point, self.driven_point, self.normal, self.driver_teeth)
-        return Gaps(*(array[rows] for array in arrays))
+        return Gaps(
+            value=self.value[rows],
+            deep=self.deep[rows],
+            driver_point=self.driver_point[rows],
+            driven_point=self.driven_point[rows],
+            normal=self.normal[rows],
+            driver_teeth=self.driver_teeth[rows],
+        )
 
     def per_turn(self, axis_point: Array, axis: Array, *, of_driver: bool) -> Array:
         """Derivative of the gaps by the turn of one gear [mm/rad], (trials, pairs).

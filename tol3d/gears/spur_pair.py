@@ -174,6 +174,38 @@ class SpurPair:
         """Wheel's turn [rad] with its space centred on the pinion's tooth: pi + pi/z2 - (z1/z2) theta_1."""
         return math.pi + math.pi / self.wheel.teeth - driver_angle / self.ratio
 
+    def touching_angle(
+        self,
+        driver_angle: NDArray[np.float64],
+        flank: Flank,
+        centre_line: NDArray[np.float64],
+        thickness: NDArray[np.float64],
+    ) -> NDArray[np.float64]:
+        """Wheel's turn [rad] at which the flanks of that side touch, were the axes parallel.
+
+        From the line of action, r_b1 t_1 + r_b2 t_2 = (r_b1 + r_b2) tan alpha_w with the rolls
+        t = alpha_w + eta_b - sigma (azimuth off the line of centres).
+
+        Args:
+            driver_angle: pinion's turn [rad], (trials,).
+            flank: the pinion's flank.
+            centre_line: from the pinion's centre to the wheel's, as they lie, (trials, 2) [mm].
+            thickness: deviations of the tooth thickness of pinion and wheel, (trials, 2) [mm].
+        """
+        direction = np.arctan2(centre_line[:, 1], centre_line[:, 0])
+        distance = np.sqrt(centre_line[:, 0] ** 2 + centre_line[:, 1] ** 2)
+        working = np.arccos(np.minimum(self.base_radii / distance, 1.0))
+        half_angles = sum(
+            gear.base_radius * (gear.base_half_angle + thickness[:, k] / (2 * gear.reference_radius))
+            for k, gear in enumerate((self.pinion, self.wheel))
+        )
+        along = half_angles - self.base_radii * (np.tan(working) - working)
+        turned = flank * along - self.pinion.base_radius * (driver_angle - direction)
+        mate = 0 if flank == 1 else 1
+        return np.asarray(
+            math.pi + direction + mate * self.wheel.angular_pitch + turned / self.wheel.base_radius, dtype=np.float64
+        )
+
     def candidate_teeth(
         self, driver_angle: NDArray[np.float64], flank: Flank
     ) -> tuple[NDArray[np.int64], NDArray[np.bool_]]:

@@ -92,7 +92,7 @@ def _gear(scene: Scene, name: str, spec: SpurGearSpec) -> GearPart:
             bore=_internal(spec.bore),
         )
     except GeometryError as error:
-        raise scene.refusal(("parts", name), str(error)) from None
+        raise scene.refuse(("parts", name), str(error)) from None
     return GearPart(name, gear, _internal(spec.expansion))
 
 
@@ -100,7 +100,7 @@ def _refuse_shared_gears(scene: Scene) -> None:
     for name in scene.parts:
         meshes = scene.meshes_of(name)
         if len(meshes) > 1:
-            raise scene.refusal(
+            raise scene.refuse(
                 ("moves", meshes[1]),
                 f"{name!r} is in {' and '.join(map(repr, meshes))}; a gear can be in one mesh only so far",
             )
@@ -109,7 +109,7 @@ def _refuse_shared_gears(scene: Scene) -> None:
 def _refuse_idle_gears(scene: Scene) -> None:
     for name, part in scene.parts.items():
         if isinstance(part, SpurGearSpec) and not scene.meshes_of(name):
-            raise scene.refusal(("parts", name), f"{name!r} takes part in no move; put it into a mesh or take it out")
+            raise scene.refuse(("parts", name), f"{name!r} takes part in no move; put it into a mesh or take it out")
 
 
 def _mesh(scene: Scene, name: str, spec: MeshSpec, gears: dict[str, SpurGear]) -> Mesh:
@@ -117,7 +117,7 @@ def _mesh(scene: Scene, name: str, spec: MeshSpec, gears: dict[str, SpurGear]) -
         pair = SpurPair(gears[spec.driver], gears[spec.driven], spec.centre_distance.internal)
         pair.refuse_interference()
     except GeometryError as error:
-        raise scene.refusal(("moves", name, "centre_distance"), str(error)) from None
+        raise scene.refuse(("moves", name, "centre_distance"), str(error)) from None
     return Mesh(
         name=name,
         driver=spec.driver,
@@ -183,12 +183,11 @@ class _Tolerances:
         """A tolerance as the simulation sees it."""
         effect, direction = self._effect(spec)
         law = spec.distribution.resolve(self.scene.folder)
-        planar = direction is not None
         return Contributor(
             name=name,
             kind=spec.kind,
             effect=effect,
-            draw=Planar(law, direction[0]) if planar else Scalar(law),
+            draw=Scalar(law) if direction is None else Planar(law, direction[0]),
             unit=self._unit(spec),
             description=spec.description,
         )

@@ -84,7 +84,8 @@ class Model:
     @cached_property
     def expansions(self) -> Mapping[str, float]:
         """Coefficient of expansion [1/K] of every part."""
-        return {part.name: part.expansion for part in (*self.gears, *self.housings)}
+        gears = {part.name: part.expansion for part in self.gears}
+        return gears | {part.name: part.expansion for part in self.housings}
 
     @cached_property
     def component_slices(self) -> Mapping[str, slice]:

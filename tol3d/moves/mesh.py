@@ -60,7 +60,7 @@ def seat_mesh(engine: Engine, model: Model, mesh: Mesh, build: Build, driver_ang
         build: one row for each driver angle.
         driver_angle: [rad], (rows,).
     """
-    start = mesh.pair.driven_angle(driver_angle)
+    start = _start(model, mesh, build, driver_angle)
     angles, working, touched = turn_to_contact(
         engine, model, mesh, build, flank=mesh.working_flank, angles=(driver_angle, start), turn_driver=False
     )
@@ -71,6 +71,14 @@ def seat_mesh(engine: Engine, model: Model, mesh: Mesh, build: Build, driver_ang
     overlap = non_working.deep.any(axis=1) | (play < -ROOT_FINDING_NOISE)
     status = np.select([~touched, overlap], [NO_CONTACT, INTERFERES], OK).astype(np.int8)
     return MeshSeat(driver_angle, angles[1], working, non_working, status)
+
+
+def _start(model: Model, mesh: Mesh, build: Build, driver_angle: Array) -> Array:
+    """Where parallel involutes would touch with the gears' centres where they are; tilts and meshes do the rest."""
+    driver, driven = model.gear_index[mesh.driver], model.gear_index[mesh.driven]
+    line = build.centre_of(driven, mesh.pair.driven_angle(driver_angle)) - build.centre_of(driver, driver_angle)
+    thickness = build.thickness[:, [driver, driven]]
+    return mesh.pair.touching_angle(driver_angle, mesh.working_flank, line[:, :2], thickness)
 
 
 def turn_to_contact(
@@ -120,7 +128,7 @@ def turn_to_contact(
         resting = ~deep & (np.abs(step) * base_radius < LAST_STEP)
         at_rest.keep(rows[resting], gaps, resting, rate * step[:, None])
         tie = (TIE + TIE_SHARE * np.abs(step) * base_radius) / base_radius
-        wanted[rows] &= deep[:, None] | (reach <= (step + tie)[:, None])
+        wanted[rows] &= deep[:, None] | np.less_equal(reach, (step + tie)[:, None])
         rows = rows[~resting]
         if not len(rows):
             break

@@ -1,10 +1,42 @@
 """What a run looks like: tables, pictures, meshes and 3D views, from its summary and from replayed trials.
 
-    table, check    rich tables of a run and of a model
-    histogram       the picture of a run
-    compare         runs and roads laid over each other
-    meshes          the parts of one trial as STL, PLY, GLB or STEP
-    view            the same in 3D, contact and gap marked
-
-Import the module that is wanted: matplotlib, trimesh, cadquery and pyvista load with theirs only.
+Names are loaded when they are first used: a table needs no matplotlib, a picture no trimesh, and only
+`tol3d.report.view` loads pyvista.
 """
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from tol3d.report.check import check_report
+    from tol3d.report.compare import comparison_report, draw_comparison
+    from tol3d.report.histogram import draw_histogram
+    from tol3d.report.meshes import export_run
+    from tol3d.report.table import run_report
+    from tol3d.report.view import view_run
+
+_HOMES = {
+    "check_report": "tol3d.report.check",
+    "comparison_report": "tol3d.report.compare",
+    "draw_comparison": "tol3d.report.compare",
+    "draw_histogram": "tol3d.report.histogram",
+    "export_run": "tol3d.report.meshes",
+    "run_report": "tol3d.report.table",
+    "view_run": "tol3d.report.view",
+}
+
+__all__ = [
+    "check_report",
+    "comparison_report",
+    "draw_comparison",
+    "draw_histogram",
+    "export_run",
+    "run_report",
+    "view_run",
+]
+
+
+def __getattr__(name: str) -> Any:
+    if name in _HOMES:
+        return getattr(import_module(_HOMES[name]), name)
+    raise AttributeError(f"module 'tol3d.report' has no attribute {name!r}")

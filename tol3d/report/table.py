@@ -21,7 +21,6 @@ from tol3d.report.number import (
     ppm_text,
     value_text,
 )
-from tol3d.statistics import Proportion
 
 Summary = Mapping[str, Any]
 
@@ -44,7 +43,7 @@ STATUS_WORDS = {"ok": "seated", "interferes": "interfering", "no contact": "with
 FLANKS_OF_A_BACKLASH = 4  # two at the contact, two at the gap; each may miss the true flank by the chord error
 
 
-def run_tables(summary: Summary) -> Group:
+def run_report(summary: Summary) -> Group:
     """All tables of a run: each measure, its contributors, how the roads agree, what failed, how long it took."""
     blocks: list[RenderableType] = [_run_line(summary)]
     for name, measure in summary["measures"].items():
@@ -150,11 +149,13 @@ def _notes(measure: Summary, summary: Summary) -> Iterator[str]:
             f"sampling error of {own['count']} trials: mean ±{difference_text(own['mean_se'], unit)}, "
             f"sigma ±{difference_text(own['sigma_se'], unit)} (one standard error)"
         )
-    outside = [own[key] for key in _limit_rows(measure)]
-    if outside and not any(outside) and own["count"]:
-        _, high = Proportion(0, own["count"]).interval_ppm()
-        yield f"none of {own['count']} trials is out of limits: the true share is under {high:.0f} ppm (95 %)"
-    if outside and "analytic_closed_form" in measure:
+    limits = list(_limit_rows(measure))
+    for key in limits:
+        low_high = own.get(f"{key}_95")
+        if low_high:
+            low, high = (ppm_text(bound) for bound in low_high)
+            yield f"{_limit_rows(measure)[key]}: the true share lies between {low} and {high} ppm (95 % confidence)"
+    if limits and "analytic_closed_form" in measure:
         yield "ppm of the closed form: as if the measure were normal"
 
 

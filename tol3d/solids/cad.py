@@ -2,25 +2,23 @@
 
 import os
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 
 import cadquery as cq
 import numpy as np
 from numpy.typing import NDArray
 from OCP.BRep import BRep_Tool
-from OCP.BRepAdaptor import BRepAdaptor_Surface
+from OCP.BRepAdaptor import BRepAdaptor_Curve, BRepAdaptor_Surface
 from OCP.BRepMesh import BRepMesh_IncrementalMesh
 from OCP.gp import gp_Pnt, gp_Trsf, gp_Vec
 from OCP.TopAbs import TopAbs_REVERSED
 from OCP.TopLoc import TopLoc_Location
-from scipy.sparse import coo_matrix
-from scipy.sparse.csgraph import connected_components
-from scipy.spatial import cKDTree
 
 from tol3d.errors import GeometryError, RunError
-from tol3d.gears import LEFT, RIGHT, Flank, SpurGear
-from tol3d.parts.named_solid import NamedSolid
-from tol3d.parts.spur_gear import build, flank_name
+from tol3d.gears import LEFT, RIGHT, SpurGear
+from tol3d.parts.named_solid import BACK, NamedSolid
+from tol3d.parts.spur_gear import SIDES, build, flank_name
 from tol3d.solids.door import Arrays, Posed
 
 Array = NDArray[np.float64]
@@ -29,7 +27,6 @@ Curve = Callable[[Array], Array]
 SAGITTA_SAMPLES = 16  # places between two points where the distance to their chord is taken
 SAGITTA_MARGIN = 1 / (1 - 1 / SAGITTA_SAMPLES**2)  # an arc's maximum may lie half a place beside a sample
 VANISHING = 1e-2  # mm/rad of first over second derivative [rad]; nearer to the base circle take the second
-SAME_NODE = 1e-7  # mm; OCC's point tolerance: nodes of neighbouring faces closer than this are one
 DISPLAY_ANGLE = 0.5  # rad; coarsest turn between neighbouring facets, so that small bores still look round
 COLOURS = ("steelblue", "darkorange", "seagreen", "goldenrod", "slategray", "indianred")
 
@@ -102,74 +99,89 @@ def largest_sagitta(curve: Curve, parameters: Array) -> float:
 
 
 def tessellate(gear: SpurGear, deflection: float) -> Arrays:
-    """Arrays of DisplayMesh: OCC's triangulation of every face, with the nodes that faces share made one.
+    """Arrays of DisplayMesh: OCC's triangulation of one end, and its rim swept to the other end.
+
+    OCC meshes flank faces many times finer than asked for and slowly, though they are ruled along z
+    and need nothing between their ends; swept from one end the mesh closes by construction.
 
     Raises:
-        GeometryError: the triangles do not close (OCC left a face out).
+        GeometryError: OCC could not triangulate the end.
     """
     part = build(gear)
-    BRepMesh_IncrementalMesh(part.solid.wrapped, deflection, False, DISPLAY_ANGLE, True)
-    nodes, triangles, sides, chord_error, count = [], [], [], 0.0, 0
-    for name, face in part.faces.items():
-        mesh = BRep_Tool.Triangulation_s(face.wrapped, TopLoc_Location())
-        if mesh is None:
-            raise GeometryError(f"the face {name!r} could not be triangulated at {deflection:g} mm")
-        corners = np.array([mesh.Triangle(index).Get() for index in range(1, mesh.NbTriangles() + 1)]) - 1
-        points = (mesh.Node(index) for index in range(1, mesh.NbNodes() + 1))
-        if face.wrapped.Orientation() == TopAbs_REVERSED:
-            corners = corners[:, ::-1]
-        triangles.append(corners + count)
-        nodes.append(np.array([(point.X(), point.Y(), point.Z()) for point in points]))
-        sides.append(np.full(len(nodes[-1]), _side(name), dtype=np.int8))
-        count += len(nodes[-1])
-        if face.geomType() != "PLANE":
-            u = np.array([mesh.UVNode(index).X() for index in range(1, mesh.NbNodes() + 1)])
-            chord_error = max(chord_error, _spanned_sagitta(face, u[corners]))
-    return _joined(np.concatenate(nodes), np.concatenate(triangles), np.concatenate(sides)) | {
-        "chord_error": np.array(chord_error)
+    nodes, triangles, rims = _triangulated_end(part, deflection)
+    count = len(nodes)
+    begin, end = _rim(triangles).T
+    walls = np.concatenate([np.stack(corners, axis=-1) for corners in _wall(begin, end, count)])
+    height = np.full((count, 1), gear.face_width / 2)
+    return {
+        "vertices": np.concatenate([np.hstack([nodes, -height]), np.hstack([nodes, height])]),
+        "triangles": np.concatenate([triangles[:, ::-1], triangles + count, walls]),
+        "side": np.tile(_sides(rims, count), 2),
+        "chord_error": np.array(max(rim.chord_error for rim in rims)),
     }
 
 
-def _side(name: str) -> int:
-    if name.startswith("tooth"):
-        words = name.split()
-        return RIGHT if "right" in words else LEFT if "left" in words else 0
-    return 0
+@dataclass(frozen=True)
+class _Rim:
+    """The edge of the end below one face: numbers of its nodes, and its largest sagitta [mm]."""
+
+    face: str
+    nodes: NDArray[np.int64]
+    chord_error: float
 
 
-def _spanned_sagitta(face: cq.Face, u: Array) -> float:
-    """Bound on the distance between a face swept along z and its triangles, whose corners have those u (m, 3).
-
-    Seen along z a triangle lies within the chord of its outermost u, hence within that chord's sagitta.
-    """
-    spans = np.unique(np.stack([u.min(axis=1), u.max(axis=1)], axis=-1).round(9), axis=0)
-    profile = _Ruled(face).profile
-    return max(largest_sagitta(profile, span) for span in spans[spans[:, 1] > spans[:, 0]])
-
-
-def _joined(nodes: Array, triangles: NDArray[np.int64], sides: NDArray[np.int8]) -> Arrays:
-    pairs = cKDTree(nodes).query_pairs(SAME_NODE, output_type="ndarray")
-    graph = coo_matrix((np.ones(len(pairs)), (pairs[:, 0], pairs[:, 1])), shape=(len(nodes), len(nodes)))
-    count, joint = connected_components(graph, directed=False)
-    vertices = np.empty((count, 3))
-    vertices[joint[::-1]] = nodes[::-1]
-    touched: dict[Flank, NDArray[np.bool_]] = {}
-    for flank in (RIGHT, LEFT):
-        touched[flank] = np.zeros(count, dtype=bool)
-        touched[flank][joint[sides == flank]] = True
-    # a full round joins two teeth at its lowest point, which then turns with neither
-    side = touched[RIGHT].astype(np.int8) - touched[LEFT].astype(np.int8)
-    corners = joint[triangles].astype(np.int64)
-    proper = (corners != np.roll(corners, 1, axis=1)).all(axis=1)
-    _refuse_open(corners[proper], count)
-    return {"vertices": vertices, "triangles": corners[proper], "side": side}
+def _triangulated_end(part: NamedSolid, deflection: float) -> tuple[Array, NDArray[np.int64], list[_Rim]]:
+    """Nodes (n, 2) [mm], triangles (m, 3) counter-clockwise seen from +z, and rims of the face "back"."""
+    back = part.faces[BACK]
+    BRepMesh_IncrementalMesh(back.wrapped, deflection, False, DISPLAY_ANGLE)
+    place = TopLoc_Location()
+    mesh = BRep_Tool.Triangulation_s(back.wrapped, place)
+    if mesh is None:
+        raise GeometryError(f"the end of the gear could not be triangulated at {deflection:g} mm")
+    points = (mesh.Node(index) for index in range(1, mesh.NbNodes() + 1))
+    nodes = np.array([(point.X(), point.Y()) for point in points])
+    triangles = np.array([mesh.Triangle(index).Get() for index in range(1, mesh.NbTriangles() + 1)]) - 1
+    face_of_edge = {edge: name for name, face in part.faces.items() if name != BACK for edge in face.Edges()}
+    rims = []
+    for edge in back.Edges():
+        polygon = BRep_Tool.PolygonOnTriangulation_s(edge.wrapped, mesh, place)
+        places = range(1, polygon.NbNodes() + 1)
+        parameters = np.array([polygon.Parameter(index) for index in places])
+        numbers = np.array([polygon.Node(index) for index in places]) - 1
+        rims.append(_Rim(face_of_edge[edge], numbers, largest_sagitta(_curve(edge), parameters)))
+    return nodes, triangles, rims
 
 
-def _refuse_open(triangles: NDArray[np.int64], count: int) -> None:
+def _curve(edge: cq.Edge) -> Curve:
+    adaptor = BRepAdaptor_Curve(edge.wrapped)
+
+    def points_at(parameters: Array) -> Array:
+        points = (adaptor.Value(place) for place in parameters.tolist())
+        return np.array([(point.X(), point.Y()) for point in points])
+
+    return points_at
+
+
+def _rim(triangles: NDArray[np.int64]) -> NDArray[np.int64]:
+    """Directed edges (k, 2) that belong to one triangle only."""
     edges = np.concatenate([triangles[:, [a, b]] for a, b in ((0, 1), (1, 2), (2, 0))])
-    forwards, backwards = (np.sort(edges[:, a] * count + edges[:, b]) for a, b in ((0, 1), (1, 0)))
-    if not np.array_equal(forwards, backwards) or len(np.unique(forwards)) != len(forwards):
-        raise GeometryError("the display mesh does not close; try another deflection")
+    count = int(triangles.max()) + 1
+    return edges[~np.isin(edges[:, 0] * count + edges[:, 1], edges[:, 1] * count + edges[:, 0])]
+
+
+def _wall(begin: NDArray[np.int64], end: NDArray[np.int64], count: int) -> tuple[tuple[NDArray[np.int64], ...], ...]:
+    return (begin, end, end + count), (begin, end + count, begin + count)
+
+
+def _sides(rims: Sequence[_Rim], count: int) -> NDArray[np.int8]:
+    """RIGHT, LEFT or 0 for each node; where a full round joins two teeth its lowest point turns with neither."""
+    touched = {flank: np.zeros(count, dtype=np.int8) for flank in (RIGHT, LEFT)}
+    for rim in rims:
+        words = rim.face.split()
+        for flank, side in SIDES.items():
+            if side in words:
+                touched[flank][rim.nodes] = 1
+    return touched[RIGHT] - touched[LEFT]
 
 
 # STEP -----------------------------------------------------------------------------------------------

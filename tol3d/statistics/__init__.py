@@ -4,7 +4,7 @@ from tol3d.statistics.agreement import Agreement
 from tol3d.statistics.grid import Grid, Histogram
 from tol3d.statistics.limits import LimitCounts, Proportion, pp, ppk
 from tol3d.statistics.moments import Moments
-from tol3d.statistics.variance_shares import FeatureSums, Share, Shares, shares
+from tol3d.statistics.variance_shares import FeatureSums, Shares, shares
 
 __all__ = [
     "Agreement",
@@ -14,7 +14,6 @@ __all__ = [
     "LimitCounts",
     "Moments",
     "Proportion",
-    "Share",
     "Shares",
     "pp",
     "ppk",

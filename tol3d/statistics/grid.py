@@ -47,14 +47,14 @@ class Grid:
     overflow: int = 0
 
     @classmethod
-    def empty(cls, lower: float, upper: float, bins: int = BINS) -> Self:
-        """A grid without values from `lower` to `upper`.
+    def empty(cls, lower: float, width: float, bins: int = BINS) -> Self:
+        """A grid without values.
 
         Raises:
-            ValueError: `upper` is not above `lower`, or too close for floats to tell the edges apart.
+            ValueError: the bins have no width, or too little for floats to tell their edges apart.
         """
-        width = (upper - lower) / bins
-        if not (math.isfinite(width) and lower + width > lower and upper - width < upper):
+        upper = lower + bins * width
+        if not (math.isfinite(upper) and lower + width > lower and upper - width < upper):
             raise ValueError(f"a grid of {bins} bins from {lower} to {upper} has no width")
         return cls(lower, width, np.zeros(bins, dtype=np.int64))
 

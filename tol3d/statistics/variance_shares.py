@@ -1,7 +1,7 @@
 """Which group of features a measure's variance comes from, by least squares on the trials."""
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Self
 
@@ -16,14 +16,14 @@ RANK_RTOL = 1e-10  # of the largest eigenvalue of the correlations; columns clos
 
 @dataclass(frozen=True, eq=False)
 class FeatureSums:
-    """Count, means and co-moments of columns, gathered block by block.
+    """Count, means and co-moments of feature columns and of the target they explain, gathered block by block.
 
-    A column is a feature (a component of a contributor, or a power of it) or a target (a measure).
+    A feature is a component of a contributor or a power of it; the target is a measure.
 
     Args:
-        count: number of rows.
-        means: (columns,).
-        comoments: (columns, columns) sums over rows of (x_i - mean_i)(x_j - mean_j).
+        count: number of trials.
+        means: (features + 1,), the target last.
+        comoments: (features + 1, features + 1) sums over trials of (x_i - mean_i)(x_j - mean_j).
     """
 
     count: int
@@ -31,23 +31,28 @@ class FeatureSums:
     comoments: Array
 
     @classmethod
-    def of(cls, columns: Array) -> Self:
-        """The sums of one block (trials, columns) without NaN: the caller leaves failed trials out.
+    def of(cls, features: Array, target: Array) -> Self:
+        """The sums of one block: features (trials, features), target (trials,).
+
+        No NaN in either: the caller leaves failed trials out.
 
         Sums by numpy alone: a BLAS product's bits would depend on threads and shapes.
         """
-        if len(columns) == 0:
-            width = columns.shape[1]
+        if len(target) == 0:
+            width = features.shape[1] + 1
             return cls(0, np.zeros(width), np.zeros((width, width)))
         # from the first value, so that a constant column has no spread at all, not a rounding error's;
         # a row each, for the order of a sum, and so its bits, follow the layout in memory
-        rows = np.array((columns - columns[0]).T, order="C")
+        first = np.append(features[0], target[0])
+        rows = np.empty((len(first), len(target)))
+        np.subtract(features.T, first[:-1, None], out=rows[:-1])
+        np.subtract(target, first[-1], out=rows[-1])
         means = np.mean(rows, axis=1)
         rows -= means[:, None]
         comoments = np.empty((len(rows), len(rows)))
         for i, row in enumerate(rows):
             comoments[i, i:] = comoments[i:, i] = np.sum(row * rows[i:], axis=1)
-        return cls(len(columns), columns[0] + means, comoments)
+        return cls(len(target), first + means, comoments)
 
     def merge(self, other: Self) -> Self:
         """The sums of both blocks together; Pebay, SAND2008-6212, 2008 (covariances)."""
@@ -60,26 +65,22 @@ class FeatureSums:
 
 
 @dataclass(frozen=True)
-class Share:
-    """The fraction of a variance that a group explains, with its standard error."""
-
-    value: float
-    se: float
-
-
-@dataclass(frozen=True)
 class Shares:
-    """The share of each group, and the fraction that no group explains.
+    """How a target's variance splits; shares and remainder add up to 1 unless the target is constant.
 
-    Together they add up to 1 unless the target is constant.
+    Args:
+        share: the fraction that each group explains.
+        standard_error: of each share.
+        unexplained: the fraction that no group explains.
     """
 
-    groups: Mapping[str, Share]
+    share: Mapping[str, float]
+    standard_error: Mapping[str, float]
     unexplained: float
 
 
-def shares(sums: FeatureSums, groups: Mapping[str, Sequence[int]], target: int) -> Shares:
-    """Split the variance of the column `target` among groups of feature columns.
+def shares(sums: FeatureSums, groups: Mapping[str, slice]) -> Shares:
+    """Split the target's variance among groups of feature columns.
 
     One least-squares fit on all features; the share of a group is cov(its part of the fit, y) /
     var(y). With independent groups this tends to the group's fraction of the variance; it may come
@@ -91,20 +92,19 @@ def shares(sums: FeatureSums, groups: Mapping[str, Sequence[int]], target: int) 
     it says nothing: all NaN.
 
     Args:
-        groups: for each name its columns in `sums`; no column in two groups.
-        target: the column that is explained.
+        groups: for each name its feature columns; no column in two groups.
     """
-    features = [column for columns in groups.values() for column in columns]
+    features = [column for group in groups.values() for column in range(len(sums.means) - 1)[group]]
     if sums.count <= len(features) + 1:
-        return Shares(dict.fromkeys(groups, Share(math.nan, math.nan)), math.nan)
+        return Shares(dict.fromkeys(groups, math.nan), dict.fromkeys(groups, math.nan), math.nan)
     sigma = _sigmas(sums)
-    if sigma[target] == 0:
-        return Shares(dict.fromkeys(groups, Share(0.0, 0.0)), 0.0)
-    explained = _explained(sums, sigma, [column for column in features if sigma[column] > 0], target)
-    values = {name: float(np.sum(explained[list(columns)])) for name, columns in groups.items()}
-    unexplained = max(1 - sum(values.values()), 0.0)
-    errors = {name: _standard_error(value, unexplained, sums.count) for name, value in values.items()}
-    return Shares({name: Share(value, errors[name]) for name, value in values.items()}, unexplained)
+    if sigma[-1] == 0:
+        return Shares(dict.fromkeys(groups, 0.0), dict.fromkeys(groups, 0.0), 0.0)
+    explained = _explained(sums, sigma, [column for column in features if sigma[column] > 0])
+    share = {name: float(np.sum(explained[group])) for name, group in groups.items()}
+    unexplained = max(1 - sum(share.values()), 0.0)
+    errors = {name: _standard_error(value, unexplained, sums.count) for name, value in share.items()}
+    return Shares(share, errors, unexplained)
 
 
 def _sigmas(sums: FeatureSums) -> Array:
@@ -113,17 +113,17 @@ def _sigmas(sums: FeatureSums) -> Array:
     return np.where(sigma > CONSTANT_RTOL * np.abs(sums.means), sigma, 0.0)
 
 
-def _explained(sums: FeatureSums, sigma: Array, used: list[int], target: int) -> Array:
-    """The fraction of the target's variance that each column explains in the joint fit on `used`.
+def _explained(sums: FeatureSums, sigma: Array, used: list[int]) -> Array:
+    """The fraction of the target's variance that each feature explains in the joint fit on `used`, (features,).
 
     In standardised columns the fit solves R b = r, R the correlations among the features and r
     those with the target; column i explains b_i r_i. R is inverted on its eigenvectors of
     eigenvalue not zero, which gives the shortest b where columns depend on each other.
     """
-    explained = np.zeros(len(sigma))
+    explained = np.zeros(len(sigma) - 1)
     if not used:
         return explained
-    columns = [*used, target]
+    columns = [*used, -1]
     scale = sigma[columns]
     correlation = sums.comoments[np.ix_(columns, columns)] / sums.count / scale / scale[:, None]
     r = correlation[:-1, -1]

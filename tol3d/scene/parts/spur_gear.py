@@ -22,7 +22,9 @@ class SpurGearSpec(PartSpec):
     teeth: int = Field(ge=1, le=MOST_TEETH, description="number of teeth z")
     module: Length = Field(description="module m")
     pressure_angle: Annotated[Quantity, Of("angle"), Positive()] = Field(
-        Quantity(20.0, "deg"), description="pressure angle at the reference circle"
+        Quantity(20.0, "deg"),
+        description="pressure angle at the reference circle",
+        json_schema_extra={"default": "20 deg"},  # pydantic would show the Quantity's fields
     )
     face_width: Length = Field(description="face width b")
     profile_shift: float = Field(0.0, description="profile shift coefficient x, in modules; positive is a thicker tooth")

@@ -1,0 +1,548 @@
+"""Scenes that are wrong: each gets readable lines with file, line, place and expectation, soon."""
+
+import random
+import re
+import time
+from pathlib import Path
+
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+from tol3d.errors import SceneError
+from tol3d.scene import load_scene
+from tol3d.scene.problems import MOST_PROBLEMS
+from tol3d.scene.text import MAX_BYTES, MAX_DEPTH
+
+SPUR_PAIR = (Path(__file__).parent.parent / "scenes" / "spur_pair.yaml").read_text(encoding="utf-8")
+EVERY_FIELD = (Path(__file__).parent.parent / "scenes" / "every_field.yaml").read_text(encoding="utf-8")
+SOON = 2.0  # s; what a user takes for at once on a busy machine
+JARGON = re.compile(r"Input should|validation error|pydantic|Traceback|another value here|\[key\]|function-|Spec\b")
+
+
+def problems(path: Path) -> tuple[str, ...]:
+    """What is said of a scene, checked for what holds of every message."""
+    start = time.perf_counter()
+    with pytest.raises(SceneError) as caught:
+        load_scene(path)
+    assert time.perf_counter() - start < SOON
+    said = caught.value.problems
+    assert 1 <= len(said) <= MOST_PROBLEMS + 1
+    for problem in said:
+        assert problem.startswith(f"{path}:") or problem.startswith("… and ")
+        assert problem.isprintable()
+        assert len(problem) < len(str(path)) + 600
+        assert not JARGON.search(problem.removeprefix(str(path)))
+    return said
+
+
+def said_of(folder: Path, content: str | bytes) -> tuple[str, ...]:
+    """The same for a content, without the file's name."""
+    path = folder / "scene.yaml"
+    path.write_bytes(content.encode() if isinstance(content, str) else content)
+    return tuple(problem.removeprefix(f"{path}:") for problem in problems(path))
+
+
+def changed(old: str, new: str) -> str:
+    """The spur pair with one thing changed, and its line."""
+    assert old in SPUR_PAIR
+    return SPUR_PAIR.replace(old, new, 1)
+
+
+def line_of(text: str, part: str) -> int:
+    return text[: text.index(part)].count("\n") + 1
+
+
+# one wrong thing in a good scene --------------------------------------------------------------------
+
+CHANGES = {
+    "unknown key": (
+        ("teeth: 28", "tooth: 28"),
+        'parts.pinion.tooth: unknown key "tooth"; did you mean "teeth"?',
+    ),
+    "unknown key at the top": (
+        ("measures:", "measure:"),
+        'measure: unknown key "measure"; did you mean "measures"?',
+    ),
+    "key of another kind": (
+        ("scale: 4.5 um", "scale: 4.5 um, sigma: 4 um"),
+        'tolerances.pinion eccentricity.distribution.sigma: unknown key "sigma"; known here: kind, scale',
+    ),
+    "missing key": (
+        ("teeth: 28, ", ""),
+        'parts.pinion: expected the key "teeth" here, found none',
+    ),
+    "missing unit": (
+        ("module: 2.5 mm", "module: 2.5"),
+        "parts.pinion.module: expected a length with its unit, such as \"4.5 um\", got 2.5, a bare number without",
+    ),
+    "missing unit in a distribution": (
+        ("lower: -30 um", "lower: -30"),
+        "tolerances.pinion tooth thickness.distribution.lower: expected a length with its unit, such as \"4.5 um\"",
+    ),
+    "no blank before the unit": (
+        ("module: 2.5 mm", "module: 2.5mm"),
+        "parts.pinion.module: expected a length with its unit, such as \"4.5 um\", got '2.5mm'",
+    ),
+    "unknown unit": (
+        ("module: 2.5 mm", "module: 2.5 inch"),
+        "unknown unit 'inch'; units are mm, um, nm, m, cm",
+    ),
+    "wrong dimension": (
+        ("module: 2.5 mm", "module: 2.5 deg"),
+        "parts.pinion.module: expected a length with its unit, such as \"4.5 um\", got '2.5 deg', which is an angle",
+    ),
+    "wrong dimension in a distribution": (
+        ("scale: 4.5 um", "scale: 4.5 K"),
+        "pinion eccentricity.distribution.scale: expected a length with its unit, such as \"4.5 um\", got '4.5 K'",
+    ),
+    "wrong dimension of a column": (
+        ("mean: 53 um", "mean: 53 arcsec"),
+        "published.paper, analytic.normal backlash.mean: expected a length with its unit",
+    ),
+    "limits of a distribution reversed": (
+        ("lower: -30 um", "lower: -10 um"),
+        "tolerances.pinion tooth thickness.distribution.lower: expected less than upper (-19 um), got '-10 um'",
+    ),
+    "limits of a measure reversed": (
+        ("lower_limit: 15 um", "lower_limit: 15 um\n    upper_limit: 14 um"),
+        "measures.normal backlash.lower_limit: expected less than the upper_limit (14 um), got '15 um'",
+    ),
+    "negative sigma": (
+        ("lower: -30 um, upper: -19 um", "mean: -25 um, sigma: -2 um"),
+        "tolerances.pinion tooth thickness.distribution.sigma: expected more than 0",
+    ),
+    "negative scale": (
+        ("scale: 4.5 um", "scale: -4.5 um"),
+        "tolerances.pinion eccentricity.distribution.scale: expected more than 0",
+    ),
+    "negative length": (
+        ("module: 2.5 mm", "module: -2.5 mm"),
+        "parts.pinion.module: expected a length of more than zero, got '-2.5 mm'",
+    ),
+    "zero teeth": (
+        ("teeth: 28", "teeth: 0"),
+        "parts.pinion.teeth: expected a number of at least 1, got 0",
+    ),
+    "half a tooth": (
+        ("teeth: 28", "teeth: 28.5"),
+        "parts.pinion.teeth: expected a whole number, got 28.5",
+    ),
+    "not a number": (
+        ("teeth: 28", "addendum: .nan, teeth: 28"),
+        "parts.pinion.addendum: expected a number, got nan",
+    ),
+    "text where a number is due": (
+        ("trials: 2000", "trials: no"),
+        "study.trials: expected a whole number, got 'no'",
+    ),
+    "nothing behind a key": (
+        ("centre_distance: 172.5 mm", "centre_distance: "),
+        "moves.gear pair.centre_distance: expected a length with its unit, such as \"4.5 um\", got nothing",
+    ),
+    "missing part": (
+        ("driver: pinion", "driver: pinon"),
+        "moves.gear pair.driver: expected the name of a gear, got 'pinon', which is not in the scene; "
+        'did you mean "pinion"?',
+    ),
+    "a mesh in place of a gear": (
+        ("driver: pinion", "driver: gear pair"),
+        "moves.gear pair.driver: expected the name of a gear, got 'gear pair', which is a mesh move",
+    ),
+    "a gear that drives itself": (
+        ("driver: pinion", "driver: wheel"),
+        "moves.gear pair.driven: expected another gear than the driver, got 'wheel'",
+    ),
+    "tolerance of a missing part": (
+        ("of: pinion", "of: pinon"),
+        "tolerances.pinion tooth thickness.of: expected the name of a gear, got 'pinon'",
+    ),
+    "a gear in place of a mesh": (
+        ("of: gear pair", "of: wheel"),
+        "tolerances.centre distance.of: expected the name of a mesh move, got 'wheel', which is a gear",
+    ),
+    "eccentricity of a housing": (
+        ("tolerances:", "  box: {kind: housing}\ntolerances:\n  e: {kind: eccentricity, of: box, "
+         "distribution: {kind: rayleigh, scale: 1 um}}"),
+        "tolerances.e.of: expected the name of a gear, got 'box', which is a housing; known here: pinion, wheel",
+    ),
+    "temperature of a part without expansion": (
+        ("tolerances:", "tolerances:\n  warm: {kind: temperature, of: [wheel, pinion], "
+         "distribution: {kind: uniform, lower: 0 K, upper: 20 K}}"),
+        "tolerances.warm.of[0]: expected a part with its coefficient of expansion, got 'wheel' without expansion:",
+    ),
+    "bearing of a gear without mesh": (
+        ("tolerances:", "  idler: {kind: spur_gear, teeth: 20, module: 1 mm, face_width: 9 mm}\ntolerances:\n"
+         "  play: {kind: bearing_clearance, of: idler, distribution: {kind: uniform, lower: 0 um, upper: 2 um}}"),
+        "tolerances.play.of: expected a gear of one mesh (or the mesh named beside it), got 'idler', which is in 0",
+    ),
+    "angle of a gear outside the mesh": (
+        ("tolerances:", "  idler: {kind: spur_gear, teeth: 20, module: 1 mm, face_width: 9 mm}\ntolerances:"),
+        None,
+    ),
+    "unknown kind": (
+        ("kind: rayleigh", "kind: raleigh"),
+        "tolerances.wheel eccentricity.distribution.kind: expected one of normal, truncated_normal, uniform, "
+        "triangular, rayleigh, constant, empirical, got 'raleigh'; did you mean \"rayleigh\"?",
+    ),
+    "unknown kind of move": (
+        ("kind: mesh", "kind: mash"),
+        "moves.gear pair.kind: expected mesh, got 'mash'; did you mean \"mesh\"?",
+    ),
+    "missing kind": (
+        ("{kind: rayleigh, scale", "{scale"),
+        'tolerances.wheel eccentricity.distribution: expected the key "kind" here, found none',
+    ),
+    "unknown word": (
+        ("working_flank: right", "working_flank: rihgt"),
+        "moves.gear pair.working_flank: expected right or left, got 'rihgt'; did you mean \"right\"?",
+    ),
+    "unknown direction": (
+        ("kind: eccentricity", "direction: apart\n    kind: eccentricity"),
+        "tolerances.wheel eccentricity.direction: expected random or {at: 30 deg}, got 'apart'",
+    ),
+    "length in place of an angle": (
+        ("kind: eccentricity", "direction: {at: 3 mm}\n    kind: eccentricity"),
+        "tolerances.wheel eccentricity.direction.at: expected an angle with its unit, such as \"20 deg\", got '3 mm'",
+    ),
+    "same name in two sections": (
+        ("  reducer run-out:\n", "  wheel:\n"),
+        "tolerances.wheel: expected a name of its own, got 'wheel', which already stands in parts (line 13)",
+    ),
+    "take without over": (
+        ("kind: normal_backlash", "take: min\n    kind: normal_backlash"),
+        "measures.normal backlash.take: expected over: turn or over: long_period beside it, got over: random",
+    ),
+    "over without take": (
+        ("kind: normal_backlash", "over: turn\n    kind: normal_backlash"),
+        "measures.normal backlash.take: expected min, max, range or curve beside over: turn, got no take",
+    ),
+    "positions of one position": (
+        ("kind: normal_backlash", "over: {at: 3 deg}\n    positions: 9\n    kind: normal_backlash"),
+        "measures.normal backlash.positions: expected over: turn or over: long_period beside it, got over: {at: …}",
+    ),
+    "wrong published measure": (
+        ("    lost motion: {low", "    lots motion: {low"),
+        "published.paper, 3DCS.lots motion: expected the name of a measure, got 'lots motion'; "
+        'did you mean "lost motion"?',
+    ),
+    "wrong published contributor": (
+        ("reducer run-out: 0.8", "reducer runout: 0.8"),
+        "published.paper, 3DCS.normal backlash.contributors.reducer runout: expected the name of a tolerance, "
+        "got 'reducer runout'; did you mean \"reducer run-out\"?",
+    ),
+    "published values out of order": (
+        ("mean: 53 um", "mean: 530 um"),
+        "published.paper, analytic.normal backlash.mean: expected at most high_3sigma (74 um), got '530 um'",
+    ),
+    "more than all of the variance": (
+        ("reducer run-out: 0.8", "reducer run-out: 180"),
+        "contributors.reducer run-out: expected a number of at most 100, got 180",
+    ),
+    "no measures": (
+        ("study:", "study: {}\nx:"),
+        'x: unknown key "x"; known here: scene, description, parts, tolerances, moves, measures, study, published',
+    ),
+    "forbidden name": (
+        ("  wheel: ", "  a/b: "),
+        r"parts.a/b: expected a name without / \ : and without line breaks or invisible characters, got 'a/b'",
+    ),
+    "name like a column": (
+        ("  wheel: ", "  a.x: "),
+        'parts.a.x: expected a name that does not end in ".x" or ".y"',
+    ),
+    "name too long": (
+        ("  wheel: ", f"  {'w' * 81}: "),
+        "expected a name of up to 80 characters, got 81 of them",
+    ),
+    "number as a key": (
+        ("  wheel: ", "  1: "),
+        "parts: expected a key that is text, got 1; put it into quotes",
+    ),
+    "list as a key": (
+        ("  wheel: ", "  [a]: "),
+        "parts: expected a key that is text, got something else",
+    ),
+    "number as text": (
+        ("scene: spur pair at the drive end", "scene: 12"),
+        "scene: expected text, got 12; put it into quotes",
+    ),
+    "list in place of keys": (
+        ("study: {", "study: [1]  # {"),
+        'study: expected keys with values, such as "name: {…}", got a list',
+    ),
+    "undefined alias": (
+        ("teeth: 28", "teeth: *z"),
+        "parts.pinion.teeth: the alias *z has no anchor (&z) before it",
+    ),
+    "tag": (
+        ("teeth: 28", "teeth: !!python/object/apply:os.system ['true']"),
+        "parts.pinion.teeth: expected no tags, got '!!python/object/apply:os.system'",
+    ),
+    "merge key": (
+        ("  wheel: ", "  <<: "),
+        "parts: merge keys (<<) are not used here; write the keys out",
+    ),
+    "second document": (
+        ("study:", "---\nstudy:"),
+        'expected one scene in a file, got a second document ("---")',
+    ),
+    "colon too many": (
+        ("scene: spur", "scene: a: spur"),
+        'not YAML: mapping values are not allowed here (column 9); a ":" too many or a wrong indent',
+    ),
+    "tab": (
+        ("    kind: tooth_thickness", "\tkind: tooth_thickness"),
+        "indent with blanks, not with tabs",
+    ),
+    "control character": (
+        ("scene: spur", "scene: \x1b[2Jspur"),
+        "not YAML: the character U+001B is not allowed",
+    ),
+    "escape in a key": (
+        ("teeth: 28", '"te\\e[2Jeth": 28'),
+        'parts.pinion.te\\x1b[2Jeth: unknown key "te\\x1b[2Jeth"',
+    ),
+    "half a surrogate pair": (
+        ("scene: spur pair at the drive end", 'scene: "\\ud800"'),
+        "scene: expected Unicode text, got half of a surrogate pair",
+    ),
+    "escape beyond Unicode": (
+        ("scene: spur pair at the drive end", 'scene: "\\UFFFFFFFF"'),
+        "not YAML: ",
+    ),
+}
+CHANGES.pop("angle of a gear outside the mesh")
+CHANGES.pop("no measures")
+
+
+@pytest.mark.parametrize(("change", "words"), CHANGES.values(), ids=CHANGES.keys())
+def test_one_wrong_thing_is_said_with_its_line_and_place(
+    tmp_path: Path, change: tuple[str, str], words: str
+) -> None:
+    text = changed(*change)
+    said = said_of(tmp_path, text)
+    first_changed = next(n for n, (a, b) in enumerate(zip(SPUR_PAIR, text, strict=False)) if a != b)
+    line = text[:first_changed].count("\n") + 1
+    found = [problem for problem in said if words in problem]
+    assert len(found) == 1, said
+    written_lines = range(line - 3, line + 4)  # a missing key has the line of its mapping, a pair that of either
+    assert int(found[0].partition(":")[0]) in written_lines or "escape beyond" in found[0] or "UFFFF" in text
+
+
+def test_a_repeated_key_is_said_with_both_lines(tmp_path: Path) -> None:
+    text = changed("    of: wheel\n", "    of: wheel\n    of: pinion\n")
+    line = line_of(text, "    of: pinion\n    distribution: {kind: normal, lower: -32 um")
+    expected = f"the key stands twice, first in line {line - 1}, again in line {line}; remove one"
+    assert said_of(tmp_path, text) == (f"{line}: tolerances.wheel tooth thickness.of: {expected}",)
+
+
+def test_a_repeated_name_is_a_repeated_key(tmp_path: Path) -> None:
+    (said,) = said_of(tmp_path, changed("  wheel: ", "  pinion: "))
+    assert "parts.pinion: the key stands twice, first in line 11, again in line 13" in said
+
+
+def test_a_gear_outside_the_mesh_is_refused_where_an_angle_is_measured(tmp_path: Path) -> None:
+    text = changed("tolerances:", "  idler: {kind: spur_gear, teeth: 20, module: 1 mm, face_width: 9 mm}\ntolerances:")
+    (said,) = said_of(tmp_path, text.replace("    gear: wheel", "    gear: idler"))
+    assert "measures.lost motion.gear: expected a gear of the mesh 'gear pair', got 'idler'" in said
+
+
+def test_empty_sections_are_refused(tmp_path: Path) -> None:
+    said = said_of(tmp_path, "scene: a\nparts: {}\nmoves: {}\nmeasures:\n")
+    assert said[0] == "2: parts: expected at least one entry, got an empty mapping"
+    assert said[1] == "3: moves: expected at least one entry, got an empty mapping"
+    assert said[2] == '4: measures: expected keys with values, such as "name: {…}", got nothing'
+
+
+def test_the_first_eight_problems_are_listed_in_the_order_of_the_file(tmp_path: Path) -> None:
+    said = said_of(tmp_path, SPUR_PAIR.replace(" um", " furlong"))
+    lines = [int(problem.partition(":")[0]) for problem in said[:-1]]
+    assert len(lines) == MOST_PROBLEMS
+    assert lines == sorted(lines)
+    quantities = len(re.findall(r"\d furlong[,}\n ]", re.sub("#.*", "", SPUR_PAIR.replace(" um", " furlong"))))
+    assert said[-1] == f"… and {quantities - MOST_PROBLEMS} more"
+
+
+# files ----------------------------------------------------------------------------------------------
+
+
+def empirical(file: str) -> str:
+    law = f"{{kind: empirical, file: {file!r}, column: a, unit: um}}"
+    return changed("{kind: rayleigh, scale: 4.5 um}", law)
+
+
+def test_a_file_outside_the_folder_is_read_only_on_trust(tmp_path: Path) -> None:
+    folder = tmp_path / "scenes"
+    folder.mkdir()
+    outside = tmp_path / "data.csv"
+    outside.write_text("a\n1\n2\n")
+    (folder / "link.csv").symlink_to(outside)
+    for file in ("../data.csv", "link.csv", str(outside), "/etc/passwd"):
+        (said,) = said_of(folder, empirical(file))
+        assert "pinion eccentricity.distribution.file: expected a file in the scene's own folder" in said
+        assert "--trust-parts" in said
+    for file in ("../data.csv", "link.csv", str(outside)):
+        (folder / "scene.yaml").write_text(empirical(file))
+        assert load_scene(folder / "scene.yaml", trust_parts=True).files[file].read_text() == "a\n1\n2\n"
+
+
+def test_a_file_that_is_none_is_refused(tmp_path: Path) -> None:
+    (tmp_path / "thickness.csv").write_text("a\n1\n2\n")
+    (tmp_path / "ring.csv").symlink_to(tmp_path / "ring.csv")
+    for file, words in {
+        "thicknes.csv": "which is not there; did you mean \"thickness.csv\"?",
+        ".": "which is a folder or a device",
+        "ring.csv": "expected a file that can be read, got 'ring.csv'",
+        "n" * 300: "expected a file that can be read",
+    }.items():
+        (said,) = said_of(tmp_path, empirical(file))
+        assert words in said
+
+
+def test_no_such_scene(tmp_path: Path) -> None:
+    (tmp_path / "spur_pair.yaml").write_text(SPUR_PAIR)
+    (said,) = problems(tmp_path / "spur_pear.yaml")
+    assert f"found no file of that name; did you mean {tmp_path / 'spur_pair.yaml'}?" in said
+    (said,) = problems(tmp_path / "no" / "such" / "folder.yaml")
+    assert said.endswith("found no file of that name")
+
+
+def test_a_folder_is_no_scene(tmp_path: Path) -> None:
+    (tmp_path / "spur_pair.yaml").write_text(SPUR_PAIR)
+    (said,) = problems(tmp_path)
+    assert f"got a folder; give a file in it, such as {tmp_path / 'spur_pair.yaml'}" in said
+
+
+def test_an_unreadable_scene(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (tmp_path / "scene.yaml").write_text(SPUR_PAIR)
+
+    def refuse(*_: object) -> None:
+        raise PermissionError(13, "Permission denied")  # the super-user of a test machine may read everything
+
+    monkeypatch.setattr(Path, "open", refuse)
+    (said,) = problems(tmp_path / "scene.yaml")
+    assert said.endswith("expected a scene file that can be read, got: Permission denied")
+
+
+def test_a_name_with_a_nul_is_no_scene() -> None:
+    with pytest.raises(SceneError, match="expected a scene file"):
+        load_scene(Path("a\0b.yaml"))
+
+
+# noise ----------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("text", ["", "\n\n", "# nothing but a comment\n", "---\n", "--- # nothing\n...\n"])
+def test_an_empty_file_is_said_to_be_empty(tmp_path: Path, text: str) -> None:
+    (said,) = said_of(tmp_path, text)
+    assert said.startswith("1: ")
+    assert "got an empty file" in said or "got nothing" in said
+
+
+@pytest.mark.parametrize("text", ["a novel", "- a\n- list\n", "42", "{}x", "scene: [", '"', "@", "%YAML 3.0\n---\na"])
+def test_what_is_no_scene_at_all_is_said_so(tmp_path: Path, text: str) -> None:
+    (said,) = said_of(tmp_path, text)
+    assert re.match(r"\d+: (not YAML: |expected keys such as scene:, parts:)", said)
+
+
+def test_ten_megabytes_of_noise_are_refused_unread(tmp_path: Path) -> None:
+    assert said_of(tmp_path, random.Random(1).randbytes(10_000_000)) == (
+        "1: expected a scene of at most 1 MB, got a larger file",
+    )
+
+
+@pytest.mark.skipif(not Path("/dev/zero").exists(), reason="no such device here")
+def test_an_endless_file_is_refused() -> None:
+    assert problems(Path("/dev/zero")) == ("/dev/zero:1: expected a scene of at most 1 MB, got a larger file",)
+
+
+def test_bytes_that_are_no_text_are_refused_with_their_line(tmp_path: Path) -> None:
+    (said,) = said_of(tmp_path, b"scene: a\nparts: \xff\n")
+    assert said == "2: expected UTF-8 text, got the byte 0xff, which is none"
+
+
+@pytest.mark.parametrize("opening", ["[", "{", "[\n", "{a: ", "- ", "? ", "[{a: "])
+def test_twenty_thousand_nested_brackets_are_one_message(tmp_path: Path, opening: str) -> None:
+    (said,) = said_of(tmp_path, opening * 20_000)
+    assert f"expected at most {MAX_DEPTH} levels" in said or "a key that is text" in said
+
+
+@pytest.mark.parametrize(
+    "text",
+    ["a" * 999_000, "a b " * 249_000, "#" * 999_000, " " * 999_000, '"' + "\\u0041" * 166_000, "[" + "a," * 499_000,
+     "&a " * 333_000, "*a " * 333_000, "- " + "x" * 999_000, "a: |\n" + " x\n" * 333_000, "'" + "\n" * 999_000],
+    ids=lambda text: ascii(text[:8]),
+)  # fmt: skip
+def test_a_megabyte_of_anything_is_refused_without_a_crash(tmp_path: Path, text: str) -> None:
+    assert len(text) < MAX_BYTES
+    path = tmp_path / "scene.yaml"
+    path.write_text(text)
+    start = time.perf_counter()
+    with pytest.raises(SceneError):
+        load_scene(path)
+    assert time.perf_counter() - start < 5 * SOON  # a megabyte that has to be parsed may take some seconds
+
+
+def test_an_alias_bomb_is_refused_and_a_few_aliases_are_not(tmp_path: Path) -> None:
+    bomb = "a: &a [x, x, x, x, x, x, x, x, x, x]\n"
+    for this, last in zip("bcdefghi", "abcdefgh", strict=True):
+        bomb += f"{this}: &{this} [{', '.join([f'*{last}'] * 10)}]\n"
+    (said,) = said_of(tmp_path, bomb)
+    assert re.match(r"\d+: .*expected at most 50000 values \(aliases count written out\), got more", said)
+    text = SPUR_PAIR.replace("{kind: rayleigh, scale: 4.5 um}", "&law {kind: rayleigh, scale: 4.5 um}")
+    (tmp_path / "scene.yaml").write_text(text.replace("{kind: rayleigh, scale: 1.3333333333333333 um}", "*law"))
+    assert load_scene(tmp_path / "scene.yaml").tolerances["reducer run-out"].distribution.scale.number == 4.5
+
+
+def test_an_alias_of_what_holds_it_is_refused(tmp_path: Path) -> None:
+    (said,) = said_of(tmp_path, "scene: &a [*a]\n")
+    assert "the alias *a has no anchor (&a) before it" in said
+
+
+# whatever a hand or a disk may do ---------------------------------------------------------------------
+
+fuzz = settings(
+    max_examples=150,
+    deadline=None,  # the machine is shared; each message has its own bound on time
+    suppress_health_check=[HealthCheck.function_scoped_fixture],
+)
+WORDS = sorted(set(re.findall(r"[\w.]+|[^\w\s]", EVERY_FIELD + SPUR_PAIR)) | {"null", "~", "[]", "{}", "[1]", "{a: 1}"})
+
+
+def loads_or_is_refused_well(folder: Path, content: str | bytes) -> None:
+    path = folder / "scene.yaml"
+    path.write_bytes(content.encode("utf-8", "surrogatepass") if isinstance(content, str) else content)
+    (folder / "wheel_thickness.csv").write_text("a\n1\n2\n")
+    try:
+        load_scene(path)
+    except SceneError:
+        problems(path)
+
+
+@fuzz
+@given(text=st.text() | st.binary() | st.text(alphabet="[]{}:,-?&*!|>'\"%@` \n\tab1"))
+def test_garbage_is_refused_and_nothing_else_happens(tmp_path: Path, text: str | bytes) -> None:
+    loads_or_is_refused_well(tmp_path, text)
+
+
+@fuzz
+@given(data=st.data(), text=st.sampled_from([EVERY_FIELD, SPUR_PAIR]))
+def test_a_scene_with_bits_replaced_is_read_or_refused_well(tmp_path: Path, data: st.DataObject, text: str) -> None:
+    for _ in range(data.draw(st.integers(1, 3))):
+        start = data.draw(st.integers(0, len(text)))
+        end = data.draw(st.integers(start, min(len(text), start + 12)))
+        text = text[:start] + data.draw(st.text(max_size=6) | st.sampled_from(WORDS)) + text[end:]
+    loads_or_is_refused_well(tmp_path, text)
+
+
+@fuzz
+@given(data=st.data(), text=st.sampled_from([EVERY_FIELD, SPUR_PAIR]))
+def test_a_scene_with_a_value_replaced_is_read_or_refused_well(tmp_path: Path, data: st.DataObject, text: str) -> None:
+    values = list(re.finditer(r"(?<=: )[^\s{\[#,}][^,}#\n]*", text))
+    value = data.draw(st.sampled_from(values))
+    new = data.draw(
+        st.sampled_from(["", "~", "true", "0", "-1", "1e999", ".nan", "[]", "[a, a]", "{}", "{at: 1}", "{kind: x}", "''"])
+        | st.sampled_from(values).map(lambda other: other[0])
+    )
+    loads_or_is_refused_well(tmp_path, text[: value.start()] + new + text[value.end() :])

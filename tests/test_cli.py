@@ -1,0 +1,178 @@
+"""The command line as a user meets it: exit codes, messages, what it prints and writes."""
+
+import json
+import os
+import subprocess
+import sys
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+import jsonschema
+import pytest
+from ruamel.yaml import YAML
+
+from tol3d import cli
+
+SCENES = Path(__file__).resolve().parent.parent / "scenes"
+SPUR = str(SCENES / "spur_pair.yaml")
+
+Command = Callable[..., tuple[int, str, str]]
+
+
+@pytest.fixture
+def tol3d(monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]) -> Command:
+    """Runs `tol3d ARGUMENTS` in this process: exit code, stdout, stderr."""
+
+    def command(*arguments: str) -> tuple[int, str, str]:
+        monkeypatch.setattr(sys, "argv", ["tol3d", *arguments])
+        capfd.readouterr()
+        try:
+            cli.main()
+            code = 0
+        except SystemExit as stop:
+            code = int(stop.code or 0)
+        out, err = capfd.readouterr()
+        return code, out, err
+
+    return command
+
+
+def test_run_prints_the_table_and_writes_the_run(tol3d: Command, tmp_path: Path) -> None:
+    code, out, _ = tol3d("run", SPUR, "--trials", "100", "--out", str(tmp_path / "spur"))
+    assert code == 0
+    for words in ("normal backlash", "3D simulation", "paper, 3DCS", "centre distance", "53.4"):
+        assert words in out
+    written = {path.name for path in (tmp_path / "spur").iterdir()}
+    assert written == {"summary.json", "trials", "scene.yaml", "histogram.png"}
+
+
+def test_overrides_are_recorded(tol3d: Command, tmp_path: Path) -> None:
+    arguments = ("--trials", "50", "--seed", "9", "--engine", "analytic", "--out", str(tmp_path / "run"))
+    assert tol3d("run", SPUR, *arguments)[0] == 0
+    study = json.loads((tmp_path / "run" / "summary.json").read_text("utf-8"))["study"]
+    assert (study["trials"], study["seed"], study["engine"]) == (50, 9, "analytic")
+
+
+def test_fail_on_limits_exits_with_1_only_when_a_limit_fails(tol3d: Command, tmp_path: Path) -> None:
+    common = ("--trials", "200", "--engine", "analytic", "--fail-on-limits")
+    assert tol3d("run", SPUR, *common, "--out", str(tmp_path / "good"))[0] == 0
+    tight = tmp_path / "tight.yaml"
+    tight.write_text(Path(SPUR).read_text("utf-8").replace("lower_limit: 15 um", "lower_limit: 50 um"), "utf-8")
+    code, _, err = tol3d("run", str(tight), *common, "--out", str(tmp_path / "bad"))
+    assert code == 1
+    assert "limits failed" in err
+    assert (tmp_path / "bad" / "summary.json").exists()
+
+
+def test_check_shows_coefficients_limits_and_sigma(tol3d: Command) -> None:
+    code, out, _ = tol3d("check", SPUR)
+    assert code == 0
+    for words in ("pinion", "wheel", "172.5", "1.750", "0.684", "-0.940", "15"):
+        assert words in out
+
+
+def test_schema_accepts_the_example_scenes(tol3d: Command) -> None:
+    code, out, _ = tol3d("schema")
+    assert code == 0
+    for scene in SCENES.glob("*.yaml"):
+        jsonschema.validate(YAML(typ="safe", pure=True).load(scene.read_text("utf-8")), json.loads(out))
+
+
+def test_compare_lays_runs_over_each_other(tol3d: Command, tmp_path: Path) -> None:
+    runs = []
+    for seed in ("1", "2"):
+        runs.append(str(tmp_path / f"run{seed}"))
+        assert tol3d("run", SPUR, "--trials", "60", "--seed", seed, "--out", runs[-1])[0] == 0
+    code, out, _ = tol3d("compare", *runs, "--out", str(tmp_path / "both.png"))
+    assert code == 0
+    assert "normal backlash" in out
+    assert (tmp_path / "both.png").read_bytes()[:4] == b"\x89PNG"
+
+
+BAD_SCENES = {
+    "unknown key": ("teeth: 28,", "teth: 28,", "teeth"),
+    "missing unit": ("module: 2.5 mm", "module: 2.5", "without its unit"),
+    "wrong unit": ("lower: -20 um", "lower: -20 furlong", "furlong"),
+    "limits reversed": ("lower: -20 um, upper: 20 um", "lower: 20 um, upper: -20 um", "lower"),
+    "zero teeth": ("teeth: 28", "teeth: 0", "teeth"),
+    "undercut teeth": ("teeth: 28", "teeth: 8", "undercut"),
+    "pointed teeth": ("teeth: 28,", "teeth: 28, profile_shift: 2.5, bore: 10 mm, addendum: 1.3,", "pointed"),
+    "interfering centre distance": ("centre_distance: 172.5 mm", "centre_distance: 171.5 mm", "interfere"),
+    "interfering mean build": ("centre_distance: 172.5 mm", "centre_distance: 172.4 mm", "mean build"),
+    "missing part": ("driver: pinion", "driver: pinon", "pinion"),
+}
+
+
+@pytest.mark.parametrize("what", BAD_SCENES)
+def test_a_wrong_scene_gets_one_message_and_exit_code_2(tol3d: Command, tmp_path: Path, what: str) -> None:
+    old, new, words = BAD_SCENES[what]
+    text = Path(SPUR).read_text("utf-8")
+    assert old in text
+    scene = tmp_path / "bad.yaml"
+    scene.write_text(text.replace(old, new, 1), "utf-8")
+    code, out, err = tol3d("run", str(scene), "--out", str(tmp_path / "run"))
+    assert code == 2, err
+    assert out == ""
+    assert words in err
+    assert "bad.yaml:" in err
+    assert "Traceback" not in err
+    assert len(err.splitlines()) <= 6
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["bad.yaml"]
+
+
+def test_a_name_that_is_no_scene_is_refused(tol3d: Command, tmp_path: Path) -> None:
+    code, _, err = tol3d("run", str(tmp_path / "nowhere.yaml"))
+    assert code == 2
+    assert "nowhere.yaml" in err
+
+
+@pytest.mark.skipif(os.geteuid() == 0, reason="root may write anywhere")
+def test_no_write_permission_is_refused_before_anything_runs(tol3d: Command, tmp_path: Path) -> None:
+    locked = tmp_path / "locked"
+    locked.mkdir(mode=0o500)
+    code, _, err = tol3d("run", SPUR, "--out", str(locked / "run"))
+    assert code == 2
+    assert "cannot be written" in err
+
+
+def test_a_fault_of_ours_exits_with_3_and_asks_for_a_report(tol3d: Command, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("tol3d.simulate.effective_model", lambda *_: 1 / 0)
+    code, _, err = tol3d("check", SPUR)
+    assert code == 3
+    assert "a fault in tol3d" in err
+
+
+def test_export_and_view_refuse_two_choices(tol3d: Command, tmp_path: Path) -> None:
+    assert tol3d("run", SPUR, "--trials", "5", "--engine", "analytic", "--out", str(tmp_path / "run"))[0] == 0
+    code, _, err = tol3d("export", str(tmp_path / "run"), "--trial", "1", "--worst")
+    assert code == 2
+    assert "one of" in err
+
+
+def test_help_answers_in_half_a_second() -> None:
+    command = [sys.executable, "-m", "tol3d.cli", "--help"]
+    best = min(_seconds(command) for _ in range(3))
+    # machines are shared: the claim is 0.5 s on an idle one; what is held here is that nothing heavy is loaded
+    assert best < 2.0
+    code = "import sys; sys.argv = ['tol3d', '--help']\nfrom tol3d import cli\ntry:\n    cli.main()\nexcept SystemExit:\n"
+    heavy = "    print([m for m in ('numpy', 'scipy', 'cadquery', 'fcl', 'matplotlib', 'pyarrow') if m in sys.modules])"
+    done = subprocess.run([sys.executable, "-c", code + heavy], capture_output=True, text=True, check=True)
+    assert done.stdout.splitlines()[-1] == "[]"
+
+
+def test_a_warm_run_loads_no_cad(tmp_path: Path) -> None:
+    # the solids of the spur pair are in the cache after the first run
+    run = [sys.executable, "-m", "tol3d.cli", "run", SPUR, "--trials", "5", "--out", str(tmp_path / "run")]
+    subprocess.run(run, check=True, capture_output=True)
+    code = f"import sys; sys.argv = {run[2:]!r}\nsys.argv[0] = 'tol3d'\nfrom tol3d import cli\ncli.main()\n"
+    code = code.replace("['tol3d.cli', ", "['tol3d', ", 1)
+    loaded = "print([m for m in ('cadquery', 'OCP', 'pyvista', 'trimesh', 'pandas', 'pint') if m in sys.modules])"
+    done = subprocess.run([sys.executable, "-c", code + loaded], capture_output=True, text=True, check=True)
+    assert done.stdout.splitlines()[-1] == "[]"
+
+
+def _seconds(command: list[str]) -> float:
+    started = time.perf_counter()
+    subprocess.run(command, check=True, capture_output=True)
+    return time.perf_counter() - started

@@ -1,0 +1,205 @@
+"""The run as a whole: same bits whatever the workers, replay, resume, failures kept as data."""
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from tol3d import InputError, Overrides, RunError, open_run, replay, run_scene
+from tol3d import execution as execution_module
+from tol3d.simulate import worst_trial
+
+SCENES = Path(__file__).resolve().parent.parent / "scenes"
+SPUR = SCENES / "spur_pair.yaml"
+
+
+def assert_same_bits(first: dict[str, np.ndarray], second: dict[str, np.ndarray], rows: slice = slice(None)) -> None:
+    assert first.keys() == second.keys()
+    for name in first:
+        mine, its = first[name][rows], second[name]
+        assert mine.dtype.kind == its.dtype.kind
+        if mine.dtype.kind == "f":
+            assert np.array_equal(mine.view(np.int64), its.view(np.int64)), name
+        else:
+            assert np.array_equal(mine, its), name
+
+
+@pytest.fixture(scope="module")
+def spur_run(tmp_path_factory: pytest.TempPathFactory):
+    return run_scene(SPUR, overrides=Overrides(trials=300), out=tmp_path_factory.mktemp("runs") / "spur")
+
+
+def test_two_workers_give_the_same_bits_as_one(spur_run, tmp_path: Path) -> None:
+    other = run_scene(SPUR, overrides=Overrides(trials=300), out=tmp_path / "two", workers=2)
+    assert_same_bits(spur_run.columns(), other.columns())
+    for name, measure in spur_run.summary["measures"].items():
+        assert other.summary["measures"][name] == measure
+
+
+def test_more_trials_leave_the_first_ones_as_they_were(spur_run, tmp_path: Path) -> None:
+    fewer = run_scene(SPUR, overrides=Overrides(trials=120), out=tmp_path / "fewer")
+    assert_same_bits(spur_run.columns(), fewer.columns(), slice(120))
+
+
+def test_a_replayed_trial_has_the_run_s_bits(spur_run) -> None:
+    columns = spur_run.columns()
+    for trial in (0, 17, 299):
+        again = replay(spur_run, trial)
+        assert again.status == columns["status"][trial]
+        for name in ("normal backlash", "lost motion"):
+            assert again.geometric[name] == columns[f"geometric:{name}"][trial]
+            assert again.analytic[name] == columns[f"analytic:{name}"][trial]
+
+
+def test_replay_of_a_trial_that_is_not_there_is_refused(spur_run) -> None:
+    with pytest.raises(InputError, match="expected 0 to 299"):
+        replay(spur_run, 300)
+
+
+def test_adding_a_contributor_leaves_the_others_draws_as_they_were(spur_run, tmp_path: Path) -> None:
+    text = SPUR.read_text("utf-8")
+    added = "tolerances:\n  another one: {kind: axial_shift, of: wheel, distribution: {kind: constant, value: 5 um}}\n"
+    scene = tmp_path / "more.yaml"
+    scene.write_text(text.replace("tolerances:\n", added, 1), "utf-8")
+    columns = run_scene(scene, overrides=Overrides(trials=50), out=tmp_path / "more").columns()
+    before = spur_run.columns()
+    for name in before:
+        if not name.startswith(("analytic:", "geometric:", "contact:", "status")):
+            assert np.array_equal(before[name][:50], columns[name]), name
+
+
+def test_the_worst_trial_is_the_one_nearest_to_the_limit(spur_run) -> None:
+    assert worst_trial(spur_run) == int(np.argmin(spur_run.columns()["geometric:normal backlash"]))
+
+
+def test_summary_agrees_with_the_columns(spur_run) -> None:
+    columns, summary = spur_run.columns(), json.loads((spur_run.path / "summary.json").read_text("utf-8"))
+    for name, measure in summary["measures"].items():
+        for road in ("analytic", "geometric"):
+            values = columns[f"{road}:{name}"]
+            assert measure[road]["mean"] == pytest.approx(values.mean(), rel=1e-12)
+            assert measure[road]["sigma"] == pytest.approx(values.std(ddof=1), rel=1e-10)
+            assert measure[road]["sample_min"] == values.min()
+            # the grid's quantile lies in the bin of the order statistic
+            assert measure[road]["p50"] == pytest.approx(np.sort(values)[149], abs=2 * measure[road]["quantile_error"])
+        difference = columns[f"geometric:{name}"] - columns[f"analytic:{name}"]
+        assert measure["agreement"]["max_abs_difference"] == pytest.approx(np.abs(difference).max(), rel=1e-12)
+
+
+def test_a_run_keeps_the_scene_and_its_study(spur_run) -> None:
+    assert (spur_run.path / "scene.yaml").read_text("utf-8") == SPUR.read_text("utf-8")
+    assert spur_run.summary["study"]["trials"] == 300
+    assert spur_run.summary["files"].keys() == {"scene.yaml"}
+    assert len(spur_run.summary["files"]["scene.yaml"]) == 64
+
+
+def test_an_analytic_run_needs_no_geometry(tmp_path: Path) -> None:
+    run = run_scene(SPUR, overrides=Overrides(trials=1000, engine="analytic"), out=tmp_path / "analytic")
+    assert not [name for name in run.column_names if name.startswith("geometric:")]
+    assert "geometric" not in run.summary["measures"]["normal backlash"]
+
+
+def test_an_older_run_is_replaced_and_anything_else_is_left_alone(tmp_path: Path) -> None:
+    study = Overrides(trials=20, engine="analytic")
+    folder = tmp_path / "run"
+    run_scene(SPUR, overrides=study, out=folder)
+    assert run_scene(SPUR, overrides=Overrides(trials=30, engine="analytic"), out=folder).trials == 30
+    other = tmp_path / "mine"
+    other.mkdir()
+    (other / "thesis.txt").write_text("precious")
+    with pytest.raises(RunError, match="not a tol3d run"):
+        run_scene(SPUR, overrides=study, out=other)
+    assert (other / "thesis.txt").read_text() == "precious"
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["mine", "run"]
+
+
+def test_a_folder_that_cannot_be_written_is_refused(tmp_path: Path) -> None:
+    blocked = tmp_path / "file"
+    blocked.write_text("not a folder")
+    with pytest.raises(RunError, match="cannot be written"):
+        run_scene(SPUR, overrides=Overrides(trials=5, engine="analytic"), out=blocked / "run")
+
+
+def test_trials_that_interfere_keep_their_row_and_their_status(tmp_path: Path) -> None:
+    scene = tmp_path / "tight.yaml"
+    # +-60 um about a mean build with 2 um of play: about half of the builds cannot be put together
+    text = SPUR.read_text("utf-8").replace("centre_distance: 172.5 mm", "centre_distance: 172.425 mm")
+    scene.write_text(text.replace("lower: -20 um, upper: 20 um", "lower: -60 um, upper: 60 um"), "utf-8")
+    run = run_scene(scene, overrides=Overrides(trials=200), out=tmp_path / "tight")
+    columns = run.columns()
+    failed = columns["status"] == "interferes"
+    assert 20 < failed.sum() < 180
+    assert np.array_equal(np.isnan(columns["geometric:normal backlash"]), failed)
+    # what the closed form calls an overlap by more than the mesh error has that status, and only that
+    analytic = columns["analytic:normal backlash"]
+    assert failed[analytic < -0.15].all()
+    assert not failed[analytic > 0.15].any()
+    summary = run.summary["measures"]["normal backlash"]["geometric"]
+    assert summary["count"] == (~failed).sum()
+    assert summary["failed_ppm"] == pytest.approx(1e6 * failed.mean())
+    assert run.summary["status"] == {"ok": int((~failed).sum()), "interferes": int(failed.sum()), "no contact": 0}
+
+
+def test_a_killed_run_goes_on_where_it_was(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(execution_module, "BLOCK_TRIALS", 500)
+    study = Overrides(trials=3000, engine="analytic")
+    whole = run_scene(SPUR, overrides=study, out=tmp_path / "whole")
+    done = 0
+
+    def stop_in_the_middle(count: int) -> None:
+        nonlocal done
+        done += count
+        if done > 1700:
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        run_scene(SPUR, overrides=study, out=tmp_path / "cut", on_progress=stop_in_the_middle)
+    kept = sorted((tmp_path / "cut.partial" / "trials").iterdir())
+    assert len(kept) == 3
+    before = [path.stat().st_mtime_ns for path in kept]
+    kept[1].write_bytes(kept[1].read_bytes()[:-100])  # a damaged block is made again
+    resumed = run_scene(SPUR, overrides=study, out=tmp_path / "cut")
+    assert_same_bits(whole.columns(), resumed.columns())
+    assert resumed.summary["measures"] == whole.summary["measures"]
+    after = sorted((tmp_path / "cut" / "trials").iterdir())
+    assert [path.stat().st_mtime_ns for path in after][0] == before[0]
+    assert not (tmp_path / "cut.partial").exists()
+
+
+def test_a_partial_of_another_study_is_not_used(tmp_path: Path) -> None:
+    folder = tmp_path / "run.partial" / "trials"
+    folder.mkdir(parents=True)
+    (folder.parent / "fingerprint.json").write_text("{}")
+    (folder / "block-000000.parquet").write_text("of another study")
+    run = run_scene(SPUR, overrides=Overrides(trials=20, engine="analytic"), out=tmp_path / "run")
+    assert run.trials == 20
+
+
+def test_a_kill_leaves_no_run_behind(tmp_path: Path) -> None:
+    command = [sys.executable, "-m", "tol3d.cli", "run", str(SPUR), "--trials", "200000", "--workers", "1"]
+    process = subprocess.Popen([*command, "--out", str(tmp_path / "run")], stderr=subprocess.DEVNULL)
+    for _ in range(600):
+        if (tmp_path / "run.partial").exists():
+            break
+        time.sleep(0.05)
+    os.kill(process.pid, signal.SIGKILL)
+    process.wait()
+    assert not (tmp_path / "run").exists()
+    with pytest.raises(RunError, match="was not finished"):
+        open_run(tmp_path / "run.partial")
+
+
+def test_damaged_runs_are_refused_by_name(spur_run, tmp_path: Path) -> None:
+    with pytest.raises(RunError, match="expected a run's folder"):
+        open_run(tmp_path)
+    (tmp_path / "summary.json").write_text("[1, 2")
+    with pytest.raises(RunError, match="cannot be read"):
+        open_run(tmp_path)
+    with pytest.raises(RunError, match="no column"):
+        spur_run.columns("geometric:nothing")

@@ -1,0 +1,106 @@
+"""Quantities: the grammar, the table of factors, and how they are written back."""
+
+import math
+import re
+import time
+
+import pint
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from pydantic import TypeAdapter
+
+from tol3d.units import FACTORS, UNITS, Quantity, angle_text
+
+PINT_NAMES = {"/K": "1/K", "um/m/K": "um/m/K", "ppm/K": "ppm/K"}
+INNER = {"length": "mm", "angle": "rad", "temperature": "K", "expansion": "1/K"}
+
+quantities = st.builds(Quantity, st.floats(allow_nan=False, allow_infinity=False, width=32), st.sampled_from([*UNITS]))
+
+
+@pytest.mark.parametrize(("dimension", "unit"), [(d, unit) for d, table in FACTORS.items() for unit in table])
+def test_factors_are_those_of_pint(dimension: str, unit: str) -> None:
+    registry = pint.UnitRegistry()
+    factor = registry.Quantity(1.0, PINT_NAMES.get(unit, unit)).to(INNER[dimension]).magnitude
+    assert Quantity(1.0, unit).internal == pytest.approx(factor, rel=1e-15)  # one rounding of the quotient
+
+
+def test_each_unit_belongs_to_one_dimension() -> None:
+    assert len(UNITS) == sum(len(table) for table in FACTORS.values())
+
+
+@pytest.mark.parametrize(
+    ("text", "internal"),
+    [
+        ("2.5 mm", 2.5),
+        ("-19 um", -0.019),
+        ("1e-3 mm", 0.001),
+        ("  +.5E+1   mm ", 5.0),
+        ("4. um", 0.004),
+        ("7 µm", 0.007),  # U+00B5, the micro sign
+        ("7 μm", 0.007),  # U+03BC, the Greek letter
+        ("180 deg", math.pi),
+        ("11.5e-6 1/K", 11.5e-6),
+        ("11.5 um/m/K", 11.5e-6),
+    ],
+)
+def test_number_blank_unit_is_read(text: str, internal: float) -> None:
+    assert Quantity.parse(text).internal == pytest.approx(internal, rel=1e-15)
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("2.5", "a bare number without its unit"),
+        (2.5, "a bare number without its unit"),
+        (True, "got true"),
+        (None, "got nothing"),
+        ([1], "got a list"),
+        ("2.5mm", "got '2.5mm'"),
+        ("2,5 mm", "got '2,5 mm'"),
+        ("mm", "got 'mm'"),
+        ("1 mm 2", "got '1 mm 2'"),
+        ("1_000 mm", "got '1_000 mm'"),
+        ("nan mm", "got 'nan mm'"),
+        (".inf mm", "got '.inf mm'"),
+        ("1e400 mm", "too large"),
+        ("1e308 m", "too large"),  # finite as written, not in mm
+        ("٣ mm", "got '٣ mm'"),  # digits of other scripts are no YAML numbers
+        ("3 furlong", "unknown unit 'furlong'"),
+        ("3 MM", "unknown unit 'MM'"),
+    ],
+)
+def test_anything_else_is_refused_with_a_reason(text: object, words: str) -> None:
+    with pytest.raises(ValueError, match=re.escape(words)):
+        Quantity.parse(text)
+
+
+@given(quantities)
+def test_writing_is_the_inverse_of_reading(quantity: Quantity) -> None:
+    assert Quantity.parse(str(quantity)) == quantity
+
+
+@given(st.text(max_size=20) | quantities.map(str) | st.from_regex(r"[-+.0-9e]{1,6} ?[muµdegK/1]{1,4}", fullmatch=True))
+def test_the_json_schema_pattern_accepts_exactly_what_is_read(text: str) -> None:
+    pattern = TypeAdapter(Quantity).json_schema()["pattern"]
+    try:
+        read = math.isfinite(Quantity.parse(text).internal)
+    except ValueError as error:
+        read = "too large" in str(error)
+    assert (re.search(pattern, text.rstrip("\n")) is not None) == read
+
+
+def test_a_megabyte_of_digits_is_refused_at_once() -> None:
+    start = time.perf_counter()
+    for text in ("1" * 10**6, "1" * 10**6 + " mm", " " * 10**6, "1" + " " * 10**6):
+        with pytest.raises(ValueError, match="got"):
+            Quantity.parse(text)
+    assert time.perf_counter() - start < 0.5  # a backtracking pattern would take hours
+
+
+@pytest.mark.parametrize(
+    ("seconds", "text"),
+    [(0.0, "0.0″"), (59.94, "59.9″"), (59.96, "1′00.0″"), (85.2, "1′25.2″"), (-85.2, "-1′25.2″"), (-0.01, "0.0″")],
+)
+def test_angles_are_written_in_minutes_and_seconds_of_arc(seconds: float, text: str) -> None:
+    assert angle_text(math.radians(seconds / 3600)) == text

@@ -1,0 +1,56 @@
+"""Histograms from a summary, ready to be drawn: fewer bars for few trials, densities in % a unit."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+FEWEST_BARS = 8
+
+
+@dataclass(frozen=True)
+class Bars:
+    """Bars of a histogram.
+
+    Args:
+        edges: (bars + 1,) in the measure's unit.
+        density: (bars,) % of the trials a unit, so that runs with other bars and the normal curve compare.
+    """
+
+    edges: Array
+    density: Array
+
+    @property
+    def middles(self) -> Array:
+        """Middle of each bar."""
+        return (self.edges[:-1] + self.edges[1:]) / 2
+
+
+def bars_of(histogram: Mapping[str, Any]) -> dict[str, Bars]:
+    """Bars of each road of a summary's histogram; none when nothing was counted."""
+    if not histogram:
+        return {}
+    total = max(sum(counts) for counts in histogram["counts"].values())
+    merged = _neighbours_in_one(len(next(iter(histogram["counts"].values()))), total)
+    return {
+        road: _bars(np.asarray(counts, dtype=np.float64), merged, histogram["lower_edge"], histogram["bin_width"])
+        for road, counts in histogram["counts"].items()
+    }
+
+
+def _neighbours_in_one(bars: int, total: int) -> int:
+    """How many bars make one, for about 2 n^(1/3) of them (the Rice rule)."""
+    return max(1, round(bars / max(FEWEST_BARS, 2 * total ** (1 / 3))))
+
+
+def _bars(counts: Array, merged: int, lower: float, width: float) -> Bars:
+    bars = -(-len(counts) // merged)
+    padded = np.zeros(bars * merged)
+    padded[: len(counts)] = counts
+    edges = lower + merged * width * np.arange(bars + 1)
+    total = counts.sum() or 1.0
+    return Bars(edges, 100 * padded.reshape(bars, merged).sum(axis=1) / (total * merged * width))

@@ -1,0 +1,67 @@
+"""Figures without a window: colours that colour-blind readers can tell apart, and how a picture is saved."""
+
+from pathlib import Path
+from typing import Final
+
+from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+
+from tol3d.errors import InputError
+
+# Okabe and Ito 2008, "Color Universal Design": eight colours for all kinds of colour vision
+ORANGE: Final = "#E69F00"
+SKY: Final = "#56B4E9"
+GREEN: Final = "#009E73"
+BLUE: Final = "#0072B2"
+VERMILLION: Final = "#D55E00"
+PURPLE: Final = "#CC79A7"
+BLACK: Final = "#222222"
+GREY: Final = "#7A7A7A"
+
+ROAD_COLOURS: Final = {"closed form": BLACK, "analytic": ORANGE, "geometric": BLUE}
+PUBLISHED_COLOURS: Final = (GREEN, PURPLE, SKY, GREY)
+RUN_COLOURS: Final = (BLUE, ORANGE, GREEN, PURPLE, SKY, VERMILLION, GREY, BLACK)
+OUTSIDE: Final = VERMILLION
+
+DOTS_PER_INCH: Final = 150
+FORMATS: Final = (".png", ".svg", ".pdf")
+
+
+def new_figure(width: float, height: float) -> Figure:
+    """An empty figure [inch], laid out by constraints."""
+    figure = Figure(figsize=(width, height), dpi=DOTS_PER_INCH, layout="constrained")
+    FigureCanvasAgg(figure)
+    return figure
+
+
+def plain_axes(axes: Axes) -> Axes:
+    """Axes with little ink: no upper and right frame, a faint grid behind."""
+    for side in ("top", "right"):
+        axes.spines[side].set_visible(False)
+    for side in ("left", "bottom"):
+        axes.spines[side].set_color("#999999")
+    axes.tick_params(labelsize=9, color="#999999")
+    axes.grid(color="#E6E6E6", linewidth=0.7)
+    axes.set_axisbelow(True)
+    return axes
+
+
+def save_figure(figure: Figure, path: Path) -> None:
+    """Write a picture in the format of the path's ending.
+
+    Raises:
+        InputError: another ending, or the file cannot be written.
+    """
+    if path.suffix.lower() not in FORMATS:
+        raise InputError(f"{path}: expected a picture ending in {', '.join(FORMATS)}")
+    try:
+        figure.savefig(path, facecolor="white")
+    except OSError as error:
+        raise InputError(f"{path}: cannot be written ({error.strerror or error}); choose another file") from None
+
+
+def legible(text: str, longest: int = 34) -> str:
+    """A user's name as a label: no mathematics in its dollar signs, not longer than fits."""
+    short = text if len(text) <= longest else text[: longest - 1] + "…"
+    return short.replace("$", r"\$")

@@ -1,0 +1,202 @@
+"""What a scene means, as tables: gears, meshes, measures and contributors, before anything is run."""
+
+import math
+import re
+from collections.abc import Mapping, Sequence
+
+from rich import box
+from rich.console import Group, RenderableType
+from rich.table import Table
+from rich.text import Text
+
+from tol3d.gears import RIGHT, SpurPair
+from tol3d.model import Contributor, Measure, Mesh, Model, Planar
+from tol3d.model.contributor import INTERNAL_PER_UNIT
+from tol3d.report.heading import OVER_WORDS, QUANTITY_WORDS, TAKE_WORDS
+from tol3d.report.number import NOTHING, UNIT_SIGNS, given_text, measured_text, percent_text, value_text
+from tol3d.tally import reference_form
+from tol3d.units import angle_text
+
+UM = 1000.0  # um in a mm
+UNIT_WORDS = {"um": "µm", "arcmin": "arcmin"}
+
+
+def check_report(model: Model) -> Group:
+    """Everything that a scene says, with what follows from it; nothing is built or drawn."""
+    blocks: list[RenderableType] = [Text(model.name, style="bold"), gears_table(model)]
+    if model.housings:
+        blocks.append(housings_line(model))
+    blocks += [meshes_table(model), measures_table(model)]
+    if model.contributors:
+        blocks.append(contributors_table(model))
+    study = model.study
+    blocks.append(
+        Text(
+            f"study: {study.trials} trials, seed {study.seed}, {study.sampler}, engine {study.engine}, "
+            f"{study.profile_steps} profile steps a flank"
+        )
+    )
+    blocks += [Text(f"warning: {warning}", style="yellow") for warning in model.warnings]
+    return Group(*blocks)
+
+
+def _table(title: str, first: str, headings: Sequence[str]) -> Table:
+    table = Table(
+        title=Text(f"\n{title}", style="bold cyan"),
+        title_justify="left",
+        box=box.SIMPLE_HEAD,
+        pad_edge=False,
+        padding=(0, 1),
+        header_style="bold",
+    )
+    table.add_column(Text(first))
+    for heading in headings:
+        table.add_column(Text(heading), justify="right")
+    return table
+
+
+def gears_table(model: Model) -> Table:
+    """The gears side by side, lengths in mm."""
+    gears = [part.gear for part in model.gears]
+    table = _table("parts", "", [part.name for part in model.gears])
+    rows: Mapping[str, list[str]] = {
+        "teeth z": [str(gear.teeth) for gear in gears],
+        "module m [mm]": [f"{gear.module:g}" for gear in gears],
+        "pressure angle α [°]": [_degrees(gear.pressure_angle) for gear in gears],
+        "face width b [mm]": [f"{gear.face_width:g}" for gear in gears],
+        "profile shift x": [f"{gear.profile_shift:g}" for gear in gears],
+        "addendum, dedendum [m]": [f"{gear.addendum:g}, {gear.dedendum:g}" for gear in gears],
+        "reference diameter d [mm]": [f"{gear.reference_diameter:.4f}" for gear in gears],
+        "tip diameter d_a [mm]": [f"{gear.tip_diameter:.4f}" for gear in gears],
+        "base diameter d_b [mm]": [f"{gear.base_diameter:.4f}" for gear in gears],
+        "root diameter d_f [mm]": [f"{gear.root_diameter:.4f}" for gear in gears],
+        "involute from diameter [mm]": [f"{2 * gear.form_radius:.4f}" for gear in gears],
+        "root fillet [mm]": [f"{gear.fillet_radius:.4f}" for gear in gears],
+        "tooth thickness s [mm]": [f"{gear.tooth_thickness:.4f}" for gear in gears],
+        "thickness at the tip s_a [mm]": [f"{gear.tip_thickness:.4f}" for gear in gears],
+        "bore [mm]": [f"{gear.bore:g}" if gear.bore else NOTHING for gear in gears],
+        "expansion [10⁻⁶/K]": [f"{1e6 * part.expansion:g}" if part.expansion else NOTHING for part in model.gears],
+    }
+    for label, cells in rows.items():
+        table.add_row(Text(label), *cells)
+    return table
+
+
+def housings_line(model: Model) -> Text:
+    """Housings and their expansion."""
+    words = [f"{part.name} ({1e6 * part.expansion:g}·10⁻⁶/K)" for part in model.housings]
+    return Text(f"housing: {', '.join(words)}")
+
+
+def meshes_table(model: Model) -> Table:
+    """The moves, with what the nominal pair gives."""
+    table = _table("moves", "", [mesh.name for mesh in model.meshes])
+    rows: Mapping[str, list[str]] = {
+        "driver → driven": [f"{mesh.driver} → {mesh.driven}" for mesh in model.meshes],
+        "driver's working flank": ["right" if mesh.working_flank == RIGHT else "left" for mesh in model.meshes],
+        "housing": [mesh.housing or NOTHING for mesh in model.meshes],
+    }
+    for label, cells in rows.items():
+        table.add_row(label, *(Text(cell) for cell in cells))
+    pairs = [_pair_rows(mesh.pair) for mesh in model.meshes]
+    for label in pairs[0]:
+        table.add_row(label, *(cells[label] for cells in pairs))
+    return table
+
+
+def _pair_rows(pair: SpurPair) -> dict[str, str]:
+    driver, driven = pair.angular_backlash
+    return {
+        "centre distance a [mm]": f"{pair.centre_distance:.4f}",
+        "without backlash at [mm]": f"{pair.zero_backlash_centre_distance:.4f}",
+        "working pressure angle α_w [°]": _degrees(pair.working_pressure_angle),
+        "contact ratio ε_α": f"{pair.contact_ratio:.4f}",
+        "same teeth meet after [turns]": str(pair.long_period_turns),
+        "nominal normal backlash [µm]": value_text(pair.normal_backlash * UM, "um"),
+        "nominal circumferential [µm]": value_text(pair.circumferential_backlash * UM, "um"),
+        "nominal radial [µm]": value_text(pair.radial_backlash * UM, "um"),
+        "nominal angular, driver / driven": f"{angle_text(driver)} / {angle_text(driven)}",
+    }
+
+
+def measures_table(model: Model) -> Table:
+    """The measures with limits and positions."""
+    table = Table(
+        title=Text("\nmeasures", style="bold cyan"), title_justify="left", box=box.SIMPLE_HEAD, pad_edge=False
+    )
+    for heading in ("", "what", "positions", "limits"):
+        table.add_column(heading)
+    for measure in model.measures:
+        kind = measure.kind
+        gear = f" of {kind.gear}" if kind.is_angle else ""
+        what = f"{TAKE_WORDS[measure.take]}{QUANTITY_WORDS[kind.quantity]}{gear}, {kind.mesh}"
+        curve = " (curve)" if measure.take == "curve" else ""
+        table.add_row(Text(measure.name), Text(what + curve), _positions(measure), _limits(measure))
+    return table
+
+
+def _positions(measure: Measure) -> str:
+    positions = measure.positions
+    if positions.over == "at":
+        return f"driver at {_degrees(positions.angle)}°"
+    if positions.over == "random":
+        return OVER_WORDS["random"]
+    turns = f"{positions.turns} turn{'' if positions.turns == 1 else 's'}"
+    return f"{positions.count} in {turns} of the driver"
+
+
+def _limits(measure: Measure) -> str:
+    limits = ((sign, limit) for sign, limit in (("≥", measure.lower_limit), ("≤", measure.upper_limit)))
+    per, unit = measure.per_internal, measure.unit
+    sign_of_unit = "" if measure.kind.is_angle else f" {UNIT_SIGNS[unit]}"
+    given = [f"{sign} {given_text(limit * per, unit)}{sign_of_unit}" for sign, limit in limits if limit is not None]
+    return ", ".join(given) or NOTHING
+
+
+def contributors_table(model: Model) -> Table:
+    """The contributors: law, limits, and what the first measure of their mesh makes of them.
+
+    The coefficient is the first-order change of that measure per unit of the deviation; of one with a
+    random direction, per length in its worst direction.
+    """
+    headings = ("distribution", "low", "high", "sigma", "unit", "coefficient", "share [%]")
+    table = _table("contributors", "", headings)
+    table.columns[1].justify = "left"
+    table.columns[5].justify = "left"
+    for contributor in model.contributors:
+        law, per = contributor.distribution, INTERNAL_PER_UNIT[contributor.unit]
+        numbers = (f"{_plain(value / per)}" for value in (law.low, law.high, law.sigma))
+        sign = UNIT_SIGNS[contributor.unit]
+        table.add_row(
+            Text(contributor.name), distribution_words(contributor), *numbers, sign, *_effect(model, contributor)
+        )
+    return table
+
+
+def distribution_words(contributor: Contributor) -> str:
+    """The law of a contributor and the direction of its deviation."""
+    law = re.sub(r"(?<=[a-z])(?=[A-Z])", " ", type(contributor.distribution).__name__).lower()
+    if not isinstance(contributor.draw, Planar):
+        return law
+    direction = contributor.draw.direction
+    return f"{law}, random direction" if direction is None else f"{law}, at {_degrees(direction)}°"
+
+
+def _effect(model: Model, contributor: Contributor) -> tuple[str, str]:
+    """Coefficient and share of a contributor in the first measure that it acts on."""
+    for measure in model.measures:
+        form = reference_form(model, measure)
+        share = next((s for s in form.shares if s.name == contributor.name), None) if form else None
+        if form is not None and share is not None:
+            per = measure.per_internal * INTERNAL_PER_UNIT[contributor.unit]
+            unit = f"{UNIT_WORDS[measure.unit]}/{UNIT_SIGNS[contributor.unit]}"
+            return f"{share.coefficient * per:+.4g} {unit}", percent_text(form.percent(contributor.name))
+    return NOTHING, NOTHING
+
+
+def _plain(value: float) -> str:
+    return f"{value:.3f}".rstrip("0").rstrip(".") if abs(value) < UM else f"{value:g}"
+
+
+def _degrees(angle: float) -> str:
+    return f"{round(math.degrees(angle), 4):g}"

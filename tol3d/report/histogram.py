@@ -1,0 +1,285 @@
+"""The picture of a run: each measure's histogram with limits and published ranges, its contributors beside."""
+
+import math
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.gridspec import SubplotSpec
+from numpy.typing import NDArray
+
+from tol3d.report.bars import Bars, bars_of
+from tol3d.report.canvas import (
+    BLACK,
+    GREY,
+    ORANGE,
+    OUTSIDE,
+    PUBLISHED_COLOURS,
+    ROAD_COLOURS,
+    legible,
+    new_figure,
+    plain_axes,
+    save_figure,
+)
+from tol3d.report.column import Column, best_road, columns_of, ranked_contributors, shares_of
+from tol3d.report.heading import heading
+from tol3d.report.number import given_text, measured_text, ppm_text
+
+Summary = Mapping[str, Any]
+Array = NDArray[np.float64]
+
+AXIS_UNITS = {"um": "µm", "arcmin": "arc minutes"}
+SIGMAS_SHOWN = 3.6  # of the mean; a little more than the +-3 sigma that are marked
+LIMIT_REACH = 0.6  # of the shown span; a limit further off is told at the edge, not drawn to scale
+MOST_CONTRIBUTORS = 9  # bars; the rest is shown as one
+TURN = 360.0  # deg; from two turns on the axis counts turns
+
+
+def draw_histogram(summary: Summary, path: Path) -> None:
+    """Draw every measure of a run: `path` ends in .png, .svg or .pdf.
+
+    Raises:
+        InputError: the picture cannot be written there.
+    """
+    measures = summary["measures"]
+    heights = [3.6 if measure["take"] == "curve" else 4.3 + 0.22 * len(columns_of(measure)) for measure in measures.values()]
+    figure = new_figure(13.0, sum(heights) + 0.5)
+    figure.get_layout_engine().set(w_pad=0.12, h_pad=0.14, wspace=0.03, hspace=0.04)  # type: ignore[union-attr]
+    figure.suptitle(
+        f"{legible(summary['scene'], 70)}   ·   {summary['trials']} trials, seed {summary['seed']}",
+        fontsize=12,
+        color=BLACK,
+        x=0.01,
+        ha="left",
+    )
+    rows = figure.add_gridspec(len(measures), 1, height_ratios=heights)
+    for row, (name, measure) in zip(rows, measures.items(), strict=True):
+        if measure["take"] == "curve":
+            draw_curve(plain_axes(figure.add_subplot(row)), name, measure)
+        else:
+            _draw_scalar(row, name, measure)
+    save_figure(figure, path)
+
+
+def _draw_scalar(place: SubplotSpec, name: str, measure: Summary) -> None:
+    figure = place.get_gridspec().figure
+    assert figure is not None  # a gridspec made by a figure knows it
+    columns, shares = columns_of(measure), shares_of(measure)
+    left, right = place.subgridspec(1, 2, width_ratios=[2.2, 1]) if shares else (place, None)
+    upper, lower = left.subgridspec(2, 1, height_ratios=[3.4, 0.28 * len(columns) + 0.15], hspace=0.02)
+    axes = plain_axes(figure.add_subplot(upper))
+    draw_distribution(axes, name, measure)
+    ranges = figure.add_subplot(lower, sharex=axes)
+    draw_ranges(ranges, columns, measure["unit"])
+    axes.tick_params(labelbottom=False)
+    ranges.set_xlabel(f"{legible(name, 60)} [{AXIS_UNITS[measure['unit']]}]", fontsize=10)
+    if right is not None:
+        draw_contributors(figure.add_subplot(right), measure, shares)
+
+
+# histogram ----------------------------------------------------------------------------------------
+
+
+def draw_distribution(axes: Axes, name: str, measure: Summary) -> None:
+    """Both roads' histograms over each other, the closed form's normal curve, limits and +-3 sigma."""
+    unit = measure["unit"]
+    bars = bars_of(measure["histogram"])
+    if not bars:
+        axes.text(0.5, 0.5, "no trial gave a value", transform=axes.transAxes, ha="center", color=OUTSIDE)
+        return
+    span = shown_span(measure, bars)
+    leading = best_road(measure)
+    _fill(axes, bars[leading], measure, leading)
+    if leading != "analytic":
+        axes.stairs(
+            bars["analytic"].density, bars["analytic"].edges, color=ORANGE, linewidth=2.0, label="analytic, same trials"
+        )
+    form = measure.get("analytic_closed_form")
+    if form and form["sigma"]:
+        x = np.linspace(*span, 400)
+        normal = 100 * np.exp(-(((x - form["mean"]) / form["sigma"]) ** 2) / 2) / (form["sigma"] * math.sqrt(2 * math.pi))
+        axes.plot(x, normal, color=BLACK, linewidth=1.2, linestyle=(0, (5, 3)), label="analytic, closed form (normal)")
+    top = max(float(b.density.max()) for b in bars.values())
+    axes.set_ylim(0, 1.22 * top)
+    axes.set_xlim(*span)
+    _mark_sigmas(axes, measure[leading], unit)
+    _mark_limits(axes, measure, span, measure[leading])
+    axes.set_ylabel(f"% of trials per {'µm' if unit == 'um' else 'arc minute'}", fontsize=10)
+    axes.set_title(f"{legible(name, 60)}\n", loc="left", fontsize=12, fontweight="bold")
+    axes.text(0, 1.025, legible(heading(measure), 110), transform=axes.transAxes, fontsize=9, color=GREY)
+    axes.legend(fontsize=8.5, frameon=False, loc="upper right", borderaxespad=0.2)
+
+
+def shown_span(measure: Summary, bars: Mapping[str, Bars]) -> tuple[float, float]:
+    """What the axis shows: every bar, +-3 sigma of every column, and limits that are not far off."""
+    lows = [float(b.edges[0]) for b in bars.values()]
+    highs = [float(b.edges[-1]) for b in bars.values()]
+    for column in columns_of(measure):
+        mean, sigma = column.value("mean"), column.value("sigma")
+        spread = (mean - SIGMAS_SHOWN * sigma, mean + SIGMAS_SHOWN * sigma) if mean is not None and sigma else ()
+        ends = (*spread, *(column.value(key) for key in ("low_3sigma", "mean", "high_3sigma")))
+        lows += [end for end in ends if end is not None]
+        highs += [end for end in ends if end is not None]
+    low, high = min(lows), max(highs)
+    reach = LIMIT_REACH * (high - low)
+    limits = [limit for limit in (measure.get("lower_limit"), measure.get("upper_limit")) if limit is not None]
+    near = [limit for limit in limits if low - reach <= limit <= high + reach]
+    low, high = min([low, *near]), max([high, *near])
+    margin = 0.03 * (high - low) or max(1e-3 * abs(low), 1e-3)
+    return low - margin, high + margin
+
+
+def _fill(axes: Axes, bars: Bars, measure: Summary, road: str) -> None:
+    below = measure["lower_limit"] if measure.get("lower_limit") is not None else -math.inf
+    above = measure["upper_limit"] if measure.get("upper_limit") is not None else math.inf
+    outside = (bars.middles < below) | (bars.middles > above)
+    label = "3D simulation" if road == "geometric" else "analytic, same trials"
+    for chosen, colour, text in ((~outside, ROAD_COLOURS[road], label), (outside, OUTSIDE, "out of limits")):
+        if chosen.any():
+            axes.bar(
+                bars.edges[:-1][chosen],
+                bars.density[chosen],
+                width=np.diff(bars.edges)[chosen],
+                align="edge",
+                color=colour,
+                alpha=0.55 if colour != OUTSIDE else 0.85,
+                edgecolor="white",
+                linewidth=0.5,
+                label=text,
+            )
+
+
+def _mark_sigmas(axes: Axes, sample: Summary, unit: str) -> None:
+    for key, word in (("low_3sigma", "−3σ"), ("mean", "mean"), ("high_3sigma", "+3σ")):
+        value = sample.get(key)
+        if value is None:
+            continue
+        axes.axvline(value, ymax=0.9, color=GREY, linewidth=1.0, linestyle=":")
+        axes.annotate(
+            f"{word}\n{_short(value, unit)}",
+            (value, 0.905),
+            xycoords=("data", "axes fraction"),
+            ha="center",
+            va="bottom",
+            fontsize=8.5,
+            color=BLACK,
+        )
+
+
+def _mark_limits(axes: Axes, measure: Summary, span: tuple[float, float], sample: Summary) -> None:
+    unit = measure["unit"]
+    for key, word, ppm in (("lower_limit", "LSL", "below"), ("upper_limit", "USL", "above")):
+        limit = measure.get(key)
+        if limit is None:
+            continue
+        lower = key == "lower_limit"
+        text = f"{word} {given_text(limit, unit)}{'' if unit == 'arcmin' else ' µm'}\n"
+        text += f"{ppm_text(sample.get(f'{ppm}_limit_ppm'))} ppm out"
+        inside = span[0] <= limit <= span[1]
+        if inside:
+            axes.axvline(limit, color=OUTSIDE, linewidth=2.0)
+        else:
+            text = f"◄ {text}" if lower else f"{text} ►"
+        axes.annotate(
+            text,
+            (min(max(limit, span[0]), span[1]), 0.72),
+            xycoords=("data", "axes fraction"),
+            xytext=(5 if lower else -5, 0),
+            textcoords="offset points",
+            ha="left" if lower else "right",
+            fontsize=9,
+            color=OUTSIDE,
+            bbox={"facecolor": "white", "edgecolor": "none", "alpha": 0.75, "pad": 1.5},
+        )
+
+
+def _short(value: float, unit: str) -> str:
+    return measured_text(value, unit) if unit == "arcmin" else f"{value:.1f} µm"
+
+
+def draw_ranges(axes: Axes, columns: Sequence[Column], unit: str) -> None:
+    """One line a column below the histogram: low to high at +-3 sigma, the mean as a dot."""
+    published = 0
+    for row, column in enumerate(columns):
+        colour = ROAD_COLOURS.get(column.road) or PUBLISHED_COLOURS[published % len(PUBLISHED_COLOURS)]
+        published += column.road == "published"
+        low, mean, high = (column.value(key) for key in ("low_3sigma", "mean", "high_3sigma"))
+        if low is not None and high is not None:
+            axes.plot([low, high], [row, row], color=colour, linewidth=5, solid_capstyle="butt", alpha=0.75)
+        if mean is not None:
+            axes.plot(mean, row, marker="o", markersize=6, color=colour, markeredgecolor="white")
+    axes.set_yticks(range(len(columns)), [legible(column.heading, 28) for column in columns], fontsize=8.5)
+    axes.set_ylim(len(columns) - 0.4, -0.6)
+    axes.tick_params(axis="y", length=0)
+    axes.tick_params(axis="x", labelsize=9, color="#999999")
+    axes.grid(axis="x", color="#E6E6E6", linewidth=0.7)
+    axes.set_axisbelow(True)
+    for side in ("top", "right", "left"):
+        axes.spines[side].set_visible(False)
+
+
+# contributors -------------------------------------------------------------------------------------
+
+
+def draw_contributors(axes: Axes, measure: Summary, columns: Sequence[Column]) -> None:
+    """Shares of the variance as bars: the two roads and every published column."""
+    plain_axes(axes).grid(axis="y", visible=False)
+    names = ranked_contributors(measure)
+    shown, rest = names[:MOST_CONTRIBUTORS], names[MOST_CONTRIBUTORS:]
+    labels = [*(legible(name, 26) for name in shown), *([f"{len(rest)} others"] if rest else [])]
+    height = 0.8 / len(columns)
+    published = 0
+    for k, column in enumerate(columns):
+        colour = ROAD_COLOURS.get(column.road) or PUBLISHED_COLOURS[published % len(PUBLISHED_COLOURS)]
+        published += column.road == "published"
+        values = [column.percents.get(name) or 0.0 for name in shown]
+        values += [sum(column.percents.get(name) or 0.0 for name in rest)] if rest else []
+        places = np.arange(len(values)) - 0.4 + (k + 0.5) * height
+        label = {"analytic": "analytic", "geometric": "3D simulation"}.get(column.road, legible(column.heading, 28))
+        drawn = axes.barh(places, values, height=0.9 * height, color=colour, alpha=0.8, label=label)
+        if column.road != "published":
+            axes.bar_label(drawn, fmt="%.1f", fontsize=7.5, padding=2, color=BLACK)
+    axes.set_yticks(range(len(labels)), labels, fontsize=9)
+    axes.tick_params(axis="y", length=0)
+    axes.set_ylim(len(labels) - 0.5, -0.5)
+    axes.margins(x=0.12)
+    axes.set_xlim(left=0)
+    axes.set_xlabel("share of the variance [%]", fontsize=10)
+    axes.set_title("contributors", loc="left", fontsize=11, fontweight="bold")
+    axes.legend(fontsize=8.5, frameon=False, loc="lower right")
+
+
+# curve --------------------------------------------------------------------------------------------
+
+
+def draw_curve(axes: Axes, name: str, measure: Summary) -> None:
+    """A curve over the driver's position: mean, +-3 sigma and extremes of the 3D simulation, the analytic mean."""
+    unit, curve = measure["unit"], measure["curve"]
+    degrees = np.asarray(measure["position_deg"])
+    in_turns = len(degrees) > 0 and degrees[-1] > 2 * TURN
+    x = degrees / TURN if in_turns else degrees
+    leading = best_road(measure)
+    own = curve[leading]
+    mean, sigma = np.asarray(own["mean"], dtype=float), np.asarray(own["sigma"], dtype=float)
+    word = "3D simulation" if leading == "geometric" else "analytic"
+    colour = ROAD_COLOURS[leading]
+    axes.fill_between(x, own["min"], own["max"], color=colour, alpha=0.13, linewidth=0, label=f"{word}, all trials")
+    axes.fill_between(
+        x, mean - 3 * sigma, mean + 3 * sigma, color=colour, alpha=0.28, linewidth=0, label=f"{word}, ±3 sigma"
+    )
+    axes.plot(x, mean, color=colour, linewidth=2, label=f"{word}, mean")
+    if leading != "analytic":
+        axes.plot(x, curve["analytic"]["mean"], color=ORANGE, linewidth=1.8, linestyle="--", label="analytic, mean")
+    for key, limit_word in (("lower_limit", "LSL"), ("upper_limit", "USL")):
+        if measure.get(key) is not None:
+            axes.axhline(measure[key], color=OUTSIDE, linewidth=2, label=f"{limit_word} {given_text(measure[key], unit)}")
+    axes.set_xlim(x[0], x[-1])
+    axes.set_xlabel(f"driver position [{'turns' if in_turns else 'deg'}]", fontsize=10)
+    axes.set_ylabel(f"[{AXIS_UNITS[unit]}]", fontsize=10)
+    axes.set_title(f"{legible(name, 60)}\n", loc="left", fontsize=12, fontweight="bold")
+    axes.text(0, 1.03, legible(heading(measure), 110), transform=axes.transAxes, fontsize=9, color=GREY)
+    axes.legend(fontsize=8.5, frameon=False, loc="center left", bbox_to_anchor=(1.0, 0.5))
+
+
