@@ -24,6 +24,7 @@ SHORTEST_EDGE = 1e-6  # mm; ten times OCC's point tolerance: what is shorter is 
 SIDES: dict[Flank, str] = {RIGHT: "right", LEFT: "left"}
 
 Point = tuple[float, float]
+_Corners = dict[tuple[Flank, str], TopoDS_Vertex]
 
 
 def flank_name(tooth: int, flank: Flank) -> str:
@@ -54,7 +55,7 @@ def flank_intervals(gear: SpurGear) -> int:
     |P''''| = r_b |3 + i sigma t|, largest at the tip.
     """
     fourth_derivative = gear.base_radius * math.hypot(3.0, gear.tip_roll)
-    longest = (FLANK_ERROR / (CUBIC_SPLINE_CONSTANT * fourth_derivative)) ** 0.25
+    longest = math.sqrt(math.sqrt(FLANK_ERROR / (CUBIC_SPLINE_CONSTANT * fourth_derivative)))
     return max(FEWEST_INTERVALS, math.ceil((gear.tip_roll - gear.form_roll) / longest))
 
 
@@ -72,16 +73,20 @@ class _Side:
     tip: Point
     flank: Geom_Curve
 
+    @property
+    def radial(self) -> bool:
+        """Whether a radial line leads from the fillet to the involute."""
+        return math.dist(self.top, self.start) > SHORTEST_EDGE
+
 
 def _side(gear: SpurGear, flank: Flank) -> _Side:
     ends = gear.flank_points(np.array([gear.form_roll, gear.tip_roll]), flank)
     (start_x, start_y), (tip_x, tip_y) = ends.tolist()
-    start, top = (start_x, start_y), gear.fillet_top(flank)
     return _Side(
         bottom=gear.fillet_bottom(flank),
         centre=gear.fillet_centre(flank),
-        top=top if math.dist(top, start) > SHORTEST_EDGE else start,
-        start=start,
+        top=gear.fillet_top(flank),
+        start=(start_x, start_y),
         tip=(tip_x, tip_y),
         flank=_flank_curve(gear, flank),
     )
@@ -111,36 +116,41 @@ def _flank_curve(gear: SpurGear, flank: Flank) -> Geom_Curve:
 def _outline(gear: SpurGear) -> Iterator[NamedEdge]:
     """The transverse section, counter-clockwise, beginning at the root below the right flank of tooth 0."""
     sides: dict[Flank, _Side] = {RIGHT: _side(gear, RIGHT), LEFT: _side(gear, LEFT)}
-    teeth = [_Tooth(gear, number, sides) for number in range(gear.teeth)]
+    corners = [_corners(gear, number, sides) for number in range(gear.teeth)]
     full_round = gear.root_arc <= SHORTEST_EDGE
     if full_round:
-        for tooth, following in zip(teeth, teeth[1:] + teeth[:1], strict=True):
-            following.vertices[RIGHT, "bottom"] = tooth.vertices[LEFT, "bottom"]
+        before = corners[-1:] + corners[:-1]
+        corners = [own | {(RIGHT, "bottom"): last[LEFT, "bottom"]} for own, last in zip(corners, before, strict=True)]
     tip_circle, root_circle = (_circle(gear, (0.0, 0.0), radius) for radius in (gear.tip_radius, gear.root_radius))
-    for number, (tooth, following) in enumerate(zip(teeth, teeth[1:] + teeth[:1], strict=True)):
+    for number, (own, following) in enumerate(zip(corners, corners[1:] + corners[:1], strict=True)):
+        tooth = _Tooth(gear, number, sides, own)
         yield from tooth.rising()
-        yield _arc(f"tooth {number} tip", tip_circle, tooth.vertices[RIGHT, "tip"], tooth.vertices[LEFT, "tip"])
+        yield _arc(f"tooth {number} tip", tip_circle, own[RIGHT, "tip"], own[LEFT, "tip"])
         yield from tooth.falling()
         if not full_round:
-            ends = tooth.vertices[LEFT, "bottom"], following.vertices[RIGHT, "bottom"]
-            yield _arc(f"space {number} root", root_circle, *ends)
+            yield _arc(f"space {number} root", root_circle, own[LEFT, "bottom"], following[RIGHT, "bottom"])
 
 
+def _corners(gear: SpurGear, number: int, sides: dict[Flank, _Side]) -> _Corners:
+    """Vertices of a tooth by flank and place: bottom, top (of the fillet), start and tip (of the flank)."""
+    corners = {}
+    for flank, side in sides.items():
+        for place in ("bottom", "start", "tip"):
+            corners[flank, place] = _vertex(gear, _turned(gear, number, getattr(side, place)))
+        corners[flank, "top"] = (
+            _vertex(gear, _turned(gear, number, side.top)) if side.radial else corners[flank, "start"]
+        )
+    return corners
+
+
+@dataclass(frozen=True)
 class _Tooth:
-    """The edges of one tooth: those of tooth 0, turned; vertices are shared between its edges."""
+    """The edges of one tooth: those of tooth 0, turned."""
 
-    def __init__(self, gear: SpurGear, number: int, sides: dict[Flank, _Side]) -> None:
-        self._gear, self._number, self._sides = gear, number, sides
-        angle = gear.angular_pitch * number
-        self._cos, self._sin = math.cos(angle), math.sin(angle)
-        self._turn = gp_Trsf()
-        self._turn.SetRotation(gp_Ax1(gp_Pnt(0.0, 0.0, 0.0), gp_Dir(0.0, 0.0, 1.0)), angle)
-        self.vertices: dict[tuple[Flank, str], TopoDS_Vertex] = {}
-        for flank, side in sides.items():
-            for place in ("bottom", "top", "tip"):
-                self.vertices[flank, place] = self._vertex(getattr(side, place))
-            below = side.top != side.start
-            self.vertices[flank, "start"] = self._vertex(side.start) if below else self.vertices[flank, "top"]
+    gear: SpurGear
+    number: int
+    sides: dict[Flank, _Side]
+    corners: _Corners
 
     def rising(self) -> Iterator[NamedEdge]:
         """Right side, from the root circle to the tip."""
@@ -156,27 +166,33 @@ class _Tooth:
         yield self._fillet(LEFT, "top", "bottom")
 
     def _fillet(self, flank: Flank, begin: str, end: str) -> NamedEdge:
-        circle = _circle(self._gear, self._turned(self._sides[flank].centre), self._gear.fillet_radius, up=-1.0)
-        ends = self.vertices[flank, begin], self.vertices[flank, end]
-        return _arc(f"tooth {self._number} {SIDES[flank]} fillet", circle, *ends)
+        centre = _turned(self.gear, self.number, self.sides[flank].centre)
+        circle = _circle(self.gear, centre, self.gear.fillet_radius, up=-1.0)
+        name = f"tooth {self.number} {SIDES[flank]} fillet"
+        return _arc(name, circle, self.corners[flank, begin], self.corners[flank, end])
 
     def _radial(self, flank: Flank, begin: str, end: str) -> Iterator[NamedEdge]:
-        if self._sides[flank].top != self._sides[flank].start:
-            edge = BRepBuilderAPI_MakeEdge(self.vertices[flank, begin], self.vertices[flank, end]).Edge()
-            yield NamedEdge(f"tooth {self._number} {SIDES[flank]} radial", cq.Edge(edge))
+        if self.sides[flank].radial:
+            edge = BRepBuilderAPI_MakeEdge(self.corners[flank, begin], self.corners[flank, end]).Edge()
+            yield NamedEdge(f"tooth {self.number} {SIDES[flank]} radial", cq.Edge(edge))
 
     def _flank(self, flank: Flank) -> NamedEdge:
-        curve = self._sides[flank].flank.Transformed(self._turn)
-        ends = self.vertices[flank, "start"], self.vertices[flank, "tip"]
-        edge = BRepBuilderAPI_MakeEdge(curve, *ends, self._gear.form_roll, self._gear.tip_roll).Edge()
-        return NamedEdge(flank_name(self._number, flank), cq.Edge(edge))
+        turn = gp_Trsf()
+        turn.SetRotation(gp_Ax1(gp_Pnt(0.0, 0.0, 0.0), gp_Dir(0.0, 0.0, 1.0)), self.gear.angular_pitch * self.number)
+        curve = self.sides[flank].flank.Transformed(turn)
+        ends = self.corners[flank, "start"], self.corners[flank, "tip"]
+        edge = BRepBuilderAPI_MakeEdge(curve, *ends, self.gear.form_roll, self.gear.tip_roll).Edge()
+        return NamedEdge(flank_name(self.number, flank), cq.Edge(edge))
 
-    def _turned(self, point: Point) -> Point:
-        x, y = point
-        return self._cos * x - self._sin * y, self._sin * x + self._cos * y
 
-    def _vertex(self, point: Point) -> TopoDS_Vertex:
-        return BRepBuilderAPI_MakeVertex(gp_Pnt(*self._turned(point), -self._gear.face_width / 2)).Vertex()
+def _turned(gear: SpurGear, number: int, point: Point) -> Point:
+    angle = gear.angular_pitch * number
+    (x, y), cos, sin = point, math.cos(angle), math.sin(angle)
+    return cos * x - sin * y, sin * x + cos * y
+
+
+def _vertex(gear: SpurGear, point: Point) -> TopoDS_Vertex:
+    return BRepBuilderAPI_MakeVertex(gp_Pnt(*point, -gear.face_width / 2)).Vertex()
 
 
 def _circle(gear: SpurGear, centre: Point, radius: float, up: float = 1.0) -> Geom_Circle:

@@ -60,8 +60,9 @@ def test_the_spur_pair_is_that_of_the_papers_tables() -> None:
     assert mean_and_sigma_um["wheel tooth thickness"] == pytest.approx(((-21 - 32) / 2, 11 / 6))
     assert mean_and_sigma_um["centre distance"] == pytest.approx((0.0, 20 / 3))
     assert mean_and_sigma_um["bearing clearance"] == pytest.approx((16.0, 28 / 6))
-    scales = {name: 1e3 * law.scale for name, law in laws.items() if "eccentricity" in name or "run-out" in name}
-    assert scales == pytest.approx({"wheel eccentricity": 31 / 6, "pinion eccentricity": 27 / 6, "reducer run-out": 8 / 6})
+    limits_um = {"wheel eccentricity": 31, "pinion eccentricity": 27, "reducer run-out": 8}
+    assert {name: 6e3 * laws[name].scale for name in limits_um} == pytest.approx(limits_um)
+    assert len(laws) == 7
 
 
 def test_the_papers_published_columns_agree_with_its_own_formulas() -> None:

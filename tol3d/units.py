@@ -197,9 +197,7 @@ def _quantity_schema(dimensions: tuple[Dimension, ...]) -> core_schema.CoreSchem
         try:
             quantity = Quantity.parse(text)
         except ValueError as error:
-            raise PydanticCustomError(
-                "quantity", "{reason}", {"reason": str(error), "expected": dimensions}
-            ) from None
+            raise PydanticCustomError("quantity", "{reason}", {"reason": str(error), "expected": dimensions}) from None
         if dimensions:
             refuse_dimension(quantity, dimensions)
         return quantity
@@ -210,9 +208,7 @@ def _quantity_schema(dimensions: tuple[Dimension, ...]) -> core_schema.CoreSchem
 
 
 def _json_schema(*dimensions: Dimension) -> dict[str, Any]:
-    units = "|".join(
-        re.sub("^u", "[uµμ]", re.escape(unit)) for dimension in dimensions for unit in FACTORS[dimension]
-    )
+    units = "|".join(re.sub("^u", "[uµμ]", re.escape(unit)) for dimension in dimensions for unit in FACTORS[dimension])
     return {
         "type": "string",
         "title": " or ".join(dimensions),

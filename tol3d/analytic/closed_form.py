@@ -2,10 +2,12 @@
 
 The terms of the stack-up are independent, so means and variances add. Deviations with a direction
 count by the mean square of their length; tilts by numerical integration of their one-sided loss.
+Offsets of fixed direction that turn together are the exception: a random position turns them alike,
+so they vary together, and each takes half of their covariance.
 """
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -54,6 +56,8 @@ def closed_form(model: Model, measure: Measure) -> ClosedForm | None:
     stack = SpurStack(model, model.mesh(measure.kind.mesh))
     factor = per_normal_backlash(model, measure.kind)
     linear = [_linear_share(term, stack, measure.positions, factor) for term in stack.terms if not term.one_sided]
+    if measure.positions.over == "random":
+        linear = _with_covariances(linear, [term for term in stack.terms if not term.one_sided], stack)
     tilts = _tilt_shares([term for term in stack.terms if term.one_sided], factor)
     if tilts is None:
         return None
@@ -84,6 +88,37 @@ def _linear_share(term: Term, stack: SpurStack, positions: Positions, factor: fl
         coefficient *= math.cos(term.along - turn - draw.direction)
         mean, variance = coefficient * law.mean, coefficient**2 * law.variance
     return Share(term.contributor.name, coefficient, mean, variance)
+
+
+def _with_covariances(shares: list[Share], terms: list[Term], stack: SpurStack) -> list[Share]:
+    """Shares with the covariances of offsets that turn together at a random position."""
+    added = [0.0] * len(shares)
+    for i, first in enumerate(terms):
+        for j, second in enumerate(terms):
+            if i != j:
+                lengths = first.contributor.distribution.mean * second.contributor.distribution.mean
+                added[i] += shares[i].coefficient * shares[j].coefficient * lengths * _turn_alike(first, second, stack)
+    return [replace(share, variance=share.variance + own) for share, own in zip(shares, added, strict=True)]
+
+
+def _turn_alike(first: Term, second: Term, stack: SpurStack) -> float:
+    """Mean over the long period of the product of the cosines with which two turning offsets act."""
+    draws = (first.contributor.draw, second.contributor.draw)
+    if not (first.turns and second.turns):
+        return 0.0
+    phases = [
+        term.along - draw.direction
+        for term, draw in zip((first, second), draws, strict=True)
+        if isinstance(draw, Planar) and draw.direction is not None
+    ]
+    if len(phases) < 2:
+        return 0.0
+    if first.turns == second.turns:
+        return math.cos(phases[0] - phases[1]) / 2
+    if stack.pair.pinion.teeth != stack.pair.wheel.teeth:
+        return 0.0
+    start = float(stack.pair.driven_angle(np.zeros(1))[0])  # the wheel turns against the pinion from there
+    return math.cos(phases[0] + phases[1] - start) / 2
 
 
 def _tilt_shares(terms: list[Term], factor: float) -> list[Share] | None:

@@ -4,8 +4,11 @@ from pathlib import Path
 from typing import Final
 
 from matplotlib.axes import Axes
+from matplotlib.axis import Axis
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
+from matplotlib.layout_engine import ConstrainedLayoutEngine
+from matplotlib.ticker import FuncFormatter, MultipleLocator
 
 from tol3d.errors import InputError
 
@@ -25,12 +28,15 @@ RUN_COLOURS: Final = (BLUE, ORANGE, GREEN, PURPLE, SKY, VERMILLION, GREY, BLACK)
 OUTSIDE: Final = VERMILLION
 
 DOTS_PER_INCH: Final = 150
+ANGLE_STEPS: Final = (0.1, 0.2, 0.5, 1, 2, 5, 10, 15, 20, 30, 60, 120, 300, 600, 900, 1800, 3600)  # arc seconds
+MOST_TICKS: Final = 9
 FORMATS: Final = (".png", ".svg", ".pdf")
 
 
 def new_figure(width: float, height: float) -> Figure:
     """An empty figure [inch], laid out by constraints."""
-    figure = Figure(figsize=(width, height), dpi=DOTS_PER_INCH, layout="constrained")
+    layout = ConstrainedLayoutEngine(w_pad=0.08, h_pad=0.08, wspace=0.02, hspace=0.0)
+    figure = Figure(figsize=(width, height), dpi=DOTS_PER_INCH, layout=layout)
     FigureCanvasAgg(figure)
     return figure
 
@@ -45,6 +51,25 @@ def plain_axes(axes: Axes) -> Axes:
     axes.grid(color="#E6E6E6", linewidth=0.7)
     axes.set_axisbelow(True)
     return axes
+
+
+def label_angles(axis: Axis, unit: str) -> None:
+    """Ticks of an axis in arc minutes as minutes and seconds; other units are left as they are."""
+    if unit != "arcmin":
+        return
+    low, high = axis.get_view_interval()
+    step = next((step for step in ANGLE_STEPS if (high - low) * 60 <= MOST_TICKS * step), None)
+    if step is not None:
+        axis.set_major_locator(MultipleLocator(step / 60))
+    axis.set_major_formatter(FuncFormatter(lambda value, position: _minutes_seconds(value)))
+
+
+def _minutes_seconds(arcmin: float) -> str:
+    tenths = round(abs(arcmin) * 600)
+    minutes, rest = divmod(tenths, 600)
+    seconds = f"{rest / 10:04.1f}″" if rest % 10 else f"{rest // 10:02d}″"
+    sign = "−" if arcmin < 0 and tenths else ""
+    return f"{sign}{minutes}′{seconds}" if minutes else f"{sign}{seconds}"
 
 
 def save_figure(figure: Figure, path: Path) -> None:

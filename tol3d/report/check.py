@@ -13,12 +13,11 @@ from tol3d.gears import RIGHT, SpurPair
 from tol3d.model import Contributor, Measure, Mesh, Model, Planar
 from tol3d.model.contributor import INTERNAL_PER_UNIT
 from tol3d.report.heading import OVER_WORDS, QUANTITY_WORDS, TAKE_WORDS
-from tol3d.report.number import NOTHING, UNIT_SIGNS, given_text, measured_text, percent_text, value_text
+from tol3d.report.number import NOTHING, UNIT_SIGNS, given_text, percent_text, value_text
 from tol3d.tally import reference_form
 from tol3d.units import angle_text
 
 UM = 1000.0  # um in a mm
-UNIT_WORDS = {"um": "µm", "arcmin": "arcmin"}
 
 
 def check_report(model: Model) -> Group:
@@ -32,7 +31,7 @@ def check_report(model: Model) -> Group:
     study = model.study
     blocks.append(
         Text(
-            f"study: {study.trials} trials, seed {study.seed}, {study.sampler}, engine {study.engine}, "
+            f"\nstudy: {study.trials} trials, seed {study.seed}, {study.sampler}, engine {study.engine}, "
             f"{study.profile_steps} profile steps a flank"
         )
     )
@@ -45,6 +44,7 @@ def _table(title: str, first: str, headings: Sequence[str]) -> Table:
         title=Text(f"\n{title}", style="bold cyan"),
         title_justify="left",
         box=box.SIMPLE_HEAD,
+        show_edge=False,
         pad_edge=False,
         padding=(0, 1),
         header_style="bold",
@@ -97,10 +97,10 @@ def meshes_table(model: Model) -> Table:
         "housing": [mesh.housing or NOTHING for mesh in model.meshes],
     }
     for label, cells in rows.items():
-        table.add_row(label, *(Text(cell) for cell in cells))
+        table.add_row(Text(label), *(Text(cell) for cell in cells))
     pairs = [_pair_rows(mesh.pair) for mesh in model.meshes]
     for label in pairs[0]:
-        table.add_row(label, *(cells[label] for cells in pairs))
+        table.add_row(Text(label), *(cells[label] for cells in pairs))
     return table
 
 
@@ -121,11 +121,9 @@ def _pair_rows(pair: SpurPair) -> dict[str, str]:
 
 def measures_table(model: Model) -> Table:
     """The measures with limits and positions."""
-    table = Table(
-        title=Text("\nmeasures", style="bold cyan"), title_justify="left", box=box.SIMPLE_HEAD, pad_edge=False
-    )
-    for heading in ("", "what", "positions", "limits"):
-        table.add_column(heading)
+    table = _table("measures", "", ("what", "positions", "limits"))
+    for column in table.columns[1:]:
+        column.justify = "left"
     for measure in model.measures:
         kind = measure.kind
         gear = f" of {kind.gear}" if kind.is_angle else ""
@@ -159,13 +157,14 @@ def contributors_table(model: Model) -> Table:
     The coefficient is the first-order change of that measure per unit of the deviation; of one with a
     random direction, per length in its worst direction.
     """
-    headings = ("distribution", "low", "high", "sigma", "unit", "coefficient", "share [%]")
-    table = _table("contributors", "", headings)
+    table = _table("contributors", "", ("law", "low", "high", "sigma", "unit", "coefficient per unit", "share [%]"))
     table.columns[1].justify = "left"
-    table.columns[5].justify = "left"
+    table.collapse_padding = True
+    for column in table.columns[2:5]:
+        column.no_wrap = True
     for contributor in model.contributors:
         law, per = contributor.distribution, INTERNAL_PER_UNIT[contributor.unit]
-        numbers = (f"{_plain(value / per)}" for value in (law.low, law.high, law.sigma))
+        numbers = (f"{law.low / per:.4g}", f"{law.high / per:.4g}", f"{law.sigma / per:.3g}")
         sign = UNIT_SIGNS[contributor.unit]
         table.add_row(
             Text(contributor.name), distribution_words(contributor), *numbers, sign, *_effect(model, contributor)
@@ -189,13 +188,8 @@ def _effect(model: Model, contributor: Contributor) -> tuple[str, str]:
         share = next((s for s in form.shares if s.name == contributor.name), None) if form else None
         if form is not None and share is not None:
             per = measure.per_internal * INTERNAL_PER_UNIT[contributor.unit]
-            unit = f"{UNIT_WORDS[measure.unit]}/{UNIT_SIGNS[contributor.unit]}"
-            return f"{share.coefficient * per:+.4g} {unit}", percent_text(form.percent(contributor.name))
+            return f"{share.coefficient * per:+.3g} {UNIT_SIGNS[measure.unit]}", percent_text(form.percent(contributor.name))
     return NOTHING, NOTHING
-
-
-def _plain(value: float) -> str:
-    return f"{value:.3f}".rstrip("0").rstrip(".") if abs(value) < UM else f"{value:g}"
 
 
 def _degrees(angle: float) -> str:

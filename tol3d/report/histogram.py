@@ -18,6 +18,7 @@ from tol3d.report.canvas import (
     OUTSIDE,
     PUBLISHED_COLOURS,
     ROAD_COLOURS,
+    label_angles,
     legible,
     new_figure,
     plain_axes,
@@ -30,7 +31,7 @@ from tol3d.report.number import given_text, measured_text, ppm_text
 Summary = Mapping[str, Any]
 Array = NDArray[np.float64]
 
-AXIS_UNITS = {"um": "µm", "arcmin": "arc minutes"}
+AXIS_UNITS = {"um": "µm", "arcmin": "′, ″ of arc"}
 SIGMAS_SHOWN = 3.6  # of the mean; a little more than the +-3 sigma that are marked
 LIMIT_REACH = 0.6  # of the shown span; a limit further off is told at the edge, not drawn to scale
 MOST_CONTRIBUTORS = 9  # bars; the rest is shown as one
@@ -46,15 +47,16 @@ def draw_histogram(summary: Summary, path: Path) -> None:
     measures = summary["measures"]
     heights = [3.6 if measure["take"] == "curve" else 4.3 + 0.22 * len(columns_of(measure)) for measure in measures.values()]
     figure = new_figure(13.0, sum(heights) + 0.5)
-    figure.get_layout_engine().set(w_pad=0.12, h_pad=0.14, wspace=0.03, hspace=0.04)  # type: ignore[union-attr]
+    failed = sum(count for status, count in summary["status"].items() if status != "ok")
     figure.suptitle(
-        f"{legible(summary['scene'], 70)}   ·   {summary['trials']} trials, seed {summary['seed']}",
+        f"{legible(summary['scene'], 70)}   ·   {summary['trials']} trials, seed {summary['seed']}"
+        + (f", {failed} not seated" if failed else ""),
         fontsize=12,
         color=BLACK,
         x=0.01,
         ha="left",
     )
-    rows = figure.add_gridspec(len(measures), 1, height_ratios=heights)
+    rows = figure.add_gridspec(len(measures), 1, height_ratios=heights, hspace=0.08)
     for row, (name, measure) in zip(rows, measures.items(), strict=True):
         if measure["take"] == "curve":
             draw_curve(plain_axes(figure.add_subplot(row)), name, measure)
@@ -74,6 +76,7 @@ def _draw_scalar(place: SubplotSpec, name: str, measure: Summary) -> None:
     ranges = figure.add_subplot(lower, sharex=axes)
     draw_ranges(ranges, columns, measure["unit"])
     axes.tick_params(labelbottom=False)
+    label_angles(ranges.xaxis, measure["unit"])
     ranges.set_xlabel(f"{legible(name, 60)} [{AXIS_UNITS[measure['unit']]}]", fontsize=10)
     if right is not None:
         draw_contributors(figure.add_subplot(right), measure, shares)
@@ -93,23 +96,20 @@ def draw_distribution(axes: Axes, name: str, measure: Summary) -> None:
     leading = best_road(measure)
     _fill(axes, bars[leading], measure, leading)
     if leading != "analytic":
-        axes.stairs(
-            bars["analytic"].density, bars["analytic"].edges, color=ORANGE, linewidth=2.0, label="analytic, same trials"
-        )
+        axes.stairs(bars["analytic"].density, bars["analytic"].edges, color=ORANGE, linewidth=2.0)
     form = measure.get("analytic_closed_form")
     if form and form["sigma"]:
         x = np.linspace(*span, 400)
         normal = 100 * np.exp(-(((x - form["mean"]) / form["sigma"]) ** 2) / 2) / (form["sigma"] * math.sqrt(2 * math.pi))
-        axes.plot(x, normal, color=BLACK, linewidth=1.2, linestyle=(0, (5, 3)), label="analytic, closed form (normal)")
+        axes.plot(x, normal, color=BLACK, linewidth=1.2, linestyle=(0, (5, 3)))
     top = max(float(b.density.max()) for b in bars.values())
     axes.set_ylim(0, 1.22 * top)
     axes.set_xlim(*span)
     _mark_sigmas(axes, measure[leading], unit)
     _mark_limits(axes, measure, span, measure[leading])
-    axes.set_ylabel(f"% of trials per {'µm' if unit == 'um' else 'arc minute'}", fontsize=10)
+    axes.set_ylabel(f"% of trials per {'µm' if unit == 'um' else '′'}", fontsize=10)
     axes.set_title(f"{legible(name, 60)}\n", loc="left", fontsize=12, fontweight="bold")
     axes.text(0, 1.025, legible(heading(measure), 110), transform=axes.transAxes, fontsize=9, color=GREY)
-    axes.legend(fontsize=8.5, frameon=False, loc="upper right", borderaxespad=0.2)
 
 
 def shown_span(measure: Summary, bars: Mapping[str, Bars]) -> tuple[float, float]:
@@ -135,8 +135,7 @@ def _fill(axes: Axes, bars: Bars, measure: Summary, road: str) -> None:
     below = measure["lower_limit"] if measure.get("lower_limit") is not None else -math.inf
     above = measure["upper_limit"] if measure.get("upper_limit") is not None else math.inf
     outside = (bars.middles < below) | (bars.middles > above)
-    label = "3D simulation" if road == "geometric" else "analytic, same trials"
-    for chosen, colour, text in ((~outside, ROAD_COLOURS[road], label), (outside, OUTSIDE, "out of limits")):
+    for chosen, colour in ((~outside, ROAD_COLOURS[road]), (outside, OUTSIDE)):
         if chosen.any():
             axes.bar(
                 bars.edges[:-1][chosen],
@@ -147,7 +146,6 @@ def _fill(axes: Axes, bars: Bars, measure: Summary, road: str) -> None:
                 alpha=0.55 if colour != OUTSIDE else 0.85,
                 edgecolor="white",
                 linewidth=0.5,
-                label=text,
             )
 
 
@@ -170,13 +168,13 @@ def _mark_sigmas(axes: Axes, sample: Summary, unit: str) -> None:
 
 def _mark_limits(axes: Axes, measure: Summary, span: tuple[float, float], sample: Summary) -> None:
     unit = measure["unit"]
-    for key, word, ppm in (("lower_limit", "LSL", "below"), ("upper_limit", "USL", "above")):
+    for key, word, side in (("lower_limit", "LSL", "below"), ("upper_limit", "USL", "above")):
         limit = measure.get(key)
         if limit is None:
             continue
         lower = key == "lower_limit"
         text = f"{word} {given_text(limit, unit)}{'' if unit == 'arcmin' else ' µm'}\n"
-        text += f"{ppm_text(sample.get(f'{ppm}_limit_ppm'))} ppm out"
+        text += f"{ppm_text(sample.get(f'{side}_limit_ppm'))} ppm {side}"
         inside = span[0] <= limit <= span[1]
         if inside:
             axes.axvline(limit, color=OUTSIDE, linewidth=2.0)
@@ -239,8 +237,9 @@ def draw_contributors(axes: Axes, measure: Summary, columns: Sequence[Column]) -
         places = np.arange(len(values)) - 0.4 + (k + 0.5) * height
         label = {"analytic": "analytic", "geometric": "3D simulation"}.get(column.road, legible(column.heading, 28))
         drawn = axes.barh(places, values, height=0.9 * height, color=colour, alpha=0.8, label=label)
-        if column.road != "published":
-            axes.bar_label(drawn, fmt="%.1f", fontsize=7.5, padding=2, color=BLACK)
+        known = [column.percents.get(name) is not None for name in shown] + [any(values)] * bool(rest)
+        texts = [f"{value:.1f}" if told else "" for value, told in zip(values, known, strict=True)]
+        axes.bar_label(drawn, labels=texts, fontsize=7, padding=2, color=BLACK)
     axes.set_yticks(range(len(labels)), labels, fontsize=9)
     axes.tick_params(axis="y", length=0)
     axes.set_ylim(len(labels) - 0.5, -0.5)
@@ -277,7 +276,8 @@ def draw_curve(axes: Axes, name: str, measure: Summary) -> None:
             axes.axhline(measure[key], color=OUTSIDE, linewidth=2, label=f"{limit_word} {given_text(measure[key], unit)}")
     axes.set_xlim(x[0], x[-1])
     axes.set_xlabel(f"driver position [{'turns' if in_turns else 'deg'}]", fontsize=10)
-    axes.set_ylabel(f"[{AXIS_UNITS[unit]}]", fontsize=10)
+    axes.set_ylabel(f"{legible(name)} [{AXIS_UNITS[unit]}]", fontsize=10)
+    label_angles(axes.yaxis, unit)
     axes.set_title(f"{legible(name, 60)}\n", loc="left", fontsize=12, fontweight="bold")
     axes.text(0, 1.03, legible(heading(measure), 110), transform=axes.transAxes, fontsize=9, color=GREY)
     axes.legend(fontsize=8.5, frameon=False, loc="center left", bbox_to_anchor=(1.0, 0.5))

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 from typing import Any
 
 from rich import box
@@ -10,7 +11,7 @@ from rich.padding import Padding
 from rich.table import Table
 from rich.text import Text
 
-from tol3d.report.column import Column, best_road, columns_of, ranked_contributors, shares_of
+from tol3d.report.column import Column, Road, best_road, columns_of, ranked_contributors, shares_of
 from tol3d.report.heading import heading, limits_text
 from tol3d.report.number import (
     NOTHING,
@@ -36,9 +37,12 @@ ROWS = {
     "sample_max": "largest",
 }
 LOST_MOTION_ROWS = {"low_3sigma": "low", "mean": "mean", "high_3sigma": "high"}
+UNIT_HEADINGS = {"um": "[µm]", "arcmin": "[′, ″ of arc]"}
 INDICES = {"pp": "Pp", "ppk": "Ppk"}
 BUILDS = {"mean_build": "build at all means", "nominal": "nominal build"}
+UNEXPLAINED_SHOWN = 0.05  # %; less is 0.0 in print
 CURVE_ROWS = 12  # positions of a curve that are printed; the picture and the columns have them all
+SHARE_HEADINGS: Mapping[Road, str] = {"analytic": "analytic", "geometric": "3D simulation"}
 STATUS_WORDS = {"ok": "seated", "interferes": "interfering", "no contact": "without contact"}
 FLANKS_OF_A_BACKLASH = 4  # two at the contact, two at the gap; each may miss the true flank by the chord error
 
@@ -63,31 +67,33 @@ def _measure_blocks(name: str, measure: Summary, summary: Summary) -> list[Rende
     title = Text("\n").append(name, style="bold cyan")
     words = Text(f"{heading(measure)} · {limits_text(measure)}", style="dim")
     if measure["take"] == "curve":
-        return [title, words, curve_table(measure)]
-    blocks: list[RenderableType] = [title, words, measure_table(measure)]
+        return [title, words, "", curve_table(measure)]
+    blocks: list[RenderableType] = [title, words, "", measure_table(measure)]
     blocks += [Padding(Text(line, style="dim"), (0, 0, 0, 1)) for line in _notes(measure, summary)]
     if measure["contributors"]:
-        blocks += [contributors_table(measure)]
+        blocks += ["", contributors_table(measure)]
     return blocks
 
 
 def _table(columns: Sequence[Column], corner: str) -> Table:
-    table = Table(box=box.SIMPLE_HEAD, pad_edge=False, padding=(0, 1), header_style="bold")
-    table.add_column(Text(corner), min_width=12)
+    table = Table(box=box.SIMPLE_HEAD, show_edge=False, pad_edge=False, padding=(0, 1), header_style="bold")
+    table.add_column(Text(corner))
     for column in columns:
         style = {"geometric": "bold", "published": "green"}.get(column.road, "")
-        table.add_column(Text(column.heading), justify="right", style=style, min_width=7)
+        table.add_column(Text(column.heading), justify="right", style=style)
     return table
 
 
 def measure_table(measure: Summary) -> Table:
     """Statistics of one scalar measure, one column a road, the published ones last."""
     columns, unit = columns_of(measure), measure["unit"]
-    table = _table(columns, f"{measure['unit'].replace('um', '[µm]').replace('arcmin', 'minutes, seconds of arc')}")
+    table = _table(columns, UNIT_HEADINGS[unit])
+    table.columns[0].no_wrap = True
+    table.collapse_padding = True
     for key, label in ROWS.items():
         table.add_row(Text(label), *(_cell(column, key, unit) for column in columns))
     for key, label in _limit_rows(measure).items():
-        table.add_row(label, *(ppm_text(_ppm(column, key, measure)) for column in columns))
+        table.add_row(Text(label), *(ppm_text(_ppm(column, key, measure)) for column in columns))
     for key, label in INDICES.items():
         if any(column.value(key) is not None for column in columns):
             table.add_row(label, *(_index_text(column.value(key)) for column in columns))
@@ -136,7 +142,7 @@ def _lost_motion_rows(measure: Summary, columns: Sequence[Column]) -> Iterator[t
     for key, word in LOST_MOTION_ROWS.items():
         turns = [(value, motion["arcmin_per_um"]) for value in (column.value(key) for column in columns)]
         cells = [value_text(None if value is None else value * per_um, "arcmin") for value, per_um in turns]
-        yield f"lost motion of {motion['of']}, {word}", cells
+        yield f"lost motion, {word}", cells
 
 
 def _notes(measure: Summary, summary: Summary) -> Iterator[str]:
@@ -157,6 +163,8 @@ def _notes(measure: Summary, summary: Summary) -> Iterator[str]:
             yield f"{_limit_rows(measure)[key]}: the true share lies between {low} and {high} ppm (95 % confidence)"
     if limits and "analytic_closed_form" in measure:
         yield "ppm of the closed form: as if the measure were normal"
+    if "lost_motion" in measure:
+        yield f"lost motion: the turn of {measure['lost_motion']['of']} that this normal backlash leaves free, j_n / r_b"
 
 
 def agreement_line(agreement: Summary, unit: str, chord_error_um: float | None) -> str:
@@ -170,22 +178,26 @@ def agreement_line(agreement: Summary, unit: str, chord_error_um: float | None) 
         return line
     whole = FLANKS_OF_A_BACKLASH * chord_error_um
     return (
-        f"{line}; the flanks' chord error {chord_error_um:.3f} µm explains up to {whole:.3f} µm of normal backlash, "
-        "the rest is beyond first order"
+        f"{line}; up to {whole:.3f} µm of normal backlash may be chord error ({chord_error_um:.3f} µm on each of "
+        f"{FLANKS_OF_A_BACKLASH} flanks), the rest second order of the stack-up"
     )
 
 
 def contributors_table(measure: Summary) -> Table:
-    """Shares of the variance, the largest first."""
-    columns = shares_of(measure)
-    table = _table(columns, "contributor [% of variance]")
+    """Shares of the variance, the largest first; those of the 3D simulation with their standard error."""
+    shares = [replace(column, heading=SHARE_HEADINGS.get(column.road, column.heading)) for column in shares_of(measure)]
+    errors = {c["name"]: c.get("geometric_percent_se") for c in measure["contributors"]}
+    table = _table(shares, "share of variance [%]")
     names = ranked_contributors(measure)
     for name in names:
-        table.add_row(Text(name), *(percent_text(column.percents.get(name)) for column in columns))
-    sums = [sum(column.percents.get(name) or 0.0 for name in names) for column in columns]
-    if len(names) > 1:
-        table.add_section()
-        table.add_row("sum", *(percent_text(total) for total in sums))
+        cells = [percent_text(column.percents.get(name)) for column in shares]
+        for index, column in enumerate(shares):
+            if column.road == "geometric" and errors[name] is not None:
+                cells[index] += f" ±{errors[name]:.1f}"
+        table.add_row(Text(name), *cells)
+    left = [100 - sum(column.percents.get(name) or 0.0 for name in names) for column in shares]
+    if any(abs(rest) > UNEXPLAINED_SHOWN for rest in left):
+        table.add_row("not attributed", *(percent_text(rest) for rest in left), style="dim")
     return table
 
 
@@ -193,7 +205,7 @@ def curve_table(measure: Summary) -> Table:
     """A curve measure at some of its positions."""
     unit, curve = measure["unit"], measure["curve"]
     roads = [(road, word) for road, word in (("analytic", "analytic"), ("geometric", "3D")) if road in curve]
-    table = Table(box=box.SIMPLE_HEAD, pad_edge=False, padding=(0, 1), header_style="bold")
+    table = Table(box=box.SIMPLE_HEAD, show_edge=False, pad_edge=False, padding=(0, 1), header_style="bold")
     table.add_column(Text("driver at [°]"), justify="right")
     for road, word in roads:
         for key in ("mean", "sigma"):

@@ -6,6 +6,8 @@ from pathlib import Path
 
 from tol3d.errors import SceneError
 
+LONGEST_KEY = 80  # characters shown; names may be that long
+
 KeyPath = tuple[str | int, ...]
 """Keys (and positions in lists) from the top of a scene to a value."""
 
@@ -42,7 +44,7 @@ class Origin:
     def message(self, path: KeyPath, sentence: str, place: Place | None = None) -> str:
         """`file:line: place: sentence`, on one line."""
         line = (place or self.place(path)).line
-        return ": ".join(part for part in (f"{self.source}:{line}", path_text(path), sentence) if part)
+        return ": ".join(part for part in (f"{self.source}:{line}", path_text(path), printable(sentence)) if part)
 
     def error(self, path: KeyPath, sentence: str, place: Place | None = None) -> SceneError:
         """That message as the error to raise."""
@@ -62,6 +64,10 @@ def path_text(path: KeyPath) -> str:
 
 
 def key_text(key: str) -> str:
-    """A key, shortened, and with an escape for each character that a terminal would not print."""
-    short = key if len(key) <= 80 else key[:79] + "…"
-    return "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in short)
+    """A key, shortened if it is long."""
+    return printable(key if len(key) <= LONGEST_KEY else key[: LONGEST_KEY - 1] + "…")
+
+
+def printable(text: str) -> str:
+    """The text with an escape for each character that a terminal would not print, or would obey."""
+    return "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in text)

@@ -58,6 +58,7 @@ def _path(loc: tuple[int | str, ...], data: Any) -> KeyPath:
     A tag stands behind the keys of the mapping whose `kind` it is; other tags are no key at all.
     """
     path: list[str | int] = []
+    step: Any
     tag_expected = True
     for step in loc:
         if isinstance(data, dict) and tag_expected and path and data.get("kind") == step:

@@ -5,6 +5,7 @@ from pathlib import Path
 from stat import S_ISREG
 from typing import Final
 
+from tol3d.distributions.empirical import EmpiricalSpec
 from tol3d.errors import SceneError
 from tol3d.scene.nearest import hint
 from tol3d.scene.place import KeyPath
@@ -73,9 +74,10 @@ def _unknown(scene: Scene) -> Iterator[Problem]:
 
 
 def _contradicted(scene: Scene) -> Iterator[Problem]:
+    parts, moves = scene.parts, scene.moves
     found: list[tuple[str, str, Iterator[Contradiction]]] = [
-        *(("tolerances", name, entry.contradictions(scene.parts, scene.moves)) for name, entry in scene.tolerances.items()),
-        *(("measures", name, entry.contradictions(scene.moves)) for name, entry in scene.measures.items()),
+        *(("tolerances", name, entry.contradictions(parts, moves)) for name, entry in scene.tolerances.items()),
+        *(("measures", name, entry.contradictions(moves)) for name, entry in scene.measures.items()),
     ]
     for section, name, contradictions in found:
         for it in contradictions:
@@ -107,11 +109,8 @@ def _unpublished(scene: Scene) -> Iterator[Problem]:
 
 def _files(scene: Scene, trust_parts: bool) -> Iterator[Problem]:
     for name, tolerance in scene.tolerances.items():
-        file = getattr(tolerance.distribution, "file", None)
-        if file is None:
-            continue
-        sentence = _file_problem(scene.folder, file, trust_parts)
-        if sentence:
+        law = tolerance.distribution
+        if isinstance(law, EmpiricalSpec) and (sentence := _file_problem(scene.folder, law.file, trust_parts)):
             yield ("tolerances", name, "distribution", "file"), sentence
 
 

@@ -1,6 +1,7 @@
 """A scene as its user wrote it, checked field by field."""
 
 from collections.abc import Mapping
+from itertools import pairwise
 from pathlib import Path
 from typing import Annotated, Any, Literal, Self
 
@@ -28,22 +29,24 @@ Percent = Annotated[float, Field(ge=0.0, le=100.0)]
 class Study(Strict):
     """How many trials, from which seed, by which sampler and engine, how finely measured."""
 
-    trials: int = Field(2000, ge=1, le=MOST_TRIALS, description="number of virtual builds")
-    seed: int = Field(1, ge=0, le=MOST_SEED, description="the same seed gives the same trials")
-    sampler: Literal["monte_carlo"] = Field("monte_carlo", description="how deviations are drawn")
-    engine: Literal["fcl", "analytic"] = Field("fcl", description="fcl: 3D simulation beside the analytic model")
+    trials: int = Field(default=2000, ge=1, le=MOST_TRIALS, description="number of virtual builds")
+    seed: int = Field(default=1, ge=0, le=MOST_SEED, description="the same seed gives the same trials")
+    sampler: Literal["monte_carlo"] = Field(default="monte_carlo", description="how deviations are drawn")
+    engine: Literal["fcl", "analytic"] = Field(
+        default="fcl", description="fcl: 3D simulation beside the analytic model"
+    )
     profile_steps: int = Field(
-        120, ge=FEWEST_PROFILE_STEPS, le=MOST_PROFILE_STEPS, description="flat strips along a measuring flank"
+        default=120, ge=FEWEST_PROFILE_STEPS, le=MOST_PROFILE_STEPS, description="flat strips along a measuring flank"
     )
 
 
 class PublishedMeasure(Strict):
     """What somebody else found for a measure, in its dimension; contributors in percent of the variance."""
 
-    low_3sigma: Quantity | None = Field(None, description="mean - 3 sigma, or the lower end at 99.7 %")
+    low_3sigma: Quantity | None = Field(default=None, description="mean - 3 sigma, or the lower end at 99.7 %")
     mean: Quantity | None = None
-    high_3sigma: Quantity | None = Field(None, description="mean + 3 sigma, or the upper end at 99.7 %")
-    sigma: Quantity | None = Field(None, description="standard deviation")
+    high_3sigma: Quantity | None = Field(default=None, description="mean + 3 sigma, or the upper end at 99.7 %")
+    sigma: Quantity | None = Field(default=None, description="standard deviation")
     contributors: Mapping[Name, Percent] = Field(
         default_factory=dict, description="share of each tolerance [% of the variance]"
     )
@@ -60,7 +63,7 @@ class PublishedMeasure(Strict):
         if sigma is not None and not sigma.internal > 0.0:
             raise refused("sigma", "more than 0", sigma)
         ordered = list(given.items())
-        for (low, below), (high, above) in zip(ordered, ordered[1:], strict=False):
+        for (low, below), (high, above) in pairwise(ordered):
             if below.dimension == above.dimension and not below.internal <= above.internal:
                 raise refused(low, f"at most {high} ({above})", below)
         return self
@@ -74,7 +77,7 @@ class Scene(Strict):
     """
 
     scene: Name = Field(description="the scene's name")
-    description: str = Field("", description="the user's own words, shown in reports")
+    description: str = Field(default="", description="the user's own words, shown in reports")
     parts: Mapping[Name, PartUnion] = Field(min_length=1)
     tolerances: Mapping[Name, ToleranceUnion] = Field(default_factory=dict)
     moves: Mapping[Name, MoveUnion] = Field(min_length=1)

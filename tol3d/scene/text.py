@@ -20,6 +20,7 @@ from ruamel.yaml.events import (
     DocumentStartEvent,
     Event,
     MappingEndEvent,
+    MappingStartEvent,
     ScalarEvent,
     SequenceEndEvent,
     SequenceStartEvent,
@@ -33,8 +34,10 @@ from tol3d.units import shown
 
 MAX_BYTES: Final = 1_000_000  # thirty times a scene of a hundred parts; parses in seconds
 MAX_DEPTH: Final = 40  # levels; the grammar needs nine, and pydantic and JSON would recurse
-MAX_NODES: Final = 50_000  # values with every alias written out; an honest scene has a few hundred
+MAX_NODES: Final = 20_000  # values with every alias written out; a scene of a hundred parts has some 3000
 MAX_DIGITS: Final = 300  # a longer number is kept as text and refused by the field
+
+BRACKETS: Final = re.compile(rf"(?:[\[{{]\s*){{{MAX_DEPTH + 1}}}")  # the scanner's work grows with their square
 
 NULL: Final = frozenset(("", "~", "null", "Null", "NULL"))
 TRUTH: Final = {"true": True, "True": True, "TRUE": True, "false": False, "False": False, "FALSE": False}
@@ -71,8 +74,10 @@ def read_scene_text(path: Path) -> tuple[dict[str, Any], Origin]:
     """
     text = _content(path)
     origin = Origin(path, text)
-    # composed characters from here on, so that equal-looking names are equal
-    top = _Composer(origin, _events(origin, unicodedata.normalize("NFC", text))).document()
+    if brackets := BRACKETS.search(text):
+        place = Place(text.count("\n", 0, brackets.start()) + 1, 1)
+        raise origin.error((), f"expected at most {MAX_DEPTH} levels of brackets and indents, got more", place)
+    top = _Composer(origin, _events(origin, text)).document()
     if not isinstance(top.value, dict):
         raise origin.error((), f"expected keys such as scene:, parts:, moves:, measures:, got {shown(top.value)}")
     places: dict[KeyPath, Place] = {}
@@ -189,6 +194,7 @@ class _Composer:
         place = _place(event)
         if isinstance(event, AliasEvent):
             return self._alias(event, path)
+        assert isinstance(event, ScalarEvent | SequenceStartEvent | MappingStartEvent)  # the parser's grammar
         if event.tag is not None:
             tag = shown(str(event.tag).replace("tag:yaml.org,2002:", "!!"))
             self._refuse(path, f"expected no tags, got {tag}; put text into quotes instead", place)
@@ -208,9 +214,7 @@ class _Composer:
     def _count(self, nodes: int, path: KeyPath, place: Place) -> None:
         self.nodes += nodes
         if self.nodes > MAX_NODES:
-            self._refuse(
-                path[:3], f"expected at most {MAX_NODES} values (aliases count written out), got more", place
-            )
+            self._refuse(path[:3], f"expected at most {MAX_NODES} values (aliases count written out), got more", place)
 
     def _alias(self, event: AliasEvent, path: KeyPath) -> _Node:
         place = _place(event)
@@ -224,7 +228,7 @@ class _Composer:
         return node
 
     def _scalar(self, event: ScalarEvent, path: KeyPath) -> Any:
-        text = event.value
+        text = unicodedata.normalize("NFC", event.value)  # so that names that look equal are equal
         if any("\ud800" <= c <= "\udfff" for c in text):
             self._refuse(path, "expected Unicode text, got half of a surrogate pair", _place(event))
         return core_value(text) if event.implicit[0] else text

@@ -2,6 +2,7 @@
 
 from tol3d.solids.display_mesh import DisplayMesh, display_mesh
 from tol3d.solids.flank_strips import FlankStrips, measuring_strips, strip_mesh
-from tol3d.solids.step import PosedGear, export_step
+from tol3d.solids.posed_gear import PosedGear
+from tol3d.solids.step import export_step
 
 __all__ = ["DisplayMesh", "FlankStrips", "PosedGear", "display_mesh", "export_step", "measuring_strips", "strip_mesh"]

@@ -15,7 +15,7 @@ import tempfile
 import warnings
 from collections.abc import Callable, Mapping
 from dataclasses import asdict
-from importlib.metadata import version
+from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
 import numpy as np
@@ -78,11 +78,18 @@ def _key(kind: str, gear: SpurGear, settings: Mapping[str, float]) -> str:
         "kind": kind,
         "gear": asdict(gear),
         "settings": dict(settings),
-        "versions": {name: version(name) for name in PACKAGES},
+        "versions": {name: _version(name) for name in PACKAGES},
         "sources": {name: hashlib.sha256(text).hexdigest() for name, text in sources.items()},
     }
     # json writes the shortest text that gives back the same double, so no two gears share a key
     return hashlib.sha256(json.dumps(told, sort_keys=True).encode()).hexdigest()
+
+
+def _version(package: str) -> str:
+    try:
+        return version(package)
+    except PackageNotFoundError:  # conda installs OCP without naming it so
+        return ""
 
 
 def _read(path: Path) -> Arrays | None:

@@ -9,27 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.gears import SpurGear
+from tol3d.solids.posed_gear import PosedGear
 
 Arrays = dict[str, NDArray[np.generic]]
-
-
-class Posed(Protocol):
-    """A gear, its name and its pose (4, 4) in the world."""
-
-    @property
-    def name(self) -> str:
-        """The part's name."""
-        ...
-
-    @property
-    def gear(self) -> SpurGear:
-        """Its geometry."""
-        ...
-
-    @property
-    def world_from_part(self) -> NDArray[np.float64]:
-        """(4, 4) rotation and translation [mm]."""
-        ...
 
 
 class Cad(Protocol):
@@ -43,7 +25,7 @@ class Cad(Protocol):
         """Arrays of DisplayMesh."""
         ...
 
-    def write_step(self, parts: Sequence[Posed], path: Path) -> None:
+    def write_step(self, parts: Sequence[PosedGear], path: Path) -> None:
         """Write an assembly."""
         ...
 

@@ -1,23 +1,10 @@
 """Posed gears as one STEP assembly."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from pathlib import Path
 
-import numpy as np
-from numpy.typing import NDArray
-
-from tol3d.gears import SpurGear
 from tol3d.solids.door import cad
-
-
-@dataclass(frozen=True, eq=False)
-class PosedGear:
-    """A gear, the name it bears in the assembly, and where it stands: (4, 4), rotation and translation [mm]."""
-
-    name: str
-    gear: SpurGear
-    world_from_part: NDArray[np.float64]
+from tol3d.solids.posed_gear import PosedGear
 
 
 def export_step(parts: Sequence[PosedGear], path: Path) -> None:

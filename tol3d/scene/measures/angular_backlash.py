@@ -18,9 +18,9 @@ class AngularBacklashSpec(MeasureSpec):
     dimension: ClassVar[Dimension] = "angle"
 
     kind: Literal["angular_backlash"]
-    gear: Name | None = Field(None, description="the gear that turns; the driven one if not given")
-    lower_limit: AngleLimit | None = Field(None, description="less than this is out of limits")
-    upper_limit: AngleLimit | None = Field(None, description="more than this is out of limits")
+    gear: Name | None = Field(default=None, description="the gear that turns; the driven one if not given")
+    lower_limit: AngleLimit | None = Field(default=None, description="less than this is out of limits")
+    upper_limit: AngleLimit | None = Field(default=None, description="more than this is out of limits")
 
     def references(self) -> tuple[Reference, ...]:
         """The mesh, and the gear if it is given."""

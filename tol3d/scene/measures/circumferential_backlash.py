@@ -14,5 +14,5 @@ class CircumferentialBacklashSpec(MeasureSpec):
     dimension: ClassVar[Dimension] = "length"
 
     kind: Literal["circumferential_backlash"]
-    lower_limit: LengthLimit | None = Field(None, description="less than this is out of limits")
-    upper_limit: LengthLimit | None = Field(None, description="more than this is out of limits")
+    lower_limit: LengthLimit | None = Field(default=None, description="less than this is out of limits")
+    upper_limit: LengthLimit | None = Field(default=None, description="more than this is out of limits")

@@ -31,19 +31,23 @@ class MeasureSpec(Strict, ABC):
 
     dimension: ClassVar[Dimension]
 
+    kind: str
     lower_limit: Quantity | None
     upper_limit: Quantity | None
     of: Name = Field(description="the mesh move")
     over: Over = Field(
-        "random",
+        default="random",
         description="positions of the driver: random (uniform over the long period), {at: angle}, turn (one of the "
         "driver) or long_period (until the same teeth meet again)",
     )
-    take: Take = Field("value", description="what of them: value at one position; min, max, range or curve of several")
+    take: Take = Field(default="value", description="value at one position; min, max, range or curve of several")
     positions: int = Field(
-        24, ge=FEWEST_POSITIONS, le=MOST_POSITIONS, description="positions a turn of the driver, for turn and long_period"
+        default=24,
+        ge=FEWEST_POSITIONS,
+        le=MOST_POSITIONS,
+        description="positions a turn, for turn and long_period",
     )
-    description: str = Field("", description="the user's own words, shown in reports")
+    description: str = Field(default="", description="the user's own words, shown in reports")
 
     @property
     def several_positions(self) -> bool:
@@ -64,8 +68,9 @@ class MeasureSpec(Strict, ABC):
         if self.several_positions and self.take == "value":
             got = "take: value" if "take" in self.model_fields_set else "no take"
             raise refused("take", f"min, max, range or curve beside over: {over}", got)
-        for field in ("take", "positions"):
-            if not self.several_positions and field in self.model_fields_set and (field, self.take) != ("take", "value"):
+        superfluous = {"take": self.take != "value", "positions": "positions" in self.model_fields_set}
+        for field, given in superfluous.items():
+            if given and not self.several_positions:
                 raise refused(field, "over: turn or over: long_period beside it", f"over: {over}")
         return self
 

@@ -24,8 +24,8 @@ class MeshSpec(MoveSpec):
     driver: Name = Field(description="the gear that is held")
     driven: Name = Field(description="the gear that turns into contact")
     centre_distance: Annotated[Quantity, Of("length"), Positive()] = Field(description="nominal distance of the axes")
-    working_flank: Literal["right", "left"] = Field("right", description="the driver's flank that touches")
-    housing: Name | None = Field(None, description="the housing whose expansion changes the centre distance")
+    working_flank: Literal["right", "left"] = Field(default="right", description="the driver's flank that touches")
+    housing: Name | None = Field(default=None, description="the housing whose expansion changes the centre distance")
 
     @model_validator(mode="after")
     def _refuse_one_gear(self) -> Self:

@@ -12,6 +12,8 @@ class MoveSpec(Strict, ABC):
 
     sort: ClassVar[Sort]
 
+    kind: str
+
     @property
     @abstractmethod
     def gears(self) -> tuple[str, ...]:

@@ -14,6 +14,7 @@ class PartSpec(Strict):
 
     sort: ClassVar[Sort]
 
+    kind: str
     expansion: Annotated[Quantity, Of("expansion")] | None = Field(
-        None, description="coefficient of linear thermal expansion"
+        default=None, description="coefficient of linear thermal expansion"
     )

@@ -22,15 +22,15 @@ class SpurGearSpec(PartSpec):
     teeth: int = Field(ge=1, le=MOST_TEETH, description="number of teeth z")
     module: Length = Field(description="module m")
     pressure_angle: Annotated[Quantity, Of("angle"), Positive()] = Field(
-        Quantity(20.0, "deg"),
+        default=Quantity(20.0, "deg"),
         description="pressure angle at the reference circle",
         json_schema_extra={"default": "20 deg"},  # pydantic would show the Quantity's fields
     )
     face_width: Length = Field(description="face width b")
-    profile_shift: float = Field(0.0, description="profile shift coefficient x, in modules; positive is a thicker tooth")
-    addendum: float = Field(1.0, gt=0.0, description="addendum factor, in modules")
-    dedendum: float = Field(1.25, gt=0.0, description="dedendum factor, in modules")
+    profile_shift: float = Field(default=0.0, description="profile shift coefficient x; positive is a thicker tooth")
+    addendum: float = Field(default=1.0, gt=0.0, description="addendum factor, in modules")
+    dedendum: float = Field(default=1.25, gt=0.0, description="dedendum factor, in modules")
     root_fillet: Length | None = Field(
-        None, description="radius between flank and root circle; 0.38 m (ISO 53) or the full round if not given"
+        default=None, description="radius between flank and root circle; 0.38 m (ISO 53) or the full round if not given"
     )
-    bore: Length | None = Field(None, description="diameter of the bore; none if not given")
+    bore: Length | None = Field(default=None, description="diameter of the bore; none if not given")

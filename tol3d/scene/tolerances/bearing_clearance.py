@@ -23,21 +23,19 @@ class BearingClearanceSpec(GearToleranceSpec):
     """
 
     kind: Literal["bearing_clearance"]
-    mesh: Name | None = Field(None, description="the mesh it acts in; needed where the gear is in several")
+    mesh: Name | None = Field(default=None, description="the mesh it acts in; needed where the gear is in several")
     direction: Annotated[
         Annotated[Literal["apart", "random", "tooth_force"], Tag("word")] | FixedAngle,
         Discriminator(shape),
         known_word(*WORDS),
-    ] = Field("apart", description="which way the axis moves")
+    ] = Field(default="apart", description="which way the axis moves")
 
     def references(self) -> tuple[Reference, ...]:
         """The gear, and the mesh if it is given."""
         gear = super().references()
         return gear if self.mesh is None else (*gear, Reference(("mesh",), self.mesh, ("mesh",)))
 
-    def contradictions(
-        self, parts: Mapping[str, PartSpec], moves: Mapping[str, MoveSpec]
-    ) -> Iterator[Contradiction]:
+    def contradictions(self, parts: Mapping[str, PartSpec], moves: Mapping[str, MoveSpec]) -> Iterator[Contradiction]:
         """The gear takes part in the mesh, or in one mesh only."""
         meshes = tuple(name for name, move in moves.items() if self.of in move.gears)
         if self.mesh is not None and self.mesh not in meshes:

@@ -11,4 +11,6 @@ class EccentricitySpec(GearToleranceSpec):
     """e, a length: the teeth's centre lies off the rotation axis by e (cos phi, sin phi) and turns with the gear."""
 
     kind: Literal["eccentricity"]
-    direction: RandomOrFixed = Field("random", description="phi, in the gear's frame (x through the middle of tooth 0)")
+    direction: RandomOrFixed = Field(
+        default="random", description="phi, in the gear's frame (x through the middle of tooth 0)"
+    )

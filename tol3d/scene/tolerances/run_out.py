@@ -11,4 +11,6 @@ class RunOutSpec(GearToleranceSpec):
     """S, a length: the shaft displaces the gear that it carries by S (cos phi, sin phi) and turns with it."""
 
     kind: Literal["run_out"]
-    direction: RandomOrFixed = Field("random", description="phi, in the gear's frame (x through the middle of tooth 0)")
+    direction: RandomOrFixed = Field(
+        default="random", description="phi, in the gear's frame (x through the middle of tooth 0)"
+    )

@@ -45,9 +45,7 @@ class TemperatureSpec(ToleranceSpec):
         """Every part."""
         return tuple(Reference(("of", index), name, ("gear", "housing")) for index, name in enumerate(self.of))
 
-    def contradictions(
-        self, parts: Mapping[str, PartSpec], moves: Mapping[str, MoveSpec]
-    ) -> Iterator[Contradiction]:
+    def contradictions(self, parts: Mapping[str, PartSpec], moves: Mapping[str, MoveSpec]) -> Iterator[Contradiction]:
         """A part without a coefficient of expansion would take no notice."""
         for index, name in enumerate(self.of):
             if parts[name].expansion is None:

@@ -26,16 +26,15 @@ class ToleranceSpec(Strict, ABC):
 
     dimensions: ClassVar[tuple[Dimension, ...]] = ("length",)
 
+    kind: str
     distribution: DistributionUnion = Field(description="the law of the deviation")
-    description: str = Field("", description="the user's own words, shown in reports")
+    description: str = Field(default="", description="the user's own words, shown in reports")
 
     @abstractmethod
     def references(self) -> tuple[Reference, ...]:
         """Every name that the tolerance uses."""
 
-    def contradictions(
-        self, parts: Mapping[str, PartSpec], moves: Mapping[str, MoveSpec]
-    ) -> Iterator[Contradiction]:
+    def contradictions(self, parts: Mapping[str, PartSpec], moves: Mapping[str, MoveSpec]) -> Iterator[Contradiction]:
         """What does not fit the parts and moves that it names; asked only when every name exists."""
         return iter(())
 

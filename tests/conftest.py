@@ -1,0 +1,36 @@
+"""Shared ground: the paper's spur pair as a model, and engines on the strips of real solids."""
+
+from functools import cache
+from pathlib import Path
+
+import pytest
+
+from tol3d.engines.fcl import FclEngine
+from tol3d.gears import SpurGear
+from tol3d.model import Model, model_from_scene
+from tol3d.scene import load_scene
+from tol3d.solids import FlankStrips, measuring_strips
+
+SPUR_PAIR = Path(__file__).resolve().parent.parent / "scenes" / "spur_pair.yaml"
+
+
+@cache
+def strips_of(gear: SpurGear, steps: int) -> FlankStrips:
+    return measuring_strips(gear, steps)
+
+
+@pytest.fixture(scope="session")
+def paper_model() -> Model:
+    """Tables 1 and 2 of the paper: everything in the plane acts (eccentricities, run-out, clearance, centre distance)."""
+    return model_from_scene(load_scene(SPUR_PAIR))
+
+
+@pytest.fixture(scope="session")
+def engine_of():
+    """FCL on the measuring strips of a model's gears, `steps` on each flank (the study's own, if not said)."""
+
+    def make(model: Model, steps: int | None = None) -> FclEngine:
+        steps = steps or model.study.profile_steps
+        return FclEngine(model, {part.name: strips_of(part.gear, steps) for part in model.gears})
+
+    return make

@@ -1,0 +1,111 @@
+"""What is approximated, and how fast the error falls: strips with their steps, extremes over a turn with their positions."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from oracles import exact_eccentric
+from oracles.involute_gear import InvoluteGear
+
+from tol3d.block import Block, drawn_block, geometric_values, seat_block, simulate_block, taken
+from tol3d.build import build
+from tol3d.gears import LEFT, RIGHT
+from tol3d.measures import measure_backlash
+from tol3d.model import Backlash, Measure, Model, Positions
+from tol3d.moves import seat_mesh
+
+DENSITIES = (60, 80, 120, 160)
+TRIALS = 200  # the mean error of so many has a standard error of 3 %, and the same trials serve every density
+
+LARGEST_PARABOLA_ERROR = 1.1e-4  # of a sine's amplitude, at 24 positions a turn: sin^2(d)(1 + cos h)/(4 cos d) + cos d - 1
+
+
+def exact_of(model: Model, block: Block, angle: np.ndarray) -> np.ndarray:
+    """Normal backlash [mm] of a block's trials by the closed form, (trials,) at driver angles (trials,)."""
+    mesh, made = model.meshes[0], build(model, block.deviations)
+    gears = [
+        InvoluteGear(gear.teeth, gear.module, gear.pressure_angle, gear.face_width)
+        for gear in (mesh.pair.pinion, mesh.pair.wheel)
+    ]
+    axis = made.world_from_shaft[:, 1, :2, 3] - made.world_from_shaft[:, 0, :2, 3]
+    centres = (made.centre[:, 0], made.centre[:, 1])
+    return exact_eccentric.normal_backlash(*gears, made.thickness.sum(axis=1), axis, centres, angle, mesh.working_flank)
+
+
+@pytest.mark.parametrize("flank", [RIGHT, LEFT], ids=["right", "left"])
+def test_mean_error_of_the_strips_falls_with_the_square_of_the_step(flank: int, paper_model: Model, engine_of) -> None:
+    model = replace(paper_model, meshes=(replace(paper_model.meshes[0], working_flank=flank),))
+    mesh, block = model.meshes[0], drawn_block(model, 5, 0, TRIALS)
+    angle, made = block.random_angle[mesh.name], build(model, block.deviations)
+    exact = exact_of(model, block, angle)
+    errors, chords = [], []
+    for steps in DENSITIES:
+        engine = engine_of(model, steps)
+        seat = seat_mesh(engine, model, mesh, made, angle)
+        errors.append(np.mean(measure_backlash(engine, model, model.measures[0].kind, made, seat) - exact))
+        chords.append(engine.chord_error)
+    order = -np.polyfit(np.log(DENSITIES), np.log(errors), 1)[0]
+    assert 1.7 < order < 2.3
+    # two contacts, two flanks each: never more than four chord errors, and on average two thirds of each pair's
+    assert all(error < 4 * chord for error, chord in zip(errors, chords, strict=True))
+    assert -np.polyfit(np.log(DENSITIES), np.log(chords), 1)[0] == pytest.approx(2.0, abs=0.02)
+
+
+# extremes over positions ------------------------------------------------------------------------------------
+
+
+def extreme(take: str, over: str, count: int, turns: int = 1) -> Measure:
+    kind = Backlash("normal_backlash", "gear pair", "wheel")
+    return Measure("extreme", kind, Positions(over, turns, count), take)
+
+
+def sine(count: int, phase: np.ndarray) -> np.ndarray:
+    return np.sin(2 * np.pi * np.arange(count) / count + phase[:, None])
+
+
+def test_extremes_of_a_sine_are_off_by_1e_4_at_24_positions_and_by_order_4() -> None:
+    phase = np.linspace(0.0, 2 * np.pi, 1001)
+    worst = []
+    for count in (12, 24, 48):
+        values = sine(count, phase)
+        highest, lowest = (taken(extreme(take, "long_period", count), values) for take in ("max", "min"))
+        worst.append(max(np.abs(highest - 1).max(), np.abs(lowest + 1).max()))
+        assert taken(extreme("range", "long_period", count), values) == pytest.approx(highest - lowest, rel=1e-15)
+    assert worst[1] <= LARGEST_PARABOLA_ERROR
+    assert np.log2(worst[0] / worst[1]) == pytest.approx(4.0, abs=0.15)
+    assert np.log2(worst[1] / worst[2]) == pytest.approx(4.0, abs=0.05)
+
+
+def dense_extremes(model: Model, block: Block, turns: int, count: int) -> tuple[np.ndarray, np.ndarray]:
+    """Smallest and largest exact backlash of each trial over so many turns of the driver, from 0, ends included."""
+    angles = np.linspace(0.0, 2 * np.pi * turns, count)
+    exact = np.stack([exact_of(model, block, np.full(len(block), angle)) for angle in angles], axis=1)
+    return exact.min(axis=1), exact.max(axis=1)
+
+
+@pytest.mark.parametrize(("over", "turns", "scan"), [("turn", 1, 721), ("long_period", 55, 4000)])
+def test_extremes_over_positions_agree_with_a_dense_scan(
+    over: str, turns: int, scan: int, paper_model: Model, engine_of
+) -> None:
+    measures = tuple(
+        replace(extreme(take, over, 24 * turns, turns), name=take) for take in ("min", "max", "range")
+    )
+    model = replace(paper_model, measures=measures)
+    block = drawn_block(model, 9, 0, 12)
+    lowest, highest = dense_extremes(model, block, turns, scan)
+    columns = simulate_block(model, engine_of(model), block)
+    # the strips read up to 0.12 um too much; the parabola's 1e-4 and a turn's ends cost 0.02 um of 2 sin(alpha) e
+    for take, expected in (("min", lowest), ("max", highest), ("range", highest - lowest)):
+        assert np.abs(columns[f"geometric:{take}"] - 1000 * expected).max() <= 0.14, take
+        assert np.abs(columns[f"analytic:{take}"] - 1000 * expected).max() <= 0.10, take
+
+
+def test_a_curve_is_the_values_at_its_positions(paper_model: Model, engine_of) -> None:
+    curve = extreme("curve", "turn", 8)
+    model = replace(paper_model, measures=(curve,))
+    block, engine = drawn_block(model, 2, 0, 3), engine_of(model)
+    values = geometric_values(model, engine, curve, seat_block(model, engine, block))
+    assert np.array_equal(taken(curve, values), values)
+    for k, angle in enumerate(curve.positions.fixed):
+        exact = exact_of(model, block, np.full(3, angle))
+        assert np.abs(values[:, k] - exact).max() < 0.12e-3

@@ -1,0 +1,292 @@
+"""One build as it came to rest, its deviations magnified if wanted: poses, contact and gap of every mesh."""
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tol3d.block import Block, mean_block, nominal_block
+from tol3d.errors import InputError, RunError
+from tol3d.gears import SpurGear
+from tol3d.model import Measure, Mesh, Model
+from tol3d.moves import NO_CONTACT, OK, MeshSeat
+from tol3d.report.number import measured_text
+from tol3d.result import Run
+from tol3d.simulate import Replay, model_of, replay, replay_block, worst_trial
+from tol3d.solids import display_mesh
+
+Array = NDArray[np.float64]
+Which = int | str
+
+DISPLAY_DEFLECTION: Final = 0.5e-3  # mm; a hundredth of a common backlash, and 40 000 triangles a gear at most
+OPEN_SHARE: Final = 1 / 8  # of the base pitch; a magnified gap stays this small, a third of a tooth
+MAGNIFY_STEPS: Final = 16  # halvings of the range of magnifications; 1/65536 of it
+MAGNIFY_DIGITS: Final = 3  # of the magnification in use, rounded down
+
+
+@dataclass(frozen=True, eq=False)
+class PlacedGear:
+    """A perturbed gear where it ended up.
+
+    Args:
+        name: the part's.
+        gear: nominal geometry.
+        world_from_gear: (4, 4), rotation and translation [mm].
+        thickness: deviation of the tooth thickness [mm], arc at the reference circle, before growth.
+        scale: thermal growth, 1 at the reference temperature.
+    """
+
+    name: str
+    gear: SpurGear
+    world_from_gear: Array
+    thickness: float
+    scale: float
+
+    def mesh(self, deflection: float = DISPLAY_DEFLECTION) -> tuple[Array, NDArray[np.int64]]:
+        """Closed triangle mesh in the world: vertices (n, 3) [mm], triangles (m, 3)."""
+        display = display_mesh(self.gear, deflection)
+        own = self.scale * display.thickened(self.thickness / (2 * self.gear.reference_radius))
+        rotation, translation = self.world_from_gear[:3, :3], self.world_from_gear[:3, 3]
+        return own @ rotation.T + translation, display.triangles
+
+    @property
+    def perturbed(self) -> SpurGear:
+        """The gear with its deviation and its growth in its numbers.
+
+        Raises:
+            GeometryError: such a gear cannot be made.
+        """
+        grown, gear = self.scale, self.gear
+        return replace(
+            gear,
+            module=gear.module * grown,
+            face_width=gear.face_width * grown,
+            root_fillet=None if gear.root_fillet is None else gear.root_fillet * grown,
+            bore=gear.bore * grown,
+            tooth_thickness_deviation=(gear.tooth_thickness_deviation + self.thickness) * grown,
+        )
+
+
+@dataclass(frozen=True, eq=False)
+class SeatedMesh:
+    """A mesh of the build: its gears, where they touch, and how far their other flanks are apart.
+
+    Args:
+        mesh: which.
+        driver, driven: the placed gears.
+        contact, normal: point on the driver's working flank (3,) [mm] and the unit vector to the driven.
+        gap: the nearest points of the non-working flanks, driver's and driven's, (2, 3) [mm].
+        gap_value: their distance [mm], the normal backlash; nan where the flanks overlap too deep to tell.
+        status: OK, INTERFERES or NO_CONTACT.
+    """
+
+    mesh: Mesh
+    driver: PlacedGear
+    driven: PlacedGear
+    contact: Array
+    normal: Array
+    gap: Array
+    gap_value: float
+    status: int
+
+    @property
+    def tip_clearance(self) -> float:
+        """Smaller free distance [mm] between a tip circle and the mate's root circle."""
+        between = self.driven.world_from_gear[:2, 3] - self.driver.world_from_gear[:2, 3]
+        tips = [part.scale * part.gear.tip_radius for part in (self.driver, self.driven)]
+        roots = [part.scale * part.gear.root_radius for part in (self.driver, self.driven)]
+        return math.hypot(*between) - max(tips[0] + roots[1], tips[1] + roots[0])
+
+
+@dataclass(frozen=True, eq=False)
+class Assembly:
+    """A build at rest.
+
+    Args:
+        label: what it is, such as "trial-17" or "nominal", good as the start of a file's name.
+        magnify: by what its deviations were scaled.
+        meshes: its meshes that are measured, each in a world of its own.
+        values: value of each measure on the geometric road, in the measure's unit, magnified too.
+        notes: what the user should know.
+    """
+
+    label: str
+    magnify: float
+    meshes: tuple[SeatedMesh, ...]
+    values: Mapping[str, object]
+    notes: tuple[str, ...]
+
+
+def assemble(run: Run, which: Which, *, magnify: float = 1.0, trust_parts: bool = False) -> Assembly:
+    """A build of a run, seated again.
+
+    Args:
+        which: a trial, or "worst", "nominal", "mean".
+        magnify: scales every deviation; lowered where the teeth would not seat or their gap would leave
+            the tooth space, which a note then tells.
+        trust_parts: allow the scene to read files outside its folder.
+
+    Raises:
+        InputError: no such build, or one without contact.
+    """
+    if not (math.isfinite(magnify) and magnify >= 0.0):
+        raise InputError(f"magnify: expected a number of at least 0, got {magnify:g}")
+    label, seen = _replayed(run, which, trust_parts)
+    rows = _rows(seen)
+    meshes = _seated(seen, rows)
+    for seat in meshes:
+        if seat.status == NO_CONTACT:
+            raise RunError(f"{label}: the working flanks of {seat.mesh.name} found no contact; there is nothing to show")
+    used, notes = 1.0, [_said(label, seen)]
+    if magnify != 1.0:
+        used, seen, meshes, note = _magnified(seen, rows, magnify)
+        label += f"-x{used:g}"
+        notes.append(note)
+    return Assembly(label, used, meshes, seen.geometric, tuple(note for note in notes if note))
+
+
+def _replayed(run: Run, which: Which, trust_parts: bool) -> tuple[str, Replay]:
+    if which == "worst":
+        which = worst_trial(run)
+    if isinstance(which, int):
+        return f"trial-{which}", replay(run, which, trust_parts=trust_parts)
+    blocks = {"nominal": nominal_block, "mean": mean_block}
+    if which not in blocks:
+        raise InputError(f"expected a trial's number, worst, nominal or mean, got {which!r}")
+    model = model_of(run, trust_parts=trust_parts)
+    return which, replay_block(model, blocks[which](model))
+
+
+def _said(label: str, seen: Replay) -> str:
+    if seen.status != "ok":
+        return f"{label}: {seen.status}; shown where its working flanks touch"
+    return ""
+
+
+# positions ----------------------------------------------------------------------------------------
+
+
+def _first_measure(model: Model, mesh: Mesh) -> Measure | None:
+    return next((measure for measure in model.measures if measure.kind.mesh == mesh.name), None)
+
+
+def _rows(seen: Replay) -> dict[str, int]:
+    """At which position of its first measure each mesh is shown: the extreme that the measure takes, or the first."""
+    rows = {}
+    for mesh in seen.model.meshes:
+        measure = _first_measure(seen.model, mesh)
+        if measure is None:
+            continue
+        gaps = _seat(seen, mesh, measure).non_working.smallest()
+        largest = measure.take in ("max", "range")
+        if measure.take in ("min", "max", "range") and not np.isnan(gaps).all():
+            rows[mesh.name] = int(np.nanargmax(gaps) if largest else np.nanargmin(gaps))
+        else:
+            rows[mesh.name] = 0
+    return rows
+
+
+def _seat(seen: Replay, mesh: Mesh, measure: Measure) -> MeshSeat:
+    return seen.seats.seats[mesh.name, measure.positions]
+
+
+def _seated(seen: Replay, rows: Mapping[str, int]) -> tuple[SeatedMesh, ...]:
+    meshes = []
+    for mesh in seen.model.meshes:
+        measure = _first_measure(seen.model, mesh)
+        if measure is not None:
+            meshes.append(_seated_mesh(seen, mesh, _seat(seen, mesh, measure), rows[mesh.name]))
+    return tuple(meshes)
+
+
+def _seated_mesh(seen: Replay, mesh: Mesh, seat: MeshSeat, row: int) -> SeatedMesh:
+    at_work, idle = seat.working, seat.non_working
+    touching = int(np.argmin(np.where(np.isnan(at_work.value[row]), np.inf, at_work.value[row])))
+    nearest = int(np.argmin(np.where(np.isnan(idle.value[row]), np.inf, idle.value[row])))
+    return SeatedMesh(
+        mesh=mesh,
+        driver=_placed(seen, mesh.driver, seat.driver_angle[row]),
+        driven=_placed(seen, mesh.driven, seat.driven_angle[row]),
+        contact=at_work.driver_point[row, touching],
+        normal=at_work.normal[row, touching],
+        gap=np.stack([idle.driver_point[row, nearest], idle.driven_point[row, nearest]]),
+        gap_value=float(idle.smallest()[row]),
+        status=int(seat.status[row]),
+    )
+
+
+def _placed(seen: Replay, name: str, angle: float) -> PlacedGear:
+    gear, build = seen.model.gear_index[name], seen.seats.build
+    return PlacedGear(
+        name=name,
+        gear=seen.model.gears[gear].gear,
+        world_from_gear=build.world_from_gear(gear, np.array([angle]))[0],
+        thickness=float(build.thickness[0, gear]),
+        scale=float(build.scale[0, gear]),
+    )
+
+
+# magnification ------------------------------------------------------------------------------------
+
+
+def _magnified(
+    seen: Replay, rows: Mapping[str, int], wanted: float
+) -> tuple[float, Replay, tuple[SeatedMesh, ...], str]:
+    """The build with its deviations scaled by the largest allowed number up to `wanted`, and what to say of it."""
+
+    def scaled(factor: float) -> tuple[Replay, tuple[SeatedMesh, ...]]:
+        again = replay_block(seen.model, _scaled(seen.block, factor))
+        return again, _seated(again, rows)
+
+    plain = _seated(seen, rows)
+    widest = {
+        mesh.mesh.name: max(OPEN_SHARE * mesh.driver.gear.base_pitch, mesh.gap_value) for mesh in plain
+    }
+
+    def allowed(meshes: tuple[SeatedMesh, ...]) -> bool:
+        return all(_in_its_space(mesh, widest[mesh.mesh.name]) for mesh in meshes)
+
+    again, meshes = scaled(wanted)
+    if wanted < 1.0 or allowed(meshes):
+        return wanted, again, meshes, f"deviations magnified {wanted:g} times: {_gaps_text(plain, meshes)}"
+    if not allowed(plain):
+        return 1.0, seen, plain, "not magnified: the teeth do not run free in this build"
+    low, high = 1.0, wanted
+    for _ in range(MAGNIFY_STEPS):
+        middle = (low + high) / 2
+        low, high = (middle, high) if allowed(scaled(middle)[1]) else (low, middle)
+    used = max(1.0, _rounded_down(low))
+    again, meshes = scaled(used)
+    return (
+        used,
+        again,
+        meshes,
+        f"deviations magnified {used:g} times, not {wanted:g}: beyond that the gap would leave the tooth space "
+        f"(allowed are 0 to {' or '.join(f'{1000 * width:.0f}' for width in widest.values())} µm); "
+        f"{_gaps_text(plain, meshes)}",
+    )
+
+
+def _scaled(block: Block, factor: float) -> Block:
+    return Block(factor * block.deviations, block.random_angle)
+
+
+def _in_its_space(mesh: SeatedMesh, widest: float) -> bool:
+    return mesh.status == OK and mesh.gap_value <= widest and mesh.tip_clearance > 0.0
+
+
+def _gaps_text(plain: tuple[SeatedMesh, ...], meshes: tuple[SeatedMesh, ...]) -> str:
+    texts = [
+        f"{mesh.mesh.name} has a normal backlash of {measured_text(1000 * mesh.gap_value, 'um')} instead of "
+        f"{measured_text(1000 * before.gap_value, 'um')}"
+        for before, mesh in zip(plain, meshes, strict=True)
+    ]
+    return ", ".join(texts)
+
+
+def _rounded_down(value: float) -> float:
+    step = 10.0 ** (math.floor(math.log10(value)) - MAGNIFY_DIGITS + 1)
+    return round(math.floor(value / step) * step, 10)

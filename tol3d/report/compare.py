@@ -1,0 +1,253 @@
+"""Runs laid over each other: histograms of both roads, the difference of every trial beside, and a table."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from rich import box
+from rich.console import Group, RenderableType
+from rich.table import Table
+from rich.text import Text
+
+from tol3d.errors import InputError
+from tol3d.report.bars import bars_of
+from tol3d.report.canvas import (
+    BLACK,
+    GREY,
+    OUTSIDE,
+    ROAD_COLOURS,
+    RUN_COLOURS,
+    label_angles,
+    legible,
+    new_figure,
+    plain_axes,
+    save_figure,
+)
+from tol3d.report.difference import Difference, difference_of
+from tol3d.report.heading import heading
+from tol3d.report.number import NOTHING, UNIT_SIGNS, difference_text, given_text, value_text
+from tol3d.result import Run
+
+Summary = Mapping[str, Any]
+
+ROADS = {"analytic": "analytic", "geometric": "3D simulation"}
+SHORT = {"analytic": "analytic", "geometric": "3D"}
+AXIS_UNITS = {"um": "µm", "arcmin": "′, ″ of arc"}
+DIFFERENCE_UNITS = {"um": ("µm", 1.0), "arcmin": ("″", 60.0)}
+"""Unit of small differences, and how many of it are one of the measure's unit."""
+
+
+def comparison_report(runs: Sequence[Run]) -> Group:
+    """Tables of every measure: mean, sigma and range of each run and road, and how far the roads differ."""
+    blocks: list[RenderableType] = []
+    for name, unit in _measures(runs):
+        own = [(label, run) for label, run in _labelled(runs) if _has(run, name, unit)]
+        blocks += [Text("\n").append(name, style="bold cyan")]
+        blocks += [Text(heading(own[0][1].summary["measures"][name]), style="dim"), "", _table(name, unit, own)]
+    words = "low and high: mean ∓ 3 sigma; max and rms: of 3D simulation − analytic, trial by trial"
+    words += "; shift: of the mean against the first run" if len(runs) > 1 else ""
+    blocks.append(Text(f"\n{words}", style="dim"))
+    return Group(*blocks)
+
+
+def _measures(runs: Sequence[Run]) -> list[tuple[str, str]]:
+    """Names and units of the measures of all runs, each once."""
+    if not runs:
+        raise InputError("nothing to compare: give the folder of at least one run")
+    found = {(name, measure["unit"]): None for run in runs for name, measure in run.summary["measures"].items()}
+    return list(found)
+
+
+def _has(run: Run, name: str, unit: str) -> bool:
+    measure = run.summary["measures"].get(name)
+    return measure is not None and measure["unit"] == unit
+
+
+def _labelled(runs: Sequence[Run]) -> list[tuple[str, Run]]:
+    """Each run with the shortest name that tells it from the others."""
+    names = [run.path.resolve().name for run in runs]
+    return [(name if names.count(name) == 1 else str(run.path), run) for name, run in zip(names, runs, strict=True)]
+
+
+def _table(name: str, unit: str, runs: Sequence[tuple[str, Run]]) -> Table:
+    table = Table(box=box.SIMPLE_HEAD, show_edge=False, pad_edge=False, padding=(0, 1), header_style="bold")
+    table.collapse_padding = True
+    table.add_column(Text("run" if unit == "arcmin" else f"run [{UNIT_SIGNS[unit]}]"))
+    table.add_column("road", no_wrap=True)
+    several = len(runs) > 1
+    headings = ("trials", "mean", "sigma", "low", "high", "max", "rms")
+    for title in (*headings, *(("shift",) if several else ())):
+        table.add_column(Text(title), justify="right", no_wrap=True)
+    first: dict[str, float] = {}
+    for label, run in runs:
+        for index, (road, sample) in enumerate(_samples(run.summary["measures"][name])):
+            mean = sample.get("mean")
+            cells = [str(sample.get("count", "")), *(value_text(sample.get(key), unit) for key in KEYS)]
+            cells += _differences(run, name, unit) if road == "geometric" else [NOTHING, NOTHING]
+            if several and mean is not None:
+                cells.append(_bare(mean - first.setdefault(road, mean), unit))
+            table.add_row(Text(label if index == 0 else ""), SHORT[road], *cells)
+    return table
+
+
+KEYS = ("mean", "sigma", "low_3sigma", "high_3sigma")
+
+
+def _samples(measure: Summary) -> Iterator[tuple[str, Summary]]:
+    """What each road found; of a curve the average over its positions."""
+    for road in ROADS:
+        if measure["take"] != "curve" and road in measure:
+            yield road, measure[road]
+        elif road in measure.get("curve", {}):
+            curve = {key: [v for v in measure["curve"][road][key] if v is not None] for key in ("mean", "sigma")}
+            yield road, {key: float(np.mean(values)) for key, values in curve.items() if values}
+
+
+def _differences(run: Run, name: str, unit: str) -> list[str]:
+    agreement = run.summary["measures"][name].get("agreement")
+    if agreement is not None:
+        found = (agreement["max_abs_difference"], agreement["rms_difference"])
+    else:
+        difference = difference_of(run, name)
+        found = (difference.largest, difference.rms) if difference else (None, None)
+    return [_bare(value, unit) for value in found]
+
+
+def _bare(difference: float | None, unit: str) -> str:
+    """A difference in a table whose corner tells the unit."""
+    return difference_text(difference, unit).removesuffix(f" {UNIT_SIGNS[unit]}")
+
+
+# picture ------------------------------------------------------------------------------------------
+
+
+def draw_comparison(runs: Sequence[Run], path: Path) -> None:
+    """Draw a row a measure: histograms of both roads, histogram of their differences, differences by position.
+
+    Raises:
+        InputError: there are no runs, or the picture cannot be written.
+    """
+    measures = _measures(runs)
+    figure = new_figure(15.0, 4.1 * len(measures) + 0.4)
+    names = ",  ".join(legible(label, 50) for label, _ in _labelled(runs))
+    figure.suptitle(f"{names}", fontsize=12, color=BLACK, x=0.01, ha="left")
+    grid = figure.add_gridspec(len(measures), 3, width_ratios=[1.6, 1, 1.3])
+    for row, (name, unit) in enumerate(measures):
+        own = [(label, run) for label, run in _labelled(runs) if _has(run, name, unit)]
+        axes = [plain_axes(figure.add_subplot(grid[row, column])) for column in range(3)]
+        _draw_roads(axes[0], name, unit, own)
+        differences = [(label, difference_of(run, name)) for label, run in own]
+        known = [(index, label, found) for index, (label, found) in enumerate(differences) if found is not None]
+        _draw_differences(axes[1], unit, known, single=len(own) == 1)
+        _draw_by_position(axes[2], name, unit, known, single=len(own) == 1)
+    save_figure(figure, path)
+
+
+def _colour(index: int, *, single: bool) -> str:
+    return ROAD_COLOURS["geometric"] if single else RUN_COLOURS[index % len(RUN_COLOURS)]
+
+
+def _draw_roads(axes: Axes, name: str, unit: str, runs: Sequence[tuple[str, Run]]) -> None:
+    single = len(runs) == 1
+    for index, (label, run) in enumerate(runs):
+        measure = run.summary["measures"][name]
+        colours = {"geometric": _colour(index, single=single)}
+        colours["analytic"] = ROAD_COLOURS["analytic"] if single else colours["geometric"]
+        where = "" if single else f"{legible(label, 24)}: "
+        if measure["take"] == "curve":
+            _draw_curves(axes, measure, where, colours)
+            continue
+        bars = bars_of(measure["histogram"])
+        if "geometric" in bars:
+            edges, density = bars["geometric"].edges, bars["geometric"].density
+            axes.stairs(density, edges, fill=True, alpha=0.45, color=colours["geometric"], label=f"{where}3D simulation")
+        if "analytic" in bars:
+            edges, density = bars["analytic"].edges, bars["analytic"].density
+            style = "-" if single else "--"
+            axes.stairs(density, edges, linestyle=style, linewidth=1.8, color=colours["analytic"], label=f"{where}analytic")
+    first = runs[0][1].summary["measures"][name]
+    if first["take"] != "curve":
+        for limit in (first.get("lower_limit"), first.get("upper_limit")):
+            if limit is not None and axes.get_xlim()[0] <= limit <= axes.get_xlim()[1]:
+                axes.axvline(limit, color=OUTSIDE, linewidth=2, label=f"limit {given_text(limit, unit)}")
+        label_angles(axes.xaxis, unit)
+        axes.set_xlabel(f"{legible(name, 60)} [{AXIS_UNITS[unit]}]", fontsize=10)
+        axes.set_ylabel(f"% of trials per {'µm' if unit == 'um' else '′'}", fontsize=10)
+    else:
+        label_angles(axes.yaxis, unit)
+        axes.set_xlabel("driver position [deg]", fontsize=10)
+        axes.set_ylabel(f"{legible(name)} [{AXIS_UNITS[unit]}]", fontsize=10)
+    axes.set_title(f"{legible(name, 60)}\n", loc="left", fontsize=12, fontweight="bold")
+    axes.text(0, 1.03, legible(heading(first), 90), transform=axes.transAxes, fontsize=8.5, color=GREY)
+    axes.legend(fontsize=8.5, frameon=False, loc="best")
+
+
+def _draw_curves(axes: Axes, measure: Summary, where: str, colours: Mapping[str, str]) -> None:
+    for road, style in (("geometric", "-"), ("analytic", "--")):
+        if road in measure["curve"]:
+            mean = np.asarray(measure["curve"][road]["mean"], dtype=float)
+            label = f"{where}{ROADS[road]}, mean"
+            axes.plot(measure["position_deg"], mean, style, linewidth=2, color=colours[road], label=label)
+
+
+Known = Sequence[tuple[int, str, Difference]]
+
+
+def _draw_differences(axes: Axes, unit: str, known: Known, *, single: bool) -> None:
+    word, factor = DIFFERENCE_UNITS[unit]
+    axes.set_title("3D simulation − analytic\n", loc="left", fontsize=11, fontweight="bold")
+    if not known:
+        _say_nothing(axes)
+        return
+    for index, label, found in known:
+        text = f"max {factor * found.largest:.3f} {word}, rms {factor * found.rms:.3f} {word}"
+        axes.stairs(
+            found.bars.density / factor,
+            factor * found.bars.edges,
+            fill=True,
+            alpha=0.45,
+            color=_colour(index, single=single),
+            label=text if single else f"{legible(label, 20)}: {text}",
+        )
+    axes.axvline(0, color=BLACK, linewidth=0.8)
+    axes.set_xlabel(f"difference of a trial [{word}]", fontsize=10)
+    axes.set_ylabel("share of trials", fontsize=10)
+    axes.set_yticks([])
+    axes.locator_params(axis="x", nbins=6)
+    axes.margins(y=0.22 + 0.05 * len(known))
+    axes.set_ylim(bottom=0)
+    axes.legend(fontsize=8.5, frameon=False, loc="upper left")
+
+
+def _draw_by_position(axes: Axes, name: str, unit: str, known: Known, *, single: bool) -> None:
+    word, factor = DIFFERENCE_UNITS[unit]
+    by_position = all(found.by_position for _, _, found in known)
+    title = "by position of the driver" if by_position else "by value"
+    axes.set_title(f"difference {title}\n", loc="left", fontsize=11, fontweight="bold")
+    if not known:
+        _say_nothing(axes)
+        return
+    for index, _, found in known:
+        axes.plot(
+            found.at,
+            factor * found.values,
+            linestyle="",
+            marker=".",
+            markersize=3.5,
+            markeredgewidth=0,
+            alpha=0.5,
+            color=_colour(index, single=single),
+        )
+    axes.axhline(0, color=BLACK, linewidth=0.8)
+    if by_position:
+        axes.set_xlabel("driver position within its turn [deg]", fontsize=10)
+    else:
+        label_angles(axes.xaxis, unit)
+        axes.set_xlabel(f"{legible(name, 40)}, analytic [{AXIS_UNITS[unit]}]", fontsize=10)
+    axes.set_ylabel(f"difference [{word}]", fontsize=10)
+
+
+def _say_nothing(axes: Axes) -> None:
+    axes.text(0.5, 0.5, "no 3D simulation in these runs", transform=axes.transAxes, ha="center", color=GREY)

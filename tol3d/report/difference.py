@@ -1,0 +1,95 @@
+"""The difference 3D simulation − analytic of every trial of a run, gathered block by block."""
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tol3d.report.bars import Bars
+from tol3d.result import TRIALS, Run, read_columns
+
+Array = NDArray[np.float64]
+
+BARS = 40
+POINTS_SHOWN = 4000  # dots in a picture; more hide each other
+TURN = 360.0  # deg
+SMALLEST_SPAN = 1e-6  # um or arc minutes; for roads that agree to the last bit
+
+
+@dataclass(frozen=True, eq=False)
+class Difference:
+    """How the two roads of one measure differ.
+
+    Args:
+        bars: histogram of the differences, in the measure's unit.
+        at: (n,) where the first trials were read: the driver's position [deg] within a turn, or the
+            analytic value where a measure has many positions; n at most POINTS_SHOWN.
+        values: (n,) their differences.
+        by_position: whether `at` is a position.
+        largest, rms: of all trials, in the measure's unit.
+    """
+
+    bars: Bars
+    at: Array
+    values: Array
+    by_position: bool
+    largest: float
+    rms: float
+
+
+def difference_of(run: Run, measure: str) -> Difference | None:
+    """The difference of the two roads of a scalar or curve measure; None without a 3D simulation.
+
+    Memory does not grow with the number of trials: one block of columns is held at a time.
+    """
+    summary = run.summary["measures"][measure]
+    names = (f"analytic:{measure}", f"geometric:{measure}")
+    if not set(names) <= set(run.column_names):
+        return None
+    position = f"position:{summary['of']} [deg]" if summary["over"] == "random" else None
+    ends = np.array([_ends(analytic, geometric) for analytic, geometric, _ in _blocks(run, names, position)])
+    low, high = float(ends.min()), float(ends.max())
+    edges = np.linspace(low, max(high, low + SMALLEST_SPAN), BARS + 1)
+    counts, total, squares = np.zeros(BARS), 0, 0.0
+    at, values = np.empty(0), np.empty(0)
+    for analytic, geometric, places in _blocks(run, names, position):
+        difference = (geometric - analytic).ravel()
+        known = ~np.isnan(difference)
+        counts += np.histogram(difference[known], edges)[0]
+        total += int(known.sum())
+        squares += float(np.sum(difference[known] ** 2))
+        room = POINTS_SHOWN - len(at)
+        at = np.append(at, _abscissa(summary, analytic, places)[known][:room])
+        values = np.append(values, difference[known][:room])
+    count = max(total, 1)
+    return Difference(
+        bars=Bars(edges, 100 * counts / (count * (edges[1] - edges[0]))),
+        at=at,
+        values=values,
+        by_position=position is not None or summary["take"] == "curve",
+        largest=max(high, -low),
+        rms=float(np.sqrt(squares / count)),
+    )
+
+
+def _abscissa(summary: Mapping[str, Any], analytic: Array, places: Array | None) -> Array:
+    if summary["take"] == "curve":
+        return np.broadcast_to(summary["position_deg"], analytic.shape).ravel()
+    return analytic if places is None else places % TURN
+
+
+def _ends(analytic: Array, geometric: Array) -> tuple[float, float]:
+    """Smallest and largest difference of a block, and 0."""
+    difference = geometric - analytic
+    known = difference[~np.isnan(difference)]
+    return float(np.min(known, initial=0.0)), float(np.max(known, initial=0.0))
+
+
+def _blocks(run: Run, names: tuple[str, str], position: str | None) -> Iterator[tuple[Array, Array, Array | None]]:
+    """Analytic and geometric values and positions, one file of trials at a time."""
+    for path in sorted((run.path / TRIALS).glob("*.parquet")):
+        columns = read_columns(path, (*names, *((position,) if position else ())))
+        analytic, geometric = (np.asarray(columns[name], dtype=np.float64) for name in names)
+        yield analytic, geometric, np.asarray(columns[position], dtype=np.float64) if position else None

@@ -1,0 +1,138 @@
+"""The perturbed parts of one build as files: STL, PLY, GLB for eyes and printers, STEP for CAD."""
+
+import os
+import re
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Final
+
+import numpy as np
+import trimesh
+
+from tol3d.errors import InputError
+from tol3d.report.assembly import Assembly, PlacedGear, SeatedMesh, Which, assemble
+from tol3d.result import Run
+from tol3d.solids import PosedGear, export_step
+
+FORMATS: Final = ("stl", "ply", "glb", "step")
+COLOURS: Final = ((70, 130, 180, 255), (230, 159, 0, 255))  # driver, driven
+METRES_PER_MM: Final = 1e-3  # glTF 2.0, 3.4: all linear distances are in metres
+
+
+@dataclass(frozen=True)
+class Exported:
+    """What was written.
+
+    Args:
+        files: the files.
+        notes: what the user should know, such as the magnification in use.
+    """
+
+    files: tuple[Path, ...]
+    notes: tuple[str, ...]
+
+
+def export_run(
+    run: Run,
+    which: Which,
+    fmt: str,
+    *,
+    magnify: float = 1.0,
+    out: Path = Path("."),
+    trust_parts: bool = False,
+) -> Exported:
+    """Write the perturbed parts of one build where they ended up.
+
+    Args:
+        run: a finished run.
+        which: a trial, or "worst", "nominal", "mean".
+        fmt: "stl" and "ply" write a file a part [mm], "glb" one scene a mesh [m], "step" one assembly a
+            mesh [mm] with the real perturbed solids.
+        magnify: scales the deviations and seats again, see `assemble`.
+        out: the folder; made if missing.
+        trust_parts: allow the scene to read files outside its folder.
+
+    Raises:
+        InputError: an unknown format or build, a STEP file magnified, or a folder that cannot be written.
+    """
+    if fmt not in FORMATS:
+        raise InputError(f"format: expected one of {', '.join(FORMATS)}, got {fmt!r}")
+    if fmt == "step" and magnify != 1.0:
+        raise InputError("a STEP file holds the real parts: leave out --magnify, or choose stl, ply or glb")
+    assembly = assemble(run, which, magnify=magnify, trust_parts=trust_parts)
+    try:
+        out.mkdir(parents=True, exist_ok=True)
+        files = [path for mesh in assembly.meshes for path in WRITERS[fmt](assembly, mesh, out)]
+    except OSError as error:
+        raise InputError(f"{out}: cannot be written ({error.strerror or error}); choose another folder") from None
+    return Exported(tuple(files), assembly.notes)
+
+
+def triangle_mesh(part: PlacedGear) -> trimesh.Trimesh:
+    """A placed gear as a closed mesh in the world [mm]."""
+    vertices, triangles = part.mesh()
+    return trimesh.Trimesh(vertices, triangles, process=False)
+
+
+def _write_parts(ending: str) -> Callable[[Assembly, SeatedMesh, Path], list[Path]]:
+    def write(assembly: Assembly, seated: SeatedMesh, out: Path) -> list[Path]:
+        files = []
+        for part, colour in zip((seated.driver, seated.driven), COLOURS, strict=True):
+            mesh = triangle_mesh(part)
+            if ending == "ply":
+                mesh.visual.vertex_colors = np.tile(np.array(colour, dtype=np.uint8), (len(mesh.vertices), 1))
+            path = out / f"{assembly.label}-{_file_word(part.name)}.{ending}"
+            files.append(_written(path, mesh.export(file_type=ending)))
+        return files
+
+    return write
+
+
+def _write_scene(assembly: Assembly, seated: SeatedMesh, out: Path) -> list[Path]:
+    scene = trimesh.Scene()
+    to_metres = np.diag([METRES_PER_MM, METRES_PER_MM, METRES_PER_MM, 1.0])
+    for part, colour in zip((seated.driver, seated.driven), COLOURS, strict=True):
+        mesh = triangle_mesh(part)
+        material = trimesh.visual.material.PBRMaterial(
+            name=part.name, baseColorFactor=np.array(colour, dtype=np.uint8), metallicFactor=0.4, roughnessFactor=0.5
+        )
+        mesh.visual = trimesh.visual.TextureVisuals(material=material)
+        scene.add_geometry(mesh, node_name=part.name, geom_name=part.name, transform=to_metres)
+    return [_written(_scene_path(assembly, seated, out, "glb"), scene.export(file_type="glb"))]
+
+
+def _write_step(assembly: Assembly, seated: SeatedMesh, out: Path) -> list[Path]:
+    path = _scene_path(assembly, seated, out, "step")
+    parts = [PosedGear(part.name, part.perturbed, part.world_from_gear) for part in (seated.driver, seated.driven)]
+    export_step(parts, path)
+    return [path]
+
+
+WRITERS: Mapping[str, Callable[[Assembly, SeatedMesh, Path], list[Path]]] = {
+    "stl": _write_parts("stl"),
+    "ply": _write_parts("ply"),
+    "glb": _write_scene,
+    "step": _write_step,
+}
+
+
+def _scene_path(assembly: Assembly, seated: SeatedMesh, out: Path, ending: str) -> Path:
+    mesh = f"-{_file_word(seated.mesh.name)}" if len(assembly.meshes) > 1 else ""
+    return out / f"{assembly.label}{mesh}.{ending}"
+
+
+def _file_word(name: str) -> str:
+    """A user's name as part of a file's name: letters, digits, dots and dashes."""
+    return re.sub(r"[^\w.-]+", "_", name)
+
+
+def _written(path: Path, content: bytes | str) -> Path:
+    """Write a file aside and rename it, so that it is whole or not there."""
+    beside = path.with_name(f"{path.name}.{os.getpid()}.partial")
+    try:
+        beside.write_bytes(content if isinstance(content, bytes) else content.encode())
+        os.replace(beside, path)
+    finally:
+        beside.unlink(missing_ok=True)
+    return path
