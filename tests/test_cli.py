@@ -68,7 +68,7 @@ def test_fail_on_limits_exits_with_1_only_when_a_limit_fails(tol3d: Command, tmp
 def test_check_shows_coefficients_limits_and_sigma(tol3d: Command) -> None:
     code, out, _ = tol3d("check", SPUR)
     assert code == 0
-    for words in ("pinion", "wheel", "172.5", "1.750", "0.684", "-0.940", "15"):
+    for words in ("pinion", "wheel", "172.5", "1.750", "0.684", "0.940", "15"):
         assert words in out
 
 

@@ -46,8 +46,8 @@ def test_mean_error_of_the_strips_falls_with_the_square_of_the_step(flank: int, 
         chords.append(engine.chord_error)
     order = -np.polyfit(np.log(DENSITIES), np.log(errors), 1)[0]
     assert 1.7 < order < 2.3
-    # two contacts, two flanks each: never more than four chord errors, and on average two thirds of each pair's
-    assert all(error < 4 * chord for error, chord in zip(errors, chords, strict=True))
+    # two contacts, each between two strips that lie inside their teeth by a chord error at most
+    assert all(0 < error < 4 * chord for error, chord in zip(errors, chords, strict=True))
     assert -np.polyfit(np.log(DENSITIES), np.log(chords), 1)[0] == pytest.approx(2.0, abs=0.02)
 
 
@@ -79,7 +79,8 @@ def test_extremes_of_a_sine_are_off_by_1e_4_at_24_positions_and_by_order_4() -> 
 def dense_extremes(model: Model, block: Block, turns: int, count: int) -> tuple[np.ndarray, np.ndarray]:
     """Smallest and largest exact backlash of each trial over so many turns of the driver, from 0, ends included."""
     angles = np.linspace(0.0, 2 * np.pi * turns, count)
-    exact = np.stack([exact_of(model, block, np.full(len(block), angle)) for angle in angles], axis=1)
+    repeated = Block(np.repeat(block.deviations, count, axis=0), {})
+    exact = exact_of(model, repeated, np.tile(angles, len(block))).reshape(-1, count)
     return exact.min(axis=1), exact.max(axis=1)
 
 
@@ -94,10 +95,10 @@ def test_extremes_over_positions_agree_with_a_dense_scan(
     block = drawn_block(model, 9, 0, 12)
     lowest, highest = dense_extremes(model, block, turns, scan)
     columns = simulate_block(model, engine_of(model), block)
-    # the strips read up to 0.12 um too much; the parabola's 1e-4 and a turn's ends cost 0.02 um of 2 sin(alpha) e
+    # 0.12 um of the strips or 0.05 um of squares in the stack-up; the parabola's 1e-4 is under 0.01 um of 30 um
     for take, expected in (("min", lowest), ("max", highest), ("range", highest - lowest)):
-        assert np.abs(columns[f"geometric:{take}"] - 1000 * expected).max() <= 0.14, take
-        assert np.abs(columns[f"analytic:{take}"] - 1000 * expected).max() <= 0.10, take
+        assert np.abs(columns[f"geometric:{take}"] - 1000 * expected).max() <= 0.13, take
+        assert np.abs(columns[f"analytic:{take}"] - 1000 * expected).max() <= 0.06, take
 
 
 def test_a_curve_is_the_values_at_its_positions(paper_model: Model, engine_of) -> None:

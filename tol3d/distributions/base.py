@@ -8,9 +8,8 @@ from typing import Self
 import numpy as np
 from numpy.typing import NDArray
 from pydantic import model_validator
-from pydantic_core import PydanticCustomError
 
-from tol3d.strict import Strict
+from tol3d.strict import Strict, refused
 from tol3d.units import Quantity
 
 Array = NDArray[np.float64]
@@ -99,13 +98,3 @@ class DistributionSpec(Strict, ABC):
         quantity = self.quantities()[field]
         if not quantity.internal > 0.0:
             raise refused(field, "more than 0 (for no spread at all write kind: constant)", quantity)
-
-
-def refused(field: str, expected: str, got: object) -> PydanticCustomError:
-    """The error of a validator that refuses one field; a quantity is shown in quotes, as it was written."""
-    shown = repr(str(got)) if isinstance(got, Quantity) else str(got)
-    return PydanticCustomError(
-        "value_refused",
-        "{field}: expected {expected}, got {got}",
-        {"field": field, "expected": expected, "got": shown},
-    )

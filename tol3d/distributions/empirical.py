@@ -12,8 +12,9 @@ from typing import Literal, Self
 import numpy as np
 from pydantic import model_validator
 
-from tol3d.distributions.base import LARGEST_DEVIATION, Array, Distribution, DistributionSpec, refused
+from tol3d.distributions.base import LARGEST_DEVIATION, Array, Distribution, DistributionSpec
 from tol3d.errors import SceneError
+from tol3d.strict import refused
 from tol3d.units import BARE_NUMBER, MICRO_SIGNS, UNITS, Quantity
 
 LARGEST_FILE = 20_000_000  # bytes; about two million values, seconds to read

@@ -10,7 +10,8 @@ import numpy as np
 from pydantic import model_validator
 
 from tol3d.distributions import standard_normal
-from tol3d.distributions.base import Array, Distribution, DistributionSpec, refused
+from tol3d.distributions.base import Array, Distribution, DistributionSpec
+from tol3d.strict import refused
 from tol3d.units import Quantity
 
 LEAST_KEPT = 1e-3  # of the untruncated normal; under it the closed-form variance loses more than 1e-6 to cancellation

@@ -83,7 +83,7 @@ class SpurGear:
                 f"{self.tip_thickness:.4f} mm; flanks meet at {2 * self.pointed_radius:.4f} mm: "
                 "lower addendum or profile_shift"
             )
-        if self.bore < 0.0 or self.bore >= self.root_diameter:
+        if not 0.0 <= self.bore < self.root_diameter:
             raise GeometryError(
                 f"bore: expected less than the root circle ({self.root_diameter:.4f} mm), got {self.bore:g} mm"
             )

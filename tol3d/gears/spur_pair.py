@@ -16,7 +16,7 @@ from tol3d.gears.involute import inverse_involute, involute
 from tol3d.gears.spur_gear import SpurGear
 
 SAME_LENGTH = 1e-9  # relative; two modules written alike are equal in this sense
-CONTACT_MARGIN = 0.15  # pitches beyond the path of contact; teeth further off are open by over 20 um
+CONTACT_MARGIN = 0.15  # pitches beyond the path of contact, whose ends move by 1/sin(alpha_w) of a shift of the axes
 
 
 @dataclass(frozen=True)
@@ -149,18 +149,18 @@ class SpurPair:
                     f"digs {-clearance:.4f} mm into the root of the {name} gear"
                 )
             start = gear.base_radius * math.hypot(1.0, max(pair.start_roll, 0.0))
-            if pair.start_roll < gear.form_roll:
-                where = f"{2 * start:.4f} mm" if pair.start_roll > 0 else "below the base circle"
-                raise GeometryError(
-                    f"the teeth interfere: the {mate} gear's tip would touch the {name} gear at {where}, "
-                    f"but its involute begins at {2 * gear.form_radius:.4f} mm; "
-                    "lower addendum or root_fillet, or add profile_shift"
-                )
+            where = f"at {2 * start:.4f} mm" if pair.start_roll > 0 else "below the base circle"
             if start < gear.undercut_radius:
                 raise GeometryError(
                     f"undercut reaches the flank in use: a rack of addendum 1 cuts the {name} gear's involute up to "
-                    f"{2 * gear.undercut_radius:.4f} mm, contact begins at {2 * start:.4f} mm; give "
+                    f"{2 * gear.undercut_radius:.4f} mm, contact begins {where}; give "
                     f"profile_shift of at least {gear.undercut_limit_shift:.4f} (it has {gear.profile_shift:g})"
+                )
+            if pair.start_roll < gear.form_roll:
+                raise GeometryError(
+                    f"the teeth interfere: the {mate} gear's tip would touch the {name} gear {where}, "
+                    f"but its involute begins at {2 * gear.form_radius:.4f} mm; "
+                    "lower addendum or root_fillet, or add profile_shift"
                 )
         if self.contact_ratio < 1.0:
             raise GeometryError(

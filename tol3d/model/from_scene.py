@@ -23,7 +23,7 @@ from tol3d.model.measure import Backlash, Measure, Positions
 from tol3d.model.model import GearPart, Housing, Mesh, Model, Study
 from tol3d.scene import Scene
 from tol3d.scene.direction import At
-from tol3d.scene.measures import MeasureSpec
+from tol3d.scene.measures import MeasureSpec, MeasureUnion
 from tol3d.scene.moves import MeshSpec
 from tol3d.scene.parts import HousingSpec, SpurGearSpec
 from tol3d.scene.tolerances import (
@@ -138,7 +138,7 @@ def _warnings(meshes: tuple[Mesh, ...]) -> Iterator[str]:
                 )
 
 
-def _measure(name: str, spec: MeasureSpec, mesh: Mesh) -> Measure:
+def _measure(name: str, spec: MeasureUnion, mesh: Mesh) -> Measure:
     gear = getattr(spec, "gear", None) or mesh.driven
     return Measure(
         name=name,

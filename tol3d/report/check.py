@@ -10,7 +10,7 @@ from rich.table import Table
 from rich.text import Text
 
 from tol3d.gears import RIGHT, SpurPair
-from tol3d.model import Contributor, Measure, Mesh, Model, Planar
+from tol3d.model import Contributor, Measure, Model, Planar
 from tol3d.model.contributor import INTERNAL_PER_UNIT
 from tol3d.report.heading import OVER_WORDS, QUANTITY_WORDS, TAKE_WORDS
 from tol3d.report.number import NOTHING, UNIT_SIGNS, given_text, percent_text, value_text
