@@ -125,7 +125,7 @@ def main() -> None:
         median = statistics.median(found)
         spread = f"{min(found):.0f} ... {max(found):.0f}"
         print(f"  strips, {what:16} {median:8.0f} trials/s  ({spread})   {median / slow:7.0f} x naive")
-    print(f"  naive, whole gears        {slow:8.2f} trials/s  ({triangles} triangles, deflection {NAIVE_DEFLECTION} mm)")
+    print(f"  naive, whole gears        {slow:8.2f} trials/s  ({triangles} triangles, {NAIVE_DEFLECTION} mm)")
     assert math.isfinite(slow)
 
 

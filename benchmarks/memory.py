@@ -19,7 +19,8 @@ def peak_megabytes(trials: int, engine: str) -> float:
     with tempfile.TemporaryDirectory() as folder:
         code = (
             "import sys, resource; from tol3d import run_scene, Overrides\n"
-            f"run_scene({str(SCENE)!r}, overrides=Overrides(trials={trials}, engine={engine!r}), out={folder!r} + '/run')\n"
+            f"study = Overrides(trials={trials}, engine={engine!r})\n"
+            f"run_scene({str(SCENE)!r}, overrides=study, out={folder!r} + '/run')\n"
             "print(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024)"
         )
         done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
@@ -33,7 +34,8 @@ def main() -> None:
     parser.add_argument("--engine", choices=["analytic", "fcl"], default="analytic")
     arguments = parser.parse_args()
     for trials in arguments.trials:
-        print(f"{trials:>10} trials, {arguments.engine}: {peak_megabytes(trials, arguments.engine):7.0f} MB at the peak")
+        peak = peak_megabytes(trials, arguments.engine)
+        print(f"{trials:>10} trials, {arguments.engine}: {peak:7.0f} MB at the peak")
 
 
 if __name__ == "__main__":

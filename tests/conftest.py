@@ -21,7 +21,7 @@ def strips_of(gear: SpurGear, steps: int) -> FlankStrips:
 
 @pytest.fixture(scope="session")
 def paper_model() -> Model:
-    """Tables 1 and 2 of the paper: everything in the plane acts (eccentricities, run-out, clearance, centre distance)."""
+    """Tables 1 and 2 of the paper: thicknesses, eccentricities, run-out, clearance and centre distance all act."""
     return model_from_scene(load_scene(SPUR_PAIR))
 
 

@@ -1,4 +1,4 @@
-"""What is approximated, and how fast the error falls: strips with their steps, extremes over a turn with their positions."""
+"""What is approximated, and how fast the error falls: strips with their steps, extremes with their positions."""
 
 from dataclasses import replace
 
@@ -17,7 +17,8 @@ from tol3d.moves import seat_mesh
 DENSITIES = (60, 80, 120, 160)
 TRIALS = 200  # the mean error of so many has a standard error of 3 %, and the same trials serve every density
 
-LARGEST_PARABOLA_ERROR = 1.1e-4  # of a sine's amplitude, at 24 positions a turn: sin^2(d)(1 + cos h)/(4 cos d) + cos d - 1
+# of a sine's amplitude at 24 positions a turn, halfway between two: 1 - cos d - sin^2(d)(1 + cos h)/(4 cos d), d = h/2
+LARGEST_PARABOLA_ERROR = 1.1e-4
 
 
 def exact_of(model: Model, block: Block, angle: np.ndarray) -> np.ndarray:
@@ -88,9 +89,7 @@ def dense_extremes(model: Model, block: Block, turns: int, count: int) -> tuple[
 def test_extremes_over_positions_agree_with_a_dense_scan(
     over: str, turns: int, scan: int, paper_model: Model, engine_of
 ) -> None:
-    measures = tuple(
-        replace(extreme(take, over, 24 * turns, turns), name=take) for take in ("min", "max", "range")
-    )
+    measures = tuple(replace(extreme(take, over, 24 * turns, turns), name=take) for take in ("min", "max", "range"))
     model = replace(paper_model, measures=measures)
     block = drawn_block(model, 9, 0, 12)
     lowest, highest = dense_extremes(model, block, turns, scan)

@@ -2,6 +2,7 @@
 
 import math
 import re
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -186,9 +187,9 @@ def test_without_undercut_the_rack_leaves_the_flank_down_to_the_base_circle(teet
     )
 
 
-def test_seventeen_teeth_are_the_fewest_without_undercut_but_for_a_hair() -> None:
-    """The textbook limit of 20 deg: z = 2/sin^2(alpha) = 17.1."""
-    assert SpurGear(17, 1.0, ALPHA, 10.0).undercut_limit_shift == pytest.approx(17.1 * 0.0 + 1 - 17 / 17.0973, abs=1e-5)
+def test_eighteen_teeth_are_the_fewest_without_any_undercut() -> None:
+    """The textbook limit of 20 deg, z = 2/sin^2(alpha) = 17.0973: 17 teeth miss it by a hair."""
+    assert SpurGear(17, 1.0, ALPHA, 10.0).undercut_limit_shift == pytest.approx(1 - 17 / 17.0973, abs=1e-5)
     assert SpurGear(18, 1.0, ALPHA, 10.0).undercut_limit_shift < 0
 
 
@@ -323,6 +324,20 @@ def test_backlash_is_the_distance_that_a_search_of_the_flanks_finds(flank: int, 
         assert turn == pytest.approx(pair.angular_backlash[k], abs=2e-9)
 
 
+@FLANKS
+def test_touching_angle_is_where_a_search_turns_the_wheel_to(flank: int) -> None:
+    pinion, wheel = SpurGear(17, 2.0, ALPHA, 10.0, profile_shift=0.4), SpurGear(31, 2.0, ALPHA, 10.0)
+    pair = SpurPair(pinion, wheel, 48.9)
+    angle, line = np.linspace(-3.0, 30.0, 5), np.array([48.93, -0.4])
+    thickness = (-0.03, 0.01)
+    thin = [replace(g, tooth_thickness_deviation=t) for g, t in zip((pinion, wheel), thickness, strict=True)]
+    mesh = parallel_mesh(SpurPair(*thin, pair.centre_distance), len(angle))
+    mesh.driven_shaft[:, :2, 3] = line
+    found = brute_force.turn_until_contact(mesh, angle, brute_force.tooth_in_space(mesh, angle), flank)[1]
+    told = pair.touching_angle(angle, flank, np.tile(line, (5, 1)), np.tile(thickness, (5, 1)))
+    assert np.abs(told - found).max() * wheel.base_radius < 3e-8
+
+
 def parallel_mesh(pair: SpurPair, count: int, distance: float | None = None) -> brute_force.Mesh:
     shafts = np.tile(np.eye(4), (2, count, 1, 1))
     shafts[1, :, 0, 3] = pair.centre_distance if distance is None else distance
@@ -399,11 +414,7 @@ def test_candidate_teeth_hold_every_pair_that_a_scan_finds_touching(name: str, s
     pair = PAIRS[name]
     pair.refuse_interference()
     module = pair.pinion.module
-    thin = [
-        SpurGear(g.teeth, module, g.pressure_angle, 1.0, g.profile_shift, g.addendum, g.dedendum,
-                 tooth_thickness_deviation=-0.1 * module)
-        for g in (pair.pinion, pair.wheel)
-    ]  # fmt: skip
+    thin = [replace(gear, tooth_thickness_deviation=-0.1 * module) for gear in (pair.pinion, pair.wheel)]
     angle = np.random.default_rng(3).uniform(-50.0, 50.0, 8)
     mesh = parallel_mesh(SpurPair(*thin, pair.centre_distance), len(angle), pair.centre_distance + shifted * module)
     turned = brute_force.turn_until_contact(mesh, angle, brute_force.tooth_in_space(mesh, angle), flank)

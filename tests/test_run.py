@@ -168,7 +168,7 @@ def test_a_killed_run_goes_on_where_it_was(tmp_path: Path, monkeypatch: pytest.M
     assert_same_bits(whole.columns(), resumed.columns())
     assert resumed.summary["measures"] == whole.summary["measures"]
     after = sorted((tmp_path / "cut" / "trials").iterdir())
-    assert [path.stat().st_mtime_ns for path in after][0] == before[0]
+    assert after[0].stat().st_mtime_ns == before[0]  # a whole block is not
     assert not (tmp_path / "cut.partial").exists()
 
 

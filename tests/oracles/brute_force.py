@@ -7,12 +7,13 @@ lowest point; no line of action, no candidate list.
 from dataclasses import dataclass
 
 import numpy as np
+
 from oracles.involute_gear import InvoluteGear
 from oracles.poses import world_from_gears
 
 TEETH_EACH_SIDE = 2  # teeth beyond the one nearest to the line of centres: 5 pitches, a path of contact has 2
 ROLL_POINTS, ROLL_ZOOMS = 13, 8  # a zoom keeps two of twelve cells: 6^7 times finer than 20 mm/12 is 0.006 um
-FACE_POINTS, FACE_ZOOMS = 7, 7  # 3^6 times finer than 100 mm/6 is 23 um, times 1 mrad 0.02 um; and in 20 mm 0.005
+FACE_POINTS, FACE_ZOOMS = 7, 9  # 3^8 times finer than 100 mm/6 is 2.5 um, times 1 mrad 0.003 um
 CONTACT_XTOL = 1e-8  # mm
 CONTACT_STEPS = 40  # the distance falls by r_b times the turn up to a few per cent, so that six steps do
 
@@ -52,7 +53,9 @@ def distances(mesh: Mesh, driver_angle, driven_angle, flank) -> tuple[np.ndarray
     teeth = np.round(-driver_angle / mesh.driver.pitch)[:, None] + around
     # the driven tooth that fills the space beside that flank: on rolling circles, half a pitch further
     azimuth = driver_angle[:, None] + mesh.driver.pitch * (teeth - flank / 2)
-    mates = np.round((np.pi - azimuth * mesh.driver.teeth / mesh.driven.teeth - driven_angle[:, None]) / mesh.driven.pitch)
+    mates = np.round(
+        (np.pi - azimuth * mesh.driver.teeth / mesh.driven.teeth - driven_angle[:, None]) / mesh.driven.pitch
+    )
     pose = mesh.driven_from_driver(driver_angle, driven_angle)
 
     def distance(string, z):

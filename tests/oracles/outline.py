@@ -6,8 +6,9 @@ Half a tooth on the high-azimuth side: tip arc, involute, radial line below the 
 import math
 
 import numpy as np
-from oracles.involute_gear import InvoluteGear
 from scipy.optimize import brentq, minimize_scalar
+
+from oracles.involute_gear import InvoluteGear
 
 POINTS = 20_000  # a curve: a chord's area error is the sagitta's 2/3, together 1e-9 of the area
 
@@ -33,7 +34,9 @@ def fillet(gear: InvoluteGear, root_radius: float, fillet_radius: float) -> tupl
         return found.fun, found.x
 
     on_flank = float(gear.half_angle(max(out, gear.base_radius)))
-    azimuth = brentq(lambda at: nearest(at)[0] - fillet_radius, on_flank, on_flank + 3 * fillet_radius / out, xtol=1e-14)
+    azimuth = brentq(
+        lambda at: nearest(at)[0] - fillet_radius, on_flank, on_flank + 3 * fillet_radius / out, xtol=1e-14
+    )
     return out * np.array([math.cos(azimuth), math.sin(azimuth)]), flank_point(gear, nearest(azimuth)[1])
 
 

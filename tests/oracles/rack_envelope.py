@@ -9,6 +9,7 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
+
 from oracles.brute_force import zoomed_minimum
 
 GRID = (201, 9)  # points, zooms: 100^9 times finer than the range, down to the spacing of doubles

@@ -2,7 +2,9 @@
 
 One BVH a tooth flank, as full-width strips. FCL tells no depth of overlap, so the strips are pulled
 inward by SLACK along their normals and the gap is the distance less the slack of both: the flanks may
-overlap by up to twice the slack and the distance stays away from zero.
+overlap by up to twice the slack and the distance stays away from zero. A tip edge is pulled in along its
+own normal; where it touches a flank whose normal differs by delta, the gap reads SLACK (1 - cos delta)
+too little: 0.03 um at 0.045 rad, as gears 700 ppm apart in pitch have it.
 """
 
 from collections.abc import Mapping

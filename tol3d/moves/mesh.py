@@ -122,13 +122,14 @@ def turn_to_contact(
         known = None
         rate = np.abs(gaps.per_turn(axis_point[rows], axis[rows], of_driver=turn_driver))
         reach = np.where(np.isnan(gaps.value), np.inf, gaps.value / rate)
-        deep = gaps.deep.any(axis=1)
+        deep = np.asarray(gaps.deep.any(axis=1))
         step = np.where(deep, -engine.depth / base_radius, reach.min(axis=1))
         mover[rows] -= opening * step
         resting = ~deep & (np.abs(step) * base_radius < LAST_STEP)
         at_rest.keep(rows[resting], gaps, resting, rate * step[:, None])
         tie = (TIE + TIE_SHARE * np.abs(step) * base_radius) / base_radius
-        wanted[rows] &= deep[:, None] | np.less_equal(reach, (step + tie)[:, None])
+        tied = reach <= (step + tie)[:, None]
+        wanted[rows] &= deep[:, None] | tied
         rows = rows[~resting]
         if not len(rows):
             break

@@ -139,11 +139,11 @@ def assemble(run: Run, which: Which, *, magnify: float = 1.0, trust_parts: bool 
     meshes = _seated(seen, rows)
     for seat in meshes:
         if seat.status == NO_CONTACT:
-            raise RunError(f"{label}: the working flanks of {seat.mesh.name} found no contact; there is nothing to show")
+            raise RunError(f"{label}: the working flanks of {seat.mesh.name} found no contact; choose another build")
     used, notes = 1.0, [_said(label, seen)]
     if magnify != 1.0:
         used, seen, meshes, note = _magnified(seen, rows, magnify)
-        label += f"-x{used:g}"
+        label += f"-x{used:g}" if used != 1.0 else ""
         notes.append(note)
     return Assembly(label, used, meshes, seen.geometric, tuple(note for note in notes if note))
 
@@ -242,9 +242,7 @@ def _magnified(
         return again, _seated(again, rows)
 
     plain = _seated(seen, rows)
-    widest = {
-        mesh.mesh.name: max(OPEN_SHARE * mesh.driver.gear.base_pitch, mesh.gap_value) for mesh in plain
-    }
+    widest = {mesh.mesh.name: max(OPEN_SHARE * mesh.driver.gear.base_pitch, mesh.gap_value) for mesh in plain}
 
     def allowed(meshes: tuple[SeatedMesh, ...]) -> bool:
         return all(_in_its_space(mesh, widest[mesh.mesh.name]) for mesh in meshes)

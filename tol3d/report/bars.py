@@ -44,13 +44,14 @@ def bars_of(histogram: Mapping[str, Any]) -> dict[str, Bars]:
 
 def _neighbours_in_one(bars: int, total: int) -> int:
     """How many bars make one, for about 2 n^(1/3) of them (the Rice rule)."""
-    return max(1, round(bars / max(FEWEST_BARS, 2 * total ** (1 / 3))))
+    wanted: float = max(FEWEST_BARS, 2 * total ** (1 / 3))
+    return max(1, round(bars / wanted))
 
 
 def _bars(counts: Array, merged: int, lower: float, width: float) -> Bars:
     bars = -(-len(counts) // merged)
     padded = np.zeros(bars * merged)
     padded[: len(counts)] = counts
-    edges = lower + merged * width * np.arange(bars + 1)
+    edges: Array = lower + merged * width * np.arange(bars + 1, dtype=np.float64)
     total = counts.sum() or 1.0
     return Bars(edges, 100 * padded.reshape(bars, merged).sum(axis=1) / (total * merged * width))

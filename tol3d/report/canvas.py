@@ -67,9 +67,9 @@ def label_angles(axis: Axis, unit: str) -> None:
 def _minutes_seconds(arcmin: float) -> str:
     tenths = round(abs(arcmin) * 600)
     minutes, rest = divmod(tenths, 600)
-    seconds = f"{rest / 10:04.1f}″" if rest % 10 else f"{rest // 10:02d}″"
+    seconds = f"{rest / 10:.1f}″" if rest % 10 else f"{rest // 10}″"
     sign = "−" if arcmin < 0 and tenths else ""
-    return f"{sign}{minutes}′{seconds}" if minutes else f"{sign}{seconds}"
+    return f"{sign}{minutes}′{'0' * (rest < 100)}{seconds}" if minutes else f"{sign}{seconds}"
 
 
 def save_figure(figure: Figure, path: Path) -> None:

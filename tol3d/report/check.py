@@ -188,7 +188,8 @@ def _effect(model: Model, contributor: Contributor) -> tuple[str, str]:
         share = next((s for s in form.shares if s.name == contributor.name), None) if form else None
         if form is not None and share is not None:
             per = measure.per_internal * INTERNAL_PER_UNIT[contributor.unit]
-            return f"{share.coefficient * per:+.3g} {UNIT_SIGNS[measure.unit]}", percent_text(form.percent(contributor.name))
+            coefficient = f"{share.coefficient * per:+#.3g} {UNIT_SIGNS[measure.unit]}"
+            return coefficient, percent_text(form.percent(contributor.name))
     return NOTHING, NOTHING
 
 

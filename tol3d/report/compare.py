@@ -159,14 +159,18 @@ def _draw_roads(axes: Axes, name: str, unit: str, runs: Sequence[tuple[str, Run]
         if measure["take"] == "curve":
             _draw_curves(axes, measure, where, colours)
             continue
-        bars = bars_of(measure["histogram"])
-        if "geometric" in bars:
-            edges, density = bars["geometric"].edges, bars["geometric"].density
-            axes.stairs(density, edges, fill=True, alpha=0.45, color=colours["geometric"], label=f"{where}3D simulation")
-        if "analytic" in bars:
-            edges, density = bars["analytic"].edges, bars["analytic"].density
-            style = "-" if single else "--"
-            axes.stairs(density, edges, linestyle=style, linewidth=1.8, color=colours["analytic"], label=f"{where}analytic")
+        for road, bars in bars_of(measure["histogram"]).items():
+            filled = road == "geometric"
+            axes.stairs(
+                bars.density,
+                bars.edges,
+                fill=filled,
+                alpha=0.45 if filled else 1.0,
+                linestyle="-" if filled or single else "--",
+                linewidth=0.0 if filled else 1.8,
+                color=colours[road],
+                label=f"{where}{ROADS[road]}",
+            )
     first = runs[0][1].summary["measures"][name]
     if first["take"] != "curve":
         for limit in (first.get("lower_limit"), first.get("upper_limit")):

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 from matplotlib.gridspec import SubplotSpec
 from numpy.typing import NDArray
 
@@ -45,7 +46,7 @@ def draw_histogram(summary: Summary, path: Path) -> None:
         InputError: the picture cannot be written there.
     """
     measures = summary["measures"]
-    heights = [3.6 if measure["take"] == "curve" else 4.3 + 0.22 * len(columns_of(measure)) for measure in measures.values()]
+    heights = [_height(measure) for measure in measures.values()]
     figure = new_figure(13.0, sum(heights) + 0.5)
     failed = sum(count for status, count in summary["status"].items() if status != "ok")
     figure.suptitle(
@@ -57,29 +58,33 @@ def draw_histogram(summary: Summary, path: Path) -> None:
         ha="left",
     )
     rows = figure.add_gridspec(len(measures), 1, height_ratios=heights, hspace=0.08)
-    for row, (name, measure) in zip(rows, measures.items(), strict=True):
+    for row, (name, measure) in enumerate(measures.items()):
         if measure["take"] == "curve":
-            draw_curve(plain_axes(figure.add_subplot(row)), name, measure)
+            draw_curve(plain_axes(figure.add_subplot(rows[row, 0])), name, measure)
         else:
-            _draw_scalar(row, name, measure)
+            _draw_scalar(figure, rows[row, 0], name, measure)
     save_figure(figure, path)
 
 
-def _draw_scalar(place: SubplotSpec, name: str, measure: Summary) -> None:
-    figure = place.get_gridspec().figure
-    assert figure is not None  # a gridspec made by a figure knows it
+def _height(measure: Summary) -> float:
+    """Height of a measure's row [inch]."""
+    return 3.6 if measure["take"] == "curve" else 4.3 + 0.22 * len(columns_of(measure))
+
+
+def _draw_scalar(figure: Figure, place: SubplotSpec, name: str, measure: Summary) -> None:
     columns, shares = columns_of(measure), shares_of(measure)
-    left, right = place.subgridspec(1, 2, width_ratios=[2.2, 1]) if shares else (place, None)
-    upper, lower = left.subgridspec(2, 1, height_ratios=[3.4, 0.28 * len(columns) + 0.15], hspace=0.02)
-    axes = plain_axes(figure.add_subplot(upper))
+    halves = place.subgridspec(1, 2, width_ratios=[2.2, 1])
+    left = halves[0, 0] if shares else place
+    parts = left.subgridspec(2, 1, height_ratios=[3.4, 0.28 * len(columns) + 0.15], hspace=0.02)
+    axes = plain_axes(figure.add_subplot(parts[0, 0]))
     draw_distribution(axes, name, measure)
-    ranges = figure.add_subplot(lower, sharex=axes)
-    draw_ranges(ranges, columns, measure["unit"])
+    ranges = figure.add_subplot(parts[1, 0], sharex=axes)
+    draw_ranges(ranges, columns)
     axes.tick_params(labelbottom=False)
     label_angles(ranges.xaxis, measure["unit"])
     ranges.set_xlabel(f"{legible(name, 60)} [{AXIS_UNITS[measure['unit']]}]", fontsize=10)
-    if right is not None:
-        draw_contributors(figure.add_subplot(right), measure, shares)
+    if shares:
+        draw_contributors(figure.add_subplot(halves[0, 1]), measure, shares)
 
 
 # histogram ----------------------------------------------------------------------------------------
@@ -100,7 +105,8 @@ def draw_distribution(axes: Axes, name: str, measure: Summary) -> None:
     form = measure.get("analytic_closed_form")
     if form and form["sigma"]:
         x = np.linspace(*span, 400)
-        normal = 100 * np.exp(-(((x - form["mean"]) / form["sigma"]) ** 2) / 2) / (form["sigma"] * math.sqrt(2 * math.pi))
+        mean, sigma = form["mean"], form["sigma"]
+        normal = 100 * np.exp(-(((x - mean) / sigma) ** 2) / 2) / (sigma * math.sqrt(2 * math.pi))
         axes.plot(x, normal, color=BLACK, linewidth=1.2, linestyle=(0, (5, 3)))
     top = max(float(b.density.max()) for b in bars.values())
     axes.set_ylim(0, 1.22 * top)
@@ -197,12 +203,18 @@ def _short(value: float, unit: str) -> str:
     return measured_text(value, unit) if unit == "arcmin" else f"{value:.1f} µm"
 
 
-def draw_ranges(axes: Axes, columns: Sequence[Column], unit: str) -> None:
+def column_colours(columns: Sequence[Column]) -> dict[str, str]:
+    """A colour for each column by its heading: the roads have their own, published ones get the others in turn."""
+    published = [column.heading for column in columns if column.road == "published"]
+    colours = {name: PUBLISHED_COLOURS[k % len(PUBLISHED_COLOURS)] for k, name in enumerate(published)}
+    return colours | {c.heading: ROAD_COLOURS[c.road] for c in columns if c.road != "published"}
+
+
+def draw_ranges(axes: Axes, columns: Sequence[Column]) -> None:
     """One line a column below the histogram: low to high at +-3 sigma, the mean as a dot."""
-    published = 0
+    colours = column_colours(columns)
     for row, column in enumerate(columns):
-        colour = ROAD_COLOURS.get(column.road) or PUBLISHED_COLOURS[published % len(PUBLISHED_COLOURS)]
-        published += column.road == "published"
+        colour = colours[column.heading]
         low, mean, high = (column.value(key) for key in ("low_3sigma", "mean", "high_3sigma"))
         if low is not None and high is not None:
             axes.plot([low, high], [row, row], color=colour, linewidth=5, solid_capstyle="butt", alpha=0.75)
@@ -228,15 +240,13 @@ def draw_contributors(axes: Axes, measure: Summary, columns: Sequence[Column]) -
     shown, rest = names[:MOST_CONTRIBUTORS], names[MOST_CONTRIBUTORS:]
     labels = [*(legible(name, 26) for name in shown), *([f"{len(rest)} others"] if rest else [])]
     height = 0.8 / len(columns)
-    published = 0
+    colours = column_colours(columns_of(measure))
     for k, column in enumerate(columns):
-        colour = ROAD_COLOURS.get(column.road) or PUBLISHED_COLOURS[published % len(PUBLISHED_COLOURS)]
-        published += column.road == "published"
         values = [column.percents.get(name) or 0.0 for name in shown]
         values += [sum(column.percents.get(name) or 0.0 for name in rest)] if rest else []
         places = np.arange(len(values)) - 0.4 + (k + 0.5) * height
         label = {"analytic": "analytic", "geometric": "3D simulation"}.get(column.road, legible(column.heading, 28))
-        drawn = axes.barh(places, values, height=0.9 * height, color=colour, alpha=0.8, label=label)
+        drawn = axes.barh(places, values, height=0.9 * height, color=colours[column.heading], alpha=0.8, label=label)
         known = [column.percents.get(name) is not None for name in shown] + [any(values)] * bool(rest)
         texts = [f"{value:.1f}" if told else "" for value, told in zip(values, known, strict=True)]
         axes.bar_label(drawn, labels=texts, fontsize=7, padding=2, color=BLACK)
@@ -273,7 +283,8 @@ def draw_curve(axes: Axes, name: str, measure: Summary) -> None:
         axes.plot(x, curve["analytic"]["mean"], color=ORANGE, linewidth=1.8, linestyle="--", label="analytic, mean")
     for key, limit_word in (("lower_limit", "LSL"), ("upper_limit", "USL")):
         if measure.get(key) is not None:
-            axes.axhline(measure[key], color=OUTSIDE, linewidth=2, label=f"{limit_word} {given_text(measure[key], unit)}")
+            text = f"{limit_word} {given_text(measure[key], unit)}"
+            axes.axhline(measure[key], color=OUTSIDE, linewidth=2, label=text)
     axes.set_xlim(x[0], x[-1])
     axes.set_xlabel(f"driver position [{'turns' if in_turns else 'deg'}]", fontsize=10)
     axes.set_ylabel(f"{legible(name)} [{AXIS_UNITS[unit]}]", fontsize=10)
@@ -281,5 +292,3 @@ def draw_curve(axes: Axes, name: str, measure: Summary) -> None:
     axes.set_title(f"{legible(name, 60)}\n", loc="left", fontsize=12, fontweight="bold")
     axes.text(0, 1.03, legible(heading(measure), 110), transform=axes.transAxes, fontsize=9, color=GREY)
     axes.legend(fontsize=8.5, frameon=False, loc="center left", bbox_to_anchor=(1.0, 0.5))
-
-

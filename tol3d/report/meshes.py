@@ -69,21 +69,19 @@ def export_run(
     return Exported(tuple(files), assembly.notes)
 
 
-def triangle_mesh(part: PlacedGear) -> trimesh.Trimesh:
+def triangle_mesh(part: PlacedGear, colour: tuple[int, int, int, int] = COLOURS[0]) -> trimesh.Trimesh:
     """A placed gear as a closed mesh in the world [mm]."""
     vertices, triangles = part.mesh()
-    return trimesh.Trimesh(vertices, triangles, process=False)
+    colours = np.tile(np.array(colour, dtype=np.uint8), (len(vertices), 1))
+    return trimesh.Trimesh(vertices, triangles, process=False, vertex_colors=colours)
 
 
 def _write_parts(ending: str) -> Callable[[Assembly, SeatedMesh, Path], list[Path]]:
     def write(assembly: Assembly, seated: SeatedMesh, out: Path) -> list[Path]:
         files = []
         for part, colour in zip((seated.driver, seated.driven), COLOURS, strict=True):
-            mesh = triangle_mesh(part)
-            if ending == "ply":
-                mesh.visual.vertex_colors = np.tile(np.array(colour, dtype=np.uint8), (len(mesh.vertices), 1))
-            path = out / f"{assembly.label}-{_file_word(part.name)}.{ending}"
-            files.append(_written(path, mesh.export(file_type=ending)))
+            content = triangle_mesh(part, colour).export(file_type=ending)
+            files.append(_written(out / f"{assembly.label}-{_file_word(part.name)}.{ending}", content))
         return files
 
     return write
@@ -93,13 +91,10 @@ def _write_scene(assembly: Assembly, seated: SeatedMesh, out: Path) -> list[Path
     scene = trimesh.Scene()
     to_metres = np.diag([METRES_PER_MM, METRES_PER_MM, METRES_PER_MM, 1.0])
     for part, colour in zip((seated.driver, seated.driven), COLOURS, strict=True):
-        mesh = triangle_mesh(part)
-        material = trimesh.visual.material.PBRMaterial(
-            name=part.name, baseColorFactor=np.array(colour, dtype=np.uint8), metallicFactor=0.4, roughnessFactor=0.5
-        )
-        mesh.visual = trimesh.visual.TextureVisuals(material=material)
+        mesh = triangle_mesh(part, colour)
         scene.add_geometry(mesh, node_name=part.name, geom_name=part.name, transform=to_metres)
-    return [_written(_scene_path(assembly, seated, out, "glb"), scene.export(file_type="glb"))]
+    content = scene.export(file_type="glb")  # type: ignore[no-untyped-call]  # trimesh annotates it in part only
+    return [_written(_scene_path(assembly, seated, out, "glb"), content)]
 
 
 def _write_step(assembly: Assembly, seated: SeatedMesh, out: Path) -> list[Path]:
@@ -127,11 +122,11 @@ def _file_word(name: str) -> str:
     return re.sub(r"[^\w.-]+", "_", name)
 
 
-def _written(path: Path, content: bytes | str) -> Path:
+def _written(path: Path, content: object) -> Path:
     """Write a file aside and rename it, so that it is whole or not there."""
     beside = path.with_name(f"{path.name}.{os.getpid()}.partial")
     try:
-        beside.write_bytes(content if isinstance(content, bytes) else content.encode())
+        beside.write_bytes(content if isinstance(content, bytes) else str(content).encode())
         os.replace(beside, path)
     finally:
         beside.unlink(missing_ok=True)

@@ -58,9 +58,9 @@ def run_report(summary: Summary) -> Group:
 
 
 def _run_line(summary: Summary) -> Text:
+    trials = f"{summary['trials']} trial{'' if summary['trials'] == 1 else 's'}"
     line = Text(str(summary["scene"]), style="bold")
-    line.append(f" · {_counted(summary['trials'], 'trial')} · seed {summary['seed']} · engine {summary['engine']}", "dim")
-    return line
+    return line.append(f" · {trials} · seed {summary['seed']} · engine {summary['engine']}", "dim")
 
 
 def _measure_blocks(name: str, measure: Summary, summary: Summary) -> list[RenderableType]:
@@ -164,7 +164,8 @@ def _notes(measure: Summary, summary: Summary) -> Iterator[str]:
     if limits and "analytic_closed_form" in measure:
         yield "ppm of the closed form: as if the measure were normal"
     if "lost_motion" in measure:
-        yield f"lost motion: the turn of {measure['lost_motion']['of']} that this normal backlash leaves free, j_n / r_b"
+        gear = measure["lost_motion"]["of"]
+        yield f"lost motion: the turn of {gear} that this normal backlash leaves free, j_n / r_b"
 
 
 def agreement_line(agreement: Summary, unit: str, chord_error_um: float | None) -> str:
@@ -236,7 +237,3 @@ def _time_line(summary: Summary) -> Text:
         f"time: {timing['setup_s']:.1f} s to set up, {timing['simulate_s']:.1f} s for the trials{workers}, "
         f"{timing['trials_per_s']:.0f} trials/s"
     )
-
-
-def _counted(count: int, word: str) -> str:
-    return f"{count} {word}{'' if count == 1 else 's'}"

@@ -1,4 +1,4 @@
-"""One build in 3D: the teeth in mesh, the contact and the gap marked, the whole assembly beside. The door to pyvista."""
+"""One build in 3D: the teeth in mesh, contact and gap marked, the whole assembly beside. The door to pyvista."""
 
 import ctypes.util
 import os
@@ -65,8 +65,9 @@ def view_run(
         raise InputError(f"{screenshot}: cannot be written ({error.strerror or error}); choose another file") from None
     finally:
         plotter.close()
-    others = [mesh.mesh.name for mesh in assembly.meshes[1:]]
-    return (*assembly.notes, *([f"shown is {assembly.meshes[0].mesh.name} only, not {', '.join(others)}"] * bool(others)))
+    shown, *others = (mesh.mesh.name for mesh in assembly.meshes)
+    only = (f"shown is {shown}, not {', '.join(others)}",) if others else ()
+    return (*assembly.notes, *only)
 
 
 def choose_window(*, needs_display: bool) -> None:
@@ -104,14 +105,15 @@ def plot(assembly: Assembly, *, off_screen: bool) -> pv.Plotter:
 
 def _poly_data(part: PlacedGear) -> pv.PolyData:
     vertices, triangles = part.mesh()
-    return pv.PolyData.from_regular_faces(vertices, triangles)
+    faces = np.hstack([np.full((len(triangles), 1), 3), triangles])
+    return pv.PolyData(vertices, faces.ravel())
 
 
 Parts = Sequence[tuple[PlacedGear, pv.PolyData]]
 
 
 def _add_parts(plotter: pv.Plotter, parts: Parts) -> None:
-    plotter.set_background("white", top="#E9EEF3")
+    plotter.renderer.set_background("white", top="#E9EEF3")
     for (_, mesh), colour in zip(parts, (DRIVER_COLOUR, DRIVEN_COLOUR), strict=True):
         plotter.add_mesh(mesh, color=colour, smooth_shading=False, specular=0.25, specular_power=15, ambient=0.15)
         edges = mesh.extract_feature_edges(EDGE_ANGLE, boundary_edges=False, manifold_edges=False)
@@ -125,18 +127,19 @@ def _draw_teeth(plotter: pv.Plotter, assembly: Assembly, seated: SeatedMesh, par
     contact = _in_front(seated.contact, front)
     plotter.add_mesh(pv.Sphere(radius=1.4 * size, center=contact), color=CONTACT_COLOUR)
     plotter.add_mesh(_arrow(contact, seated.normal, 0.85 * module), color=CONTACT_COLOUR)
-    _add_label(plotter, contact - 0.4 * module * seated.normal, "contact", CONTACT_COLOUR)
+    behind = contact - module * (0.35 * seated.normal + np.array([0.5, 0.0, 0.0]))
+    _add_label(plotter, behind, "contact", CONTACT_COLOUR)
     middle = contact
     if np.isfinite(seated.gap).all():
         ends = [_in_front(point, front) for point in seated.gap]
         plotter.add_mesh(pv.Tube(pointa=ends[0], pointb=ends[1], radius=0.6 * size), color=GAP_COLOUR)
         for end in ends:
             plotter.add_mesh(pv.Sphere(radius=size, center=end), color=GAP_COLOUR)
-        beside = np.array([1.1 * module, 0.0, 0.0])
-        _add_label(plotter, (ends[0] + ends[1]) / 2 + beside, f"gap {_gap_text(seated)}", GAP_COLOUR)
+        beside = np.array([0.5 * module, 0.0, 0.0])
+        _add_label(plotter, (ends[0] + ends[1]) / 2 + beside, _gap_text(seated), GAP_COLOUR)
         middle = (contact + (ends[0] + ends[1]) / 2) / 2
     for part, role, aside in zip((seated.driver, seated.driven), ("driver", "driven"), (-1.0, 1.0), strict=True):
-        place = middle + module * np.array([2.35 * aside, -2.55, 0.0])
+        place = middle + module * np.array([2.1 * aside - 0.8, -2.65, 0.0])
         _add_label(plotter, place, f"{part.name} ({role})", EDGE_COLOUR)
     _add_title(plotter, _title(assembly, seated), 13)
     _look(plotter, middle, TEETH_HIGH * module, 0.0)
@@ -145,8 +148,6 @@ def _draw_teeth(plotter: pv.Plotter, assembly: Assembly, seated: SeatedMesh, par
 
 def _draw_whole(plotter: pv.Plotter, seated: SeatedMesh, parts: Parts, front: float) -> None:
     _add_parts(plotter, parts)
-    for part, _ in parts:
-        _add_label(plotter, _in_front(part.world_from_gear[:3, 3], front), part.name, EDGE_COLOUR)
     module = seated.driver.gear.module
     contact = _in_front(seated.contact, front + module)
     ring = pv.Disc(center=contact, inner=3.2 * module, outer=3.8 * module, normal=(0, 0, 1), c_res=60)
@@ -168,9 +169,9 @@ def _draw_gap(plotter: pv.Plotter, seated: SeatedMesh, parts: Parts, front: floa
     if seated.gap_value > 0.0:
         plotter.add_mesh(pv.Line(*ends), color=GAP_COLOUR, line_width=4, lighting=False)
     plotter.add_points(ends, color=GAP_COLOUR, point_size=12, render_points_as_spheres=True)
-    beside = np.array([0.35 * high, 0.0, 0.0])
+    beside = np.array([0.3 * high, 0.0, 0.0])
     _add_label(plotter, ends.mean(axis=0) + beside, _gap_text(seated), GAP_COLOUR)
-    _add_title(plotter, f"the gap, {2000 * high:.0f} µm high", 10)
+    _add_title(plotter, f"close-up, {2000 * high:.0f} µm high", 10)
     _look(plotter, ends.mean(axis=0), high, 0.0)
 
 
@@ -182,7 +183,8 @@ def _title(assembly: Assembly, seated: SeatedMesh) -> str:
 
 
 def _gap_text(seated: SeatedMesh) -> str:
-    return measured_text(1000 * seated.gap_value, "um")
+    word = "gap" if seated.gap_value >= 0.0 else "overlap"
+    return f"{word} {measured_text(1000 * abs(seated.gap_value), 'um')}"
 
 
 def _in_front(point: Array, front: float) -> Array:
@@ -207,13 +209,13 @@ def _add_label(plotter: pv.Plotter, place: Array, text: str, colour: str) -> Non
         show_points=False,
         always_visible=True,
         margin=5,
-        justification_horizontal="center",
-        justification_vertical="center",
     )
 
 
 def _add_title(plotter: pv.Plotter, text: str, size: int) -> None:
-    plotter.add_text(text, position="upper_left", font_size=size, color=EDGE_COLOUR)
+    actor = plotter.add_text(f" {text} ", position="upper_left", font_size=size, color=EDGE_COLOUR)
+    actor.prop.background_color = "white"
+    actor.prop.background_opacity = 0.75
 
 
 def _look(plotter: pv.Plotter, middle: Array, high: float, elevation: float) -> None:
@@ -223,14 +225,14 @@ def _look(plotter: pv.Plotter, middle: Array, high: float, elevation: float) -> 
     plotter.camera.focal_point = tuple(middle)
     plotter.camera.position = tuple(middle + away)
     plotter.camera.up = (0.0, 1.0, 0.0)
-    plotter.enable_parallel_projection()
+    plotter.camera.parallel_projection = True
     plotter.camera.parallel_scale = high
     plotter.reset_camera_clipping_range()
 
 
 def _with_perspective(plotter: pv.Plotter) -> None:
     """The same view from near by, so that what lies behind looks smaller."""
-    plotter.disable_parallel_projection()
+    plotter.camera.parallel_projection = False
     middle = np.array(plotter.camera.focal_point)
     distance = plotter.camera.parallel_scale / np.tan(np.radians(VIEW_ANGLE / 2))
     plotter.camera.view_angle = VIEW_ANGLE
