@@ -28,9 +28,9 @@ class Positions:
 
     Args:
         over: "random" (uniform over the long period, one a trial), "at" (one angle), "turn" or
-            "long_period" (`count` positions, evenly spaced, the first at 0).
+            "long_period" (`count` even steps, the first position at 0).
         turns: turns of the driver that the positions span.
-        count: positions a trial.
+        count: steps from position to position in those turns; a turn has its end as one position more.
         angle: the driver's angle for "at" [rad].
     """
 
@@ -40,13 +40,19 @@ class Positions:
     angle: float = 0.0
 
     @property
+    def closed(self) -> bool:
+        """Whether the first position follows the last: the wheel is not back where it was after one driver turn."""
+        return self.over == "long_period"
+
+    @property
     def fixed(self) -> tuple[float, ...] | None:
         """The driver angles [rad] that every trial shares; None for random ones."""
         if self.over == "random":
             return None
         if self.over == "at":
             return (self.angle,)
-        return tuple(2 * math.pi * self.turns * k / self.count for k in range(self.count))
+        positions = self.count if self.closed else self.count + 1
+        return tuple(2 * math.pi * self.turns * k / self.count for k in range(positions))
 
 
 @dataclass(frozen=True)
