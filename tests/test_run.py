@@ -195,6 +195,21 @@ def test_a_kill_leaves_no_run_behind(tmp_path: Path) -> None:
         open_run(tmp_path / "run.partial")
 
 
+def test_a_curve_is_out_of_limits_where_any_position_is(tmp_path: Path) -> None:
+    text = SPUR.read_text("utf-8")
+    curve = "lost curve: {kind: normal_backlash, of: gear pair, over: turn, take: curve, positions: 8, "
+    measures = f"measures:\n  {curve}lower_limit: 45 um, upper_limit: 70 um}}\n"
+    scene = tmp_path / "curve.yaml"
+    scene.write_text(text.replace("measures:\n", measures, 1), "utf-8")
+    run = run_scene(scene, overrides=Overrides(trials=400, engine="analytic"), out=tmp_path / "curve")
+    curves = run.columns("analytic:lost curve")["analytic:lost curve"]
+    assert curves.shape == (400, 9)  # eight steps, and the end of the turn
+    own = run.summary["measures"]["lost curve"]["curve"]["analytic"]
+    assert own["below_limit_ppm"] == pytest.approx(1e6 * (curves < 45).any(axis=1).mean())
+    assert own["above_limit_ppm"] == pytest.approx(1e6 * (curves > 70).any(axis=1).mean())
+    assert own["mean"] == pytest.approx(curves.mean(axis=0))
+
+
 def test_damaged_runs_are_refused_by_name(spur_run, tmp_path: Path) -> None:
     with pytest.raises(RunError, match="expected a run's folder"):
         open_run(tmp_path)

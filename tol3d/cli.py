@@ -108,7 +108,8 @@ def run(
 
 def _out_of_limits(run: "Run") -> bool:
     road = "analytic" if run.summary["engine"] == "analytic" else "geometric"
-    samples = [measure[road] for measure in run.summary["measures"].values() if road in measure]
+    measures = run.summary["measures"].values()
+    samples = [measure["curve"][road] if measure["take"] == "curve" else measure[road] for measure in measures]
     ppm = [sample[key] or 0.0 for sample in samples for key in ("below_limit_ppm", "above_limit_ppm", "failed_ppm")]
     return any(ppm) or any(count for text, count in run.summary["status"].items() if text != "ok")
 

@@ -9,7 +9,7 @@ from tol3d.analytic import closed_form, per_normal_backlash
 from tol3d.block import Block, mean_block, nominal_block, simulate_block
 from tol3d.engines import Engine
 from tol3d.model import Backlash, Measure, Model
-from tol3d.tally import Tally, histograms, sample_summary, share_percents
+from tol3d.tally import Tally, histograms, in_unit, sample_summary, share_percents
 
 
 def measure_summaries(model: Model, engine: Engine | None, tally: Tally) -> dict[str, Any]:
@@ -24,8 +24,8 @@ def measure_summaries(model: Model, engine: Engine | None, tally: Tally) -> dict
             "take": measure.take,
             "unit": measure.unit,
             **_lost_motion(model, measure),
-            "lower_limit": _scaled(measure, measure.lower_limit),
-            "upper_limit": _scaled(measure, measure.upper_limit),
+            "lower_limit": in_unit(measure, measure.lower_limit),
+            "upper_limit": in_unit(measure, measure.upper_limit),
             "nominal": nominal[measure.name],
             "mean_build": mean[measure.name],
             **_statistics(model, measure, tally),
@@ -42,10 +42,6 @@ def _lost_motion(model: Model, measure: Measure) -> Mapping[str, Any]:
     driven = model.mesh(measure.kind.mesh).driven
     turn = per_normal_backlash(model, Backlash("angular_backlash", measure.kind.mesh, driven))
     return {"lost_motion": {"of": driven, "arcmin_per_um": turn * np.degrees(60) / 1000}}
-
-
-def _scaled(measure: Measure, value: float | None) -> float | None:
-    return None if value is None else value * measure.per_internal
 
 
 def _single(model: Model, engine: Engine | None, block: Block) -> dict[str, dict[str, Any]]:
@@ -110,6 +106,9 @@ def _curve(model: Model, measure: Measure, tally: Tally) -> dict[str, Any]:
                 "sigma": [m.sigma if m.count > 1 else None for m in moments],
                 "min": [m.minimum if m.count else None for m in moments],
                 "max": [m.maximum if m.count else None for m in moments],
+                "below_limit_ppm": own.below[road].below_limit.ppm,
+                "above_limit_ppm": own.above[road].above_limit.ppm,
+                "failed_ppm": own.below[road].failures.ppm,
             }
             for road, moments in roads.items()
         },

@@ -43,9 +43,7 @@ class Sample:
     def of(cls, measure: Measure, values: Array, centre: float, half_span: float) -> "Sample":
         """Sample of a block; values (trials,) in the measure's unit, nan where a trial failed."""
         good = values[~np.isnan(values)]
-        per = measure.per_internal
-        lower = None if measure.lower_limit is None else measure.lower_limit * per
-        upper = None if measure.upper_limit is None else measure.upper_limit * per
+        lower, upper = in_unit(measure, measure.lower_limit), in_unit(measure, measure.upper_limit)
         return cls(
             moments=Moments.of(good),
             grid=Grid.empty(centre - half_span, 2 * half_span / BINS, BINS).add(good),
@@ -107,23 +105,32 @@ def tally_measure(model: Model, measure: Measure, columns: Columns) -> MeasureTa
 
 @dataclass(frozen=True)
 class CurveTally:
-    """A curve measure: moments at each position, for both roads."""
+    """A curve measure: moments at each position, for both roads, and the trials with any position out of limits."""
 
     analytic: tuple[Moments, ...]
     geometric: tuple[Moments, ...] | None
+    below: Mapping[str, LimitCounts]
+    above: Mapping[str, LimitCounts]
 
     @classmethod
     def of(cls, measure: Measure, columns: Columns) -> "CurveTally":
         """Tally of one block of columns."""
 
-        def moments(road: str) -> tuple[Moments, ...] | None:
-            values = columns.get(f"{road}:{measure.name}")
-            if values is None:
-                return None
-            curves = np.asarray(values, dtype=np.float64)
-            return tuple(Moments.of(column[~np.isnan(column)]) for column in curves.T)
-
-        return cls(moments("analytic") or (), moments("geometric"))
+        curves = {
+            road: np.asarray(columns[f"{road}:{measure.name}"], dtype=np.float64)
+            for road in ("analytic", "geometric")
+            if f"{road}:{measure.name}" in columns
+        }
+        moments = {
+            road: tuple(Moments.of(column[~np.isnan(column)]) for column in values.T) for road, values in curves.items()
+        }
+        lower, upper = in_unit(measure, measure.lower_limit), in_unit(measure, measure.upper_limit)
+        return cls(
+            moments["analytic"],
+            moments.get("geometric"),
+            below={road: LimitCounts.of(values.min(axis=1), lower, None) for road, values in curves.items()},
+            above={road: LimitCounts.of(values.max(axis=1), None, upper) for road, values in curves.items()},
+        )
 
     def merge(self, other: "CurveTally") -> "CurveTally":
         """Both tallies as one."""
@@ -134,6 +141,8 @@ class CurveTally:
         return CurveTally(
             merged(self.analytic, other.analytic),
             merged(self.geometric, other.geometric) if self.geometric and other.geometric else None,
+            {road: counts.merge(other.below[road]) for road, counts in self.below.items()},
+            {road: counts.merge(other.above[road]) for road, counts in self.above.items()},
         )
 
 
@@ -173,12 +182,15 @@ class Tally:
         )
 
 
+def in_unit(measure: Measure, value: float | None) -> float | None:
+    """A length or angle in the measure's unit; None stays None."""
+    return None if value is None else value * measure.per_internal
+
+
 def sample_summary(measure: Measure, sample: Sample) -> dict[str, Any]:
     """A sample as summary.json shows it, in the measure's unit."""
     moments, limits = sample.moments, sample.limits
-    per = measure.per_internal
-    lower = None if measure.lower_limit is None else measure.lower_limit * per
-    upper = None if measure.upper_limit is None else measure.upper_limit * per
+    lower, upper = in_unit(measure, measure.lower_limit), in_unit(measure, measure.upper_limit)
     summary: dict[str, Any] = {
         "count": moments.count,
         "mean": moments.mean,

@@ -67,7 +67,7 @@ def _measure_blocks(name: str, measure: Summary, summary: Summary) -> list[Rende
     title = Text("\n").append(name, style="bold cyan")
     words = Text(f"{heading(measure)} · {limits_text(measure)}", style="dim")
     if measure["take"] == "curve":
-        return [title, words, "", curve_table(measure)]
+        return [title, words, "", curve_table(measure), *_curve_limits(measure)]
     blocks: list[RenderableType] = [title, words, "", measure_table(measure)]
     blocks += [Padding(Text(line, style="dim"), (0, 0, 0, 1)) for line in _notes(measure, summary)]
     if measure["contributors"]:
@@ -219,6 +219,24 @@ def curve_table(measure: Summary) -> Table:
         cells += [value_text(curve[roads[-1][0]][key][index], unit) for key in ("min", "max")]
         table.add_row(f"{positions[index]:.1f}", *cells)
     return table
+
+
+def _curve_limits(measure: Summary) -> list[Text]:
+    """Which share of the trials is out of a limit anywhere on its curve."""
+    curve = measure["curve"]
+    words = {"lower_limit": "below", "upper_limit": "above"}
+    return [
+        Text(
+            f" anywhere {word} {given_text(measure[limit], measure['unit'])} [ppm of the trials]: "
+            + ", ".join(
+                f"{'3D' if road == 'geometric' else road} {ppm_text(own[f'{word}_limit_ppm'])}"
+                for road, own in curve.items()
+            ),
+            style="dim",
+        )
+        for limit, word in words.items()
+        if measure.get(limit) is not None
+    ]
 
 
 def _status_line(summary: Summary) -> Text:
