@@ -24,7 +24,7 @@ import tempfile
 import time
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
-from functools import lru_cache
+from functools import lru_cache, reduce
 from pathlib import Path
 from typing import Any
 
@@ -52,7 +52,7 @@ from tol3d.moves import OK, STATUS_TEXT
 from tol3d.result import Run, RunWriter, open_run
 from tol3d.scene import Scene, load_scene
 from tol3d.solids import FlankStrips, measuring_strips
-from tol3d.summary import measure_summaries
+from tol3d.summary import study_summary
 from tol3d.tally import Tally
 
 Array = NDArray[np.float64]
@@ -112,37 +112,32 @@ def strips_of(model: Model) -> dict[str, FlankStrips]:
     return {part.name: measuring_strips(part.gear, model.study.profile_steps) for part in model.gears}
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class _Task:
-    """What a worker runs: columns of some trials. The engine is made once in each process."""
+    """What a worker runs: columns of some trials. Equal by fingerprint, so that a process makes one engine for all."""
 
     model: Model
     strips: Mapping[str, FlankStrips] | None
     fingerprint: str
 
     def __call__(self, first: int, count: int) -> dict[str, NDArray[np.generic]]:
-        engine = _engine_of(_Keyed(self.fingerprint, self)) if self.strips is not None else None
-        return simulate_block(self.model, engine, drawn_block(self.model, self.model.study.seed, first, count))
+        return simulate_block(self.model, self.engine, drawn_block(self.model, self.model.study.seed, first, count))
 
-
-@dataclass(frozen=True)
-class _Keyed:
-    """A task that is found again by its fingerprint, since its arrays do not hash."""
-
-    fingerprint: str
-    task: _Task
+    @property
+    def engine(self) -> Engine | None:
+        """The engine of this process; None for an analytic study."""
+        return None if self.strips is None else _engine_of(self)
 
     def __hash__(self) -> int:
         return hash(self.fingerprint)
 
     def __eq__(self, other: object) -> bool:
-        return isinstance(other, _Keyed) and other.fingerprint == self.fingerprint
+        return isinstance(other, _Task) and other.fingerprint == self.fingerprint
 
 
 @lru_cache(maxsize=1)
-def _engine_of(keyed: _Keyed) -> Engine:
-    assert keyed.task.strips is not None
-    return FclEngine(keyed.task.model, keyed.task.strips)
+def _engine_of(task: _Task) -> Engine:
+    return FclEngine(task.model, task.strips or {})
 
 
 def run_scene(
@@ -177,38 +172,30 @@ def run_scene(
     fingerprint = _fingerprint(scene, model)
     writer = RunWriter(folder, fingerprint, _column_units(model))
     on_stage("gears: solids and measuring strips")
-    strips = strips_of(model) if model.study.engine == "fcl" else None
-    task = _Task(model, strips, str(sorted(fingerprint.items())))
-    engine = _engine_of(_Keyed(task.fingerprint, task)) if strips is not None else None
+    task = _Task(model, strips_of(model) if model.study.engine == "fcl" else None, str(fingerprint))
+    task(0, 1)  # the first trial loads what trials need: that is setup, not simulation
     prepared = time.perf_counter()
     on_stage("trials")
-    tally: Tally | None = None
-    for columns in run_blocks(task, model.study.trials, workers, writer, on_progress):
-        part = Tally.of(model, columns)
-        tally = part if tally is None else tally.merge(part)
-    assert tally is not None  # a study has at least one trial
+    parts = (Tally.of(model, c) for c in run_blocks(task, model.study.trials, workers, writer, on_progress))
+    tally = reduce(Tally.merge, parts)
     done = time.perf_counter()
     summary = {
-        "scene": scene.scene,
-        "seed": model.study.seed,
-        "trials": model.study.trials,
-        "engine": model.study.engine,
-        "study": vars(model.study),
-        "status": dict(tally.status),
-        "chord_error_um": engine.chord_error * 1000 if engine else None,
-        "measures": measure_summaries(model, engine, tally),
-        "warnings": list(model.warnings),
+        **study_summary(model, task.engine, tally),
         "files": {name: writer.add_file(name, path) for name, path in _files_read(scene).items()},
-        "timing": {
-            "setup_s": round(prepared - started, 4),
-            "simulate_s": round(done - prepared, 4),
-            "trials_per_s": round(model.study.trials / (done - prepared), 1),
-            "workers": workers,
-        },
+        "timing": _timing(model, started, prepared, done, workers),
         "versions": {"python": platform.python_version(), **_versions()},
     }
     finisher(writer.picture_path("."), summary)
     return writer.finish(summary)
+
+
+def _timing(model: Model, started: float, prepared: float, done: float, workers: int) -> dict[str, float]:
+    return {
+        "setup_s": round(prepared - started, 4),
+        "simulate_s": round(done - prepared, 4),
+        "trials_per_s": round(model.study.trials / (done - prepared), 1),
+        "workers": workers,
+    }
 
 
 def _files_read(scene: Scene) -> dict[str, Path]:

@@ -12,6 +12,21 @@ from tol3d.model import Backlash, Measure, Model
 from tol3d.tally import Tally, histograms, in_unit, sample_summary, share_percents
 
 
+def study_summary(model: Model, engine: Engine | None, tally: Tally) -> dict[str, Any]:
+    """What a study found: everything of summary.json but files, timing and versions."""
+    return {
+        "scene": model.name,
+        "seed": model.study.seed,
+        "trials": model.study.trials,
+        "engine": model.study.engine,
+        "study": vars(model.study),
+        "status": dict(tally.status),
+        "chord_error_um": engine.chord_error * 1000 if engine else None,
+        "measures": measure_summaries(model, engine, tally),
+        "warnings": list(model.warnings),
+    }
+
+
 def measure_summaries(model: Model, engine: Engine | None, tally: Tally) -> dict[str, Any]:
     """The measures as summary.json shows them: statistics of both roads, contributors, published columns."""
     nominal, mean = (_single(model, engine, block) for block in (nominal_block(model), mean_block(model)))
