@@ -210,6 +210,15 @@ def test_a_curve_is_out_of_limits_where_any_position_is(tmp_path: Path) -> None:
     assert own["mean"] == pytest.approx(curves.mean(axis=0))
 
 
+def test_draws_below_zero_of_a_clearance_are_kept_and_counted(tmp_path: Path) -> None:
+    # N(16, 14/3) um falls below 0 with 3.0e-4: of 20 000 expect 6.1, and between 1 and 16 but for one in 1e4 seeds
+    run = run_scene(SPUR, overrides=Overrides(trials=20_000, engine="analytic"), out=tmp_path / "run")
+    below = int((run.columns("bearing clearance [um]")["bearing clearance [um]"] < 0).sum())
+    assert 1 <= below <= 16
+    (warning,) = run.summary["warnings"]
+    assert warning.startswith(f"bearing clearance: {below} of 20000 draws are below zero")
+
+
 def test_damaged_runs_are_refused_by_name(spur_run, tmp_path: Path) -> None:
     with pytest.raises(RunError, match="expected a run's folder"):
         open_run(tmp_path)

@@ -15,7 +15,6 @@ from tol3d.build import Build, build
 from tol3d.engines import Engine
 from tol3d.measures import measure_backlash
 from tol3d.model import Measure, Mesh, Model, Positions
-from tol3d.model.contributor import INTERNAL_PER_UNIT
 from tol3d.moves import OK, STATUS_TEXT, MeshSeat, seat_mesh
 
 Array = NDArray[np.float64]
@@ -167,7 +166,7 @@ def _simulate_piece(model: Model, engine: Engine | None, block: Block) -> dict[s
     for contributor in model.contributors:
         own = block.deviations[:, model.component_slices[contributor.name]]
         for k, name in enumerate(contributor.columns):
-            columns[name] = own[:, k] / INTERNAL_PER_UNIT[contributor.unit]
+            columns[name] = own[:, k] / contributor.per_unit
     for mesh in model.meshes:
         columns[position_column(mesh)] = np.degrees(block.random_angle[mesh.name])
     for measure in model.measures:

@@ -11,7 +11,6 @@ from numpy.typing import NDArray
 
 from tol3d.block import Columns, position_column
 from tol3d.model import Contributor, Measure, Model, Planar, TurningOffset
-from tol3d.model.contributor import INTERNAL_PER_UNIT
 
 Array = NDArray[np.float64]
 
@@ -42,7 +41,7 @@ def features(model: Model, measure: Measure, columns: Columns) -> Array:
 
 
 def _own(contributor: Contributor, columns: Columns) -> Array:
-    per_unit = INTERNAL_PER_UNIT[contributor.unit]
+    per_unit = contributor.per_unit
     return np.stack([np.asarray(columns[name], dtype=np.float64) * per_unit for name in contributor.columns], axis=1)
 
 

@@ -1,6 +1,6 @@
 """A run's summary: what summary.json holds, in the measures' units."""
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from typing import Any
 
 import numpy as np
@@ -23,8 +23,14 @@ def study_summary(model: Model, engine: Engine | None, tally: Tally) -> dict[str
         "status": dict(tally.status),
         "chord_error_um": engine.chord_error * 1000 if engine else None,
         "measures": measure_summaries(model, engine, tally),
-        "warnings": list(model.warnings),
+        "warnings": [*model.warnings, *_unphysical_draws(tally)],
     }
+
+
+def _unphysical_draws(tally: Tally) -> Iterator[str]:
+    for name, count in tally.unphysical.items():
+        if count:
+            yield f"{name}: {count} of {tally.trials} draws are below zero, which no clearance is; kept as drawn"
 
 
 def measure_summaries(model: Model, engine: Engine | None, tally: Tally) -> dict[str, Any]:

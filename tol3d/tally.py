@@ -148,10 +148,11 @@ class CurveTally:
 
 @dataclass(frozen=True)
 class Tally:
-    """Statistics of a whole run so far."""
+    """Statistics of a whole run so far; `unphysical` counts draws below what a contributor can be."""
 
     trials: int
     status: Mapping[str, int]
+    unphysical: Mapping[str, int]
     measures: Mapping[str, MeasureTally]
     curves: Mapping[str, CurveTally]
 
@@ -168,6 +169,7 @@ class Tally:
         return cls(
             trials,
             counts,
+            _unphysical(model, columns),
             {measure.name: tally_measure(model, measure, columns) for measure in scalars},
             {measure.name: CurveTally.of(measure, columns) for measure in curves},
         )
@@ -177,9 +179,19 @@ class Tally:
         return Tally(
             self.trials + other.trials,
             {text: count + other.status[text] for text, count in self.status.items()},
+            {name: count + other.unphysical[name] for name, count in self.unphysical.items()},
             {name: tally.merge(other.measures[name]) for name, tally in self.measures.items()},
             {name: tally.merge(other.curves[name]) for name, tally in self.curves.items()},
         )
+
+
+def _unphysical(model: Model, columns: Columns) -> dict[str, int]:
+    counts = {}
+    for contributor in model.contributors:
+        if contributor.least is not None:
+            drawn = np.asarray(columns[contributor.columns[0]], dtype=np.float64)
+            counts[contributor.name] = int(np.count_nonzero(drawn < contributor.least / contributor.per_unit))
+    return counts
 
 
 def in_unit(measure: Measure, value: float | None) -> float | None:

@@ -77,6 +77,11 @@ class Scalar:
     uniforms = 1
     components = ("",)
 
+    @property
+    def sigma(self) -> float:
+        """Standard deviation of the component [mm, rad or K]."""
+        return self.distribution.sigma
+
     def deviations(self, uniforms: Array) -> Array:
         """Uniforms (trials, 1) in (0, 1) to deviations (trials, 1) [mm, rad or K]."""
         return self.distribution.ppf(uniforms[:, 0])[:, None]
@@ -100,6 +105,13 @@ class Planar:
         """How many uniforms a trial takes: the length, and the direction unless it is fixed."""
         return 1 if self.direction is not None else 2
 
+    @property
+    def sigma(self) -> float:
+        """Standard deviation along any one axis [mm] for a random direction; else that of the length."""
+        if self.direction is not None:
+            return self.distribution.sigma
+        return math.sqrt((self.distribution.variance + self.distribution.mean**2) / 2)
+
     def deviations(self, uniforms: Array) -> Array:
         """Uniforms (trials, 1 or 2) in (0, 1) to (x, y), shape (trials, 2) [mm]."""
         length = self.distribution.ppf(uniforms[:, 0])
@@ -120,6 +132,8 @@ class Contributor:
         draw: how its components come from uniforms.
         unit: unit of its columns in results ("um", "mrad", "K").
         description: the scene's own words.
+        least: smallest physical deviation [mm, rad or K], such as 0 for a clearance; draws below it are kept
+            as they come, and counted.
     """
 
     name: str
@@ -128,11 +142,17 @@ class Contributor:
     draw: Scalar | Planar
     unit: Unit
     description: str = ""
+    least: float | None = None
 
     @property
     def columns(self) -> tuple[str, ...]:
         """Column names in results: `name.component [unit]`."""
         return tuple(f"{self.name}{'.' + c if c else ''} [{self.unit}]" for c in self.draw.components)
+
+    @property
+    def per_unit(self) -> float:
+        """What one of its unit is in mm, rad or K."""
+        return INTERNAL_PER_UNIT[self.unit]
 
     @property
     def distribution(self) -> Distribution:

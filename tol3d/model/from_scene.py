@@ -190,6 +190,7 @@ class _Tolerances:
             draw=Scalar(law) if direction is None else Planar(law, direction[0]),
             unit=self._unit(spec),
             description=spec.description,
+            least=0.0 if isinstance(spec, BearingClearanceSpec) and direction is None else None,
         )
 
     @staticmethod

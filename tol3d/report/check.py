@@ -11,7 +11,6 @@ from rich.text import Text
 
 from tol3d.gears import RIGHT, SpurPair
 from tol3d.model import Contributor, Measure, Model, Planar
-from tol3d.model.contributor import INTERNAL_PER_UNIT
 from tol3d.report.heading import OVER_WORDS, QUANTITY_WORDS, TAKE_WORDS
 from tol3d.report.number import NOTHING, UNIT_SIGNS, given_text, percent_text, value_text
 from tol3d.tally import reference_form
@@ -155,7 +154,8 @@ def contributors_table(model: Model) -> Table:
     """The contributors: law, limits, and what the first measure of their mesh makes of them.
 
     The coefficient is the first-order change of that measure per unit of the deviation; of one with a
-    random direction, per length in its worst direction.
+    random direction, per length in its worst direction; its low and high are lengths, its sigma is that along
+    any one axis.
     """
     table = _table("contributors", "", ("law", "low", "high", "sigma", "unit", "coefficient per unit", "share [%]"))
     table.columns[1].justify = "left"
@@ -163,8 +163,8 @@ def contributors_table(model: Model) -> Table:
     for column in table.columns[2:5]:
         column.no_wrap = True
     for contributor in model.contributors:
-        law, per = contributor.distribution, INTERNAL_PER_UNIT[contributor.unit]
-        numbers = (f"{law.low / per:.4g}", f"{law.high / per:.4g}", f"{law.sigma / per:.3g}")
+        law, per = contributor.distribution, contributor.per_unit
+        numbers = (f"{law.low / per:.4g}", f"{law.high / per:.4g}", f"{contributor.draw.sigma / per:.3g}")
         sign = UNIT_SIGNS[contributor.unit]
         table.add_row(
             Text(contributor.name), distribution_words(contributor), *numbers, sign, *_effect(model, contributor)
@@ -187,7 +187,7 @@ def _effect(model: Model, contributor: Contributor) -> tuple[str, str]:
         form = reference_form(model, measure)
         share = next((s for s in form.shares if s.name == contributor.name), None) if form else None
         if form is not None and share is not None:
-            per = measure.per_internal * INTERNAL_PER_UNIT[contributor.unit]
+            per = measure.per_internal * contributor.per_unit
             coefficient = f"{share.coefficient * per:+#.3g} {UNIT_SIGNS[measure.unit]}"
             return coefficient, percent_text(form.percent(contributor.name))
     return NOTHING, NOTHING
