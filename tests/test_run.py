@@ -172,6 +172,37 @@ def test_a_killed_run_goes_on_where_it_was(tmp_path: Path, monkeypatch: pytest.M
     assert not (tmp_path / "cut.partial").exists()
 
 
+def test_pieces_of_an_unfinished_block_are_kept(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(execution_module, "KEEP_EVERY", 0.0)
+    study = Overrides(trials=2000, engine="analytic")
+    whole = run_scene(SPUR, overrides=study, out=tmp_path / "whole")
+    seen: list[int] = []
+
+    def stop_in_the_middle(count: int) -> None:
+        seen.append(count)
+        if sum(seen) > 1000:
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        run_scene(SPUR, overrides=study, out=tmp_path / "cut", on_progress=stop_in_the_middle)
+    kept = list((tmp_path / "cut.partial" / "pieces").iterdir())
+    assert len(kept) == 3  # of 256 trials each; the fourth was told of before it was kept
+    told: list[int] = []
+    resumed = run_scene(SPUR, overrides=study, out=tmp_path / "cut", on_progress=told.append)
+    assert told[:3] == [256, 256, 256]
+    assert sum(told) == 2000
+    assert_same_bits(whole.columns(), resumed.columns())
+    assert sorted(path.name for path in (tmp_path / "cut").iterdir()) == ["scene.yaml", "summary.json", "trials"]
+
+
+def test_a_damaged_block_of_a_run_is_named(tmp_path: Path) -> None:
+    run = run_scene(SPUR, overrides=Overrides(trials=20, engine="analytic"), out=tmp_path / "run")
+    block = tmp_path / "run" / "trials" / "block-000000.parquet"
+    block.write_bytes(block.read_bytes()[:-50])
+    with pytest.raises(RunError, match=r"block-000000\.parquet: damaged"):
+        run.columns()
+
+
 def test_a_partial_of_another_study_is_not_used(tmp_path: Path) -> None:
     folder = tmp_path / "run.partial" / "trials"
     folder.mkdir(parents=True)

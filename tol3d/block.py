@@ -112,6 +112,12 @@ def positions_count(measure: Measure) -> int:
     return 1 if measure.positions.fixed is None else len(measure.positions.fixed)
 
 
+def positions_in_all(model: Model) -> int:
+    """How many contacts one trial takes: positions of every different way of reading a mesh."""
+    ways = {(measure.kind.mesh, measure.positions): positions_count(measure) for measure in model.measures}
+    return sum(ways.values())
+
+
 def taken(measure: Measure, values: Array) -> Array:
     """What a measure takes of its values (trials, positions): (trials,), or all of them for a curve.
 

@@ -17,6 +17,9 @@ from rich.console import Console
 if TYPE_CHECKING:
     from tol3d.result import Run
 
+CONTACTS_PER_MINUTE = 180_000  # FCL on one core, 3000 a second; only for the estimate before a long study
+LONG_STUDY = CONTACTS_PER_MINUTE  # contacts; what takes a minute is announced
+
 DONE, LIMITS_FAILED, WRONG_INPUT, FAULT, INTERRUPTED = 0, 1, 2, 3, 130
 
 app = typer.Typer(
@@ -71,6 +74,7 @@ def run(
     """Simulate a scene: analytic model and 3D simulation side by side."""
     from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
 
+    from tol3d.block import positions_in_all
     from tol3d.execution import suggested_workers
     from tol3d.report import draw_histogram, run_report
     from tol3d.simulate import Overrides, effective_model, load, run_scene
@@ -82,6 +86,10 @@ def run(
     model = effective_model(loaded, overrides)
     for warning in model.warnings:
         err_console.print(f"warning: {warning}", style="yellow")
+    contacts = model.study.trials * positions_in_all(model)
+    if model.study.engine == "fcl" and contacts > LONG_STUDY:
+        minutes = contacts / CONTACTS_PER_MINUTE
+        err_console.print(f"{positions_in_all(model)} positions a trial: about {minutes:.0f} min of one core")
     columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn())
     with Progress(*columns, console=err_console, transient=True) as progress:
         bar = progress.add_task("scene", total=model.study.trials)
@@ -90,14 +98,14 @@ def run(
                 loaded,
                 overrides=overrides,
                 out=folder,
-                workers=workers or suggested_workers(model.study.trials),
+                workers=workers or suggested_workers(contacts),
                 on_stage=lambda text: progress.update(bar, description=text),
                 on_progress=lambda done: progress.advance(bar, done),
                 finisher=lambda place, summary: draw_histogram(summary, place / "histogram.png"),
             )
         except KeyboardInterrupt:
             progress.stop()
-            err_console.print(f"stopped; finished blocks are kept in {folder}.partial: the same command goes on there")
+            err_console.print(f"stopped; what was done is kept in {folder}.partial: the same command goes on there")
             raise typer.Exit(INTERRUPTED) from None
     out_console.print(run_report(finished.summary))
     out_console.print(f"run: {finished.path}    picture: {finished.path / 'histogram.png'}")

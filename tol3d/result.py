@@ -24,6 +24,7 @@ Columns = dict[str, NDArray[np.generic]]
 SUMMARY = "summary.json"
 SCENE = "scene.yaml"
 TRIALS = "trials"
+PIECES = "pieces"
 FINGERPRINT = "fingerprint.json"
 
 
@@ -47,7 +48,11 @@ class Run:
     @property
     def column_names(self) -> tuple[str, ...]:
         """Names of the columns of trials/."""
-        return tuple(pq.read_schema(_blocks(self.path)[0]).names)
+        first = _blocks(self.path)[0]
+        try:
+            return tuple(pq.read_schema(first).names)
+        except (OSError, pa.ArrowException) as error:
+            raise _damaged(first, error) from None
 
     def columns(self, *names: str) -> dict[str, NDArray[np.generic]]:
         """Columns as numpy arrays, trial on axis 0 (a curve: positions on axis 1); all of them by default.
@@ -100,8 +105,12 @@ def read_columns(path: Path, names: tuple[str, ...] | None = None) -> Columns:
     try:
         table = pq.read_table(path, columns=list(names) if names else None, partitioning=None)
     except (OSError, pa.ArrowException) as error:
-        raise RunError(f"{path}: damaged or unreadable ({error})") from None
+        raise _damaged(path, error) from None
     return {name: _to_numpy(table.column(name)) for name in table.column_names}
+
+
+def _damaged(path: Path, error: Exception) -> RunError:
+    return RunError(f"{path}: damaged or unreadable, run the scene again ({str(error).splitlines()[0]})")
 
 
 def _to_numpy(column: pa.ChunkedArray) -> NDArray[np.generic]:
@@ -134,6 +143,7 @@ class RunWriter:
     """
 
     def __init__(self, path: Path, fingerprint: Mapping[str, Any], units: Mapping[str, str]) -> None:
+        path = path.resolve()  # so that "." has a name
         self.path = path
         self._units = units
         self._partial = path.with_name(path.name + ".partial")
@@ -151,7 +161,8 @@ class RunWriter:
             if not mark.is_file() and any(self._partial.iterdir()):
                 raise RunError(f"{self._partial}: exists and is not an interrupted run; move it away")
             shutil.rmtree(self._partial)
-        (self._partial / TRIALS).mkdir(parents=True, exist_ok=True)
+        for folder in (TRIALS, PIECES):
+            (self._partial / folder).mkdir(parents=True, exist_ok=True)
         _write_whole(mark, text)
 
     def _block_path(self, index: int) -> Path:
@@ -159,7 +170,10 @@ class RunWriter:
 
     def read(self, index: int) -> Columns | None:
         """A block that an interrupted run has finished, or None; a damaged one counts as none."""
-        path = self._block_path(index)
+        return self._read(self._block_path(index))
+
+    @staticmethod
+    def _read(path: Path) -> Columns | None:
         if not path.exists():
             return None
         try:
@@ -167,9 +181,25 @@ class RunWriter:
         except RunError:
             return None
 
+    def _piece_path(self, index: int, first: int) -> Path:
+        return self._partial / PIECES / f"block-{index:06d}-{first}.parquet"
+
+    def read_piece(self, index: int, first: int) -> Columns | None:
+        """A piece of an unfinished block that begins at a trial, or None; a damaged one counts as none."""
+        return self._read(self._piece_path(index, first))
+
+    def write_piece(self, index: int, first: int, columns: Columns) -> None:
+        """Keep a piece of an unfinished block."""
+        self._write(self._piece_path(index, first), columns)
+
     def write(self, index: int, columns: Columns) -> None:
-        """Write a block beside its place and rename it there."""
-        path = self._block_path(index)
+        """Write a finished block; its pieces go."""
+        self._write(self._block_path(index), columns)
+        for piece in (self._partial / PIECES).glob(f"block-{index:06d}-*"):
+            piece.unlink()
+
+    def _write(self, path: Path, columns: Columns) -> None:
+        """Write columns beside their place and rename them there."""
         fields, arrays = [], []
         for name, values in columns.items():
             array = _to_arrow(values)
@@ -198,6 +228,7 @@ class RunWriter:
         """Write the summary and put the run in its place."""
         _write_whole(self._partial / SUMMARY, json.dumps(summary, indent=1, ensure_ascii=False, allow_nan=False) + "\n")
         (self._partial / FINGERPRINT).unlink()
+        shutil.rmtree(self._partial / PIECES)
         if self.path.exists():
             old = self.path.with_name(self.path.name + ".old")
             shutil.rmtree(old, ignore_errors=True)

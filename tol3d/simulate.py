@@ -22,7 +22,7 @@ import importlib.metadata
 import platform
 import tempfile
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import lru_cache, reduce
 from pathlib import Path
@@ -39,6 +39,7 @@ from tol3d.block import (
     geometric_values,
     mean_block,
     nominal_block,
+    positions_in_all,
     seat_block,
     simulate_block,
     taken,
@@ -46,7 +47,7 @@ from tol3d.block import (
 from tol3d.engines import Engine
 from tol3d.engines.fcl import FclEngine
 from tol3d.errors import InputError
-from tol3d.execution import Progress, run_blocks
+from tol3d.execution import Columns, Progress, run_blocks
 from tol3d.model import Model, model_from_scene
 from tol3d.moves import OK, STATUS_TEXT
 from tol3d.result import Run, RunWriter, open_run
@@ -176,7 +177,7 @@ def run_scene(
     task(0, 1)  # the first trial loads what trials need: that is setup, not simulation
     prepared = time.perf_counter()
     on_stage("trials")
-    parts = (Tally.of(model, c) for c in run_blocks(task, model.study.trials, workers, writer, on_progress))
+    parts = (Tally.of(model, c) for c in _blocks(task, workers, writer, on_progress))
     tally = reduce(Tally.merge, parts)
     done = time.perf_counter()
     summary = {
@@ -187,6 +188,11 @@ def run_scene(
     }
     finisher(writer.picture_path("."), summary)
     return writer.finish(summary)
+
+
+def _blocks(task: _Task, workers: int, writer: RunWriter, on_progress: Progress) -> Iterator[Columns]:
+    study, positions = task.model.study, positions_in_all(task.model)
+    return run_blocks(task, study.trials, workers, writer, on_progress, positions)
 
 
 def _timing(model: Model, started: float, prepared: float, done: float, workers: int) -> dict[str, float]:

@@ -205,13 +205,13 @@ def sample_summary(measure: Measure, sample: Sample) -> dict[str, Any]:
     lower, upper = in_unit(measure, measure.lower_limit), in_unit(measure, measure.upper_limit)
     summary: dict[str, Any] = {
         "count": moments.count,
-        "mean": moments.mean,
+        "mean": moments.mean if moments.count else None,
         "sigma": moments.sigma,
         "low_3sigma": moments.mean - 3 * moments.sigma,
         "high_3sigma": moments.mean + 3 * moments.sigma,
         "sample_min": moments.minimum,
         "sample_max": moments.maximum,
-        **{name: sample.grid.quantile(p) for name, p in QUANTILES.items()},
+        **{name: _quantile(sample, p) for name, p in QUANTILES.items()},
         "quantile_error": sample.grid.width,
         "below_limit_ppm": limits.below_limit.ppm,
         "below_limit_ppm_95": limits.below_limit.interval_ppm() if moments.count else None,
@@ -226,6 +226,12 @@ def sample_summary(measure: Measure, sample: Sample) -> dict[str, Any]:
         "ppk": ppk(lower, upper, moments.mean, moments.sigma),
     }
     return {key: _finite(value) for key, value in summary.items()}
+
+
+def _quantile(sample: Sample, p: float) -> float | None:
+    """The grid's quantile, which lies within a bin, not beyond the sample's own ends."""
+    value = sample.grid.quantile(p)
+    return None if value is None else min(max(value, sample.moments.minimum), sample.moments.maximum)
 
 
 def _finite(value: Any) -> Any:

@@ -57,12 +57,14 @@ def draw_histogram(summary: Summary, path: Path) -> None:
         x=0.01,
         ha="left",
     )
+    scalars = [measure for measure in measures.values() if measure["take"] != "curve"]
+    colours = column_colours([column for measure in scalars for column in columns_of(measure)])
     rows = figure.add_gridspec(len(measures), 1, height_ratios=heights, hspace=0.08)
     for row, (name, measure) in enumerate(measures.items()):
         if measure["take"] == "curve":
             draw_curve(plain_axes(figure.add_subplot(rows[row, 0])), name, measure)
         else:
-            _draw_scalar(figure, rows[row, 0], name, measure)
+            _draw_scalar(figure, rows[row, 0], name, measure, colours)
     save_figure(figure, path)
 
 
@@ -71,7 +73,7 @@ def _height(measure: Summary) -> float:
     return 3.6 if measure["take"] == "curve" else 4.3 + 0.22 * len(columns_of(measure))
 
 
-def _draw_scalar(figure: Figure, place: SubplotSpec, name: str, measure: Summary) -> None:
+def _draw_scalar(figure: Figure, place: SubplotSpec, name: str, measure: Summary, colours: Mapping[str, str]) -> None:
     columns, shares = columns_of(measure), shares_of(measure)
     halves = place.subgridspec(1, 2, width_ratios=[2.2, 1])
     left = halves[0, 0] if shares else place
@@ -79,12 +81,12 @@ def _draw_scalar(figure: Figure, place: SubplotSpec, name: str, measure: Summary
     axes = plain_axes(figure.add_subplot(parts[0, 0]))
     draw_distribution(axes, name, measure)
     ranges = figure.add_subplot(parts[1, 0], sharex=axes)
-    draw_ranges(ranges, columns)
+    draw_ranges(ranges, columns, colours)
     axes.tick_params(labelbottom=False)
     label_angles(ranges.xaxis, measure["unit"])
     ranges.set_xlabel(f"{legible(name, 60)} [{AXIS_UNITS[measure['unit']]}]", fontsize=10)
     if shares:
-        draw_contributors(figure.add_subplot(halves[0, 1]), measure, shares)
+        draw_contributors(figure.add_subplot(halves[0, 1]), measure, shares, colours)
 
 
 # histogram ----------------------------------------------------------------------------------------
@@ -205,14 +207,13 @@ def _short(value: float, unit: str) -> str:
 
 def column_colours(columns: Sequence[Column]) -> dict[str, str]:
     """A colour for each column by its heading: the roads have their own, published ones get the others in turn."""
-    published = [column.heading for column in columns if column.road == "published"]
+    published = dict.fromkeys(column.heading for column in columns if column.road == "published")
     colours = {name: PUBLISHED_COLOURS[k % len(PUBLISHED_COLOURS)] for k, name in enumerate(published)}
     return colours | {c.heading: ROAD_COLOURS[c.road] for c in columns if c.road != "published"}
 
 
-def draw_ranges(axes: Axes, columns: Sequence[Column]) -> None:
+def draw_ranges(axes: Axes, columns: Sequence[Column], colours: Mapping[str, str]) -> None:
     """One line a column below the histogram: low to high at +-3 sigma, the mean as a dot."""
-    colours = column_colours(columns)
     for row, column in enumerate(columns):
         colour = colours[column.heading]
         low, mean, high = (column.value(key) for key in ("low_3sigma", "mean", "high_3sigma"))
@@ -233,14 +234,13 @@ def draw_ranges(axes: Axes, columns: Sequence[Column]) -> None:
 # contributors -------------------------------------------------------------------------------------
 
 
-def draw_contributors(axes: Axes, measure: Summary, columns: Sequence[Column]) -> None:
+def draw_contributors(axes: Axes, measure: Summary, columns: Sequence[Column], colours: Mapping[str, str]) -> None:
     """Shares of the variance as bars: the two roads and every published column."""
     plain_axes(axes).grid(axis="y", visible=False)
     names = ranked_contributors(measure)
     shown, rest = names[:MOST_CONTRIBUTORS], names[MOST_CONTRIBUTORS:]
     labels = [*(legible(name, 26) for name in shown), *([f"{len(rest)} others"] if rest else [])]
     height = 0.8 / len(columns)
-    colours = column_colours(columns_of(measure))
     for k, column in enumerate(columns):
         values = [column.percents.get(name) or 0.0 for name in shown]
         values += [sum(column.percents.get(name) or 0.0 for name in rest)] if rest else []
