@@ -4,7 +4,10 @@ Exit codes: 0 done, 1 limits failed (with --fail-on-limits), 2 wrong input, 3 a 
 Imports stand inside the functions here, so that `tol3d --help` loads no numpy, no CAD and no plotting.
 """
 
+import os
+import signal
 import sys
+import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
 from enum import StrEnum
@@ -15,10 +18,14 @@ import typer
 from rich.console import Console
 
 if TYPE_CHECKING:
+    from types import FrameType
+
     from tol3d.result import Run
 
 CONTACTS_PER_MINUTE = 180_000  # FCL on one core, 3000 a second; only for the estimate before a long study
 LONG_STUDY = CONTACTS_PER_MINUTE  # contacts; what takes a minute is announced
+
+PATIENCE = 5.0  # s; worker processes that will not end may hold up an interrupted command no longer
 
 DONE, LIMITS_FAILED, WRONG_INPUT, FAULT, INTERRUPTED = 0, 1, 2, 3, 130
 
@@ -90,6 +97,7 @@ def run(
     if model.study.engine == "fcl" and contacts > LONG_STUDY:
         minutes = contacts / CONTACTS_PER_MINUTE
         err_console.print(f"{positions_in_all(model)} positions a trial: about {minutes:.0f} min of one core")
+    signal.signal(signal.SIGINT, _interrupted)
     columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn())
     with Progress(*columns, console=err_console, transient=True) as progress:
         bar = progress.add_task("scene", total=model.study.trials)
@@ -112,6 +120,14 @@ def run(
     if fail_on_limits and _out_of_limits(finished):
         err_console.print("limits failed", style="red")
         raise typer.Exit(LIMITS_FAILED)
+
+
+def _interrupted(number: int, frame: "FrameType | None") -> None:
+    """Ctrl-C: stop in order, and after a while in any case; what is on disk is whole at every moment."""
+    last = threading.Timer(PATIENCE, os._exit, (INTERRUPTED,))
+    last.daemon = True
+    last.start()
+    raise KeyboardInterrupt
 
 
 def _out_of_limits(run: "Run") -> bool:
