@@ -274,13 +274,15 @@ def draw_curve(axes: Axes, name: str, measure: Summary) -> None:
     mean, sigma = np.asarray(own["mean"], dtype=float), np.asarray(own["sigma"], dtype=float)
     word = "3D simulation" if leading == "geometric" else "analytic"
     colour = ROAD_COLOURS[leading]
-    axes.fill_between(x, own["min"], own["max"], color=colour, alpha=0.13, linewidth=0, label=f"{word}, all trials")
+    least, most = np.asarray(own["min"], dtype=float), np.asarray(own["max"], dtype=float)
+    axes.fill_between(x, least, most, color=colour, alpha=0.13, linewidth=0, label=f"{word}, all trials")
     axes.fill_between(
         x, mean - 3 * sigma, mean + 3 * sigma, color=colour, alpha=0.28, linewidth=0, label=f"{word}, ±3 sigma"
     )
     axes.plot(x, mean, color=colour, linewidth=2, label=f"{word}, mean")
     if leading != "analytic":
-        axes.plot(x, curve["analytic"]["mean"], color=ORANGE, linewidth=1.8, linestyle="--", label="analytic, mean")
+        analytic = np.asarray(curve["analytic"]["mean"], dtype=float)
+        axes.plot(x, analytic, color=ORANGE, linewidth=1.8, linestyle="--", label="analytic, mean")
     for key, limit_word in (("lower_limit", "LSL"), ("upper_limit", "USL")):
         if measure.get(key) is not None:
             text = f"{limit_word} {given_text(measure[key], unit)}"
