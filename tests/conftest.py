@@ -3,6 +3,7 @@
 from functools import cache
 from pathlib import Path
 
+import hypothesis
 import pytest
 
 from tol3d.engines.fcl import FclEngine
@@ -10,6 +11,9 @@ from tol3d.gears import SpurGear
 from tol3d.model import Model, model_from_scene
 from tol3d.scene import load_scene
 from tol3d.solids import FlankStrips, measuring_strips
+
+hypothesis.settings.register_profile("tol3d", deadline=None)  # shared machines stall for longer than any deadline
+hypothesis.settings.load_profile("tol3d")
 
 SPUR_PAIR = Path(__file__).resolve().parent.parent / "scenes" / "spur_pair.yaml"
 

@@ -393,7 +393,7 @@ def test_a_file_outside_the_folder_is_read_only_on_trust(tmp_path: Path) -> None
         assert "--trust-parts" in said
     for file in ("../data.csv", "link.csv", str(outside)):
         (folder / "scene.yaml").write_text(empirical(file))
-        assert load_scene(folder / "scene.yaml", trust_parts=True).files[file].read_text() == "a\n1\n2\n"
+        assert load_scene(folder / "scene.yaml", trust_parts=True).files[file].content == b"a\n1\n2\n"
 
 
 def test_a_file_that_is_none_is_refused(tmp_path: Path) -> None:

@@ -25,8 +25,8 @@ from tol3d.distributions import (
     Uniform,
 )
 from tol3d.errors import SceneError
+from tol3d.files import read_file
 
-NOWHERE = Path("nowhere")
 UNION = TypeAdapter(DistributionUnion)
 SAMPLE = np.sort(np.random.default_rng(7).normal(0.01, 0.003, 41))
 
@@ -62,7 +62,7 @@ def spec_of(**fields: object) -> DistributionSpec:
 
 
 def law_of(**fields: object) -> Distribution:
-    return spec_of(**fields).resolve(NOWHERE)
+    return spec_of(**fields).resolve({})
 
 
 def refusal(**fields: object) -> dict[str, str]:
@@ -233,6 +233,25 @@ def test_empirical_low_and_high_are_its_percentiles() -> None:
     assert LAWS["empirical"].high == pytest.approx(np.quantile(SAMPLE, 0.99865), rel=1e-12)
 
 
+@pytest.mark.parametrize(
+    ("fields", "radius"),
+    [
+        ({"kind": "rayleigh", "scale": "4.5 um"}, 4.5e-3 * math.sqrt(-2 * math.log(0.0027))),
+        ({"kind": "normal", "mean": "0 um", "sigma": "2 um"}, 6e-3),
+        ({"kind": "normal", "lower": "-20 um", "upper": "6 um"}, 20e-3),
+        ({"kind": "uniform", "lower": "1 um", "upper": "9 um"}, 9e-3),
+        ({"kind": "constant", "value": "-3 um"}, 3e-3),
+    ],
+)
+def test_a_circular_law_ends_at_its_limit_or_where_99_73_percent_stay(fields: dict[str, object], radius: float) -> None:
+    # +-3 sigma of a normal hold 0.0026998 outside, not 0.0027: 2e-6 of the radius
+    assert law_of(**fields).radius == pytest.approx(radius, rel=1e-5)
+
+
+def test_the_radius_of_measured_lengths_is_their_quantile() -> None:
+    assert LAWS["empirical"].radius == pytest.approx(np.quantile(SAMPLE, 0.9973), rel=1e-9)
+
+
 def test_normal_by_limits_has_them_at_the_stated_sigmas() -> None:
     # the paper's pinion: -30 .. -19 um at 3 sigma is -24.5 um, 1.8333 um
     law = law_of(kind="normal", lower="-30 um", upper="-19 um")
@@ -334,7 +353,8 @@ def test_every_kind_has_a_json_schema() -> None:
 def read(folder: Path, content: str | bytes, column: str = "e", unit: str = "um") -> Empirical:
     data = content if isinstance(content, bytes) else content.encode()
     (folder / "measured.csv").write_bytes(data)
-    law = spec_of(kind="empirical", file="measured.csv", column=column, unit=unit).resolve(folder)
+    files = {"measured.csv": read_file(folder / "measured.csv")}
+    law = spec_of(kind="empirical", file="measured.csv", column=column, unit=unit).resolve(files)
     assert isinstance(law, Empirical)
     return law
 
@@ -381,19 +401,16 @@ def test_a_bad_file_is_refused_with_its_line(tmp_path: Path, content: str | byte
 
 
 def test_a_missing_or_huge_file_is_refused(tmp_path: Path) -> None:
-    def resolve(name: str) -> None:
-        spec_of(kind="empirical", file=name, column="e", unit="um").resolve(tmp_path)
-
-    with pytest.raises(SceneError, match=r"absent\.csv: expected a CSV file, got no such file"):
-        resolve("absent.csv")
+    with pytest.raises(SceneError, match=r"absent\.csv: expected a file, got no such file"):
+        read_file(tmp_path / "absent.csv")
     (tmp_path / "folder.csv").mkdir()
     with pytest.raises(SceneError, match="got a folder"):
-        resolve("folder.csv")
+        read_file(tmp_path / "folder.csv")
     with pytest.raises(SceneError, match="expected a file that can be read"):
-        resolve("n" * 5000)
+        read_file(tmp_path / ("n" * 5000))
     (tmp_path / "huge.csv").write_bytes(b"e\n" + b"1\n" * 10_000_001)
     with pytest.raises(SceneError, match="at most 20 MB"):
-        resolve("huge.csv")
+        read_file(tmp_path / "huge.csv")
 
 
 # what it costs ------------------------------------------------------------------------------------

@@ -12,8 +12,9 @@ import numpy as np
 import pytest
 
 from tol3d import InputError, Overrides, RunError, open_run, replay, run_scene
+from tol3d import block as block_module
 from tol3d import execution as execution_module
-from tol3d.simulate import worst_trial
+from tol3d.worst import worst_trial
 
 SCENES = Path(__file__).resolve().parent.parent / "scenes"
 SPUR = SCENES / "spur_pair.yaml"
@@ -147,7 +148,7 @@ def test_trials_that_interfere_keep_their_row_and_their_status(tmp_path: Path) -
 
 
 def test_a_killed_run_goes_on_where_it_was(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(execution_module, "BLOCK_TRIALS", 500)
+    monkeypatch.setattr(block_module, "BLOCK_TRIALS", 500)
     study = Overrides(trials=3000, engine="analytic")
     whole = run_scene(SPUR, overrides=study, out=tmp_path / "whole")
     done = 0

@@ -54,7 +54,7 @@ def test_the_spur_pair_is_that_of_the_papers_tables() -> None:
     assert gears == {"pinion": (28, 2.5, 20.0), "wheel": (110, 2.5, 20.0)}
     assert scene.moves["gear pair"].centre_distance.internal == 172.5 == 2.5 * (28 + 110) / 2
     assert scene.measures["normal backlash"].lower_limit.internal == 0.015
-    laws = {name: tolerance.distribution.resolve(scene.folder) for name, tolerance in scene.tolerances.items()}
+    laws = {name: tolerance.distribution.resolve(scene.files) for name, tolerance in scene.tolerances.items()}
     mean_and_sigma_um = {name: (1e3 * law.mean, 1e3 * law.sigma) for name, law in laws.items()}
     assert mean_and_sigma_um["pinion tooth thickness"] == pytest.approx(((-19 - 30) / 2, 11 / 6))
     assert mean_and_sigma_um["wheel tooth thickness"] == pytest.approx(((-21 - 32) / 2, 11 / 6))
@@ -220,8 +220,8 @@ def test_a_refusal_of_the_model_names_file_line_and_place(tmp_path: Path) -> Non
     scene = load(tmp_path, SMALL)
     file = tmp_path / "scene.yaml"
     assert str(scene.refuse(("parts", "b", "teeth"), "too few")) == f"{file}:5: parts.b.teeth: too few"
-    error = scene.problem(("moves", "ab", "working_flank"), "this", "that")
-    assert str(error) == f"{file}:7: moves.ab.working_flank: expected this, got that"  # the line of the move itself
+    error = scene.refuse(("moves", "ab", "working_flank"), "too left")
+    assert str(error) == f"{file}:7: moves.ab.working_flank: too left"  # the line of the move itself
 
 
 def test_names_that_look_alike_are_equal(tmp_path: Path) -> None:
@@ -267,7 +267,9 @@ def test_a_temperature_takes_one_part_or_several(tmp_path: Path, of: str, names:
 
 
 def test_files_that_a_scene_names_are_listed(tmp_path: Path) -> None:
-    assert load_scene(EVERY_FIELD).files == {"wheel_thickness.csv": ROOT / "scenes" / "wheel_thickness.csv"}
+    (name, file), *others = load_scene(EVERY_FIELD).files.items()
+    assert (name, file.path, others) == ("wheel_thickness.csv", ROOT / "scenes" / "wheel_thickness.csv", [])
+    assert file.content == file.path.read_bytes()
 
 
 def test_a_scene_cannot_be_changed() -> None:

@@ -3,6 +3,7 @@
 Columns are in the user's units (um, mrad, K, deg, arcmin), trial on axis 0; a curve has positions on axis 1.
 """
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
@@ -21,6 +22,8 @@ Array = NDArray[np.float64]
 Columns = Mapping[str, NDArray[np.generic]]
 
 ROWS_AT_ONCE = 8192  # trials x positions; keeps poses and gaps of a turn's curves in a few megabytes
+BLOCK_TRIALS = 65_536  # trials whose statistics are folded together, and that are written as one file
+BLOCK_VALUES = 2**22  # values of a curve in one block: 32 MB
 
 
 @dataclass(frozen=True)
@@ -50,14 +53,19 @@ def drawn_block(model: Model, seed: int, first: int, count: int) -> Block:
     return Block(trials.deviations(model, seed, first, count), angles)
 
 
-def mean_block(model: Model) -> Block:
-    """One trial with every contributor at its mean, drivers at 0."""
-    return Block(trials.mean_deviations(model), {mesh.name: np.zeros(1) for mesh in model.meshes})
+def stated_block(model: Model, deviations: Array) -> Block:
+    """Trials of the deviations (trials, components) that are stated, drivers at 0."""
+    return Block(deviations, {mesh.name: np.zeros(len(deviations)) for mesh in model.meshes})
+
+
+def mean_block(model: Model, measure: Measure) -> Block:
+    """One trial with every contributor at its mean over the positions of a measure, drivers at 0."""
+    return stated_block(model, trials.mean_deviations(model, measure.positions))
 
 
 def nominal_block(model: Model) -> Block:
     """One trial without deviations, drivers at 0."""
-    return Block(np.zeros((1, model.component_count)), {mesh.name: np.zeros(1) for mesh in model.meshes})
+    return stated_block(model, np.zeros((1, model.component_count)))
 
 
 def driver_angles(positions: Positions, random_angle: Array) -> Array:
@@ -110,6 +118,12 @@ def analytic_values(model: Model, measure: Measure, block: Block) -> Array:
 def positions_count(measure: Measure) -> int:
     """At how many positions a measure is read in one trial."""
     return 1 if measure.positions.fixed is None else len(measure.positions.fixed)
+
+
+def block_trials(model: Model) -> int:
+    """Trials of a canonical block: fewer where curves keep many positions of each trial."""
+    kept = max((positions_count(measure) for measure in model.measures if measure.take == "curve"), default=1)
+    return min(BLOCK_TRIALS, 1 << int(math.log2(BLOCK_VALUES / kept)))
 
 
 def positions_in_all(model: Model) -> int:

@@ -18,7 +18,6 @@ Columns = dict[str, NDArray[np.generic]]
 Task = Callable[[int, int], Columns]
 Progress = Callable[[int], None]
 
-BLOCK_TRIALS = 65_536  # trials whose statistics are folded together, and that are written as one file
 SHORT_STUDY = 20_000  # contacts (trials x positions); about 8 s of them on one core
 TASK_CONTACTS = 256  # contacts handed out at once: 0.1 s of them, so progress moves and workers end together
 KEEP_EVERY = 5.0  # s; an interrupted run loses no more than what this long has made
@@ -50,6 +49,8 @@ def run_blocks(
     workers: int,
     store: BlockStore,
     on_progress: Progress = lambda done: None,
+    *,
+    block_trials: int,
     positions: int = 1,
 ) -> Iterator[Columns]:
     """Run `task(first, count)` over all trials and yield finished blocks in order.
@@ -60,11 +61,12 @@ def run_blocks(
         workers: processes; 1 stays in this one.
         store: blocks found there are read, not run again; new ones are written before they are yielded.
         on_progress: told how many trials were finished since it was told last.
+        block_trials: trials of a block.
         positions: contacts that a trial takes, for the size of what is handed out.
     """
     with Parallel(n_jobs=workers, return_as="generator", pre_dispatch="3 * n_jobs") as parallel:
-        for index, first in enumerate(range(0, trials, BLOCK_TRIALS)):
-            count = min(BLOCK_TRIALS, trials - first)
+        for index, first in enumerate(range(0, trials, block_trials)):
+            count = min(block_trials, trials - first)
             columns = store.read(index)
             if columns is None:
                 runner = parallel if workers > 1 else None

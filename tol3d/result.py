@@ -3,7 +3,6 @@
 A run is written into `<name>.partial` and renamed at the end, so a folder of that name is always whole.
 """
 
-import hashlib
 import json
 import os
 import shutil
@@ -15,9 +14,11 @@ from typing import Any
 import numpy as np
 import pyarrow as pa
 import pyarrow.parquet as pq
+from filelock import FileLock, Timeout
 from numpy.typing import NDArray
 
 from tol3d.errors import RunError
+from tol3d.files import FileContent, Files, kept_name
 
 Columns = dict[str, NDArray[np.generic]]
 
@@ -26,6 +27,9 @@ SCENE = "scene.yaml"
 TRIALS = "trials"
 PIECES = "pieces"
 FINGERPRINT = "fingerprint.json"
+FILES = "files"
+LOCK = "lock"
+NOBODYS = "{}"  # the fingerprint of no run
 
 
 @dataclass(frozen=True)
@@ -34,7 +38,7 @@ class Run:
 
     Args:
         path: its folder.
-        summary: what summary.json holds (DESIGN: statistics of each measure, contributors, timing, versions).
+        summary: what summary.json holds: statistics of each measure, contributors, timing, versions.
     """
 
     path: Path
@@ -68,8 +72,31 @@ class Run:
 
     @property
     def scene_path(self) -> Path:
-        """The scene as it was when the run was made."""
-        return self.path / SCENE
+        """The scene as it was when the run was made.
+
+        Raises:
+            RunError: it is not there, or was changed since.
+        """
+        return self._kept(SCENE, self.path / SCENE).path
+
+    @property
+    def files(self) -> Files:
+        """The files that the scene names, as they were then, by the names it gives them.
+
+        Raises:
+            RunError: one is not there, or was changed since.
+        """
+        kept = {name: sha256 for name, sha256 in self.summary["files"].items() if name != SCENE}
+        return {name: self._kept(name, self.path / FILES / kept_name(name, kept[name])) for name in kept}
+
+    def _kept(self, name: str, path: Path) -> FileContent:
+        try:
+            file = FileContent(path, path.read_bytes())
+        except OSError as error:
+            raise RunError(f"{path}: cannot be read ({error.strerror}); the run is damaged") from None
+        if file.sha256 != self.summary["files"].get(name):
+            raise RunError(f"{path}: was changed since the run was made, so its trials cannot be made again")
+        return file
 
 
 def open_run(path: Path) -> Run:
@@ -85,7 +112,7 @@ def open_run(path: Path) -> Run:
         raise RunError(f"{path}: expected a run's folder with {SUMMARY} in it{hint}") from None
     except (OSError, ValueError) as error:
         raise RunError(f"{path / SUMMARY}: cannot be read ({error})") from None
-    if not isinstance(summary, dict) or not {"trials", "measures", "study"} <= summary.keys():
+    if not isinstance(summary, dict) or not {"trials", "measures", "study", "files"} <= summary.keys():
         raise RunError(f"{path / SUMMARY}: expected the summary of a tol3d run")
     if not _blocks(path):
         raise RunError(f"{path / TRIALS}: expected Parquet files with the trials, found none")
@@ -139,7 +166,7 @@ class RunWriter:
         units: unit of each column, kept in the files' metadata.
 
     Raises:
-        RunError: the folder is something else, or cannot be written.
+        RunError: the folder is something else, cannot be written, or is being written by another run.
     """
 
     def __init__(self, path: Path, fingerprint: Mapping[str, Any], units: Mapping[str, str]) -> None:
@@ -147,6 +174,7 @@ class RunWriter:
         self.path = path
         self._units = units
         self._partial = path.with_name(path.name + ".partial")
+        self._lock = FileLock(self._partial / LOCK)
         if path.exists() and not (path / SUMMARY).is_file():
             raise RunError(f"{path}: exists and is not a tol3d run; choose another folder with --out")
         try:
@@ -157,13 +185,20 @@ class RunWriter:
     def _open_partial(self, fingerprint: Mapping[str, Any]) -> None:
         mark = self._partial / FINGERPRINT
         text = json.dumps(fingerprint, sort_keys=True, indent=1)
-        if self._partial.exists() and (not mark.is_file() or mark.read_text(encoding="utf-8") != text):
-            if not mark.is_file() and any(self._partial.iterdir()):
-                raise RunError(f"{self._partial}: exists and is not an interrupted run; move it away")
-            shutil.rmtree(self._partial)
-        for folder in (TRIALS, PIECES):
-            (self._partial / folder).mkdir(parents=True, exist_ok=True)
+        if self._partial.exists() and not mark.is_file() and any(self._partial.iterdir()):
+            raise RunError(f"{self._partial}: exists and is not an interrupted run; move it away")
+        self._partial.mkdir(parents=True, exist_ok=True)
+        try:
+            self._lock.acquire(blocking=False)
+        except Timeout:
+            raise RunError(f"{self.path}: another run is being written there; choose another --out") from None
+        if mark.is_file() and mark.read_text(encoding="utf-8") != text:
+            _write_whole(mark, NOBODYS)  # killed in here, the next run still sees that the rest is not its own
+            for folder in (TRIALS, PIECES):
+                shutil.rmtree(self._partial / folder, ignore_errors=True)
         _write_whole(mark, text)
+        for folder in (TRIALS, PIECES):
+            (self._partial / folder).mkdir(exist_ok=True)
 
     def _block_path(self, index: int) -> Path:
         return self._partial / TRIALS / f"block-{index:06d}.parquet"
@@ -212,13 +247,17 @@ class RunWriter:
         except OSError as error:
             raise RunError(f"{path}: cannot be written ({error.strerror or error})") from None
 
-    def add_file(self, name: str, source: Path) -> str:
-        """Copy a file that the run read; its SHA-256."""
-        content = source.read_bytes()
-        target = self._partial / name
-        target.parent.mkdir(parents=True, exist_ok=True)
-        target.write_bytes(content)
-        return hashlib.sha256(content).hexdigest()
+    def keep(self, scene: FileContent, files: Files) -> dict[str, str]:
+        """Keep the scene and the files that it names; the SHA-256 of each by its name."""
+        shutil.rmtree(self._partial / FILES, ignore_errors=True)
+        places = {name: self._partial / FILES / kept_name(name, file.sha256) for name, file in files.items()}
+        everything = {name: (path, files[name]) for name, path in places.items()} | {
+            SCENE: (self._partial / SCENE, scene)
+        }
+        for path, file in everything.values():
+            path.parent.mkdir(exist_ok=True)
+            path.write_bytes(file.content)
+        return {name: file.sha256 for name, (_, file) in everything.items()}
 
     def picture_path(self, name: str) -> Path:
         """Where a picture of the run goes."""
@@ -229,6 +268,8 @@ class RunWriter:
         _write_whole(self._partial / SUMMARY, json.dumps(summary, indent=1, ensure_ascii=False, allow_nan=False) + "\n")
         (self._partial / FINGERPRINT).unlink()
         shutil.rmtree(self._partial / PIECES)
+        self._lock.release()
+        (self._partial / LOCK).unlink(missing_ok=True)
         if self.path.exists():
             old = self.path.with_name(self.path.name + ".old")
             shutil.rmtree(old, ignore_errors=True)

@@ -17,7 +17,6 @@ same deviations and the same driver position as the geometric one and never sees
 A trial is a pure function of (model, seed, trial index): `replay` makes any of them again.
 """
 
-import hashlib
 import importlib.metadata
 import platform
 import tempfile
@@ -35,6 +34,7 @@ from tol3d.block import (
     Block,
     Seats,
     analytic_values,
+    block_trials,
     drawn_block,
     geometric_values,
     mean_block,
@@ -48,15 +48,15 @@ from tol3d.engines import Engine
 from tol3d.engines.fcl import FclEngine
 from tol3d.errors import InputError
 from tol3d.execution import Columns, Progress, run_blocks
+from tol3d.files import FileContent
 from tol3d.model import Model, model_from_scene
 from tol3d.moves import OK, STATUS_TEXT
 from tol3d.result import Run, RunWriter, open_run
-from tol3d.scene import Scene, load_scene
+from tol3d.scene import Scene, load_scene, scene_from_python
 from tol3d.solids import FlankStrips, measuring_strips
 from tol3d.summary import study_summary
-from tol3d.tally import Tally
+from tol3d.tally import PILOT_TRIALS, Tally, grids_of
 
-Array = NDArray[np.float64]
 Stage = Callable[[str], None]
 Finisher = Callable[[Path, Mapping[str, Any]], None]
 
@@ -74,8 +74,10 @@ class Overrides:
 
 
 def load(scene: Scene | Path | str, *, trust_parts: bool = False) -> Scene:
-    """A scene from a path, or the scene itself."""
-    return scene if isinstance(scene, Scene) else load_scene(Path(scene), trust_parts=trust_parts)
+    """A scene from a path, or the scene itself; one that was made in Python is checked first."""
+    if not isinstance(scene, Scene):
+        return load_scene(Path(scene), trust_parts=trust_parts)
+    return scene if scene.text else scene_from_python(scene, trust_parts=trust_parts)
 
 
 def effective_model(scene: Scene, overrides: Overrides = Overrides()) -> Model:
@@ -94,7 +96,7 @@ def refuse_interfering_mean(scene: Scene, model: Model) -> None:
         SceneError: at the mesh's centre distance, with the backlash of nominal and mean build.
     """
     for measure in model.measures:
-        value = float(analytic_values(model, measure, mean_block(model)).min())
+        value = float(analytic_values(model, measure, mean_block(model, measure)).min())
         if value < -ZERO_BACKLASH:
             mesh = model.mesh(measure.kind.mesh)
             nominal = float(analytic_values(model, measure, nominal_block(model)).min())
@@ -174,15 +176,15 @@ def run_scene(
     writer = RunWriter(folder, fingerprint, _column_units(model))
     on_stage("gears: solids and measuring strips")
     task = _Task(model, strips_of(model) if model.study.engine == "fcl" else None, str(fingerprint))
-    task(0, 1)  # the first trial loads what trials need: that is setup, not simulation
+    grids = grids_of(model, task(0, PILOT_TRIALS))  # also loads what trials need: that is setup, not simulation
     prepared = time.perf_counter()
     on_stage("trials")
-    parts = (Tally.of(model, c) for c in _blocks(task, workers, writer, on_progress))
+    parts = (Tally.of(model, grids, columns) for columns in _blocks(task, workers, writer, on_progress))
     tally = reduce(Tally.merge, parts)
     done = time.perf_counter()
     summary = {
         **study_summary(model, task.engine, tally),
-        "files": {name: writer.add_file(name, path) for name, path in _files_read(scene).items()},
+        "files": writer.keep(_text_of(scene), scene.files),
         "timing": _timing(model, started, prepared, done, workers),
         "versions": {"python": platform.python_version(), **_versions()},
     }
@@ -192,7 +194,15 @@ def run_scene(
 
 def _blocks(task: _Task, workers: int, writer: RunWriter, on_progress: Progress) -> Iterator[Columns]:
     study, positions = task.model.study, positions_in_all(task.model)
-    return run_blocks(task, study.trials, workers, writer, on_progress, positions)
+    return run_blocks(
+        task,
+        study.trials,
+        workers,
+        writer,
+        on_progress,
+        block_trials=block_trials(task.model),
+        positions=positions,
+    )
 
 
 def _timing(model: Model, started: float, prepared: float, done: float, workers: int) -> dict[str, float]:
@@ -204,17 +214,13 @@ def _timing(model: Model, started: float, prepared: float, done: float, workers:
     }
 
 
-def _files_read(scene: Scene) -> dict[str, Path]:
-    inside = {
-        name: path for name, path in scene.files.items() if path.resolve().is_relative_to(scene.source.parent.resolve())
-    }
-    return {"scene.yaml": scene.source, **inside}
+def _text_of(scene: Scene) -> FileContent:
+    return FileContent(scene.source, scene.text.encode())
 
 
 def _fingerprint(scene: Scene, model: Model) -> dict[str, Any]:
-    digest = {name: hashlib.sha256(path.read_bytes()).hexdigest() for name, path in scene.files.items()}
-    text = hashlib.sha256(scene.text.encode()).hexdigest()
-    return {"scene": text, "files": digest, "study": vars(model.study), "versions": _versions()}
+    files = {name: file.sha256 for name, file in scene.files.items()}
+    return {"scene": _text_of(scene).sha256, "files": files, "study": vars(model.study), "versions": _versions()}
 
 
 def _versions() -> dict[str, str]:
@@ -252,9 +258,13 @@ class Replay:
 
 
 def model_of(run: Run, *, trust_parts: bool = False) -> Model:
-    """The model of a run, with the overrides it was run with."""
+    """The model of a run, from the files that it kept, with the overrides it was run with.
+
+    Raises:
+        RunError: a kept file was changed since.
+    """
     study = run.summary["study"]
-    scene = load_scene(run.scene_path, trust_parts=trust_parts)
+    scene = load_scene(run.scene_path, files=run.files)
     return effective_model(scene, Overrides(study["trials"], study["seed"], study["engine"]))
 
 
@@ -288,23 +298,6 @@ def replay_block(model: Model, block: Block) -> Replay:
     )
 
 
-def worst_trial(run: Run) -> int:
-    """The trial nearest to, or furthest beyond, a limit; without limits the smallest value of the first measure."""
-    best, index = np.inf, 0
-    measures = {name: m for name, m in run.summary["measures"].items() if m["take"] != "curve"}
-    limited = {n: m for n, m in measures.items() if m["lower_limit"] is not None or m["upper_limit"] is not None}
-    road = "geometric" if run.summary["engine"] != "analytic" else "analytic"
-    for name, measure in (limited or dict(list(measures.items())[:1])).items():
-        values = np.asarray(run.columns(f"{road}:{name}")[f"{road}:{name}"], dtype=np.float64)
-        lower = measure["lower_limit"] if measure["lower_limit"] is not None else (-np.inf if limited else 0.0)
-        upper = measure["upper_limit"] if measure["upper_limit"] is not None else np.inf
-        margin = np.minimum(values - lower, upper - values) / (measure[road]["sigma"] or 1.0)
-        margin = np.where(np.isnan(margin), np.inf, margin)
-        if margin.min() < best:
-            best, index = float(margin.min()), int(np.argmin(margin))
-    return index
-
-
 __all__ = [
     "Overrides",
     "Replay",
@@ -314,5 +307,4 @@ __all__ = [
     "replay",
     "replay_block",
     "run_scene",
-    "worst_trial",
 ]

@@ -1,13 +1,16 @@
 """A run's summary: what summary.json holds, in the measures' units."""
 
 from collections.abc import Iterator, Mapping
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from tol3d.analytic import closed_form, per_normal_backlash
-from tol3d.block import Block, mean_block, nominal_block, simulate_block
+from tol3d.block import Block, mean_block, nominal_block, simulate_block, stated_block
 from tol3d.engines import Engine
+from tol3d.high_low_mean import high_low_mean_percents
 from tol3d.model import Backlash, Measure, Model
 from tol3d.tally import Tally, histograms, in_unit, sample_summary, share_percents
 
@@ -35,7 +38,6 @@ def _unphysical_draws(tally: Tally) -> Iterator[str]:
 
 def measure_summaries(model: Model, engine: Engine | None, tally: Tally) -> dict[str, Any]:
     """The measures as summary.json shows them: statistics of both roads, contributors, published columns."""
-    nominal, mean = (_single(model, engine, block) for block in (nominal_block(model), mean_block(model)))
     return {
         measure.name: {
             "kind": measure.kind.quantity,
@@ -47,9 +49,9 @@ def measure_summaries(model: Model, engine: Engine | None, tally: Tally) -> dict
             **_lost_motion(model, measure),
             "lower_limit": in_unit(measure, measure.lower_limit),
             "upper_limit": in_unit(measure, measure.upper_limit),
-            "nominal": nominal[measure.name],
-            "mean_build": mean[measure.name],
-            **_statistics(model, measure, tally),
+            "nominal": _single(model, engine, measure, nominal_block(model)),
+            "mean_build": _single(model, engine, measure, mean_block(model, measure)),
+            **_statistics(model, engine, measure, tally),
             "published": _published(model, measure),
         }
         for measure in model.measures
@@ -65,20 +67,20 @@ def _lost_motion(model: Model, measure: Measure) -> Mapping[str, Any]:
     return {"lost_motion": {"of": driven, "arcmin_per_um": turn * np.degrees(60) / 1000}}
 
 
-def _single(model: Model, engine: Engine | None, block: Block) -> dict[str, dict[str, Any]]:
+def _single(model: Model, engine: Engine | None, measure: Measure, block: Block) -> dict[str, Any]:
     """Both roads' values of one build, None where it does not seat."""
-    columns = simulate_block(model, engine, block)
+    columns = simulate_block(replace(model, measures=(measure,)), engine, block)
 
-    def value(road: str, name: str) -> Any:
-        column = columns.get(f"{road}:{name}")
+    def value(road: str) -> Any:
+        column = columns.get(f"{road}:{measure.name}")
         if column is None or np.isnan(np.asarray(column, dtype=np.float64)).any():
             return None
         return column[0].tolist()
 
-    return {m.name: {road: value(road, m.name) for road in ("analytic", "geometric")} for m in model.measures}
+    return {road: value(road) for road in ("analytic", "geometric")}
 
 
-def _statistics(model: Model, measure: Measure, tally: Tally) -> dict[str, Any]:
+def _statistics(model: Model, engine: Engine | None, measure: Measure, tally: Tally) -> dict[str, Any]:
     if measure.take == "curve":
         return _curve(model, measure, tally)
     own = tally.measures[measure.name]
@@ -104,16 +106,29 @@ def _statistics(model: Model, measure: Measure, tally: Tally) -> dict[str, Any]:
         }
     by_sample = share_percents(model, own.analytic_features)
     geometric = share_percents(model, own.geometric_features)
+    alone = _high_low_mean(model, engine, measure)
     summary["contributors"] = [
         {
             "name": contributor.name,
             "analytic_percent": form.percent(contributor.name) if form else by_sample[contributor.name][0],
             "geometric_percent": geometric[contributor.name][0],
             "geometric_percent_se": geometric[contributor.name][1],
+            "high_low_mean_percent": alone[contributor.name],
         }
         for contributor in model.contributors
     ]
     return summary
+
+
+def _high_low_mean(model: Model, engine: Engine | None, measure: Measure) -> Mapping[str, float | None]:
+    """High-low-mean shares on the geometric road, or on the analytic one where there is no engine."""
+    alone = replace(model, measures=(measure,))
+    column = f"{'geometric' if engine else 'analytic'}:{measure.name}"
+
+    def values(deviations: NDArray[np.float64]) -> NDArray[np.float64]:
+        return np.asarray(simulate_block(alone, engine, stated_block(alone, deviations))[column], dtype=np.float64)
+
+    return high_low_mean_percents(model, measure, values)
 
 
 def _curve(model: Model, measure: Measure, tally: Tally) -> dict[str, Any]:

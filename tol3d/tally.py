@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from tol3d.analytic import ClosedForm, closed_form
 from tol3d.features import feature_groups, features
-from tol3d.model import Measure, Model, Positions
+from tol3d.model import Measure, Model
 from tol3d.moves import STATUS_TEXT
 from tol3d.statistics import Agreement, FeatureSums, Grid, LimitCounts, Moments, pp, ppk, shares
 from tol3d.statistics.grid import BINS
@@ -17,18 +17,36 @@ from tol3d.statistics.grid import BINS
 Array = NDArray[np.float64]
 Columns = Mapping[str, NDArray[np.generic]]
 
-GRID_SIGMAS = 12.0  # the grid spans the mean +- this many sigma of the stack-up: bins of 1.8e-4 sigma, 1.3 nm
+PILOT_TRIALS = 64  # the study's first trials; they tell sigma to 9 %, and a spread that the stack-up does not see
+GRID_SIGMAS = 12.0  # the grid spans the mean +- this many sigma of both roads: bins of 1.8e-4 sigma, 1.3 nm
 LEAST_SPAN = 1e-3  # mm or rad; for a model in which nothing varies
 HISTOGRAM_BINS = 64  # bars kept in summary.json for pictures
 QUANTILES = {"p0.135": 0.00135, "p50": 0.5, "p99.865": 0.99865}
 
 
-def reference_form(model: Model, measure: Measure) -> ClosedForm | None:
-    """Closed form of the measure, or of its value at a random position where it takes an extreme."""
-    at_random = Positions("random", 1, 1)
-    return closed_form(model, measure) or closed_form(
-        model, Measure(measure.name, measure.kind, at_random, "value")
-    )
+def grids_of(model: Model, pilot: Columns) -> Mapping[str, Grid]:
+    """The empty grid of each scalar measure: a function of model and seed alone, so that any blocks add up.
+
+    Args:
+        pilot: columns of the study's first PILOT_TRIALS trials, whatever the number of trials.
+    """
+    return {
+        measure.name: _grid(measure, closed_form(model, measure), pilot)
+        for measure in model.measures
+        if measure.take != "curve"
+    }
+
+
+def _grid(measure: Measure, form: ClosedForm | None, pilot: Columns) -> Grid:
+    spans = [(form.mean * measure.per_internal, form.sigma * measure.per_internal)] if form else []
+    for road in ("analytic", "geometric"):
+        values = np.asarray(pilot.get(f"{road}:{measure.name}", ()), dtype=np.float64)
+        good = values[~np.isnan(values)]
+        spans += [(float(good.mean()), float(good.std()))] if len(good) else []
+    reach = [max(GRID_SIGMAS * sigma, LEAST_SPAN * measure.per_internal) for _, sigma in spans]
+    lower = min(mean - half for (mean, _), half in zip(spans, reach, strict=True))
+    upper = max(mean + half for (mean, _), half in zip(spans, reach, strict=True))
+    return Grid.empty(lower, (upper - lower) / BINS, BINS)
 
 
 @dataclass(frozen=True)
@@ -40,13 +58,13 @@ class Sample:
     limits: LimitCounts
 
     @classmethod
-    def of(cls, measure: Measure, values: Array, centre: float, half_span: float) -> "Sample":
+    def of(cls, measure: Measure, values: Array, empty: Grid) -> "Sample":
         """Sample of a block; values (trials,) in the measure's unit, nan where a trial failed."""
         good = values[~np.isnan(values)]
         lower, upper = in_unit(measure, measure.lower_limit), in_unit(measure, measure.upper_limit)
         return cls(
             moments=Moments.of(good),
-            grid=Grid.empty(centre - half_span, 2 * half_span / BINS, BINS).add(good),
+            grid=empty.add(good),
             limits=LimitCounts.of(values, lower=lower, upper=upper),
         )
 
@@ -80,23 +98,20 @@ class MeasureTally:
         )
 
 
-def tally_measure(model: Model, measure: Measure, columns: Columns) -> MeasureTally:
-    """Tally of one block of columns."""
+def tally_measure(model: Model, measure: Measure, empty: Grid, columns: Columns) -> MeasureTally:
+    """Tally of one block of columns; `empty` is the measure's grid."""
     analytic = np.asarray(columns[f"analytic:{measure.name}"], dtype=np.float64)
-    form = reference_form(model, measure)
-    centre = (form.mean if form else 0.0) * measure.per_internal
-    half_span = max(GRID_SIGMAS * form.sigma if form else 0.0, LEAST_SPAN) * measure.per_internal
     seen = features(model, measure, columns)
     geometric = columns.get(f"geometric:{measure.name}")
     if geometric is None:
         return MeasureTally(
-            Sample.of(measure, analytic, centre, half_span), None, None, FeatureSums.of(seen, analytic), None
+            Sample.of(measure, analytic, empty), None, None, FeatureSums.of(seen, analytic), None
         )
     values = np.asarray(geometric, dtype=np.float64)
     good = ~np.isnan(values)
     return MeasureTally(
-        Sample.of(measure, analytic, centre, half_span),
-        Sample.of(measure, values, centre, half_span),
+        Sample.of(measure, analytic, empty),
+        Sample.of(measure, values, empty),
         Agreement.of(values, analytic),
         FeatureSums.of(seen, analytic),
         FeatureSums.of(seen[good], values[good]),
@@ -157,8 +172,8 @@ class Tally:
     curves: Mapping[str, CurveTally]
 
     @classmethod
-    def of(cls, model: Model, columns: Columns) -> "Tally":
-        """Tally of one block."""
+    def of(cls, model: Model, grids: Mapping[str, Grid], columns: Columns) -> "Tally":
+        """Tally of one block; `grids` as grids_of gives them."""
         trials = len(next(iter(columns.values())))
         status = columns.get("status")
         counts = {text: trials if text == "ok" else 0 for text in STATUS_TEXT.values()}
@@ -170,7 +185,7 @@ class Tally:
             trials,
             counts,
             _unphysical(model, columns),
-            {measure.name: tally_measure(model, measure, columns) for measure in scalars},
+            {measure.name: tally_measure(model, measure, grids[measure.name], columns) for measure in scalars},
             {measure.name: CurveTally.of(measure, columns) for measure in curves},
         )
 
@@ -213,6 +228,7 @@ def sample_summary(measure: Measure, sample: Sample) -> dict[str, Any]:
         "sample_max": moments.maximum,
         **{name: _quantile(sample, p) for name, p in QUANTILES.items()},
         "quantile_error": sample.grid.width,
+        "outside_grid": sample.grid.underflow + sample.grid.overflow,
         "below_limit_ppm": limits.below_limit.ppm,
         "below_limit_ppm_95": limits.below_limit.interval_ppm() if moments.count else None,
         "above_limit_ppm": limits.above_limit.ppm,

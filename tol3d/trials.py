@@ -11,7 +11,7 @@ import unicodedata
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.model import Mesh, Model, Planar
+from tol3d.model import Mesh, Model, Planar, Positions, TurningOffset
 
 Array = NDArray[np.float64]
 
@@ -50,15 +50,20 @@ def deviations(model: Model, seed: int, first: int, count: int) -> Array:
     return rows
 
 
-def mean_deviations(model: Model) -> Array:
-    """Every contributor at its mean, shape (1, components): a random direction averages to zero."""
+def mean_deviations(model: Model, positions: Positions) -> Array:
+    """Every contributor at its mean, shape (1, components).
+
+    A random direction averages to zero, and so does an offset that turns with its gear at random positions.
+    """
     row = np.zeros((1, model.component_count))
     for contributor in model.contributors:
         columns = model.component_slices[contributor.name]
         mean = contributor.distribution.mean
         if not isinstance(contributor.draw, Planar):
             row[:, columns] = mean
-        elif contributor.draw.direction is not None:
+        elif contributor.draw.direction is not None and not (
+            positions.over == "random" and isinstance(contributor.effect, TurningOffset)
+        ):
             angle = contributor.draw.direction
             row[:, columns] = (mean * math.cos(angle), mean * math.sin(angle))
     return row

@@ -72,6 +72,12 @@ def closed_form(model: Model, measure: Measure) -> ClosedForm | None:
     )
 
 
+def reference_form(model: Model, measure: Measure) -> ClosedForm | None:
+    """Closed form of the measure, or of its value at a random position where it takes an extreme."""
+    at_random = replace(measure, positions=Positions("random", 1, 1), take="value")
+    return closed_form(model, measure) or closed_form(model, at_random)
+
+
 def _linear_share(term: Term, stack: SpurStack, positions: Positions, factor: float) -> Share:
     law, coefficient = term.contributor.distribution, term.coefficient * factor
     draw = term.contributor.draw

@@ -2,13 +2,13 @@
 
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Self
 
 import numpy as np
 from numpy.typing import NDArray
 from pydantic import model_validator
 
+from tol3d.files import Files
 from tol3d.strict import Strict, refused
 from tol3d.units import Quantity
 
@@ -16,6 +16,8 @@ Array = NDArray[np.float64]
 
 LOW_PROBABILITY = 0.00135  # the 0.135 % percentile, where a normal has mean - 3 sigma; ISO 22514-2
 HIGH_PROBABILITY = 1 - LOW_PROBABILITY
+CIRCLE_PROBABILITY = HIGH_PROBABILITY - LOW_PROBABILITY
+RADIUS_HALVINGS = 60  # down to the last bits of a double
 LARGEST_DEVIATION = 1e9  # mm, rad or K; keeps squares and differences of what a user writes finite
 
 
@@ -46,14 +48,31 @@ class Distribution(ABC):
         """The variance [mm^2, rad^2 or K^2], in closed form."""
 
     @property
+    def limits(self) -> tuple[float, float] | None:
+        """Where a law has limits of its own (bounds, or stated ones that draws may exceed)."""
+        return None
+
+    @property
     def low(self) -> float:
-        """The lower limit for worst cases: a stated limit, or else the 0.135 % percentile."""
-        return float(self.ppf(np.array([LOW_PROBABILITY]))[0])
+        """The lower end for worst cases: its limit, or else the 0.135 % percentile."""
+        return self.limits[0] if self.limits else float(self.ppf(np.array([LOW_PROBABILITY]))[0])
 
     @property
     def high(self) -> float:
-        """The upper limit for worst cases: a stated limit, or else the 99.865 % percentile."""
-        return float(self.ppf(np.array([HIGH_PROBABILITY]))[0])
+        """The upper end for worst cases: its limit, or else the 99.865 % percentile."""
+        return self.limits[1] if self.limits else float(self.ppf(np.array([HIGH_PROBABILITY]))[0])
+
+    @property
+    def radius(self) -> float:
+        """The end for worst cases of a length in a direction: its larger limit, or what 99.73 % stay within."""
+        if self.limits:
+            return max(abs(limit) for limit in self.limits)
+        inside, outside = 0.0, max(abs(float(self.ppf(np.array([p]))[0])) for p in (1e-9, 1 - 1e-9))
+        for _ in range(RADIUS_HALVINGS):
+            middle = (inside + outside) / 2
+            below, above = self.cdf(np.array([-middle, middle]))
+            inside, outside = (middle, outside) if above - below < CIRCLE_PROBABILITY else (inside, middle)
+        return outside
 
     @property
     def sigma(self) -> float:
@@ -70,11 +89,11 @@ class DistributionSpec(Strict, ABC):
         return {name: value for name, value in values.items() if isinstance(value, Quantity)}
 
     @abstractmethod
-    def resolve(self, folder: Path) -> Distribution:
-        """What the spec means, in mm, rad or K; relative file names start at `folder`.
+    def resolve(self, files: Files) -> Distribution:
+        """What the spec means, in mm, rad or K; `files` holds the content of those that it names.
 
         Raises:
-            SceneError: a file that it names cannot be used; the text names file and line.
+            SceneError: a file that it names makes no sense; the text names file and line.
         """
 
     @model_validator(mode="after")

@@ -1,12 +1,12 @@
 """A deviation that does not vary."""
 
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Literal
 
 import numpy as np
 
 from tol3d.distributions.base import Array, Distribution, DistributionSpec
+from tol3d.files import Files
 from tol3d.units import Quantity
 
 
@@ -35,14 +35,9 @@ class Constant(Distribution):
         return 0.0
 
     @property
-    def low(self) -> float:
-        """The value."""
-        return self.value
-
-    @property
-    def high(self) -> float:
-        """The value."""
-        return self.value
+    def limits(self) -> tuple[float, float]:
+        """The value, twice."""
+        return self.value, self.value
 
 
 class ConstantSpec(DistributionSpec):
@@ -51,6 +46,6 @@ class ConstantSpec(DistributionSpec):
     kind: Literal["constant"]
     value: Quantity
 
-    def resolve(self, folder: Path) -> Constant:
+    def resolve(self, files: Files) -> Constant:
         """The law in mm, rad or K."""
         return Constant(self.value.internal)

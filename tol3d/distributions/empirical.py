@@ -6,7 +6,6 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
-from pathlib import Path
 from typing import Literal, Self
 
 import numpy as np
@@ -14,10 +13,9 @@ from pydantic import model_validator
 
 from tol3d.distributions.base import LARGEST_DEVIATION, Array, Distribution, DistributionSpec
 from tol3d.errors import SceneError
+from tol3d.files import FileContent, Files
 from tol3d.strict import refused
 from tol3d.units import BARE_NUMBER, MICRO_SIGNS, UNITS, Quantity
-
-LARGEST_FILE = 20_000_000  # bytes; about two million values, seconds to read
 
 
 @dataclass(frozen=True, eq=False)
@@ -94,24 +92,24 @@ class EmpiricalSpec(DistributionSpec):
         """One of the unit, under the field `unit`."""
         return {"unit": Quantity(1.0, self.unit.translate(MICRO_SIGNS))}
 
-    def resolve(self, folder: Path) -> Empirical:
+    def resolve(self, files: Files) -> Empirical:
         """Read the column.
 
         Raises:
-            SceneError: the file is missing, too large or no CSV, or a cell is no number; the
-                text names file and line.
+            SceneError: the file is no CSV, or a cell is no number; the text names file and line.
         """
-        sample = np.array(_column(folder / self.file, self.column)) * self.quantities()["unit"].internal
+        file = files[self.file]
+        sample = np.array(_column(file, self.column)) * self.quantities()["unit"].internal
         if not np.all(np.abs(sample) <= LARGEST_DEVIATION):
-            raise SceneError(f"{folder / self.file}: expected deviations of less than 1e9 mm, rad or K")
+            raise SceneError(f"{file.path}: expected deviations of less than 1e9 mm, rad or K")
         sample = np.sort(sample)
         sample.flags.writeable = False
         return Empirical(sample)
 
 
-def _column(path: Path, column: str) -> list[float]:
+def _column(file: FileContent, column: str) -> list[float]:
     """The numbers under the header `column`, at least two."""
-    rows = _rows(path)
+    path, rows = file.path, _rows(file)
     header_line, header = next(rows, (1, []))
     names = [name.strip() for name in header]
     if names.count(column.strip()) != 1:
@@ -133,9 +131,9 @@ def _number(row: list[str], index: int, place: str) -> float:
     return number
 
 
-def _rows(path: Path) -> Iterator[tuple[int, list[str]]]:
+def _rows(file: FileContent) -> Iterator[tuple[int, list[str]]]:
     """The rows of a CSV file that are not blank, with their line numbers."""
-    text = _text(path)
+    text = _text(file)
     header = text.lstrip().partition("\n")[0]
     reader = csv.reader(io.StringIO(text, newline=""), delimiter=";" if ";" in header else ",", strict=True)
     try:
@@ -143,20 +141,12 @@ def _rows(path: Path) -> Iterator[tuple[int, list[str]]]:
             if any(cell.strip() for cell in row):
                 yield reader.line_num, row
     except csv.Error as error:
-        raise SceneError(f"{path}:{reader.line_num}: expected comma-separated values, got {error}") from None
+        raise SceneError(f"{file.path}:{reader.line_num}: expected comma-separated values, got {error}") from None
 
 
-def _text(path: Path) -> str:
+def _text(file: FileContent) -> str:
     try:
-        if not path.is_file():
-            raise SceneError(f"{path}: expected a CSV file, got {'a folder' if path.is_dir() else 'no such file'}")
-        with path.open("rb") as stream:
-            content = stream.read(LARGEST_FILE + 1)
-        if len(content) > LARGEST_FILE:
-            raise SceneError(f"{path}: expected at most {LARGEST_FILE // 10**6} MB")
-        return content.decode("utf-8-sig")
-    except OSError as error:
-        raise SceneError(f"{path}: expected a file that can be read, got: {error.strerror}") from None
+        return file.content.decode("utf-8-sig")
     except UnicodeDecodeError as error:
-        line = content[: error.start].count(b"\n") + 1
-        raise SceneError(f"{path}:{line}: expected UTF-8 text, got a byte that is none") from None
+        line = file.content[: error.start].count(b"\n") + 1
+        raise SceneError(f"{file.path}:{line}: expected UTF-8 text, got a byte that is none") from None

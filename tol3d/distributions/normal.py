@@ -1,13 +1,13 @@
 """The normal distribution, by its limits or by mean and sigma."""
 
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Literal, Self
 
 from pydantic import model_validator
 
 from tol3d.distributions import standard_normal
 from tol3d.distributions.base import Array, Distribution, DistributionSpec
+from tol3d.files import Files
 from tol3d.strict import refused
 from tol3d.units import Quantity
 
@@ -16,12 +16,12 @@ from tol3d.units import Quantity
 class Normal(Distribution):
     """A normal law about `location` with standard deviation `scale`.
 
-    `limits` are the low and high that were stated (draws go beyond them); None means +-3 sigma.
+    `stated` are the limits that were written (draws go beyond them); None means +-3 sigma.
     """
 
     location: float
     scale: float
-    limits: tuple[float, float] | None = None
+    stated: tuple[float, float] | None = None
 
     def ppf(self, u: Array) -> Array:
         """location + scale * Phi^-1(u)."""
@@ -42,14 +42,9 @@ class Normal(Distribution):
         return self.scale**2
 
     @property
-    def low(self) -> float:
-        """The stated lower limit, or mean - 3 sigma."""
-        return self.limits[0] if self.limits else self.location - 3 * self.scale
-
-    @property
-    def high(self) -> float:
-        """The stated upper limit, or mean + 3 sigma."""
-        return self.limits[1] if self.limits else self.location + 3 * self.scale
+    def limits(self) -> tuple[float, float]:
+        """The stated ones, or mean +- 3 sigma."""
+        return self.stated or (self.location - 3 * self.scale, self.location + 3 * self.scale)
 
 
 class NormalSpec(DistributionSpec):
@@ -78,7 +73,7 @@ class NormalSpec(DistributionSpec):
             raise refused("kind", "either lower and upper, or mean and sigma", got)
         return self
 
-    def resolve(self, folder: Path) -> Normal:
+    def resolve(self, files: Files) -> Normal:
         """The law in mm, rad or K."""
         values = {name: quantity.internal for name, quantity in self.quantities().items()}
         if "sigma" in values:

@@ -2,13 +2,13 @@
 
 import math
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Literal, Self
 
 import numpy as np
 from pydantic import model_validator
 
 from tol3d.distributions.base import Array, Distribution, DistributionSpec
+from tol3d.files import Files
 from tol3d.units import Quantity
 
 
@@ -55,6 +55,6 @@ class RayleighSpec(DistributionSpec):
         self._refuse_unless_positive("scale")
         return self
 
-    def resolve(self, folder: Path) -> Rayleigh:
+    def resolve(self, files: Files) -> Rayleigh:
         """The law in mm, rad or K."""
         return Rayleigh(self.scale.internal)

@@ -1,13 +1,13 @@
 """The triangular distribution: two limits and the most likely value."""
 
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Literal, Self
 
 import numpy as np
 from pydantic import model_validator
 
 from tol3d.distributions.base import Array, Distribution, DistributionSpec
+from tol3d.files import Files
 from tol3d.strict import refused
 from tol3d.units import Quantity
 
@@ -48,14 +48,9 @@ class Triangular(Distribution):
         return (rise**2 + rise * fall + fall**2) / 18
 
     @property
-    def low(self) -> float:
-        """The lower limit."""
-        return self.lower
-
-    @property
-    def high(self) -> float:
-        """The upper limit."""
-        return self.upper
+    def limits(self) -> tuple[float, float]:
+        """Lower and upper, as stated."""
+        return self.lower, self.upper
 
 
 class TriangularSpec(DistributionSpec):
@@ -73,6 +68,6 @@ class TriangularSpec(DistributionSpec):
             raise refused("mode", f"it between lower and upper ({self.lower} to {self.upper})", self.mode)
         return self
 
-    def resolve(self, folder: Path) -> Triangular:
+    def resolve(self, files: Files) -> Triangular:
         """The law in mm, rad or K."""
         return Triangular(self.lower.internal, self.mode.internal, self.upper.internal)

@@ -3,7 +3,6 @@
 import math
 from dataclasses import dataclass
 from functools import cached_property
-from pathlib import Path
 from typing import Literal, Self
 
 import numpy as np
@@ -11,6 +10,7 @@ from pydantic import model_validator
 
 from tol3d.distributions import standard_normal
 from tol3d.distributions.base import Array, Distribution, DistributionSpec
+from tol3d.files import Files
 from tol3d.strict import refused
 from tol3d.units import Quantity
 
@@ -68,14 +68,9 @@ class TruncatedNormal(Distribution):
         return self.scale**2 * (1 + (alpha * at_alpha - beta * at_beta) / self.kept - shift**2)
 
     @property
-    def low(self) -> float:
-        """The lower limit."""
-        return self.lower
-
-    @property
-    def high(self) -> float:
-        """The upper limit."""
-        return self.upper
+    def limits(self) -> tuple[float, float]:
+        """Lower and upper, as stated."""
+        return self.lower, self.upper
 
 
 class TruncatedNormalSpec(DistributionSpec):
@@ -97,7 +92,7 @@ class TruncatedNormalSpec(DistributionSpec):
             raise refused("lower", expected, f"{self.lower} to {self.upper}, which keep {kept:.2g}")
         return self
 
-    def resolve(self, folder: Path) -> TruncatedNormal:
+    def resolve(self, files: Files) -> TruncatedNormal:
         """The law in mm, rad or K."""
         return self._law()
 

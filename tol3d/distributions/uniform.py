@@ -1,13 +1,13 @@
 """The uniform distribution: every deviation between two limits alike."""
 
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Literal, Self
 
 import numpy as np
 from pydantic import model_validator
 
 from tol3d.distributions.base import Array, Distribution, DistributionSpec
+from tol3d.files import Files
 from tol3d.units import Quantity
 
 
@@ -37,14 +37,9 @@ class Uniform(Distribution):
         return (self.upper - self.lower) ** 2 / 12
 
     @property
-    def low(self) -> float:
-        """The lower limit."""
-        return self.lower
-
-    @property
-    def high(self) -> float:
-        """The upper limit."""
-        return self.upper
+    def limits(self) -> tuple[float, float]:
+        """Lower and upper, as stated."""
+        return self.lower, self.upper
 
 
 class UniformSpec(DistributionSpec):
@@ -59,6 +54,6 @@ class UniformSpec(DistributionSpec):
         self._refuse_unless_ordered("lower", "upper")
         return self
 
-    def resolve(self, folder: Path) -> Uniform:
+    def resolve(self, files: Files) -> Uniform:
         """The law in mm, rad or K."""
         return Uniform(self.lower.internal, self.upper.internal)

@@ -182,7 +182,7 @@ class _Tolerances:
     def contributor(self, name: str, spec: ToleranceSpec) -> Contributor:
         """A tolerance as the simulation sees it."""
         effect, direction = self._effect(spec)
-        law = spec.distribution.resolve(self.scene.folder)
+        law = spec.distribution.resolve(self.scene.files)
         return Contributor(
             name=name,
             kind=spec.kind,

@@ -15,8 +15,9 @@ from tol3d.model import Measure, Mesh, Model
 from tol3d.moves import NO_CONTACT, OK, MeshSeat
 from tol3d.report.number import measured_text
 from tol3d.result import Run
-from tol3d.simulate import Replay, model_of, replay, replay_block, worst_trial
+from tol3d.simulate import Replay, model_of, replay, replay_block
 from tol3d.solids import display_mesh
+from tol3d.worst import worst_trial
 
 Array = NDArray[np.float64]
 Which = int | str
@@ -153,11 +154,11 @@ def _replayed(run: Run, which: Which, trust_parts: bool) -> tuple[str, Replay]:
         which = worst_trial(run)
     if isinstance(which, int):
         return f"trial-{which}", replay(run, which, trust_parts=trust_parts)
-    blocks = {"nominal": nominal_block, "mean": mean_block}
-    if which not in blocks:
+    if which not in ("nominal", "mean"):
         raise InputError(f"expected a trial's number, worst, nominal or mean, got {which!r}")
     model = model_of(run, trust_parts=trust_parts)
-    return which, replay_block(model, blocks[which](model))
+    block = nominal_block(model) if which == "nominal" else mean_block(model, model.measures[0])
+    return which, replay_block(model, block)
 
 
 def _said(label: str, seen: Replay) -> str:

@@ -1,22 +1,26 @@
 """From a scene's file to a checked Scene."""
 
+from dataclasses import replace
 from pathlib import Path
 
 from pydantic import ValidationError
 
 from tol3d.errors import SceneError
+from tol3d.files import Files, read_file
+from tol3d.scene.place import Origin
 from tol3d.scene.problems import messages
-from tol3d.scene.references import refuse_loose_ends
+from tol3d.scene.references import loose_ends, refuse, unreadable_files
 from tol3d.scene.schema import Scene
 from tol3d.scene.text import read_scene_text
 
 
-def load_scene(path: Path, *, trust_parts: bool = False) -> Scene:
-    """Read a scene; this runs none of it and builds no geometry.
+def load_scene(path: Path, *, trust_parts: bool = False, files: Files | None = None) -> Scene:
+    """Read a scene and the files that it names; this runs none of it and builds no geometry.
 
     Args:
         path: the YAML file.
         trust_parts: whether the scene may name files outside its own folder.
+        files: the contents of the files that it names, where they are known; none is read then.
 
     Raises:
         SceneError: one or several messages `file:line: place: what was expected, what came`.
@@ -26,5 +30,23 @@ def load_scene(path: Path, *, trust_parts: bool = False) -> Scene:
         scene = Scene.model_validate(data, context=origin)
     except ValidationError as error:
         raise SceneError(*messages(error, data, origin)) from None
-    refuse_loose_ends(scene, trust_parts)
-    return scene
+    return _with_files(scene, origin, trust_parts, files)
+
+
+def scene_from_python(scene: Scene, *, trust_parts: bool = False) -> Scene:
+    """A scene that was made in Python, checked as one from a file is; its text is JSON, which is YAML too.
+
+    Raises:
+        SceneError: names or files that cannot be found; relative ones start at the working folder.
+    """
+    text = scene.model_dump_json(indent=1, exclude_unset=True) + "\n"
+    return _with_files(scene, Origin(Path("scene.yaml"), text), trust_parts, None)
+
+
+def _with_files(scene: Scene, origin: Origin, trust_parts: bool, files: Files | None) -> Scene:
+    scene = scene.read_from(origin)
+    problems = loose_ends(scene)
+    refuse(scene, problems if files is not None else [*problems, *unreadable_files(scene, trust_parts)])
+    if files is None:
+        files = {name: read_file(scene.folder / name) for name in scene.file_names}
+    return scene.read_from(replace(origin, files=files))

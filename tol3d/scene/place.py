@@ -5,6 +5,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from tol3d.errors import SceneError
+from tol3d.files import Files
 
 LONGEST_KEY = 80  # characters shown; names may be that long
 
@@ -28,11 +29,13 @@ class Origin:
         source: the file.
         text: its content.
         places: where the key of each key path stands (the value, for an item of a list).
+        files: the files that it names, as they were when it was read.
     """
 
     source: Path = Path("scene")
     text: str = ""
     places: Mapping[KeyPath, Place] = field(default_factory=dict)
+    files: Files = field(default_factory=dict)
 
     def place(self, path: KeyPath) -> Place:
         """Where the key path stands, or the nearest key above it; the top of the file at last."""

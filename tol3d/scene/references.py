@@ -17,24 +17,34 @@ from tol3d.units import expectation, shown
 SECTIONS: Final = ("parts", "tolerances", "moves", "measures")
 
 
-def refuse_loose_ends(scene: Scene, trust_parts: bool) -> None:
-    """Raise unless every name and file of the scene can be found.
+Problem = tuple[KeyPath, str]
 
-    Args:
-        scene: a scene that is right field by field.
-        trust_parts: whether files outside its folder may be read.
+
+def refuse(scene: Scene, problems: list[Problem]) -> None:
+    """Raise if there are problems.
 
     Raises:
-        SceneError: with the first few of what does not hold together.
+        SceneError: with the first few of them, in the order of the file.
     """
-    problems = list(_repeated(scene)) or list(_unknown(scene)) or list(_contradicted(scene))
-    problems += [*_unpublished(scene), *_files(scene, trust_parts)]
     if problems:
         ordered = sorted(problems, key=lambda problem: scene.place(problem[0]).line)
         raise SceneError(*first_few([str(scene.refuse(path, sentence)) for path, sentence in ordered]))
 
 
-Problem = tuple[KeyPath, str]
+def loose_ends(scene: Scene) -> list[Problem]:
+    """What does not hold together in a scene that is right field by field: names first, then what they mean."""
+    problems = list(_repeated(scene)) or list(_unknown(scene)) or list(_contradicted(scene))
+    return [*problems, *_unpublished(scene)]
+
+
+def unreadable_files(scene: Scene, trust_parts: bool) -> list[Problem]:
+    """Files of a scene that are not there, or lie outside its folder without being trusted."""
+    return [
+        (("tolerances", name, "distribution", "file"), sentence)
+        for name, tolerance in scene.tolerances.items()
+        if isinstance(law := tolerance.distribution, EmpiricalSpec)
+        and (sentence := _file_problem(scene.folder, law.file, trust_parts))
+    ]
 
 
 def _repeated(scene: Scene) -> Iterator[Problem]:
@@ -105,13 +115,6 @@ def _unpublished(scene: Scene) -> Iterator[Problem]:
                         (*path, "contributors", contributor),
                         f"expected the name of a tolerance, got {contributor!r}{near}",
                     )
-
-
-def _files(scene: Scene, trust_parts: bool) -> Iterator[Problem]:
-    for name, tolerance in scene.tolerances.items():
-        law = tolerance.distribution
-        if isinstance(law, EmpiricalSpec) and (sentence := _file_problem(scene.folder, law.file, trust_parts)):
-            yield ("tolerances", name, "distribution", "file"), sentence
 
 
 def _file_problem(folder: Path, file: str, trust_parts: bool) -> str:

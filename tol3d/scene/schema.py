@@ -9,6 +9,7 @@ from pydantic import Field, PrivateAttr, model_validator
 
 from tol3d.distributions.empirical import EmpiricalSpec
 from tol3d.errors import SceneError
+from tol3d.files import Files
 from tol3d.scene.measures import MeasureUnion
 from tol3d.scene.moves import MoveUnion
 from tol3d.scene.name import Name
@@ -119,18 +120,25 @@ class Scene(Strict):
         return self.source.parent
 
     @property
-    def files(self) -> dict[str, Path]:
-        """Every file that the scene names, as written there, and where it lies."""
+    def file_names(self) -> tuple[str, ...]:
+        """Every file that the scene names, as written there."""
         laws = (tolerance.distribution for tolerance in self.tolerances.values())
-        return {law.file: self.folder / law.file for law in laws if isinstance(law, EmpiricalSpec)}
+        return tuple(dict.fromkeys(law.file for law in laws if isinstance(law, EmpiricalSpec)))
+
+    @property
+    def files(self) -> Files:
+        """Their contents, as they were when the scene was read."""
+        return self._origin.files
+
+    def read_from(self, origin: Origin) -> Self:
+        """This scene with another origin."""
+        scene = self.model_copy()
+        scene._origin = origin
+        return scene
 
     def meshes_of(self, gear: str) -> tuple[str, ...]:
         """Names of the moves in which a gear takes part."""
         return tuple(name for name, move in self.moves.items() if gear in move.gears)
-
-    def problem(self, path: KeyPath, expected: str, got: str) -> SceneError:
-        """The error to raise where a value cannot be meant."""
-        return self.refuse(path, f"expected {expected}, got {got}")
 
     def refuse(self, path: KeyPath, sentence: str) -> SceneError:
         """The error to raise with a finished sentence, such as that of a GeometryError."""

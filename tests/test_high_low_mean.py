@@ -1,0 +1,90 @@
+"""High-low-mean shares against what a first-order stack-up gives by hand."""
+
+import math
+from pathlib import Path
+
+import pytest
+
+from tol3d import Overrides, Scene, run_scene
+
+ALPHA = math.radians(20)
+SIN, COS = math.sin(ALPHA), math.cos(ALPHA)
+
+
+def made(tolerances: dict[str, object], **measure: object) -> Scene:
+    gear = {"kind": "spur_gear", "module": "2.5 mm", "face_width": "20 mm"}
+    return Scene.model_validate(
+        {
+            "scene": "high low mean",
+            "parts": {"pinion": {**gear, "teeth": 28}, "wheel": {**gear, "teeth": 110}},
+            "tolerances": {name: {"distribution": law, **rest} for name, (law, rest) in tolerances.items()},
+            "moves": {"pair": {"kind": "mesh", "driver": "pinion", "driven": "wheel", "centre_distance": "172.5 mm"}},
+            "measures": {"play": {"kind": "normal_backlash", "of": "pair", **measure}},
+        }
+    )
+
+
+def normal(lower: str, upper: str) -> dict[str, str]:
+    return {"kind": "normal", "lower": lower, "upper": upper}
+
+
+THIN = {"thin teeth": ({"kind": "constant", "value": "-120 um"}, {"kind": "tooth_thickness", "of": "wheel"})}
+PAPERLIKE = {
+    "thickness": (normal("-30 um", "-19 um"), {"kind": "tooth_thickness", "of": "pinion"}),
+    "distance": (normal("-20 um", "20 um"), {"kind": "centre_distance", "of": "pair"}),
+    "eccentricity": ({"kind": "rayleigh", "scale": "4.5 um"}, {"kind": "eccentricity", "of": "pinion"}),
+    "clearance": (normal("6 um", "20 um"), {"kind": "bearing_clearance", "of": "wheel"}),
+    "tilt": (normal("-10 um", "10 um"), {"kind": "axis_in_plane", "of": "pair"}),
+}
+# what each moves the normal backlash by [um] between its ends
+RANGES = {
+    "thickness": COS * 11,
+    "distance": 2 * SIN * 40,
+    "eccentricity": 2 * SIN * 2 * 4.5 * math.sqrt(-2 * math.log(0.0027)),  # 99.73 % of a Rayleigh length, both ways
+    "clearance": SIN * 14,
+    "tilt": SIN * 10,  # either sign closes: from the mean to one end
+}
+
+
+@pytest.mark.parametrize("engine", ["analytic", "fcl"])
+def test_each_contributor_counts_by_the_square_of_its_range_alone(engine: str, tmp_path: Path) -> None:
+    run = run_scene(made({**THIN, **PAPERLIKE}), overrides=Overrides(trials=4, engine=engine), out=tmp_path / "run")
+    found = {c["name"]: c["high_low_mean_percent"] for c in run.summary["measures"]["play"]["contributors"]}
+    total = sum(own**2 for own in RANGES.values())
+    # the stack-up is first order: 0.02 um of a range of 27 um is 0.15 % of its square
+    expected = {"thin teeth": 0.0} | {name: 100 * own**2 / total for name, own in RANGES.items()}
+    assert found == {name: pytest.approx(percent, abs=0.15) for name, percent in expected.items()}
+
+
+def test_a_length_in_a_random_direction_acts_along_its_worst_one(tmp_path: Path) -> None:
+    # at 50 deg of the driver its offset opens most along 130 deg of the gear; the distance as a yardstick
+    law = {"kind": "constant", "value": "7 um"}
+    tolerances = {
+        **THIN,
+        "eccentricity": (law, {"kind": "eccentricity", "of": "pinion"}),
+        "distance": (normal("-7 um", "7 um"), {"kind": "centre_distance", "of": "pair"}),
+    }
+    scene = made(tolerances, over={"at": "50 deg"})
+    run = run_scene(scene, overrides=Overrides(trials=4), out=tmp_path / "run")
+    shares = {c["name"]: c["high_low_mean_percent"] for c in run.summary["measures"]["play"]["contributors"]}
+    assert shares["eccentricity"] == pytest.approx(50.0, abs=0.3)
+    assert shares["distance"] == pytest.approx(50.0, abs=0.3)
+
+
+def test_a_fixed_direction_counts_by_its_ends(tmp_path: Path) -> None:
+    across = {
+        **THIN,
+        "across": (normal("-7 um", "7 um"), {"kind": "eccentricity", "of": "pinion", "direction": {"at": "90 deg"}}),
+        "distance": (normal("-7 um", "7 um"), {"kind": "centre_distance", "of": "pair"}),
+    }
+    run = run_scene(made(across, over={"at": "0 deg"}), overrides=Overrides(trials=4), out=tmp_path / "run")
+    shares = {c["name"]: c["high_low_mean_percent"] for c in run.summary["measures"]["play"]["contributors"]}
+    assert shares["across"] < 0.01
+    assert shares["distance"] == pytest.approx(100.0, abs=0.01)
+
+
+def test_a_build_that_does_not_seat_leaves_the_shares_open(tmp_path: Path) -> None:
+    tight = {"distance": (normal("-40 um", "60 um"), {"kind": "centre_distance", "of": "pair"})}
+    run = run_scene(made(tight), overrides=Overrides(trials=4), out=tmp_path / "run")
+    (share,) = run.summary["measures"]["play"]["contributors"]
+    assert share["high_low_mean_percent"] is None

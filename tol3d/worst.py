@@ -1,0 +1,43 @@
+"""The worst trial of a run: the one nearest to a limit, or furthest beyond it."""
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tol3d.result import Run
+
+Array = NDArray[np.float64]
+
+
+def worst_trial(run: Run) -> int:
+    """Index of the worst trial among those that seated; a curve counts by its extremes.
+
+    Nearness is counted in standard deviations of each measure. Without any limit the smallest value of
+    the first measure is the worst.
+    """
+    measures: Mapping[str, Mapping[str, Any]] = run.summary["measures"]
+    road = "geometric" if run.summary["engine"] != "analytic" else "analytic"
+    limited = {name: m for name, m in measures.items() if _limits(m) != (None, None)}
+    judged = limited or dict([*measures.items()][:1])
+    return int(np.argmin(np.min([_margin(run, road, name, measure) for name, measure in judged.items()], axis=0)))
+
+
+def _limits(measure: Mapping[str, Any]) -> tuple[float | None, float | None]:
+    return measure["lower_limit"], measure["upper_limit"]
+
+
+def _margin(run: Run, road: str, name: str, measure: Mapping[str, Any]) -> Array:
+    """How far each trial is inside the limits, in sigmas; infinite where it gave no value."""
+    column = f"{road}:{name}"
+    values = np.asarray(run.columns(column)[column], dtype=np.float64).reshape(run.trials, -1)
+    lower, upper = _limits(measure)
+    below, above = values.min(axis=1), values.max(axis=1)  # nan where a position of a curve did not seat
+    margin = np.full(run.trials, np.inf)
+    if lower is not None or upper is None:
+        margin = below - (lower or 0.0)
+    if upper is not None:
+        margin = np.minimum(margin, upper - above)
+    spread = float(np.nanstd(below)) if np.isfinite(below).any() else 1.0
+    return np.where(np.isnan(margin), np.inf, margin / (spread or 1.0))
