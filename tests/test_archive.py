@@ -137,5 +137,5 @@ def test_a_scene_made_in_python_runs_and_replays(tmp_path: Path) -> None:
 
 def test_a_scene_made_in_python_is_checked_like_one_from_a_file() -> None:
     scene = made_in_python(measures={"play": {"kind": "normal_backlash", "of": "pear"}})
-    with pytest.raises(SceneError, match="expected the name of a mesh move, got 'pear'.*did you mean"):
+    with pytest.raises(SceneError, match=r"expected the name of a mesh move, got 'pear'.*did you mean"):
         run_scene(scene, overrides=FEW)

@@ -1,5 +1,6 @@
 """Scenes that are wrong: each gets readable lines with file, line, place and expectation, soon."""
 
+import os
 import random
 import re
 import time
@@ -102,6 +103,11 @@ CHANGES = {
     "wrong dimension of a column": (
         ("mean: 53 um", "mean: 53 arcsec"),
         "published.paper, analytic.normal backlash.mean: expected a length with its unit",
+    ),
+    "dimensions of a distribution mixed": (
+        ("lower: -30 um", "lower: -30 deg"),
+        "tolerances.pinion tooth thickness.distribution: expected quantities of one dimension, "
+        "got lower '-30 deg' (angle) and upper '-19 um' (length)",
     ),
     "limits of a distribution reversed": (
         ("lower: -30 um", "lower: -10 um"),
@@ -463,7 +469,14 @@ def test_ten_megabytes_of_noise_are_refused_unread(tmp_path: Path) -> None:
 
 @pytest.mark.skipif(not Path("/dev/zero").exists(), reason="no such device here")
 def test_an_endless_file_is_refused() -> None:
-    assert problems(Path("/dev/zero")) == ("/dev/zero:1: expected a scene of at most 1 MB, got a larger file",)
+    assert problems(Path("/dev/zero")) == ("/dev/zero: expected a scene file, got a pipe or a device",)
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="no pipes with names here")
+def test_a_pipe_is_refused_and_not_waited_for(tmp_path: Path) -> None:
+    pipe = tmp_path / "scene.yaml"
+    os.mkfifo(pipe)
+    assert problems(pipe) == (f"{pipe}: expected a scene file, got a pipe or a device",)
 
 
 def test_bytes_that_are_no_text_are_refused_with_their_line(tmp_path: Path) -> None:

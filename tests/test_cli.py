@@ -1,10 +1,13 @@
 """The command line as a user meets it: exit codes, messages, what it prints and writes."""
 
+import importlib.metadata
 import json
 import os
+import signal
 import subprocess
 import sys
 import time
+import warnings
 from collections.abc import Callable
 from pathlib import Path
 
@@ -13,6 +16,9 @@ import pytest
 from ruamel.yaml import YAML
 
 from tol3d import cli
+from tol3d.errors import InputError
+from tol3d.result import open_run
+from tol3d.solids.cache import CacheWarning
 
 SCENES = Path(__file__).resolve().parent.parent / "scenes"
 SPUR = str(SCENES / "spur_pair.yaml")
@@ -127,6 +133,75 @@ def test_a_name_that_is_no_scene_is_refused(tol3d: Command, tmp_path: Path) -> N
     code, _, err = tol3d("run", str(tmp_path / "nowhere.yaml"))
     assert code == 2
     assert "nowhere.yaml" in err
+
+
+def test_a_name_near_a_scene_that_tol3d_brings_along_is_guessed(tol3d: Command) -> None:
+    code, _, err = tol3d("run", "spur_pairs")
+    assert code == 2
+    assert "no such file, and no scene of that name (tol3d brings along: every_field, spur_pair)" in err
+    assert 'did you mean "spur_pair"?' in err
+
+
+def test_a_scene_that_tol3d_brings_along_is_found_beside_a_folder_of_its_name(
+    tol3d: Command, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "spur_pair").mkdir()
+    code, out, _ = tol3d("check", "spur_pair")
+    assert code == 0
+    assert "172.5" in out
+
+
+def test_version_is_that_of_the_package(tol3d: Command) -> None:
+    code, out, _ = tol3d("--version")
+    assert (code, out) == (0, f"tol3d {importlib.metadata.version('tol3d')}\n")
+
+
+def test_a_picture_that_fails_costs_a_warning_and_not_the_run(
+    tol3d: Command, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def fails(summary: object, path: Path) -> None:
+        path.write_bytes(b"half a picture")
+        raise ValueError("no such\ncolour")
+
+    monkeypatch.setattr("tol3d.report.histogram.draw_histogram", fails)
+    code, out, err = tol3d("run", SPUR, "--trials", "30", "--engine", "analytic", "--out", str(tmp_path / "run"))
+    assert code == 0
+    assert "warning: histogram.png could not be drawn (no such colour); the run is whole without it\n" in err
+    assert "histogram.png" not in out
+    assert {path.name for path in (tmp_path / "run").iterdir()} == {"summary.json", "trials", "scene.yaml"}
+    assert tol3d("compare", str(tmp_path / "run"), "--out", str(tmp_path / "c.png"))[0] == 0
+
+
+def test_a_warning_of_ours_is_one_line_without_its_place_in_the_code(
+    tol3d: Command, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def warns(*_: object, **__: object) -> None:
+        warnings.warn("the folder cannot be written", CacheWarning, stacklevel=1)
+        raise InputError("and that was all")
+
+    monkeypatch.setattr("tol3d.simulate.effective_model", warns)
+    assert tol3d("check", SPUR)[2] == "warning: the folder cannot be written\nand that was all\n"
+
+
+def test_ctrl_c_means_after_a_run_what_it_meant_before(tol3d: Command, tmp_path: Path) -> None:
+    before = signal.getsignal(signal.SIGINT)
+    assert tol3d("run", SPUR, "--trials", "30", "--engine", "analytic", "--out", str(tmp_path / "run"))[0] == 0
+    assert signal.getsignal(signal.SIGINT) is before
+
+
+def test_an_export_tells_which_trial_it_took_and_why(tol3d: Command, tmp_path: Path) -> None:
+    run = str(tmp_path / "run")
+    assert tol3d("run", SPUR, "--trials", "40", "--out", run)[0] == 0
+    values = open_run(Path(run)).columns("geometric:normal backlash")["geometric:normal backlash"]
+    words = f"trial {values.argmin()}, the worst: the nearest to a limit of normal backlash"
+    for said, expected in (((), f"no build named: {words}"), (("--worst",), words)):
+        folder = str(tmp_path / ("a long folder's name " * 8).strip())
+        code, out, err = tol3d("export", run, *said, "--format", "stl", "--out", folder)
+        assert code == 0
+        assert err.startswith(expected)
+        assert [Path(line).is_file() for line in out.splitlines()] == [True, True]  # whole paths, a line each
+    assert tol3d("export", run, "--nominal", "--format", "stl", "--out", str(tmp_path))[2] == ""
 
 
 @pytest.mark.skipif(os.geteuid() == 0, reason="root may write anywhere")

@@ -4,8 +4,10 @@ import ctypes.util
 import io
 import math
 import os
+import re
 import subprocess
 import sys
+import warnings
 from dataclasses import replace
 from pathlib import Path
 
@@ -32,10 +34,16 @@ from tol3d.report import (
 )
 from tol3d.report.assembly import DISPLAY_DEFLECTION, OPEN_SHARE, assemble
 from tol3d.report.bars import bars_of
-from tol3d.report.canvas import VERMILLION
+from tol3d.report.canvas import VERMILLION, new_figure, plain_axes
+from tol3d.report.column import shares_of
+from tol3d.report.compare import measures_of
 from tol3d.report.difference import difference_of
+from tol3d.report.histogram import column_colours, draw_contributors, draw_curve, draw_distribution
+from tol3d.report.meshes import file_words
+from tol3d.report.sheet import Heading, Row, Sheet
 from tol3d.result import Run
-from tol3d.simulate import model_of, run_scene
+from tol3d.scene import load_scene
+from tol3d.simulate import Overrides, effective_model, model_of, run_scene
 from tol3d.solids import display_mesh
 
 SCENE = """
@@ -93,6 +101,29 @@ def test_run_report_fits_the_width_without_losing_a_word_or_a_number(run, width)
     assert "\x1b" not in text  # plain, since no terminal is there
 
 
+NUMBER = re.compile(r"[-+±]?\d[\d.′″]*")
+
+
+@pytest.mark.parametrize("width", [30, 40, 60])
+def test_no_number_is_cut_in_a_narrow_terminal(run, width):
+    for report in (run_report(run.summary), check_report(model_of(run)), comparison_report([run, run])):
+        wide, narrow = printed(report, 300), printed(report, width)
+        assert max(len(line) for line in narrow.splitlines()) <= width
+        assert "…" not in narrow
+        assert set(NUMBER.findall(wide)) <= set(NUMBER.findall(narrow))
+
+
+@given(
+    st.lists(st.lists(st.integers(0, 10**9).map(str), min_size=3, max_size=3), min_size=1, max_size=6),
+    st.integers(25, 80),
+)
+def test_a_sheet_shows_every_cell_once_within_its_width(rows, width):
+    sheet = Sheet("of", [Heading(f"heading {k}") for k in range(3)], [Row("a label", cells) for cells in rows])
+    lines = printed(sheet, width).splitlines()
+    assert max(map(len, lines)) <= width
+    assert sorted(re.findall(r"\d+", "\n".join(lines))) == sorted([*"012", *(cell for row in rows for cell in row)])
+
+
 def test_rows_hold_the_statistics_of_the_columns(run):
     text = printed(run_report(run.summary), 120)
     values = {road: run.columns(f"{road}:free play")[f"{road}:free play"] for road in ("analytic", "geometric")}
@@ -125,10 +156,52 @@ def test_contributors_are_sorted_by_the_share_of_the_simulation(run):
     measure = run.summary["measures"]["free play"]
     text = printed(run_report(run.summary), 120)
     names = sorted(measure["contributors"], key=lambda c: -c["geometric_percent"])
-    lines = text.split("share of variance [%]")[1].splitlines()[2 : 2 + len(names)]
+    lines = text.split("share [%]")[1].splitlines()[2 : 2 + len(names)]
     for line, contributor in zip(lines, names, strict=True):
         assert line.startswith(contributor["name"])
         assert f"{contributor['geometric_percent']:.1f} ±" in line.replace("-0.0", "0.0")
+
+
+def test_what_no_contributor_explains_is_told_and_explained(run):
+    measure = run.summary["measures"]["free play"]
+    whole = [c | {"analytic_percent": 20.0, "geometric_percent": 20.0} for c in measure["contributors"]]
+    partly = [c | {"analytic_percent": 20.0, "geometric_percent": 18.0} for c in measure["contributors"]]
+    texts = [
+        printed(run_report(dict(run.summary) | {"measures": {"m": dict(measure) | {"contributors": shares}}}), 120)
+        for shares in (whole, partly)
+    ]
+    assert "not attributed" not in texts[0]
+    assert row_of(texts[1], "not attributed") == ["0.0", "10.0", "–"]  # nobody knows what a colleague left out
+    assert "that the regression on the contributors leaves unexplained" in texts[1]
+
+
+def test_no_zero_has_a_sign(run):
+    measure = run.summary["measures"]["free play"]
+    shares = [c | {"geometric_percent": -0.01} for c in measure["contributors"]]
+    geometric = dict(measure["geometric"]) | {"ppk": -0.0001, "mean": -1e-5}
+    measure = dict(measure) | {"contributors": shares, "geometric": geometric, "lower_limit": -0.0}
+    text = printed(run_report(dict(run.summary) | {"measures": {"free play": measure}}), 120)
+    axes = plain_axes(new_figure(4, 4).add_subplot())
+    columns = shares_of(measure)
+    draw_contributors(axes, measure, columns, column_colours(columns))
+    draw_distribution(plain_axes(new_figure(4, 4).add_subplot()), "free play", measure)
+    signed = re.compile(r"(?<![\d.])-0(\.0*)?(?![\d.])")
+    assert not signed.search("\n".join([text, *(label.get_text() for label in axes.texts)]))
+    assert "0.000" in row_of(text, "Ppk")
+
+
+def test_a_curve_says_how_many_of_its_positions_are_shown(run):
+    shape = run.summary["measures"]["shape"]
+    assert "positions shown" not in printed(run_report(run.summary), 120)
+    curve = {
+        road: own | {key: own[key] * 6 for key in ("mean", "sigma", "min", "max")}
+        for road, own in shape["curve"].items()
+    }
+    long = dict(shape) | {"curve": curve, "position_deg": [float(k) for k in range(30)]}
+    text = printed(run_report(dict(run.summary) | {"measures": {"shape": long}}), 120)
+    shown = [line for line in text.splitlines() if re.match(r" *\d+\.0  ", line)]
+    assert len(shown) == 10
+    assert "10 of 30 positions shown; all in summary.json" in text
 
 
 def test_failed_trials_are_told_in_ppm(run):
@@ -164,14 +237,39 @@ def test_check_report_fits_and_shows_limits_and_coefficients(run, width):
     assert f"{model.meshes[0].pair.contact_ratio:.4f}" in text
 
 
+def test_coefficients_of_tilts_are_per_absolute_deviation(run, tmp_path):
+    tilts = "  {0}: {{kind: {0}, of: gear pair, distribution: {{kind: uniform, lower: -9 um, upper: 9 um}}}}\n"
+    assert "|deviation|" not in printed(check_report(model_of(run)), 120)
+    scene = tmp_path / "tilted.yaml"
+    words = tilts.format("axis_in_plane") + tilts.format("axis_out_of_plane")
+    scene.write_text(SCENE.replace("moves:\n", f"{words}moves:\n"), encoding="utf-8")
+    text = printed(check_report(effective_model(load_scene(scene))), 120)
+    assert "axis_in_plane, axis_out_of_plane: the coefficient is per |deviation|" in text
+
+
 def test_comparison_gives_the_largest_and_rms_difference_of_the_columns(run):
     columns = run.columns("analytic:free play", "geometric:free play")
     difference = columns["geometric:free play"] - columns["analytic:free play"]
-    text = printed(comparison_report([run, run]), 80)
+    text = printed(comparison_report([run]), 80)
     assert max(len(line) for line in text.splitlines()) <= 80
     line = next(line for line in text.splitlines() if " 3D " in line).split()
-    assert f"{np.abs(difference).max():.3f}" in line
-    assert f"{np.sqrt(np.mean(difference**2)):.3f}" in line
+    assert line[-2:] == [f"{np.abs(difference).max():.3f}", f"{np.sqrt(np.mean(difference**2)):.3f}"]
+
+
+def test_measures_of_one_name_over_other_positions_are_compared_apart(run, tmp_path):
+    play = run.summary["measures"]["free play"]
+    other = replace(
+        run, summary=dict(run.summary) | {"measures": {"free play": play | {"over": "turn", "take": "min"}}}
+    )
+    assert [m.take for m in measures_of([run, other]) if m.name == "free play"] == ["value", "min"]
+    apart = printed(comparison_report([run, other]), 120)
+    assert "\nnormal backlash of gear pair at a random position" in apart
+    assert "\nsmallest normal backlash of gear pair over one turn" in apart
+    assert apart.count("shift") == printed(comparison_report([run, run]), 120).count("shift") - 3  # nothing is shared
+    draw_comparison([run, other], tmp_path / "apart.png")
+    draw_comparison([run, run], tmp_path / "same.png")
+    rows = [imread(tmp_path / name).shape[0] for name in ("apart.png", "same.png")]
+    assert rows[0] > 1.25 * rows[1]  # four rows of axes, not three
 
 
 def test_comparing_nothing_is_refused():
@@ -219,6 +317,41 @@ def test_every_kind_of_measure_is_drawn(run, tmp_path):
     assert every.shape[1] == one.shape[1]
     assert every.shape[0] > 2 * one.shape[0]
     assert (every[..., :3].std(axis=(1, 2)) > 0).mean() > 0.8  # rows of pixels with ink
+
+
+def without_seats(run: Run, positions: set[int]) -> dict:
+    """The curve of the run as if no trial had seated at some positions."""
+    shape = run.summary["measures"]["shape"]
+    own = shape["curve"]["geometric"]
+    lost = {
+        key: [None if k in positions else value for k, value in enumerate(own[key])]
+        for key in ("mean", "sigma", "min", "max")
+    }
+    return dict(shape) | {"curve": dict(shape["curve"]) | {"geometric": dict(own) | lost}}
+
+
+def test_a_curve_is_drawn_where_trials_seated_and_open_where_none_did(run, tmp_path):
+    measure = without_seats(run, {1, 3})
+    axes = plain_axes(new_figure(6, 4).add_subplot())
+    draw_curve(axes, "shape", measure)
+    assert np.isnan(axes.lines[0].get_ydata()).tolist() == [False, True, False, True, False]
+    draw_histogram(dict(run.summary) | {"measures": {"shape": measure}}, tmp_path / "some.png")
+    printed(run_report(dict(run.summary) | {"measures": {"shape": measure}}), 80)
+
+
+def test_a_curve_without_any_seated_trial_says_so(run, tmp_path):
+    measure = without_seats(run, {0, 1, 2, 3, 4})
+    measure["curve"]["analytic"] |= {key: [None] * 5 for key in ("mean", "sigma", "min", "max")}
+    axes = plain_axes(new_figure(6, 4).add_subplot())
+    draw_curve(axes, "shape", measure)
+    assert "no trial gave a value" in [text.get_text() for text in axes.texts]
+    draw_histogram(dict(run.summary) | {"measures": {"shape": measure}}, tmp_path / "none.png")
+
+
+def test_signs_that_no_font_has_are_no_warning(run, tmp_path):
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        draw_histogram(dict(run.summary) | {"scene": "歯車 🦷"}, tmp_path / "emoji.png")
 
 
 def test_a_picture_of_another_format_is_refused(run, tmp_path):
@@ -326,6 +459,23 @@ def test_step_holds_the_perturbed_solids(run, tmp_path):
         assert abs(exact - plain) > 1e-5 * exact  # so that the deviation shows in it
 
 
+def test_parts_of_like_names_are_exported_to_files_of_their_own(run, tmp_path):
+    scene = tmp_path / "like.yaml"
+    scene.write_text(SCENE.replace("the wheel", "Gear_1").replace("pinion", "gear 1"), encoding="utf-8")
+    like = run_scene(scene, out=tmp_path / "like", overrides=Overrides(trials=2, engine="analytic"))
+    files = export_run(like, 0, "stl", out=tmp_path).files
+    assert [path.name for path in files] == ["trial-0-gear_1.stl", "trial-0-Gear_1_2.stl"]
+    teeth = [trimesh.load_mesh(path).bounding_box.extents[2] for path in files]
+    assert teeth == pytest.approx([10.0, 8.0], rel=1e-3)  # their face widths
+
+
+@given(st.lists(st.sampled_from(["a b", "a_b", "A_B", "a_b_2", "a?b", "c"]), unique=True))
+def test_file_words_all_differ_even_if_case_does_not_count(names):
+    words = file_words(names)
+    assert list(words) == names
+    assert len({word.casefold() for word in words.values()}) == len(names)
+
+
 def test_step_is_not_magnified(run, tmp_path):
     with pytest.raises(InputError, match="leave out --magnify"):
         export_run(run, TRIAL, "step", magnify=2, out=tmp_path)
@@ -345,14 +495,32 @@ def test_magnified_gap_grows_along_the_stack_up(run):
     )
 
 
-def test_magnification_is_capped_where_the_gap_would_leave_the_tooth_space(run):
+def test_magnification_is_capped_where_the_gap_would_leave_its_space_or_a_tip_would_fold(run):
     assembly = assemble(run, TRIAL, magnify=1e4)
     seated = assembly.meshes[0]
     widest = OPEN_SHARE * seated.driver.gear.base_pitch
     assert 1 < assembly.magnify < 1e4
-    assert 0.97 * widest < seated.gap_value <= widest  # three digits of the magnification are kept
+    assert seated.gap_value <= widest
+    assert all(part.unfolded for part in (seated.driver, seated.driven))
+    wanted = 1.03 * assembly.magnify  # 1e4 in 2^16 steps is within 1.2 %, three digits within 1 %
+    assert assemble(run, TRIAL, magnify=wanted).magnify < wanted
     assert f"magnified {assembly.magnify:g} times, not 10000" in assembly.notes[0]
     assert seated.tip_clearance > 0
+
+
+def test_a_magnified_tip_keeps_its_points_in_their_order(run):
+    """Told by azimuths alone: corners that pass the points between them would fold the tip."""
+    for magnify, whole in ((1.0, True), (assemble(run, TRIAL, magnify=1e4).magnify, True), (60.0, False)):
+        part = assemble(run, TRIAL).meshes[0].driver
+        part = replace(part, thickness=magnify * part.thickness)
+        display = display_mesh(part.gear, DISPLAY_DEFLECTION)
+        moved = display.thickened(part.thickness / (2 * part.gear.reference_radius))
+        tip = np.abs(np.hypot(*display.vertices[:, :2].T) - part.gear.tip_radius) < 1e-6
+        tip &= np.abs(display.vertices[:, 2] - display.vertices[:, 2].max()) < 1e-6
+        tip &= np.abs(np.arctan2(display.vertices[:, 1], display.vertices[:, 0])) < math.pi / part.gear.teeth  # tooth 0
+        before, after = (np.arctan2(shape[tip, 1], shape[tip, 0]) for shape in (display.vertices, moved))
+        assert bool((np.diff(after[np.argsort(before)]) >= 0).all()) is whole
+        assert part.unfolded is whole
 
 
 def test_no_magnification_at_all_is_the_nominal_build(run):

@@ -111,7 +111,8 @@ def test_the_worst_trial_of_a_curve_is_the_one_whose_peak_is_nearest_to_its_limi
 
 
 def test_failed_trials_are_not_the_worst(tmp_path: Path) -> None:
-    wide = {"distance": {**DISTANCE["distance"], "distribution": {"kind": "normal", "lower": "-40 um", "upper": "40 um"}}}
+    wide_law = {"kind": "normal", "lower": "-40 um", "upper": "40 um"}
+    wide = {"distance": {**DISTANCE["distance"], "distribution": wide_law}}
     scene = made(wide, {"play": {"lower_limit": "2 um"}})
     run = run_scene(scene, overrides=Overrides(trials=60), out=tmp_path / "run")
     play = run.columns("geometric:play")["geometric:play"]

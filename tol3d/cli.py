@@ -8,11 +8,12 @@ import os
 import signal
 import sys
 import threading
-from collections.abc import Iterator
+import warnings
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from enum import StrEnum
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any, TextIO
 
 import typer
 from rich.console import Console
@@ -25,6 +26,7 @@ if TYPE_CHECKING:
 CONTACTS_PER_MINUTE = 180_000  # FCL on one core, 3000 a second; only for the estimate before a long study
 LONG_STUDY = CONTACTS_PER_MINUTE  # contacts; what takes a minute is announced
 
+PICTURE = "histogram.png"
 PATIENCE = 5.0  # s; worker processes that will not end may hold up an interrupted command no longer
 
 DONE, LIMITS_FAILED, WRONG_INPUT, FAULT, INTERRUPTED = 0, 1, 2, 3, 130
@@ -37,8 +39,8 @@ app = typer.Typer(
     add_completion=False,
     pretty_exceptions_enable=False,
 )
-out_console = Console(highlight=False, soft_wrap=False)
-err_console = Console(stderr=True, highlight=False, soft_wrap=True)
+out_console = Console(highlight=False, soft_wrap=False, markup=False)
+err_console = Console(stderr=True, highlight=False, soft_wrap=True, markup=False)
 
 SceneArgument = Annotated[
     str, typer.Argument(metavar="SCENE", help="A scene file, or the name of one that tol3d brings along (spur_pair).")
@@ -65,6 +67,23 @@ class MeshFormat(StrEnum):
     STEP = "step"
 
 
+def _version(asked: bool) -> None:
+    from importlib.metadata import version
+
+    if asked:
+        typer.echo(f"tol3d {version('tol3d')}")
+        raise typer.Exit(DONE)
+
+
+@app.callback()
+def options(
+    version: Annotated[
+        bool, typer.Option("--version", callback=_version, is_eager=True, help="Show the version and exit.")
+    ] = False,
+) -> None:
+    """Options of tol3d itself; the help of `app` is shown for it."""
+
+
 @app.command()
 def run(
     scene: SceneArgument,
@@ -83,7 +102,7 @@ def run(
 
     from tol3d.block import positions_in_all
     from tol3d.execution import suggested_workers
-    from tol3d.report import draw_histogram, run_report
+    from tol3d.report import run_report
     from tol3d.simulate import Overrides, effective_model, load, run_scene
 
     path = scene_path(scene)
@@ -92,14 +111,13 @@ def run(
     loaded = load(path, trust_parts=trust_parts)
     model = effective_model(loaded, overrides)
     for warning in model.warnings:
-        err_console.print(f"warning: {warning}", style="yellow")
+        _warn(warning)
     contacts = model.study.trials * positions_in_all(model)
     if model.study.engine == "fcl" and contacts > LONG_STUDY:
         minutes = contacts / CONTACTS_PER_MINUTE
         err_console.print(f"{positions_in_all(model)} positions a trial: about {minutes:.0f} min of one core")
-    signal.signal(signal.SIGINT, _interrupted)
     columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn())
-    with Progress(*columns, console=err_console, transient=True) as progress:
+    with _stopped_in_order(), Progress(*columns, console=err_console, transient=True) as progress:
         bar = progress.add_task("scene", total=model.study.trials)
         try:
             finished = run_scene(
@@ -109,17 +127,49 @@ def run(
                 workers=workers or suggested_workers(contacts),
                 on_stage=lambda text: progress.update(bar, description=text),
                 on_progress=lambda done: progress.advance(bar, done),
-                finisher=lambda place, summary: draw_histogram(summary, place / "histogram.png"),
+                finisher=_draw,
             )
         except KeyboardInterrupt:
             progress.stop()
             err_console.print(f"stopped; what was done is kept in {folder}.partial: the same command goes on there")
             raise typer.Exit(INTERRUPTED) from None
     out_console.print(run_report(finished.summary))
-    out_console.print(f"run: {finished.path}    picture: {finished.path / 'histogram.png'}")
+    picture = finished.path / PICTURE
+    _tell(f"run: {finished.path}" + (f"    picture: {picture}" if picture.exists() else ""))
     if fail_on_limits and _out_of_limits(finished):
         err_console.print("limits failed", style="red")
         raise typer.Exit(LIMITS_FAILED)
+
+
+def _warn(text: str) -> None:
+    err_console.print(f"warning: {text}", style="yellow")
+
+
+def _tell(text: str) -> None:
+    """A line for people and pipes: paths in it are never broken."""
+    out_console.print(text, soft_wrap=True)
+
+
+def _draw(place: Path, summary: "Mapping[str, Any]") -> None:
+    """The picture of a run; one that cannot be drawn costs a warning, not the run."""
+    from tol3d.report import draw_histogram
+
+    try:
+        draw_histogram(summary, place / PICTURE)
+    except Exception as error:
+        (place / PICTURE).unlink(missing_ok=True)
+        reason = " ".join(str(error).split()) or type(error).__name__
+        _warn(f"{PICTURE} could not be drawn ({reason}); the run is whole without it")
+
+
+@contextmanager
+def _stopped_in_order() -> Iterator[None]:
+    """Within it Ctrl-C is `_interrupted`; behind it, what it was before."""
+    before = signal.signal(signal.SIGINT, _interrupted)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGINT, before)
 
 
 def _interrupted(number: int, frame: "FrameType | None") -> None:
@@ -169,7 +219,7 @@ def compare(
     opened = [open_run(path) for path in runs]
     draw_comparison(opened, out)
     out_console.print(comparison_report(opened))
-    out_console.print(f"picture: {out}")
+    _tell(f"picture: {out}")
 
 
 TrialOption = Annotated[int | None, typer.Option(min=0, help="This trial.")]
@@ -189,18 +239,18 @@ def export(
     format: Annotated[MeshFormat, typer.Option(help="stl and ply: a file a part; glb and step: one.")] = MeshFormat.GLB,
     magnify: MagnifyOption = 1.0,
     out: Annotated[Path, typer.Option(help="Folder to write into.")] = Path("."),
-    trust_parts: TrustParts = False,
 ) -> None:
     """Write the perturbed parts of a trial where they ended up."""
     from tol3d.report import export_run
     from tol3d.result import open_run
 
-    which = _which(trial, worst=worst, nominal=nominal, mean=mean)
-    exported = export_run(open_run(run), which, format.value, magnify=magnify, out=out, trust_parts=trust_parts)
+    finished = open_run(run)
+    which = _which(finished, trial, worst=worst, nominal=nominal, mean=mean)
+    exported = export_run(finished, which, format.value, magnify=magnify, out=out)
     for note in exported.notes:
         err_console.print(note, style="yellow")
     for path in exported.files:
-        out_console.print(str(path))
+        _tell(str(path))
 
 
 @app.command()
@@ -212,38 +262,81 @@ def view(
     mean: MeanOption = False,
     magnify: MagnifyOption = 1.0,
     screenshot: Annotated[Path | None, typer.Option(help="Write a picture instead of opening a window.")] = None,
-    trust_parts: TrustParts = False,
 ) -> None:
     """Show a trial in 3D, with its contact and gap marked."""
     from tol3d.report.view import view_run
     from tol3d.result import open_run
 
-    which = _which(trial, worst=worst, nominal=nominal, mean=mean)
-    for note in view_run(open_run(run), which, screenshot=screenshot, magnify=magnify, trust_parts=trust_parts):
+    finished = open_run(run)
+    which = _which(finished, trial, worst=worst, nominal=nominal, mean=mean)
+    for note in view_run(finished, which, screenshot=screenshot, magnify=magnify):
         err_console.print(note, style="yellow")
     if screenshot:
-        out_console.print(str(screenshot))
+        _tell(str(screenshot))
 
 
-def _which(trial: int | None, *, worst: bool, nominal: bool, mean: bool) -> "int | str":
-    """The one build that was asked for; the worst when nothing was said."""
+def _which(run: "Run", trial: int | None, *, worst: bool, nominal: bool, mean: bool) -> "int | str":
+    """The one build that was asked for; the worst when nothing was said. Tells which trial that is."""
     from tol3d.errors import InputError
+    from tol3d.report.heading import worst_words
+    from tol3d.worst import worst_trial
 
     words = [word for word, said in (("worst", worst), ("nominal", nominal), ("mean", mean)) if said]
     if len(words) + (trial is not None) > 1:
         raise InputError("expected one of --trial, --worst, --nominal, --mean, got several")
-    return trial if trial is not None else (words[0] if words else "worst")
+    if trial is not None or nominal or mean:
+        return words[0] if trial is None else trial
+    found = worst_trial(run)
+    unnamed = "" if worst else "no build named: "
+    err_console.print(f"{unnamed}trial {found}, the worst: {worst_words(run.summary['measures'])}")
+    return found
 
 
 def scene_path(text: str) -> Path:
-    """A scene's file: the path itself, or the scene of that name that tol3d brings along."""
+    """A scene's file: the path itself, or the scene of that name that tol3d brings along.
+
+    Raises:
+        InputError: a bare name, and there is neither.
+    """
     from importlib.resources import files
 
     path = Path(text)
-    if path.exists() or path.suffix or len(path.parts) > 1:
+    if os.path.isfile(path) or path.suffix or len(path.parts) > 1:
         return path
-    brought = Path(str(files("tol3d.scenes") / f"{text}.yaml"))
-    return brought if brought.is_file() else path
+    brought = {Path(str(file)).stem: Path(str(file)) for file in files("tol3d.scenes").iterdir()}
+    scenes = {name: file for name, file in sorted(brought.items()) if file.suffix == ".yaml"}
+    if text in scenes or os.path.exists(path):
+        return scenes.get(text, path)
+
+    from tol3d.errors import InputError
+    from tol3d.scene.name import LONGEST_NAME
+    from tol3d.scene.nearest import nearest
+
+    listed = f"(tol3d brings along: {', '.join(scenes)})"
+    raise InputError(f"{text[:LONGEST_NAME]}: no such file, and no scene of that name {listed}{nearest(text, scenes)}")
+
+
+@contextmanager
+def _plain_warnings() -> Iterator[None]:
+    """Warnings of ours are one yellow line each; those of other packages stay as Python shows them."""
+    with warnings.catch_warnings():
+        as_python_does = warnings.showwarning
+
+        def show(
+            message: Warning | str,
+            category: type[Warning],
+            filename: str,
+            lineno: int,
+            file: TextIO | None = None,
+            line: str | None = None,
+        ) -> None:
+            if category.__module__.startswith("tol3d."):
+                _warn(str(message))
+            else:
+                as_python_does(message, category, filename, lineno, file, line)
+
+        warnings.showwarning = show
+        yield
 
 
 @contextmanager
@@ -253,7 +346,7 @@ def _exit_codes() -> Iterator[None]:
     try:
         yield
     except InputError as error:
-        err_console.print(str(error), markup=False)
+        err_console.print(str(error))
         sys.exit(WRONG_INPUT)
     except KeyboardInterrupt:
         err_console.print("stopped")
@@ -263,15 +356,15 @@ def _exit_codes() -> Iterator[None]:
     except Exception as error:
         import traceback
 
-        err_console.print(f"a fault in tol3d, not in your scene: {type(error).__name__}: {error}", markup=False)
-        err_console.print("please report it with the scene and these lines:", markup=False)
-        err_console.print("".join(traceback.format_exception(error)[-3:]).rstrip(), markup=False)
+        err_console.print(f"a fault in tol3d, not in your scene: {type(error).__name__}: {error}")
+        err_console.print("please report it with the scene and these lines:")
+        err_console.print("".join(traceback.format_exception(error)[-3:]).rstrip())
         sys.exit(FAULT)
 
 
 def main() -> None:
     """Entry point of the `tol3d` command."""
-    with _exit_codes():
+    with _plain_warnings(), _exit_codes():
         app()
 
 

@@ -257,7 +257,7 @@ class Replay:
     status: str
 
 
-def model_of(run: Run, *, trust_parts: bool = False) -> Model:
+def model_of(run: Run) -> Model:
     """The model of a run, from the files that it kept, with the overrides it was run with.
 
     Raises:
@@ -268,7 +268,7 @@ def model_of(run: Run, *, trust_parts: bool = False) -> Model:
     return effective_model(scene, Overrides(study["trials"], study["seed"], study["engine"]))
 
 
-def replay(run: Run | Path | str, trial: int, *, trust_parts: bool = False) -> Replay:
+def replay(run: Run | Path | str, trial: int) -> Replay:
     """Trial k of a run again, bit for bit: its deviations, build, contacts and values.
 
     Raises:
@@ -277,7 +277,7 @@ def replay(run: Run | Path | str, trial: int, *, trust_parts: bool = False) -> R
     run = run if isinstance(run, Run) else open_run(Path(run))
     if not 0 <= trial < run.trials:
         raise InputError(f"trial {trial}: expected 0 to {run.trials - 1}")
-    model = model_of(run, trust_parts=trust_parts)
+    model = model_of(run)
     return replay_block(model, drawn_block(model, model.study.seed, trial, 1))
 
 

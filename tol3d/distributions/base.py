@@ -99,10 +99,11 @@ class DistributionSpec(Strict, ABC):
     @model_validator(mode="after")
     def _refuse_mixed_or_huge(self) -> Self:
         quantities = self.quantities()
-        first = next(iter(quantities.values()), None)
+        each = {quantity.dimension: f"{field} {str(quantity)!r}" for field, quantity in quantities.items()}
+        if len(each) > 1:
+            got = " and ".join(f"{written} ({dimension})" for dimension, written in each.items())
+            raise refused("", "quantities of one dimension", got)
         for field, quantity in quantities.items():
-            if first is not None and quantity.dimension != first.dimension:
-                raise refused(field, f"the dimension of {first} ({first.dimension})", quantity)
             if not abs(quantity.internal) <= LARGEST_DEVIATION:
                 raise refused(field, "a deviation of less than 1e9 mm, rad or K", quantity)
         return self

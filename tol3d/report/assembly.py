@@ -49,9 +49,22 @@ class PlacedGear:
     def mesh(self, deflection: float = DISPLAY_DEFLECTION) -> tuple[Array, NDArray[np.int64]]:
         """Closed triangle mesh in the world: vertices (n, 3) [mm], triangles (m, 3)."""
         display = display_mesh(self.gear, deflection)
-        own = self.scale * display.thickened(self.thickness / (2 * self.gear.reference_radius))
+        own = self.scale * display.thickened(self._half_angle)
         rotation, translation = self.world_from_gear[:3, :3], self.world_from_gear[:3, 3]
         return own @ rotation.T + translation, display.triangles
+
+    @property
+    def unfolded(self) -> bool:
+        """Whether the deviation turns no triangle over, as it does where a flank passes points of the tip."""
+        display = display_mesh(self.gear, DISPLAY_DEFLECTION)
+        corners = (shape[display.triangles] for shape in (display.vertices, display.thickened(self._half_angle)))
+        before, after = (np.cross(c[:, 1] - c[:, 0], c[:, 2] - c[:, 0]) for c in corners)
+        return bool(((before * after).sum(axis=1) >= 0.0).all())
+
+    @property
+    def _half_angle(self) -> float:
+        """By what its deviation turns each side of its teeth outwards [rad]."""
+        return self.thickness / (2 * self.gear.reference_radius)
 
     @property
     def perturbed(self) -> SpurGear:
@@ -121,21 +134,20 @@ class Assembly:
     notes: tuple[str, ...]
 
 
-def assemble(run: Run, which: Which, *, magnify: float = 1.0, trust_parts: bool = False) -> Assembly:
+def assemble(run: Run, which: Which, *, magnify: float = 1.0) -> Assembly:
     """A build of a run, seated again.
 
     Args:
         which: a trial, or "worst", "nominal", "mean".
-        magnify: scales every deviation; lowered where the teeth would not seat or their gap would leave
-            the tooth space, which a note then tells.
-        trust_parts: allow the scene to read files outside its folder.
+        magnify: scales every deviation; lowered where the teeth would not seat, their gap would leave
+            the tooth space or a tip would fold, which a note then tells.
 
     Raises:
         InputError: no such build, or one without contact.
     """
     if not (math.isfinite(magnify) and magnify >= 0.0):
         raise InputError(f"magnify: expected a number of at least 0, got {magnify:g}")
-    label, seen = _replayed(run, which, trust_parts)
+    label, seen = _replayed(run, which)
     rows = _rows(seen)
     meshes = _seated(seen, rows)
     for seat in meshes:
@@ -149,14 +161,14 @@ def assemble(run: Run, which: Which, *, magnify: float = 1.0, trust_parts: bool 
     return Assembly(label, used, meshes, seen.geometric, tuple(note for note in notes if note))
 
 
-def _replayed(run: Run, which: Which, trust_parts: bool) -> tuple[str, Replay]:
+def _replayed(run: Run, which: Which) -> tuple[str, Replay]:
     if which == "worst":
         which = worst_trial(run)
     if isinstance(which, int):
-        return f"trial-{which}", replay(run, which, trust_parts=trust_parts)
+        return f"trial-{which}", replay(run, which)
     if which not in ("nominal", "mean"):
         raise InputError(f"expected a trial's number, worst, nominal or mean, got {which!r}")
-    model = model_of(run, trust_parts=trust_parts)
+    model = model_of(run)
     block = nominal_block(model) if which == "nominal" else mean_block(model, model.measures[0])
     return which, replay_block(model, block)
 
@@ -264,7 +276,7 @@ def _magnified(
         again,
         meshes,
         f"deviations magnified {used:g} times, not {wanted:g}: beyond that the gap would leave the tooth space "
-        f"(allowed are 0 to {' or '.join(f'{1000 * width:.0f}' for width in widest.values())} µm); "
+        f"(allowed are 0 to {' or '.join(f'{1000 * width:.0f}' for width in widest.values())} µm) or a tip would fold; "
         f"{_gaps_text(plain, meshes)}",
     )
 
@@ -274,7 +286,8 @@ def _scaled(block: Block, factor: float) -> Block:
 
 
 def _in_its_space(mesh: SeatedMesh, widest: float) -> bool:
-    return mesh.status == OK and mesh.gap_value <= widest and mesh.tip_clearance > 0.0
+    free = mesh.status == OK and mesh.gap_value <= widest and mesh.tip_clearance > 0.0
+    return free and mesh.driver.unfolded and mesh.driven.unfolded
 
 
 def _gaps_text(plain: tuple[SeatedMesh, ...], meshes: tuple[SeatedMesh, ...]) -> str:

@@ -1,7 +1,9 @@
 """Figures without a window: colours that colour-blind readers can tell apart, and how a picture is saved."""
 
+import warnings
+from collections.abc import Mapping
 from pathlib import Path
-from typing import Final
+from typing import Any, Final
 
 from matplotlib.axes import Axes
 from matplotlib.axis import Axis
@@ -11,6 +13,7 @@ from matplotlib.layout_engine import ConstrainedLayoutEngine
 from matplotlib.ticker import FuncFormatter, MultipleLocator
 
 from tol3d.errors import InputError
+from tol3d.report.heading import heading
 
 # Okabe and Ito 2008, "Color Universal Design": eight colours for all kinds of colour vision
 ORANGE: Final = "#E69F00"
@@ -21,6 +24,8 @@ VERMILLION: Final = "#D55E00"
 PURPLE: Final = "#CC79A7"
 BLACK: Final = "#222222"
 GREY: Final = "#7A7A7A"
+
+AXIS_UNITS: Final = {"um": "µm", "arcmin": "′, ″ of arc"}
 
 ROAD_COLOURS: Final = {"closed form": BLACK, "analytic": ORANGE, "geometric": BLUE}
 PUBLISHED_COLOURS: Final = (GREEN, PURPLE, SKY, GREY)
@@ -53,6 +58,27 @@ def plain_axes(axes: Axes) -> Axes:
     return axes
 
 
+def title_measure(axes: Axes, name: str, measure: Mapping[str, Any], longest: int) -> None:
+    """A measure's name above its axes, and below it in one line of at most `longest` characters what it is."""
+    axes.set_title(f"{legible(name, 60)}\n", loc="left", fontsize=12, fontweight="bold")
+    axes.text(0, 1.03, legible(heading(measure), longest), transform=axes.transAxes, fontsize=9, color=GREY)
+
+
+def values_label(name: str, unit: str, longest: int = 60) -> str:
+    """Label of an axis of a measure's values."""
+    return f"{legible(name, longest)} [{AXIS_UNITS[unit]}]"
+
+
+def density_label(unit: str) -> str:
+    """Label of an axis of a histogram's densities."""
+    return f"% of trials per {'µm' if unit == 'um' else '′'}"
+
+
+def say_instead(axes: Axes, text: str, colour: str) -> None:
+    """A sentence in the middle of axes that have nothing to show."""
+    axes.text(0.5, 0.5, text, transform=axes.transAxes, ha="center", color=colour)
+
+
 def label_angles(axis: Axis, unit: str) -> None:
     """Ticks of an axis in arc minutes as minutes and seconds; other units are left as they are."""
     if unit != "arcmin":
@@ -81,7 +107,9 @@ def save_figure(figure: Figure, path: Path) -> None:
     if path.suffix.lower() not in FORMATS:
         raise InputError(f"{path}: expected a picture ending in {', '.join(FORMATS)}")
     try:
-        figure.savefig(path, facecolor="white")
+        with warnings.catch_warnings():
+            warnings.filterwarnings("ignore", r"Glyph \d+ .* missing")  # of a user's name: shown as a box
+            figure.savefig(path, facecolor="white")
     except OSError as error:
         raise InputError(f"{path}: cannot be written ({error.strerror or error}); choose another file") from None
 

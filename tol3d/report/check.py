@@ -4,16 +4,15 @@ import math
 import re
 from collections.abc import Mapping, Sequence
 
-from rich import box
 from rich.console import Group, RenderableType
-from rich.table import Table
 from rich.text import Text
 
+from tol3d.analytic import reference_form
 from tol3d.gears import RIGHT, SpurPair
-from tol3d.model import Contributor, Measure, Model, Planar
+from tol3d.model import AxisTilt, Contributor, Measure, Model, Planar
 from tol3d.report.heading import OVER_WORDS, QUANTITY_WORDS, TAKE_WORDS
-from tol3d.report.number import NOTHING, UNIT_SIGNS, given_text, percent_text, value_text
-from tol3d.tally import reference_form
+from tol3d.report.number import NOTHING, UNIT_SIGNS, given_text, percent_text, unsigned_zero, value_text
+from tol3d.report.sheet import Heading, Row, Sheet
 from tol3d.units import angle_text
 
 UM = 1000.0  # um in a mm
@@ -38,26 +37,19 @@ def check_report(model: Model) -> Group:
     return Group(*blocks)
 
 
-def _table(title: str, first: str, headings: Sequence[str]) -> Table:
-    table = Table(
-        title=Text(f"\n{title}", style="bold cyan"),
-        title_justify="left",
-        box=box.SIMPLE_HEAD,
-        show_edge=False,
-        pad_edge=False,
-        padding=(0, 1),
-        header_style="bold",
-    )
-    table.add_column(Text(first))
-    for heading in headings:
-        table.add_column(Text(heading), justify="right")
-    return table
+def _titled(title: str, sheet: Sheet) -> Group:
+    return Group(Text(f"\n{title}", style="bold cyan"), sheet)
 
 
-def gears_table(model: Model) -> Table:
+def _side_by_side(title: str, names: Sequence[str], rows: Mapping[str, Sequence[str]]) -> Group:
+    """A column for each name."""
+    headings = [Heading(name) for name in names]
+    return _titled(title, Sheet("", headings, [Row(label, cells) for label, cells in rows.items()]))
+
+
+def gears_table(model: Model) -> Group:
     """The gears side by side, lengths in mm."""
     gears = [part.gear for part in model.gears]
-    table = _table("parts", "", [part.name for part in model.gears])
     rows: Mapping[str, list[str]] = {
         "teeth z": [str(gear.teeth) for gear in gears],
         "module m [mm]": [f"{gear.module:g}" for gear in gears],
@@ -76,9 +68,7 @@ def gears_table(model: Model) -> Table:
         "bore [mm]": [f"{gear.bore:g}" if gear.bore else NOTHING for gear in gears],
         "expansion [10⁻⁶/K]": [f"{1e6 * part.expansion:g}" if part.expansion else NOTHING for part in model.gears],
     }
-    for label, cells in rows.items():
-        table.add_row(Text(label), *cells)
-    return table
+    return _side_by_side("parts", [part.name for part in model.gears], rows)
 
 
 def housings_line(model: Model) -> Text:
@@ -87,20 +77,16 @@ def housings_line(model: Model) -> Text:
     return Text(f"housing: {', '.join(words)}")
 
 
-def meshes_table(model: Model) -> Table:
+def meshes_table(model: Model) -> Group:
     """The moves, with what the nominal pair gives."""
-    table = _table("moves", "", [mesh.name for mesh in model.meshes])
     rows: Mapping[str, list[str]] = {
         "driver → driven": [f"{mesh.driver} → {mesh.driven}" for mesh in model.meshes],
         "driver's working flank": ["right" if mesh.working_flank == RIGHT else "left" for mesh in model.meshes],
         "housing": [mesh.housing or NOTHING for mesh in model.meshes],
     }
-    for label, cells in rows.items():
-        table.add_row(Text(label), *(Text(cell) for cell in cells))
     pairs = [_pair_rows(mesh.pair) for mesh in model.meshes]
-    for label in pairs[0]:
-        table.add_row(Text(label), *(cells[label] for cells in pairs))
-    return table
+    numbers = {label: [cells[label] for cells in pairs] for label in pairs[0]}
+    return _side_by_side("moves", [mesh.name for mesh in model.meshes], {**rows, **numbers})
 
 
 def _pair_rows(pair: SpurPair) -> dict[str, str]:
@@ -118,18 +104,16 @@ def _pair_rows(pair: SpurPair) -> dict[str, str]:
     }
 
 
-def measures_table(model: Model) -> Table:
+def measures_table(model: Model) -> Group:
     """The measures with limits and positions."""
-    table = _table("measures", "", ("what", "positions", "limits"))
-    for column in table.columns[1:]:
-        column.justify = "left"
+    rows = []
     for measure in model.measures:
         kind = measure.kind
         gear = f" of {kind.gear}" if kind.is_angle else ""
         what = f"{TAKE_WORDS[measure.take]}{QUANTITY_WORDS[kind.quantity]}{gear}, {kind.mesh}"
         curve = " (curve)" if measure.take == "curve" else ""
-        table.add_row(Text(measure.name), Text(what + curve), _positions(measure), _limits(measure))
-    return table
+        rows.append(Row(measure.name, (what + curve, _positions(measure), _limits(measure))))
+    return _titled("measures", Sheet("", [Heading(word, words=True) for word in ("what", "positions", "limits")], rows))
 
 
 def _positions(measure: Measure) -> str:
@@ -150,26 +134,31 @@ def _limits(measure: Measure) -> str:
     return ", ".join(given) or NOTHING
 
 
-def contributors_table(model: Model) -> Table:
+def contributors_table(model: Model) -> Group:
     """The contributors: law, limits, and what the first measure of their mesh makes of them.
 
     The coefficient is the first-order change of that measure per unit of the deviation; of one with a
     random direction, per length in its worst direction; its low and high are lengths, its sigma is that along
     any one axis.
     """
-    table = _table("contributors", "", ("law", "low", "high", "sigma", "unit", "coefficient per unit", "share [%]"))
-    table.columns[1].justify = "left"
-    table.collapse_padding = True
-    for column in table.columns[2:5]:
-        column.no_wrap = True
+    rows = []
     for contributor in model.contributors:
         law, per = contributor.distribution, contributor.per_unit
         numbers = (f"{law.low / per:.4g}", f"{law.high / per:.4g}", f"{contributor.draw.sigma / per:.3g}")
-        sign = UNIT_SIGNS[contributor.unit]
-        table.add_row(
-            Text(contributor.name), distribution_words(contributor), *numbers, sign, *_effect(model, contributor)
-        )
-    return table
+        cells = (*map(unsigned_zero, numbers), UNIT_SIGNS[contributor.unit], *_effect(model, contributor))
+        rows.append(Row(contributor.name, (distribution_words(contributor), *cells)))
+    numbers_of = ("low", "high", "sigma", "unit", "coefficient per unit", "share [%]")
+    table = Sheet("", [Heading("law", words=True), *map(Heading, numbers_of)], rows)
+    return Group(_titled("contributors", table), *_tilts_note(model))
+
+
+def _tilts_note(model: Model) -> list[Text]:
+    tilts = [c.name for c in model.contributors if isinstance(c.effect, AxisTilt)]
+    if not tilts:
+        return []
+    words = f" {', '.join(tilts)}: the coefficient is per |deviation|; a tilt closes the gap whichever way it goes"
+    more = ", and of two that cross only the larger counts" if len(tilts) > 1 else ""
+    return [Text(words + more, style="dim")]
 
 
 def distribution_words(contributor: Contributor) -> str:
@@ -188,8 +177,8 @@ def _effect(model: Model, contributor: Contributor) -> tuple[str, str]:
         share = next((s for s in form.shares if s.name == contributor.name), None) if form else None
         if form is not None and share is not None:
             per = measure.per_internal * contributor.per_unit
-            coefficient = f"{share.coefficient * per:+#.3g} {UNIT_SIGNS[measure.unit]}"
-            return coefficient, percent_text(form.percent(contributor.name))
+            coefficient = unsigned_zero(f"{share.coefficient * per:+#.3g}")
+            return f"{coefficient} {UNIT_SIGNS[measure.unit]}", percent_text(form.percent(contributor.name))
     return NOTHING, NOTHING
 
 

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, Literal
 
-Road = Literal["closed form", "analytic", "geometric", "published"]
+Road = Literal["closed form", "analytic", "geometric", "high-low-mean", "published"]
 
 HEADINGS: Mapping[Road, str] = {
     "closed form": "analytic (closed form)",
@@ -58,6 +58,15 @@ def best_road(measure: Mapping[str, Any]) -> Road:
 def shares_of(measure: Mapping[str, Any]) -> list[Column]:
     """The columns that know shares of the variance."""
     return [column for column in columns_of(measure) if any(p is not None for p in column.percents.values())]
+
+
+def contributor_columns(measure: Mapping[str, Any]) -> list[Column]:
+    """The columns that know shares, of the variance and of high-low-mean: ours first."""
+    alone = Column("high–low–mean", "high-low-mean", {}, _percents(measure, "high_low_mean_percent"))
+    columns = shares_of(measure)
+    ours = [column for column in columns if column.road != "published"]
+    known = any(percent is not None for percent in alone.percents.values())
+    return [*ours, *([alone] if known else []), *columns[len(ours) :]]
 
 
 def ranked_contributors(measure: Mapping[str, Any]) -> list[str]:

@@ -1,14 +1,13 @@
 """Runs laid over each other: histograms of both roads, the difference of every trial beside, and a table."""
 
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
-from rich import box
 from rich.console import Group, RenderableType
-from rich.table import Table
 from rich.text import Text
 
 from tol3d.errors import InputError
@@ -19,50 +18,76 @@ from tol3d.report.canvas import (
     OUTSIDE,
     ROAD_COLOURS,
     RUN_COLOURS,
+    density_label,
     label_angles,
     legible,
     new_figure,
     plain_axes,
     save_figure,
+    say_instead,
+    title_measure,
+    values_label,
 )
 from tol3d.report.difference import Difference, difference_of
 from tol3d.report.heading import heading
 from tol3d.report.number import NOTHING, UNIT_SIGNS, difference_text, given_text, value_text
+from tol3d.report.sheet import Heading, Row, Sheet
 from tol3d.result import Run
 
 Summary = Mapping[str, Any]
 
+NO_SIMULATION = "no 3D simulation in these runs"
 ROADS = {"analytic": "analytic", "geometric": "3D simulation"}
 SHORT = {"analytic": "analytic", "geometric": "3D"}
-AXIS_UNITS = {"um": "µm", "arcmin": "′, ″ of arc"}
 DIFFERENCE_UNITS = {"um": ("µm", 1.0), "arcmin": ("″", 60.0)}
 """Unit of small differences, and how many of it are one of the measure's unit."""
+
+
+@dataclass(frozen=True)
+class Compared:
+    """A measure as runs may share it on one axis; the same name over other positions is another measure."""
+
+    name: str
+    unit: str
+    kind: str
+    gear: str | None
+    over: str
+    take: str
+
+    @classmethod
+    def of(cls, name: str, measure: Summary) -> "Compared":
+        """From a measure's summary."""
+        return cls(name, *(measure[key] for key in ("unit", "kind", "gear", "over", "take")))
+
+    def found_in(self, runs: Sequence[Run]) -> list[tuple[str, Run]]:
+        """The runs that have it, each with its label."""
+        return [(label, run) for label, run in _labelled(runs) if self in measures_of([run])]
+
+
+def measures_of(runs: Sequence[Run]) -> list[Compared]:
+    """The measures of all runs, each once.
+
+    Raises:
+        InputError: there are no runs.
+    """
+    if not runs:
+        raise InputError("nothing to compare: give the folder of at least one run")
+    found = (Compared.of(name, measure) for run in runs for name, measure in run.summary["measures"].items())
+    return list(dict.fromkeys(found))
 
 
 def comparison_report(runs: Sequence[Run]) -> Group:
     """Tables of every measure: mean, sigma and range of each run and road, and how far the roads differ."""
     blocks: list[RenderableType] = []
-    for name, unit in _measures(runs):
-        own = [(label, run) for label, run in _labelled(runs) if _has(run, name, unit)]
-        blocks += [Text("\n").append(name, style="bold cyan")]
-        blocks += [Text(heading(own[0][1].summary["measures"][name]), style="dim"), "", _table(name, unit, own)]
+    for measure in measures_of(runs):
+        own = measure.found_in(runs)
+        blocks += [Text("\n").append(measure.name, style="bold cyan")]
+        blocks += [Text(heading(own[0][1].summary["measures"][measure.name]), style="dim"), ""]
+        blocks += [_table(measure.name, measure.unit, own)]
     words = "low and high: mean ∓ 3 sigma; max and rms: of 3D simulation − analytic, trial by trial"
     words += "; shift: of the mean against the first run" if len(runs) > 1 else ""
     blocks.append(Text(f"\n{words}", style="dim"))
     return Group(*blocks)
-
-
-def _measures(runs: Sequence[Run]) -> list[tuple[str, str]]:
-    """Names and units of the measures of all runs, each once."""
-    if not runs:
-        raise InputError("nothing to compare: give the folder of at least one run")
-    found = {(name, measure["unit"]): None for run in runs for name, measure in run.summary["measures"].items()}
-    return list(found)
-
-
-def _has(run: Run, name: str, unit: str) -> bool:
-    measure = run.summary["measures"].get(name)
-    return measure is not None and measure["unit"] == unit
 
 
 def _labelled(runs: Sequence[Run]) -> list[tuple[str, Run]]:
@@ -71,25 +96,20 @@ def _labelled(runs: Sequence[Run]) -> list[tuple[str, Run]]:
     return [(name if names.count(name) == 1 else str(run.path), run) for name, run in zip(names, runs, strict=True)]
 
 
-def _table(name: str, unit: str, runs: Sequence[tuple[str, Run]]) -> Table:
-    table = Table(box=box.SIMPLE_HEAD, show_edge=False, pad_edge=False, padding=(0, 1), header_style="bold")
-    table.collapse_padding = True
-    table.add_column(Text("run" if unit == "arcmin" else f"run [{UNIT_SIGNS[unit]}]"))
-    table.add_column("road", no_wrap=True)
-    several = len(runs) > 1
-    headings = ("trials", "mean", "sigma", "low", "high", "max", "rms")
-    for title in (*headings, *(("shift",) if several else ())):
-        table.add_column(Text(title), justify="right", no_wrap=True)
-    first: dict[str, float] = {}
+def _table(name: str, unit: str, runs: Sequence[tuple[str, Run]]) -> Sheet:
+    shift = ("shift",) if len(runs) > 1 else ()
+    numbers = ("trials", "mean", "sigma", "low", "high", "max", "rms", *shift)
+    headings = [Heading("road", words=True), *(Heading(word) for word in numbers)]
+    rows, first = [], dict[str, float]()
     for label, run in runs:
         for index, (road, sample) in enumerate(_samples(run.summary["measures"][name])):
             mean = sample.get("mean")
-            cells = [str(sample.get("count", "")), *(value_text(sample.get(key), unit) for key in KEYS)]
+            cells = [SHORT[road], str(sample.get("count", "")), *(value_text(sample.get(key), unit) for key in KEYS)]
             cells += _differences(run, name, unit) if road == "geometric" else [NOTHING, NOTHING]
-            if several and mean is not None:
-                cells.append(_bare(mean - first.setdefault(road, mean), unit))
-            table.add_row(Text(label if index == 0 else ""), SHORT[road], *cells)
-    return table
+            if shift:
+                cells.append(NOTHING if mean is None else _bare(mean - first.setdefault(road, mean), unit))
+            rows.append(Row(label if index == 0 else "", cells))
+    return Sheet("run" if unit == "arcmin" else f"run [{UNIT_SIGNS[unit]}]", headings, rows, repeated=1)
 
 
 KEYS = ("mean", "sigma", "low_3sigma", "high_3sigma")
@@ -129,13 +149,13 @@ def draw_comparison(runs: Sequence[Run], path: Path) -> None:
     Raises:
         InputError: there are no runs, or the picture cannot be written.
     """
-    measures = _measures(runs)
+    measures = measures_of(runs)
     figure = new_figure(15.0, 4.1 * len(measures) + 0.4)
     names = ",  ".join(legible(label, 50) for label, _ in _labelled(runs))
     figure.suptitle(f"{names}", fontsize=12, color=BLACK, x=0.01, ha="left")
     grid = figure.add_gridspec(len(measures), 3, width_ratios=[1.6, 1, 1.3])
-    for row, (name, unit) in enumerate(measures):
-        own = [(label, run) for label, run in _labelled(runs) if _has(run, name, unit)]
+    for row, measure in enumerate(measures):
+        name, unit, own = measure.name, measure.unit, measure.found_in(runs)
         axes = [plain_axes(figure.add_subplot(grid[row, column])) for column in range(3)]
         _draw_roads(axes[0], name, unit, own)
         differences = [(label, difference_of(run, name)) for label, run in own]
@@ -177,14 +197,13 @@ def _draw_roads(axes: Axes, name: str, unit: str, runs: Sequence[tuple[str, Run]
             if limit is not None and axes.get_xlim()[0] <= limit <= axes.get_xlim()[1]:
                 axes.axvline(limit, color=OUTSIDE, linewidth=2, label=f"limit {given_text(limit, unit)}")
         label_angles(axes.xaxis, unit)
-        axes.set_xlabel(f"{legible(name, 60)} [{AXIS_UNITS[unit]}]", fontsize=10)
-        axes.set_ylabel(f"% of trials per {'µm' if unit == 'um' else '′'}", fontsize=10)
+        axes.set_xlabel(values_label(name, unit), fontsize=10)
+        axes.set_ylabel(density_label(unit), fontsize=10)
     else:
         label_angles(axes.yaxis, unit)
         axes.set_xlabel("driver position [deg]", fontsize=10)
-        axes.set_ylabel(f"{legible(name)} [{AXIS_UNITS[unit]}]", fontsize=10)
-    axes.set_title(f"{legible(name, 60)}\n", loc="left", fontsize=12, fontweight="bold")
-    axes.text(0, 1.03, legible(heading(first), 90), transform=axes.transAxes, fontsize=8.5, color=GREY)
+        axes.set_ylabel(values_label(name, unit, 34), fontsize=10)
+    title_measure(axes, name, first, 90)
     axes.legend(fontsize=8.5, frameon=False, loc="best")
 
 
@@ -203,7 +222,7 @@ def _draw_differences(axes: Axes, unit: str, known: Known, *, single: bool) -> N
     word, factor = DIFFERENCE_UNITS[unit]
     axes.set_title("3D simulation − analytic\n", loc="left", fontsize=11, fontweight="bold")
     if not known:
-        _say_nothing(axes)
+        say_instead(axes, NO_SIMULATION, GREY)
         return
     for index, label, found in known:
         text = f"max {factor * found.largest:.3f} {word}, rms {factor * found.rms:.3f} {word}"
@@ -231,7 +250,7 @@ def _draw_by_position(axes: Axes, name: str, unit: str, known: Known, *, single:
     title = "by position of the driver" if by_position else "by value"
     axes.set_title(f"difference {title}\n", loc="left", fontsize=11, fontweight="bold")
     if not known:
-        _say_nothing(axes)
+        say_instead(axes, NO_SIMULATION, GREY)
         return
     for index, _, found in known:
         axes.plot(
@@ -249,9 +268,5 @@ def _draw_by_position(axes: Axes, name: str, unit: str, known: Known, *, single:
         axes.set_xlabel("driver position within its turn [deg]", fontsize=10)
     else:
         label_angles(axes.xaxis, unit)
-        axes.set_xlabel(f"{legible(name, 40)}, analytic [{AXIS_UNITS[unit]}]", fontsize=10)
+        axes.set_xlabel(f"analytic: {values_label(name, unit, 40)}", fontsize=10)
     axes.set_ylabel(f"difference [{word}]", fontsize=10)
-
-
-def _say_nothing(axes: Axes) -> None:
-    axes.text(0.5, 0.5, "no 3D simulation in these runs", transform=axes.transAxes, ha="center", color=GREY)

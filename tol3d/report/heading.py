@@ -30,6 +30,20 @@ def heading(measure: Mapping[str, Any]) -> str:
     return f"{quantity}{gear} {measure['of']} {OVER_WORDS[measure['over']]}"
 
 
+def worst_words(measures: Mapping[str, Mapping[str, Any]]) -> str:
+    """What makes a trial the worst, see `worst_trial`.
+
+    >>> worst_words({"free play": {"lower_limit": 20.0, "upper_limit": None}})
+    'the nearest to a limit of free play, or the furthest beyond it'
+    >>> worst_words({"free play": {"lower_limit": None, "upper_limit": None}})
+    'the smallest free play, for there are no limits'
+    """
+    limited = [name for name, m in measures.items() if (m["lower_limit"], m["upper_limit"]) != (None, None)]
+    if not limited:
+        return f"the smallest {next(iter(measures))}, for there are no limits"
+    return f"the nearest to a limit of {' or '.join(limited)}, or the furthest beyond it"
+
+
 def limits_text(measure: Mapping[str, Any]) -> str:
     """The limits of a measure's summary, with their unit."""
     unit = measure["unit"]

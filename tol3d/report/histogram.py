@@ -19,23 +19,26 @@ from tol3d.report.canvas import (
     OUTSIDE,
     PUBLISHED_COLOURS,
     ROAD_COLOURS,
+    density_label,
     label_angles,
     legible,
     new_figure,
     plain_axes,
     save_figure,
+    say_instead,
+    title_measure,
+    values_label,
 )
 from tol3d.report.column import Column, best_road, columns_of, ranked_contributors, shares_of
-from tol3d.report.heading import heading
-from tol3d.report.number import given_text, measured_text, ppm_text
+from tol3d.report.number import given_text, percent_text, ppm_text, short_text
 
 Summary = Mapping[str, Any]
 Array = NDArray[np.float64]
 
-AXIS_UNITS = {"um": "µm", "arcmin": "′, ″ of arc"}
 SIGMAS_SHOWN = 3.6  # of the mean; a little more than the +-3 sigma that are marked
 LIMIT_REACH = 0.6  # of the shown span; a limit further off is told at the edge, not drawn to scale
 MOST_CONTRIBUTORS = 9  # bars; the rest is shown as one
+NO_VALUES = "no trial gave a value"
 TURN = 360.0  # deg; from two turns on the axis counts turns
 
 
@@ -84,7 +87,7 @@ def _draw_scalar(figure: Figure, place: SubplotSpec, name: str, measure: Summary
     draw_ranges(ranges, columns, colours)
     axes.tick_params(labelbottom=False)
     label_angles(ranges.xaxis, measure["unit"])
-    ranges.set_xlabel(f"{legible(name, 60)} [{AXIS_UNITS[measure['unit']]}]", fontsize=10)
+    ranges.set_xlabel(values_label(name, measure["unit"]), fontsize=10)
     if shares:
         draw_contributors(figure.add_subplot(halves[0, 1]), measure, shares, colours)
 
@@ -95,9 +98,10 @@ def _draw_scalar(figure: Figure, place: SubplotSpec, name: str, measure: Summary
 def draw_distribution(axes: Axes, name: str, measure: Summary) -> None:
     """Both roads' histograms over each other, the closed form's normal curve, limits and +-3 sigma."""
     unit = measure["unit"]
+    title_measure(axes, name, measure, 110)
     bars = bars_of(measure["histogram"])
     if not bars:
-        axes.text(0.5, 0.5, "no trial gave a value", transform=axes.transAxes, ha="center", color=OUTSIDE)
+        say_instead(axes, NO_VALUES, OUTSIDE)
         return
     span = shown_span(measure, bars)
     leading = best_road(measure)
@@ -111,13 +115,11 @@ def draw_distribution(axes: Axes, name: str, measure: Summary) -> None:
         normal = 100 * np.exp(-(((x - mean) / sigma) ** 2) / 2) / (sigma * math.sqrt(2 * math.pi))
         axes.plot(x, normal, color=BLACK, linewidth=1.2, linestyle=(0, (5, 3)))
     top = max(float(b.density.max()) for b in bars.values())
-    axes.set_ylim(0, 1.22 * top)
+    axes.set_ylim(0, 1.25 * top)
     axes.set_xlim(*span)
     _mark_sigmas(axes, measure[leading], unit)
     _mark_limits(axes, measure, span, measure[leading])
-    axes.set_ylabel(f"% of trials per {'µm' if unit == 'um' else '′'}", fontsize=10)
-    axes.set_title(f"{legible(name, 60)}\n", loc="left", fontsize=12, fontweight="bold")
-    axes.text(0, 1.025, legible(heading(measure), 110), transform=axes.transAxes, fontsize=9, color=GREY)
+    axes.set_ylabel(density_label(unit), fontsize=10)
 
 
 def shown_span(measure: Summary, bars: Mapping[str, Bars]) -> tuple[float, float]:
@@ -162,13 +164,13 @@ def _mark_sigmas(axes: Axes, sample: Summary, unit: str) -> None:
         value = sample.get(key)
         if value is None:
             continue
-        axes.axvline(value, ymax=0.9, color=GREY, linewidth=1.0, linestyle=":")
+        axes.axvline(value, ymax=0.84, color=GREY, linewidth=1.0, linestyle=":")
         axes.annotate(
-            f"{word}\n{_short(value, unit)}",
-            (value, 0.905),
+            f"{word}\n{short_text(value, unit)}",
+            (value, 1.0),
             xycoords=("data", "axes fraction"),
             ha="center",
-            va="bottom",
+            va="top",
             fontsize=8.5,
             color=BLACK,
         )
@@ -199,10 +201,6 @@ def _mark_limits(axes: Axes, measure: Summary, span: tuple[float, float], sample
             color=OUTSIDE,
             bbox={"facecolor": "white", "edgecolor": "none", "alpha": 0.75, "pad": 1.5},
         )
-
-
-def _short(value: float, unit: str) -> str:
-    return measured_text(value, unit) if unit == "arcmin" else f"{value:.1f} µm"
 
 
 def column_colours(columns: Sequence[Column]) -> dict[str, str]:
@@ -248,7 +246,7 @@ def draw_contributors(axes: Axes, measure: Summary, columns: Sequence[Column], c
         label = {"analytic": "analytic", "geometric": "3D simulation"}.get(column.road, legible(column.heading, 28))
         drawn = axes.barh(places, values, height=0.9 * height, color=colours[column.heading], alpha=0.8, label=label)
         known = [column.percents.get(name) is not None for name in shown] + [any(values)] * bool(rest)
-        texts = [f"{value:.1f}" if told else "" for value, told in zip(values, known, strict=True)]
+        texts = [percent_text(value) if told else "" for value, told in zip(values, known, strict=True)]
         axes.bar_label(drawn, labels=texts, fontsize=7, padding=2, color=BLACK)
     axes.set_yticks(range(len(labels)), labels, fontsize=9)
     axes.tick_params(axis="y", length=0)
@@ -289,8 +287,9 @@ def draw_curve(axes: Axes, name: str, measure: Summary) -> None:
             axes.axhline(measure[key], color=OUTSIDE, linewidth=2, label=text)
     axes.set_xlim(x[0], x[-1])
     axes.set_xlabel(f"driver position [{'turns' if in_turns else 'deg'}]", fontsize=10)
-    axes.set_ylabel(f"{legible(name)} [{AXIS_UNITS[unit]}]", fontsize=10)
+    axes.set_ylabel(values_label(name, unit, 34), fontsize=10)
     label_angles(axes.yaxis, unit)
-    axes.set_title(f"{legible(name, 60)}\n", loc="left", fontsize=12, fontweight="bold")
-    axes.text(0, 1.03, legible(heading(measure), 110), transform=axes.transAxes, fontsize=9, color=GREY)
+    title_measure(axes, name, measure, 110)
+    if np.isnan(mean).all():
+        say_instead(axes, NO_VALUES, OUTSIDE)
     axes.legend(fontsize=8.5, frameon=False, loc="center left", bbox_to_anchor=(1.0, 0.5))

@@ -2,8 +2,9 @@
 
 import os
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
+from itertools import count
 from pathlib import Path
 from typing import Final
 
@@ -40,7 +41,6 @@ def export_run(
     *,
     magnify: float = 1.0,
     out: Path = Path("."),
-    trust_parts: bool = False,
 ) -> Exported:
     """Write the perturbed parts of one build where they ended up.
 
@@ -51,7 +51,6 @@ def export_run(
             mesh [mm] with the real perturbed solids.
         magnify: scales the deviations and seats again, see `assemble`.
         out: the folder; made if missing.
-        trust_parts: allow the scene to read files outside its folder.
 
     Raises:
         InputError: an unknown format or build, a STEP file magnified, or a folder that cannot be written.
@@ -60,7 +59,7 @@ def export_run(
         raise InputError(f"format: expected one of {', '.join(FORMATS)}, got {fmt!r}")
     if fmt == "step" and magnify != 1.0:
         raise InputError("a STEP file holds the real parts: leave out --magnify, or choose stl, ply or glb")
-    assembly = assemble(run, which, magnify=magnify, trust_parts=trust_parts)
+    assembly = assemble(run, which, magnify=magnify)
     try:
         out.mkdir(parents=True, exist_ok=True)
         files = [path for mesh in assembly.meshes for path in WRITERS[fmt](assembly, mesh, out)]
@@ -78,10 +77,10 @@ def triangle_mesh(part: PlacedGear, colour: tuple[int, int, int, int] = COLOURS[
 
 def _write_parts(ending: str) -> Callable[[Assembly, SeatedMesh, Path], list[Path]]:
     def write(assembly: Assembly, seated: SeatedMesh, out: Path) -> list[Path]:
-        files = []
+        files, words = [], _part_words(assembly)
         for part, colour in zip((seated.driver, seated.driven), COLOURS, strict=True):
             content = triangle_mesh(part, colour).export(file_type=ending)
-            files.append(_written(out / f"{assembly.label}-{_file_word(part.name)}.{ending}", content))
+            files.append(_written(out / f"{assembly.label}-{words[part.name]}.{ending}", content))
         return files
 
     return write
@@ -113,13 +112,28 @@ WRITERS: Mapping[str, Callable[[Assembly, SeatedMesh, Path], list[Path]]] = {
 
 
 def _scene_path(assembly: Assembly, seated: SeatedMesh, out: Path, ending: str) -> Path:
-    mesh = f"-{_file_word(seated.mesh.name)}" if len(assembly.meshes) > 1 else ""
+    words = file_words(mesh.mesh.name for mesh in assembly.meshes)
+    mesh = f"-{words[seated.mesh.name]}" if len(words) > 1 else ""
     return out / f"{assembly.label}{mesh}.{ending}"
 
 
-def _file_word(name: str) -> str:
-    """A user's name as part of a file's name: letters, digits, dots and dashes."""
-    return re.sub(r"[^\w.-]+", "_", name)
+def _part_words(assembly: Assembly) -> dict[str, str]:
+    return file_words(part.name for mesh in assembly.meshes for part in (mesh.driver, mesh.driven))
+
+
+def file_words(names: Iterable[str]) -> dict[str, str]:
+    """Users' names as parts of file names: letters, digits, dots and dashes; all differ, even if case does not count.
+
+    >>> file_words(["gear 1", "gear_1", "Gear-2"])
+    {'gear 1': 'gear_1', 'gear_1': 'gear_1_2', 'Gear-2': 'Gear-2'}
+    """
+    words: dict[str, str] = {}
+    for name in dict.fromkeys(names):
+        word = re.sub(r"[^\w.-]+", "_", name)
+        taken = {other.casefold() for other in words.values()}
+        indexed = (word if index == 1 else f"{word}_{index}" for index in count(1))
+        words[name] = next(each for each in indexed if each.casefold() not in taken)
+    return words
 
 
 def _written(path: Path, content: object) -> Path:

@@ -21,7 +21,7 @@ def value_text(value: float | None, unit: str) -> str:
         return NOTHING
     if unit == "arcmin":
         return angle_text(value * RAD_PER_ARCMIN)
-    return _unsigned_zero(f"{value:.3f}" if abs(value) < MANY_UM else f"{value:.1f}")
+    return unsigned_zero(f"{value:.3f}" if abs(value) < MANY_UM else f"{value:.1f}")
 
 
 def measured_text(value: float | None, unit: str) -> str:
@@ -30,15 +30,24 @@ def measured_text(value: float | None, unit: str) -> str:
     return text if unit == "arcmin" or value is None else f"{text} {UNIT_SIGNS[unit]}"
 
 
+def short_text(value: float, unit: str) -> str:
+    """A value with its unit and one decimal, for pictures.
+
+    >>> short_text(53.3966, "um"), short_text(-0.04, "um"), short_text(1.42, "arcmin")
+    ('53.4 µm', '0.0 µm', '1′25.2″')
+    """
+    return measured_text(value, unit) if unit == "arcmin" else f"{unsigned_zero(f'{value:.1f}')} {UNIT_SIGNS[unit]}"
+
+
 def given_text(value: float | None, unit: str) -> str:
     """A value that somebody else gave, with no more digits than it came with.
 
-    >>> given_text(53.0, "um"), given_text(15.000000000000002, "um")
-    ('53', '15')
+    >>> given_text(53.0, "um"), given_text(15.000000000000002, "um"), given_text(-0.0, "um")
+    ('53', '15', '0')
     """
     if value is None or unit == "arcmin":
         return value_text(value, unit)
-    return f"{value:.6g}"
+    return unsigned_zero(f"{value:.6g}")
 
 
 def difference_text(value: float | None, unit: str) -> str:
@@ -50,8 +59,8 @@ def difference_text(value: float | None, unit: str) -> str:
     if value is None:
         return NOTHING
     if unit == "arcmin":
-        return f"{_unsigned_zero(f'{60 * value:.2f}')}″"
-    return f"{_unsigned_zero(f'{value:.3f}')} {UNIT_SIGNS.get(unit, unit)}"
+        return f"{unsigned_zero(f'{60 * value:.2f}')}″"
+    return f"{unsigned_zero(f'{value:.3f}')} {UNIT_SIGNS.get(unit, unit)}"
 
 
 def percent_text(value: float | None) -> str:
@@ -60,7 +69,7 @@ def percent_text(value: float | None) -> str:
     >>> percent_text(-0.01), percent_text(22.04)
     ('0.0', '22.0')
     """
-    return NOTHING if value is None else _unsigned_zero(f"{value:.1f}")
+    return NOTHING if value is None else unsigned_zero(f"{value:.1f}")
 
 
 def ppm_text(value: float | None) -> str:
@@ -74,5 +83,10 @@ def ppm_text(value: float | None) -> str:
     return f"{value:.0f}" if value >= 100 else f"{value:.3g}"
 
 
-def _unsigned_zero(text: str) -> str:
+def unsigned_zero(text: str) -> str:
+    """A number's text without the sign of a zero.
+
+    >>> unsigned_zero("-0.000"), unsigned_zero("-0.001")
+    ('0.000', '-0.001')
+    """
     return text.removeprefix("-") if not text.strip("-0.") else text

@@ -1,17 +1,15 @@
 """A run's results as tables for the terminal, from its summary alone."""
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence, Set
 from dataclasses import replace
 from typing import Any
 
-from rich import box
 from rich.console import Group, RenderableType
 from rich.padding import Padding
-from rich.table import Table
 from rich.text import Text
 
-from tol3d.report.column import Column, Road, best_road, columns_of, ranked_contributors, shares_of
+from tol3d.report.column import Column, Road, best_road, columns_of, contributor_columns, ranked_contributors
 from tol3d.report.heading import heading, limits_text
 from tol3d.report.number import (
     NOTHING,
@@ -20,8 +18,10 @@ from tol3d.report.number import (
     given_text,
     percent_text,
     ppm_text,
+    unsigned_zero,
     value_text,
 )
+from tol3d.report.sheet import Heading, Row, Sheet
 
 Summary = Mapping[str, Any]
 
@@ -41,6 +41,16 @@ UNIT_HEADINGS = {"um": "[µm]", "arcmin": "[′, ″ of arc]"}
 INDICES = {"pp": "Pp", "ppk": "Ppk"}
 BUILDS = {"mean_build": "build at all means", "nominal": "nominal build"}
 UNEXPLAINED_SHOWN = 0.05  # %; less is 0.0 in print
+NOT_ATTRIBUTED = "not attributed"
+NOT_ATTRIBUTED_MEANS = (
+    f"{NOT_ATTRIBUTED}: the share of the variance that the regression on the contributors leaves unexplained: "
+    "interactions and what is not linear"
+)
+SHARES_MEAN = (
+    "shares of the variance; high–low–mean: squares of the ranges that each contributor alone gives between its ends, "
+    "the others at their means"
+)
+ATTRIBUTING: Set[Road] = frozenset(("analytic", "geometric"))
 CURVE_ROWS = 12  # positions of a curve that are printed; the picture and the columns have them all
 SHARE_HEADINGS: Mapping[Road, str] = {"analytic": "analytic", "geometric": "3D simulation"}
 STATUS_WORDS = {"ok": "seated", "interferes": "interfering", "no contact": "without contact"}
@@ -67,42 +77,43 @@ def _measure_blocks(name: str, measure: Summary, summary: Summary) -> list[Rende
     title = Text("\n").append(name, style="bold cyan")
     words = Text(f"{heading(measure)} · {limits_text(measure)}", style="dim")
     if measure["take"] == "curve":
-        return [title, words, "", curve_table(measure), *_curve_limits(measure)]
-    blocks: list[RenderableType] = [title, words, "", measure_table(measure)]
-    blocks += [Padding(Text(line, style="dim"), (0, 0, 0, 1)) for line in _notes(measure, summary)]
+        return [title, words, "", curve_table(measure), *map(_note, _curve_notes(measure))]
+    blocks: list[RenderableType] = [title, words, "", measure_table(measure), *map(_note, _notes(measure, summary))]
     if measure["contributors"]:
-        blocks += ["", contributors_table(measure)]
+        blocks += ["", contributors_table(measure), _note(SHARES_MEAN)]
+        blocks += [_note(NOT_ATTRIBUTED_MEANS)] if _not_attributed(measure) else []
     return blocks
 
 
-def _table(columns: Sequence[Column], corner: str) -> Table:
-    table = Table(box=box.SIMPLE_HEAD, show_edge=False, pad_edge=False, padding=(0, 1), header_style="bold")
-    table.add_column(Text(corner))
-    for column in columns:
-        style = {"geometric": "bold", "published": "green"}.get(column.road, "")
-        table.add_column(Text(column.heading), justify="right", style=style)
-    return table
+def _note(text: str) -> Padding:
+    """A line below a table."""
+    return Padding(Text(text, style="dim"), (0, 0, 0, 1))
 
 
-def measure_table(measure: Summary) -> Table:
+def _headings(columns: Sequence[Column]) -> list[Heading]:
+    styles = {"geometric": "bold", "published": "green"}
+    return [Heading(column.heading, styles.get(column.road, "")) for column in columns]
+
+
+def measure_table(measure: Summary) -> Sheet:
     """Statistics of one scalar measure, one column a road, the published ones last."""
     columns, unit = columns_of(measure), measure["unit"]
-    table = _table(columns, UNIT_HEADINGS[unit])
-    table.columns[0].no_wrap = True
-    table.collapse_padding = True
-    for key, label in ROWS.items():
-        table.add_row(Text(label), *(_cell(column, key, unit) for column in columns))
-    for key, label in _limit_rows(measure).items():
-        table.add_row(Text(label), *(ppm_text(_ppm(column, key, measure)) for column in columns))
-    for key, label in INDICES.items():
-        if any(column.value(key) is not None for column in columns):
-            table.add_row(label, *(_index_text(column.value(key)) for column in columns))
-    for key, label in BUILDS.items():
-        values = measure.get(key) or {}
-        table.add_row(label, *(value_text(values.get(column.road), unit) for column in columns))
-    for label, cells in _lost_motion_rows(measure, columns):
-        table.add_row(Text(label), *cells)
-    return table
+    rows = [Row(label, [_cell(column, key, unit) for column in columns]) for key, label in ROWS.items()]
+    rows += [
+        Row(label, [ppm_text(_ppm(column, key, measure)) for column in columns])
+        for key, label in _limit_rows(measure).items()
+    ]
+    rows += [
+        Row(label, [_index_text(column.value(key)) for column in columns])
+        for key, label in INDICES.items()
+        if any(column.value(key) is not None for column in columns)
+    ]
+    builds = {label: measure.get(key) or {} for key, label in BUILDS.items()}
+    rows += [
+        Row(label, [value_text(values.get(column.road), unit) for column in columns])
+        for label, values in builds.items()
+    ]
+    return Sheet(UNIT_HEADINGS[unit], _headings(columns), [*rows, *_lost_motion_rows(measure, columns)])
 
 
 def _cell(column: Column, key: str, unit: str) -> str:
@@ -111,7 +122,7 @@ def _cell(column: Column, key: str, unit: str) -> str:
 
 
 def _index_text(value: float | None) -> str:
-    return NOTHING if value is None else f"{value:.3f}"
+    return NOTHING if value is None else unsigned_zero(f"{value:.3f}")
 
 
 def _limit_rows(measure: Summary) -> dict[str, str]:
@@ -135,14 +146,14 @@ def _ppm(column: Column, key: str, measure: Summary) -> float | None:
     return 1e6 * math.erfc(margin / sigma / math.sqrt(2)) / 2
 
 
-def _lost_motion_rows(measure: Summary, columns: Sequence[Column]) -> Iterator[tuple[str, list[str]]]:
+def _lost_motion_rows(measure: Summary, columns: Sequence[Column]) -> Iterator[Row]:
     motion = measure.get("lost_motion")
     if motion is None:
         return
     for key, word in LOST_MOTION_ROWS.items():
         turns = [(value, motion["arcmin_per_um"]) for value in (column.value(key) for column in columns)]
         cells = [value_text(None if value is None else value * per_um, "arcmin") for value, per_um in turns]
-        yield f"lost motion, {word}", cells
+        yield Row(f"lost motion, {word}", cells)
 
 
 def _notes(measure: Summary, summary: Summary) -> Iterator[str]:
@@ -180,63 +191,74 @@ def agreement_line(agreement: Summary, unit: str, chord_error_um: float | None) 
     whole = FLANKS_OF_A_BACKLASH * chord_error_um
     return (
         f"{line}; up to {whole:.3f} µm of normal backlash may be chord error ({chord_error_um:.3f} µm on each of "
-        f"{FLANKS_OF_A_BACKLASH} flanks), the rest second order of the stack-up"
+        f"{FLANKS_OF_A_BACKLASH} flanks), the rest is what the stack-up neglects"
     )
 
 
-def contributors_table(measure: Summary) -> Table:
+def contributors_table(measure: Summary) -> Sheet:
     """Shares of the variance, the largest first; those of the 3D simulation with their standard error."""
-    shares = [replace(column, heading=SHARE_HEADINGS.get(column.road, column.heading)) for column in shares_of(measure)]
+    shares = [
+        replace(column, heading=SHARE_HEADINGS.get(column.road, column.heading))
+        for column in contributor_columns(measure)
+    ]
     errors = {c["name"]: c.get("geometric_percent_se") for c in measure["contributors"]}
-    table = _table(shares, "share of variance [%]")
-    names = ranked_contributors(measure)
-    for name in names:
-        cells = [percent_text(column.percents.get(name)) for column in shares]
-        for index, column in enumerate(shares):
-            if column.road == "geometric" and errors[name] is not None:
-                cells[index] += f" ±{errors[name]:.1f}"
-        table.add_row(Text(name), *cells)
-    left = [100 - sum(column.percents.get(name) or 0.0 for name in names) for column in shares]
-    if any(abs(rest) > UNEXPLAINED_SHOWN for rest in left):
-        table.add_row("not attributed", *(percent_text(rest) for rest in left), style="dim")
-    return table
+    rows = [
+        Row(name, [_share(column, name, errors[name]) for column in shares]) for name in ranked_contributors(measure)
+    ]
+    left = _not_attributed(measure)
+    if left:
+        rows.append(Row(NOT_ATTRIBUTED, [percent_text(rest) for rest in left], "dim"))
+    return Sheet("share [%]", _headings(shares), rows)
 
 
-def curve_table(measure: Summary) -> Table:
+def _share(column: Column, name: str, error: float | None) -> str:
+    text = percent_text(column.percents.get(name))
+    return f"{text} ±{error:.1f}" if column.road == "geometric" and error is not None else text
+
+
+def _not_attributed(measure: Summary) -> list[float | None]:
+    """What each road leaves to no contributor [%], None for other columns; empty where that is nothing in print."""
+    left = [
+        100 - sum(share or 0.0 for share in column.percents.values()) if column.road in ATTRIBUTING else None
+        for column in contributor_columns(measure)
+    ]
+    return left if any(abs(rest or 0.0) > UNEXPLAINED_SHOWN for rest in left) else []
+
+
+def curve_table(measure: Summary) -> Sheet:
     """A curve measure at some of its positions."""
     unit, curve = measure["unit"], measure["curve"]
     roads = [(road, word) for road, word in (("analytic", "analytic"), ("geometric", "3D")) if road in curve]
-    table = Table(box=box.SIMPLE_HEAD, show_edge=False, pad_edge=False, padding=(0, 1), header_style="bold")
-    table.add_column(Text("driver at [°]"), justify="right")
-    for road, word in roads:
-        for key in ("mean", "sigma"):
-            table.add_column(Text(f"{word} {key}"), justify="right", style="bold" if road == "geometric" else "")
-    for key in ("smallest", "largest"):
-        table.add_column(Text(f"{roads[-1][1]} {key}"), justify="right")
-    positions = measure["position_deg"]
-    for index in range(0, len(positions), -(-len(positions) // CURVE_ROWS)):
-        cells = [value_text(curve[road][key][index], unit) for road, _ in roads for key in ("mean", "sigma")]
-        cells += [value_text(curve[roads[-1][0]][key][index], unit) for key in ("min", "max")]
-        table.add_row(f"{positions[index]:.1f}", *cells)
-    return table
-
-
-def _curve_limits(measure: Summary) -> list[Text]:
-    """Which share of the trials is out of a limit anywhere on its curve."""
-    curve = measure["curve"]
-    words = {"lower_limit": "below", "upper_limit": "above"}
-    return [
-        Text(
-            f" anywhere {word} {given_text(measure[limit], measure['unit'])} [ppm of the trials]: "
-            + ", ".join(
-                f"{'3D' if road == 'geometric' else road} {ppm_text(own[f'{word}_limit_ppm'])}"
-                for road, own in curve.items()
-            ),
-            style="dim",
-        )
-        for limit, word in words.items()
-        if measure.get(limit) is not None
+    columns = [(road, key, f"{word} {key}") for road, word in roads for key in ("mean", "sigma")]
+    leading, word = roads[-1]
+    columns += [(leading, "min", f"{word} smallest"), (leading, "max", f"{word} largest")]
+    headings = [Heading(text, "bold" if road == "geometric" else "") for road, _, text in columns]
+    positions = [f"{position:.1f}" for position in measure["position_deg"]]
+    longest = max(map(len, positions), default=0)
+    rows = [
+        Row(positions[index].rjust(longest), [value_text(curve[road][key][index], unit) for road, key, _ in columns])
+        for index in _shown_positions(measure)
     ]
+    return Sheet("driver at [°]", headings, rows)
+
+
+def _shown_positions(measure: Summary) -> range:
+    count = len(measure["position_deg"])
+    return range(0, count, max(1, -(-count // CURVE_ROWS)))
+
+
+def _curve_notes(measure: Summary) -> Iterator[str]:
+    """How many positions are left out, and the share of the trials that is out of a limit anywhere on its curve."""
+    shown, count = len(_shown_positions(measure)), len(measure["position_deg"])
+    if shown < count:
+        yield f"{shown} of {count} positions shown; all in summary.json"
+    words = {"lower_limit": "below", "upper_limit": "above"}
+    for limit, word in words.items():
+        if measure.get(limit) is not None:
+            yield f"anywhere {word} {given_text(measure[limit], measure['unit'])} [ppm of the trials]: " + ", ".join(
+                f"{'3D' if road == 'geometric' else road} {ppm_text(own[f'{word}_limit_ppm'])}"
+                for road, own in measure["curve"].items()
+            )
 
 
 def _status_line(summary: Summary) -> Text:

@@ -37,12 +37,11 @@ def view_run(
     *,
     screenshot: Path | None = None,
     magnify: float = 1.0,
-    trust_parts: bool = False,
 ) -> tuple[str, ...]:
     """Show a build of a run in a window, or write a picture of it.
 
     Args:
-        run, which, magnify, trust_parts: see `assemble`.
+        run, which, magnify: see `assemble`.
         screenshot: the picture to write; needs no display.
 
     Returns:
@@ -54,7 +53,7 @@ def view_run(
     if screenshot is not None and screenshot.suffix.lower() not in PICTURES:
         raise InputError(f"{screenshot}: expected a picture ending in {', '.join(PICTURES)}")
     choose_window(needs_display=screenshot is None)
-    assembly = assemble(run, which, magnify=magnify, trust_parts=trust_parts)
+    assembly = assemble(run, which, magnify=magnify)
     plotter = plot(assembly, off_screen=screenshot is not None)
     try:
         if screenshot is None:

@@ -6,6 +6,7 @@ the core schema of YAML 1.2.2, 10.3.2 (ruamel's own also takes `1_000` and dates
 """
 
 import difflib
+import os
 import re
 import unicodedata
 from collections.abc import Iterator
@@ -89,8 +90,10 @@ def read_scene_text(path: Path) -> tuple[dict[str, Any], Origin]:
 
 
 def _content(path: Path) -> str:
-    if path.is_dir():
+    if os.path.isdir(path):
         raise SceneError(f"{path}: expected a scene file, got a folder{_scene_inside(path)}")
+    if os.path.exists(path) and not os.path.isfile(path):  # a pipe would be waited for, a device may never end
+        raise SceneError(f"{path}: expected a scene file, got a pipe or a device")
     try:
         with path.open("rb") as stream:
             content = stream.read(MAX_BYTES + 1)

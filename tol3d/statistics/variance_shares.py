@@ -140,7 +140,7 @@ def _standard_error(share: float, unexplained: float, count: int) -> float:
 
     First order in 1 / sqrt(n), for independent normal contributors that act linearly: with U = 0
     it is sqrt(S (1 - S) / n), with a single contributor (U = 1 - S) the 2 r (1 - r^2) / sqrt(n) of
-    a squared correlation. Heavier tails make it larger.
+    a squared correlation. Heavier tails make it larger. A share below 0 is noise of its own size.
     """
-    share = min(max(share, 0.0), 1.0)
+    share = min(abs(share), 1.0)
     return math.sqrt(max(share * (1 - share) + share * unexplained * (3 - 4 * share), 0.0) / count)
