@@ -171,7 +171,7 @@ def test_what_no_contributor_explains_is_told_and_explained(run):
         for shares in (whole, partly)
     ]
     assert "not attributed" not in texts[0]
-    assert row_of(texts[1], "not attributed") == ["0.0", "10.0", "–"]  # nobody knows what a colleague left out
+    assert row_of(texts[1], "not attributed") == ["0.0", "10.0", "–", "–"]  # nobody knows what a colleague left out
     assert "that the regression on the contributors leaves unexplained" in texts[1]
 
 
