@@ -1,0 +1,319 @@
+"""Two straight bevel gears with a common apex: frames, path of contact, teeth that meet.
+
+Exact for rigid spherical-involute teeth. The plane of action touches both base cones and holds the pitch line; in
+it the flanks meet along lines through the apex, and a pair's in-plane angles keep their sum, q1 + q2 = q_p1 + q_p2.
+"""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tol3d.errors import GeometryError
+from tol3d.gears.bevel_gear import BevelGear, pitch_angles
+from tol3d.gears.flank import Flank
+from tol3d.gears.pair import Displaced
+
+Array = NDArray[np.float64]
+
+SAME_LENGTH = 1e-9  # relative; two modules written alike are equal in this sense
+SAME_ANGLE = 1e-9  # rad; over 100 mm a ten-thousandth of a micrometre
+SAME_SHIFT = 1e-9  # modules
+CONTACT_MARGIN = 0.15  # pitches beyond the path of contact, whose ends move by 1/sin(alpha) of a shift of the apexes
+
+
+@dataclass(frozen=True)
+class BevelPair:
+    """Pinion (driver) and wheel (driven) with their apexes in one point and their axes at a shaft angle [rad].
+
+    World: the common apex is the origin, the driver's axis +z, the pitch line lies in the half plane y = 0, x > 0.
+
+    Raises:
+        GeometryError: module, pressure angle, pitch angles, teeth, profile shifts do not make one pair.
+
+    >>> alpha, delta = math.radians(20), math.radians(45)
+    >>> gear = BevelGear(31, 3.5, alpha, 9.0, delta)
+    >>> pair = BevelPair(gear, gear, math.radians(90))
+    >>> round(pair.contact_ratio, 4), abs(pair.normal_backlash) < 1e-12
+    (1.7326, True)
+    """
+
+    pinion: BevelGear
+    wheel: BevelGear
+    shaft_angle: float
+
+    def __post_init__(self) -> None:
+        for name, unit in (("module", "mm"), ("pressure_angle", "rad")):
+            first, second = getattr(self.pinion, name), getattr(self.wheel, name)
+            if not math.isclose(first, second, rel_tol=SAME_LENGTH):
+                raise GeometryError(
+                    f"the gears of a pair need the same {name}, got {first:g} {unit} and {second:g} {unit}"
+                )
+        self._refuse_cones_that_do_not_roll()
+        total = self.pinion.profile_shift + self.wheel.profile_shift
+        if not abs(total) <= SAME_SHIFT:
+            raise GeometryError(
+                "the profile shifts of a bevel pair must cancel, for the pitch cones are given by the teeth and the "
+                f"shaft angle: got {self.pinion.profile_shift:g} and {self.wheel.profile_shift:g}, "
+                f"together {total:g} instead of 0"
+            )
+
+    def _refuse_cones_that_do_not_roll(self) -> None:
+        first, second = self.pinion.pitch_angle, self.wheel.pitch_angle
+        degrees = f"{math.degrees(first):.6f} and {math.degrees(second):.6f} deg"
+        if not abs(first + second - self.shaft_angle) <= SAME_ANGLE:
+            raise GeometryError(
+                f"the pitch angles {degrees} add up to {math.degrees(first + second):.6f} deg, "
+                f"the shaft angle is {math.degrees(self.shaft_angle):.6f} deg"
+            )
+        wanted = pitch_angles(self.pinion.teeth, self.wheel.teeth, self.shaft_angle)
+        if not abs(first - wanted[0]) <= SAME_ANGLE:
+            raise GeometryError(
+                f"{self.pinion.teeth} and {self.wheel.teeth} teeth at {math.degrees(self.shaft_angle):.6f} deg roll on "
+                f"pitch cones of {math.degrees(wanted[0]):.6f} and {math.degrees(wanted[1]):.6f} deg, got {degrees}: "
+                f"the outer cone distances would be {self.pinion.outer_cone_distance:.4f} and "
+                f"{self.wheel.outer_cone_distance:.4f} mm"
+            )
+
+    @property
+    def ratio(self) -> float:
+        """z2 / z1."""
+        return self.wheel.teeth / self.pinion.teeth
+
+    @property
+    def long_period_turns(self) -> int:
+        """Turns of the pinion until the same teeth meet again in the same places: z2 / gcd(z1, z2)."""
+        return self.wheel.teeth // math.gcd(self.pinion.teeth, self.wheel.teeth)
+
+    @property
+    def working_pressure_angle(self) -> float:
+        """alpha_w = alpha [rad]: with one apex the pitch cones are the working ones."""
+        return self.pinion.pressure_angle
+
+    @property
+    def face(self) -> tuple[float, float]:
+        """Cone distances [mm] between which both gears have flank; the heels coincide."""
+        inner = max(self.pinion.inner_cone_distance, self.wheel.inner_cone_distance)
+        return inner, self.pinion.outer_cone_distance
+
+    @property
+    def mean_cone_distance(self) -> float:
+        """Middle of the common face [mm]."""
+        return sum(self.face) / 2
+
+    @property
+    def working_radii(self) -> tuple[float, float]:
+        """Radii [mm] of the pitch cones of pinion and wheel at the middle of the common face."""
+        mean = self.mean_cone_distance
+        return mean * math.sin(self.pinion.pitch_angle), mean * math.sin(self.wheel.pitch_angle)
+
+    @property
+    def normal_backlash(self) -> float:
+        """j_n [mm] at the middle of the common face, 0 by construction: R sin(p_b - 2 sum of sin(beta) s/(2 r_e)).
+
+        It is proportional to the distance from the apex, for teeth that are cones: not one number on a face.
+        """
+        teeth = sum(math.sin(gear.base_angle) * gear.pitch_half_angle for gear in (self.pinion, self.wheel))
+        return self.mean_cone_distance * math.sin(self.pinion.base_pitch_angle - 2 * teeth)
+
+    # path of contact ------------------------------------------------------------------------------
+
+    @property
+    def start_q(self) -> float:
+        """In-plane angle [rad] of the pinion's flank where the wheel's tip cone begins the path of contact."""
+        return self.pinion.pitch_q + self.wheel.pitch_q - self.wheel.tip_q
+
+    @property
+    def contact_ratio(self) -> float:
+        """epsilon_alpha: angle of the path of contact, (tip q1 + tip q2 - q_p1 - q_p2), over the base pitch."""
+        return (self.pinion.tip_q - self.start_q) / self.pinion.base_pitch_angle
+
+    def refuse_interference(self) -> None:
+        """Raise unless tips clear roots and the path of contact stays on both involutes.
+
+        Raises:
+            GeometryError: with the angles and what to change.
+        """
+        mirrored = BevelPair(self.wheel, self.pinion, self.shaft_angle)
+        for pair, name, mate in ((self, "driver", "driven"), (mirrored, "driven", "driver")):
+            pair._refuse_interference_of_pinion(name, mate)
+        if self.contact_ratio < 1.0:
+            raise GeometryError(f"contact ratio {self.contact_ratio:.4f} is below 1: the teeth lose touch")
+
+    def _refuse_interference_of_pinion(self, name: str, mate: str) -> None:
+        gear = self.pinion
+        clearance = gear.outer_cone_distance * math.sin(self.shaft_angle - gear.root_angle - self.wheel.tip_angle)
+        if clearance <= 0.0:
+            raise GeometryError(
+                f"the teeth interfere: the {mate} gear's tip digs {-clearance:.4f} mm into the root of the "
+                f"{name} gear at the outer end; raise the {name} gear's dedendum or lower the {mate} gear's addendum"
+            )
+        at = math.acos(math.cos(max(self.start_q, 0.0)) * math.cos(gear.base_angle))
+        where = f"at {math.degrees(at):.4f} deg" if self.start_q > 0.0 else "below the base cone"
+        if at < gear.undercut_angle:
+            raise GeometryError(
+                f"undercut reaches the flank in use: a crown rack of addendum 1 cuts the {name} gear's involute up to "
+                f"{math.degrees(gear.undercut_angle):.4f} deg, contact begins {where}; give "
+                f"profile_shift of at least {gear.undercut_limit_shift:.4f} (it has {gear.profile_shift:g})"
+            )
+        if self.start_q < gear.form_q:
+            begins = math.degrees(max(gear.base_angle, gear.root_angle))
+            raise GeometryError(
+                f"the teeth interfere: the {mate} gear's tip would touch the {name} gear {where}, "
+                f"but its involute begins at {begins:.4f} deg; lower addendum, or add profile_shift"
+            )
+
+    # positions --------------------------------------------------------------------------------------
+
+    @property
+    def wheel_origin(self) -> Array:
+        """The common apex, (3,) [mm]."""
+        return np.zeros(3)
+
+    @property
+    def mesh_azimuths(self) -> tuple[float, float]:
+        """Both gears see the pitch line at azimuth 0 [rad]."""
+        return 0.0, 0.0
+
+    @property
+    def pinion_section(self) -> float:
+        """Where the middle of the common face lies on the pinion's, from toe (0) to heel (1)."""
+        return (self.mean_cone_distance - self.pinion.inner_cone_distance) / self.pinion.face_width
+
+    @property
+    def arm_spread(self) -> float:
+        """From toe to heel of the common face, (R_e - R_i)/R_e."""
+        inner, outer = self.face
+        return (outer - inner) / outer
+
+    @property
+    def view_from_world(self) -> Array:
+        """Rotation (3, 3) to what one sees who looks along the pitch line to the apex, the wheel on the right."""
+        cos, sin = math.cos(self.pinion.pitch_angle), math.sin(self.pinion.pitch_angle)
+        return np.array([[cos, 0.0, -sin], [0.0, 1.0, 0.0], [sin, 0.0, cos]])
+
+    def tip_clearance(self, origins: Array, scale: tuple[float, float]) -> float:
+        """Smaller free distance [mm] between a tip cone and the mate's root cone at the toe, apexes where they are."""
+        inner, _ = self.face
+        pairs = ((self.pinion, self.wheel), (self.wheel, self.pinion))
+        nominal = min(inner * math.sin(self.shaft_angle - a.root_angle - b.tip_angle) for a, b in pairs)
+        cos, sin = math.cos(self.pinion.pitch_angle), math.sin(self.pinion.pitch_angle)
+        apart = origins[1] - origins[0]
+        return float(nominal + cos * apart[0] - sin * apart[2])
+
+    @property
+    def remedy(self) -> str:
+        """A pair with a common apex has no play: thinner teeth or longer mounting distances give it some."""
+        return (
+            "nominal teeth with a common apex have no play: thin the teeth, or move the gears away from the apex "
+            "(thinner shims, longer mounting distances)"
+        )
+
+    @property
+    def world_from_wheel(self) -> Array:
+        """Rotation (3, 3) of the wheel's frame at rest: z2 = (sin S, 0, cos S), y2 = -y, x2 = y2 x z2.
+
+        Both gears see the pitch line at azimuth 0. A turn of the wheel is about its own z, on the right of this.
+        """
+        sin, cos = math.sin(self.shaft_angle), math.cos(self.shaft_angle)
+        return np.array([[-cos, 0.0, sin], [0.0, -1.0, 0.0], [sin, 0.0, cos]])
+
+    def driven_angle(self, driver_angle: Array) -> Array:
+        """Wheel's turn [rad] with its space centred on the pinion's tooth: pi/z2 - (z1/z2) theta_1."""
+        return math.pi / self.wheel.teeth - driver_angle / self.ratio
+
+    def touching_angle(self, driver_angle: Array, flank: Flank, displaced: Displaced) -> Array:
+        """Wheel's turn [rad] at which the first pair of that side touches in the middle of the face, to first order.
+
+        A pair whose contact lies s from the pitch line in the plane of action has the normal
+        n(s) = cos s p - sin s e, p = sin(alpha) N - sigma cos(alpha) y, e the pitch line and N from the pinion to
+        the wheel across it. A shift D of the pinion's apex against the wheel's takes n(s) D off its gap, a turn W
+        takes R (e x p) W, and a turn of the wheel adds R sigma sin(beta_2).
+
+        Args:
+            driver_angle: pinion's turn [rad], (trials,).
+            flank: the pinion's flank.
+            displaced: where the gears lie, and their flanks.
+        """
+        radius = self.mean_cone_distance
+        sin, cos = math.sin(self.pinion.pitch_angle), math.cos(self.pinion.pitch_angle)
+        line, across = np.array([sin, 0.0, cos]), np.array([cos, 0.0, -sin])
+        side = np.array([0.0, 1.0, 0.0])
+        alpha = self.working_pressure_angle
+        at_pitch = math.sin(alpha) * across - flank * math.cos(alpha) * side
+        arm = flank * math.cos(alpha) * across + math.sin(alpha) * side
+        shift, turn = (vectors[:, 0] - vectors[:, 1] for vectors in (displaced.origin, displaced.turn))
+        teeth, near = self.candidate_teeth(driver_angle, flank)
+        azimuth = driver_angle[:, None] + self.pinion.angular_pitch * teeth
+        off = math.sin(self.pinion.base_angle) * (self.pinion.pitch_half_angle - flank * azimuth)
+        opened = np.sin(off) * _along(shift, line)[:, None] - np.cos(off) * _along(shift, at_pitch)[:, None]
+        least = np.min(np.where(near, opened, np.inf), axis=1) / radius - _along(turn, arm)
+        still = self.start_angle(driver_angle, flank, 2 * displaced.flank_turn * self._mean_radii)
+        return np.asarray(still - flank * least / math.sin(self.wheel.base_angle), dtype=np.float64)
+
+    @property
+    def _mean_radii(self) -> Array:
+        return np.array([self.pinion.mean_radius, self.wheel.mean_radius])
+
+    def start_angle(self, driver_angle: Array, flank: Flank, thickness: Array) -> Array:
+        """Wheel's turn [rad] at which the flanks of that side touch, were the axes and the apex in place.
+
+        In the plane of action each flank stands sin(beta) (s/(2 r_e) - sigma azimuth) from the pitch line, and two
+        that touch stand together; thicker teeth are the same flanks turned. Exact then, for every tooth pair and
+        along the whole face.
+
+        Args:
+            driver_angle: pinion's turn [rad], (trials,).
+            flank: the pinion's flank.
+            thickness: deviations of the tooth thickness of pinion and wheel, (trials, 2) [mm], arcs at
+                their mean_radius, proportional along the face.
+        """
+        half_angles = [
+            gear.pitch_half_angle + thickness[:, k] / (2 * gear.mean_radius)
+            for k, gear in enumerate((self.pinion, self.wheel))
+        ]
+        mate = 0 if flank == 1 else 1
+        opened = flank * (half_angles[0] / self.ratio + half_angles[1])
+        return np.asarray(mate * self.wheel.angular_pitch + opened - driver_angle / self.ratio, dtype=np.float64)
+
+    def candidate_teeth(self, driver_angle: Array, flank: Flank) -> tuple[NDArray[np.int64], NDArray[np.bool_]]:
+        """Pinion teeth that may touch on that flank.
+
+        Args:
+            driver_angle: pinion's turn [rad], shape (trials,).
+            flank: the pinion's flank.
+
+        Returns:
+            (trials, pairs) tooth numbers (any integer; tooth k is turned by 2 pi k/z), consecutive,
+            and (trials, pairs) whether each may touch. A tooth at azimuth psi touches at the in-plane angle
+            q = q_p + sin(beta) (s/(2 r_e) - sigma psi): on the path of contact or within CONTACT_MARGIN pitches of it.
+        """
+        gear = self.pinion
+        sin = math.sin(gear.base_angle)
+        offset = gear.pitch_q / sin + gear.pitch_half_angle
+        margin = CONTACT_MARGIN * gear.angular_pitch
+        pairs = math.floor(self.contact_ratio + 2 * CONTACT_MARGIN) + 1
+        # sigma psi runs from offset - (tip roll + margin) up to offset - (start roll - margin); roll = q/sin(beta)
+        lowest = (offset - gear.tip_q / sin - margin - flank * driver_angle) / gear.angular_pitch
+        highest = (offset - self.start_q / sin + margin - flank * driver_angle) / gear.angular_pitch
+        steps = np.ceil(lowest).astype(np.int64)[:, None] + np.arange(pairs)
+        return np.asarray(flank * steps), steps <= highest[:, None]
+
+    def mating_teeth(self, driver_teeth: NDArray[np.int64], flank: Flank) -> NDArray[np.int64]:
+        """The wheel's tooth that each of those pinion flanks meets: -k on the right flank, -k - 1 on the left."""
+        return -driver_teeth - (0 if flank == 1 else 1)
+
+    def opening_sense(self, flank: Flank) -> Flank:
+        """Sense about its own axis in which either gear's turn opens that flank side: sigma.
+
+        The driver's right flank faces -y at the mesh. The driven tooth there leaves it towards -y, which for
+        the wheel, whose y points the other way, is counter-clockwise; and so does the driver, towards +y.
+        """
+        return flank
+
+
+def _along(vectors: Array, direction: Array) -> Array:
+    """Components (rows,) of vectors (rows, 3) along a direction, with the same bits for one row and many."""
+    x, y, z = vectors.T
+    return np.asarray(x * direction[0] + y * direction[1] + z * direction[2], dtype=np.float64)
