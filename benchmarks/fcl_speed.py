@@ -6,6 +6,7 @@ Prints trials/s on one core for the spur pair at the default mesh (draws, builds
 same with every measure of the scene, and beside it the naive way: both whole tessellated gears as one
 BVH each in FCL, the wheel turned by secant steps on the distance until the teeth touch on one side, then on the
 other. Both in one run on the same trials, so that the ratio holds on a noisy machine; medians of several rounds.
+Then the bevel pair at its own mesh, for each way of reading its normal backlash.
 """
 
 import argparse
@@ -25,11 +26,11 @@ from tol3d import load_scene
 from tol3d.block import drawn_block, simulate_block
 from tol3d.build import build
 from tol3d.engines.fcl import FclEngine
-from tol3d.model import Model
+from tol3d.model import Model, Reading
 from tol3d.simulate import Overrides, effective_model, strips_of
 from tol3d.solids import display_mesh
 
-SCENE = Path(__file__).resolve().parent.parent / "scenes" / "spur_pair.yaml"
+SCENES = Path(__file__).resolve().parent.parent / "scenes"
 ROUNDS = 5
 NAIVE_DEFLECTION = 0.001  # mm; as fine as whole gears can be tessellated in reasonable time
 NAIVE_XTOL = 1e-4  # mm; the naive way stops this near to contact
@@ -108,15 +109,21 @@ def main() -> None:
     parser.add_argument("--trials", type=int, default=2000)
     parser.add_argument("--naive", type=int, default=20)
     arguments = parser.parse_args()
-    model = effective_model(load_scene(SCENE), Overrides())
+    measure_spur_pair(arguments.trials, arguments.naive)
+    measure_bevel_pair(arguments.trials)
+
+
+def measure_spur_pair(trials: int, naive_trials: int) -> None:
+    """The strips beside whole gears."""
+    model = effective_model(load_scene(SCENES / "spur_pair.yaml"), Overrides())
     normal_only = replace(model, measures=model.measures[:1])
     rates = {"normal backlash": [], "every measure": []}
     naive = []
     triangles = 0
     for _ in range(ROUNDS):
-        rates["normal backlash"].append(strips_rate(normal_only, arguments.trials))
-        rates["every measure"].append(strips_rate(model, arguments.trials))
-        rate, triangles = naive_rate(model, arguments.naive)
+        rates["normal backlash"].append(strips_rate(normal_only, trials))
+        rates["every measure"].append(strips_rate(model, trials))
+        rate, triangles = naive_rate(model, naive_trials)
         naive.append(rate)
     slow = statistics.median(naive)
     steps = model.study.profile_steps
@@ -127,6 +134,27 @@ def main() -> None:
         print(f"  strips, {what:16} {median:8.0f} trials/s  ({spread})   {median / slow:7.0f} x naive")
     print(f"  naive, whole gears        {slow:8.2f} trials/s  ({triangles} triangles, {NAIVE_DEFLECTION} mm)")
     assert math.isfinite(slow)
+
+
+def measure_bevel_pair(trials: int) -> None:
+    """Each way of reading, and all measures of the scene."""
+    model = effective_model(load_scene(SCENES / "bevel_pair.yaml"), Overrides())
+    measure = model.measures[0]
+    readings = {
+        "mean section, one tooth": measure.kind.reading,
+        "mean section, all teeth": Reading("section", "section", "all"),
+        "face contact, one tooth": Reading("face", "section", "driven"),
+        "whole face, all teeth": Reading("face", "face", "all"),
+    }
+    print(f"{model.name}: {model.study.profile_steps} steps a flank, one core, medians of {ROUNDS} rounds")
+    models = {
+        what: replace(model, measures=(replace(measure, kind=replace(measure.kind, reading=reading)),))
+        for what, reading in readings.items()
+    } | {"every measure": model}
+    for what, read in models.items():
+        found = [strips_rate(read, trials) for _ in range(ROUNDS)]
+        spread = f"{min(found):.0f} ... {max(found):.0f}"
+        print(f"  strips, {what:24} {statistics.median(found):8.0f} trials/s  ({spread})")
 
 
 if __name__ == "__main__":

@@ -8,6 +8,7 @@ import pytest
 from oracles import brute_force, exact_eccentric
 from oracles.involute_gear import InvoluteGear
 from oracles.poses import world_from_gears
+from oracles.thickness import thickness_of
 from scipy.spatial.transform import Rotation
 
 from tol3d.analytic import analytic_backlash, closed_form
@@ -16,9 +17,9 @@ from tol3d.build import Build, build
 from tol3d.distributions import Uniform
 from tol3d.gears import LEFT, RIGHT, SpurGear, SpurPair
 from tol3d.measures import measure_backlash
-from tol3d.model import Backlash, Contributor, GearPart, Mesh, Model, Scalar, Study, Temperature, TurningOffset
+from tol3d.model import Backlash, Contributor, GearPart, Mesh, Model, Reading, Scalar, Study, Temperature, TurningOffset
 from tol3d.model.model import Housing
-from tol3d.moves import INTERFERES, OK, seat_mesh
+from tol3d.moves import INTERFERES, OK, Meshing
 
 ALPHA = math.radians(20.0)
 STACK_UP_BOUND = 0.15e-3  # mm; 0.05 um of squares in the first order, 0.1 um of the strips
@@ -73,8 +74,9 @@ def rows(request: pytest.FixtureRequest, paper_model: Model, engine_of) -> Rows:
     block = drawn_block(model, model.study.seed, 0, model.study.trials)
     angle = block.random_angle[mesh.name]
     made, engine = build(model, block.deviations), engine_of(model)
-    seat = seat_mesh(engine, model, mesh, made, angle)
-    values = measure_backlash(engine, model, model.measures[0].kind, made, seat)
+    meshing = Meshing(engine, model, mesh, made, Reading())
+    seat = meshing.seat(angle)
+    values = measure_backlash(model.measures[0].kind, meshing, seat)
     return Rows(model, block.deviations, angle, made, values, seat.status)
 
 
@@ -96,7 +98,7 @@ def exact_rows(rows: Rows) -> np.ndarray:
     return exact_eccentric.normal_backlash(
         oracle_gear(mesh.pair.pinion),
         oracle_gear(mesh.pair.wheel),
-        made.thickness.sum(axis=1),
+        thickness_of(rows.model, made).sum(axis=1),
         made.world_from_shaft[:, 1, :2, 3] - made.world_from_shaft[:, 0, :2, 3],
         (made.centre[:, 0], made.centre[:, 1]),
         rows.driver_angle,
@@ -107,7 +109,7 @@ def exact_rows(rows: Rows) -> np.ndarray:
 def test_the_exact_eccentric_pair_agrees_with_brute_force_to_1e_8_mm(rows: Rows) -> None:
     few, mesh = slice(0, 10), rows.model.meshes[0]
     gears = (mesh.pair.pinion, mesh.pair.wheel)
-    pinion, wheel = (oracle_gear(gear, rows.made.thickness[few, k]) for k, gear in enumerate(gears))
+    pinion, wheel = (oracle_gear(gear, thickness_of(rows.model, rows.made)[few, k]) for k, gear in enumerate(gears))
     shafts, centres = rows.made.world_from_shaft[few], rows.made.centre[few]
     searched = brute_force.Mesh(pinion, wheel, shafts[:, 0], shafts[:, 1], centres[:, 0], centres[:, 1])
     found = brute_force.normal_backlash(searched, rows.driver_angle[few], mesh.working_flank)
@@ -219,7 +221,9 @@ def posed(case: Case, count: int, seed: int, flank: int) -> Posed:
     shafts[:, 1, :3, 3] = rng.uniform(-1, 1, (count, 3)) * (0.03, 0.03, 0.3 * width) + (distance, 0.0, 0.0)
     centre = rng.uniform(-0.01, 0.01, (count, 2, 2))
     thickness = rng.uniform(-0.005, 0.005, (count, 2)) - case.thinner
-    made = Build(shafts, centre, thickness, np.tile(case.growth, (count, 1)))
+    half_turns = thickness / np.array([gear.reference_diameter for gear in gears])
+    still = np.zeros((count, 2, 3))  # the start of the turn does not know the tilts, nor need it
+    made = Build(shafts, centre, still, half_turns, np.zeros((count, 2)), np.tile(case.growth, (count, 1)))
     driver_angle = rng.uniform(0.0, 2 * np.pi * mesh.pair.long_period_turns, count)
     plain = [oracle_gear(gear, thickness[:, k], case.growth[k]) for k, gear in enumerate(gears)]
     searched = brute_force.Mesh(*plain, shafts[:, 0], shafts[:, 1], centre[:, 0], centre[:, 1])
@@ -237,10 +241,11 @@ def assert_agree(measured: np.ndarray, found: np.ndarray, chord_error: float) ->
 def check_normal_backlash(case: Case, count: int, seed: int, flank: int, engine_of) -> None:
     poses = posed(case, count, seed, flank)
     engine = engine_of(poses.model)
-    seat = seat_mesh(engine, poses.model, poses.mesh, poses.made, poses.driver_angle)
+    meshing = Meshing(engine, poses.model, poses.mesh, poses.made, Reading())
+    seat = meshing.seat(poses.driver_angle)
     assert (seat.status == OK).all()
     kind = Backlash("normal_backlash", "mesh", "wheel")
-    measured = measure_backlash(engine, poses.model, kind, poses.made, seat)
+    measured = measure_backlash(kind, meshing, seat)
     found = brute_force.normal_backlash(poses.searched, poses.driver_angle, flank)
     assert_agree(measured, found, engine.chord_error)
 
@@ -262,13 +267,14 @@ def test_two_hundred_poses_agree_with_brute_force_to_0_1_um(name: str, flank: in
 def test_free_turns_of_either_gear_agree_with_brute_force(flank: int, engine_of) -> None:
     poses = posed(CASES["paper"], 5, 11, flank)
     mesh, engine = poses.mesh, engine_of(poses.model)
-    seat = seat_mesh(engine, poses.model, mesh, poses.made, poses.driver_angle)
+    meshing = Meshing(engine, poses.model, mesh, poses.made, Reading())
+    seat = meshing.seat(poses.driver_angle)
     for name, gear in (("pinion", mesh.pair.pinion), ("wheel", mesh.pair.wheel)):
         kind = Backlash("angular_backlash", "mesh", name)
-        measured = measure_backlash(engine, poses.model, kind, poses.made, seat)
+        measured = measure_backlash(kind, meshing, seat)
         found = brute_force.free_turn(poses.searched, poses.driver_angle, flank, turn_driver=name == "pinion")
         assert_agree(measured * gear.base_radius, found * gear.base_radius, engine.chord_error)
-    arc = measure_backlash(engine, poses.model, Backlash("circumferential_backlash", "mesh", "wheel"), poses.made, seat)
+    arc = measure_backlash(Backlash("circumferential_backlash", "mesh", "wheel"), meshing, seat)
     # an arc at the working circle of the driven gear: r_b / cos alpha_w
     assert_agree(
         arc * np.cos(mesh.pair.working_pressure_angle), found * mesh.pair.wheel.base_radius, engine.chord_error
@@ -279,7 +285,8 @@ def test_first_contact_lies_on_the_flank_of_a_tooth_that_the_search_finds_touchi
     poses = posed(CASES["paper"], 6, 21, RIGHT)
     searched = poses.searched
     engine = engine_of(poses.model)
-    seat = seat_mesh(engine, poses.model, poses.mesh, poses.made, poses.driver_angle)
+    meshing = Meshing(engine, poses.model, poses.mesh, poses.made, Reading())
+    seat = meshing.seat(poses.driver_angle)
     start = brute_force.tooth_in_space(searched, poses.driver_angle)
     touching = brute_force.turn_until_contact(searched, poses.driver_angle, start, RIGHT)
     # the strips lie inside the teeth, so the wheel goes on by two chord errors at most
@@ -301,7 +308,8 @@ def test_first_contact_lies_on_the_flank_of_a_tooth_that_the_search_finds_touchi
 def test_a_gap_s_derivative_by_a_turn_is_its_difference_quotient(of_driver: bool, side: int, engine_of) -> None:
     poses = posed(CASES["paper"], 6, 31, RIGHT)
     mesh, engine = poses.mesh, engine_of(poses.model)
-    angles = (poses.driver_angle, seat_mesh(engine, poses.model, mesh, poses.made, poses.driver_angle).driven_angle)
+    seat = Meshing(engine, poses.model, mesh, poses.made, Reading()).seat(poses.driver_angle)
+    angles = (poses.driver_angle, seat.driven_angle)
     teeth, wanted = mesh.pair.candidate_teeth(poses.driver_angle, side)
     step = np.array([1e-6, 0.0] if of_driver else [0.0, 1e-6])  # rad; 0.1 um, over which a gap bends by 1e-9 mm
 
@@ -345,8 +353,9 @@ def test_gears_of_one_material_in_a_housing_of_another_are_a_scaled_pair(kelvin:
     made = build(model, np.full((6, 1), kelvin))
     angle = np.linspace(0.0, 30.0, 6)
     engine, mesh = engine_of(model), model.meshes[0]
-    seat = seat_mesh(engine, model, mesh, made, angle)
-    measured = measure_backlash(engine, model, Backlash("normal_backlash", "mesh", "wheel"), made, seat)
+    meshing = Meshing(engine, model, mesh, made, Reading())
+    seat = meshing.seat(angle)
+    measured = measure_backlash(Backlash("normal_backlash", "mesh", "wheel"), meshing, seat)
     grown, opened = 1 + steel * kelvin, 1 + aluminium * kelvin
     # in lengths measured with the gears' own steel the axes stand at a (1 + housing)/(1 + gears)
     exact = grown * SpurPair(mesh.pair.pinion, mesh.pair.wheel, 172.6 * opened / grown).normal_backlash
@@ -360,9 +369,10 @@ def test_a_warm_pinion_in_a_cold_house_closes_until_it_interferes(engine_of) -> 
     model = warm_model((11.5e-6, 0.0, 0.0))
     made = build(model, np.array([[0.0], [100.0], [3000.0]]))
     engine, mesh = engine_of(model), model.meshes[0]
-    seat = seat_mesh(engine, model, mesh, made, np.zeros(3))
+    meshing = Meshing(engine, model, mesh, made, Reading())
+    seat = meshing.seat(np.zeros(3))
     assert list(seat.status) == [OK, OK, INTERFERES]
-    values = measure_backlash(engine, model, Backlash("normal_backlash", "mesh", "wheel"), made, seat)
+    values = measure_backlash(Backlash("normal_backlash", "mesh", "wheel"), meshing, seat)
     assert values[1] < values[0]
     assert np.isnan(values[2])
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from tol3d import load_scene
-from tol3d.analytic import SpurStack, analytic_backlash, closed_form
+from tol3d.analytic import analytic_backlash, closed_form, stack_of
 from tol3d.block import analytic_values, drawn_block
 from tol3d.distributions import Normal, Rayleigh, Uniform
 from tol3d.gears import SpurPair
@@ -116,7 +116,7 @@ def test_linear_coefficients_are_the_derivatives_of_the_exact_backlash(model: Mo
     """Central differences of the exact pair, with the working pressure angle of its centre distance."""
     mesh = replace(model.meshes[0], pair=replace(model.meshes[0].pair, centre_distance=centre_distance))
     shifted = replace(model, meshes=(mesh,))
-    stack = SpurStack(shifted, mesh)
+    stack = stack_of(shifted, mesh)
     step = 1e-4
     pair = mesh.pair
 

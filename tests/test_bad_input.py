@@ -151,12 +151,12 @@ CHANGES = {
     ),
     "missing part": (
         ("driver: pinion", "driver: pinon"),
-        "moves.gear pair.driver: expected the name of a gear, got 'pinon', which is not in the scene; "
+        "moves.gear pair.driver: expected the name of a spur gear, got 'pinon', which is not in the scene; "
         'did you mean "pinion"?',
     ),
     "a mesh in place of a gear": (
         ("driver: pinion", "driver: gear pair"),
-        "moves.gear pair.driver: expected the name of a gear, got 'gear pair', which is a mesh move",
+        "moves.gear pair.driver: expected the name of a spur gear, got 'gear pair', which is a mesh of spur gears",
     ),
     "a gear that drives itself": (
         ("driver: pinion", "driver: wheel"),
@@ -168,7 +168,7 @@ CHANGES = {
     ),
     "a gear in place of a mesh": (
         ("of: gear pair", "of: wheel"),
-        "tolerances.centre distance.of: expected the name of a mesh move, got 'wheel', which is a gear",
+        "tolerances.centre distance.of: expected the name of a mesh of spur gears, got 'wheel', which is a spur gear",
     ),
     "eccentricity of a housing": (
         (
@@ -201,7 +201,7 @@ CHANGES = {
     ),
     "unknown kind of move": (
         ("kind: mesh", "kind: mash"),
-        "moves.gear pair.kind: expected mesh, got 'mash'; did you mean \"mesh\"?",
+        "moves.gear pair.kind: expected mesh or bevel_mesh, got 'mash'; did you mean \"mesh\"?",
     ),
     "missing kind": (
         ("{kind: rayleigh, scale", "{scale"),

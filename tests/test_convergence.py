@@ -6,13 +6,14 @@ import numpy as np
 import pytest
 from oracles import exact_eccentric
 from oracles.involute_gear import InvoluteGear
+from oracles.thickness import thickness_of
 
 from tol3d.block import Block, drawn_block, geometric_values, seat_block, simulate_block, taken
 from tol3d.build import build
 from tol3d.gears import LEFT, RIGHT
 from tol3d.measures import measure_backlash
-from tol3d.model import Backlash, Measure, Model, Positions
-from tol3d.moves import seat_mesh
+from tol3d.model import Backlash, Measure, Model, Positions, Reading
+from tol3d.moves import Meshing
 
 DENSITIES = (60, 80, 120, 160)
 TRIALS = 200  # the mean error of so many has a standard error of 3 %, and the same trials serve every density
@@ -30,7 +31,8 @@ def exact_of(model: Model, block: Block, angle: np.ndarray) -> np.ndarray:
     ]
     axis = made.world_from_shaft[:, 1, :2, 3] - made.world_from_shaft[:, 0, :2, 3]
     centres = (made.centre[:, 0], made.centre[:, 1])
-    return exact_eccentric.normal_backlash(*gears, made.thickness.sum(axis=1), axis, centres, angle, mesh.working_flank)
+    thickness = thickness_of(model, made).sum(axis=1)
+    return exact_eccentric.normal_backlash(*gears, thickness, axis, centres, angle, mesh.working_flank)
 
 
 @pytest.mark.parametrize("flank", [RIGHT, LEFT], ids=["right", "left"])
@@ -42,8 +44,9 @@ def test_mean_error_of_the_strips_falls_with_the_square_of_the_step(flank: int, 
     errors, chords = [], []
     for steps in DENSITIES:
         engine = engine_of(model, steps)
-        seat = seat_mesh(engine, model, mesh, made, angle)
-        errors.append(np.mean(measure_backlash(engine, model, model.measures[0].kind, made, seat) - exact))
+        meshing = Meshing(engine, model, mesh, made, Reading())
+        values = measure_backlash(model.measures[0].kind, meshing, meshing.seat(angle))
+        errors.append(np.mean(values - exact))
         chords.append(engine.chord_error)
     order = -np.polyfit(np.log(DENSITIES), np.log(errors), 1)[0]
     assert 1.7 < order < 2.3
@@ -104,7 +107,7 @@ def test_a_curve_is_the_values_at_its_positions(paper_model: Model, engine_of) -
     curve = extreme("curve", "turn", 8)
     model = replace(paper_model, measures=(curve,))
     block, engine = drawn_block(model, 2, 0, 3), engine_of(model)
-    values = geometric_values(model, engine, curve, seat_block(model, engine, block))
+    values = geometric_values(curve, seat_block(model, engine, block))
     assert np.array_equal(taken(curve, values), values)
     for k, angle in enumerate(curve.positions.fixed):
         exact = exact_of(model, block, np.full(3, angle))

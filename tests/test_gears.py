@@ -15,7 +15,7 @@ from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
 from tol3d.errors import GeometryError
-from tol3d.gears import LEFT, RIGHT, SpurGear, SpurPair, inverse_involute, involute
+from tol3d.gears import LEFT, RIGHT, Displaced, SpurGear, SpurPair, inverse_involute, involute
 
 ALPHA = math.radians(20.0)
 EXACT = 1e-9  # mm; what the closed forms must keep of each other over all sizes here
@@ -333,8 +333,12 @@ def test_touching_angle_is_where_a_search_turns_the_wheel_to(flank: int) -> None
     thin = [replace(g, tooth_thickness_deviation=t) for g, t in zip((pinion, wheel), thickness, strict=True)]
     mesh = parallel_mesh(SpurPair(*thin, pair.centre_distance), len(angle))
     mesh.driven_shaft[:, :2, 3] = line
+    origins = np.zeros((5, 2, 3))
+    origins[:, 1, :2] = line
+    half_turns = [t / g.reference_diameter for g, t in zip((pinion, wheel), thickness, strict=True)]
+    displaced = Displaced(origins, np.zeros((5, 2, 3)), np.tile(half_turns, (5, 1)))
     found = brute_force.turn_until_contact(mesh, angle, brute_force.tooth_in_space(mesh, angle), flank)[1]
-    told = pair.touching_angle(angle, flank, np.tile(line, (5, 1)), np.tile(thickness, (5, 1)))
+    told = pair.touching_angle(angle, flank, displaced)
     assert np.abs(told - found).max() * wheel.base_radius < 3e-8
 
 

@@ -512,9 +512,9 @@ def test_a_magnified_tip_keeps_its_points_in_their_order(run):
     """Told by azimuths alone: corners that pass the points between them would fold the tip."""
     for magnify, whole in ((1.0, True), (assemble(run, TRIAL, magnify=1e4).magnify, True), (60.0, False)):
         part = assemble(run, TRIAL).meshes[0].driver
-        part = replace(part, thickness=magnify * part.thickness)
+        part = replace(part, flank_turn=magnify * part.flank_turn)
         display = display_mesh(part.gear, DISPLAY_DEFLECTION)
-        moved = display.thickened(part.thickness / (2 * part.gear.reference_radius))
+        moved = display.thickened(part.flank_turn)
         tip = np.abs(np.hypot(*display.vertices[:, :2].T) - part.gear.tip_radius) < 1e-6
         tip &= np.abs(display.vertices[:, 2] - display.vertices[:, 2].max()) < 1e-6
         tip &= np.abs(np.arctan2(display.vertices[:, 1], display.vertices[:, 0])) < math.pi / part.gear.teeth  # tooth 0

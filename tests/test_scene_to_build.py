@@ -16,8 +16,8 @@ from oracles.involute_gear import InvoluteGear
 from tol3d import trials
 from tol3d.build import Build, build
 from tol3d.gears import LEFT, RIGHT
-from tol3d.model import Model, model_from_scene
-from tol3d.moves import OK, seat_mesh
+from tol3d.model import Model, Reading, model_from_scene
+from tol3d.moves import OK, Meshing
 from tol3d.scene import load_scene
 
 SPUR_PAIR = (Path(__file__).resolve().parent.parent / "scenes" / "spur_pair.yaml").read_text("utf-8")
@@ -160,7 +160,9 @@ def assert_gear(made: Build, index: int, expected: Gear, at: float) -> None:
     shaft = poses.pose(np.array([*expected.turn, 0.0]) * 1e-3, place)
     assert np.abs(made.world_from_shaft[0, index] - shaft).max() <= POSE_BOUND
     assert made.centre[0, index] == pytest.approx(np.array(expected.centre) * 1e-3, abs=POSE_BOUND)
-    assert made.thickness[0, index] == pytest.approx(expected.thickness * 1e-3, abs=POSE_BOUND)
+    diameter = 40.0 if at == 0.0 else 60.0  # of the reference circle: half the arc on each flank is a turn of s/d
+    assert diameter * made.flank_turn[0, index] == pytest.approx(expected.thickness * 1e-3, abs=POSE_BOUND)
+    assert made.flank_offset[0, index] == 0.0
     assert made.scale[0, index] == pytest.approx(1.0 + expected.growth * 1e-6, abs=POSE_BOUND)
 
 
@@ -277,7 +279,7 @@ def test_a_driver_that_turns_counter_clockwise_pushes_with_its_left_flank(
     row = np.zeros((len(angle), model.component_count))
     for name, um in (("pinion tooth thickness", -24.5), ("wheel tooth thickness", -26.5), ("bearing clearance", 16.0)):
         row[:, model.component_slices[name]] = um * 1e-3
-    seat = seat_mesh(engine_of(model), model, model.meshes[0], build(model, row), angle)
+    seat = Meshing(engine_of(model), model, model.meshes[0], build(model, row), Reading()).seat(angle)
     assert (seat.status == OK).all()
     # the same build by hand; the wheel's axis moves by half of the clearance
     alpha = math.radians(20)

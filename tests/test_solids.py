@@ -88,24 +88,25 @@ def off_the_rack(gear: SpurGear, points: np.ndarray, flank: int, thinner: float 
 def test_strips_lie_on_the_flank_a_rack_makes(gear: SpurGear) -> None:
     strips = measuring_strips(gear, 120)
     for flank in (RIGHT, LEFT):
-        profile = strips.profile[flank]
+        profile = strips.inner[flank][:, :2]
         assert off_the_rack(gear, profile, flank).max() < FLANK_BOUND
         _, normals = rack_contact(gear, rack_place(gear, np.hypot(*profile.T)), flank)
         # The oracle's place is a square root: at the base circle a rounding of 1e-16 becomes 1e-8 of
         # the radius. Elsewhere the cubic spline's slope is off by h^3 P''''/24 / (r_b t) < 1e-5.
-        assert np.abs(strips.normals[flank] - normals).max() < 1e-5
+        assert np.abs(strips.normals[flank][:, :2] - normals).max() < 1e-5
         assert np.hypot(*profile[-1]) == pytest.approx(gear.tip_radius, abs=1e-6)
     assert 0 < strips.flank_error < FLANK_BOUND
-    assert strips.half_width == gear.face_width / 2
+    for end, side in ((strips.inner, -1), (strips.outer, 1)):
+        assert np.array_equal(end[flank], np.hstack([profile, np.full((len(profile), 1), side * gear.face_width / 2)]))
 
 
 def _deviation_of_chords(gear: SpurGear, strips: FlankStrips, flank: int) -> np.ndarray:
     """Largest distance of the rack-made flank from each chord, (steps,), from 200 places a chord."""
-    ends = rack_place(gear, np.hypot(*strips.profile[flank].T))
+    ends = rack_place(gear, np.hypot(*strips.inner[flank].T[:2]))
     # uniform in the square root: where the involute has its cusp, roll ~ place and arc ~ roll^2
     places = ends[:-1, None] + np.diff(ends)[:, None] * np.linspace(0, 1, 201)
     curve = rack_contact(gear, places.ravel(), flank)[0].reshape(*places.shape, 2)
-    begin, end = strips.profile[flank][:-1], strips.profile[flank][1:]
+    begin, end = strips.inner[flank][:-1, :2], strips.inner[flank][1:, :2]
     along = (end - begin) / np.linalg.norm(end - begin, axis=1, keepdims=True)
     off = curve - begin[:, None]
     return np.abs(off[..., 0] * along[:, None, 1] - off[..., 1] * along[:, None, 0]).max(axis=1)
@@ -149,8 +150,8 @@ def test_pulled_strips_are_the_flanks_of_a_thinner_gear(gear: SpurGear) -> None:
         vertices, _ = strip_mesh(strips, flank, slack)
         # A parallel of an involute is the same involute of a gear thinner by 2 slack / cos(alpha). At
         # roll slack/r_b it turns back; points within two slacks of that lie beside it and are left out.
-        far = strips.roll > 2 * slack / gear.base_radius
-        points = vertices[: len(strips.roll), :2][far]
+        far = strips.parameter > 2 * slack / gear.base_radius
+        points = vertices[: len(strips.parameter), :2][far]
         assert off_the_rack(gear, points, flank, 2 * slack / math.cos(gear.pressure_angle)).max() < FLANK_BOUND
 
 
@@ -174,8 +175,8 @@ def test_scale_grows_the_flank_but_not_the_slack() -> None:
     grown, _ = strip_mesh(strips, RIGHT, slack, scale)
     # a scaled gear is the gear of the scaled module
     larger = dataclasses.replace(PINION, module=PINION.module * scale, face_width=PINION.face_width * scale, bore=0.0)
-    far = strips.roll > 2 * slack / PINION.base_radius
-    points = grown[: len(strips.roll), :2][far]
+    far = strips.parameter > 2 * slack / PINION.base_radius
+    points = grown[: len(strips.parameter), :2][far]
     assert off_the_rack(larger, points, RIGHT, 2 * slack / math.cos(PINION.pressure_angle)).max() < FLANK_BOUND
     assert np.abs(grown[:, 2]).max() == pytest.approx(larger.face_width / 2, rel=1e-12)
 
@@ -277,8 +278,8 @@ def _refuse_to_build():
 
 
 def _same(first: FlankStrips, second: FlankStrips) -> bool:
-    pairs = [(first.profile[f], second.profile[f]) for f in (RIGHT, LEFT)]
-    pairs += [(first.normals[f], second.normals[f]) for f in (RIGHT, LEFT)] + [(first.roll, second.roll)]
+    pairs = [(first.inner[f], second.inner[f]) for f in (RIGHT, LEFT)]
+    pairs += [(first.normals[f], second.normals[f]) for f in (RIGHT, LEFT)] + [(first.parameter, second.parameter)]
     numbers = first.chord_error == second.chord_error and first.flank_error == second.flank_error
     return numbers and all(np.array_equal(one, other) for one, other in pairs)
 
@@ -341,7 +342,7 @@ def test_a_folder_that_cannot_be_written_costs_a_warning_only(own_cache) -> None
     own_cache.write_text("a file where the folder should be")
     with pytest.warns(CacheWarning, match="TOL3D_CACHE"):
         strips = measuring_strips(SMALL, 20)
-    assert strips.profile[RIGHT].shape == (21, 2)
+    assert strips.inner[RIGHT].shape == (21, 3)
     assert own_cache.is_file()
 
 
@@ -367,7 +368,7 @@ give_up = time.monotonic() + 60
 while not other.exists() and time.monotonic() < give_up:
     time.sleep(0.001)
 strips = measuring_strips(SpurGear(8, 1.0, math.radians(20), 5.0, profile_shift=0.4), 20)
-print(hashlib.sha256(b"".join(strips.profile[f].tobytes() for f in (1, -1))).hexdigest())
+print(hashlib.sha256(b"".join(strips.inner[f].tobytes() for f in (1, -1))).hexdigest())
 """
 
 

@@ -15,8 +15,8 @@ from tol3d.analytic import analytic_backlash
 from tol3d.build import Build, build
 from tol3d.engines import Engine
 from tol3d.measures import measure_backlash
-from tol3d.model import Measure, Mesh, Model, Positions
-from tol3d.moves import OK, STATUS_TEXT, MeshSeat, seat_mesh
+from tol3d.model import Measure, Mesh, Model, Positions, Reading
+from tol3d.moves import OK, STATUS_TEXT, Meshing, MeshSeat
 
 Array = NDArray[np.float64]
 Columns = Mapping[str, NDArray[np.generic]]
@@ -75,37 +75,49 @@ def driver_angles(positions: Positions, random_angle: Array) -> Array:
     return np.broadcast_to(np.array(positions.fixed), (len(random_angle), len(positions.fixed)))
 
 
+SeatKey = tuple[str, Positions, Reading]
+
+
+def seat_key(measure: Measure) -> SeatKey:
+    """Mesh, positions and reading: measures that share them share their contacts."""
+    return measure.kind.mesh, measure.positions, measure.kind.reading
+
+
 @dataclass(frozen=True)
 class Seats:
     """Builds of a block and its seated meshes, kept by the positions at which measures read them.
 
     Args:
         build: one row a trial.
-        seats: by mesh name and positions; rows are trials x positions, positions fastest.
+        seats: by mesh name, positions and reading; rows are trials x positions, positions fastest.
+        meshings: the builds that were seated there.
     """
 
     build: Build
-    seats: Mapping[tuple[str, Positions], MeshSeat] = field(default_factory=dict)
+    seats: Mapping[SeatKey, MeshSeat] = field(default_factory=dict)
+    meshings: Mapping[SeatKey, Meshing] = field(default_factory=dict)
 
 
 def seat_block(model: Model, engine: Engine, block: Block) -> Seats:
     """Build the trials and seat every mesh at every set of positions that some measure wants."""
     made = build(model, block.deviations)
-    seats: dict[tuple[str, Positions], MeshSeat] = {}
+    seats: dict[SeatKey, MeshSeat] = {}
+    meshings: dict[SeatKey, Meshing] = {}
     for measure in model.measures:
-        key = (measure.kind.mesh, measure.positions)
+        key = seat_key(measure)
         if key not in seats:
-            angles = driver_angles(measure.positions, block.random_angle[measure.kind.mesh])
-            repeated = made.repeated(angles.shape[1])
-            seats[key] = seat_mesh(engine, model, model.mesh(measure.kind.mesh), repeated, angles.ravel())
-    return Seats(made, seats)
+            mesh = model.mesh(measure.kind.mesh)
+            angles = driver_angles(measure.positions, block.random_angle[mesh.name])
+            meshings[key] = Meshing(engine, model, mesh, made.repeated(angles.shape[1]), measure.kind.reading)
+            seats[key] = meshings[key].seat(angles.ravel())
+    return Seats(made, seats, meshings)
 
 
-def geometric_values(model: Model, engine: Engine, measure: Measure, seats: Seats) -> Array:
+def geometric_values(measure: Measure, seats: Seats) -> Array:
     """Values of a measure on the geometric road [mm or rad], (trials, positions)."""
-    count = positions_count(measure)
-    seat = seats.seats[measure.kind.mesh, measure.positions]
-    return measure_backlash(engine, model, measure.kind, seats.build.repeated(count), seat).reshape(-1, count)
+    key = seat_key(measure)
+    values = measure_backlash(measure.kind, seats.meshings[key], seats.seats[key])
+    return values.reshape(-1, positions_count(measure))
 
 
 def analytic_values(model: Model, measure: Measure, block: Block) -> Array:
@@ -128,7 +140,7 @@ def block_trials(model: Model) -> int:
 
 def positions_in_all(model: Model) -> int:
     """How many contacts one trial takes: positions of every different way of reading a mesh."""
-    ways = {(measure.kind.mesh, measure.positions): positions_count(measure) for measure in model.measures}
+    ways = {seat_key(measure): positions_count(measure) for measure in model.measures}
     return sum(ways.values())
 
 
@@ -197,7 +209,7 @@ def _simulate_piece(model: Model, engine: Engine | None, block: Block) -> dict[s
         return columns
     seats = seat_block(model, engine, block)
     for measure in model.measures:
-        values = taken(measure, geometric_values(model, engine, measure, seats))
+        values = taken(measure, geometric_values(measure, seats))
         columns[f"geometric:{measure.name}"] = values * measure.per_internal
     for mesh in model.meshes:
         columns.update(_contact_columns(mesh, seats, len(block)))
@@ -212,7 +224,7 @@ def position_column(mesh: Mesh) -> str:
 
 def _contact_columns(mesh: Mesh, seats: Seats, trials_count: int) -> dict[str, NDArray[np.generic]]:
     """First contact of a mesh, at the first of its measures' positions."""
-    seat = next((seat for (name, _), seat in seats.seats.items() if name == mesh.name), None)
+    seat = next((seat for key, seat in seats.seats.items() if key[0] == mesh.name), None)
     if seat is None:
         return {}
     point, tooth = seat.contact

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tol3d import frames
-from tol3d.model import AxisOffset, AxisTilt, Effect, Model, Temperature, ToothThickness, TurningOffset
+from tol3d.model import AxesOffset, AxisOffset, AxisTilt, Effect, Model, Temperature, ToothThickness, TurningOffset
 
 Array = NDArray[np.float64]
 
@@ -22,19 +22,23 @@ class Build:
     Args:
         world_from_shaft: (trials, gears, 4, 4), the axis at rest: its z is the rotation axis.
         centre: (trials, gears, 2) [mm], the gear's centre off its axis, in the gear's frame (turns with it).
-        thickness: (trials, gears) [mm], deviation of the tooth thickness, arc at the reference circle.
+        axis_turn: (trials, gears, 3) [rad], rotation vector by which the axis left its rest, in the world.
+        flank_turn: (trials, gears) [rad], by which each flank is turned out of its tooth; positive is thicker.
+        flank_offset: (trials, gears) [mm], by which each flank lies outside that, along its normal.
         scale: (trials, gears), thermal growth of the whole gear, 1 at the reference temperature.
     """
 
     world_from_shaft: Array
     centre: Array
-    thickness: Array
+    axis_turn: Array
+    flank_turn: Array
+    flank_offset: Array
     scale: Array
 
     @property
     def trials(self) -> int:
         """Number of builds."""
-        return len(self.thickness)
+        return len(self.scale)
 
     def repeated(self, count: int) -> "Build":
         """Each build `count` times in a row, for as many positions; shape (trials * count, ...)."""
@@ -44,7 +48,7 @@ class Build:
 
     def rows(self, rows: NDArray[np.intp] | NDArray[np.bool_]) -> "Build":
         """The builds of some rows."""
-        return Build(self.world_from_shaft[rows], self.centre[rows], self.thickness[rows], self.scale[rows])
+        return Build(**{name: values[rows] for name, values in vars(self).items()})
 
     def axis(self, gear: int) -> tuple[Array, Array]:
         """Rotation axis of a gear in the world: a point on it and its unit direction, each (trials, 3)."""
@@ -85,10 +89,11 @@ class Build:
 class _Sums:
     """What the contributors add up to, before poses are made of it."""
 
-    axis_offset: Array  # (trials, gears, 3) mm
-    axis_turn: Array  # (trials, gears, 3) rad, rotation vector
+    axis_offset: Array  # (trials, gears, 3) mm, in the gear's frame at rest
+    axis_turn: Array  # (trials, gears, 3) rad, rotation vector there
     centre: Array  # (trials, gears, 2) mm
-    thickness: Array  # (trials, gears) mm
+    flank_turn: Array  # (trials, gears) rad
+    flank_offset: Array  # (trials, gears) mm
     temperature: dict[str, Array]  # part -> (trials,) K
 
 
@@ -104,7 +109,8 @@ def build(model: Model, deviations: Array) -> Build:
         axis_offset=np.zeros((trials, gears, 3)),
         axis_turn=np.zeros((trials, gears, 3)),
         centre=np.zeros((trials, gears, 2)),
-        thickness=np.zeros((trials, gears)),
+        flank_turn=np.zeros((trials, gears)),
+        flank_offset=np.zeros((trials, gears)),
         temperature={},
     )
     for contributor in model.contributors:
@@ -114,17 +120,23 @@ def build(model: Model, deviations: Array) -> Build:
     def growth(part: str) -> Array | float:
         return sums.temperature.get(part, 0.0) * model.expansions[part]
 
-    origin = sums.axis_offset.copy()
+    origin, axis_turn = sums.axis_offset.copy(), sums.axis_turn.copy()
+    rest = np.broadcast_to(np.eye(3), (gears, 3, 3)).copy()
     for mesh in model.meshes:
-        housing = growth(mesh.housing) if mesh.housing else 0.0
-        origin[:, model.gear_index[mesh.driven], 0] += mesh.pair.centre_distance * (1.0 + housing)
+        driven = model.gear_index[mesh.driven]
+        rest[driven] = mesh.pair.world_from_wheel
+        grown = np.ones(trials) + (growth(mesh.housing) if mesh.housing else 0.0)
+        origin[:, driven] = frames.apply(rest[driven], origin[:, driven]) + mesh.pair.wheel_origin * grown[:, None]
+        axis_turn[:, driven] = frames.apply(rest[driven], axis_turn[:, driven])
     scale = np.ones((trials, gears))
     for part in model.gears:
         scale[:, model.gear_index[part.name]] += growth(part.name)
     return Build(
-        world_from_shaft=frames.transform(frames.about_vector(sums.axis_turn), origin),
+        world_from_shaft=frames.transform(frames.matmul(frames.about_vector(axis_turn), rest), origin),
         centre=sums.centre,
-        thickness=sums.thickness,
+        axis_turn=axis_turn,
+        flank_turn=sums.flank_turn,
+        flank_offset=sums.flank_offset,
         scale=scale,
     )
 
@@ -137,7 +149,9 @@ def _add(effect: Effect, columns: Array, sums: _Sums, model: Model) -> None:
 
 @_add.register
 def _(effect: ToothThickness, columns: Array, sums: _Sums, model: Model) -> None:
-    sums.thickness[:, model.gear_index[effect.part]] += columns[:, 0]
+    gear = model.gear_index[effect.part]
+    sums.flank_turn[:, gear] += effect.turn * columns[:, 0]
+    sums.flank_offset[:, gear] += effect.offset * columns[:, 0]
 
 
 @_add.register
@@ -156,7 +170,18 @@ def _(effect: AxisOffset, columns: Array, sums: _Sums, model: Model) -> None:
 
 @_add.register
 def _(effect: AxisTilt, columns: Array, sums: _Sums, model: Model) -> None:
-    sums.axis_turn[:, model.gear_index[effect.part]] += effect.per_length * columns * np.array(effect.axis)
+    gear = model.gear_index[effect.part]
+    turn = effect.per_length * columns * np.array(effect.axis)
+    sums.axis_turn[:, gear] += turn
+    pivot = np.array([0.0, 0.0, effect.pivot])
+    sums.axis_offset[:, gear] += pivot - frames.apply(frames.about_vector(turn), pivot)
+
+
+@_add.register
+def _(effect: AxesOffset, columns: Array, sums: _Sums, model: Model) -> None:
+    gear = model.gear_index[effect.part]
+    mesh = next(mesh for mesh in model.meshes if mesh.driven == effect.part)
+    sums.axis_offset[:, gear] += columns * mesh.pair.world_from_wheel[1]
 
 
 @_add.register

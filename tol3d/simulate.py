@@ -102,11 +102,9 @@ def refuse_interfering_mean(scene: Scene, model: Model) -> None:
             nominal = float(analytic_values(model, measure, nominal_block(model)).min())
             unit, per = measure.unit, measure.per_internal
             raise scene.refuse(
-                ("moves", mesh.name, "centre_distance"),
+                ("moves", mesh.name),
                 f"the teeth interfere at the mean build: {measure.name} is {value * per:.3f} {unit} there "
-                f"(nominal {nominal * per:.3f} {unit}); zero backlash needs a centre distance of "
-                f"{mesh.pair.zero_backlash_centre_distance:.4f} mm for the nominal teeth. "
-                "Open the centre distance or thin the teeth",
+                f"(nominal {nominal * per:.3f} {unit}); {mesh.pair.remedy}",
             )
 
 
@@ -286,7 +284,7 @@ def replay_block(model: Model, block: Block) -> Replay:
     engine = FclEngine(model, strips_of(model))
     seats = seat_block(model, engine, block)
     worst = max((int(seat.status.max()) for seat in seats.seats.values()), default=OK)
-    values = {m.name: taken(m, geometric_values(model, engine, m, seats)) * m.per_internal for m in model.measures}
+    values = {m.name: taken(m, geometric_values(m, seats)) * m.per_internal for m in model.measures}
     expected = {m.name: taken(m, analytic_values(model, m, block)) * m.per_internal for m in model.measures}
     return Replay(
         model=model,

@@ -43,6 +43,7 @@ def measure_summaries(model: Model, engine: Engine | None, tally: Tally) -> dict
             "kind": measure.kind.quantity,
             "of": measure.kind.mesh,
             "gear": measure.kind.gear,
+            "reading": vars(measure.kind.reading),
             "over": measure.positions.over,
             "take": measure.take,
             "unit": measure.unit,

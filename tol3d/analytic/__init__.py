@@ -1,15 +1,17 @@
 """The reference road: nominal values and stack-ups with their sources. It never sees a mesh, a pose or an engine."""
 
+from tol3d.analytic.backlash import analytic_backlash, per_normal_backlash, stack_of
 from tol3d.analytic.closed_form import ClosedForm, Share, closed_form, reference_form
-from tol3d.analytic.spur_stack import SpurStack, Term, analytic_backlash, per_normal_backlash
+from tol3d.analytic.stack import Stack, Term
 
 __all__ = [
     "ClosedForm",
     "Share",
-    "SpurStack",
+    "Stack",
     "Term",
     "analytic_backlash",
     "closed_form",
     "per_normal_backlash",
     "reference_form",
+    "stack_of",
 ]

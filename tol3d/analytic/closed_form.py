@@ -11,7 +11,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from tol3d.analytic.spur_stack import SpurStack, Term, per_normal_backlash
+from tol3d.analytic.backlash import per_normal_backlash, stack_of
+from tol3d.analytic.stack import Stack, Term
+from tol3d.gears import GearPair
 from tol3d.model import Measure, Model, Planar, Positions
 
 TILT_NODES = 2000  # midpoint rule in u, a plane; its error on |x| of a normal is under 1e-6 of sigma
@@ -53,7 +55,7 @@ def closed_form(model: Model, measure: Measure) -> ClosedForm | None:
     """Closed form of a measure read at one position; None for extremes over a turn, which have none here."""
     if measure.take != "value":
         return None
-    stack = SpurStack(model, model.mesh(measure.kind.mesh))
+    stack = stack_of(model, model.mesh(measure.kind.mesh))
     factor = per_normal_backlash(model, measure.kind)
     linear = [_linear_share(term, stack, measure.positions, factor) for term in stack.terms if not term.one_sided]
     if measure.positions.over == "random":
@@ -78,7 +80,7 @@ def reference_form(model: Model, measure: Measure) -> ClosedForm | None:
     return closed_form(model, measure) or closed_form(model, at_random)
 
 
-def _linear_share(term: Term, stack: SpurStack, positions: Positions, factor: float) -> Share:
+def _linear_share(term: Term, stack: Stack[GearPair], positions: Positions, factor: float) -> Share:
     law, coefficient = term.contributor.distribution, term.coefficient * factor
     draw = term.contributor.draw
     if not isinstance(draw, Planar):
@@ -96,7 +98,7 @@ def _linear_share(term: Term, stack: SpurStack, positions: Positions, factor: fl
     return Share(term.contributor.name, coefficient, mean, variance)
 
 
-def _with_covariances(shares: list[Share], terms: list[Term], stack: SpurStack) -> list[Share]:
+def _with_covariances(shares: list[Share], terms: list[Term], stack: Stack[GearPair]) -> list[Share]:
     """Shares with the covariances of offsets that turn together at a random position."""
     added = [0.0] * len(shares)
     for i, first in enumerate(terms):
@@ -107,7 +109,7 @@ def _with_covariances(shares: list[Share], terms: list[Term], stack: SpurStack) 
     return [replace(share, variance=share.variance + own) for share, own in zip(shares, added, strict=True)]
 
 
-def _turn_alike(first: Term, second: Term, stack: SpurStack) -> float:
+def _turn_alike(first: Term, second: Term, stack: Stack[GearPair]) -> float:
     """Mean over the long period of the product of the cosines with which two turning offsets act."""
     draws = (first.contributor.draw, second.contributor.draw)
     if not (first.turns and second.turns):
@@ -132,7 +134,7 @@ def _tilt_shares(terms: list[Term], factor: float) -> list[Share] | None:
 
     The variance is split by the conditional means (first-order Sobol'), the rest in equal parts.
     """
-    planes = [SpurStack.is_in_plane(term) for term in terms]
+    planes = [term.in_plane for term in terms]
     if len(set(planes)) < len(planes):
         return None
     if not terms:

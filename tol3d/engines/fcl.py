@@ -19,10 +19,11 @@ from tol3d.build import Build
 from tol3d.engines.gaps import Array, Gaps, Teeth
 from tol3d.gears import Flank
 from tol3d.model import Mesh, Model
-from tol3d.solids import FlankStrips, strip_mesh
+from tol3d.solids import WHOLE_FACE, FlankStrips, Span, strip_mesh
 
 SLACK = 0.030  # mm a flank; deep enough for any start of the turn, small against the curvature radius
 MESHES_KEPT = 64  # grown strips kept for reuse; a constant temperature needs one a flank
+SECTION_WIDTH = 2e-3  # mm along the face; a gap that grows with it by 1 um a mm is read 0.001 um off
 OUT_OF_REACH = 1e-3  # mm; a distance below this has lost its normal: the overlap is as deep as the slack
 
 
@@ -52,8 +53,8 @@ class FclEngine:
         """Largest sagitta [mm] of a strip's steps; a pair's gap is at most the sum of two too large."""
         return max(strips.chord_error for strips in self._strips.values())
 
-    def _make_object(self, gear: str, flank: Flank, scale: float) -> fcl.CollisionObject:
-        vertices, triangles = strip_mesh(self._strips[gear], flank, SLACK, scale)
+    def _make_object(self, gear: str, flank: Flank, scale: float, span: Span) -> fcl.CollisionObject:
+        vertices, triangles = strip_mesh(self._strips[gear], flank, SLACK, scale, span)
         hierarchy = fcl.BVHModel()
         hierarchy.beginModel(len(vertices), len(triangles))
         hierarchy.addSubModel(vertices, triangles)
@@ -68,6 +69,8 @@ class FclEngine:
         angles: tuple[Array, Array],
         driver_teeth: Teeth,
         wanted: NDArray[np.bool_],
+        *,
+        section: bool = False,
     ) -> Gaps:
         """See Engine.gaps."""
         driver, driven = self._model.gear_index[mesh.driver], self._model.gear_index[mesh.driven]
@@ -82,26 +85,35 @@ class FclEngine:
         points = np.full((*wanted.shape, 2, 3), np.nan)
         request = self._request
         scales = build.scale
+        span = self._section(mesh) if section else WHOLE_FACE
         for row, pair in zip(*np.nonzero(wanted), strict=True):
-            fixed = self._object(mesh.driver, flank, scales[row, driver])
-            moved = self._object(mesh.driven, flank, scales[row, driven])
+            fixed = self._object(mesh.driver, flank, scales[row, driver], span)
+            moved = self._object(mesh.driven, flank, scales[row, driven], WHOLE_FACE)
             moved.setTransform(fcl.Transform(rotation[row, pair], translation[row, pair]))
             result = fcl.DistanceResult()
             distance[row, pair] = fcl.distance(fixed, moved, request, result)
             points[row, pair] = result.nearest_points
-        return self._gaps(distance, points, (driver_rotation, driver_origin), driver_teeth)
+        offset = build.flank_offset[:, driver] + build.flank_offset[:, driven]
+        return self._gaps(distance, offset, points, (driver_rotation, driver_origin), driver_teeth)
+
+    def _section(self, mesh: Mesh) -> Span:
+        """A strip of the driver's face, SECTION_WIDTH wide, in the middle of the common face."""
+        half = SECTION_WIDTH / (2 * mesh.pair.pinion.face_width)
+        return mesh.pair.pinion_section - half, mesh.pair.pinion_section + half
 
     def _flank_poses(self, build: Build, gear: int, angle: Array, teeth: Teeth, flank: Flank) -> tuple[Array, Array]:
-        """Poses of the flanks of some teeth: the tooth's place, turned by half its thickness deviation.
+        """Poses of the flanks of some teeth: the tooth's place, turned by the flank's own turn.
 
-        For an involute that turn is the deviation exactly: parallel involutes are one involute turned.
+        For an involute that turn is a thickness deviation exactly: parallel involutes are one involute turned.
         """
-        part = self._model.gears[gear].gear
-        half = build.thickness[:, gear] / (2 * part.reference_radius)
-        return build.tooth_pose(gear, angle, part.angular_pitch * teeth - flank * half[:, None])
+        pitch = self._model.gears[gear].gear.angular_pitch
+        return build.tooth_pose(gear, angle, pitch * teeth - flank * build.flank_turn[:, gear, None])
 
     @staticmethod
-    def _gaps(distance: Array, points: Array, driver_pose: tuple[Array, Array], driver_teeth: Teeth) -> Gaps:
+    def _gaps(
+        distance: Array, offset: Array, points: Array, driver_pose: tuple[Array, Array], driver_teeth: Teeth
+    ) -> Gaps:
+        """Signed gaps of distances; flanks offset along their normals are parallel, so that the gap is less by that."""
         deep = distance < OUT_OF_REACH
         safe = np.where(deep | np.isnan(distance), np.nan, distance)
         rotation, origin = driver_pose
@@ -109,7 +121,7 @@ class FclEngine:
         second = frames.apply(rotation, points[..., 1, :]) + origin[:, None]
         normal = (second - first) / safe[..., None]
         return Gaps(
-            value=safe - 2 * SLACK,
+            value=safe - 2 * SLACK - offset[:, None],
             deep=deep,
             driver_point=first + SLACK * normal,
             driven_point=second - SLACK * normal,

@@ -84,6 +84,8 @@ class Engine(Protocol):
         angles: tuple[Array, Array],
         driver_teeth: Teeth,
         wanted: NDArray[np.bool_],
+        *,
+        section: bool = False,
     ) -> Gaps:
         """Gaps of one flank side.
 
@@ -94,5 +96,6 @@ class Engine(Protocol):
             angles: turn of driver and driven [rad], each (trials,).
             driver_teeth: (trials, pairs) candidate teeth of the driver.
             wanted: (trials, pairs); the others stay nan.
+            section: of the driver's flank take the section in the middle of the common face, not the whole.
         """
         ...

@@ -1,8 +1,30 @@
 """Exact tooth geometry: closed forms only, no mesh, no CAD. Lengths in mm, angles in rad."""
 
+from tol3d.gears.bevel_gear import BevelGear, pitch_angles
+from tol3d.gears.bevel_pair import BevelPair
 from tol3d.gears.flank import LEFT, RIGHT, Flank
 from tol3d.gears.involute import inverse_involute, involute
+from tol3d.gears.one_tooth import driver_teeth_at_one_tooth
+from tol3d.gears.pair import Displaced, Gear, GearPair
+from tol3d.gears.spherical_involute import inverse_spherical_involute, spherical_involute
 from tol3d.gears.spur_gear import SpurGear
 from tol3d.gears.spur_pair import SpurPair
 
-__all__ = ["LEFT", "RIGHT", "Flank", "SpurGear", "SpurPair", "inverse_involute", "involute"]
+__all__ = [
+    "LEFT",
+    "RIGHT",
+    "BevelGear",
+    "BevelPair",
+    "Displaced",
+    "Flank",
+    "Gear",
+    "GearPair",
+    "SpurGear",
+    "SpurPair",
+    "driver_teeth_at_one_tooth",
+    "inverse_involute",
+    "inverse_spherical_involute",
+    "involute",
+    "pitch_angles",
+    "spherical_involute",
+]

@@ -1,8 +1,9 @@
 """One external involute spur gear: circles, tooth thickness, flank, root fillet."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -115,6 +116,21 @@ class SpurGear:
         return self.reference_radius * math.cos(self.pressure_angle)
 
     @property
+    def section_arm(self) -> float:
+        """r_b [mm], the same in every section."""
+        return self.base_radius
+
+    @property
+    def thickness_radius(self) -> float:
+        """r [mm]: the tooth thickness is an arc at the reference circle."""
+        return self.reference_radius
+
+    @property
+    def pitch_angle(self) -> float:
+        """0 [rad]: a spur gear is a cylinder."""
+        return 0.0
+
+    @property
     def base_diameter(self) -> float:
         """d_b [mm]."""
         return 2 * self.base_radius
@@ -148,6 +164,22 @@ class SpurGear:
     def angular_pitch(self) -> float:
         """2 pi / z [rad]."""
         return 2 * math.pi / self.teeth
+
+    def perturbed(self, flank_turn: float, scale: float) -> Self:
+        """The gear with its flanks turned out of their teeth [rad], and grown.
+
+        Raises:
+            GeometryError: such a gear cannot be made.
+        """
+        thicker = self.tooth_thickness_deviation + 2 * self.reference_radius * flank_turn
+        return replace(
+            self,
+            module=self.module * scale,
+            face_width=self.face_width * scale,
+            root_fillet=None if self.root_fillet is None else self.root_fillet * scale,
+            bore=self.bore * scale,
+            tooth_thickness_deviation=thicker * scale,
+        )
 
     # tooth thickness ----------------------------------------------------------------------------
 

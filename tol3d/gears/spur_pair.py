@@ -13,7 +13,10 @@ from numpy.typing import NDArray
 from tol3d.errors import GeometryError
 from tol3d.gears.flank import Flank
 from tol3d.gears.involute import inverse_involute, involute
+from tol3d.gears.pair import Displaced
 from tol3d.gears.spur_gear import SpurGear
+
+Array = NDArray[np.float64]
 
 SAME_LENGTH = 1e-9  # relative; two modules written alike are equal in this sense
 CONTACT_MARGIN = 0.15  # pitches beyond the path of contact, whose ends move by 1/sin(alpha_w) of a shift of the axes
@@ -76,6 +79,53 @@ class SpurPair:
         """r_w of pinion and wheel [mm]: r_b / cos alpha_w."""
         cos = math.cos(self.working_pressure_angle)
         return self.pinion.base_radius / cos, self.wheel.base_radius / cos
+
+    # world --------------------------------------------------------------------------------------
+
+    @property
+    def world_from_wheel(self) -> Array:
+        """Rotation (3, 3) of the wheel's frame at rest: none."""
+        return np.eye(3)
+
+    @property
+    def wheel_origin(self) -> Array:
+        """The face centre of the wheel, at +x by the centre distance, (3,) [mm]."""
+        return np.array([self.centre_distance, 0.0, 0.0])
+
+    @property
+    def mesh_azimuths(self) -> tuple[float, float]:
+        """The pinion sees the mesh at +x, the wheel at -x [rad]."""
+        return 0.0, math.pi
+
+    @property
+    def pinion_section(self) -> float:
+        """The middle: the face centres lie in one plane."""
+        return 0.5
+
+    @property
+    def arm_spread(self) -> float:
+        """0: the arm of a turn is r_b over the whole face."""
+        return 0.0
+
+    @property
+    def view_from_world(self) -> Array:
+        """None (3, 3): one looks against z."""
+        return np.eye(3)
+
+    def tip_clearance(self, origins: Array, scale: tuple[float, float]) -> float:
+        """Smaller free distance [mm] between a tip circle and the mate's root circle, axes where they are."""
+        tips = [part * gear.tip_radius for part, gear in zip(scale, (self.pinion, self.wheel), strict=True)]
+        roots = [part * gear.root_radius for part, gear in zip(scale, (self.pinion, self.wheel), strict=True)]
+        between = origins[1, :2] - origins[0, :2]
+        return math.hypot(*between) - max(tips[0] + roots[1], tips[1] + roots[0])
+
+    @property
+    def remedy(self) -> str:
+        """What zero backlash needs."""
+        return (
+            f"zero backlash needs a centre distance of {self.zero_backlash_centre_distance:.4f} mm for the nominal "
+            "teeth. Open the centre distance or thin the teeth"
+        )
 
     # backlash -----------------------------------------------------------------------------------
 
@@ -170,17 +220,11 @@ class SpurPair:
 
     # positions --------------------------------------------------------------------------------------
 
-    def driven_angle(self, driver_angle: NDArray[np.float64]) -> NDArray[np.float64]:
+    def driven_angle(self, driver_angle: Array) -> Array:
         """Wheel's turn [rad] with its space centred on the pinion's tooth: pi + pi/z2 - (z1/z2) theta_1."""
         return math.pi + math.pi / self.wheel.teeth - driver_angle / self.ratio
 
-    def touching_angle(
-        self,
-        driver_angle: NDArray[np.float64],
-        flank: Flank,
-        centre_line: NDArray[np.float64],
-        thickness: NDArray[np.float64],
-    ) -> NDArray[np.float64]:
+    def touching_angle(self, driver_angle: Array, flank: Flank, displaced: Displaced) -> Array:
         """Wheel's turn [rad] at which the flanks of that side touch, were the axes parallel.
 
         From the line of action, r_b1 t_1 + r_b2 t_2 = (r_b1 + r_b2) tan alpha_w with the rolls
@@ -189,14 +233,14 @@ class SpurPair:
         Args:
             driver_angle: pinion's turn [rad], (trials,).
             flank: the pinion's flank.
-            centre_line: from the pinion's centre to the wheel's, as they lie, (trials, 2) [mm].
-            thickness: deviations of the tooth thickness of pinion and wheel, (trials, 2) [mm].
+            displaced: where the gears' centres lie, and their flanks; turns of the axes are left out.
         """
+        centre_line = displaced.origin[:, 1] - displaced.origin[:, 0]
         direction = np.arctan2(centre_line[:, 1], centre_line[:, 0])
         distance = np.sqrt(centre_line[:, 0] ** 2 + centre_line[:, 1] ** 2)
         working = np.arccos(np.minimum(self.base_radii / distance, 1.0))
         half_angles = sum(
-            gear.base_radius * (gear.base_half_angle + thickness[:, k] / (2 * gear.reference_radius))
+            gear.base_radius * (gear.base_half_angle + displaced.flank_turn[:, k])
             for k, gear in enumerate((self.pinion, self.wheel))
         )
         along = half_angles - self.base_radii * (np.tan(working) - working)
@@ -207,7 +251,7 @@ class SpurPair:
         )
 
     def candidate_teeth(
-        self, driver_angle: NDArray[np.float64], flank: Flank
+        self, driver_angle: Array, flank: Flank
     ) -> tuple[NDArray[np.int64], NDArray[np.bool_]]:
         """Pinion teeth that may touch on that flank.
 

@@ -3,16 +3,14 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.build import Build
-from tol3d.engines import Engine
 from tol3d.gears.flank import opposite
-from tol3d.model import Backlash, Model
-from tol3d.moves import OK, MeshSeat, turn_to_contact
+from tol3d.model import Backlash
+from tol3d.moves import OK, Meshing, MeshSeat
 
 Array = NDArray[np.float64]
 
 
-def measure_backlash(engine: Engine, model: Model, kind: Backlash, build: Build, seat: MeshSeat) -> Array:
+def measure_backlash(kind: Backlash, meshing: Meshing, seat: MeshSeat) -> Array:
     """Value of a backlash measure in every row [mm, or rad for an angle]; nan where the mesh did not seat.
 
     normal: shortest distance of the non-working flanks while the working ones touch.
@@ -22,19 +20,13 @@ def measure_backlash(engine: Engine, model: Model, kind: Backlash, build: Build,
     good = seat.status == OK
     if kind.quantity == "normal_backlash":
         return np.where(good, seat.non_working.smallest(), np.nan)
-    mesh = model.mesh(kind.mesh)
+    mesh, reading = meshing.mesh, meshing.reading
     turn_driver = kind.quantity == "angular_backlash" and kind.gear == mesh.driver
     rows = np.flatnonzero(good)
     start = (seat.driver_angle[rows], seat.driven_angle[rows])
-    angles, _, touched = turn_to_contact(
-        engine,
-        model,
-        mesh,
-        build.rows(rows),
-        flank=opposite(mesh.working_flank),
-        angles=start,
-        turn_driver=turn_driver,
-        known=seat.non_working.rows(rows),
+    known = seat.non_working.rows(rows) if reading.gap == reading.contact else None
+    angles, _, touched = meshing.rows(rows).turn_to_contact(
+        opposite(mesh.working_flank), start, turn_driver=turn_driver, known=known
     )
     mover = 0 if turn_driver else 1
     turn = np.full(len(good), np.nan)

@@ -1,6 +1,7 @@
 """What a scene means: parts, contributors, moves and measures in mm and rad. Nothing here is text any more."""
 
 from tol3d.model.contributor import (
+    AxesOffset,
     AxisOffset,
     AxisTilt,
     Contributor,
@@ -11,12 +12,13 @@ from tol3d.model.contributor import (
     ToothThickness,
     TurningOffset,
 )
-from tol3d.model.measure import Backlash, Measure, Positions
+from tol3d.model.measure import Backlash, Measure, Positions, Reading
 from tol3d.model.model import GearPart, Mesh, Model, Study
 
 from tol3d.model.from_scene import model_from_scene  # isort: skip  (needs the names above)
 
 __all__ = [
+    "AxesOffset",
     "AxisOffset",
     "AxisTilt",
     "Backlash",
@@ -28,6 +30,7 @@ __all__ = [
     "Model",
     "Planar",
     "Positions",
+    "Reading",
     "Scalar",
     "Study",
     "Temperature",

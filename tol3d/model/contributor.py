@@ -1,6 +1,6 @@
 """A contributor: one toleranced deviation, how it is drawn, and what it does to the parts.
 
-Every tolerance kind of a scene comes down to one of five effects. The geometric road (build.py)
+Every tolerance kind of a scene comes down to one of six effects. The geometric road (build.py)
 and the analytic road (analytic/) each say for themselves what an effect does.
 """
 
@@ -21,9 +21,14 @@ INTERNAL_PER_UNIT: dict[Unit, float] = {"um": 1e-3, "mrad": 1e-3, "K": 1.0}
 
 @dataclass(frozen=True)
 class ToothThickness:
-    """Deviation of the tooth thickness of a gear: an arc at the reference circle [mm], positive is thicker."""
+    """Deviation of the tooth thickness of a gear [mm], positive is thicker; half of it on each flank.
+
+    Each flank turns out of its tooth by `turn` [rad/mm], and moves out along its normal by `offset` [mm/mm].
+    """
 
     part: str
+    turn: float
+    offset: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -35,7 +40,7 @@ class TurningOffset:
 
 @dataclass(frozen=True)
 class AxisOffset:
-    """Shift of a gear's rotation axis in the world of its mesh [mm].
+    """Shift of a gear's rotation axis [mm], in the gear's frame at rest.
 
     Scalar: `direction` (unit vector times a factor) times the deviation. Planar (components x, y):
     `factor` times the vector.
@@ -48,14 +53,23 @@ class AxisOffset:
 
 @dataclass(frozen=True)
 class AxisTilt:
-    """Turn of a gear's axis about its face centre: the deviation [rad] times `axis` (world unit vector).
+    """Turn of a gear's axis: the deviation [rad] times `axis`, a unit vector of the gear's frame at rest.
 
-    `per_length` [1/mm] makes an angle of a deviation that is given as a length over a face width.
+    `per_length` [1/mm] makes an angle of a deviation that is given as a length. The turn is about the point
+    of the axis at z = `pivot` [mm] of that frame.
     """
 
     part: str
     axis: tuple[float, float, float]
     per_length: float = 1.0
+    pivot: float = 0.0
+
+
+@dataclass(frozen=True)
+class AxesOffset:
+    """Distance [mm] by which two axes that should meet pass each other: the driven one lies at +y of the world."""
+
+    part: str
 
 
 @dataclass(frozen=True)
@@ -65,7 +79,7 @@ class Temperature:
     parts: tuple[str, ...]
 
 
-Effect = ToothThickness | TurningOffset | AxisOffset | AxisTilt | Temperature
+Effect = ToothThickness | TurningOffset | AxisOffset | AxisTilt | AxesOffset | Temperature
 
 
 @dataclass(frozen=True)

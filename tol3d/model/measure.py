@@ -9,12 +9,29 @@ Take = Literal["value", "min", "max", "range", "curve"]
 
 
 @dataclass(frozen=True)
+class Reading:
+    """Where on the face, and at which teeth, a mesh is brought to contact and its gap is read.
+
+    Args:
+        contact: the working flanks touch over the whole face, or in the section in its middle.
+        gap: the other flanks' distance is the least over the whole face, or that in the section.
+        teeth: "all" candidate pairs, or one tooth in its space, the driver's or the driven's next to the
+            line of centres.
+    """
+
+    contact: Literal["face", "section"] = "face"
+    gap: Literal["face", "section"] = "face"
+    teeth: Literal["all", "driver", "driven"] = "all"
+
+
+@dataclass(frozen=True)
 class Backlash:
     """A backlash of a mesh: normal and circumferential [mm], or angular [rad] of one gear, the other held."""
 
     quantity: Quantity
     mesh: str
     gear: str
+    reading: Reading = Reading()
 
     @property
     def is_angle(self) -> bool:

@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any, Literal
 
-from tol3d.gears import Flank, SpurGear, SpurPair
+from tol3d.gears import Flank, Gear, GearPair
 from tol3d.model.contributor import Contributor
 from tol3d.model.measure import Measure
 
@@ -15,7 +15,7 @@ class GearPart:
     """A gear: its nominal geometry and its coefficient of expansion [1/K]."""
 
     name: str
-    gear: SpurGear
+    gear: Gear
     expansion: float = 0.0
 
 
@@ -31,16 +31,20 @@ class Housing:
 class Mesh:
     """The move that turns the driven gear until the working flanks touch.
 
-    World of the mesh: driver's axis z, its face centre the origin, the driven axis at
-    +x * centre_distance. `working_flank` is the driver's.
+    World of the mesh: the frame of the driver at rest; the pair knows where the driven gear's lies in it.
+    `working_flank` is the driver's.
     """
 
     name: str
     driver: str
     driven: str
-    pair: SpurPair
+    pair: GearPair
     working_flank: Flank
     housing: str | None = None
+
+    def gear(self, name: str) -> Gear:
+        """The driver or the driven gear, by its name."""
+        return self.pair.pinion if name == self.driver else self.pair.wheel
 
 
 @dataclass(frozen=True)

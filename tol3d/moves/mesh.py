@@ -8,9 +8,9 @@ from numpy.typing import NDArray
 
 from tol3d.build import Build
 from tol3d.engines import Engine, Gaps
-from tol3d.gears import Flank
+from tol3d.gears import Displaced, Flank, driver_teeth_at_one_tooth
 from tol3d.gears.flank import opposite
-from tol3d.model import Mesh, Model
+from tol3d.model import Mesh, Model, Reading
 
 Array = NDArray[np.float64]
 Status = NDArray[np.int8]
@@ -21,6 +21,7 @@ NO_CONTACT: Final = 2
 STATUS_TEXT: Final = {OK: "ok", INTERFERES: "interferes", NO_CONTACT: "no contact"}
 
 LAST_STEP = 0.5e-3  # mm; the gap is linear in the turn to 1e-6 mm over such a step, so it may be the last
+LAST_ERROR = 2e-6  # mm; what the last step may miss where contact jumps along a face on which the arm varies
 TURN_STEPS = 40  # steps; Newton takes two or three, backing out of an overlap one for each engine depth
 TIE = 2e-3  # mm; a pair that has this much further to go than the first one is not asked again,
 TIE_SHARE = 0.02  # of the step itself, for the gaps' curvature: (0.4 mm)^2/(2 x 20 mm) is 1 % of 0.4 mm
@@ -53,89 +54,111 @@ class MeshSeat:
         return self.working.driver_point[rows, first], self.working.driver_teeth[rows, first]
 
 
-def seat_mesh(engine: Engine, model: Model, mesh: Mesh, build: Build, driver_angle: Array) -> MeshSeat:
-    """Hold the driver at its angles, turn the driven gear into contact on the working flank.
+@dataclass(frozen=True)
+class Meshing:
+    """The builds of a mesh, asked by an engine for gaps: what stays while gears turn.
 
     Args:
-        build: one row for each driver angle.
-        driver_angle: [rad], (rows,).
+        engine: tells gaps.
+        model, mesh, build: what is built; one row for each position.
+        reading: where on the face, and at which teeth, flanks are looked at.
     """
-    start = _start(model, mesh, build, driver_angle)
-    angles, working, touched = turn_to_contact(
-        engine, model, mesh, build, flank=mesh.working_flank, angles=(driver_angle, start), turn_driver=False
-    )
-    other = opposite(mesh.working_flank)
-    teeth, near = mesh.pair.candidate_teeth(driver_angle, other)
-    non_working = engine.gaps(build, mesh, other, angles, teeth, near & touched[:, None])
-    play = non_working.smallest()
-    overlap = non_working.deep.any(axis=1) | (play < -ROOT_FINDING_NOISE)
-    status = np.select([~touched, overlap], [NO_CONTACT, INTERFERES], OK).astype(np.int8)
-    return MeshSeat(driver_angle, angles[1], working, non_working, status)
 
+    engine: Engine
+    model: Model
+    mesh: Mesh
+    build: Build
+    reading: Reading
 
-def _start(model: Model, mesh: Mesh, build: Build, driver_angle: Array) -> Array:
-    """Where parallel involutes would touch with the gears' centres where they are; tilts and meshes do the rest."""
-    driver, driven = model.gear_index[mesh.driver], model.gear_index[mesh.driven]
-    line = build.centre_of(driven, mesh.pair.driven_angle(driver_angle)) - build.centre_of(driver, driver_angle)
-    thickness = build.thickness[:, [driver, driven]]
-    return mesh.pair.touching_angle(driver_angle, mesh.working_flank, line[:, :2], thickness)
+    def seat(self, driver_angle: Array) -> MeshSeat:
+        """Hold the driver at its angles [rad] (rows,), turn the driven gear into contact on the working flank."""
+        flank = self.mesh.working_flank
+        start = self.mesh.pair.touching_angle(driver_angle, flank, self._displaced(driver_angle))
+        angles, working, touched = self.turn_to_contact(flank, (driver_angle, start), turn_driver=False)
+        non_working = self.gaps_of(opposite(flank), angles, self.reading.gap == "section", touched)
+        play = non_working.smallest()
+        overlap = non_working.deep.any(axis=1) | (play < -ROOT_FINDING_NOISE)
+        status = np.select([~touched, overlap], [NO_CONTACT, INTERFERES], OK).astype(np.int8)
+        return MeshSeat(driver_angle, angles[1], working, non_working, status)
 
+    def rows(self, rows: NDArray[np.intp]) -> "Meshing":
+        """The same for some builds."""
+        return Meshing(self.engine, self.model, self.mesh, self.build.rows(rows), self.reading)
 
-def turn_to_contact(
-    engine: Engine,
-    model: Model,
-    mesh: Mesh,
-    build: Build,
-    *,
-    flank: Flank,
-    angles: tuple[Array, Array],
-    turn_driver: bool,
-    known: Gaps | None = None,
-) -> tuple[tuple[Array, Array], Gaps, NDArray[np.bool_]]:
-    """Turn one gear until a flank side touches at its first pair.
+    def gaps_of(self, flank: Flank, angles: tuple[Array, Array], section: bool, wanted: NDArray[np.bool_]) -> Gaps:
+        """Gaps of one flank side of the driver, for the builds (rows,) that are wanted."""
+        teeth, near = self._teeth(angles[0], flank)
+        return self.engine.gaps(self.build, self.mesh, flank, angles, teeth, near & wanted[:, None], section=section)
 
-    Newton on the smallest gap: each pair's gap and its derivative by the turn come from the engine, so
-    the step is the one after which the first pair touches. From an overlap too deep to measure, back out
-    by the engine's depth.
+    def _teeth(self, driver_angle: Array, flank: Flank) -> tuple[NDArray[np.int64], NDArray[np.bool_]]:
+        if self.reading.teeth == "all":
+            return self.mesh.pair.candidate_teeth(driver_angle, flank)
+        pitch = self.mesh.pair.pinion.angular_pitch
+        teeth = driver_teeth_at_one_tooth(driver_angle, pitch, flank, self.reading.teeth)
+        return teeth, np.ones(teeth.shape, dtype=bool)
 
-    Args:
-        flank: the driver's flank that shall touch.
-        angles: where to start, driver and driven [rad], each (rows,).
-        turn_driver: the driver turns and the driven is held, or the other way round.
-        known: the gaps at the start where they have been measured already.
+    def _displaced(self, driver_angle: Array) -> Displaced:
+        gears = [self.model.gear_index[name] for name in (self.mesh.driver, self.mesh.driven)]
+        angles = (driver_angle, self.mesh.pair.driven_angle(driver_angle))
+        sections = np.array([self.model.gears[gear].gear.section_arm for gear in gears])
+        return Displaced(
+            origin=np.stack([self.build.centre_of(g, a) for g, a in zip(gears, angles, strict=True)], axis=1),
+            turn=self.build.axis_turn[:, gears],
+            flank_turn=self.build.flank_turn[:, gears] + self.build.flank_offset[:, gears] / sections,
+        )
 
-    Returns:
-        angles of both gears at contact, the gaps there, and which rows reached contact.
-    """
-    gear = model.gear_index[mesh.driver if turn_driver else mesh.driven]
-    base_radius = model.gears[gear].gear.base_radius
-    axis_point, axis = build.axis(gear)
-    opening = float(mesh.pair.opening_sense(flank))
-    teeth, wanted = mesh.pair.candidate_teeth(angles[0], flank)
-    turned = [angles[0].copy(), angles[1].copy()]
-    mover = turned[0 if turn_driver else 1]
-    at_rest = _AtRest(teeth)
-    rows = np.arange(len(mover))
-    for _ in range(TURN_STEPS):
-        at = (turned[0][rows], turned[1][rows])
-        gaps = known or engine.gaps(build.rows(rows), mesh, flank, at, teeth[rows], wanted[rows])
-        known = None
-        rate = np.abs(gaps.per_turn(axis_point[rows], axis[rows], of_driver=turn_driver))
-        reach = np.where(np.isnan(gaps.value), np.inf, gaps.value / rate)
-        deep = np.asarray(gaps.deep.any(axis=1))
-        step = np.where(deep, -engine.depth / base_radius, reach.min(axis=1))
-        mover[rows] -= opening * step
-        resting = ~deep & (np.abs(step) * base_radius < LAST_STEP)
-        at_rest.keep(rows[resting], gaps, resting, rate * step[:, None])
-        tie = (TIE + TIE_SHARE * np.abs(step) * base_radius) / base_radius
-        tied = reach <= (step + tie)[:, None]
-        wanted[rows] &= deep[:, None] | tied
-        rows = rows[~resting]
-        if not len(rows):
-            break
-    touched = np.ones(len(mover), dtype=bool)
-    touched[rows] = False
-    return (turned[0], turned[1]), at_rest.gaps(), touched
+    def turn_to_contact(
+        self, flank: Flank, angles: tuple[Array, Array], *, turn_driver: bool, known: Gaps | None = None
+    ) -> tuple[tuple[Array, Array], Gaps, NDArray[np.bool_]]:
+        """Turn one gear until a flank side touches at its first pair.
+
+        Newton on the smallest gap: each pair's gap and its derivative by the turn come from the engine, so
+        the step is the one after which the first pair touches. From an overlap too deep to measure, back out
+        by the engine's depth.
+
+        Args:
+            flank: the driver's flank that shall touch.
+            angles: where to start, driver and driven [rad], each (rows,).
+            turn_driver: the driver turns and the driven is held, or the other way round.
+            known: the gaps at the start where they have been measured already.
+
+        Returns:
+            angles of both gears at contact, the gaps there, and which rows reached contact.
+        """
+        pair = self.mesh.pair
+        gear = self.model.gear_index[self.mesh.driver if turn_driver else self.mesh.driven]
+        base_radius = self.model.gears[gear].gear.base_radius
+        last_step = min(LAST_STEP, LAST_ERROR / pair.arm_spread) if pair.arm_spread else LAST_STEP
+        axis_point, axis = self.build.axis(gear)
+        opening = float(pair.opening_sense(flank))
+        section = self.reading.contact == "section"
+        teeth, wanted = self._teeth(angles[0], flank)
+        turned = [angles[0].copy(), angles[1].copy()]
+        mover = turned[0 if turn_driver else 1]
+        at_rest = _AtRest(teeth)
+        rows = np.arange(len(mover))
+        for _ in range(TURN_STEPS):
+            at = (turned[0][rows], turned[1][rows])
+            gaps = known or self.engine.gaps(
+                self.build.rows(rows), self.mesh, flank, at, teeth[rows], wanted[rows], section=section
+            )
+            known = None
+            rate = np.abs(gaps.per_turn(axis_point[rows], axis[rows], of_driver=turn_driver))
+            reach = np.where(np.isnan(gaps.value), np.inf, gaps.value / rate)
+            deep = np.asarray(gaps.deep.any(axis=1))
+            step = np.where(deep, -self.engine.depth / base_radius, reach.min(axis=1))
+            mover[rows] -= opening * step
+            resting = ~deep & (np.abs(step) * base_radius < last_step)
+            at_rest.keep(rows[resting], gaps, resting, rate * step[:, None])
+            tie = TIE / base_radius + (TIE_SHARE + pair.arm_spread) * np.abs(step)
+            tied = reach <= (step + tie)[:, None]
+            wanted[rows] &= deep[:, None] | tied
+            rows = rows[~resting]
+            if not len(rows):
+                break
+        touched = np.ones(len(mover), dtype=bool)
+        touched[rows] = False
+        return (turned[0], turned[1]), at_rest.gaps(), touched
 
 
 class _AtRest:

@@ -2,27 +2,28 @@
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.block import Block, mean_block, nominal_block
+from tol3d.block import Block, mean_block, nominal_block, seat_key
 from tol3d.errors import InputError, RunError
-from tol3d.gears import SpurGear
+from tol3d.gears import Gear
 from tol3d.model import Measure, Mesh, Model
 from tol3d.moves import NO_CONTACT, OK, MeshSeat
 from tol3d.report.number import measured_text
 from tol3d.result import Run
 from tol3d.simulate import Replay, model_of, replay, replay_block
-from tol3d.solids import display_mesh
+from tol3d.solids import DisplayMesh, display_mesh
 from tol3d.worst import worst_trial
 
 Array = NDArray[np.float64]
 Which = int | str
 
 DISPLAY_DEFLECTION: Final = 0.5e-3  # mm; a hundredth of a common backlash, and 40 000 triangles a gear at most
+CONE_DEFLECTION: Final = 5e-3  # mm; of a bevel gear, whose faces OCC meshes one by one and much finer than asked
 OPEN_SHARE: Final = 1 / 8  # of the base pitch; a magnified gap stays this small, a third of a tooth
 MAGNIFY_STEPS: Final = 16  # halvings of the range of magnifications; 1/65536 of it
 MAGNIFY_DIGITS: Final = 3  # of the magnification in use, rounded down
@@ -36,52 +37,43 @@ class PlacedGear:
         name: the part's.
         gear: nominal geometry.
         world_from_gear: (4, 4), rotation and translation [mm].
-        thickness: deviation of the tooth thickness [mm], arc at the reference circle, before growth.
+        flank_turn: by what each flank is turned out of its tooth [rad]; offsets are shown as such turns.
         scale: thermal growth, 1 at the reference temperature.
     """
 
     name: str
-    gear: SpurGear
+    gear: Gear
     world_from_gear: Array
-    thickness: float
+    flank_turn: float
     scale: float
 
-    def mesh(self, deflection: float = DISPLAY_DEFLECTION) -> tuple[Array, NDArray[np.int64]]:
+    def mesh(self) -> tuple[Array, NDArray[np.int64]]:
         """Closed triangle mesh in the world: vertices (n, 3) [mm], triangles (m, 3)."""
-        display = display_mesh(self.gear, deflection)
-        own = self.scale * display.thickened(self._half_angle)
+        display = self._display
+        own = self.scale * display.thickened(self.flank_turn)
         rotation, translation = self.world_from_gear[:3, :3], self.world_from_gear[:3, 3]
         return own @ rotation.T + translation, display.triangles
 
     @property
+    def _display(self) -> DisplayMesh:
+        return display_mesh(self.gear, CONE_DEFLECTION if self.gear.pitch_angle else DISPLAY_DEFLECTION)
+
+    @property
     def unfolded(self) -> bool:
         """Whether the deviation turns no triangle over, as it does where a flank passes points of the tip."""
-        display = display_mesh(self.gear, DISPLAY_DEFLECTION)
-        corners = (shape[display.triangles] for shape in (display.vertices, display.thickened(self._half_angle)))
+        display = self._display
+        corners = (shape[display.triangles] for shape in (display.vertices, display.thickened(self.flank_turn)))
         before, after = (np.cross(c[:, 1] - c[:, 0], c[:, 2] - c[:, 0]) for c in corners)
         return bool(((before * after).sum(axis=1) >= 0.0).all())
 
     @property
-    def _half_angle(self) -> float:
-        """By what its deviation turns each side of its teeth outwards [rad]."""
-        return self.thickness / (2 * self.gear.reference_radius)
-
-    @property
-    def perturbed(self) -> SpurGear:
+    def perturbed(self) -> Gear:
         """The gear with its deviation and its growth in its numbers.
 
         Raises:
             GeometryError: such a gear cannot be made.
         """
-        grown, gear = self.scale, self.gear
-        return replace(
-            gear,
-            module=gear.module * grown,
-            face_width=gear.face_width * grown,
-            root_fillet=None if gear.root_fillet is None else gear.root_fillet * grown,
-            bore=gear.bore * grown,
-            tooth_thickness_deviation=(gear.tooth_thickness_deviation + self.thickness) * grown,
-        )
+        return self.gear.perturbed(self.flank_turn, self.scale)
 
 
 @dataclass(frozen=True, eq=False)
@@ -108,11 +100,9 @@ class SeatedMesh:
 
     @property
     def tip_clearance(self) -> float:
-        """Smaller free distance [mm] between a tip circle and the mate's root circle."""
-        between = self.driven.world_from_gear[:2, 3] - self.driver.world_from_gear[:2, 3]
-        tips = [part.scale * part.gear.tip_radius for part in (self.driver, self.driven)]
-        roots = [part.scale * part.gear.root_radius for part in (self.driver, self.driven)]
-        return math.hypot(*between) - max(tips[0] + roots[1], tips[1] + roots[0])
+        """Smaller free distance [mm] between a tip and the mate's root."""
+        origins = np.stack([part.world_from_gear[:3, 3] for part in (self.driver, self.driven)])
+        return self.mesh.pair.tip_clearance(origins, (self.driver.scale, self.driven.scale))
 
 
 @dataclass(frozen=True, eq=False)
@@ -203,7 +193,7 @@ def _rows(seen: Replay) -> dict[str, int]:
 
 
 def _seat(seen: Replay, mesh: Mesh, measure: Measure) -> MeshSeat:
-    return seen.seats.seats[mesh.name, measure.positions]
+    return seen.seats.seats[seat_key(measure)]
 
 
 def _seated(seen: Replay, rows: Mapping[str, int]) -> tuple[SeatedMesh, ...]:
@@ -232,13 +222,14 @@ def _seated_mesh(seen: Replay, mesh: Mesh, seat: MeshSeat, row: int) -> SeatedMe
 
 
 def _placed(seen: Replay, name: str, angle: float) -> PlacedGear:
-    gear, build = seen.model.gear_index[name], seen.seats.build
+    index, build = seen.model.gear_index[name], seen.seats.build
+    gear = seen.model.gears[index].gear
     return PlacedGear(
         name=name,
-        gear=seen.model.gears[gear].gear,
-        world_from_gear=build.world_from_gear(gear, np.array([angle]))[0],
-        thickness=float(build.thickness[0, gear]),
-        scale=float(build.scale[0, gear]),
+        gear=gear,
+        world_from_gear=build.world_from_gear(index, np.array([angle]))[0],
+        flank_turn=float(build.flank_turn[0, index] + build.flank_offset[0, index] / gear.section_arm),
+        scale=float(build.scale[0, index]),
     )
 
 

@@ -3,19 +3,21 @@
 import math
 import re
 from collections.abc import Mapping, Sequence
+from functools import singledispatch
 
 from rich.console import Group, RenderableType
 from rich.text import Text
 
 from tol3d.analytic import reference_form
-from tol3d.gears import RIGHT, SpurPair
-from tol3d.model import AxisTilt, Contributor, Measure, Model, Planar
-from tol3d.report.heading import OVER_WORDS, QUANTITY_WORDS, TAKE_WORDS
+from tol3d.gears import RIGHT, BevelGear, BevelPair, Gear, GearPair, SpurGear, SpurPair
+from tol3d.model import Contributor, Measure, Model, Planar
+from tol3d.report.heading import OVER_WORDS, QUANTITY_WORDS, TAKE_WORDS, reading_words
 from tol3d.report.number import NOTHING, UNIT_SIGNS, given_text, percent_text, unsigned_zero, value_text
 from tol3d.report.sheet import Heading, Row, Sheet
 from tol3d.units import angle_text
 
 UM = 1000.0  # um in a mm
+ONE_SIDED = ("axis_in_plane", "axis_out_of_plane")  # kinds whose coefficient acts by absolute value
 
 
 def check_report(model: Model) -> Group:
@@ -49,26 +51,66 @@ def _side_by_side(title: str, names: Sequence[str], rows: Mapping[str, Sequence[
 
 def gears_table(model: Model) -> Group:
     """The gears side by side, lengths in mm."""
-    gears = [part.gear for part in model.gears]
-    rows: Mapping[str, list[str]] = {
-        "teeth z": [str(gear.teeth) for gear in gears],
-        "module m [mm]": [f"{gear.module:g}" for gear in gears],
-        "pressure angle α [°]": [_degrees(gear.pressure_angle) for gear in gears],
-        "face width b [mm]": [f"{gear.face_width:g}" for gear in gears],
-        "profile shift x": [f"{gear.profile_shift:g}" for gear in gears],
-        "addendum, dedendum [m]": [f"{gear.addendum:g}, {gear.dedendum:g}" for gear in gears],
-        "reference diameter d [mm]": [f"{gear.reference_diameter:.4f}" for gear in gears],
-        "tip diameter d_a [mm]": [f"{gear.tip_diameter:.4f}" for gear in gears],
-        "base diameter d_b [mm]": [f"{gear.base_diameter:.4f}" for gear in gears],
-        "root diameter d_f [mm]": [f"{gear.root_diameter:.4f}" for gear in gears],
-        "involute from diameter [mm]": [f"{2 * gear.form_radius:.4f}" for gear in gears],
-        "root fillet [mm]": [f"{gear.fillet_radius:.4f}" for gear in gears],
-        "tooth thickness s [mm]": [f"{gear.tooth_thickness:.4f}" for gear in gears],
-        "thickness at the tip s_a [mm]": [f"{gear.tip_thickness:.4f}" for gear in gears],
-        "bore [mm]": [f"{gear.bore:g}" if gear.bore else NOTHING for gear in gears],
-        "expansion [10⁻⁶/K]": [f"{1e6 * part.expansion:g}" if part.expansion else NOTHING for part in model.gears],
+    rows = [gear_rows(part.gear) for part in model.gears]
+    expansions = [f"{1e6 * part.expansion:g}" if part.expansion else NOTHING for part in model.gears]
+    return _side_by_side(
+        "parts", [part.name for part in model.gears], _merged(rows) | {"expansion [10⁻⁶/K]": expansions}
+    )
+
+
+def _merged(columns: Sequence[Mapping[str, str]]) -> dict[str, list[str]]:
+    """Rows that some column has, in the columns' order; what another kind does not have is NOTHING."""
+    labels = dict.fromkeys(label for column in columns for label in column)
+    return {label: [column.get(label, NOTHING) for column in columns] for label in labels}
+
+
+@singledispatch
+def gear_rows(gear: Gear) -> dict[str, str]:
+    """What a gear is, by label; one function a kind."""
+    raise TypeError(f"check.py has no function for {type(gear).__name__}")
+
+
+@gear_rows.register
+def _(gear: SpurGear) -> dict[str, str]:
+    return {
+        "teeth z": str(gear.teeth),
+        "module m [mm]": f"{gear.module:g}",
+        "pressure angle α [°]": _degrees(gear.pressure_angle),
+        "face width b [mm]": f"{gear.face_width:g}",
+        "profile shift x": f"{gear.profile_shift:g}",
+        "addendum, dedendum [m]": f"{gear.addendum:g}, {gear.dedendum:g}",
+        "reference diameter d [mm]": f"{gear.reference_diameter:.4f}",
+        "tip diameter d_a [mm]": f"{gear.tip_diameter:.4f}",
+        "base diameter d_b [mm]": f"{gear.base_diameter:.4f}",
+        "root diameter d_f [mm]": f"{gear.root_diameter:.4f}",
+        "involute from diameter [mm]": f"{2 * gear.form_radius:.4f}",
+        "root fillet [mm]": f"{gear.fillet_radius:.4f}",
+        "tooth thickness s [mm]": f"{gear.tooth_thickness:.4f}",
+        "thickness at the tip s_a [mm]": f"{gear.tip_thickness:.4f}",
+        "bore [mm]": f"{gear.bore:g}" if gear.bore else NOTHING,
     }
-    return _side_by_side("parts", [part.name for part in model.gears], rows)
+
+
+@gear_rows.register
+def _(gear: BevelGear) -> dict[str, str]:
+    cones = {"pitch": gear.pitch_angle, "tip": gear.tip_angle, "base": gear.base_angle, "root": gear.root_angle}
+    distances = (gear.outer_cone_distance, gear.mean_cone_distance, gear.inner_cone_distance)
+    return {
+        "teeth z": str(gear.teeth),
+        "module m [mm]": f"{gear.module:g}",
+        "pressure angle α [°]": _degrees(gear.pressure_angle),
+        "face width b [mm]": f"{gear.face_width:g}",
+        "profile shift x": f"{gear.profile_shift:g}",
+        "addendum, dedendum [m]": f"{gear.addendum:g}, {gear.dedendum:g}",
+        **{f"{name} angle [°]": f"{math.degrees(angle):.4f}" for name, angle in cones.items()},
+        "cone distance, outer, mean, inner [mm]": ", ".join(f"{distance:.4f}" for distance in distances),
+        "reference diameter, outer d_e [mm]": f"{gear.reference_diameter:.4f}",
+        "reference diameter, mean d_m [mm]": f"{2 * gear.mean_radius:.4f}",
+        "tip diameter, outer d_ae [mm]": f"{gear.tip_diameter:.4f}",
+        "tooth thickness, outer s [mm]": f"{gear.tooth_thickness:.4f}",
+        "thickness at the tip, outer [mm]": f"{gear.tip_thickness:.4f}",
+        "bore [mm]": f"{gear.bore:g}" if gear.bore else NOTHING,
+    }
 
 
 def housings_line(model: Model) -> Text:
@@ -84,12 +126,18 @@ def meshes_table(model: Model) -> Group:
         "driver's working flank": ["right" if mesh.working_flank == RIGHT else "left" for mesh in model.meshes],
         "housing": [mesh.housing or NOTHING for mesh in model.meshes],
     }
-    pairs = [_pair_rows(mesh.pair) for mesh in model.meshes]
-    numbers = {label: [cells[label] for cells in pairs] for label in pairs[0]}
-    return _side_by_side("moves", [mesh.name for mesh in model.meshes], {**rows, **numbers})
+    pairs = _merged([pair_rows(mesh.pair) for mesh in model.meshes])
+    return _side_by_side("moves", [mesh.name for mesh in model.meshes], {**rows, **pairs})
 
 
-def _pair_rows(pair: SpurPair) -> dict[str, str]:
+@singledispatch
+def pair_rows(pair: GearPair) -> dict[str, str]:
+    """What a nominal pair gives, by label; one function a kind."""
+    raise TypeError(f"check.py has no function for {type(pair).__name__}")
+
+
+@pair_rows.register
+def _(pair: SpurPair) -> dict[str, str]:
     driver, driven = pair.angular_backlash
     return {
         "centre distance a [mm]": f"{pair.centre_distance:.4f}",
@@ -104,6 +152,17 @@ def _pair_rows(pair: SpurPair) -> dict[str, str]:
     }
 
 
+@pair_rows.register
+def _(pair: BevelPair) -> dict[str, str]:
+    return {
+        "shaft angle Σ [°]": _degrees(pair.shaft_angle),
+        "mean cone distance R_m [mm]": f"{pair.mean_cone_distance:.4f}",
+        "contact ratio ε_α": f"{pair.contact_ratio:.4f}",
+        "same teeth meet after [turns]": str(pair.long_period_turns),
+        "nominal normal backlash [µm]": value_text(pair.normal_backlash * UM, "um"),
+    }
+
+
 def measures_table(model: Model) -> Group:
     """The measures with limits and positions."""
     rows = []
@@ -112,7 +171,8 @@ def measures_table(model: Model) -> Group:
         gear = f" of {kind.gear}" if kind.is_angle else ""
         what = f"{TAKE_WORDS[measure.take]}{QUANTITY_WORDS[kind.quantity]}{gear}, {kind.mesh}"
         curve = " (curve)" if measure.take == "curve" else ""
-        rows.append(Row(measure.name, (what + curve, _positions(measure), _limits(measure))))
+        reading = reading_words(vars(kind.reading))
+        rows.append(Row(measure.name, (what + curve + reading, _positions(measure), _limits(measure))))
     return _titled("measures", Sheet("", [Heading(word, words=True) for word in ("what", "positions", "limits")], rows))
 
 
@@ -153,7 +213,7 @@ def contributors_table(model: Model) -> Group:
 
 
 def _tilts_note(model: Model) -> list[Text]:
-    tilts = [c.name for c in model.contributors if isinstance(c.effect, AxisTilt)]
+    tilts = [c.name for c in model.contributors if c.kind in ONE_SIDED]
     if not tilts:
         return []
     words = f" {', '.join(tilts)}: the coefficient is per |deviation|; a tilt closes the gap whichever way it goes"

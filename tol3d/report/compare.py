@@ -29,7 +29,7 @@ from tol3d.report.canvas import (
     values_label,
 )
 from tol3d.report.difference import Difference, difference_of
-from tol3d.report.heading import heading
+from tol3d.report.heading import heading, reading_words
 from tol3d.report.number import NOTHING, UNIT_SIGNS, difference_text, given_text, value_text
 from tol3d.report.sheet import Heading, Row, Sheet
 from tol3d.result import Run
@@ -53,11 +53,13 @@ class Compared:
     gear: str | None
     over: str
     take: str
+    reading: str
 
     @classmethod
     def of(cls, name: str, measure: Summary) -> "Compared":
         """From a measure's summary."""
-        return cls(name, *(measure[key] for key in ("unit", "kind", "gear", "over", "take")))
+        unit, kind, gear, over, take = (measure[key] for key in ("unit", "kind", "gear", "over", "take"))
+        return cls(name, unit, kind, gear, over, take, reading_words(measure["reading"]))
 
     def found_in(self, runs: Sequence[Run]) -> list[tuple[str, Run]]:
         """The runs that have it, each with its label."""

@@ -19,6 +19,23 @@ OVER_WORDS: Mapping[str, str] = {
 }
 
 
+READING_WORDS: Mapping[tuple[str, str], str] = {
+    ("face", "face"): "",
+    ("face", "section"): "; contact over the face, gap in its middle",
+    ("section", "section"): "; mean section",
+}
+
+
+def reading_words(reading: Mapping[str, str]) -> str:
+    """Where on the face and at which teeth, unless it is everywhere and all.
+
+    >>> reading_words({"contact": "section", "gap": "section", "teeth": "driven"})
+    '; mean section, one driven tooth'
+    """
+    teeth = {"driver": ", one driver tooth", "driven": ", one driven tooth"}
+    return READING_WORDS[reading["contact"], reading["gap"]] + teeth.get(reading["teeth"], "")
+
+
 def heading(measure: Mapping[str, Any]) -> str:
     """Quantity, mesh and positions of a measure's summary.
 
@@ -27,7 +44,8 @@ def heading(measure: Mapping[str, Any]) -> str:
     """
     gear = f" of {measure['gear']} in" if measure["kind"] == "angular_backlash" else " of"
     quantity = TAKE_WORDS[measure["take"]] + QUANTITY_WORDS[measure["kind"]]
-    return f"{quantity}{gear} {measure['of']} {OVER_WORDS[measure['over']]}"
+    reading = reading_words(measure["reading"]) if "reading" in measure else ""
+    return f"{quantity}{gear} {measure['of']} {OVER_WORDS[measure['over']]}{reading}"
 
 
 def worst_words(measures: Mapping[str, Mapping[str, Any]]) -> str:

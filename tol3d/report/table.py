@@ -176,7 +176,7 @@ def _notes(measure: Summary, summary: Summary) -> Iterator[str]:
         yield "ppm of the closed form: as if the measure were normal"
     if "lost_motion" in measure:
         gear = measure["lost_motion"]["of"]
-        yield f"lost motion: the turn of {gear} that this normal backlash leaves free, j_n / r_b"
+        yield f"lost motion: the turn of {gear} that this normal backlash leaves free, j_n over the arm of its flank"
 
 
 def agreement_line(agreement: Summary, unit: str, chord_error_um: float | None) -> str:

@@ -4,6 +4,7 @@ import ctypes.util
 import os
 import sys
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Final
 
@@ -88,18 +89,37 @@ def choose_window(*, needs_display: bool) -> None:
 
 def plot(assembly: Assembly, *, off_screen: bool) -> pv.Plotter:
     """The scene: the teeth in mesh, the whole assembly, a close-up of the gap."""
-    seated = assembly.meshes[0]
+    seated = _as_seen(assembly.meshes[0])
     parts = [(part, _poly_data(part)) for part in (seated.driver, seated.driven)]
     front = max(float(mesh.bounds[5]) for _, mesh in parts)
     plotter = pv.Plotter(shape="1|2", splitting_position=0.66, off_screen=off_screen, window_size=list(WINDOW_SIZE))
     plotter.enable_anti_aliasing("ssaa", all_renderers=True)
     plotter.subplot(0)
-    _draw_teeth(plotter, assembly, seated, parts, front)
+    _draw_teeth(plotter, seated, parts, front)
+    _add_title(plotter, _title(assembly), 13)
     plotter.subplot(1)
     _draw_whole(plotter, seated, parts, front)
     plotter.subplot(2)
     _draw_gap(plotter, seated, parts, front)
     return plotter
+
+
+def _as_seen(seated: SeatedMesh) -> SeatedMesh:
+    """The mesh in the coordinates of the picture: x to the right, y up, z towards the eye."""
+    turn = seated.mesh.pair.view_from_world
+    pose = np.eye(4)
+    pose[:3, :3] = turn
+    driver, driven = (
+        replace(part, world_from_gear=pose @ part.world_from_gear) for part in (seated.driver, seated.driven)
+    )
+    return replace(
+        seated,
+        driver=driver,
+        driven=driven,
+        contact=turn @ seated.contact,
+        normal=turn @ seated.normal,
+        gap=seated.gap @ turn.T,
+    )
 
 
 def _poly_data(part: PlacedGear) -> pv.PolyData:
@@ -119,18 +139,18 @@ def _add_parts(plotter: pv.Plotter, parts: Parts) -> None:
         plotter.add_mesh(edges, color=EDGE_COLOUR, line_width=1.2)
 
 
-def _draw_teeth(plotter: pv.Plotter, assembly: Assembly, seated: SeatedMesh, parts: Parts, front: float) -> None:
+def _draw_teeth(plotter: pv.Plotter, seated: SeatedMesh, parts: Parts, front: float) -> None:
     _add_parts(plotter, parts)
     module = seated.driver.gear.module
     size = 0.055 * module
-    contact = _in_front(seated.contact, front)
+    contact = _in_front(seated, seated.contact, front)
     plotter.add_mesh(pv.Sphere(radius=1.4 * size, center=contact), color=CONTACT_COLOUR)
     plotter.add_mesh(_arrow(contact, seated.normal, 0.85 * module), color=CONTACT_COLOUR)
     behind = contact - module * (0.35 * seated.normal + np.array([0.5, 0.0, 0.0]))
     _add_label(plotter, behind, "contact", CONTACT_COLOUR)
     middle = contact
     if np.isfinite(seated.gap).all():
-        ends = [_in_front(point, front) for point in seated.gap]
+        ends = [_in_front(seated, point, front) for point in seated.gap]
         plotter.add_mesh(pv.Tube(pointa=ends[0], pointb=ends[1], radius=0.6 * size), color=GAP_COLOUR)
         for end in ends:
             plotter.add_mesh(pv.Sphere(radius=size, center=end), color=GAP_COLOUR)
@@ -140,7 +160,6 @@ def _draw_teeth(plotter: pv.Plotter, assembly: Assembly, seated: SeatedMesh, par
     for part, role, aside in zip((seated.driver, seated.driven), ("driver", "driven"), (-1.0, 1.0), strict=True):
         place = middle + module * np.array([2.1 * aside - 0.8, -2.65, 0.0])
         _add_label(plotter, place, f"{part.name} ({role})", EDGE_COLOUR)
-    _add_title(plotter, _title(assembly, seated), 13)
     _look(plotter, middle, TEETH_HIGH * module, 0.0)
     _with_perspective(plotter)
 
@@ -148,7 +167,7 @@ def _draw_teeth(plotter: pv.Plotter, assembly: Assembly, seated: SeatedMesh, par
 def _draw_whole(plotter: pv.Plotter, seated: SeatedMesh, parts: Parts, front: float) -> None:
     _add_parts(plotter, parts)
     module = seated.driver.gear.module
-    contact = _in_front(seated.contact, front + module)
+    contact = _in_front(seated, seated.contact, front + module)
     ring = pv.Disc(center=contact, inner=3.2 * module, outer=3.8 * module, normal=(0, 0, 1), c_res=60)
     plotter.add_mesh(ring, color=CONTACT_COLOUR, lighting=False)
     bounds = np.array([mesh.bounds for _, mesh in parts])
@@ -161,9 +180,9 @@ def _draw_gap(plotter: pv.Plotter, seated: SeatedMesh, parts: Parts, front: floa
     _add_parts(plotter, parts)
     if not np.isfinite(seated.gap).all():
         _add_title(plotter, "non-working flanks overlap", 10)
-        _look(plotter, _in_front(seated.contact, front), 0.5 * seated.driver.gear.module, 0.0)
+        _look(plotter, _in_front(seated, seated.contact, front), 0.5 * seated.driver.gear.module, 0.0)
         return
-    ends = np.stack([_in_front(point, front) for point in seated.gap])
+    ends = np.stack([_in_front(seated, point, front) for point in seated.gap])
     high = max(GAPS_HIGH * seated.gap_value, LEAST_HIGH)
     if seated.gap_value > 0.0:
         plotter.add_mesh(pv.Line(*ends), color=GAP_COLOUR, line_width=4, lighting=False)
@@ -174,7 +193,8 @@ def _draw_gap(plotter: pv.Plotter, seated: SeatedMesh, parts: Parts, front: floa
     _look(plotter, ends.mean(axis=0), high, 0.0)
 
 
-def _title(assembly: Assembly, seated: SeatedMesh) -> str:
+def _title(assembly: Assembly) -> str:
+    seated = assembly.meshes[0]
     turn = np.degrees(np.arctan2(seated.driver.world_from_gear[1, 0], seated.driver.world_from_gear[0, 0])) % 360
     magnified = f", deviations x {assembly.magnify:g}" if assembly.magnify != 1.0 else ""
     status = "" if seated.status == OK else f", {STATUS_TEXT[seated.status]}"
@@ -186,8 +206,11 @@ def _gap_text(seated: SeatedMesh) -> str:
     return f"{word} {measured_text(1000 * abs(seated.gap_value), 'um')}"
 
 
-def _in_front(point: Array, front: float) -> Array:
-    """A point of a flank at the front ends of the teeth, where it can be seen; flanks run along the view."""
+def _in_front(seated: SeatedMesh, point: Array, front: float) -> Array:
+    """A point of a flank at the front ends of the teeth, where it can be seen: generators run there, or from the apex.
+    """
+    if seated.mesh.pair.arm_spread:
+        return np.asarray(point * (front / point[2]))
     return np.array([point[0], point[1], front])
 
 

@@ -1,13 +1,40 @@
 """What one entry of a scene says about another: a name that must exist, and be of the right sort."""
 
+from collections.abc import Collection
 from dataclasses import dataclass
 from typing import Final, Literal
 
 from tol3d.scene.place import KeyPath
 
-Sort = Literal["gear", "housing", "mesh"]
+Sort = Literal["spur_gear", "bevel_gear", "housing", "mesh", "bevel_mesh"]
 
-SORT_WORDS: Final[dict[Sort, str]] = {"gear": "a gear", "housing": "a housing", "mesh": "a mesh move"}
+SORT_WORDS: Final[dict[Sort, str]] = {
+    "spur_gear": "a spur gear",
+    "bevel_gear": "a bevel gear",
+    "housing": "a housing",
+    "mesh": "a mesh of spur gears",
+    "bevel_mesh": "a bevel mesh",
+}
+
+
+TOGETHER: Final[dict[frozenset[Sort], str]] = {
+    frozenset(("spur_gear", "bevel_gear")): "a gear",
+    frozenset(("mesh", "bevel_mesh")): "a mesh move",
+}
+
+
+def sorts_text(sorts: Collection[Sort]) -> str:
+    """What may stand there, in words.
+
+    >>> sorts_text(("spur_gear", "bevel_gear", "housing"))
+    'a gear or a housing'
+    """
+    left, words = set(sorts), []
+    for several, word in TOGETHER.items():
+        if several <= left:
+            words.append(word)
+            left -= several
+    return " or ".join([*words, *(SORT_WORDS[sort] for sort in sorts if sort in left)])
 
 
 @dataclass(frozen=True)

@@ -10,7 +10,7 @@ from tol3d.errors import SceneError
 from tol3d.scene.nearest import hint
 from tol3d.scene.place import KeyPath
 from tol3d.scene.problems import first_few
-from tol3d.scene.reference import SORT_WORDS, Contradiction, Reference
+from tol3d.scene.reference import SORT_WORDS, Contradiction, Reference, sorts_text
 from tol3d.scene.schema import Scene
 from tol3d.units import expectation, shown
 
@@ -71,7 +71,7 @@ def _unknown(scene: Scene) -> Iterator[Problem]:
     for path, reference in _references(scene):
         if sorts.get(reference.name) in reference.sorts:
             continue
-        expected = " or ".join(SORT_WORDS[sort] for sort in reference.sorts)
+        expected = sorts_text(reference.sorts)
         fitting = [name for name, sort in sorts.items() if sort in reference.sorts]
         section = next((s for s in SECTIONS if reference.name in getattr(scene, s)), None)
         if reference.name in sorts:

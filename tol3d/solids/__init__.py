@@ -1,8 +1,18 @@
 """From a part's CAD solid to measuring strips, display meshes and STEP; cached, so a warm run loads no CAD."""
 
 from tol3d.solids.display_mesh import DisplayMesh, display_mesh
-from tol3d.solids.flank_strips import FlankStrips, measuring_strips, strip_mesh
+from tol3d.solids.flank_strips import WHOLE_FACE, FlankStrips, Span, measuring_strips, strip_mesh
 from tol3d.solids.posed_gear import PosedGear
 from tol3d.solids.step import export_step
 
-__all__ = ["DisplayMesh", "FlankStrips", "PosedGear", "display_mesh", "export_step", "measuring_strips", "strip_mesh"]
+__all__ = [
+    "WHOLE_FACE",
+    "DisplayMesh",
+    "FlankStrips",
+    "PosedGear",
+    "Span",
+    "display_mesh",
+    "export_step",
+    "measuring_strips",
+    "strip_mesh",
+]

@@ -14,23 +14,29 @@ import pkgutil
 import tempfile
 import warnings
 from collections.abc import Callable, Mapping
-from dataclasses import asdict
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
 import numpy as np
 import platformdirs
 
-from tol3d.gears import SpurGear
+from tol3d.gears import Gear
 from tol3d.solids.door import Arrays
 
 FOLDER_VARIABLE = "TOL3D_CACHE"
 SOURCES = (
     ("tol3d.gears", "involute.py"),
+    ("tol3d.gears", "spherical_involute.py"),
+    ("tol3d.gears", "bevel_gear.py"),
     ("tol3d.gears", "spur_gear.py"),
     ("tol3d.parts", "named_solid.py"),
     ("tol3d.parts", "spur_gear.py"),
-    ("tol3d.solids", "cad.py"),
+    ("tol3d.parts", "bevel_cones.py"),
+    ("tol3d.parts", "bevel_flank.py"),
+    ("tol3d.parts", "bevel_gear.py"),
+    ("tol3d.solids", "spur_cad.py"),
+    ("tol3d.solids", "bevel_cad.py"),
+    ("tol3d.solids", "triangulation.py"),
 )
 """What decides the arrays: a change in any of these makes old entries unreachable."""
 
@@ -42,7 +48,7 @@ class CacheWarning(UserWarning):
     """The cache cannot be used; results are the same, only slower."""
 
 
-def cached(kind: str, gear: SpurGear, settings: Mapping[str, float], build: Callable[[], Arrays]) -> Arrays:
+def cached(kind: str, gear: Gear, settings: Mapping[str, float], build: Callable[[], Arrays]) -> Arrays:
     """The arrays of `build`, from the disk where they have been built before.
 
     Args:
@@ -72,16 +78,16 @@ def folder() -> Path:
     return Path(stated) if stated else platformdirs.user_cache_path("tol3d")
 
 
-def _key(kind: str, gear: SpurGear, settings: Mapping[str, float]) -> str:
+def _key(kind: str, gear: Gear, settings: Mapping[str, float]) -> str:
     sources = {f"{package}/{name}": pkgutil.get_data(package, name) or b"" for package, name in SOURCES}
     told = {
         "kind": kind,
-        "gear": asdict(gear),
+        "gear": repr(gear),
         "settings": dict(settings),
         "versions": {name: _version(name) for name in PACKAGES},
         "sources": {name: hashlib.sha256(text).hexdigest() for name, text in sources.items()},
     }
-    # json writes the shortest text that gives back the same double, so no two gears share a key
+    # repr and json write the shortest text that gives back the same double, so no two gears share a key
     return hashlib.sha256(json.dumps(told, sort_keys=True).encode()).hexdigest()
 
 

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.gears import SpurGear
+from tol3d.gears import Gear
 from tol3d.solids.cache import cached
 from tol3d.solids.door import cad
 
@@ -41,7 +41,7 @@ class DisplayMesh:
         return np.stack([cos * x - sin * y, sin * x + cos * y, z], axis=-1)
 
 
-def display_mesh(gear: SpurGear, deflection: float) -> DisplayMesh:
+def display_mesh(gear: Gear, deflection: float) -> DisplayMesh:
     """Mesh of a gear whose faces are followed within about `deflection` [mm]; see its chord_error for the truth."""
     arrays = cached("display", gear, {"deflection": deflection}, lambda: cad().tessellate(gear, deflection))
     return DisplayMesh(

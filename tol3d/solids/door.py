@@ -8,7 +8,7 @@ from typing import Protocol, cast
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.gears import SpurGear
+from tol3d.gears import Gear
 from tol3d.solids.posed_gear import PosedGear
 
 Arrays = dict[str, NDArray[np.generic]]
@@ -17,11 +17,11 @@ Arrays = dict[str, NDArray[np.generic]]
 class Cad(Protocol):
     """What tol3d.solids.cad does."""
 
-    def sample_flanks(self, gear: SpurGear, steps: int) -> Arrays:
+    def sample_flanks(self, gear: Gear, steps: int) -> Arrays:
         """Arrays of FlankStrips."""
         ...
 
-    def tessellate(self, gear: SpurGear, deflection: float) -> Arrays:
+    def tessellate(self, gear: Gear, deflection: float) -> Arrays:
         """Arrays of DisplayMesh."""
         ...
 

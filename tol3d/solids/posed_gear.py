@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.gears import SpurGear
+from tol3d.gears import Gear
 
 
 @dataclass(frozen=True, eq=False)
@@ -13,5 +13,5 @@ class PosedGear:
     """A gear, the name of its part, and its pose: (4, 4), rotation and translation [mm]."""
 
     name: str
-    gear: SpurGear
+    gear: Gear
     world_from_part: NDArray[np.float64]

@@ -8,6 +8,7 @@ from pydantic import Field
 from tol3d.scene.measures.measure import AngleLimit, MeasureSpec
 from tol3d.scene.moves import MoveSpec
 from tol3d.scene.name import Name
+from tol3d.scene.parts import GEARS
 from tol3d.scene.reference import Contradiction, Reference
 from tol3d.units import Dimension
 
@@ -25,7 +26,7 @@ class AngularBacklashSpec(MeasureSpec):
     def references(self) -> tuple[Reference, ...]:
         """The mesh, and the gear if it is given."""
         mesh = super().references()
-        return mesh if self.gear is None else (*mesh, Reference(("gear",), self.gear, ("gear",)))
+        return mesh if self.gear is None else (*mesh, Reference(("gear",), self.gear, GEARS))
 
     def contradictions(self, moves: Mapping[str, MoveSpec]) -> Iterator[Contradiction]:
         """The gear takes part in the mesh."""

@@ -7,7 +7,7 @@ from typing import Annotated, ClassVar, Literal, Self
 from pydantic import Discriminator, Field, Tag, model_validator
 
 from tol3d.scene.direction import At, FixedAngle, known_word, shape
-from tol3d.scene.moves import MoveSpec
+from tol3d.scene.moves import MESHES, MoveSpec
 from tol3d.scene.name import Name
 from tol3d.scene.reference import Contradiction, Reference
 from tol3d.strict import Strict, refused
@@ -47,6 +47,16 @@ class MeasureSpec(Strict, ABC):
         le=MOST_POSITIONS,
         description="positions a turn, for turn and long_period",
     )
+    read_at: Literal["mean_section", "face_contact", "face"] | None = Field(
+        default=None,
+        description="where on the face: contact and gap in the section in its middle (bevel gears if not given), "
+        "contact over the face and the gap in that section, or both over the face (spur gears if not given)",
+    )
+    tooth: Literal["driver", "driven", "all"] | None = Field(
+        default=None,
+        description="which teeth: one tooth of the driver or the driven gear in its space, or all that may touch; "
+        "driven for bevel gears, all for spur gears if not given",
+    )
     description: str = Field(default="", description="the user's own words, shown in reports")
 
     @property
@@ -56,7 +66,7 @@ class MeasureSpec(Strict, ABC):
 
     def references(self) -> tuple[Reference, ...]:
         """Every name that the measure uses: the mesh."""
-        return (Reference(("of",), self.of, ("mesh",)),)
+        return (Reference(("of",), self.of, MESHES),)
 
     def contradictions(self, moves: Mapping[str, MoveSpec]) -> Iterator[Contradiction]:
         """What does not fit the moves that it names; asked only when every name exists."""

@@ -1,8 +1,14 @@
 """Kinds of assembly move, one file each."""
 
+from typing import Annotated
+
+from pydantic import Field
+
+from tol3d.scene.moves.bevel_mesh import BevelMeshSpec
+from tol3d.scene.moves.gear_mesh import MESHES, GearMeshSpec
 from tol3d.scene.moves.mesh import MeshSpec
 from tol3d.scene.moves.move import MoveSpec
 
-MoveUnion = MeshSpec  # pydantic takes a discriminator from the second kind on
+MoveUnion = Annotated[MeshSpec | BevelMeshSpec, Field(discriminator="kind")]
 
-__all__ = ["MeshSpec", "MoveSpec", "MoveUnion"]
+__all__ = ["MESHES", "BevelMeshSpec", "GearMeshSpec", "MeshSpec", "MoveSpec", "MoveUnion"]

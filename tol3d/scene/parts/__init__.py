@@ -4,10 +4,12 @@ from typing import Annotated
 
 from pydantic import Field
 
+from tol3d.scene.parts.bevel_gear import BevelGearSpec
+from tol3d.scene.parts.gear import GEARS, GearSpec
 from tol3d.scene.parts.housing import HousingSpec
 from tol3d.scene.parts.part import PartSpec
 from tol3d.scene.parts.spur_gear import SpurGearSpec
 
-PartUnion = Annotated[SpurGearSpec | HousingSpec, Field(discriminator="kind")]
+PartUnion = Annotated[SpurGearSpec | BevelGearSpec | HousingSpec, Field(discriminator="kind")]
 
-__all__ = ["HousingSpec", "PartSpec", "PartUnion", "SpurGearSpec"]
+__all__ = ["GEARS", "BevelGearSpec", "GearSpec", "HousingSpec", "PartSpec", "PartUnion", "SpurGearSpec"]

@@ -1,36 +1,19 @@
 """An external involute spur gear."""
 
-from typing import Annotated, ClassVar, Literal
+from typing import ClassVar, Literal
 
 from pydantic import Field
 
-from tol3d.scene.parts.part import PartSpec
+from tol3d.scene.parts.gear import GearSpec, Length
 from tol3d.scene.reference import Sort
-from tol3d.units import Of, Positive, Quantity
-
-MOST_TEETH = 10_000  # far more than anyone hobs; keeps a slip of the finger from building for days
-
-Length = Annotated[Quantity, Of("length"), Positive()]
 
 
-class SpurGearSpec(PartSpec):
-    """A spur gear by the words of ISO 21771-1; profile_shift, addendum and dedendum count in modules."""
+class SpurGearSpec(GearSpec):
+    """A spur gear; its tooth thickness is an arc at the reference circle."""
 
-    sort: ClassVar[Sort] = "gear"
+    sort: ClassVar[Sort] = "spur_gear"
 
     kind: Literal["spur_gear"]
-    teeth: int = Field(ge=1, le=MOST_TEETH, description="number of teeth z")
-    module: Length = Field(description="module m")
-    pressure_angle: Annotated[Quantity, Of("angle"), Positive()] = Field(
-        default=Quantity(20.0, "deg"),
-        description="pressure angle at the reference circle",
-        json_schema_extra={"default": "20 deg"},  # pydantic would show the Quantity's fields
-    )
-    face_width: Length = Field(description="face width b")
-    profile_shift: float = Field(default=0.0, description="profile shift coefficient x; positive is a thicker tooth")
-    addendum: float = Field(default=1.0, gt=0.0, description="addendum factor, in modules")
-    dedendum: float = Field(default=1.25, gt=0.0, description="dedendum factor, in modules")
     root_fillet: Length | None = Field(
         default=None, description="radius between flank and root circle; 0.38 m (ISO 53) or the full round if not given"
     )
-    bore: Length | None = Field(default=None, description="diameter of the bore; none if not given")

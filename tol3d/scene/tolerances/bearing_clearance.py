@@ -6,7 +6,7 @@ from typing import Annotated, Literal
 from pydantic import Discriminator, Field, Tag
 
 from tol3d.scene.direction import FixedAngle, known_word, shape
-from tol3d.scene.moves import MoveSpec
+from tol3d.scene.moves import MESHES, MoveSpec
 from tol3d.scene.name import Name
 from tol3d.scene.parts import PartSpec
 from tol3d.scene.reference import Contradiction, Reference
@@ -19,7 +19,7 @@ class BearingClearanceSpec(GearToleranceSpec):
     """Delta b, a length on the diameter: the gear's axis moves by Delta b / 2.
 
     `apart` moves it away from the mate along the line of centres (positive opens), `tooth_force` along
-    the force on its working flank, `{at: angle}` at an azimuth of the mesh's world, `random` anywhere.
+    the force on its working flank, `{at: angle}` at an azimuth of the gear's frame at rest, `random` anywhere.
     """
 
     kind: Literal["bearing_clearance"]
@@ -33,7 +33,7 @@ class BearingClearanceSpec(GearToleranceSpec):
     def references(self) -> tuple[Reference, ...]:
         """The gear, and the mesh if it is given."""
         gear = super().references()
-        return gear if self.mesh is None else (*gear, Reference(("mesh",), self.mesh, ("mesh",)))
+        return gear if self.mesh is None else (*gear, Reference(("mesh",), self.mesh, MESHES))
 
     def contradictions(self, parts: Mapping[str, PartSpec], moves: Mapping[str, MoveSpec]) -> Iterator[Contradiction]:
         """The gear takes part in the mesh, or in one mesh only."""

@@ -43,7 +43,7 @@ class TemperatureSpec(ToleranceSpec):
 
     def references(self) -> tuple[Reference, ...]:
         """Every part."""
-        return tuple(Reference(("of", index), name, ("gear", "housing")) for index, name in enumerate(self.of))
+        return tuple(Reference(("of", index), name, ("spur_gear", "housing")) for index, name in enumerate(self.of))
 
     def contradictions(self, parts: Mapping[str, PartSpec], moves: Mapping[str, MoveSpec]) -> Iterator[Contradiction]:
         """A part without a coefficient of expansion would take no notice."""

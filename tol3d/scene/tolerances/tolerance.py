@@ -10,8 +10,8 @@ from tol3d.distributions import DistributionUnion
 from tol3d.scene.direction import FixedAngle, known_word, shape
 from tol3d.scene.moves import MoveSpec
 from tol3d.scene.name import Name
-from tol3d.scene.parts import PartSpec
-from tol3d.scene.reference import Contradiction, Reference
+from tol3d.scene.parts import GEARS, PartSpec
+from tol3d.scene.reference import Contradiction, Reference, Sort
 from tol3d.strict import Strict
 from tol3d.units import Dimension, refuse_dimension
 
@@ -54,14 +54,16 @@ class GearToleranceSpec(ToleranceSpec):
 
     def references(self) -> tuple[Reference, ...]:
         """The gear."""
-        return (Reference(("of",), self.of, ("gear",)),)
+        return (Reference(("of",), self.of, GEARS),)
 
 
 class MeshToleranceSpec(ToleranceSpec):
     """A tolerance of how two axes lie to each other."""
 
+    sorts: ClassVar[tuple[Sort, ...]] = ("mesh",)
+
     of: Name = Field(description="the mesh move")
 
     def references(self) -> tuple[Reference, ...]:
         """The mesh."""
-        return (Reference(("of",), self.of, ("mesh",)),)
+        return (Reference(("of",), self.of, self.sorts),)

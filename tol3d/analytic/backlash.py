@@ -1,0 +1,42 @@
+"""The analytic value of a backlash measure: the stack-up of its mesh, turned into the measure's quantity."""
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tol3d.analytic.bevel_stack import BevelStack
+from tol3d.analytic.spur_stack import SpurStack
+from tol3d.analytic.stack import Stack
+from tol3d.gears import BevelPair, GearPair, SpurPair
+from tol3d.model import Backlash, Mesh, Model
+
+Array = NDArray[np.float64]
+
+
+def stack_of(model: Model, mesh: Mesh) -> Stack[GearPair]:
+    """The stack-up of a mesh."""
+    pair = mesh.pair
+    if isinstance(pair, SpurPair):
+        return SpurStack(model, mesh, pair)
+    if isinstance(pair, BevelPair):
+        return BevelStack(model, mesh, pair)
+    raise TypeError(f"analytic/ has no stack-up for {type(pair).__name__}")
+
+
+def analytic_backlash(model: Model, kind: Backlash, deviations: Array, driver_angle: Array) -> Array:
+    """Value of a backlash measure by the stack-up [mm, or rad for an angle], (rows,).
+
+    j_wt = j_bn / cos(alpha_w); an angle is j_bn over the arm of the gear that turns.
+    """
+    stack = stack_of(model, model.mesh(kind.mesh))
+    return stack.normal_backlash(deviations, driver_angle) * per_normal_backlash(model, kind)
+
+
+def per_normal_backlash(model: Model, kind: Backlash) -> float:
+    """What turns j_bn [mm] into the measure: 1, 1/cos(alpha_w) or one over the gear's arm [rad/mm]."""
+    if kind.quantity == "normal_backlash":
+        return 1.0
+    if kind.quantity == "circumferential_backlash":
+        return 1.0 / math.cos(model.mesh(kind.mesh).pair.working_pressure_angle)
+    return 1.0 / model.gear(kind.gear).gear.section_arm

@@ -1,0 +1,202 @@
+"""Tolerances to contributors: what a deviation of each kind does to the parts. One function a kind."""
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import singledispatchmethod
+
+from tol3d.gears import BevelPair
+from tol3d.model.contributor import (
+    AxesOffset,
+    AxisOffset,
+    AxisTilt,
+    Contributor,
+    Effect,
+    Planar,
+    Scalar,
+    Temperature,
+    ToothThickness,
+    TurningOffset,
+    Unit,
+)
+from tol3d.model.model import Mesh
+from tol3d.scene import Scene
+from tol3d.scene.direction import At
+from tol3d.scene.tolerances import (
+    AxesOffsetSpec,
+    AxialShiftSpec,
+    AxisInPlaneSpec,
+    AxisOutOfPlaneSpec,
+    BearingClearanceSpec,
+    CentreDistanceSpec,
+    EccentricitySpec,
+    MountingFaceSpec,
+    RunOutSpec,
+    ShaftAngleSpec,
+    ShimSpec,
+    TemperatureSpec,
+    ToleranceSpec,
+    ToothThicknessSpec,
+)
+
+Vector = tuple[float, float, float]
+
+AROUND_X: Vector = (1.0, 0.0, 0.0)
+AROUND_Y: Vector = (0.0, 1.0, 0.0)
+AROUND_MINUS_Y: Vector = (0.0, -1.0, 0.0)
+ALONG_Z: Vector = (0.0, 0.0, 1.0)
+
+
+@dataclass(frozen=True)
+class _Directed:
+    """An effect of a deviation with a direction: an angle [rad], or None for a random one."""
+
+    effect: Effect
+    direction: float | None
+
+
+@dataclass(frozen=True)
+class Tolerances:
+    """The tolerances of a scene, with the meshes in which they act."""
+
+    scene: Scene
+    meshes: Mapping[str, Mesh]
+
+    def contributor(self, name: str, spec: ToleranceSpec) -> Contributor:
+        """A tolerance as the simulation sees it."""
+        found = self._effect(spec)
+        law = spec.distribution.resolve(self.scene.files)
+        thickness = isinstance(spec, ShimSpec) or (
+            isinstance(spec, BearingClearanceSpec) and not isinstance(found, _Directed)
+        )
+        return Contributor(
+            name=name,
+            kind=spec.kind,
+            effect=found.effect if isinstance(found, _Directed) else found,
+            draw=Planar(law, found.direction) if isinstance(found, _Directed) else Scalar(law),
+            unit=_unit(spec),
+            description=spec.description,
+            least=0.0 if thickness else None,
+        )
+
+    def _mesh_of(self, gear: str, mesh: str | None = None) -> Mesh:
+        return self.meshes[mesh or self.scene.meshes_of(gear)[0]]
+
+    @singledispatchmethod
+    def _effect(self, spec: ToleranceSpec) -> Effect | _Directed:
+        raise TypeError(f"effects.py has no function for {type(spec).__name__}")
+
+    @_effect.register
+    def _(self, spec: ToothThicknessSpec) -> Effect | _Directed:
+        """Half the deviation on each flank: an arc s/2 is (s/2) cos(alpha) along the normal, or a turn of s/(2 r)."""
+        mesh = self._mesh_of(spec.of)
+        gear = mesh.gear(spec.of)
+        cosine = gear.section_arm / gear.thickness_radius
+        normal = 0.5 if spec.measured == "normal" else 0.5 * cosine
+        if spec.along_face == "constant":
+            return ToothThickness(spec.of, turn=0.0, offset=normal)
+        turn = 0.5 / (gear.section_arm if spec.measured == "normal" else gear.thickness_radius)
+        return ToothThickness(spec.of, turn=turn)
+
+    @_effect.register
+    def _(self, spec: EccentricitySpec) -> Effect | _Directed:
+        return _Directed(TurningOffset(spec.of), _angle(spec.direction))
+
+    @_effect.register
+    def _(self, spec: RunOutSpec) -> Effect | _Directed:
+        return _Directed(TurningOffset(spec.of), _angle(spec.direction))
+
+    @_effect.register
+    def _(self, spec: CentreDistanceSpec) -> Effect | _Directed:
+        return AxisOffset(self.meshes[spec.of].driven, (1.0, 0.0, 0.0))
+
+    @_effect.register
+    def _(self, spec: BearingClearanceSpec) -> Effect | _Directed:
+        """Half the clearance, away from the mesh, at an azimuth of the gear's frame, or along the tooth force."""
+        mesh = self._mesh_of(spec.of, spec.mesh)
+        if spec.direction == "random":
+            return _Directed(AxisOffset(spec.of, factor=0.5), None)
+        towards = mesh.pair.mesh_azimuths[0 if spec.of == mesh.driver else 1]
+        if isinstance(spec.direction, At):
+            azimuth = spec.direction.at.internal
+        elif spec.direction == "apart":
+            azimuth = towards + math.pi
+        else:
+            azimuth = towards + _force_azimuth(mesh, spec.of)
+        return AxisOffset(spec.of, (_exact(math.cos(azimuth)), _exact(math.sin(azimuth)), 0.0), factor=0.5)
+
+    @_effect.register
+    def _(self, spec: AxisInPlaneSpec) -> Effect | _Directed:
+        return self._tilt(spec, AROUND_Y)
+
+    @_effect.register
+    def _(self, spec: AxisOutOfPlaneSpec) -> Effect | _Directed:
+        return self._tilt(spec, AROUND_X)
+
+    def _tilt(self, spec: AxisInPlaneSpec | AxisOutOfPlaneSpec, axis: Vector) -> Effect:
+        mesh = self.meshes[spec.of]
+        width = min(mesh.pair.pinion.face_width, mesh.pair.wheel.face_width)
+        return AxisTilt(mesh.driven, axis, per_length=1.0 if _unit(spec) == "mrad" else 1.0 / width)
+
+    @_effect.register
+    def _(self, spec: ShaftAngleSpec) -> Effect | _Directed:
+        """Each gear sees the other one's axis on its +x side, so a turn about its -y opens the angle."""
+        mesh = self.meshes[spec.of]
+        if not isinstance(mesh.pair, BevelPair):
+            raise TypeError(f"{spec.of} has no shaft angle")
+        driver = spec.tilts == "driver"
+        gear = mesh.pair.pinion if driver else mesh.pair.wheel
+        return AxisTilt(
+            mesh.driver if driver else mesh.driven,
+            AROUND_MINUS_Y,
+            per_length=1.0 if _unit(spec) == "mrad" else 1.0 / mesh.pair.mean_cone_distance,
+            pivot=0.0 if spec.pivot == "apex" else gear.mean_cone_distance * math.cos(gear.pitch_angle),
+        )
+
+    @_effect.register
+    def _(self, spec: AxesOffsetSpec) -> Effect | _Directed:
+        return AxesOffset(self.meshes[spec.of].driven)
+
+    @_effect.register
+    def _(self, spec: AxialShiftSpec) -> Effect | _Directed:
+        return AxisOffset(spec.of, ALONG_Z)
+
+    @_effect.register
+    def _(self, spec: MountingFaceSpec) -> Effect | _Directed:
+        return AxisOffset(spec.of, ALONG_Z)
+
+    @_effect.register
+    def _(self, spec: ShimSpec) -> Effect | _Directed:
+        return AxisOffset(spec.of, ALONG_Z, factor=-1.0 if spec.side == "behind" else 1.0)
+
+    @_effect.register
+    def _(self, spec: TemperatureSpec) -> Effect | _Directed:
+        return Temperature(spec.of)
+
+
+def _unit(spec: ToleranceSpec) -> Unit:
+    dimensions = {quantity.dimension for quantity in spec.distribution.quantities().values()}
+    if dimensions == {"angle"}:
+        return "mrad"
+    return "K" if dimensions == {"temperature"} else "um"
+
+
+def _angle(direction: object) -> float | None:
+    return direction.at.internal if isinstance(direction, At) else None
+
+
+def _force_azimuth(mesh: Mesh, gear: str) -> float:
+    """Azimuth off the mesh [rad] of the radial part of the force on a gear by its mate's working flank.
+
+    With the mesh at azimuth 0 the normal force is (-sin(alpha_w) cos(delta), sigma cos(alpha_w)) across the axis,
+    sigma the driver's flank, for both gears: each sees the other push it away and around.
+    """
+    alpha, flank = mesh.pair.working_pressure_angle, float(mesh.working_flank)
+    return math.atan2(flank * math.cos(alpha), -math.sin(alpha) * math.cos(mesh.gear(gear).pitch_angle))
+
+
+def _exact(cosine: float) -> float:
+    """A cosine or sine of a right angle as 0 or 1, not 6e-17 off."""
+    return round(cosine) + 0.0 if abs(cosine - round(cosine)) < 1e-15 else cosine
+
+

@@ -1,0 +1,46 @@
+"""What every mesh of two gears has in common."""
+
+from collections.abc import Iterator
+from typing import ClassVar, Final, Literal, Self
+
+from pydantic import Field, model_validator
+
+from tol3d.scene.moves.move import MoveSpec
+from tol3d.scene.name import Name
+from tol3d.scene.reference import Reference, Sort
+from tol3d.strict import refused
+
+MESHES: Final[tuple[Sort, ...]] = ("mesh", "bevel_mesh")
+
+
+class GearMeshSpec(MoveSpec):
+    """The driver is held, the driven gear turns until the working flanks touch.
+
+    The right flank lies on the low-azimuth side of its tooth; a driver that turns counter-clockwise
+    pushes with its left one.
+    """
+
+    gear_sort: ClassVar[Sort]
+
+    driver: Name = Field(description="the gear that is held")
+    driven: Name = Field(description="the gear that turns into contact")
+    working_flank: Literal["right", "left"] = Field(default="right", description="the driver's flank that touches")
+
+    @model_validator(mode="after")
+    def _refuse_one_gear(self) -> Self:
+        if self.driver == self.driven:
+            raise refused("driven", "another gear than the driver", repr(self.driven))
+        return self
+
+    @property
+    def gears(self) -> tuple[str, ...]:
+        """Driver and driven."""
+        return self.driver, self.driven
+
+    def references(self) -> tuple[Reference, ...]:
+        """Two gears."""
+        return tuple(self._gears())
+
+    def _gears(self) -> Iterator[Reference]:
+        for field in ("driver", "driven"):
+            yield Reference((field,), getattr(self, field), (self.gear_sort,))
