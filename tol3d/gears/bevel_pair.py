@@ -110,7 +110,7 @@ class BevelPair:
 
     @property
     def normal_backlash(self) -> float:
-        """j_n [mm] at the middle of the common face, 0 by construction: R sin(p_b - 2 sum of sin(beta) s/(2 r_e)).
+        """j_n [mm] at the middle of the common face: R sin(p_b - 2 sum of sin(beta) s/(2 r_e)), 0 for nominal teeth.
 
         It is proportional to the distance from the apex, for teeth that are cones: not one number on a face.
         """
