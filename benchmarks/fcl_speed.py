@@ -64,9 +64,7 @@ class NaiveGears:
 
     def distance(self, made: object, driver_angle: float, driven_angle: float) -> float:
         """Distance of the gears at their turns [mm]."""
-        for k, (name, angle) in enumerate(
-            ((self._mesh.driver, driver_angle), (self._mesh.driven, driven_angle))
-        ):
+        for k, (name, angle) in enumerate(((self._mesh.driver, driver_angle), (self._mesh.driven, driven_angle))):
             pose = made.world_from_gear(self._model.gear_index[name], np.array([angle]))[0]  # type: ignore[attr-defined]
             self._objects[k].setTransform(fcl.Transform(pose[:3, :3].copy(), pose[:3, 3].copy()))
         return float(fcl.distance(*self._objects, fcl.DistanceRequest(), fcl.DistanceResult()))

@@ -5,7 +5,7 @@ with an exact solver that shares no code with this program.
 """
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -15,14 +15,14 @@ from oracles import bevel_brute_force
 from oracles.bevel_brute_force import BevelMesh, BevelNumbers
 from scipy.spatial.transform import Rotation
 
-from tol3d.block import Block, drawn_block, simulate_block
+from tol3d.block import Block, simulate_block
 from tol3d.build import Build
 from tol3d.engines import Engine
 from tol3d.gears import LEFT, RIGHT, BevelGear, BevelPair, pitch_angles
 from tol3d.measures import measure_backlash
 from tol3d.model import Backlash, GearPart, Mesh, Model, Reading, Study, model_from_scene
 from tol3d.moves import OK, Meshing
-from tol3d.scene import Scene, load_scene
+from tol3d.scene import Scene
 from tol3d.simulate import load
 
 SCENES = Path(__file__).resolve().parent.parent / "scenes"
@@ -273,75 +273,3 @@ def test_displaced_gears_agree_with_brute_force_to_0_1_um(name: str, read_at: st
 def test_a_hundred_poses_agree_with_brute_force_to_0_1_um(name: str, read_at: str, engine_of) -> None:
     for flank in (LEFT, RIGHT):
         check_poses(name, 5, 40, read_at, flank, engine_of)
-
-
-# studies --------------------------------------------------------------------------------------------------------------
-
-
-def study(engine_of, scene: str, trials: int, reading: Reading | None = None, **change: Any) -> tuple[np.ndarray, ...]:
-    """Geometric and analytic columns [um] of the first measure of a scene."""
-    model = model_from_scene(load_scene(SCENES / f"{scene}.yaml"))
-    measure = model.measures[0]
-    if reading is not None:
-        measure = replace(measure, kind=replace(measure.kind, reading=reading))
-    contributors = tuple(
-        replace(c, effect=replace(c.effect, **change)) if c.kind == "tooth_thickness" else c for c in model.contributors
-    )
-    model = replace(model, measures=(measure,), contributors=contributors)
-    columns = simulate_block(model, engine_of(model), drawn_block(model, 1, 0, trials))
-    assert set(columns["status"]) == {"ok"}
-    return columns[f"geometric:{measure.name}"], columns[f"analytic:{measure.name}"]
-
-
-# scene, reading, closed-form mean, expected mean and sigma of the geometry [um], standard error of (3D - analytic)
-STUDIES = {
-    "one tooth in the middle of the face": ("bevel_pair", None, 89.548, 89.54, 6.506),
-    "all teeth in the middle of the face": ("bevel_pair", READINGS["mean_section"], 89.548, 89.05, 6.512),
-    "proportional, contact over the face": ("bevel_pair", READINGS["face_contact"], 89.548, 88.64, 6.488),
-    "proportional, over the face": ("bevel_pair", READINGS["face"], 89.548, 83.41, 6.186),
-    "as 3DCS may see it": ("bevel_pair_3dcs", None, None, 90.04, 5.962),
-}
-
-
-def check_study(name: str, trials: int, engine_of) -> None:
-    scene, reading, closed, mean, sigma = STUDIES[name]
-    geometric, analytic = study(engine_of, scene, trials, reading)
-    model = model_from_scene(load_scene(SCENES / f"{scene}.yaml"))
-    closed = float(np.mean([closed])) if closed else closed_mean(model)
-    # the closed form's mean is known, so that only the roads' difference is sampled; expected means are given to 0.01
-    difference = geometric - analytic
-    estimate, error = closed + difference.mean(), difference.std() / math.sqrt(trials)
-    assert estimate == pytest.approx(mean, abs=4 * error + 0.02 + 0.05)  # 0.05: chord errors
-    assert geometric.std(ddof=1) == pytest.approx(sigma, abs=4 * sigma / math.sqrt(2 * trials) + 0.005)
-
-
-def closed_mean(model: Model) -> float:
-    """Means times coefficients, by hand: 85 um along the normals, and half of 20 um of a bearing across the axis."""
-    assert [c.name for c in model.contributors if c.distribution.mean] == [
-        "driver tooth thickness",
-        "driven tooth thickness",
-        "driver bearing clearance",
-    ]
-    return 85.0 + math.sqrt(2) * SIN * 10.0
-
-
-@pytest.mark.parametrize("name", ["one tooth in the middle of the face", "as 3DCS may see it"])
-def test_two_thousand_trials_meet_the_means_worked_out_beforehand(name: str, engine_of) -> None:
-    check_study(name, 2000, engine_of)
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("name", STUDIES)
-def test_twenty_thousand_trials_meet_the_means_worked_out_beforehand(name: str, engine_of) -> None:
-    check_study(name, 20_000, engine_of)
-
-
-@pytest.mark.slow
-def test_a_constant_normal_offset_over_the_face(engine_of) -> None:
-    """X1 of the same list: mean 83.84, sigma 6.18."""
-    half = 0.5 * math.cos(ALPHA)
-    geometric, analytic = study(engine_of, "bevel_pair", 20_000, READINGS["face"], turn=0.0, offset=half)
-    difference = geometric - analytic
-    error = difference.std() / math.sqrt(len(difference))
-    assert 89.548 + difference.mean() == pytest.approx(83.84, abs=4 * error + 0.02 + 0.05)
-    assert geometric.std(ddof=1) == pytest.approx(6.180, abs=4 * 6.18 / math.sqrt(2 * 20_000) + 0.005)

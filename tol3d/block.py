@@ -187,9 +187,7 @@ def simulate_block(model: Model, engine: Engine | None, block: Block) -> dict[st
         `geometric:<measure>`, `contact:<mesh>.x|y|z [mm]`, `contact:<mesh>.tooth` and `status`.
     """
     rows = max(1, ROWS_AT_ONCE // max(positions_count(measure) for measure in model.measures))
-    pieces = [
-        _simulate_piece(model, engine, block.part(first, first + rows)) for first in range(0, len(block), rows)
-    ]
+    pieces = [_simulate_piece(model, engine, block.part(first, first + rows)) for first in range(0, len(block), rows)]
     return {name: np.concatenate([piece[name] for piece in pieces]) for name in pieces[0]}
 
 
@@ -241,4 +239,3 @@ def _status_column(seats: Seats, trials_count: int) -> NDArray[np.generic]:
     for seat in seats.seats.values():
         worst = np.maximum(worst, seat.status.reshape(trials_count, -1).max(axis=1))
     return np.array([STATUS_TEXT[code] for code in range(len(STATUS_TEXT))])[worst]
-

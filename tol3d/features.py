@@ -59,4 +59,3 @@ def _features(contributor: Contributor, own: Array, turning: Mapping[str, Array]
         return np.stack([length, length**2], axis=1)
     cos, sin = np.cos(turning[effect.part]), np.sin(turning[effect.part])
     return np.stack([cos * x - sin * y, sin * x + cos * y], axis=1) / spread
-

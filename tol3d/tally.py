@@ -70,9 +70,7 @@ class Sample:
 
     def merge(self, other: "Sample") -> "Sample":
         """Both samples as one."""
-        return Sample(
-            self.moments.merge(other.moments), self.grid.merge(other.grid), self.limits.merge(other.limits)
-        )
+        return Sample(self.moments.merge(other.moments), self.grid.merge(other.grid), self.limits.merge(other.limits))
 
 
 @dataclass(frozen=True)
@@ -104,9 +102,7 @@ def tally_measure(model: Model, measure: Measure, empty: Grid, columns: Columns)
     seen = features(model, measure, columns)
     geometric = columns.get(f"geometric:{measure.name}")
     if geometric is None:
-        return MeasureTally(
-            Sample.of(measure, analytic, empty), None, None, FeatureSums.of(seen, analytic), None
-        )
+        return MeasureTally(Sample.of(measure, analytic, empty), None, None, FeatureSums.of(seen, analytic), None)
     values = np.asarray(geometric, dtype=np.float64)
     good = ~np.isnan(values)
     return MeasureTally(

@@ -244,6 +244,11 @@ class BevelGear:
         return nominal + self.tooth_thickness_deviation
 
     @property
+    def mean_tooth_thickness(self) -> float:
+        """s_m = s R_m/R_e, arc on the pitch cone in the middle of the face [mm]."""
+        return self.tooth_thickness * self.mean_cone_distance / self.outer_cone_distance
+
+    @property
     def pitch_half_angle(self) -> float:
         """Half the angle [rad] about the axis that a tooth takes on the pitch cone: s/(2 r_e)."""
         return self.tooth_thickness / (2 * self.reference_radius)

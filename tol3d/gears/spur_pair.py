@@ -250,9 +250,7 @@ class SpurPair:
             math.pi + direction + mate * self.wheel.angular_pitch + turned / self.wheel.base_radius, dtype=np.float64
         )
 
-    def candidate_teeth(
-        self, driver_angle: Array, flank: Flank
-    ) -> tuple[NDArray[np.int64], NDArray[np.bool_]]:
+    def candidate_teeth(self, driver_angle: Array, flank: Flank) -> tuple[NDArray[np.int64], NDArray[np.bool_]]:
         """Pinion teeth that may touch on that flank.
 
         Args:

@@ -198,5 +198,3 @@ def _force_azimuth(mesh: Mesh, gear: str) -> float:
 def _exact(cosine: float) -> float:
     """A cosine or sine of a right angle as 0 or 1, not 6e-17 off."""
     return round(cosine) + 0.0 if abs(cosine - round(cosine)) < 1e-15 else cosine
-
-

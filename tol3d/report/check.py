@@ -108,6 +108,7 @@ def _(gear: BevelGear) -> dict[str, str]:
         "reference diameter, mean d_m [mm]": f"{2 * gear.mean_radius:.4f}",
         "tip diameter, outer d_ae [mm]": f"{gear.tip_diameter:.4f}",
         "tooth thickness, outer s [mm]": f"{gear.tooth_thickness:.4f}",
+        "tooth thickness, mean s_m [mm]": f"{gear.mean_tooth_thickness:.4f}",
         "thickness at the tip, outer [mm]": f"{gear.tip_thickness:.4f}",
         "bore [mm]": f"{gear.bore:g}" if gear.bore else NOTHING,
     }
