@@ -270,6 +270,6 @@ def test_displaced_gears_agree_with_brute_force_to_0_1_um(name: str, read_at: st
 @pytest.mark.slow
 @pytest.mark.parametrize("read_at", READINGS)
 @pytest.mark.parametrize("name", CASES)
-def test_a_hundred_poses_agree_with_brute_force_to_0_1_um(name: str, read_at: str, engine_of) -> None:
+def test_seventy_poses_agree_with_brute_force_to_0_1_um(name: str, read_at: str, engine_of) -> None:
     for flank in (LEFT, RIGHT):
-        check_poses(name, 5, 40, read_at, flank, engine_of)
+        check_poses(name, 3, 40, read_at, flank, engine_of)

@@ -207,7 +207,7 @@ def _gap_text(seated: SeatedMesh) -> str:
 
 
 def _in_front(seated: SeatedMesh, point: Array, front: float) -> Array:
-    """A point of a flank at the front ends of the teeth, where it can be seen: generators run there, or from the apex."""
+    """A point of a flank at the front ends of the teeth, where it can be seen: along its generator."""
     if seated.mesh.pair.arm_spread:
         return np.asarray(point * (front / point[2]))
     return np.array([point[0], point[1], front])
