@@ -5,12 +5,15 @@
     solids       CAD, strips of its flanks  parts/, tol3d/solids/ measuring_strips
     trials       seed -> deviations         tol3d/trials.py       drawn_block
     build        deviations -> poses        tol3d/build.py        build
-    moves        gaps -> seated meshes      tol3d/moves/          seat_mesh        (engines/ tell the gaps)
+    moves        gaps -> seated meshes      tol3d/moves/          Meshing.seat     (engines/ tell the gaps)
     measures     seated meshes -> values    tol3d/measures/       measure_backlash
     analytic     the second road            tol3d/analytic/       analytic_backlash
     columns      both roads, one block      tol3d/block.py        simulate_block
     statistics   folded block by block      tol3d/tally.py        Tally
     result       the run on disk            tol3d/result.py       RunWriter, Run
+
+Spur and bevel pairs go the same way: `gears/pair.py` says what every pair offers. A new kind of gear is one file in
+gears/, parts/, solids/, analytic/ and in each folder of scene/ that it concerns, named in model/pairs.py.
 
 `execution.py` hands blocks to workers; `report/` and `cli.py` show what is there. The analytic road gets the
 same deviations and the same driver position as the geometric one and never sees a mesh, a pose or an engine.
