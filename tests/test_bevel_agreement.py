@@ -273,3 +273,14 @@ def test_displaced_gears_agree_with_brute_force_to_0_1_um(name: str, read_at: st
 def test_seventy_poses_agree_with_brute_force_to_0_1_um(name: str, read_at: str, engine_of) -> None:
     for flank in (LEFT, RIGHT):
         check_poses(name, 3, 40, read_at, flank, engine_of)
+
+
+def test_the_nearest_points_are_apart_by_the_gap_along_its_normal(engine_of) -> None:
+    poses = posed(CASES["published"], 4, 3, LEFT)
+    meshing = Meshing(engine_of(poses.model), poses.model, poses.model.meshes[0], poses.made, READINGS["face"])
+    seat = meshing.seat(poses.driver_angle)
+    told = seat.non_working
+    apart = ((told.driven_point - told.driver_point) * told.normal).sum(axis=-1)
+    seen = ~np.isnan(told.value)
+    assert seen.any()
+    assert apart[seen] == pytest.approx(told.value[seen], abs=1e-12)

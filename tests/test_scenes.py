@@ -1,8 +1,8 @@
 """Every shipped scene runs and meets the numbers in the file beside it, and those follow from the scene by hand.
 
 `<scene>.expected.toml` holds what a run of few trials gives, in um and arcmin. Here the scenes' numbers stand once
-more, as plain ones: from them come the nominal and mean builds and the closed forms (first order, in the words of
-DESIGN: 2 sin(alpha_w) for a shift of the axes, cos(alpha) for a thickness), and the exact pair of each trial.
+more, as plain ones: from them come the nominal and mean builds and the closed forms (first order:
+2 sin(alpha_w) for a shift of the axes, cos(alpha) for a thickness), and the exact pair of each trial.
 """
 
 import math

@@ -413,5 +413,5 @@ def test_the_reference_wheel_is_built_in_a_few_seconds(own_cache) -> None:
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         strips = measuring_strips(wheel, 120)
-    assert time.perf_counter() - begun < 5.0  # about 0.6 s on an idle core; issue: "a few seconds"
+    assert time.perf_counter() - begun < 5.0  # about 0.6 s on an idle core; a few seconds are asked for
     assert strips.chord_error == pytest.approx(5.2e-6, rel=0.01)  # r_b/8 (delta/1.5)^2 as above, 1 % margin

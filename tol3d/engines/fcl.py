@@ -93,8 +93,8 @@ class FclEngine:
             result = fcl.DistanceResult()
             distance[row, pair] = fcl.distance(fixed, moved, request, result)
             points[row, pair] = result.nearest_points
-        offset = build.flank_offset[:, driver] + build.flank_offset[:, driven]
-        return self._gaps(distance, offset, points, (driver_rotation, driver_origin), driver_teeth)
+        offsets = build.flank_offset[:, [driver, driven]]
+        return self._gaps(distance, offsets, points, (driver_rotation, driver_origin), driver_teeth)
 
     def _section(self, mesh: Mesh) -> Span:
         """A strip of the driver's face, SECTION_WIDTH wide, in the middle of the common face."""
@@ -111,7 +111,7 @@ class FclEngine:
 
     @staticmethod
     def _gaps(
-        distance: Array, offset: Array, points: Array, driver_pose: tuple[Array, Array], driver_teeth: Teeth
+        distance: Array, offsets: Array, points: Array, driver_pose: tuple[Array, Array], driver_teeth: Teeth
     ) -> Gaps:
         """Signed gaps of distances; flanks offset along their normals are parallel, so that the gap is less by that."""
         deep = distance < OUT_OF_REACH
@@ -121,10 +121,10 @@ class FclEngine:
         second = frames.apply(rotation, points[..., 1, :]) + origin[:, None]
         normal = (second - first) / safe[..., None]
         return Gaps(
-            value=safe - 2 * SLACK - offset[:, None],
+            value=safe - 2 * SLACK - offsets.sum(axis=1)[:, None],
             deep=deep,
-            driver_point=first + SLACK * normal,
-            driven_point=second - SLACK * normal,
+            driver_point=first + (SLACK + offsets[:, 0, None, None]) * normal,
+            driven_point=second - (SLACK + offsets[:, 1, None, None]) * normal,
             normal=normal,
             driver_teeth=driver_teeth,
         )
