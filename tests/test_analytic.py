@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from tol3d import load_scene
+from tol3d import Overrides, Scene, load_scene, run_scene
 from tol3d.analytic import analytic_backlash, closed_form, stack_of
 from tol3d.block import analytic_values, drawn_block
 from tol3d.distributions import Normal, Rayleigh, Uniform
@@ -21,6 +21,7 @@ from tol3d.model import (
     Model,
     Planar,
     Positions,
+    Reading,
     Scalar,
     Temperature,
     model_from_scene,
@@ -116,7 +117,7 @@ def test_linear_coefficients_are_the_derivatives_of_the_exact_backlash(model: Mo
     """Central differences of the exact pair, with the working pressure angle of its centre distance."""
     mesh = replace(model.meshes[0], pair=replace(model.meshes[0].pair, centre_distance=centre_distance))
     shifted = replace(model, meshes=(mesh,))
-    stack = stack_of(shifted, mesh)
+    stack = stack_of(shifted, mesh, Reading())
     step = 1e-4
     pair = mesh.pair
 
@@ -182,3 +183,26 @@ def test_rayleigh_length_in_a_random_direction_is_two_normals() -> None:
     assert x.std() == pytest.approx(2.0, rel=5e-3)
     assert y.std() == pytest.approx(2.0, rel=5e-3)
     assert (x**4).mean() / x.var() ** 2 == pytest.approx(3.0, rel=2e-2)
+
+
+@pytest.mark.parametrize(("read_at", "loss"), [("face", 1.0), ("face_contact", 0.5), ("mean_section", 0.0)])
+def test_a_tilt_costs_half_its_loss_on_each_flank_side_that_is_read_over_the_face(
+    read_at: str, loss: float, tmp_path: Path
+) -> None:
+    """20 um of in-plane tilt over 20 mm of face close 20 um sin(20 deg), on both roads."""
+    gear = {"kind": "spur_gear", "module": "2.5 mm", "face_width": "20 mm"}
+    law = {"kind": "constant", "value": "20 um"}
+    thin = {"kind": "tooth_thickness", "of": "wheel", "distribution": {"kind": "constant", "value": "-60 um"}}
+    scene = Scene.model_validate(
+        {
+            "scene": "tilt",
+            "parts": {"pinion": {**gear, "teeth": 28}, "wheel": {**gear, "teeth": 110}},
+            "tolerances": {"thin": thin, "tilt": {"kind": "axis_in_plane", "of": "pair", "distribution": law}},
+            "moves": {"pair": {"kind": "mesh", "driver": "pinion", "driven": "wheel", "centre_distance": "172.5 mm"}},
+            "measures": {"play": {"kind": "normal_backlash", "of": "pair", "read_at": read_at}},
+        }
+    )
+    play = run_scene(scene, overrides=Overrides(trials=3), out=tmp_path / "run").summary["measures"]["play"]
+    expected = 60 * math.cos(math.radians(20)) - loss * 20 * math.sin(math.radians(20))
+    assert play["analytic"]["mean"] == pytest.approx(expected, abs=1e-9)
+    assert play["geometric"]["mean"] == pytest.approx(expected, abs=0.1)

@@ -9,18 +9,18 @@ from tol3d.analytic.bevel_stack import BevelStack
 from tol3d.analytic.spur_stack import SpurStack
 from tol3d.analytic.stack import Stack
 from tol3d.gears import BevelPair, GearPair, SpurPair
-from tol3d.model import Backlash, Mesh, Model
+from tol3d.model import Backlash, Mesh, Model, Reading
 
 Array = NDArray[np.float64]
 
 
-def stack_of(model: Model, mesh: Mesh) -> Stack[GearPair]:
-    """The stack-up of a mesh."""
+def stack_of(model: Model, mesh: Mesh, reading: Reading) -> Stack[GearPair]:
+    """The stack-up of a mesh for a way of reading it."""
     pair = mesh.pair
     if isinstance(pair, SpurPair):
-        return SpurStack(model, mesh, pair)
+        return SpurStack(model, mesh, pair, reading)
     if isinstance(pair, BevelPair):
-        return BevelStack(model, mesh, pair)
+        return BevelStack(model, mesh, pair, reading)
     raise TypeError(f"analytic/ has no stack-up for {type(pair).__name__}")
 
 
@@ -29,7 +29,7 @@ def analytic_backlash(model: Model, kind: Backlash, deviations: Array, driver_an
 
     j_wt = j_bn / cos(alpha_w); an angle is j_bn over the arm of the gear that turns.
     """
-    stack = stack_of(model, model.mesh(kind.mesh))
+    stack = stack_of(model, model.mesh(kind.mesh), kind.reading)
     return stack.normal_backlash(deviations, driver_angle) * per_normal_backlash(model, kind)
 
 

@@ -55,7 +55,7 @@ def closed_form(model: Model, measure: Measure) -> ClosedForm | None:
     """Closed form of a measure read at one position; None for extremes over a turn, which have none here."""
     if measure.take != "value":
         return None
-    stack = stack_of(model, model.mesh(measure.kind.mesh))
+    stack = stack_of(model, model.mesh(measure.kind.mesh), measure.kind.reading)
     factor = per_normal_backlash(model, measure.kind)
     linear = [_linear_share(term, stack, measure.positions, factor) for term in stack.terms if not term.one_sided]
     if measure.positions.over == "random":

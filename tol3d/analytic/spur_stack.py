@@ -17,11 +17,13 @@ class SpurStack(Stack[SpurPair]):
         """The tighter end of the face loses b/2 times the tilt on each flank side.
 
         In plane (about y): b sin(alpha_w); out of plane (about x): b cos(alpha_w); b the smaller face
-        width. The larger of both counts, so the loss is one-sided and shifts the mean.
+        width. The larger of both counts, so the loss is one-sided and shifts the mean. A flank side that is read in
+        the middle of the face loses nothing.
         """
-        width = min(self.pair.pinion.face_width, self.pair.wheel.face_width)
+        sides = [self.reading.contact, self.reading.gap].count("face")
+        half_width = min(self.pair.pinion.face_width, self.pair.wheel.face_width) / 2
         lever = self.sin if effect.axis[1] != 0.0 else self.cos
-        return Term(contributor, width * lever * effect.per_length, one_sided=True)
+        return Term(contributor, sides * half_width * lever * effect.per_length, one_sided=True)
 
     def temperature(self, effect: Temperature, contributor: Contributor) -> Term | None:
         """A growing housing opens by 2 a sin(alpha_w), a growing gear closes by 2 r_w sin(alpha_w), per strain.

@@ -23,6 +23,7 @@ from tol3d.model import (
     Effect,
     Mesh,
     Model,
+    Reading,
     Temperature,
     ToothThickness,
     TurningOffset,
@@ -68,12 +69,13 @@ class Term:
 
 
 class Stack(Generic[Pair]):
-    """The stack-up of one mesh of a model; `pair` is the mesh's."""
+    """The stack-up of one mesh of a model, for a way of reading it; `pair` is the mesh's."""
 
-    def __init__(self, model: Model, mesh: Mesh, pair: Pair) -> None:
+    def __init__(self, model: Model, mesh: Mesh, pair: Pair, reading: Reading) -> None:
         self.model = model
         self.mesh = mesh
         self.pair = pair
+        self.reading = reading
         self.sin = math.sin(pair.working_pressure_angle)
         self.cos = math.cos(pair.working_pressure_angle)
         self.terms = tuple(
