@@ -29,6 +29,7 @@ SCENES = Path(__file__).resolve().parent.parent / "scenes"
 ALPHA = math.radians(20.0)
 SIN = math.sin(ALPHA)
 MESH_BOUND = 0.1  # um; of FCL on 128 steps a flank
+SEARCH_BOUND = 0.08  # um; of FCL at the default 120 steps against a search of the surfaces, which is off by 1e-3
 FINE = 500  # steps; a tenth of that error
 READINGS = {
     "mean_section": Reading("section", "section", "all"),
@@ -256,13 +257,13 @@ def found_by_search(poses: Posed, read_at: str) -> np.ndarray:
 def check_poses(name: str, count: int, seed: int, read_at: str, flank: int, engine_of) -> None:
     poses = posed(CASES[name], count, seed, flank)
     error = 1000 * (measured(poses, engine_of(poses.model), READINGS[read_at]) - found_by_search(poses, read_at))
-    assert np.abs(error).max() <= MESH_BOUND
+    assert np.abs(error).max() <= SEARCH_BOUND
     assert error.min() >= -0.035  # strips lie inside the teeth; but see AT_TIP_EDGES of the spur pairs
 
 
 @pytest.mark.parametrize("read_at", READINGS)
 @pytest.mark.parametrize("name", CASES)
-def test_displaced_gears_agree_with_brute_force_to_0_1_um(name: str, read_at: str, engine_of) -> None:
+def test_displaced_gears_agree_with_brute_force_to_0_08_um(name: str, read_at: str, engine_of) -> None:
     flank = LEFT if name in ("published", "60 deg") else RIGHT
     check_poses(name, 2, 5, read_at, flank, engine_of)
 
@@ -270,7 +271,7 @@ def test_displaced_gears_agree_with_brute_force_to_0_1_um(name: str, read_at: st
 @pytest.mark.slow
 @pytest.mark.parametrize("read_at", READINGS)
 @pytest.mark.parametrize("name", CASES)
-def test_seventy_poses_agree_with_brute_force_to_0_1_um(name: str, read_at: str, engine_of) -> None:
+def test_seventy_poses_agree_with_brute_force_to_0_08_um(name: str, read_at: str, engine_of) -> None:
     for flank in (LEFT, RIGHT):
         check_poses(name, 3, 40, read_at, flank, engine_of)
 
