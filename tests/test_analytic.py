@@ -185,9 +185,18 @@ def test_rayleigh_length_in_a_random_direction_is_two_normals() -> None:
     assert (x**4).mean() / x.var() ** 2 == pytest.approx(3.0, rel=2e-2)
 
 
-@pytest.mark.parametrize(("read_at", "loss"), [("face", 1.0), ("face_contact", 0.5), ("mean_section", 0.0)])
+@pytest.mark.parametrize(
+    ("kind", "read_at", "loss"),
+    [
+        ("normal_backlash", "face", 1.0),
+        ("normal_backlash", "face_contact", 0.5),
+        ("normal_backlash", "mean_section", 0.0),
+        ("circumferential_backlash", "face_contact", 1.0),  # from contact to contact, both over the face
+        ("circumferential_backlash", "mean_section", 0.0),
+    ],
+)
 def test_a_tilt_costs_half_its_loss_on_each_flank_side_that_is_read_over_the_face(
-    read_at: str, loss: float, tmp_path: Path
+    kind: str, read_at: str, loss: float, tmp_path: Path
 ) -> None:
     """20 um of in-plane tilt over 20 mm of face close 20 um sin(20 deg), on both roads."""
     gear = {"kind": "spur_gear", "module": "2.5 mm", "face_width": "20 mm"}
@@ -199,10 +208,12 @@ def test_a_tilt_costs_half_its_loss_on_each_flank_side_that_is_read_over_the_fac
             "parts": {"pinion": {**gear, "teeth": 28}, "wheel": {**gear, "teeth": 110}},
             "tolerances": {"thin": thin, "tilt": {"kind": "axis_in_plane", "of": "pair", "distribution": law}},
             "moves": {"pair": {"kind": "mesh", "driver": "pinion", "driven": "wheel", "centre_distance": "172.5 mm"}},
-            "measures": {"play": {"kind": "normal_backlash", "of": "pair", "read_at": read_at}},
+            "measures": {"play": {"kind": kind, "of": "pair", "read_at": read_at}},
         }
     )
     play = run_scene(scene, overrides=Overrides(trials=3), out=tmp_path / "run").summary["measures"]["play"]
     expected = 60 * math.cos(math.radians(20)) - loss * 20 * math.sin(math.radians(20))
+    if kind == "circumferential_backlash":
+        expected /= math.cos(math.radians(20))
     assert play["analytic"]["mean"] == pytest.approx(expected, abs=1e-9)
     assert play["geometric"]["mean"] == pytest.approx(expected, abs=0.1)

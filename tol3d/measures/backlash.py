@@ -20,13 +20,12 @@ def measure_backlash(kind: Backlash, meshing: Meshing, seat: MeshSeat) -> Array:
     good = seat.status == OK
     if kind.quantity == "normal_backlash":
         return np.where(good, seat.non_working.smallest(), np.nan)
-    mesh, reading = meshing.mesh, meshing.reading
+    mesh = meshing.mesh
     turn_driver = kind.quantity == "angular_backlash" and kind.gear == mesh.driver
     rows = np.flatnonzero(good)
     start = (seat.driver_angle[rows], seat.driven_angle[rows])
-    known = seat.non_working.rows(rows) if reading.gap == reading.contact else None
     angles, _, touched = meshing.rows(rows).turn_to_contact(
-        opposite(mesh.working_flank), start, turn_driver=turn_driver, known=known
+        opposite(mesh.working_flank), start, turn_driver=turn_driver, known=seat.non_working.rows(rows)
     )
     mover = 0 if turn_driver else 1
     turn = np.full(len(good), np.nan)

@@ -1,6 +1,7 @@
 """Scene to model: text becomes meaning, units become mm and rad, gears become geometry or are refused."""
 
 from collections.abc import Iterator
+from typing import Literal
 
 from tol3d.gears import LEFT, RIGHT
 from tol3d.model.effects import Tolerances
@@ -90,12 +91,16 @@ def _measure(name: str, spec: MeasureUnion, mesh: Mesh) -> Measure:
 
 
 def _reading(spec: MeasureSpec, mesh: Mesh) -> Reading:
-    """What was said, or the whole face and all teeth of a cylinder, one tooth's middle section of a cone."""
+    """What was said, or the whole face and all teeth of a cylinder, one tooth's middle section of a cone.
+
+    A free turn goes from contact to contact, and both are read alike.
+    """
     tapers = mesh.pair.arm_spread > 0.0
     read_at = spec.read_at or ("mean_section" if tapers else "face")
+    contact: Literal["face", "section"] = "section" if read_at == "mean_section" else "face"
     return Reading(
-        contact="section" if read_at == "mean_section" else "face",
-        gap="face" if read_at == "face" else "section",
+        contact=contact,
+        gap="section" if read_at == "face_contact" and spec.kind == "normal_backlash" else contact,
         teeth=spec.tooth or ("driven" if tapers else "all"),
     )
 
