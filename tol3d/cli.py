@@ -54,6 +54,7 @@ TrustParts = Annotated[
 class EngineName(StrEnum):
     """Engines that a run may choose."""
 
+    EXACT = "exact"
     FCL = "fcl"
     ANALYTIC = "analytic"
 

@@ -168,8 +168,8 @@ class Tally:
     curves: Mapping[str, CurveTally]
 
     @classmethod
-    def of(cls, model: Model, grids: Mapping[str, Grid], columns: Columns) -> "Tally":
-        """Tally of one block; `grids` as grids_of gives them."""
+    def of(cls, model: Model, grids: Mapping[str, Grid], columns: Columns, first: int = 0) -> "Tally":
+        """Tally of one block that begins at trial `first`; `grids` as grids_of gives them."""
         trials = len(next(iter(columns.values())))
         status = columns.get("status")
         counts = {text: trials if text == "ok" else 0 for text in STATUS_TEXT.values()}

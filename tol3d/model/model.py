@@ -54,7 +54,8 @@ class Study:
     trials: int = 2000
     seed: int = 1
     sampler: Literal["monte_carlo"] = "monte_carlo"
-    engine: Literal["fcl", "analytic"] = "fcl"
+    engine: Literal["exact", "fcl", "analytic"] = "fcl"
+    witness: int = 0
     profile_steps: int = 120
 
 

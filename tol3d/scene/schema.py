@@ -33,9 +33,12 @@ class Study(Strict):
     trials: int = Field(default=2000, ge=1, le=MOST_TRIALS, description="number of virtual builds")
     seed: int = Field(default=1, ge=0, le=MOST_SEED, description="the same seed gives the same trials")
     sampler: Literal["monte_carlo"] = Field(default="monte_carlo", description="how deviations are drawn")
-    engine: Literal["fcl", "analytic"] = Field(
-        default="fcl", description="fcl: 3D simulation beside the analytic model"
+    engine: Literal["exact", "fcl", "analytic"] = Field(
+        default="fcl",
+        description="what the 3D simulation measures with: the mathematical flanks, or strips of the CAD solids; "
+        "analytic: no 3D simulation",
     )
+    witness: int = Field(default=0, ge=0, description="trials of an exact study that FCL measures again")
     profile_steps: int = Field(
         default=120, ge=FEWEST_PROFILE_STEPS, le=MOST_PROFILE_STEPS, description="flat strips along a measuring flank"
     )
