@@ -24,6 +24,7 @@ from tol3d.solids import WHOLE_FACE, FlankStrips, Span, strip_mesh
 SLACK = 0.030  # mm a flank; deep enough for any start of the turn, small against the curvature radius
 MESHES_KEPT = 64  # grown strips kept for reuse; a constant temperature needs one a flank
 SECTION_WIDTH = 2e-3  # mm along the face; a gap that grows with it by 1 um a mm is read 0.001 um off
+LAST_STEP = 0.5e-3  # mm
 OUT_OF_REACH = 1e-3  # mm; a distance below this has lost its normal: the overlap is as deep as the slack
 
 
@@ -47,6 +48,11 @@ class FclEngine:
     def depth(self) -> float:
         """Overlap [mm] that can still be measured: the slack of both flanks."""
         return 2 * SLACK - OUT_OF_REACH
+
+    @property
+    def last_step(self) -> float:
+        """0.5e-3 mm: the gap is linear in the turn to 1e-6 mm over it."""
+        return LAST_STEP
 
     @property
     def chord_error(self) -> float:

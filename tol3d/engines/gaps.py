@@ -72,6 +72,11 @@ class Engine(Protocol):
         ...
 
     @property
+    def last_step(self) -> float:
+        """A turn that moves flanks by no more [mm] may be the last: gaps are linear over it, as far as they are known."""
+        ...
+
+    @property
     def chord_error(self) -> float:
         """Largest distance [mm] between its flanks and the mathematical ones."""
         ...

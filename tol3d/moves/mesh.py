@@ -20,7 +20,6 @@ INTERFERES: Final = 1
 NO_CONTACT: Final = 2
 STATUS_TEXT: Final = {OK: "ok", INTERFERES: "interferes", NO_CONTACT: "no contact"}
 
-LAST_STEP = 0.5e-3  # mm; the gap is linear in the turn to 1e-6 mm over such a step, so it may be the last
 LAST_ERROR = 2e-6  # mm; what the last step may miss where contact jumps along a face on which the arm varies
 TURN_STEPS = 40  # steps; Newton takes two or three, backing out of an overlap one for each engine depth
 TIE = 2e-3  # mm; a pair that has this much further to go than the first one is not asked again,
@@ -128,7 +127,9 @@ class Meshing:
         pair = self.mesh.pair
         gear = self.model.gear_index[self.mesh.driver if turn_driver else self.mesh.driven]
         base_radius = self.model.gears[gear].gear.base_radius
-        last_step = min(LAST_STEP, LAST_ERROR / pair.arm_spread) if pair.arm_spread else LAST_STEP
+        last_step = self.engine.last_step
+        if pair.arm_spread:
+            last_step = min(last_step, LAST_ERROR / pair.arm_spread)
         axis_point, axis = self.build.axis(gear)
         opening = float(pair.opening_sense(flank))
         section = self.reading.contact == "section"

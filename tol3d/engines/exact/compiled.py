@@ -1,0 +1,87 @@
+"""The door to numba: functions of the exact engine become machine code, at their first use and once a machine.
+
+What was compiled is kept in the user's cache, in a folder named by the sources of this package: a kernel is made of
+many functions, of which numba itself would only notice the outermost one's change.
+"""
+
+import hashlib
+import os
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from functools import cached_property
+from pathlib import Path
+from typing import Any, TypeVar
+
+import numba
+import platformdirs
+from numba.extending import overload
+
+Function = TypeVar("Function", bound=Callable[..., Any])
+
+HERE = Path(__file__).resolve().parent
+
+
+def part(function: Function) -> Function:
+    """A function that kernels are made of: compiled into them, for whatever they hand it."""
+    compiled: Function = numba.njit(error_model="numpy", nogil=True)(function)
+    return compiled
+
+
+def variant(of: Callable[..., Any], kind: type) -> Callable[[Function], Function]:
+    """What a function does for a first argument of some kind, a NamedTuple; chosen as kernels compile."""
+
+    def register(function: Function) -> Function:
+        @overload(of, strict=False, jit_options={"error_model": "numpy", "nogil": True})
+        def chosen(*arguments: Any) -> Function | None:
+            return function if getattr(arguments[0], "instance_class", None) is kind else None
+
+        return function
+
+    return register
+
+
+class Kernel:
+    """A compiled function of arrays; it holds no lock while it runs, so that threads run several at once.
+
+    Args:
+        function: what it does, in the words of Python.
+        signature: types of its arguments, numba's words: the only ones it is compiled for.
+    """
+
+    def __init__(self, function: Callable[..., None], signature: str) -> None:
+        self._function = function
+        self._signature = signature
+
+    def __call__(self, *arguments: Any) -> None:
+        """Run it; results go into arrays among the arguments."""
+        self._compiled(*arguments)
+
+    @cached_property
+    def _compiled(self) -> Callable[..., None]:
+        with _kept_in(_folder()):
+            made: Callable[..., None] = numba.njit(self._signature, cache=True, error_model="numpy", nogil=True)(
+                self._function
+            )
+        return made
+
+
+def kernel(signature: str) -> Callable[[Callable[..., None]], Kernel]:
+    """Make a function a kernel of that signature."""
+    return lambda function: Kernel(function, signature)
+
+
+def _folder() -> Path:
+    sources = hashlib.sha256(b"".join(path.read_bytes() for path in sorted(HERE.glob("*.py"))))
+    base = os.environ.get("TOL3D_CACHE") or platformdirs.user_cache_dir("tol3d", appauthor=False)
+    return Path(base) / f"kernels-{sources.hexdigest()[:16]}"
+
+
+@contextmanager
+def _kept_in(folder: Path) -> Iterator[None]:
+    """Let numba keep what it compiles in a folder."""
+    before = numba.config.CACHE_DIR
+    numba.config.CACHE_DIR = str(folder)
+    try:
+        yield
+    finally:
+        numba.config.CACHE_DIR = before

@@ -1,0 +1,139 @@
+"""Where two flanks are nearest: Newton on the gap over profile and face, ends of both flanks included.
+
+`foot` tells the gap of a point of one flank from the other's endless flank, with its derivatives: of a kind of gears
+it is all that has to be known.
+"""
+
+import math
+from typing import NamedTuple
+
+from tol3d.engines.exact.compiled import part
+from tol3d.engines.exact.foot import foot
+from tol3d.engines.exact.numbers import Pose
+
+STEPS = 20  # Newton takes one or two from the line of action; more only where a face ends
+QUICK_FALL = 1e-8  # mm; for the gap's own sake: it is a parabola to 1e-4 of such a step's fall
+SHARP_FALL = 1e-14  # mm; for points and normals too
+FLAT = 1e-15  # 1/mm; bow of the gap along the face that is no more than rounding
+
+
+CLOSED, AT_EDGE, BEYOND = 0, 1, 2
+
+
+class Nearest(NamedTuple):
+    """The nearest points of two flanks, in the mate's frame.
+
+    Args:
+        gap: [mm], inf where the faces do not overlap.
+        turn: by which the mate must turn to close it [rad], of the gap's sign.
+        how: CLOSED, the turn is exact; AT_EDGE, it is so to first order, for an edge comes to touch; BEYOND, gap and
+            turn are no more than bounds, for both flanks end.
+        profile, face: where on `own`: where a next search may start.
+        x, y, z: the point of `own` [mm].
+        nx, ny, nz: unit vector from the mate to it.
+        lean: sine [1/mm], over the distance from the apex, of the angle between that and the mate's normal once it
+            has turned to the point: 0 for a cylinder.
+    """
+
+    gap: float
+    turn: float
+    how: int
+    profile: float
+    face: float
+    x: float
+    y: float
+    z: float
+    nx: float
+    ny: float
+    nz: float
+    lean: float
+
+
+@part
+def lowest(own, mate, pose, own_azimuth, mate_azimuth, sigma, offset, start, face, per_turn, last_fall):
+    """The lowest gap over own flank, and where: (foot, last fall, profile, face, whether the faces overlap).
+
+    Args:
+        own, mate: the gears' teeth; of `own`, low and high bound the search along the face.
+        pose: mate from own.
+        own_azimuth, mate_azimuth, sigma: which flanks.
+        offset: of both along their normals, together [mm].
+        start, face: where to start on `own`.
+        per_turn: 1 to look for the smallest turn of the mate, 0 for the smallest gap.
+        last_fall: [mm], a step that lowers the gap by less is the last; it is not looked at again.
+    """
+    profile = min(max(start, own.begin), own.end)
+    at = foot(own, mate, pose, own_azimuth, mate_azimuth, sigma, offset, profile, face)
+    overlap, fall = True, 0.0
+    for _ in range(STEPS):
+        low, high = max(own.low, face + mate.low - at.face), min(own.high, face + mate.high - at.face)
+        overlap = low <= high
+        if not overlap:
+            break
+        by_face = at.by_face - per_turn * at.gap * at.nearness
+        slope = by_face - at.twist * at.by_profile / at.bend
+        bow = at.bow - at.twist * at.twist / at.bend
+        if bow > FLAT:
+            wanted = face - slope / bow
+        elif slope == 0.0:
+            wanted = face
+        else:
+            wanted = low if slope > 0.0 else high
+        along = min(max(wanted, low), high) - face
+        moved = profile - (at.by_profile + at.twist * along) / at.bend
+        aside = min(max(moved, own.begin), own.end) - profile
+        fall = at.by_profile * aside + by_face * along
+        fall += 0.5 * (at.bend * aside * aside + at.bow * along * along) + at.twist * aside * along
+        profile += aside
+        face += along
+        if abs(fall) < last_fall:
+            break
+        at = foot(own, mate, pose, own_azimuth, mate_azimuth, sigma, offset, profile, face)
+    return at, fall, profile, face, overlap
+
+
+@part
+def inverse(pose):
+    """Own from mate, of mate from own."""
+    x = -(pose.xx * pose.x + pose.yx * pose.y + pose.zx * pose.z)
+    y = -(pose.xy * pose.x + pose.yy * pose.y + pose.zy * pose.z)
+    z = -(pose.xz * pose.x + pose.yz * pose.y + pose.zz * pose.z)
+    return Pose(pose.xx, pose.yx, pose.zx, pose.xy, pose.yy, pose.zy, pose.xz, pose.yz, pose.zz, x, y, z)
+
+
+@part
+def nearest(own, mate, pose, own_azimuth, mate_azimuth, sigma, offset, start, face, per_turn, last_fall):
+    """The nearest points of two flanks; arguments as in `lowest`.
+
+    Where the foot would lie beyond an end of the mate's profile, its tip edge most often, that edge is nearest to own
+    flank: the same search the other way round.
+    """
+    at, fall, profile, face, overlap = lowest(
+        own, mate, pose, own_azimuth, mate_azimuth, sigma, offset, start, face, per_turn, last_fall
+    )
+    lean = (at.gap + offset) * at.nearness * at.nearness
+    if not overlap:
+        return Nearest(math.inf, math.inf, CLOSED, profile, face, at.x, at.y, at.z, at.nx, at.ny, at.nz, lean)
+    if mate.begin <= at.profile <= mate.end:
+        gap, turn = at.gap + fall, at.turn + fall * at.turn_per_gap
+        how = CLOSED if mate.begin <= at.touching <= mate.end else AT_EDGE
+        return Nearest(gap, turn, how, profile, face, at.x, at.y, at.z, at.nx, at.ny, at.nz, lean)
+    edge = min(max(at.profile, mate.begin), mate.end)
+    its, its_fall, _, _, overlap = lowest(
+        mate, own, inverse(pose), mate_azimuth, own_azimuth, sigma, offset, edge, at.face, 0.0, last_fall
+    )
+    if not overlap:
+        return Nearest(math.inf, math.inf, CLOSED, profile, face, at.x, at.y, at.z, at.nx, at.ny, at.nz, lean)
+    how = AT_EDGE if own.begin <= its.profile <= own.end else BEYOND
+    # the foot on own flank, and the way from the mate's edge to it, in the mate's frame
+    apart = its.gap + offset
+    px, py, pz = its.x - apart * its.nx, its.y - apart * its.ny, its.z - apart * its.nz
+    x = pose.xx * px + pose.xy * py + pose.xz * pz + pose.x
+    y = pose.yx * px + pose.yy * py + pose.yz * pz + pose.y
+    z = pose.zx * px + pose.zy * py + pose.zz * pz + pose.z
+    nx = -(pose.xx * its.nx + pose.xy * its.ny + pose.xz * its.nz)
+    ny = -(pose.yx * its.nx + pose.yy * its.ny + pose.yz * its.nz)
+    nz = -(pose.zx * its.nx + pose.zy * its.ny + pose.zz * its.nz)
+    arm = abs(ny * x - nx * y)
+    gap = its.gap + its_fall
+    return Nearest(gap, gap / arm, how, its.profile, its.face, x, y, z, nx, ny, nz, 0.0)
