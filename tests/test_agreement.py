@@ -15,11 +15,12 @@ from tol3d.analytic import analytic_backlash, closed_form
 from tol3d.block import drawn_block, simulate_block
 from tol3d.build import Build, build
 from tol3d.distributions import Uniform
+from tol3d.engines import INTERFERES, OK
 from tol3d.gears import LEFT, RIGHT, SpurGear, SpurPair
 from tol3d.measures import measure_backlash
 from tol3d.model import Backlash, Contributor, GearPart, Mesh, Model, Reading, Scalar, Study, Temperature, TurningOffset
 from tol3d.model.model import Housing
-from tol3d.moves import INTERFERES, OK, Meshing
+from tol3d.moves import Meshing
 
 ALPHA = math.radians(20.0)
 STACK_UP_BOUND = 0.15e-3  # mm; 0.05 um of squares in the first order, 0.1 um of the strips

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from tol3d import Overrides, RunError, Scene, SceneError, open_run, replay, run_scene
-from tol3d.result import RunWriter
+from tol3d.simulate import Watch
+from tol3d.writer import RunWriter
 
 SCENES = Path(__file__).resolve().parent.parent / "scenes"
 MEASURED = "n,e\n1,-30\n2,-25\n3,-21\n4,-35\n"
@@ -39,7 +40,7 @@ def test_a_run_keeps_what_ran_though_scene_and_file_are_edited_meanwhile(tmp_pat
         scene.write_text(as_it_was.replace("172.5", "172.6"), "utf-8")
         measured.write_text("n,e\n1,-90\n2,-80\n", "utf-8")
 
-    run = run_scene(scene, overrides=FEW, out=tmp_path / "run", on_stage=edit)
+    run = run_scene(scene, overrides=FEW, out=tmp_path / "run", watch=Watch(stage=edit))
     assert run.scene_path.read_text("utf-8") == as_it_was
     assert run.files["measured.csv"].content == MEASURED.encode()
     column = run.columns("analytic:normal backlash")["analytic:normal backlash"]

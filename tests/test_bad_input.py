@@ -143,7 +143,7 @@ CHANGES = {
     ),
     "text where a number is due": (
         ("trials: 2000", "trials: no"),
-        "study.trials: expected a whole number, got 'no'",
+        "study.trials: expected a whole number or auto, got 'no'",
     ),
     "nothing behind a key": (
         ("centre_distance: 172.5 mm", "centre_distance: "),

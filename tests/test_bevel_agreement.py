@@ -17,11 +17,11 @@ from scipy.spatial.transform import Rotation
 
 from tol3d.block import Block, simulate_block
 from tol3d.build import Build
-from tol3d.engines import Engine
+from tol3d.engines import OK, Engine
 from tol3d.gears import LEFT, RIGHT, BevelGear, BevelPair, pitch_angles
 from tol3d.measures import measure_backlash
 from tol3d.model import Backlash, GearPart, Mesh, Model, Reading, Study, model_from_scene
-from tol3d.moves import OK, Meshing
+from tol3d.moves import Meshing
 from tol3d.scene import Scene
 from tol3d.simulate import load
 

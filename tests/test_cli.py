@@ -60,6 +60,70 @@ def test_overrides_are_recorded(tol3d: Command, tmp_path: Path) -> None:
     assert (study["trials"], study["seed"], study["engine"]) == (50, 9, "analytic")
 
 
+def test_sampler_and_witness_are_recorded(tol3d: Command, tmp_path: Path) -> None:
+    arguments = ("--trials", "64", "--engine", "analytic", "--sampler", "sobol", "--witness", "3")
+    assert tol3d("run", SPUR, *arguments, "--out", str(tmp_path / "run"))[0] == 0
+    study = json.loads((tmp_path / "run" / "summary.json").read_text("utf-8"))["study"]
+    assert (study["sampler"], study["witness"]) == ("sobol", 3)
+
+
+WRONG_OPTIONS = {
+    "no number of trials": (("--trials", "many"), "a whole number from 1 on, or auto, got 'many'"),
+    "no trials": (("--trials", "0"), "a whole number from 1 on, or auto, got '0'"),
+    "auto without an end": (("--trials", "auto"), "the standard errors to stop at"),
+    "too many trials": (("--trials", "10000000001"), "trials, otherwise than in the scene"),
+    "workers here and there": (("--scheduler", "tcp://here:1", "--workers", "2"), "leave out --workers"),
+    "nothing to resume": (("--resume",), "nothing to resume, neither a run nor run.partial is there"),
+}
+
+
+@pytest.mark.parametrize("what", WRONG_OPTIONS)
+def test_a_wrong_option_gets_one_message_and_exit_code_2(tol3d: Command, tmp_path: Path, what: str) -> None:
+    options, words = WRONG_OPTIONS[what]
+    code, out, err = tol3d("run", SPUR, *options, "--out", str(tmp_path / "run"))
+    assert (code, out) == (2, "")
+    assert words in " ".join(err.replace("│", " ").split())
+    assert "Traceback" not in err
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_no_trials_keeps_the_statistics_only(tol3d: Command, tmp_path: Path) -> None:
+    arguments = ("--trials", "200", "--engine", "analytic", "--no-trials", "--out", str(tmp_path / "bare"))
+    assert tol3d("run", SPUR, *arguments)[0] == 0
+    assert {path.name for path in (tmp_path / "bare").iterdir()} == {"summary.json", "scene.yaml", "histogram.png"}
+    code, _, err = tol3d("export", str(tmp_path / "bare"), "--worst", "--out", str(tmp_path))
+    assert code == 2
+    assert "this run kept its statistics only" in err
+
+
+def test_resume_of_a_finished_run_mends_it(tol3d: Command, tmp_path: Path) -> None:
+    arguments = ("--trials", "200", "--engine", "analytic", "--out", str(tmp_path / "run"))
+    assert tol3d("run", SPUR, *arguments)[0] == 0
+    block = tmp_path / "run" / "trials" / "block-000000.parquet"
+    whole = block.read_bytes()
+    block.write_bytes(whole[:-1])
+    code, _, err = tol3d("run", SPUR, *arguments, "--resume")
+    assert code == 0
+    assert "warning: " in err
+    assert "it is made again" in err
+    assert block.read_bytes() == whole
+
+
+def test_an_interrupted_command_ends_nobody_who_called_it(
+    tol3d: Command, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    ended: list[int] = []
+    monkeypatch.setattr(os, "_exit", ended.append)
+    monkeypatch.setattr(cli, "PATIENCE", 0.2)
+    monkeypatch.setattr("tol3d.simulate.run_blocks", lambda *_, **__: signal.raise_signal(signal.SIGINT))
+    out = tmp_path / "run"
+    code, _, err = tol3d("run", SPUR, "--trials", "30", "--engine", "analytic", "--out", str(out))
+    assert code == 130
+    assert err.endswith(f"tol3d run {SPUR} --trials 30 --engine analytic --out {out} --resume\n")
+    time.sleep(0.5)
+    assert ended == []
+
+
 def test_fail_on_limits_exits_with_1_only_when_a_limit_fails(tol3d: Command, tmp_path: Path) -> None:
     common = ("--trials", "200", "--engine", "analytic", "--fail-on-limits")
     assert tol3d("run", SPUR, *common, "--out", str(tmp_path / "good"))[0] == 0

@@ -68,6 +68,7 @@ study: {trials: 24, seed: 5, profile_steps: 60}
 published:
   a colleague: {free play: {low_3sigma: 50 um, mean: 71.5 um, high_3sigma: 90 um, contributors: {warm: 3.5}}}
 """
+SCENES = Path(__file__).resolve().parent.parent / "scenes"
 TRIAL = 7
 FLOAT32_NOISE = 2e-5  # mm; files keep single precision: 2^-24 of the 44 mm between the axes, in three coordinates
 GREEN, RED = (0, 113, 79), (192, 58, 0)  # of the marks at contact and gap
@@ -222,29 +223,60 @@ def test_report_of_the_analytic_engine_has_no_column_of_a_simulation(run):
     assert "analytic" in text
 
 
+AT_EDGE = 0.01  # the warm pinion's pitch is 115 ppm larger: contact begins at a tip edge, where the normal is another
+
+
 @pytest.mark.parametrize("width", [80, 120])
 def test_check_report_fits_and_shows_limits_and_coefficients(run, width):
     model = model_of(run)
     text = printed(check_report(model), width)
     assert max(len(line) for line in text.splitlines()) <= width
+    laws, lengths, angles = re.split(r"contributors\n|free play, shape: .*\n|turn of \[wheel\]: .*\n", text)[1:]
+    assert row_of(laws, "pinion thickness")[:3] == ["normal", "-40", "-20"]
     sine = math.sin(math.acos(43 * math.cos(math.radians(20)) / 43.59))  # of the working pressure angle
-    lines = [line for line in text.split("coefficient")[1].splitlines() if " µm " in line or " K " in line]
-    for line, coefficient in zip(lines, (-math.cos(math.radians(20)),) * 2 + (2 * sine,) * 2, strict=False):
-        assert f"{coefficient:+#.3g} µm" in line
-    assert " -40 " in lines[0]
-    assert " -20 " in lines[0]
+    arm = 25 * math.cos(math.radians(20))  # mm, base radius of the wheel
+    expected = {
+        "pinion thickness": -math.cos(math.radians(20)),
+        "wheel thickness": -math.cos(math.radians(20)),
+        "eccentricity $1": 2 * sine,
+        "centre distance": 2 * sine,
+    }
+    for name, coefficient in expected.items():
+        unit, analytic, found, _ = row_of(lengths, name)
+        assert (unit, float(analytic)) == ("µm/µm", pytest.approx(coefficient, abs=6e-4))
+        assert float(found) == pytest.approx(coefficient, rel=AT_EDGE)
+        unit, analytic, found, _ = row_of(angles, name)
+        seconds = math.degrees(coefficient / arm / 1000) * 3600
+        assert (unit, float(analytic)) == ("″/µm", pytest.approx(seconds, abs=6e-3))
+        assert float(found) == pytest.approx(seconds, rel=AT_EDGE)
     assert "43.5900" in text
     assert f"{model.meshes[0].pair.contact_ratio:.4f}" in text
 
 
-def test_coefficients_of_tilts_are_per_absolute_deviation(run, tmp_path):
+def test_check_marks_coefficients_on_which_geometry_and_stack_up_disagree():
+    text = printed(check_report(effective_model(load_scene(SCENES / "bevel_pair.yaml"))), 80)
+    # by an exact solver 0.5311 and 0.4358 where the stack-up has their mean, and nothing for axes that pass each other
+    for name, cells in {
+        "shaft angle": ["µm/µm", "+0.684", "+0.685", "11.7"],
+        "axes offset": ["µm/µm", "+0.484", "≠", "+0.004", "4.7"],
+        "driver back face": ["µm/µm", "+0.484", "≠", "+0.436", "2.1"],
+        "driven back face": ["µm/µm", "+0.484", "≠", "+0.530", "2.1"],
+    }.items():
+        assert row_of(text.split("normal backlash: ")[1], name) == cells
+    assert "the geometry disagrees by more than 5 %" in " ".join(text.split())
+
+
+def test_coefficients_of_tilts_differ_below_and_above_the_mean(run, tmp_path):
     tilts = "  {0}: {{kind: {0}, of: gear pair, distribution: {{kind: uniform, lower: -9 um, upper: 9 um}}}}\n"
-    assert "|deviation|" not in printed(check_report(model_of(run)), 120)
+    assert "a tilt closes" not in printed(check_report(model_of(run)), 120)
     scene = tmp_path / "tilted.yaml"
     words = tilts.format("axis_in_plane") + tilts.format("axis_out_of_plane")
     scene.write_text(SCENE.replace("moves:\n", f"{words}moves:\n"), encoding="utf-8")
     text = printed(check_report(effective_model(load_scene(scene))), 120)
-    assert "axis_in_plane, axis_out_of_plane: the coefficient is per |deviation|" in text
+    assert "axis_in_plane, axis_out_of_plane: a tilt closes the gap whichever way it goes" in text
+    lost = math.sin(math.acos(43 * math.cos(math.radians(20)) / 43.59))  # half the face on both flanks, per face width
+    for cell in row_of(text.split("free play, shape: ")[1], "axis_in_plane")[1:3]:
+        assert [float(slope) for slope in cell.split("/")] == pytest.approx([lost, -lost], abs=6e-4)
 
 
 def test_comparison_gives_the_largest_and_rms_difference_of_the_columns(run):
@@ -382,10 +414,10 @@ def test_comparison_of_two_runs_is_drawn(run, tmp_path):
 def test_a_run_loads_neither_cad_nor_meshes_nor_views(run, tmp_path):
     """Its strips are cached by the fixture; the picture and the table are made too."""
     program = (
-        "import sys; from pathlib import Path; from tol3d.simulate import run_scene, Overrides\n"
+        "import sys; from pathlib import Path; from tol3d.simulate import run_scene, Overrides, Watch\n"
         "from tol3d.report import draw_histogram, run_report\n"
         f"run = run_scene({str(run.path.parent / 'small.yaml')!r}, out=sys.argv[1], overrides=Overrides(trials=2),\n"
-        "    finisher=lambda place, summary: draw_histogram(summary, place / 'h.png'))\n"
+        "    watch=Watch(finisher=lambda place, summary: draw_histogram(summary, place / 'h.png')))\n"
         "run_report(run.summary)\n"
         "print(sorted({'trimesh', 'pyvista', 'vtk', 'cadquery', 'matplotlib.pyplot'} & set(sys.modules)))"
     )

@@ -11,9 +11,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from tol3d import InputError, Overrides, RunError, open_run, replay, run_scene
+from tol3d import InputError, Overrides, RunError, folding, open_run, replay, run_scene
 from tol3d import block as block_module
-from tol3d import execution as execution_module
+from tol3d.execution import Execution
+from tol3d.result import DamageWarning
+from tol3d.simulate import Watch
 from tol3d.worst import worst_trial
 
 SCENES = Path(__file__).resolve().parent.parent / "scenes"
@@ -37,7 +39,7 @@ def spur_run(tmp_path_factory: pytest.TempPathFactory):
 
 
 def test_two_workers_give_the_same_bits_as_one(spur_run, tmp_path: Path) -> None:
-    other = run_scene(SPUR, overrides=Overrides(trials=300), out=tmp_path / "two", workers=2)
+    other = run_scene(SPUR, overrides=Overrides(trials=300), out=tmp_path / "two", execution=Execution(workers=2))
     assert_same_bits(spur_run.columns(), other.columns())
     for name, measure in spur_run.summary["measures"].items():
         assert other.summary["measures"][name] == measure
@@ -144,7 +146,12 @@ def test_trials_that_interfere_keep_their_row_and_their_status(tmp_path: Path) -
     summary = run.summary["measures"]["normal backlash"]["geometric"]
     assert summary["count"] == (~failed).sum()
     assert summary["failed_ppm"] == pytest.approx(1e6 * failed.mean())
-    assert run.summary["status"] == {"ok": int((~failed).sum()), "interferes": int(failed.sum()), "no contact": 0}
+    assert run.summary["status"] == {
+        "ok": int((~failed).sum()),
+        "interferes": int(failed.sum()),
+        "no contact": 0,
+        "out of range": 0,
+    }
 
 
 def test_a_killed_run_goes_on_where_it_was(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -156,26 +163,28 @@ def test_a_killed_run_goes_on_where_it_was(tmp_path: Path, monkeypatch: pytest.M
     def stop_in_the_middle(count: int) -> None:
         nonlocal done
         done += count
-        if done > 1700:
+        if done > 1200:
             raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):
-        run_scene(SPUR, overrides=study, out=tmp_path / "cut", on_progress=stop_in_the_middle)
-    kept = sorted((tmp_path / "cut.partial" / "trials").iterdir())
+        run_scene(SPUR, overrides=study, out=tmp_path / "cut", watch=Watch(progress=stop_in_the_middle))
+    kept = sorted((tmp_path / "cut.partial" / "trials").glob("*.parquet"))
     assert len(kept) == 3
     before = [path.stat().st_mtime_ns for path in kept]
     kept[1].write_bytes(kept[1].read_bytes()[:-100])  # a damaged block is made again
-    resumed = run_scene(SPUR, overrides=study, out=tmp_path / "cut")
+    with pytest.warns(DamageWarning, match=r"block-000001\.parquet: damaged .*; it is made again"):
+        resumed = run_scene(SPUR, overrides=study, out=tmp_path / "cut")
     assert_same_bits(whole.columns(), resumed.columns())
     assert resumed.summary["measures"] == whole.summary["measures"]
-    after = sorted((tmp_path / "cut" / "trials").iterdir())
+    assert resumed.summary["timing"]["resumed_trials"] == 1000
+    after = sorted((tmp_path / "cut" / "trials").glob("*.parquet"))
     assert after[0].stat().st_mtime_ns == before[0]  # a whole block is not
     assert not (tmp_path / "cut.partial").exists()
 
 
 def test_pieces_of_an_unfinished_block_are_kept(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(execution_module, "KEEP_EVERY", 0.0)
-    study = Overrides(trials=2000, engine="analytic")
+    monkeypatch.setattr(folding, "KEEP_EVERY", 0.0)
+    study = Overrides(trials=2000, engine="fcl")
     whole = run_scene(SPUR, overrides=study, out=tmp_path / "whole")
     seen: list[int] = []
 
@@ -185,11 +194,11 @@ def test_pieces_of_an_unfinished_block_are_kept(tmp_path: Path, monkeypatch: pyt
             raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):
-        run_scene(SPUR, overrides=study, out=tmp_path / "cut", on_progress=stop_in_the_middle)
-    kept = list((tmp_path / "cut.partial" / "pieces").iterdir())
+        run_scene(SPUR, overrides=study, out=tmp_path / "cut", watch=Watch(progress=stop_in_the_middle))
+    kept = list((tmp_path / "cut.partial" / "pieces").glob("*.parquet"))
     assert len(kept) == 3  # of 256 trials each; the fourth was told of before it was kept
     told: list[int] = []
-    resumed = run_scene(SPUR, overrides=study, out=tmp_path / "cut", on_progress=told.append)
+    resumed = run_scene(SPUR, overrides=study, out=tmp_path / "cut", watch=Watch(progress=told.append))
     assert told[:3] == [256, 256, 256]
     assert sum(told) == 2000
     assert_same_bits(whole.columns(), resumed.columns())

@@ -27,6 +27,7 @@ EVERY_FIELD = ROOT / "scenes" / "every_field.yaml"
 EVERY_BEVEL_FIELD = ROOT / "scenes" / "every_bevel_field.yaml"
 SCENES = sorted((ROOT / "scenes").glob("*.yaml"))
 DOCUMENT = (ROOT / "docs" / "scene.md").read_text(encoding="utf-8")
+STUDIES = re.findall(r"```text\n(study:.*?)```", DOCUMENT, re.DOTALL)
 
 SMALL = """
 scene: small
@@ -101,10 +102,12 @@ def fields_said(value: Any) -> Iterator[tuple[type[BaseModel], str]]:
             yield from fields_said(entry)
 
 
-def test_every_field_uses_every_field_of_every_kind() -> None:
+def test_every_field_uses_every_field_of_every_kind(tmp_path: Path) -> None:
     known = {(model, field) for model in set(models_within(Scene)) for field in model.model_fields}
     assert len({model for model, _ in known}) >= 24  # scene, study, 2 parts, 9 tolerances, 7 laws, mesh, 3 measures, …
     said = {use for scene in (EVERY_FIELD, EVERY_BEVEL_FIELD) for use in fields_said(load_scene(scene))}
+    plain = SMALL.replace("  play:", "  normal backlash:")
+    said |= {use for study in STUDIES for use in fields_said(load(tmp_path, plain + study))}
     unsaid = known - said
     # a base class's fields are said by its kinds; of those that spur and bevel gears share, one of both will do
     shared = {

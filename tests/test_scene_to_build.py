@@ -15,9 +15,10 @@ from oracles.involute_gear import InvoluteGear
 
 from tol3d import trials
 from tol3d.build import Build, build
+from tol3d.engines import OK
 from tol3d.gears import LEFT, RIGHT
 from tol3d.model import Model, Reading, model_from_scene
-from tol3d.moves import OK, Meshing
+from tol3d.moves import Meshing
 from tol3d.scene import load_scene
 
 SPUR_PAIR = (Path(__file__).resolve().parent.parent / "scenes" / "spur_pair.yaml").read_text("utf-8")

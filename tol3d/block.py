@@ -4,7 +4,7 @@ Columns are in the user's units (um, mrad, K, deg, arcmin), trial on axis 0; a c
 """
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -13,16 +13,18 @@ from numpy.typing import NDArray
 from tol3d import trials
 from tol3d.analytic import analytic_backlash
 from tol3d.build import Build, build
-from tol3d.engines import Engine
-from tol3d.measures import measure_backlash
-from tol3d.model import Measure, Mesh, Model, Positions, Reading
-from tol3d.moves import OK, STATUS_TEXT, Meshing, MeshSeat
+from tol3d.engines import OK, STATUS_TEXT, Engine, MeshReading, ReadingEngine
+from tol3d.measures import measure_backlash, read_backlash, turning_gear
+from tol3d.model import Measure, Mesh, Model, Positions, Reading, Study
+from tol3d.moves import Meshing, MeshSeat
 
 Array = NDArray[np.float64]
 Columns = Mapping[str, NDArray[np.generic]]
 
 ROWS_AT_ONCE = 8192  # trials x positions; keeps poses and gaps of a turn's curves in a few megabytes
 BLOCK_TRIALS = 65_536  # trials whose statistics are folded together, and that are written as one file
+AUTO_BLOCK_TRIALS = 16_384  # of a study that may stop after any block
+AUTO_FCL_BLOCK_TRIALS = 2048  # the same where a trial is slow: a second of them
 BLOCK_VALUES = 2**22  # values of a curve in one block: 32 MB
 
 
@@ -49,8 +51,7 @@ class Block:
 
 def drawn_block(model: Model, seed: int, first: int, count: int) -> Block:
     """Trials first ... first + count - 1 as the seed draws them."""
-    angles = {mesh.name: trials.random_driver_angle(mesh, seed, first, count) for mesh in model.meshes}
-    return Block(trials.deviations(model, seed, first, count), angles)
+    return Block(trials.deviations(model, seed, first, count), trials.driver_angles(model, seed, first, count))
 
 
 def stated_block(model: Model, deviations: Array) -> Block:
@@ -135,7 +136,13 @@ def positions_count(measure: Measure) -> int:
 def block_trials(model: Model) -> int:
     """Trials of a canonical block: fewer where curves keep many positions of each trial."""
     kept = max((positions_count(measure) for measure in model.measures if measure.take == "curve"), default=1)
-    return min(BLOCK_TRIALS, 1 << int(math.log2(BLOCK_VALUES / kept)))
+    return min(_most_block_trials(model.study), 1 << int(math.log2(BLOCK_VALUES / kept)))
+
+
+def _most_block_trials(study: Study) -> int:
+    if not study.until:
+        return BLOCK_TRIALS
+    return AUTO_FCL_BLOCK_TRIALS if study.engine == "fcl" else AUTO_BLOCK_TRIALS
 
 
 def positions_in_all(model: Model) -> int:
@@ -205,14 +212,61 @@ def _simulate_piece(model: Model, engine: Engine | None, block: Block) -> dict[s
         )
     if engine is None:
         return columns
-    seats = seat_block(model, engine, block)
+    seen = _read(model, engine, block) if isinstance(engine, ReadingEngine) else _measured(model, engine, block)
     for measure in model.measures:
-        values = taken(measure, geometric_values(measure, seats))
-        columns[f"geometric:{measure.name}"] = values * measure.per_internal
-    for mesh in model.meshes:
-        columns.update(_contact_columns(mesh, seats, len(block)))
-    columns["status"] = _status_column(seats, len(block))
+        columns[f"geometric:{measure.name}"] = taken(measure, seen.values[measure.name]) * measure.per_internal
+    columns.update(seen.contacts)
+    columns["status"] = _STATUS_TEXTS[seen.status]
     return columns
+
+
+_STATUS_TEXTS = np.array([STATUS_TEXT[code] for code in range(len(STATUS_TEXT))])
+
+
+@dataclass(frozen=True)
+class _Seen:
+    """The geometric road of a block: values by measure (trials, positions), contact columns, status (trials,)."""
+
+    values: Mapping[str, Array]
+    contacts: Mapping[str, NDArray[np.generic]]
+    status: NDArray[np.int8]
+
+
+def _measured(model: Model, engine: Engine, block: Block) -> _Seen:
+    """By seating every mesh on the gaps that an engine tells."""
+    seats = seat_block(model, engine, block)
+    contacts: dict[str, NDArray[np.generic]] = {}
+    for mesh in model.meshes:
+        seat = next((seat for key, seat in seats.seats.items() if key[0] == mesh.name), None)
+        if seat is not None:
+            contacts |= _contact_columns(mesh, *seat.contact, len(block))
+    return _Seen(
+        {measure.name: geometric_values(measure, seats) for measure in model.measures},
+        contacts,
+        _worst_status([seat.status for seat in seats.seats.values()], len(block)),
+    )
+
+
+def _read(model: Model, engine: ReadingEngine, block: Block) -> _Seen:
+    """By an engine that seats and reads meshes itself."""
+    made = build(model, block.deviations)
+    readings: dict[SeatKey, MeshReading] = {}
+    contacts: dict[str, NDArray[np.generic]] = {}
+    for key in dict.fromkeys(seat_key(measure) for measure in model.measures):
+        mesh = model.mesh(key[0])
+        angles = driver_angles(key[1], block.random_angle[mesh.name])
+        kinds = [measure.kind for measure in model.measures if seat_key(measure) == key]
+        turning = frozenset(gear for kind in kinds if (gear := turning_gear(kind, mesh)))
+        readings[key] = engine.read(made.repeated(angles.shape[1]), mesh, key[2], angles.ravel(), turning)
+        if f"contact:{mesh.name}.tooth" not in contacts:
+            contacts |= _contact_columns(mesh, readings[key].contact, readings[key].tooth, len(block))
+    values = {
+        measure.name: read_backlash(measure.kind, model.mesh(measure.kind.mesh), readings[seat_key(measure)]).reshape(
+            -1, positions_count(measure)
+        )
+        for measure in model.measures
+    }
+    return _Seen(values, contacts, _worst_status([reading.status for reading in readings.values()], len(block)))
 
 
 def position_column(mesh: Mesh) -> str:
@@ -220,12 +274,10 @@ def position_column(mesh: Mesh) -> str:
     return f"position:{mesh.name} [deg]"
 
 
-def _contact_columns(mesh: Mesh, seats: Seats, trials_count: int) -> dict[str, NDArray[np.generic]]:
+def _contact_columns(
+    mesh: Mesh, point: Array, tooth: NDArray[np.int64], trials_count: int
+) -> dict[str, NDArray[np.generic]]:
     """First contact of a mesh, at the first of its measures' positions."""
-    seat = next((seat for key, seat in seats.seats.items() if key[0] == mesh.name), None)
-    if seat is None:
-        return {}
-    point, tooth = seat.contact
     first = slice(None, None, len(point) // trials_count)
     columns: dict[str, NDArray[np.generic]] = {
         f"contact:{mesh.name}.{axis} [mm]": point[first, k] for k, axis in enumerate("xyz")
@@ -234,8 +286,8 @@ def _contact_columns(mesh: Mesh, seats: Seats, trials_count: int) -> dict[str, N
     return columns
 
 
-def _status_column(seats: Seats, trials_count: int) -> NDArray[np.generic]:
+def _worst_status(each: Sequence[NDArray[np.int8]], trials_count: int) -> NDArray[np.int8]:
     worst = np.full(trials_count, OK, dtype=np.int8)
-    for seat in seats.seats.values():
-        worst = np.maximum(worst, seat.status.reshape(trials_count, -1).max(axis=1))
-    return np.array([STATUS_TEXT[code] for code in range(len(STATUS_TEXT))])[worst]
+    for status in each:
+        worst = np.maximum(worst, status.reshape(trials_count, -1).max(axis=1))
+    return worst

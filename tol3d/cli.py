@@ -59,6 +59,14 @@ class EngineName(StrEnum):
     ANALYTIC = "analytic"
 
 
+class SamplerName(StrEnum):
+    """Ways to draw that a run may choose."""
+
+    MONTE_CARLO = "monte_carlo"
+    SOBOL = "sobol"
+    LATIN_HYPERCUBE = "latin_hypercube"
+
+
 class MeshFormat(StrEnum):
     """Files that an export may write."""
 
@@ -85,16 +93,38 @@ def options(
     """Options of tol3d itself; the help of `app` is shown for it."""
 
 
+def _trials(text: str) -> int | str:
+    """A number of trials, or auto, as --trials gives it."""
+    if text == "auto":
+        return text
+    if not text.isdecimal() or int(text) < 1:
+        raise typer.BadParameter(f"expected a whole number from 1 on, or auto, got {text!r}")
+    return int(text)
+
+
 @app.command()
 def run(
     scene: SceneArgument,
-    trials: Annotated[int | None, typer.Option(min=1, help="Number of trials instead of the scene's.")] = None,
+    trials: Annotated[
+        Any, typer.Option(parser=_trials, metavar="N|auto", help="Number of trials instead of the scene's.")
+    ] = None,
     seed: Annotated[int | None, typer.Option(min=0, help="Seed instead of the scene's.")] = None,
     engine: Annotated[EngineName | None, typer.Option(help="Engine instead of the scene's.")] = None,
+    sampler: Annotated[SamplerName | None, typer.Option(help="Sampler instead of the scene's.")] = None,
+    witness: Annotated[
+        int | None, typer.Option(min=0, help="Trials of an exact study that FCL measures again.")
+    ] = None,
     out: Annotated[Path | None, typer.Option(help="The run's folder; runs/<scene> by default.")] = None,
     workers: Annotated[
-        int | None, typer.Option(min=1, help="Processes; by default one, or all cores for a long study.")
+        int | None, typer.Option(min=1, help="Threads or processes; by default one, or all cores for a long study.")
     ] = None,
+    scheduler: Annotated[
+        str | None, typer.Option(metavar="ADDRESS", help="Run on the workers of this Dask scheduler.")
+    ] = None,
+    no_trials: Annotated[bool, typer.Option("--no-trials", help="Keep statistics only, no rows of trials.")] = False,
+    resume: Annotated[
+        bool, typer.Option("--resume", help="Go on with an interrupted run, or mend a damaged one; never start anew.")
+    ] = False,
     fail_on_limits: Annotated[bool, typer.Option(help="Exit with 1 when a trial is out of limits or failed.")] = False,
     trust_parts: TrustParts = False,
 ) -> None:
@@ -102,12 +132,14 @@ def run(
     from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
 
     from tol3d.block import positions_in_all
-    from tol3d.execution import suggested_workers
+    from tol3d.execution import Execution, suggested_workers
     from tol3d.report import run_report
-    from tol3d.simulate import Overrides, effective_model, load, run_scene
+    from tol3d.simulate import Overrides, Watch, effective_model, load, run_scene, way_of
 
+    if workers is not None and scheduler is not None:
+        raise typer.BadParameter("--scheduler has its own workers; leave out --workers")
     path = scene_path(scene)
-    overrides = Overrides(trials, seed, engine.value if engine else None)
+    overrides = Overrides(trials, seed, engine.value if engine else None, sampler.value if sampler else None, witness)
     folder = out or Path("runs") / path.stem
     loaded = load(path, trust_parts=trust_parts)
     model = effective_model(loaded, overrides)
@@ -117,29 +149,44 @@ def run(
     if model.study.engine == "fcl" and contacts > LONG_STUDY:
         minutes = contacts / CONTACTS_PER_MINUTE
         err_console.print(f"{positions_in_all(model)} positions a trial: about {minutes:.0f} min of one core")
+    own = workers or suggested_workers(contacts, way_of(model.study.engine))
     columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn())
-    with _stopped_in_order(), Progress(*columns, console=err_console, transient=True) as progress:
-        bar = progress.add_task("scene", total=model.study.trials)
-        try:
+    try:
+        with _stopped_in_order(), Progress(*columns, console=err_console, transient=True) as progress:
+            bar = progress.add_task("scene", total=model.study.trials)
             finished = run_scene(
                 loaded,
                 overrides=overrides,
                 out=folder,
-                workers=workers or suggested_workers(contacts),
-                on_stage=lambda text: progress.update(bar, description=text),
-                on_progress=lambda done: progress.advance(bar, done),
-                finisher=_draw,
+                execution=Execution(own, scheduler, keep_trials=not no_trials, resume=resume),
+                watch=Watch(
+                    stage=lambda text: progress.update(bar, description=text),
+                    progress=lambda done: progress.advance(bar, done),
+                    finisher=_draw,
+                ),
             )
-        except KeyboardInterrupt:
-            progress.stop()
-            err_console.print(f"stopped; what was done is kept in {folder}.partial: the same command goes on there")
-            raise typer.Exit(INTERRUPTED) from None
+    except KeyboardInterrupt:
+        err_console.print(_how_to_resume(folder))
+        raise typer.Exit(INTERRUPTED) from None
     out_console.print(run_report(finished.summary))
     picture = finished.path / PICTURE
     _tell(f"run: {finished.path}" + (f"    picture: {picture}" if picture.exists() else ""))
     if fail_on_limits and _out_of_limits(finished):
         err_console.print("limits failed", style="red")
         raise typer.Exit(LIMITS_FAILED)
+
+
+def _how_to_resume(folder: Path) -> str:
+    """What is kept of an interrupted run, and the command that goes on with it."""
+    import shlex
+
+    from tol3d.result import partial_of
+
+    partial = partial_of(folder)
+    if not partial.exists():
+        return "stopped before anything was kept"
+    arguments = [argument for argument in sys.argv[1:] if argument != "--resume"]
+    return f"stopped; what was done is kept in {partial}. To go on:\n{shlex.join(['tol3d', *arguments, '--resume'])}"
 
 
 def _warn(text: str) -> None:
@@ -165,20 +212,24 @@ def _draw(place: Path, summary: "Mapping[str, Any]") -> None:
 
 @contextmanager
 def _stopped_in_order() -> Iterator[None]:
-    """Within it Ctrl-C is `_interrupted`; behind it, what it was before."""
-    before = signal.signal(signal.SIGINT, _interrupted)
+    """Within it Ctrl-C stops in order, and after a while in any case; behind it, it is what it was before.
+
+    What is on disk is whole at every moment.
+    """
+    last = threading.Timer(PATIENCE, os._exit, (INTERRUPTED,))
+    last.daemon = True
+
+    def interrupted(number: int, frame: "FrameType | None") -> None:
+        if not last.is_alive():
+            last.start()
+        raise KeyboardInterrupt
+
+    before = signal.signal(signal.SIGINT, interrupted)
     try:
         yield
     finally:
+        last.cancel()
         signal.signal(signal.SIGINT, before)
-
-
-def _interrupted(number: int, frame: "FrameType | None") -> None:
-    """Ctrl-C: stop in order, and after a while in any case; what is on disk is whole at every moment."""
-    last = threading.Timer(PATIENCE, os._exit, (INTERRUPTED,))
-    last.daemon = True
-    last.start()
-    raise KeyboardInterrupt
 
 
 def _out_of_limits(run: "Run") -> bool:

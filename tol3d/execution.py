@@ -1,129 +1,266 @@
-"""Runs blocks of trials, one process or several, in order, from where an earlier run stopped.
+"""Where calls run: in this process, in threads, in other processes, or on a Dask cluster.
 
-Results do not depend on the number of workers nor on how trials are handed out: a trial is a pure
-function, and blocks come back in their order.
+All take calls and give what is pending; `in_order` keeps a bounded number of them under way. The only place that
+knows joblib and Dask.
 """
 
+import importlib
 import os
-import time
-from collections.abc import Callable, Iterator
+from collections import deque
+from collections.abc import Callable, Iterable, Iterator
+from concurrent.futures import BrokenExecutor, CancelledError, ThreadPoolExecutor
+from contextlib import contextmanager
 from dataclasses import dataclass
-from typing import Protocol
+from enum import Enum
+from typing import Any, Protocol, TypeVar
 
-import numpy as np
-from joblib import Parallel, delayed
-from numpy.typing import NDArray
+from joblib.externals.loky import get_reusable_executor
 
-Columns = dict[str, NDArray[np.generic]]
-Task = Callable[[int, int], Columns]
-Progress = Callable[[int], None]
+from tol3d.errors import InputError, RunError
 
-SHORT_STUDY = 20_000  # contacts (trials x positions); about 8 s of them on one core
-TASK_CONTACTS = 256  # contacts handed out at once: 0.1 s of them, so progress moves and workers end together
-KEEP_EVERY = 5.0  # s; an interrupted run loses no more than what this long has made
+T = TypeVar("T")
+T_co = TypeVar("T_co", covariant=True)
+Tag = TypeVar("Tag")
 
-
-class BlockStore(Protocol):
-    """Where finished blocks are kept."""
-
-    def read(self, index: int) -> Columns | None:
-        """A finished block, or None."""
-        ...
-
-    def write(self, index: int, columns: Columns) -> None:
-        """Keep a finished block, all or nothing; its pieces are not needed any more."""
-        ...
-
-    def read_piece(self, index: int, first: int) -> Columns | None:
-        """A piece of an unfinished block that begins at trial `first`, or None."""
-        ...
-
-    def write_piece(self, index: int, first: int, columns: Columns) -> None:
-        """Keep a piece of an unfinished block."""
-        ...
-
-
-def run_blocks(
-    task: Task,
-    trials: int,
-    workers: int,
-    store: BlockStore,
-    on_progress: Progress = lambda done: None,
-    *,
-    block_trials: int,
-    positions: int = 1,
-) -> Iterator[Columns]:
-    """Run `task(first, count)` over all trials and yield finished blocks in order.
-
-    Args:
-        task: columns of trials first ... first + count - 1; must pickle for more than one worker.
-        trials: how many trials.
-        workers: processes; 1 stays in this one.
-        store: blocks found there are read, not run again; new ones are written before they are yielded.
-        on_progress: told how many trials were finished since it was told last.
-        block_trials: trials of a block.
-        positions: contacts that a trial takes, for the size of what is handed out.
-    """
-    with Parallel(n_jobs=workers, return_as="generator", pre_dispatch="3 * n_jobs") as parallel:
-        for index, first in enumerate(range(0, trials, block_trials)):
-            count = min(block_trials, trials - first)
-            columns = store.read(index)
-            if columns is None:
-                runner = parallel if workers > 1 else None
-                block = _Block(index, first, count, max(1, TASK_CONTACTS // positions))
-                columns = _run_block(block, task, runner, store, on_progress)
-                store.write(index, columns)
-            else:
-                on_progress(count)
-            yield columns
+CALLS_A_SLOT = 3  # under way for each worker, so that none waits while results come back in order
+ANSWER_S = 10.0  # s; a scheduler that lives answers within this, and so does a first worker
+SHORT_STUDY = 20_000  # contacts (trials x positions); about 8 s of them on one core, where others take 2 s to start
+IDLE_S = 60  # s; after which idle processes end
 
 
 @dataclass(frozen=True)
-class _Block:
-    """Trials first ... first + count - 1, run `size` at a time."""
+class Execution:
+    """How a study is executed; its results do not depend on it.
 
-    index: int
-    first: int
-    count: int
-    size: int
+    Args:
+        workers: threads or processes, as the engine needs.
+        scheduler: address of a Dask scheduler whose workers run it instead.
+        keep_trials: False keeps statistics only; any trial can still be replayed.
+        resume: there must be an interrupted run to go on with.
+    """
+
+    workers: int = 1
+    scheduler: str | None = None
+    keep_trials: bool = True
+    resume: bool = False
+
+
+ONE_WORKER = Execution()
+
+
+class Way(Enum):
+    """How an engine's trials are handed out on one machine.
+
+    THREADS: whole blocks, for an engine that lets other threads run and makes a block in a second.
+    PROCESSES: pieces of blocks, for one that does not.
+    """
+
+    THREADS = "threads"
+    PROCESSES = "processes"
+
+
+class Pending(Protocol[T_co]):
+    """A call's result to be."""
+
+    def result(self) -> T_co:
+        """Wait for it; raises what the call raised."""
+        ...
+
+    def cancel(self) -> Any:
+        """It is not wanted any more."""
+        ...
+
+
+class Pool(Protocol):
+    """Takes calls. Left by an exception, it gives up those under way."""
 
     @property
-    def end(self) -> int:
-        return self.first + self.count
+    def slots(self) -> int:
+        """How many calls run at once."""
+        ...
+
+    @property
+    def shares_memory(self) -> bool:
+        """Whether what a call does is seen here, and results cost nothing to bring back."""
+        ...
+
+    def submit(self, function: Callable[..., T], *arguments: Any) -> Pending[T]:
+        """Hand out a call."""
+        ...
 
 
-def _run_block(
-    block: _Block, task: Task, parallel: Parallel | None, store: BlockStore, on_progress: Progress
-) -> Columns:
-    """All columns of a block: from the pieces that an interrupted run has kept, then from the task."""
-    pieces: list[Columns] = []
-    start = block.first
-    while (kept := store.read_piece(block.index, start)) is not None:
-        pieces.append(kept)
-        start += _length(kept)
-        on_progress(_length(kept))
-    calls = [(at, min(block.size, block.end - at)) for at in range(start, block.end, block.size)]
-    results = (task(*call) for call in calls) if parallel is None else parallel(delayed(task)(*call) for call in calls)
-    fresh: list[Columns] = []
-    kept_at = time.monotonic()
-    for piece in results:
-        fresh.append(piece)
-        on_progress(_length(piece))
-        if time.monotonic() - kept_at > KEEP_EVERY:
-            pieces.append(_joined(fresh))
-            store.write_piece(block.index, start, pieces[-1])
-            start, fresh, kept_at = start + _length(pieces[-1]), [], time.monotonic()
-    return _joined([*pieces, *fresh])
+@dataclass(frozen=True)
+class Ready(Pending[T]):
+    """What needed no call."""
+
+    value: T
+
+    def result(self) -> T:
+        """See Pending."""
+        return self.value
+
+    def cancel(self) -> None:
+        """See Pending."""
 
 
-def _length(columns: Columns) -> int:
-    return len(next(iter(columns.values())))
+@dataclass(frozen=True)
+class _Later(Pending[T]):
+    """A call that runs when its result is asked for."""
+
+    function: Callable[..., T]
+    arguments: tuple[Any, ...]
+
+    def result(self) -> T:
+        return self.function(*self.arguments)
+
+    def cancel(self) -> None:
+        pass
 
 
-def _joined(pieces: list[Columns]) -> Columns:
-    return {name: np.concatenate([piece[name] for piece in pieces]) for name in pieces[0]}
+@dataclass(frozen=True)
+class InThisProcess:
+    """Runs each call when its result is asked for."""
+
+    slots: int = 1
+    shares_memory: bool = True
+
+    def submit(self, function: Callable[..., T], *arguments: Any) -> Pending[T]:
+        """See Pool."""
+        return _Later(function, arguments)
 
 
-def suggested_workers(contacts: int) -> int:
-    """One process for what takes seconds, as starting others does; every core beyond."""
-    return 1 if contacts <= SHORT_STUDY else os.cpu_count() or 1
+@dataclass(frozen=True)
+class OnExecutor:
+    """Runs calls on an executor of threads or processes."""
+
+    executor: Any
+    slots: int
+    shares_memory: bool
+
+    def submit(self, function: Callable[..., T], *arguments: Any) -> Pending[T]:
+        """See Pool."""
+        pending: Pending[T] = self.executor.submit(function, *arguments)
+        return pending
+
+
+@dataclass(frozen=True)
+class OnCluster:
+    """Runs calls on the workers of a Dask cluster; a worker that dies has its calls run by another."""
+
+    client: Any
+    slots: int
+    shares_memory: bool = False
+
+    def submit(self, function: Callable[..., T], *arguments: Any) -> Pending[T]:
+        """See Pool."""
+        pending: Pending[T] = self.client.submit(function, *arguments, pure=False)
+        return pending
+
+
+@contextmanager
+def pool_of(workers: int, scheduler: str | None, way: Way) -> Iterator[Pool]:
+    """Workers as they are asked for; within it, losing them raises a RunError.
+
+    Args:
+        workers: threads or processes on this machine; 1 stays in this thread.
+        scheduler: address of a Dask scheduler, whose workers run the calls instead.
+        way: threads or processes.
+    """
+    try:
+        if scheduler is not None:
+            with _cluster(scheduler) as pool:
+                yield pool
+        elif workers == 1:
+            yield InThisProcess()
+        elif way is Way.THREADS:
+            with _threads(workers) as pool:
+                yield pool
+        else:
+            with _processes(workers) as pool:
+                yield pool
+    except BrokenExecutor as error:
+        raise RunError(
+            f"a worker process ended by itself, of too little memory perhaps ({type(error).__name__}); what was done "
+            "is kept: the same command goes on, with fewer --workers if need be"
+        ) from None
+
+
+@contextmanager
+def _threads(workers: int) -> Iterator[Pool]:
+    executor = ThreadPoolExecutor(workers)
+    try:
+        yield OnExecutor(executor, workers, shares_memory=True)
+    finally:
+        executor.shutdown(cancel_futures=True)
+
+
+@contextmanager
+def _processes(workers: int) -> Iterator[Pool]:
+    executor = get_reusable_executor(max_workers=workers, timeout=IDLE_S)
+    try:
+        yield OnExecutor(executor, workers, shares_memory=False)
+    except BaseException:
+        executor.shutdown(kill_workers=True)
+        raise
+
+
+@contextmanager
+def _cluster(address: str) -> Iterator[Pool]:
+    """The workers of a Dask cluster.
+
+    Raises:
+        InputError: Dask is not installed, nobody answers at the address, or there are no workers.
+    """
+    try:
+        distributed = importlib.import_module("distributed")  # optional, and nobody else should wait for it to load
+    except ImportError:
+        raise InputError("--scheduler needs Dask: pip install 'tol3d[dask]'") from None
+    try:
+        client = distributed.Client(address, timeout=ANSWER_S, set_as_default=False)
+    except (OSError, ValueError, TypeError) as error:
+        raise InputError(
+            f"--scheduler {address}: no Dask scheduler answered within {ANSWER_S:.0f} s "
+            f"({' '.join(str(error).split()) or type(error).__name__}); expected an address such as "
+            "tcp://127.0.0.1:8786, which `dask scheduler` prints"
+        ) from None
+    try:
+        yield OnCluster(client, _threads_of(client, address))
+    except distributed.scheduler.KilledWorker as error:
+        raise RunError(f"--scheduler {address}: workers die of this study ({error}); what was done is kept") from None
+    except (CancelledError, distributed.comm.CommClosedError) as error:
+        raise RunError(
+            f"--scheduler {address}: the scheduler was lost ({' '.join(str(error).split())}); what was done is kept: "
+            "the same command goes on"
+        ) from None
+    finally:
+        client.close(timeout=ANSWER_S)
+
+
+def _threads_of(client: Any, address: str) -> int:
+    try:
+        client.wait_for_workers(1, timeout=ANSWER_S)
+    except TimeoutError:
+        raise InputError(f"--scheduler {address}: it has no workers; start some with `dask worker {address}`") from None
+    return int(sum(client.nthreads().values()))
+
+
+def in_order(pool: Pool, calls: Iterable[tuple[Tag, Pending[T]]]) -> Iterator[tuple[Tag, T]]:
+    """Results in the order of the calls, of which no more are taken than keep all workers busy."""
+    waiting: deque[tuple[Tag, Pending[T]]] = deque()
+    try:
+        for call in calls:
+            waiting.append(call)
+            if len(waiting) >= CALLS_A_SLOT * pool.slots:
+                tag, pending = waiting.popleft()
+                yield tag, pending.result()
+        while waiting:
+            tag, pending = waiting.popleft()
+            yield tag, pending.result()
+    finally:
+        for _, pending in waiting:
+            pending.cancel()
+
+
+def suggested_workers(contacts: int, way: Way = Way.PROCESSES) -> int:
+    """One for what takes seconds, as starting processes does; every core beyond, and for threads at once."""
+    return 1 if way is Way.PROCESSES and contacts <= SHORT_STUDY else os.cpu_count() or 1

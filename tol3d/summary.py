@@ -12,6 +12,7 @@ from tol3d.block import Block, mean_block, nominal_block, simulate_block, stated
 from tol3d.engines import Engine
 from tol3d.high_low_mean import high_low_mean_percents
 from tol3d.model import Backlash, Measure, Model
+from tol3d.stopping import shortfalls
 from tol3d.tally import Tally, histograms, in_unit, sample_summary, share_percents
 
 
@@ -20,13 +21,13 @@ def study_summary(model: Model, engine: Engine | None, tally: Tally) -> dict[str
     return {
         "scene": model.name,
         "seed": model.study.seed,
-        "trials": model.study.trials,
+        "trials": tally.trials,
         "engine": model.study.engine,
         "study": vars(model.study),
         "status": dict(tally.status),
         "chord_error_um": engine.chord_error * 1000 if engine else None,
         "measures": measure_summaries(model, engine, tally),
-        "warnings": [*model.warnings, *_unphysical_draws(tally)],
+        "warnings": [*model.warnings, *_unphysical_draws(tally), *shortfalls(model, tally)],
     }
 
 
@@ -105,6 +106,7 @@ def _statistics(model: Model, engine: Engine | None, measure: Measure, tally: Ta
             "mean_difference": own.agreement.mean if seen else None,
             "compared": own.agreement.count,
         }
+    independent = own.analytic.replicated is None  # what the error of a share by regression is worked out for
     by_sample = share_percents(model, own.analytic_features)
     geometric = share_percents(model, own.geometric_features)
     alone = _high_low_mean(model, engine, measure)
@@ -113,7 +115,7 @@ def _statistics(model: Model, engine: Engine | None, measure: Measure, tally: Ta
             "name": contributor.name,
             "analytic_percent": form.percent(contributor.name) if form else by_sample[contributor.name][0],
             "geometric_percent": geometric[contributor.name][0],
-            "geometric_percent_se": geometric[contributor.name][1],
+            "geometric_percent_se": geometric[contributor.name][1] if independent else None,
             "high_low_mean_percent": alone[contributor.name],
         }
         for contributor in model.contributors

@@ -8,9 +8,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.analytic import ClosedForm, closed_form
+from tol3d.engines import STATUS_TEXT
 from tol3d.features import feature_groups, features
 from tol3d.model import Measure, Model
-from tol3d.moves import STATUS_TEXT
+from tol3d.replicated import Replicated, rows_of_replicates
 from tol3d.statistics import Agreement, FeatureSums, Grid, LimitCounts, Moments, pp, ppk, shares
 from tol3d.statistics.grid import BINS
 
@@ -51,26 +52,43 @@ def _grid(measure: Measure, form: ClosedForm | None, pilot: Columns) -> Grid:
 
 @dataclass(frozen=True)
 class Sample:
-    """One road's sample of one measure: moments, limits, a fine grid of counts."""
+    """One road's sample of one measure: moments, limits, a fine grid of counts.
+
+    `replicated` is the sample by replicates where its trials are not independent, and tells its errors then.
+    """
 
     moments: Moments
     grid: Grid
     limits: LimitCounts
+    replicated: Replicated | None = None
 
     @classmethod
-    def of(cls, measure: Measure, values: Array, empty: Grid) -> "Sample":
-        """Sample of a block; values (trials,) in the measure's unit, nan where a trial failed."""
+    def of(cls, measure: Measure, values: Array, empty: Grid, rows: Mapping[int, slice]) -> "Sample":
+        """Sample of a block; values (trials,) in the measure's unit, nan where a trial failed.
+
+        Args:
+            measure: what was measured.
+            values: of the block's trials.
+            empty: the measure's grid.
+            rows: which of them belong to each replicate; empty for independent trials.
+        """
         good = values[~np.isnan(values)]
         lower, upper = in_unit(measure, measure.lower_limit), in_unit(measure, measure.upper_limit)
         return cls(
             moments=Moments.of(good),
             grid=empty.add(good),
             limits=LimitCounts.of(values, lower=lower, upper=upper),
+            replicated=Replicated.of(values, rows, lower, upper) if rows else None,
         )
 
     def merge(self, other: "Sample") -> "Sample":
         """Both samples as one."""
-        return Sample(self.moments.merge(other.moments), self.grid.merge(other.grid), self.limits.merge(other.limits))
+        return Sample(
+            self.moments.merge(other.moments),
+            self.grid.merge(other.grid),
+            self.limits.merge(other.limits),
+            self.replicated.merge(other.replicated) if self.replicated and other.replicated else None,
+        )
 
 
 @dataclass(frozen=True)
@@ -96,18 +114,21 @@ class MeasureTally:
         )
 
 
-def tally_measure(model: Model, measure: Measure, empty: Grid, columns: Columns) -> MeasureTally:
-    """Tally of one block of columns; `empty` is the measure's grid."""
+def tally_measure(
+    model: Model, measure: Measure, empty: Grid, columns: Columns, rows: Mapping[int, slice]
+) -> MeasureTally:
+    """Tally of one block of columns; `empty` is the measure's grid, `rows` are those of each replicate."""
     analytic = np.asarray(columns[f"analytic:{measure.name}"], dtype=np.float64)
     seen = features(model, measure, columns)
     geometric = columns.get(f"geometric:{measure.name}")
+    sample = Sample.of(measure, analytic, empty, rows)
     if geometric is None:
-        return MeasureTally(Sample.of(measure, analytic, empty), None, None, FeatureSums.of(seen, analytic), None)
+        return MeasureTally(sample, None, None, FeatureSums.of(seen, analytic), None)
     values = np.asarray(geometric, dtype=np.float64)
     good = ~np.isnan(values)
     return MeasureTally(
-        Sample.of(measure, analytic, empty),
-        Sample.of(measure, values, empty),
+        sample,
+        Sample.of(measure, values, empty, rows),
         Agreement.of(values, analytic),
         FeatureSums.of(seen, analytic),
         FeatureSums.of(seen[good], values[good]),
@@ -175,13 +196,14 @@ class Tally:
         counts = {text: trials if text == "ok" else 0 for text in STATUS_TEXT.values()}
         if status is not None:
             counts = {text: int(np.count_nonzero(status == text)) for text in STATUS_TEXT.values()}
+        rows = rows_of_replicates(model.study, first, trials)
         scalars = [measure for measure in model.measures if measure.take != "curve"]
         curves = [measure for measure in model.measures if measure.take == "curve"]
         return cls(
             trials,
             counts,
             _unphysical(model, columns),
-            {measure.name: tally_measure(model, measure, grids[measure.name], columns) for measure in scalars},
+            {measure.name: tally_measure(model, measure, grids[measure.name], columns, rows) for measure in scalars},
             {measure.name: CurveTally.of(measure, columns) for measure in curves},
         )
 
@@ -214,6 +236,7 @@ def sample_summary(measure: Measure, sample: Sample) -> dict[str, Any]:
     """A sample as summary.json shows it, in the measure's unit."""
     moments, limits = sample.moments, sample.limits
     lower, upper = in_unit(measure, measure.lower_limit), in_unit(measure, measure.upper_limit)
+    errors = sample.replicated or _Independent(moments, limits)
     summary: dict[str, Any] = {
         "count": moments.count,
         "mean": moments.mean if moments.count else None,
@@ -226,18 +249,43 @@ def sample_summary(measure: Measure, sample: Sample) -> dict[str, Any]:
         "quantile_error": sample.grid.width,
         "outside_grid": sample.grid.underflow + sample.grid.overflow,
         "below_limit_ppm": limits.below_limit.ppm,
-        "below_limit_ppm_95": limits.below_limit.interval_ppm() if moments.count else None,
+        "below_limit_ppm_95": errors.below_interval_ppm,
         "above_limit_ppm": limits.above_limit.ppm,
-        "above_limit_ppm_95": limits.above_limit.interval_ppm() if moments.count else None,
+        "above_limit_ppm_95": errors.above_interval_ppm,
         "failed_ppm": limits.failures.ppm,
-        "mean_se": moments.mean_se,
-        "sigma_se": moments.sigma_se,
+        "mean_se": errors.mean_se,
+        "sigma_se": errors.sigma_se,
+        "error_by": "sample" if sample.replicated is None else "replicates",
         "skewness": moments.skewness,
         "kurtosis": moments.excess_kurtosis,
         "pp": pp(lower, upper, moments.sigma),
         "ppk": ppk(lower, upper, moments.mean, moments.sigma),
     }
     return {key: _finite(value) for key, value in summary.items()}
+
+
+@dataclass(frozen=True)
+class _Independent:
+    """Errors of a sample of independent trials."""
+
+    moments: Moments
+    limits: LimitCounts
+
+    @property
+    def mean_se(self) -> float:
+        return self.moments.mean_se
+
+    @property
+    def sigma_se(self) -> float:
+        return self.moments.sigma_se
+
+    @property
+    def below_interval_ppm(self) -> tuple[float, float] | None:
+        return self.limits.below_limit.interval_ppm() if self.moments.count else None
+
+    @property
+    def above_interval_ppm(self) -> tuple[float, float] | None:
+        return self.limits.above_limit.interval_ppm() if self.moments.count else None
 
 
 def _quantile(sample: Sample, p: float) -> float | None:

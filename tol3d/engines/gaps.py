@@ -1,14 +1,14 @@
 """What an engine offers: signed gaps of candidate tooth pairs, with contact points and normals."""
 
 from dataclasses import dataclass
-from typing import Protocol
+from typing import Protocol, runtime_checkable
 
 import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.build import Build
 from tol3d.gears import Flank
-from tol3d.model import Mesh
+from tol3d.model import Mesh, Reading
 
 Array = NDArray[np.float64]
 Teeth = NDArray[np.int64]
@@ -73,7 +73,7 @@ class Engine(Protocol):
 
     @property
     def last_step(self) -> float:
-        """A turn that moves flanks by no more [mm] may be the last: gaps are linear over it, as far as they are known."""
+        """A turn that moves flanks by no more [mm] may be the last: gaps are linear over it, as known."""
         ...
 
     @property
@@ -102,5 +102,45 @@ class Engine(Protocol):
             driver_teeth: (trials, pairs) candidate teeth of the driver.
             wanted: (trials, pairs); the others stay nan.
             section: of the driver's flank take the section in the middle of the common face, not the whole.
+        """
+        ...
+
+
+@dataclass(frozen=True)
+class MeshReading:
+    """A mesh brought to contact and read, one row a build and position.
+
+    Args:
+        driven_angle: turn of the driven gear at rest [rad], (rows,).
+        gap: smallest gap of the non-working flanks [mm], (rows,).
+        driven_turn, driver_turn: free turn of one gear, the other held at rest [rad], (rows,); nan where not wanted.
+        contact: point on the driver [mm], (rows, 3), world.
+        tooth: the driver's tooth that touches, (rows,).
+        status: (rows,), as the mesh move has it.
+    """
+
+    driven_angle: Array
+    gap: Array
+    driven_turn: Array
+    driver_turn: Array
+    contact: Array
+    tooth: Teeth
+    status: NDArray[np.int8]
+
+
+@runtime_checkable
+class ReadingEngine(Engine, Protocol):
+    """An engine that seats and reads meshes itself, faster than by its gaps and to the same result."""
+
+    def read(
+        self, build: Build, mesh: Mesh, reading: Reading, driver_angle: Array, turning: frozenset[str] = frozenset()
+    ) -> MeshReading:
+        """Hold the driver, turn the driven gear onto the working flank, read the others.
+
+        Args:
+            build: virtual builds, one a row.
+            mesh, reading: which gears, and where on them.
+            driver_angle: (rows,) [rad].
+            turning: names of the gears whose free turn is wanted.
         """
         ...

@@ -13,14 +13,13 @@ from numpy.typing import NDArray
 from tol3d.errors import GeometryError
 from tol3d.gears.bevel_gear import BevelGear, pitch_angles
 from tol3d.gears.flank import Flank
-from tol3d.gears.pair import Displaced
+from tol3d.gears.pair import CONTACT_MARGIN, Displaced, candidate_teeth
 
 Array = NDArray[np.float64]
 
 SAME_LENGTH = 1e-9  # relative; two modules written alike are equal in this sense
 SAME_ANGLE = 1e-9  # rad; over 100 mm a ten-thousandth of a micrometre
 SAME_SHIFT = 1e-9  # modules
-CONTACT_MARGIN = 0.15  # pitches beyond the path of contact, whose ends move by 1/sin(alpha) of a shift of the apexes
 
 
 @dataclass(frozen=True)
@@ -277,28 +276,17 @@ class BevelPair:
         opened = flank * (half_angles[0] / self.ratio + half_angles[1])
         return np.asarray(mate * self.wheel.angular_pitch + opened - driver_angle / self.ratio, dtype=np.float64)
 
-    def candidate_teeth(self, driver_angle: Array, flank: Flank) -> tuple[NDArray[np.int64], NDArray[np.bool_]]:
-        """Pinion teeth that may touch on that flank.
-
-        Args:
-            driver_angle: pinion's turn [rad], shape (trials,).
-            flank: the pinion's flank.
-
-        Returns:
-            (trials, pairs) tooth numbers (any integer; tooth k is turned by 2 pi k/z), consecutive,
-            and (trials, pairs) whether each may touch. A tooth at azimuth psi touches at the in-plane angle
-            q = q_p + sin(beta) (s/(2 r_e) - sigma psi): on the path of contact or within CONTACT_MARGIN pitches of it.
-        """
+    @property
+    def touching_azimuths(self) -> tuple[float, float]:
+        """A tooth at azimuth psi touches at the in-plane angle q = q_p + sin(beta) (s/(2 r_e) - sigma psi)."""
         gear = self.pinion
-        sin = math.sin(gear.base_angle)
-        offset = gear.pitch_q / sin + gear.pitch_half_angle
-        margin = CONTACT_MARGIN * gear.angular_pitch
-        pairs = math.floor(self.contact_ratio + 2 * CONTACT_MARGIN) + 1
-        # sigma psi runs from offset - (tip roll + margin) up to offset - (start roll - margin); roll = q/sin(beta)
-        lowest = (offset - gear.tip_q / sin - margin - flank * driver_angle) / gear.angular_pitch
-        highest = (offset - self.start_q / sin + margin - flank * driver_angle) / gear.angular_pitch
-        steps = np.ceil(lowest).astype(np.int64)[:, None] + np.arange(pairs)
-        return np.asarray(flank * steps), steps <= highest[:, None]
+        at_pitch = gear.pitch_q + math.sin(gear.base_angle) * gear.pitch_half_angle
+        per_azimuth, margin = math.sin(gear.base_angle), CONTACT_MARGIN * gear.angular_pitch
+        return (at_pitch - gear.tip_q) / per_azimuth - margin, (at_pitch - self.start_q) / per_azimuth + margin
+
+    def candidate_teeth(self, driver_angle: Array, flank: Flank) -> tuple[NDArray[np.int64], NDArray[np.bool_]]:
+        """Pinion teeth that may touch on that flank: see gears.pair."""
+        return candidate_teeth(self.touching_azimuths, self.pinion.angular_pitch, driver_angle, flank)
 
     def mating_teeth(self, driver_teeth: NDArray[np.int64], flank: Flank) -> NDArray[np.int64]:
         """The wheel's tooth that each of those pinion flanks meets: -k on the right flank, -k - 1 on the left."""

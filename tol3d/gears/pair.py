@@ -1,5 +1,6 @@
 """What every gear and every pair of gears offers to builds, moves and engines, whatever their teeth are like."""
 
+import math
 from dataclasses import dataclass
 from typing import Protocol, Self
 
@@ -72,6 +73,9 @@ class Gear(Protocol):
             GeometryError: such a gear cannot be made.
         """
         ...
+
+
+CONTACT_MARGIN = 0.15  # pitches beyond the path of contact, whose ends move by 1/sin(alpha_w) of a shift of the axes
 
 
 @dataclass(frozen=True)
@@ -178,6 +182,11 @@ class GearPair(Protocol):
         """Wheel's turn [rad], (rows,), at which the flanks of that side of the pinion touch, nearly."""
         ...
 
+    @property
+    def touching_azimuths(self) -> tuple[float, float]:
+        """Azimuths [rad] of a pinion's tooth, times sigma, between which it may touch: its path and CONTACT_MARGIN."""
+        ...
+
     def candidate_teeth(self, driver_angle: Array, flank: Flank) -> tuple[Teeth, NDArray[np.bool_]]:
         """Pinion teeth (rows, pairs) that may touch on that flank, and whether each may."""
         ...
@@ -189,3 +198,24 @@ class GearPair(Protocol):
     def opening_sense(self, flank: Flank) -> Flank:
         """Sense in which either gear's turn about its own axis opens that flank side."""
         ...
+
+
+def candidate_teeth(
+    window: tuple[float, float], pitch: float, driver_angle: Array, flank: Flank
+) -> tuple[Teeth, NDArray[np.bool_]]:
+    """Pinion teeth that stand within a window of azimuths.
+
+    Args:
+        window: lowest and highest azimuth [rad], times sigma.
+        pitch: of the pinion [rad].
+        driver_angle: pinion's turn [rad], shape (rows,).
+        flank: the pinion's flank.
+
+    Returns:
+        (rows, pairs) tooth numbers (any integer; tooth k is turned by 2 pi k/z), consecutive, and (rows, pairs)
+        whether each stands there.
+    """
+    lowest, highest = ((end - flank * driver_angle) / pitch for end in window)
+    pairs = math.floor((window[1] - window[0]) / pitch) + 1
+    steps = np.ceil(lowest).astype(np.int64)[:, None] + np.arange(pairs)
+    return np.asarray(flank * steps), steps <= highest[:, None]

@@ -13,13 +13,12 @@ from numpy.typing import NDArray
 from tol3d.errors import GeometryError
 from tol3d.gears.flank import Flank
 from tol3d.gears.involute import inverse_involute, involute
-from tol3d.gears.pair import Displaced
+from tol3d.gears.pair import CONTACT_MARGIN, Displaced, candidate_teeth
 from tol3d.gears.spur_gear import SpurGear
 
 Array = NDArray[np.float64]
 
 SAME_LENGTH = 1e-9  # relative; two modules written alike are equal in this sense
-CONTACT_MARGIN = 0.15  # pitches beyond the path of contact, whose ends move by 1/sin(alpha_w) of a shift of the axes
 
 
 @dataclass(frozen=True)
@@ -250,27 +249,16 @@ class SpurPair:
             math.pi + direction + mate * self.wheel.angular_pitch + turned / self.wheel.base_radius, dtype=np.float64
         )
 
+    @property
+    def touching_azimuths(self) -> tuple[float, float]:
+        """A tooth at azimuth psi touches at the roll t = alpha_w + eta_b - sigma psi."""
+        at_pitch = self.working_pressure_angle + self.pinion.base_half_angle
+        margin = CONTACT_MARGIN * self.pinion.angular_pitch
+        return at_pitch - self.pinion.tip_roll - margin, at_pitch - self.start_roll + margin
+
     def candidate_teeth(self, driver_angle: Array, flank: Flank) -> tuple[NDArray[np.int64], NDArray[np.bool_]]:
-        """Pinion teeth that may touch on that flank.
-
-        Args:
-            driver_angle: pinion's turn [rad], shape (trials,).
-            flank: the pinion's flank.
-
-        Returns:
-            (trials, pairs) tooth numbers (any integer; tooth k is turned by 2 pi k/z), consecutive,
-            and (trials, pairs) whether each may touch. A tooth at azimuth psi touches at the roll
-            t = alpha_w + eta_b - sigma psi: on the path of contact or within CONTACT_MARGIN pitches of it.
-        """
-        gear = self.pinion
-        offset = self.working_pressure_angle + gear.base_half_angle
-        margin = CONTACT_MARGIN * gear.angular_pitch
-        pairs = math.floor(self.contact_ratio + 2 * CONTACT_MARGIN) + 1
-        # sigma psi runs from offset - (tip roll + margin) up to offset - (start roll - margin)
-        lowest = (offset - gear.tip_roll - margin - flank * driver_angle) / gear.angular_pitch
-        highest = (offset - self.start_roll + margin - flank * driver_angle) / gear.angular_pitch
-        steps = np.ceil(lowest).astype(np.int64)[:, None] + np.arange(pairs)
-        return np.asarray(flank * steps), steps <= highest[:, None]
+        """Pinion teeth that may touch on that flank: see gears.pair."""
+        return candidate_teeth(self.touching_azimuths, self.pinion.angular_pitch, driver_angle, flank)
 
     def mating_teeth(self, driver_teeth: NDArray[np.int64], flank: Flank) -> NDArray[np.int64]:
         """The wheel's tooth that each of those pinion flanks meets: -k on the right flank, -k - 1 on the left."""

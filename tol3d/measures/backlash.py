@@ -3,9 +3,10 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from tol3d.engines import OK, MeshReading
 from tol3d.gears.flank import opposite
-from tol3d.model import Backlash
-from tol3d.moves import OK, Meshing, MeshSeat
+from tol3d.model import Backlash, Mesh
+from tol3d.moves import Meshing, MeshSeat
 
 Array = NDArray[np.float64]
 
@@ -33,3 +34,20 @@ def measure_backlash(kind: Backlash, meshing: Meshing, seat: MeshSeat) -> Array:
     if kind.quantity == "circumferential_backlash":
         return turn * mesh.pair.working_radii[1]
     return turn
+
+
+def turning_gear(kind: Backlash, mesh: Mesh) -> str | None:
+    """Which gear's free turn the measure needs; None for the normal backlash."""
+    if kind.quantity == "normal_backlash":
+        return None
+    return kind.gear if kind.quantity == "angular_backlash" else mesh.driven
+
+
+def read_backlash(kind: Backlash, mesh: Mesh, reading: MeshReading) -> Array:
+    """The same of a mesh that its engine has read."""
+    good = reading.status == OK
+    turning = turning_gear(kind, mesh)
+    if turning is None:
+        return np.where(good, reading.gap, np.nan)
+    turn = np.where(good, reading.driver_turn if turning == mesh.driver else reading.driven_turn, np.nan)
+    return turn * mesh.pair.working_radii[1] if kind.quantity == "circumferential_backlash" else turn

@@ -13,7 +13,7 @@ from tol3d.model.contributor import (
     TurningOffset,
 )
 from tol3d.model.measure import Backlash, Measure, Positions, Reading
-from tol3d.model.model import GearPart, Mesh, Model, Study
+from tol3d.model.model import GearPart, Mesh, Model, Study, Until
 
 from tol3d.model.from_scene import model_from_scene  # isort: skip  (needs the names above)
 
@@ -36,5 +36,6 @@ __all__ = [
     "Temperature",
     "ToothThickness",
     "TurningOffset",
+    "Until",
     "model_from_scene",
 ]

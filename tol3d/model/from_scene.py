@@ -6,13 +6,15 @@ from typing import Literal
 from tol3d.gears import LEFT, RIGHT
 from tol3d.model.effects import Tolerances
 from tol3d.model.measure import Backlash, Measure, Positions, Reading
-from tol3d.model.model import GearPart, Housing, Mesh, Model, Study
+from tol3d.model.model import GearPart, Housing, Mesh, Model, Study, Until
 from tol3d.model.pairs import internal, pair_of, undercut_warning
 from tol3d.scene import Scene
 from tol3d.scene.direction import At
 from tol3d.scene.measures import MeasureSpec, MeasureUnion
 from tol3d.scene.moves import GearMeshSpec
 from tol3d.scene.parts import GearSpec, HousingSpec
+from tol3d.scene.schema import Study as StudySpec
+from tol3d.units import Quantity
 
 
 def model_from_scene(scene: Scene) -> Model:
@@ -36,10 +38,30 @@ def model_from_scene(scene: Scene) -> Model:
         contributors=tuple(tolerances.contributor(name, spec) for name, spec in scene.tolerances.items()),
         meshes=meshes,
         measures=tuple(_measure(name, spec, by_name[spec.of]) for name, spec in scene.measures.items()),
-        study=Study(**scene.study.model_dump()),
+        study=_study(scene.study),
         published=_published(scene),
-        warnings=tuple(_warnings(meshes)),
+        gear_warnings=tuple(_warnings(meshes)),
     )
+
+
+def _study(spec: StudySpec) -> Study:
+    """The study; an automatic one is its trials at most, and when it may stop before."""
+    return Study(
+        trials=spec.at_most if spec.trials == "auto" else spec.trials,
+        seed=spec.seed,
+        sampler=spec.sampler,
+        replicates=spec.parts,
+        until=tuple(
+            Until(name, _internal(errors.mean), _internal(errors.sigma)) for name, errors in spec.until.items()
+        ),
+        engine=spec.engine,
+        witness=spec.witness,
+        profile_steps=spec.profile_steps,
+    )
+
+
+def _internal(quantity: Quantity | None) -> float | None:
+    return None if quantity is None else quantity.internal
 
 
 def _refuse_shared_and_idle_gears(scene: Scene) -> None:

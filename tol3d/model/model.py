@@ -3,11 +3,13 @@
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Any, Literal
+from typing import Any, Literal, NamedTuple
 
+from tol3d.errors import InputError
 from tol3d.gears import Flank, Gear, GearPair
 from tol3d.model.contributor import Contributor
 from tol3d.model.measure import Measure
+from tol3d.samplers.replicates import SamplerKind, balanced_trials, is_power_of_two, uneven
 
 
 @dataclass(frozen=True)
@@ -47,21 +49,62 @@ class Mesh:
         return self.pair.pinion if name == self.driver else self.pair.wheel
 
 
+class Until(NamedTuple):
+    """Standard errors [mm or rad] of a measure's mean and sigma at which a study may stop; None is not asked for."""
+
+    measure: str
+    mean: float | None
+    sigma: float | None
+
+
 @dataclass(frozen=True)
 class Study:
-    """How many trials, from which seed, by which engine, with how many profile steps a flank."""
+    """How many trials, drawn from which seed and how, by which engine, with how many profile steps a flank.
+
+    With `until` the trials are those at most. `replicates` of a sampler are parts of equal size, each randomised
+    anew.
+    """
 
     trials: int = 2000
     seed: int = 1
-    sampler: Literal["monte_carlo"] = "monte_carlo"
+    sampler: SamplerKind = "monte_carlo"
+    replicates: int = 1
+    until: tuple[Until, ...] = ()
     engine: Literal["exact", "fcl", "analytic"] = "fcl"
     witness: int = 0
     profile_steps: int = 120
 
+    def __post_init__(self) -> None:
+        """Refuse trials that the replicates cannot share evenly: a run's may be other than its scene's.
+
+        Raises:
+            InputError: with the nearest numbers that would do.
+        """
+        if problem := uneven(self.sampler, self.trials, self.replicates):
+            raise InputError(f"trials: expected {problem}, got {self.trials}")
+
+    @property
+    def replicate_trials(self) -> int:
+        """Trials of one replicate."""
+        return self.trials // self.replicates
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """What makes its numbers worse than they need be."""
+        if self.sampler != "sobol" or is_power_of_two(self.replicate_trials):
+            return ()
+        return (
+            f"study: Sobol' points are even in powers of two, not in {self.replicate_trials} a replicate; "
+            f"take {balanced_trials(self.trials, self.replicates)} trials",
+        )
+
 
 @dataclass(frozen=True)
 class Model:
-    """Everything that a trial needs. Parts, contributors and measures keep the scene's order."""
+    """Everything that a trial needs. Parts, contributors and measures keep the scene's order.
+
+    `gear_warnings` are what the gears' geometry may spoil.
+    """
 
     name: str
     gears: tuple[GearPart, ...]
@@ -71,7 +114,12 @@ class Model:
     measures: tuple[Measure, ...]
     study: Study
     published: Mapping[str, Mapping[str, Mapping[str, Any]]] = field(default_factory=dict)
-    warnings: tuple[str, ...] = ()
+    gear_warnings: tuple[str, ...] = ()
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """What may spoil the numbers of this study."""
+        return (*self.gear_warnings, *self.study.warnings)
 
     def gear(self, name: str) -> GearPart:
         """The gear of that name."""

@@ -1,5 +1,5 @@
 """Moves place parts: solvers on the gaps an engine tells."""
 
-from tol3d.moves.mesh import INTERFERES, NO_CONTACT, OK, STATUS_TEXT, Meshing, MeshSeat
+from tol3d.moves.mesh import Meshing, MeshSeat
 
-__all__ = ["INTERFERES", "NO_CONTACT", "OK", "STATUS_TEXT", "MeshSeat", "Meshing"]
+__all__ = ["MeshSeat", "Meshing"]

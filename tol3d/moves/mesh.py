@@ -1,24 +1,18 @@
 """The mesh move: the driven gear turns until the working flanks touch."""
 
 from dataclasses import dataclass
-from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.build import Build
-from tol3d.engines import Engine, Gaps
+from tol3d.engines import INTERFERES, NO_CONTACT, OK, Engine, Gaps
 from tol3d.gears import Displaced, Flank, driver_teeth_at_one_tooth
 from tol3d.gears.flank import opposite
 from tol3d.model import Mesh, Model, Reading
 
 Array = NDArray[np.float64]
 Status = NDArray[np.int8]
-
-OK: Final = 0
-INTERFERES: Final = 1
-NO_CONTACT: Final = 2
-STATUS_TEXT: Final = {OK: "ok", INTERFERES: "interferes", NO_CONTACT: "no contact"}
 
 LAST_ERROR = 2e-6  # mm; what the last step may miss where contact jumps along a face on which the arm varies
 TURN_STEPS = 40  # steps; Newton takes two or three, backing out of an overlap one for each engine depth

@@ -1,27 +1,37 @@
-"""What a scene means, as tables: gears, meshes, measures and contributors, before anything is run."""
+"""What a scene means, as tables: gears, meshes, measures, contributors and their coefficients, before any trial."""
 
 import math
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from functools import singledispatch
 
+import numpy as np
 from rich.console import Group, RenderableType
 from rich.text import Text
 
 from tol3d.analytic import reference_form
+from tol3d.engines import Engine
+from tol3d.engines.exact import ExactEngine
 from tol3d.gears import RIGHT, BevelGear, BevelPair, Gear, GearPair, SpurGear, SpurPair
-from tol3d.model import Contributor, Measure, Model, Planar
+from tol3d.model import Contributor, Measure, Model, Planar, Positions
 from tol3d.report.heading import OVER_WORDS, QUANTITY_WORDS, TAKE_WORDS, reading_words
 from tol3d.report.number import NOTHING, UNIT_SIGNS, given_text, percent_text, unsigned_zero, value_text
 from tol3d.report.sheet import Heading, Row, Sheet
+from tol3d.sensitivity import STEP_ASIDE, mean_slopes
 from tol3d.units import angle_text
 
 UM = 1000.0  # um in a mm
+ARCSEC = 648000 / math.pi  # arcsec in a rad
 ONE_SIDED = ("axis_in_plane", "axis_out_of_plane")  # kinds whose coefficient acts by absolute value
+LEAST_SLOPE = 5e-4  # um or arcsec per unit; what rounds to 0.000 is nothing
+DISAGREES = 0.05  # of the largest slope; beyond that a coefficient of the geometry is marked
+OTHER = "≠"
+KINK = 0.01  # of the larger slope; two sides that differ by less are one
 
 
 def check_report(model: Model) -> Group:
-    """Everything that a scene says, with what follows from it; nothing is built or drawn."""
+    """Everything that a scene says, with what follows from it; nothing is drawn at random."""
     blocks: list[RenderableType] = [Text(model.name, style="bold"), gears_table(model)]
     if model.housings:
         blocks.append(housings_line(model))
@@ -196,30 +206,18 @@ def _limits(measure: Measure) -> str:
 
 
 def contributors_table(model: Model) -> Group:
-    """The contributors: law, limits, and what the first measure of their mesh makes of them.
+    """The contributors: law and limits, and what each measure makes of them.
 
-    The coefficient is the first-order change of that measure per unit of the deviation; of one with a
-    random direction, per length in its worst direction; its low and high are lengths, its sigma is that along
-    any one axis.
+    Low and high of one with a direction are lengths, its sigma is that along any one axis.
     """
     rows = []
     for contributor in model.contributors:
         law, per = contributor.distribution, contributor.per_unit
         numbers = (f"{law.low / per:.4g}", f"{law.high / per:.4g}", f"{contributor.draw.sigma / per:.3g}")
-        cells = (*map(unsigned_zero, numbers), UNIT_SIGNS[contributor.unit], *_effect(model, contributor))
+        cells = (*map(unsigned_zero, numbers), UNIT_SIGNS[contributor.unit])
         rows.append(Row(contributor.name, (distribution_words(contributor), *cells)))
-    numbers_of = ("low", "high", "sigma", "unit", "coefficient per unit", "share [%]")
-    table = Sheet("", [Heading("law", words=True), *map(Heading, numbers_of)], rows)
-    return Group(_titled("contributors", table), *_tilts_note(model))
-
-
-def _tilts_note(model: Model) -> list[Text]:
-    tilts = [c.name for c in model.contributors if c.kind in ONE_SIDED]
-    if not tilts:
-        return []
-    words = f" {', '.join(tilts)}: the coefficient is per |deviation|; a tilt closes the gap whichever way it goes"
-    more = ", and of two that cross only the larger counts" if len(tilts) > 1 else ""
-    return [Text(words + more, style="dim")]
+    table = Sheet("", [Heading("law", words=True), *map(Heading, ("low", "high", "sigma", "unit"))], rows)
+    return Group(_titled("contributors", table), *coefficients_tables(model))
 
 
 def distribution_words(contributor: Contributor) -> str:
@@ -231,16 +229,103 @@ def distribution_words(contributor: Contributor) -> str:
     return f"{law}, random direction" if direction is None else f"{law}, at {_degrees(direction)}°"
 
 
-def _effect(model: Model, contributor: Contributor) -> tuple[str, str]:
-    """Coefficient and share of a contributor in the first measure that it acts on."""
+# coefficients of both roads ------------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class _Coefficient:
+    """Change of a measure per unit of a contributor, in the units that are shown; two slopes where there is a kink."""
+
+    below: float
+    above: float
+
+    def __str__(self) -> str:
+        if math.isnan(self.below + self.above):
+            return NOTHING
+        if self.differs(_Coefficient(self.above, self.below), KINK):
+            return f"{_slope_text(self.below)}/{_slope_text(self.above)}"
+        return _slope_text((self.below + self.above) / 2)
+
+    def differs(self, other: "_Coefficient", share: float) -> bool:
+        """Whether either slope is off by more than a share of the largest of all."""
+        slopes = (self.below, self.above, other.below, other.above)
+        off = max(abs(self.below - other.below), abs(self.above - other.above))
+        return off > max(share * max(map(abs, slopes)), LEAST_SLOPE)
+
+
+def coefficients_tables(model: Model) -> list[RenderableType]:
+    """For each measure the coefficients of both roads at the mean build, and the stack-up's shares of the variance.
+
+    Of a measure that takes an extreme or a curve those of its value at a random position, the driver at 0.
+    """
+    names: dict[Measure, list[str]] = {}
     for measure in model.measures:
-        form = reference_form(model, measure)
-        share = next((s for s in form.shares if s.name == contributor.name), None) if form else None
-        if form is not None and share is not None:
-            per = measure.per_internal * contributor.per_unit
-            coefficient = unsigned_zero(f"{share.coefficient * per:+#.3g}")
-            return f"{coefficient} {UNIT_SIGNS[measure.unit]}", percent_text(form.percent(contributor.name))
-    return NOTHING, NOTHING
+        names.setdefault(_of_one_value(measure), []).append(measure.name)
+    engine = ExactEngine(model)
+    headings = [Heading(word) for word in ("unit", "stack-up", "3D", "share [%]")]
+    tables = [
+        _titled(f"{', '.join(of)}: change by each deviation, driver at {_degrees(measure.positions.angle)}°", sheet)
+        for measure, of in names.items()
+        if (sheet := Sheet("", headings, list(_coefficient_rows(model, engine, measure)))).rows
+    ]
+    return [*tables, *(Text(f" {note}", style="dim") for note in _notes(model))]
+
+
+def _of_one_value(measure: Measure) -> Measure:
+    """What coefficients are told of: measures that are equal here have the same."""
+    at = measure.take == "value" and measure.positions.over == "at"
+    positions = measure.positions if at else Positions("random", 1, 1)
+    return Measure("", measure.kind, positions, "value")
+
+
+def _coefficient_rows(model: Model, engine: Engine, measure: Measure) -> Iterator[Row]:
+    """A row for each contributor that acts on the measure."""
+    form = reference_form(model, measure)
+    shares = {share.name: share for share in form.shares} if form else {}
+    for contributor, slope in zip(model.contributors, mean_slopes(model, engine, measure), strict=True):
+        per = (ARCSEC if measure.kind.is_angle else UM) * contributor.per_unit
+        unit = f"{'″' if measure.kind.is_angle else 'µm'}/{UNIT_SIGNS[contributor.unit]}"
+        found = _Coefficient(slope.below * per, slope.above * per)
+        share = shares.get(contributor.name)
+        if form and share:
+            expected = _by_stack_up(contributor, share.coefficient * per)
+            percent = percent_text(form.percent(contributor.name))
+            yield Row(contributor.name, (unit, str(expected), _beside(found, expected), percent))
+        elif found.differs(_Coefficient(0.0, 0.0), 0.0):
+            yield Row(contributor.name, (unit, NOTHING, str(found), NOTHING))
+
+
+def _by_stack_up(contributor: Contributor, coefficient: float) -> _Coefficient:
+    """A tilt acts by its absolute value: away from 0 one slope, at 0 two."""
+    if contributor.kind not in ONE_SIDED:
+        return _Coefficient(coefficient, coefficient)
+    sides = np.sign(contributor.distribution.mean + STEP_ASIDE[contributor.unit] * np.array([-1.0, 1.0]))
+    return _Coefficient(*(coefficient * sides).tolist())
+
+
+def _beside(found: _Coefficient, expected: _Coefficient) -> str:
+    """The coefficient of the geometry, marked where it is another one."""
+    return f"{OTHER} {found}" if found.differs(expected, DISAGREES) else str(found)
+
+
+def _slope_text(slope: float) -> str:
+    """A slope with three digits, or three decimals where it is small; 0 has no sign."""
+    if abs(slope) < LEAST_SLOPE:
+        return "0.000"
+    return f"{slope:+.3f}" if abs(slope) < 1 else f"{slope:+#.3g}".rstrip(".")
+
+
+def _notes(model: Model) -> list[str]:
+    notes = [
+        "stack-up and 3D: at the mean build, per unit of the deviation; of one with a direction per length in its "
+        "worst direction; a/b: below and above the mean, where they differ; "
+        f"{OTHER}: the geometry disagrees by more than {100 * DISAGREES:g} %"
+    ]
+    tilts = [c.name for c in model.contributors if c.kind in ONE_SIDED]
+    if tilts:
+        more = "; of two that cross only the larger counts" if len(tilts) > 1 else ""
+        notes.append(f"{', '.join(tilts)}: a tilt closes the gap whichever way it goes{more}")
+    return notes
 
 
 def _degrees(angle: float) -> str:

@@ -37,6 +37,7 @@ from tol3d.result import Run
 Summary = Mapping[str, Any]
 
 NO_SIMULATION = "no 3D simulation in these runs"
+NO_TRIALS = "these runs kept no trials (--no-trials)"
 ROADS = {"analytic": "analytic", "geometric": "3D simulation"}
 SHORT = {"analytic": "analytic", "geometric": "3D"}
 DIFFERENCE_UNITS = {"um": ("µm", 1.0), "arcmin": ("″", 60.0)}
@@ -162,6 +163,10 @@ def draw_comparison(runs: Sequence[Run], path: Path) -> None:
         _draw_roads(axes[0], name, unit, own)
         differences = [(label, difference_of(run, name)) for label, run in own]
         known = [(index, label, found) for index, (label, found) in enumerate(differences) if found is not None]
+        instead = NO_SIMULATION if any(run.keeps_trials for _, run in own) else NO_TRIALS
+        if not known:
+            say_instead(axes[1], instead, GREY)
+            say_instead(axes[2], instead, GREY)
         _draw_differences(axes[1], unit, known, single=len(own) == 1)
         _draw_by_position(axes[2], name, unit, known, single=len(own) == 1)
     save_figure(figure, path)
@@ -224,7 +229,6 @@ def _draw_differences(axes: Axes, unit: str, known: Known, *, single: bool) -> N
     word, factor = DIFFERENCE_UNITS[unit]
     axes.set_title("3D simulation − analytic\n", loc="left", fontsize=11, fontweight="bold")
     if not known:
-        say_instead(axes, NO_SIMULATION, GREY)
         return
     for index, label, found in known:
         text = f"max {factor * found.largest:.3f} {word}, rms {factor * found.rms:.3f} {word}"
@@ -252,7 +256,6 @@ def _draw_by_position(axes: Axes, name: str, unit: str, known: Known, *, single:
     title = "by position of the driver" if by_position else "by value"
     axes.set_title(f"difference {title}\n", loc="left", fontsize=11, fontweight="bold")
     if not known:
-        say_instead(axes, NO_SIMULATION, GREY)
         return
     for index, _, found in known:
         axes.plot(

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.report.bars import Bars
-from tol3d.result import TRIALS, Run, read_columns
+from tol3d.result import Run
 
 Array = NDArray[np.float64]
 
@@ -40,7 +40,7 @@ class Difference:
 
 
 def difference_of(run: Run, measure: str) -> Difference | None:
-    """The difference of the two roads of a scalar or curve measure; None without a 3D simulation.
+    """The difference of the two roads of a scalar or curve measure; None without a 3D simulation, or without trials.
 
     Memory does not grow with the number of trials: one block of columns is held at a time.
     """
@@ -89,7 +89,8 @@ def _ends(analytic: Array, geometric: Array) -> tuple[float, float]:
 
 def _blocks(run: Run, names: tuple[str, str], position: str | None) -> Iterator[tuple[Array, Array, Array | None]]:
     """Analytic and geometric values and positions, one file of trials at a time."""
-    for path in sorted((run.path / TRIALS).glob("*.parquet")):
-        columns = read_columns(path, (*names, *((position,) if position else ())))
+    blocks = run.blocks
+    for block in blocks.names:
+        columns = blocks.read(block, (*names, *((position,) if position else ())))
         analytic, geometric = (np.asarray(columns[name], dtype=np.float64) for name in names)
         yield analytic, geometric, np.asarray(columns[position], dtype=np.float64) if position else None

@@ -54,6 +54,8 @@ ATTRIBUTING: Set[Road] = frozenset(("analytic", "geometric"))
 CURVE_ROWS = 12  # positions of a curve that are printed; the picture and the columns have them all
 SHARE_HEADINGS: Mapping[Road, str] = {"analytic": "analytic", "geometric": "3D simulation"}
 STATUS_WORDS = {"ok": "seated", "interferes": "interfering", "no contact": "without contact"}
+SAMPLER_WORDS = {"sobol": "scrambled Sobol' points", "latin_hypercube": "Latin hypercubes"}
+TOO_FEW_TO_BOUND = "too few trials on one side of the limit in each replicate to bound the true share"
 FLANKS_OF_A_BACKLASH = 4  # two at the contact, two at the gap; each may miss the true flank by the chord error
 
 
@@ -163,7 +165,8 @@ def _notes(measure: Summary, summary: Summary) -> Iterator[str]:
     own = measure[best_road(measure)]
     if own.get("mean_se") is not None and own.get("sigma_se") is not None:
         yield (
-            f"sampling error of {own['count']} trials: mean ±{difference_text(own['mean_se'], unit)}, "
+            f"sampling error of {own['count']} trials{_by_replicates(own, summary)}: "
+            f"mean ±{difference_text(own['mean_se'], unit)}, "
             f"sigma ±{difference_text(own['sigma_se'], unit)} (one standard error)"
         )
     limits = list(_limit_rows(measure))
@@ -172,11 +175,21 @@ def _notes(measure: Summary, summary: Summary) -> Iterator[str]:
         if low_high:
             low, high = (ppm_text(bound) for bound in low_high)
             yield f"{_limit_rows(measure)[key]}: the true share lies between {low} and {high} ppm (95 % confidence)"
+        elif own.get("error_by") == "replicates":
+            yield f"{_limit_rows(measure)[key]}: {TOO_FEW_TO_BOUND}"
     if limits and "analytic_closed_form" in measure:
         yield "ppm of the closed form: as if the measure were normal"
     if "lost_motion" in measure:
         gear = measure["lost_motion"]["of"]
         yield f"lost motion: the turn of {gear} that this normal backlash leaves free, j_n over the arm of its flank"
+
+
+def _by_replicates(sample: Summary, summary: Summary) -> str:
+    """What tells the error, where it is not the trials themselves."""
+    if sample.get("error_by") != "replicates":
+        return ""
+    study = summary["study"]
+    return f" of {SAMPLER_WORDS[study['sampler']]}, by the spread of {study['replicates']} replicates"
 
 
 def agreement_line(agreement: Summary, unit: str, chord_error_um: float | None) -> str:

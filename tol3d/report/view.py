@@ -12,8 +12,8 @@ import numpy as np
 import pyvista as pv
 from numpy.typing import NDArray
 
+from tol3d.engines import OK, STATUS_TEXT
 from tol3d.errors import InputError
-from tol3d.moves import OK, STATUS_TEXT
 from tol3d.report.assembly import Assembly, PlacedGear, SeatedMesh, Which, assemble
 from tol3d.report.number import measured_text
 from tol3d.result import Run

@@ -34,7 +34,7 @@ def refuse(scene: Scene, problems: list[Problem]) -> None:
 def loose_ends(scene: Scene) -> list[Problem]:
     """What does not hold together in a scene that is right field by field: names first, then what they mean."""
     problems = list(_repeated(scene)) or list(_unknown(scene)) or list(_contradicted(scene))
-    return [*problems, *_unpublished(scene)]
+    return [*problems, *_unpublished(scene), *_unstoppable(scene)]
 
 
 def unreadable_files(scene: Scene, trust_parts: bool) -> list[Problem]:
@@ -115,6 +115,22 @@ def _unpublished(scene: Scene) -> Iterator[Problem]:
                         (*path, "contributors", contributor),
                         f"expected the name of a tolerance, got {contributor!r}{near}",
                     )
+
+
+def _unstoppable(scene: Scene) -> Iterator[Problem]:
+    """What an automatic study waits for that no measure of the scene will tell."""
+    for name, errors in scene.study.until.items():
+        path: KeyPath = ("study", "until", name)
+        measure = scene.measures.get(name)
+        if measure is None:
+            yield path, f"expected the name of a measure, got {name!r}{hint(name, scene.measures)}"
+            continue
+        if measure.take == "curve":
+            yield path, f"expected a measure of one value a trial, got {name!r}, which takes a curve"
+        for field, quantity in errors.quantities().items():
+            if quantity.dimension != measure.dimension:
+                expected = f"{expectation(measure.dimension)} ({name!r} is of kind {measure.kind})"
+                yield (*path, field), f"expected {expected}, got {str(quantity)!r}"
 
 
 def _file_problem(folder: Path, file: str, trust_parts: bool) -> str:

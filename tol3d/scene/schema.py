@@ -5,34 +5,87 @@ from itertools import pairwise
 from pathlib import Path
 from typing import Annotated, Any, Literal, Self
 
-from pydantic import Field, PrivateAttr, model_validator
+from pydantic import BeforeValidator, Discriminator, Field, PrivateAttr, Tag, model_validator
 
 from tol3d.distributions.empirical import EmpiricalSpec
 from tol3d.errors import SceneError
 from tol3d.files import Files
+from tol3d.samplers.replicates import REPLICATES, SamplerKind, uneven
 from tol3d.scene.measures import MeasureUnion
 from tol3d.scene.moves import MoveUnion
 from tol3d.scene.name import Name
+from tol3d.scene.nearest import nearest
 from tol3d.scene.parts import PartUnion
 from tol3d.scene.place import KeyPath, Origin, Place
 from tol3d.scene.tolerances import ToleranceUnion
 from tol3d.strict import Strict, refused
-from tol3d.units import Quantity
+from tol3d.units import Positive, Quantity, shown
 
 MOST_TRIALS = 10**10
 MOST_SEED = 2**63 - 1  # a signed 64-bit integer, which every file format keeps
 FEWEST_PROFILE_STEPS = 8
 MOST_PROFILE_STEPS = 2000
+FEWEST_REPLICATES = 2  # that have a spread at all
+MOST_REPLICATES = 1000
 
 Percent = Annotated[float, Field(ge=0.0, le=100.0)]
+
+
+class StandardErrors(Strict):
+    """How well a measure's mean and sigma are to be known, one standard error each, in its dimension."""
+
+    mean: Annotated[Quantity, Positive()] | None = Field(default=None, description="standard error of the mean")
+    sigma: Annotated[Quantity, Positive()] | None = Field(default=None, description="standard error of sigma")
+
+    def quantities(self) -> dict[str, Quantity]:
+        """Every one that was given, by its field."""
+        values = {name: getattr(self, name) for name in ("mean", "sigma")}
+        return {name: value for name, value in values.items() if value is not None}
+
+    @model_validator(mode="after")
+    def _refuse_emptiness(self) -> Self:
+        if not self.quantities():
+            raise refused("", "mean, sigma or both", "neither")
+        return self
+
+
+def _trials_shape(value: Any) -> str:
+    """The tag of a number of trials, for pydantic's Discriminator."""
+    return "auto" if value == "auto" else "number"
+
+
+def _number_or_auto(value: Any) -> Any:
+    if isinstance(value, str) and value != "auto":
+        raise refused("", "a whole number or auto", shown(value) + nearest(value, ["auto"]))
+    return value
+
+
+Trials = Annotated[
+    Annotated[int, Field(ge=1, le=MOST_TRIALS), Tag("number")] | Annotated[Literal["auto"], Tag("auto")],
+    Discriminator(_trials_shape),
+    BeforeValidator(_number_or_auto),
+]
 
 
 class Study(Strict):
     """How many trials, from which seed, by which sampler and engine, how finely measured."""
 
-    trials: int = Field(default=2000, ge=1, le=MOST_TRIALS, description="number of virtual builds")
+    trials: Trials = Field(
+        default=2000, description="number of virtual builds; auto: until the stated standard errors are reached"
+    )
+    until: Mapping[Name, StandardErrors] = Field(
+        default_factory=dict, description="standard errors at which automatic trials stop, by measure"
+    )
+    at_most: int = Field(default=10_000_000, ge=1, le=MOST_TRIALS, description="automatic trials stop there anyway")
     seed: int = Field(default=1, ge=0, le=MOST_SEED, description="the same seed gives the same trials")
-    sampler: Literal["monte_carlo"] = Field(default="monte_carlo", description="how deviations are drawn")
+    sampler: SamplerKind = Field(default="monte_carlo", description="how deviations are drawn")
+    replicates: int | None = Field(
+        default=None,
+        ge=FEWEST_REPLICATES,
+        le=MOST_REPLICATES,
+        description="parts of equal size, each randomised anew, whose spread tells the errors of sobol and "
+        f"latin_hypercube; {REPLICATES} if not given",
+    )
     engine: Literal["exact", "fcl", "analytic"] = Field(
         default="fcl",
         description="what the 3D simulation measures with: the mathematical flanks, or strips of the CAD solids; "
@@ -42,6 +95,43 @@ class Study(Strict):
     profile_steps: int = Field(
         default=120, ge=FEWEST_PROFILE_STEPS, le=MOST_PROFILE_STEPS, description="flat strips along a measuring flank"
     )
+
+    @property
+    def parts(self) -> int:
+        """How many replicates there are, said or not."""
+        if self.sampler == "monte_carlo":
+            return 1
+        return REPLICATES if self.replicates is None else self.replicates
+
+    @model_validator(mode="after")
+    def _refuse_contradictions(self) -> Self:
+        if self.sampler == "monte_carlo" and self.replicates is not None:
+            raise refused(
+                "replicates", "none for monte_carlo, whose trials tell their error themselves", self.replicates
+            )
+        if self.trials == "auto":
+            self._refuse_endless()
+        elif self.until:
+            raise refused("trials", "auto, for until is given", self.trials)
+        elif "at_most" in self.model_fields_set:
+            raise refused("trials", "auto, for at_most is given", self.trials)
+        elif problem := uneven(self.sampler, self.trials, self.parts):
+            raise refused("trials", problem, self.trials)
+        return self
+
+    def _refuse_endless(self) -> None:
+        if self.sampler != "monte_carlo":
+            raise refused(
+                "sampler",
+                "monte_carlo where trials are auto, for replicates need their size beforehand",
+                shown(self.sampler),
+            )
+        if not self.until:
+            raise refused(
+                "until",
+                'the standard errors to stop at where trials are auto, such as "until: {backlash: {mean: 0.05 um}}"',
+                "none",
+            )
 
 
 class PublishedMeasure(Strict):

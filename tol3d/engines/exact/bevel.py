@@ -8,11 +8,11 @@ turns by (q - q_f)/sin(beta). See gears/spherical_involute.py for the plane and 
 import math
 from typing import NamedTuple
 
-from tol3d.engines.exact.compiled import part, variant
-from tol3d.engines.exact.foot import foot, grown, section
-from tol3d.engines.exact.numbers import Foot
+from tol3d.engines.exact.compiled import variant
+from tol3d.engines.exact.foot import PER_TURN, TURN, foot, grown, line_of_action, section, turn_to
+from tol3d.engines.exact.numbers import NOWHERE, Foot, Nearest, Pose
+from tol3d.engines.exact.small_angles import arcsine, sine
 
-SMALL = 0.02  # rad; below it the sine's series of three terms is exact to 1e-15 of itself
 LEAST_RISE = 1e-9  # mm; a point within the base cone has no such plane
 
 
@@ -21,6 +21,7 @@ class BevelTooth(NamedTuple):
 
     Args:
         base, cosine: sine and cosine of the base angle.
+        per_base, per_cosine: one over them.
         half: half the angle [rad] that a tooth takes at its base, about the axis.
         begin, end: in-plane angle [rad] where the flank begins and at the tip.
         low, high: ends of the face [mm], from the apex.
@@ -28,6 +29,8 @@ class BevelTooth(NamedTuple):
 
     base: float
     cosine: float
+    per_base: float
+    per_cosine: float
     half: float
     begin: float
     end: float
@@ -35,33 +38,38 @@ class BevelTooth(NamedTuple):
     high: float
 
 
-@part
-def small_sine(angle):
-    """The sine, quick where the angle is small."""
-    if abs(angle) > SMALL:
-        return math.sin(angle)
-    square = angle * angle
-    return angle * (1.0 - square / 6.0 * (1.0 - square / 20.0 * (1.0 - square / 42.0)))
-
-
 @variant(grown, BevelTooth)
-def bevel_grown(tooth, scale):
+def bevel_grown(tooth: BevelTooth, scale: float) -> BevelTooth:
     """It grows about its apex: angles stay."""
     low, high = tooth.low * scale, tooth.high * scale
-    return BevelTooth(tooth.base, tooth.cosine, tooth.half, tooth.begin, tooth.end, low, high)
+    return BevelTooth(
+        tooth.base, tooth.cosine, tooth.per_base, tooth.per_cosine, tooth.half, tooth.begin, tooth.end, low, high
+    )
 
 
 @variant(section, BevelTooth)
-def bevel_section(tooth, share):
+def bevel_section(tooth: BevelTooth, share: float) -> BevelTooth:
     """One distance from the apex."""
     at = tooth.low + share * (tooth.high - tooth.low)
-    return BevelTooth(tooth.base, tooth.cosine, tooth.half, tooth.begin, tooth.end, at, at)
+    return BevelTooth(
+        tooth.base, tooth.cosine, tooth.per_base, tooth.per_cosine, tooth.half, tooth.begin, tooth.end, at, at
+    )
 
 
 @variant(foot, BevelTooth)
-def bevel_foot(own, mate, pose, own_azimuth, mate_azimuth, sigma, offset, q, radius):
+def bevel_foot(
+    own: BevelTooth,
+    mate: BevelTooth,
+    pose: Pose,
+    own_azimuth: float,
+    mate_azimuth: float,
+    sigma: float,
+    offset: float,
+    q: float,
+    radius: float,
+) -> Foot:
     """See foot.foot: the point at an in-plane angle [rad] and a cone distance [mm]."""
-    f = own_azimuth + sigma * (q / own.base - own.half)
+    f = own_azimuth + sigma * (q * own.per_base - own.half)
     cos, sin = math.cos(f), math.sin(f)
     cos_q, sin_q = math.cos(q), math.sin(q)
     # P = R (cos q t - sigma sin q e)
@@ -73,20 +81,22 @@ def bevel_foot(own, mate, pose, own_azimuth, mate_azimuth, sigma, offset, q, rad
     ez = pose.zx * dx + pose.zy * dy + pose.zz * dz
     x, y, z = radius * ex + pose.x, radius * ey + pose.y, radius * ez + pose.z
     square = x * x + y * y
-    outwards = math.sqrt(square)
-    high, low = outwards * mate.cosine, z * mate.base
+    high, low = math.sqrt(square) * mate.cosine, z * mate.base
     rise = math.sqrt(max((high - low) * (high + low), LEAST_RISE * LEAST_RISE))  # R cos(beta) sin q
     at = math.atan2(rise, z)
     ux = x * low - sigma * y * rise
     uy = y * low + sigma * x * rise
     angle = sigma * (math.atan2(uy, ux) - mate_azimuth) + mate.half
-    roll = angle - 2.0 * math.pi * math.floor(angle / (2.0 * math.pi) + 0.5)
-    beyond = at - mate.base * roll
+    foot_q = mate.base * (angle - TURN * math.floor(angle * PER_TURN + 0.5))
+    beyond = at - foot_q
     distance = math.sqrt(square + z * z)
-    sin_beyond, cos_beyond = small_sine(beyond), 1.0 - 2.0 * small_sine(0.5 * beyond) ** 2
-    ux /= square * mate.cosine
-    uy /= square * mate.cosine
-    sin_at, cos_at = rise / (distance * mate.cosine), z / (distance * mate.cosine)
+    nearness = 1.0 / distance
+    sin_beyond = sine(beyond)
+    cos_beyond = math.sqrt(1.0 - sin_beyond * sin_beyond)
+    scale = mate.per_cosine / square
+    ux *= scale
+    uy *= scale
+    sin_at, cos_at = rise * nearness * mate.per_cosine, z * nearness * mate.per_cosine
     sin_foot = sin_at * cos_beyond - cos_at * sin_beyond
     cos_foot = cos_at * cos_beyond + sin_at * sin_beyond
     nx = -(sin_foot * mate.base * ux - sigma * cos_foot * uy)
@@ -94,7 +104,7 @@ def bevel_foot(own, mate, pose, own_azimuth, mate_azimuth, sigma, offset, q, rad
     nz = -sin_foot * mate.cosine
     ax, ay, az = mate.cosine * ux, mate.cosine * uy, -mate.base
     # dP/dq = R sin q cot(beta) a, and a turns along sigma e cot(beta)
-    cot = own.cosine / own.base
+    cot = own.cosine * own.per_base
     bx, by, bz = own.cosine * cos, own.cosine * sin, -own.base
     vx = pose.xx * bx + pose.xy * by + pose.xz * bz
     vy = pose.yx * bx + pose.yy * by + pose.yz * bz
@@ -105,12 +115,10 @@ def bevel_foot(own, mate, pose, own_azimuth, mate_azimuth, sigma, offset, q, rad
     speed = radius * sin_q * cot
     across = speed * (ax * vx + ay * vy + az * vz)
     sideways = ax * ex + ay * ey + az * ez
-    by_face = nx * ex + ny * ey + nz * ez
-    curvature = cos_at / (sin_at * distance)
+    curvature = z / rise * nearness
     return Foot(
         distance * sin_beyond - offset,
-        (beyond - (math.asin(offset / distance) if offset != 0.0 else 0.0)) / mate.base,
-        mate.base * roll,
+        foot_q,
         distance * cos_beyond,
         at,
         x,
@@ -120,10 +128,33 @@ def bevel_foot(own, mate, pose, own_azimuth, mate_azimuth, sigma, offset, q, rad
         ny,
         nz,
         speed * towards,
-        by_face,
+        nx * ex + ny * ey + nz * ez,
         radius * cot * (cos_q * towards + sin_q * cot * sigma * turning) + across * across * curvature,
         sin_q * cot * towards + across * sideways * curvature,
         sideways * sideways * curvature,
-        1.0 / distance,
-        1.0 / (distance * cos_beyond * mate.base),
+        nearness,
     )
+
+
+@variant(turn_to, BevelTooth)
+def bevel_turn(mate: BevelTooth, gap: float, offset: float, at: Foot) -> float:
+    """The in-plane angles of point and flank differ by as much as sin(beta) times the turn."""
+    beyond = arcsine((gap + offset) * at.nearness)
+    if offset != 0.0:
+        beyond -= arcsine(offset * at.nearness)
+    return beyond * mate.per_base
+
+
+@variant(line_of_action, BevelTooth)
+def bevel_line_of_action(
+    own: BevelTooth,
+    mate: BevelTooth,
+    pose: Pose,
+    own_azimuth: float,
+    mate_azimuth: float,
+    sigma: float,
+    offset: float,
+    face: float,
+) -> Nearest:
+    """Nothing is closed as soon as the apexes part."""
+    return Nearest(0.0, 0.0, NOWHERE, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)

@@ -6,7 +6,7 @@ many functions, of which numba itself would only notice the outermost one's chan
 
 import hashlib
 import os
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from functools import cached_property
 from pathlib import Path
@@ -14,16 +14,19 @@ from typing import Any, TypeVar
 
 import numba
 import platformdirs
+from numba import types as numba_types
+from numba.core import sigutils as numba_signatures
 from numba.extending import overload
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
+SETTINGS: Any = {"error_model": "numpy", "nogil": True}
 HERE = Path(__file__).resolve().parent
 
 
 def part(function: Function) -> Function:
     """A function that kernels are made of: compiled into them, for whatever they hand it."""
-    compiled: Function = numba.njit(error_model="numpy", nogil=True)(function)
+    compiled: Function = numba.njit(**SETTINGS)(function)
     return compiled
 
 
@@ -31,7 +34,7 @@ def variant(of: Callable[..., Any], kind: type) -> Callable[[Function], Function
     """What a function does for a first argument of some kind, a NamedTuple; chosen as kernels compile."""
 
     def register(function: Function) -> Function:
-        @overload(of, strict=False, jit_options={"error_model": "numpy", "nogil": True})
+        @overload(of, strict=False, jit_options=SETTINGS)
         def chosen(*arguments: Any) -> Function | None:
             return function if getattr(arguments[0], "instance_class", None) is kind else None
 
@@ -45,12 +48,14 @@ class Kernel:
 
     Args:
         function: what it does, in the words of Python.
-        signature: types of its arguments, numba's words: the only ones it is compiled for.
+        tuples: kinds of its first arguments, NamedTuples of floats.
+        arrays: types of the others in numba's words. It is compiled for these only.
     """
 
-    def __init__(self, function: Callable[..., None], signature: str) -> None:
+    def __init__(self, function: Callable[..., None], tuples: Sequence[Any], arrays: str) -> None:
         self._function = function
-        self._signature = signature
+        self._tuples = tuples
+        self._arrays = arrays
 
     def __call__(self, *arguments: Any) -> None:
         """Run it; results go into arrays among the arguments."""
@@ -58,16 +63,24 @@ class Kernel:
 
     @cached_property
     def _compiled(self) -> Callable[..., None]:
+        types: Any = numba_types
+        numbers = [types.NamedUniTuple(types.float64, len(kind._fields), kind) for kind in self._tuples]
+        signatures: Any = numba_signatures
+        arrays, _ = signatures.normalize_signature(f"void({self._arrays})")
         with _kept_in(_folder()):
-            made: Callable[..., None] = numba.njit(self._signature, cache=True, error_model="numpy", nogil=True)(
-                self._function
-            )
+            try:
+                return self._made((*numbers, *arrays), cache=True)
+            except RuntimeError:  # nowhere to keep it: compiled for this process only
+                return self._made((*numbers, *arrays), cache=False)
+
+    def _made(self, signature: tuple[Any, ...], *, cache: bool) -> Callable[..., None]:
+        made: Callable[..., None] = numba.njit(signature, cache=cache, **SETTINGS)(self._function)
         return made
 
 
-def kernel(signature: str) -> Callable[[Callable[..., None]], Kernel]:
-    """Make a function a kernel of that signature."""
-    return lambda function: Kernel(function, signature)
+def kernel(*tuples: Any, arrays: str) -> Callable[[Callable[..., None]], Kernel]:
+    """Make a function a kernel; see Kernel."""
+    return lambda function: Kernel(function, tuples, arrays)
 
 
 def _folder() -> Path:
@@ -79,9 +92,9 @@ def _folder() -> Path:
 @contextmanager
 def _kept_in(folder: Path) -> Iterator[None]:
     """Let numba keep what it compiles in a folder."""
-    before = numba.config.CACHE_DIR
-    numba.config.CACHE_DIR = str(folder)
+    config: Any = numba.config
+    before, config.CACHE_DIR = config.CACHE_DIR, str(folder)
     try:
         yield
     finally:
-        numba.config.CACHE_DIR = before
+        config.CACHE_DIR = before

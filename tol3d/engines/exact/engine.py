@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import dataclass
+from functools import singledispatch
 
 import numpy as np
 from numpy.typing import NDArray
@@ -9,43 +10,46 @@ from numpy.typing import NDArray
 from tol3d.build import Build
 from tol3d.engines.exact.bevel import BevelTooth
 from tol3d.engines.exact.compiled import Kernel
-from tol3d.engines.exact.kernels import bevel_backlashes, bevel_gaps, spur_backlashes, spur_gaps
-from tol3d.engines.exact.numbers import PairNumbers
-from tol3d.engines.exact.rows import READINGS
+from tol3d.engines.exact.kernels import bevel_gaps, bevel_read, spur_gaps, spur_read
+from tol3d.engines.exact.numbers import PairNumbers, Pose
+from tol3d.engines.exact.rows import CONTACT, DRIVEN_ANGLE, DRIVEN_TURN, DRIVER_TURN, GAP, READINGS
 from tol3d.engines.exact.seating import ALL_TEETH, DRIVEN_TOOTH, DRIVER_TOOTH
 from tol3d.engines.exact.spur import SpurTooth
-from tol3d.engines.gaps import Gaps
-from tol3d.gears import BevelPair, Flank, GearPair, SpurPair
-from tol3d.model import Mesh, Model
+from tol3d.engines.gaps import Gaps, MeshReading
+from tol3d.gears import BevelGear, BevelPair, Flank, GearPair, SpurGear, SpurPair
+from tol3d.gears.pair import CONTACT_MARGIN
+from tol3d.model import Mesh, Model, Reading
 
 Array = NDArray[np.float64]
 Teeth = NDArray[np.int64]
 
-MARGIN = 0.15
 WHICH_TEETH = {"all": ALL_TEETH, "driver": DRIVER_TOOTH, "driven": DRIVEN_TOOTH}
 
 
 @dataclass(frozen=True, eq=False)
-class _Kind:
-    """What the kernels need of a pair, and which kernels those are."""
+class PairKernels:
+    """A pair as kernels know it, and its kernels.
 
-    gears: Array
-    pair: Array
-    nominal: Array
-    backlashes: Kernel
+    Args:
+        numbers: pinion's teeth, wheel's, which of them may meet, where the wheel's shaft sees the pinion's.
+        read, gaps: see kernels.
+    """
+
+    numbers: tuple[SpurTooth, SpurTooth, PairNumbers, Pose] | tuple[BevelTooth, BevelTooth, PairNumbers, Pose]
+    read: Kernel
     gaps: Kernel
 
 
 class ExactEngine:
     """Gaps and backlashes of the mathematical flanks of a model's meshes."""
 
+    depth = 1.0  # mm; any overlap can be told
+    last_step = 1e-8  # mm; what is left of a gap after it goes with its square
+    chord_error = 0.0
+
     def __init__(self, model: Model) -> None:
         self._model = model
-        self._kinds = {mesh.name: _kind_of(mesh.pair) for mesh in model.meshes}
-
-    depth = 1.0  # mm; any overlap can be told
-    last_step = 1e-8  # mm; what is left of a gap after it is of its square
-    chord_error = 0.0
+        self._pairs = {mesh.name: kernels_of(mesh.pair) for mesh in model.meshes}
 
     def gaps(
         self,
@@ -59,14 +63,12 @@ class ExactEngine:
         section: bool = False,
     ) -> Gaps:
         """See Engine.gaps."""
-        kind = self._kinds[mesh.name]
+        pair = self._pairs[mesh.name]
         value = np.empty(wanted.shape)
         vectors = np.empty((*wanted.shape, 3, 3))
-        which = np.array([*self._gears(mesh), flank, section], dtype=np.int64)
-        kind.gaps(
-            kind.gears,
-            kind.pair,
-            which,
+        pair.gaps(
+            *pair.numbers,
+            np.array([*self._gears(mesh), flank, section], dtype=np.int64),
             *_arrays(build),
             *(np.ascontiguousarray(angle) for angle in angles),
             np.ascontiguousarray(driver_teeth),
@@ -83,34 +85,34 @@ class ExactEngine:
             driver_teeth=driver_teeth,
         )
 
-    def backlashes(self, build, mesh, reading, driver_angle, turns=(True, True)):
-        kind = self._kinds[mesh.name]
+    def read(
+        self, build: Build, mesh: Mesh, reading: Reading, driver_angle: Array, turning: frozenset[str] = frozenset()
+    ) -> MeshReading:
+        """See ReadingEngine.read."""
+        pair = self._pairs[mesh.name]
         rows = len(driver_angle)
-        readings, teeth = np.empty((rows, READINGS)), np.empty(rows, dtype=np.int64)
+        readings, tooth = np.empty((rows, READINGS)), np.empty(rows, dtype=np.int64)
         status = np.empty(rows, dtype=np.int8)
-        which = np.array(
-            [
-                *self._gears(mesh),
-                mesh.working_flank,
-                WHICH_TEETH[reading.teeth],
-                reading.contact == "section",
-                reading.gap == "section",
-                *turns,
-            ],
-            dtype=np.int64,
-        )
-        kind.backlashes(
-            kind.gears,
-            kind.pair,
-            kind.nominal,
-            which,
+        how = (WHICH_TEETH[reading.teeth], reading.contact == "section", reading.gap == "section")
+        turns = (mesh.driven in turning, mesh.driver in turning)
+        pair.read(
+            *pair.numbers,
+            np.array([*self._gears(mesh), mesh.working_flank, *how, *turns], dtype=np.int64),
             *_arrays(build),
             np.ascontiguousarray(driver_angle),
             readings,
-            teeth,
+            tooth,
             status,
         )
-        return readings, teeth, status
+        return MeshReading(
+            driven_angle=readings[:, DRIVEN_ANGLE],
+            gap=readings[:, GAP],
+            driven_turn=readings[:, DRIVEN_TURN],
+            driver_turn=readings[:, DRIVER_TURN],
+            contact=readings[:, CONTACT:],
+            tooth=tooth,
+            status=status,
+        )
 
     def _gears(self, mesh: Mesh) -> tuple[int, int]:
         return self._model.gear_index[mesh.driver], self._model.gear_index[mesh.driven]
@@ -121,68 +123,90 @@ def _arrays(build: Build) -> tuple[Array, ...]:
     return tuple(np.ascontiguousarray(values) for values in each)
 
 
-def _kind_of(pair: GearPair) -> _Kind:
-    if isinstance(pair, SpurPair):
-        gears = [
-            SpurTooth(g.base_radius, g.base_half_angle, g.form_roll, g.tip_roll, -g.face_width / 2, g.face_width / 2)
-            for g in (pair.pinion, pair.wheel)
-        ]
-        numbers = _pair_numbers(
-            pair,
-            at_pitch=pair.working_pressure_angle + pair.pinion.base_half_angle,
-            per_azimuth=1.0,
-            ends=(pair.start_roll, pair.pinion.tip_roll),
-            lever=max(pair.pinion.face_width, pair.wheel.face_width) / 2,
-            along=0.0,
-        )
-        return _Kind(np.array(gears), numbers, _nominal(pair), spur_backlashes, spur_gaps)
-    if isinstance(pair, BevelPair):
-        gears = [
-            BevelTooth(
-                math.sin(g.base_angle),
-                math.cos(g.base_angle),
-                g.base_half_angle,
-                g.form_q,
-                g.tip_q,
-                g.inner_cone_distance,
-                g.outer_cone_distance,
-            )
-            for g in (pair.pinion, pair.wheel)
-        ]
-        sine = math.sin(pair.pinion.base_angle)
-        numbers = _pair_numbers(
-            pair,
-            at_pitch=pair.pinion.pitch_q + sine * pair.pinion.pitch_half_angle,
-            per_azimuth=sine,
-            ends=(pair.start_q, pair.pinion.tip_q),
-            lever=pair.pinion.outer_cone_distance,
-            along=1.0,
-        )
-        return _Kind(np.array(gears), numbers, _nominal(pair), bevel_backlashes, bevel_gaps)
+# pairs as kernels know them: one function a kind ------------------------------------------------------
+
+
+@singledispatch
+def kernels_of(pair: GearPair) -> PairKernels:
+    """A pair's numbers and kernels."""
     raise TypeError(f"engines/exact has no kernels for {type(pair).__name__}")
 
 
-def _pair_numbers(pair, *, at_pitch, per_azimuth, ends, lever, along) -> Array:
-    pitch = pair.pinion.angular_pitch
-    start, tip = ends
-    return np.array(
-        PairNumbers(
-            at_pitch=at_pitch,
-            per_azimuth=per_azimuth,
-            lowest=(at_pitch - tip) / per_azimuth - MARGIN * pitch,
-            highest=(at_pitch - start) / per_azimuth + MARGIN * pitch,
-            driver_pitch=pitch,
-            driven_pitch=pair.wheel.angular_pitch,
-            driven_start=float(pair.driven_angle(np.zeros(1))[0]),
-            ratio=pair.wheel.teeth / pair.pinion.teeth,
-            section=pair.pinion_section,
-            reach=MARGIN * pair.pinion.base_pitch * math.sin(pair.working_pressure_angle),
-            lever=lever,
-            along=along,
-        )
+@kernels_of.register
+def _(pair: SpurPair) -> PairKernels:
+    alpha = pair.working_pressure_angle
+    tangent = pair.centre_distance * math.sin(alpha)
+    numbers = _pair_numbers(
+        pair,
+        at_pitch=alpha + pair.pinion.base_half_angle,
+        per_azimuth=1.0,
+        lever=max(pair.pinion.face_width, pair.wheel.face_width) / 2,
+        along=0.0,
+        in_all=0.0,
+        by_x=math.cos(alpha) / tangent,
+        by_y=math.sin(alpha) / tangent,
+        by_z=0.0,
+        by_tilt_x=0.0,
+        by_tilt_y=0.0,
+    )
+    return PairKernels((_spur(pair.pinion), _spur(pair.wheel), numbers, _nominal(pair)), spur_read, spur_gaps)
+
+
+def _spur(gear: SpurGear) -> SpurTooth:
+    half = gear.face_width / 2
+    profile = (gear.base_half_angle, gear.form_roll, gear.tip_roll)
+    return SpurTooth(gear.base_radius, 1.0 / gear.base_radius, *profile, -half, half)
+
+
+@kernels_of.register
+def _(pair: BevelPair) -> PairKernels:
+    pinion, wheel = pair.pinion, pair.wheel
+    sine, cosine = math.sin(wheel.base_angle), math.cos(wheel.base_angle)
+    in_all = pinion.pitch_q + wheel.pitch_q
+    # where the plane of action touches the wheel's base cone, seen from the pitch line
+    azimuth = math.atan2(math.sin(wheel.pitch_q), sine * math.cos(wheel.pitch_q))
+    whole = math.sin(in_all) / math.tan(pinion.base_angle)
+    radius = pair.mean_cone_distance
+    numbers = _pair_numbers(
+        pair,
+        at_pitch=pinion.pitch_q + math.sin(pinion.base_angle) * pinion.pitch_half_angle,
+        per_azimuth=math.sin(pinion.base_angle),
+        lever=pinion.outer_cone_distance,
+        along=1.0,
+        in_all=in_all,
+        by_x=-cosine * math.cos(azimuth) / (radius * whole),
+        by_y=-cosine * math.sin(azimuth) / (radius * whole),
+        by_z=sine / (radius * whole),
+        by_tilt_x=math.sin(azimuth) / whole,
+        by_tilt_y=-math.cos(azimuth) / whole,
+    )
+    return PairKernels((_bevel(pinion), _bevel(wheel), numbers, _nominal(pair)), bevel_read, bevel_gaps)
+
+
+def _bevel(gear: BevelGear) -> BevelTooth:
+    sine, cosine = math.sin(gear.base_angle), math.cos(gear.base_angle)
+    profile = (gear.base_half_angle, gear.form_q, gear.tip_q)
+    return BevelTooth(
+        sine, cosine, 1.0 / sine, 1.0 / cosine, *profile, gear.inner_cone_distance, gear.outer_cone_distance
     )
 
 
-def _nominal(pair: GearPair) -> Array:
+def _pair_numbers(pair: GearPair, **own: float) -> PairNumbers:
+    """What all pairs say alike, with what a kind says of its own."""
+    lowest, highest = pair.touching_azimuths
+    return PairNumbers(
+        lowest=lowest,
+        highest=highest,
+        driver_pitch=pair.pinion.angular_pitch,
+        driven_pitch=pair.wheel.angular_pitch,
+        driven_start=float(pair.driven_angle(np.zeros(1))[0]),
+        ratio=pair.wheel.teeth / pair.pinion.teeth,
+        section=pair.pinion_section,
+        reach=CONTACT_MARGIN * pair.pinion.base_pitch * math.sin(pair.working_pressure_angle),
+        **own,
+    )
+
+
+def _nominal(pair: GearPair) -> Pose:
     rest = pair.world_from_wheel
-    return np.concatenate([rest.T.ravel(), -(rest.T @ pair.wheel_origin)])
+    return Pose(*rest.T.ravel().tolist(), *(-(rest.T @ pair.wheel_origin)).tolist())

@@ -1,8 +1,12 @@
 """What a kind of gear has to tell the kernels: the foot of a point of one flank on the other, and how gears grow."""
 
+import math
 from typing import Any
 
-from tol3d.engines.exact.numbers import Foot
+from tol3d.engines.exact.numbers import Foot, Nearest
+
+TURN = 2.0 * math.pi
+PER_TURN = 1.0 / TURN
 
 
 def foot(
@@ -36,4 +40,29 @@ def grown(tooth: Any, scale: float) -> Any:
 
 def section(tooth: Any, share: float) -> Any:
     """The teeth with no more of the face than one section, at a share of it; one variant a kind."""
+    raise NotImplementedError
+
+
+def turn_to(mate: Any, gap: float, offset: float, at: Foot) -> float:
+    """By how much the mate must turn [rad] for its flank to pass through a point; one variant a kind.
+
+    Args:
+        mate: its teeth.
+        gap: [mm] of the point whose Foot is `at`, or a little less.
+        offset: that it holds [mm].
+    """
+    raise NotImplementedError
+
+
+def line_of_action(
+    own: Any,
+    mate: Any,
+    pose: Any,
+    own_azimuth: float,
+    mate_azimuth: float,
+    sigma: float,
+    offset: float,
+    face: float,
+) -> Nearest:
+    """The nearest points of two flanks where they are known in closed form; NOWHERE in general. One variant a kind."""
     raise NotImplementedError

@@ -1,53 +1,76 @@
 """The kernels: one of each sort for every kind of pair, compiled for the arrays of a Build and no others."""
 
+from typing import Any
+
 from tol3d.engines.exact.bevel import BevelTooth
 from tol3d.engines.exact.compiled import kernel
-from tol3d.engines.exact.rows import backlashes, gaps
+from tol3d.engines.exact.numbers import PairNumbers, Pose
+from tol3d.engines.exact.rows import gap_rows, read_rows
 from tol3d.engines.exact.spur import SpurTooth
 
 BUILD = "float64[:, :, :, ::1], float64[:, :, ::1], float64[:, ::1], float64[:, ::1], float64[:, ::1]"
-BACKLASHES = (
-    "void(float64[:, ::1], float64[::1], float64[::1], int64[::1], "
-    f"{BUILD}, float64[::1], float64[:, ::1], int64[::1], int8[::1])"
-)
+READ = f"int64[::1], {BUILD}, float64[::1], float64[:, ::1], int64[::1], int8[::1]"
 GAPS = (
-    "void(float64[:, ::1], float64[::1], int64[::1], "
-    f"{BUILD}, float64[::1], float64[::1], int64[:, ::1], boolean[:, ::1], float64[:, ::1], float64[:, :, :, ::1])"
+    f"int64[::1], {BUILD}, float64[::1], float64[::1], int64[:, ::1], boolean[:, ::1], "
+    "float64[:, ::1], float64[:, :, :, ::1]"
 )
 
 
-@kernel(BACKLASHES)
-def spur_backlashes(gears, pair, nominal, which, shafts, centre, turn, offset, scale, angles, readings, teeth, status):
-    """Seat and read rows of spur pairs; `gears` (2, 6) holds the teeth. See rows.backlashes."""
-    pinion, wheel = (
-        SpurTooth(gears[0, 0], gears[0, 1], gears[0, 2], gears[0, 3], gears[0, 4], gears[0, 5]),
-        SpurTooth(gears[1, 0], gears[1, 1], gears[1, 2], gears[1, 3], gears[1, 4], gears[1, 5]),
-    )
-    backlashes(
-        pinion, wheel, pair, nominal, which, shafts, centre, turn, offset, scale, angles, readings, teeth, status
+@kernel(SpurTooth, SpurTooth, PairNumbers, Pose, arrays=READ)
+def spur_read(
+    pinion: Any,
+    wheel: Any,
+    pair: Any,
+    nominal: Any,
+    which: Any,
+    shafts: Any,
+    centre: Any,
+    turn: Any,
+    offset: Any,
+    scale: Any,
+    driver_angles: Any,
+    readings: Any,
+    teeth: Any,
+    status: Any,
+) -> None:
+    """Seat and read rows of spur pairs; see rows.read_rows."""
+    read_rows(
+        pinion, wheel, pair, nominal, which, shafts, centre, turn, offset, scale, driver_angles, readings, teeth, status
     )
 
 
-@kernel(GAPS)
+@kernel(SpurTooth, SpurTooth, PairNumbers, Pose, arrays=GAPS)
 def spur_gaps(
-    gears, pair, which, shafts, centre, turn, offset, scale, angles, driven_angles, teeth, wanted, value, vectors
-):
-    """Gaps of tooth pairs of spur gears; `gears` (2, 6) holds the teeth. See rows.gaps."""
-    pinion, wheel = (
-        SpurTooth(gears[0, 0], gears[0, 1], gears[0, 2], gears[0, 3], gears[0, 4], gears[0, 5]),
-        SpurTooth(gears[1, 0], gears[1, 1], gears[1, 2], gears[1, 3], gears[1, 4], gears[1, 5]),
-    )
-    gaps(
+    pinion: Any,
+    wheel: Any,
+    pair: Any,
+    nominal: Any,
+    which: Any,
+    shafts: Any,
+    centre: Any,
+    turn: Any,
+    offset: Any,
+    scale: Any,
+    driver_angles: Any,
+    driven_angles: Any,
+    teeth: Any,
+    wanted: Any,
+    value: Any,
+    vectors: Any,
+) -> None:
+    """Gaps of tooth pairs of spur gears; see rows.gap_rows."""
+    gap_rows(
         pinion,
         wheel,
         pair,
+        nominal,
         which,
         shafts,
         centre,
         turn,
         offset,
         scale,
-        angles,
+        driver_angles,
         driven_angles,
         teeth,
         wanted,
@@ -56,38 +79,61 @@ def spur_gaps(
     )
 
 
-@kernel(BACKLASHES)
-def bevel_backlashes(gears, pair, nominal, which, shafts, centre, turn, offset, scale, angles, readings, teeth, status):
-    """Seat and read rows of bevel pairs; `gears` (2, 7) holds the teeth. See rows.backlashes."""
-    pinion, wheel = (
-        BevelTooth(gears[0, 0], gears[0, 1], gears[0, 2], gears[0, 3], gears[0, 4], gears[0, 5], gears[0, 6]),
-        BevelTooth(gears[1, 0], gears[1, 1], gears[1, 2], gears[1, 3], gears[1, 4], gears[1, 5], gears[1, 6]),
-    )
-    backlashes(
-        pinion, wheel, pair, nominal, which, shafts, centre, turn, offset, scale, angles, readings, teeth, status
+@kernel(BevelTooth, BevelTooth, PairNumbers, Pose, arrays=READ)
+def bevel_read(
+    pinion: Any,
+    wheel: Any,
+    pair: Any,
+    nominal: Any,
+    which: Any,
+    shafts: Any,
+    centre: Any,
+    turn: Any,
+    offset: Any,
+    scale: Any,
+    driver_angles: Any,
+    readings: Any,
+    teeth: Any,
+    status: Any,
+) -> None:
+    """Seat and read rows of bevel pairs; see rows.read_rows."""
+    read_rows(
+        pinion, wheel, pair, nominal, which, shafts, centre, turn, offset, scale, driver_angles, readings, teeth, status
     )
 
 
-@kernel(GAPS)
+@kernel(BevelTooth, BevelTooth, PairNumbers, Pose, arrays=GAPS)
 def bevel_gaps(
-    gears, pair, which, shafts, centre, turn, offset, scale, angles, driven_angles, teeth, wanted, value, vectors
-):
-    """Gaps of tooth pairs of bevel gears; `gears` (2, 7) holds the teeth. See rows.gaps."""
-    pinion, wheel = (
-        BevelTooth(gears[0, 0], gears[0, 1], gears[0, 2], gears[0, 3], gears[0, 4], gears[0, 5], gears[0, 6]),
-        BevelTooth(gears[1, 0], gears[1, 1], gears[1, 2], gears[1, 3], gears[1, 4], gears[1, 5], gears[1, 6]),
-    )
-    gaps(
+    pinion: Any,
+    wheel: Any,
+    pair: Any,
+    nominal: Any,
+    which: Any,
+    shafts: Any,
+    centre: Any,
+    turn: Any,
+    offset: Any,
+    scale: Any,
+    driver_angles: Any,
+    driven_angles: Any,
+    teeth: Any,
+    wanted: Any,
+    value: Any,
+    vectors: Any,
+) -> None:
+    """Gaps of tooth pairs of bevel gears; see rows.gap_rows."""
+    gap_rows(
         pinion,
         wheel,
         pair,
+        nominal,
         which,
         shafts,
         centre,
         turn,
         offset,
         scale,
-        angles,
+        driver_angles,
         driven_angles,
         teeth,
         wanted,

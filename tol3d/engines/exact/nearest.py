@@ -5,52 +5,34 @@ it is all that has to be known.
 """
 
 import math
-from typing import NamedTuple
+from typing import Any
 
 from tol3d.engines.exact.compiled import part
-from tol3d.engines.exact.foot import foot
-from tol3d.engines.exact.numbers import Pose
+from tol3d.engines.exact.foot import foot, line_of_action, turn_to
+from tol3d.engines.exact.numbers import AT_EDGE, BEYOND, CLOSED, NOWHERE, Foot, Nearest, Pose
 
 STEPS = 20  # Newton takes one or two from the line of action; more only where a face ends
 QUICK_FALL = 1e-8  # mm; for the gap's own sake: it is a parabola to 1e-4 of such a step's fall
 SHARP_FALL = 1e-14  # mm; for points and normals too
+END = 1e-9  # mm; a foot so near to an end of the face is at it
+SHORT = 1e-3  # mm; of a last step along the face
 FLAT = 1e-15  # 1/mm; bow of the gap along the face that is no more than rounding
 
 
-CLOSED, AT_EDGE, BEYOND = 0, 1, 2
-
-
-class Nearest(NamedTuple):
-    """The nearest points of two flanks, in the mate's frame.
-
-    Args:
-        gap: [mm], inf where the faces do not overlap.
-        turn: by which the mate must turn to close it [rad], of the gap's sign.
-        how: CLOSED, the turn is exact; AT_EDGE, it is so to first order, for an edge comes to touch; BEYOND, gap and
-            turn are no more than bounds, for both flanks end.
-        profile, face: where on `own`: where a next search may start.
-        x, y, z: the point of `own` [mm].
-        nx, ny, nz: unit vector from the mate to it.
-        lean: sine [1/mm], over the distance from the apex, of the angle between that and the mate's normal once it
-            has turned to the point: 0 for a cylinder.
-    """
-
-    gap: float
-    turn: float
-    how: int
-    profile: float
-    face: float
-    x: float
-    y: float
-    z: float
-    nx: float
-    ny: float
-    nz: float
-    lean: float
-
-
 @part
-def lowest(own, mate, pose, own_azimuth, mate_azimuth, sigma, offset, start, face, per_turn, last_fall):
+def lowest(
+    own: Any,
+    mate: Any,
+    pose: Pose,
+    own_azimuth: float,
+    mate_azimuth: float,
+    sigma: float,
+    offset: float,
+    start: float,
+    face: float,
+    per_turn: float,
+    last_fall: float,
+) -> tuple[Foot, float, float, float, bool]:
     """The lowest gap over own flank, and where: (foot, last fall, profile, face, whether the faces overlap).
 
     Args:
@@ -63,16 +45,16 @@ def lowest(own, mate, pose, own_azimuth, mate_azimuth, sigma, offset, start, fac
         last_fall: [mm], a step that lowers the gap by less is the last; it is not looked at again.
     """
     profile = min(max(start, own.begin), own.end)
-    at = foot(own, mate, pose, own_azimuth, mate_azimuth, sigma, offset, profile, face)
-    overlap, fall = True, 0.0
-    for _ in range(STEPS):
+    fall, steps = 0.0, STEPS
+    while True:
+        at = foot(own, mate, pose, own_azimuth, mate_azimuth, sigma, offset, profile, face)
         low, high = max(own.low, face + mate.low - at.face), min(own.high, face + mate.high - at.face)
-        overlap = low <= high
-        if not overlap:
-            break
+        if low > high:
+            return at, fall, profile, face, False
         by_face = at.by_face - per_turn * at.gap * at.nearness
-        slope = by_face - at.twist * at.by_profile / at.bend
-        bow = at.bow - at.twist * at.twist / at.bend
+        per_bend = 1.0 / at.bend
+        slope = by_face - at.twist * at.by_profile * per_bend
+        bow = at.bow - at.twist * at.twist * per_bend
         if bow > FLAT:
             wanted = face - slope / bow
         elif slope == 0.0:
@@ -80,20 +62,19 @@ def lowest(own, mate, pose, own_azimuth, mate_azimuth, sigma, offset, start, fac
         else:
             wanted = low if slope > 0.0 else high
         along = min(max(wanted, low), high) - face
-        moved = profile - (at.by_profile + at.twist * along) / at.bend
+        moved = profile - (at.by_profile + at.twist * along) * per_bend
         aside = min(max(moved, own.begin), own.end) - profile
         fall = at.by_profile * aside + by_face * along
         fall += 0.5 * (at.bend * aside * aside + at.bow * along * along) + at.twist * aside * along
         profile += aside
         face += along
-        if abs(fall) < last_fall:
-            break
-        at = foot(own, mate, pose, own_azimuth, mate_azimuth, sigma, offset, profile, face)
-    return at, fall, profile, face, overlap
+        steps -= 1
+        if (abs(fall) < last_fall and abs(along) < SHORT) or steps == 0:
+            return at, fall, profile, face, True
 
 
 @part
-def inverse(pose):
+def inverse(pose: Pose) -> Pose:
     """Own from mate, of mate from own."""
     x = -(pose.xx * pose.x + pose.yx * pose.y + pose.zx * pose.z)
     y = -(pose.xy * pose.x + pose.yy * pose.y + pose.zy * pose.z)
@@ -102,20 +83,39 @@ def inverse(pose):
 
 
 @part
-def nearest(own, mate, pose, own_azimuth, mate_azimuth, sigma, offset, start, face, per_turn, last_fall):
+def nearest(
+    own: Any,
+    mate: Any,
+    pose: Pose,
+    own_azimuth: float,
+    mate_azimuth: float,
+    sigma: float,
+    offset: float,
+    start: float,
+    face: float,
+    per_turn: float,
+    last_fall: float,
+) -> Nearest:
     """The nearest points of two flanks; arguments as in `lowest`.
 
     Where the foot would lie beyond an end of the mate's profile, its tip edge most often, that edge is nearest to own
     flank: the same search the other way round.
     """
+    straight = line_of_action(own, mate, pose, own_azimuth, mate_azimuth, sigma, offset, face)
+    if straight.how != NOWHERE:
+        return straight
     at, fall, profile, face, overlap = lowest(
         own, mate, pose, own_azimuth, mate_azimuth, sigma, offset, start, face, per_turn, last_fall
     )
     lean = (at.gap + offset) * at.nearness * at.nearness
     if not overlap:
         return Nearest(math.inf, math.inf, CLOSED, profile, face, at.x, at.y, at.z, at.nx, at.ny, at.nz, lean)
-    if mate.begin <= at.profile <= mate.end:
-        gap, turn = at.gap + fall, at.turn + fall * at.turn_per_gap
+    # where the mate's face ends, its edge is nearest to own flank: to second order the gap is the same, not the normal
+    inside = own.low < face < own.high and own.begin < profile < own.end
+    at_end = last_fall <= SHARP_FALL and inside and not mate.low + END < at.face < mate.high - END
+    if mate.begin <= at.profile <= mate.end and not at_end:
+        gap = at.gap + fall
+        turn = turn_to(mate, gap, offset, at)
         how = CLOSED if mate.begin <= at.touching <= mate.end else AT_EDGE
         return Nearest(gap, turn, how, profile, face, at.x, at.y, at.z, at.nx, at.ny, at.nz, lean)
     edge = min(max(at.profile, mate.begin), mate.end)

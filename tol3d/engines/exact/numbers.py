@@ -2,6 +2,8 @@
 
 from typing import NamedTuple
 
+CLOSED, AT_EDGE, BEYOND, ALIKE, NOWHERE = 0, 1, 2, 3, 4
+
 
 class Pose(NamedTuple):
     """Where one gear sees another: `target = matrix source + shift`, each gear's own centre the origin."""
@@ -25,7 +27,6 @@ class Foot(NamedTuple):
 
     Args:
         gap: signed distance [mm] from the foot, positive outside the mate's tooth.
-        turn: by which the mate must turn for its flank to pass through the point [rad], of the gap's sign.
         profile, face: parameters of the foot on the mate [rad; mm].
         touching: profile parameter of the point itself on the mate's flank, once that has turned to it [rad].
         x, y, z: the point in the mate's frame [mm].
@@ -33,11 +34,9 @@ class Foot(NamedTuple):
         by_profile, by_face: derivatives of the gap by the point's parameters [mm/rad; 1],
         bend, twist, bow: and its second ones: profile twice, profile and face, face twice.
         nearness: one over the distance from the mate's apex [1/mm]; 0 for a cylinder.
-        turn_per_gap: derivative of the turn by the gap [rad/mm].
     """
 
     gap: float
-    turn: float
     profile: float
     face: float
     touching: float
@@ -53,7 +52,36 @@ class Foot(NamedTuple):
     twist: float
     bow: float
     nearness: float
-    turn_per_gap: float
+
+
+class Nearest(NamedTuple):
+    """The nearest points of two flanks, in the mate's frame.
+
+    Args:
+        gap: [mm], inf where the faces do not overlap.
+        turn: by which the mate must turn to close it [rad], of the gap's sign.
+        how: ALIKE, the turn is exact, and the same for all pairs of one base pitch; CLOSED, the turn is exact;
+            AT_EDGE, it is so to first order, for an edge comes to touch; BEYOND, gap and turn are no more than bounds,
+            for both flanks end; NOWHERE, nothing of it is told.
+        profile, face: where on `own`.
+        x, y, z: the point of `own` [mm].
+        nx, ny, nz: unit vector from the mate to it.
+        lean: sine [1/mm], over the distance from the apex, of the angle between that and the mate's normal once it
+            has turned to the point: 0 for a cylinder.
+    """
+
+    gap: float
+    turn: float
+    how: int
+    profile: float
+    face: float
+    x: float
+    y: float
+    z: float
+    nx: float
+    ny: float
+    nz: float
+    lean: float
 
 
 class PairNumbers(NamedTuple):
@@ -68,7 +96,11 @@ class PairNumbers(NamedTuple):
         section: where on the driver's face the middle of the common face lies, from 0 to 1.
         reach: shift of the axes [mm], tilts counted at the ends of the face, up to which `lowest` and `highest` hold.
         lever: [mm], what a tilt is counted with.
-        along: 1 where a shift along the axis counts, else 0.
+        along: 1 where a shift along the axis counts and the face tapers, else 0.
+        in_all: the profile parameters [rad] of a touching pair together, of a bevel pair; 0 for a spur pair.
+        by_x, by_y, by_z: by which the driver's parameter falls at first order as its centre moves, in the driven
+            shaft's frame [rad/mm]; on the left flank the second has the other sign.
+        by_tilt_x, by_tilt_y: the same for turns of the driver's shaft about x and y there.
     """
 
     at_pitch: float
@@ -83,3 +115,9 @@ class PairNumbers(NamedTuple):
     reach: float
     lever: float
     along: float
+    in_all: float
+    by_x: float
+    by_y: float
+    by_z: float
+    by_tilt_x: float
+    by_tilt_y: float

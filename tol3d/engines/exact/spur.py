@@ -9,8 +9,8 @@ import math
 from typing import NamedTuple
 
 from tol3d.engines.exact.compiled import variant
-from tol3d.engines.exact.foot import foot, grown, section
-from tol3d.engines.exact.numbers import Foot
+from tol3d.engines.exact.foot import PER_TURN, TURN, foot, grown, line_of_action, section, turn_to
+from tol3d.engines.exact.numbers import ALIKE, NOWHERE, Foot, Nearest, Pose
 
 SHORTEST_TANGENT = 1e-9  # mm; a point within the base circle has none
 
@@ -19,13 +19,14 @@ class SpurTooth(NamedTuple):
     """Flanks of a spur gear.
 
     Args:
-        base: base radius [mm].
+        base, per_base: base radius [mm] and one over it.
         half: half the angle [rad] that a tooth takes at its base.
         begin, end: roll [rad] where the flank begins and at the tip.
         low, high: ends of the face [mm], along the axis.
     """
 
     base: float
+    per_base: float
     half: float
     begin: float
     end: float
@@ -34,20 +35,31 @@ class SpurTooth(NamedTuple):
 
 
 @variant(grown, SpurTooth)
-def spur_grown(tooth, scale):
+def spur_grown(tooth: SpurTooth, scale: float) -> SpurTooth:
     """Every length grows."""
-    return SpurTooth(tooth.base * scale, tooth.half, tooth.begin, tooth.end, tooth.low * scale, tooth.high * scale)
+    base, low, high = tooth.base * scale, tooth.low * scale, tooth.high * scale
+    return SpurTooth(base, 1.0 / base, tooth.half, tooth.begin, tooth.end, low, high)
 
 
 @variant(section, SpurTooth)
-def spur_section(tooth, share):
+def spur_section(tooth: SpurTooth, share: float) -> SpurTooth:
     """One height."""
     at = tooth.low + share * (tooth.high - tooth.low)
-    return SpurTooth(tooth.base, tooth.half, tooth.begin, tooth.end, at, at)
+    return SpurTooth(tooth.base, tooth.per_base, tooth.half, tooth.begin, tooth.end, at, at)
 
 
 @variant(foot, SpurTooth)
-def spur_foot(own, mate, pose, own_azimuth, mate_azimuth, sigma, offset, roll, z):
+def spur_foot(
+    own: SpurTooth,
+    mate: SpurTooth,
+    pose: Pose,
+    own_azimuth: float,
+    mate_azimuth: float,
+    sigma: float,
+    offset: float,
+    roll: float,
+    z: float,
+) -> Foot:
     """See foot.foot: the point at a roll [rad] and a height [mm]."""
     beta = sigma * (roll - own.half) + own_azimuth
     cos, sin = math.cos(beta), math.sin(beta)
@@ -61,9 +73,10 @@ def spur_foot(own, mate, pose, own_azimuth, mate_azimuth, sigma, offset, roll, z
     ux = x * mate.base - sigma * y * tangent
     uy = y * mate.base + sigma * x * tangent
     angle = sigma * (math.atan2(uy, ux) - mate_azimuth) + mate.half
-    at_roll = angle - 2.0 * math.pi * math.floor(angle / (2.0 * math.pi) + 0.5)
-    ux /= square
-    uy /= square
+    foot_roll = angle - TURN * math.floor(angle * PER_TURN + 0.5)
+    scale = 1.0 / square
+    ux *= scale
+    uy *= scale
     nx, ny = sigma * uy, -sigma * ux
     # the point moves along (cos, sin) as it rolls, across it as that turns
     vx, vy = pose.xx * cos + pose.xy * sin, pose.yx * cos + pose.yy * sin
@@ -71,13 +84,12 @@ def spur_foot(own, mate, pose, own_azimuth, mate_azimuth, sigma, offset, roll, z
     towards = nx * vx + ny * vy
     across = own.base * roll * (ux * vx + uy * vy)
     sideways = ux * pose.xz + uy * pose.yz
-    gap = tangent - mate.base * at_roll - offset
+    curvature = 1.0 / tangent
     return Foot(
-        gap,
-        gap / mate.base,
-        at_roll,
+        tangent - mate.base * foot_roll - offset,
+        foot_roll,
         height,
-        tangent / mate.base,
+        tangent * mate.per_base,
         x,
         y,
         height,
@@ -86,9 +98,59 @@ def spur_foot(own, mate, pose, own_azimuth, mate_azimuth, sigma, offset, roll, z
         0.0,
         own.base * roll * towards,
         nx * pose.xz + ny * pose.yz,
-        own.base * (towards + sigma * roll * (nx * wx + ny * wy)) + across * across / tangent,
-        across * sideways / tangent,
-        sideways * sideways / tangent,
+        own.base * (towards + sigma * roll * (nx * wx + ny * wy)) + across * across * curvature,
+        across * sideways * curvature,
+        sideways * sideways * curvature,
         0.0,
-        1.0 / mate.base,
     )
+
+
+@variant(turn_to, SpurTooth)
+def spur_turn(mate: SpurTooth, gap: float, offset: float, at: Foot) -> float:
+    """Flanks of one tooth that stand a turn apart lie the base radius times that apart."""
+    return gap * mate.per_base
+
+
+@variant(line_of_action, SpurTooth)
+def spur_line_of_action(
+    own: SpurTooth,
+    mate: SpurTooth,
+    pose: Pose,
+    own_azimuth: float,
+    mate_azimuth: float,
+    sigma: float,
+    offset: float,
+    face: float,
+) -> Nearest:
+    """On parallel axes flanks touch where they cross the tangent of both base circles, T long.
+
+    From its ends the flanks stand r_b t away, t = alpha_w + eta_b - sigma (azimuth off the line of centres): what is
+    left of T is the gap, the same for every pair of one base pitch.
+    """
+    nowhere = Nearest(0.0, 0.0, NOWHERE, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+    square, bases = pose.x * pose.x + pose.y * pose.y, own.base + mate.base
+    if pose.xz != 0.0 or pose.yz != 0.0 or square <= bases * bases:
+        return nowhere
+    low, high = max(own.low, mate.low - pose.z), min(own.high, mate.high - pose.z)
+    if low > high:
+        return nowhere
+    tangent = math.sqrt(square - bases * bases)
+    working = math.atan2(tangent, bases)
+    centres = math.atan2(pose.y, pose.x)
+    # turned about z against each other, the gears see one direction at different azimuths
+    twist = math.atan2(pose.yx, pose.xx) if pose.yx != 0.0 else 0.0
+    angle = working + own.half - sigma * (own_azimuth + twist - centres - math.pi)
+    roll = angle - TURN * math.floor(angle * PER_TURN + 0.5)
+    angle = working + mate.half - sigma * (mate_azimuth - centres)
+    mate_roll = angle - TURN * math.floor(angle * PER_TURN + 0.5)
+    gap = tangent - own.base * roll - mate.base * mate_roll - offset
+    touching = mate_roll + gap * mate.per_base
+    if not (own.begin <= roll <= own.end and mate.begin <= mate_roll <= mate.end and touching <= mate.end):
+        return nowhere
+    scale = 1.0 / square
+    ux, uy = scale * (pose.x * bases - sigma * pose.y * tangent), scale * (pose.y * bases + sigma * pose.x * tangent)
+    nx, ny = sigma * uy, -sigma * ux
+    along = tangent - own.base * roll
+    at = min(max(face, low), high)
+    x, y = mate.base * ux + along * nx, mate.base * uy + along * ny
+    return Nearest(gap, gap * mate.per_base, ALIKE, roll, at, x, y, at + pose.z, nx, ny, 0.0, 0.0)

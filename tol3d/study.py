@@ -1,0 +1,87 @@
+"""What a run is asked to do: a scene, and what is said otherwise than there."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from pydantic import ValidationError
+
+from tol3d.block import analytic_values, mean_block, nominal_block
+from tol3d.errors import InputError
+from tol3d.model import Model, model_from_scene
+from tol3d.scene import Scene, load_scene, scene_from_python
+
+ZERO_BACKLASH = 1e-9  # mm or rad; nominal backlash zero is legal, and closed forms round to 1e-14
+
+
+@dataclass(frozen=True)
+class Overrides:
+    """What a run may say otherwise than its scene's study; None keeps the scene's word."""
+
+    trials: int | str | None = None
+    seed: int | None = None
+    engine: str | None = None
+    sampler: str | None = None
+    witness: int | None = None
+
+
+AS_WRITTEN = Overrides()
+
+
+def load(scene: Scene | Path | str, *, trust_parts: bool = False) -> Scene:
+    """A scene from a path, or the scene itself; one that was made in Python is checked first."""
+    if not isinstance(scene, Scene):
+        return load_scene(Path(scene), trust_parts=trust_parts)
+    return scene if scene.text else scene_from_python(scene, trust_parts=trust_parts)
+
+
+def effective_model(scene: Scene, overrides: Overrides = AS_WRITTEN) -> Model:
+    """The model of a scene with a run's overrides in its study; refuses a mean build that interferes.
+
+    Raises:
+        SceneError: the scene cannot be built, or interferes.
+        InputError: an override that no scene could say.
+    """
+    model = model_from_scene(_overridden(scene, overrides))
+    refuse_interfering_mean(scene, model)
+    return model
+
+
+def _overridden(scene: Scene, overrides: Overrides) -> Scene:
+    """The scene with another study, as if it had been written so."""
+    given = {key: value for key, value in vars(overrides).items() if value is not None}
+    said = {name: getattr(scene.study, name) for name in scene.study.model_fields_set - _unsaid_by(given)}
+    try:
+        study = type(scene.study).model_validate(said | given)
+    except ValidationError as error:
+        details = error.errors(include_url=False)[0]
+        place = ".".join(str(key) for key in details["loc"][:1]) or details.get("ctx", {}).get("field") or "study"
+        got = "" if details["type"] == "value_refused" else f", got {details['input']!r}"
+        raise InputError(f"{place}, otherwise than in the scene: {details['msg']}{got}") from None
+    return scene.model_copy(update={"study": study})
+
+
+def _unsaid_by(given: Mapping[str, Any]) -> set[str]:
+    """What the scene's study says for other trials, or another sampler, only."""
+    unsaid = {"until", "at_most"} if given.get("trials", "auto") != "auto" else set()
+    return unsaid | ({"replicates"} if given.get("sampler") == "monte_carlo" else set())
+
+
+def refuse_interfering_mean(scene: Scene, model: Model) -> None:
+    """Refuse a mesh whose non-working flanks overlap with every contributor at its mean.
+
+    Raises:
+        SceneError: at the mesh's centre distance, with the backlash of nominal and mean build.
+    """
+    for measure in model.measures:
+        value = float(analytic_values(model, measure, mean_block(model, measure)).min())
+        if value < -ZERO_BACKLASH:
+            mesh = model.mesh(measure.kind.mesh)
+            nominal = float(analytic_values(model, measure, nominal_block(model)).min())
+            unit, per = measure.unit, measure.per_internal
+            raise scene.refuse(
+                ("moves", mesh.name),
+                f"the teeth interfere at the mean build: {measure.name} is {value * per:.3f} {unit} there "
+                f"(nominal {nominal * per:.3f} {unit}); {mesh.pair.remedy}",
+            )
