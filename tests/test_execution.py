@@ -191,7 +191,7 @@ def test_a_checkpoint_knows_only_what_its_statistics_are_made_of(tmp_path: Path)
 def test_a_study_until_an_error_is_reached_has_the_trials_that_it_needs(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(block_module, "BLOCK_TRIALS", BLOCK)
+    monkeypatch.setattr(block_module, "AUTO_BLOCK_TRIALS", BLOCK)
     text = SPUR.read_text("utf-8")
     scene = tmp_path / "auto.yaml"
     line = next(line for line in text.splitlines() if line.startswith("study:"))

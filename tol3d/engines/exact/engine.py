@@ -3,6 +3,7 @@
 import math
 from dataclasses import dataclass
 from functools import singledispatch
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -70,9 +71,7 @@ class ExactEngine:
             *pair.numbers,
             np.array([*self._gears(mesh), flank, section], dtype=np.int64),
             *_arrays(build),
-            *(np.ascontiguousarray(angle) for angle in angles),
-            np.ascontiguousarray(driver_teeth),
-            np.ascontiguousarray(wanted),
+            *(_array(values) for values in (*angles, driver_teeth, wanted)),
             value,
             vectors,
         )
@@ -99,7 +98,7 @@ class ExactEngine:
             *pair.numbers,
             np.array([*self._gears(mesh), mesh.working_flank, *how, *turns], dtype=np.int64),
             *_arrays(build),
-            np.ascontiguousarray(driver_angle),
+            _array(driver_angle),
             readings,
             tooth,
             status,
@@ -120,7 +119,12 @@ class ExactEngine:
 
 def _arrays(build: Build) -> tuple[Array, ...]:
     each = (build.world_from_shaft, build.centre, build.flank_turn, build.flank_offset, build.scale)
-    return tuple(np.ascontiguousarray(values) for values in each)
+    return tuple(_array(values) for values in each)
+
+
+def _array(values: NDArray[Any]) -> NDArray[Any]:
+    """As kernels take arrays: contiguous, writable."""
+    return np.require(values, requirements=["C", "W"])
 
 
 # pairs as kernels know them: one function a kind ------------------------------------------------------
