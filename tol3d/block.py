@@ -4,14 +4,14 @@ Columns are in the user's units (um, mrad, K, deg, arcmin), trial on axis 0; a c
 """
 
 import math
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from tol3d import trials
-from tol3d.analytic import analytic_backlash
+from tol3d.analytic import analytic_backlash, per_normal_backlash
 from tol3d.build import Build, build
 from tol3d.engines import OK, STATUS_TEXT, Engine, MeshReading, ReadingEngine
 from tol3d.measures import measure_backlash, read_backlash, turning_gear
@@ -21,7 +21,7 @@ from tol3d.moves import Meshing, MeshSeat
 Array = NDArray[np.float64]
 Columns = Mapping[str, NDArray[np.generic]]
 
-ROWS_AT_ONCE = 8192  # trials x positions; keeps poses and gaps of a turn's curves in a few megabytes
+ROWS_AT_ONCE = 65_536  # trials x positions; keeps poses and gaps of a turn's curves in some tens of megabytes
 BLOCK_TRIALS = 65_536  # trials whose statistics are folded together, and that are written as one file
 AUTO_BLOCK_TRIALS = 16_384  # of a study that may stop after any block
 AUTO_FCL_BLOCK_TRIALS = 2048  # the same where a trial is slow: a second of them
@@ -195,6 +195,8 @@ def simulate_block(model: Model, engine: Engine | None, block: Block) -> dict[st
     """
     rows = max(1, ROWS_AT_ONCE // max(positions_count(measure) for measure in model.measures))
     pieces = [_simulate_piece(model, engine, block.part(first, first + rows)) for first in range(0, len(block), rows)]
+    if len(pieces) == 1:
+        return pieces[0]
     return {name: np.concatenate([piece[name] for piece in pieces]) for name in pieces[0]}
 
 
@@ -206,10 +208,8 @@ def _simulate_piece(model: Model, engine: Engine | None, block: Block) -> dict[s
             columns[name] = own[:, k] / contributor.per_unit
     for mesh in model.meshes:
         columns[position_column(mesh)] = np.degrees(block.random_angle[mesh.name])
-    for measure in model.measures:
-        columns[f"analytic:{measure.name}"] = taken(measure, analytic_values(model, measure, block)) * (
-            measure.per_internal
-        )
+    for measure, values in _analytic(model, block):
+        columns[f"analytic:{measure.name}"] = taken(measure, values) * measure.per_internal
     if engine is None:
         return columns
     seen = _read(model, engine, block) if isinstance(engine, ReadingEngine) else _measured(model, engine, block)
@@ -218,6 +218,17 @@ def _simulate_piece(model: Model, engine: Engine | None, block: Block) -> dict[s
     columns.update(seen.contacts)
     columns["status"] = _STATUS_TEXTS[seen.status]
     return columns
+
+
+def _analytic(model: Model, block: Block) -> Iterator[tuple[Measure, Array]]:
+    """Analytic values of every measure (trials, positions); those that are read alike share one stack-up."""
+    known: dict[SeatKey, Array] = {}
+    for measure in model.measures:
+        key = seat_key(measure)
+        if key not in known:
+            normal = replace(measure, kind=replace(measure.kind, quantity="normal_backlash"))
+            known[key] = analytic_values(model, normal, block)
+        yield measure, known[key] * per_normal_backlash(model, measure.kind)
 
 
 _STATUS_TEXTS = np.array([STATUS_TEXT[code] for code in range(len(STATUS_TEXT))])
@@ -248,8 +259,8 @@ def _measured(model: Model, engine: Engine, block: Block) -> _Seen:
 
 
 def _read(model: Model, engine: ReadingEngine, block: Block) -> _Seen:
-    """By an engine that seats and reads meshes itself."""
-    made = build(model, block.deviations)
+    """By an engine that builds, seats and reads meshes itself."""
+    made = engine.build(block.deviations)
     readings: dict[SeatKey, MeshReading] = {}
     contacts: dict[str, NDArray[np.generic]] = {}
     for key in dict.fromkeys(seat_key(measure) for measure in model.measures):

@@ -86,26 +86,32 @@ class Build:
 
 
 @dataclass
-class _Sums:
-    """What the contributors add up to, before poses are made of it."""
-
-    axis_offset: Array  # (trials, gears, 3) mm, in the gear's frame at rest
-    axis_turn: Array  # (trials, gears, 3) rad, rotation vector there
-    centre: Array  # (trials, gears, 2) mm
-    flank_turn: Array  # (trials, gears) rad
-    flank_offset: Array  # (trials, gears) mm
-    temperature: dict[str, Array]  # part -> (trials,) K
-
-
-def build(model: Model, deviations: Array) -> Build:
-    """Builds of the trials with these deviations.
+class Sums:
+    """What the contributors add up to, before poses are made of it; axis 1 follows `model.gears`.
 
     Args:
-        model: what is built.
-        deviations: (trials, components) [mm, rad, K], columns as in `model.component_slices`.
+        axis_offset, axis_turn: (trials, gears, 3) [mm; rad, a rotation vector], in the gear's frame at rest.
+        centre: (trials, gears, 2) [mm].
+        flank_turn, flank_offset: (trials, gears) [rad; mm].
+        temperature: (trials,) [K], by part.
     """
+
+    axis_offset: Array
+    axis_turn: Array
+    centre: Array
+    flank_turn: Array
+    flank_offset: Array
+    temperature: dict[str, Array]
+
+    def growth(self, model: Model, part: str) -> Array:
+        """By how much a part has grown, (trials,)."""
+        return self.temperature.get(part, np.zeros(len(self.flank_turn))) * model.expansions[part]
+
+
+def summed(model: Model, deviations: Array) -> Sums:
+    """What the deviations (trials, components) [mm, rad, K] add up to."""
     trials, gears = len(deviations), len(model.gears)
-    sums = _Sums(
+    sums = Sums(
         axis_offset=np.zeros((trials, gears, 3)),
         axis_turn=np.zeros((trials, gears, 3)),
         centre=np.zeros((trials, gears, 2)),
@@ -116,23 +122,40 @@ def build(model: Model, deviations: Array) -> Build:
     for contributor in model.contributors:
         columns = deviations[:, model.component_slices[contributor.name]]
         _add(contributor.effect, columns, sums, model)
+    return sums
 
-    def growth(part: str) -> Array | float:
-        return sums.temperature.get(part, 0.0) * model.expansions[part]
 
-    origin, axis_turn = sums.axis_offset.copy(), sums.axis_turn.copy()
-    rest = np.broadcast_to(np.eye(3), (gears, 3, 3)).copy()
+def build(model: Model, deviations: Array) -> Build:
+    """Builds of the trials with these deviations.
+
+    Args:
+        model: what is built.
+        deviations: (trials, components) [mm, rad, K], columns as in `model.component_slices`.
+    """
+    trials, gears = len(deviations), len(model.gears)
+    sums = summed(model, deviations)
+    origin = sums.axis_offset
+    axis_turn = sums.axis_turn
+    shafts = np.zeros((trials, gears, 4, 4))
+    shafts[..., :3, :3] = np.eye(3)
+    shafts[..., 3, 3] = 1.0
     for mesh in model.meshes:
         driven = model.gear_index[mesh.driven]
-        rest[driven] = mesh.pair.world_from_wheel
-        grown = np.ones(trials) + (growth(mesh.housing) if mesh.housing else 0.0)
-        origin[:, driven] = frames.apply(rest[driven], origin[:, driven]) + mesh.pair.wheel_origin * grown[:, None]
-        axis_turn[:, driven] = frames.apply(rest[driven], axis_turn[:, driven])
+        rest = mesh.pair.world_from_wheel
+        grown = 1.0 + sums.growth(model, mesh.housing) if mesh.housing else 1.0
+        origin[:, driven] = frames.apply(rest, origin[:, driven]) + np.multiply.outer(grown, mesh.pair.wheel_origin)
+        axis_turn[:, driven] = frames.apply(rest, axis_turn[:, driven])
+        shafts[:, driven, :3, :3] = rest
+    for gear in range(gears):
+        if axis_turn[:, gear].any():  # a turn by nothing changes no bit
+            turn = frames.about_vector(axis_turn[:, gear])
+            shafts[:, gear, :3, :3] = frames.matmul(turn, shafts[:, gear, :3, :3])
+    shafts[..., :3, 3] = origin
     scale = np.ones((trials, gears))
     for part in model.gears:
-        scale[:, model.gear_index[part.name]] += growth(part.name)
+        scale[:, model.gear_index[part.name]] += sums.growth(model, part.name)
     return Build(
-        world_from_shaft=frames.transform(frames.matmul(frames.about_vector(axis_turn), rest), origin),
+        world_from_shaft=shafts,
         centre=sums.centre,
         axis_turn=axis_turn,
         flank_turn=sums.flank_turn,
@@ -142,25 +165,25 @@ def build(model: Model, deviations: Array) -> Build:
 
 
 @singledispatch
-def _add(effect: Effect, columns: Array, sums: _Sums, model: Model) -> None:
+def _add(effect: Effect, columns: Array, sums: Sums, model: Model) -> None:
     """Add one contributor's deviations (trials, components); one function an effect."""
     raise TypeError(f"build.py has no function for the effect {type(effect).__name__}")
 
 
 @_add.register
-def _(effect: ToothThickness, columns: Array, sums: _Sums, model: Model) -> None:
+def _(effect: ToothThickness, columns: Array, sums: Sums, model: Model) -> None:
     gear = model.gear_index[effect.part]
     sums.flank_turn[:, gear] += effect.turn * columns[:, 0]
     sums.flank_offset[:, gear] += effect.offset * columns[:, 0]
 
 
 @_add.register
-def _(effect: TurningOffset, columns: Array, sums: _Sums, model: Model) -> None:
+def _(effect: TurningOffset, columns: Array, sums: Sums, model: Model) -> None:
     sums.centre[:, model.gear_index[effect.part]] += columns
 
 
 @_add.register
-def _(effect: AxisOffset, columns: Array, sums: _Sums, model: Model) -> None:
+def _(effect: AxisOffset, columns: Array, sums: Sums, model: Model) -> None:
     gear = model.gear_index[effect.part]
     if columns.shape[1] == 2:
         sums.axis_offset[:, gear, :2] += effect.factor * columns
@@ -169,22 +192,24 @@ def _(effect: AxisOffset, columns: Array, sums: _Sums, model: Model) -> None:
 
 
 @_add.register
-def _(effect: AxisTilt, columns: Array, sums: _Sums, model: Model) -> None:
+def _(effect: AxisTilt, columns: Array, sums: Sums, model: Model) -> None:
     gear = model.gear_index[effect.part]
     turn = effect.per_length * columns * np.array(effect.axis)
     sums.axis_turn[:, gear] += turn
+    if effect.pivot == 0.0:
+        return
     pivot = np.array([0.0, 0.0, effect.pivot])
     sums.axis_offset[:, gear] += pivot - frames.apply(frames.about_vector(turn), pivot)
 
 
 @_add.register
-def _(effect: AxesOffset, columns: Array, sums: _Sums, model: Model) -> None:
+def _(effect: AxesOffset, columns: Array, sums: Sums, model: Model) -> None:
     gear = model.gear_index[effect.part]
     mesh = next(mesh for mesh in model.meshes if mesh.driven == effect.part)
     sums.axis_offset[:, gear] += columns * mesh.pair.world_from_wheel[1]
 
 
 @_add.register
-def _(effect: Temperature, columns: Array, sums: _Sums, model: Model) -> None:
+def _(effect: Temperature, columns: Array, sums: Sums, model: Model) -> None:
     for part in effect.parts:
         sums.temperature[part] = sums.temperature.get(part, 0.0) + columns[:, 0]

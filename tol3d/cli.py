@@ -9,7 +9,7 @@ import signal
 import sys
 import threading
 import warnings
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from enum import StrEnum
 from pathlib import Path
@@ -21,10 +21,11 @@ from rich.console import Console
 if TYPE_CHECKING:
     from types import FrameType
 
+    from tol3d.model import Model
     from tol3d.result import Run
 
-CONTACTS_PER_MINUTE = 180_000  # FCL on one core, 3000 a second; only for the estimate before a long study
-LONG_STUDY = CONTACTS_PER_MINUTE  # contacts; what takes a minute is announced
+CONTACTS_PER_MINUTE = {"fcl": 180_000, "exact": 40_000_000, "analytic": 40_000_000}
+"""By an engine on one core, draws and statistics included; only for the estimate before what takes a minute or more."""
 
 PICTURE = "histogram.png"
 PATIENCE = 5.0  # s; worker processes that will not end may hold up an interrupted command no longer
@@ -104,6 +105,7 @@ def _trials(text: str) -> int | str:
 
 @app.command()
 def run(
+    context: typer.Context,
     scene: SceneArgument,
     trials: Annotated[
         Any, typer.Option(parser=_trials, metavar="N|auto", help="Number of trials instead of the scene's.")
@@ -125,19 +127,21 @@ def run(
     resume: Annotated[
         bool, typer.Option("--resume", help="Go on with an interrupted run, or mend a damaged one; never start anew.")
     ] = False,
+    no_picture: Annotated[bool, typer.Option("--no-picture", help=f"Draw no {PICTURE}.")] = False,
     fail_on_limits: Annotated[bool, typer.Option(help="Exit with 1 when a trial is out of limits or failed.")] = False,
     trust_parts: TrustParts = False,
 ) -> None:
     """Simulate a scene: analytic model and 3D simulation side by side."""
-    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
-
-    from tol3d.block import positions_in_all
-    from tol3d.execution import Execution, suggested_workers
-    from tol3d.report import run_report
-    from tol3d.simulate import Overrides, Watch, effective_model, load, run_scene, way_of
-
     if workers is not None and scheduler is not None:
         raise typer.BadParameter("--scheduler has its own workers; leave out --workers")
+    draw = context.with_resource(_drawing(wanted=not no_picture))  # it loads what it draws with beside all that follows
+
+    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
+
+    from tol3d.execution import Execution
+    from tol3d.report import run_report
+    from tol3d.simulate import Overrides, Watch, effective_model, load, run_scene, workers_for
+
     path = scene_path(scene)
     overrides = Overrides(trials, seed, engine.value if engine else None, sampler.value if sampler else None, witness)
     folder = out or Path("runs") / path.stem
@@ -145,11 +149,9 @@ def run(
     model = effective_model(loaded, overrides)
     for warning in model.warnings:
         _warn(warning)
-    contacts = model.study.trials * positions_in_all(model)
-    if model.study.engine == "fcl" and contacts > LONG_STUDY:
-        minutes = contacts / CONTACTS_PER_MINUTE
-        err_console.print(f"{positions_in_all(model)} positions a trial: about {minutes:.0f} min of one core")
-    own = workers or suggested_workers(contacts, way_of(model.study.engine))
+    if told := _long_study(model):
+        err_console.print(told)
+    own = workers or workers_for(model)
     columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn())
     try:
         with _stopped_in_order(), Progress(*columns, console=err_console, transient=True) as progress:
@@ -162,7 +164,7 @@ def run(
                 watch=Watch(
                     stage=lambda text: progress.update(bar, description=text),
                     progress=lambda done: progress.advance(bar, done),
-                    finisher=_draw,
+                    finisher=draw,
                 ),
             )
     except KeyboardInterrupt:
@@ -198,16 +200,35 @@ def _tell(text: str) -> None:
     out_console.print(text, soft_wrap=True)
 
 
-def _draw(place: Path, summary: "Mapping[str, Any]") -> None:
-    """The picture of a run; one that cannot be drawn costs a warning, not the run."""
-    from tol3d.report import draw_histogram
+@contextmanager
+def _drawing(*, wanted: bool) -> "Iterator[Callable[[Path, Mapping[str, Any]], None]]":
+    """What draws the picture of a run; one that cannot be drawn costs a warning, not the run."""
+    from tol3d.report.picture import PictureError, drawing
 
-    try:
-        draw_histogram(summary, place / PICTURE)
-    except Exception as error:
-        (place / PICTURE).unlink(missing_ok=True)
-        reason = " ".join(str(error).split()) or type(error).__name__
-        _warn(f"{PICTURE} could not be drawn ({reason}); the run is whole without it")
+    if not wanted:
+        yield lambda place, summary: None
+        return
+    with drawing() as draw:
+
+        def finish(place: Path, summary: "Mapping[str, Any]") -> None:
+            try:
+                draw(summary, place / PICTURE)
+            except PictureError as error:
+                _warn(f"{PICTURE} could not be drawn ({error}); the run is whole without it")
+
+        yield finish
+
+
+def _long_study(model: "Model") -> str:
+    """What is said before a study that takes a minute of one core or more; nothing of a shorter one."""
+    from tol3d.block import positions_in_all
+
+    positions = positions_in_all(model)
+    minutes = model.study.trials * positions / CONTACTS_PER_MINUTE[model.study.engine]
+    if minutes <= 1.0:
+        return ""
+    each = "one position" if positions == 1 else f"{positions} positions"
+    return f"{each} a trial: about {minutes:.0f} min of one core"
 
 
 @contextmanager

@@ -2,7 +2,7 @@
 
     scene        what the user wrote        tol3d/scene/          load_scene
     model        what it means, mm and rad  tol3d/model/          model_from_scene
-    solids       CAD, strips of its flanks  parts/, tol3d/solids/ measuring_strips
+    solids       CAD, strips of its flanks  parts/, tol3d/solids/ measuring_strips (for FCL, engine or witness)
     trials       seed -> deviations         tol3d/trials.py       drawn_block
     build        deviations -> poses        tol3d/build.py        build
     moves        gaps -> seated meshes      tol3d/moves/          Meshing.seat     (engines/ tell the gaps)
@@ -12,6 +12,7 @@
     statistics   of one block, or several   tol3d/tally.py        Tally
     task         what workers run           tol3d/task.py         Task           (execution.py: who runs it)
     blocks       run, kept, folded in order tol3d/folding.py      run_blocks
+    witness      some trials again, by FCL  tol3d/witness.py      witness_summary
     result       the run on disk            tol3d/result.py       Run            (writer.py: RunWriter)
 
 Spur and bevel pairs go the same way: `gears/pair.py` says what every pair offers. A new kind of gear is one file in
@@ -35,6 +36,7 @@ from typing import Any
 
 from tol3d.block import block_trials, positions_in_all
 from tol3d.durable import lacks_space
+from tol3d.engines import Engine
 from tol3d.errors import RunError
 from tol3d.execution import ONE_WORKER, Execution, pool_of
 from tol3d.files import FileContent
@@ -47,13 +49,20 @@ from tol3d.stopping import enough
 from tol3d.study import AS_WRITTEN, Overrides, effective_model, load
 from tol3d.summary import study_summary
 from tol3d.tally import PILOT_TRIALS, Tally, grids_of
-from tol3d.task import Task, installed_versions, strips_for, strips_of, way_of
+from tol3d.task import Task, installed_versions, strips_for, strips_of, way_of, workers_for
+from tol3d.witness import witness_summary, witness_warnings
 from tol3d.writer import RunWriter
 
 try:
     import resource
 except ImportError:  # Windows has none
     resource = None  # type: ignore[assignment]
+
+SETUP_STAGE: Mapping[str, str] = {
+    "analytic": "model",
+    "fcl": "gears: solids and measuring strips",
+    "exact": "kernels",
+}
 
 Stage = Callable[[str], None]
 Finisher = Callable[[Path, Mapping[str, Any]], None]
@@ -108,7 +117,7 @@ def run_scene(
     )
     plan = Plan(model.study.trials, block_trials(model), positions_in_all(model))
     with _told_of_a_full_disk(writer, plan):
-        watch.stage("gears: solids and measuring strips")
+        watch.stage(SETUP_STAGE[model.study.engine])
         task = _task(model, str(fingerprint), execution)
         prepared = time.perf_counter()
         watch.stage("trials")
@@ -119,7 +128,7 @@ def run_scene(
         writer.drop_from(plan.block_count(outcome.trials))
         simulate_s = time.perf_counter() - prepared
         summary = {
-            **study_summary(model, task.engine, outcome.statistics),
+            **_found(model, task.engine, outcome.statistics, watch.stage),
             "blocks": fingerprint["blocks"],
             "files": writer.keep(_text_of(scene), scene.files),
             "timing": _timing(outcome, prepared - started, simulate_s, pool.slots),
@@ -127,6 +136,16 @@ def run_scene(
         }
         watch.finisher(writer.picture_path("."), summary)
         return writer.finish(summary)
+
+
+def _found(model: Model, engine: Engine | None, tally: Tally, stage: Stage) -> dict[str, Any]:
+    """What the study found, and what its witness found of it."""
+    found = study_summary(model, engine, tally)
+    if engine is None or not model.study.witness:
+        return found
+    stage(f"witness: FCL measures {min(model.study.witness, tally.trials)} trials again")
+    witness = witness_summary(model, engine, tally.trials)
+    return found | {"witness": witness, "warnings": [*found["warnings"], *witness_warnings(model, witness)]}
 
 
 def _task(model: Model, fingerprint: str, execution: Execution) -> Task:
@@ -208,4 +227,5 @@ __all__ = [
     "run_scene",
     "strips_of",
     "way_of",
+    "workers_for",
 ]

@@ -63,9 +63,10 @@ def _overridden(scene: Scene, overrides: Overrides) -> Scene:
 
 
 def _unsaid_by(given: Mapping[str, Any]) -> set[str]:
-    """What the scene's study says for other trials, or another sampler, only."""
+    """What the scene's study says for other trials, another sampler or another engine only."""
     unsaid = {"until", "at_most"} if given.get("trials", "auto") != "auto" else set()
-    return unsaid | ({"replicates"} if given.get("sampler") == "monte_carlo" else set())
+    unsaid |= {"replicates"} if given.get("sampler") == "monte_carlo" else set()
+    return unsaid | ({"witness"} if given.get("engine", "exact") != "exact" else set())
 
 
 def refuse_interfering_mean(scene: Scene, model: Model) -> None:

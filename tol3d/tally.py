@@ -1,6 +1,6 @@
 """Statistics of a run, folded block by block: memory does not grow with the number of trials."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from tol3d.analytic import ClosedForm, closed_form
 from tol3d.engines import STATUS_TEXT
-from tol3d.features import feature_groups, features
+from tol3d.features import feature_groups, feature_key, features
 from tol3d.model import Measure, Model
 from tol3d.replicated import Replicated, rows_of_replicates
 from tol3d.statistics import Agreement, FeatureSums, Grid, LimitCounts, Moments, pp, ppk, shares
@@ -22,6 +22,7 @@ PILOT_TRIALS = 64  # the study's first trials; they tell sigma to 9 %, and a spr
 GRID_SIGMAS = 12.0  # the grid spans the mean +- this many sigma of both roads: bins of 1.8e-4 sigma, 1.3 nm
 LEAST_SPAN = 1e-3  # mm or rad; for a model in which nothing varies
 HISTOGRAM_BINS = 64  # bars kept in summary.json for pictures
+ROADS = ("analytic", "geometric")
 QUANTILES = {"p0.135": 0.00135, "p50": 0.5, "p99.865": 0.99865}
 
 
@@ -114,25 +115,53 @@ class MeasureTally:
         )
 
 
-def tally_measure(
-    model: Model, measure: Measure, empty: Grid, columns: Columns, rows: Mapping[int, slice]
-) -> MeasureTally:
-    """Tally of one block of columns; `empty` is the measure's grid, `rows` are those of each replicate."""
-    analytic = np.asarray(columns[f"analytic:{measure.name}"], dtype=np.float64)
-    seen = features(model, measure, columns)
-    geometric = columns.get(f"geometric:{measure.name}")
-    sample = Sample.of(measure, analytic, empty, rows)
-    if geometric is None:
-        return MeasureTally(sample, None, None, FeatureSums.of(seen, analytic), None)
-    values = np.asarray(geometric, dtype=np.float64)
-    good = ~np.isnan(values)
-    return MeasureTally(
-        sample,
-        Sample.of(measure, values, empty, rows),
-        Agreement.of(values, analytic),
-        FeatureSums.of(seen, analytic),
-        FeatureSums.of(seen[good], values[good]),
-    )
+@dataclass(frozen=True)
+class _Block:
+    """One block of columns, and which of its rows belong to each replicate."""
+
+    model: Model
+    columns: Columns
+    rows: Mapping[int, slice]
+
+    def values(self, road: str, measure: Measure) -> Array | None:
+        """A measure's column; None where that road was not gone."""
+        column = self.columns.get(f"{road}:{measure.name}")
+        return None if column is None else np.asarray(column, dtype=np.float64)
+
+    def tally(self, measures: Sequence[Measure], grids: Mapping[str, Grid]) -> dict[str, MeasureTally]:
+        """Tallies of scalar measures."""
+        sums = self._sums(measures)
+        tallies = {}
+        for measure in measures:
+            analytic, geometric = (self.values(road, measure) for road in ROADS)
+            if analytic is None:
+                raise ValueError(f"no analytic column of {measure.name}")
+            empty = grids[measure.name]
+            seen = geometric is not None
+            tallies[measure.name] = MeasureTally(
+                Sample.of(measure, analytic, empty, self.rows),
+                Sample.of(measure, geometric, empty, self.rows) if geometric is not None else None,
+                Agreement.of(geometric, analytic) if geometric is not None else None,
+                sums["analytic", measure.name],
+                sums["geometric", measure.name] if seen else None,
+            )
+        return tallies
+
+    def _sums(self, measures: Sequence[Measure]) -> dict[tuple[str, str], FeatureSums]:
+        """What each road's column of each measure has in common with its features, by road and name."""
+        sums: dict[tuple[str, str], FeatureSums] = {}
+        for key in dict.fromkeys(map(feature_key, measures)):
+            alike = [measure for measure in measures if feature_key(measure) == key]
+            seen = features(self.model, alike[0], self.columns)
+            columns = {(r, m.name): column for m in alike for r in ROADS if (column := self.values(r, m)) is not None}
+            whole = {name: column for name, column in columns.items() if not np.isnan(np.min(column))}
+            if whole:
+                each = FeatureSums.of_each(seen, np.stack(list(whole.values())))
+                sums |= dict(zip(whole, each, strict=True))
+            for name in columns.keys() - whole.keys():
+                good = ~np.isnan(columns[name])
+                sums[name] = FeatureSums.of_each(seen[:, good], columns[name][None, good])[0]
+        return sums
 
 
 @dataclass(frozen=True)
@@ -203,7 +232,7 @@ class Tally:
             trials,
             counts,
             _unphysical(model, columns),
-            {measure.name: tally_measure(model, measure, grids[measure.name], columns, rows) for measure in scalars},
+            _Block(model, columns, rows).tally(scalars, grids),
             {measure.name: CurveTally.of(measure, columns) for measure in curves},
         )
 

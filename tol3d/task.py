@@ -1,5 +1,6 @@
 """What workers run: blocks of a study's trials, from their numbers to columns and statistics."""
 
+import importlib
 import importlib.metadata
 import threading
 from collections.abc import Mapping
@@ -10,18 +11,17 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.block import drawn_block, simulate_block
+from tol3d.block import block_trials, drawn_block, positions_in_all, simulate_block
 from tol3d.engines import Engine
 from tol3d.engines.door import exact_engine
-from tol3d.engines.fcl import FclEngine
 from tol3d.errors import RunError
-from tol3d.execution import Way
+from tol3d.execution import Way, suggested_workers
 from tol3d.model import Model
 from tol3d.solids import FlankStrips, measuring_strips
 from tol3d.statistics import Grid
 from tol3d.tally import Tally
 
-VERSIONS_OF = ("tol3d", "numpy", "scipy", "python-fcl", "cadquery")
+VERSIONS_OF = ("tol3d", "numpy", "scipy", "numba", "llvmlite", "python-fcl", "cadquery")
 
 Columns = dict[str, NDArray[np.generic]]
 Strips = Mapping[str, FlankStrips]
@@ -43,14 +43,29 @@ def engine_of(model: Model, strips: Strips | None) -> Engine | None:
         case "analytic":
             return None
         case "fcl":
-            return FclEngine(model, strips or {})
+            return fcl_engine(model, strips or {})
         case "exact":
             return exact_engine(model)
+
+
+def fcl_engine(model: Model, strips: Strips) -> Engine:
+    """FCL on measuring strips; the library is loaded only by who measures with it."""
+    engine: Engine = importlib.import_module("tol3d.engines.fcl").FclEngine(model, strips)
+    return engine
 
 
 def way_of(engine: str) -> Way:
     """How an engine's trials are handed out: FCL holds Python's lock and takes half a minute for a block."""
     return Way.PROCESSES if engine == "fcl" else Way.THREADS
+
+
+def workers_for(model: Model) -> int:
+    """How many workers a study is worth where nobody says: no more threads than it has blocks."""
+    contacts = model.study.trials * positions_in_all(model)
+    suggested = suggested_workers(contacts, way_of(model.study.engine))
+    if way_of(model.study.engine) is Way.PROCESSES:
+        return suggested
+    return min(suggested, -(-model.study.trials // block_trials(model)))
 
 
 @dataclass(frozen=True, eq=False)

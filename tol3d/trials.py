@@ -45,12 +45,16 @@ def deviations(model: Model, seed: int, first: int, count: int) -> Array:
     Columns follow `model.component_slices`.
     """
     sampler, streams = sampler_of(model, seed), streams_of(model)
-    rows = np.empty((count, model.component_count))
+    columns = np.empty((model.component_count, count))
     for contributor in model.contributors:
-        own = [streams[contributor.name, str(k)] for k in range(contributor.draw.uniforms)]
-        draws = np.stack([sampler.uniforms(stream, first, count) for stream in own], axis=1)
-        rows[:, model.component_slices[contributor.name]] = contributor.draw.deviations(draws)
-    return rows
+        draws = [
+            sampler.uniforms(streams[contributor.name, str(k)], first, count) for k in range(contributor.draw.uniforms)
+        ]
+        for column, values in zip(
+            columns[model.component_slices[contributor.name]], contributor.draw.deviations(*draws), strict=True
+        ):
+            column[:] = values
+    return columns.T
 
 
 def mean_deviations(model: Model, positions: Positions) -> Array:

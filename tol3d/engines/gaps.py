@@ -130,7 +130,11 @@ class MeshReading:
 
 @runtime_checkable
 class ReadingEngine(Engine, Protocol):
-    """An engine that seats and reads meshes itself, faster than by its gaps and to the same result."""
+    """An engine that builds, seats and reads meshes itself, faster than by its gaps and to the same result."""
+
+    def build(self, deviations: Array) -> Build:
+        """Builds of the trials with these deviations (trials, components), as build.build makes them."""
+        ...
 
     def read(
         self, build: Build, mesh: Mesh, reading: Reading, driver_angle: Array, turning: frozenset[str] = frozenset()

@@ -96,9 +96,10 @@ class Scalar:
         """Standard deviation of the component [mm, rad or K]."""
         return self.distribution.sigma
 
-    def deviations(self, uniforms: Array) -> Array:
-        """Uniforms (trials, 1) in (0, 1) to deviations (trials, 1) [mm, rad or K]."""
-        return self.distribution.ppf(uniforms[:, 0])[:, None]
+    def deviations(self, *uniforms: Array) -> tuple[Array]:
+        """One array of uniforms (trials,) in (0, 1) to the deviations of the component (trials,) [mm, rad or K]."""
+        (u,) = uniforms
+        return (self.distribution.ppf(u),)
 
 
 @dataclass(frozen=True)
@@ -126,13 +127,13 @@ class Planar:
             return self.distribution.sigma
         return math.sqrt((self.distribution.variance + self.distribution.mean**2) / 2)
 
-    def deviations(self, uniforms: Array) -> Array:
-        """Uniforms (trials, 1 or 2) in (0, 1) to (x, y), shape (trials, 2) [mm]."""
-        length = self.distribution.ppf(uniforms[:, 0])
+    def deviations(self, *uniforms: Array) -> tuple[Array, Array]:
+        """One or two arrays of uniforms (trials,) in (0, 1) to x and y (trials,) [mm]."""
+        length = self.distribution.ppf(uniforms[0])
         if self.direction is not None:
-            return np.stack([length * math.cos(self.direction), length * math.sin(self.direction)], axis=1)
-        angle = 2 * math.pi * uniforms[:, 1]
-        return np.stack([length * np.cos(angle), length * np.sin(angle)], axis=1)
+            return length * math.cos(self.direction), length * math.sin(self.direction)
+        angle = 2 * math.pi * uniforms[1]
+        return length * np.cos(angle), length * np.sin(angle)
 
 
 @dataclass(frozen=True)

@@ -70,7 +70,7 @@ class Study:
     sampler: SamplerKind = "monte_carlo"
     replicates: int = 1
     until: tuple[Until, ...] = ()
-    engine: Literal["exact", "fcl", "analytic"] = "fcl"
+    engine: Literal["exact", "fcl", "analytic"] = "exact"
     witness: int = 0
     profile_steps: int = 120
 

@@ -79,8 +79,10 @@ def _measure_blocks(name: str, measure: Summary, summary: Summary) -> list[Rende
     title = Text("\n").append(name, style="bold cyan")
     words = Text(f"{heading(measure)} · {limits_text(measure)}", style="dim")
     if measure["take"] == "curve":
-        return [title, words, "", curve_table(measure), *map(_note, _curve_notes(measure))]
-    blocks: list[RenderableType] = [title, words, "", measure_table(measure), *map(_note, _notes(measure, summary))]
+        notes = [*_curve_notes(measure), *_witness_notes(name, measure, summary)]
+        return [title, words, "", curve_table(measure), *map(_note, notes)]
+    notes = [*_notes(name, measure, summary)]
+    blocks: list[RenderableType] = [title, words, "", measure_table(measure), *map(_note, notes)]
     if measure["contributors"]:
         blocks += ["", contributors_table(measure), _note(SHARES_MEAN)]
         blocks += [_note(NOT_ATTRIBUTED_MEANS)] if _not_attributed(measure) else []
@@ -158,10 +160,11 @@ def _lost_motion_rows(measure: Summary, columns: Sequence[Column]) -> Iterator[R
         yield Row(f"lost motion, {word}", cells)
 
 
-def _notes(measure: Summary, summary: Summary) -> Iterator[str]:
+def _notes(name: str, measure: Summary, summary: Summary) -> Iterator[str]:
     unit, agreement = measure["unit"], measure.get("agreement")
     if agreement and agreement.get("compared"):
         yield agreement_line(agreement, unit, summary.get("chord_error_um"))
+    yield from _witness_notes(name, measure, summary)
     own = measure[best_road(measure)]
     if own.get("mean_se") is not None and own.get("sigma_se") is not None:
         yield (
@@ -201,11 +204,31 @@ def agreement_line(agreement: Summary, unit: str, chord_error_um: float | None) 
     )
     if chord_error_um is None:
         return line
+    if not chord_error_um:
+        return f"{line}; the flanks are the mathematical ones: this is what the stack-up neglects"
     whole = FLANKS_OF_A_BACKLASH * chord_error_um
     return (
         f"{line}; up to {whole:.3f} µm of normal backlash may be chord error ({chord_error_um:.3f} µm on each of "
         f"{FLANKS_OF_A_BACKLASH} flanks), the rest is what the stack-up neglects"
     )
+
+
+def _witness_notes(name: str, measure: Summary, summary: Summary) -> Iterator[str]:
+    """What FCL found of the trials that it measured again."""
+    witness = summary.get("witness")
+    if witness is None:
+        return
+    found, trials = witness["measures"][name], witness["trials"]
+    again = (
+        f"witness: FCL measured {trials} of these trials again" if trials != 1 else "witness: FCL measured one again"
+    )
+    if not found["compared"]:
+        yield f"{again}: none of them has a value on both sides"
+        return
+    largest, chords = (
+        difference_text(found[key], measure["unit"]) for key in ("max_abs_difference", "expected_at_most")
+    )
+    yield f"{again}: at most {largest} more or less (up to {chords} of that is the chord error of its strips)"
 
 
 def contributors_table(measure: Summary) -> Sheet:

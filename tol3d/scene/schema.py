@@ -27,6 +27,12 @@ FEWEST_PROFILE_STEPS = 8
 MOST_PROFILE_STEPS = 2000
 FEWEST_REPLICATES = 2  # that have a spread at all
 MOST_REPLICATES = 1000
+MOST_WITNESSED = 1_000_000  # trials; minutes of FCL, and all of them are held at once
+
+NO_WITNESS = {
+    "fcl": "none for fcl, which is the witness itself; an exact study may have one",
+    "analytic": "none for analytic, which has no 3D simulation to check; an exact study may have one",
+}
 
 Percent = Annotated[float, Field(ge=0.0, le=100.0)]
 
@@ -87,13 +93,18 @@ class Study(Strict):
         f"latin_hypercube; {REPLICATES} if not given",
     )
     engine: Literal["exact", "fcl", "analytic"] = Field(
-        default="fcl",
-        description="what the 3D simulation measures with: the mathematical flanks, or strips of the CAD solids; "
-        "analytic: no 3D simulation",
+        default="exact",
+        description="what the 3D simulation measures with: the mathematical flanks, or by FCL strips of the CAD "
+        "solids; analytic: no 3D simulation",
     )
-    witness: int = Field(default=0, ge=0, description="trials of an exact study that FCL measures again")
+    witness: int = Field(
+        default=0, ge=0, le=MOST_WITNESSED, description="trials of an exact study, at random, that FCL measures again"
+    )
     profile_steps: int = Field(
-        default=120, ge=FEWEST_PROFILE_STEPS, le=MOST_PROFILE_STEPS, description="flat strips along a measuring flank"
+        default=120,
+        ge=FEWEST_PROFILE_STEPS,
+        le=MOST_PROFILE_STEPS,
+        description="flat strips along a flank that FCL measures",
     )
 
     @property
@@ -109,6 +120,8 @@ class Study(Strict):
             raise refused(
                 "replicates", "none for monte_carlo, whose trials tell their error themselves", self.replicates
             )
+        if self.witness and self.engine != "exact":
+            raise refused("witness", NO_WITNESS[self.engine], self.witness)
         if self.trials == "auto":
             self._refuse_endless()
         elif self.until:

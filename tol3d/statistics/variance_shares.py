@@ -35,24 +35,31 @@ class FeatureSums:
         """The sums of one block: features (trials, features), target (trials,).
 
         No NaN in either: the caller leaves failed trials out.
+        """
+        return cls.of_each(features.T, target[None])[0]
+
+    @classmethod
+    def of_each(cls, features: Array, targets: Array) -> tuple[Self, ...]:
+        """The sums of one block for several targets (targets, trials) of the same features (features, trials).
 
         Sums by numpy alone: a BLAS product's bits would depend on threads and shapes.
         """
-        if len(target) == 0:
-            width = features.shape[1] + 1
-            return cls(0, np.zeros(width), np.zeros((width, width)))
+        count, width = targets.shape[1], len(features) + 1
+        if count == 0:
+            return tuple(cls(0, np.zeros(width), np.zeros((width, width))) for _ in targets)
         # from the first value, so that a constant column has no spread at all, not a rounding error's;
         # a row each, for the order of a sum, and so its bits, follow the layout in memory
-        first = np.append(features[0], target[0])
-        rows = np.empty((len(first), len(target)))
-        np.subtract(features.T, first[:-1, None], out=rows[:-1])
-        np.subtract(target, first[-1], out=rows[-1])
+        rows = np.concatenate([features, targets])
+        first = rows[:, 0].copy()
+        rows -= first[:, None]
         means = np.mean(rows, axis=1)
         rows -= means[:, None]
         comoments = np.empty((len(rows), len(rows)))
         for i, row in enumerate(rows):
-            comoments[i, i:] = comoments[i:, i] = np.sum(row * rows[i:], axis=1)
-        return cls(len(target), first + means, comoments)
+            comoments[i, i:] = comoments[i:, i] = np.einsum("j,kj->k", row, rows[i:])
+        means += first
+        each = [[*range(width - 1), k] for k in range(width - 1, len(rows))]
+        return tuple(cls(count, means[own], comoments[np.ix_(own, own)]) for own in each)
 
     def merge(self, other: Self) -> Self:
         """The sums of both blocks together; Pebay, SAND2008-6212, 2008 (covariances)."""

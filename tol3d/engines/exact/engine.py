@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.build import Build
+from tol3d.engines.exact.assembly import assembly_of
 from tol3d.engines.exact.bevel import BevelTooth
 from tol3d.engines.exact.compiled import Kernel
 from tol3d.engines.exact.kernels import bevel_gaps, bevel_read, spur_gaps, spur_read
@@ -51,6 +52,11 @@ class ExactEngine:
     def __init__(self, model: Model) -> None:
         self._model = model
         self._pairs = {mesh.name: kernels_of(mesh.pair) for mesh in model.meshes}
+        self._assembly = assembly_of(model)
+
+    def build(self, deviations: Array) -> Build:
+        """See ReadingEngine.build."""
+        return self._assembly.build(deviations)
 
     def gaps(
         self,

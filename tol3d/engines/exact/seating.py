@@ -18,7 +18,7 @@ from tol3d.engines.exact.small_angles import turned
 
 LOOKS = 8  # at the candidate pairs until they are at rest; the second one is needed only far from the start
 CLOSE = 1e-6  # mm; a gap over its arm is exact to this much squared over a radius
-ASIDE = 1e-5  # mm; by which a mate may move aside on the way to contact until it is looked at again
+ASIDE = 3e-5  # mm; by which a mate may move aside on the way to contact until it is looked at again
 EDGE_SHARE = 0.02  # of a turn at an edge, gap over arm: the arm changes by less on the way to contact
 DOUBT = 1e-6  # mm; what ends on both sides may bound a gap no lower than this below the others
 SAME_PITCH = 1e-13  # relative; rounding
@@ -147,9 +147,18 @@ def first_tooth(pair: PairNumbers, driver_angle: float, sigma: float, teeth: int
     if teeth == DRIVEN_TOOTH:
         above = 1.0 if sigma > 0.0 else 0.0
         return sigma * (above - np.rint(place + 0.5)), 1
-    first = math.ceil((pair.lowest - sigma * driver_angle) / pair.driver_pitch)
-    last = math.floor((pair.highest - sigma * driver_angle) / pair.driver_pitch)
+    per_pitch = 1.0 / pair.driver_pitch
+    first = math.ceil((pair.lowest - sigma * driver_angle) * per_pitch)
+    last = math.floor((pair.highest - sigma * driver_angle) * per_pitch)
     return float(first), int(last - first) + 1
+
+
+@part
+def middle_first(step: int, first: float, count: int, middle: float) -> float:
+    """The candidates from the one in the middle of the path of contact on, which touches if any does."""
+    start = min(max(np.rint(middle) - first, 0.0), count - 1.0)
+    at = start + step
+    return first + (at if at < count else at - count)
 
 
 @part
@@ -211,8 +220,9 @@ def seen(build: Build, at: Turn, seen_at: float, look: Look) -> Side:
     gap, turn, edge_turn, doubtful, least = math.inf, math.inf, math.inf, math.inf, math.inf
     best_tooth = 0
     x, y, z, nx, ny, nz = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+    in_middle = (0.5 * (pair.lowest + pair.highest) - sigma * at.driver) / pair.driver_pitch
     for step in range(count):
-        tooth = sigma * (first + step)
+        tooth = sigma * middle_first(step, first, count, in_middle)
         own_azimuth, mate_azimuth = azimuths(build, at, sigma, tooth)
         near = nearest(
             own,

@@ -1,0 +1,194 @@
+"""Builds, compiled: what build.py adds up effect by effect is linear, so each deviation has its coefficients.
+
+They are found by asking build.py for every component alone; what an effect does stands there and nowhere else. A turn
+about a point off the gear's origin is the exception, worked out here.
+"""
+
+import math
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tol3d.build import Build, Sums, summed
+from tol3d.engines.exact.compiled import kernel, part
+from tol3d.engines.exact.small_angles import sine
+from tol3d.model import AxisTilt, Model
+
+Array = NDArray[np.float64]
+
+OFFSET, TURN, CENTRE, FLANK_TURN, FLANK_OFFSET, SCALE, SLOTS = 0, 3, 6, 8, 9, 10, 11
+ASSEMBLY = (
+    "float64[:, ::1], int64[:, ::1], float64[::1], int64[:, ::1], float64[:, ::1], float64[:, ::1], "
+    "float64[:, :, :, ::1], float64[:, :, ::1], float64[:, :, ::1], float64[:, ::1], float64[:, ::1], float64[:, ::1]"
+)
+
+
+@dataclass(frozen=True, eq=False)
+class Assembly:
+    """How deviations become builds.
+
+    Args:
+        terms: (terms, 2), component of the deviations and slot: SLOTS a gear, then the growth of each mesh's housing.
+        coefficients: (terms,), of the slot by the component.
+        pivots: (pivots, 2), component and gear of turns about a point off the gear's origin.
+        levers: (pivots, 4), rotation vector per deviation in the gear's frame at rest, and the point's z there [mm].
+        rest: (gears, 16), rotation of each gear's frame at rest row by row, its origin [mm], its mesh or -1; padded.
+    """
+
+    terms: NDArray[np.int64]
+    coefficients: Array
+    pivots: NDArray[np.int64]
+    levers: Array
+    rest: Array
+
+    def build(self, deviations: Array) -> Build:
+        """Builds of the trials with these deviations, (trials, components): build.build to the last few bits."""
+        trials, gears = len(deviations), len(self.rest)
+        made = Build(
+            world_from_shaft=np.empty((trials, gears, 4, 4)),
+            centre=np.empty((trials, gears, 2)),
+            axis_turn=np.empty((trials, gears, 3)),
+            flank_turn=np.empty((trials, gears)),
+            flank_offset=np.empty((trials, gears)),
+            scale=np.empty((trials, gears)),
+        )
+        assemble(
+            np.require(deviations, requirements=["C", "W"]),
+            self.terms,
+            self.coefficients,
+            self.pivots,
+            self.levers,
+            self.rest,
+            *vars(made).values(),
+        )
+        return made
+
+
+def assembly_of(model: Model) -> Assembly:
+    """The assembly of a model."""
+    without = replace(model, contributors=tuple(_without_pivot(c) for c in model.contributors))
+    terms, coefficients = [], []
+    for component in range(model.component_count):
+        alone = np.zeros((1, model.component_count))
+        alone[0, component] = 1.0
+        for slot, coefficient in enumerate(_slots(without, summed(without, alone))):
+            if coefficient != 0.0:
+                terms.append((component, slot))
+                coefficients.append(coefficient)
+    pivots, levers = [], []
+    for contributor in model.contributors:
+        effect = contributor.effect
+        if isinstance(effect, AxisTilt) and effect.pivot != 0.0:
+            pivots.append((model.component_slices[contributor.name].start, model.gear_index[effect.part]))
+            levers.append((*(effect.per_length * np.array(effect.axis)), effect.pivot))
+    return Assembly(
+        np.array(terms, dtype=np.int64).reshape(-1, 2),
+        np.array(coefficients),
+        np.array(pivots, dtype=np.int64).reshape(-1, 2),
+        np.array(levers, dtype=float).reshape(-1, 4),
+        _rest(model),
+    )
+
+
+def _without_pivot(contributor: Any) -> Any:
+    effect = contributor.effect
+    return replace(contributor, effect=replace(effect, pivot=0.0)) if isinstance(effect, AxisTilt) else contributor
+
+
+def _slots(model: Model, sums: Sums) -> Array:
+    """What one build adds up to, a slot each."""
+    gears = [
+        [
+            *sums.axis_offset[0, gear],
+            *sums.axis_turn[0, gear],
+            *sums.centre[0, gear],
+            sums.flank_turn[0, gear],
+            sums.flank_offset[0, gear],
+            sums.growth(model, part.name)[0],
+        ]
+        for gear, part in enumerate(model.gears)
+    ]
+    housings = [sums.growth(model, mesh.housing)[0] if mesh.housing else 0.0 for mesh in model.meshes]
+    return np.array([*np.ravel(gears), *housings])
+
+
+def _rest(model: Model) -> Array:
+    rest = np.zeros((len(model.gears), 16))
+    rest[:, [0, 4, 8]] = 1.0
+    rest[:, 12] = -1.0
+    for index, mesh in enumerate(model.meshes):
+        driven = model.gear_index[mesh.driven]
+        rest[driven, :13] = [*mesh.pair.world_from_wheel.ravel(), *mesh.pair.wheel_origin, index]
+    return rest
+
+
+@part
+def rotate(shaft: Array, x: float, y: float, z: float) -> None:
+    """Turn a frame, the upper left of (4, 4), by a rotation vector in its own axes; Rodrigues' formula."""
+    square = x * x + y * y + z * z
+    if square == 0.0:
+        return
+    angle = math.sqrt(square)
+    first = sine(angle) / angle
+    half = sine(0.5 * angle) / angle
+    second = 2.0 * half * half
+    for i in range(3):
+        a, b, c = shaft[i, 0], shaft[i, 1], shaft[i, 2]
+        along = second * (a * x + b * y + c * z)
+        cosine = 1.0 - second * square
+        shaft[i, 0] = cosine * a + along * x + first * (b * z - c * y)
+        shaft[i, 1] = cosine * b + along * y + first * (c * x - a * z)
+        shaft[i, 2] = cosine * c + along * z + first * (a * y - b * x)
+
+
+@kernel(arrays=ASSEMBLY)
+def assemble(
+    deviations: Any,
+    terms: Any,
+    coefficients: Any,
+    pivots: Any,
+    levers: Any,
+    rest: Any,
+    shafts: Any,
+    centre: Any,
+    axis_turn: Any,
+    flank_turn: Any,
+    flank_offset: Any,
+    scale: Any,
+) -> None:
+    """Write the arrays of a Build; arguments as in Assembly and Build."""
+    gears = len(rest)
+    slots = np.empty(SLOTS * gears + gears)
+    for row in range(len(deviations)):
+        slots[:] = 0.0
+        for k in range(len(terms)):
+            slots[terms[k, 1]] += coefficients[k] * deviations[row, terms[k, 0]]
+        for k in range(len(pivots)):
+            deviation, at = deviations[row, pivots[k, 0]], SLOTS * pivots[k, 1]
+            x, y, z = deviation * levers[k, 0], deviation * levers[k, 1], levers[k, 3]
+            # pivot less the turned pivot, for a turn across the axis
+            angle = math.sqrt(x * x + y * y)
+            if angle > 0.0:
+                first, half = sine(angle) / angle, sine(0.5 * angle)
+                slots[at] -= first * y * z
+                slots[at + 1] += first * x * z
+                slots[at + 2] += 2.0 * half * half * z
+        for gear in range(gears):
+            at, mesh = SLOTS * gear, int(rest[gear, 12])
+            grown = 1.0 + slots[SLOTS * gears + mesh] if mesh >= 0 else 1.0
+            shaft = shafts[row, gear]
+            x, y, z = slots[at], slots[at + 1], slots[at + 2]
+            for i in range(3):
+                a, b, c = rest[gear, 3 * i], rest[gear, 3 * i + 1], rest[gear, 3 * i + 2]
+                shaft[i, 0], shaft[i, 1], shaft[i, 2] = a, b, c
+                shaft[i, 3] = a * x + b * y + c * z + grown * rest[gear, 9 + i]
+                shaft[3, i] = 0.0
+                u, v, w = slots[at + TURN], slots[at + TURN + 1], slots[at + TURN + 2]
+                axis_turn[row, gear, i] = a * u + b * v + c * w
+            shaft[3, 3] = 1.0
+            rotate(shaft, slots[at + TURN], slots[at + TURN + 1], slots[at + TURN + 2])
+            centre[row, gear, 0], centre[row, gear, 1] = slots[at + CENTRE], slots[at + CENTRE + 1]
+            flank_turn[row, gear], flank_offset[row, gear] = slots[at + FLANK_TURN], slots[at + FLANK_OFFSET]
+            scale[row, gear] = 1.0 + slots[at + SCALE]

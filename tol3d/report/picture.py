@@ -1,0 +1,51 @@
+"""The picture of a run, drawn beside it by a process of its own: see histogram_process."""
+
+import json
+import subprocess
+import sys
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+Draw = Callable[[Mapping[str, Any], Path], None]
+
+COMMAND = (sys.executable, "-P", "-m", "tol3d.report.histogram_process")  # -P: not from the folder it is called in
+
+
+class PictureError(Exception):
+    """A picture that could not be drawn; its message says why."""
+
+
+@contextmanager
+def drawing() -> Iterator[Draw]:
+    """Within it a process that can draw gets ready, and draws one histogram: its summary, and where it goes.
+
+    Raises:
+        PictureError: by the drawing, which leaves no half of a picture.
+    """
+    try:
+        process = subprocess.Popen(COMMAND, stdin=subprocess.PIPE, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
+    except OSError as error:
+        yield partial(_refuse, str(error))
+        return
+    with process:
+        try:
+            yield partial(_draw, process)
+        finally:
+            process.kill()
+
+
+def _draw(process: "subprocess.Popen[bytes]", summary: Mapping[str, Any], picture: Path) -> None:
+    order = json.dumps({"picture": str(picture), "summary": summary})
+    _, told = process.communicate(order.encode())
+    if process.returncode == 0:
+        return
+    picture.unlink(missing_ok=True)
+    last = told.decode(errors="replace").strip().splitlines()[-1:]
+    raise PictureError(*(last or [f"its process ended with {process.returncode}"]))
+
+
+def _refuse(reason: str, summary: Mapping[str, Any], picture: Path) -> None:
+    raise PictureError(reason)

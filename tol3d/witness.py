@@ -1,0 +1,135 @@
+"""The witness: some of a study's trials made again and measured by FCL, on strips of the CAD solids.
+
+A strip's chords lie inside the tooth, by the chord error at most: FCL sees up to four of them more backlash than
+there is, for two flanks touch and two are measured. The trials are drawn by a stream of their own, so they are the
+same whoever ran the study and whatever it kept.
+"""
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tol3d.analytic import per_normal_backlash
+from tol3d.block import Block, Columns, drawn_block, simulate_block
+from tol3d.engines import Engine
+from tol3d.model import Measure, Model
+from tol3d.samplers.monte_carlo import uniforms
+from tol3d.task import fcl_engine, strips_of
+
+Array = NDArray[np.float64]
+
+STREAM = ("witness", "trial")
+FLANKS_OF_A_BACKLASH = 4  # two that touch, two that are measured
+ALLOWANCE_MM = 0.05e-3
+"""What FCL may be off besides chord errors: a tip edge pulled in along its own normal where the other flank has another
+(0.03 um at 0.045 rad), its own rounding (0.005 um), and squares of tilts within a section's width."""
+NOTHING_COMPARED = {
+    "max_abs_difference": None,
+    "mean_difference": None,
+    "rms_difference": None,
+    "trial_of_the_largest": None,
+    "compared": 0,
+}
+
+
+def witness_summary(model: Model, engine: Engine, trials: int) -> dict[str, Any]:
+    """What FCL finds of `study.witness` trials of a run, as summary.json shows it.
+
+    Args:
+        model: of the run, whose study names a witness.
+        engine: measured the run.
+        trials: how many trials the run has.
+
+    Returns:
+        the differences FCL - engine of each measure, in its unit, and what chord errors explain of them.
+    """
+    chosen = witnessed_trials(model.study.seed, trials, model.study.witness)
+    block = _made_again(model, chosen)
+    fcl = fcl_engine(model, strips_of(model))
+    seen, given = simulate_block(model, fcl, block), simulate_block(model, engine, block)
+    return {
+        "engine": "fcl",
+        "trials": len(chosen),
+        "chord_error_um": 1000 * fcl.chord_error,
+        "profile_steps": model.study.profile_steps,
+        "measures": {
+            measure.name: {
+                **_differences(_values(seen, measure) - _values(given, measure), chosen),
+                "expected_at_most": _in_unit(model, measure, FLANKS_OF_A_BACKLASH * fcl.chord_error),
+                "allowance": _in_unit(model, measure, ALLOWANCE_MM),
+            }
+            for measure in model.measures
+        },
+        "status_differences": int(np.count_nonzero(seen["status"] != given["status"])),
+    }
+
+
+def witness_warnings(model: Model, witness: Mapping[str, Any]) -> list[str]:
+    """A sentence for each measure that differs by more than is explained, and one for trials of another status."""
+    units = {measure.name: measure.unit for measure in model.measures}
+    found = [
+        f"witness: FCL finds {own['max_abs_difference']:.3g} {units[name]} more or less {name} of trial "
+        f"{own['trial_of_the_largest']}; its chords explain {own['expected_at_most']:.3g} {units[name]}, its other "
+        f"errors {own['allowance']:.3g} {units[name]}"
+        for name, own in witness["measures"].items()
+        if (own["max_abs_difference"] or 0.0) > own["expected_at_most"] + own["allowance"]
+    ]
+    if other := witness["status_differences"]:
+        found.append(f"witness: by FCL {other} of {witness['trials']} trials end with another status")
+    return found
+
+
+def witnessed_trials(seed: int, trials: int, wanted: int) -> NDArray[np.int64]:
+    """Which trials of a study are measured again: distinct, ascending, all of them where there are no more.
+
+    A function of the three numbers alone. Each set of `wanted` trials is as likely as any other: for every top from
+    trials - wanted on, one of the trials up to it is taken, or the top itself where that one was taken before.
+    Source: Bentley, Floyd, Programming pearls: a sample of brilliance (CACM 30(9), 1987).
+    """
+    count = min(wanted, trials)
+    tops = range(trials - count, trials)
+    chosen: set[int] = set()
+    for top, u in zip(tops, uniforms(seed, *STREAM, 0, count).tolist(), strict=True):
+        drawn = int(u * (top + 1))
+        chosen.add(top if drawn in chosen else drawn)
+    return np.array(sorted(chosen), dtype=np.int64)
+
+
+def _made_again(model: Model, chosen: NDArray[np.int64]) -> Block:
+    """The draws of these trials."""
+    return _joined([drawn_block(model, model.study.seed, trial, 1) for trial in chosen.tolist()])
+
+
+def _joined(blocks: Sequence[Block]) -> Block:
+    return Block(
+        np.concatenate([block.deviations for block in blocks]),
+        {mesh: np.concatenate([block.random_angle[mesh] for block in blocks]) for mesh in blocks[0].random_angle},
+    )
+
+
+def _values(columns: Columns, measure: Measure) -> Array:
+    return np.asarray(columns[f"geometric:{measure.name}"], dtype=np.float64)
+
+
+def _differences(difference: Array, chosen: NDArray[np.int64]) -> dict[str, float | int | None]:
+    """Differences of some trials, (trials,) or of a curve (trials, positions); nan where either has no value."""
+    each = difference.reshape(len(chosen), -1)
+    known = ~np.isnan(each)
+    compared = int(np.count_nonzero(known.any(axis=1)))
+    if not compared:
+        return dict(NOTHING_COMPARED)
+    size = np.where(known, np.abs(each), -1.0)
+    return {
+        "max_abs_difference": float(size.max()),
+        "mean_difference": float(each[known].mean()),
+        "rms_difference": float(np.sqrt((each[known] ** 2).mean())),
+        "trial_of_the_largest": int(chosen[size.max(axis=1).argmax()]),
+        "compared": compared,
+    }
+
+
+def _in_unit(model: Model, measure: Measure, normal_backlash: float) -> float:
+    """A normal backlash [mm] in the measure's quantity and unit."""
+    return normal_backlash * per_normal_backlash(model, measure.kind) * measure.per_internal
