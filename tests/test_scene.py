@@ -154,7 +154,7 @@ def test_shipped_scenes_satisfy_the_json_schema(path: Path) -> None:
         ("teeth: 28", "teeth: 0"),
         ("kind: rayleigh", "kind: raleigh"),
         ("kind: eccentricity", "direction: apart\n    kind: eccentricity"),
-        ("engine: fcl", "engine: flc"),
+        ("engine: exact", "engine: exakt"),
     ],
 )
 def test_the_json_schema_refuses_what_it_can(old: str, new: str) -> None:
@@ -266,9 +266,16 @@ def test_defaults_are_those_of_the_grammar(tmp_path: Path) -> None:
         2000,
         1,
         "monte_carlo",
-        "fcl",
+        "exact",
         120,
     )
+
+
+@pytest.mark.parametrize(("engine", "words"), [("fcl", "is the witness itself"), ("analytic", "no 3D simulation to check")])
+def test_only_an_exact_study_has_a_witness(engine: str, words: str, tmp_path: Path) -> None:
+    with pytest.raises(SceneError, match=f"study.witness: expected none for {engine}, .*{words}.*, got 5"):
+        load(tmp_path, f"{SMALL}study: {{engine: {engine}, witness: 5}}\n")
+    assert load(tmp_path, f"{SMALL}study: {{witness: 5}}\n").study.engine == "exact"
 
 
 @pytest.mark.parametrize(("of", "names"), [("b", ("b",)), ("[b]", ("b",)), ("[b, h]", ("b", "h"))])
@@ -293,4 +300,5 @@ def test_a_scene_cannot_be_changed() -> None:
 def test_opening_a_scene_loads_no_heavy_library() -> None:
     code = "import sys, tol3d.scene; print(*sorted({name.partition('.')[0] for name in sys.modules}))"
     loaded = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, cwd=ROOT).stdout
-    assert {"pint", "pandas", "cadquery", "trimesh", "fcl", "pyvista", "matplotlib"}.isdisjoint(loaded.split())
+    heavy = {"pint", "pandas", "cadquery", "trimesh", "fcl", "numba", "pyvista", "matplotlib"}
+    assert heavy.isdisjoint(loaded.split())

@@ -13,7 +13,9 @@ from tol3d.features import feature_groups, feature_key, features
 from tol3d.model import Measure, Model
 from tol3d.replicated import Replicated, rows_of_replicates
 from tol3d.statistics import Agreement, FeatureSums, Grid, LimitCounts, Moments, pp, ppk, shares
+from tol3d.statistics.door import quick_products
 from tol3d.statistics.grid import BINS
+from tol3d.statistics.variance_shares import Products, plain_products
 
 Array = NDArray[np.float64]
 Columns = Mapping[str, NDArray[np.generic]]
@@ -128,6 +130,10 @@ class _Block:
         column = self.columns.get(f"{road}:{measure.name}")
         return None if column is None else np.asarray(column, dtype=np.float64)
 
+    @property
+    def _products(self) -> Products:
+        return quick_products() if self.model.study.engine == "exact" else plain_products
+
     def tally(self, measures: Sequence[Measure], grids: Mapping[str, Grid]) -> dict[str, MeasureTally]:
         """Tallies of scalar measures."""
         sums = self._sums(measures)
@@ -156,11 +162,11 @@ class _Block:
             columns = {(r, m.name): column for m in alike for r in ROADS if (column := self.values(r, m)) is not None}
             whole = {name: column for name, column in columns.items() if not np.isnan(np.min(column))}
             if whole:
-                each = FeatureSums.of_each(seen, np.stack(list(whole.values())))
+                each = FeatureSums.of_each(seen, np.stack(list(whole.values())), self._products)
                 sums |= dict(zip(whole, each, strict=True))
             for name in columns.keys() - whole.keys():
                 good = ~np.isnan(columns[name])
-                sums[name] = FeatureSums.of_each(seen[:, good], columns[name][None, good])[0]
+                sums[name] = FeatureSums.of_each(seen[:, good], columns[name][None, good], self._products)[0]
         return sums
 
 

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from tol3d.model import Mesh, Model, Planar, Positions, TurningOffset
 from tol3d.samplers import LatinHypercube, MonteCarlo, Sampler, Sobol, Stream
+from tol3d.samplers.door import quick_monte_carlo
 
 Array = NDArray[np.float64]
 
@@ -36,7 +37,7 @@ def sampler_of(model: Model, seed: int) -> Sampler:
         return Sobol(seed, study.replicate_trials, len(streams_of(model)))
     if study.sampler == "latin_hypercube":
         return LatinHypercube(seed, study.replicate_trials)
-    return MonteCarlo(seed)
+    return quick_monte_carlo(seed) if study.engine == "exact" else MonteCarlo(seed)
 
 
 def deviations(model: Model, seed: int, first: int, count: int) -> Array:

@@ -1,7 +1,7 @@
 """Which group of features a measure's variance comes from, by least squares on the trials."""
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Self
 
@@ -12,6 +12,20 @@ Array = NDArray[np.float64]
 
 CONSTANT_RTOL = 1e-12  # of the mean; a column whose sigma is less holds rounding errors only
 RANK_RTOL = 1e-10  # of the largest eigenvalue of the correlations; columns closer than that say the same
+
+
+Products = Callable[[Array], Array]
+
+
+def plain_products(rows: Array) -> Array:
+    """Sums over the trials of the products of all pairs of rows (rows, trials): (rows, rows).
+
+    By numpy alone: a BLAS product's bits would depend on threads and shapes.
+    """
+    sums = np.empty((len(rows), len(rows)))
+    for i, row in enumerate(rows):
+        sums[i, i:] = sums[i:, i] = np.einsum("j,kj->k", row, rows[i:])
+    return sums
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,10 +53,12 @@ class FeatureSums:
         return cls.of_each(features.T, target[None])[0]
 
     @classmethod
-    def of_each(cls, features: Array, targets: Array) -> tuple[Self, ...]:
+    def of_each(cls, features: Array, targets: Array, products: Products = plain_products) -> tuple[Self, ...]:
         """The sums of one block for several targets (targets, trials) of the same features (features, trials).
 
-        Sums by numpy alone: a BLAS product's bits would depend on threads and shapes.
+        Args:
+            features, targets: as said.
+            products: what sums the products of all pairs of rows (rows, trials) over the trials, (rows, rows).
         """
         count, width = targets.shape[1], len(features) + 1
         if count == 0:
@@ -54,9 +70,7 @@ class FeatureSums:
         rows -= first[:, None]
         means = np.mean(rows, axis=1)
         rows -= means[:, None]
-        comoments = np.empty((len(rows), len(rows)))
-        for i, row in enumerate(rows):
-            comoments[i, i:] = comoments[i:, i] = np.einsum("j,kj->k", row, rows[i:])
+        comoments = products(rows)
         means += first
         each = [[*range(width - 1), k] for k in range(width - 1, len(rows))]
         return tuple(cls(count, means[own], comoments[np.ix_(own, own)]) for own in each)

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.build import Build, Sums, summed
-from tol3d.engines.exact.compiled import kernel, part
+from tol3d.compiled import kernel, part
 from tol3d.engines.exact.small_angles import sine
 from tol3d.model import AxisTilt, Model
 

@@ -8,7 +8,7 @@ turns by (q - q_f)/sin(beta). See gears/spherical_involute.py for the plane and 
 import math
 from typing import NamedTuple
 
-from tol3d.engines.exact.compiled import variant
+from tol3d.compiled import variant
 from tol3d.engines.exact.foot import PER_TURN, TURN, foot, grown, line_of_action, section, turn_to
 from tol3d.engines.exact.numbers import NOWHERE, Foot, Nearest, Pose
 from tol3d.engines.exact.small_angles import arcsine, sine

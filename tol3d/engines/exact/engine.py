@@ -9,9 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.build import Build
+from tol3d.compiled import Kernel
 from tol3d.engines.exact.assembly import assembly_of
 from tol3d.engines.exact.bevel import BevelTooth
-from tol3d.engines.exact.compiled import Kernel
 from tol3d.engines.exact.kernels import bevel_gaps, bevel_read, spur_gaps, spur_read
 from tol3d.engines.exact.numbers import PairNumbers, Pose
 from tol3d.engines.exact.rows import CONTACT, DRIVEN_ANGLE, DRIVEN_TURN, DRIVER_TURN, GAP, READINGS

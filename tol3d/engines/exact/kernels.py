@@ -2,8 +2,8 @@
 
 from typing import Any
 
+from tol3d.compiled import kernel
 from tol3d.engines.exact.bevel import BevelTooth
-from tol3d.engines.exact.compiled import kernel
 from tol3d.engines.exact.numbers import PairNumbers, Pose
 from tol3d.engines.exact.rows import gap_rows, read_rows
 from tol3d.engines.exact.spur import SpurTooth

@@ -7,7 +7,7 @@ it is all that has to be known.
 import math
 from typing import Any
 
-from tol3d.engines.exact.compiled import part
+from tol3d.compiled import part
 from tol3d.engines.exact.foot import foot, line_of_action, turn_to
 from tol3d.engines.exact.numbers import AT_EDGE, BEYOND, CLOSED, NOWHERE, Foot, Nearest, Pose
 

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.engines.exact.compiled import part
+from tol3d.compiled import part
 from tol3d.engines.exact.foot import grown, section
 from tol3d.engines.exact.nearest import SHARP_FALL, nearest
 from tol3d.engines.exact.numbers import PairNumbers, Pose

@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from tol3d.engines.exact.compiled import part
+from tol3d.compiled import part
 from tol3d.engines.exact.foot import section
 from tol3d.engines.exact.nearest import QUICK_FALL, nearest
 from tol3d.engines.exact.numbers import ALIKE, AT_EDGE, BEYOND, Nearest, PairNumbers, Pose
@@ -158,7 +158,7 @@ def middle_first(step: int, first: float, count: int, middle: float) -> float:
     """The candidates from the one in the middle of the path of contact on, which touches if any does."""
     start = min(max(np.rint(middle) - first, 0.0), count - 1.0)
     at = start + step
-    return first + (at if at < count else at - count)
+    return float(first + (at if at < count else at - count))
 
 
 @part

@@ -2,7 +2,7 @@
 
 import math
 
-from tol3d.engines.exact.compiled import part
+from tol3d.compiled import part
 
 SMALL = 0.02  # rad; below it the series are exact to 1e-15 of themselves
 

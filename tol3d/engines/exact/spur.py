@@ -8,7 +8,7 @@ t = sigma (psi - azimuth) + eta_b its roll: the gap is s - r_b t, and it closes 
 import math
 from typing import NamedTuple
 
-from tol3d.engines.exact.compiled import variant
+from tol3d.compiled import variant
 from tol3d.engines.exact.foot import PER_TURN, TURN, foot, grown, line_of_action, section, turn_to
 from tol3d.engines.exact.numbers import ALIKE, NOWHERE, Foot, Nearest, Pose
 
