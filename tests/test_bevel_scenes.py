@@ -117,7 +117,12 @@ def test_the_published_pair_has_the_published_closed_form(run_of: Callable[[str]
 def test_a_bevel_scene_meets_its_expected_numbers(scene: str, run_of: Callable[[str], Run]) -> None:
     run = run_of(scene)
     assert run.summary["engine"] == ("fcl" if scene == "every_bevel_field" else "exact")
-    assert run.summary["status"] == {"ok": expected(scene)["trials"], "interferes": 0, "no contact": 0, "out of range": 0}
+    assert run.summary["status"] == {
+        "ok": expected(scene)["trials"],
+        "interferes": 0,
+        "no contact": 0,
+        "out of range": 0,
+    }
     measures = {name: own for name, own in expected(scene).items() if isinstance(own, dict)}
     assert measures.keys() == run.summary["measures"].keys()
     for name, own in measures.items():

@@ -15,10 +15,14 @@ import jsonschema
 import pytest
 from ruamel.yaml import YAML
 
-from tol3d import cli
+from tol3d import Overrides, cli, run_scene
 from tol3d.errors import InputError
+from tol3d.model import model_from_scene
+from tol3d.report import picture
 from tol3d.result import open_run
+from tol3d.scene import load_scene
 from tol3d.solids.cache import CacheWarning
+from tol3d.task import strips_of
 
 SCENES = Path(__file__).resolve().parent.parent / "scenes"
 SPUR = str(SCENES / "spur_pair.yaml")
@@ -47,8 +51,10 @@ def tol3d(monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]) ->
 def test_run_prints_the_table_and_writes_the_run(tol3d: Command, tmp_path: Path) -> None:
     code, out, _ = tol3d("run", SPUR, "--trials", "100", "--out", str(tmp_path / "spur"))
     assert code == 0
-    for words in ("normal backlash", "3D simulation", "paper, 3DCS", "centre distance", "53.4"):
+    # 53.397: the closed form by the paper's tables; 53.398: the mean build with the squares that it leaves out
+    for words in ("normal backlash", "3D simulation", "paper, 3DCS", "centre distance", "53.397", "53.398"):
         assert words in out
+    assert "witness: FCL measured 20 of these trials again: at most 0.0" in out
     written = {path.name for path in (tmp_path / "spur").iterdir()}
     assert written == {"summary.json", "trials", "scene.yaml", "histogram.png"}
 
@@ -61,10 +67,17 @@ def test_overrides_are_recorded(tol3d: Command, tmp_path: Path) -> None:
 
 
 def test_sampler_and_witness_are_recorded(tol3d: Command, tmp_path: Path) -> None:
-    arguments = ("--trials", "64", "--engine", "analytic", "--sampler", "sobol", "--witness", "3")
+    arguments = ("--trials", "64", "--sampler", "sobol", "--witness", "3")
     assert tol3d("run", SPUR, *arguments, "--out", str(tmp_path / "run"))[0] == 0
     study = json.loads((tmp_path / "run" / "summary.json").read_text("utf-8"))["study"]
     assert (study["sampler"], study["witness"]) == ("sobol", 3)
+
+
+def test_a_scenes_witness_is_not_asked_of_another_engine(tol3d: Command, tmp_path: Path) -> None:
+    arguments = ("run", SPUR, "--trials", "4", "--out", str(tmp_path / "run"), "--engine")
+    for engine in ("analytic", "fcl"):
+        assert tol3d(*arguments, engine)[0] == 0
+        assert json.loads((tmp_path / "run" / "summary.json").read_text("utf-8"))["study"]["witness"] == 0
 
 
 WRONG_OPTIONS = {
@@ -72,6 +85,8 @@ WRONG_OPTIONS = {
     "no trials": (("--trials", "0"), "a whole number from 1 on, or auto, got '0'"),
     "auto without an end": (("--trials", "auto"), "the standard errors to stop at"),
     "too many trials": (("--trials", "10000000001"), "trials, otherwise than in the scene"),
+    "a witness of no simulation": (("--engine", "analytic", "--witness", "3"), "no 3D simulation to check"),
+    "a witness of the witness": (("--engine", "fcl", "--witness", "3"), "an exact study may have one"),
     "workers here and there": (("--scheduler", "tcp://here:1", "--workers", "2"), "leave out --workers"),
     "nothing to resume": (("--resume",), "nothing to resume, neither a run nor run.partial is there"),
 }
@@ -221,20 +236,62 @@ def test_version_is_that_of_the_package(tol3d: Command) -> None:
     assert (code, out) == (0, f"tol3d {importlib.metadata.version('tol3d')}\n")
 
 
-def test_a_picture_that_fails_costs_a_warning_and_not_the_run(
-    tol3d: Command, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    def fails(summary: object, path: Path) -> None:
-        path.write_bytes(b"half a picture")
-        raise ValueError("no such\ncolour")
+FAILING_PAINTERS = {
+    "no such colour": "import json; json.load(sys.stdin); print('a note', file=sys.stderr); sys.exit('no such colour')",
+    "its process ended with 7": "sys.stdin.read(); sys.exit(7)",
+    "its process ended with -9": "import os; os.kill(os.getpid(), 9)",
+}
 
-    monkeypatch.setattr("tol3d.report.histogram.draw_histogram", fails)
+
+@pytest.mark.parametrize("reason", FAILING_PAINTERS)
+def test_a_picture_that_fails_costs_a_warning_and_not_the_run(
+    tol3d: Command, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, reason: str
+) -> None:
+    monkeypatch.setattr(picture, "COMMAND", (sys.executable, "-c", f"import sys; {FAILING_PAINTERS[reason]}"))
     code, out, err = tol3d("run", SPUR, "--trials", "30", "--engine", "analytic", "--out", str(tmp_path / "run"))
     assert code == 0
-    assert "warning: histogram.png could not be drawn (no such colour); the run is whole without it\n" in err
+    assert f"warning: histogram.png could not be drawn ({reason}); the run is whole without it\n" in err
     assert "histogram.png" not in out
     assert {path.name for path in (tmp_path / "run").iterdir()} == {"summary.json", "trials", "scene.yaml"}
     assert tol3d("compare", str(tmp_path / "run"), "--out", str(tmp_path / "c.png"))[0] == 0
+
+
+def test_a_process_that_cannot_be_started_costs_a_warning_too(
+    tol3d: Command, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(picture, "COMMAND", (str(tmp_path / "no python"),))
+    code, _, err = tol3d("run", SPUR, "--trials", "30", "--engine", "analytic", "--out", str(tmp_path / "run"))
+    assert code == 0
+    assert "could not be drawn ([Errno 2] No such file or directory" in err
+
+
+def test_a_half_drawn_picture_is_taken_away(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    half = "import json, sys; open(json.load(sys.stdin)['picture'], 'wb').write(b'half'); sys.exit('disk')"
+    monkeypatch.setattr(picture, "COMMAND", (sys.executable, "-c", half))
+    with picture.drawing() as draw, pytest.raises(picture.PictureError, match=r"^disk$"):
+        draw({}, tmp_path / "histogram.png")
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_no_picture_starts_no_process(tol3d: Command, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(picture.subprocess, "Popen", lambda *_, **__: 1 / 0)
+    arguments = ("--trials", "30", "--engine", "analytic", "--no-picture", "--out", str(tmp_path / "run"))
+    code, out, err = tol3d("run", SPUR, *arguments)
+    assert (code, "picture" in out, "warning" in err) == (0, False, False)
+    assert {path.name for path in (tmp_path / "run").iterdir()} == {"summary.json", "trials", "scene.yaml"}
+
+
+def test_a_run_from_python_starts_no_process_and_draws_nothing(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(picture.subprocess, "Popen", lambda *_, **__: 1 / 0)
+    assert not (run_scene(SPUR, overrides=Overrides(trials=30), out=tmp_path / "run").path / "histogram.png").exists()
+
+
+def test_a_refused_scene_leaves_no_process_behind(tol3d: Command, monkeypatch: pytest.MonkeyPatch) -> None:
+    started: list[subprocess.Popen[bytes]] = []
+    really = subprocess.Popen
+    monkeypatch.setattr(picture.subprocess, "Popen", lambda *a, **k: started.append(really(*a, **k)) or started[-1])
+    assert tol3d("run", "spur_pairs")[0] == 2
+    assert [process.returncode is not None for process in started] == [True]
 
 
 def test_a_warning_of_ours_is_one_line_without_its_place_in_the_code(
@@ -303,16 +360,39 @@ def test_help_answers_in_half_a_second() -> None:
     assert done.stdout.splitlines()[-1] == "[]"
 
 
-def test_a_warm_run_loads_no_cad(tmp_path: Path) -> None:
-    # the solids of the spur pair are in the cache after the first run
-    run = [sys.executable, "-m", "tol3d.cli", "run", SPUR, "--trials", "5", "--out", str(tmp_path / "run")]
-    subprocess.run(run, check=True, capture_output=True)
-    code = f"import sys; sys.argv = {['tol3d', *run[3:]]!r}\nfrom tol3d import cli\n"
-    code += "try:\n    cli.main()\nexcept SystemExit:\n    "
-    # pandas is left out: pyarrow imports it where it is installed
-    loaded = "print([m for m in ('cadquery', 'OCP', 'pyvista', 'trimesh', 'pint') if m in sys.modules])"
-    done = subprocess.run([sys.executable, "-c", code + loaded], capture_output=True, text=True, check=True)
-    assert done.stdout.splitlines()[-1] == "[]"
+NEVER = ("pint", "matplotlib", "scipy.stats", "cadquery", "OCP", "pyvista", "trimesh", "distributed", "pandas")
+LOADED = {
+    "a run": (("run", SPUR, "--trials", "5", "--witness", "0", "--out", "run"), ("numba",), (*NEVER, "fcl")),
+    "a run with a witness": (("run", SPUR, "--trials", "5", "--witness", "2", "--out", "run"), ("numba", "fcl"), NEVER),
+    "a run by FCL": (("run", SPUR, "--trials", "5", "--engine", "fcl", "--out", "run"), ("fcl",), (*NEVER, "numba")),
+    "an analytic run": (
+        ("run", SPUR, "--trials", "5", "--engine", "analytic", "--out", "run"),
+        ("numpy",),
+        (*NEVER, "fcl", "numba"),
+    ),
+    "check": (("check", SPUR), ("numpy",), (*NEVER, "fcl")),
+    "schema": (("schema",), ("pydantic",), (*NEVER, "fcl", "numba", "pyarrow")),
+    "help": (("--help",), ("typer",), (*NEVER, "fcl", "numba", "numpy", "scipy", "pyarrow")),
+}
+
+
+@pytest.mark.parametrize("what", LOADED)
+def test_a_command_loads_what_it_needs_and_nothing_heavy_besides(what: str, tmp_path: Path) -> None:
+    """What a command has loaded at its end, in a process of its own; strips and kernels are in the cache."""
+    arguments, wanted, never = LOADED[what]
+    measuring_strips_of_the_spur_pair()
+    code = f"import sys; sys.argv = {['tol3d', *arguments]!r}\nfrom tol3d import cli\n"
+    code += "try:\n    cli.main()\nexcept SystemExit as stop:\n    assert not stop.code\n"
+    code += f"print([name for name in {(*wanted, *never)!r} if name in sys.modules])"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, cwd=tmp_path)
+    assert done.stdout.splitlines()[-1] == str(list(wanted))
+    if what == "a run":
+        assert (tmp_path / "run" / "histogram.png").read_bytes()[:4] == b"\x89PNG"
+
+
+def measuring_strips_of_the_spur_pair() -> None:
+    """Have them in the cache."""
+    strips_of(model_from_scene(load_scene(Path(SPUR))))
 
 
 def _seconds(command: list[str]) -> float:

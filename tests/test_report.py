@@ -64,7 +64,7 @@ measures:
   free play: {kind: normal_backlash, of: gear pair, lower_limit: 62 um, upper_limit: 400 um}
   turn of [wheel]: {kind: angular_backlash, of: gear pair}
   shape: {kind: normal_backlash, of: gear pair, over: turn, take: curve, positions: 4}
-study: {trials: 24, seed: 5, profile_steps: 60}
+study: {trials: 24, seed: 5, witness: 6, profile_steps: 60}
 published:
   a colleague: {free play: {low_3sigma: 50 um, mean: 71.5 um, high_3sigma: 90 um, contributors: {warm: 3.5}}}
 """
@@ -100,6 +100,33 @@ def test_run_report_fits_the_width_without_losing_a_word_or_a_number(run, width)
     assert max(len(line) for line in text.splitlines()) <= width
     assert "…" not in text
     assert "\x1b" not in text  # plain, since no terminal is there
+
+
+def one_line(renderable) -> str:
+    return " ".join(printed(renderable, 120).split())
+
+
+def test_the_witness_is_told_below_each_measure_with_what_its_chords_explain(run):
+    text, measures = one_line(run_report(run.summary)), run.summary["witness"]["measures"]
+    assert list(measures) == list(run.summary["measures"])
+    for name, to_text in (("free play", "{:.3f} µm".format), ("shape", "{:.3f} µm".format)):
+        largest, chords = (to_text(measures[name][key]) for key in ("max_abs_difference", "expected_at_most"))
+        assert (
+            f"witness: FCL measured 6 of these trials again: at most {largest} more or less "
+            f"(up to {chords} of that is the chord error of its strips)"
+        ) in text
+    assert text.count("witness: FCL") == 3
+
+
+def test_chord_errors_are_spoken_of_only_where_there_are_any(run):
+    without = dict(run.summary)
+    without.pop("witness")
+    text = one_line(run_report(without))
+    assert "chord error" not in text
+    assert text.count("the flanks are the mathematical ones: this is what the stack-up neglects") == 2  # no curves
+    by_fcl = one_line(run_report(without | {"chord_error_um": 0.021}))
+    assert by_fcl.count("up to 0.084 µm of normal backlash may be chord error (0.021 µm on each of 4 flanks)") == 2
+    assert "mathematical" not in by_fcl
 
 
 NUMBER = re.compile(r"[-+±]?\d[\d.′″]*")
@@ -558,8 +585,7 @@ def test_a_magnified_tip_keeps_its_points_in_their_order(run):
 def test_no_magnification_at_all_is_the_nominal_build(run):
     """Only the driver's position differs: nominal builds have the same backlash at any."""
     none, nominal = assemble(run, TRIAL, magnify=0.0), assemble(run, "nominal")
-    chord_errors = 4e-3 * run.summary["chord_error_um"]
-    assert none.meshes[0].gap_value == pytest.approx(nominal.meshes[0].gap_value, abs=chord_errors)
+    assert none.meshes[0].gap_value == pytest.approx(nominal.meshes[0].gap_value, abs=1e-8)  # mm; where steps end
     assert none.label == f"trial-{TRIAL}-x0"
 
 

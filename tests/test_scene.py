@@ -271,7 +271,9 @@ def test_defaults_are_those_of_the_grammar(tmp_path: Path) -> None:
     )
 
 
-@pytest.mark.parametrize(("engine", "words"), [("fcl", "is the witness itself"), ("analytic", "no 3D simulation to check")])
+@pytest.mark.parametrize(
+    ("engine", "words"), [("fcl", "is the witness itself"), ("analytic", "no 3D simulation to check")]
+)
 def test_only_an_exact_study_has_a_witness(engine: str, words: str, tmp_path: Path) -> None:
     with pytest.raises(SceneError, match=f"study.witness: expected none for {engine}, .*{words}.*, got 5"):
         load(tmp_path, f"{SMALL}study: {{engine: {engine}, witness: 5}}\n")

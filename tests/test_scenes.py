@@ -312,7 +312,12 @@ def test_a_scene_meets_its_expected_numbers(scene: str, run_of: Callable[[str], 
     run = run_of(scene)
     assert run.summary["engine"] == "exact"
     assert run.summary["chord_error_um"] == 0.0
-    assert run.summary["status"] == {"ok": expected(scene)["trials"], "interferes": 0, "no contact": 0, "out of range": 0}
+    assert run.summary["status"] == {
+        "ok": expected(scene)["trials"],
+        "interferes": 0,
+        "no contact": 0,
+        "out of range": 0,
+    }
     for name, own in measures_of(scene).items():
         found = run.summary["measures"][name]
         samples = found["curve"] if found["take"] == "curve" else found

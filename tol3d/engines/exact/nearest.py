@@ -120,7 +120,7 @@ def nearest(
         return Nearest(gap, turn, how, profile, face, at.x, at.y, at.z, at.nx, at.ny, at.nz, lean)
     edge = min(max(at.profile, mate.begin), mate.end)
     its, its_fall, _, _, overlap = lowest(
-        mate, own, inverse(pose), mate_azimuth, own_azimuth, sigma, offset, edge, at.face, 0.0, last_fall
+        mate, own, inverse(pose), mate_azimuth, own_azimuth, sigma, offset, edge, at.face, per_turn, last_fall
     )
     if not overlap:
         return Nearest(math.inf, math.inf, CLOSED, profile, face, at.x, at.y, at.z, at.nx, at.ny, at.nz, lean)

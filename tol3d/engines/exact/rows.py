@@ -10,7 +10,18 @@ from tol3d.compiled import part
 from tol3d.engines.exact.foot import grown, section
 from tol3d.engines.exact.nearest import SHARP_FALL, nearest
 from tol3d.engines.exact.numbers import PairNumbers, Pose
-from tol3d.engines.exact.seating import Build, Look, azimuths, closed, driver_turn, pose_at, seen, standing, start_on
+from tol3d.engines.exact.seating import (
+    Build,
+    Look,
+    azimuths,
+    closed,
+    driven_on,
+    driver_turn,
+    pose_at,
+    seen,
+    standing,
+    start_on,
+)
 from tol3d.engines.status import INTERFERES, NO_CONTACT, OK, OUT_OF_RANGE
 
 Array = NDArray[np.float64]
@@ -131,7 +142,8 @@ def read_rows(
         status[row] = OUT_OF_RANGE
         if not within_reach(pair, nominal, build.pose):
             continue
-        start = standing(build, angle, pair.driven_start - angle / pair.ratio)
+        opened = build.driver_turn / pair.ratio + build.driven_turn
+        start = standing(build, angle, pair.driven_start - angle / pair.ratio + sigma * opened)
         at, side = closed(seen(build, start, angle, working), build, start, working)
         if side.gap == math.inf:
             status[row] = NO_CONTACT
@@ -150,8 +162,11 @@ def read_rows(
             readings[row, CONTACT + k] = shaft[k, 0] * x + shaft[k, 1] * y + shaft[k, 2] * z + shaft[k, 3]
         teeth[row] = side.tooth
         if which[6]:
-            near = other if gap_closes else seen(build, at, angle, closing)
-            end, _ = closed(near, build, at, closing)
+            near_at, near = at, other
+            if not gap_closes:  # the smallest gap tells nearly by how much
+                near_at = driven_on(at, sigma * other.turn)
+                near = seen(build, near_at, angle, closing)
+            end, _ = closed(near, build, near_at, closing)
             readings[row, DRIVEN_TURN] = abs(end.driven - at.driven)
         if which[7]:
             readings[row, DRIVER_TURN] = abs(driver_turn(build, at, Look(-sigma, which[3], which[4] != 0, 0.0)))

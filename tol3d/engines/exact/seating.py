@@ -19,6 +19,7 @@ from tol3d.engines.exact.small_angles import turned
 LOOKS = 8  # at the candidate pairs until they are at rest; the second one is needed only far from the start
 CLOSE = 1e-6  # mm; a gap over its arm is exact to this much squared over a radius
 ASIDE = 3e-5  # mm; by which a mate may move aside on the way to contact until it is looked at again
+ASIDE_ON_FACE = 4e-6  # mm; the same where the contact may change ends of a tapering face, whose arms differ by a tenth
 EDGE_SHARE = 0.02  # of a turn at an edge, gap over arm: the arm changes by less on the way to contact
 DOUBT = 1e-6  # mm; what ends on both sides may bound a gap no lower than this below the others
 SAME_PITCH = 1e-13  # relative; rounding
@@ -256,7 +257,8 @@ def seen(build: Build, at: Turn, seen_at: float, look: Look) -> Side:
             x, y, z, nx, ny, nz = near.x + at.fx, near.y + at.fy, near.z, near.nx, near.ny, near.nz
         if near.how == ALIKE and one_base_pitch:
             break
-    settled = edge_turn >= turn and eccentricity * abs(turn) < ASIDE
+    most = ASIDE if look.in_section or pair.along == 0.0 else ASIDE_ON_FACE
+    settled = edge_turn >= turn and eccentricity * abs(turn) < most
     return Side(gap, turn, settled, doubtful >= gap - DOUBT, best_tooth, x, y, z, nx, ny, nz)
 
 
