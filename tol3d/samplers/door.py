@@ -1,0 +1,11 @@
+"""The one door to compiled draws: numba, which they need, is loaded only by who has it compile trials too."""
+
+import importlib
+
+from tol3d.samplers.stream import Sampler
+
+
+def quick_monte_carlo(seed: int) -> Sampler:
+    """MonteCarlo, compiled: the same bits."""
+    sampler: Sampler = importlib.import_module("tol3d.samplers.quick_uniforms").QuickMonteCarlo(seed)
+    return sampler

@@ -1,0 +1,11 @@
+"""The one door to compiled statistics: numba, which they need, is loaded only by who has it compile trials too."""
+
+import importlib
+
+from tol3d.statistics.variance_shares import Products
+
+
+def quick_products() -> Products:
+    """Sums of products, compiled."""
+    products: Products = importlib.import_module("tol3d.statistics.quick_products").quick_products
+    return products
