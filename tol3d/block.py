@@ -22,6 +22,7 @@ Array = NDArray[np.float64]
 Columns = Mapping[str, NDArray[np.generic]]
 
 ROWS_AT_ONCE = 65_536  # trials x positions; keeps poses and gaps of a turn's curves in some tens of megabytes
+BUILDS_AT_ONCE = 4096  # builds x positions: 2.5 MB of them
 BLOCK_TRIALS = 65_536  # trials whose statistics are folded together, and that are written as one file
 AUTO_BLOCK_TRIALS = 16_384  # of a study that may stop after any block
 AUTO_FCL_BLOCK_TRIALS = 2048  # the same where a trial is slow: a second of them
@@ -124,7 +125,8 @@ def geometric_values(measure: Measure, seats: Seats) -> Array:
 def analytic_values(model: Model, measure: Measure, block: Block) -> Array:
     """Values of a measure on the analytic road [mm or rad], (trials, positions)."""
     angles = driver_angles(measure.positions, block.random_angle[measure.kind.mesh])
-    repeated = np.repeat(block.deviations, angles.shape[1], axis=0)
+    positions = angles.shape[1]
+    repeated = block.deviations if positions == 1 else np.repeat(block.deviations, positions, axis=0)
     return analytic_backlash(model, measure.kind, repeated, angles.ravel()).reshape(angles.shape)
 
 
@@ -212,7 +214,9 @@ def _simulate_piece(model: Model, engine: Engine | None, block: Block) -> dict[s
         columns[f"analytic:{measure.name}"] = taken(measure, values) * measure.per_internal
     if engine is None:
         return columns
-    seen = _read(model, engine, block) if isinstance(engine, ReadingEngine) else _measured(model, engine, block)
+    seen = (
+        _read_in_pieces(model, engine, block) if isinstance(engine, ReadingEngine) else _measured(model, engine, block)
+    )
     for measure in model.measures:
         columns[f"geometric:{measure.name}"] = taken(measure, seen.values[measure.name]) * measure.per_internal
     columns.update(seen.contacts)
@@ -258,8 +262,20 @@ def _measured(model: Model, engine: Engine, block: Block) -> _Seen:
     )
 
 
+def _read_in_pieces(model: Model, engine: ReadingEngine, block: Block) -> _Seen:
+    """By an engine that builds, seats and reads meshes itself, so many at once that builds stay in the cache."""
+    rows = max(1, BUILDS_AT_ONCE // max(positions_count(measure) for measure in model.measures))
+    each = [_read(model, engine, block.part(first, first + rows)) for first in range(0, len(block), rows)]
+    if len(each) == 1:
+        return each[0]
+    return _Seen(
+        {name: np.concatenate([seen.values[name] for seen in each]) for name in each[0].values},
+        {name: np.concatenate([seen.contacts[name] for seen in each]) for name in each[0].contacts},
+        np.concatenate([seen.status for seen in each]),
+    )
+
+
 def _read(model: Model, engine: ReadingEngine, block: Block) -> _Seen:
-    """By an engine that builds, seats and reads meshes itself."""
     made = engine.build(block.deviations)
     readings: dict[SeatKey, MeshReading] = {}
     contacts: dict[str, NDArray[np.generic]] = {}

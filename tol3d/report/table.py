@@ -215,19 +215,16 @@ def agreement_line(agreement: Summary, unit: str, chord_error_um: float | None) 
 
 def _witness_notes(name: str, measure: Summary, summary: Summary) -> Iterator[str]:
     """What FCL found of the trials that it measured again."""
-    witness = summary.get("witness")
-    if witness is None:
+    witness = summary.get("witness") or {"measures": {}}
+    found = witness["measures"].get(name)
+    if found is None:
         return
-    found, trials = witness["measures"][name], witness["trials"]
-    again = (
-        f"witness: FCL measured {trials} of these trials again" if trials != 1 else "witness: FCL measured one again"
-    )
+    again = f"witness: FCL measured {witness['trials']} of these trials again"
     if not found["compared"]:
         yield f"{again}: none of them has a value on both sides"
         return
-    largest, chords = (
-        difference_text(found[key], measure["unit"]) for key in ("max_abs_difference", "expected_at_most")
-    )
+    largest = difference_text(found["max_abs_difference"], measure["unit"])
+    chords = difference_text(found["expected_at_most"], measure["unit"])
     yield f"{again}: at most {largest} more or less (up to {chords} of that is the chord error of its strips)"
 
 
