@@ -277,7 +277,7 @@ def test_no_picture_starts_no_process(tol3d: Command, tmp_path: Path, monkeypatc
     monkeypatch.setattr(picture.subprocess, "Popen", lambda *_, **__: 1 / 0)
     arguments = ("--trials", "30", "--engine", "analytic", "--no-picture", "--out", str(tmp_path / "run"))
     code, out, err = tol3d("run", SPUR, *arguments)
-    assert (code, "picture" in out, "warning" in err) == (0, False, False)
+    assert (code, "picture:" in out, "warning" in err) == (0, False, False)
     assert {path.name for path in (tmp_path / "run").iterdir()} == {"summary.json", "trials", "scene.yaml"}
 
 

@@ -24,6 +24,7 @@ pytest.importorskip("distributed")
 SPUR = Path(__file__).resolve().parent.parent / "scenes" / "spur_pair.yaml"
 BLOCK = 1000
 STUDIES = {
+    "exact": Overrides(trials=40 * BLOCK + 77, engine="exact", witness=0),
     "analytic": Overrides(trials=40 * BLOCK + 77, engine="analytic"),
     "fcl": Overrides(trials=4 * BLOCK + 77, engine="fcl"),
 }

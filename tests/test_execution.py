@@ -214,8 +214,8 @@ def test_a_study_until_an_error_is_reached_has_the_trials_that_it_needs(
 
 def test_threads_and_processes_give_the_bits_of_one(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(block_module, "BLOCK_TRIALS", 300)
-    for engine in ("analytic", "fcl"):
-        study = Overrides(trials=1000, engine=engine)
+    for engine in ("exact", "analytic", "fcl"):
+        study = Overrides(trials=1000, engine=engine, witness=0)
         alone = run_scene(SPUR, overrides=study, out=tmp_path / "alone")
         spread = run_scene(SPUR, overrides=study, out=tmp_path / "spread", execution=Execution(workers=2))
         assert spread.summary["measures"] == alone.summary["measures"]

@@ -86,8 +86,11 @@ def killed_and_resumed(out: Path, kills: int, seed: int, *more: str) -> Run:
 
 
 KINDS = {
+    "exact": ("--engine", "exact", "--witness", "0", "--trials", str(25 * BLOCK + 77), "--workers", "2"),
+    "exact, statistics only": (
+        *("--engine", "exact", "--witness", "0", "--trials", str(25 * BLOCK + 77), "--workers", "2", "--no-trials"),
+    ),
     "analytic": ("--engine", "analytic", "--trials", str(25 * BLOCK + 77), "--workers", "2"),
-    "statistics only": ("--engine", "analytic", "--trials", str(25 * BLOCK + 77), "--workers", "2", "--no-trials"),
     "fcl": ("--engine", "fcl", "--trials", str(2 * BLOCK + 77), "--workers", "1"),
 }
 
@@ -101,7 +104,7 @@ def test_killed_at_twenty_moments_a_run_ends_with_the_same_bits(kind: str, tmp_p
     assert sorted(path.name for path in tmp_path.iterdir()) == ["killed", "whole"]
 
 
-@pytest.mark.parametrize("kind", ["analytic", "statistics only"])
+@pytest.mark.parametrize("kind", ["exact", "exact, statistics only"])
 def test_killed_at_three_moments_a_run_ends_with_the_same_bits(kind: str, tmp_path: Path) -> None:
     subprocess.run(command(tmp_path / "whole", *KINDS[kind]), check=True, capture_output=True)
     resumed = killed_and_resumed(tmp_path / "killed", 3, 3, *KINDS[kind])
