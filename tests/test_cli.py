@@ -21,8 +21,9 @@ from tol3d.model import model_from_scene
 from tol3d.report import picture
 from tol3d.result import open_run
 from tol3d.scene import load_scene
+from tol3d.simulate import effective_model, load
 from tol3d.solids.cache import CacheWarning
-from tol3d.task import strips_of
+from tol3d.task import strips_of, workers_for
 
 SCENES = Path(__file__).resolve().parent.parent / "scenes"
 SPUR = str(SCENES / "spur_pair.yaml")
@@ -100,6 +101,30 @@ def test_a_wrong_option_gets_one_message_and_exit_code_2(tol3d: Command, tmp_pat
     assert words in " ".join(err.replace("│", " ").split())
     assert "Traceback" not in err
     assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize(
+    ("engine", "trials", "said"),
+    [
+        ("fcl", 180_000, ""),
+        ("fcl", 360_000, "one position a trial: about 2 min of one core"),
+        ("exact", 360_000, ""),
+        ("exact", 80_000_000, "one position a trial: about 2 min of one core"),
+    ],
+)
+def test_a_long_study_is_announced_by_its_engines_speed(engine: str, trials: int, said: str) -> None:
+    assert cli._long_study(effective_model(load(SPUR), Overrides(trials=trials, engine=engine))) == said
+
+
+@pytest.mark.parametrize(
+    ("engine", "trials", "workers"),
+    [("exact", 65_536, 1), ("exact", 65_537, 2), ("analytic", 3 * 65_536, 3), ("exact", 10**9, 8), ("fcl", 20_000, 1)],
+)
+def test_threads_are_as_many_as_blocks_and_processes_are_not_started_for_seconds(
+    engine: str, trials: int, workers: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(os, "cpu_count", lambda: 8)
+    assert workers_for(effective_model(load(SPUR), Overrides(trials=trials, engine=engine))) == workers
 
 
 def test_no_trials_keeps_the_statistics_only(tol3d: Command, tmp_path: Path) -> None:

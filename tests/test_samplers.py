@@ -37,7 +37,7 @@ from tol3d.trials import deviations, driver_angles
 
 ROOT = Path(__file__).resolve().parent.parent
 SPUR_PAIR = (ROOT / "scenes" / "spur_pair.yaml").read_text(encoding="utf-8")
-STUDY_LINE = "study: {trials: 2000, seed: 1, sampler: monte_carlo, engine: fcl}"
+STUDY_LINE = "study: {trials: 2000, seed: 1, sampler: monte_carlo, engine: exact, witness: 20}"
 A, B = Stream("a", "0", 0), Stream("b", "1", 1)
 DIGIT = 2.0**-52
 

@@ -95,7 +95,7 @@ def test_what_does_not_vary_is_known_at_once(paper_model: Model) -> None:
 
 def test_an_automatic_study_keeps_what_it_waits_for_in_mm_and_rad_and_as_json(tmp_path: Path) -> None:
     text = (Path(__file__).parent.parent / "scenes" / "spur_pair.yaml").read_text(encoding="utf-8")
-    old = "study: {trials: 2000, seed: 1, sampler: monte_carlo, engine: fcl}"
+    old = "study: {trials: 2000, seed: 1, sampler: monte_carlo, engine: exact, witness: 20}"
     until = "{normal backlash: {mean: 0.05 um}, lost motion: {mean: 1 arcsec, sigma: 0.1 mrad}}"
     path = tmp_path / "scene.yaml"
     path.write_text(text.replace(old, f"study: {{trials: auto, until: {until}, at_most: 70000}}"), encoding="utf-8")

@@ -82,6 +82,12 @@ class Kernel:
         """Run it; results go into arrays among the arguments."""
         self._compiled(*arguments)
 
+    @property
+    def kept(self) -> bool:
+        """Whether this machine has compiled it before: whether using it takes no more than loading it."""
+        name = self._function.__name__
+        return any(folder(Path(self._function.__code__.co_filename).parent).glob(f"*/*.{name}-*.nbi"))
+
     @cached_property
     def _compiled(self) -> Callable[..., None]:
         types: Any = numba_types

@@ -14,8 +14,6 @@ from dataclasses import dataclass
 from enum import Enum
 from typing import Any, Protocol, TypeVar
 
-from joblib.externals.loky import get_reusable_executor
-
 from tol3d.errors import InputError, RunError
 
 T = TypeVar("T")
@@ -196,7 +194,8 @@ def _threads(workers: int) -> Iterator[Pool]:
 
 @contextmanager
 def _processes(workers: int) -> Iterator[Pool]:
-    executor = get_reusable_executor(max_workers=workers, timeout=IDLE_S)
+    loky = importlib.import_module("joblib.externals.loky")  # nobody else should wait for it to load
+    executor = loky.get_reusable_executor(max_workers=workers, timeout=IDLE_S)
     try:
         yield OnExecutor(executor, workers, shares_memory=False)
     except BaseException:

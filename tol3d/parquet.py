@@ -76,8 +76,22 @@ def _to_numpy(column: pa.ChunkedArray) -> NDArray[np.generic]:
 
 
 def _to_arrow(values: NDArray[np.generic]) -> pa.Array:
+    """Made of buffers: pa.array would load pandas, where it is installed, to ask whether this is of pandas."""
     if values.ndim == 2:
-        return pa.FixedSizeListArray.from_arrays(pa.array(values.ravel()), values.shape[1])
+        return pa.FixedSizeListArray.from_arrays(_numbers(values.ravel()), values.shape[1])
     if values.dtype.kind == "U":
-        return pa.array(values).dictionary_encode()
-    return pa.array(values)
+        words, codes = np.unique(values, return_inverse=True)
+        return pa.DictionaryArray.from_arrays(_numbers(codes.astype(np.int32)), _words(words.tolist()))
+    return _numbers(values)
+
+
+def _numbers(values: NDArray[np.generic]) -> pa.Array:
+    """Arrow keeps numbers as numpy does; booleans it packs, and no column is of those."""
+    flat = np.ascontiguousarray(values)
+    return pa.Array.from_buffers(pa.from_numpy_dtype(flat.dtype), len(flat), [None, pa.py_buffer(flat)])
+
+
+def _words(words: Sequence[str]) -> pa.Array:
+    encoded = [word.encode() for word in words]
+    ends = np.cumsum([0, *map(len, encoded)], dtype=np.int32)
+    return pa.Array.from_buffers(pa.string(), len(words), [None, pa.py_buffer(ends), pa.py_buffer(b"".join(encoded))])

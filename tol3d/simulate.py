@@ -37,6 +37,7 @@ from typing import Any
 from tol3d.block import block_trials, positions_in_all
 from tol3d.durable import lacks_space
 from tol3d.engines import Engine
+from tol3d.engines.door import exact_is_compiled
 from tol3d.errors import RunError
 from tol3d.execution import ONE_WORKER, Execution, pool_of
 from tol3d.files import FileContent
@@ -63,6 +64,8 @@ SETUP_STAGE: Mapping[str, str] = {
     "fcl": "gears: solids and measuring strips",
     "exact": "kernels",
 }
+
+COMPILING = "compiling kernels, once on this machine"
 
 Stage = Callable[[str], None]
 Finisher = Callable[[Path, Mapping[str, Any]], None]
@@ -117,7 +120,7 @@ def run_scene(
     )
     plan = Plan(model.study.trials, block_trials(model), positions_in_all(model))
     with _told_of_a_full_disk(writer, plan):
-        watch.stage(SETUP_STAGE[model.study.engine])
+        watch.stage(_setup_stage(model))
         task = _task(model, str(fingerprint), execution)
         prepared = time.perf_counter()
         watch.stage("trials")
@@ -136,6 +139,13 @@ def run_scene(
         }
         watch.finisher(writer.picture_path("."), summary)
         return writer.finish(summary)
+
+
+def _setup_stage(model: Model) -> str:
+    """What goes on before the trials; kernels that this machine has not compiled yet take ten seconds."""
+    if model.study.engine == "exact" and not exact_is_compiled(model):
+        return COMPILING
+    return SETUP_STAGE[model.study.engine]
 
 
 def _found(model: Model, engine: Engine | None, tally: Tally, stage: Stage) -> dict[str, Any]:

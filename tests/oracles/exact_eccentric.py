@@ -10,6 +10,7 @@ import numpy as np
 from oracles.involute_gear import InvoluteGear
 
 TURN_ROUNDS = 6  # the wheel's turn moves its centre by e2 j/r, 1e-5 of it; each round gains that factor
+AZIMUTH_ROUNDS = 6  # of e/a each, 1e-2 for the smallest gears: 1e-12 of 0.1 mm
 
 
 def normal_backlash(pinion: InvoluteGear, wheel: InvoluteGear, thickness, axis, centres, driver_angle, working_flank):
@@ -29,7 +30,7 @@ def normal_backlash(pinion: InvoluteGear, wheel: InvoluteGear, thickness, axis, 
     for _ in range(TURN_ROUNDS):
         line = axis.copy()
         azimuth = np.zeros_like(driver_angle)
-        for _ in range(2):  # the azimuth of the line of centres and the wheel's turn depend on each other
+        for _ in range(AZIMUTH_ROUNDS):  # the azimuth of the line of centres and the wheel's turn depend on each other
             wheel_angle = azimuth + np.pi + wheel.pitch / 2 - ratio * (driver_angle - azimuth)
             wheel_angle = wheel_angle - working_flank * free / (2 * wheel.base_radius)
             line = axis + turned(centres[1], wheel_angle) - turned(centres[0], driver_angle)

@@ -5,8 +5,15 @@ import importlib
 from tol3d.engines.gaps import ReadingEngine
 from tol3d.model import Model
 
+EXACT = "tol3d.engines.exact"
+
 
 def exact_engine(model: Model) -> ReadingEngine:
     """The exact engine of a model."""
-    engine: ReadingEngine = importlib.import_module("tol3d.engines.exact").ExactEngine(model)
+    engine: ReadingEngine = importlib.import_module(EXACT).ExactEngine(model)
     return engine
+
+
+def exact_is_compiled(model: Model) -> bool:
+    """Whether the exact engine's kernels for a model were compiled on this machine before."""
+    return bool(importlib.import_module(EXACT).ExactEngine(model).kept)

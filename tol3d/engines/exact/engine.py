@@ -54,6 +54,11 @@ class ExactEngine:
         self._pairs = {mesh.name: kernels_of(mesh.pair) for mesh in model.meshes}
         self._assembly = assembly_of(model)
 
+    @property
+    def kept(self) -> bool:
+        """Whether this machine has compiled what its studies need."""
+        return all(pair.read.kept for pair in self._pairs.values())
+
     def build(self, deviations: Array) -> Build:
         """See ReadingEngine.build."""
         return self._assembly.build(deviations)
