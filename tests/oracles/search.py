@@ -132,7 +132,7 @@ def _spur_numbers(gear, offset):
 
 
 # bevel ----------------------------------------------------------------------------------------------------------------
-# a gear: sine and cosine of the base angle, flank's start on the base cone, rolls, cosine of the tip angle, offset, face
+# a gear: sine and cosine of the base angle, flank's start on the base cone, rolls, cosine of tip angle, offset, face
 
 
 @njit(nogil=True)
@@ -155,8 +155,10 @@ def bevel_foot(gear, x, y, z, azimuth, flank):
     for _ in range(HALVINGS):
         middle = (low + high) / 2
         about = azimuth + flank * (middle - gear[2])
-        up = x * math.cos(about) + y * math.sin(about) - sin * (
-            sin * (x * math.cos(about) + y * math.sin(about)) + cos * z
+        up = (
+            x * math.cos(about)
+            + y * math.sin(about)
+            - sin * (sin * (x * math.cos(about) + y * math.sin(about)) + cos * z)
         )
         if up > 0.0:
             low = middle

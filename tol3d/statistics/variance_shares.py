@@ -65,7 +65,8 @@ class FeatureSums:
             return tuple(cls(0, np.zeros(width), np.zeros((width, width))) for _ in targets)
         # from the first value, so that a constant column has no spread at all, not a rounding error's;
         # a row each, for the order of a sum, and so its bits, follow the layout in memory
-        rows = np.concatenate([features, targets])
+        rows = np.empty((len(features) + len(targets), count))
+        rows[: len(features)], rows[len(features) :] = features, targets
         first = rows[:, 0].copy()
         rows -= first[:, None]
         means = np.mean(rows, axis=1)
