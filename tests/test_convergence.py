@@ -1,6 +1,7 @@
 """What is approximated, and how fast the error falls: strips with their steps, extremes with their positions."""
 
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -10,11 +11,14 @@ from oracles.thickness import thickness_of
 
 from tol3d.block import Block, drawn_block, geometric_values, seat_block, simulate_block, taken
 from tol3d.build import build
+from tol3d.engines.exact import ExactEngine
 from tol3d.gears import LEFT, RIGHT
-from tol3d.measures import measure_backlash
-from tol3d.model import Backlash, Measure, Model, Positions, Reading
+from tol3d.measures import measure_backlash, read_backlash
+from tol3d.model import Backlash, Measure, Model, Positions, Reading, model_from_scene
 from tol3d.moves import Meshing
+from tol3d.scene import load_scene
 
+SCENES = Path(__file__).resolve().parent.parent / "scenes"
 DENSITIES = (60, 80, 120, 160)
 TRIALS = 200  # the mean error of so many has a standard error of 3 %, and the same trials serve every density
 
@@ -53,6 +57,39 @@ def test_mean_error_of_the_strips_falls_with_the_square_of_the_step(flank: int, 
     # two contacts, each between two strips that lie inside their teeth by a chord error at most
     assert all(0 < error < 4 * chord for error, chord in zip(errors, chords, strict=True))
     assert -np.polyfit(np.log(DENSITIES), np.log(chords), 1)[0] == pytest.approx(2.0, abs=0.02)
+
+
+# strips against the exact engine -----------------------------------------------------------------------------
+
+
+FCL_NOISE = 0.002e-3  # mm; a section is a strip 2 um wide, over which a bevel pair's gap grows by 1e-6 mm
+
+
+def errors_of_fcl(scene: str, trials: int, densities: tuple[int, ...], engine_of) -> np.ndarray:
+    """FCL's normal backlash less the exact engine's [mm], (densities, trials)."""
+    model = model_from_scene(load_scene(SCENES / scene))
+    mesh, kind = model.meshes[0], next(m.kind for m in model.measures if m.kind.quantity == "normal_backlash")
+    block = drawn_block(model, 6, 0, trials)
+    angle, made = block.random_angle[mesh.name], build(model, block.deviations)
+    exact = read_backlash(kind, mesh, ExactEngine(model).read(made, mesh, kind.reading, angle))
+    errors = []
+    for steps in densities:
+        meshing = Meshing(engine_of(model, steps), model, mesh, made, kind.reading)
+        errors.append(measure_backlash(kind, meshing, meshing.seat(angle)) - exact)
+    return np.array(errors)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("scene", ["spur_pair.yaml", "bevel_pair.yaml"])
+def test_fcl_converges_to_the_exact_engine_with_the_square_of_the_step(scene: str, engine_of) -> None:
+    densities = (60, 120, 240, 480)
+    errors = errors_of_fcl(scene, 400, densities, engine_of)
+    rms = np.sqrt((errors**2).mean(axis=1))  # seen: 0.070, 0.018, 0.0047, 0.0012 um; bevel 0.22, 0.054, 0.012, 0.0023
+    assert -np.polyfit(np.log(densities[:3]), np.log(rms[:3]), 1)[0] == pytest.approx(2.0, abs=0.2)
+    assert rms[3] <= rms[2] / 4 * 1.1 + FCL_NOISE
+    # strips lie inside the teeth: each single trial reads too much
+    assert errors.min() >= -FCL_NOISE
+    assert (errors.max(axis=1) <= 4 * rms).all()
 
 
 # extremes over positions ------------------------------------------------------------------------------------

@@ -94,7 +94,12 @@ class Kernel:
         numbers = [types.NamedUniTuple(types.float64, len(kind._fields), kind) for kind in self._tuples]
         signatures: Any = numba_signatures
         arrays, _ = signatures.normalize_signature(f"void({self._arrays})")
-        with _kept_in(folder(Path(self._function.__code__.co_filename).parent)):
+        where = folder(Path(self._function.__code__.co_filename).parent)
+        try:
+            where.mkdir(parents=True, exist_ok=True)
+        except OSError:  # numba would keep it beside the sources, by the date of one of them
+            return self._made((*numbers, *arrays), cache=False)
+        with _kept_in(where):
             try:
                 return self._made((*numbers, *arrays), cache=True)
             except RuntimeError:  # nowhere to keep it: compiled for this process only

@@ -281,7 +281,7 @@ class BevelPair:
         """A tooth at azimuth psi touches at the in-plane angle q = q_p + sin(beta) (s/(2 r_e) - sigma psi)."""
         gear = self.pinion
         at_pitch = gear.pitch_q + math.sin(gear.base_angle) * gear.pitch_half_angle
-        per_azimuth, margin = math.sin(gear.base_angle), CONTACT_MARGIN * gear.angular_pitch
+        per_azimuth, margin = math.sin(gear.base_angle), 2 * CONTACT_MARGIN * gear.angular_pitch
         return (at_pitch - gear.tip_q) / per_azimuth - margin, (at_pitch - self.start_q) / per_azimuth + margin
 
     def candidate_teeth(self, driver_angle: Array, flank: Flank) -> tuple[NDArray[np.int64], NDArray[np.bool_]]:

@@ -20,6 +20,16 @@ FLAT = 1e-15  # 1/mm; bow of the gap along the face that is no more than roundin
 
 
 @part
+def down_to(slope: float, bow: float, low: float, high: float) -> float:
+    """The way to the lowest point of `slope w + bow w^2/2` between two ends."""
+    if bow > FLAT:
+        return min(max(-slope / bow, low), high)
+    if slope == 0.0:
+        return min(max(0.0, low), high)
+    return low if slope > 0.0 else high
+
+
+@part
 def lowest(
     own: Any,
     mate: Any,
@@ -48,22 +58,22 @@ def lowest(
     fall, steps = 0.0, STEPS
     while True:
         at = foot(own, mate, pose, own_azimuth, mate_azimuth, sigma, offset, profile, face)
-        low, high = max(own.low, face + mate.low - at.face), min(own.high, face + mate.high - at.face)
+        # a point that the mate turns to touches it as far from the apex as the point is, not as its foot is
+        there = at.face + 0.5 * per_turn * at.gap * at.gap * at.nearness
+        low, high = max(own.low, face + mate.low - there), min(own.high, face + mate.high - there)
         if low > high:
             return at, fall, profile, face, False
         by_face = at.by_face - per_turn * at.gap * at.nearness
         per_bend = 1.0 / at.bend
         slope = by_face - at.twist * at.by_profile * per_bend
-        bow = at.bow - at.twist * at.twist * per_bend
-        if bow > FLAT:
-            wanted = face - slope / bow
-        elif slope == 0.0:
-            wanted = face
-        else:
-            wanted = low if slope > 0.0 else high
-        along = min(max(wanted, low), high) - face
+        along = down_to(slope, at.bow - at.twist * at.twist * per_bend, low - face, high - face)
         moved = profile - (at.by_profile + at.twist * along) * per_bend
         aside = min(max(moved, own.begin), own.end) - profile
+        if profile + aside != moved:
+            # held by an end of the profile: along the face the gap falls as it does there
+            along = down_to(by_face + at.twist * aside, at.bow, low - face, high - face)
+            moved = profile - (at.by_profile + at.twist * along) * per_bend
+            aside = min(max(moved, own.begin), own.end) - profile
         fall = at.by_profile * aside + by_face * along
         fall += 0.5 * (at.bend * aside * aside + at.bow * along * along) + at.twist * aside * along
         profile += aside
@@ -117,6 +127,8 @@ def nearest(
         gap = at.gap + fall
         turn = turn_to(mate, gap, offset, at)
         how = CLOSED if mate.begin <= at.touching <= mate.end else AT_EDGE
+        if profile <= own.begin:  # what lies below is no flank, and no edge either
+            how = BEYOND
         return Nearest(gap, turn, how, profile, face, at.x, at.y, at.z, at.nx, at.ny, at.nz, lean)
     edge = min(max(at.profile, mate.begin), mate.end)
     its, its_fall, _, _, overlap = lowest(
@@ -124,7 +136,7 @@ def nearest(
     )
     if not overlap:
         return Nearest(math.inf, math.inf, CLOSED, profile, face, at.x, at.y, at.z, at.nx, at.ny, at.nz, lean)
-    how = AT_EDGE if own.begin <= its.profile <= own.end else BEYOND
+    how = AT_EDGE if own.begin < its.profile <= own.end and at.profile >= mate.begin else BEYOND
     # the foot on own flank, and the way from the mate's edge to it, in the mate's frame
     apart = its.gap + offset
     px, py, pz = its.x - apart * its.nx, its.y - apart * its.ny, its.z - apart * its.nz

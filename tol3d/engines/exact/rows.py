@@ -86,13 +86,28 @@ def build_of(
 
 
 @part
-def within_reach(pair: PairNumbers, rest: Pose, p: Pose) -> bool:
-    """Whether the candidate teeth are those of the nominal pose still."""
+def within_reach(build: Build, driver_scale: float, driven_scale: float) -> bool:
+    """Whether the candidate teeth are those of the nominal pose still.
+
+    Gears that grow with their housing are the nominal ones at another scale. Where base pitches differ by d a tip
+    touches sqrt(2 rho d) before the path of contact begins, rho the relative radius of curvature, at most a quarter
+    of the tangent of both base circles.
+    """
+    pair, rest, p = build.pair, build.nominal, build.pose
     square = (p.xx - rest.xx) ** 2 + (p.xy - rest.xy) ** 2 + (p.xz - rest.xz) ** 2
     square += (p.yx - rest.yx) ** 2 + (p.yy - rest.yy) ** 2 + (p.yz - rest.yz) ** 2
     square += (p.zx - rest.zx) ** 2 + (p.zy - rest.zy) ** 2 + (p.zz - rest.zz) ** 2
-    dx, dy, dz = p.x - rest.x, p.y - rest.y, pair.along * (p.z - rest.z)
-    return math.sqrt(dx * dx + dy * dy + dz * dz) + math.sqrt(square / 2.0) * pair.lever <= pair.reach
+    mean = 0.5 * (driver_scale + driven_scale)
+    dx, dy, dz = p.x - mean * rest.x, p.y - mean * rest.y, pair.along * (p.z - rest.z)
+    moved = math.sqrt(dx * dx + dy * dy + dz * dz) + math.sqrt(square / 2.0) * pair.lever
+    moved += math.sqrt(build.driver_x * build.driver_x + build.driver_y * build.driver_y)
+    moved += math.sqrt(build.driven_x * build.driven_x + build.driven_y * build.driven_y)
+    if pair.along == 0.0 and driver_scale != driven_scale:
+        apart, bases = math.hypot(rest.x, rest.y), build.driver.base + build.driven.base
+        tangent = math.sqrt(max(apart * apart - bases * bases, 0.0))
+        pitches = abs(build.driven.base * pair.driven_pitch - build.driver.base * pair.driver_pitch)
+        moved += 0.5 * abs(driver_scale - driven_scale) * apart + math.sqrt(0.5 * tangent * pitches) * tangent / apart
+    return moved <= pair.reach
 
 
 @part
@@ -140,7 +155,7 @@ def read_rows(
         readings[row, :] = np.nan
         teeth[row] = 0
         status[row] = OUT_OF_RANGE
-        if not within_reach(pair, nominal, build.pose):
+        if not within_reach(build, scale[row, gears[0]], scale[row, gears[1]]):
             continue
         opened = build.driver_turn / pair.ratio + build.driven_turn
         start = standing(build, angle, pair.driven_start - angle / pair.ratio + sigma * opened)
@@ -150,7 +165,9 @@ def read_rows(
         if side.gap == math.inf or not side.known:
             continue
         other = seen(build, at, angle, gap)
-        if not other.known:
+        if other.gap == math.inf:
+            status[row] = NO_CONTACT
+        if other.gap == math.inf or not other.known:
             continue
         status[row] = INTERFERES if other.gap < -FREE else OK
         readings[row, DRIVEN_ANGLE] = at.driven
@@ -166,8 +183,9 @@ def read_rows(
             if not gap_closes:  # the smallest gap tells nearly by how much
                 near_at = driven_on(at, sigma * other.turn)
                 near = seen(build, near_at, angle, closing)
-            end, _ = closed(near, build, near_at, closing)
-            readings[row, DRIVEN_TURN] = abs(end.driven - at.driven)
+            end, last = closed(near, build, near_at, closing)
+            if last.known and last.gap < math.inf:
+                readings[row, DRIVEN_TURN] = abs(end.driven - at.driven)
         if which[7]:
             readings[row, DRIVER_TURN] = abs(driver_turn(build, at, Look(-sigma, which[3], which[4] != 0, 0.0)))
 
