@@ -281,6 +281,7 @@ class BevelPair:
         """A tooth at azimuth psi touches at the in-plane angle q = q_p + sin(beta) (s/(2 r_e) - sigma psi)."""
         gear = self.pinion
         at_pitch = gear.pitch_q + math.sin(gear.base_angle) * gear.pitch_half_angle
+        # cones that tilt bring edges to touch as far again beyond the path as cylinders do
         per_azimuth, margin = math.sin(gear.base_angle), 2 * CONTACT_MARGIN * gear.angular_pitch
         return (at_pitch - gear.tip_q) / per_azimuth - margin, (at_pitch - self.start_q) / per_azimuth + margin
 

@@ -70,8 +70,10 @@ class Meshing:
         angles, working, touched = self.turn_to_contact(flank, (driver_angle, start), turn_driver=False)
         non_working = self.gaps_of(opposite(flank), angles, self.reading.gap == "section", touched)
         play = non_working.smallest()
-        overlap = non_working.deep.any(axis=1) | (play < -ROOT_FINDING_NOISE)
-        status = np.select([~touched, overlap], [NO_CONTACT, INTERFERES], OK).astype(np.int8)
+        deep = non_working.deep.any(axis=1)
+        overlap = deep | (play < -ROOT_FINDING_NOISE)
+        nowhere = ~touched | (np.isnan(play) & ~deep)
+        status = np.select([nowhere, overlap], [NO_CONTACT, INTERFERES], OK).astype(np.int8)
         return MeshSeat(driver_angle, angles[1], working, non_working, status)
 
     def rows(self, rows: NDArray[np.intp]) -> "Meshing":
@@ -131,6 +133,7 @@ class Meshing:
         turned = [angles[0].copy(), angles[1].copy()]
         mover = turned[0 if turn_driver else 1]
         at_rest = _AtRest(teeth)
+        touched = np.zeros(len(mover), dtype=bool)
         rows = np.arange(len(mover))
         for _ in range(TURN_STEPS):
             at = (turned[0][rows], turned[1][rows])
@@ -141,18 +144,19 @@ class Meshing:
             rate = np.abs(gaps.per_turn(axis_point[rows], axis[rows], of_driver=turn_driver))
             reach = np.where(np.isnan(gaps.value), np.inf, gaps.value / rate)
             deep = np.asarray(gaps.deep.any(axis=1))
-            step = np.where(deep, -self.engine.depth / base_radius, reach.min(axis=1))
+            least = reach.min(axis=1)
+            lost = ~deep & np.isinf(least)  # no faces overlap
+            step = np.where(deep, -self.engine.depth / base_radius, np.where(lost, 0.0, least))
             mover[rows] -= opening * step
-            resting = ~deep & (np.abs(step) * base_radius < last_step)
+            resting = ~deep & ~lost & (np.abs(step) * base_radius < last_step)
             at_rest.keep(rows[resting], gaps, resting, rate * step[:, None])
             tie = TIE / base_radius + (TIE_SHARE + pair.arm_spread) * np.abs(step)
             tied = reach <= (step + tie)[:, None]
             wanted[rows] &= deep[:, None] | tied
-            rows = rows[~resting]
+            touched[rows[resting]] = True
+            rows = rows[~(resting | lost)]
             if not len(rows):
                 break
-        touched = np.ones(len(mover), dtype=bool)
-        touched[rows] = False
         return (turned[0], turned[1]), at_rest.gaps(), touched
 
 
