@@ -248,6 +248,8 @@ def gap_rows(
                 SHARP_FALL,
             )
             value[row, k] = near.gap
+            if near.gap == math.inf:
+                continue
             ahead, back = flank_offset[row, gears[0]], near.gap + flank_offset[row, gears[0]]
             x, y = near.x + at.fx, near.y + at.fy
             for i in range(3):
