@@ -1,0 +1,78 @@
+"""What a trial of an exact study costs, stage by stage, on one core.
+
+    python benchmarks/stages.py [--trials 65536]
+
+Prints µs of processor time a trial for the draws, the builds, the contact, the stack-up, the whole block of columns and
+its statistics, least of several rounds, for the spur and the bevel pair. For the imports see startup.py.
+"""
+
+import argparse
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+from rich.console import Console
+from rich.table import Table
+
+from tol3d import load_scene
+from tol3d.block import analytic_values, drawn_block, simulate_block
+from tol3d.engines.door import exact_engine
+from tol3d.features import features
+from tol3d.measures import turning_gear
+from tol3d.study import Overrides, effective_model
+from tol3d.tally import PILOT_TRIALS, Tally, grids_of
+
+SCENES = Path(__file__).resolve().parent.parent / "scenes"
+ROUNDS = 7
+
+
+def cost(stage: Callable[[], object], trials: int) -> float:
+    """µs of processor time a trial, least of ROUNDS."""
+    stage()
+    found = []
+    for _ in range(ROUNDS):
+        started = time.thread_time()
+        stage()
+        found.append(time.thread_time() - started)
+    return min(found) / trials * 1e6
+
+
+def stages(scene: Path, trials: int) -> dict[str, float]:
+    """Cost of each stage."""
+    model = effective_model(load_scene(scene), Overrides(engine="exact", witness=0))
+    engine, mesh, seed = exact_engine(model), model.meshes[0], model.study.seed
+    block = drawn_block(model, seed, 0, trials)
+    made, angles = engine.build(block.deviations), block.random_angle[mesh.name]
+    turning = frozenset(gear for measure in model.measures if (gear := turning_gear(measure.kind, mesh)))
+    columns = simulate_block(model, engine, block)
+    grids = grids_of(model, simulate_block(model, engine, block.part(0, PILOT_TRIALS)))
+    measure = model.measures[0]
+    reading = measure.kind.reading
+    return {
+        "draws": cost(lambda: drawn_block(model, seed, 0, trials), trials),
+        "builds": cost(lambda: engine.build(block.deviations), trials),
+        "contact, gap and free turn": cost(lambda: engine.read(made, mesh, reading, angles, turning), trials),
+        "stack-up": cost(lambda: analytic_values(model, measure, block), trials),
+        "all columns, without draws": cost(lambda: simulate_block(model, engine, block), trials),
+        "features of the contributors": cost(lambda: features(model, measure, columns), trials),
+        "statistics, features included": cost(lambda: Tally.of(model, grids, columns), trials),
+    }
+
+
+def main() -> None:
+    """Measure and print."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--trials", type=int, default=65_536)
+    trials = parser.parse_args().trials
+    found = {name: stages(SCENES / f"{name}.yaml", trials) for name in ("spur_pair", "bevel_pair")}
+    table = Table(title=f"µs of one core a trial, blocks of {trials}")
+    table.add_column("stage")
+    for name in found:
+        table.add_column(name, justify="right")
+    for stage in found["spur_pair"]:
+        table.add_row(stage, *(f"{costs[stage]:.3f}" for costs in found.values()))
+    Console().print(table)
+
+
+if __name__ == "__main__":
+    main()
