@@ -15,8 +15,13 @@
     witness      some trials again, by FCL  tol3d/witness.py      witness_summary
     result       the run on disk            tol3d/result.py       Run            (writer.py: RunWriter)
 
+The exact engine goes build, moves and measures in one compiled kernel (engines/exact/: foot -> nearest -> seating ->
+rows), to the same result as by its gaps; `compiled.py` is the door to numba. `tangent.py` and `sensitivity.py` take the
+derivatives of measures through the contact.
+
 Spur and bevel pairs go the same way: `gears/pair.py` says what every pair offers. A new kind of gear is one file in
-gears/, parts/, solids/, analytic/ and in each folder of scene/ that it concerns, named in model/pairs.py.
+gears/, parts/, solids/, engines/exact/, analytic/ and in each folder of scene/ that it concerns, named in
+model/pairs.py.
 
 `study.py` says what is asked, `report/` and `cli.py` show what is there. The analytic road gets the
 same deviations and the same driver position as the geometric one and never sees a mesh, a pose or an engine.
