@@ -85,8 +85,12 @@ class Kernel:
     @property
     def kept(self) -> bool:
         """Whether this machine has compiled it before: whether using it takes no more than loading it."""
-        name = self._function.__name__
-        return any(folder(Path(self._function.__code__.co_filename).parent).glob(f"*/*.{name}-*.nbi"))
+        return any(self._folder.glob(f"*/*.{self._function.__name__}-*.nbi"))
+
+    @property
+    def _folder(self) -> Path:
+        kinds = "-".join(kind.__name__ for kind in self._tuples) or "arrays"
+        return folder(Path(self._function.__code__.co_filename).parent) / kinds
 
     @cached_property
     def _compiled(self) -> Callable[..., None]:
@@ -94,12 +98,11 @@ class Kernel:
         numbers = [types.NamedUniTuple(types.float64, len(kind._fields), kind) for kind in self._tuples]
         signatures: Any = numba_signatures
         arrays, _ = signatures.normalize_signature(f"void({self._arrays})")
-        where = folder(Path(self._function.__code__.co_filename).parent)
         try:
-            where.mkdir(parents=True, exist_ok=True)
+            self._folder.mkdir(parents=True, exist_ok=True)
         except OSError:  # numba would keep it beside the sources, by the date of one of them
             return self._made((*numbers, *arrays), cache=False)
-        with _kept_in(where):
+        with _kept_in(self._folder):
             try:
                 return self._made((*numbers, *arrays), cache=True)
             except RuntimeError:  # nowhere to keep it: compiled for this process only

@@ -1,4 +1,7 @@
-"""What a kind of gear has to tell the kernels: the foot of a point of one flank on the other, and how gears grow."""
+"""What a kind of gear has to tell the kernels: the foot of a point of one flank on the other, and how gears grow.
+
+The bodies here are never run: as a kernel is compiled for a kind of teeth, each call becomes that kind's variant.
+"""
 
 import math
 from typing import Any

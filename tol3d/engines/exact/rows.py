@@ -1,4 +1,4 @@
-"""Rows of builds through the contact: the loops that every kind of pair has in common."""
+"""Rows of builds through the contact: the loops that every kind of pair has in common; kernels.py compiles them."""
 
 import math
 from typing import Any
@@ -8,19 +8,18 @@ from numpy.typing import NDArray
 
 from tol3d.compiled import part
 from tol3d.engines.exact.foot import grown, section
-from tol3d.engines.exact.nearest import SHARP_FALL, nearest
+from tol3d.engines.exact.nearest import SHARP_FALL
 from tol3d.engines.exact.numbers import PairNumbers, Pose
 from tol3d.engines.exact.seating import (
     Build,
     Look,
-    azimuths,
     closed,
     driven_on,
     driver_turn,
+    pair_nearest,
     pose_at,
     seen,
     standing,
-    start_on,
 )
 from tol3d.engines.status import INTERFERES, NO_CONTACT, OK, OUT_OF_RANGE
 
@@ -110,7 +109,6 @@ def within_reach(build: Build, driver_scale: float, driven_scale: float) -> bool
     return moved <= pair.reach
 
 
-@part
 def read_rows(
     pinion: Any,
     wheel: Any,
@@ -190,7 +188,6 @@ def read_rows(
             readings[row, DRIVER_TURN] = abs(driver_turn(build, at, Look(-sigma, which[3], which[4] != 0, 0.0)))
 
 
-@part
 def gap_rows(
     pinion: Any,
     wheel: Any,
@@ -233,20 +230,7 @@ def gap_rows(
             if not wanted[row, k]:
                 continue
             tooth = float(driver_teeth[row, k])
-            own_azimuth, mate_azimuth = azimuths(build, at, sigma, tooth)
-            near = nearest(
-                own,
-                build.driven,
-                pose,
-                own_azimuth,
-                mate_azimuth,
-                sigma,
-                build.offset,
-                start_on(build, pose, sigma, own_azimuth),
-                middle.low,
-                0.0,
-                SHARP_FALL,
-            )
+            near = pair_nearest(build, at, sigma, tooth, pose, own, middle.low, 0.0, SHARP_FALL)
             value[row, k] = near.gap
             if near.gap == math.inf:
                 continue

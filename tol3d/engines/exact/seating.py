@@ -194,6 +194,44 @@ def start_on(build: Build, pose: Pose, sigma: float, own_azimuth: float) -> floa
 
 
 @part
+def pair_nearest(
+    build: Build,
+    at: Turn,
+    sigma: float,
+    tooth: float,
+    pose: Pose,
+    own: Any,
+    face: float,
+    per_turn: float,
+    last_fall: float,
+) -> Nearest:
+    """The nearest points of a tooth pair.
+
+    Args:
+        build, at: what is built, and where its gears stand.
+        sigma, tooth: side, and tooth of the driver.
+        pose: as pose_at gives it.
+        own: what is looked at of the driver's teeth; the search begins at `face` [mm] on it.
+        per_turn, last_fall: as in nearest.lowest.
+    """
+    own_azimuth, mate_azimuth = azimuths(build, at, sigma, tooth)
+    start = start_on(build, pose, sigma, own_azimuth)
+    return nearest(
+        own,
+        build.driven,
+        pose,
+        own_azimuth,
+        mate_azimuth,
+        sigma,
+        build.offset,
+        start,
+        face,
+        per_turn,
+        last_fall,
+    )
+
+
+@part
 def aside(at: Turn, turn: float, near: Nearest) -> float:
     """By how much more a gap [mm] opens as the driven gear's centre moves with its turn, along the normal there."""
     fx, fy = turned(at.fx, at.fy, turn)
@@ -224,20 +262,7 @@ def seen(build: Build, at: Turn, seen_at: float, look: Look) -> Side:
     in_middle = (0.5 * (pair.lowest + pair.highest) - sigma * at.driver) / pair.driver_pitch
     for step in range(count):
         tooth = sigma * middle_first(step, first, count, in_middle)
-        own_azimuth, mate_azimuth = azimuths(build, at, sigma, tooth)
-        near = nearest(
-            own,
-            build.driven,
-            pose,
-            own_azimuth,
-            mate_azimuth,
-            sigma,
-            build.offset,
-            start_on(build, pose, sigma, own_azimuth),
-            middle.low,
-            look.per_turn,
-            QUICK_FALL,
-        )
+        near = pair_nearest(build, at, sigma, tooth, pose, own, middle.low, look.per_turn, QUICK_FALL)
         if near.gap == math.inf:
             continue
         if near.how == BEYOND:
