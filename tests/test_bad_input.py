@@ -201,7 +201,7 @@ CHANGES = {
     ),
     "unknown kind of move": (
         ("kind: mesh", "kind: mash"),
-        "moves.gear pair.kind: expected mesh or bevel_mesh, got 'mash'; did you mean \"mesh\"?",
+        "moves.gear pair.kind: expected one of mesh, bevel_mesh, reducer, train, got 'mash'; did you mean \"mesh\"?",
     ),
     "missing kind": (
         ("{kind: rayleigh, scale", "{scale"),
@@ -209,7 +209,7 @@ CHANGES = {
     ),
     "unknown word": (
         ("working_flank: right", "working_flank: rihgt"),
-        "moves.gear pair.working_flank: expected right or left, got 'rihgt'; did you mean \"right\"?",
+        "moves.gear pair.working_flank: expected one of right, left, either, got 'rihgt'; did you mean \"right\"?",
     ),
     "unknown direction": (
         ("kind: eccentricity", "direction: apart\n    kind: eccentricity"),

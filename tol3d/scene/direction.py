@@ -1,8 +1,8 @@
 """Which way a deviation points: a word, or `{at: angle}`. Positions of the driver are said the same way."""
 
-from typing import Annotated, Any
+from typing import Annotated, Any, Literal
 
-from pydantic import BeforeValidator, Field, Tag
+from pydantic import BeforeValidator, Discriminator, Field, Tag
 
 from tol3d.scene.nearest import nearest
 from tol3d.strict import Strict, refused
@@ -33,3 +33,9 @@ def known_word(*words: str) -> BeforeValidator:
         raise refused("", f"{', '.join(words)} or {{at: 30 deg}}", shown(value) + near)
 
     return BeforeValidator(checked)
+
+
+RandomOrFixed = Annotated[
+    Annotated[Literal["random"], Tag("word")] | FixedAngle, Discriminator(shape), known_word("random")
+]
+"""Uniform over the circle, or at an angle: where an offset points that turns with its gear, or where a shaft stands."""

@@ -40,7 +40,8 @@ def scene_from_python(scene: Scene, *, trust_parts: bool = False) -> Scene:
         SceneError: names or files that cannot be found; relative ones start at the working folder.
     """
     text = scene.model_dump_json(indent=1, exclude_unset=True) + "\n"
-    return _with_files(scene, Origin(Path("scene.yaml"), text), trust_parts, None)
+    source = scene.source if scene.source != Origin().source else Path("scene.yaml")
+    return _with_files(scene, Origin(source, text), trust_parts, None)
 
 
 def _with_files(scene: Scene, origin: Origin, trust_parts: bool, files: Files | None) -> Scene:

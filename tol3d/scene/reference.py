@@ -6,15 +6,24 @@ from typing import Final, Literal
 
 from tol3d.scene.place import KeyPath
 
-Sort = Literal["spur_gear", "bevel_gear", "housing", "mesh", "bevel_mesh"]
+Sort = Literal[
+    "spur_gear", "bevel_gear", "housing", "shaft", "bearing", "arm", "mesh", "bevel_mesh", "reducer", "train"
+]
 
 SORT_WORDS: Final[dict[Sort, str]] = {
     "spur_gear": "a spur gear",
     "bevel_gear": "a bevel gear",
     "housing": "a housing",
+    "shaft": "a shaft",
+    "bearing": "a bearing",
+    "arm": "an arm",
     "mesh": "a mesh of spur gears",
     "bevel_mesh": "a bevel mesh",
+    "reducer": "a reducer",
+    "train": "a train",
 }
+
+SHAFTS: Final[tuple[Sort, ...]] = ("shaft", "spur_gear", "bevel_gear")
 
 
 TOGETHER: Final[dict[frozenset[Sort], str]] = {
@@ -50,6 +59,23 @@ class Reference:
     path: KeyPath
     name: str
     sorts: tuple[Sort, ...]
+
+    @property
+    def expected(self) -> str:
+        """What it may be the name of, in words."""
+        return sorts_text(self.sorts)
+
+
+@dataclass(frozen=True)
+class ShaftReference(Reference):
+    """The name of what turns as one: a shaft, or a gear that is its own because none carries it."""
+
+    sorts: tuple[Sort, ...] = SHAFTS
+
+    @property
+    def expected(self) -> str:
+        """As of any reference."""
+        return "a shaft, or of a gear that none carries"
 
 
 @dataclass(frozen=True)

@@ -8,9 +8,10 @@ from typing import Final
 from tol3d.distributions.empirical import EmpiricalSpec
 from tol3d.errors import SceneError
 from tol3d.scene.nearest import hint
+from tol3d.scene.parts import ShaftSpec
 from tol3d.scene.place import KeyPath
 from tol3d.scene.problems import first_few
-from tol3d.scene.reference import SORT_WORDS, Contradiction, Reference, sorts_text
+from tol3d.scene.reference import SORT_WORDS, Contradiction, Reference, ShaftReference
 from tol3d.scene.schema import Scene
 from tol3d.units import expectation, shown
 
@@ -33,7 +34,7 @@ def refuse(scene: Scene, problems: list[Problem]) -> None:
 
 def loose_ends(scene: Scene) -> list[Problem]:
     """What does not hold together in a scene that is right field by field: names first, then what they mean."""
-    problems = list(_repeated(scene)) or list(_unknown(scene)) or list(_contradicted(scene))
+    problems = list(_repeated(scene)) or list(_unknown(scene)) or [*_carried_again(scene), *_contradicted(scene)]
     return [*problems, *_unpublished(scene), *_unstoppable(scene)]
 
 
@@ -60,34 +61,54 @@ def _repeated(scene: Scene) -> Iterator[Problem]:
 
 
 def _references(scene: Scene) -> Iterator[tuple[KeyPath, Reference]]:
-    for section, entries in (("tolerances", scene.tolerances), ("moves", scene.moves), ("measures", scene.measures)):
-        for name, entry in entries.items():
+    for section in SECTIONS:
+        for name, entry in getattr(scene, section).items():
             for reference in entry.references():
                 yield (section, name, *reference.path), reference
 
 
 def _unknown(scene: Scene) -> Iterator[Problem]:
     sorts = {name: entry.sort for entries in (scene.parts, scene.moves) for name, entry in entries.items()}
+    carriers = {gear: shaft for shaft, gear in _carried(scene)}
     for path, reference in _references(scene):
-        if sorts.get(reference.name) in reference.sorts:
+        carried = carriers if isinstance(reference, ShaftReference) else {}
+        if sorts.get(reference.name) in reference.sorts and reference.name not in carried:
             continue
-        expected = sorts_text(reference.sorts)
-        fitting = [name for name, sort in sorts.items() if sort in reference.sorts]
+        fitting = [name for name, sort in sorts.items() if sort in reference.sorts and name not in carried]
         section = next((s for s in SECTIONS if reference.name in getattr(scene, s)), None)
-        if reference.name in sorts:
+        if reference.name in carried:
+            fitting = [carried[reference.name]]
+            got = f"{reference.name!r}, which {fitting[0]!r} carries"
+        elif reference.name in sorts:
             got = f"{reference.name!r}, which is {SORT_WORDS[sorts[reference.name]]}"
         elif section is not None:
             got = f"{reference.name!r}, which stands in {section}"
         else:
             got = f"{reference.name!r}, which is not in the scene"
-        yield path, f"expected the name of {expected}, got {got}{hint(reference.name, fitting)}"
+        yield path, f"expected the name of {reference.expected}, got {got}{hint(reference.name, fitting)}"
+
+
+def _carried(scene: Scene) -> Iterator[tuple[str, str]]:
+    """Every shaft with every gear that it carries."""
+    for name, part in scene.parts.items():
+        if isinstance(part, ShaftSpec):
+            yield from ((name, gear) for gear in part.carries)
+
+
+def _carried_again(scene: Scene) -> Iterator[Problem]:
+    """Gears that a shaft above carries too."""
+    first: dict[str, str] = {}
+    for shaft, gear in _carried(scene):
+        if (other := first.setdefault(gear, shaft)) != shaft:
+            path: KeyPath = ("parts", shaft, "carries", gear)
+            yield path, f"expected a gear that no other shaft carries, got {gear!r}, which {other!r} carries"
 
 
 def _contradicted(scene: Scene) -> Iterator[Problem]:
     parts, moves = scene.parts, scene.moves
     found: list[tuple[str, str, Iterator[Contradiction]]] = [
         *(("tolerances", name, entry.contradictions(parts, moves)) for name, entry in scene.tolerances.items()),
-        *(("measures", name, entry.contradictions(moves)) for name, entry in scene.measures.items()),
+        *(("measures", name, entry.contradictions(parts, moves)) for name, entry in scene.measures.items()),
     ]
     for section, name, contradictions in found:
         for it in contradictions:

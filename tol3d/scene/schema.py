@@ -1,6 +1,7 @@
 """A scene as its user wrote it, checked field by field."""
 
 from collections.abc import Mapping
+from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
 from typing import Annotated, Any, Literal, Self
@@ -241,6 +242,13 @@ class Scene(Strict):
         scene = self.model_copy()
         scene._origin = origin
         return scene
+
+    def model_copy(self, *, update: Mapping[str, Any] | None = None, deep: bool = False) -> Self:
+        """A copy; one that says something else than its file, but for the study, has no text of it any more."""
+        copied = super().model_copy(update=update, deep=deep)
+        if update and update.keys() - {"study"}:
+            copied._origin = replace(self._origin, text="")
+        return copied
 
     def meshes_of(self, gear: str) -> tuple[str, ...]:
         """Names of the moves in which a gear takes part."""

@@ -5,15 +5,16 @@ from typing import ClassVar, Literal
 
 from pydantic import Field
 
-from tol3d.scene.measures.measure import AngleLimit, MeasureSpec
+from tol3d.scene.measures.measure import AngleLimit
+from tol3d.scene.measures.mesh_measure import MeshMeasureSpec
 from tol3d.scene.moves import MoveSpec
 from tol3d.scene.name import Name
-from tol3d.scene.parts import GEARS
+from tol3d.scene.parts import GEARS, PartSpec
 from tol3d.scene.reference import Contradiction, Reference
 from tol3d.units import Dimension
 
 
-class AngularBacklashSpec(MeasureSpec):
+class AngularBacklashSpec(MeshMeasureSpec):
     """An angle: the free turn of one gear while its mate is held."""
 
     dimension: ClassVar[Dimension] = "angle"
@@ -28,7 +29,7 @@ class AngularBacklashSpec(MeasureSpec):
         mesh = super().references()
         return mesh if self.gear is None else (*mesh, Reference(("gear",), self.gear, GEARS))
 
-    def contradictions(self, moves: Mapping[str, MoveSpec]) -> Iterator[Contradiction]:
+    def contradictions(self, parts: Mapping[str, PartSpec], moves: Mapping[str, MoveSpec]) -> Iterator[Contradiction]:
         """The gear takes part in the mesh."""
         gears = moves[self.of].gears
         if self.gear is not None and self.gear not in gears:

@@ -4,11 +4,12 @@ from typing import ClassVar, Literal
 
 from pydantic import Field
 
-from tol3d.scene.measures.measure import LengthLimit, MeasureSpec
+from tol3d.scene.measures.measure import LengthLimit
+from tol3d.scene.measures.mesh_measure import MeshMeasureSpec
 from tol3d.units import Dimension
 
 
-class CircumferentialBacklashSpec(MeasureSpec):
+class CircumferentialBacklashSpec(MeshMeasureSpec):
     """j_wt, a length: the free arc on the working pitch circle."""
 
     dimension: ClassVar[Dimension] = "length"

@@ -1,88 +1,51 @@
-"""What every kind of measure has in common: of what, over which positions, what is taken, its limits."""
+"""What every kind of measure has in common: of what it is, how much of it is taken, its limits."""
 
-from abc import ABC
+from abc import ABC, abstractmethod
 from collections.abc import Iterator, Mapping
 from typing import Annotated, ClassVar, Literal, Self
 
-from pydantic import Discriminator, Field, Tag, model_validator
+from pydantic import Field, model_validator
 
-from tol3d.scene.direction import At, FixedAngle, known_word, shape
-from tol3d.scene.moves import MESHES, MoveSpec
+from tol3d.scene.moves import MoveSpec
 from tol3d.scene.name import Name
+from tol3d.scene.parts import PartSpec
 from tol3d.scene.reference import Contradiction, Reference
 from tol3d.strict import Strict, refused
 from tol3d.units import Dimension, Of, Quantity
 
-FEWEST_POSITIONS = 4
 MOST_POSITIONS = 1000
 
-Over = Annotated[
-    Annotated[Literal["random", "turn", "long_period"], Tag("word")] | FixedAngle,
-    Discriminator(shape),
-    known_word("random", "turn", "long_period"),
-]
 Take = Literal["value", "min", "max", "range", "curve"]
 LengthLimit = Annotated[Quantity, Of("length")]
 AngleLimit = Annotated[Quantity, Of("angle")]
 
 
 class MeasureSpec(Strict, ABC):
-    """A measure as a scene writes it; a number a trial, or a curve."""
+    """A measure as a scene writes it: a number a trial, or a curve.
+
+    Each kind says by `take` what it takes of its positions.
+    """
 
     dimension: ClassVar[Dimension]
 
     kind: str
     lower_limit: Quantity | None
     upper_limit: Quantity | None
-    of: Name = Field(description="the mesh move")
-    over: Over = Field(
-        default="random",
-        description="positions of the driver: random (uniform over the long period), {at: angle}, turn (one of the "
-        "driver) or long_period (until the same teeth meet again)",
-    )
-    take: Take = Field(default="value", description="value at one position; min, max, range or curve of several")
-    positions: int = Field(
-        default=24,
-        ge=FEWEST_POSITIONS,
-        le=MOST_POSITIONS,
-        description="positions a turn, for turn and long_period",
-    )
-    read_at: Literal["mean_section", "face_contact", "face"] | None = Field(
-        default=None,
-        description="where on the face: contact and gap in the section in its middle (bevel gears if not given), "
-        "contact over the face and the gap in that section, or both over the face (spur gears if not given)",
-    )
-    tooth: Literal["driver", "driven", "all"] | None = Field(
-        default=None,
-        description="which teeth: one tooth of the driver or the driven gear in its space, or all that may touch; "
-        "driven for bevel gears, all for spur gears if not given",
-    )
+    of: Name = Field(description="the move that it is read on")
     description: str = Field(default="", description="the user's own words, shown in reports")
 
     @property
+    @abstractmethod
     def several_positions(self) -> bool:
         """Whether a trial is read at several positions."""
-        return self.over in ("turn", "long_period")
 
+    @abstractmethod
     def references(self) -> tuple[Reference, ...]:
-        """Every name that the measure uses: the mesh."""
-        return (Reference(("of",), self.of, MESHES),)
+        """Every name that the measure uses."""
 
-    def contradictions(self, moves: Mapping[str, MoveSpec]) -> Iterator[Contradiction]:
-        """What does not fit the moves that it names; asked only when every name exists."""
+    def contradictions(self, parts: Mapping[str, PartSpec], moves: Mapping[str, MoveSpec]) -> Iterator[Contradiction]:
+        """What does not fit the parts and moves that it names; asked only when every name exists."""
         return iter(())
-
-    @model_validator(mode="after")
-    def _refuse_take_without_over(self) -> Self:
-        over = "{at: …}" if isinstance(self.over, At) else self.over
-        if self.several_positions and self.take == "value":
-            got = "take: value" if "take" in self.model_fields_set else "no take"
-            raise refused("take", f"min, max, range or curve beside over: {over}", got)
-        superfluous = {"take": self.take != "value", "positions": "positions" in self.model_fields_set}
-        for field, given in superfluous.items():
-            if given and not self.several_positions:
-                raise refused(field, "over: turn or over: long_period beside it", f"over: {over}")
-        return self
 
     @model_validator(mode="after")
     def _refuse_reversed_limits(self) -> Self:

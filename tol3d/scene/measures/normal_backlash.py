@@ -4,11 +4,12 @@ from typing import ClassVar, Literal
 
 from pydantic import Field
 
-from tol3d.scene.measures.measure import LengthLimit, MeasureSpec
+from tol3d.scene.measures.measure import LengthLimit
+from tol3d.scene.measures.mesh_measure import MeshMeasureSpec
 from tol3d.units import Dimension
 
 
-class NormalBacklashSpec(MeasureSpec):
+class NormalBacklashSpec(MeshMeasureSpec):
     """j_bn, a length: shortest distance of the non-working flanks while the working flanks touch."""
 
     dimension: ClassVar[Dimension] = "length"

@@ -1,7 +1,7 @@
 """What every mesh of two gears has in common."""
 
 from collections.abc import Iterator
-from typing import ClassVar, Final, Literal, Self
+from typing import Annotated, ClassVar, Final, Literal, Self
 
 from pydantic import Field, model_validator
 
@@ -9,6 +9,7 @@ from tol3d.scene.moves.move import MoveSpec
 from tol3d.scene.name import Name
 from tol3d.scene.reference import Reference, Sort
 from tol3d.strict import refused
+from tol3d.units import Of, Quantity
 
 MESHES: Final[tuple[Sort, ...]] = ("mesh", "bevel_mesh")
 
@@ -24,7 +25,17 @@ class GearMeshSpec(MoveSpec):
 
     driver: Name = Field(description="the gear that is held")
     driven: Name = Field(description="the gear that turns into contact")
-    working_flank: Literal["right", "left"] = Field(default="right", description="the driver's flank that touches")
+    azimuth: Annotated[Quantity, Of("angle")] = Field(
+        default=Quantity(0.0, "deg"),
+        description="where the driven gear lies about the driver's axis, in the frame of the driver's shaft",
+        json_schema_extra={"default": "0 deg"},
+    )
+    ratio: float | None = Field(
+        default=None, gt=0.0, description="teeth of the driven gear by those of the driver; checked where it is given"
+    )
+    working_flank: Literal["right", "left", "either"] = Field(
+        default="right", description="the driver's flank that touches; either: the load on the train decides"
+    )
 
     @model_validator(mode="after")
     def _refuse_one_gear(self) -> Self:

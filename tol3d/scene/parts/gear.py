@@ -4,15 +4,13 @@ from typing import Annotated, Final
 
 from pydantic import Field
 
-from tol3d.scene.parts.part import PartSpec
+from tol3d.scene.parts.part import Length, PartSpec
 from tol3d.scene.reference import Sort
 from tol3d.units import Of, Positive, Quantity
 
 MOST_TEETH = 10_000  # far more than anyone hobs; keeps a slip of the finger from building for days
 
 GEARS: Final[tuple[Sort, ...]] = ("spur_gear", "bevel_gear")
-
-Length = Annotated[Quantity, Of("length"), Positive()]
 
 
 class GearSpec(PartSpec):

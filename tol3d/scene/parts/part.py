@@ -4,9 +4,11 @@ from typing import Annotated, ClassVar
 
 from pydantic import Field
 
-from tol3d.scene.reference import Sort
+from tol3d.scene.reference import Reference, Sort
 from tol3d.strict import Strict
-from tol3d.units import Of, Quantity
+from tol3d.units import Of, Positive, Quantity
+
+Length = Annotated[Quantity, Of("length"), Positive()]
 
 
 class PartSpec(Strict):
@@ -18,3 +20,7 @@ class PartSpec(Strict):
     expansion: Annotated[Quantity, Of("expansion")] | None = Field(
         default=None, description="coefficient of linear thermal expansion"
     )
+
+    def references(self) -> tuple[Reference, ...]:
+        """Every name that the part uses; most use none."""
+        return ()

@@ -4,7 +4,8 @@ from typing import ClassVar, Literal
 
 from pydantic import Field
 
-from tol3d.scene.parts.gear import GearSpec, Length
+from tol3d.scene.parts.gear import GearSpec
+from tol3d.scene.parts.part import Length
 from tol3d.scene.reference import Sort
 
 

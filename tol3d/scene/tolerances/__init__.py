@@ -12,6 +12,7 @@ from tol3d.scene.tolerances.bearing_clearance import BearingClearanceSpec
 from tol3d.scene.tolerances.centre_distance import CentreDistanceSpec
 from tol3d.scene.tolerances.eccentricity import EccentricitySpec
 from tol3d.scene.tolerances.mounting_face import MountingFaceSpec
+from tol3d.scene.tolerances.reducer_backlash import ReducerBacklashSpec
 from tol3d.scene.tolerances.run_out import RunOutSpec
 from tol3d.scene.tolerances.shaft_angle import ShaftAngleSpec
 from tol3d.scene.tolerances.shim import ShimSpec
@@ -32,7 +33,8 @@ ToleranceUnion = Annotated[
     | MountingFaceSpec
     | ShaftAngleSpec
     | ShimSpec
-    | TemperatureSpec,
+    | TemperatureSpec
+    | ReducerBacklashSpec,
     Field(discriminator="kind"),
 ]
 
@@ -45,6 +47,7 @@ __all__ = [
     "CentreDistanceSpec",
     "EccentricitySpec",
     "MountingFaceSpec",
+    "ReducerBacklashSpec",
     "RunOutSpec",
     "ShaftAngleSpec",
     "ShimSpec",

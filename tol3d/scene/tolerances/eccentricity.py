@@ -4,7 +4,8 @@ from typing import Literal
 
 from pydantic import Field
 
-from tol3d.scene.tolerances.tolerance import GearToleranceSpec, RandomOrFixed
+from tol3d.scene.direction import RandomOrFixed
+from tol3d.scene.tolerances.tolerance import GearToleranceSpec
 
 
 class EccentricitySpec(GearToleranceSpec):

@@ -2,23 +2,17 @@
 
 from abc import ABC, abstractmethod
 from collections.abc import Iterator, Mapping
-from typing import Annotated, ClassVar, Literal, Self
+from typing import ClassVar, Self
 
-from pydantic import Discriminator, Field, Tag, model_validator
+from pydantic import Field, model_validator
 
 from tol3d.distributions import DistributionUnion
-from tol3d.scene.direction import FixedAngle, known_word, shape
 from tol3d.scene.moves import MoveSpec
 from tol3d.scene.name import Name
 from tol3d.scene.parts import GEARS, PartSpec
 from tol3d.scene.reference import Contradiction, Reference, Sort
 from tol3d.strict import Strict
 from tol3d.units import Dimension, refuse_dimension
-
-RandomOrFixed = Annotated[
-    Annotated[Literal["random"], Tag("word")] | FixedAngle, Discriminator(shape), known_word("random")
-]
-"""Direction of an offset that turns with its gear: uniform over the circle, or at an angle in the gear's frame."""
 
 
 class ToleranceSpec(Strict, ABC):
@@ -50,11 +44,13 @@ class ToleranceSpec(Strict, ABC):
 class GearToleranceSpec(ToleranceSpec):
     """A tolerance of one gear, or of what carries it."""
 
+    sorts: ClassVar[tuple[Sort, ...]] = GEARS
+
     of: Name = Field(description="the gear")
 
     def references(self) -> tuple[Reference, ...]:
-        """The gear."""
-        return (Reference(("of",), self.of, GEARS),)
+        """The gear, or what carries it."""
+        return (Reference(("of",), self.of, self.sorts),)
 
 
 class MeshToleranceSpec(ToleranceSpec):

@@ -1,0 +1,103 @@
+"""A scene's file with other tolerances in it: what is said otherwise stays as it was written, comments too."""
+
+from collections.abc import Mapping
+from copy import copy
+from io import StringIO
+from pathlib import Path
+from typing import Any, Final
+
+from ruamel.yaml import YAML
+from ruamel.yaml.comments import CommentedMap
+
+from tol3d.errors import InputError
+from tol3d.scene.load import load_scene
+from tol3d.scene.place import Origin
+from tol3d.scene.schema import Scene
+from tol3d.scene.tolerances import ToleranceSpec
+
+UNBROKEN: Final = 10_000  # characters; no entry is broken into lines where its author did not
+INDENT: Final = 2
+
+Tolerances = Mapping[str, ToleranceSpec]
+
+
+def tolerance_lines(tolerances: Tolerances) -> str:
+    """Tolerances as lines to paste into the section `tolerances` of a scene."""
+    entries = CommentedMap((name, _flow(_plain(spec))) for name, spec in tolerances.items())
+    return "".join(f"{' ' * INDENT}{line}\n" for line in _written(entries).splitlines())
+
+
+def with_tolerances(scene: Scene, changed: Tolerances) -> Scene:
+    """A scene with some tolerances changed or added, in its text too: results are kept and told apart by that."""
+    text = _edited(scene.text, changed)
+    own = scene.model_copy(update={"tolerances": {**scene.tolerances, **changed}})
+    return own.read_from(Origin(scene.source, text, scene.places, scene.files))
+
+
+def write_scene(scene: Scene, path: Path) -> None:
+    """Write a scene's text to a new file.
+
+    Raises:
+        InputError: there is a file already, it cannot be written, or names files that would not be found from there.
+    """
+    if scene.file_names and path.resolve().parent != scene.folder.resolve():
+        raise InputError(
+            f"{path}: expected a file in {scene.folder}, for the scene names files by their way from there"
+        )
+    try:
+        with path.open("x", encoding="utf-8") as file:
+            file.write(scene.text)
+    except FileExistsError:
+        raise InputError(f"{path}: expected the name of a new file, there is one already") from None
+    except OSError as error:
+        raise InputError(f"{path}: cannot be written ({error.strerror})") from None
+    if load_scene(path, files=scene.files).model_dump() != scene.model_dump():
+        path.unlink()
+        raise InputError(f"{path}: {scene.source} is written in a way that cannot be edited; paste the lines instead")
+
+
+def _edited(text: str, changed: Tolerances) -> str:
+    """A scene's text with these tolerances: of one that is there only the distribution is written anew."""
+    data = _yaml().load(text)
+    if "tolerances" not in data:
+        data.insert(list(data).index("moves"), "tolerances", CommentedMap())
+    tolerances = data["tolerances"]
+    for name, spec in changed.items():
+        plain = _plain(spec)
+        if name not in tolerances:
+            tolerances[name] = _flow(plain)
+            continue
+        entry = copy(tolerances[name])  # another entry may be an alias of it
+        entry["distribution"] = _flow(plain["distribution"])
+        tolerances[name] = entry
+    return _written(data)
+
+
+def _plain(spec: ToleranceSpec) -> dict[str, Any]:
+    """What was said of it, the law last."""
+    plain = spec.model_dump(mode="json", exclude_unset=True)
+    return {
+        **{key: value for key, value in plain.items() if key != "distribution"},
+        "distribution": plain["distribution"],
+    }
+
+
+def _flow(values: Any) -> Any:
+    """Values as YAML writes them on one line: {key: value}."""
+    if not isinstance(values, dict):
+        return values
+    flow = CommentedMap((key, _flow(value)) for key, value in values.items())
+    flow.fa.set_flow_style()
+    return flow
+
+
+def _yaml() -> YAML:
+    yaml = YAML()
+    yaml.width, yaml.preserve_quotes = UNBROKEN, True
+    return yaml
+
+
+def _written(data: Any) -> str:
+    stream = StringIO()
+    _yaml().dump(data, stream)
+    return stream.getvalue()

@@ -1,0 +1,46 @@
+"""Three values along x, y and z: lengths with their units, or a direction in plain numbers."""
+
+from typing import Annotated, Any
+
+from pydantic import AfterValidator, BeforeValidator, Field
+
+from tol3d.strict import refused
+from tol3d.units import Of, Quantity, shown
+
+AXES = 3  # x, y, z
+
+Coordinate = Annotated[Quantity, Of("length")]
+
+
+def three(expected: str) -> BeforeValidator:
+    """Mark of a field of three items, each checked by itself afterwards.
+
+    Args:
+        expected: what would do, for the message.
+    """
+
+    def checked(value: Any) -> tuple[Any, ...]:
+        if isinstance(value, list | tuple) and len(value) == AXES:
+            return tuple(value)
+        got = f"a list of {len(value)}" if isinstance(value, list | tuple) and value else shown(value)
+        raise refused("", expected, got)
+
+    return BeforeValidator(checked)
+
+
+def _pointing(direction: tuple[float, float, float]) -> tuple[float, float, float]:
+    if not any(direction):
+        raise refused("", "a direction with a number other than 0", "zeros only")
+    return direction
+
+
+Vector = Annotated[tuple[Coordinate, Coordinate, Coordinate], three("three lengths, such as [0 mm, 12 mm, 5 mm]")]
+"""A point, or the way to one."""
+
+Direction = Annotated[
+    tuple[float, float, float],
+    AfterValidator(_pointing),
+    three("three numbers, such as [0, -1, 0]"),
+    Field(json_schema_extra={"contains": {"not": {"const": 0}}}),
+]
+"""Which way something points; its length means nothing."""
