@@ -144,7 +144,7 @@ def test_a_curve_is_the_values_at_its_positions(paper_model: Model, engine_of) -
     curve = extreme("curve", "turn", 8)
     model = replace(paper_model, measures=(curve,))
     block, engine = drawn_block(model, 2, 0, 3), engine_of(model)
-    values = geometric_values(curve, seat_block(model, engine, block))
+    values = geometric_values(model, curve, seat_block(model, engine, block))
     assert np.array_equal(taken(curve, values), values)
     for k, angle in enumerate(curve.positions.fixed):
         exact = exact_of(model, block, np.full(3, angle))

@@ -1,6 +1,7 @@
 """The run as a whole: same bits whatever the workers, replay, resume, failures kept as data."""
 
 import json
+import math
 import os
 import signal
 import subprocess
@@ -15,6 +16,7 @@ from tol3d import InputError, Overrides, RunError, folding, open_run, replay, ru
 from tol3d import block as block_module
 from tol3d.execution import Execution
 from tol3d.result import DamageWarning
+from tol3d.scene import load_scene
 from tol3d.simulate import Watch
 from tol3d.worst import worst_trial
 
@@ -268,3 +270,16 @@ def test_damaged_runs_are_refused_by_name(spur_run, tmp_path: Path) -> None:
         open_run(tmp_path)
     with pytest.raises(RunError, match="no column"):
         spur_run.columns("geometric:nothing")
+
+
+def test_a_scene_with_other_tolerances_is_simulated_with_them() -> None:
+    """What a run keeps of a scene is what it says, not what its file said before."""
+    scene = load_scene(SCENES / "spur_pair.yaml")
+    wider = {**scene.tolerances, "centre distance": scene.tolerances["wheel tooth thickness"]}
+    before, after = (
+        run_scene(s, overrides=Overrides(trials=50)) for s in (scene, scene.model_copy(update={"tolerances": wider}))
+    )
+    # a second thickness of -32 ... -21 um in the place of the centre distance: 26.5 cos 20 um more backlash
+    shift = after.summary["measures"]["normal backlash"]["mean_build"]["geometric"]
+    shift -= before.summary["measures"]["normal backlash"]["mean_build"]["geometric"]
+    assert shift == pytest.approx(26.5 * math.cos(math.radians(20)), abs=0.01)

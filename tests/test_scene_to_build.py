@@ -174,9 +174,9 @@ def test_a_tolerance_moves_what_it_says_and_nothing_else(name: str, flank: str, 
     parts = HOUSING + (DRIVER + DRIVEN if first == "driver" else DRIVEN + DRIVER)
     mesh = f"{MESH}, working_flank: {flank}, housing: housing"
     model = model_of(tmp_path, case.text, parts=parts, mesh=mesh)
-    made, driver = built(model), 0 if first == "driver" else 1
-    assert_gear(made, driver, case.driver, 0.0)
-    assert_gear(made, 1 - driver, case.driven, CENTRE_DISTANCE)
+    made = built(model)
+    assert_gear(made, model.seat_index["gear pair", "pinion"], case.driver, 0.0)
+    assert_gear(made, model.seat_index["gear pair", "wheel"], case.driven, CENTRE_DISTANCE)
 
 
 def test_a_length_of_the_axes_counts_over_the_smaller_face_width_whichever_gear_has_it(tmp_path: Path) -> None:

@@ -62,7 +62,7 @@ def effect_of_every_kind() -> list[tuple[Effect, str, bool]]:
             (AxisTilt(gear, (0.6, 0.8, 0.0), 1.0, -9.0), "mrad", False),
         ]
     one_by_one: list[tuple[Effect, str, bool]] = [
-        (AxesOffset("wheel"), "um", False),
+        (AxesOffset("wheel", "mesh"), "um", False),
         (Temperature(("pinion",)), "K", False),
         (Temperature(("wheel", "housing")), "K", False),
         (Temperature(("pinion", "housing", "wheel")), "K", False),
@@ -133,7 +133,7 @@ def differences(model: Model, engine: ExactEngine, block: Block, measure: Measur
         moved = block.deviations.copy()
         moved[:, component] += step
         seats = seat_block(alone, engine, Block(moved, block.random_angle))
-        return taken(measure, geometric_values(measure, seats))
+        return taken(measure, geometric_values(model, measure, seats))
 
     steps = share * of_steps(model, STEPS)
     return np.stack([(values(k, h) - values(k, -h)) / (2 * share) for k, h in enumerate(steps)], axis=-1)
@@ -314,7 +314,7 @@ ONE_TOOTH = Backlash("normal_backlash", "mesh", "wheel", Reading("section", "sec
         (AxisOffset("pinion", (-1.0, 0.0, 0.0)), 0.5311),
         (AxisOffset("wheel", (-1.0, 0.0, 0.0)), 0.4358),
         (AxisTilt("wheel", (0.0, -1.0, 0.0), per_length=1 / (31 * 3.5 / 2 * math.sqrt(2) - 4.5)), 0.6840),
-        (AxesOffset("wheel"), 0.0),
+        (AxesOffset("wheel", "mesh"), 0.0),
     ],
     ids=["pinion's axis", "wheel's axis", "pinion apart", "wheel apart", "shaft angle", "axes offset"],
 )

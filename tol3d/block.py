@@ -4,19 +4,20 @@ Columns are in the user's units (um, mrad, K, deg, arcmin), trial on axis 0; a c
 """
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from tol3d import trials
-from tol3d.analytic import analytic_backlash, per_normal_backlash
+from tol3d.analytic import analytic_backlash, first_order, per_normal_backlash
 from tol3d.build import Build, build
 from tol3d.engines import OK, STATUS_TEXT, Engine, MeshReading, ReadingEngine
-from tol3d.measures import measure_backlash, read_backlash, turning_gear
-from tol3d.model import Measure, Mesh, Model, Positions, Reading, Study
+from tol3d.measures import measure_backlash, moved, read_backlash, turning_gear
+from tol3d.model import Backlash, LostMotion, Measure, Mesh, Model, Reading, Study
 from tol3d.moves import Meshing, MeshSeat
+from tol3d.reducer import reducer_backlash
 
 Array = NDArray[np.float64]
 Columns = Mapping[str, NDArray[np.generic]]
@@ -26,6 +27,7 @@ BUILDS_AT_ONCE = 4096  # builds x positions: 2.5 MB of them
 BLOCK_TRIALS = 65_536  # trials whose statistics are folded together, and that are written as one file
 AUTO_BLOCK_TRIALS = 16_384  # of a study that may stop after any block
 AUTO_FCL_BLOCK_TRIALS = 2048  # the same where a trial is slow: a second of them
+ARCMIN = 10800 / math.pi  # in a radian
 BLOCK_VALUES = 2**22  # values of a curve in one block: 32 MB
 
 
@@ -56,33 +58,44 @@ def drawn_block(model: Model, seed: int, first: int, count: int) -> Block:
 
 
 def stated_block(model: Model, deviations: Array) -> Block:
-    """Trials of the deviations (trials, components) that are stated, drivers at 0."""
-    return Block(deviations, {mesh.name: np.zeros(len(deviations)) for mesh in model.meshes})
+    """Trials of the deviations (trials, components) that are stated, the first shafts at 0."""
+    at_rest = {name: turning.offset for name, turning in model.layout.mesh_turn.items()}
+    return Block(deviations, {mesh: np.full(len(deviations), angle) for mesh, angle in at_rest.items()})
 
 
 def mean_block(model: Model, measure: Measure) -> Block:
-    """One trial with every contributor at its mean over the positions of a measure, drivers at 0."""
+    """One trial with every contributor at its mean over the positions of a measure, the first shafts at 0."""
     return stated_block(model, trials.mean_deviations(model, measure.positions))
 
 
 def nominal_block(model: Model) -> Block:
-    """One trial without deviations, drivers at 0."""
+    """One trial without deviations, the first shafts at 0."""
     return stated_block(model, np.zeros((1, model.component_count)))
 
 
-def driver_angles(positions: Positions, random_angle: Array) -> Array:
-    """Driver angles [rad] at which a measure is read, (trials, positions)."""
-    if positions.fixed is None:
-        return random_angle[:, None]
-    return np.broadcast_to(np.array(positions.fixed), (len(random_angle), len(positions.fixed)))
+Angles = tuple[float, ...] | None
+"""Driver angles [rad] that every trial shares; None for those of the trial."""
+
+SeatKey = tuple[str, Angles, Reading]
+"""Mesh, positions and reading: backlashes that share them share their contacts."""
 
 
-SeatKey = tuple[str, Positions, Reading]
+def seat_key(model: Model, measure: Measure, backlash: Backlash) -> SeatKey:
+    """Where and how a measure reads one of the backlashes that it adds up."""
+    return backlash.mesh, model.driver_angles(measure, backlash.mesh), backlash.reading
 
 
-def seat_key(measure: Measure) -> SeatKey:
-    """Mesh, positions and reading: measures that share them share their contacts."""
-    return measure.kind.mesh, measure.positions, measure.kind.reading
+def seat_keys(model: Model, measure: Measure) -> tuple[SeatKey, ...]:
+    """The same of all of them."""
+    return tuple(seat_key(model, measure, backlash) for _, backlash in measure.kind.backlashes)
+
+
+def driver_angles(key: SeatKey, block: Block) -> Array:
+    """Driver angles [rad] at which a mesh is read, (trials, positions)."""
+    mesh, angles, _ = key
+    if angles is None:
+        return block.random_angle[mesh][:, None]
+    return np.broadcast_to(np.array(angles), (len(block), len(angles)))
 
 
 @dataclass(frozen=True)
@@ -90,11 +103,13 @@ class Seats:
     """Builds of a block and its seated meshes, kept by the positions at which measures read them.
 
     Args:
+        block: the trials.
         build: one row a trial.
         seats: by mesh name, positions and reading; rows are trials x positions, positions fastest.
         meshings: the builds that were seated there.
     """
 
+    block: Block
     build: Build
     seats: Mapping[SeatKey, MeshSeat] = field(default_factory=dict)
     meshings: Mapping[SeatKey, Meshing] = field(default_factory=dict)
@@ -105,29 +120,80 @@ def seat_block(model: Model, engine: Engine, block: Block) -> Seats:
     made = build(model, block.deviations)
     seats: dict[SeatKey, MeshSeat] = {}
     meshings: dict[SeatKey, Meshing] = {}
-    for measure in model.measures:
-        key = seat_key(measure)
-        if key not in seats:
-            mesh = model.mesh(measure.kind.mesh)
-            angles = driver_angles(measure.positions, block.random_angle[mesh.name])
-            meshings[key] = Meshing(engine, model, mesh, made.repeated(angles.shape[1]), measure.kind.reading)
-            seats[key] = meshings[key].seat(angles.ravel())
-    return Seats(made, seats, meshings)
+    for key in _all_keys(model):
+        angles = driver_angles(key, block)
+        meshings[key] = Meshing(engine, model, model.mesh(key[0]), made.repeated(angles.shape[1]), key[2])
+        seats[key] = meshings[key].seat(angles.ravel())
+    return Seats(block, made, seats, meshings)
 
 
-def geometric_values(measure: Measure, seats: Seats) -> Array:
+def _all_keys(model: Model) -> tuple[SeatKey, ...]:
+    return tuple(dict.fromkeys(key for measure in model.measures for key in seat_keys(model, measure)))
+
+
+Read = Callable[[Backlash, SeatKey], Array]
+"""Values (trials, positions) of a backlash [mm or rad] where it is read."""
+
+
+def geometric_values(model: Model, measure: Measure, seats: Seats) -> Array:
     """Values of a measure on the geometric road [mm or rad], (trials, positions)."""
-    key = seat_key(measure)
-    values = measure_backlash(measure.kind, seats.meshings[key], seats.seats[key])
-    return values.reshape(-1, positions_count(measure))
+    return moved(measure.kind, free_play(model, measure, seats))
+
+
+def free_play(model: Model, measure: Measure, seats: Seats) -> Array:
+    """What the backlashes of a measure leave free on the geometric road [mm or rad], (trials, positions)."""
+
+    def read(backlash: Backlash, key: SeatKey) -> Array:
+        values = measure_backlash(backlash, seats.meshings[key], seats.seats[key])
+        return values.reshape(len(seats.block), -1)
+
+    return added_up(model, measure, seats.block, read)
 
 
 def analytic_values(model: Model, measure: Measure, block: Block) -> Array:
     """Values of a measure on the analytic road [mm or rad], (trials, positions)."""
-    angles = driver_angles(measure.positions, block.random_angle[measure.kind.mesh])
-    positions = angles.shape[1]
-    repeated = block.deviations if positions == 1 else np.repeat(block.deviations, positions, axis=0)
-    return analytic_backlash(model, measure.kind, repeated, angles.ravel()).reshape(angles.shape)
+    return first_order(measure.kind, added_up(model, measure, block, _Stacks(model, block)))
+
+
+def analytic_backlashes(model: Model, measure: Measure, block: Block) -> Iterator[tuple[Backlash, Array]]:
+    """The backlashes that a measure adds up, each with its values on the analytic road [mm or rad]."""
+    stacks = _Stacks(model, block)
+    for _, backlash in measure.kind.backlashes:
+        yield backlash, stacks(backlash, seat_key(model, measure, backlash))
+
+
+def added_up(model: Model, measure: Measure, block: Block, read: Read) -> Array:
+    """The backlashes that a measure adds up, each times its factor: (trials, positions) [mm or rad]."""
+    return np.asarray(sum(factor * values for _, factor, values in _added(model, measure, block, read)))
+
+
+def _added(model: Model, measure: Measure, block: Block, read: Read) -> Iterator[tuple[str, float, Array]]:
+    """What a measure adds up, with the name of each mesh or reducer and its factor."""
+    for factor, backlash in measure.kind.backlashes:
+        yield backlash.mesh, factor, read(backlash, seat_key(model, measure, backlash))
+    for factor, reducer in measure.kind.reducers:
+        own = reducer_backlash(model, reducer, block.deviations)
+        yield reducer, factor, np.broadcast_to(own[:, None], (len(block), positions_count(measure)))
+
+
+class _Stacks:
+    """Reads backlashes on the analytic road; those that are read alike share one stack-up."""
+
+    def __init__(self, model: Model, block: Block) -> None:
+        self._model, self._block = model, block
+        self._known: dict[SeatKey, Array] = {}
+
+    def __call__(self, backlash: Backlash, key: SeatKey) -> Array:
+        """See Read."""
+        if key not in self._known:
+            self._known[key] = self._normal_backlash(backlash, driver_angles(key, self._block))
+        return self._known[key] * per_normal_backlash(self._model, backlash)
+
+    def _normal_backlash(self, backlash: Backlash, angles: Array) -> Array:
+        rows, positions = self._block.deviations, angles.shape[1]
+        repeated = rows if positions == 1 else np.repeat(rows, positions, axis=0)
+        normal = replace(backlash, quantity="normal_backlash")
+        return analytic_backlash(self._model, normal, repeated, angles.ravel()).reshape(angles.shape)
 
 
 def positions_count(measure: Measure) -> int:
@@ -149,8 +215,7 @@ def _most_block_trials(study: Study) -> int:
 
 def positions_in_all(model: Model) -> int:
     """How many contacts one trial takes: positions of every different way of reading a mesh."""
-    ways = {seat_key(measure): positions_count(measure) for measure in model.measures}
-    return sum(ways.values())
+    return sum(1 if key[1] is None else len(key[1]) for key in _all_keys(model))
 
 
 def taken(measure: Measure, values: Array) -> Array:
@@ -193,7 +258,8 @@ def simulate_block(model: Model, engine: Engine | None, block: Block) -> dict[st
 
     Returns:
         deviations, `position:<mesh> [deg]`, `analytic:<measure>`, and with an engine
-        `geometric:<measure>`, `contact:<mesh>.x|y|z [mm]`, `contact:<mesh>.tooth` and `status`.
+        `geometric:<measure>`, `contact:<mesh>.x|y|z [mm]`, `contact:<mesh>.tooth` and `status`; for each train also
+        its stages, `analytic:<measure>:<link> [arcmin]`, and with an engine `geometric:...`.
     """
     rows = max(1, ROWS_AT_ONCE // max(positions_count(measure) for measure in model.measures))
     pieces = [_simulate_piece(model, engine, block.part(first, first + rows)) for first in range(0, len(block), rows)]
@@ -210,8 +276,11 @@ def _simulate_piece(model: Model, engine: Engine | None, block: Block) -> dict[s
             columns[name] = own[:, k] / contributor.per_unit
     for mesh in model.meshes:
         columns[position_column(mesh)] = np.degrees(block.random_angle[mesh.name])
-    for measure, values in _analytic(model, block):
+    stacks = _Stacks(model, block)
+    for measure in model.measures:
+        values = first_order(measure.kind, added_up(model, measure, block, stacks))
         columns[f"analytic:{measure.name}"] = taken(measure, values) * measure.per_internal
+    columns.update(_stage_columns(model, "analytic", block, stacks))
     if engine is None:
         return columns
     seen = (
@@ -219,20 +288,31 @@ def _simulate_piece(model: Model, engine: Engine | None, block: Block) -> dict[s
     )
     for measure in model.measures:
         columns[f"geometric:{measure.name}"] = taken(measure, seen.values[measure.name]) * measure.per_internal
-    columns.update(seen.contacts)
+    columns.update(seen.others)
     columns["status"] = _STATUS_TEXTS[seen.status]
     return columns
 
 
-def _analytic(model: Model, block: Block) -> Iterator[tuple[Measure, Array]]:
-    """Analytic values of every measure (trials, positions); those that are read alike share one stack-up."""
-    known: dict[SeatKey, Array] = {}
+def staged_measures(model: Model) -> tuple[Measure, ...]:
+    """The measure of each train whose stages are kept: its first of one value at random positions."""
+    found: dict[str, Measure] = {}
     for measure in model.measures:
-        key = seat_key(measure)
-        if key not in known:
-            normal = replace(measure, kind=replace(measure.kind, quantity="normal_backlash"))
-            known[key] = analytic_values(model, normal, block)
-        yield measure, known[key] * per_normal_backlash(model, measure.kind)
+        if isinstance(measure.kind, LostMotion) and measure.positions.over == "random":
+            found.setdefault(measure.kind.train, measure)
+    return tuple(found.values())
+
+
+def stage_column(road: str, measure: Measure, link: str) -> str:
+    """Name of the column with a stage's own lost motion, at the shaft that it drives."""
+    return f"{road}:{measure.name}:{link} [arcmin]"
+
+
+def _stage_columns(model: Model, road: str, block: Block, read: Read) -> dict[str, Array]:
+    return {
+        stage_column(road, measure, link): values[:, 0] * ARCMIN
+        for measure in staged_measures(model)
+        for link, _, values in _added(model, measure, block, read)
+    }
 
 
 _STATUS_TEXTS = np.array([STATUS_TEXT[code] for code in range(len(STATUS_TEXT))])
@@ -240,11 +320,18 @@ _STATUS_TEXTS = np.array([STATUS_TEXT[code] for code in range(len(STATUS_TEXT))]
 
 @dataclass(frozen=True)
 class _Seen:
-    """The geometric road of a block: values by measure (trials, positions), contact columns, status (trials,)."""
+    """The geometric road of a block: values by measure (trials, positions), other columns, status (trials,)."""
 
     values: Mapping[str, Array]
-    contacts: Mapping[str, NDArray[np.generic]]
+    others: Mapping[str, NDArray[np.generic]]
     status: NDArray[np.int8]
+
+
+def _seen(
+    model: Model, block: Block, read: Read, contacts: dict[str, NDArray[np.generic]], status: NDArray[np.int8]
+) -> _Seen:
+    values = {m.name: moved(m.kind, added_up(model, m, block, read)) for m in model.measures}
+    return _Seen(values, contacts | _stage_columns(model, "geometric", block, read), status)
 
 
 def _measured(model: Model, engine: Engine, block: Block) -> _Seen:
@@ -255,10 +342,16 @@ def _measured(model: Model, engine: Engine, block: Block) -> _Seen:
         seat = next((seat for key, seat in seats.seats.items() if key[0] == mesh.name), None)
         if seat is not None:
             contacts |= _contact_columns(mesh, *seat.contact, len(block))
-    return _Seen(
-        {measure.name: geometric_values(measure, seats) for measure in model.measures},
-        contacts,
-        _worst_status([seat.status for seat in seats.seats.values()], len(block)),
+    known: dict[tuple[Backlash, SeatKey], Array] = {}
+
+    def read(backlash: Backlash, key: SeatKey) -> Array:
+        if (backlash, key) not in known:
+            values = measure_backlash(backlash, seats.meshings[key], seats.seats[key])
+            known[backlash, key] = values.reshape(len(block), -1)
+        return known[backlash, key]
+
+    return _seen(
+        model, block, read, contacts, _worst_status([seat.status for seat in seats.seats.values()], len(block))
     )
 
 
@@ -270,7 +363,7 @@ def _read_in_pieces(model: Model, engine: ReadingEngine, block: Block) -> _Seen:
         return each[0]
     return _Seen(
         {name: np.concatenate([seen.values[name] for seen in each]) for name in each[0].values},
-        {name: np.concatenate([seen.contacts[name] for seen in each]) for name in each[0].contacts},
+        {name: np.concatenate([seen.others[name] for seen in each]) for name in each[0].others},
         np.concatenate([seen.status for seen in each]),
     )
 
@@ -279,21 +372,28 @@ def _read(model: Model, engine: ReadingEngine, block: Block) -> _Seen:
     made = engine.build(block.deviations)
     readings: dict[SeatKey, MeshReading] = {}
     contacts: dict[str, NDArray[np.generic]] = {}
-    for key in dict.fromkeys(seat_key(measure) for measure in model.measures):
+    for key, backlashes in _backlashes_by_key(model).items():
         mesh = model.mesh(key[0])
-        angles = driver_angles(key[1], block.random_angle[mesh.name])
-        kinds = [measure.kind for measure in model.measures if seat_key(measure) == key]
-        turning = frozenset(gear for kind in kinds if (gear := turning_gear(kind, mesh)))
+        angles = driver_angles(key, block)
+        turning = frozenset(gear for backlash in backlashes if (gear := turning_gear(backlash, mesh)))
         readings[key] = engine.read(made.repeated(angles.shape[1]), mesh, key[2], angles.ravel(), turning)
         if f"contact:{mesh.name}.tooth" not in contacts:
             contacts |= _contact_columns(mesh, readings[key].contact, readings[key].tooth, len(block))
-    values = {
-        measure.name: read_backlash(measure.kind, model.mesh(measure.kind.mesh), readings[seat_key(measure)]).reshape(
-            -1, positions_count(measure)
-        )
-        for measure in model.measures
-    }
-    return _Seen(values, contacts, _worst_status([reading.status for reading in readings.values()], len(block)))
+
+    def read(backlash: Backlash, key: SeatKey) -> Array:
+        return read_backlash(backlash, model.mesh(backlash.mesh), readings[key]).reshape(len(block), -1)
+
+    status = _worst_status([reading.status for reading in readings.values()], len(block))
+    return _seen(model, block, read, contacts, status)
+
+
+def _backlashes_by_key(model: Model) -> dict[SeatKey, list[Backlash]]:
+    """Every way of reading a mesh, with the backlashes that are wanted there."""
+    found: dict[SeatKey, list[Backlash]] = {}
+    for measure in model.measures:
+        for _, backlash in measure.kind.backlashes:
+            found.setdefault(seat_key(model, measure, backlash), []).append(backlash)
+    return found
 
 
 def position_column(mesh: Mesh) -> str:

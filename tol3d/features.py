@@ -1,47 +1,95 @@
-"""What a measure sees of each contributor: the columns that shares of the variance are regressed on.
+"""What a measure sees of each contributor that acts on it: the columns that shares of the variance are regressed on.
 
 A turning offset matters by where it points at the mesh, so it is turned into the world at the trial's
 position; over a whole turn only its length matters. Squares catch one-sided effects such as tilts.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping, Sequence, Set
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.block import Columns, position_column
-from tol3d.model import Contributor, Measure, Model, Planar, Positions, TurningOffset
+from tol3d.model import (
+    Backlash,
+    Contributor,
+    Measure,
+    Mesh,
+    Model,
+    Planar,
+    Positions,
+    ReducerBacklash,
+    Temperature,
+    TurningOffset,
+)
+from tol3d.model.contributor import SingleEffect, single_effects
 
 Array = NDArray[np.float64]
 
 FEATURES_EACH = 2  # columns a contributor: value and square, or the two components of a vector
 
 
-def feature_groups(model: Model) -> Mapping[str, slice]:
-    """Which feature columns belong to each contributor."""
+def acting(model: Model, measure: Measure) -> tuple[Contributor, ...]:
+    """The contributors that act on a measure: on one of its meshes, or one of its reducers."""
+    meshes = [model.mesh(backlash.mesh) for _, backlash in measure.kind.backlashes]
+    reducers = {name for _, name in measure.kind.reducers}
+    return tuple(
+        contributor
+        for contributor in model.contributors
+        if any(_acts(effect, meshes, reducers) for effect in single_effects(contributor.effect))
+    )
+
+
+def _acts(effect: SingleEffect, meshes: Sequence[Mesh], reducers: Set[str]) -> bool:
+    if isinstance(effect, ReducerBacklash):
+        return effect.reducer in reducers
+    parts = set(effect.parts) if isinstance(effect, Temperature) else {effect.part}
+    only = getattr(effect, "mesh", None)
+    return any(only in (None, mesh.name) and parts & {mesh.driver, mesh.driven, mesh.housing} for mesh in meshes)
+
+
+def feature_groups(model: Model, measure: Measure) -> Mapping[str, slice]:
+    """Which feature columns of a measure belong to each contributor that acts on it."""
     return {
         contributor.name: slice(FEATURES_EACH * k, FEATURES_EACH * (k + 1))
-        for k, contributor in enumerate(model.contributors)
+        for k, contributor in enumerate(acting(model, measure))
     }
 
 
 def features(model: Model, measure: Measure, columns: Columns) -> Array:
-    """Features of a block for one measure, a row each, (2 x contributors, trials), scaled by each one's sigma."""
-    mesh = model.mesh(measure.kind.mesh)
-    driver = np.radians(np.asarray(columns[position_column(mesh)], dtype=np.float64))
-    if measure.positions.over == "at":
-        driver = np.full_like(driver, measure.positions.angle)
-    turning = _Turning({mesh.driver: driver, mesh.driven: mesh.pair.driven_angle(driver)})
-    rows = np.empty((FEATURES_EACH * len(model.contributors), len(driver)))
-    for contributor, own in zip(model.contributors, feature_groups(model).values(), strict=True):
+    """Features of a block for one measure, a row each, (2 x acting contributors, trials), over each one's sigma."""
+    contributors, groups = acting(model, measure), feature_groups(model, measure)
+    turning = _Turning(_angles(model, measure, columns) if measure.take == "value" else {})
+    trials = len(next(iter(columns.values())))
+    rows = np.empty((FEATURES_EACH * len(contributors), trials))
+    for contributor, own in zip(contributors, groups.values(), strict=True):
         values = [np.asarray(columns[name], dtype=np.float64) * contributor.per_unit for name in contributor.columns]
-        _fill(rows[own], contributor, values, turning if measure.take == "value" else _Turning({}))
+        _fill(rows[own], contributor, values, turning)
     return rows
 
 
-def feature_key(measure: Measure) -> tuple[str, Positions, bool]:
+def _angles(model: Model, measure: Measure, columns: Columns) -> Mapping[str, Array]:
+    """Where the gears of a measure's meshes stand, each in the first of them [rad], (trials,)."""
+    angles: dict[str, Array] = {}
+    for _, backlash in measure.kind.backlashes:
+        mesh = model.mesh(backlash.mesh)
+        driver = np.radians(np.asarray(columns[position_column(mesh)], dtype=np.float64))
+        if (fixed := model.driver_angles(measure, mesh.name)) is not None:
+            driver = np.full_like(driver, fixed[0])
+        angles.setdefault(mesh.driver, driver)
+        angles.setdefault(mesh.driven, mesh.pair.driven_angle(driver))
+    return angles
+
+
+FeatureKey = tuple[tuple[Backlash, ...], tuple[str, ...], Positions, bool]
+
+
+def feature_key(measure: Measure) -> FeatureKey:
     """Measures of one key have the same features."""
-    return measure.kind.mesh, measure.positions, measure.take == "value"
+    kind = measure.kind
+    read = tuple(replace(backlash, quantity="normal_backlash", gear="") for _, backlash in kind.backlashes)
+    return read, tuple(name for _, name in kind.reducers), measure.positions, measure.take == "value"
 
 
 class _Turning:
@@ -62,7 +110,7 @@ class _Turning:
 
 def _fill(rows: Array, contributor: Contributor, values: Sequence[Array], turning: _Turning) -> None:
     """Write a contributor's two rows (2, trials) from the columns of its components."""
-    law, effect = contributor.distribution, contributor.effect
+    law, effect = contributor.distribution, single_effects(contributor.effect)[0]
     per_spread = 1.0 / (law.sigma or 1.0)
     if not isinstance(contributor.draw, Planar):
         np.multiply(values[0] - law.mean, per_spread, out=rows[0])

@@ -11,7 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tol3d import trials
-from tol3d.model import Contributor, Measure, Model, Planar, TurningOffset
+from tol3d.model import Contributor, Measure, Model, Planar
+from tol3d.model.contributor import turns_with_gears
 
 Array = NDArray[np.float64]
 Values = Callable[[Array], Array]
@@ -51,7 +52,7 @@ def _ends(contributor: Contributor, measure: Measure, states: Values) -> Array:
     law, draw = contributor.distribution, contributor.draw
     if not isinstance(draw, Planar):
         return np.array([[law.low], [law.high]])
-    turns_at_random = isinstance(contributor.effect, TurningOffset) and measure.positions.over == "random"
+    turns_at_random = turns_with_gears(contributor.effect) and measure.positions.over == "random"
     if draw.direction is not None and not turns_at_random:
         return np.outer([law.low, law.high], [math.cos(draw.direction), math.sin(draw.direction)])
     east, west, north, south = states(law.radius * np.array([[1.0, 0.0], [-1.0, 0.0], [0.0, 1.0], [0.0, -1.0]]))

@@ -15,19 +15,30 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tol3d import frames, trials
-from tol3d.block import ROWS_AT_ONCE, Block, geometric_values, positions_count, seat_block, seat_key, stated_block
+from tol3d.block import (
+    ROWS_AT_ONCE,
+    Block,
+    Seats,
+    free_play,
+    geometric_values,
+    positions_count,
+    seat_block,
+    seat_key,
+    stated_block,
+)
 from tol3d.engines import OK, Engine, Gaps
 from tol3d.gears import Flank
 from tol3d.gears.flank import opposite
-from tol3d.model import Contributor, Measure, Model, Planar, TurningOffset
-from tol3d.model.contributor import Unit
+from tol3d.measures import moved_rate
+from tol3d.model import Backlash, Contributor, Measure, Model, Planar, ReducerBacklash
+from tol3d.model.contributor import Unit, turns_with_gears
 from tol3d.moves import Meshing, MeshSeat
 from tol3d.tangent import Tangent, tangent
 
 Array = NDArray[np.float64]
 
 # mm, rad, K; tells two sides of a kink apart (1 um of a gap by the end of a face) and bends nothing (1e-5 of a slope)
-STEP_ASIDE: dict[Unit, float] = {"um": 1e-4, "mrad": 1e-5, "K": 0.1}
+STEP_ASIDE: dict[Unit, float] = {"um": 1e-4, "mrad": 1e-5, "arcmin": 1e-5, "K": 0.1}
 
 
 def sensitivities(model: Model, engine: Engine, block: Block, measure: Measure) -> Array:
@@ -49,25 +60,38 @@ def sensitivities(model: Model, engine: Engine, block: Block, measure: Measure) 
 
 def _sensitivities(model: Model, engine: Engine, block: Block, measure: Measure) -> Array:
     alone = replace(model, measures=(measure,))
-    seats, key = seat_block(alone, engine, block), seat_key(measure)
-    count = positions_count(measure)
+    seats, count = seat_block(alone, engine, block), positions_count(measure)
     moves = tangent(model, seats.build, block.deviations).rows(np.repeat(np.arange(len(block)), count))
-    rates = _rates(measure, seats.meshings[key], moves, seats.seats[key])
-    return taken_rates(measure, geometric_values(measure, seats), rates.reshape(len(block), count, -1))
+    rates = _free_rates(alone, measure, moves, seats).reshape(len(block), count, -1)
+    rates *= moved_rate(measure.kind, free_play(model, measure, seats))[..., None]
+    return taken_rates(measure, geometric_values(model, measure, seats), rates)
 
 
-def _rates(measure: Measure, meshing: Meshing, moves: Tangent, seat: MeshSeat) -> Array:
+def _free_rates(model: Model, measure: Measure, moves: Tangent, seats: Seats) -> Array:
+    """Derivatives of what the backlashes of a measure leave free, (rows, components)."""
+    total = np.zeros((len(moves.scale), model.component_count))
+    for factor, backlash in measure.kind.backlashes:
+        key = seat_key(model, measure, backlash)
+        total += factor * _rates(backlash, seats.meshings[key], moves, seats.seats[key])
+    for factor, reducer in measure.kind.reducers:
+        for contributor in model.contributors:
+            if contributor.effect == ReducerBacklash(reducer):
+                total[:, model.component_slices[contributor.name]] += factor
+    return total
+
+
+def _rates(backlash: Backlash, meshing: Meshing, moves: Tangent, seat: MeshSeat) -> Array:
     """Derivatives of a backlash at every position, (rows, components); nan where the mesh did not seat."""
     good = np.flatnonzero(seat.status == OK)
     rates = np.full((len(seat.status), meshing.model.component_count), np.nan)
     contacts = _Contacts(meshing.rows(good), moves.rows(good))
     at_rest = (seat.driver_angle[good], seat.driven_angle[good])
-    if measure.kind.quantity == "normal_backlash":
+    if backlash.quantity == "normal_backlash":
         rates[good] = _of_gap(contacts, at_rest, seat.working.rows(good), seat.non_working.rows(good))
         return rates
-    turn_driver = measure.kind.is_angle and measure.kind.gear == meshing.mesh.driver
+    turn_driver = backlash.is_angle and backlash.gear == meshing.mesh.driver
     turn = _of_turn(contacts, at_rest, seat.working.rows(good), turn_driver=turn_driver)
-    rates[good] = turn if measure.kind.is_angle else turn * meshing.mesh.pair.working_radii[1]
+    rates[good] = turn if backlash.is_angle else turn * meshing.mesh.pair.working_radii[1]
     return rates
 
 
@@ -128,7 +152,8 @@ class _Contacts:
         teeth = np.take_along_axis(gaps.driver_teeth, first[:, None], axis=1)
         wanted = np.ones(teeth.shape, dtype=bool)
         gap = meshing.engine.gaps(meshing.build, meshing.mesh, flank, angles, teeth, wanted, section=section)
-        driver, driven = (meshing.model.gear_index[name] for name in (meshing.mesh.driver, meshing.mesh.driven))
+        mesh = meshing.mesh
+        driver, driven = (meshing.model.seat_index[mesh.name, name] for name in (mesh.driver, mesh.driven))
         normal = gap.normal[:, 0]
         turns = [gap.per_turn(*meshing.build.axis(gear), of_driver=gear == driver)[:, 0] for gear in (driver, driven)]
         behind = self._along(driver, angles[0], flank, gap.driver_point[:, 0], -normal)
@@ -299,7 +324,7 @@ def _direction(contributor: Contributor, measure: Measure, gradient: Array) -> f
     draw = contributor.draw
     if not isinstance(draw, Planar):
         return None
-    turns_at_random = isinstance(contributor.effect, TurningOffset) and measure.positions.over == "random"
+    turns_at_random = turns_with_gears(contributor.effect) and measure.positions.over == "random"
     if draw.direction is not None and not turns_at_random:
         return draw.direction
     return float(np.arctan2(gradient[1], gradient[0]))

@@ -1,15 +1,15 @@
 """What a run is asked to do: a scene, and what is said otherwise than there."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
 from pydantic import ValidationError
 
-from tol3d.block import analytic_values, mean_block, nominal_block
-from tol3d.errors import InputError
-from tol3d.model import Model, model_from_scene
+from tol3d.block import analytic_backlashes, mean_block, nominal_block
+from tol3d.errors import InputError, SceneError
+from tol3d.model import Backlash, Measure, Model, model_from_scene
 from tol3d.scene import Scene, load_scene, scene_from_python
 
 ZERO_BACKLASH = 1e-9  # mm or rad; nominal backlash zero is legal, and closed forms round to 1e-14
@@ -76,13 +76,22 @@ def refuse_interfering_mean(scene: Scene, model: Model) -> None:
         SceneError: at the mesh's centre distance, with the backlash of nominal and mean build.
     """
     for measure in model.measures:
-        value = float(analytic_values(model, measure, mean_block(model, measure)).min())
-        if value < -ZERO_BACKLASH:
-            mesh = model.mesh(measure.kind.mesh)
-            nominal = float(analytic_values(model, measure, nominal_block(model)).min())
-            unit, per = measure.unit, measure.per_internal
-            raise scene.refuse(
-                ("moves", mesh.name),
-                f"the teeth interfere at the mean build: {measure.name} is {value * per:.3f} {unit} there "
-                f"(nominal {nominal * per:.3f} {unit}); {mesh.pair.remedy}",
-            )
+        mean, nominal = mean_block(model, measure), nominal_block(model)
+        for backlash, values in analytic_backlashes(model, measure, mean):
+            if float(values.min()) < -ZERO_BACKLASH:
+                before = dict(analytic_backlashes(model, measure, nominal))[backlash]
+                raise _interfering(scene, model, measure, backlash, (float(values.min()), float(before.min())))
+
+
+def _interfering(
+    scene: Scene, model: Model, measure: Measure, backlash: Backlash, mean_and_nominal: tuple[float, float]
+) -> SceneError:
+    mesh = model.mesh(backlash.mesh)
+    name = measure.name if measure.kind == backlash else f"the angular backlash of {backlash.gear}"
+    own = replace(measure, kind=backlash)
+    mean, nominal = (value * own.per_internal for value in mean_and_nominal)
+    return scene.refuse(
+        ("moves", mesh.name),
+        f"the teeth interfere at the mean build: {name} is {mean:.3f} {own.unit} there "
+        f"(nominal {nominal:.3f} {own.unit}); {mesh.pair.remedy}",
+    )

@@ -10,8 +10,10 @@ from numpy.typing import NDArray
 from tol3d.analytic import closed_form, per_normal_backlash
 from tol3d.block import Block, mean_block, nominal_block, simulate_block, stated_block
 from tol3d.engines import Engine
+from tol3d.features import acting
 from tol3d.high_low_mean import high_low_mean_percents
-from tol3d.model import Backlash, Measure, Model
+from tol3d.model import Backlash, Kind, Measure, Model
+from tol3d.stages import train_summaries
 from tol3d.stopping import shortfalls
 from tol3d.tally import Tally, histograms, in_unit, sample_summary, share_percents
 
@@ -27,6 +29,7 @@ def study_summary(model: Model, engine: Engine | None, tally: Tally) -> dict[str
         "status": dict(tally.status),
         "chord_error_um": engine.chord_error * 1000 if engine else None,
         "measures": measure_summaries(model, engine, tally),
+        "trains": train_summaries(model, tally.stages),
         "warnings": [*model.warnings, *_unphysical_draws(tally), *shortfalls(model, tally)],
     }
 
@@ -41,10 +44,7 @@ def measure_summaries(model: Model, engine: Engine | None, tally: Tally) -> dict
     """The measures as summary.json shows them: statistics of both roads, contributors, published columns."""
     return {
         measure.name: {
-            "kind": measure.kind.quantity,
-            "of": measure.kind.mesh,
-            "gear": measure.kind.gear,
-            "reading": vars(measure.kind.reading),
+            **_what(measure.kind),
             "over": measure.positions.over,
             "take": measure.take,
             "unit": measure.unit,
@@ -60,9 +60,26 @@ def measure_summaries(model: Model, engine: Engine | None, tally: Tally) -> dict
     }
 
 
+def _what(kind: Kind) -> dict[str, Any]:
+    """What is measured."""
+    if isinstance(kind, Backlash):
+        return {"kind": kind.quantity, "of": kind.mesh, "gear": kind.gear, "reading": vars(kind.reading)}
+    return {
+        "kind": kind.quantity,
+        "of": kind.train,
+        "gear": None,
+        "reading": None,
+        "shaft": kind.shaft,
+        "held": kind.held,
+        "arm": kind.tip.arm if kind.tip else None,
+        "point": kind.tip.point if kind.tip else None,
+        "lever_mm": kind.tip.lever if kind.tip else None,
+    }
+
+
 def _lost_motion(model: Model, measure: Measure) -> Mapping[str, Any]:
     """For a normal backlash: the turn of the driven gear that it leaves free, per um."""
-    if measure.kind.quantity != "normal_backlash":
+    if not isinstance(measure.kind, Backlash) or measure.kind.quantity != "normal_backlash":
         return {}
     driven = model.mesh(measure.kind.mesh).driven
     turn = per_normal_backlash(model, Backlash("angular_backlash", measure.kind.mesh, driven))
@@ -107,8 +124,8 @@ def _statistics(model: Model, engine: Engine | None, measure: Measure, tally: Ta
             "compared": own.agreement.count,
         }
     independent = own.analytic.replicated is None  # what the error of a share by regression is worked out for
-    by_sample = share_percents(model, own.analytic_features)
-    geometric = share_percents(model, own.geometric_features)
+    by_sample = share_percents(model, measure, own.analytic_features)
+    geometric = share_percents(model, measure, own.geometric_features)
     alone = _high_low_mean(model, engine, measure)
     summary["contributors"] = [
         {
@@ -118,7 +135,7 @@ def _statistics(model: Model, engine: Engine | None, measure: Measure, tally: Ta
             "geometric_percent_se": geometric[contributor.name][1] if independent else None,
             "high_low_mean_percent": alone[contributor.name],
         }
-        for contributor in model.contributors
+        for contributor in acting(model, measure)
     ]
     return summary
 
@@ -138,7 +155,7 @@ def _curve(model: Model, measure: Measure, tally: Tally) -> dict[str, Any]:
     own = tally.curves[measure.name]
     roads = {"analytic": own.analytic, **({"geometric": own.geometric} if own.geometric else {})}
     return {
-        "position_deg": np.degrees(measure.positions.fixed or ()).tolist(),
+        "position_deg": np.degrees(measure.positions.shown or measure.positions.fixed or ()).tolist(),
         "curve": {
             road: {
                 "mean": [m.mean if m.count else None for m in moments],

@@ -12,6 +12,7 @@ from tol3d.engines import STATUS_TEXT
 from tol3d.features import feature_groups, feature_key, features
 from tol3d.model import Measure, Model
 from tol3d.replicated import Replicated, rows_of_replicates
+from tol3d.stages import StageTallies, merged, stage_tallies
 from tol3d.statistics import Agreement, FeatureSums, Grid, LimitCounts, Moments, pp, ppk, shares
 from tol3d.statistics.door import quick_products
 from tol3d.statistics.grid import BINS
@@ -222,6 +223,7 @@ class Tally:
     unphysical: Mapping[str, int]
     measures: Mapping[str, MeasureTally]
     curves: Mapping[str, CurveTally]
+    stages: StageTallies
 
     @classmethod
     def of(cls, model: Model, grids: Mapping[str, Grid], columns: Columns, first: int = 0) -> "Tally":
@@ -240,6 +242,7 @@ class Tally:
             _unphysical(model, columns),
             _Block(model, columns, rows).tally(scalars, grids),
             {measure.name: CurveTally.of(measure, columns) for measure in curves},
+            stage_tallies(model, columns),
         )
 
     def merge(self, other: "Tally") -> "Tally":
@@ -250,6 +253,7 @@ class Tally:
             {name: count + other.unphysical[name] for name, count in self.unphysical.items()},
             {name: tally.merge(other.measures[name]) for name, tally in self.measures.items()},
             {name: tally.merge(other.curves[name]) for name, tally in self.curves.items()},
+            merged(self.stages, other.stages),
         )
 
 
@@ -350,9 +354,11 @@ def histograms(tally: MeasureTally) -> dict[str, Any]:
     }
 
 
-def share_percents(model: Model, sums: FeatureSums | None) -> dict[str, tuple[float | None, float | None]]:
-    """Share of the variance [%] of each contributor by regression and its standard error; None where unknown."""
-    groups = feature_groups(model)
+def share_percents(
+    model: Model, measure: Measure, sums: FeatureSums | None
+) -> dict[str, tuple[float | None, float | None]]:
+    """Share of the variance [%] of each acting contributor by regression, its standard error; None where unknown."""
+    groups = feature_groups(model, measure)
     if sums is None:
         return dict.fromkeys(groups, (None, None))
     found = shares(sums, groups)

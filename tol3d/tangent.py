@@ -10,21 +10,32 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tol3d import frames
-from tol3d.build import Build
-from tol3d.model import AxesOffset, AxisOffset, AxisTilt, Effect, Model, Temperature, ToothThickness, TurningOffset
+from tol3d.build import Build, in_seat
+from tol3d.model import (
+    AxesOffset,
+    AxisOffset,
+    AxisTilt,
+    Effect,
+    Model,
+    ReducerBacklash,
+    Temperature,
+    Together,
+    ToothThickness,
+    TurningOffset,
+)
 
 Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
 class Tangent:
-    """Rates of a block of builds; axis 1 follows `model.gears`, axis 2 the components of the deviations.
+    """Rates of a block of builds; axis 1 follows `model.seats`, axis 2 the components of the deviations.
 
     Args:
-        origin: (trials, gears, components, 3), velocity of the shaft frame's origin [mm], in the world.
-        turn: (trials, gears, components, 3), angular velocity of the shaft's frame about it [rad], in the world.
-        centre: (trials, gears, components, 2), of the gear's centre off its axis [mm], in the gear's frame.
-        flank_turn, flank_offset, scale: (trials, gears, components), of the same fields of the Build.
+        origin: (trials, seats, components, 3), velocity of the shaft frame's origin [mm], in the world.
+        turn: (trials, seats, components, 3), angular velocity of the shaft's frame about it [rad], in the world.
+        centre: (trials, seats, components, 2), of the gear's centre off its axis [mm], in the gear's frame.
+        flank_turn, flank_offset, scale: (trials, seats, components), of the same fields of the Build.
     """
 
     origin: Array
@@ -41,13 +52,13 @@ class Tangent:
 
 @dataclass
 class _Rates:
-    """What the contributors put in, before the gears' frames at rest are placed in the world."""
+    """What the contributors put in, before the seats' frames at rest are placed in the world."""
 
-    axis_offset: Array  # (trials, gears, components, 3), in the gear's frame at rest
+    axis_offset: Array  # (trials, seats, components, 3), in the seat's frame at rest
     axis_turn: Array  # the same shape: rate of the rotation vector there
-    centre: Array  # (trials, gears, components, 2)
-    flank_turn: Array  # (trials, gears, components)
-    flank_offset: Array  # (trials, gears, components)
+    centre: Array  # (trials, seats, components, 2)
+    flank_turn: Array  # (trials, seats, components)
+    flank_offset: Array  # (trials, seats, components)
     temperature: dict[str, Array]  # part -> (components,)
 
 
@@ -59,8 +70,8 @@ def tangent(model: Model, made: Build, deviations: Array) -> Tangent:
         made: `build(model, deviations)`.
         deviations: (trials, components) [mm, rad, K], columns as in `model.component_slices`.
     """
-    trials, gears, components = len(deviations), len(model.gears), model.component_count
-    shape = (trials, gears, components)
+    shape = (len(deviations), len(model.seats), model.component_count)
+    components = model.component_count
     rates = _Rates(
         axis_offset=np.zeros((*shape, 3)),
         axis_turn=np.zeros((*shape, 3)),
@@ -78,15 +89,15 @@ def tangent(model: Model, made: Build, deviations: Array) -> Tangent:
 
     origin, axis_turn = rates.axis_offset, rates.axis_turn
     for mesh in model.meshes:
-        driven = model.gear_index[mesh.driven]
+        driven = model.seat_index[mesh.name, mesh.driven]
         rest = mesh.pair.world_from_wheel
         origin[:, driven] = frames.apply(rest, origin[:, driven])
         axis_turn[:, driven] = frames.apply(rest, axis_turn[:, driven])
         if mesh.housing:
             origin[:, driven] += growth(mesh.housing)[:, None] * mesh.pair.wheel_origin
     scale = np.zeros(shape)
-    for part in model.gears:
-        scale[:, model.gear_index[part.name]] = growth(part.name)
+    for index, seat in enumerate(model.seats):
+        scale[:, index] = growth(seat.gear)
     return Tangent(
         origin=origin,
         turn=frames.apply(left_jacobian(made.axis_turn)[:, :, None], axis_turn),
@@ -124,39 +135,43 @@ def _put(effect: Effect, own: slice, columns: Array, rates: _Rates, model: Model
 
 @_put.register
 def _(effect: ToothThickness, own: slice, columns: Array, rates: _Rates, model: Model) -> None:
-    gear = model.gear_index[effect.part]
-    rates.flank_turn[:, gear, own] = effect.turn
-    rates.flank_offset[:, gear, own] = effect.offset
+    for seat in model.seats_of(effect.part):
+        rates.flank_turn[:, seat, own] += effect.turn
+        rates.flank_offset[:, seat, own] += effect.offset
 
 
 @_put.register
 def _(effect: TurningOffset, own: slice, columns: Array, rates: _Rates, model: Model) -> None:
-    rates.centre[:, model.gear_index[effect.part], own] = np.eye(2)
+    for seat in model.seats_of(effect.part):
+        rates.centre[:, seat, own] += effect.plane.matrix.T
 
 
 @_put.register
 def _(effect: AxisOffset, own: slice, columns: Array, rates: _Rates, model: Model) -> None:
-    gear = model.gear_index[effect.part]
-    if columns.shape[1] == 2:
-        rates.axis_offset[:, gear, own, :2] = effect.factor * np.eye(2)
-    else:
-        rates.axis_offset[:, gear, own] = effect.factor * np.array(effect.direction)
+    for seat in model.seats_of(effect.part, effect.mesh):
+        if columns.shape[1] == 2:
+            plane = effect.plane.seen_from(model.seats[seat].azimuth)
+            rates.axis_offset[:, seat, own, :2] += effect.factor * plane.matrix.T
+        else:
+            direction = effect.direction if effect.mesh else in_seat(effect.direction, model.seats[seat])
+            rates.axis_offset[:, seat, own] += effect.factor * np.array(direction)
 
 
 @_put.register
 def _(effect: AxisTilt, own: slice, columns: Array, rates: _Rates, model: Model) -> None:
     """The pivot's own turn has a fixed axis, so that its angular velocity is the rate of its vector."""
-    gear = model.gear_index[effect.part]
-    rate = effect.per_length * np.array(effect.axis)
-    turned = frames.apply(frames.about_vector(columns * rate), np.array([0.0, 0.0, effect.pivot]))
-    rates.axis_turn[:, gear, own] = rate
-    rates.axis_offset[:, gear, own] = -np.cross(rate, turned)[:, None]
+    for seat in model.seats_of(effect.part, effect.mesh):
+        axis = effect.axis if effect.mesh else in_seat(effect.axis, model.seats[seat])
+        rate = effect.per_length * np.array(axis)
+        turned = frames.apply(frames.about_vector(columns * rate), np.array([0.0, 0.0, effect.pivot]))
+        rates.axis_turn[:, seat, own] += rate
+        rates.axis_offset[:, seat, own] += -np.cross(rate, turned)[:, None]
 
 
 @_put.register
 def _(effect: AxesOffset, own: slice, columns: Array, rates: _Rates, model: Model) -> None:
-    mesh = next(mesh for mesh in model.meshes if mesh.driven == effect.part)
-    rates.axis_offset[:, model.gear_index[effect.part], own] = mesh.pair.world_from_wheel[1]
+    mesh = model.mesh(effect.mesh)
+    rates.axis_offset[:, model.seat_index[mesh.name, effect.part], own] += mesh.pair.world_from_wheel[1]
 
 
 @_put.register
@@ -164,3 +179,14 @@ def _(effect: Temperature, own: slice, columns: Array, rates: _Rates, model: Mod
     for part in effect.parts:
         rate = rates.temperature.setdefault(part, np.zeros(model.component_count))
         rate[own] += 1.0
+
+
+@_put.register
+def _(effect: ReducerBacklash, own: slice, columns: Array, rates: _Rates, model: Model) -> None:
+    """A data sheet moves no axis and no flank."""
+
+
+@_put.register
+def _(effect: Together, own: slice, columns: Array, rates: _Rates, model: Model) -> None:
+    for single in effect.effects:
+        _put(single, own, columns, rates, model)

@@ -1,7 +1,7 @@
 """Seed and contributors to deviations: every draw is keyed, so a trial can be replayed alone.
 
-A model has a stream of uniforms for each component of a contributor and for each mesh's driver position; the study's
-sampler draws them. A trial depends on (model, seed, trial index) and on nothing else: not on blocks or workers.
+A model has a stream of uniforms for each component of a contributor and for the position of each tree of shafts; the
+study's sampler draws them. A trial depends on (model, seed, trial index) and on nothing else: not on blocks or workers.
 """
 
 import math
@@ -10,7 +10,9 @@ from collections.abc import Mapping
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.model import Mesh, Model, Planar, Positions, TurningOffset
+from tol3d.model import Model, Planar, Positions
+from tol3d.model.contributor import turns_with_gears
+from tol3d.model.layout import Drive
 from tol3d.samplers import LatinHypercube, MonteCarlo, Sampler, Sobol, Stream
 from tol3d.samplers.door import quick_monte_carlo
 
@@ -20,12 +22,12 @@ DRIVER_POSITION = "driver position"
 
 
 def streams_of(model: Model) -> Mapping[tuple[str, str], Stream]:
-    """Every stream by name and component: the meshes, then contributors and their components in the scene's order.
+    """Every stream by name and component: trees of shafts, then contributors, their components, in the scene's order.
 
     Driver positions come first, where Sobol' points are most even: they act together with all that turns, in waves of
     as many turns as the long period has (of the spur pair 55: its mean is three times as exact at 16 384 trials).
     """
-    keys = [(mesh.name, DRIVER_POSITION) for mesh in model.meshes]
+    keys = [(drive.name, DRIVER_POSITION) for drive in model.layout.drives]
     keys += [(c.name, str(k)) for c in model.contributors for k in range(c.draw.uniforms)]
     return {key: Stream(*key, dimension) for dimension, key in enumerate(keys)}
 
@@ -70,7 +72,7 @@ def mean_deviations(model: Model, positions: Positions) -> Array:
         if not isinstance(contributor.draw, Planar):
             row[:, columns] = mean
         elif contributor.draw.direction is not None and not (
-            positions.over == "random" and isinstance(contributor.effect, TurningOffset)
+            positions.over == "random" and turns_with_gears(contributor.effect)
         ):
             angle = contributor.draw.direction
             row[:, columns] = (mean * math.cos(angle), mean * math.sin(angle))
@@ -78,14 +80,21 @@ def mean_deviations(model: Model, positions: Positions) -> Array:
 
 
 def driver_angles(model: Model, seed: int, first: int, count: int) -> Mapping[str, Array]:
-    """Driver position of each trial [rad] (count,) by mesh, uniform over the mesh's long period."""
+    """Driver position of each trial [rad] (count,) by mesh.
+
+    The first shaft of a tree stands uniform over its long period, so that each mesh stands uniform over its own.
+    """
     sampler, streams = sampler_of(model, seed), streams_of(model)
-    return {
-        mesh.name: _long_period(mesh) * sampler.uniforms(streams[mesh.name, DRIVER_POSITION], first, count)
-        for mesh in model.meshes
-    }
+    angles: dict[str, Array] = {}
+    for drive in model.layout.drives:
+        uniforms = sampler.uniforms(streams[drive.name, DRIVER_POSITION], first, count)
+        angles |= {mesh: _of_long_period(model, drive, mesh, uniforms) for mesh in drive.meshes}
+    return angles
 
 
-def _long_period(mesh: Mesh) -> float:
-    """The turn of the driver [rad] after which the same teeth meet again."""
-    return 2 * math.pi * mesh.pair.long_period_turns
+def _of_long_period(model: Model, drive: Drive, mesh: str, uniforms: Array) -> Array:
+    """The driver's angle of a mesh where its tree stands at a share (count,) of the long period."""
+    turning, turns = model.layout.mesh_turn[mesh], model.mesh(mesh).pair.long_period_turns
+    periods = int(drive.turns * abs(turning.rate) / turns)
+    share = uniforms if periods == 1 else np.mod(periods * uniforms, 1.0)
+    return turning.offset + math.copysign(2 * math.pi * turns, turning.rate) * share

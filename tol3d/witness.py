@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.analytic import per_normal_backlash
+from tol3d.analytic import first_order, per_normal_backlash
 from tol3d.block import Block, Columns, drawn_block, simulate_block
 from tol3d.engines import Engine
 from tol3d.model import Measure, Model
@@ -57,8 +57,8 @@ def witness_summary(model: Model, engine: Engine, trials: int) -> dict[str, Any]
         "measures": {
             measure.name: {
                 **_differences(_values(seen, measure) - _values(given, measure), chosen),
-                "expected_at_most": _in_unit(model, measure, FLANKS_OF_A_BACKLASH * fcl.chord_error),
-                "allowance": _in_unit(model, measure, ALLOWANCE_MM),
+                "expected_at_most": _of_gaps(model, measure, FLANKS_OF_A_BACKLASH * fcl.chord_error),
+                "allowance": _of_gaps(model, measure, ALLOWANCE_MM),
             }
             for measure in model.measures
         },
@@ -130,6 +130,10 @@ def _differences(difference: Array, chosen: NDArray[np.int64]) -> dict[str, floa
     }
 
 
-def _in_unit(model: Model, measure: Measure, normal_backlash: float) -> float:
-    """A normal backlash [mm] in the measure's quantity and unit."""
-    return normal_backlash * per_normal_backlash(model, measure.kind) * measure.per_internal
+def _of_gaps(model: Model, measure: Measure, normal_backlash: float) -> float:
+    """What a measure makes of a normal backlash [mm] in each of its meshes, in its unit."""
+    free = sum(
+        factor * normal_backlash * per_normal_backlash(model, backlash) for factor, backlash in measure.kind.backlashes
+    )
+    positions = np.full((1, max(1, len(measure.positions.fixed or ()))), free)
+    return float(first_order(measure.kind, positions).max()) * measure.per_internal

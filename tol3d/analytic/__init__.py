@@ -1,6 +1,6 @@
 """The reference road: nominal values and stack-ups with their sources. It never sees a mesh, a pose or an engine."""
 
-from tol3d.analytic.backlash import analytic_backlash, per_normal_backlash, stack_of
+from tol3d.analytic.backlash import analytic_backlash, first_order, per_normal_backlash, stack_of
 from tol3d.analytic.closed_form import ClosedForm, Share, closed_form, reference_form
 from tol3d.analytic.stack import Stack, Term
 
@@ -11,6 +11,7 @@ __all__ = [
     "Term",
     "analytic_backlash",
     "closed_form",
+    "first_order",
     "per_normal_backlash",
     "reference_form",
     "stack_of",

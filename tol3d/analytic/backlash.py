@@ -9,7 +9,7 @@ from tol3d.analytic.bevel_stack import BevelStack
 from tol3d.analytic.spur_stack import SpurStack
 from tol3d.analytic.stack import Stack
 from tol3d.gears import BevelPair, GearPair, SpurPair
-from tol3d.model import Backlash, Mesh, Model, Reading
+from tol3d.model import Backlash, Kind, LostMotion, Mesh, Model, Reading
 
 Array = NDArray[np.float64]
 
@@ -40,3 +40,14 @@ def per_normal_backlash(model: Model, kind: Backlash) -> float:
     if kind.quantity == "circumferential_backlash":
         return 1.0 / math.cos(model.mesh(kind.mesh).pair.working_pressure_angle)
     return 1.0 / model.gear(kind.gear).gear.section_arm
+
+
+def first_order(kind: Kind, free: Array) -> Array:
+    """A measure's values (trials, positions) of what its backlashes leave free: a tip moves by L times the turn.
+
+    Over a swing the tip errs where the other flanks work than at the start.
+    """
+    if not isinstance(kind, LostMotion) or kind.tip is None:
+        return free
+    displacement = kind.tip.lever * free
+    return displacement * np.array(kind.turned, dtype=float) if kind.turned else displacement

@@ -24,7 +24,8 @@ class BevelStack(Stack[BevelPair]):
         what the shift of the apex towards the mesh takes. A turn out of the plane of the axes changes nothing.
         """
         lever = self.pair.mean_cone_distance - effect.pivot * math.cos(self.gear(role).pitch_angle)
-        return Term(contributor, -effect.axis[1] * 2 * self.sin * lever * effect.per_length)
+        _, y = self.axis_of(effect, role)
+        return Term(contributor, -y * 2 * self.sin * lever * effect.per_length)
 
     def axes_offset(self, contributor: Contributor, role: Role) -> Term | None:
         """2 sin(alpha) sin(delta) of the driven gear, as the source has it for its "axial distance".

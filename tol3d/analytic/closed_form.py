@@ -1,20 +1,22 @@
 """Mean, standard deviation and variance shares of a measure without drawing anything.
 
-The terms of the stack-up are independent, so means and variances add. Deviations with a direction
-count by the mean square of their length; tilts by numerical integration of their one-sided loss.
-Offsets of fixed direction that turn together are the exception: a random position turns them alike,
-so they vary together, and each takes half of their covariance.
+Contributors are independent, so means and variances add; what one of them does in several meshes is added up first.
+Deviations with a direction count by the mean square of their length; tilts by numerical integration of their one-sided
+loss. Offsets of fixed direction that turn together are the exception: a random position turns them alike, so they vary
+together, and each takes half of their covariance.
 """
 
 import math
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from fractions import Fraction
 
 import numpy as np
 
 from tol3d.analytic.backlash import per_normal_backlash, stack_of
 from tol3d.analytic.stack import Stack, Term
 from tol3d.gears import GearPair
-from tol3d.model import Measure, Model, Planar, Positions
+from tol3d.model import Contributor, LostMotion, Measure, Model, Planar, Positions, ReducerBacklash
 
 TILT_NODES = 2000  # midpoint rule in u, a plane; its error on |x| of a normal is under 1e-6 of sigma
 
@@ -55,97 +57,215 @@ def closed_form(model: Model, measure: Measure) -> ClosedForm | None:
     """Closed form of a measure read at one position; None for extremes over a turn, which have none here."""
     if measure.take != "value":
         return None
-    stack = stack_of(model, model.mesh(measure.kind.mesh), measure.kind.reading)
-    factor = per_normal_backlash(model, measure.kind)
-    linear = [_linear_share(term, stack, measure.positions, factor) for term in stack.terms if not term.one_sided]
-    if measure.positions.over == "random":
-        linear = _with_covariances(linear, [term for term in stack.terms if not term.one_sided], stack)
-    tilts = _tilt_shares([term for term in stack.terms if term.one_sided], factor)
+    terms = [term for part in _parts(model, measure) for term in part.terms]
+    tilts = _tilt_shares(terms)
     if tilts is None:
         return None
-    by_name = {share.name: share for share in (*linear, *tilts)}
-    shares = tuple(by_name[c.name] for c in model.contributors if c.name in by_name)
-    nominal = stack.nominal * factor
+    linear = [term for term in terms if term.term.tilts is None]
+    own = [own for contributor in model.contributors if (own := _linear(model, measure, contributor, linear))]
+    shares = _with_covariances(own) if measure.positions.over == "random" else [each.share for each in own]
+    nominal = _nominal(model, measure)
+    together = tuple(_merged(model, [*shares, *tilts]))
     return ClosedForm(
         nominal=nominal,
-        mean=nominal + sum(share.mean for share in shares),
-        sigma=math.sqrt(sum(share.variance for share in shares)),
-        shares=shares,
+        mean=nominal + sum(share.mean for share in together),
+        sigma=math.sqrt(sum(share.variance for share in together)),
+        shares=together,
     )
 
 
 def reference_form(model: Model, measure: Measure) -> ClosedForm | None:
-    """Closed form of the measure, or of its value at a random position where it takes an extreme."""
-    at_random = replace(measure, positions=Positions("random", 1, 1), take="value")
+    """Closed form of the measure, or of its value at a random position where it takes an extreme or a curve."""
+    kind = replace(measure.kind, turned=()) if isinstance(measure.kind, LostMotion) else measure.kind
+    at_random = replace(measure, kind=kind, positions=Positions("random", 1, 1), take="value")
     return closed_form(model, measure) or closed_form(model, at_random)
 
 
-def _linear_share(term: Term, stack: Stack[GearPair], positions: Positions, factor: float) -> Share:
-    law, coefficient = term.contributor.distribution, term.coefficient * factor
-    draw = term.contributor.draw
+@dataclass(frozen=True)
+class _ReadTerm:
+    """A term of the stack-up of one mesh, as a measure reads it.
+
+    Args:
+        mesh: which.
+        term: of the mesh's normal backlash.
+        factor: change of the measure by that [1 or rad/mm, ...].
+        phase: azimuth of largest opening where the deviation is counted [rad], the first shaft at 0 or the mesh
+            where it is read.
+        rate: turns by which it goes back per turn of the first shaft; 0 at fixed positions and for what rests.
+    """
+
+    mesh: str
+    term: Term
+    factor: float
+    phase: float
+    rate: Fraction
+
+    @property
+    def amplitude(self) -> float:
+        """Change of the measure per length in the worst direction."""
+        return self.factor * self.term.coefficient
+
+
+@dataclass(frozen=True)
+class _Part:
+    """A mesh that a measure reads."""
+
+    model: Model
+    measure: Measure
+    stack: Stack[GearPair]
+    factor: float
+
+    @property
+    def terms(self) -> Iterator[_ReadTerm]:
+        """Its terms."""
+        for term in self.stack.terms:
+            turn, rate = self._turn_of(term)
+            phase = term.along - term.sense * turn
+            yield _ReadTerm(self.stack.mesh.name, term, self.factor, phase, int(term.sense) * rate)
+
+    def _turn_of(self, term: Term) -> tuple[float, Fraction]:
+        """Where the gear that a term turns with stands [rad], and how fast it goes."""
+        if term.turns is None:
+            return 0.0, Fraction(0)
+        mesh = self.stack.mesh
+        turning = self.model.layout.mesh_turn[mesh.name]
+        angles = self.model.driver_angles(self.measure, mesh.name)
+        angle, rate = (turning.offset, turning.rate) if angles is None else (angles[0], Fraction(0))
+        if term.turns == "driver":
+            return angle, rate
+        return float(mesh.pair.driven_angle(np.array([angle]))[0]), rate * mesh.rate
+
+
+def _lever(measure: Measure) -> float:
+    """What the measure makes of what its backlashes leave free."""
+    kind = measure.kind
+    return kind.tip.lever if isinstance(kind, LostMotion) and kind.tip else 1.0
+
+
+def _parts(model: Model, measure: Measure) -> Iterator[_Part]:
+    for factor, backlash in measure.kind.backlashes:
+        stack = stack_of(model, model.mesh(backlash.mesh), backlash.reading)
+        yield _Part(model, measure, stack, _lever(measure) * factor * per_normal_backlash(model, backlash))
+
+
+def _nominal(model: Model, measure: Measure) -> float:
+    reducers = {reducer.name: reducer.backlash for reducer in model.reducers}
+    data_sheets = sum(_lever(measure) * factor * reducers[name] for factor, name in measure.kind.reducers)
+    return data_sheets + sum(part.factor * part.stack.nominal for part in _parts(model, measure))
+
+
+@dataclass(frozen=True)
+class _Linear:
+    """A contributor's linear part: its share, and the waves in which a fixed direction acts as the gears turn.
+
+    A wave is its mean amplitude, phase [rad] and rate.
+    """
+
+    share: Share
+    waves: tuple[tuple[float, float, Fraction], ...] = ()
+
+
+def _linear(model: Model, measure: Measure, contributor: Contributor, terms: Sequence[_ReadTerm]) -> _Linear | None:
+    own = [term for term in terms if term.term.contributor is contributor]
+    by_reducers = sum(
+        _lever(measure) * factor
+        for factor, reducer in measure.kind.reducers
+        if contributor.effect == ReducerBacklash(reducer)
+    )
+    if not own and not by_reducers:
+        return None
+    law, draw = contributor.distribution, contributor.draw
     if not isinstance(draw, Planar):
-        mean, variance = coefficient * law.mean, coefficient**2 * law.variance
-    elif draw.direction is None or (term.turns and positions.over == "random"):
-        # a cosine of a uniform angle: mean 0, mean square 1/2
-        mean, variance = 0.0, coefficient**2 * (law.variance + law.mean**2) / 2
-    else:
-        turn = 0.0
-        if term.turns:
-            driver = np.array([positions.angle])
-            turn = float((driver if term.turns == "driver" else stack.pair.driven_angle(driver))[0])
-        coefficient *= math.cos(term.along - turn - draw.direction)
-        mean, variance = coefficient * law.mean, coefficient**2 * law.variance
-    return Share(term.contributor.name, coefficient, mean, variance)
+        coefficient = sum(term.amplitude for term in own) + by_reducers
+        return _Linear(Share(contributor.name, coefficient, coefficient * law.mean, coefficient**2 * law.variance))
+    square = law.variance + law.mean**2
+    if draw.direction is None:
+        worst = math.sqrt(sum(a.amplitude * b.amplitude * _alike(a, b) for a in own for b in own))
+        return _Linear(Share(contributor.name, worst, 0.0, worst**2 * square / 2))
+    waves = tuple((term.amplitude, term.phase - draw.direction, term.rate) for term in own)
+    resting = sum(amplitude * math.cos(phase) for amplitude, phase, rate in waves if not rate)
+    turning = tuple(wave for wave in waves if wave[2])
+    squares = sum(a * b * _product(p, q, v, w) for a, p, v in turning for b, q, w in turning)
+    variance = resting**2 * law.variance + squares * square
+    coefficient = resting if not turning else math.sqrt(resting**2 + 2 * squares)
+    share = Share(contributor.name, coefficient, resting * law.mean, variance)
+    return _Linear(share, tuple((amplitude * law.mean, phase, rate) for amplitude, phase, rate in turning))
 
 
-def _with_covariances(shares: list[Share], terms: list[Term], stack: Stack[GearPair]) -> list[Share]:
+def _alike(first: _ReadTerm, second: _ReadTerm) -> float:
+    """Mean over the positions of the cosine between the worst directions of two terms."""
+    return math.cos(first.phase - second.phase) if first.rate == second.rate else 0.0
+
+
+def _product(first: float, second: float, first_rate: Fraction, second_rate: Fraction) -> float:
+    """Mean over the positions of the product of two cosines that go on with the turns."""
+    same = math.cos(first - second) / 2 if first_rate == second_rate else 0.0
+    opposite = math.cos(first + second) / 2 if first_rate == -second_rate else 0.0
+    return same + opposite
+
+
+def _with_covariances(each: Sequence[_Linear]) -> list[Share]:
     """Shares with the covariances of offsets that turn together at a random position."""
-    added = [0.0] * len(shares)
-    for i, first in enumerate(terms):
-        for j, second in enumerate(terms):
-            if i != j:
-                lengths = first.contributor.distribution.mean * second.contributor.distribution.mean
-                added[i] += shares[i].coefficient * shares[j].coefficient * lengths * _turn_alike(first, second, stack)
-    return [replace(share, variance=share.variance + own) for share, own in zip(shares, added, strict=True)]
+    laws = {linear.share.name: linear for linear in each}
+    shares = []
+    for name, linear in laws.items():
+        others = [other for known, other in laws.items() if known != name]
+        added = sum(
+            a * b * _product(p, q, v, w) for other in others for a, p, v in linear.waves for b, q, w in other.waves
+        )
+        shares.append(replace(linear.share, variance=linear.share.variance + added))
+    return shares
 
 
-def _turn_alike(first: Term, second: Term, stack: Stack[GearPair]) -> float:
-    """Mean over the long period of the product of the cosines with which two turning offsets act."""
-    draws = (first.contributor.draw, second.contributor.draw)
-    if not (first.turns and second.turns):
-        return 0.0
-    phases = [
-        term.along - draw.direction
-        for term, draw in zip((first, second), draws, strict=True)
-        if isinstance(draw, Planar) and draw.direction is not None
-    ]
-    if len(phases) < 2:
-        return 0.0
-    if first.turns == second.turns:
-        return math.cos(phases[0] - phases[1]) / 2
-    if stack.pair.pinion.teeth != stack.pair.wheel.teeth:
-        return 0.0
-    start = float(stack.pair.driven_angle(np.zeros(1))[0])  # the wheel turns against the pinion from there
-    return math.cos(phases[0] + phases[1] - start) / 2
+def _merged(model: Model, shares: Sequence[Share]) -> Iterator[Share]:
+    """One share a contributor, in the model's order: what it does in tilts and else added up."""
+    for contributor in model.contributors:
+        own = [share for share in shares if share.name == contributor.name]
+        if own:
+            yield Share(
+                contributor.name,
+                sum(share.coefficient for share in own),
+                sum(share.mean for share in own),
+                sum(share.variance for share in own),
+            )
 
 
-def _tilt_shares(terms: list[Term], factor: float) -> list[Share] | None:
-    """Shares of -max(|in plane|, |out of plane|); None with several tilts in one plane.
+def _tilt_shares(terms: Sequence[_ReadTerm]) -> list[Share] | None:
+    """Shares of -max(|in plane|, |out of plane|) of every mesh; None where a contributor tilts and does else too."""
+    tilts = [term for term in terms if term.term.tilts is not None]
+    names = [term.term.contributor.name for term in tilts]
+    others = {term.term.contributor.name for term in terms if term.term.tilts is None}
+    if len(set(names)) < len(names) or others & set(names):
+        return None
+    shares: list[Share] = []
+    for mesh in dict.fromkeys(term.mesh for term in tilts):
+        found = _tilts_of_one([term for term in tilts if term.mesh == mesh])
+        if found is None:
+            return None
+        shares += found
+    return shares
+
+
+def _tilts_of_one(terms: Sequence[_ReadTerm]) -> list[Share] | None:
+    """The same of one mesh; None with several tilts in one plane.
 
     The variance is split by the conditional means (first-order Sobol'), the rest in equal parts.
     """
-    planes = [term.in_plane for term in terms]
-    if len(set(planes)) < len(planes):
+    planes = [_plane(term) for term in terms]
+    if len(terms) > 1 and sorted(planes) != ["across", "in"]:
         return None
-    if not terms:
-        return []
     nodes = (np.arange(TILT_NODES) + 0.5) / TILT_NODES
-    losses = [np.abs(factor * t.coefficient * t.contributor.distribution.ppf(nodes)) for t in terms]
+    losses = [np.abs(term.amplitude * term.term.contributor.distribution.ppf(nodes)) for term in terms]
     loss = -losses[0] if len(losses) == 1 else -np.maximum(losses[0][:, None], losses[1][None, :])
     mean, variance = float(loss.mean()), float(loss.var())
     own = [variance] if len(losses) == 1 else [float(loss.mean(axis=1).var()), float(loss.mean(axis=0).var())]
     rest = (variance - sum(own)) / len(own)
     return [
-        Share(t.contributor.name, -abs(t.coefficient) * factor, mean / len(terms), v + rest)
-        for t, v in zip(terms, own, strict=True)
+        Share(term.term.contributor.name, -abs(term.amplitude), mean / len(terms), v + rest)
+        for term, v in zip(terms, own, strict=True)
     ]
+
+
+def _plane(term: _ReadTerm) -> str:
+    in_plane, across = term.term.tilts or (0.0, 0.0)
+    return "in" if not across else "across" if not in_plane else "both"

@@ -22,8 +22,10 @@ class SpurStack(Stack[SpurPair]):
         """
         sides = [self.reading.contact, self.reading.gap].count("face")
         half_width = min(self.pair.pinion.face_width, self.pair.wheel.face_width) / 2
-        lever = self.sin if effect.axis[1] != 0.0 else self.cos
-        return Term(contributor, sides * half_width * lever * effect.per_length, one_sided=True)
+        per_tilt = sides * half_width * effect.per_length
+        x, y = self.axis_of(effect, role)
+        tilts = (per_tilt * self.sin * y, per_tilt * self.cos * x)
+        return Term(contributor, max(map(abs, tilts)), tilts=tilts)
 
     def temperature(self, effect: Temperature, contributor: Contributor) -> Term | None:
         """A growing housing opens by 2 a sin(alpha_w), a growing gear closes by 2 r_w sin(alpha_w), per strain.

@@ -20,14 +20,15 @@ from tol3d.model import (
     AxisOffset,
     AxisTilt,
     Contributor,
-    Effect,
     Mesh,
     Model,
     Reading,
+    ReducerBacklash,
     Temperature,
     ToothThickness,
     TurningOffset,
 )
+from tol3d.model.contributor import Plane, SingleEffect, single_effects
 
 Array = NDArray[np.float64]
 Role = Literal["driver", "driven"]
@@ -45,26 +46,24 @@ class Term:
         along: that direction for Planar draws, as the azimuth [rad] of largest opening in the gear's frame at
             rest; for a turning offset the gear's turn is subtracted.
         turns: which gear the deviation turns with, or None when it rests.
-        one_sided: it enters through the loss by tilts, not linearly.
+        sense: in which azimuths of the deviation count, against those of the gear.
+        tilts: for what enters through the one-sided loss by tilts, not linearly: loss in the plane of the axes (about
+            y) and across it (about x) per deviation; `coefficient` is the larger of them.
     """
 
     contributor: Contributor
     coefficient: float
     along: float = 0.0
     turns: Role | None = None
-    one_sided: bool = False
-
-    @property
-    def in_plane(self) -> bool:
-        """Whether a one-sided term tilts in the plane of the axes (about y)."""
-        return isinstance(self.contributor.effect, AxisTilt) and self.contributor.effect.axis[1] != 0.0
+    sense: float = 1.0
+    tilts: tuple[float, float] | None = None
 
     def change(self, deviation: Array, angles: tuple[Array, Array]) -> Array:
         """Change of j_bn [mm], (rows,), for deviations (rows, components) at turns (driver, driven) [rad]."""
         if deviation.shape[1] == 1:
             return self.coefficient * deviation[:, 0]
         turn = np.zeros(len(deviation)) if self.turns is None else angles[0 if self.turns == "driver" else 1]
-        azimuth = self.along - turn
+        azimuth = self.along - self.sense * turn
         return self.coefficient * (np.cos(azimuth) * deviation[:, 0] + np.sin(azimuth) * deviation[:, 1])
 
 
@@ -79,7 +78,10 @@ class Stack(Generic[Pair]):
         self.sin = math.sin(pair.working_pressure_angle)
         self.cos = math.cos(pair.working_pressure_angle)
         self.terms = tuple(
-            term for contributor in model.contributors if (term := self._term(contributor.effect, contributor))
+            term
+            for contributor in model.contributors
+            for effect in single_effects(contributor.effect)
+            if (term := self._term(effect, contributor))
         )
 
     @property
@@ -94,22 +96,23 @@ class Stack(Generic[Pair]):
         out_of_plane, in_plane = np.zeros(len(deviations)), np.zeros(len(deviations))
         for term in self.terms:
             columns = deviations[:, self.model.component_slices[term.contributor.name]]
-            if not term.one_sided:
+            if term.tilts is None:
                 total = total + term.change(columns, angles)
-            elif term.in_plane:
-                in_plane = in_plane + term.change(columns, angles)
             else:
-                out_of_plane = out_of_plane + term.change(columns, angles)
+                in_plane = in_plane + term.tilts[0] * columns[:, 0]
+                out_of_plane = out_of_plane + term.tilts[1] * columns[:, 0]
         return total - np.maximum(np.abs(in_plane), np.abs(out_of_plane))
 
     # one function an effect -------------------------------------------------------------------------
 
     @singledispatchmethod
-    def _term(self, effect: Effect, contributor: Contributor) -> Term | None:
+    def _term(self, effect: SingleEffect, contributor: Contributor) -> Term | None:
         raise TypeError(f"stack.py has no function for the effect {type(effect).__name__}")
 
-    def role(self, part: str) -> Role | None:
-        """What the part is in this mesh."""
+    def role(self, part: str, mesh: str | None = None) -> Role | None:
+        """What the part is in this mesh; None where it is in others only, or is meant to act in another one."""
+        if mesh not in (None, self.mesh.name):
+            return None
         return "driver" if part == self.mesh.driver else "driven" if part == self.mesh.driven else None
 
     def gear(self, role: Role) -> Gear:
@@ -117,8 +120,19 @@ class Stack(Generic[Pair]):
         return self.pair.pinion if role == "driver" else self.pair.wheel
 
     def _away(self, role: Role) -> float:
-        """Azimuth [rad], in the gear's frame at rest, in which its axis leaves the mesh."""
+        """Azimuth [rad], in the gear's frame at rest in the mesh, in which its axis leaves the mesh."""
         return (self.pair.mesh_azimuths[0 if role == "driver" else 1] + math.pi) % (2 * math.pi)
+
+    def _away_on_shaft(self, role: Role, mesh: str | None) -> float:
+        """The same in its frame at rest on its shaft, or in that of the mesh where the deviation is the mesh's."""
+        return self._away(role) + (self.mesh.azimuth if role == "driver" and mesh is None else 0.0)
+
+    def axis_of(self, effect: AxisTilt, role: Role) -> tuple[float, float]:
+        """x and y of the axis about which a gear tilts, in its frame at rest in the mesh."""
+        x, y, _ = effect.axis
+        azimuth = self.mesh.azimuth if role == "driver" and effect.mesh is None else 0.0
+        cos, sin = math.cos(azimuth), math.sin(azimuth)
+        return cos * x + sin * y, cos * y - sin * x
 
     def _across(self, role: Role) -> float:
         """Opening by a shift of the axis away from the mesh: 2 sin(alpha_w) cos(delta)."""
@@ -137,17 +151,19 @@ class Stack(Generic[Pair]):
         role = self.role(effect.part)
         if role is None:
             return None
-        return Term(contributor, self._across(role), along=self._away(role), turns=role)
+        along, sense = _seen(effect.plane, self._away(role))
+        return Term(contributor, self._across(role), along=along, turns=role, sense=sense)
 
     @_term.register
     def _(self, effect: AxisOffset, contributor: Contributor) -> Term | None:
         """Across the axis as above; along it, away from the apex, 2 sin(alpha_w) sin(delta)."""
-        role = self.role(effect.part)
+        role = self.role(effect.part, effect.mesh)
         if role is None:
             return None
-        away = self._away(role)
+        away = self._away_on_shaft(role, effect.mesh)
         if len(contributor.draw.components) == 2:
-            return Term(contributor, self._across(role) * effect.factor, along=away)
+            along, sense = _seen(effect.plane, away)
+            return Term(contributor, self._across(role) * effect.factor, along=along, sense=sense)
         x, y, z = effect.direction
         leaving = x * math.cos(away) + y * math.sin(away)
         along_axis = 2 * self.sin * math.sin(self.gear(role).pitch_angle) * z
@@ -155,17 +171,21 @@ class Stack(Generic[Pair]):
 
     @_term.register
     def _(self, effect: AxisTilt, contributor: Contributor) -> Term | None:
-        role = self.role(effect.part)
+        role = self.role(effect.part, effect.mesh)
         return None if role is None else self.tilt(effect, contributor, role)
 
     @_term.register
     def _(self, effect: AxesOffset, contributor: Contributor) -> Term | None:
-        role = self.role(effect.part)
+        role = self.role(effect.part, effect.mesh)
         return None if role is None else self.axes_offset(contributor, role)
 
     @_term.register
     def _(self, effect: Temperature, contributor: Contributor) -> Term | None:
         return self.temperature(effect, contributor)
+
+    @_term.register
+    def _(self, effect: ReducerBacklash, contributor: Contributor) -> Term | None:
+        return None
 
     # what each kind of pair says for itself ---------------------------------------------------------
 
@@ -180,3 +200,9 @@ class Stack(Generic[Pair]):
     def temperature(self, effect: Temperature, contributor: Contributor) -> Term | None:
         """Change by parts that grow."""
         return None
+
+
+def _seen(plane: Plane, azimuth: float) -> tuple[float, float]:
+    """An azimuth of a gear's frame in the frame in which a deviation is counted [rad], and the sense of that."""
+    sense = -1.0 if plane.mirrored else 1.0
+    return sense * (azimuth - plane.azimuth), sense

@@ -79,7 +79,7 @@ class FclEngine:
         section: bool = False,
     ) -> Gaps:
         """See Engine.gaps."""
-        driver, driven = self._model.gear_index[mesh.driver], self._model.gear_index[mesh.driven]
+        driver, driven = (self._model.seat_index[mesh.name, gear] for gear in (mesh.driver, mesh.driven))
         driven_teeth = mesh.pair.mating_teeth(driver_teeth, flank)
         driver_rotation, driver_origin = self._flank_poses(build, driver, angles[0], driver_teeth, flank)
         driven_rotation, driven_origin = self._flank_poses(build, driven, angles[1], driven_teeth, flank)
@@ -112,7 +112,8 @@ class FclEngine:
 
         For an involute that turn is a thickness deviation exactly: parallel involutes are one involute turned.
         """
-        pitch = self._model.gears[gear].gear.angular_pitch
+        seat = self._model.seats[gear]
+        pitch = self._model.gear(seat.gear).gear.angular_pitch
         return build.tooth_pose(gear, angle, pitch * teeth - flank * build.flank_turn[:, gear, None])
 
     @staticmethod

@@ -7,17 +7,23 @@ from tol3d.model.contributor import (
     Contributor,
     Effect,
     Planar,
+    ReducerBacklash,
     Scalar,
     Temperature,
+    Together,
     ToothThickness,
     TurningOffset,
 )
-from tol3d.model.measure import Backlash, Measure, Positions, Reading
-from tol3d.model.model import GearPart, Mesh, Model, Study, Until
+from tol3d.model.layout import Layout
+from tol3d.model.measure import Backlash, Kind, LostMotion, Measure, Positions, Reading
+from tol3d.model.mesh import Mesh, Seat
+from tol3d.model.model import GearPart, Model, Study, Until
+from tol3d.model.shafts import Arm, Reducer, Shaft, Train
 
 from tol3d.model.from_scene import model_from_scene  # isort: skip  (needs the names above)
 
 __all__ = [
+    "Arm",
     "AxesOffset",
     "AxisOffset",
     "AxisTilt",
@@ -25,16 +31,25 @@ __all__ = [
     "Contributor",
     "Effect",
     "GearPart",
+    "Kind",
+    "Layout",
+    "LostMotion",
     "Measure",
     "Mesh",
     "Model",
     "Planar",
     "Positions",
     "Reading",
+    "Reducer",
+    "ReducerBacklash",
     "Scalar",
+    "Seat",
+    "Shaft",
     "Study",
     "Temperature",
+    "Together",
     "ToothThickness",
+    "Train",
     "TurningOffset",
     "Until",
     "model_from_scene",

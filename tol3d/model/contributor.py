@@ -1,7 +1,7 @@
 """A contributor: one toleranced deviation, how it is drawn, and what it does to the parts.
 
-Every tolerance kind of a scene comes down to one of six effects. The geometric road (build.py)
-and the analytic road (analytic/) each say for themselves what an effect does.
+Every tolerance kind of a scene comes down to one of seven effects, or several of them together. The geometric road
+(build.py) and the analytic road (analytic/) each say for themselves what an effect does.
 """
 
 import math
@@ -14,9 +14,43 @@ from numpy.typing import NDArray
 from tol3d.distributions import Distribution
 
 Array = NDArray[np.float64]
-Unit = Literal["um", "mrad", "K"]
+Unit = Literal["um", "mrad", "K", "arcmin"]
 
-INTERNAL_PER_UNIT: dict[Unit, float] = {"um": 1e-3, "mrad": 1e-3, "K": 1.0}
+INTERNAL_PER_UNIT: dict[Unit, float] = {"um": 1e-3, "mrad": 1e-3, "K": 1.0, "arcmin": math.pi / 10800}
+
+
+@dataclass(frozen=True)
+class Plane:
+    """How a gear lies to the frame in which a deviation with a direction is counted, such as its shaft's.
+
+    Args:
+        azimuth: of that frame's x axis in the gear's frame [rad].
+        mirrored: whether the two count azimuths in opposite senses, as a gear does that faces backward on its shaft.
+    """
+
+    azimuth: float = 0.0
+    mirrored: bool = False
+
+    @property
+    def matrix(self) -> Array:
+        """(x, y) of the gear's frame from (x, y) of the other, (2, 2)."""
+        cos, sin, sense = math.cos(self.azimuth), math.sin(self.azimuth), -1.0 if self.mirrored else 1.0
+        return np.array([[cos, -sense * sin], [sin, sense * cos]])
+
+    def turned(self, columns: Array) -> Array:
+        """Deviations (rows, 2) in the gear's frame."""
+        if self == AS_COUNTED:
+            return columns
+        (xx, xy), (yx, yy) = self.matrix
+        x, y = columns[:, 0], columns[:, 1]
+        return np.stack([xx * x + xy * y, yx * x + yy * y], axis=1)
+
+    def seen_from(self, azimuth: float) -> "Plane":
+        """The same in a frame whose x axis lies at an azimuth [rad] of the gear's."""
+        return Plane(self.azimuth - azimuth, self.mirrored)
+
+
+AS_COUNTED = Plane()
 
 
 @dataclass(frozen=True)
@@ -36,19 +70,23 @@ class TurningOffset:
     """Offset (x, y) [mm] of a gear's centre from its rotation axis, in the gear's frame; it turns with the gear."""
 
     part: str
+    plane: Plane = AS_COUNTED
 
 
 @dataclass(frozen=True)
 class AxisOffset:
     """Shift of a gear's rotation axis [mm], in the gear's frame at rest.
 
-    Scalar: `direction` (unit vector times a factor) times the deviation. Planar (components x, y):
-    `factor` times the vector.
+    Scalar: `direction` (unit vector) times `factor` times the deviation. Planar (components x, y): `factor`
+    times the vector as `plane` turns it. It acts in all meshes of the gear, or in one only, in whose frame
+    `direction` then is.
     """
 
     part: str
     direction: tuple[float, float, float] = (1.0, 0.0, 0.0)
     factor: float = 1.0
+    mesh: str | None = None
+    plane: Plane = AS_COUNTED
 
 
 @dataclass(frozen=True)
@@ -56,20 +94,23 @@ class AxisTilt:
     """Turn of a gear's axis: the deviation [rad] times `axis`, a unit vector of the gear's frame at rest.
 
     `per_length` [1/mm] makes an angle of a deviation that is given as a length. The turn is about the point
-    of the axis at z = `pivot` [mm] of that frame.
+    of the axis at z = `pivot` [mm] of that frame. It acts in all meshes of the gear, or in one only, in whose frame
+    `axis` then is.
     """
 
     part: str
     axis: tuple[float, float, float]
     per_length: float = 1.0
     pivot: float = 0.0
+    mesh: str | None = None
 
 
 @dataclass(frozen=True)
 class AxesOffset:
-    """Distance [mm] by which two axes that should meet pass each other: the driven one lies at +y of the world."""
+    """Distance [mm] by which two axes that should meet pass each other: the driven one lies at +y of the mesh."""
 
     part: str
+    mesh: str
 
 
 @dataclass(frozen=True)
@@ -79,7 +120,32 @@ class Temperature:
     parts: tuple[str, ...]
 
 
-Effect = ToothThickness | TurningOffset | AxisOffset | AxisTilt | AxesOffset | Temperature
+@dataclass(frozen=True)
+class ReducerBacklash:
+    """Angular backlash of a data-sheet reducer, at the shaft that it drives [rad]."""
+
+    reducer: str
+
+
+@dataclass(frozen=True)
+class Together:
+    """Several effects of one deviation, such as a shaft that moves with all that it carries."""
+
+    effects: tuple["SingleEffect", ...]
+
+
+SingleEffect = ToothThickness | TurningOffset | AxisOffset | AxisTilt | AxesOffset | Temperature | ReducerBacklash
+Effect = SingleEffect | Together
+
+
+def turns_with_gears(effect: Effect) -> bool:
+    """Whether its deviation turns with the gears that it acts on."""
+    return isinstance(single_effects(effect)[0], TurningOffset)
+
+
+def single_effects(effect: Effect) -> tuple[SingleEffect, ...]:
+    """The effects that an effect is made of."""
+    return effect.effects if isinstance(effect, Together) else (effect,)
 
 
 @dataclass(frozen=True)
@@ -145,7 +211,7 @@ class Contributor:
         kind: the tolerance's kind, the scene's word.
         effect: what a deviation does.
         draw: how its components come from uniforms.
-        unit: unit of its columns in results ("um", "mrad", "K").
+        unit: unit of its columns in results ("um", "mrad", "arcmin", "K").
         description: the scene's own words.
         least: smallest physical deviation [mm, rad or K], such as 0 for a clearance; draws below it are kept
             as they come, and counted.

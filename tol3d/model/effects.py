@@ -1,7 +1,7 @@
 """Tolerances to contributors: what a deviation of each kind does to the parts. One function a kind."""
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import singledispatchmethod
 
@@ -13,15 +13,22 @@ from tol3d.model.contributor import (
     Contributor,
     Effect,
     Planar,
+    Plane,
+    ReducerBacklash,
     Scalar,
+    SingleEffect,
     Temperature,
+    Together,
     ToothThickness,
     TurningOffset,
     Unit,
 )
-from tol3d.model.model import Mesh
+from tol3d.model.layout import Layout
+from tol3d.model.mesh import Mesh
+from tol3d.model.shafts import Carried
 from tol3d.scene import Scene
 from tol3d.scene.direction import At
+from tol3d.scene.parts import BearingSpec, ShaftSpec
 from tol3d.scene.tolerances import (
     AxesOffsetSpec,
     AxialShiftSpec,
@@ -31,6 +38,7 @@ from tol3d.scene.tolerances import (
     CentreDistanceSpec,
     EccentricitySpec,
     MountingFaceSpec,
+    ReducerBacklashSpec,
     RunOutSpec,
     ShaftAngleSpec,
     ShimSpec,
@@ -61,12 +69,13 @@ class Tolerances:
 
     scene: Scene
     meshes: Mapping[str, Mesh]
+    layout: Layout
 
     def contributor(self, name: str, spec: ToleranceSpec) -> Contributor:
         """A tolerance as the simulation sees it."""
         found = self._effect(spec)
         law = spec.distribution.resolve(self.scene.files)
-        thickness = isinstance(spec, ShimSpec) or (
+        thickness = isinstance(spec, ShimSpec | ReducerBacklashSpec) or (
             isinstance(spec, BearingClearanceSpec) and not isinstance(found, _Directed)
         )
         return Contributor(
@@ -104,26 +113,61 @@ class Tolerances:
 
     @_effect.register
     def _(self, spec: RunOutSpec) -> Effect | _Directed:
-        return _Directed(TurningOffset(spec.of), _angle(spec.direction))
+        """Of a shaft: its direction is counted on the shaft, and every gear on it is displaced alike."""
+        if not isinstance(self.scene.parts[spec.of], ShaftSpec):
+            return _Directed(TurningOffset(spec.of), _angle(spec.direction))
+        offsets = tuple(TurningOffset(own.gear, Plane(-own.phase, own.backward)) for own in self._carried(spec.of))
+        return _Directed(_all_of(offsets), _angle(spec.direction))
 
     @_effect.register
     def _(self, spec: CentreDistanceSpec) -> Effect | _Directed:
-        return AxisOffset(self.meshes[spec.of].driven, (1.0, 0.0, 0.0))
+        return AxisOffset(self.meshes[spec.of].driven, (1.0, 0.0, 0.0), mesh=spec.of)
 
     @_effect.register
     def _(self, spec: BearingClearanceSpec) -> Effect | _Directed:
-        """Half the clearance, away from the mesh, at an azimuth of the gear's frame, or along the tooth force."""
-        mesh = self._mesh_of(spec.of, spec.mesh)
+        """Half the clearance, away from the mesh, at an azimuth of the frame at rest, or along the tooth force."""
+        bearing = self.scene.parts[spec.of]
+        if isinstance(bearing, BearingSpec):
+            return self._of_bearing(bearing, spec)
         if spec.direction == "random":
             return _Directed(AxisOffset(spec.of, factor=0.5), None)
-        towards = mesh.pair.mesh_azimuths[0 if spec.of == mesh.driver else 1]
-        if isinstance(spec.direction, At):
-            azimuth = spec.direction.at.internal
-        elif spec.direction == "apart":
-            azimuth = towards + math.pi
-        else:
-            azimuth = towards + _force_azimuth(mesh, spec.of)
+        azimuth = self._clearance_azimuth(spec, spec.of)
         return AxisOffset(spec.of, (_exact(math.cos(azimuth)), _exact(math.sin(azimuth)), 0.0), factor=0.5)
+
+    def _clearance_azimuth(self, spec: BearingClearanceSpec, gear: str) -> float:
+        """Which way the axis of a gear moves [rad], in its frame at rest on its shaft."""
+        if isinstance(spec.direction, At):
+            return spec.direction.at.internal
+        mesh = self._mesh_of(gear, spec.mesh)
+        towards = mesh.pair.mesh_azimuths[0 if gear == mesh.driver else 1]
+        towards += mesh.azimuth if gear == mesh.driver else 0.0
+        return towards + (math.pi if spec.direction == "apart" else _force_azimuth(mesh, gear))
+
+    def _of_bearing(self, bearing: BearingSpec, spec: BearingClearanceSpec) -> Effect | _Directed:
+        """The shaft's axis moves at the bearing by half the clearance, at its other bearings not at all.
+
+        With one other bearing it turns about that one; alone a bearing moves the whole shaft.
+        """
+        at = bearing.at.internal
+        parts = (part for part in self.scene.parts.values() if isinstance(part, BearingSpec))
+        others = [part.at.internal for part in parts if part.shaft == bearing.shaft and part.at.internal != at]
+        levers = [_Lever(own, at, others[0] if others else None) for own in self._carried(bearing.shaft)]
+        if spec.direction == "random":
+            offsets = tuple(
+                AxisOffset(lever.own.gear, factor=0.5 * lever.share, plane=Plane(mirrored=lever.own.backward))
+                for lever in levers
+            )
+            return _Directed(_all_of(offsets), None)
+        gear = next((lever.own for lever in levers if lever.own.gear in self._gears_of(spec)), levers[0].own)
+        seen = self._clearance_azimuth(spec, gear.gear)
+        azimuth = -seen if gear.backward and not isinstance(spec.direction, At) else seen
+        return _all_of(tuple(effect for lever in levers for effect in lever.effects(azimuth)))
+
+    def _gears_of(self, spec: BearingClearanceSpec) -> tuple[str, ...]:
+        return (self.meshes[spec.mesh].driver, self.meshes[spec.mesh].driven) if spec.mesh else ()
+
+    def _carried(self, shaft: str) -> list[Carried]:
+        return [own for name, own in self.layout.carrying.values() if name == shaft]
 
     @_effect.register
     def _(self, spec: AxisInPlaneSpec) -> Effect | _Directed:
@@ -136,7 +180,7 @@ class Tolerances:
     def _tilt(self, spec: AxisInPlaneSpec | AxisOutOfPlaneSpec, axis: Vector) -> Effect:
         mesh = self.meshes[spec.of]
         width = min(mesh.pair.pinion.face_width, mesh.pair.wheel.face_width)
-        return AxisTilt(mesh.driven, axis, per_length=1.0 if _unit(spec) == "mrad" else 1.0 / width)
+        return AxisTilt(mesh.driven, axis, per_length=1.0 if _unit(spec) == "mrad" else 1.0 / width, mesh=spec.of)
 
     @_effect.register
     def _(self, spec: ShaftAngleSpec) -> Effect | _Directed:
@@ -151,11 +195,12 @@ class Tolerances:
             AROUND_MINUS_Y,
             per_length=1.0 if _unit(spec) == "mrad" else 1.0 / mesh.pair.mean_cone_distance,
             pivot=0.0 if spec.pivot == "apex" else gear.mean_cone_distance * math.cos(gear.pitch_angle),
+            mesh=spec.of,
         )
 
     @_effect.register
     def _(self, spec: AxesOffsetSpec) -> Effect | _Directed:
-        return AxesOffset(self.meshes[spec.of].driven)
+        return AxesOffset(self.meshes[spec.of].driven, spec.of)
 
     @_effect.register
     def _(self, spec: AxialShiftSpec) -> Effect | _Directed:
@@ -173,8 +218,48 @@ class Tolerances:
     def _(self, spec: TemperatureSpec) -> Effect | _Directed:
         return Temperature(spec.of)
 
+    @_effect.register
+    def _(self, spec: ReducerBacklashSpec) -> Effect | _Directed:
+        return ReducerBacklash(spec.of)
+
+
+@dataclass(frozen=True)
+class _Lever:
+    """A gear on a shaft of which one point moves.
+
+    Args:
+        own: the gear on the shaft.
+        moved: z of the point that moves [mm].
+        fixed: z of one that does not; None where all of the shaft moves alike.
+    """
+
+    own: Carried
+    moved: float
+    fixed: float | None
+
+    @property
+    def share(self) -> float:
+        """What the gear moves of what the point moves."""
+        return 1.0 if self.fixed is None else (self.own.at - self.fixed) / (self.moved - self.fixed)
+
+    def effects(self, azimuth: float) -> Iterator[SingleEffect]:
+        """Shift and tilt of the gear's axis where the point moves by half a deviation, at an azimuth on the shaft."""
+        sense = -1.0 if self.own.backward else 1.0
+        x, y = _exact(math.cos(azimuth)), _exact(math.sin(azimuth))
+        yield AxisOffset(self.own.gear, (x, sense * y, 0.0), factor=0.5 * self.share)
+        if self.fixed is not None:
+            # z of the shaft turns towards (x, y): about z cross (x, y) = (-y, x)
+            per_length = 0.5 / (self.moved - self.fixed)
+            yield AxisTilt(self.own.gear, (-y, sense * x, 0.0), per_length=per_length)
+
+
+def _all_of(effects: tuple[SingleEffect, ...]) -> Effect:
+    return effects[0] if len(effects) == 1 else Together(effects)
+
 
 def _unit(spec: ToleranceSpec) -> Unit:
+    if isinstance(spec, ReducerBacklashSpec):
+        return "arcmin"
     dimensions = {quantity.dimension for quantity in spec.distribution.quantities().values()}
     if dimensions == {"angle"}:
         return "mrad"

@@ -1,16 +1,28 @@
 """Scene to model: text becomes meaning, units become mm and rad, gears become geometry or are refused."""
 
 from collections.abc import Iterator
-from typing import Literal
+from dataclasses import replace
 
+from tol3d.errors import SceneError
 from tol3d.gears import LEFT, RIGHT
 from tol3d.model.effects import Tolerances
-from tol3d.model.measure import Backlash, Measure, Positions, Reading
-from tol3d.model.model import GearPart, Housing, Mesh, Model, Study, Until
+from tol3d.model.layout import Layout, layout_of
+from tol3d.model.measures import measure_of
+from tol3d.model.mesh import Mesh
+from tol3d.model.model import GearPart, Housing, Model, Study, Until
 from tol3d.model.pairs import internal, pair_of, undercut_warning
+from tol3d.model.shafts import Arm, Train
+from tol3d.model.trains import (
+    arms_of,
+    loaded_flank,
+    loose_gears,
+    reducers_of,
+    refuse_no_trees,
+    refuse_other_ratios,
+    shafts_of,
+    trains_of,
+)
 from tol3d.scene import Scene
-from tol3d.scene.direction import At
-from tol3d.scene.measures import MeasureSpec, MeasureUnion
 from tol3d.scene.moves import GearMeshSpec
 from tol3d.scene.parts import GearSpec, HousingSpec
 from tol3d.scene.schema import Study as StudySpec
@@ -23,11 +35,18 @@ def model_from_scene(scene: Scene) -> Model:
     Raises:
         SceneError: gears that cannot be made or run together, with their numbers and place.
     """
-    _refuse_shared_and_idle_gears(scene)
-    meshes = tuple(_mesh(scene, name, move) for name, move in scene.moves.items())
+    for gear in loose_gears(scene):
+        raise scene.refuse(("parts", gear), f"{gear!r} takes part in no move; put it into a mesh or take it out")
+    shafts, reducers, arms = shafts_of(scene), reducers_of(scene), arms_of(scene)
+    meshes = tuple(_mesh(scene, name, move) for name, move in scene.moves.items() if isinstance(move, GearMeshSpec))
+    refuse_no_trees(scene, meshes, shafts, reducers)
+    layout = layout_of(meshes, shafts, reducers)
+    refuse_other_ratios(scene, meshes, layout)
+    trains = trains_of(scene, layout)
+    meshes = tuple(_loaded(scene, mesh, trains, layout, arms) for mesh in meshes)
     by_name = {mesh.name: mesh for mesh in meshes}
-    tolerances = Tolerances(scene, by_name)
-    return Model(
+    tolerances = Tolerances(scene, by_name, layout)
+    model = Model(
         name=scene.scene,
         gears=tuple(_gears(scene, by_name)),
         housings=tuple(
@@ -37,11 +56,16 @@ def model_from_scene(scene: Scene) -> Model:
         ),
         contributors=tuple(tolerances.contributor(name, spec) for name, spec in scene.tolerances.items()),
         meshes=meshes,
-        measures=tuple(_measure(name, spec, by_name[spec.of]) for name, spec in scene.measures.items()),
+        measures=(),
         study=_study(scene.study),
         published=_published(scene),
         gear_warnings=tuple(_warnings(meshes)),
+        shafts=shafts,
+        reducers=reducers,
+        arms=arms,
+        trains=trains,
     )
+    return replace(model, measures=tuple(measure_of(scene, name, model) for name in scene.measures))
 
 
 def _study(spec: StudySpec) -> Study:
@@ -64,33 +88,52 @@ def _internal(quantity: Quantity | None) -> float | None:
     return None if quantity is None else quantity.internal
 
 
-def _refuse_shared_and_idle_gears(scene: Scene) -> None:
-    for name, part in scene.parts.items():
-        meshes = scene.meshes_of(name)
-        if len(meshes) > 1:
-            raise scene.refuse(
-                ("moves", meshes[1]),
-                f"{name!r} is in {' and '.join(map(repr, meshes))}; a gear can be in one mesh only so far",
-            )
-        if isinstance(part, GearSpec) and not meshes:
-            raise scene.refuse(("parts", name), f"{name!r} takes part in no move; put it into a mesh or take it out")
-
-
 def _mesh(scene: Scene, name: str, move: GearMeshSpec) -> Mesh:
     return Mesh(
         name=name,
         driver=move.driver,
         driven=move.driven,
         pair=pair_of(move, name, scene),
-        working_flank=RIGHT if move.working_flank == "right" else LEFT,
+        working_flank=LEFT if move.working_flank == "left" else RIGHT,
         housing=getattr(move, "housing", None),
+        azimuth=move.azimuth.internal,
+    )
+
+
+def _loaded(scene: Scene, mesh: Mesh, trains: tuple[Train, ...], layout: Layout, arms: tuple[Arm, ...]) -> Mesh:
+    """The mesh with the flank that works by the load, where the scene leaves it to that."""
+    move = scene.moves[mesh.name]
+    if not isinstance(move, GearMeshSpec) or move.working_flank != "either":
+        return mesh
+    root = layout.root_of[layout.carrying[mesh.driver][0]]
+    own = [train for train in trains if train.driven == root]
+    through = [t for t in own if mesh.name in {link.name for link in layout.between(t.driven, t.output)}]
+    for train in through or own:
+        return replace(mesh, working_flank=loaded_flank(mesh, train, layout, arms))
+    raise scene.refuse(
+        ("moves", mesh.name, "working_flank"),
+        f"expected right or left, got either: no train tells the load; add a move of kind train that drives {root!r}",
     )
 
 
 def _gears(scene: Scene, meshes: dict[str, Mesh]) -> Iterator[GearPart]:
     for name, part in scene.parts.items():
         if isinstance(part, GearSpec):
-            yield GearPart(name, meshes[scene.meshes_of(name)[0]].gear(name), internal(part.expansion))
+            first, *others = scene.meshes_of(name)
+            gear = meshes[first].gear(name)
+            for other in others:
+                if meshes[other].gear(name) != gear:
+                    raise _other_shape(scene, name, first, other)
+            yield GearPart(name, gear, internal(part.expansion))
+
+
+def _other_shape(scene: Scene, gear: str, first: str, other: str) -> SceneError:
+    """A bevel gear's pitch angle follows from its mate."""
+    return scene.refuse(
+        ("moves", other),
+        f"{gear!r} would need another pitch angle than in {first!r}: a bevel gear can be in several meshes only where "
+        "shaft angle and mate are alike",
+    )
 
 
 def _warnings(meshes: tuple[Mesh, ...]) -> Iterator[str]:
@@ -98,42 +141,6 @@ def _warnings(meshes: tuple[Mesh, ...]) -> Iterator[str]:
         for name in (mesh.driver, mesh.driven):
             if warning := undercut_warning(mesh.gear(name)):
                 yield f"{name}: {warning}"
-
-
-def _measure(name: str, spec: MeasureUnion, mesh: Mesh) -> Measure:
-    gear = getattr(spec, "gear", None) or mesh.driven
-    return Measure(
-        name=name,
-        kind=Backlash(spec.kind, mesh.name, gear, _reading(spec, mesh)),
-        positions=_positions(spec, mesh),
-        take=spec.take,
-        lower_limit=None if spec.lower_limit is None else spec.lower_limit.internal,
-        upper_limit=None if spec.upper_limit is None else spec.upper_limit.internal,
-    )
-
-
-def _reading(spec: MeasureSpec, mesh: Mesh) -> Reading:
-    """What was said, or the whole face and all teeth of a cylinder, one tooth's middle section of a cone.
-
-    A free turn goes from contact to contact, and both are read alike.
-    """
-    tapers = mesh.pair.arm_spread > 0.0
-    read_at = spec.read_at or ("mean_section" if tapers else "face")
-    contact: Literal["face", "section"] = "section" if read_at == "mean_section" else "face"
-    return Reading(
-        contact=contact,
-        gap="section" if read_at == "face_contact" and spec.kind == "normal_backlash" else contact,
-        teeth=spec.tooth or ("driven" if tapers else "all"),
-    )
-
-
-def _positions(spec: MeasureSpec, mesh: Mesh) -> Positions:
-    if isinstance(spec.over, At):
-        return Positions("at", 1, 1, spec.over.at.internal)
-    if spec.over == "random":
-        return Positions("random", mesh.pair.long_period_turns, 1)
-    turns = 1 if spec.over == "turn" else mesh.pair.long_period_turns
-    return Positions(spec.over, turns, turns * spec.positions)
 
 
 def _published(scene: Scene) -> dict[str, dict[str, dict[str, object]]]:

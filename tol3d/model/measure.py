@@ -4,7 +4,8 @@ import math
 from dataclasses import dataclass
 from typing import Literal
 
-Quantity = Literal["normal_backlash", "circumferential_backlash", "angular_backlash"]
+BacklashQuantity = Literal["normal_backlash", "circumferential_backlash", "angular_backlash"]
+TrainQuantity = Literal["lost_motion", "tip_displacement", "tip_error"]
 Take = Literal["value", "min", "max", "range", "curve"]
 
 
@@ -28,7 +29,7 @@ class Reading:
 class Backlash:
     """A backlash of a mesh: normal and circumferential [mm], or angular [rad] of one gear, the other held."""
 
-    quantity: Quantity
+    quantity: BacklashQuantity
     mesh: str
     gear: str
     reading: Reading = Reading()
@@ -38,23 +39,101 @@ class Backlash:
         """Whether the value is an angle [rad] rather than a length [mm]."""
         return self.quantity == "angular_backlash"
 
+    @property
+    def backlashes(self) -> tuple[tuple[float, "Backlash"], ...]:
+        """The backlashes that it adds up, with their factors: itself."""
+        return ((1.0, self),)
+
+    @property
+    def reducers(self) -> tuple[tuple[float, str], ...]:
+        """The reducers whose backlash it adds up, with their factors: none."""
+        return ()
+
+
+@dataclass(frozen=True)
+class Stage:
+    """A link between the held shaft and the one that is read.
+
+    Args:
+        link: a mesh or a reducer.
+        factor: turn of the shaft that is read per turn of the link's driven shaft.
+        backlash: angular backlash of the mesh's driven gear; None for a reducer.
+    """
+
+    link: str
+    factor: float
+    backlash: Backlash | None
+
+
+@dataclass(frozen=True)
+class Tip:
+    """A point of an arm, and its distance from the axis of the arm's shaft [mm]."""
+
+    arm: str
+    point: str
+    lever: float
+
+
+@dataclass(frozen=True)
+class LostMotion:
+    """Turn of a shaft that all links between it and the held shaft leave free [rad], or what that moves a tip [mm].
+
+    Args:
+        quantity: the turn, the tip's displacement by it, or its error over a swing.
+        train: the train's name.
+        shaft, held: what is read while what is held.
+        stages: the links between them, from the held shaft on.
+        tip: the point that is displaced.
+        turned: for a swing, at which of its positions the other flanks work than at its start.
+    """
+
+    quantity: TrainQuantity
+    train: str
+    shaft: str
+    held: str
+    stages: tuple[Stage, ...]
+    tip: Tip | None = None
+    turned: tuple[bool, ...] = ()
+
+    @property
+    def is_angle(self) -> bool:
+        """Whether the value is an angle [rad] rather than a length [mm]."""
+        return self.tip is None
+
+    @property
+    def backlashes(self) -> tuple[tuple[float, Backlash], ...]:
+        """The backlashes of meshes that it adds up, with their factors."""
+        return tuple((stage.factor, stage.backlash) for stage in self.stages if stage.backlash)
+
+    @property
+    def reducers(self) -> tuple[tuple[float, str], ...]:
+        """The reducers whose backlash it adds up, with their factors."""
+        return tuple((stage.factor, stage.link) for stage in self.stages if stage.backlash is None)
+
+
+Kind = Backlash | LostMotion
+
 
 @dataclass(frozen=True)
 class Positions:
-    """Driver positions at which a measure is read.
+    """Positions at which a measure is read: of the driver of a mesh, or of the first shaft of a train.
 
     Args:
         over: "random" (uniform over the long period, one a trial), "at" (one angle), "turn" or
-            "long_period" (`count` even steps, the first position at 0).
-        turns: turns of the driver that the positions span.
+            "long_period" (`count` even steps, the first position at 0), "swing" (`angles`).
+        turns: turns that the positions span.
         count: steps from position to position in those turns; a turn has its end as one position more.
-        angle: the driver's angle for "at" [rad].
+        angle: the angle for "at" [rad].
+        angles: of the train's first shaft for "swing" [rad].
+        shown: the output's angles there [rad].
     """
 
-    over: Literal["random", "at", "turn", "long_period"]
+    over: Literal["random", "at", "turn", "long_period", "swing"]
     turns: int
     count: int
     angle: float = 0.0
+    angles: tuple[float, ...] = ()
+    shown: tuple[float, ...] = ()
 
     @property
     def closed(self) -> bool:
@@ -63,11 +142,13 @@ class Positions:
 
     @property
     def fixed(self) -> tuple[float, ...] | None:
-        """The driver angles [rad] that every trial shares; None for random ones."""
+        """The angles [rad] that every trial shares; None for random ones."""
         if self.over == "random":
             return None
         if self.over == "at":
             return (self.angle,)
+        if self.over == "swing":
+            return self.angles
         positions = self.count if self.closed else self.count + 1
         return tuple(2 * math.pi * self.turns * k / self.count for k in range(positions))
 
@@ -77,7 +158,7 @@ class Measure:
     """A measure with its limits [mm or rad]."""
 
     name: str
-    kind: Backlash
+    kind: Kind
     positions: Positions
     take: Take
     lower_limit: float | None = None
@@ -85,10 +166,12 @@ class Measure:
 
     @property
     def unit(self) -> str:
-        """Unit of its columns and of summary.json: "um" or "arcmin"."""
-        return "arcmin" if self.kind.is_angle else "um"
+        """Unit of its columns and of summary.json: "um", "mm" for a tip, or "arcmin"."""
+        if self.kind.is_angle:
+            return "arcmin"
+        return "mm" if isinstance(self.kind, LostMotion) else "um"
 
     @property
     def per_internal(self) -> float:
         """What one mm or rad is in that unit."""
-        return 10800 / math.pi if self.kind.is_angle else 1000.0
+        return {"arcmin": 10800 / math.pi, "mm": 1.0, "um": 1000.0}[self.unit]

@@ -6,9 +6,12 @@ from functools import cached_property
 from typing import Any, Literal, NamedTuple
 
 from tol3d.errors import InputError
-from tol3d.gears import Flank, Gear, GearPair
+from tol3d.gears import Gear
 from tol3d.model.contributor import Contributor
-from tol3d.model.measure import Measure
+from tol3d.model.layout import Layout, layout_of
+from tol3d.model.measure import Backlash, Measure
+from tol3d.model.mesh import Mesh, Seat
+from tol3d.model.shafts import Arm, Reducer, Shaft, Train
 from tol3d.samplers.replicates import SamplerKind, balanced_trials, is_power_of_two, uneven
 
 
@@ -27,26 +30,6 @@ class Housing:
 
     name: str
     expansion: float
-
-
-@dataclass(frozen=True)
-class Mesh:
-    """The move that turns the driven gear until the working flanks touch.
-
-    World of the mesh: the frame of the driver at rest; the pair knows where the driven gear's lies in it.
-    `working_flank` is the driver's.
-    """
-
-    name: str
-    driver: str
-    driven: str
-    pair: GearPair
-    working_flank: Flank
-    housing: str | None = None
-
-    def gear(self, name: str) -> Gear:
-        """The driver or the driven gear, by its name."""
-        return self.pair.pinion if name == self.driver else self.pair.wheel
 
 
 class Until(NamedTuple):
@@ -103,7 +86,7 @@ class Study:
 class Model:
     """Everything that a trial needs. Parts, contributors and measures keep the scene's order.
 
-    `gear_warnings` are what the gears' geometry may spoil.
+    `gear_warnings` are what the gears' geometry may spoil. A gear that no shaft carries is a shaft of its own.
     """
 
     name: str
@@ -115,6 +98,10 @@ class Model:
     study: Study
     published: Mapping[str, Mapping[str, Mapping[str, Any]]] = field(default_factory=dict)
     gear_warnings: tuple[str, ...] = ()
+    shafts: tuple[Shaft, ...] = ()
+    reducers: tuple[Reducer, ...] = ()
+    arms: tuple[Arm, ...] = ()
+    trains: tuple[Train, ...] = ()
 
     @property
     def warnings(self) -> tuple[str, ...]:
@@ -123,16 +110,50 @@ class Model:
 
     def gear(self, name: str) -> GearPart:
         """The gear of that name."""
-        return self.gears[self.gear_index[name]]
+        return next(part for part in self.gears if part.name == name)
 
     def mesh(self, name: str) -> Mesh:
         """The mesh of that name."""
         return next(mesh for mesh in self.meshes if mesh.name == name)
 
+    def train(self, name: str) -> Train:
+        """The train of that name."""
+        return next(train for train in self.trains if train.name == name)
+
     @cached_property
-    def gear_index(self) -> Mapping[str, int]:
-        """Position of each gear in arrays over gears."""
-        return {part.name: index for index, part in enumerate(self.gears)}
+    def layout(self) -> Layout:
+        """Where its shafts lie and how they turn with each other."""
+        return layout_of(self.meshes, self.shafts, self.reducers)
+
+    @cached_property
+    def seats(self) -> tuple[Seat, ...]:
+        """Every gear in each of its meshes, driver and driven of one mesh after the other."""
+        return tuple(
+            seat
+            for mesh in self.meshes
+            for seat in (Seat(mesh.name, mesh.driver, mesh.azimuth), Seat(mesh.name, mesh.driven))
+        )
+
+    @cached_property
+    def seat_index(self) -> Mapping[tuple[str, str], int]:
+        """Position of each mesh's gear in arrays over seats."""
+        return {(seat.mesh, seat.gear): index for index, seat in enumerate(self.seats)}
+
+    def seats_of(self, gear: str, mesh: str | None = None) -> tuple[int, ...]:
+        """Positions of a gear in arrays over seats: in all of its meshes, or in one."""
+        if mesh is not None:
+            return (self.seat_index[mesh, gear],)
+        return tuple(index for index, seat in enumerate(self.seats) if seat.gear == gear)
+
+    def driver_angles(self, measure: Measure, mesh: str) -> tuple[float, ...] | None:
+        """Angles of a mesh's driver [rad] at which a measure is read in every trial; None for the trial's own.
+
+        A mesh's own positions are its driver's; those of a train are its first shaft's.
+        """
+        fixed = measure.positions.fixed
+        if fixed is None or isinstance(measure.kind, Backlash):
+            return fixed
+        return tuple(self.layout.mesh_turn[mesh].at(angle) for angle in fixed)
 
     @cached_property
     def expansions(self) -> Mapping[str, float]:

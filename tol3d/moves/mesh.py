@@ -93,13 +93,13 @@ class Meshing:
         return teeth, np.ones(teeth.shape, dtype=bool)
 
     def _displaced(self, driver_angle: Array) -> Displaced:
-        gears = [self.model.gear_index[name] for name in (self.mesh.driver, self.mesh.driven)]
+        seats = [self.model.seat_index[self.mesh.name, name] for name in (self.mesh.driver, self.mesh.driven)]
         angles = (driver_angle, self.mesh.pair.driven_angle(driver_angle))
-        sections = np.array([self.model.gears[gear].gear.section_arm for gear in gears])
+        sections = np.array([gear.section_arm for gear in (self.mesh.pair.pinion, self.mesh.pair.wheel)])
         return Displaced(
-            origin=np.stack([self.build.centre_of(g, a) for g, a in zip(gears, angles, strict=True)], axis=1),
-            turn=self.build.axis_turn[:, gears],
-            flank_turn=self.build.flank_turn[:, gears] + self.build.flank_offset[:, gears] / sections,
+            origin=np.stack([self.build.centre_of(s, a) for s, a in zip(seats, angles, strict=True)], axis=1),
+            turn=self.build.axis_turn[:, seats],
+            flank_turn=self.build.flank_turn[:, seats] + self.build.flank_offset[:, seats] / sections,
         )
 
     def turn_to_contact(
@@ -121,12 +121,13 @@ class Meshing:
             angles of both gears at contact, the gaps there, and which rows reached contact.
         """
         pair = self.mesh.pair
-        gear = self.model.gear_index[self.mesh.driver if turn_driver else self.mesh.driven]
-        base_radius = self.model.gears[gear].gear.base_radius
+        mover_name = self.mesh.driver if turn_driver else self.mesh.driven
+        seat = self.model.seat_index[self.mesh.name, mover_name]
+        base_radius = self.mesh.gear(mover_name).base_radius
         last_step = self.engine.last_step
         if pair.arm_spread:
             last_step = min(last_step, LAST_ERROR / pair.arm_spread)
-        axis_point, axis = self.build.axis(gear)
+        axis_point, axis = self.build.axis(seat)
         opening = float(pair.opening_sense(flank))
         section = self.reading.contact == "section"
         teeth, wanted = self._teeth(angles[0], flank)

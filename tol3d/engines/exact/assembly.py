@@ -11,10 +11,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.build import Build, Sums, summed
+from tol3d.build import Build, Sums, in_seat, summed
 from tol3d.compiled import kernel, part
 from tol3d.engines.exact.small_angles import sine
-from tol3d.model import AxisTilt, Model
+from tol3d.model import AxisTilt, Contributor, Model, Together
+from tol3d.model.contributor import single_effects
 
 Array = NDArray[np.float64]
 
@@ -30,11 +31,11 @@ class Assembly:
     """How deviations become builds.
 
     Args:
-        terms: (terms, 2), component of the deviations and slot: SLOTS a gear, then the growth of each mesh's housing.
+        terms: (terms, 2), component of the deviations and slot: SLOTS a seat, then the growth of each mesh's housing.
         coefficients: (terms,), of the slot by the component.
-        pivots: (pivots, 2), component and gear of turns about a point off the gear's origin.
-        levers: (pivots, 4), rotation vector per deviation in the gear's frame at rest, and the point's z there [mm].
-        rest: (gears, 16), rotation of each gear's frame at rest row by row, its origin [mm], its mesh or -1; padded.
+        pivots: (pivots, 2), component and seat of turns about a point off the gear's origin.
+        levers: (pivots, 4), rotation vector per deviation in the seat's frame at rest, and the point's z there [mm].
+        rest: (seats, 16), rotation of each seat's frame at rest row by row, its origin [mm], its mesh or -1; padded.
     """
 
     terms: NDArray[np.int64]
@@ -45,14 +46,14 @@ class Assembly:
 
     def build(self, deviations: Array) -> Build:
         """Builds of the trials with these deviations, (trials, components): build.build to the last few bits."""
-        trials, gears = len(deviations), len(self.rest)
+        trials, seats = len(deviations), len(self.rest)
         made = Build(
-            world_from_shaft=np.empty((trials, gears, 4, 4)),
-            centre=np.empty((trials, gears, 2)),
-            axis_turn=np.empty((trials, gears, 3)),
-            flank_turn=np.empty((trials, gears)),
-            flank_offset=np.empty((trials, gears)),
-            scale=np.empty((trials, gears)),
+            world_from_shaft=np.empty((trials, seats, 4, 4)),
+            centre=np.empty((trials, seats, 2)),
+            axis_turn=np.empty((trials, seats, 3)),
+            flank_turn=np.empty((trials, seats)),
+            flank_offset=np.empty((trials, seats)),
+            scale=np.empty((trials, seats)),
         )
         assemble(
             np.require(deviations, requirements=["C", "W"]),
@@ -79,10 +80,12 @@ def assembly_of(model: Model) -> Assembly:
                 coefficients.append(coefficient)
     pivots, levers = [], []
     for contributor in model.contributors:
-        effect = contributor.effect
-        if isinstance(effect, AxisTilt) and effect.pivot != 0.0:
-            pivots.append((model.component_slices[contributor.name].start, model.gear_index[effect.part]))
-            levers.append((*(effect.per_length * np.array(effect.axis)), effect.pivot))
+        for effect in single_effects(contributor.effect):
+            if isinstance(effect, AxisTilt) and effect.pivot != 0.0:
+                for seat in model.seats_of(effect.part, effect.mesh):
+                    axis = effect.axis if effect.mesh else in_seat(effect.axis, model.seats[seat])
+                    pivots.append((model.component_slices[contributor.name].start, seat))
+                    levers.append((*(effect.per_length * np.array(axis)), effect.pivot))
     return Assembly(
         np.array(terms, dtype=np.int64).reshape(-1, 2),
         np.array(coefficients),
@@ -92,34 +95,37 @@ def assembly_of(model: Model) -> Assembly:
     )
 
 
-def _without_pivot(contributor: Any) -> Any:
-    effect = contributor.effect
-    return replace(contributor, effect=replace(effect, pivot=0.0)) if isinstance(effect, AxisTilt) else contributor
+def _without_pivot(contributor: Contributor) -> Contributor:
+    effects = tuple(
+        replace(effect, pivot=0.0) if isinstance(effect, AxisTilt) else effect
+        for effect in single_effects(contributor.effect)
+    )
+    return replace(contributor, effect=Together(effects))
 
 
 def _slots(model: Model, sums: Sums) -> Array:
     """What one build adds up to, a slot each."""
-    gears = [
+    seats = [
         [
-            *sums.axis_offset[0, gear],
-            *sums.axis_turn[0, gear],
-            *sums.centre[0, gear],
-            sums.flank_turn[0, gear],
-            sums.flank_offset[0, gear],
-            sums.growth(model, part.name)[0],
+            *sums.axis_offset[0, index],
+            *sums.axis_turn[0, index],
+            *sums.centre[0, index],
+            sums.flank_turn[0, index],
+            sums.flank_offset[0, index],
+            sums.growth(model, seat.gear)[0],
         ]
-        for gear, part in enumerate(model.gears)
+        for index, seat in enumerate(model.seats)
     ]
     housings = [sums.growth(model, mesh.housing)[0] if mesh.housing else 0.0 for mesh in model.meshes]
-    return np.array([*np.ravel(gears), *housings])
+    return np.array([*np.ravel(seats), *housings])
 
 
 def _rest(model: Model) -> Array:
-    rest = np.zeros((len(model.gears), 16))
+    rest = np.zeros((len(model.seats), 16))
     rest[:, [0, 4, 8]] = 1.0
     rest[:, 12] = -1.0
     for index, mesh in enumerate(model.meshes):
-        driven = model.gear_index[mesh.driven]
+        driven = model.seat_index[mesh.name, mesh.driven]
         rest[driven, :13] = [*mesh.pair.world_from_wheel.ravel(), *mesh.pair.wheel_origin, index]
     return rest
 
@@ -159,8 +165,8 @@ def assemble(
     scale: Any,
 ) -> None:
     """Write the arrays of a Build; arguments as in Assembly and Build."""
-    gears = len(rest)
-    slots = np.empty(SLOTS * gears + gears)
+    seats = len(rest)
+    slots = np.empty(SLOTS * seats + seats)
     for row in range(len(deviations)):
         slots[:] = 0.0
         for k in range(len(terms)):
@@ -175,20 +181,20 @@ def assemble(
                 slots[at] -= first * y * z
                 slots[at + 1] += first * x * z
                 slots[at + 2] += 2.0 * half * half * z
-        for gear in range(gears):
-            at, mesh = SLOTS * gear, int(rest[gear, 12])
-            grown = 1.0 + slots[SLOTS * gears + mesh] if mesh >= 0 else 1.0
-            shaft = shafts[row, gear]
+        for seat in range(seats):
+            at, mesh = SLOTS * seat, int(rest[seat, 12])
+            grown = 1.0 + slots[SLOTS * seats + mesh] if mesh >= 0 else 1.0
+            shaft = shafts[row, seat]
             x, y, z = slots[at], slots[at + 1], slots[at + 2]
             for i in range(3):
-                a, b, c = rest[gear, 3 * i], rest[gear, 3 * i + 1], rest[gear, 3 * i + 2]
+                a, b, c = rest[seat, 3 * i], rest[seat, 3 * i + 1], rest[seat, 3 * i + 2]
                 shaft[i, 0], shaft[i, 1], shaft[i, 2] = a, b, c
-                shaft[i, 3] = a * x + b * y + c * z + grown * rest[gear, 9 + i]
+                shaft[i, 3] = a * x + b * y + c * z + grown * rest[seat, 9 + i]
                 shaft[3, i] = 0.0
                 u, v, w = slots[at + TURN], slots[at + TURN + 1], slots[at + TURN + 2]
-                axis_turn[row, gear, i] = a * u + b * v + c * w
+                axis_turn[row, seat, i] = a * u + b * v + c * w
             shaft[3, 3] = 1.0
             rotate(shaft, slots[at + TURN], slots[at + TURN + 1], slots[at + TURN + 2])
-            centre[row, gear, 0], centre[row, gear, 1] = slots[at + CENTRE], slots[at + CENTRE + 1]
-            flank_turn[row, gear], flank_offset[row, gear] = slots[at + FLANK_TURN], slots[at + FLANK_OFFSET]
-            scale[row, gear] = 1.0 + slots[at + SCALE]
+            centre[row, seat, 0], centre[row, seat, 1] = slots[at + CENTRE], slots[at + CENTRE + 1]
+            flank_turn[row, seat], flank_offset[row, seat] = slots[at + FLANK_TURN], slots[at + FLANK_OFFSET]
+            scale[row, seat] = 1.0 + slots[at + SCALE]

@@ -80,7 +80,7 @@ class ExactEngine:
         vectors = np.empty((*wanted.shape, 3, 3))
         pair.gaps(
             *pair.numbers,
-            np.array([*self._gears(mesh), flank, section], dtype=np.int64),
+            np.array([*self._seats(mesh), flank, section], dtype=np.int64),
             *_arrays(build),
             *(_array(values) for values in (*angles, driver_teeth, wanted)),
             value,
@@ -107,7 +107,7 @@ class ExactEngine:
         turns = (mesh.driven in turning, mesh.driver in turning)
         pair.read(
             *pair.numbers,
-            np.array([*self._gears(mesh), mesh.working_flank, *how, *turns], dtype=np.int64),
+            np.array([*self._seats(mesh), mesh.working_flank, *how, *turns], dtype=np.int64),
             *_arrays(build),
             _array(driver_angle),
             readings,
@@ -124,8 +124,8 @@ class ExactEngine:
             status=status,
         )
 
-    def _gears(self, mesh: Mesh) -> tuple[int, int]:
-        return self._model.gear_index[mesh.driver], self._model.gear_index[mesh.driven]
+    def _seats(self, mesh: Mesh) -> tuple[int, int]:
+        return self._model.seat_index[mesh.name, mesh.driver], self._model.seat_index[mesh.name, mesh.driven]
 
 
 def _arrays(build: Build) -> tuple[Array, ...]:

@@ -1,0 +1,250 @@
+"""Where the shafts of a model lie, how they turn with each other, and which of them drive: found from its links.
+
+Each shaft is driven by one link at most, so shafts make trees; the first shaft of a tree is its root. The root lies in
+the world's origin, its axis z. A mesh has a world of its own, with its driver's axis at rest as z and the mate at +x.
+"""
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tol3d.errors import GeometryError
+from tol3d.model.mesh import Mesh
+from tol3d.model.shafts import Carried, Reducer, Shaft
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Turning:
+    """An angle that goes with the root of its tree: `offset` [rad] at 0, and turns per turn of the root."""
+
+    offset: float = 0.0
+    rate: Fraction = Fraction(1)
+
+    def at(self, root: float) -> float:
+        """The angle [rad] at an angle of the root."""
+        return self.offset + float(self.rate) * root
+
+
+@dataclass(frozen=True)
+class Link:
+    """What makes one shaft turn with another: a mesh or a reducer.
+
+    `rate` is turns of the driven shaft per turn of the driver's, signed.
+    """
+
+    name: str
+    driver: str
+    driven: str
+    rate: Fraction
+
+
+@dataclass(frozen=True)
+class Drive:
+    """A tree of shafts.
+
+    Args:
+        root: its first shaft.
+        name: of the stream that draws its positions.
+        turns: of the root, until all teeth meet again in the same places; a fraction.
+        meshes: its meshes' names.
+    """
+
+    root: str
+    name: str
+    turns: Fraction
+    meshes: tuple[str, ...]
+
+
+@dataclass(frozen=True, eq=False)
+class Layout:
+    """All of it; mappings by name.
+
+    Args:
+        links: in the order of the moves.
+        driving: the link that drives each shaft; none for roots.
+        root_of: the root of each shaft's tree.
+        shaft_turn: how each shaft turns with its root.
+        mesh_turn: how the driver of each mesh turns with its root, in the frame of the mesh.
+        world_from_shaft: (4, 4), shafts at 0.
+        world_from_mesh: (4, 4).
+        shaft_from_gear: (4, 4), a gear's axis at rest on its shaft.
+        carrying: the shaft that carries each gear, and where.
+        drives: the trees.
+    """
+
+    links: tuple[Link, ...]
+    driving: Mapping[str, Link]
+    root_of: Mapping[str, str]
+    shaft_turn: Mapping[str, Turning]
+    mesh_turn: Mapping[str, Turning]
+    world_from_shaft: Mapping[str, Array]
+    world_from_mesh: Mapping[str, Array]
+    shaft_from_gear: Mapping[str, Array]
+    carrying: Mapping[str, tuple[str, Carried]]
+    drives: tuple[Drive, ...]
+
+    def drive_of(self, mesh: str) -> Drive:
+        """The tree that a mesh belongs to."""
+        return next(drive for drive in self.drives if mesh in drive.meshes)
+
+    def behind(self, shaft: str) -> tuple[Link, ...]:
+        """The links from a shaft back to its root."""
+        links = []
+        while shaft in self.driving:
+            links.append(self.driving[shaft])
+            shaft = links[-1].driver
+        return tuple(links)
+
+    def between(self, first: str, last: str) -> tuple[Link, ...]:
+        """The links between two shafts of a tree, in the order of the way."""
+        up, down = self.behind(first), self.behind(last)
+        common = set(up) & set(down)
+        return (*(link for link in up if link not in common), *reversed([link for link in down if link not in common]))
+
+    def ratio(self, first: str, last: str) -> Fraction:
+        """Turns of the first shaft per turn of the last, signed."""
+        return self.shaft_turn[first].rate / self.shaft_turn[last].rate
+
+
+def layout_of(meshes: Sequence[Mesh], shafts: Sequence[Shaft], reducers: Sequence[Reducer]) -> Layout:
+    """The layout of a model whose shafts make trees.
+
+    Raises:
+        GeometryError: they do not.
+    """
+    carrying = {own.gear: (shaft.name, own) for shaft in shafts for own in shaft.carries}
+    for gear in (gear for mesh in meshes for gear in (mesh.driver, mesh.driven)):
+        carrying.setdefault(gear, (gear, Carried(gear)))
+    links = (
+        *(Link(r.name, r.driver, r.driven, 1 / r.ratio) for r in reducers),
+        *(_link(mesh, carrying) for mesh in meshes),
+    )
+    driving: dict[str, Link] = {}
+    for link in links:
+        if link.driven in driving:
+            raise GeometryError(f"{link.driven!r} is driven by {driving[link.driven].name!r} and by {link.name!r}")
+        driving[link.driven] = link
+    frames = {gear: _shaft_from_gear(own) for gear, (_, own) in carrying.items()}
+    turn: dict[str, Turning] = {}
+    world: dict[str, Array] = {}
+    root_of: dict[str, str] = {}
+    mesh_turn: dict[str, Turning] = {}
+    world_from_mesh: dict[str, Array] = {}
+    by_name: dict[str, Mesh | Reducer] = {mesh.name: mesh for mesh in meshes} | {r.name: r for r in reducers}
+    names = dict.fromkeys([*(link.driver for link in links), *(s.name for s in shafts)])
+    for root in (name for name in names if name not in driving):
+        turn[root], world[root], root_of[root] = Turning(), np.eye(4), root
+        for link in _onwards(root, links):
+            root_of[link.driven] = root
+            cause = by_name[link.name]
+            if isinstance(cause, Mesh):
+                (_, driver), (_, driven) = carrying[cause.driver], carrying[cause.driven]
+                mesh_turn[cause.name] = _of_driver(cause, driver, turn[link.driver])
+                turn[link.driven] = _of_driven(cause, driven, mesh_turn[cause.name])
+                pose = world[link.driver] @ frames[cause.driver] @ _about_z(cause.azimuth)
+                world_from_mesh[cause.name] = pose
+                world[link.driven] = pose @ _wheel_in_mesh(cause) @ np.linalg.inv(frames[cause.driven])
+            else:
+                before = turn[link.driver]
+                turn[link.driven] = Turning(before.offset * float(link.rate), before.rate * link.rate)
+                world[link.driven] = world[link.driver] @ _along_z(cause.offset)
+    return Layout(
+        links=links,
+        driving=driving,
+        root_of=root_of,
+        shaft_turn=turn,
+        mesh_turn=mesh_turn,
+        world_from_shaft=world,
+        world_from_mesh=world_from_mesh,
+        shaft_from_gear=frames,
+        carrying=carrying,
+        drives=tuple(_drives(meshes, links, root_of, mesh_turn)),
+    )
+
+
+def loop_of(links: Sequence[Link]) -> tuple[str, ...]:
+    """Shafts that drive each other in a ring, the first of them again at the end; empty where there are none."""
+    driver = {link.driven: link.driver for link in links}
+    for start in driver:
+        way = [start]
+        while way[-1] in driver and len(way) <= len(driver):
+            way.append(driver[way[-1]])
+            if way[-1] == start:
+                return tuple(reversed(way))
+    return ()
+
+
+def _onwards(root: str, links: Sequence[Link]) -> Iterator[Link]:
+    """The links of a root's tree, each behind the one that drives it."""
+    waiting = [root]
+    while waiting:
+        shaft = waiting.pop(0)
+        for link in links:
+            if link.driver == shaft:
+                yield link
+                waiting.append(link.driven)
+
+
+def _link(mesh: Mesh, carrying: Mapping[str, tuple[str, Carried]]) -> Link:
+    (driver, first), (driven, second) = carrying[mesh.driver], carrying[mesh.driven]
+    return Link(mesh.name, driver, driven, mesh.rate * first.sense * second.sense)
+
+
+def _of_driver(mesh: Mesh, own: Carried, shaft: Turning) -> Turning:
+    """A mesh counts its driver's turn from the line of centres."""
+    return Turning(own.sense * shaft.offset + own.phase - mesh.azimuth, own.sense * shaft.rate)
+
+
+def _of_driven(mesh: Mesh, own: Carried, driver: Turning) -> Turning:
+    angle = float(mesh.pair.driven_angle(np.array([driver.offset]))[0])
+    return Turning(own.sense * (angle - own.phase), own.sense * mesh.rate * driver.rate)
+
+
+def _drives(
+    meshes: Sequence[Mesh], links: Sequence[Link], root_of: Mapping[str, str], mesh_turn: Mapping[str, Turning]
+) -> Iterator[Drive]:
+    for root in dict.fromkeys(root_of.values()):
+        own_links = [link for link in links if root_of[link.driver] == root]
+        own = [mesh for mesh in meshes if any(link.name == mesh.name for link in own_links)]
+        if own:
+            periods = [mesh.pair.long_period_turns / abs(mesh_turn[mesh.name].rate) for mesh in own]
+            name = own_links[0].name if len(own_links) == 1 else root
+            yield Drive(root, name, _least_common(periods), tuple(mesh.name for mesh in own))
+
+
+def _least_common(periods: Sequence[Fraction]) -> Fraction:
+    """The least common multiple of fractions."""
+    numerators = math.lcm(*(period.numerator for period in periods))
+    return Fraction(numerators, math.gcd(*(period.denominator for period in periods)))
+
+
+def _shaft_from_gear(own: Carried) -> Array:
+    pose = _along_z(own.at)
+    if own.backward:
+        pose[:3, :3] = np.diag([1.0, -1.0, -1.0])
+    return pose
+
+
+def _wheel_in_mesh(mesh: Mesh) -> Array:
+    pose = np.eye(4)
+    pose[:3, :3], pose[:3, 3] = mesh.pair.world_from_wheel, mesh.pair.wheel_origin
+    return pose
+
+
+def _along_z(offset: float) -> Array:
+    pose = np.eye(4)
+    pose[2, 3] = offset
+    return pose
+
+
+def _about_z(angle: float) -> Array:
+    pose = np.eye(4)
+    cos, sin = math.cos(angle), math.sin(angle)
+    pose[:2, :2] = [[cos, -sin], [sin, cos]]
+    return pose

@@ -1,0 +1,187 @@
+"""Measures of a scene: what is read, over which positions. One function a sort of measure."""
+
+import math
+from functools import singledispatch
+from typing import Literal
+
+import numpy as np
+
+from tol3d.model.measure import Backlash, LostMotion, Measure, Positions, Reading, Stage, Tip, TrainQuantity
+from tol3d.model.mesh import Mesh
+from tol3d.model.model import Model
+from tol3d.model.shafts import Arm, Train
+from tol3d.model.trains import gravity_torque
+from tol3d.scene import Scene
+from tol3d.scene.direction import At
+from tol3d.scene.measures import (
+    AngularBacklashSpec,
+    CircumferentialBacklashSpec,
+    LostMotionSpec,
+    MeasureSpec,
+    NormalBacklashSpec,
+    TipDisplacementSpec,
+    TipErrorSpec,
+)
+
+BacklashSpec = NormalBacklashSpec | CircumferentialBacklashSpec | AngularBacklashSpec
+
+
+def measure_of(scene: Scene, name: str, model: Model) -> Measure:
+    """A measure of a scene on its model, which has all but its measures.
+
+    Raises:
+        SceneError: a shaft or an arm that is not on the train, a swing without a load.
+    """
+    spec = scene.measures[name]
+    measure = _measure(spec, scene, name, model)
+    return Measure(
+        name=name,
+        kind=measure.kind,
+        positions=measure.positions,
+        take=measure.take,
+        lower_limit=None if spec.lower_limit is None else spec.lower_limit.internal,
+        upper_limit=None if spec.upper_limit is None else spec.upper_limit.internal,
+    )
+
+
+@singledispatch
+def _measure(spec: MeasureSpec, scene: Scene, name: str, model: Model) -> Measure:
+    raise TypeError(f"measures.py has no function for {type(spec).__name__}")
+
+
+@_measure.register(NormalBacklashSpec)
+@_measure.register(CircumferentialBacklashSpec)
+@_measure.register(AngularBacklashSpec)
+def _(spec: BacklashSpec, scene: Scene, name: str, model: Model) -> Measure:
+    mesh = model.mesh(spec.of)
+    gear = getattr(spec, "gear", None) or mesh.driven
+    return Measure(
+        name, Backlash(spec.kind, mesh.name, gear, _reading(spec, mesh)), _positions_of_mesh(spec, mesh), spec.take
+    )
+
+
+def _reading(spec: BacklashSpec, mesh: Mesh) -> Reading:
+    """What was said, or what fits the pair. A free turn goes from contact to contact, and both are read alike."""
+    fitting = default_reading(mesh)
+    read_at = spec.read_at or ("mean_section" if fitting.contact == "section" else "face")
+    contact: Literal["face", "section"] = "section" if read_at == "mean_section" else "face"
+    return Reading(
+        contact=contact,
+        gap="section" if read_at == "face_contact" and spec.kind == "normal_backlash" else contact,
+        teeth=spec.tooth or fitting.teeth,
+    )
+
+
+def default_reading(mesh: Mesh) -> Reading:
+    """The whole face and all teeth of a cylinder, the middle section of one driven tooth of a cone."""
+    return Reading("section", "section", "driven") if mesh.pair.arm_spread > 0.0 else Reading()
+
+
+def _positions_of_mesh(spec: BacklashSpec, mesh: Mesh) -> Positions:
+    if isinstance(spec.over, At):
+        return Positions("at", 1, 1, spec.over.at.internal)
+    if spec.over == "random":
+        return Positions("random", mesh.pair.long_period_turns, 1)
+    turns = 1 if spec.over == "turn" else mesh.pair.long_period_turns
+    return Positions(spec.over, turns, turns * spec.positions)
+
+
+# trains -------------------------------------------------------------------------------------------
+
+
+@_measure.register
+def _(spec: LostMotionSpec, scene: Scene, name: str, model: Model) -> Measure:
+    train = model.train(spec.of)
+    shaft = spec.shaft or train.output
+    if model.layout.root_of.get(shaft) != train.driven:
+        raise scene.refuse(("measures", name, "shaft"), f"expected a shaft that {train.driven!r} turns, got {shaft!r}")
+    if shaft == train.held:
+        raise scene.refuse(("measures", name), f"expected another shaft than the one that is held, got {shaft!r}")
+    return Measure(name, lost_motion(model, train, shaft, "lost_motion"), _positions(spec), "value")
+
+
+@_measure.register
+def _(spec: TipDisplacementSpec, scene: Scene, name: str, model: Model) -> Measure:
+    arm = _arm(scene, name, spec, model)
+    kind = lost_motion(model, model.train(spec.of), arm.on, "tip_displacement", _tip(arm, spec.point))
+    return Measure(name, kind, _positions(spec), "value")
+
+
+@_measure.register
+def _(spec: TipErrorSpec, scene: Scene, name: str, model: Model) -> Measure:
+    train, arm = model.train(spec.of), _arm(scene, name, spec, model)
+    shown = tuple(np.linspace(spec.start.internal, spec.end.internal, spec.positions).tolist())
+    if arm.on != train.output:
+        raise scene.refuse(
+            ("measures", name, "arm"), f"expected an arm on the output {train.output!r}, got one on {arm.on!r}"
+        )
+    torques = [gravity_torque(train, model.layout, model.arms, angle) for angle in shown]
+    if torques[0] is None:
+        raise scene.refuse(
+            ("measures", name), f"what turns the load over a swing is gravity: give {train.name!r} its direction"
+        )
+    if not any(torques):
+        raise scene.refuse(
+            ("measures", name),
+            f"gravity does not turn {train.output!r} anywhere on this swing: its direction in the world, or the arm's "
+            "centre of mass, lies along the axis",
+        )
+    kind = lost_motion(
+        model, train, arm.on, "tip_error", _tip(arm, spec.point), _turned([torque or 0.0 for torque in torques])
+    )
+    rate = float(model.layout.shaft_turn[arm.on].rate)
+    positions = Positions("swing", 1, len(shown), angles=tuple(angle / rate for angle in shown), shown=shown)
+    return Measure(name, kind, positions, "curve")
+
+
+def lost_motion(
+    model: Model,
+    train: Train,
+    shaft: str,
+    quantity: TrainQuantity,
+    tip: Tip | None = None,
+    turned: tuple[bool, ...] = (),
+) -> LostMotion:
+    """What a train's links leave free at one of its shafts."""
+    return LostMotion(quantity, train.name, shaft, train.held, _stages(model, train.held, shaft), tip, turned)
+
+
+def _stages(model: Model, held: str, shaft: str) -> tuple[Stage, ...]:
+    layout, meshes = model.layout, {mesh.name: mesh for mesh in model.meshes}
+    stages = []
+    for link in layout.between(held, shaft):
+        mesh = meshes.get(link.name)
+        backlash = Backlash("angular_backlash", mesh.name, mesh.driven, default_reading(mesh)) if mesh else None
+        stages.append(Stage(link.name, abs(float(layout.ratio(shaft, link.driven))), backlash))
+    return tuple(stages)
+
+
+def _arm(scene: Scene, name: str, spec: TipDisplacementSpec | TipErrorSpec, model: Model) -> Arm:
+    arm = next(arm for arm in model.arms if arm.name == spec.arm)
+    train = model.train(spec.of)
+    if model.layout.root_of.get(arm.on) != train.driven or arm.on == train.held:
+        raise scene.refuse(
+            ("measures", name, "arm"),
+            f"expected an arm on a shaft that {train.driven!r} turns, got {spec.arm!r}, which hangs on {arm.on!r}",
+        )
+    return arm
+
+
+def _tip(arm: Arm, point: str) -> Tip:
+    return Tip(arm.name, point, arm.lever(point))
+
+
+def _positions(spec: LostMotionSpec | TipDisplacementSpec) -> Positions:
+    if isinstance(spec.over, At):
+        return Positions("at", 1, 1, spec.over.at.internal)
+    return Positions("random", 1, 1)
+
+
+def _turned(torques: list[float]) -> tuple[bool, ...]:
+    """Where the torque has another sense than at the start; without torque the flanks stay where they were."""
+    first = math.copysign(1.0, next(torque for torque in torques if torque))
+    turned, now = [], first
+    for torque in torques:
+        now = math.copysign(1.0, torque) if torque else now
+        turned.append(now != first)
+    return tuple(turned)

@@ -1,0 +1,233 @@
+"""Shafts, reducers, arms and trains of a scene, or why they do not make trains."""
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from fractions import Fraction
+
+import numpy as np
+
+from tol3d.gears import LEFT, RIGHT, Flank
+from tol3d.model.layout import Layout, Link, loop_of
+from tol3d.model.mesh import Mesh
+from tol3d.model.pairs import internal
+from tol3d.model.shafts import Arm, Carried, Reducer, Shaft, Train, Vector
+from tol3d.scene import Scene
+from tol3d.scene.moves import GearMeshSpec, ReducerSpec, TrainSpec
+from tol3d.scene.parts import ArmSpec, GearSpec, ShaftSpec
+from tol3d.scene.tolerances import ReducerBacklashSpec
+
+RATIO_AS_WRITTEN = 5e-4  # relative; four digits are enough to check a drawing's ratio
+NO_TORQUE = 1e-9  # of the lever of the arm's weight; less is none
+
+
+def shafts_of(scene: Scene) -> tuple[Shaft, ...]:
+    """The scene's shafts.
+
+    Raises:
+        SceneError: a gear sits on two of them.
+    """
+    carrier: dict[str, str] = {}
+    for name, part in scene.parts.items():
+        for gear in part.carries if isinstance(part, ShaftSpec) else ():
+            if gear in carrier:
+                raise scene.refuse(
+                    ("parts", name, "carries", gear),
+                    f"expected a gear that no other shaft carries, got {gear!r}, which sits on {carrier[gear]!r}",
+                )
+            carrier[gear] = name
+    return tuple(_shaft(name, part) for name, part in scene.parts.items() if isinstance(part, ShaftSpec))
+
+
+def _shaft(name: str, part: ShaftSpec) -> Shaft:
+    carries = tuple(
+        Carried(gear, own.at.internal, own.facing == "backward", own.phase.internal)
+        for gear, own in part.carries.items()
+    )
+    sizes = (None if size is None else size.internal for size in (part.diameter, part.start, part.end))
+    return Shaft(name, carries, *sizes)
+
+
+def arms_of(scene: Scene) -> tuple[Arm, ...]:
+    """The scene's arms."""
+    return tuple(
+        Arm(
+            name,
+            part.shaft,
+            tuple((point, _vector(place)) for point, place in part.points.items()),
+            None if part.centre_of_mass is None else _vector(part.centre_of_mass),
+            None if part.diameter is None else part.diameter.internal,
+        )
+        for name, part in scene.parts.items()
+        if isinstance(part, ArmSpec)
+    )
+
+
+def _vector(lengths: Sequence[object]) -> Vector:
+    x, y, z = (internal(length) for length in lengths)  # type: ignore[arg-type]
+    return x, y, z
+
+
+def reducers_of(scene: Scene) -> tuple[Reducer, ...]:
+    """The scene's reducers.
+
+    Raises:
+        SceneError: a backlash that is stated twice.
+    """
+    drawn = {spec.of: name for name, spec in scene.tolerances.items() if isinstance(spec, ReducerBacklashSpec)}
+    found = []
+    for name, move in scene.moves.items():
+        if isinstance(move, ReducerSpec):
+            if move.backlash is not None and name in drawn:
+                raise scene.refuse(
+                    ("moves", name, "backlash"),
+                    f"expected none, for {drawn[name]!r} tells its distribution, got '{move.backlash}'; leave out one",
+                )
+            ratio = Fraction(str(move.ratio))
+            found.append(Reducer(name, move.driver, move.driven, ratio, internal(move.backlash), internal(move.offset)))
+    return tuple(found)
+
+
+def refuse_no_trees(scene: Scene, meshes: Sequence[Mesh], shafts: Sequence[Shaft], reducers: Sequence[Reducer]) -> None:
+    """Refuse shafts that do not make trees: one link drives each of them at most, and none drives itself.
+
+    Raises:
+        SceneError: at the link that is too many.
+    """
+    carrier = {own.gear: shaft.name for shaft in shafts for own in shaft.carries}
+    first: dict[str, Link] = {}
+    for link in _links(meshes, reducers, carrier):
+        here = ("moves", link.name)
+        if link.driver == link.driven:
+            raise scene.refuse(here, f"driver and driven sit on the same shaft, {link.driver!r}: it would lock itself")
+        before = first.get(link.driven)
+        if before is None:
+            first[link.driven] = link
+        elif before.driver == link.driver:
+            raise scene.refuse(
+                here,
+                f"{link.driver!r} drives {link.driven!r} here and by {before.name!r}: a loop of shafts; parallel "
+                "ways between two shafts lock or share their play, which is not simulated: take out one",
+            )
+        else:
+            raise scene.refuse(
+                here,
+                f"two drivers: {link.driven!r} is driven by {link.driver!r} here and by {before.driver!r} in "
+                f"{before.name!r}; a shaft can be driven by one only: turn driver and driven round, or take out one",
+            )
+    if loop := loop_of(list(first.values())):
+        raise scene.refuse(
+            ("moves", first[loop[-1]].name),
+            f"a loop of shafts: {' → '.join(map(repr, loop))}; no motor can turn them: take out a link",
+        )
+
+
+def _links(meshes: Sequence[Mesh], reducers: Sequence[Reducer], carrier: Mapping[str, str]) -> Iterator[Link]:
+    for reducer in reducers:
+        yield Link(reducer.name, reducer.driver, reducer.driven, 1 / reducer.ratio)
+    for mesh in meshes:
+        driver, driven = (carrier.get(gear, gear) for gear in (mesh.driver, mesh.driven))
+        yield Link(mesh.name, driver, driven, mesh.rate)
+
+
+def refuse_other_ratios(scene: Scene, meshes: Sequence[Mesh], layout: Layout) -> None:
+    """Refuse ratios that the teeth do not give.
+
+    Raises:
+        SceneError: at the stated ratio.
+    """
+    for mesh in meshes:
+        move = scene.moves[mesh.name]
+        if isinstance(move, GearMeshSpec) and move.ratio is not None:
+            why = f"{mesh.pair.wheel.teeth}/{mesh.pair.pinion.teeth}, teeth of {mesh.driven!r} over {mesh.driver!r}"
+            _refuse_ratio(scene, mesh.name, move.ratio, 1 / mesh.rate, why)
+    for name, move in scene.moves.items():
+        if isinstance(move, TrainSpec) and move.ratio is not None:
+            links = layout.between(move.driven, move.output)
+            each = " · ".join(f"{_ratio_text(1 / link.rate)} ({link.name})" for link in links) or "the same shaft"
+            _refuse_ratio(scene, name, move.ratio, layout.ratio(move.driven, move.output), each)
+
+
+def _refuse_ratio(scene: Scene, move: str, stated: float, real: Fraction, why: str) -> None:
+    """A ratio without a sign is a magnitude; one below zero says that the shafts turn opposite."""
+    wanted = real if stated < 0.0 else abs(real)
+    if abs(stated - float(wanted)) > RATIO_AS_WRITTEN * abs(float(real)):
+        raise scene.refuse(("moves", move, "ratio"), f"expected {_ratio_text(wanted)} = {why}, got {stated:g}")
+
+
+def _ratio_text(ratio: Fraction) -> str:
+    return f"{float(ratio):.6g}"
+
+
+def trains_of(scene: Scene, layout: Layout) -> tuple[Train, ...]:
+    """The scene's trains.
+
+    Raises:
+        SceneError: a train that does not connect, or whose motor is not the first of its shafts.
+    """
+    return tuple(_train(scene, name, move, layout) for name, move in scene.moves.items() if isinstance(move, TrainSpec))
+
+
+def _train(scene: Scene, name: str, move: TrainSpec, layout: Layout) -> Train:
+    for field in ("driven", "output", "held"):
+        shaft = getattr(move, field) or move.driven
+        if shaft not in layout.root_of:
+            raise scene.refuse(("moves", name, field), f"expected a shaft that some move turns, got {shaft!r}")
+    if link := layout.driving.get(move.driven):
+        raise scene.refuse(
+            ("moves", name, "driven"),
+            f"two drivers: expected the shaft that the motor turns and no other, got {move.driven!r}, which "
+            f"{link.driver!r} drives in {link.name!r}; the first shaft there is {layout.root_of[move.driven]!r}",
+        )
+    for field in ("output", "held"):
+        shaft = getattr(move, field) or move.driven
+        if layout.root_of[shaft] != move.driven:
+            reached = [s for s, root in layout.root_of.items() if root == move.driven]
+            raise scene.refuse(
+                ("moves", name, field),
+                f"the train does not connect: from {move.driven!r} one gets to {', '.join(map(repr, reached))}; "
+                f"{shaft!r} is driven from {layout.root_of[shaft]!r}",
+            )
+    return Train(
+        name=name,
+        driven=move.driven,
+        output=move.output,
+        held=move.held or move.driven,
+        gravity=None if move.gravity is None else (move.gravity[0], move.gravity[1], move.gravity[2]),
+        sense=1 if move.turns == "counter_clockwise" else -1,
+    )
+
+
+def loose_gears(scene: Scene) -> Iterator[str]:
+    """Gears that take part in no mesh."""
+    for name, part in scene.parts.items():
+        if isinstance(part, GearSpec) and not scene.meshes_of(name):
+            yield name
+
+
+# which flank works ----------------------------------------------------------------------------------
+
+
+def loaded_flank(mesh: Mesh, train: Train, layout: Layout, arms: Sequence[Arm]) -> Flank:
+    """The driver's flank that works in a mesh: what gravity leaves to it at angle 0, or the motor's sense.
+
+    A shaft that gravity turns one way is held by its driver as if that drove it the other way; a driver that turns
+    counter-clockwise about its own z pushes with its left flank.
+    """
+    torque = gravity_torque(train, layout, arms, 0.0)
+    shaft, carried = layout.carrying[mesh.driver]
+    sense = train.sense if not torque else -math.copysign(1.0, torque) * layout.shaft_turn[train.output].rate
+    return LEFT if carried.sense * sense * layout.shaft_turn[shaft].rate > 0.0 else RIGHT
+
+
+def gravity_torque(train: Train, layout: Layout, arms: Sequence[Arm], angle: float) -> float | None:
+    """Torque of gravity on the arms of a train's output about its z, the output turned [rad]; None where there is none.
+
+    Per weight [mm]; arms that are several count alike.
+    """
+    hanging = [arm for arm in arms if arm.on == train.output]
+    if train.gravity is None or not hanging:
+        return None
+    x, y, z = layout.world_from_shaft[train.output][:3, :3].T @ np.array(train.gravity)
+    reach = max(float(np.hypot(px, py)) for arm in hanging for _, (px, py, _) in arm.points)
+    torque = sum(arm.torque((x, y, z), angle) for arm in hanging)
+    return 0.0 if abs(torque) < NO_TORQUE * reach else torque
