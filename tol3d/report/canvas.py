@@ -25,7 +25,6 @@ PURPLE: Final = "#CC79A7"
 BLACK: Final = "#222222"
 GREY: Final = "#7A7A7A"
 
-AXIS_UNITS: Final = {"um": "µm", "arcmin": "′, ″ of arc"}
 
 ROAD_COLOURS: Final = {"closed form": BLACK, "analytic": ORANGE, "geometric": BLUE}
 PUBLISHED_COLOURS: Final = (GREEN, PURPLE, SKY, GREY)
@@ -62,16 +61,6 @@ def title_measure(axes: Axes, name: str, measure: Mapping[str, Any], longest: in
     """A measure's name above its axes, and below it in one line of at most `longest` characters what it is."""
     axes.set_title(f"{legible(name, 60)}\n", loc="left", fontsize=12, fontweight="bold")
     axes.text(0, 1.03, legible(heading(measure), longest), transform=axes.transAxes, fontsize=9, color=GREY)
-
-
-def values_label(name: str, unit: str, longest: int = 60) -> str:
-    """Label of an axis of a measure's values."""
-    return f"{legible(name, longest)} [{AXIS_UNITS[unit]}]"
-
-
-def density_label(unit: str) -> str:
-    """Label of an axis of a histogram's densities."""
-    return f"% of trials per {'µm' if unit == 'um' else '′'}"
 
 
 def say_instead(axes: Axes, text: str, colour: str) -> None:

@@ -14,7 +14,7 @@ from tol3d.analytic import reference_form
 from tol3d.engines import Engine
 from tol3d.engines.exact import ExactEngine
 from tol3d.gears import RIGHT, BevelGear, BevelPair, Gear, GearPair, SpurGear, SpurPair
-from tol3d.model import Contributor, Measure, Model, Planar, Positions
+from tol3d.model import Backlash, Contributor, Measure, Model, Planar, Positions
 from tol3d.report.heading import OVER_WORDS, QUANTITY_WORDS, TAKE_WORDS, reading_words
 from tol3d.report.number import NOTHING, UNIT_SIGNS, given_text, percent_text, unsigned_zero, value_text
 from tol3d.report.sheet import Heading, Row, Sheet
@@ -178,17 +178,29 @@ def measures_table(model: Model) -> Group:
     """The measures with limits and positions."""
     rows = []
     for measure in model.measures:
-        kind = measure.kind
-        gear = f" of {kind.gear}" if kind.is_angle else ""
-        what = f"{TAKE_WORDS[measure.take]}{QUANTITY_WORDS[kind.quantity]}{gear}, {kind.mesh}"
-        curve = " (curve)" if measure.take == "curve" else ""
-        reading = reading_words(vars(kind.reading))
-        rows.append(Row(measure.name, (what + curve + reading, _positions(measure), _limits(measure))))
+        rows.append(Row(measure.name, (_what(measure), _positions(measure), _limits(measure))))
     return _titled("measures", Sheet("", [Heading(word, words=True) for word in ("what", "positions", "limits")], rows))
+
+
+def _what(measure: Measure) -> str:
+    kind = measure.kind
+    if not isinstance(kind, Backlash):
+        stages = " + ".join(stage.link for stage in kind.stages)
+        moves = f"{kind.tip.point} of {kind.tip.arm} ({kind.tip.lever:g} mm from the axis) by the " if kind.tip else ""
+        return f"{moves}lost motion of {kind.shaft}, {kind.held} held: {stages}"
+    gear = f" of {kind.gear}" if kind.is_angle else ""
+    curve = " (curve)" if measure.take == "curve" else ""
+    what = f"{TAKE_WORDS[measure.take]}{QUANTITY_WORDS[kind.quantity]}{gear}, {kind.mesh}"
+    return what + curve + reading_words(vars(kind.reading))
 
 
 def _positions(measure: Measure) -> str:
     positions = measure.positions
+    if positions.over == "swing":
+        first, last = (_degrees(angle) for angle in (positions.shown[0], positions.shown[-1]))
+        return f"{positions.count} from {first}° to {last}° of the output"
+    if positions.over == "at" and not isinstance(measure.kind, Backlash):
+        return f"first shaft at {_degrees(positions.angle)}°"
     if positions.over == "at":
         return f"driver at {_degrees(positions.angle)}°"
     if positions.over == "random":

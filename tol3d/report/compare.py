@@ -18,7 +18,6 @@ from tol3d.report.canvas import (
     OUTSIDE,
     ROAD_COLOURS,
     RUN_COLOURS,
-    density_label,
     label_angles,
     legible,
     new_figure,
@@ -26,10 +25,10 @@ from tol3d.report.canvas import (
     save_figure,
     say_instead,
     title_measure,
-    values_label,
 )
 from tol3d.report.difference import Difference, difference_of
-from tol3d.report.heading import heading, reading_words
+from tol3d.report.heading import heading, position_of, reading_words
+from tol3d.report.histogram import density_label, values_label
 from tol3d.report.number import NOTHING, UNIT_SIGNS, difference_text, given_text, value_text
 from tol3d.report.sheet import Heading, Row, Sheet
 from tol3d.result import Run
@@ -40,18 +39,23 @@ NO_SIMULATION = "no 3D simulation in these runs"
 NO_TRIALS = "these runs kept no trials (--no-trials)"
 ROADS = {"analytic": "analytic", "geometric": "3D simulation"}
 SHORT = {"analytic": "analytic", "geometric": "3D"}
-DIFFERENCE_UNITS = {"um": ("µm", 1.0), "arcmin": ("″", 60.0)}
+DIFFERENCE_UNITS = {"um": ("µm", 1.0), "mm": ("µm", 1000.0), "arcmin": ("″", 60.0)}
 """Unit of small differences, and how many of it are one of the measure's unit."""
 
 
 @dataclass(frozen=True)
 class Compared:
-    """A measure as runs may share it on one axis; the same name over other positions is another measure."""
+    """A measure as runs may share it on one axis; the same name over other positions is another measure.
+
+    Args:
+        name, unit, kind, over, take, reading: as in its summary.
+        at: the gear whose angle it is, the shaft that is read, or the point of an arm.
+    """
 
     name: str
     unit: str
     kind: str
-    gear: str | None
+    at: str | None
     over: str
     take: str
     reading: str
@@ -59,8 +63,9 @@ class Compared:
     @classmethod
     def of(cls, name: str, measure: Summary) -> "Compared":
         """From a measure's summary."""
-        unit, kind, gear, over, take = (measure[key] for key in ("unit", "kind", "gear", "over", "take"))
-        return cls(name, unit, kind, gear, over, take, reading_words(measure["reading"]))
+        unit, kind, over, take = (measure[key] for key in ("unit", "kind", "over", "take"))
+        at = measure["gear"] or measure.get("point") or measure.get("shaft")
+        return cls(name, unit, kind, at, over, take, reading_words(measure["reading"]))
 
     def found_in(self, runs: Sequence[Run]) -> list[tuple[str, Run]]:
         """The runs that have it, each with its label."""
@@ -168,7 +173,7 @@ def draw_comparison(runs: Sequence[Run], path: Path) -> None:
             say_instead(axes[1], instead, GREY)
             say_instead(axes[2], instead, GREY)
         _draw_differences(axes[1], unit, known, single=len(own) == 1)
-        _draw_by_position(axes[2], name, unit, known, single=len(own) == 1)
+        _draw_by_position(axes[2], measure, known, single=len(own) == 1)
     save_figure(figure, path)
 
 
@@ -208,7 +213,7 @@ def _draw_roads(axes: Axes, name: str, unit: str, runs: Sequence[tuple[str, Run]
         axes.set_ylabel(density_label(unit), fontsize=10)
     else:
         label_angles(axes.yaxis, unit)
-        axes.set_xlabel("driver position [deg]", fontsize=10)
+        axes.set_xlabel(f"{position_of(first)} position [deg]", fontsize=10)
         axes.set_ylabel(values_label(name, unit, 34), fontsize=10)
     title_measure(axes, name, first, 90)
     axes.legend(fontsize=8.5, frameon=False, loc="best")
@@ -250,10 +255,11 @@ def _draw_differences(axes: Axes, unit: str, known: Known, *, single: bool) -> N
     axes.legend(fontsize=8.5, frameon=False, loc="upper left")
 
 
-def _draw_by_position(axes: Axes, name: str, unit: str, known: Known, *, single: bool) -> None:
-    word, factor = DIFFERENCE_UNITS[unit]
+def _draw_by_position(axes: Axes, measure: Compared, known: Known, *, single: bool) -> None:
+    word, factor = DIFFERENCE_UNITS[measure.unit]
+    turning = position_of({"kind": measure.kind})
     by_position = all(found.by_position for _, _, found in known)
-    title = "by position of the driver" if by_position else "by value"
+    title = f"by position of the {turning}" if by_position else "by value"
     axes.set_title(f"difference {title}\n", loc="left", fontsize=11, fontweight="bold")
     if not known:
         return
@@ -270,8 +276,9 @@ def _draw_by_position(axes: Axes, name: str, unit: str, known: Known, *, single:
         )
     axes.axhline(0, color=BLACK, linewidth=0.8)
     if by_position:
-        axes.set_xlabel("driver position within its turn [deg]", fontsize=10)
+        turn = " within its turn" if turning == "driver" else ""
+        axes.set_xlabel(f"{turning} position{turn} [deg]", fontsize=10)
     else:
-        label_angles(axes.xaxis, unit)
-        axes.set_xlabel(f"analytic: {values_label(name, unit, 40)}", fontsize=10)
+        label_angles(axes.xaxis, measure.unit)
+        axes.set_xlabel(f"analytic: {values_label(measure.name, measure.unit, 40)}", fontsize=10)
     axes.set_ylabel(f"difference [{word}]", fontsize=10)

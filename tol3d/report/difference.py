@@ -48,7 +48,8 @@ def difference_of(run: Run, measure: str) -> Difference | None:
     names = (f"analytic:{measure}", f"geometric:{measure}")
     if not set(names) <= set(run.column_names):
         return None
-    position = f"position:{summary['of']} [deg]" if summary["over"] == "random" else None
+    own = f"position:{summary['of']} [deg]"  # a train has none
+    position = own if summary["over"] == "random" and own in run.column_names else None
     ends = np.array([_ends(analytic, geometric) for analytic, geometric, _ in _blocks(run, names, position)])
     low, high = float(ends.min()), float(ends.max())
     edges = np.linspace(low, max(high, low + SMALLEST_SPAN), BARS + 1)

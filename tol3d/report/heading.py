@@ -3,21 +3,30 @@
 from collections.abc import Mapping
 from typing import Any
 
-from tol3d.report.number import UNIT_SIGNS, given_text
+from tol3d.report.number import given_text, unit_suffix
 
 QUANTITY_WORDS: Mapping[str, str] = {
     "normal_backlash": "normal backlash",
     "circumferential_backlash": "circumferential backlash",
     "angular_backlash": "angular backlash",
+    "lost_motion": "lost motion",
+    "tip_displacement": "displacement by the lost motion",
+    "tip_error": "error by the lost motion",
 }
+TRAIN_KINDS = frozenset(("lost_motion", "tip_displacement", "tip_error"))
 TAKE_WORDS: Mapping[str, str] = {"value": "", "min": "smallest ", "max": "largest ", "range": "range of ", "curve": ""}
 OVER_WORDS: Mapping[str, str] = {
     "random": "at a random position of the driver each trial",
     "at": "at one position of the driver",
     "turn": "over one turn of the driver",
     "long_period": "over the long period",
+    "swing": "over the swing of the output",
 }
-
+TRAIN_OVER_WORDS: Mapping[str, str] = {
+    **OVER_WORDS,
+    "random": "at a random position of the motor each trial",
+    "at": "at one position of the motor",
+}
 
 READING_WORDS: Mapping[tuple[str, str], str] = {
     ("face", "face"): "",
@@ -26,26 +35,51 @@ READING_WORDS: Mapping[tuple[str, str], str] = {
 }
 
 
-def reading_words(reading: Mapping[str, str]) -> str:
-    """Where on the face and at which teeth, unless it is everywhere and all.
+def reading_words(reading: Mapping[str, str] | None) -> str:
+    """Where on the face and at which teeth, unless it is everywhere and all; a train has no one reading.
 
     >>> reading_words({"contact": "section", "gap": "section", "teeth": "driven"})
     '; mean section, one driven tooth'
     """
+    if reading is None:
+        return ""
     teeth = {"driver": ", one driver tooth", "driven": ", one driven tooth"}
     return READING_WORDS[reading["contact"], reading["gap"]] + teeth.get(reading["teeth"], "")
 
 
 def heading(measure: Mapping[str, Any]) -> str:
-    """Quantity, mesh and positions of a measure's summary.
+    """Quantity, mesh or train, and positions of a measure's summary.
 
     >>> heading({"kind": "normal_backlash", "of": "gear pair", "gear": "wheel", "over": "turn", "take": "min"})
     'smallest normal backlash of gear pair over one turn of the driver'
+    >>> lost = {"of": "swing", "shaft": "flange", "held": "motor", "over": "random"}
+    >>> heading({"kind": "lost_motion", **lost})
+    'lost motion of flange, motor held, at a random position of the motor each trial'
+    >>> heading({"kind": "tip_displacement", "arm": "arm", "point": "tip", **lost})
+    'displacement of tip of arm by the lost motion, at a random position of the motor each trial'
     """
+    if measure["kind"] in TRAIN_KINDS:
+        return f"{_train_quantity(measure)}, {TRAIN_OVER_WORDS[measure['over']]}"
     gear = f" of {measure['gear']} in" if measure["kind"] == "angular_backlash" else " of"
     quantity = TAKE_WORDS[measure["take"]] + QUANTITY_WORDS[measure["kind"]]
     reading = reading_words(measure["reading"]) if "reading" in measure else ""
     return f"{quantity}{gear} {measure['of']} {OVER_WORDS[measure['over']]}{reading}"
+
+
+def _train_quantity(measure: Mapping[str, Any]) -> str:
+    if measure["kind"] == "lost_motion":
+        return f"lost motion of {measure['shaft']}, {measure['held']} held"
+    word = "error" if measure["kind"] == "tip_error" else "displacement"
+    return f"{word} of {measure['point']} of {measure['arm']} by the lost motion"
+
+
+def position_of(measure: Mapping[str, Any]) -> str:
+    """What a measure's positions are positions of.
+
+    >>> position_of({"kind": "tip_error"}), position_of({"kind": "normal_backlash"})
+    ('output', 'driver')
+    """
+    return "output" if measure["kind"] == "tip_error" else "driver"
 
 
 def worst_words(measures: Mapping[str, Mapping[str, Any]]) -> str:
@@ -65,9 +99,8 @@ def worst_words(measures: Mapping[str, Mapping[str, Any]]) -> str:
 def limits_text(measure: Mapping[str, Any]) -> str:
     """The limits of a measure's summary, with their unit."""
     unit = measure["unit"]
-    sign = "" if unit == "arcmin" else f" {UNIT_SIGNS[unit]}"
     given = [
-        f"{word} limit {given_text(measure[key], unit)}{sign}"
+        f"{word} limit {given_text(measure[key], unit)}{unit_suffix(unit)}"
         for word, key in (("lower", "lower_limit"), ("upper", "upper_limit"))
         if measure.get(key) is not None
     ]

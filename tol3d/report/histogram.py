@@ -19,7 +19,6 @@ from tol3d.report.canvas import (
     OUTSIDE,
     PUBLISHED_COLOURS,
     ROAD_COLOURS,
-    density_label,
     label_angles,
     legible,
     new_figure,
@@ -27,10 +26,10 @@ from tol3d.report.canvas import (
     save_figure,
     say_instead,
     title_measure,
-    values_label,
 )
 from tol3d.report.column import Column, best_road, columns_of, ranked_contributors, shares_of
-from tol3d.report.number import given_text, percent_text, ppm_text, short_text
+from tol3d.report.heading import position_of
+from tol3d.report.number import UNIT_SIGNS, given_text, percent_text, ppm_text, short_text, unit_suffix
 
 Summary = Mapping[str, Any]
 Array = NDArray[np.float64]
@@ -40,6 +39,19 @@ LIMIT_REACH = 0.6  # of the shown span; a limit further off is told at the edge,
 MOST_CONTRIBUTORS = 9  # bars; the rest is shown as one
 NO_VALUES = "no trial gave a value"
 TURN = 360.0  # deg; from two turns on the axis counts turns
+LONGEST_HEADING = 96  # characters above a histogram; more would make it narrower
+MARKERS = {"tip_error": "."}  # it jumps from one position to the next: the line between them is no value
+AXIS_UNITS = {"arcmin": "′, ″ of arc"}  # where an axis has other words than a number
+
+
+def values_label(name: str, unit: str, longest: int = 60) -> str:
+    """Label of an axis of a measure's values."""
+    return f"{legible(name, longest)} [{AXIS_UNITS.get(unit, UNIT_SIGNS[unit])}]"
+
+
+def density_label(unit: str) -> str:
+    """Label of an axis of a histogram's densities."""
+    return f"% of trials per {UNIT_SIGNS[unit]}"
 
 
 def draw_histogram(summary: Summary, path: Path) -> None:
@@ -98,7 +110,7 @@ def _draw_scalar(figure: Figure, place: SubplotSpec, name: str, measure: Summary
 def draw_distribution(axes: Axes, name: str, measure: Summary) -> None:
     """Both roads' histograms over each other, the closed form's normal curve, limits and +-3 sigma."""
     unit = measure["unit"]
-    title_measure(axes, name, measure, 110)
+    title_measure(axes, name, measure, LONGEST_HEADING)
     bars = bars_of(measure["histogram"])
     if not bars:
         say_instead(axes, NO_VALUES, OUTSIDE)
@@ -183,7 +195,7 @@ def _mark_limits(axes: Axes, measure: Summary, span: tuple[float, float], sample
         if limit is None:
             continue
         lower = key == "lower_limit"
-        text = f"{word} {given_text(limit, unit)}{'' if unit == 'arcmin' else ' µm'}\n"
+        text = f"{word} {given_text(limit, unit)}{unit_suffix(unit)}\n"
         text += f"{ppm_text(sample.get(f'{side}_limit_ppm'))} ppm {side}"
         inside = span[0] <= limit <= span[1]
         if inside:
@@ -211,12 +223,15 @@ def column_colours(columns: Sequence[Column]) -> dict[str, str]:
 
 
 def draw_ranges(axes: Axes, columns: Sequence[Column], colours: Mapping[str, str]) -> None:
-    """One line a column below the histogram: low to high at +-3 sigma, the mean as a dot."""
+    """One line a column below the histogram: low to high at +-3 sigma, one known end alone, the mean as a dot."""
     for row, column in enumerate(columns):
         colour = colours[column.heading]
         low, mean, high = (column.value(key) for key in ("low_3sigma", "mean", "high_3sigma"))
         if low is not None and high is not None:
             axes.plot([low, high], [row, row], color=colour, linewidth=5, solid_capstyle="butt", alpha=0.75)
+        else:
+            alone = [end for end in (low, high) if end is not None]
+            axes.plot(alone, [row] * len(alone), marker="|", markersize=9, markeredgewidth=3, color=colour)
         if mean is not None:
             axes.plot(mean, row, marker="o", markersize=6, color=colour, markeredgecolor="white")
     axes.set_yticks(range(len(columns)), [legible(column.heading, 28) for column in columns], fontsize=8.5)
@@ -255,14 +270,15 @@ def draw_contributors(axes: Axes, measure: Summary, columns: Sequence[Column], c
     axes.set_xlim(left=0)
     axes.set_xlabel("share of the variance [%]", fontsize=10)
     axes.set_title("contributors", loc="left", fontsize=11, fontweight="bold")
-    axes.legend(fontsize=8.5, frameon=False, loc="lower right")
+    above_rest = 1 / len(labels) if rest else 0.0  # all others in one may be a long bar
+    axes.legend(fontsize=8.5, frameon=False, loc="lower right", bbox_to_anchor=(1.0, above_rest))
 
 
 # curve --------------------------------------------------------------------------------------------
 
 
 def draw_curve(axes: Axes, name: str, measure: Summary) -> None:
-    """A curve over the driver's position: mean, +-3 sigma and extremes of the 3D simulation, the analytic mean."""
+    """A curve over positions of driver or output: mean, +-3 sigma and extremes of the 3D simulation, analytic mean."""
     unit, curve = measure["unit"], measure["curve"]
     degrees = np.asarray(measure["position_deg"])
     in_turns = len(degrees) > 0 and degrees[-1] > 2 * TURN
@@ -277,16 +293,18 @@ def draw_curve(axes: Axes, name: str, measure: Summary) -> None:
     axes.fill_between(
         x, mean - 3 * sigma, mean + 3 * sigma, color=colour, alpha=0.28, linewidth=0, label=f"{word}, ±3 sigma"
     )
-    axes.plot(x, mean, color=colour, linewidth=2, label=f"{word}, mean")
+    axes.plot(
+        x, mean, color=colour, linewidth=2, marker=MARKERS.get(measure["kind"]), markersize=7, label=f"{word}, mean"
+    )
     if leading != "analytic":
         analytic = np.asarray(curve["analytic"]["mean"], dtype=float)
         axes.plot(x, analytic, color=ORANGE, linewidth=1.8, linestyle="--", label="analytic, mean")
     for key, limit_word in (("lower_limit", "LSL"), ("upper_limit", "USL")):
         if measure.get(key) is not None:
-            text = f"{limit_word} {given_text(measure[key], unit)}"
+            text = f"{limit_word} {given_text(measure[key], unit)}{unit_suffix(unit)}"
             axes.axhline(measure[key], color=OUTSIDE, linewidth=2, label=text)
     axes.set_xlim(x[0], x[-1])
-    axes.set_xlabel(f"driver position [{'turns' if in_turns else 'deg'}]", fontsize=10)
+    axes.set_xlabel(f"{position_of(measure)} position [{'turns' if in_turns else 'deg'}]", fontsize=10)
     axes.set_ylabel(values_label(name, unit, 34), fontsize=10)
     label_angles(axes.yaxis, unit)
     title_measure(axes, name, measure, 110)

@@ -1,19 +1,26 @@
-"""Draws a run's histogram in a process of its own.
+"""Draws a run's histogram, and the chains of its trains, in a process of its own.
 
 matplotlib takes as long to load as a whole study of 2000 trials takes to run: so it loads beside the study, and what
 is drawn comes at the end, on its standard input:
 
     python -m tol3d.report.histogram_process < {"picture": "histogram.png", "summary": {...}}
 
-It ends quietly where nothing comes. What goes wrong is the one line on its standard error.
+The chain of the first train is drawn as chain.png beside the histogram, that of each further one as
+chain-<train>.png. It ends quietly where nothing comes. What goes wrong with the histogram is the one line on its
+standard error; what goes wrong with a chain is told on its standard output, {"chain.png": "why"}.
 """
 
 import json
 import signal
 import sys
+from collections.abc import Iterator, Mapping
 from pathlib import Path
+from typing import Any
 
+from tol3d.report.chain import draw_chain
 from tol3d.report.histogram import draw_histogram
+
+IN_FILE_NAMES = frozenset(" -_.,()+")  # besides letters and digits; anything else would be a folder or a drive
 
 
 def main() -> None:
@@ -23,10 +30,44 @@ def main() -> None:
     if not order:
         return
     asked = json.loads(order)
+    picture, summary = Path(asked["picture"]), asked["summary"]
+    print(json.dumps(dict(_refused_chains(summary, picture.parent))), flush=True)
     try:
-        draw_histogram(asked["summary"], Path(asked["picture"]))
+        draw_histogram(summary, picture)
     except Exception as error:
-        sys.exit(" ".join(str(error).split()) or type(error).__name__)
+        sys.exit(_reason(error))
+
+
+def _refused_chains(summary: Mapping[str, Any], folder: Path) -> Iterator[tuple[str, str]]:
+    """Draw the chain of every train; the names of those that could not be drawn, and why."""
+    for name, file in chain_files(summary).items():
+        try:
+            draw_chain(summary, name, folder / file)
+        except Exception as error:
+            (folder / file).unlink(missing_ok=True)
+            yield file, _reason(error)
+
+
+def chain_files(summary: Mapping[str, Any]) -> dict[str, str]:
+    """Names of the pictures of a run's trains, by train; each another one.
+
+    >>> chain_files({"trains": {"shoulder": {}, "wrist": {}, "left/right": {}, "left:right": {}}})
+    {'shoulder': 'chain.png', 'wrist': 'chain-wrist.png', 'left/right': 'chain-left_right.png', \
+'left:right': 'chain-left_right 2.png'}
+    """
+    files = dict[str, str]()
+    for name in summary.get("trains", {}):
+        words = "".join(sign if sign.isalnum() or sign in IN_FILE_NAMES else "_" for sign in name)
+        stem, file, count = f"chain-{words}" if files else "chain", "", 1
+        while not file or file.lower() in {known.lower() for known in files.values()}:
+            file = f"{stem}{'' if count == 1 else f' {count}'}.png"
+            count += 1
+        files[name] = file
+    return files
+
+
+def _reason(error: Exception) -> str:
+    return " ".join(str(error).split()) or type(error).__name__
 
 
 if __name__ == "__main__":

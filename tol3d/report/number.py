@@ -1,4 +1,4 @@
-"""Numbers as a reader wants them: lengths in um, angles in minutes and seconds of arc."""
+"""Numbers as a reader wants them: lengths in um, those at an arm's tip in mm, angles in minutes and seconds of arc."""
 
 import math
 from typing import Final
@@ -6,21 +6,24 @@ from typing import Final
 from tol3d.units import angle_text
 
 NOTHING: Final = "–"
-UNIT_SIGNS: Final = {"um": "µm", "arcmin": "′", "mrad": "mrad", "K": "K"}
+UNIT_SIGNS: Final = {"um": "µm", "mm": "mm", "arcmin": "′", "mrad": "mrad", "K": "K"}
 RAD_PER_ARCMIN: Final = math.pi / 10800
 MANY_UM: Final = 1000.0  # um; from there on a nanometre says nothing
+UM_PER_MM: Final = 1000.0
 
 
 def value_text(value: float | None, unit: str) -> str:
     """A value of a measure, with its unit only where that is part of the notation.
 
-    >>> value_text(53.3966, "um"), value_text(1.42, "arcmin"), value_text(None, "um")
-    ('53.397', '1′25.2″', '–')
+    >>> value_text(53.3966, "um"), value_text(1.42, "arcmin"), value_text(None, "um"), value_text(2.217224, "mm")
+    ('53.397', '1′25.2″', '–', '2.2172')
     """
     if value is None:
         return NOTHING
     if unit == "arcmin":
         return angle_text(value * RAD_PER_ARCMIN)
+    if unit == "mm":
+        return unsigned_zero(f"{value:.4f}")
     return unsigned_zero(f"{value:.3f}" if abs(value) < MANY_UM else f"{value:.1f}")
 
 
@@ -31,12 +34,14 @@ def measured_text(value: float | None, unit: str) -> str:
 
 
 def short_text(value: float, unit: str) -> str:
-    """A value with its unit and one decimal, for pictures.
+    """A value with its unit and a digit or two less, for pictures.
 
-    >>> short_text(53.3966, "um"), short_text(-0.04, "um"), short_text(1.42, "arcmin")
-    ('53.4 µm', '0.0 µm', '1′25.2″')
+    >>> short_text(53.3966, "um"), short_text(-0.04, "um"), short_text(1.42, "arcmin"), short_text(2.217224, "mm")
+    ('53.4 µm', '0.0 µm', '1′25.2″', '2.217 mm')
     """
-    return measured_text(value, unit) if unit == "arcmin" else f"{unsigned_zero(f'{value:.1f}')} {UNIT_SIGNS[unit]}"
+    if unit == "arcmin":
+        return measured_text(value, unit)
+    return f"{unsigned_zero(f'{value:.3f}' if unit == 'mm' else f'{value:.1f}')} {UNIT_SIGNS[unit]}"
 
 
 def given_text(value: float | None, unit: str) -> str:
@@ -51,16 +56,36 @@ def given_text(value: float | None, unit: str) -> str:
 
 
 def difference_text(value: float | None, unit: str) -> str:
-    """A small difference with its unit: thousandths of a um, hundredths of an arc second.
+    """A small difference with its unit: thousandths of a um, of lengths in mm too, hundredths of an arc second.
 
-    >>> difference_text(0.0871, "um"), difference_text(0.002, "arcmin")
-    ('0.087 µm', '0.12″')
+    >>> difference_text(0.0871, "um"), difference_text(0.002, "arcmin"), difference_text(0.0000871, "mm")
+    ('0.087 µm', '0.12″', '0.087 µm')
     """
     if value is None:
         return NOTHING
     if unit == "arcmin":
         return f"{unsigned_zero(f'{60 * value:.2f}')}″"
+    if unit == "mm":
+        return difference_text(value * UM_PER_MM, "um")
     return f"{unsigned_zero(f'{value:.3f}')} {UNIT_SIGNS.get(unit, unit)}"
+
+
+def unit_suffix(unit: str) -> str:
+    """The unit behind a value's text: nothing for an angle, whose text has its signs.
+
+    >>> unit_suffix("mm"), unit_suffix("arcmin")
+    (' mm', '')
+    """
+    return "" if unit == "arcmin" else f" {UNIT_SIGNS[unit]}"
+
+
+def tip_mm(arcmin: float | None, lever_mm: float | None) -> float | None:
+    """How far a small turn moves a point at a lever [mm]: the arc, as the paper's section 4 reads it.
+
+    >>> round(tip_mm(1.0, 763.0), 4)
+    0.2219
+    """
+    return None if arcmin is None or lever_mm is None else arcmin * RAD_PER_ARCMIN * lever_mm
 
 
 def percent_text(value: float | None) -> str:

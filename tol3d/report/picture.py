@@ -1,8 +1,9 @@
-"""The picture of a run, drawn beside it by a process of its own: see histogram_process."""
+"""The pictures of a run, drawn beside it by a process of its own: see histogram_process."""
 
 import json
 import subprocess
 import sys
+import warnings
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from functools import partial
@@ -15,18 +16,24 @@ COMMAND = (sys.executable, "-P", "-m", "tol3d.report.histogram_process")  # -P: 
 
 
 class PictureError(Exception):
-    """A picture that could not be drawn; its message says why."""
+    """A histogram that could not be drawn; its message says why."""
+
+
+class PictureWarning(UserWarning):
+    """The chain of a train that could not be drawn beside the histogram."""
 
 
 @contextmanager
 def drawing() -> Iterator[Draw]:
-    """Within it a process that can draw gets ready, and draws one histogram: its summary, and where it goes.
+    """Within it a process that can draw gets ready, and draws one run: its summary, and where its histogram goes.
+
+    The chains of its trains go beside the histogram; one that cannot be drawn is a PictureWarning.
 
     Raises:
         PictureError: by the drawing, which leaves no half of a picture.
     """
     try:
-        process = subprocess.Popen(COMMAND, stdin=subprocess.PIPE, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
+        process = subprocess.Popen(COMMAND, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
     except OSError as error:
         yield partial(_refuse, str(error))
         return
@@ -39,7 +46,10 @@ def drawing() -> Iterator[Draw]:
 
 def _draw(process: "subprocess.Popen[bytes]", summary: Mapping[str, Any], picture: Path) -> None:
     order = json.dumps({"picture": str(picture), "summary": summary})
-    _, told = process.communicate(order.encode())
+    refused, told = process.communicate(order.encode())
+    for name, reason in json.loads(refused or "{}").items():
+        words = f"{name} could not be drawn ({reason}); the run is whole without it"
+        warnings.warn(words, PictureWarning, stacklevel=2)
     if process.returncode == 0:
         return
     picture.unlink(missing_ok=True)

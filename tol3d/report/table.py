@@ -10,18 +10,20 @@ from rich.padding import Padding
 from rich.text import Text
 
 from tol3d.report.column import Column, Road, best_road, columns_of, contributor_columns, ranked_contributors
-from tol3d.report.heading import heading, limits_text
+from tol3d.report.heading import heading, limits_text, position_of
 from tol3d.report.number import (
     NOTHING,
-    UNIT_SIGNS,
     difference_text,
     given_text,
     percent_text,
     ppm_text,
+    unit_suffix,
     unsigned_zero,
     value_text,
 )
 from tol3d.report.sheet import Heading, Row, Sheet
+from tol3d.report.stage import SUM_KEYS, Sums, sums_of
+from tol3d.report.train_table import WORST_CASE_MEANS, train_report
 
 Summary = Mapping[str, Any]
 
@@ -37,7 +39,7 @@ ROWS = {
     "sample_max": "largest",
 }
 LOST_MOTION_ROWS = {"low_3sigma": "low", "mean": "mean", "high_3sigma": "high"}
-UNIT_HEADINGS = {"um": "[µm]", "arcmin": "[′, ″ of arc]"}
+UNIT_HEADINGS = {"um": "[µm]", "mm": "[mm]", "arcmin": "[′, ″ of arc]"}
 INDICES = {"pp": "Pp", "ppk": "Ppk"}
 BUILDS = {"mean_build": "build at all means", "nominal": "nominal build"}
 UNEXPLAINED_SHOWN = 0.05  # %; less is 0.0 in print
@@ -60,11 +62,11 @@ FLANKS_OF_A_BACKLASH = 4  # two at the contact, two at the gap; each may miss th
 
 
 def run_report(summary: Summary) -> Group:
-    """All tables of a run: each measure, its contributors, how the roads agree, what failed, how long it took."""
+    """All tables of a run: measures, contributors, trains, how the roads agree, what failed, how long it took."""
     blocks: list[RenderableType] = [_run_line(summary)]
     for name, measure in summary["measures"].items():
         blocks += _measure_blocks(name, measure, summary)
-    blocks += [_status_line(summary), _time_line(summary)]
+    blocks += [*train_report(summary), _status_line(summary), _time_line(summary)]
     blocks += [Text(f"warning: {warning}", style="yellow") for warning in summary.get("warnings", ())]
     return Group(*blocks)
 
@@ -82,7 +84,9 @@ def _measure_blocks(name: str, measure: Summary, summary: Summary) -> list[Rende
         notes = [*_curve_notes(measure), *_witness_notes(name, measure, summary)]
         return [title, words, "", curve_table(measure), *map(_note, notes)]
     notes = [*_notes(name, measure, summary)]
-    blocks: list[RenderableType] = [title, words, "", measure_table(measure), *map(_note, notes)]
+    sums = sums_of(measure, summary)
+    notes += [WORST_CASE_MEANS] if sums else []
+    blocks: list[RenderableType] = [title, words, "", measure_table(measure, sums), *map(_note, notes)]
     if measure["contributors"]:
         blocks += ["", contributors_table(measure), _note(SHARES_MEAN)]
         blocks += [_note(NOT_ATTRIBUTED_MEANS)] if _not_attributed(measure) else []
@@ -99,8 +103,8 @@ def _headings(columns: Sequence[Column]) -> list[Heading]:
     return [Heading(column.heading, styles.get(column.road, "")) for column in columns]
 
 
-def measure_table(measure: Summary) -> Sheet:
-    """Statistics of one scalar measure, one column a road, the published ones last."""
+def measure_table(measure: Summary, sums: Sums) -> Sheet:
+    """Statistics of one scalar measure, one column a road, the published ones last; below, sums of a train's stages."""
     columns, unit = columns_of(measure), measure["unit"]
     rows = [Row(label, [_cell(column, key, unit) for column in columns]) for key, label in ROWS.items()]
     rows += [
@@ -117,7 +121,8 @@ def measure_table(measure: Summary) -> Sheet:
         Row(label, [value_text(values.get(column.road), unit) for column in columns])
         for label, values in builds.items()
     ]
-    return Sheet(UNIT_HEADINGS[unit], _headings(columns), [*rows, *_lost_motion_rows(measure, columns)])
+    rows += [*_lost_motion_rows(measure, columns), *_sum_rows(sums, columns, unit)]
+    return Sheet(UNIT_HEADINGS[unit], _headings(columns), rows)
 
 
 def _cell(column: Column, key: str, unit: str) -> str:
@@ -131,9 +136,8 @@ def _index_text(value: float | None) -> str:
 
 def _limit_rows(measure: Summary) -> dict[str, str]:
     unit = measure["unit"]
-    sign = "" if unit == "arcmin" else f" {UNIT_SIGNS[unit]}"
     return {
-        f"{side}_limit_ppm": f"{side} {given_text(measure[limit], unit)}{sign} [ppm]"
+        f"{side}_limit_ppm": f"{side} {given_text(measure[limit], unit)}{unit_suffix(unit)} [ppm]"
         for side, limit in (("below", "lower_limit"), ("above", "upper_limit"))
         if measure.get(limit) is not None
     }
@@ -158,6 +162,15 @@ def _lost_motion_rows(measure: Summary, columns: Sequence[Column]) -> Iterator[R
         turns = [(value, motion["arcmin_per_um"]) for value in (column.value(key) for column in columns)]
         cells = [value_text(None if value is None else value * per_um, "arcmin") for value, per_um in turns]
         yield Row(f"lost motion, {word}", cells)
+
+
+def _sum_rows(sums: Sums, columns: Sequence[Column], unit: str) -> Iterator[Row]:
+    """Sums of the stages' ends, where a measure is the sum of a train's stages."""
+    if not sums:
+        return
+    own = [sums.get(column.heading if column.road == "published" else column.road, {}) for column in columns]
+    for key, word in SUM_KEYS.items():
+        yield Row(f"sum of the stages' {word}", [value_text(values.get(key), unit) for values in own])
 
 
 def _notes(name: str, measure: Summary, summary: Summary) -> Iterator[str]:
@@ -266,13 +279,13 @@ def curve_table(measure: Summary) -> Sheet:
     leading, word = roads[-1]
     columns += [(leading, "min", f"{word} smallest"), (leading, "max", f"{word} largest")]
     headings = [Heading(text, "bold" if road == "geometric" else "") for road, _, text in columns]
-    positions = [f"{position:.1f}" for position in measure["position_deg"]]
+    positions = [unsigned_zero(f"{position:.1f}") for position in measure["position_deg"]]
     longest = max(map(len, positions), default=0)
     rows = [
         Row(positions[index].rjust(longest), [value_text(curve[road][key][index], unit) for road, key, _ in columns])
         for index in _shown_positions(measure)
     ]
-    return Sheet("driver at [°]", headings, rows)
+    return Sheet(f"{position_of(measure)} at [°]", headings, rows)
 
 
 def _shown_positions(measure: Summary) -> range:
@@ -288,7 +301,8 @@ def _curve_notes(measure: Summary) -> Iterator[str]:
     words = {"lower_limit": "below", "upper_limit": "above"}
     for limit, word in words.items():
         if measure.get(limit) is not None:
-            yield f"anywhere {word} {given_text(measure[limit], measure['unit'])} [ppm of the trials]: " + ", ".join(
+            given = given_text(measure[limit], measure["unit"]) + unit_suffix(measure["unit"])
+            yield f"anywhere {word} {given} [ppm of the trials]: " + ", ".join(
                 f"{'3D' if road == 'geometric' else road} {ppm_text(own[f'{word}_limit_ppm'])}"
                 for road, own in measure["curve"].items()
             )

@@ -1,0 +1,45 @@
+"""Labels that fit: users' names broken into lines of a width."""
+
+from typing import Final
+
+from matplotlib.font_manager import FontProperties
+from matplotlib.textpath import text_to_path
+
+from tol3d.report.canvas import legible
+
+POINTS_PER_INCH: Final = 72.0
+
+
+def wrapped(text: str, width: float, size: float, lines: int, weight: str = "normal") -> str:
+    """A user's name in lines of at most `width` [inch]; what does not fit in so many lines ends in an ellipsis."""
+    found: list[str] = []
+    rest = text
+    while rest and len(found) < lines:
+        line = _longest_start(rest, width, size, weight)
+        found.append(line.strip())
+        rest = rest[len(line) :].lstrip()
+    if rest:
+        last = found[-1] + "…"
+        while len(last) > 1 and _text_width(last, size, weight) > width:
+            last = last[:-2] + "…"
+        found[-1] = last
+    return "\n".join(legible(line, len(line)) for line in found)
+
+
+def _longest_start(text: str, width: float, size: float, weight: str) -> str:
+    """As many words as fit in a line, or as much of the first word."""
+    if _text_width(text, size, weight) <= width:
+        return text
+    ends = [k for k, sign in enumerate(text) if sign == " "] or []
+    fitting = [k for k in ends if _text_width(text[:k], size, weight) <= width]
+    if fitting:
+        return text[: fitting[-1]]
+    cut = next(k for k in range(len(text), 0, -1) if k == 1 or _text_width(text[:k], size, weight) <= width)
+    return text[:cut]
+
+
+def _text_width(text: str, size: float, weight: str) -> float:
+    """Width of a line of text [inch]."""
+    font = FontProperties(size=size, weight=weight)
+    width, _, _ = text_to_path.get_text_width_height_descent(text, font, ismath=False)
+    return float(width) / POINTS_PER_INCH

@@ -1,0 +1,112 @@
+"""Signs for the links of a train: two gears, two cones, a planetary reducer; lengths in inches of the picture."""
+
+import math
+from collections.abc import Callable, Mapping
+from typing import Final
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.patches import Circle, FancyBboxPatch, Patch, Polygon
+
+from tol3d.report.canvas import BLACK, BLUE, GREEN, GREY, ORANGE
+from tol3d.report.stage import LinkKind, Stage
+
+LINK_COLOURS: Final[Mapping[LinkKind, str]] = {"reducer": ORANGE, "mesh": BLUE, "bevel_mesh": GREEN}
+SHAFT_LINE: Final = 3.5  # points
+TOOTH_PITCH: Final = 0.15  # inch; as many teeth as the eye can tell, not as many as there are
+TOOTH_HEIGHT: Final = 0.055
+LEAST_SHARE, MOST_SHARE = 0.4, 0.6  # of the two gears' width; the smaller one has room for its number
+MOST_WIDTH: Final = 1.3
+SMALL: Final = 9.0  # points
+PLANETS: Final = 3
+APEX_ASIDE: Final = 0.1  # inch; room at the right for the line from the driven cone's top
+
+
+def draw_link(axes: Axes, stage: Stage, ends: tuple[float, float], y: float) -> None:
+    """Draw a link between the ends of its two shafts at height `y`."""
+    left, right = ends
+    middle, width = (left + right) / 2, min(right - left - 0.08, MOST_WIDTH)
+    SYMBOLS[stage.kind](axes, stage, middle, y, width, ends)
+
+
+def _line(axes: Axes, *points: tuple[float, float]) -> None:
+    x, y = zip(*points, strict=True)
+    axes.plot(x, y, color=GREY, linewidth=SHAFT_LINE, solid_capstyle="butt", solid_joinstyle="round", zorder=1)
+
+
+def _fill(axes: Axes, patch: Patch, colour: str) -> None:
+    """A shape in a light shade of its colour with an outline in it; white below, so that no line shines through."""
+    light = 0.75 * np.ones(3) + 0.25 * np.array([int(colour[k : k + 2], 16) / 255 for k in (1, 3, 5)])
+    patch.set(facecolor=light, edgecolor=colour, linewidth=1.3, zorder=2)
+    axes.add_patch(patch)
+
+
+def _number(axes: Axes, x: float, y: float, number: int) -> None:
+    axes.text(x, y, str(number), fontsize=SMALL, ha="center", va="center", color=BLACK, zorder=4)
+
+
+def _gears(axes: Axes, stage: Stage, x: float, y: float, width: float, ends: tuple[float, float]) -> None:
+    driver, driven = stage.teeth or (1, 1)
+    share = min(max(driver / (driver + driven), LEAST_SHARE), MOST_SHARE)
+    pitch_width = width - TOOTH_HEIGHT
+    radii = (share * pitch_width / 2, (1 - share) * pitch_width / 2)
+    centres = (x - pitch_width / 2 + radii[0], x + pitch_width / 2 - radii[1])
+    _line(axes, (ends[0], y), (centres[0], y))
+    _line(axes, (centres[1], y), (ends[1], y))
+    for k, (radius, centre, teeth) in enumerate(zip(radii, centres, (driver, driven), strict=True)):
+        _fill(axes, Polygon(_gear_outline(centre, y, radius, meshing=k)), LINK_COLOURS[stage.kind])
+        _number(axes, centre, y, teeth)
+
+
+def _gear_outline(
+    x: float, y: float, radius: float, *, meshing: int
+) -> np.ndarray[tuple[int, int], np.dtype[np.float64]]:
+    """Corners of a gear whose tooth 0 looks to the right, or, meshing with such a one, whose gap looks to the left."""
+    count = max(8, round(2 * math.pi * radius / TOOTH_PITCH))
+    places = np.array([-0.30, -0.14, 0.14, 0.30])  # of a pitch: foot, tip, tip, foot
+    heights = np.array([-1.0, 1.0, 1.0, -1.0]) * TOOTH_HEIGHT / 2
+    tooth = np.arange(count)[:, None]
+    angle = 2 * math.pi * (tooth + places + 0.5 * meshing) / count + math.pi * meshing
+    reach = np.broadcast_to(radius + heights, angle.shape)
+    return np.column_stack([(x + reach * np.cos(angle)).ravel(), (y + reach * np.sin(angle)).ravel()])
+
+
+def _cones(axes: Axes, stage: Stage, x: float, y: float, width: float, ends: tuple[float, float]) -> None:
+    """Two frusta with one apex: the driver's lies on the axis of its shaft, the driven stands on it."""
+    driver, driven = stage.teeth or (1, 1)
+    half = min(0.42 * width, 0.42)
+    angle = min(max(math.atan2(driver, driven), 0.5), math.pi / 2 - 0.5)  # pitch angle of the driver
+    long, tall = half * math.cos(angle) * math.sqrt(2), half * math.sin(angle) * math.sqrt(2)
+    apex = x - APEX_ASIDE
+    cut = 0.42  # of the cones is left out near the apex
+    lying = [(-long, -tall), (-long, tall), (-cut * long, cut * tall), (-cut * long, -cut * tall)]
+    standing = [(-long, tall), (long, tall), (cut * long, cut * tall), (-cut * long, cut * tall)]
+    top, bend = y + tall + 0.1, max(ends[1] - 0.12, apex + 0.1)
+    _line(axes, (ends[0], y), (apex - long, y))
+    _line(axes, (apex, y + tall), (apex, top), (bend, top), (bend, y), (ends[1], y))
+    for corners in (lying, standing):
+        _fill(axes, Polygon([(apex + u, y + v) for u, v in corners]), LINK_COLOURS[stage.kind])
+    _number(axes, apex - 0.72 * long, y, driver)
+    _number(axes, apex, y + 0.72 * tall, driven)
+
+
+def _reducer(axes: Axes, stage: Stage, x: float, y: float, width: float, ends: tuple[float, float]) -> None:
+    """A box with a sun, planets and a ring."""
+    half = min(width / 2, 0.44)
+    _line(axes, (ends[0], y), (x - half, y))
+    _line(axes, (x + half, y), (ends[1], y))
+    colour = LINK_COLOURS[stage.kind]
+    rounded = f"round,pad=0,rounding_size={0.2 * half}"
+    _fill(axes, FancyBboxPatch((x - half, y - half), 2 * half, 2 * half, boxstyle=rounded), colour)
+    ring = 0.82 * half
+    sun, planet = 0.3 * ring, 0.35 * ring
+    turns = [math.pi / 2 + 2 * math.pi * k / PLANETS for k in range(PLANETS)]
+    centres = [(x + (sun + planet) * math.cos(turn), y + (sun + planet) * math.sin(turn)) for turn in turns]
+    circles = [Circle((x, y), ring), Circle((x, y), sun), *(Circle(centre, planet) for centre in centres)]
+    for circle in circles:
+        circle.set(facecolor="white", edgecolor=colour, linewidth=1.3, zorder=3)
+        axes.add_patch(circle)
+
+
+Symbol = Callable[[Axes, Stage, float, float, float, tuple[float, float]], None]
+SYMBOLS: Final[Mapping[LinkKind, Symbol]] = {"reducer": _reducer, "mesh": _gears, "bevel_mesh": _cones}

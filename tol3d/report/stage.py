@@ -1,0 +1,194 @@
+"""The stages of a train as a run's summary tells them, and what each brings to the lost motion at a shaft."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, Literal
+
+from tol3d.report.column import columns_of
+from tol3d.report.number import NOTHING, tip_mm
+
+Summary = Mapping[str, Any]
+LinkKind = Literal["reducer", "mesh", "bevel_mesh"]
+Sums = Mapping[str, Mapping[str, float | None]]
+
+SUM_KEYS: Mapping[str, str] = {"low_3sigma": "lows", "mean": "means", "high_3sigma": "highs"}
+MANY_TURNS = 1e6  # no decimals from there on
+SUMMED_KINDS = frozenset(("lost_motion", "tip_displacement"))
+
+
+@dataclass(frozen=True)
+class Range:
+    """An angular backlash or a lost motion [arcmin]: mean -+ 3 sigma and mean; None where nobody knows it."""
+
+    low: float | None
+    mean: float | None
+    high: float | None
+
+    @classmethod
+    def of(cls, values: Mapping[str, Any]) -> "Range":
+        """From a summary's low_3sigma, mean and high_3sigma."""
+        return cls(*(values.get(key) for key in SUM_KEYS))
+
+    def times(self, factor: float) -> "Range":
+        """The range behind a ratio."""
+        return Range(*(None if v is None else v * factor for v in (self.low, self.mean, self.high)))
+
+    @property
+    def known(self) -> bool:
+        """Whether there is any value."""
+        return (self.low, self.mean, self.high) != (None, None, None)
+
+
+@dataclass(frozen=True)
+class Stage:
+    """A link of a train.
+
+    Args:
+        number: its place in the train, from 1 on.
+        link: the move's name.
+        kind: what it is.
+        driver, driven: its shafts.
+        teeth: of the driver and the driven; None for a reducer.
+        ratio: turns of the driver per turn of the driven, negative where they turn opposite.
+        working_flank: "left" or "right"; None for a reducer.
+        factor: turn of the shaft that is read per turn of the driven shaft, without its sign.
+        own: angular backlash at the driven shaft.
+        at_shaft: what it brings to the lost motion of the shaft that is read.
+        share: of the variance there [%].
+        published: others' angular backlash at the driven shaft, by who says so.
+    """
+
+    number: int
+    link: str
+    kind: LinkKind
+    driver: str
+    driven: str
+    teeth: tuple[int, int] | None
+    ratio: float
+    working_flank: str | None
+    factor: float
+    own: Range
+    at_shaft: Range
+    share: float | None
+    published: Mapping[str, Range]
+
+    @property
+    def opposite(self) -> bool:
+        """Whether its shafts turn opposite."""
+        return self.ratio < 0
+
+    @property
+    def ratio_text(self) -> str:
+        """Its ratio without its sign, by the teeth where there are any: `110/28 = 3.929`, `i = 152`."""
+        value = f"{abs(self.ratio):.4g}"
+        return f"{self.teeth[1]}/{self.teeth[0]} = {value}" if self.teeth else f"i = {value}"
+
+
+def leading_road(train: Summary) -> str:
+    """The road that a train is told by: the 3D simulation where there is one."""
+    return "geometric" if all("geometric" in stage["roads"] for stage in train["stages"]) else "analytic"
+
+
+def stages_of(train: Summary) -> list[Stage]:
+    """The stages of a train's summary, from the held shaft on, by the leading road."""
+    road = leading_road(train)
+    return [_stage(number, stage, stage["roads"].get(road, {})) for number, stage in enumerate(train["stages"], 1)]
+
+
+def _stage(number: int, stage: Summary, values: Mapping[str, Any]) -> Stage:
+    own, factor = Range.of(values), abs(stage["factor"])
+    return Stage(
+        number=number,
+        link=stage["link"],
+        kind=stage["kind"],
+        driver=stage["driver"],
+        driven=stage["driven"],
+        teeth=tuple(stage["teeth"]) if stage["teeth"] else None,
+        ratio=stage["ratio"],
+        working_flank=stage["working_flank"],
+        factor=factor,
+        own=own,
+        at_shaft=own.times(factor),
+        share=values.get("share_percent"),
+        published={name: Range.of(told) for name, told in stage.get("published", {}).items()},
+    )
+
+
+def shafts_along(stages: Sequence[Stage]) -> list[str]:
+    """The shafts from the held one to the one that is read; a link may be gone through from its driven side."""
+    return list(_walked(stages))
+
+
+def _walked(stages: Sequence[Stage]) -> Iterator[str]:
+    if not stages:
+        return
+    first = stages[0]
+    second = {stages[1].driver, stages[1].driven} if len(stages) > 1 else {first.driven}
+    at = first.driven if first.driven not in second and first.driver in second else first.driver
+    yield at
+    for stage in stages:
+        at = stage.driver if at == stage.driven else stage.driven
+        yield at
+
+
+def sums_of(measure: Summary, summary: Summary) -> Sums:
+    """Sums of the stages' lows, means and highs in the unit of a measure, by road and by who published them.
+
+    Empty for a measure that is no such sum, or is read at another shaft or point than the train's stages are.
+    """
+    train = summary.get("trains", {}).get(measure["of"])
+    if train is None or measure["kind"] not in SUMMED_KINDS or measure["take"] == "curve":
+        return {}
+    if any(measure.get(key, train[key]) != train[key] for key in ("shaft", "held")):
+        return {}
+    own = train["sums"]
+    roads = {road: values for road, values in own.items() if road != "published"} | dict(own.get("published", {}))
+    if measure["kind"] == "lost_motion":
+        return roads
+    lever = _lever_of(measure, train)
+    if lever is None:
+        return {}
+    return {road: {key: tip_mm(values.get(key), lever) for key in SUM_KEYS} for road, values in roads.items()}
+
+
+def _lever_of(measure: Summary, train: Summary) -> float | None:
+    """The lever of a measure's point [mm]: its own, or the train's where that is told of the same point."""
+    lever: float | None = measure.get("lever_mm")
+    if lever is None and f"{measure['point']} of {measure['arm']}" == train["point"]:
+        lever = train["lever_mm"]
+    return lever
+
+
+def distributions_of(train: Summary, summary: Summary) -> dict[str, Mapping[str, Any]]:
+    """The lost motion that the train's stages add up to, by road and by who published it [arcmin]."""
+    measure = summary["measures"].get(train["measure"])
+    if measure is None:
+        return {}
+    return {
+        column.heading if column.road == "published" else column.road: column.values for column in columns_of(measure)
+    }
+
+
+def whole_ratio_text(ratio: float) -> str:
+    """The ratio of a whole train without its sign.
+
+    >>> whole_ratio_text(597.142857), whole_ratio_text(-35075712.4)
+    ('597.143', '35075712')
+    """
+    return f"{abs(ratio):.6g}" if abs(ratio) < MANY_TURNS else f"{abs(ratio):.0f}"
+
+
+def sense_text(stage: Stage) -> str:
+    """How the shafts of a stage turn."""
+    return "opposite" if stage.opposite else "same"
+
+
+def share_text(share: float | None) -> str:
+    """A share of the variance [%] in a sentence.
+
+    >>> share_text(96.04), share_text(0.3), share_text(0.00002)
+    ('96 %', '0.3 %', '0 %')
+    """
+    if share is None:
+        return NOTHING
+    return f"{share:.0f} %" if share >= 9.95 or share < 0.05 else f"{share:.1f} %"
