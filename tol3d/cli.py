@@ -70,6 +70,21 @@ class SamplerName(StrEnum):
     LATIN_HYPERCUBE = "latin_hypercube"
 
 
+class MinimumName(StrEnum):
+    """What may be called the minimum of a backlash."""
+
+    LOW_3SIGMA = "low_3sigma"
+    QUANTILE = "p0.135"
+    SAMPLE_MIN = "sample_min"
+
+
+class RoundingName(StrEnum):
+    """Ways to a thickness of the stock."""
+
+    DOWN = "down"
+    NEAREST = "nearest"
+
+
 class MeshFormat(StrEnum):
     """Files that an export may write."""
 
@@ -270,6 +285,50 @@ def check(scene: SceneArgument, trust_parts: TrustParts = False) -> None:
     from tol3d.simulate import effective_model, load
 
     out_console.print(check_report(effective_model(load(scene_path(scene), trust_parts=trust_parts))))
+
+
+@app.command()
+def shim(
+    scene: SceneArgument,
+    target_min: Annotated[str, typer.Option(metavar="LENGTH", help='The minimum that is wanted, such as "24 um".')],
+    measure: Annotated[
+        str | None, typer.Option(help="Whose minimum; the only normal backlash of a bevel mesh.")
+    ] = None,
+    shims: Annotated[
+        str, typer.Option(metavar="NAME,...", help="Shims of the scene, or gears for a new one behind each.")
+    ] = "",
+    minimum: Annotated[MinimumName, typer.Option(help="What is called so.")] = MinimumName.LOW_3SIGMA,
+    stock: Annotated[
+        str, typer.Option(metavar="LENGTH[,...]", help="Thicknesses there are: a step, or pieces to stack up to three.")
+    ] = "0.001 mm",
+    rounding: Annotated[
+        RoundingName, typer.Option("--round", help="down: never below the target; nearest: the nearest thickness.")
+    ] = RoundingName.DOWN,
+    trials: Annotated[
+        Any, typer.Option(parser=_trials, metavar="N|auto", help="Number of trials instead of the scene's.")
+    ] = None,
+    engine: Annotated[EngineName | None, typer.Option(help="Engine instead of the scene's.")] = None,
+    out: Annotated[Path | None, typer.Option(help="Write the scene with the chosen shims to this new file.")] = None,
+    trust_parts: TrustParts = False,
+) -> None:
+    """Find the thickness of shims with which a bevel pair has a wanted minimum of backlash."""
+    from tol3d.analyses import ShimQuestion, length_of, shim_plan, stock_of
+    from tol3d.report.shim_table import shim_report
+    from tol3d.scene.edit import tolerance_lines, write_scene
+    from tol3d.simulate import Overrides, load
+
+    names = tuple(name.strip() for name in shims.split(",") if name.strip())
+    target = length_of("--target-min", target_min)
+    question = ShimQuestion(target, measure, names, minimum.value, stock_of(stock), rounding.value)
+    overrides = Overrides(trials=trials, engine=engine.value if engine else None)
+    loaded = load(scene_path(scene), trust_parts=trust_parts)
+    with err_console.status("studies") as status:
+        plan = shim_plan(loaded, question, overrides, tell=status.update)
+    out_console.print(shim_report(plan))
+    _tell(f"\ntolerances of the scene:\n{tolerance_lines(plan.tolerances)}")
+    if out is not None:
+        write_scene(plan.scene, out)
+        _tell(f"scene: {out}")
 
 
 @app.command()

@@ -1,0 +1,116 @@
+"""The thickness of shims as tables: what there is, what the formula says, what the geometry says, what to take."""
+
+from collections.abc import Iterator, Mapping
+from typing import Final
+
+from rich.console import Group, RenderableType
+from rich.padding import Padding
+from rich.text import Text
+
+from tol3d.analyses.shim import ShimPlan, closing_of
+from tol3d.analyses.shim_choice import Shim
+from tol3d.analyses.shimmed import MINIMUM_WORDS, UM, Shimmed
+from tol3d.analyses.stock import thickness_text
+from tol3d.report.heading import heading
+from tol3d.report.number import NOTHING, value_text
+from tol3d.report.sheet import Heading, Row, Sheet
+
+ROWS: Final[Mapping[str, str]] = {
+    "low_3sigma": "low (−3 sigma)",
+    "mean": "mean",
+    "high_3sigma": "high (+3 sigma)",
+    "p0.135": "0.135 % quantile",
+    "sample_min": "smallest",
+}
+LOST_MOTION_ROWS: Final[Mapping[str, str]] = {"low_3sigma": "low", "mean": "mean", "high_3sigma": "high"}
+SIDES: Final[Mapping[str, str]] = {
+    "behind": "behind {}, moves it towards the apex: closes",
+    "in_front": "in front of {}, moves it away from the apex: opens",
+}
+
+
+def shim_report(plan: ShimPlan) -> Group:
+    """Where the shims go, how thick they are, what they do to the backlash."""
+    blocks: list[RenderableType] = [_title(plan), _words(plan), ""]
+    blocks += [Text(f"  {shim.name}: {_place(shim)}") for shim in plan.shims]
+    blocks += ["", _table(plan), *(Padding(Text(note, style="dim"), (0, 0, 0, 1)) for note in _notes(plan))]
+    blocks += [Text(f"warning: {warning}", style="yellow") for warning in _warnings(plan)]
+    return Group(*blocks)
+
+
+def _title(plan: ShimPlan) -> Text:
+    text = f" · shims for a minimum of {value_text(UM * plan.question.target, 'um')} µm"
+    return Text(plan.scene.scene, style="bold").append(text, "not bold")
+
+
+def _words(plan: ShimPlan) -> Text:
+    called = MINIMUM_WORDS[plan.question.minimum]
+    return Text(f"{plan.measure}: {heading(plan.before.found)}; minimum: {called}", style="dim")
+
+
+def _place(shim: Shim) -> str:
+    state = "new" if shim.is_new else f"{thickness_text(shim.mean)} so far"
+    return f"{SIDES[shim.spec.side].format(shim.spec.of)} ({state})"
+
+
+def _table(plan: ShimPlan) -> Sheet:
+    columns = {"as it stands": plan.before, "by the formula": plan.by_formula, "by the geometry": plan.by_geometry}
+    columns["chosen"] = plan.chosen
+    if plan.other is not None:
+        columns[_other_words(plan.chosen, plan.other)] = plan.other
+    shown = list(columns.values())
+    rows = [Row("each shim [µm]", [_thickness(own, plan) for own in shown])]
+    for key, label in ROWS.items():
+        style = "bold" if key == plan.question.minimum else ""
+        rows.append(Row(label, [value_text(own.found["geometric"][key], "um") for own in shown], style))
+    for key, label in LOST_MOTION_ROWS.items():
+        rows.append(Row(f"lost motion, {label}", [_lost_motion(own, key) for own in shown]))
+    headings = [Heading(text, "bold" if text == "chosen" else "") for text in columns]
+    return Sheet("[µm], [′, ″ of arc]", headings, rows)
+
+
+def _other_words(chosen: Shimmed, other: Shimmed) -> str:
+    return "next thicker" if (other.thickness or 0.0) > (chosen.thickness or 0.0) else "next thinner"
+
+
+def _thickness(own: Shimmed, plan: ShimPlan) -> str:
+    """Of each shim; nothing for shims that are not there yet, or that are of several thicknesses."""
+    before = {shim.mean for shim in plan.shims if not shim.is_new}
+    thickness = before.pop() if own.thickness is None and len(before) == 1 else own.thickness
+    return NOTHING if thickness is None else value_text(UM * thickness, "um")
+
+
+def _lost_motion(own: Shimmed, key: str) -> str:
+    value = own.found["geometric"][key]
+    return value_text(None if value is None else value * own.found["lost_motion"]["arcmin_per_um"], "arcmin")
+
+
+def _notes(plan: ShimPlan) -> Iterator[str]:
+    chosen, stock = plan.chosen.thickness or 0.0, plan.question.stock
+    yield f"chosen: {thickness_text(chosen)} each, {stock.words(chosen)}; rounding: {plan.question.rounding}"
+    if plan.other is None:
+        yield "of the stock there is no other near it with which the mean build turns"
+    yield (
+        f"formula: 2 sin α sin δ of each shim's gear, {closing_of(plan.shims):.5f} µm of backlash for 1 µm of every "
+        "shim; geometry: the simulated minimum itself, the same draws at every thickness"
+    )
+    yield f"lost motion: the turn of {plan.before.found['lost_motion']['of']} that the backlash leaves free"
+    study = f"{plan.before.trials} trials, 3D simulation"
+    error = plan.chosen.sampling_error
+    if error is None:
+        yield study
+        return
+    of_thickness = UM * error / abs(closing_of(plan.shims))
+    yield (
+        f"{study}; sampling error of the minimum ±{UM * error:.3f} µm, which is ±{of_thickness:.3f} µm of thickness "
+        "(one standard error)"
+    )
+
+
+def _warnings(plan: ShimPlan) -> Iterator[str]:
+    for words, own in (("as it stands", plan.before), ("with the chosen shims", plan.chosen)):
+        if own.failed:
+            yield f"{own.failed} of {own.trials} builds {words} have no backlash to measure (they interfere); left out"
+    if plan.chosen.minimum < plan.question.target - plan.chosen.resolution:
+        short = UM * (plan.question.target - plan.chosen.minimum)
+        yield f"the chosen thickness leaves {short:.3f} µm less than the target; --round down would not"
