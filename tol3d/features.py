@@ -108,9 +108,16 @@ class _Turning:
         return self._known[part]
 
 
+def _acting_effect(contributor: Contributor, turning: _Turning) -> SingleEffect:
+    """What a contributor does to the gears that are read; of a shaft to the first of them, for they turn alike."""
+    effects = single_effects(contributor.effect)
+    read = (effect for effect in effects if isinstance(effect, TurningOffset) and effect.part in turning)
+    return next(read, effects[0])
+
+
 def _fill(rows: Array, contributor: Contributor, values: Sequence[Array], turning: _Turning) -> None:
     """Write a contributor's two rows (2, trials) from the columns of its components."""
-    law, effect = contributor.distribution, single_effects(contributor.effect)[0]
+    law, effect = contributor.distribution, _acting_effect(contributor, turning)
     per_spread = 1.0 / (law.sigma or 1.0)
     if not isinstance(contributor.draw, Planar):
         np.multiply(values[0] - law.mean, per_spread, out=rows[0])
@@ -122,6 +129,7 @@ def _fill(rows: Array, contributor: Contributor, values: Sequence[Array], turnin
         np.multiply(y, per_spread, out=rows[1])
     elif effect.part in turning:
         cos, sin = turning[effect.part]
+        y = -y if effect.plane.mirrored else y
         np.multiply(cos * x - sin * y, per_spread, out=rows[0])
         np.multiply(sin * x + cos * y, per_spread, out=rows[1])
     else:

@@ -74,6 +74,7 @@ def _what(kind: Kind) -> dict[str, Any]:
         "arm": kind.tip.arm if kind.tip else None,
         "point": kind.tip.point if kind.tip else None,
         "lever_mm": kind.tip.lever if kind.tip else None,
+        "load_changes_deg": np.degrees(kind.changes).tolist(),
     }
 
 

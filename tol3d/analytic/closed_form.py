@@ -17,6 +17,7 @@ from tol3d.analytic.backlash import per_normal_backlash, stack_of
 from tol3d.analytic.stack import Stack, Term
 from tol3d.gears import GearPair
 from tol3d.model import Contributor, LostMotion, Measure, Model, Planar, Positions, ReducerBacklash
+from tol3d.model.measure import at_one_position
 
 TILT_NODES = 2000  # midpoint rule in u, a plane; its error on |x| of a normal is under 1e-6 of sigma
 
@@ -76,8 +77,7 @@ def closed_form(model: Model, measure: Measure) -> ClosedForm | None:
 
 def reference_form(model: Model, measure: Measure) -> ClosedForm | None:
     """Closed form of the measure, or of its value at a random position where it takes an extreme or a curve."""
-    kind = replace(measure.kind, turned=()) if isinstance(measure.kind, LostMotion) else measure.kind
-    at_random = replace(measure, kind=kind, positions=Positions("random", 1, 1), take="value")
+    at_random = replace(measure, kind=at_one_position(measure.kind), positions=Positions("random", 1, 1), take="value")
     return closed_form(model, measure) or closed_form(model, at_random)
 
 

@@ -1,7 +1,7 @@
 """What is measured, over which positions, and what is taken of it."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 BacklashQuantity = Literal["normal_backlash", "circumferential_backlash", "angular_backlash"]
@@ -85,6 +85,7 @@ class LostMotion:
         stages: the links between them, from the held shaft on.
         tip: the point that is displaced.
         turned: for a swing, at which of its positions the other flanks work than at its start.
+        changes: for a swing, angles of the output at which the load changes sides [rad].
     """
 
     quantity: TrainQuantity
@@ -94,6 +95,7 @@ class LostMotion:
     stages: tuple[Stage, ...]
     tip: Tip | None = None
     turned: tuple[bool, ...] = ()
+    changes: tuple[float, ...] = ()
 
     @property
     def is_angle(self) -> bool:
@@ -112,6 +114,13 @@ class LostMotion:
 
 
 Kind = Backlash | LostMotion
+
+
+def at_one_position(kind: Kind) -> Kind:
+    """What a measure of a swing reads where the flanks have changed; any other as it is."""
+    if isinstance(kind, LostMotion) and kind.turned:
+        return replace(kind, quantity="tip_displacement", turned=(), changes=())
+    return kind
 
 
 @dataclass(frozen=True)

@@ -1,6 +1,8 @@
 """Measures of a scene: what is read, over which positions. One function a sort of measure."""
 
 import math
+from collections.abc import Iterator
+from dataclasses import replace
 from functools import singledispatch
 from typing import Literal
 
@@ -126,9 +128,9 @@ def _(spec: TipErrorSpec, scene: Scene, name: str, model: Model) -> Measure:
             f"gravity does not turn {train.output!r} anywhere on this swing: its direction in the world, or the arm's "
             "centre of mass, lies along the axis",
         )
-    kind = lost_motion(
-        model, train, arm.on, "tip_error", _tip(arm, spec.point), _turned([torque or 0.0 for torque in torques])
-    )
+    plain = lost_motion(model, train, arm.on, "tip_error", _tip(arm, spec.point))
+    changes = tuple(_changes(model, train, (shown[0], shown[-1])))
+    kind = replace(plain, turned=_turned([torque or 0.0 for torque in torques]), changes=changes)
     rate = float(model.layout.shaft_turn[arm.on].rate)
     positions = Positions("swing", 1, len(shown), angles=tuple(angle / rate for angle in shown), shown=shown)
     return Measure(name, kind, positions, "curve")
@@ -140,10 +142,9 @@ def lost_motion(
     shaft: str,
     quantity: TrainQuantity,
     tip: Tip | None = None,
-    turned: tuple[bool, ...] = (),
 ) -> LostMotion:
     """What a train's links leave free at one of its shafts."""
-    return LostMotion(quantity, train.name, shaft, train.held, _stages(model, train.held, shaft), tip, turned)
+    return LostMotion(quantity, train.name, shaft, train.held, _stages(model, train.held, shaft), tip)
 
 
 def _stages(model: Model, held: str, shaft: str) -> tuple[Stage, ...]:
@@ -175,6 +176,14 @@ def _positions(spec: LostMotionSpec | TipDisplacementSpec) -> Positions:
     if isinstance(spec.over, At):
         return Positions("at", 1, 1, spec.over.at.internal)
     return Positions("random", 1, 1)
+
+
+def _changes(model: Model, train: Train, swing: tuple[float, float]) -> Iterator[float]:
+    """Where on a swing gravity's torque, a cos(angle) + b sin(angle), goes through 0 [rad]."""
+    a, b = (gravity_torque(train, model.layout, model.arms, angle) or 0.0 for angle in (0.0, math.pi / 2))
+    first = math.atan2(-a, b)
+    turns = range(math.ceil((swing[0] - first) / math.pi), math.floor((swing[1] - first) / math.pi) + 1)
+    yield from (first + turn * math.pi for turn in turns)
 
 
 def _turned(torques: list[float]) -> tuple[bool, ...]:

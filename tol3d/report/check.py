@@ -15,9 +15,11 @@ from tol3d.engines import Engine
 from tol3d.engines.exact import ExactEngine
 from tol3d.gears import RIGHT, BevelGear, BevelPair, Gear, GearPair, SpurGear, SpurPair
 from tol3d.model import Backlash, Contributor, Measure, Model, Planar, Positions
-from tol3d.report.heading import OVER_WORDS, QUANTITY_WORDS, TAKE_WORDS, reading_words
+from tol3d.model.measure import at_one_position
+from tol3d.report.heading import QUANTITY_WORDS, TAKE_WORDS, reading_words
 from tol3d.report.number import NOTHING, UNIT_SIGNS, given_text, percent_text, unsigned_zero, value_text
 from tol3d.report.sheet import Heading, Row, Sheet
+from tol3d.report.train_check import train_blocks
 from tol3d.sensitivity import STEP_ASIDE, mean_slopes
 from tol3d.units import angle_text
 
@@ -35,7 +37,7 @@ def check_report(model: Model) -> Group:
     blocks: list[RenderableType] = [Text(model.name, style="bold"), gears_table(model)]
     if model.housings:
         blocks.append(housings_line(model))
-    blocks += [meshes_table(model), measures_table(model)]
+    blocks += [meshes_table(model), *train_blocks(model), measures_table(model)]
     if model.contributors:
         blocks.append(contributors_table(model))
     study = model.study
@@ -204,7 +206,7 @@ def _positions(measure: Measure) -> str:
     if positions.over == "at":
         return f"driver at {_degrees(positions.angle)}°"
     if positions.over == "random":
-        return OVER_WORDS["random"]
+        return "random"
     turns = f"{positions.turns} turn{'' if positions.turns == 1 else 's'}"
     return f"{positions.count} in {turns} of the driver"
 
@@ -276,18 +278,26 @@ def coefficients_tables(model: Model) -> list[RenderableType]:
     engine = ExactEngine(model)
     headings = [Heading(word) for word in ("unit", "stack-up", "3D", "share [%]")]
     tables = [
-        _titled(f"{', '.join(of)}: change by each deviation, driver at {_degrees(measure.positions.angle)}°", sheet)
+        _titled(f"{', '.join(of)}: change by each deviation, {_where(model, measure)}", sheet)
         for measure, of in names.items()
         if (sheet := Sheet("", headings, list(_coefficient_rows(model, engine, measure)))).rows
     ]
     return [*tables, *(Text(f" {note}", style="dim") for note in _notes(model))]
 
 
+def _where(model: Model, measure: Measure) -> str:
+    """At which position coefficients are told."""
+    of_driver = measure.positions.over == "at" and isinstance(measure.kind, Backlash)
+    alone = len(model.layout.links) == len(model.layout.drives)
+    what = "driver" if of_driver or alone else "first shaft"
+    return f"{what} at {_degrees(measure.positions.angle)}°"
+
+
 def _of_one_value(measure: Measure) -> Measure:
     """What coefficients are told of: measures that are equal here have the same."""
     at = measure.take == "value" and measure.positions.over == "at"
     positions = measure.positions if at else Positions("random", 1, 1)
-    return Measure("", measure.kind, positions, "value")
+    return Measure("", at_one_position(measure.kind), positions, "value")
 
 
 def _coefficient_rows(model: Model, engine: Engine, measure: Measure) -> Iterator[Row]:

@@ -284,11 +284,13 @@ def draw_curve(axes: Axes, name: str, measure: Summary) -> None:
     in_turns = len(degrees) > 0 and degrees[-1] > 2 * TURN
     x = degrees / TURN if in_turns else degrees
     leading = best_road(measure)
-    own = curve[leading]
-    mean, sigma = np.asarray(own["mean"], dtype=float), np.asarray(own["sigma"], dtype=float)
+    stepped = _Stepped(x, measure.get("load_changes_deg") or [])
+    own = {key: stepped(values) for key, values in curve[leading].items() if key in ("mean", "sigma", "min", "max")}
+    mean, sigma, least, most = (own[key] for key in ("mean", "sigma", "min", "max"))
+    analytic = stepped(curve["analytic"]["mean"])
+    x = stepped(x)
     word = "3D simulation" if leading == "geometric" else "analytic"
     colour = ROAD_COLOURS[leading]
-    least, most = np.asarray(own["min"], dtype=float), np.asarray(own["max"], dtype=float)
     axes.fill_between(x, least, most, color=colour, alpha=0.13, linewidth=0, label=f"{word}, all trials")
     axes.fill_between(
         x, mean - 3 * sigma, mean + 3 * sigma, color=colour, alpha=0.28, linewidth=0, label=f"{word}, ±3 sigma"
@@ -297,8 +299,10 @@ def draw_curve(axes: Axes, name: str, measure: Summary) -> None:
         x, mean, color=colour, linewidth=2, marker=MARKERS.get(measure["kind"]), markersize=7, label=f"{word}, mean"
     )
     if leading != "analytic":
-        analytic = np.asarray(curve["analytic"]["mean"], dtype=float)
         axes.plot(x, analytic, color=ORANGE, linewidth=1.8, linestyle="--", label="analytic, mean")
+    for change in stepped.changes:
+        text = f"the load changes sides at {change:.1f}°"
+        axes.axvline(change, color=GREY, linewidth=1.2, linestyle=":", label=text)
     for key, limit_word in (("lower_limit", "LSL"), ("upper_limit", "USL")):
         if measure.get(key) is not None:
             text = f"{limit_word} {given_text(measure[key], unit)}{unit_suffix(unit)}"
@@ -311,3 +315,19 @@ def draw_curve(axes: Axes, name: str, measure: Summary) -> None:
     if np.isnan(mean).all():
         say_instead(axes, NO_VALUES, OUTSIDE)
     axes.legend(fontsize=8.5, frameon=False, loc="center left", bbox_to_anchor=(1.0, 0.5))
+
+
+class _Stepped:
+    """Curves over positions with both their values at the positions between at which they jump."""
+
+    def __init__(self, x: Array, changes: Sequence[float]) -> None:
+        self.changes = [change for change in changes if x[0] < change < x[-1]]
+        self._x = x
+
+    def __call__(self, values: Sequence[float] | Array) -> Array:
+        """Values at the positions, in front of each jump the one before it and behind it the one after it."""
+        known = np.asarray(values, dtype=float)
+        after = np.searchsorted(self._x, self.changes)
+        both = [self.changes * 2] if values is self._x else [known[after - 1], known[after]]
+        added = np.concatenate(both) if self.changes else np.empty(0)
+        return np.insert(known, np.concatenate([after, after]), added)

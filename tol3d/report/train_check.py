@@ -1,0 +1,82 @@
+"""Shafts, reducers and trains of a scene as tables: how they turn with each other and where they lie."""
+
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+from rich.console import RenderableType
+from rich.text import Text
+
+from tol3d.gears import LEFT
+from tol3d.model import Model, Train
+from tol3d.model.layout import Link
+from tol3d.model.trains import gravity_torque
+from tol3d.report.number import NOTHING
+from tol3d.report.sheet import Heading, Row, Sheet
+from tol3d.units import angle_text
+
+Array = NDArray[np.float64]
+
+
+def train_blocks(model: Model) -> list[RenderableType]:
+    """What a scene says of shafts, where any of them carries or drives more than one gear; else nothing."""
+    if len(model.layout.links) == len(model.layout.drives) and not model.trains:
+        return []
+    words = [Heading(word, words=True) for word in ("driven by", "carries", "axis through [mm]", "along")]
+    sheet = Sheet("", [*words, Heading("turns")], list(_shaft_rows(model)))
+    note = Text(" turns per turn of the first shaft; below 0: they turn opposite, each about its own axis", style="dim")
+    return [Text("\nshafts", style="bold cyan"), sheet, note, *(_train_line(model, train) for train in model.trains)]
+
+
+def _shaft_rows(model: Model) -> Iterator[Row]:
+    layout = model.layout
+    for shaft, turning in layout.shaft_turn.items():
+        pose = layout.world_from_shaft[shaft]
+        link = layout.driving.get(shaft)
+        carried = [gear for gear, (carrier, _) in layout.carrying.items() if carrier == shaft and gear != shaft]
+        cells = (
+            link.name if link else NOTHING,
+            ", ".join(carried) or NOTHING,
+            _vector_text(pose[:3, 3], 2),
+            _vector_text(pose[:3, 2], 3),
+            str(turning.rate),
+        )
+        yield Row(shaft, cells)
+
+
+def _train_line(model: Model, train: Train) -> Text:
+    layout = model.layout
+    way = layout.between(train.driven, train.output)
+    ratio = layout.ratio(train.driven, train.output)
+    sense = "opposite" if ratio < 0 else "alike"
+    line = Text(f"\n{train.name}: ", style="bold").append(" → ".join(_way(train.driven, way)), "not bold")
+    line.append(f" · i = {abs(float(ratio)):.6g}, they turn {sense} · {train.held} held", "not bold")
+    on_the_way = {link.name for link in way}
+    meshes = [mesh for mesh in model.meshes if mesh.name in on_the_way]
+    flanks = ", ".join(f"{mesh.name} {'left' if mesh.working_flank == LEFT else 'right'}" for mesh in meshes)
+    line.append(f"\n working flanks of the drivers{_load(model, train)}: {flanks or NOTHING}", "dim not bold")
+    for reducer in (r for r in model.reducers if r.backlash and r.name in on_the_way):
+        line.append(f"\n {reducer.name}: {angle_text(reducer.backlash)} of play in every trial", "dim not bold")
+    return line
+
+
+def _load(model: Model, train: Train) -> str:
+    torque = gravity_torque(train, model.layout, model.arms, 0.0)
+    return " at 0° of the output under gravity" if torque else ""
+
+
+def _way(first: str, links: Sequence[Link]) -> Iterator[str]:
+    yield first
+    at = first
+    for link in links:
+        at = link.driven if at == link.driver else link.driver
+        yield at
+
+
+def _vector_text(vector: Array, digits: int) -> str:
+    """Coordinates, without a sign of what is 0 in print.
+
+    >>> _vector_text(np.array([172.5, -1e-17, 1.0]), 2)
+    '172.5, 0, 1'
+    """
+    return ", ".join(f"{round(float(value), digits) + 0.0:g}" for value in vector)
