@@ -48,9 +48,9 @@ def extruded(outline: Sequence[NamedEdge], holes: Sequence[NamedEdge], width: fl
         GeometryError: the outline makes no valid solid.
     """
     plane = gp_Pln(gp_Pnt(0.0, 0.0, -width / 2), gp_Dir(0.0, 0.0, 1.0))
-    face = BRepBuilderAPI_MakeFace(plane, _wire(outline), True)
+    face = BRepBuilderAPI_MakeFace(plane, wire_of(outline), True)
     for hole in holes:
-        face.Add(_wire([hole]))
+        face.Add(wire_of([hole]))
     if not face.IsDone():
         raise GeometryError("the outline of the part does not close into one face")
     prism = BRepPrimAPI_MakePrism(face.Face(), gp_Vec(0.0, 0.0, width))
@@ -64,7 +64,8 @@ def extruded(outline: Sequence[NamedEdge], holes: Sequence[NamedEdge], width: fl
     return NamedSolid(solid, {name: outward[face] for name, face in (swept | ends).items()})
 
 
-def _wire(edges: Sequence[NamedEdge]) -> TopoDS_Wire:
+def wire_of(edges: Sequence[NamedEdge]) -> TopoDS_Wire:
+    """Edges in order, sharing their vertices, as one closed wire."""
     builder, wire = BRep_Builder(), TopoDS_Wire()
     builder.MakeWire(wire)
     for named in edges:

@@ -8,12 +8,12 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.block import Block, mean_block, nominal_block, seat_key
+from tol3d.block import Block, SeatKey, mean_block, nominal_block, seat_keys
 from tol3d.engines import NO_CONTACT, OK
 from tol3d.errors import InputError, RunError
 from tol3d.gears import Gear
 from tol3d.model import Measure, Mesh, Model
-from tol3d.moves import MeshSeat
+from tol3d.moves import Meshing, MeshSeat
 from tol3d.report.number import measured_text
 from tol3d.result import Run
 from tol3d.simulate import Replay, model_of, replay, replay_block
@@ -50,19 +50,19 @@ class PlacedGear:
 
     def mesh(self) -> tuple[Array, NDArray[np.int64]]:
         """Closed triangle mesh in the world: vertices (n, 3) [mm], triangles (m, 3)."""
-        display = self._display
+        display = self.display
         own = self.scale * display.thickened(self.flank_turn)
         rotation, translation = self.world_from_gear[:3, :3], self.world_from_gear[:3, 3]
         return own @ rotation.T + translation, display.triangles
 
     @property
-    def _display(self) -> DisplayMesh:
+    def display(self) -> DisplayMesh:
         return display_mesh(self.gear, CONE_DEFLECTION if self.gear.pitch_angle else DISPLAY_DEFLECTION)
 
     @property
     def unfolded(self) -> bool:
         """Whether the deviation turns no triangle over, as it does where a flank passes points of the tip."""
-        display = self._display
+        display = self.display
         corners = (shape[display.triangles] for shape in (display.vertices, display.thickened(self.flank_turn)))
         before, after = (np.cross(c[:, 1] - c[:, 0], c[:, 2] - c[:, 0]) for c in corners)
         return bool(((before * after).sum(axis=1) >= 0.0).all())
@@ -83,7 +83,8 @@ class SeatedMesh:
 
     Args:
         mesh: which.
-        driver, driven: the placed gears.
+        driver, driven: the placed gears, in the world of the mesh.
+        driver_angle, driven_angle: their turns about their own axes [rad].
         contact, normal: point on the driver's working flank (3,) [mm] and the unit vector to the driven.
         gap: the nearest points of the non-working flanks, driver's and driven's, (2, 3) [mm].
         gap_value: their distance [mm], the normal backlash; nan where the flanks overlap too deep to tell.
@@ -93,6 +94,8 @@ class SeatedMesh:
     mesh: Mesh
     driver: PlacedGear
     driven: PlacedGear
+    driver_angle: float
+    driven_angle: float
     contact: Array
     normal: Array
     gap: Array
@@ -111,13 +114,15 @@ class Assembly:
     """A build at rest.
 
     Args:
+        model: whose build it is.
         label: what it is, such as "trial-17" or "nominal", good as the start of a file's name.
         magnify: by what its deviations were scaled.
-        meshes: its meshes that are measured, each in a world of its own.
+        meshes: each in a world of its own; those that are measured, or all of a model whose shafts are shown.
         values: value of each measure on the geometric road, in the measure's unit, magnified too.
         notes: what the user should know.
     """
 
+    model: Model
     label: str
     magnify: float
     meshes: tuple[SeatedMesh, ...]
@@ -149,7 +154,7 @@ def assemble(run: Run, which: Which, *, magnify: float = 1.0) -> Assembly:
         used, seen, meshes, note = _magnified(seen, rows, magnify)
         label += f"-x{used:g}" if used != 1.0 else ""
         notes.append(note)
-    return Assembly(label, used, meshes, seen.geometric, tuple(note for note in notes if note))
+    return Assembly(seen.model, label, used, meshes, seen.geometric, tuple(note for note in notes if note))
 
 
 def _replayed(run: Run, which: Which) -> tuple[str, Replay]:
@@ -173,47 +178,96 @@ def _said(label: str, seen: Replay) -> str:
 # positions ----------------------------------------------------------------------------------------
 
 
+def shows_shafts(model: Model) -> bool:
+    """Whether its parts make more than single pairs: they are shown in one world then, at the trial's position."""
+    plain = all(len(drive.meshes) == 1 for drive in model.layout.drives)
+    return bool(model.shafts or model.arms or model.reducers) or not plain
+
+
 def _first_measure(model: Model, mesh: Mesh) -> Measure | None:
-    return next((measure for measure in model.measures if measure.kind.mesh == mesh.name), None)
+    return next((measure for measure in model.measures if _key(model, measure, mesh)), None)
+
+
+def _key(model: Model, measure: Measure, mesh: Mesh) -> SeatKey | None:
+    """Where a measure reads a mesh; None where it does not."""
+    return next((key for key in seat_keys(model, measure) if key[0] == mesh.name), None)
 
 
 def _rows(seen: Replay) -> dict[str, int]:
     """At which position of its first measure each mesh is shown: the extreme that the measure takes, or the first."""
+    if shows_shafts(seen.model):
+        return {mesh.name: 0 for mesh in seen.model.meshes}
     rows = {}
     for mesh in seen.model.meshes:
         measure = _first_measure(seen.model, mesh)
-        if measure is None:
-            continue
-        gaps = _seat(seen, mesh, measure).non_working.smallest()
-        largest = measure.take in ("max", "range")
-        if measure.take in ("min", "max", "range") and not np.isnan(gaps).all():
-            rows[mesh.name] = int(np.nanargmax(gaps) if largest else np.nanargmin(gaps))
-        else:
-            rows[mesh.name] = 0
+        if measure is not None:
+            rows[mesh.name] = _extreme(measure, _of_measure(seen, mesh).non_working.smallest())
     return rows
 
 
-def _seat(seen: Replay, mesh: Mesh, measure: Measure) -> MeshSeat:
-    return seen.seats.seats[seat_key(measure)]
+def _extreme(measure: Measure, gaps: Array) -> int:
+    if measure.take not in ("min", "max", "range") or np.isnan(gaps).all():
+        return 0
+    return int(np.nanargmin(gaps) if measure.take == "min" else np.nanargmax(gaps))
+
+
+def _of_measure(seen: Replay, mesh: Mesh) -> MeshSeat:
+    """A mesh at the positions of its first measure."""
+    return seen.seats.seats[_own_key(seen, mesh)]
+
+
+def _own_key(seen: Replay, mesh: Mesh) -> SeatKey:
+    """Where a mesh is read first; one that is not read counts as the first that is."""
+    measure = _first_measure(seen.model, mesh)
+    key = _key(seen.model, measure, mesh) if measure else None
+    return key or next(iter(seen.seats.seats))
+
+
+def _seats(seen: Replay, rows: Mapping[str, int]) -> Mapping[str, MeshSeat]:
+    if shows_shafts(seen.model):
+        return _along_shafts(seen)
+    return {mesh.name: _of_measure(seen, mesh) for mesh in seen.model.meshes if mesh.name in rows}
+
+
+def _along_shafts(seen: Replay) -> Mapping[str, MeshSeat]:
+    """Meshes at the trial's position, each driver turned to where the links before it came to rest."""
+    layout, angles, meshings = seen.model.layout, seen.block.random_angle, seen.seats.meshings
+    meshes = {mesh.name: mesh for mesh in seen.model.meshes}
+    ahead: dict[str, float] = {}  # of its nominal angle, by shaft [rad]
+    seats = {}
+    for link in sorted(layout.links, key=lambda link: len(layout.behind(link.driven))):
+        before = ahead.get(link.driver, 0.0)
+        mesh = meshes.get(link.name)
+        if mesh is None:
+            ahead[link.driven] = before * float(link.rate)
+            continue
+        known = meshings[_own_key(seen, mesh)]
+        meshing = Meshing(known.engine, seen.model, mesh, seen.seats.build, known.reading)
+        (_, driver), (_, driven) = layout.carrying[mesh.driver], layout.carrying[mesh.driven]
+        seats[mesh.name] = meshing.seat(angles[mesh.name] + driver.sense * before)
+        off = seats[mesh.name].driven_angle - mesh.pair.driven_angle(angles[mesh.name])
+        ahead[link.driven] = driven.sense * float(off[0])
+    return seats
 
 
 def _seated(seen: Replay, rows: Mapping[str, int]) -> tuple[SeatedMesh, ...]:
-    meshes = []
-    for mesh in seen.model.meshes:
-        measure = _first_measure(seen.model, mesh)
-        if measure is not None:
-            meshes.append(_seated_mesh(seen, mesh, _seat(seen, mesh, measure), rows[mesh.name]))
-    return tuple(meshes)
+    seats = _seats(seen, rows)
+    return tuple(
+        _seated_mesh(seen, mesh, seats[mesh.name], rows[mesh.name]) for mesh in seen.model.meshes if mesh.name in seats
+    )
 
 
 def _seated_mesh(seen: Replay, mesh: Mesh, seat: MeshSeat, row: int) -> SeatedMesh:
     at_work, idle = seat.working, seat.non_working
     touching = int(np.argmin(np.where(np.isnan(at_work.value[row]), np.inf, at_work.value[row])))
     nearest = int(np.argmin(np.where(np.isnan(idle.value[row]), np.inf, idle.value[row])))
+    driver_angle, driven_angle = float(seat.driver_angle[row]), float(seat.driven_angle[row])
     return SeatedMesh(
         mesh=mesh,
-        driver=_placed(seen, mesh.driver, seat.driver_angle[row]),
-        driven=_placed(seen, mesh.driven, seat.driven_angle[row]),
+        driver=_placed(seen, mesh, mesh.driver, driver_angle),
+        driven=_placed(seen, mesh, mesh.driven, driven_angle),
+        driver_angle=driver_angle,
+        driven_angle=driven_angle,
         contact=at_work.driver_point[row, touching],
         normal=at_work.normal[row, touching],
         gap=np.stack([idle.driver_point[row, nearest], idle.driven_point[row, nearest]]),
@@ -222,15 +276,15 @@ def _seated_mesh(seen: Replay, mesh: Mesh, seat: MeshSeat, row: int) -> SeatedMe
     )
 
 
-def _placed(seen: Replay, name: str, angle: float) -> PlacedGear:
-    index, build = seen.model.gear_index[name], seen.seats.build
-    gear = seen.model.gears[index].gear
+def _placed(seen: Replay, mesh: Mesh, name: str, angle: float) -> PlacedGear:
+    seat, build = seen.model.seat_index[mesh.name, name], seen.seats.build
+    gear = mesh.gear(name)
     return PlacedGear(
         name=name,
         gear=gear,
-        world_from_gear=build.world_from_gear(index, np.array([angle]))[0],
-        flank_turn=float(build.flank_turn[0, index] + build.flank_offset[0, index] / gear.section_arm),
-        scale=float(build.scale[0, index]),
+        world_from_gear=build.world_from_gear(seat, np.array([angle]))[0],
+        flank_turn=float(build.flank_turn[0, seat] + build.flank_offset[0, seat] / gear.section_arm),
+        scale=float(build.scale[0, seat]),
     )
 
 

@@ -2,22 +2,27 @@
 
 import os
 import re
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import count
 from pathlib import Path
-from typing import Final
+from typing import Final, cast
 
 import numpy as np
 import trimesh
+from numpy.typing import NDArray
 
 from tol3d.errors import InputError
 from tol3d.report.assembly import Assembly, PlacedGear, SeatedMesh, Which, assemble
+from tol3d.report.whole_trains import WholeTrain, whole_trains
 from tol3d.result import Run
-from tol3d.solids import PosedGear, export_step
+from tol3d.solids import PosedGear, PosedPart, export_step
+
+Array = NDArray[np.float64]
+Colour = tuple[int, int, int, int]
 
 FORMATS: Final = ("stl", "ply", "glb", "step")
-COLOURS: Final = ((70, 130, 180, 255), (230, 159, 0, 255))  # driver, driven
+COLOURS: Final[tuple[Colour, Colour]] = ((70, 130, 180, 255), (230, 159, 0, 255))  # driver, driven
 METRES_PER_MM: Final = 1e-3  # glTF 2.0, 3.4: all linear distances are in metres
 
 
@@ -48,7 +53,8 @@ def export_run(
         run: a finished run.
         which: a trial, or "worst", "nominal", "mean".
         fmt: "stl" and "ply" write a file a part [mm], "glb" one scene a mesh [m], "step" one assembly a
-            mesh [mm] with the real perturbed solids.
+            mesh [mm] with the real perturbed solids. Gears that shafts connect are written as one file in
+            one world, in any format.
         magnify: scales the deviations and seats again, see `assemble`.
         out: the folder; made if missing.
 
@@ -62,17 +68,32 @@ def export_run(
     assembly = assemble(run, which, magnify=magnify)
     try:
         out.mkdir(parents=True, exist_ok=True)
-        files = [path for mesh in assembly.meshes for path in WRITERS[fmt](assembly, mesh, out)]
+        files = list(_files(assembly, fmt, out))
     except OSError as error:
         raise InputError(f"{out}: cannot be written ({error.strerror or error}); choose another folder") from None
     return Exported(tuple(files), assembly.notes)
 
 
-def triangle_mesh(part: PlacedGear, colour: tuple[int, int, int, int] = COLOURS[0]) -> trimesh.Trimesh:
+def _files(assembly: Assembly, fmt: str, out: Path) -> Iterator[Path]:
+    trains = whole_trains(assembly)
+    for train in trains:
+        yield TRAIN_WRITERS[fmt](train, _train_path(assembly, trains, train, out, fmt))
+    if not trains:
+        for mesh in assembly.meshes:
+            yield from WRITERS[fmt](assembly, mesh, out)
+
+
+def triangle_mesh(part: PlacedGear, colour: Colour = COLOURS[0]) -> trimesh.Trimesh:
     """A placed gear as a closed mesh in the world [mm]."""
-    vertices, triangles = part.mesh()
+    return _coloured(*part.mesh(), colour)
+
+
+def _coloured(vertices: Array, triangles: NDArray[np.int64], colour: Colour) -> trimesh.Trimesh:
     colours = np.tile(np.array(colour, dtype=np.uint8), (len(vertices), 1))
     return trimesh.Trimesh(vertices, triangles, process=False, vertex_colors=colours)
+
+
+# single pairs -------------------------------------------------------------------------------------
 
 
 def _write_parts(ending: str) -> Callable[[Assembly, SeatedMesh, Path], list[Path]]:
@@ -87,13 +108,18 @@ def _write_parts(ending: str) -> Callable[[Assembly, SeatedMesh, Path], list[Pat
 
 
 def _write_scene(assembly: Assembly, seated: SeatedMesh, out: Path) -> list[Path]:
+    parts = zip((seated.driver, seated.driven), COLOURS, strict=True)
+    content = _glb({part.name: triangle_mesh(part, colour) for part, colour in parts})
+    return [_written(_scene_path(assembly, seated, out, "glb"), content)]
+
+
+def _glb(meshes: Mapping[str, trimesh.Trimesh]) -> object:
+    """A glTF scene of named meshes [mm]."""
     scene = trimesh.Scene()
     to_metres = np.diag([METRES_PER_MM, METRES_PER_MM, METRES_PER_MM, 1.0])
-    for part, colour in zip((seated.driver, seated.driven), COLOURS, strict=True):
-        mesh = triangle_mesh(part, colour)
-        scene.add_geometry(mesh, node_name=part.name, geom_name=part.name, transform=to_metres)
-    content = scene.export(file_type="glb")  # type: ignore[no-untyped-call]  # trimesh annotates it in part only
-    return [_written(_scene_path(assembly, seated, out, "glb"), content)]
+    for name, mesh in meshes.items():
+        scene.add_geometry(mesh, node_name=name, geom_name=name, transform=to_metres)
+    return scene.export(file_type="glb")  # type: ignore[no-untyped-call]  # trimesh annotates it in part only
 
 
 def _write_step(assembly: Assembly, seated: SeatedMesh, out: Path) -> list[Path]:
@@ -119,6 +145,54 @@ def _scene_path(assembly: Assembly, seated: SeatedMesh, out: Path, ending: str) 
 
 def _part_words(assembly: Assembly) -> dict[str, str]:
     return file_words(part.name for mesh in assembly.meshes for part in (mesh.driver, mesh.driven))
+
+
+# trains -------------------------------------------------------------------------------------------
+
+
+def _train_meshes(train: WholeTrain) -> dict[str, trimesh.Trimesh]:
+    return {name: _coloured(*mesh, _rgba(train.colours[name])) for name, mesh in train.meshes.items()}
+
+
+def _rgba(colour: str) -> Colour:
+    red, green, blue = bytes.fromhex(colour.removeprefix("#"))
+    return red, green, blue, 255
+
+
+def _write_whole(ending: str) -> Callable[[WholeTrain, Path], Path]:
+    def write(train: WholeTrain, path: Path) -> Path:
+        whole = cast(trimesh.Trimesh, trimesh.util.concatenate(list(_train_meshes(train).values())))
+        return _written(path, whole.export(file_type=ending))
+
+    return write
+
+
+def _write_whole_glb(train: WholeTrain, path: Path) -> Path:
+    return _written(path, _glb(_train_meshes(train)))
+
+
+def _write_whole_step(train: WholeTrain, path: Path) -> Path:
+    gears = [PosedGear(part.name, part.perturbed, part.world_from_gear) for part in train.gears]
+    parts: list[PosedPart] = [*gears, *train.bodies]
+    export_step(parts, path, [train.colours[part.name] for part in parts])
+    return path
+
+
+TRAIN_WRITERS: Mapping[str, Callable[[WholeTrain, Path], Path]] = {
+    "stl": _write_whole("stl"),
+    "ply": _write_whole("ply"),
+    "glb": _write_whole_glb,
+    "step": _write_whole_step,
+}
+
+
+def _train_path(assembly: Assembly, trains: Sequence[WholeTrain], train: WholeTrain, out: Path, ending: str) -> Path:
+    words = file_words(each.root for each in trains)
+    root = f"-{words[train.root]}" if len(words) > 1 else ""
+    return out / f"{assembly.label}{root}.{ending}"
+
+
+# files --------------------------------------------------------------------------------------------
 
 
 def file_words(names: Iterable[str]) -> dict[str, str]:

@@ -21,6 +21,7 @@ import numpy as np
 import platformdirs
 
 from tol3d.gears import Gear
+from tol3d.solids.bodies import Body
 from tol3d.solids.door import Arrays
 
 FOLDER_VARIABLE = "TOL3D_CACHE"
@@ -34,8 +35,11 @@ SOURCES = (
     ("tol3d.parts", "bevel_cones.py"),
     ("tol3d.parts", "bevel_flank.py"),
     ("tol3d.parts", "bevel_gear.py"),
+    ("tol3d.parts", "shaft.py"),
+    ("tol3d.parts", "arm.py"),
     ("tol3d.solids", "spur_cad.py"),
     ("tol3d.solids", "bevel_cad.py"),
+    ("tol3d.solids", "body_cad.py"),
     ("tol3d.solids", "triangulation.py"),
 )
 """What decides the arrays: a change in any of these makes old entries unreachable."""
@@ -48,18 +52,18 @@ class CacheWarning(UserWarning):
     """The cache cannot be used; results are the same, only slower."""
 
 
-def cached(kind: str, gear: Gear, settings: Mapping[str, float], build: Callable[[], Arrays]) -> Arrays:
+def cached(kind: str, shape: Gear | Body, settings: Mapping[str, float], build: Callable[[], Arrays]) -> Arrays:
     """The arrays of `build`, from the disk where they have been built before.
 
     Args:
         kind: what they are; part of the key and the start of the file's name.
-        gear, settings: what `build` depends on besides the program itself.
+        shape, settings: what `build` depends on besides the program itself.
         build: makes them.
 
     Warns:
         CacheWarning: the folder cannot be written; the arrays are returned all the same.
     """
-    path = folder() / f"{kind}-{_key(kind, gear, settings)}.npz"
+    path = folder() / f"{kind}-{_key(kind, shape, settings)}.npz"
     kept = _read(path)
     if kept is not None:
         return kept
@@ -78,16 +82,16 @@ def folder() -> Path:
     return Path(stated) if stated else platformdirs.user_cache_path("tol3d")
 
 
-def _key(kind: str, gear: Gear, settings: Mapping[str, float]) -> str:
+def _key(kind: str, shape: Gear | Body, settings: Mapping[str, float]) -> str:
     sources = {f"{package}/{name}": pkgutil.get_data(package, name) or b"" for package, name in SOURCES}
     told = {
         "kind": kind,
-        "gear": repr(gear),
+        "shape": repr(shape),
         "settings": dict(settings),
         "versions": {name: _version(name) for name in PACKAGES},
         "sources": {name: hashlib.sha256(text).hexdigest() for name, text in sources.items()},
     }
-    # repr and json write the shortest text that gives back the same double, so no two gears share a key
+    # repr and json write the shortest text that gives back the same double, so no two shapes share a key
     return hashlib.sha256(json.dumps(told, sort_keys=True).encode()).hexdigest()
 
 

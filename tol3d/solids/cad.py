@@ -1,6 +1,6 @@
-"""The CAD side of every kind of gear, and STEP. Import it through tol3d.solids.door.
+"""The CAD side of every kind of gear and body, and STEP. Import it through tol3d.solids.door.
 
-A kind of gear registers here what its own file does.
+A kind registers here what its own file does.
 """
 
 import itertools
@@ -16,21 +16,20 @@ from OCP.gp import gp_Trsf
 
 from tol3d.errors import RunError
 from tol3d.gears import BevelGear, Gear, SpurGear
-from tol3d.parts import bevel_gear, spur_gear
+from tol3d.parts import arm, bevel_gear, shaft, spur_gear
 from tol3d.parts.named_solid import NamedSolid
-from tol3d.solids import bevel_cad, spur_cad
+from tol3d.solids import bevel_cad, body_cad, spur_cad
+from tol3d.solids.bodies import ArmBody, Body, ShaftBody
 from tol3d.solids.door import Arrays
-from tol3d.solids.posed_gear import PosedGear
+from tol3d.solids.posed_gear import PosedPart
 
 Array = NDArray[np.float64]
 
-COLOURS = ("steelblue", "darkorange", "seagreen", "goldenrod", "slategray", "indianred")
-
 
 @singledispatch
-def solid_of(gear: Gear) -> NamedSolid:
-    """The solid of a gear, from its builder."""
-    raise TypeError(f"cad.py has no builder for {type(gear).__name__}")
+def solid_of(shape: Gear | Body) -> NamedSolid:
+    """The solid of a gear or a body, from its builder."""
+    raise TypeError(f"cad.py has no builder for {type(shape).__name__}")
 
 
 @singledispatch
@@ -45,13 +44,13 @@ def sample_flanks(gear: Gear, steps: int) -> Arrays:
 
 
 @singledispatch
-def tessellate(gear: Gear, deflection: float) -> Arrays:
+def tessellate(shape: Gear | Body, deflection: float) -> Arrays:
     """Arrays of DisplayMesh, its faces followed within about `deflection` [mm].
 
     Raises:
         GeometryError: OCC could not triangulate the solid.
     """
-    raise TypeError(f"cad.py tessellates no {type(gear).__name__}")
+    raise TypeError(f"cad.py tessellates no {type(shape).__name__}")
 
 
 solid_of.register(SpurGear, spur_gear.build)
@@ -62,13 +61,18 @@ solid_of.register(BevelGear, bevel_gear.build)
 sample_flanks.register(BevelGear, bevel_cad.sample_flanks)
 tessellate.register(BevelGear, bevel_cad.tessellate)
 
+solid_of.register(ShaftBody, lambda body: shaft.shaft(body.diameter, body.start, body.end, body.collars))
+solid_of.register(ArmBody, lambda body: arm.arm(body.points, body.diameter))
+for kind in (ShaftBody, ArmBody):
+    tessellate.register(kind, lambda body, deflection: body_cad.tessellate(solid_of(body), deflection))
 
-def write_step(parts: Sequence[PosedGear], path: Path) -> None:
+
+def write_step(parts: Sequence[PosedPart], path: Path, colours: Sequence[str]) -> None:
     """See tol3d.solids.export_step."""
     assembly = cq.Assembly(name=f"assembly: {path.stem}")  # no part is called so: their names hold no colon
-    for part, colour in zip(parts, itertools.cycle(COLOURS), strict=False):
+    for part, colour in zip(parts, itertools.cycle(colours), strict=False):
         place = _location(part.world_from_part)
-        assembly.add(solid_of(part.gear).solid, name=_part21(part.name), loc=place, color=cq.Color(colour))
+        assembly.add(solid_of(part.shape).solid, name=_part21(part.name), loc=place, color=cq.Color(colour))
     unfinished = path.with_name(f"{path.name}.{os.getpid()}.partial")
     try:
         assembly.export(str(unfinished), exportType="STEP")

@@ -1,4 +1,4 @@
-"""Display meshes: the whole solid of a gear as triangles, closed, for pictures and files, not for measuring."""
+"""Display meshes: whole solids of gears, shafts and arms as closed triangles, for pictures and files, not measuring."""
 
 from dataclasses import dataclass
 
@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.gears import Gear
+from tol3d.solids.bodies import Body
 from tol3d.solids.cache import cached
 from tol3d.solids.door import cad
 
@@ -14,13 +15,13 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False)
 class DisplayMesh:
-    """A closed triangle mesh in the gear's frame.
+    """A closed triangle mesh in the frame of the gear or the shaft.
 
     Args:
         vertices: (n, 3) [mm].
         triangles: (m, 3) vertex numbers, turned outwards.
         side: (n,) which side of its tooth a vertex lies on (flank, radial line or fillet): RIGHT, LEFT
-            or 0 for neither (tip, root, bore, ends).
+            or 0 for neither (tip, root, bore, ends, whatever has no teeth).
         chord_error: largest distance [mm] between the mesh and the solid's faces.
     """
 
@@ -41,9 +42,9 @@ class DisplayMesh:
         return np.stack([cos * x - sin * y, sin * x + cos * y, z], axis=-1)
 
 
-def display_mesh(gear: Gear, deflection: float) -> DisplayMesh:
-    """Mesh of a gear whose faces are followed within about `deflection` [mm]; see its chord_error for the truth."""
-    arrays = cached("display", gear, {"deflection": deflection}, lambda: cad().tessellate(gear, deflection))
+def display_mesh(shape: Gear | Body, deflection: float) -> DisplayMesh:
+    """Mesh whose faces follow the solid's within about `deflection` [mm]; see its chord_error for the truth."""
+    arrays = cached("display", shape, {"deflection": deflection}, lambda: cad().tessellate(shape, deflection))
     return DisplayMesh(
         vertices=arrays["vertices"].astype(np.float64),
         triangles=arrays["triangles"].astype(np.int64),

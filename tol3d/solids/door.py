@@ -9,7 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.gears import Gear
-from tol3d.solids.posed_gear import PosedGear
+from tol3d.solids.bodies import Body
+from tol3d.solids.posed_gear import PosedPart
 
 Arrays = dict[str, NDArray[np.generic]]
 
@@ -21,11 +22,11 @@ class Cad(Protocol):
         """Arrays of FlankStrips."""
         ...
 
-    def tessellate(self, gear: Gear, deflection: float) -> Arrays:
+    def tessellate(self, shape: Gear | Body, deflection: float) -> Arrays:
         """Arrays of DisplayMesh."""
         ...
 
-    def write_step(self, parts: Sequence[PosedGear], path: Path) -> None:
+    def write_step(self, parts: Sequence[PosedPart], path: Path, colours: Sequence[str]) -> None:
         """Write an assembly."""
         ...
 

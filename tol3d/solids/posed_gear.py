@@ -1,4 +1,4 @@
-"""A gear and where it stands."""
+"""Gears and other bodies, and where they stand."""
 
 from dataclasses import dataclass
 
@@ -6,6 +6,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.gears import Gear
+from tol3d.solids.bodies import Body
+
+Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
@@ -14,4 +17,21 @@ class PosedGear:
 
     name: str
     gear: Gear
-    world_from_part: NDArray[np.float64]
+    world_from_part: Array
+
+    @property
+    def shape(self) -> Gear:
+        """What is built: the gear."""
+        return self.gear
+
+
+@dataclass(frozen=True, eq=False)
+class PosedBody:
+    """A shaft or an arm, its name, and its pose: (4, 4), rotation and translation [mm]."""
+
+    name: str
+    shape: Body
+    world_from_part: Array
+
+
+PosedPart = PosedGear | PosedBody

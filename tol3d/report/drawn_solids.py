@@ -1,0 +1,70 @@
+"""What pictures in 3D are drawn with: solids with their edges, labels and titles."""
+
+from typing import Final
+
+import numpy as np
+import pyvista as pv
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+EDGE_COLOUR: Final = "#30373F"
+CONTACT_COLOUR, GAP_COLOUR = "#00714F", "#C03A00"  # green and vermillion: Okabe and Ito, darkened
+EDGE_ANGLE: Final = 25.0  # deg; sharper edges are drawn as lines: tips, ends, not the facets of a flank
+
+
+def poly_data(vertices: Array, triangles: NDArray[np.int64]) -> pv.PolyData:
+    """A triangle mesh for pyvista."""
+    faces = np.hstack([np.full((len(triangles), 1), 3), triangles])
+    return pv.PolyData(vertices, faces.ravel())
+
+
+def set_background(plotter: pv.Plotter) -> None:
+    """The background of every picture."""
+    plotter.renderer.set_background("white", top="#E9EEF3")
+
+
+def add_solid(plotter: pv.Plotter, mesh: pv.PolyData, colour: str) -> None:
+    """A solid and its sharp edges."""
+    plotter.add_mesh(mesh, color=colour, smooth_shading=False, specular=0.25, specular_power=15, ambient=0.15)
+    _add_edges(plotter, mesh)
+
+
+def add_round_solid(plotter: pv.Plotter, mesh: pv.PolyData, colour: str) -> None:
+    """A solid of cylinders and balls, its facets smoothed, and its sharp edges."""
+    smooth = mesh.compute_normals(feature_angle=EDGE_ANGLE, split_vertices=True, consistent_normals=False)
+    plotter.add_mesh(smooth, color=colour, smooth_shading=True, specular=0.25, specular_power=15, ambient=0.15)
+    _add_edges(plotter, mesh)
+
+
+def _add_edges(plotter: pv.Plotter, mesh: pv.PolyData) -> None:
+    edges = mesh.extract_feature_edges(EDGE_ANGLE, boundary_edges=False, manifold_edges=False)
+    plotter.add_mesh(edges, color=EDGE_COLOUR, line_width=1.2)
+
+
+def arrow(tip_from: Array, direction: Array, length: float) -> pv.PolyData:
+    """An arrow of that length [mm] from a point."""
+    return pv.Arrow(start=tip_from, direction=direction, scale=length, tip_radius=0.09, shaft_radius=0.035)
+
+
+def add_label(plotter: pv.Plotter, place: Array, text: str, colour: str) -> None:
+    """A label at a point, whatever is in front of it."""
+    plotter.add_point_labels(
+        np.asarray(place)[None],
+        [text],
+        text_color="white",
+        shape_color=colour,
+        shape_opacity=0.9,
+        font_size=20,
+        bold=True,
+        show_points=False,
+        always_visible=True,
+        margin=5,
+    )
+
+
+def add_title(plotter: pv.Plotter, text: str, size: int) -> None:
+    """A title in the upper left corner."""
+    actor = plotter.add_text(f" {text} ", position="upper_left", font_size=size, color=EDGE_COLOUR)
+    actor.prop.background_color = "white"
+    actor.prop.background_opacity = 0.75

@@ -1,0 +1,194 @@
+"""A build's parts in one world: every gear once, in the mesh that drives it, with shafts, arms and reducers.
+
+Gears stand where they came to rest; shafts and arms on their nominal axes, turned with their gears.
+"""
+
+import itertools
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tol3d.model import Arm, LostMotion, Model
+from tol3d.report.assembly import Assembly, PlacedGear, SeatedMesh, shows_shafts
+from tol3d.report.shaft_sizes import ShaftSizes, Span, arm_body
+from tol3d.solids import PosedBody, display_mesh
+
+Array = NDArray[np.float64]
+
+BODY_DEFLECTION: Final = 1 / 500  # of the diameter; forty facets round, their edges too blunt to be drawn
+
+SHAFT_COLOURS: Final = (
+    "#7FB2D9", "#F0C36D", "#8CC5A2", "#E39B86", "#B7A3D6", "#7CC4C4", "#D9A5C3", "#B9C27B",
+)  # fmt: skip
+HOUSING_COLOUR: Final = "#A4ACB5"
+
+
+@dataclass(frozen=True, eq=False)
+class WholeTrain:
+    """A tree of shafts with all that hangs on it, in the world of its first shaft.
+
+    Args:
+        root: its first shaft.
+        gears: as they came to rest.
+        bodies: shafts, arms and housings of reducers.
+        shaft_of: the shaft that each gear and body turns with, by the part's name; None for a housing.
+        points: points of the arms that are named in pictures, (3,) [mm].
+        gravity: its direction and where it pulls, both (3,); None where the scene does not tell.
+    """
+
+    root: str
+    gears: tuple[PlacedGear, ...]
+    bodies: tuple[PosedBody, ...]
+    shaft_of: Mapping[str, str | None]
+    points: Mapping[str, Array]
+    gravity: tuple[Array, Array] | None
+
+    @cached_property
+    def colours(self) -> Mapping[str, str]:
+        """Colour of each part, "#RRGGBB": one a shaft, and one for all housings."""
+        shafts = dict.fromkeys(shaft for shaft in self.shaft_of.values() if shaft is not None)
+        of_shaft = dict(zip(shafts, itertools.cycle(SHAFT_COLOURS), strict=False))
+        return {name: of_shaft[shaft] if shaft else HOUSING_COLOUR for name, shaft in self.shaft_of.items()}
+
+    @cached_property
+    def meshes(self) -> Mapping[str, tuple[Array, NDArray[np.int64]]]:
+        """Closed triangle mesh of each part: vertices (n, 3) [mm], triangles (m, 3)."""
+        return {part.name: part.mesh() for part in self.gears} | {body.name: body_mesh(body) for body in self.bodies}
+
+
+def body_mesh(body: PosedBody) -> tuple[Array, NDArray[np.int64]]:
+    """Closed triangle mesh in the world: vertices (n, 3) [mm], triangles (m, 3)."""
+    display = display_mesh(body.shape, BODY_DEFLECTION * body.shape.diameter)
+    rotation, translation = body.world_from_part[:3, :3], body.world_from_part[:3, 3]
+    return display.vertices @ rotation.T + translation, display.triangles
+
+
+def whole_trains(assembly: Assembly) -> tuple[WholeTrain, ...]:
+    """The trees of a build's shafts; none of a build of single pairs."""
+    if not shows_shafts(assembly.model):
+        return ()
+    return tuple(_train(assembly, root) for root in dict.fromkeys(assembly.model.layout.root_of.values()))
+
+
+def _train(assembly: Assembly, root: str) -> WholeTrain:
+    model = assembly.model
+    layout = model.layout
+    own = [shaft for shaft, first in layout.root_of.items() if first == root]
+    angles = {shaft: _angle(assembly, shaft) for shaft in own}
+    sizes = ShaftSizes(model, _faces(assembly))
+    gears: list[PlacedGear] = []
+    bodies: list[PosedBody] = []
+    shaft_of: dict[str, str | None] = {}
+    points: dict[str, Array] = {}
+    for shaft in own:
+        pose = layout.world_from_shaft[shaft] @ _about_z(angles[shaft])
+        for gear in (name for name, (carrier, _) in layout.carrying.items() if carrier == shaft):
+            gears.append(_in_world(assembly, gear))
+            shaft_of[gear] = shaft
+        if shaft in sizes.shafts:
+            bodies.append(PosedBody(shaft, sizes.body(shaft), pose))
+            shaft_of[shaft] = shaft
+        for arm in (arm for arm in model.arms if arm.on == shaft):
+            hung = _arm_pose(model, arm, angles)
+            bodies.append(PosedBody(arm.name, arm_body(arm), hung))
+            shaft_of[arm.name] = shaft
+            shown = {name: place for name, place in arm.points if name in _named_points(model, arm)}
+            points |= {f"{name} of {arm.name}": hung[:3, :3] @ place + hung[:3, 3] for name, place in shown.items()}
+    for reducer in (reducer for reducer in model.reducers if reducer.driven in own):
+        name = _free_name(reducer.name, {*shaft_of, *sizes.shafts, *(arm.name for arm in model.arms)})
+        bodies.append(PosedBody(name, sizes.housing(reducer), layout.world_from_shaft[reducer.driven]))
+        shaft_of[name] = None
+    return WholeTrain(root, tuple(gears), tuple(bodies), shaft_of, points, _gravity(model, root, angles))
+
+
+def _arm_pose(model: Model, arm: Arm, angles: Mapping[str, float]) -> Array:
+    """An arm stands at 0 where the first shaft does, however the teeth then lie to its shaft."""
+    layout = model.layout
+    turn = angles[arm.on] - layout.shaft_turn[arm.on].offset
+    return np.asarray(layout.world_from_shaft[arm.on] @ _about_z(turn))
+
+
+def _named_points(model: Model, arm: Arm) -> set[str]:
+    """Points of an arm whose way is measured, and its last."""
+    kinds = [measure.kind for measure in model.measures]
+    tips = [kind.tip for kind in kinds if isinstance(kind, LostMotion) and kind.tip]
+    return {tip.point for tip in tips if tip.arm == arm.name} | {arm.points[-1][0]}
+
+
+def _free_name(name: str, taken: set[str]) -> str:
+    return _free_name(f"{name} housing", taken) if name in taken else name
+
+
+def _gravity(model: Model, root: str, angles: Mapping[str, float]) -> tuple[Array, Array] | None:
+    """Where gravity pulls: at the weight of an arm, or at the axis of the train's output."""
+    for train in model.trains:
+        if train.driven == root and train.gravity is not None:
+            arm = next((arm for arm in model.arms if arm.on == train.output), None)
+            place = (0.0, 0.0, 0.0) if arm is None else arm.centre_of_mass or arm.points[-1][1]
+            pose = model.layout.world_from_shaft[train.output] if arm is None else _arm_pose(model, arm, angles)
+            direction = np.array(train.gravity) / np.linalg.norm(train.gravity)
+            return direction, pose[:3, :3] @ np.array(place) + pose[:3, 3]
+    return None
+
+
+# positions ----------------------------------------------------------------------------------------
+
+
+def _seating(assembly: Assembly, gear: str) -> SeatedMesh:
+    """The mesh in which a gear is shown: the one that drives it, or the first that it drives."""
+    return next(
+        (seated for seated in assembly.meshes if seated.mesh.driven == gear),
+        next(seated for seated in assembly.meshes if gear in (seated.mesh.driver, seated.mesh.driven)),
+    )
+
+
+def _in_world(assembly: Assembly, gear: str) -> PlacedGear:
+    """A gear as it came to rest, in the world of its tree."""
+    seated = _seating(assembly, gear)
+    placed = seated.driven if seated.mesh.driven == gear else seated.driver
+    pose = assembly.model.layout.world_from_mesh[seated.mesh.name] @ placed.world_from_gear
+    return replace(placed, world_from_gear=pose)
+
+
+def _angle(assembly: Assembly, shaft: str) -> float:
+    """Turn of a shaft [rad]: that of its gear, the driven one if there is one; without gears as the first shaft's."""
+    layout = assembly.model.layout
+    own = [carried for carrier, carried in layout.carrying.values() if carrier == shaft]
+    driven = [carried for carried in own if _seating(assembly, carried.gear).mesh.driven == carried.gear]
+    for carried in driven or own:
+        seated = _seating(assembly, carried.gear)
+        at_rest = seated.driven_angle if carried in driven else seated.driver_angle + seated.mesh.azimuth
+        return carried.sense * (at_rest - carried.phase)
+    return layout.shaft_turn[shaft].at(_root_angle(assembly, layout.root_of[shaft]))
+
+
+def _root_angle(assembly: Assembly, root: str) -> float:
+    """Turn of a tree's first shaft [rad], told by its meshes; 0 where there are none."""
+    layout = assembly.model.layout
+    for seated in assembly.meshes:
+        turning = layout.mesh_turn[seated.mesh.name]
+        if layout.root_of[layout.carrying[seated.mesh.driver][0]] == root:
+            return (seated.driver_angle - turning.offset) / float(turning.rate)
+    return 0.0
+
+
+def _about_z(angle: float) -> Array:
+    pose = np.eye(4)
+    cos, sin = math.cos(angle), math.sin(angle)
+    pose[:2, :2] = [[cos, -sin], [sin, cos]]
+    return pose
+
+
+def _faces(assembly: Assembly) -> Mapping[str, Span]:
+    """From where to where each gear reaches along its own z [mm]."""
+    spans = {}
+    for seated in assembly.meshes:
+        for part in (seated.driver, seated.driven):
+            heights = part.display.vertices[:, 2]
+            spans[part.name] = float(heights.min()), float(heights.max())
+    return spans

@@ -1,0 +1,45 @@
+"""What is read off the solid of a shaft or an arm: the triangulations of all its faces."""
+
+import cadquery as cq
+import numpy as np
+from numpy.typing import NDArray
+from OCP.BRep import BRep_Tool
+from OCP.GeomAPI import GeomAPI_ProjectPointOnSurf
+from OCP.gp import gp_Pnt
+
+from tol3d.parts.named_solid import NamedSolid
+from tol3d.solids.door import Arrays
+from tol3d.solids.triangulation import SAGITTA_MARGIN, triangulated
+
+Array = NDArray[np.float64]
+
+LOOKED_AT = np.array([(1, 1, 0), (0, 1, 1), (1, 0, 1), (1, 1, 1)])
+"""Weights of a triangle's corners where its distance to the face is taken: middles of edges, and its own."""
+
+
+def tessellate(part: NamedSolid, deflection: float) -> Arrays:
+    """OCC's triangulations of all faces, joined along the edges that they share."""
+    whole = triangulated(part, deflection)
+    distances = (
+        _distance(part.faces[name], whole.vertices[whole.triangles[numbers]]) for name, numbers in whole.of_face.items()
+    )
+    return {
+        "vertices": whole.vertices,
+        "triangles": whole.triangles,
+        "side": np.zeros(len(whole.vertices), dtype=np.int8),
+        "chord_error": np.array(max(distances)),
+    }
+
+
+def _distance(face: cq.Face, corners: Array) -> float:
+    """Largest distance [mm] between triangles (n, 3, 3) and their face, at the middles of triangles and edges."""
+    if face.geomType() == "PLANE":
+        return 0.0
+    weights = LOOKED_AT / LOOKED_AT.sum(axis=1, keepdims=True)
+    places = np.unique(np.einsum("wc,tcx->twx", weights, corners).reshape(-1, 3), axis=0)
+    found = GeomAPI_ProjectPointOnSurf(gp_Pnt(*places[0]), BRep_Tool.Surface_s(face.wrapped))
+    distances = []
+    for place in places.tolist():
+        found.Perform(gp_Pnt(*place))
+        distances.append(found.LowerDistance())
+    return float(max(distances)) * SAGITTA_MARGIN
