@@ -332,6 +332,35 @@ def shim(
 
 
 @app.command()
+def compensate(
+    scenes: Annotated[
+        list[str], typer.Argument(metavar="SCENE...", help="Scene files, or names of those that tol3d brings along.")
+    ],
+    train: Annotated[str | None, typer.Option(help="Whose motor; the first train of each scene.")] = None,
+    trials: Annotated[
+        int | None, typer.Option(min=2, help="Number of robots; as many as the study's trials, 2000 at most.")
+    ] = None,
+    positions: Annotated[int, typer.Option(min=1, help="At how many a robot's own mean is taken.")] = 16,
+    out: Annotated[Path | None, typer.Option(help="Draw the picture here.")] = None,
+    trust_parts: TrustParts = False,
+) -> None:
+    """Find the motor's correction for a load that changes side, and what it leaves of the lost motion."""
+    from tol3d.analyses.compensation import CompensationQuestion, compensation
+    from tol3d.report.compensation_picture import draw_compensation
+    from tol3d.report.compensation_table import compensation_report
+    from tol3d.simulate import load
+
+    question = CompensationQuestion(train, positions, trials)
+    with err_console.status("robots"):
+        found = [compensation(load(scene_path(scene), trust_parts=trust_parts), question) for scene in scenes]
+    if out is not None:
+        draw_compensation(found, out)
+    out_console.print(compensation_report(found))
+    if out is not None:
+        _tell(f"picture: {out}")
+
+
+@app.command()
 def schema() -> None:
     """Print the JSON Schema of scenes, for editors."""
     import json
@@ -370,7 +399,9 @@ def export(
     worst: WorstOption = False,
     nominal: NominalOption = False,
     mean: MeanOption = False,
-    format: Annotated[MeshFormat, typer.Option(help="stl and ply: a file a part; glb and step: one.")] = MeshFormat.GLB,
+    format: Annotated[
+        MeshFormat, typer.Option(help="stl and ply: a file a part; glb, step and any of a train: one.")
+    ] = MeshFormat.GLB,
     magnify: MagnifyOption = 1.0,
     out: Annotated[Path, typer.Option(help="Folder to write into.")] = Path("."),
 ) -> None:

@@ -2,6 +2,7 @@
 
     scene        what the user wrote        tol3d/scene/          load_scene
     model        what it means, mm and rad  tol3d/model/          model_from_scene
+    layout       shafts in trees, one world tol3d/model/layout.py Model.layout
     solids       CAD, strips of its flanks  parts/, tol3d/solids/ measuring_strips (for FCL, engine or witness)
     trials       seed -> deviations         tol3d/trials.py       drawn_block
     build        deviations -> poses        tol3d/build.py        build
@@ -9,7 +10,7 @@
     measures     seated meshes -> values    tol3d/measures/       measure_backlash
     analytic     the second road            tol3d/analytic/       analytic_backlash
     columns      both roads, one block      tol3d/block.py        simulate_block
-    statistics   of one block, or several   tol3d/tally.py        Tally
+    statistics   of one block, or several   tol3d/tally.py        Tally          (stages.py: of a train's stages)
     task         what workers run           tol3d/task.py         Task           (execution.py: who runs it)
     blocks       run, kept, folded in order tol3d/folding.py      run_blocks
     witness      some trials again, by FCL  tol3d/witness.py      witness_summary
@@ -19,13 +20,18 @@ The exact engine goes build, moves and measures in one compiled kernel (engines/
 rows), to the same result as by its gaps; `compiled.py` is the door to numba. `tangent.py` and `sensitivity.py` take the
 derivatives of measures through the contact.
 
+A gear has a seat in each mesh that it is in, and builds have a place for each seat, in that mesh's own world; shafts
+turn together (`layout.py`), so one position of the first shaft of a tree tells all. A measure is a weighted sum of
+backlashes, one of a mesh, several of a train (`block.py`: `added_up`), or what that sum moves (`measures/`).
+
 Spur and bevel pairs go the same way: `gears/pair.py` says what every pair offers. A new kind of gear is one file in
 gears/, parts/, solids/, engines/exact/, analytic/ and in each folder of scene/ that it concerns, named in
 model/pairs.py.
 
-`study.py` says what is asked, `report/` and `cli.py` show what is there. The analytic road gets the
-same deviations and the same driver position as the geometric one and never sees a mesh, a pose or an engine.
-A trial is a pure function of (model, seed, trial index): `replay` makes any of them again.
+`study.py` says what is asked, `analyses/` asks what takes several studies (shims, compensation), `report/` and `cli.py`
+show what is there. The analytic road gets the same deviations and the same driver position as the geometric one and
+never sees a mesh, a pose or an engine. A trial is a pure function of (model, seed, trial index): `replay` makes any of
+them again.
 """
 
 import json

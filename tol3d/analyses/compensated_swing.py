@@ -1,0 +1,124 @@
+"""A tip over the swing of its arm: its error with and without the motor's correction, and which flanks work."""
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import brentq
+
+from tol3d.analyses.robots import Robots, State
+from tol3d.analytic import first_order
+from tol3d.block import ARCMIN, drawn_block, simulate_block
+from tol3d.engines import Engine
+from tol3d.gears import Flank
+from tol3d.gears.flank import opposite
+from tol3d.measures import moved
+from tol3d.model import LostMotion, Measure, Model, Train
+from tol3d.model.trains import gravity_torque, loaded_flank
+
+Array = NDArray[np.float64]
+
+JUMP_XTOL: Final = 1e-6  # rad
+
+
+@dataclass(frozen=True, eq=False)
+class Swing:
+    """Errors of the tip over the output's angles.
+
+    Args:
+        measure: the scene's.
+        output: the output's angles [rad], (positions,).
+        turned: where the load acts on the other side than at the start, (positions,).
+        jumps: the output's angles where it changes side [rad].
+        curves: the tip's error with its sign by road and state, (robots, positions) [mm].
+        flanks: by mesh of the way from the held shaft: its driver's flank that works at the start, and the other.
+    """
+
+    measure: str
+    output: Array
+    turned: NDArray[np.bool_]
+    jumps: tuple[float, ...]
+    curves: Mapping[str, Mapping[State, Array]]
+    flanks: Mapping[str, tuple[Flank, Flank]]
+
+    @property
+    def first_turned(self) -> int:
+        """The first position behind the first change of side."""
+        return int(np.argmax(self.turned))
+
+
+def swings_of(model: Model, train: Train) -> Iterator[tuple[Measure, LostMotion]]:
+    """The measures of a train's tip over a swing."""
+    for measure in model.measures:
+        kind = measure.kind
+        if isinstance(kind, LostMotion) and (kind.train, kind.quantity) == (train.name, "tip_error"):
+            yield measure, kind
+
+
+def swing_of(
+    model: Model, engine: Engine | None, train: Train, robots: Robots, batch: Mapping[str, float]
+) -> Swing | None:
+    """The first swing that the scene measures, of the same robots; None without one, or where the load stays.
+
+    Args:
+        model, engine: the scene's.
+        train: which.
+        robots: with their own means.
+        batch: mean of what is compensated, by road [arcmin].
+    """
+    measure, kind = next(swings_of(model, train), (None, None))
+    if measure is None or kind is None or not any(kind.turned):
+        return None
+    angle = replace(kind, quantity="lost_motion", tip=None, turned=())
+    own = replace(measure, name=f"lost motion of {measure.name}", kind=angle)
+    block = drawn_block(model, model.study.seed, 0, robots.count)
+    columns = simulate_block(replace(model, measures=(own,)), engine, block)
+    lost = {road: np.asarray(columns[f"{road}:{own.name}"], dtype=np.float64) for road in batch}
+    seated = robots.seated & ~np.any([np.isnan(values).any(axis=1) for values in lost.values()], axis=0)
+    return Swing(
+        measure=measure.name,
+        output=np.array(measure.positions.shown),
+        turned=np.array(kind.turned),
+        jumps=tuple(_jumps(model, train, measure.positions.shown, kind.turned)),
+        curves={road: _curves(kind, road, lost[road][seated], robots.own[road][seated], batch[road]) for road in batch},
+        flanks=dict(_flanks(model, train, kind, measure.positions.shown)),
+    )
+
+
+def _curves(kind: LostMotion, road: str, lost: Array, own: Array, batch: float) -> Mapping[State, Array]:
+    """Tip errors [mm] of lost motions (robots, positions) [arcmin], less what the motor goes on by."""
+    return {
+        "before": tip_error(kind, road, lost),
+        "batch": tip_error(kind, road, lost - batch),
+        "robot": tip_error(kind, road, lost - own[:, None]),
+    }
+
+
+def tip_error(kind: LostMotion, road: str, angle: Array) -> Array:
+    """The tip's error [mm] by what is left of the lost motion [arcmin], as each road sees a tip move."""
+    return first_order(kind, angle / ARCMIN) if road == "analytic" else moved(kind, angle / ARCMIN)
+
+
+def _jumps(model: Model, train: Train, shown: tuple[float, ...], turned: tuple[bool, ...]) -> Iterator[float]:
+    def torque(angle: float) -> float:
+        return gravity_torque(train, model.layout, model.arms, angle) or 0.0
+
+    for k in range(1, len(shown)):
+        if turned[k] != turned[k - 1]:
+            yield float(brentq(torque, shown[k - 1], shown[k], xtol=JUMP_XTOL))
+
+
+def _flanks(
+    model: Model, train: Train, kind: LostMotion, shown: tuple[float, ...]
+) -> Iterator[tuple[str, tuple[Flank, Flank]]]:
+    """A load is held as if the motor drove against it; on its other side the other flanks work."""
+    torques = (gravity_torque(train, model.layout, model.arms, angle) for angle in shown)
+    first = next(torque for torque in torques if torque)
+    sense = -1 if first * model.layout.shaft_turn[train.output].rate > 0.0 else 1
+    against = replace(train, gravity=None, sense=sense)
+    for stage in kind.stages:
+        if stage.backlash is not None:
+            flank = loaded_flank(model.mesh(stage.link), against, model.layout, model.arms)
+            yield stage.link, (flank, opposite(flank))

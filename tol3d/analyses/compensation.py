@@ -1,0 +1,261 @@
+"""The motor's correction when the load changes side: how large it is, and what it leaves of the lost motion.
+
+A train whose load changes side goes over to the other flanks, and its output turns by the lost motion. The motor makes
+good for it by a turn that is known beforehand: that of the batch's mean builds, or of this robot's own mean. A reducer
+of which only the maximum is known is left out of it, as in Jiang et al. 2024, section 4; it remains whole.
+
+Angles here are in minutes of arc and tips in mm, as in columns and in summary.json.
+"""
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any, Final, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tol3d.analyses.compensated_swing import Swing, swing_of, swings_of, tip_error
+from tol3d.analyses.correction import Correction, at_shaft, corrections_of, stages_of
+from tol3d.analyses.robots import Robots, State, left_of_the_mean, simulated_robots
+from tol3d.analytic import ClosedForm, Share, closed_form
+from tol3d.block import ARCMIN
+from tol3d.errors import InputError
+from tol3d.model import LostMotion, Measure, Model, Positions, ReducerBacklash, Train
+from tol3d.model.contributor import Contributor, TurningOffset, single_effects
+from tol3d.model.measure import Stage
+from tol3d.model.measures import lost_motion
+from tol3d.scene import Scene
+from tol3d.scene.nearest import hint
+from tol3d.simulate import Overrides, effective_model
+from tol3d.study import AS_WRITTEN
+from tol3d.task import engine_of, strips_for
+
+Array = NDArray[np.float64]
+Unit = Literal["mm", "arcmin"]
+
+MOST_ROBOTS: Final = 2000  # where nobody says how many
+POSITIONS: Final = 16
+
+
+@dataclass(frozen=True)
+class CompensationQuestion:
+    """What is wanted.
+
+    Args:
+        train: whose; None is the scene's first.
+        positions: at how many a robot's own mean is taken.
+        robots: how many are drawn; None is as many as the study has trials, MOST_ROBOTS at most.
+    """
+
+    train: str | None = None
+    positions: int = POSITIONS
+    robots: int | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class Remaining:
+    """What a road leaves at a random position: each robot's error with its sign, (robots,) by state.
+
+    Args:
+        angles: of the shaft that is read [arcmin].
+        tips: of the arm's point [mm]; empty without an arm.
+    """
+
+    angles: Mapping[State, Array]
+    tips: Mapping[State, Array]
+
+    def in_unit(self, unit: Unit) -> Mapping[State, Array]:
+        """Those of the unit: tips are in mm, turns in minutes of arc."""
+        return self.tips if unit == "mm" else self.angles
+
+
+@dataclass(frozen=True, eq=False)
+class Compensation:
+    """The answer for a scene.
+
+    Args:
+        name: of the scene's file.
+        model: the scene's.
+        train: whose motor is corrected.
+        measure: the lost motion that is compensated, at a random position.
+        tip: what it moves; None without an arm.
+        compensated, left_out: the stages whose mean is known, and those of which only the maximum is.
+        positions: at how many a robot's own mean was taken.
+        corrections: by column; roads, the closed form and who published.
+        remaining: by road.
+        form_sigmas: of the error at the shaft by the closed form [arcmin], by state; empty where there is none.
+        swing: the tip over the swing; None where the scene measures none.
+        robots, failed: how many were drawn, and how many of these could not be seated.
+    """
+
+    name: str
+    model: Model
+    train: Train
+    measure: Measure
+    tip: LostMotion | None
+    compensated: tuple[Stage, ...]
+    left_out: tuple[Stage, ...]
+    positions: int
+    corrections: Mapping[str, Correction]
+    remaining: Mapping[str, Remaining]
+    form_sigmas: Mapping[State, float]
+    swing: Swing | None
+    robots: int
+    failed: int
+
+    @property
+    def road(self) -> str:
+        """The leading road: the 3D simulation where there is one."""
+        return "geometric" if "geometric" in self.remaining else "analytic"
+
+    @property
+    def shaft(self) -> str:
+        """The shaft whose lost motion is compensated."""
+        return self.measure.kind.shaft if isinstance(self.measure.kind, LostMotion) else self.train.output
+
+    @property
+    def units(self) -> tuple[Unit, ...]:
+        """What is known of the error: of the tip where there is an arm, and of the turn."""
+        return ("mm", "arcmin") if self.tip else ("arcmin",)
+
+    @property
+    def lever(self) -> float | None:
+        """Of the tip [mm]."""
+        return self.tip.tip.lever if self.tip and self.tip.tip else None
+
+    @property
+    def published_tips(self) -> Mapping[str, Mapping[str, Any]]:
+        """What others tell of the tip's displacement without compensation [mm]."""
+        own = self.tip and self.tip.tip
+        alike = [
+            measure.name
+            for measure in self.model.measures
+            if own and isinstance(measure.kind, LostMotion) and measure.kind.quantity == "tip_displacement"
+            if measure.kind.train == self.train.name and measure.kind.tip == own
+        ]
+        published = self.model.published
+        return {column: published[column][name] for column in published for name in alike if name in published[column]}
+
+
+def compensation(
+    scene: Scene, question: CompensationQuestion = CompensationQuestion(), overrides: Overrides = AS_WRITTEN
+) -> Compensation:
+    """How far the motor goes on when the load changes side, and what is left then.
+
+    Args:
+        scene: as `load` gives it.
+        question: what is wanted.
+        overrides: what is said otherwise than in the scene's study.
+
+    Raises:
+        InputError: no such train, or no link in it.
+    """
+    model = _model_of(scene, question, replace(overrides, witness=0))
+    train = _train_of(scene, model, question.train)
+    tip = next((kind for _, kind in swings_of(model, train)), None) or _kind(model, train, "tip_displacement")
+    measure = _measure(scene, model, train, tip or _kind(model, train, "lost_motion"))
+    stages = stages_of(measure)
+    compensated = tuple(stage for stage in stages if stage.backlash or _law_of(model, stage))
+    engine = engine_of(model, strips_for(model))
+    robots = simulated_robots(replace(model, measures=(measure,)), engine, measure, compensated, question.positions)
+    corrections = dict(corrections_of(model, train, measure, compensated, robots))
+    batch = {road: at_shaft(compensated, corrections[road]) for road in robots.lost}
+    return Compensation(
+        name=Path(scene.source).stem,
+        model=model,
+        train=train,
+        measure=measure,
+        tip=tip,
+        compensated=compensated,
+        left_out=tuple(stage for stage in stages if stage not in compensated),
+        positions=question.positions,
+        corrections=corrections,
+        remaining={road: _remaining(robots, road, tip, batch[road]) for road in batch},
+        form_sigmas=_form_sigmas(model, measure, question.positions),
+        swing=swing_of(model, engine, train, robots, batch),
+        robots=robots.count,
+        failed=int(np.sum(~robots.seated)),
+    )
+
+
+# what is asked ------------------------------------------------------------------------------------
+
+
+def _model_of(scene: Scene, question: CompensationQuestion, overrides: Overrides) -> Model:
+    if question.robots is not None:
+        return effective_model(scene, replace(overrides, trials=question.robots))
+    model = effective_model(scene, overrides)
+    if model.study.trials <= MOST_ROBOTS and not model.study.until:
+        return model
+    return effective_model(scene, replace(overrides, trials=min(model.study.trials, MOST_ROBOTS)))
+
+
+def _train_of(scene: Scene, model: Model, name: str | None) -> Train:
+    trains = {train.name: train for train in model.trains}
+    if not trains:
+        raise scene.refuse(("moves",), "expected a move of kind train, whose motor is corrected, got none")
+    if name is None:
+        return next(iter(trains.values()))
+    if name not in trains:
+        raise InputError(f"--train: expected a train of {scene.source}, got {name!r}{hint(name, trains)}")
+    return trains[name]
+
+
+def _kind(model: Model, train: Train, quantity: str) -> LostMotion | None:
+    """The train's first measure of a quantity."""
+    kinds = (measure.kind for measure in model.measures)
+    own = (kind for kind in kinds if isinstance(kind, LostMotion) and kind.train == train.name)
+    return next((kind for kind in own if kind.quantity == quantity), None)
+
+
+def _measure(scene: Scene, model: Model, train: Train, like: LostMotion | None) -> Measure:
+    """The lost motion at a random position, at the shaft of another measure or else at the train's output."""
+    kind = lost_motion(model, train, like.shaft if like else train.output, "lost_motion")
+    if not kind.stages:
+        raise scene.refuse(
+            ("moves", train.name), f"nothing to compensate: there is no link between {kind.held!r} and {kind.shaft!r}"
+        )
+    return Measure(f"lost motion of {train.name}", kind, Positions("random", 1, 1), "value")
+
+
+def _law_of(model: Model, stage: Stage) -> Contributor | None:
+    """The contributor that draws a reducer's backlash; without one only its maximum is known."""
+    return next((own for own in model.contributors if own.effect == ReducerBacklash(stage.link)), None)
+
+
+# what is left -------------------------------------------------------------------------------------
+
+
+def _remaining(robots: Robots, road: str, tip: LostMotion | None, batch: float) -> Remaining:
+    angles = robots.errors(road, batch)
+    if tip is None:
+        return Remaining(angles, {})
+    still = replace(tip, turned=())
+    return Remaining(angles, {state: tip_error(still, road, angle) for state, angle in angles.items()})
+
+
+def _form_sigmas(model: Model, measure: Measure, positions: int) -> Mapping[State, float]:
+    """Sigma of what is left by the closed form [arcmin].
+
+    A robot's own mean takes away all that stays as it is within a robot. What turns with a gear is left, and the own
+    mean's error with it, for P positions do not average it out.
+    """
+    form = closed_form(model, measure)
+    if form is None:
+        return {}
+    turning = sum(share.variance * (1 + left_of_the_mean(turns, positions)) for share, turns in _turning(model, form))
+    whole = form.sigma * ARCMIN
+    return {"before": whole, "batch": whole, "robot": float(np.sqrt(turning)) * ARCMIN}
+
+
+def _turning(model: Model, form: ClosedForm) -> Iterator[tuple[Share, float]]:
+    """The shares of what turns with a gear, and its turns in the long period."""
+    shares = {share.name: share for share in form.shares}
+    layout = model.layout
+    for contributor in model.contributors:
+        effect = single_effects(contributor.effect)[0]
+        if contributor.name in shares and isinstance(effect, TurningOffset):
+            shaft = layout.carrying[effect.part][0]
+            drive = next(drive for drive in layout.drives if drive.root == layout.root_of[shaft])
+            yield shares[contributor.name], abs(float(layout.shaft_turn[shaft].rate * drive.turns))

@@ -1,0 +1,106 @@
+"""The turn of the motor that makes good for the mean lost motion of a train, and the worst case that it leaves.
+
+Angles are in minutes of arc, as in columns and in summary.json.
+"""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any, Final
+
+from tol3d.analyses.robots import Robots
+from tol3d.analytic import closed_form
+from tol3d.block import ARCMIN
+from tol3d.model import Backlash, LostMotion, Measure, Model, Train
+from tol3d.model.measure import Stage
+from tol3d.stages import stage_tallies, train_summaries
+
+Ends = Mapping[str, Any]
+
+CLOSED_FORM: Final = "closed form"
+
+
+@dataclass(frozen=True)
+class Correction:
+    """The motor's correction by one column: a road, the closed form or who published it; None is what it lacks.
+
+    Args:
+        means: each compensated link's own lost motion, at its driven shaft [arcmin].
+        motor: turn of the motor that makes good for them together [arcmin].
+        before: sum of all stages' highs at the shaft that is read [arcmin].
+        left: sum of what their highs exceed their means by, and of the highs of what is not compensated [arcmin].
+    """
+
+    means: Mapping[str, float | None]
+    motor: float | None
+    before: float | None
+    left: float | None
+
+
+def corrections_of(
+    model: Model, train: Train, measure: Measure, compensated: Sequence[Stage], robots: Robots
+) -> Iterator[tuple[str, Correction]]:
+    """By the closed form, by each road, and by everybody who published every mesh of the train."""
+    of_meshes = [own for own in model.measures if isinstance(own.kind, Backlash)]  # what others published of them
+    told = replace(model, measures=(measure, *of_meshes))
+    summary = train_summaries(told, stage_tallies(replace(model, measures=(measure,)), robots.columns))[train.name]
+    forms = {stage.link: _form(model, measure, stage) for stage in stages_of(measure)}
+    if all(forms.values()):
+        yield CLOSED_FORM, _correction(model, train, measure, compensated, forms)
+    for road in robots.lost:
+        own = {stage["link"]: stage["roads"][road] for stage in summary["stages"]}
+        yield road, _correction(model, train, measure, compensated, own)
+    for column in summary["sums"]["published"]:
+        known = {
+            stage["link"]: stage["published"].get(column, stage["roads"]["analytic"]) for stage in summary["stages"]
+        }
+        yield column, _correction(model, train, measure, compensated, known)
+
+
+def stages_of(measure: Measure) -> tuple[Stage, ...]:
+    """The stages of a train's measure, from the held shaft on."""
+    return measure.kind.stages if isinstance(measure.kind, LostMotion) else ()
+
+
+def _form(model: Model, measure: Measure, stage: Stage) -> Ends:
+    """A stage's own lost motion by the closed form [arcmin]; empty where it has none."""
+    form = closed_form(model, _alone(measure, stage))
+    if form is None:
+        return {}
+    return {"mean": form.mean * ARCMIN, "high_3sigma": (form.mean + 3 * form.sigma) * ARCMIN}
+
+
+def _alone(measure: Measure, stage: Stage) -> Measure:
+    if not isinstance(measure.kind, LostMotion):
+        raise TypeError(f"{measure.name} has no stages")
+    return replace(measure, kind=replace(measure.kind, stages=(replace(stage, factor=1.0),)))
+
+
+def _correction(
+    model: Model, train: Train, measure: Measure, compensated: Sequence[Stage], ends: Mapping[str, Ends]
+) -> Correction:
+    means = {stage.link: ends[stage.link].get("mean") for stage in compensated}
+    turns = {stage.link: abs(float(model.layout.ratio(train.driven, _driven(model, stage)))) for stage in compensated}
+    highs = [(stage.factor, ends[stage.link].get("high_3sigma")) for stage in stages_of(measure)]
+    kept = [(stage.factor, 0.0 if stage not in compensated else means[stage.link]) for stage in stages_of(measure)]
+    before, known = _total(highs), _total(kept)
+    return Correction(
+        means=means,
+        motor=_total([(turns[link], mean) for link, mean in means.items()]),
+        before=before,
+        left=None if before is None or known is None else before - known,
+    )
+
+
+def _driven(model: Model, stage: Stage) -> str:
+    return next(link.driven for link in model.layout.links if link.name == stage.link)
+
+
+def _total(parts: Sequence[tuple[float, float | None]]) -> float | None:
+    """The sum of factor times value; None where a value is missing."""
+    known = [factor * value for factor, value in parts if value is not None]
+    return sum(known) if len(known) == len(parts) else None
+
+
+def at_shaft(compensated: Sequence[Stage], correction: Correction) -> float:
+    """What the motor's correction turns the shaft that is read by [arcmin]."""
+    return _total([(stage.factor, correction.means[stage.link]) for stage in compensated]) or 0.0

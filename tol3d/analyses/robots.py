@@ -1,0 +1,135 @@
+"""Robots: builds that stay as they are while their trains stand in many places, so that a robot has a mean of its own.
+
+A robot's own mean is taken at one position at random in each P-th of the long period, and its error is read at one more
+position, that of the study's trial: uncompensated, robot i is trial i of the run. Positions that were evenly spread
+would hide what turns P times in the long period; these are never worse than independent ones.
+"""
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Final, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tol3d import trials
+from tol3d.block import ROWS_AT_ONCE, Block, Columns, simulate_block, stage_column
+from tol3d.engines import Engine
+from tol3d.model import Measure, Model
+from tol3d.model.layout import Drive
+from tol3d.model.measure import Stage
+from tol3d.samplers import MonteCarlo, Stream
+
+Array = NDArray[np.float64]
+State = Literal["before", "batch", "robot"]
+
+STATES: Final[tuple[State, ...]] = ("before", "batch", "robot")
+"""The error as it is, less the batch's mean, less the robot's own mean."""
+
+
+@dataclass(frozen=True, eq=False)
+class Robots:
+    """Robots of a batch, one a trial of the study.
+
+    Args:
+        seated: which of them could be seated at every position, (robots,).
+        columns: at the study's own positions, see simulate_block.
+        lost: lost motion there by road, (robots,) [arcmin].
+        own: each robot's mean of the part of it that is compensated, by road, (robots,) [arcmin].
+    """
+
+    seated: NDArray[np.bool_]
+    columns: Columns
+    lost: Mapping[str, Array]
+    own: Mapping[str, Array]
+
+    @property
+    def count(self) -> int:
+        """How many were drawn."""
+        return len(self.seated)
+
+    def errors(self, road: str, batch: float) -> Mapping[State, Array]:
+        """What is left of each robot that could be seated, (robots,) [arcmin], where `batch` is the batch's mean."""
+        lost, own = self.lost[road][self.seated], self.own[road][self.seated]
+        return {"before": lost, "batch": lost - batch, "robot": lost - own}
+
+
+def simulated_robots(
+    model: Model, engine: Engine | None, measure: Measure, compensated: Sequence[Stage], positions: int
+) -> Robots:
+    """As many robots as the study has trials.
+
+    Args:
+        model: that measures the lost motion and nothing else.
+        engine: its engine; None for an analytic study.
+        measure: the lost motion, at a random position.
+        compensated: the stages that count for a robot's own mean.
+        positions: P.
+    """
+    at_once = max(1, ROWS_AT_ONCE // (positions + 1))
+    starts = range(0, model.study.trials, at_once)
+    pieces = [_columns(model, engine, first, min(at_once, model.study.trials - first), positions) for first in starts]
+    columns = {name: np.concatenate([piece[name] for piece in pieces]) for name in pieces[0]}
+    roads = [road for road in ("analytic", "geometric") if f"{road}:{measure.name}" in columns]
+    return Robots(
+        seated=np.all(columns["status"] == "ok", axis=1) if "status" in columns else np.ones(model.study.trials, bool),
+        columns={name: each[:, -1] for name, each in columns.items()},
+        lost={road: columns[f"{road}:{measure.name}"][:, -1].astype(np.float64) for road in roads},
+        own={road: _own_mean(columns, road, measure, compensated) for road in roads},
+    )
+
+
+def _columns(
+    model: Model, engine: Engine | None, first: int, count: int, positions: int
+) -> dict[str, NDArray[np.generic]]:
+    """Columns (robots, P + 1), the study's own position last."""
+    columns = simulate_block(model, engine, robots_block(model, first, count, positions))
+    return {name: values.reshape(count, positions + 1) for name, values in columns.items()}
+
+
+def _own_mean(columns: Columns, road: str, measure: Measure, compensated: Sequence[Stage]) -> Array:
+    at_shaft = [stage.factor * _mean(columns[stage_column(road, measure, stage.link)][:, :-1]) for stage in compensated]
+    return np.sum(at_shaft, axis=0) if at_shaft else np.zeros(len(columns[f"{road}:{measure.name}"]))
+
+
+def _mean(values: NDArray[np.generic]) -> Array:
+    """Mean of each row, from its first value: a row of equal values has that mean to the last bit."""
+    first = values[:, :1].astype(np.float64)
+    return np.asarray(first[:, 0] + (values.astype(np.float64) - first).mean(axis=1))
+
+
+def robots_block(model: Model, first: int, count: int, positions: int) -> Block:
+    """Robots first ... first + count - 1, each at P + 1 positions, positions fastest, the study's own last."""
+    seed = model.study.seed
+    own = trials.driver_angles(model, seed, first, count)
+    angles: dict[str, Array] = {}
+    for drive in model.layout.drives:
+        root = 2 * math.pi * float(drive.turns) * _shares(drive, seed, first, count, positions)
+        for mesh in drive.meshes:
+            turning = model.layout.mesh_turn[mesh]
+            spread = turning.offset + float(turning.rate) * root
+            angles[mesh] = np.concatenate([spread, own[mesh][:, None]], axis=1).ravel()
+    deviations = trials.deviations(model, seed, first, count)
+    return Block(np.repeat(deviations, positions + 1, axis=0), angles)
+
+
+def _shares(drive: Drive, seed: int, first: int, count: int, positions: int) -> Array:
+    """Shares of the long period, (robots, P): one uniform in each P-th of it."""
+    draws = MonteCarlo(seed)
+    streams = [Stream(drive.name, f"position {k} of {positions} of a robot", 0) for k in range(positions)]
+    each = [(k + draws.uniforms(stream, first, count)) / positions for k, stream in enumerate(streams)]
+    return np.stack(each, axis=1)
+
+
+def left_of_the_mean(turns: float, positions: int) -> float:
+    """Variance of a robot's own mean of a once-per-turn wave, of that of the wave itself.
+
+    The gear makes so many turns in the long period. In a P-th of it the wave's mean is sinc(turns/P) of it, so a
+    uniform position there leaves 1 - sinc^2 of its variance, and of P of them 1/P is left: 1/P where the wave turns
+    often, next to nothing where it turns once.
+
+    >>> left_of_the_mean(16, 16), round(left_of_the_mean(1, 16) * 1e6)
+    (0.0625, 799)
+    """
+    return float(1 - np.sinc(turns / positions) ** 2) / positions

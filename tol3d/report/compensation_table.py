@@ -1,0 +1,231 @@
+"""The motor's correction as tables: how large it is, what it leaves, the worst case, and which flanks work."""
+
+import math
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from typing import Final
+
+from rich.console import Group, RenderableType
+from rich.padding import Padding
+from rich.text import Text
+
+from tol3d.analyses.compensated_swing import Swing
+from tol3d.analyses.compensation import Compensation, Unit
+from tol3d.analyses.correction import CLOSED_FORM, Correction
+from tol3d.analyses.robots import STATES, State
+from tol3d.analyses.spread import Spread
+from tol3d.gears import LEFT, Flank
+from tol3d.report.number import NOTHING, given_text, tip_mm, value_text
+from tol3d.report.sheet import Heading, Row, Sheet
+
+COLUMN_WORDS: Final[Mapping[str, str]] = {"analytic": "analytic, same trials", "geometric": "3D simulation"}
+STATE_WORDS: Final[Mapping[State, str]] = {
+    "before": "not compensated",
+    "batch": "less the batch's mean",
+    "robot": "less the robot's own mean",
+}
+TOLD_OF_TIPS: Final[Mapping[str, str]] = {"mean": "mean", "low_3sigma": "low", "high_3sigma": "high"}
+UNIT_WORDS: Final[Mapping[Unit, str]] = {"mm": "at the tip", "arcmin": "at the output"}
+WORST: Final[Mapping[str, Callable[[Correction], float | None]]] = {
+    "not compensated": lambda correction: correction.before,
+    "compensated": lambda correction: correction.left,
+}
+TAKEN: Final[Mapping[str, tuple[Callable[[Spread], float], Callable[[Spread], float | None]]]] = {
+    "mean": (lambda spread: spread.moments.mean, lambda spread: spread.moments.mean_se),
+    "sigma": (lambda spread: spread.moments.sigma, lambda spread: spread.moments.sigma_se),
+    "mean − 3 sigma": (lambda spread: spread.low, lambda spread: spread.ends_se),
+    "mean + 3 sigma": (lambda spread: spread.high, lambda spread: spread.ends_se),
+    "0.135 % quantile": (lambda spread: spread.quantiles[0], lambda spread: None),
+    "50 % quantile": (lambda spread: spread.quantiles[1], lambda spread: None),
+    "99.865 % quantile": (lambda spread: spread.quantiles[2], lambda spread: None),
+    "smallest": (lambda spread: spread.moments.minimum, lambda spread: None),
+    "largest": (lambda spread: spread.moments.maximum, lambda spread: None),
+    "largest, without its sign": (lambda spread: spread.largest_error, lambda spread: None),
+}
+"""What is shown of a sample, and its standard error."""
+
+LEFT_NOTES: Final = (
+    "positive where the motor has turned too little; ±: one standard error, of robots that are drawn anew",
+    "closed form of the last: what turns with gears, and the error of a mean of so many positions",
+)
+SWING_MEANS: Final = "mean error at the first position behind it; a flank of the driver pushes the driven gear"
+ARCMIN_PER_DEG: Final = 60.0
+
+
+def compensation_report(found: Sequence[Compensation]) -> Group:
+    """All of it, a column a scene."""
+    blocks: list[RenderableType] = []
+    for own in found:
+        blocks += [_title(own), Text(_words(own), style="dim")]
+    blocks += [*_section("Δφ_c, the turn of the motor that makes good for the lost motion"), corrections_table(found)]
+    blocks += [_note(note) for note in _correction_notes(found)]
+    for unit, words in UNIT_WORDS.items():
+        shown = [own for own in found if unit in own.units]
+        if shown:
+            blocks += [
+                *_section(f"what is left {words} at a random position, {_roads(shown)}"),
+                left_table(shown, unit),
+            ]
+    blocks += [_note(note) for note in LEFT_NOTES]
+    blocks += [*_section("the worst case: every stage at its high, less its mean where that is compensated")]
+    blocks += [worst_table(found), *(_note(note) for note in _worst_notes(found))]
+    swings = [own for own in found if own.swing]
+    if swings:
+        blocks += [*_section("where the load changes side over the swing"), swing_table(swings), _note(SWING_MEANS)]
+    return Group(*blocks)
+
+
+def _title(own: Compensation) -> Text:
+    text = f" · {own.train.name}: the motor's compensation when the load changes side"
+    return Text(own.name, style="bold").append(text, "not bold")
+
+
+def _words(own: Compensation) -> str:
+    failed = f", {own.failed} of them not seated and left out" if own.failed else ""
+    return (
+        f"{own.robots} robots{failed}, seed {own.model.study.seed}; each robot's own mean at {own.positions} positions "
+        "of its long period, its error at another one"
+    )
+
+
+def _section(text: str) -> tuple[str, Text]:
+    return "", Text(text, style="bold cyan")
+
+
+def _note(text: str) -> Padding:
+    return Padding(Text(text, style="dim"), (0, 0, 0, 1))
+
+
+def _roads(found: Sequence[Compensation]) -> str:
+    return " and ".join(dict.fromkeys(COLUMN_WORDS[own.road] for own in found))
+
+
+def _columns(found: Sequence[Compensation]) -> list[str]:
+    """Everybody who tells a correction: closed form, roads, and who published."""
+    first = [CLOSED_FORM, *COLUMN_WORDS]
+    told = dict.fromkeys(column for own in found for column in own.corrections)
+    return [*(column for column in first if column in told), *(column for column in told if column not in first)]
+
+
+def _headings(found: Sequence[Compensation]) -> list[Heading]:
+    return [Heading(own.name, "bold") for own in found]
+
+
+# the motor's correction ---------------------------------------------------------------------------
+
+
+def corrections_table(found: Sequence[Compensation]) -> Sheet:
+    """A block of rows for each road and publisher: the motor's turn, and from which means."""
+    rows = []
+    for column in _columns(found):
+        known = [own.corrections.get(column) for own in found]
+        rows.append(Row(COLUMN_WORDS.get(column, column), [_degrees(own) for own in known], "bold"))
+        for link in dict.fromkeys(link for own in known if own for link in own.means):
+            rows.append(Row(f"  from {link}", [_angle(own.means.get(link) if own else None) for own in known]))
+    return Sheet("Δφ_c", _headings(found), rows)
+
+
+def _degrees(own: Correction | None) -> str:
+    return NOTHING if own is None or own.motor is None else f"{own.motor / ARCMIN_PER_DEG:.2f}°"
+
+
+def _angle(arcmin: float | None) -> str:
+    return value_text(arcmin, "arcmin")
+
+
+def _correction_notes(found: Sequence[Compensation]) -> Iterator[str]:
+    yield "from: a stage's own mean at its driven shaft, which counts by the turns of the motor to one of that shaft"
+    left_out = dict.fromkeys(stage.link for own in found for stage in own.left_out)
+    if left_out:
+        yield f"left out, for only their maximum is known: {', '.join(left_out)}"
+    drawn = dict.fromkeys(stage.link for own in found for stage in own.compensated if stage.backlash is None)
+    if drawn:
+        yield f"reducers with a distribution, compensated like meshes: {', '.join(drawn)}"
+
+
+# what is left -------------------------------------------------------------------------------------
+
+
+def left_table(found: Sequence[Compensation], unit: Unit) -> Sheet:
+    """A block of rows each: without the correction, less the batch's mean, less the robot's own."""
+    rows = []
+    for state in STATES:
+        spreads = [Spread(own.remaining[own.road].in_unit(unit)[state]) for own in found]
+        rows.append(Row(STATE_WORDS[state], [""] * len(found), "bold"))
+        for label, (value, error) in TAKEN.items():
+            rows.append(Row(f"  {label}", [_with_error(value(own), error(own), unit) for own in spreads]))
+        rows.append(Row("  sigma, closed form", [value_text(_form_sigma(own, state, unit), unit) for own in found]))
+    return Sheet("[mm]" if unit == "mm" else "[′, ″ of arc]", _headings(found), rows)
+
+
+def _with_error(value: float, error: float | None, unit: Unit) -> str:
+    text = value_text(None if math.isnan(value) else value, unit)
+    return text if error is None or math.isnan(error) else f"{text} ±{value_text(error, unit)}"
+
+
+def _form_sigma(own: Compensation, state: State, unit: Unit) -> float | None:
+    sigma = own.form_sigmas.get(state)
+    return tip_mm(sigma, own.lever) if unit == "mm" else sigma
+
+
+# the worst case -----------------------------------------------------------------------------------
+
+
+def worst_table(found: Sequence[Compensation]) -> Sheet:
+    """A block of rows for each road and publisher: sums of the stages' highs, before and after."""
+    rows = []
+    for column in _columns(found):
+        known = [own.corrections.get(column) for own in found]
+        rows.append(Row(COLUMN_WORDS.get(column, column), [""] * len(found), "bold"))
+        for word, take in WORST.items():
+            values = [take(own) if own else None for own in known]
+            tips = [tip_mm(value, own.lever) for value, own in zip(values, found, strict=True)]
+            rows.append(Row(f"  {word}", [_angle(value) for value in values]))
+            if any(tip is not None for tip in tips):
+                rows.append(Row("  – of the tip [mm]", [value_text(tip, "mm") for tip in tips]))
+    rows += _published_rows(found)
+    return Sheet("sum at the output", _headings(found), rows)
+
+
+def _published_rows(found: Sequence[Compensation]) -> Iterator[Row]:
+    tips = [own.published_tips for own in found]
+    for column in dict.fromkeys(column for own in tips for column in own):
+        for key, word in TOLD_OF_TIPS.items():
+            values = [own.get(column, {}).get(key) for own in tips]
+            if any(value is not None for value in values):
+                cells = [given_text(value, "mm") if value is not None else NOTHING for value in values]
+                yield Row(f"{column}: {word} of the tip, not compensated [mm]", cells, "green")
+
+
+def _worst_notes(found: Sequence[Compensation]) -> Iterator[str]:
+    yield "a sum of highs is no distribution: nearly no robot is as bad at all of its stages at once"
+    left_out = dict.fromkeys(stage.link for own in found for stage in own.left_out)
+    if left_out:
+        yield f"what is left holds the whole maximum of {', '.join(left_out)}"
+
+
+# the swing ----------------------------------------------------------------------------------------
+
+
+def swing_table(found: Sequence[Compensation]) -> Sheet:
+    """Where the load changes side, the flanks that work before and behind, and how far the tip jumps there."""
+    rows = [Row("at the output's angle", [_jumps(own.swing) for own in found if own.swing])]
+    for link in dict.fromkeys(link for own in found if own.swing for link in own.swing.flanks):
+        flanks = [own.swing.flanks.get(link) for own in found if own.swing]
+        rows.append(Row(f"{link}: flank of the driver", [_flanks_text(each) for each in flanks]))
+    for state in STATES:
+        jumps = [_jump(own.swing, own.road, state) for own in found if own.swing]
+        rows.append(Row(f"jump, {STATE_WORDS[state]} [mm]", [value_text(jump, "mm") for jump in jumps]))
+    return Sheet("", _headings(found), rows)
+
+
+def _jumps(swing: Swing) -> str:
+    return ", ".join(f"{math.degrees(angle):.2f}°" for angle in swing.jumps)
+
+
+def _flanks_text(flanks: tuple[Flank, Flank] | None) -> str:
+    return NOTHING if flanks is None else " → ".join("left" if flank == LEFT else "right" for flank in flanks)
+
+
+def _jump(swing: Swing, road: str, state: State) -> float | None:
+    curve = swing.curves[road][state]
+    return float(curve[:, swing.first_turned].mean()) if len(curve) else None
