@@ -4,7 +4,7 @@ Columns are in the user's units (um, mrad, K, deg, arcmin), trial on axis 0; a c
 """
 
 import math
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -13,11 +13,11 @@ from numpy.typing import NDArray
 from tol3d import trials
 from tol3d.analytic import analytic_backlash, first_order, per_normal_backlash
 from tol3d.build import Build, build
-from tol3d.engines import OK, STATUS_TEXT, Engine, MeshReading, ReadingEngine
+from tol3d.engines import INTERFERES, OK, STATUS_TEXT, Engine, MeshReading, ReadingEngine
 from tol3d.measures import measure_backlash, moved, read_backlash, turning_gear
-from tol3d.model import Backlash, LostMotion, Measure, Mesh, Model, Reading, Study
+from tol3d.model import Backlash, LostMotion, Measure, Mesh, Model, Study
 from tol3d.moves import Meshing, MeshSeat
-from tol3d.reducer import reducer_backlash
+from tol3d.play import Play, Read, SeatKey, positions_count, seat_key, seat_keys
 
 Array = NDArray[np.float64]
 Columns = Mapping[str, NDArray[np.generic]]
@@ -73,23 +73,6 @@ def nominal_block(model: Model) -> Block:
     return stated_block(model, np.zeros((1, model.component_count)))
 
 
-Angles = tuple[float, ...] | None
-"""Driver angles [rad] that every trial shares; None for those of the trial."""
-
-SeatKey = tuple[str, Angles, Reading]
-"""Mesh, positions and reading: backlashes that share them share their contacts."""
-
-
-def seat_key(model: Model, measure: Measure, backlash: Backlash) -> SeatKey:
-    """Where and how a measure reads one of the backlashes that it adds up."""
-    return backlash.mesh, model.driver_angles(measure, backlash.mesh), backlash.reading
-
-
-def seat_keys(model: Model, measure: Measure) -> tuple[SeatKey, ...]:
-    """The same of all of them."""
-    return tuple(seat_key(model, measure, backlash) for _, backlash in measure.kind.backlashes)
-
-
 def driver_angles(key: SeatKey, block: Block) -> Array:
     """Driver angles [rad] at which a mesh is read, (trials, positions)."""
     mesh, angles, _ = key
@@ -131,28 +114,24 @@ def _all_keys(model: Model) -> tuple[SeatKey, ...]:
     return tuple(dict.fromkeys(key for measure in model.measures for key in seat_keys(model, measure)))
 
 
-Read = Callable[[Backlash, SeatKey], Array]
-"""Values (trials, positions) of a backlash [mm or rad] where it is read."""
-
-
 def geometric_values(model: Model, measure: Measure, seats: Seats) -> Array:
     """Values of a measure on the geometric road [mm or rad], (trials, positions)."""
-    return moved(measure.kind, free_play(model, measure, seats))
+    return moved(measure.kind, play_of(model, measure, seats).free())
 
 
-def free_play(model: Model, measure: Measure, seats: Seats) -> Array:
-    """What the backlashes of a measure leave free on the geometric road [mm or rad], (trials, positions)."""
+def play_of(model: Model, measure: Measure, seats: Seats) -> Play:
+    """The backlashes of a measure on the geometric road."""
 
     def read(backlash: Backlash, key: SeatKey) -> Array:
         values = measure_backlash(backlash, seats.meshings[key], seats.seats[key])
         return values.reshape(len(seats.block), -1)
 
-    return added_up(model, measure, seats.block, read)
+    return Play(model, measure, seats.block.deviations, read)
 
 
 def analytic_values(model: Model, measure: Measure, block: Block) -> Array:
     """Values of a measure on the analytic road [mm or rad], (trials, positions)."""
-    return first_order(measure.kind, added_up(model, measure, block, _Stacks(model, block)))
+    return first_order(measure.kind, Play(model, measure, block.deviations, _Stacks(model, block)).free())
 
 
 def analytic_backlashes(model: Model, measure: Measure, block: Block) -> Iterator[tuple[Backlash, Array]]:
@@ -160,20 +139,6 @@ def analytic_backlashes(model: Model, measure: Measure, block: Block) -> Iterato
     stacks = _Stacks(model, block)
     for _, backlash in measure.kind.backlashes:
         yield backlash, stacks(backlash, seat_key(model, measure, backlash))
-
-
-def added_up(model: Model, measure: Measure, block: Block, read: Read) -> Array:
-    """The backlashes that a measure adds up, each times its factor: (trials, positions) [mm or rad]."""
-    return np.asarray(sum(factor * values for _, factor, values in _added(model, measure, block, read)))
-
-
-def _added(model: Model, measure: Measure, block: Block, read: Read) -> Iterator[tuple[str, float, Array]]:
-    """What a measure adds up, with the name of each mesh or reducer and its factor."""
-    for factor, backlash in measure.kind.backlashes:
-        yield backlash.mesh, factor, read(backlash, seat_key(model, measure, backlash))
-    for factor, reducer in measure.kind.reducers:
-        own = reducer_backlash(model, reducer, block.deviations)
-        yield reducer, factor, np.broadcast_to(own[:, None], (len(block), positions_count(measure)))
 
 
 class _Stacks:
@@ -185,20 +150,18 @@ class _Stacks:
 
     def __call__(self, backlash: Backlash, key: SeatKey) -> Array:
         """See Read."""
+        angles = driver_angles(key, self._block)
         if key not in self._known:
-            self._known[key] = self._normal_backlash(backlash, driver_angles(key, self._block))
-        return self._known[key] * per_normal_backlash(self._model, backlash)
+            self._known[key] = self._asked(replace(backlash, quantity="normal_backlash"), angles)
+        if backlash.quantity != "rest_angle":
+            return self._known[key] * per_normal_backlash(self._model, backlash)
+        play = self._known[key] * per_normal_backlash(self._model, backlash)
+        return self._asked(backlash, angles) - self._model.mesh(backlash.mesh).working_flank * play / 2
 
-    def _normal_backlash(self, backlash: Backlash, angles: Array) -> Array:
+    def _asked(self, backlash: Backlash, angles: Array) -> Array:
         rows, positions = self._block.deviations, angles.shape[1]
         repeated = rows if positions == 1 else np.repeat(rows, positions, axis=0)
-        normal = replace(backlash, quantity="normal_backlash")
-        return analytic_backlash(self._model, normal, repeated, angles.ravel()).reshape(angles.shape)
-
-
-def positions_count(measure: Measure) -> int:
-    """At how many positions a measure is read in one trial."""
-    return 1 if measure.positions.fixed is None else len(measure.positions.fixed)
+        return analytic_backlash(self._model, backlash, repeated, angles.ravel()).reshape(angles.shape)
 
 
 def block_trials(model: Model) -> int:
@@ -278,7 +241,7 @@ def _simulate_piece(model: Model, engine: Engine | None, block: Block) -> dict[s
         columns[position_column(mesh)] = np.degrees(block.random_angle[mesh.name])
     stacks = _Stacks(model, block)
     for measure in model.measures:
-        values = first_order(measure.kind, added_up(model, measure, block, stacks))
+        values = first_order(measure.kind, Play(model, measure, block.deviations, stacks).free())
         columns[f"analytic:{measure.name}"] = taken(measure, values) * measure.per_internal
     columns.update(_stage_columns(model, "analytic", block, stacks))
     if engine is None:
@@ -311,7 +274,7 @@ def _stage_columns(model: Model, road: str, block: Block, read: Read) -> dict[st
     return {
         stage_column(road, measure, link): values[:, 0] * ARCMIN
         for measure in staged_measures(model)
-        for link, _, values in _added(model, measure, block, read)
+        for link, _, values in Play(model, measure, block.deviations, read).parts()
     }
 
 
@@ -330,7 +293,13 @@ class _Seen:
 def _seen(
     model: Model, block: Block, read: Read, contacts: dict[str, NDArray[np.generic]], status: NDArray[np.int8]
 ) -> _Seen:
-    values = {m.name: moved(m.kind, added_up(model, m, block, read)) for m in model.measures}
+    values, bound = {}, np.zeros(len(block), dtype=bool)
+    for measure in model.measures:
+        play = Play(model, measure, block.deviations, read)
+        tight = play.bound()
+        values[measure.name] = np.where(tight[:, None], np.nan, moved(measure.kind, play.free()))
+        bound |= tight
+    status = np.where(bound & (status == OK), INTERFERES, status).astype(np.int8)
     return _Seen(values, contacts | _stage_columns(model, "geometric", block, read), status)
 
 

@@ -14,6 +14,7 @@ from tol3d.model import (
     AxesOffset,
     AxisOffset,
     AxisTilt,
+    Clocking,
     Effect,
     Model,
     ReducerBacklash,
@@ -242,6 +243,11 @@ def _(effect: Temperature, columns: Array, sums: Sums, model: Model) -> None:
 @_add.register
 def _(effect: ReducerBacklash, columns: Array, sums: Sums, model: Model) -> None:
     """A data sheet moves no axis and no flank."""
+
+
+@_add.register
+def _(effect: Clocking, columns: Array, sums: Sums, model: Model) -> None:
+    """A mesh finds its rest for any turn of its gears: the shafts tell the difference, see clocking.py."""
 
 
 @_add.register

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from tol3d.block import Columns, position_column
 from tol3d.model import (
     Backlash,
+    Clocking,
     Contributor,
     Measure,
     Mesh,
@@ -34,14 +35,17 @@ def acting(model: Model, measure: Measure) -> tuple[Contributor, ...]:
     """The contributors that act on a measure: on one of its meshes, or one of its reducers."""
     meshes = [model.mesh(backlash.mesh) for _, backlash in measure.kind.backlashes]
     reducers = {name for _, name in measure.kind.reducers}
+    clocked = {gear for mesh in meshes if not measure.kind.adds_up for gear in (mesh.driver, mesh.driven)}
     return tuple(
         contributor
         for contributor in model.contributors
-        if any(_acts(effect, meshes, reducers) for effect in single_effects(contributor.effect))
+        if any(_acts(effect, meshes, reducers, clocked) for effect in single_effects(contributor.effect))
     )
 
 
-def _acts(effect: SingleEffect, meshes: Sequence[Mesh], reducers: Set[str]) -> bool:
+def _acts(effect: SingleEffect, meshes: Sequence[Mesh], reducers: Set[str], clocked: Set[str]) -> bool:
+    if isinstance(effect, Clocking):
+        return effect.part in clocked
     if isinstance(effect, ReducerBacklash):
         return effect.reducer in reducers
     parts = set(effect.parts) if isinstance(effect, Temperature) else {effect.part}

@@ -19,20 +19,21 @@ from tol3d.block import (
     ROWS_AT_ONCE,
     Block,
     Seats,
-    free_play,
     geometric_values,
-    positions_count,
+    play_of,
     seat_block,
-    seat_key,
     stated_block,
 )
+from tol3d.clocking import clocking_rate
 from tol3d.engines import OK, Engine, Gaps
 from tol3d.gears import Flank
 from tol3d.gears.flank import opposite
 from tol3d.measures import moved_rate
-from tol3d.model import Backlash, Contributor, Measure, Model, Planar, ReducerBacklash
-from tol3d.model.contributor import Unit, turns_with_gears
+from tol3d.measures.ways import Part
+from tol3d.model import Backlash, Clocking, Contributor, Measure, Model, Planar, ReducerBacklash
+from tol3d.model.contributor import Unit, single_effects, turns_with_gears
 from tol3d.moves import Meshing, MeshSeat
+from tol3d.play import positions_count, seat_key
 from tol3d.tangent import Tangent, tangent
 
 Array = NDArray[np.float64]
@@ -63,21 +64,44 @@ def _sensitivities(model: Model, engine: Engine, block: Block, measure: Measure)
     seats, count = seat_block(alone, engine, block), positions_count(measure)
     moves = tangent(model, seats.build, block.deviations).rows(np.repeat(np.arange(len(block)), count))
     rates = _free_rates(alone, measure, moves, seats).reshape(len(block), count, -1)
-    rates *= moved_rate(measure.kind, free_play(model, measure, seats))[..., None]
+    rates *= moved_rate(measure.kind, play_of(model, measure, seats).free())[..., None]
     return taken_rates(measure, geometric_values(model, measure, seats), rates)
 
 
 def _free_rates(model: Model, measure: Measure, moves: Tangent, seats: Seats) -> Array:
     """Derivatives of what the backlashes of a measure leave free, (rows, components)."""
+    kind = measure.kind
+    if isinstance(kind, Backlash):
+        key = seat_key(model, measure, kind)
+        return _rates(kind, seats.meshings[key], moves, seats.seats[key])
     total = np.zeros((len(moves.scale), model.component_count))
-    for factor, backlash in measure.kind.backlashes:
-        key = seat_key(model, measure, backlash)
-        total += factor * _rates(backlash, seats.meshings[key], moves, seats.seats[key])
-    for factor, reducer in measure.kind.reducers:
-        for contributor in model.contributors:
-            if contributor.effect == ReducerBacklash(reducer):
-                total[:, model.component_slices[contributor.name]] += factor
+    play = play_of(model, measure, seats)
+    for stage in kind.stages:
+        for part, weight in play.form(stage).items():
+            rows = np.broadcast_to(weight, (len(seats.block), positions_count(measure))).reshape(-1, 1)
+            total += stage.factor * rows * _part_rates(model, measure, moves, seats, part)
     return total
+
+
+def _part_rates(model: Model, measure: Measure, moves: Tangent, seats: Seats, part: Part) -> Array:
+    """Derivatives of what a stage tells, (rows, components)."""
+    stage, what = part
+    rates = np.zeros((len(moves.scale), model.component_count))
+    if stage.backlash is None:
+        for contributor in model.contributors:
+            if contributor.effect == ReducerBacklash(stage.link):
+                rates[:, model.component_slices[contributor.name]] = 1.0
+        return rates
+    key = seat_key(model, measure, stage.backlash)
+    if what == "play":
+        return _rates(stage.backlash, seats.meshings[key], moves, seats.seats[key])
+    for contributor in model.contributors:
+        for effect in single_effects(contributor.effect):
+            if isinstance(effect, Clocking):
+                rate = clocking_rate(effect, model.mesh(stage.backlash.mesh))
+                rates[:, model.component_slices[contributor.name]] += rate
+    resting = replace(stage.backlash, quantity="rest_angle")
+    return rates + _rates(resting, seats.meshings[key], moves, seats.seats[key])
 
 
 def _rates(backlash: Backlash, meshing: Meshing, moves: Tangent, seat: MeshSeat) -> Array:
@@ -86,6 +110,12 @@ def _rates(backlash: Backlash, meshing: Meshing, moves: Tangent, seat: MeshSeat)
     rates = np.full((len(seat.status), meshing.model.component_count), np.nan)
     contacts = _Contacts(meshing.rows(good), moves.rows(good))
     at_rest = (seat.driver_angle[good], seat.driven_angle[good])
+    if backlash.quantity == "rest_angle":
+        section = meshing.reading.contact == "section"
+        rates[good] = contacts.nearest(
+            meshing.mesh.working_flank, at_rest, seat.working.rows(good), section=section
+        ).driven_turn
+        return rates
     if backlash.quantity == "normal_backlash":
         rates[good] = _of_gap(contacts, at_rest, seat.working.rows(good), seat.non_working.rows(good))
         return rates

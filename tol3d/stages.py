@@ -11,7 +11,7 @@ from tol3d.analytic import per_normal_backlash
 from tol3d.block import Columns, stage_column, staged_measures
 from tol3d.gears import LEFT
 from tol3d.model import Backlash, LostMotion, Measure, Model
-from tol3d.model.measure import Stage, Tip
+from tol3d.model.measure import AnyStage, ParallelStage, Tip
 from tol3d.statistics import FeatureSums, Moments
 
 Array = NDArray[np.float64]
@@ -58,12 +58,11 @@ StageTallies = Mapping[str, Mapping[str, Stages]]
 """By measure and road."""
 
 
-def stages_of(measure: Measure) -> tuple[Stage, ...]:
-    """The stages that a train's measure adds up: its meshes, then its reducers."""
+def stages_of(measure: Measure) -> tuple[AnyStage, ...]:
+    """The stages that a train's measure adds up."""
     if not isinstance(measure.kind, LostMotion):
         raise TypeError(f"{measure.name} has no stages")
-    by_kind = sorted(measure.kind.stages, key=lambda stage: stage.backlash is None)
-    return tuple(by_kind)
+    return measure.kind.stages
 
 
 def stage_tallies(model: Model, columns: Columns) -> StageTallies:
@@ -134,8 +133,12 @@ def _tip_of(model: Model, train: str) -> Tip | None:
     return next((kind.tip for kind in kinds if isinstance(kind, LostMotion) and kind.train == train and kind.tip), None)
 
 
-def _link(model: Model, stage: Stage) -> dict[str, Any]:
+def _link(model: Model, stage: AnyStage) -> dict[str, Any]:
     """What a stage is: its shafts, gears and ratio."""
+    if isinstance(stage, ParallelStage):
+        ratio = float(model.layout.ratio(stage.first, stage.last))
+        whole = {"link": stage.link, "kind": "parallel", "driver": stage.first, "driven": stage.last, "ratio": ratio}
+        return whole | {"gears": None, "teeth": None, "working_flank": None, "ways": len(stage.ways)}
     link = next(link for link in model.layout.links if link.name == stage.link)
     own: dict[str, Any] = {"link": link.name, "kind": "reducer", "driver": link.driver, "driven": link.driven}
     own |= {"gears": None, "teeth": None, "ratio": float(1 / link.rate), "working_flank": None}
@@ -151,7 +154,7 @@ def _link(model: Model, stage: Stage) -> dict[str, Any]:
 Ends = Mapping[str, float | None]
 
 
-def _of_road(stages: Sequence[Stage], tallied: Stages) -> dict[str, Ends]:
+def _of_road(stages: Sequence[AnyStage], tallied: Stages) -> dict[str, Ends]:
     """What a road found of each stage, by link."""
     shares = tallied.shares(np.array([stage.factor for stage in stages]))
     return {

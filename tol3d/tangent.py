@@ -15,6 +15,7 @@ from tol3d.model import (
     AxesOffset,
     AxisOffset,
     AxisTilt,
+    Clocking,
     Effect,
     Model,
     ReducerBacklash,
@@ -184,6 +185,11 @@ def _(effect: Temperature, own: slice, columns: Array, rates: _Rates, model: Mod
 @_put.register
 def _(effect: ReducerBacklash, own: slice, columns: Array, rates: _Rates, model: Model) -> None:
     """A data sheet moves no axis and no flank."""
+
+
+@_put.register
+def _(effect: Clocking, own: slice, columns: Array, rates: _Rates, model: Model) -> None:
+    """A mesh finds its rest for any turn of its gears: the shafts tell the difference, see clocking.py."""
 
 
 @_put.register

@@ -6,6 +6,7 @@ study's sampler draws them. A trial depends on (model, seed, trial index) and on
 
 import math
 from collections.abc import Mapping
+from fractions import Fraction
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,6 +20,7 @@ from tol3d.samplers.door import quick_monte_carlo
 Array = NDArray[np.float64]
 
 DRIVER_POSITION = "driver position"
+MOST_PERIODS = Fraction(2**30)  # of 52 bits of a draw 22 are left to say where in one of them a mesh stands
 
 
 def streams_of(model: Model) -> Mapping[tuple[str, str], Stream]:
@@ -88,13 +90,23 @@ def driver_angles(model: Model, seed: int, first: int, count: int) -> Mapping[st
     angles: dict[str, Array] = {}
     for drive in model.layout.drives:
         uniforms = sampler.uniforms(streams[drive.name, DRIVER_POSITION], first, count)
-        angles |= {mesh: _of_long_period(model, drive, mesh, uniforms) for mesh in drive.meshes}
+        periods = _periods(model, drive)
+        angles |= {mesh: _of_long_period(model, mesh, own, uniforms) for mesh, own in periods.items()}
     return angles
 
 
-def _of_long_period(model: Model, drive: Drive, mesh: str, uniforms: Array) -> Array:
-    """The driver's angle of a mesh where its tree stands at a share (count,) of the long period."""
+def _periods(model: Model, drive: Drive) -> Mapping[str, Fraction]:
+    """How many long periods of its own each mesh goes through in that of its tree, or in its first MOST_PERIODS."""
+    periods = {
+        mesh: drive.turns * abs(model.layout.mesh_turn[mesh].rate) / model.mesh(mesh).pair.long_period_turns
+        for mesh in drive.meshes
+    }
+    share = min(Fraction(1), MOST_PERIODS / max(periods.values()))
+    return {mesh: own * share for mesh, own in periods.items()}
+
+
+def _of_long_period(model: Model, mesh: str, periods: Fraction, uniforms: Array) -> Array:
+    """The driver's angle of a mesh where its tree stands at a share (count,) of so many of its long periods."""
     turning, turns = model.layout.mesh_turn[mesh], model.mesh(mesh).pair.long_period_turns
-    periods = int(drive.turns * abs(turning.rate) / turns)
-    share = uniforms if periods == 1 else np.mod(periods * uniforms, 1.0)
+    share = uniforms if periods == 1 else np.mod(float(periods) * uniforms, 1.0)
     return turning.offset + math.copysign(2 * math.pi * turns, turning.rate) * share

@@ -118,7 +118,7 @@ def _flanks(
     first = next(torque for torque in torques if torque)
     sense = -1 if first * model.layout.shaft_turn[train.output].rate > 0.0 else 1
     against = replace(train, gravity=None, sense=sense)
-    for stage in kind.stages:
+    for stage in kind.singles:
         if stage.backlash is not None:
             flank = loaded_flank(model.mesh(stage.link), against, model.layout, model.arms)
             yield stage.link, (flank, opposite(flank))

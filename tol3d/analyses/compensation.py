@@ -23,7 +23,7 @@ from tol3d.block import ARCMIN
 from tol3d.errors import InputError
 from tol3d.model import LostMotion, Measure, Model, Positions, ReducerBacklash, Train
 from tol3d.model.contributor import Contributor, TurningOffset, single_effects
-from tol3d.model.measure import Stage
+from tol3d.model.measure import AnyStage
 from tol3d.model.measures import lost_motion
 from tol3d.scene import Scene
 from tol3d.scene.nearest import hint
@@ -94,8 +94,8 @@ class Compensation:
     train: Train
     measure: Measure
     tip: LostMotion | None
-    compensated: tuple[Stage, ...]
-    left_out: tuple[Stage, ...]
+    compensated: tuple[AnyStage, ...]
+    left_out: tuple[AnyStage, ...]
     positions: int
     corrections: Mapping[str, Correction]
     remaining: Mapping[str, Remaining]
@@ -219,7 +219,7 @@ def _measure(scene: Scene, model: Model, train: Train, like: LostMotion | None) 
     return Measure(f"lost motion of {train.name}", kind, Positions("random", 1, 1), "value")
 
 
-def _law_of(model: Model, stage: Stage) -> Contributor | None:
+def _law_of(model: Model, stage: AnyStage) -> Contributor | None:
     """The contributor that draws a reducer's backlash; without one only its maximum is known."""
     return next((own for own in model.contributors if own.effect == ReducerBacklash(stage.link)), None)
 

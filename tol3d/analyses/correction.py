@@ -11,7 +11,7 @@ from tol3d.analyses.robots import Robots
 from tol3d.analytic import closed_form
 from tol3d.block import ARCMIN
 from tol3d.model import Backlash, LostMotion, Measure, Model, Train
-from tol3d.model.measure import Stage
+from tol3d.model.measure import AnyStage, ParallelStage
 from tol3d.stages import stage_tallies, train_summaries
 
 Ends = Mapping[str, Any]
@@ -37,7 +37,7 @@ class Correction:
 
 
 def corrections_of(
-    model: Model, train: Train, measure: Measure, compensated: Sequence[Stage], robots: Robots
+    model: Model, train: Train, measure: Measure, compensated: Sequence[AnyStage], robots: Robots
 ) -> Iterator[tuple[str, Correction]]:
     """By the closed form, by each road, and by everybody who published every mesh of the train."""
     of_meshes = [own for own in model.measures if isinstance(own.kind, Backlash)]  # what others published of them
@@ -56,12 +56,12 @@ def corrections_of(
         yield column, _correction(model, train, measure, compensated, known)
 
 
-def stages_of(measure: Measure) -> tuple[Stage, ...]:
+def stages_of(measure: Measure) -> tuple[AnyStage, ...]:
     """The stages of a train's measure, from the held shaft on."""
     return measure.kind.stages if isinstance(measure.kind, LostMotion) else ()
 
 
-def _form(model: Model, measure: Measure, stage: Stage) -> Ends:
+def _form(model: Model, measure: Measure, stage: AnyStage) -> Ends:
     """A stage's own lost motion by the closed form [arcmin]; empty where it has none."""
     form = closed_form(model, _alone(measure, stage))
     if form is None:
@@ -69,14 +69,14 @@ def _form(model: Model, measure: Measure, stage: Stage) -> Ends:
     return {"mean": form.mean * ARCMIN, "high_3sigma": (form.mean + 3 * form.sigma) * ARCMIN}
 
 
-def _alone(measure: Measure, stage: Stage) -> Measure:
+def _alone(measure: Measure, stage: AnyStage) -> Measure:
     if not isinstance(measure.kind, LostMotion):
         raise TypeError(f"{measure.name} has no stages")
     return replace(measure, kind=replace(measure.kind, stages=(replace(stage, factor=1.0),)))
 
 
 def _correction(
-    model: Model, train: Train, measure: Measure, compensated: Sequence[Stage], ends: Mapping[str, Ends]
+    model: Model, train: Train, measure: Measure, compensated: Sequence[AnyStage], ends: Mapping[str, Ends]
 ) -> Correction:
     means = {stage.link: ends[stage.link].get("mean") for stage in compensated}
     turns = {stage.link: abs(float(model.layout.ratio(train.driven, _driven(model, stage)))) for stage in compensated}
@@ -91,7 +91,9 @@ def _correction(
     )
 
 
-def _driven(model: Model, stage: Stage) -> str:
+def _driven(model: Model, stage: AnyStage) -> str:
+    if isinstance(stage, ParallelStage):
+        return stage.last
     return next(link.driven for link in model.layout.links if link.name == stage.link)
 
 
@@ -101,6 +103,6 @@ def _total(parts: Sequence[tuple[float, float | None]]) -> float | None:
     return sum(known) if len(known) == len(parts) else None
 
 
-def at_shaft(compensated: Sequence[Stage], correction: Correction) -> float:
+def at_shaft(compensated: Sequence[AnyStage], correction: Correction) -> float:
     """What the motor's correction turns the shaft that is read by [arcmin]."""
     return _total([(stage.factor, correction.means[stage.link]) for stage in compensated]) or 0.0

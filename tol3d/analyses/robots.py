@@ -18,7 +18,7 @@ from tol3d.block import ROWS_AT_ONCE, Block, Columns, simulate_block, stage_colu
 from tol3d.engines import Engine
 from tol3d.model import Measure, Model
 from tol3d.model.layout import Drive
-from tol3d.model.measure import Stage
+from tol3d.model.measure import AnyStage
 from tol3d.samplers import MonteCarlo, Stream
 
 Array = NDArray[np.float64]
@@ -56,7 +56,7 @@ class Robots:
 
 
 def simulated_robots(
-    model: Model, engine: Engine | None, measure: Measure, compensated: Sequence[Stage], positions: int
+    model: Model, engine: Engine | None, measure: Measure, compensated: Sequence[AnyStage], positions: int
 ) -> Robots:
     """As many robots as the study has trials.
 
@@ -88,7 +88,7 @@ def _columns(
     return {name: values.reshape(count, positions + 1) for name, values in columns.items()}
 
 
-def _own_mean(columns: Columns, road: str, measure: Measure, compensated: Sequence[Stage]) -> Array:
+def _own_mean(columns: Columns, road: str, measure: Measure, compensated: Sequence[AnyStage]) -> Array:
     at_shaft = [stage.factor * _mean(columns[stage_column(road, measure, stage.link)][:, :-1]) for stage in compensated]
     return np.sum(at_shaft, axis=0) if at_shaft else np.zeros(len(columns[f"{road}:{measure.name}"]))
 

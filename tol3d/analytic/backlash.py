@@ -27,10 +27,14 @@ def stack_of(model: Model, mesh: Mesh, reading: Reading) -> Stack[GearPair]:
 def analytic_backlash(model: Model, kind: Backlash, deviations: Array, driver_angle: Array) -> Array:
     """Value of a backlash measure by the stack-up [mm, or rad for an angle], (rows,).
 
-    j_wt = j_bn / cos(alpha_w); an angle is j_bn over the arm of the gear that turns.
+    j_wt = j_bn / cos(alpha_w); an angle is j_bn over the arm of the gear that turns. For the rest angle it is the
+    middle between both rests, by which the driven gear's play lies aside.
     """
     stack = stack_of(model, model.mesh(kind.mesh), kind.reading)
-    return stack.normal_backlash(deviations, driver_angle) * per_normal_backlash(model, kind)
+    per = per_normal_backlash(model, kind)
+    if kind.quantity == "rest_angle":
+        return stack.aside(deviations, driver_angle) * per
+    return stack.normal_backlash(deviations, driver_angle) * per
 
 
 def per_normal_backlash(model: Model, kind: Backlash) -> float:

@@ -55,8 +55,8 @@ class ClosedForm:
 
 
 def closed_form(model: Model, measure: Measure) -> ClosedForm | None:
-    """Closed form of a measure read at one position; None for extremes over a turn, which have none here."""
-    if measure.take != "value":
+    """Closed form of a measure read at one position; None for extremes over a turn and parallel ways."""
+    if measure.take != "value" or not measure.kind.adds_up:
         return None
     terms = [term for part in _parts(model, measure) for term in part.terms]
     tilts = _tilt_shares(terms)

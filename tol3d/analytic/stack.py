@@ -19,6 +19,7 @@ from tol3d.model import (
     AxesOffset,
     AxisOffset,
     AxisTilt,
+    Clocking,
     Contributor,
     Mesh,
     Model,
@@ -83,6 +84,12 @@ class Stack(Generic[Pair]):
             for effect in single_effects(contributor.effect)
             if (term := self._term(effect, contributor))
         )
+        self.sideways = tuple(
+            term
+            for contributor in model.contributors
+            for effect in single_effects(contributor.effect)
+            if (term := self._sideways(effect, contributor))
+        )
 
     @property
     def nominal(self) -> float:
@@ -102,6 +109,18 @@ class Stack(Generic[Pair]):
                 in_plane = in_plane + term.tilts[0] * columns[:, 0]
                 out_of_plane = out_of_plane + term.tilts[1] * columns[:, 0]
         return total - np.maximum(np.abs(in_plane), np.abs(out_of_plane))
+
+    def aside(self, deviations: Array, driver_angle: Array) -> Array:
+        """Way [mm], (rows,), by which the middle of the driven gear's play lies aside, along its flanks' normals.
+
+        A gear that moves along the teeth's path at the mesh takes its mate with it, or leaves its own teeth behind:
+        cos(alpha_w) of that way. Positive turns the driven gear in the positive sense about its z.
+        """
+        angles = (driver_angle, self.pair.driven_angle(driver_angle))
+        total = np.zeros(len(deviations))
+        for term in self.sideways:
+            total = total + term.change(deviations[:, self.model.component_slices[term.contributor.name]], angles)
+        return total
 
     # one function an effect -------------------------------------------------------------------------
 
@@ -186,6 +205,57 @@ class Stack(Generic[Pair]):
     @_term.register
     def _(self, effect: ReducerBacklash, contributor: Contributor) -> Term | None:
         return None
+
+    @_term.register
+    def _(self, effect: Clocking, contributor: Contributor) -> Term | None:
+        return None
+
+    @singledispatchmethod
+    def _sideways(self, effect: SingleEffect, contributor: Contributor) -> Term | None:
+        """What moves both rests alike; thickness, tilts and temperature do not, to first order."""
+        return None
+
+    @_sideways.register
+    def _(self, effect: TurningOffset, contributor: Contributor) -> Term | None:
+        role = self.role(effect.part)
+        if role is None:
+            return None
+        along, sense = _seen(effect.plane, self._sideways_azimuth(role))
+        return Term(contributor, self.cos, along=along, turns=role, sense=sense)
+
+    @_sideways.register
+    def _(self, effect: AxisOffset, contributor: Contributor) -> Term | None:
+        role = self.role(effect.part, effect.mesh)
+        if role is None:
+            return None
+        azimuth = self._sideways_azimuth(role)
+        azimuth += self.mesh.azimuth if role == "driver" and effect.mesh is None else 0.0
+        if len(contributor.draw.components) == 2:
+            along, sense = _seen(effect.plane, azimuth)
+            return Term(contributor, self.cos * effect.factor, along=along, sense=sense)
+        x, y, _ = effect.direction
+        return Term(contributor, self.cos * effect.factor * (x * math.cos(azimuth) + y * math.sin(azimuth)))
+
+    @_sideways.register
+    def _(self, effect: AxesOffset, contributor: Contributor) -> Term | None:
+        """The driven axis lies at +y of the world."""
+        if self.role(effect.part, effect.mesh) is None:
+            return None
+        own = self.pair.world_from_wheel.T @ (0.0, 1.0, 0.0)
+        azimuth = self._sideways_azimuth("driven")
+        return Term(contributor, self.cos * float(own[0] * math.cos(azimuth) + own[1] * math.sin(azimuth)))
+
+    def _sideways_azimuth(self, role: Role) -> float:
+        """Azimuth [rad], in the gear's frame at rest in the mesh, of a shift that turns the driven gear positively.
+
+        The driven gear's teeth go on where its shift takes them back; the driver's take them along.
+        """
+        towards = self.pair.mesh_azimuths[1]
+        onwards = np.array([-math.sin(towards), math.cos(towards), 0.0])  # way of the driven teeth at the mesh
+        if role == "driven":
+            return math.atan2(-onwards[1], -onwards[0])
+        x, y, _ = self.pair.world_from_wheel @ onwards
+        return math.atan2(y, x)
 
     # what each kind of pair says for itself ---------------------------------------------------------
 

@@ -111,7 +111,7 @@ class MeshReading:
     """A mesh brought to contact and read, one row a build and position.
 
     Args:
-        driven_angle: turn of the driven gear at rest [rad], (rows,).
+        driver_angle, driven_angle: turns of the gears at rest [rad], (rows,).
         gap: smallest gap of the non-working flanks [mm], (rows,).
         driven_turn, driver_turn: free turn of one gear, the other held at rest [rad], (rows,); nan where not wanted.
         contact: point on the driver [mm], (rows, 3), world.
@@ -119,6 +119,7 @@ class MeshReading:
         status: (rows,), as the mesh move has it.
     """
 
+    driver_angle: Array
     driven_angle: Array
     gap: Array
     driven_turn: Array

@@ -17,11 +17,14 @@ def measure_backlash(kind: Backlash, meshing: Meshing, seat: MeshSeat) -> Array:
     normal: shortest distance of the non-working flanks while the working ones touch.
     angular: turn of one gear, the other held at rest, from the working to the non-working contact.
     circumferential: that turn of the driven gear times its nominal working radius, an arc.
+    rest: the driven gear's turn at rest, less that with its space in the middle of the driver's tooth.
     """
     good = seat.status == OK
     if kind.quantity == "normal_backlash":
         return np.where(good, seat.non_working.smallest(), np.nan)
     mesh = meshing.mesh
+    if kind.quantity == "rest_angle":
+        return np.where(good, seat.driven_angle - mesh.pair.driven_angle(seat.driver_angle), np.nan)
     turn_driver = kind.quantity == "angular_backlash" and kind.gear == mesh.driver
     rows = np.flatnonzero(good)
     start = (seat.driver_angle[rows], seat.driven_angle[rows])
@@ -37,8 +40,8 @@ def measure_backlash(kind: Backlash, meshing: Meshing, seat: MeshSeat) -> Array:
 
 
 def turning_gear(kind: Backlash, mesh: Mesh) -> str | None:
-    """Which gear's free turn the measure needs; None for the normal backlash."""
-    if kind.quantity == "normal_backlash":
+    """Which gear's free turn the measure needs; None for the normal backlash and for the rest."""
+    if kind.quantity in ("normal_backlash", "rest_angle"):
         return None
     return kind.gear if kind.quantity == "angular_backlash" else mesh.driven
 
@@ -46,6 +49,8 @@ def turning_gear(kind: Backlash, mesh: Mesh) -> str | None:
 def read_backlash(kind: Backlash, mesh: Mesh, reading: MeshReading) -> Array:
     """The same of a mesh that its engine has read."""
     good = reading.status == OK
+    if kind.quantity == "rest_angle":
+        return np.where(good, reading.driven_angle - mesh.pair.driven_angle(reading.driver_angle), np.nan)
     turning = turning_gear(kind, mesh)
     if turning is None:
         return np.where(good, reading.gap, np.nan)

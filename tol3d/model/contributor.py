@@ -1,6 +1,6 @@
 """A contributor: one toleranced deviation, how it is drawn, and what it does to the parts.
 
-Every tolerance kind of a scene comes down to one of seven effects, or several of them together. The geometric road
+Every tolerance kind of a scene comes down to one of eight effects, or several of them together. The geometric road
 (build.py) and the analytic road (analytic/) each say for themselves what an effect does.
 """
 
@@ -128,13 +128,22 @@ class ReducerBacklash:
 
 
 @dataclass(frozen=True)
+class Clocking:
+    """Turn of a gear on its shaft [rad], about its own z."""
+
+    part: str
+
+
+@dataclass(frozen=True)
 class Together:
     """Several effects of one deviation, such as a shaft that moves with all that it carries."""
 
     effects: tuple["SingleEffect", ...]
 
 
-SingleEffect = ToothThickness | TurningOffset | AxisOffset | AxisTilt | AxesOffset | Temperature | ReducerBacklash
+SingleEffect = (
+    ToothThickness | TurningOffset | AxisOffset | AxisTilt | AxesOffset | Temperature | ReducerBacklash | Clocking
+)
 Effect = SingleEffect | Together
 
 

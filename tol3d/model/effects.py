@@ -10,6 +10,7 @@ from tol3d.model.contributor import (
     AxesOffset,
     AxisOffset,
     AxisTilt,
+    Clocking,
     Contributor,
     Effect,
     Planar,
@@ -36,6 +37,7 @@ from tol3d.scene.tolerances import (
     AxisOutOfPlaneSpec,
     BearingClearanceSpec,
     CentreDistanceSpec,
+    ClockingSpec,
     EccentricitySpec,
     MountingFaceSpec,
     ReducerBacklashSpec,
@@ -53,6 +55,7 @@ AROUND_X: Vector = (1.0, 0.0, 0.0)
 AROUND_Y: Vector = (0.0, 1.0, 0.0)
 AROUND_MINUS_Y: Vector = (0.0, -1.0, 0.0)
 ALONG_Z: Vector = (0.0, 0.0, 1.0)
+NOTHING = Together(())
 
 
 @dataclass(frozen=True)
@@ -72,8 +75,19 @@ class Tolerances:
     layout: Layout
 
     def contributor(self, name: str, spec: ToleranceSpec) -> Contributor:
-        """A tolerance as the simulation sees it."""
+        """A tolerance as the simulation sees it.
+
+        Raises:
+            SceneError: of a shaft, or a bearing of one, on which no gear sits.
+        """
         found = self._effect(spec)
+        if (found.effect if isinstance(found, _Directed) else found) == NOTHING:
+            shaft, *_ = spec.references()
+            raise self.scene.refuse(
+                ("tolerances", name, *shaft.path),
+                f"expected a shaft with a gear on it, or a bearing of one, got {shaft.name!r}: nothing that meshes "
+                "moves with it",
+            )
         law = spec.distribution.resolve(self.scene.files)
         thickness = isinstance(spec, ShimSpec | ReducerBacklashSpec) or (
             isinstance(spec, BearingClearanceSpec) and not isinstance(found, _Directed)
@@ -152,6 +166,8 @@ class Tolerances:
         parts = (part for part in self.scene.parts.values() if isinstance(part, BearingSpec))
         others = [part.at.internal for part in parts if part.shaft == bearing.shaft and part.at.internal != at]
         levers = [_Lever(own, at, others[0] if others else None) for own in self._carried(bearing.shaft)]
+        if not levers:
+            return NOTHING
         if spec.direction == "random":
             offsets = tuple(
                 AxisOffset(lever.own.gear, factor=0.5 * lever.share, plane=Plane(mirrored=lever.own.backward))
@@ -219,6 +235,10 @@ class Tolerances:
         return Temperature(spec.of)
 
     @_effect.register
+    def _(self, spec: ClockingSpec) -> Effect | _Directed:
+        return Clocking(spec.of)
+
+    @_effect.register
     def _(self, spec: ReducerBacklashSpec) -> Effect | _Directed:
         return ReducerBacklash(spec.of)
 
@@ -258,7 +278,7 @@ def _all_of(effects: tuple[SingleEffect, ...]) -> Effect:
 
 
 def _unit(spec: ToleranceSpec) -> Unit:
-    if isinstance(spec, ReducerBacklashSpec):
+    if isinstance(spec, ReducerBacklashSpec | ClockingSpec):
         return "arcmin"
     dimensions = {quantity.dimension for quantity in spec.distribution.quantities().values()}
     if dimensions == {"angle"}:

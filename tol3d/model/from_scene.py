@@ -6,7 +6,7 @@ from dataclasses import replace
 from tol3d.errors import SceneError
 from tol3d.gears import LEFT, RIGHT
 from tol3d.model.effects import Tolerances
-from tol3d.model.layout import Layout, layout_of
+from tol3d.model.layout import Layout, all_links, layout_of, links_of
 from tol3d.model.measures import measure_of
 from tol3d.model.mesh import Mesh
 from tol3d.model.model import GearPart, Housing, Model, Study, Until
@@ -17,6 +17,7 @@ from tol3d.model.trains import (
     loaded_flank,
     loose_gears,
     reducers_of,
+    refuse_misfits,
     refuse_no_trees,
     refuse_other_ratios,
     shafts_of,
@@ -39,10 +40,11 @@ def model_from_scene(scene: Scene) -> Model:
         raise scene.refuse(("parts", gear), f"{gear!r} takes part in no move; put it into a mesh or take it out")
     shafts, reducers, arms = shafts_of(scene), reducers_of(scene), arms_of(scene)
     meshes = tuple(_mesh(scene, name, move) for name, move in scene.moves.items() if isinstance(move, GearMeshSpec))
-    refuse_no_trees(scene, meshes, shafts, reducers)
+    refuse_no_trees(scene, all_links(meshes, shafts, reducers))
     layout = layout_of(meshes, shafts, reducers)
-    refuse_other_ratios(scene, meshes, layout)
+    refuse_misfits(scene, meshes, layout)
     trains = trains_of(scene, layout)
+    refuse_other_ratios(scene, meshes, layout)
     meshes = tuple(_loaded(scene, mesh, trains, layout, arms) for mesh in meshes)
     by_name = {mesh.name: mesh for mesh in meshes}
     tolerances = Tolerances(scene, by_name, layout)
@@ -107,7 +109,7 @@ def _loaded(scene: Scene, mesh: Mesh, trains: tuple[Train, ...], layout: Layout,
         return mesh
     root = layout.root_of[layout.carrying[mesh.driver][0]]
     own = [train for train in trains if train.driven == root]
-    through = [t for t in own if mesh.name in {link.name for link in layout.between(t.driven, t.output)}]
+    through = [t for t in own if mesh.name in {link.name for link in links_of(layout.way(t.driven, t.output))}]
     for train in through or own:
         return replace(mesh, working_flank=loaded_flank(mesh, train, layout, arms))
     raise scene.refuse(

@@ -1,12 +1,13 @@
 """Where the shafts of a model lie, how they turn with each other, and which of them drive: found from its links.
 
-Each shaft is driven by one link at most, so shafts make trees; the first shaft of a tree is its root. The root lies in
-the world's origin, its axis z. A mesh has a world of its own, with its driver's axis at rest as z and the mate at +x.
+Shafts make trees; the first shaft of a tree is its root, which lies in the world's origin, its axis z. Where several
+links drive one shaft, the first of them places it and the others close parallel ways: their driven gears are clocked on
+it so that the teeth fit. A mesh has a world of its own, with its driver's axis at rest as z and the mate at +x.
 """
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 
 import numpy as np
@@ -45,6 +46,29 @@ class Link:
 
 
 @dataclass(frozen=True)
+class Parallel:
+    """Ways that part at one shaft and meet at another.
+
+    Args:
+        driver, driven: the shafts.
+        ways: the links of each, one behind the other; there may be parallel ones among them.
+    """
+
+    driver: str
+    driven: str
+    ways: tuple["Way", ...]
+
+    @property
+    def name(self) -> str:
+        """Its links' names."""
+        return " ∥ ".join(" + ".join(element.name for element in way) for way in self.ways)
+
+
+Way = tuple[Link | Parallel, ...]
+"""Links one behind the other."""
+
+
+@dataclass(frozen=True)
 class Drive:
     """A tree of shafts.
 
@@ -67,7 +91,8 @@ class Layout:
 
     Args:
         links: in the order of the moves.
-        driving: the link that drives each shaft; none for roots.
+        driving: the link that drives each shaft, the first of several; none for roots.
+        closing: the others of several.
         root_of: the root of each shaft's tree.
         shaft_turn: how each shaft turns with its root.
         mesh_turn: how the driver of each mesh turns with its root, in the frame of the mesh.
@@ -80,6 +105,7 @@ class Layout:
 
     links: tuple[Link, ...]
     driving: Mapping[str, Link]
+    closing: tuple[Link, ...]
     root_of: Mapping[str, str]
     shaft_turn: Mapping[str, Turning]
     mesh_turn: Mapping[str, Turning]
@@ -102,10 +128,50 @@ class Layout:
         return tuple(links)
 
     def between(self, first: str, last: str) -> tuple[Link, ...]:
-        """The links between two shafts of a tree, in the order of the way."""
+        """The links between two shafts of a tree, in the order of the way; the first of parallel ways."""
         up, down = self.behind(first), self.behind(last)
         common = set(up) & set(down)
         return (*(link for link in up if link not in common), *reversed([link for link in down if link not in common]))
+
+    def way(self, first: str, last: str) -> Way:
+        """What lies between two shafts of a tree, in the order of the way.
+
+        Raises:
+            GeometryError: one of them lies in the midst of parallel ways, or these are not apart.
+        """
+        up, down = self._from_root(first), self._from_root(last)
+        common = 0
+        while common < min(len(up), len(down)) and up[common] == down[common]:
+            common += 1
+        self._refuse_midst(up[common:], down[common:])
+        return (*reversed(up[common:]), *down[common:])
+
+    def _from_root(self, shaft: str) -> Way:
+        """The way from a tree's root to a shaft."""
+        driving = [link for link in self.links if link.driven == shaft]
+        if not driving:
+            return ()
+        if len(driving) == 1:
+            return (*self._from_root(driving[0].driver), driving[0])
+        each = [self._from_root(link.driver) for link in driving]
+        common = 0
+        while all(len(way) > common for way in each) and len({way[common] for way in each}) == 1:
+            common += 1
+        ways = tuple((*way[common:], link) for way, link in zip(each, driving, strict=True))
+        inner = [link.name for way in ways for link in links_of(way)]
+        if len(set(inner)) < len(inner):
+            raise GeometryError(f"the ways to {shaft!r} share some of their links but not at their beginning")
+        first = links_of(ways[0])[0].driver
+        return (*each[0][:common], Parallel(first, shaft, ways))
+
+    def _refuse_midst(self, *parts: Way) -> None:
+        """A shaft in the midst of parallel ways is held by the others too, which a way from the root does not show."""
+        used = {link.name for way in parts for link in links_of(way)}
+        for link in self.closing:
+            loop = self._from_root(link.driven)[-1]
+            names = {inner.name for inner in links_of((loop,))}
+            if names & used and not names <= used:
+                raise GeometryError(f"a shaft in the midst of the parallel ways {loop.name}")
 
     def ratio(self, first: str, last: str) -> Fraction:
         """Turns of the first shaft per turn of the last, signed."""
@@ -113,23 +179,13 @@ class Layout:
 
 
 def layout_of(meshes: Sequence[Mesh], shafts: Sequence[Shaft], reducers: Sequence[Reducer]) -> Layout:
-    """The layout of a model whose shafts make trees.
-
-    Raises:
-        GeometryError: they do not.
-    """
-    carrying = {own.gear: (shaft.name, own) for shaft in shafts for own in shaft.carries}
-    for gear in (gear for mesh in meshes for gear in (mesh.driver, mesh.driven)):
-        carrying.setdefault(gear, (gear, Carried(gear)))
-    links = (
-        *(Link(r.name, r.driver, r.driven, 1 / r.ratio) for r in reducers),
-        *(_link(mesh, carrying) for mesh in meshes),
-    )
+    """The layout of a model whose shafts make trees, which model/trains.py sees to."""
+    carrying = _carrying(meshes, shafts)
+    links = all_links(meshes, shafts, reducers)
     driving: dict[str, Link] = {}
     for link in links:
-        if link.driven in driving:
-            raise GeometryError(f"{link.driven!r} is driven by {driving[link.driven].name!r} and by {link.name!r}")
-        driving[link.driven] = link
+        driving.setdefault(link.driven, link)
+    closing = tuple(link for link in links if driving[link.driven] is not link)
     frames = {gear: _shaft_from_gear(own) for gear, (_, own) in carrying.items()}
     turn: dict[str, Turning] = {}
     world: dict[str, Array] = {}
@@ -140,7 +196,7 @@ def layout_of(meshes: Sequence[Mesh], shafts: Sequence[Shaft], reducers: Sequenc
     names = dict.fromkeys([*(link.driver for link in links), *(s.name for s in shafts)])
     for root in (name for name in names if name not in driving):
         turn[root], world[root], root_of[root] = Turning(), np.eye(4), root
-        for link in _onwards(root, links):
+        for link in _onwards(root, list(driving.values())):
             root_of[link.driven] = root
             cause = by_name[link.name]
             if isinstance(cause, Mesh):
@@ -154,9 +210,18 @@ def layout_of(meshes: Sequence[Mesh], shafts: Sequence[Shaft], reducers: Sequenc
                 before = turn[link.driver]
                 turn[link.driven] = Turning(before.offset * float(link.rate), before.rate * link.rate)
                 world[link.driven] = world[link.driver] @ _along_z(cause.offset)
+    for link in closing:
+        cause = by_name[link.name]
+        if isinstance(cause, Mesh):
+            (_, driver), (shaft, driven) = carrying[cause.driver], carrying[cause.driven]
+            mesh_turn[cause.name] = _of_driver(cause, driver, turn[link.driver])
+            angle = float(cause.pair.driven_angle(np.array([mesh_turn[cause.name].offset]))[0])
+            carrying[cause.driven] = shaft, replace(driven, phase=angle - driven.sense * turn[shaft].offset)
+            world_from_mesh[cause.name] = world[link.driver] @ frames[cause.driver] @ _about_z(cause.azimuth)
     return Layout(
         links=links,
         driving=driving,
+        closing=closing,
         root_of=root_of,
         shaft_turn=turn,
         mesh_turn=mesh_turn,
@@ -166,6 +231,42 @@ def layout_of(meshes: Sequence[Mesh], shafts: Sequence[Shaft], reducers: Sequenc
         carrying=carrying,
         drives=tuple(_drives(meshes, links, root_of, mesh_turn)),
     )
+
+
+def all_links(meshes: Sequence[Mesh], shafts: Sequence[Shaft], reducers: Sequence[Reducer]) -> tuple[Link, ...]:
+    """The reducers and meshes of a model as links of its shafts."""
+    carrying = _carrying(meshes, shafts)
+    return (
+        *(Link(r.name, r.driver, r.driven, 1 / r.ratio) for r in reducers),
+        *(_link(mesh, carrying) for mesh in meshes),
+    )
+
+
+def _carrying(meshes: Sequence[Mesh], shafts: Sequence[Shaft]) -> dict[str, tuple[str, Carried]]:
+    carrying = {own.gear: (shaft.name, own) for shaft in shafts for own in shaft.carries}
+    for gear in (gear for mesh in meshes for gear in (mesh.driver, mesh.driven)):
+        carrying.setdefault(gear, (gear, Carried(gear)))
+    return carrying
+
+
+def links_of(way: Way) -> tuple[Link, ...]:
+    """Every link of a way, those of parallel ones too."""
+    found: list[Link] = []
+    for element in way:
+        found += (
+            [element] if isinstance(element, Link) else [link for inner in element.ways for link in links_of(inner)]
+        )
+    return tuple(found)
+
+
+def misfit(layout: Layout, mesh: Mesh) -> tuple[float, float]:
+    """By how much a mesh would put the shaft that it drives elsewhere than it lies: [mm], and the axes' angle [rad]."""
+    shaft, _ = layout.carrying[mesh.driven]
+    frame = layout.shaft_from_gear[mesh.driven]
+    there = layout.world_from_mesh[mesh.name] @ _wheel_in_mesh(mesh) @ np.linalg.inv(frame)
+    here = layout.world_from_shaft[shaft]
+    axes = float(np.linalg.norm(np.cross(there[:3, 2], here[:3, 2])))
+    return float(np.linalg.norm(there[:3, 3] - here[:3, 3])), axes if there[:3, 2] @ here[:3, 2] > 0.0 else np.pi
 
 
 def loop_of(links: Sequence[Link]) -> tuple[str, ...]:

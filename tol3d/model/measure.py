@@ -4,7 +4,7 @@ import math
 from dataclasses import dataclass, replace
 from typing import Literal
 
-BacklashQuantity = Literal["normal_backlash", "circumferential_backlash", "angular_backlash"]
+BacklashQuantity = Literal["normal_backlash", "circumferential_backlash", "angular_backlash", "rest_angle"]
 TrainQuantity = Literal["lost_motion", "tip_displacement", "tip_error"]
 Take = Literal["value", "min", "max", "range", "curve"]
 
@@ -27,7 +27,10 @@ class Reading:
 
 @dataclass(frozen=True)
 class Backlash:
-    """A backlash of a mesh: normal and circumferential [mm], or angular [rad] of one gear, the other held."""
+    """A backlash of a mesh: normal and circumferential [mm], or angular [rad] of one gear, the other held.
+
+    Its rest angle [rad] is where the driven gear rests on the working flank, against the middle of a nominal space.
+    """
 
     quantity: BacklashQuantity
     mesh: str
@@ -37,7 +40,12 @@ class Backlash:
     @property
     def is_angle(self) -> bool:
         """Whether the value is an angle [rad] rather than a length [mm]."""
-        return self.quantity == "angular_backlash"
+        return self.quantity in ("angular_backlash", "rest_angle")
+
+    @property
+    def adds_up(self) -> bool:
+        """Whether it is the sum of its backlashes: it is its own."""
+        return True
 
     @property
     def backlashes(self) -> tuple[tuple[float, "Backlash"], ...]:
@@ -58,11 +66,46 @@ class Stage:
         link: a mesh or a reducer.
         factor: turn of the shaft that is read per turn of the link's driven shaft.
         backlash: angular backlash of the mesh's driven gear; None for a reducer.
+        sense: of the turn of the shaft that is read for a turn of the driven gear about its own z, 1 or -1.
     """
 
     link: str
     factor: float
     backlash: Backlash | None
+    sense: int = 1
+
+
+@dataclass(frozen=True)
+class ParallelStage:
+    """Ways that part at one shaft and meet at another: what is free there is free on all of them.
+
+    Args:
+        link: its links' names.
+        factor: turn of the shaft that is read per turn of the shaft where they meet.
+        first, last: the shafts where they part and meet.
+        ways: the stages of each; their factors and senses are those of the shaft where the ways meet.
+        sense: of the turn of the shaft that is read for a turn of the shaft where they meet, 1 or -1.
+    """
+
+    link: str
+    factor: float
+    first: str
+    last: str
+    ways: tuple[tuple["Stage | ParallelStage", ...], ...]
+    sense: int = 1
+    backlash: None = None
+
+    @property
+    def singles(self) -> tuple[Stage, ...]:
+        """All stages in it, with their factors at the shaft that is read."""
+        found: list[Stage] = []
+        for stage in (stage for way in self.ways for stage in way):
+            inner = stage.singles if isinstance(stage, ParallelStage) else (stage,)
+            found += [replace(single, factor=self.factor * single.factor) for single in inner]
+        return tuple(found)
+
+
+AnyStage = Stage | ParallelStage
 
 
 @dataclass(frozen=True)
@@ -92,7 +135,7 @@ class LostMotion:
     train: str
     shaft: str
     held: str
-    stages: tuple[Stage, ...]
+    stages: tuple[AnyStage, ...]
     tip: Tip | None = None
     turned: tuple[bool, ...] = ()
     changes: tuple[float, ...] = ()
@@ -103,14 +146,25 @@ class LostMotion:
         return self.tip is None
 
     @property
+    def singles(self) -> tuple[Stage, ...]:
+        """All meshes and reducers on the way, those of parallel ways too."""
+        each = (stage.singles if isinstance(stage, ParallelStage) else (stage,) for stage in self.stages)
+        return tuple(single for singles in each for single in singles)
+
+    @property
+    def adds_up(self) -> bool:
+        """Whether it is the sum of its backlashes: no ways are parallel."""
+        return not any(isinstance(stage, ParallelStage) for stage in self.stages)
+
+    @property
     def backlashes(self) -> tuple[tuple[float, Backlash], ...]:
-        """The backlashes of meshes that it adds up, with their factors."""
-        return tuple((stage.factor, stage.backlash) for stage in self.stages if stage.backlash)
+        """The backlashes of meshes that it adds up or compares, with their factors."""
+        return tuple((stage.factor, stage.backlash) for stage in self.singles if stage.backlash)
 
     @property
     def reducers(self) -> tuple[tuple[float, str], ...]:
-        """The reducers whose backlash it adds up, with their factors."""
-        return tuple((stage.factor, stage.link) for stage in self.stages if stage.backlash is None)
+        """The reducers whose backlash it adds up or compares, with their factors."""
+        return tuple((stage.factor, stage.link) for stage in self.singles if stage.backlash is None)
 
 
 Kind = Backlash | LostMotion

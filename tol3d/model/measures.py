@@ -8,11 +8,23 @@ from typing import Literal
 
 import numpy as np
 
-from tol3d.model.measure import Backlash, LostMotion, Measure, Positions, Reading, Stage, Tip, TrainQuantity
+from tol3d.model.layout import Link, Parallel
+from tol3d.model.measure import (
+    AnyStage,
+    Backlash,
+    LostMotion,
+    Measure,
+    ParallelStage,
+    Positions,
+    Reading,
+    Stage,
+    Tip,
+    TrainQuantity,
+)
 from tol3d.model.mesh import Mesh
 from tol3d.model.model import Model
 from tol3d.model.shafts import Arm, Train
-from tol3d.model.trains import gravity_torque
+from tol3d.model.trains import gravity_torque, refuse_midst
 from tol3d.scene import Scene
 from tol3d.scene.direction import At
 from tol3d.scene.measures import (
@@ -97,6 +109,7 @@ def _(spec: LostMotionSpec, scene: Scene, name: str, model: Model) -> Measure:
     shaft = spec.shaft or train.output
     if model.layout.root_of.get(shaft) != train.driven:
         raise scene.refuse(("measures", name, "shaft"), f"expected a shaft that {train.driven!r} turns, got {shaft!r}")
+    refuse_midst(scene, ("measures", name, "shaft"), model.layout, train.driven, shaft)
     if shaft == train.held:
         raise scene.refuse(("measures", name), f"expected another shaft than the one that is held, got {shaft!r}")
     return Measure(name, lost_motion(model, train, shaft, "lost_motion"), _positions(spec), "value")
@@ -131,8 +144,9 @@ def _(spec: TipErrorSpec, scene: Scene, name: str, model: Model) -> Measure:
     plain = lost_motion(model, train, arm.on, "tip_error", _tip(arm, spec.point))
     changes = tuple(_changes(model, train, (shown[0], shown[-1])))
     kind = replace(plain, turned=_turned([torque or 0.0 for torque in torques]), changes=changes)
-    rate = float(model.layout.shaft_turn[arm.on].rate)
-    positions = Positions("swing", 1, len(shown), angles=tuple(angle / rate for angle in shown), shown=shown)
+    rate = float(model.layout.shaft_turn[arm.on].rate)  # the arm is put on at 0, the first shaft at 0
+    angles = tuple(angle / rate for angle in shown)
+    positions = Positions("swing", 1, len(shown), angles=angles, shown=shown)
     return Measure(name, kind, positions, "curve")
 
 
@@ -147,14 +161,24 @@ def lost_motion(
     return LostMotion(quantity, train.name, shaft, train.held, _stages(model, train.held, shaft), tip)
 
 
-def _stages(model: Model, held: str, shaft: str) -> tuple[Stage, ...]:
-    layout, meshes = model.layout, {mesh.name: mesh for mesh in model.meshes}
-    stages = []
-    for link in layout.between(held, shaft):
-        mesh = meshes.get(link.name)
-        backlash = Backlash("angular_backlash", mesh.name, mesh.driven, default_reading(mesh)) if mesh else None
-        stages.append(Stage(link.name, abs(float(layout.ratio(shaft, link.driven))), backlash))
-    return tuple(stages)
+def _stages(model: Model, held: str, shaft: str) -> tuple[AnyStage, ...]:
+    return tuple(_stage(model, element, shaft) for element in model.layout.way(held, shaft))
+
+
+def _stage(model: Model, element: Link | Parallel, shaft: str) -> AnyStage:
+    """A link or several parallel ways, read at a shaft."""
+    layout = model.layout
+    if isinstance(element, Parallel):
+        ratio = float(layout.ratio(shaft, element.driven))
+        ways = tuple(tuple(_stage(model, inner, element.driven) for inner in way) for way in element.ways)
+        return ParallelStage(element.name, abs(ratio), element.driver, element.driven, ways, 1 if ratio > 0.0 else -1)
+    ratio = float(layout.ratio(shaft, element.driven))
+    mesh = next((mesh for mesh in model.meshes if mesh.name == element.name), None)
+    if mesh is None:
+        return Stage(element.name, abs(ratio), None)
+    _, carried = layout.carrying[mesh.driven]
+    backlash = Backlash("angular_backlash", mesh.name, mesh.driven, default_reading(mesh))
+    return Stage(element.name, abs(ratio), backlash, carried.sense if ratio > 0.0 else -carried.sense)
 
 
 def _arm(scene: Scene, name: str, spec: TipDisplacementSpec | TipErrorSpec, model: Model) -> Arm:
@@ -165,6 +189,7 @@ def _arm(scene: Scene, name: str, spec: TipDisplacementSpec | TipErrorSpec, mode
             ("measures", name, "arm"),
             f"expected an arm on a shaft that {train.driven!r} turns, got {spec.arm!r}, which hangs on {arm.on!r}",
         )
+    refuse_midst(scene, ("measures", name, "arm"), model.layout, train.driven, arm.on)
     return arm
 
 

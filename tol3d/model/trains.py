@@ -6,17 +6,22 @@ from fractions import Fraction
 
 import numpy as np
 
+from tol3d.errors import GeometryError, SceneError
 from tol3d.gears import LEFT, RIGHT, Flank
-from tol3d.model.layout import Layout, Link, loop_of
+from tol3d.model.layout import Layout, Link, loop_of, misfit
 from tol3d.model.mesh import Mesh
 from tol3d.model.pairs import internal
 from tol3d.model.shafts import Arm, Carried, Reducer, Shaft, Train, Vector
 from tol3d.scene import Scene
 from tol3d.scene.moves import GearMeshSpec, ReducerSpec, TrainSpec
 from tol3d.scene.parts import ArmSpec, GearSpec, ShaftSpec
+from tol3d.scene.place import KeyPath
 from tol3d.scene.tolerances import ReducerBacklashSpec
 
 RATIO_AS_WRITTEN = 5e-4  # relative; four digits are enough to check a drawing's ratio
+PLACE_AS_WRITTEN = 0.05  # mm; azimuths are written with few decimals, and parallel ways need not close better
+AXES_AS_WRITTEN = 1e-3  # rad
+MOST_RATIO = 1e6  # of a reducer; beyond it somebody's finger slipped
 NO_TORQUE = 1e-9  # of the lever of the arm's weight; less is none
 
 
@@ -71,7 +76,7 @@ def reducers_of(scene: Scene) -> tuple[Reducer, ...]:
     """The scene's reducers.
 
     Raises:
-        SceneError: a backlash that is stated twice.
+        SceneError: a backlash that is stated twice, a ratio that nobody builds.
     """
     drawn = {spec.of: name for name, spec in scene.tolerances.items() if isinstance(spec, ReducerBacklashSpec)}
     found = []
@@ -82,51 +87,90 @@ def reducers_of(scene: Scene) -> tuple[Reducer, ...]:
                     ("moves", name, "backlash"),
                     f"expected none, for {drawn[name]!r} tells its distribution, got '{move.backlash}'; leave out one",
                 )
+            if not 1 / MOST_RATIO <= abs(move.ratio) <= MOST_RATIO:
+                raise scene.refuse(
+                    ("moves", name, "ratio"),
+                    f"expected a ratio of 1/{MOST_RATIO:g} to {MOST_RATIO:g}, either sign, got {move.ratio:g}",
+                )
             ratio = Fraction(str(move.ratio))
             found.append(Reducer(name, move.driver, move.driven, ratio, internal(move.backlash), internal(move.offset)))
     return tuple(found)
 
 
-def refuse_no_trees(scene: Scene, meshes: Sequence[Mesh], shafts: Sequence[Shaft], reducers: Sequence[Reducer]) -> None:
-    """Refuse shafts that do not make trees: one link drives each of them at most, and none drives itself.
+def refuse_no_trees(scene: Scene, links: Sequence[Link]) -> None:
+    """Refuse shafts that do not make trees, or ways that meet and would lock each other.
+
+    Several links may drive a shaft only where they come from one first shaft and ask for one ratio.
 
     Raises:
         SceneError: at the link that is too many.
     """
-    carrier = {own.gear: shaft.name for shaft in shafts for own in shaft.carries}
     first: dict[str, Link] = {}
-    for link in _links(meshes, reducers, carrier):
-        here = ("moves", link.name)
+    for link in links:
         if link.driver == link.driven:
-            raise scene.refuse(here, f"driver and driven sit on the same shaft, {link.driver!r}: it would lock itself")
-        before = first.get(link.driven)
-        if before is None:
-            first[link.driven] = link
-        elif before.driver == link.driver:
-            raise scene.refuse(
-                here,
-                f"{link.driver!r} drives {link.driven!r} here and by {before.name!r}: a loop of shafts; parallel "
-                "ways between two shafts lock or share their play, which is not simulated: take out one",
-            )
-        else:
-            raise scene.refuse(
-                here,
-                f"two drivers: {link.driven!r} is driven by {link.driver!r} here and by {before.driver!r} in "
-                f"{before.name!r}; a shaft can be driven by one only: turn driver and driven round, or take out one",
-            )
+            sentence = f"driver and driven sit on the same shaft, {link.driver!r}: it would lock itself"
+            raise scene.refuse(("moves", link.name), sentence)
+        first.setdefault(link.driven, link)
     if loop := loop_of(list(first.values())):
+        raise _loop(scene, first[loop[-1]].name, loop)
+    for link in links:
+        if first[link.driven] is not link:
+            _refuse_second(scene, first, link)
+
+
+def _refuse_second(scene: Scene, first: Mapping[str, Link], link: Link) -> None:
+    """Refuse a second link to a shaft unless it closes parallel ways."""
+    here, before = ("moves", link.name), first[link.driven]
+    ways = [_way_from_root(first, shaft) for shaft in (link.driver, link.driven)]
+    if link.driven in [shaft for shaft, _ in ways[0]]:
+        ring = [shaft for shaft, _ in ways[0]]
+        raise _loop(scene, link.name, (*ring[ring.index(link.driven) :], link.driven))
+    if ways[0][0][0] != ways[1][0][0]:
         raise scene.refuse(
-            ("moves", first[loop[-1]].name),
-            f"a loop of shafts: {' → '.join(map(repr, loop))}; no motor can turn them: take out a link",
+            here,
+            f"two drivers: {link.driven!r} is driven by {link.driver!r} here and by {before.driver!r} in "
+            f"{before.name!r}, and these are not driven together; turn driver and driven round, or take out one",
+        )
+    rates = ways[0][-1][1] * link.rate, ways[1][-1][1]
+    if rates[0] != rates[1]:
+        raise scene.refuse(
+            here,
+            f"a loop of shafts that locks: {link.driven!r} turns {_ratio_text(rates[0])} times with {ways[0][0][0]!r} "
+            f"here and {_ratio_text(rates[1])} times by {before.name!r}; give both ways one ratio, or take out one",
         )
 
 
-def _links(meshes: Sequence[Mesh], reducers: Sequence[Reducer], carrier: Mapping[str, str]) -> Iterator[Link]:
-    for reducer in reducers:
-        yield Link(reducer.name, reducer.driver, reducer.driven, 1 / reducer.ratio)
+def _way_from_root(first: Mapping[str, Link], shaft: str) -> list[tuple[str, Fraction]]:
+    """The shafts from a root to a shaft, with their turns per turn of the root."""
+    if shaft not in first:
+        return [(shaft, Fraction(1))]
+    link = first[shaft]
+    before = _way_from_root(first, link.driver)
+    return [*before, (shaft, before[-1][1] * link.rate)]
+
+
+def _loop(scene: Scene, link: str, shafts: Sequence[str]) -> SceneError:
+    text = " → ".join(map(repr, shafts))
+    return scene.refuse(("moves", link), f"a loop of shafts: {text}; no motor can turn them: take out a link")
+
+
+def refuse_misfits(scene: Scene, meshes: Sequence[Mesh], layout: Layout) -> None:
+    """Refuse parallel ways that would put the shaft where they meet in two places.
+
+    Raises:
+        SceneError: at the mesh that closes them.
+    """
     for mesh in meshes:
-        driver, driven = (carrier.get(gear, gear) for gear in (mesh.driver, mesh.driven))
-        yield Link(mesh.name, driver, driven, mesh.rate)
+        if mesh.name in {link.name for link in layout.closing}:
+            apart, askew = misfit(layout, mesh)
+            if apart > PLACE_AS_WRITTEN or askew > AXES_AS_WRITTEN:
+                shaft = layout.carrying[mesh.driven][0]
+                raise scene.refuse(
+                    ("moves", mesh.name),
+                    f"the ways to {shaft!r} do not fit: here it lies {apart:.3f} mm and {math.degrees(askew):.3f} deg "
+                    f"from where {layout.driving[shaft].name!r} puts it; look at azimuths, centre distances and places "
+                    "on the shafts",
+                )
 
 
 def refuse_other_ratios(scene: Scene, meshes: Sequence[Mesh], layout: Layout) -> None:
@@ -182,11 +226,14 @@ def _train(scene: Scene, name: str, move: TrainSpec, layout: Layout) -> Train:
         shaft = getattr(move, field) or move.driven
         if layout.root_of[shaft] != move.driven:
             reached = [s for s, root in layout.root_of.items() if root == move.driven]
+            root = layout.root_of[shaft]
             raise scene.refuse(
                 ("moves", name, field),
                 f"the train does not connect: from {move.driven!r} one gets to {', '.join(map(repr, reached))}; "
-                f"{shaft!r} is driven from {layout.root_of[shaft]!r}",
+                f"{'nothing drives ' + repr(shaft) if root == shaft else f'{shaft!r} is driven from {root!r}'}",
             )
+    for field in ("output", "held"):
+        refuse_midst(scene, ("moves", name, field), layout, move.driven, getattr(move, field) or move.driven)
     return Train(
         name=name,
         driven=move.driven,
@@ -195,6 +242,20 @@ def _train(scene: Scene, name: str, move: TrainSpec, layout: Layout) -> Train:
         gravity=None if move.gravity is None else (move.gravity[0], move.gravity[1], move.gravity[2]),
         sense=1 if move.turns == "counter_clockwise" else -1,
     )
+
+
+def refuse_midst(scene: Scene, path: KeyPath, layout: Layout, first: str, last: str) -> None:
+    """Refuse a shaft in the midst of parallel ways, which the other ones hold too.
+
+    Raises:
+        SceneError: at the path.
+    """
+    try:
+        layout.way(first, last)
+    except GeometryError as error:
+        raise scene.refuse(
+            path, f"expected a shaft before or behind all parallel ways, got {last!r}: {error}"
+        ) from None
 
 
 def loose_gears(scene: Scene) -> Iterator[str]:

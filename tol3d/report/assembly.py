@@ -8,12 +8,13 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.block import Block, SeatKey, mean_block, nominal_block, seat_keys
+from tol3d.block import Block, mean_block, nominal_block
 from tol3d.engines import NO_CONTACT, OK
 from tol3d.errors import InputError, RunError
 from tol3d.gears import Gear
 from tol3d.model import Measure, Mesh, Model
 from tol3d.moves import Meshing, MeshSeat
+from tol3d.play import SeatKey, seat_keys
 from tol3d.report.number import measured_text
 from tol3d.result import Run
 from tol3d.simulate import Replay, model_of, replay, replay_block

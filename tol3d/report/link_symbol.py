@@ -8,10 +8,15 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.patches import Circle, FancyBboxPatch, Patch, Polygon
 
-from tol3d.report.canvas import BLACK, BLUE, GREEN, GREY, ORANGE
+from tol3d.report.canvas import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE
 from tol3d.report.stage import LinkKind, Stage
 
-LINK_COLOURS: Final[Mapping[LinkKind, str]] = {"reducer": ORANGE, "mesh": BLUE, "bevel_mesh": GREEN}
+LINK_COLOURS: Final[Mapping[LinkKind, str]] = {
+    "reducer": ORANGE,
+    "mesh": BLUE,
+    "bevel_mesh": GREEN,
+    "parallel": PURPLE,
+}
 SHAFT_LINE: Final = 3.5  # points
 TOOTH_PITCH: Final = 0.15  # inch; as many teeth as the eye can tell, not as many as there are
 TOOTH_HEIGHT: Final = 0.055
@@ -108,5 +113,21 @@ def _reducer(axes: Axes, stage: Stage, x: float, y: float, width: float, ends: t
         axes.add_patch(circle)
 
 
+def _ways(axes: Axes, stage: Stage, x: float, y: float, width: float, ends: tuple[float, float]) -> None:
+    """Two ways that part and meet, a gear pair on each."""
+    half, rise = 0.42 * width, 0.26
+    for side in (-1.0, 1.0):
+        across = y + side * rise
+        _line(axes, (ends[0], y), (x - half, y), (x - half, across), (x + half, across), (x + half, y), (ends[1], y))
+        for centre, radius in ((x - 0.15 * width, 0.11), (x + 0.13 * width, 0.17)):
+            outline = _gear_outline(centre, across, radius, meshing=int(centre > x))
+            _fill(axes, Polygon(outline), LINK_COLOURS[stage.kind])
+
+
 Symbol = Callable[[Axes, Stage, float, float, float, tuple[float, float]], None]
-SYMBOLS: Final[Mapping[LinkKind, Symbol]] = {"reducer": _reducer, "mesh": _gears, "bevel_mesh": _cones}
+SYMBOLS: Final[Mapping[LinkKind, Symbol]] = {
+    "reducer": _reducer,
+    "mesh": _gears,
+    "bevel_mesh": _cones,
+    "parallel": _ways,
+}

@@ -8,7 +8,7 @@ from tol3d.report.column import columns_of
 from tol3d.report.number import NOTHING, tip_mm
 
 Summary = Mapping[str, Any]
-LinkKind = Literal["reducer", "mesh", "bevel_mesh"]
+LinkKind = Literal["reducer", "mesh", "bevel_mesh", "parallel"]
 Sums = Mapping[str, Mapping[str, float | None]]
 
 SUM_KEYS: Mapping[str, str] = {"low_3sigma": "lows", "mean": "means", "high_3sigma": "highs"}

@@ -1,6 +1,6 @@
 """Shafts, reducers and trains of a scene as tables: how they turn with each other and where they lie."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 
 import numpy as np
 from numpy.typing import NDArray
@@ -9,7 +9,7 @@ from rich.text import Text
 
 from tol3d.gears import LEFT
 from tol3d.model import Model, Train
-from tol3d.model.layout import Link
+from tol3d.model.layout import Parallel, Way, links_of
 from tol3d.model.trains import gravity_torque
 from tol3d.report.number import NOTHING
 from tol3d.report.sheet import Heading, Row, Sheet
@@ -46,12 +46,12 @@ def _shaft_rows(model: Model) -> Iterator[Row]:
 
 def _train_line(model: Model, train: Train) -> Text:
     layout = model.layout
-    way = layout.between(train.driven, train.output)
+    way = layout.way(train.driven, train.output)
     ratio = layout.ratio(train.driven, train.output)
     sense = "opposite" if ratio < 0 else "alike"
     line = Text(f"\n{train.name}: ", style="bold").append(" → ".join(_way(train.driven, way)), "not bold")
     line.append(f" · i = {abs(float(ratio)):.6g}, they turn {sense} · {train.held} held", "not bold")
-    on_the_way = {link.name for link in way}
+    on_the_way = {link.name for link in links_of(way)}
     meshes = [mesh for mesh in model.meshes if mesh.name in on_the_way]
     flanks = ", ".join(f"{mesh.name} {'left' if mesh.working_flank == LEFT else 'right'}" for mesh in meshes)
     line.append(f"\n working flanks of the drivers{_load(model, train)}: {flanks or NOTHING}", "dim not bold")
@@ -65,11 +65,13 @@ def _load(model: Model, train: Train) -> str:
     return " at 0° of the output under gravity" if torque else ""
 
 
-def _way(first: str, links: Sequence[Link]) -> Iterator[str]:
+def _way(first: str, way: Way) -> Iterator[str]:
     yield first
     at = first
-    for link in links:
-        at = link.driven if at == link.driver else link.driver
+    for element in way:
+        if isinstance(element, Parallel):
+            yield f"({element.name})"
+        at = element.driven if at == element.driver else element.driver
         yield at
 
 

@@ -115,6 +115,7 @@ class ExactEngine:
             status,
         )
         return MeshReading(
+            driver_angle=driver_angle,
             driven_angle=readings[:, DRIVEN_ANGLE],
             gap=readings[:, GAP],
             driven_turn=readings[:, DRIVEN_TURN],

@@ -10,6 +10,7 @@ from tol3d.scene.tolerances.axis_in_plane import AxisInPlaneSpec
 from tol3d.scene.tolerances.axis_out_of_plane import AxisOutOfPlaneSpec
 from tol3d.scene.tolerances.bearing_clearance import BearingClearanceSpec
 from tol3d.scene.tolerances.centre_distance import CentreDistanceSpec
+from tol3d.scene.tolerances.clocking import ClockingSpec
 from tol3d.scene.tolerances.eccentricity import EccentricitySpec
 from tol3d.scene.tolerances.mounting_face import MountingFaceSpec
 from tol3d.scene.tolerances.reducer_backlash import ReducerBacklashSpec
@@ -26,6 +27,7 @@ ToleranceUnion = Annotated[
     | RunOutSpec
     | CentreDistanceSpec
     | BearingClearanceSpec
+    | ClockingSpec
     | AxisInPlaneSpec
     | AxisOutOfPlaneSpec
     | AxialShiftSpec
@@ -45,6 +47,7 @@ __all__ = [
     "AxisOutOfPlaneSpec",
     "BearingClearanceSpec",
     "CentreDistanceSpec",
+    "ClockingSpec",
     "EccentricitySpec",
     "MountingFaceSpec",
     "ReducerBacklashSpec",
