@@ -3,6 +3,8 @@
 import os
 import random
 import re
+import subprocess
+import sys
 import time
 from pathlib import Path
 
@@ -11,6 +13,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from tol3d.errors import SceneError
+from tol3d.model import model_from_scene
 from tol3d.scene import load_scene
 from tol3d.scene.problems import MOST_PROBLEMS
 from tol3d.scene.text import MAX_BYTES, MAX_DEPTH
@@ -377,6 +380,205 @@ def test_the_first_eight_problems_are_listed_in_the_order_of_the_file(tmp_path: 
     assert lines == sorted(lines)
     quantities = len(re.findall(r"\d furlong[,}\n ]", re.sub("#.*", "", SPUR_PAIR.replace(" um", " furlong"))))
     assert said[-1] == f"… and {quantities - MOST_PROBLEMS} more"
+
+
+# trains ---------------------------------------------------------------------------------------------
+
+OTHER = (
+    ("parts:\n", "parts:\n  a: {kind: spur_gear, teeth: 20, module: 1 mm, face_width: 5 mm}\n"
+     "  b: {kind: spur_gear, teeth: 30, module: 1 mm, face_width: 5 mm}\n"),
+    ("moves:\n", "moves:\n  other: {kind: mesh, driver: a, driven: b, centre_distance: 25 mm}\n"),
+)  # fmt: skip
+"""A pair of its own beside the train."""
+ON_TABLE = ("table gear: {at: 0 mm", "b: {at: 15 mm}\n      table gear: {at: 0 mm")
+
+TRAINS = {
+    "a train that does not connect": (
+        "three_stage_train",
+        (*OTHER, ("output: encoder gear", "output: b")),
+        "output: b",
+        "moves.indexing.output: the train does not connect: from 'motor' one gets to 'motor', 'gearbox output', "
+        "'idler', 'table shaft', 'encoder gear'; 'b' is driven from 'a'",
+    ),
+    "an output that nothing turns": (
+        "three_stage_train",
+        (("parts:\n", "parts:\n  loose: {kind: shaft}\n"), ("output: encoder gear", "output: loose")),
+        "output: loose",
+        "moves.indexing.output: the train does not connect: from 'motor' one gets to 'motor', 'gearbox output', "
+        "'idler', 'table shaft', 'encoder gear'; nothing drives 'loose'",
+    ),
+    "a shaft with two drivers": (
+        "three_stage_train",
+        (
+            ("parts:\n", "parts:\n  hand wheel: {kind: shaft}\n"),
+            ("moves:\n", "moves:\n  belt: {kind: reducer, driver: hand wheel, driven: idler, ratio: 3}\n"),
+        ),
+        "first mesh: {kind: mesh",
+        "moves.first mesh: two drivers: 'idler' is driven by 'gearbox output' here and by 'hand wheel' in 'belt'",
+    ),
+    "a motor on a shaft that is driven": (
+        "three_stage_train",
+        (("train, driven: motor", "train, driven: idler"),),
+        "indexing: {kind: train",
+        "moves.indexing.driven: two drivers: expected the shaft that the motor turns and no other, got 'idler', which "
+        "'gearbox output' drives in 'first mesh'; the first shaft there is 'motor'",
+    ),
+    "teeth that give another ratio": (
+        "three_stage_train",
+        (("ratio: 0.6667", "ratio: 1.5"),),
+        "ratio: 1.5",
+        "moves.third mesh.ratio: expected 0.666667 = 32/48, teeth of 'encoder gear' over 'encoder driver', got 1.5",
+    ),
+    "stages that give another ratio": (
+        "three_stage_train",
+        (("ratio: -10.4", "ratio: -11"),),
+        "ratio: -11",
+        "moves.indexing.ratio: expected -10.4 = -5.2 (gearbox) · -1.55 (first mesh) · -1.93548 (second mesh) · "
+        "0.666667 (third mesh), got -11",
+    ),
+    "stages that turn the other way": (
+        "three_stage_train",
+        (("ratio: -5.2", "ratio: 5.2"),),
+        "indexing: {kind: train",
+        "moves.indexing.ratio: expected 10.4 = 5.2 (gearbox) · ",
+    ),
+    "a ratio that nobody builds": (
+        "three_stage_train",
+        (("ratio: -5.2", "ratio: 1e-320"),),
+        "gearbox: {kind: reducer",
+        "moves.gearbox.ratio: expected a ratio of 1/1e+06 to 1e+06, either sign, got ",
+    ),
+    "three shafts in a ring": (
+        "three_stage_train",
+        (("driver: motor, driven: gearbox output", "driver: table shaft, driven: gearbox output"),),
+        "gearbox: {kind: reducer",
+        "moves.gearbox: a loop of shafts: 'gearbox output' → 'idler' → 'table shaft' → 'gearbox output'; no motor can "
+        "turn them: take out a link",
+    ),
+    "two meshes between the same shafts": (
+        "three_stage_train",
+        (
+            *OTHER,
+            ("parts:\n", "parts:\n  encoder shaft: {kind: shaft, carries: {encoder gear: {at: 30 mm}, a: {}}}\n"),
+            ON_TABLE,
+            ("driver: a, driven: b", "driver: b, driven: a"),
+            ("output: encoder gear", "output: encoder shaft"),
+        ),
+        "third mesh: ",
+        "moves.third mesh: a loop of shafts",
+    ),
+    "both gears on one shaft": (
+        "three_stage_train",
+        (*OTHER, ("parts:\n", "parts:\n  both: {kind: shaft, carries: {a: {}, b: {}}}\n")),
+        "other: {kind: mesh",
+        "moves.other: driver and driven sit on the same shaft, 'both': it would lock itself",
+    ),
+    "a load that no train tells": (
+        "three_stage_train",
+        (*OTHER, ("centre_distance: 25 mm", "centre_distance: 25 mm, working_flank: either")),
+        "other: {kind: mesh",
+        "moves.other.working_flank: expected right or left, got either: no train tells the load; add a move of kind "
+        "train that drives 'a'",
+    ),
+    "a gear in no mesh": (
+        "three_stage_train",
+        (OTHER[0], ("  b: {kind: spur_gear, teeth: 30, module: 1 mm, face_width: 5 mm}\n", "")),
+        "  a: {kind: spur_gear",
+        "parts.a: 'a' takes part in no move; put it into a mesh or take it out",
+    ),
+    "a bevel gear with mates that are not alike": (
+        "robot_shoulder",
+        (
+            ("parts:\n", "parts:\n  third: {kind: bevel_gear, teeth: 40, module: 3.5 mm, face_width: 9 mm}\n"),
+            ("moves:\n", "moves:\n  other: {kind: bevel_mesh, driver: bevel driver, driven: third, azimuth: 1 deg}\n"),
+            ("of: bevel driver, distribution: {kind: normal, lower: 10", "of: bevel driver, mesh: other, distribution: "
+             "{kind: normal, lower: 10"),
+        ),
+        "bevel pair: {kind: bevel_mesh",
+        "moves.bevel pair: 'bevel driver' would need another pitch angle than in 'other': a bevel gear can be in "
+        "several meshes only where shaft angle and mate are alike",
+    ),
+    "lost motion of another tree": (
+        "three_stage_train",
+        (*OTHER, ("shaft: idler,", "shaft: b,")),
+        "shaft: b,",
+        "measures.lost motion of the idler.shaft: expected a shaft that 'motor' turns, got 'b'",
+    ),
+    "lost motion of the shaft that is held": (
+        "three_stage_train",
+        (("shaft: idler,", "shaft: motor,"),),
+        "shaft: motor,",
+        "measures.lost motion of the idler: expected another shaft than the one that is held, got 'motor'",
+    ),
+    "gravity along the axis": (
+        "robot_shoulder",
+        (("gravity: [0, -1, 0]", "gravity: [-3, 0, 0]"),),
+        "tip error over the swing: ",
+        "measures.tip error over the swing: gravity does not turn 'shoulder flange' anywhere on this swing: its "
+        "direction in the world, or the arm's centre of mass, lies along the axis",
+    ),
+    "a swing without gravity": (
+        "robot_shoulder",
+        ((", gravity: [0, -1, 0]", ""),),
+        "tip error over the swing: ",
+        "measures.tip error over the swing: what turns the load over a swing is gravity: give 'shoulder swing' its "
+        "direction",
+    ),
+    "a reducer's backlash twice": (
+        "robot_shoulder",
+        (("tolerances:", "tolerances:\n  play: {kind: reducer_backlash, of: planetary reducer, distribution: "
+          "{kind: uniform, lower: 0 arcmin, upper: 1 arcmin}}"),),
+        "  play: ",
+        "tolerances.play.of: expected a reducer without a backlash of its own, got 'planetary reducer', which says "
+        "backlash: 1 arcmin",
+    ),
+    "run-out of a shaft without gears": (
+        "three_stage_train",
+        (("run_out, of: table shaft", "run_out, of: motor"),),
+        "run_out, of: motor",
+        "tolerances.table shaft run-out.of: expected a shaft with a gear on it, or a bearing of one, got 'motor'",
+    ),
+    "clearance of a bearing whose shaft has no gears": (
+        "three_stage_train",
+        (
+            ("parts:\n", "parts:\n  end bearing: {kind: bearing, shaft: motor}\n"),
+            ("    of: upper bearing", "    of: end bearing"),
+        ),
+        "    of: end bearing",
+        "tolerances.upper bearing clearance.of: expected a shaft with a gear on it, or a bearing of one, got "
+        "'end bearing'",
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize(("scene", "changes", "there", "words"), TRAINS.values(), ids=TRAINS.keys())
+def test_what_makes_no_train_is_said_once_with_its_line_and_place(
+    scene: str, changes: tuple[tuple[str, str], ...], there: str, words: str, tmp_path: Path
+) -> None:
+    text = (Path(__file__).parent.parent / "scenes" / f"{scene}.yaml").read_text(encoding="utf-8")
+    for old, new in changes:
+        assert old in text, old
+        text = text.replace(old, new, 1)
+    path = tmp_path / "scene.yaml"
+    path.write_text(text, encoding="utf-8")
+    with pytest.raises(SceneError) as caught:
+        model_from_scene(load_scene(path))
+    (said,) = caught.value.problems
+    line = line_of(text, there)
+    assert said.startswith(f"{path}:{line}: {words}")
+    assert said.isprintable()
+
+
+def test_a_train_that_does_not_connect_ends_the_command_with_2(tmp_path: Path) -> None:
+    text = (Path(__file__).parent.parent / "scenes" / "three_stage_train.yaml").read_text(encoding="utf-8")
+    (tmp_path / "scene.yaml").write_text(text.replace("train, driven: motor", "train, driven: idler"), encoding="utf-8")
+    words = [str(Path(sys.executable).with_name("tol3d")), "run", "scene.yaml", "--out", "run"]
+    done = subprocess.run(words, cwd=tmp_path, capture_output=True, text=True)
+    assert done.returncode == 2
+    assert done.stdout == ""
+    assert done.stderr.count("scene.yaml:") == 1
+    assert "Traceback" not in done.stderr
+    assert [path.name for path in tmp_path.iterdir()] == ["scene.yaml"]
 
 
 # files ----------------------------------------------------------------------------------------------

@@ -187,8 +187,8 @@ def _published(model: Model, kind: LostMotion, ours: Mapping[str, Ends]) -> dict
 
 
 def _published_ends(model: Model, column: str, backlash: Backlash) -> Ends:
-    """Somebody's normal backlash of a mesh as the driven gear's turn, or that turn as he has it; empty for neither."""
-    for quantity in ("normal_backlash", "angular_backlash"):
+    """Somebody's lost motion of a mesh's driven gear, or else his normal backlash as such a turn; empty for neither."""
+    for quantity in ("angular_backlash", "normal_backlash"):
         for measure in model.measures:
             kind = measure.kind
             alike = isinstance(kind, Backlash) and (kind.quantity, kind.mesh) == (quantity, backlash.mesh)

@@ -42,7 +42,9 @@ class FclEngine:
         self._model = model
         self._strips = strips
         self._request = fcl.DistanceRequest(enable_nearest_points=True)
-        self._object = lru_cache(maxsize=MESHES_KEPT)(self._make_object)
+        # apart: a gear between two others is held in one mesh and moved in the other, and an object keeps its place
+        self._held = lru_cache(maxsize=MESHES_KEPT)(self._make_object)
+        self._moved = lru_cache(maxsize=MESHES_KEPT)(self._make_object)
 
     @property
     def depth(self) -> float:
@@ -93,8 +95,8 @@ class FclEngine:
         scales = build.scale
         span = self._section(mesh) if section else WHOLE_FACE
         for row, pair in zip(*np.nonzero(wanted), strict=True):
-            fixed = self._object(mesh.driver, flank, scales[row, driver], span)
-            moved = self._object(mesh.driven, flank, scales[row, driven], WHOLE_FACE)
+            fixed = self._held(mesh.driver, flank, scales[row, driver], span)
+            moved = self._moved(mesh.driven, flank, scales[row, driven], WHOLE_FACE)
             moved.setTransform(fcl.Transform(rotation[row, pair], translation[row, pair]))
             result = fcl.DistanceResult()
             distance[row, pair] = fcl.distance(fixed, moved, request, result)
