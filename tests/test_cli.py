@@ -113,7 +113,7 @@ def test_a_wrong_option_gets_one_message_and_exit_code_2(tol3d: Command, tmp_pat
     ],
 )
 def test_a_long_study_is_announced_by_its_engines_speed(engine: str, trials: int, said: str) -> None:
-    assert cli._long_study(effective_model(load(SPUR), Overrides(trials=trials, engine=engine))) == said
+    assert cli.studies.long_study(effective_model(load(SPUR), Overrides(trials=trials, engine=engine))) == said
 
 
 @pytest.mark.parametrize(
@@ -154,7 +154,7 @@ def test_an_interrupted_command_ends_nobody_who_called_it(
 ) -> None:
     ended: list[int] = []
     monkeypatch.setattr(os, "_exit", ended.append)
-    monkeypatch.setattr(cli, "PATIENCE", 0.2)
+    monkeypatch.setattr(cli.studies, "PATIENCE", 0.2)
     monkeypatch.setattr("tol3d.simulate.run_blocks", lambda *_, **__: signal.raise_signal(signal.SIGINT))
     out = tmp_path / "run"
     code, _, err = tol3d("run", SPUR, "--trials", "30", "--engine", "analytic", "--out", str(out))

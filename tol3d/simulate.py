@@ -28,7 +28,7 @@ Spur and bevel pairs go the same way: `gears/pair.py` says what every pair offer
 gears/, parts/, solids/, engines/exact/, analytic/ and in each folder of scene/ that it concerns, named in
 model/pairs.py.
 
-`study.py` says what is asked, `analyses/` asks what takes several studies (shims, compensation), `report/` and `cli.py`
+`study.py` says what is asked, `analyses/` asks what takes several studies (shims, compensation), `report/` and `cli/`
 show what is there. The analytic road gets the same deviations and the same driver position as the geometric one and
 never sees a mesh, a pose or an engine. A trial is a pure function of (model, seed, trial index): `replay` makes any of
 them again.

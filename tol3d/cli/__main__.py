@@ -1,0 +1,5 @@
+"""`python -m tol3d.cli`."""
+
+from tol3d.cli import main
+
+main()

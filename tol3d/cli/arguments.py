@@ -1,0 +1,74 @@
+"""The app, and the arguments that several commands take."""
+
+import os
+from enum import StrEnum
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+app = typer.Typer(
+    name="tol3d",
+    help="Open 3D tolerance simulator for gears and robots: thousands of virtual builds on real geometry, "
+    "beside an independent analytic model.",
+    no_args_is_help=True,
+    add_completion=False,
+    pretty_exceptions_enable=False,
+)
+
+SceneArgument = Annotated[
+    str, typer.Argument(metavar="SCENE", help="A scene file, or the name of one that tol3d brings along (spur_pair).")
+]
+RunArgument = Annotated[Path, typer.Argument(metavar="RUN", help="The folder of a finished run.")]
+TrustParts = Annotated[
+    bool, typer.Option("--trust-parts", help="Allow the scene to read files outside its own folder.")
+]
+
+
+class EngineName(StrEnum):
+    """Engines that a run may choose."""
+
+    EXACT = "exact"
+    FCL = "fcl"
+    ANALYTIC = "analytic"
+
+
+class SamplerName(StrEnum):
+    """Ways to draw that a run may choose."""
+
+    MONTE_CARLO = "monte_carlo"
+    SOBOL = "sobol"
+    LATIN_HYPERCUBE = "latin_hypercube"
+
+
+def trials_or_auto(text: str) -> int | str:
+    """A number of trials, or auto, as --trials gives it."""
+    if text == "auto":
+        return text
+    if not text.isdecimal() or int(text) < 1:
+        raise typer.BadParameter(f"expected a whole number from 1 on, or auto, got {text!r}")
+    return int(text)
+
+
+def scene_path(text: str) -> Path:
+    """A scene's file: the path itself, or the scene of that name that tol3d brings along.
+
+    Raises:
+        InputError: a bare name, and there is neither.
+    """
+    from importlib.resources import files
+
+    path = Path(text)
+    if os.path.isfile(path) or path.suffix or len(path.parts) > 1:
+        return path
+    brought = {Path(str(file)).stem: Path(str(file)) for file in files("tol3d.scenes").iterdir()}
+    scenes = {name: file for name, file in sorted(brought.items()) if file.suffix == ".yaml"}
+    if text in scenes or os.path.exists(path):
+        return scenes.get(text, path)
+
+    from tol3d.errors import InputError
+    from tol3d.scene.name import LONGEST_NAME
+    from tol3d.scene.nearest import nearest
+
+    listed = f"(tol3d brings along: {', '.join(scenes)})"
+    raise InputError(f"{text[:LONGEST_NAME]}: no such file, and no scene of that name {listed}{nearest(text, scenes)}")

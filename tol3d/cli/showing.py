@@ -1,0 +1,123 @@
+"""Commands that show a scene or finished runs."""
+
+from enum import StrEnum
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from tol3d.cli.arguments import RunArgument, SceneArgument, TrustParts, scene_path
+from tol3d.cli.console import err_console, out_console, tell
+
+if TYPE_CHECKING:
+    from tol3d.result import Run
+
+
+class MeshFormat(StrEnum):
+    """Files that an export may write."""
+
+    STL = "stl"
+    PLY = "ply"
+    GLB = "glb"
+    STEP = "step"
+
+
+def check(scene: SceneArgument, trust_parts: TrustParts = False) -> None:
+    """Read a scene and show what it means: parts, moves, measures, contributors with their coefficients."""
+    from tol3d.report import check_report
+    from tol3d.simulate import effective_model, load
+
+    out_console.print(check_report(effective_model(load(scene_path(scene), trust_parts=trust_parts))))
+
+
+def schema() -> None:
+    """Print the JSON Schema of scenes, for editors."""
+    import json
+
+    from tol3d.scene import Scene
+
+    typer.echo(json.dumps(Scene.model_json_schema(), indent=2, ensure_ascii=False))
+
+
+def compare(
+    runs: Annotated[list[Path], typer.Argument(metavar="RUN...", help="Folders of finished runs.")],
+    out: Annotated[Path, typer.Option(help="The picture to write.")] = Path("comparison.png"),
+) -> None:
+    """Lay the histograms of both roads of one or several runs over each other, with the per-trial difference."""
+    from tol3d.report import comparison_report, draw_comparison
+    from tol3d.result import open_run
+
+    opened = [open_run(path) for path in runs]
+    draw_comparison(opened, out)
+    out_console.print(comparison_report(opened))
+    tell(f"picture: {out}")
+
+
+TrialOption = Annotated[int | None, typer.Option(min=0, help="This trial.")]
+WorstOption = Annotated[bool, typer.Option("--worst", help="The trial nearest to a limit, or furthest beyond it.")]
+NominalOption = Annotated[bool, typer.Option("--nominal", help="The build without deviations.")]
+MeanOption = Annotated[bool, typer.Option("--mean", help="The build with every contributor at its mean.")]
+MagnifyOption = Annotated[float, typer.Option(min=0.0, help="Scale the deviations and seat again.")]
+
+
+def export(
+    run: RunArgument,
+    trial: TrialOption = None,
+    worst: WorstOption = False,
+    nominal: NominalOption = False,
+    mean: MeanOption = False,
+    format: Annotated[
+        MeshFormat, typer.Option(help="stl and ply: a file a part; glb, step and any of a train: one.")
+    ] = MeshFormat.GLB,
+    magnify: MagnifyOption = 1.0,
+    out: Annotated[Path, typer.Option(help="Folder to write into.")] = Path("."),
+) -> None:
+    """Write the perturbed parts of a trial where they ended up."""
+    from tol3d.report import export_run
+    from tol3d.result import open_run
+
+    finished = open_run(run)
+    which = _which(finished, trial, worst=worst, nominal=nominal, mean=mean)
+    exported = export_run(finished, which, format.value, magnify=magnify, out=out)
+    for note in exported.notes:
+        err_console.print(note, style="yellow")
+    for path in exported.files:
+        tell(str(path))
+
+
+def view(
+    run: RunArgument,
+    trial: TrialOption = None,
+    worst: WorstOption = False,
+    nominal: NominalOption = False,
+    mean: MeanOption = False,
+    magnify: MagnifyOption = 1.0,
+    screenshot: Annotated[Path | None, typer.Option(help="Write a picture instead of opening a window.")] = None,
+) -> None:
+    """Show a trial in 3D, with its contact and gap marked."""
+    from tol3d.report.view import view_run
+    from tol3d.result import open_run
+
+    finished = open_run(run)
+    which = _which(finished, trial, worst=worst, nominal=nominal, mean=mean)
+    for note in view_run(finished, which, screenshot=screenshot, magnify=magnify):
+        err_console.print(note, style="yellow")
+    if screenshot:
+        tell(str(screenshot))
+
+
+def _which(run: "Run", trial: int | None, *, worst: bool, nominal: bool, mean: bool) -> "int | str":
+    """The one build that was asked for; the worst when nothing was said. Tells which trial that is."""
+    from tol3d.errors import InputError
+    from tol3d.report.heading import worst_words
+    from tol3d.worst import worst_trial
+
+    words = [word for word, said in (("worst", worst), ("nominal", nominal), ("mean", mean)) if said]
+    if len(words) + (trial is not None) > 1:
+        raise InputError("expected one of --trial, --worst, --nominal, --mean, got several")
+    if trial is not None or nominal or mean:
+        return words[0] if trial is None else trial
+    found = worst_trial(run)
+    unnamed = "" if worst else "no build named: "
+    err_console.print(f"{unnamed}trial {found}, the worst: {worst_words(run.summary['measures'])}")
+    return found

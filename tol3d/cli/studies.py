@@ -1,0 +1,175 @@
+"""The command that simulates."""
+
+import os
+import signal
+import sys
+import threading
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from tol3d.cli.arguments import EngineName, SamplerName, SceneArgument, TrustParts, scene_path, trials_or_auto
+from tol3d.cli.console import INTERRUPTED, LIMITS_FAILED, err_console, out_console, tell, warn
+
+if TYPE_CHECKING:
+    from types import FrameType
+
+    from tol3d.model import Model
+    from tol3d.result import Run
+
+CONTACTS_PER_MINUTE = {"fcl": 180_000, "exact": 40_000_000, "analytic": 40_000_000}
+"""By an engine on one core, draws and statistics included; only for the estimate before what takes a minute or more."""
+
+PICTURE = "histogram.png"
+PATIENCE = 5.0  # s; worker processes that will not end may hold up an interrupted command no longer
+
+
+def run(
+    context: typer.Context,
+    scene: SceneArgument,
+    trials: Annotated[
+        Any, typer.Option(parser=trials_or_auto, metavar="N|auto", help="Number of trials instead of the scene's.")
+    ] = None,
+    seed: Annotated[int | None, typer.Option(min=0, help="Seed instead of the scene's.")] = None,
+    engine: Annotated[EngineName | None, typer.Option(help="Engine instead of the scene's.")] = None,
+    sampler: Annotated[SamplerName | None, typer.Option(help="Sampler instead of the scene's.")] = None,
+    witness: Annotated[
+        int | None, typer.Option(min=0, help="Trials of an exact study that FCL measures again.")
+    ] = None,
+    out: Annotated[Path | None, typer.Option(help="The run's folder; runs/<scene> by default.")] = None,
+    workers: Annotated[
+        int | None, typer.Option(min=1, help="Threads or processes; by default one, or all cores for a long study.")
+    ] = None,
+    scheduler: Annotated[
+        str | None, typer.Option(metavar="ADDRESS", help="Run on the workers of this Dask scheduler.")
+    ] = None,
+    no_trials: Annotated[bool, typer.Option("--no-trials", help="Keep statistics only, no rows of trials.")] = False,
+    resume: Annotated[
+        bool, typer.Option("--resume", help="Go on with an interrupted run, or mend a damaged one; never start anew.")
+    ] = False,
+    no_picture: Annotated[bool, typer.Option("--no-picture", help=f"Draw no {PICTURE}.")] = False,
+    fail_on_limits: Annotated[bool, typer.Option(help="Exit with 1 when a trial is out of limits or failed.")] = False,
+    trust_parts: TrustParts = False,
+) -> None:
+    """Simulate a scene: analytic model and 3D simulation side by side."""
+    if workers is not None and scheduler is not None:
+        raise typer.BadParameter("--scheduler has its own workers; leave out --workers")
+    draw = context.with_resource(_drawing(wanted=not no_picture))  # it loads what it draws with beside all that follows
+
+    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
+
+    from tol3d.execution import Execution
+    from tol3d.report import run_report
+    from tol3d.simulate import Overrides, Watch, effective_model, load, run_scene, workers_for
+
+    path = scene_path(scene)
+    overrides = Overrides(trials, seed, engine.value if engine else None, sampler.value if sampler else None, witness)
+    folder = out or Path("runs") / path.stem
+    loaded = load(path, trust_parts=trust_parts)
+    model = effective_model(loaded, overrides)
+    for warning in model.warnings:
+        warn(warning)
+    if told := long_study(model):
+        err_console.print(told)
+    own = workers or workers_for(model)
+    columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn())
+    try:
+        with _stopped_in_order(), Progress(*columns, console=err_console, transient=True) as progress:
+            bar = progress.add_task("scene", total=model.study.trials)
+            finished = run_scene(
+                loaded,
+                overrides=overrides,
+                out=folder,
+                execution=Execution(own, scheduler, keep_trials=not no_trials, resume=resume),
+                watch=Watch(
+                    stage=lambda text: progress.update(bar, description=text),
+                    progress=lambda done: progress.advance(bar, done),
+                    finisher=draw,
+                ),
+            )
+    except KeyboardInterrupt:
+        err_console.print(_how_to_resume(folder))
+        raise typer.Exit(INTERRUPTED) from None
+    out_console.print(run_report(finished.summary))
+    picture = finished.path / PICTURE
+    tell(f"run: {finished.path}" + (f"    picture: {picture}" if picture.exists() else ""))
+    if fail_on_limits and _out_of_limits(finished):
+        err_console.print("limits failed", style="red")
+        raise typer.Exit(LIMITS_FAILED)
+
+
+def _how_to_resume(folder: Path) -> str:
+    """What is kept of an interrupted run, and the command that goes on with it."""
+    import shlex
+
+    from tol3d.result import partial_of
+
+    partial = partial_of(folder)
+    if not partial.exists():
+        return "stopped before anything was kept"
+    arguments = [argument for argument in sys.argv[1:] if argument != "--resume"]
+    return f"stopped; what was done is kept in {partial}. To go on:\n{shlex.join(['tol3d', *arguments, '--resume'])}"
+
+
+@contextmanager
+def _drawing(*, wanted: bool) -> "Iterator[Callable[[Path, Mapping[str, Any]], None]]":
+    """What draws the picture of a run; one that cannot be drawn costs a warning, not the run."""
+    from tol3d.report.picture import PictureError, drawing
+
+    if not wanted:
+        yield lambda place, summary: None
+        return
+    with drawing() as draw:
+
+        def finish(place: Path, summary: "Mapping[str, Any]") -> None:
+            try:
+                draw(summary, place / PICTURE)
+            except PictureError as error:
+                warn(f"{PICTURE} could not be drawn ({error}); the run is whole without it")
+
+        yield finish
+
+
+def long_study(model: "Model") -> str:
+    """What is said before a study that takes a minute of one core or more; nothing of a shorter one."""
+    from tol3d.block import positions_in_all
+
+    positions = positions_in_all(model)
+    minutes = model.study.trials * positions / CONTACTS_PER_MINUTE[model.study.engine]
+    if minutes <= 1.0:
+        return ""
+    each = "one position" if positions == 1 else f"{positions} positions"
+    return f"{each} a trial: about {minutes:.0f} min of one core"
+
+
+@contextmanager
+def _stopped_in_order() -> Iterator[None]:
+    """Within it Ctrl-C stops in order, and after a while in any case; behind it, it is what it was before.
+
+    What is on disk is whole at every moment.
+    """
+    last = threading.Timer(PATIENCE, os._exit, (INTERRUPTED,))
+    last.daemon = True
+
+    def interrupted(number: int, frame: "FrameType | None") -> None:
+        if not last.is_alive():
+            last.start()
+        raise KeyboardInterrupt
+
+    before = signal.signal(signal.SIGINT, interrupted)
+    try:
+        yield
+    finally:
+        last.cancel()
+        signal.signal(signal.SIGINT, before)
+
+
+def _out_of_limits(run: "Run") -> bool:
+    road = "analytic" if run.summary["engine"] == "analytic" else "geometric"
+    measures = run.summary["measures"].values()
+    samples = [measure["curve"][road] if measure["take"] == "curve" else measure[road] for measure in measures]
+    ppm = [sample[key] or 0.0 for sample in samples for key in ("below_limit_ppm", "above_limit_ppm", "failed_ppm")]
+    return any(ppm) or any(count for text, count in run.summary["status"].items() if text != "ok")
