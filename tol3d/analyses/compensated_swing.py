@@ -1,12 +1,12 @@
 """A tip over the swing of its arm: its error with and without the motor's correction, and which flanks work."""
 
+import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import brentq
 
 from tol3d.analyses.robots import Robots, State
 from tol3d.analytic import first_order
@@ -16,11 +16,13 @@ from tol3d.gears import Flank
 from tol3d.gears.flank import opposite
 from tol3d.measures import moved
 from tol3d.model import LostMotion, Measure, Model, Train
+from tol3d.model.measures import load_changes, over_swing
 from tol3d.model.trains import gravity_torque, loaded_flank
 
 Array = NDArray[np.float64]
 
-JUMP_XTOL: Final = 1e-6  # rad
+USUAL_REACH: Final = math.pi / 3
+USUAL_POSITIONS: Final = 25
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,10 +59,24 @@ def swings_of(model: Model, train: Train) -> Iterator[tuple[Measure, LostMotion]
             yield measure, kind
 
 
+def usual_swing(model: Model, train: Train) -> tuple[Measure, LostMotion] | None:
+    """So far to both sides of where the load changes side next to 0; None without gravity or a tip on the output."""
+    kinds = [measure.kind for measure in model.measures if isinstance(measure.kind, LostMotion)]
+    own = [kind for kind in kinds if (kind.train, kind.shaft) == (train.name, train.output)]
+    tip = next((kind.tip for kind in own if kind.tip), None)
+    changes = [*load_changes(model, train, (-math.pi, math.pi))]
+    if tip is None or not changes:
+        return None
+    middle = min(changes, key=abs)
+    shown = tuple(np.linspace(middle - USUAL_REACH, middle + USUAL_REACH, USUAL_POSITIONS).tolist())
+    measure = over_swing(model, train, tip, shown, f"{tip.point} of {tip.arm} over the swing")
+    return (measure, measure.kind) if isinstance(measure.kind, LostMotion) else None
+
+
 def swing_of(
     model: Model, engine: Engine | None, train: Train, robots: Robots, batch: Mapping[str, float]
 ) -> Swing | None:
-    """The first swing that the scene measures, of the same robots; None without one, or where the load stays.
+    """The first swing that the scene measures, or the usual one, of the same robots; None where the load stays.
 
     Args:
         model, engine: the scene's.
@@ -68,9 +84,10 @@ def swing_of(
         robots: with their own means.
         batch: mean of what is compensated, by road [arcmin].
     """
-    measure, kind = next(swings_of(model, train), (None, None))
-    if measure is None or kind is None or not any(kind.turned):
+    found = next(swings_of(model, train), None) or usual_swing(model, train)
+    if found is None or not any(found[1].turned):
         return None
+    measure, kind = found
     angle = replace(kind, quantity="lost_motion", tip=None, turned=())
     own = replace(measure, name=f"lost motion of {measure.name}", kind=angle)
     block = drawn_block(model, model.study.seed, 0, robots.count)
@@ -81,7 +98,7 @@ def swing_of(
         measure=measure.name,
         output=np.array(measure.positions.shown),
         turned=np.array(kind.turned),
-        jumps=tuple(_jumps(model, train, measure.positions.shown, kind.turned)),
+        jumps=kind.changes,
         curves={road: _curves(kind, road, lost[road][seated], robots.own[road][seated], batch[road]) for road in batch},
         flanks=dict(_flanks(model, train, kind, measure.positions.shown)),
     )
@@ -99,15 +116,6 @@ def _curves(kind: LostMotion, road: str, lost: Array, own: Array, batch: float) 
 def tip_error(kind: LostMotion, road: str, angle: Array) -> Array:
     """The tip's error [mm] by what is left of the lost motion [arcmin], as each road sees a tip move."""
     return first_order(kind, angle / ARCMIN) if road == "analytic" else moved(kind, angle / ARCMIN)
-
-
-def _jumps(model: Model, train: Train, shown: tuple[float, ...], turned: tuple[bool, ...]) -> Iterator[float]:
-    def torque(angle: float) -> float:
-        return gravity_torque(train, model.layout, model.arms, angle) or 0.0
-
-    for k in range(1, len(shown)):
-        if turned[k] != turned[k - 1]:
-            yield float(brentq(torque, shown[k - 1], shown[k], xtol=JUMP_XTOL))
 
 
 def _flanks(

@@ -141,12 +141,17 @@ def _(spec: TipErrorSpec, scene: Scene, name: str, model: Model) -> Measure:
             f"gravity does not turn {train.output!r} anywhere on this swing: its direction in the world, or the arm's "
             "centre of mass, lies along the axis",
         )
-    plain = lost_motion(model, train, arm.on, "tip_error", _tip(arm, spec.point))
-    changes = tuple(_changes(model, train, (shown[0], shown[-1])))
-    kind = replace(plain, turned=_turned([torque or 0.0 for torque in torques]), changes=changes)
-    rate = float(model.layout.shaft_turn[arm.on].rate)  # the arm is put on at 0, the first shaft at 0
-    angles = tuple(angle / rate for angle in shown)
-    positions = Positions("swing", 1, len(shown), angles=angles, shown=shown)
+    return over_swing(model, train, _tip(arm, spec.point), shown, name)
+
+
+def over_swing(model: Model, train: Train, tip: Tip, shown: tuple[float, ...], name: str) -> Measure:
+    """Error of a tip on a train's output over angles of the output [rad], somewhere in which gravity turns it."""
+    torques = [gravity_torque(train, model.layout, model.arms, angle) or 0.0 for angle in shown]
+    changes = tuple(load_changes(model, train, (shown[0], shown[-1])))
+    plain = lost_motion(model, train, train.output, "tip_error", tip)
+    kind = replace(plain, turned=_turned(torques), changes=changes)
+    rate = float(model.layout.shaft_turn[train.output].rate)  # the arm is put on at 0, the first shaft at 0
+    positions = Positions("swing", 1, len(shown), angles=tuple(angle / rate for angle in shown), shown=shown)
     return Measure(name, kind, positions, "curve")
 
 
@@ -203,9 +208,11 @@ def _positions(spec: LostMotionSpec | TipDisplacementSpec) -> Positions:
     return Positions("random", 1, 1)
 
 
-def _changes(model: Model, train: Train, swing: tuple[float, float]) -> Iterator[float]:
+def load_changes(model: Model, train: Train, swing: tuple[float, float]) -> Iterator[float]:
     """Where on a swing gravity's torque, a cos(angle) + b sin(angle), goes through 0 [rad]."""
     a, b = (gravity_torque(train, model.layout, model.arms, angle) or 0.0 for angle in (0.0, math.pi / 2))
+    if not a and not b:
+        return
     first = math.atan2(-a, b)
     turns = range(math.ceil((swing[0] - first) / math.pi), math.floor((swing[1] - first) / math.pi) + 1)
     yield from (first + turn * math.pi for turn in turns)
