@@ -203,7 +203,7 @@ def _(effect: ToothThickness, columns: Array, sums: Sums, model: Model) -> None:
 @_add.register
 def _(effect: TurningOffset, columns: Array, sums: Sums, model: Model) -> None:
     for seat in model.seats_of(effect.part):
-        sums.centre[:, seat] += effect.plane.turned(columns)
+        sums.centre[:, seat] += effect.plane.seen_from(-model.seats[seat].ahead).turned(columns)
 
 
 @_add.register

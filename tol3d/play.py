@@ -3,7 +3,7 @@
 Both roads go through here; what a single backlash is, each of them reads for itself.
 """
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -75,8 +75,7 @@ class Play:
     def bound(self) -> NDArray[np.bool_]:
         """Trials in which parallel ways bind each other at any position, (trials,)."""
         stages = self.measure.kind.stages if isinstance(self.measure.kind, LostMotion) else ()
-        ways = [stage for stage in stages if isinstance(stage, ParallelStage)]
-        tight = [np.any(self.of(stage) < -FREE, axis=1) for stage in ways]
+        tight = [np.any(self.of(stage) < -FREE, axis=1) for stage in _parallel(stages)]
         return np.any(tight, axis=0) if tight else np.zeros(len(self.deviations), dtype=bool)
 
     def of(self, stage: AnyStage) -> Array:
@@ -103,3 +102,11 @@ class Play:
 
     def _flank(self, stage: Stage) -> int | None:
         return None if stage.backlash is None else self.model.mesh(stage.backlash.mesh).working_flank
+
+
+def _parallel(stages: Iterable[AnyStage]) -> Iterator[ParallelStage]:
+    """All parallel ways among some stages, those on a way of others too."""
+    for stage in stages:
+        if isinstance(stage, ParallelStage):
+            yield stage
+            yield from (inner for way in stage.ways for inner in _parallel(way))

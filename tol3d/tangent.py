@@ -144,7 +144,7 @@ def _(effect: ToothThickness, own: slice, columns: Array, rates: _Rates, model: 
 @_put.register
 def _(effect: TurningOffset, own: slice, columns: Array, rates: _Rates, model: Model) -> None:
     for seat in model.seats_of(effect.part):
-        rates.centre[:, seat, own] += effect.plane.matrix.T
+        rates.centre[:, seat, own] += effect.plane.seen_from(-model.seats[seat].ahead).matrix.T
 
 
 @_put.register

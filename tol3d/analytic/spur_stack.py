@@ -18,11 +18,11 @@ class SpurStack(Stack[SpurPair]):
 
         In plane (about y): b sin(alpha_w); out of plane (about x): b cos(alpha_w); b the smaller face
         width. The larger of both counts, so the loss is one-sided and shifts the mean. A flank side that is read in
-        the middle of the face loses nothing.
+        the middle of the face loses nothing, nor do gears that lean alike: a driver's lean counts against its mate's.
         """
         sides = [self.reading.contact, self.reading.gap].count("face")
         half_width = min(self.pair.pinion.face_width, self.pair.wheel.face_width) / 2
-        per_tilt = sides * half_width * effect.per_length
+        per_tilt = sides * half_width * effect.per_length * (-1 if role == "driver" else 1)
         x, y = self.axis_of(effect, role)
         tilts = (per_tilt * self.sin * y, per_tilt * self.cos * x)
         return Term(contributor, max(map(abs, tilts)), tilts=tilts)

@@ -25,6 +25,7 @@ from tol3d.model import (
     Model,
     Reading,
     ReducerBacklash,
+    Seat,
     Temperature,
     ToothThickness,
     TurningOffset,
@@ -100,24 +101,35 @@ class Stack(Generic[Pair]):
         """j_bn [mm], (rows,), of deviations (rows, components) at the driver's turns [rad] (rows,)."""
         angles = (driver_angle, self.pair.driven_angle(driver_angle))
         total = np.full(len(deviations), self.nominal)
-        out_of_plane, in_plane = np.zeros(len(deviations)), np.zeros(len(deviations))
+        for term in (term for term in self.terms if term.tilts is None):
+            total = total + term.change(deviations[:, self.model.component_slices[term.contributor.name]], angles)
+        in_plane, across = self._lost_by_tilts(deviations)
+        return total - np.maximum(np.abs(in_plane), np.abs(across))
+
+    def _lost_by_tilts(self, deviations: Array) -> tuple[Array, Array]:
+        """What tilts in the plane of the axes and across it take from both flank sides together [mm], signed, (rows,).
+
+        The ends of the face at which the two count are the same on one flank side and opposite on the other.
+        """
+        in_plane, across = np.zeros(len(deviations)), np.zeros(len(deviations))
         for term in self.terms:
-            columns = deviations[:, self.model.component_slices[term.contributor.name]]
-            if term.tilts is None:
-                total = total + term.change(columns, angles)
-            else:
-                in_plane = in_plane + term.tilts[0] * columns[:, 0]
-                out_of_plane = out_of_plane + term.tilts[1] * columns[:, 0]
-        return total - np.maximum(np.abs(in_plane), np.abs(out_of_plane))
+            if term.tilts is not None:
+                own = deviations[:, self.model.component_slices[term.contributor.name].start]
+                in_plane = in_plane + term.tilts[0] * own
+                across = across + term.tilts[1] * own
+        return in_plane, across
 
     def aside(self, deviations: Array, driver_angle: Array) -> Array:
         """Way [mm], (rows,), by which the middle of the driven gear's play lies aside, along its flanks' normals.
 
         A gear that moves along the teeth's path at the mesh takes its mate with it, or leaves its own teeth behind:
-        cos(alpha_w) of that way. Positive turns the driven gear in the positive sense about its z.
+        cos(alpha_w) of that way. A gear that leans both in the plane of the axes and across it loses more on one flank
+        side, half a face times |a + b|, than on the other, |a - b|. Positive turns the driven gear in the positive
+        sense about its z.
         """
         angles = (driver_angle, self.pair.driven_angle(driver_angle))
-        total = np.zeros(len(deviations))
+        in_plane, across = self._lost_by_tilts(deviations)
+        total = (np.abs(in_plane + across) - np.abs(in_plane - across)) / 4
         for term in self.sideways:
             total = total + term.change(deviations[:, self.model.component_slices[term.contributor.name]], angles)
         return total
@@ -144,12 +156,21 @@ class Stack(Generic[Pair]):
 
     def _away_on_shaft(self, role: Role, mesh: str | None) -> float:
         """The same in its frame at rest on its shaft, or in that of the mesh where the deviation is the mesh's."""
-        return self._away(role) + (self.mesh.azimuth if role == "driver" and mesh is None else 0.0)
+        return self._away(role) + (self._seat(role).azimuth if mesh is None else 0.0)
+
+    def _seat(self, role: Role) -> Seat:
+        """The place of the gear of that role in this mesh."""
+        gear = self.mesh.driver if role == "driver" else self.mesh.driven
+        return self.model.seats[self.model.seat_index[self.mesh.name, gear]]
+
+    def _seen_turning(self, plane: Plane, azimuth: float, role: Role) -> tuple[float, float]:
+        """See `_seen`, of a deviation that turns with its gear."""
+        return _seen(plane.seen_from(-self._seat(role).ahead), azimuth)
 
     def axis_of(self, effect: AxisTilt, role: Role) -> tuple[float, float]:
         """x and y of the axis about which a gear tilts, in its frame at rest in the mesh."""
         x, y, _ = effect.axis
-        azimuth = self.mesh.azimuth if role == "driver" and effect.mesh is None else 0.0
+        azimuth = self._seat(role).azimuth if effect.mesh is None else 0.0
         cos, sin = math.cos(azimuth), math.sin(azimuth)
         return cos * x + sin * y, cos * y - sin * x
 
@@ -170,7 +191,7 @@ class Stack(Generic[Pair]):
         role = self.role(effect.part)
         if role is None:
             return None
-        along, sense = _seen(effect.plane, self._away(role))
+        along, sense = self._seen_turning(effect.plane, self._away(role), role)
         return Term(contributor, self._across(role), along=along, turns=role, sense=sense)
 
     @_term.register
@@ -212,7 +233,7 @@ class Stack(Generic[Pair]):
 
     @singledispatchmethod
     def _sideways(self, effect: SingleEffect, contributor: Contributor) -> Term | None:
-        """What moves both rests alike; thickness, tilts and temperature do not, to first order."""
+        """What moves both rests alike; thickness and temperature do not, to first order, for tilts see `aside`."""
         return None
 
     @_sideways.register
@@ -220,7 +241,7 @@ class Stack(Generic[Pair]):
         role = self.role(effect.part)
         if role is None:
             return None
-        along, sense = _seen(effect.plane, self._sideways_azimuth(role))
+        along, sense = self._seen_turning(effect.plane, self._sideways_azimuth(role), role)
         return Term(contributor, self.cos, along=along, turns=role, sense=sense)
 
     @_sideways.register
@@ -229,7 +250,7 @@ class Stack(Generic[Pair]):
         if role is None:
             return None
         azimuth = self._sideways_azimuth(role)
-        azimuth += self.mesh.azimuth if role == "driver" and effect.mesh is None else 0.0
+        azimuth += self._seat(role).azimuth if effect.mesh is None else 0.0
         if len(contributor.draw.components) == 2:
             along, sense = _seen(effect.plane, azimuth)
             return Term(contributor, self.cos * effect.factor, along=along, sense=sense)

@@ -154,7 +154,7 @@ class Tolerances:
             return spec.direction.at.internal
         mesh = self._mesh_of(gear, spec.mesh)
         towards = mesh.pair.mesh_azimuths[0 if gear == mesh.driver else 1]
-        towards += mesh.azimuth if gear == mesh.driver else 0.0
+        towards += mesh.azimuth if gear == mesh.driver else self.layout.seating(mesh.name).azimuth
         return towards + (math.pi if spec.direction == "apart" else _force_azimuth(mesh, gear))
 
     def _of_bearing(self, bearing: BearingSpec, spec: BearingClearanceSpec) -> Effect | _Directed:

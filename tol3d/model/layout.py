@@ -1,11 +1,13 @@
 """Where the shafts of a model lie, how they turn with each other, and which of them drive: found from its links.
 
 Shafts make trees; the first shaft of a tree is its root, which lies in the world's origin, its axis z. Where several
-links drive one shaft, the first of them places it and the others close parallel ways: their driven gears are clocked on
-it so that the teeth fit. A mesh has a world of its own, with its driver's axis at rest as z and the mate at +x.
+links drive one shaft, the first of them places it and the others close parallel ways: a gear of each is turned on its
+shaft until the teeth fit, the driven one, or the driver where the driven one is in other meshes too. A mesh has a world
+of its own, with its driver's axis at rest as z and the mate at +x.
 """
 
 import math
+from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
@@ -85,6 +87,24 @@ class Drive:
     meshes: tuple[str, ...]
 
 
+@dataclass(frozen=True)
+class Closing:
+    """How the driven gear of a mesh that closes parallel ways lies in it, for another link places its shaft.
+
+    Args:
+        azimuth: of its frame at rest in the mesh, in the frame of its axis at rest on its shaft [rad].
+        ahead: by which its tooth 0 stands ahead of the one that the mesh counts as such [rad], whole pitches.
+        gap: by which the teeth miss each other where neither gear can be turned on its shaft, an arc [mm].
+    """
+
+    azimuth: float = 0.0
+    ahead: float = 0.0
+    gap: float = 0.0
+
+
+PLACES = Closing()  # a mesh that places the shaft that it drives
+
+
 @dataclass(frozen=True, eq=False)
 class Layout:
     """All of it; mappings by name.
@@ -100,6 +120,7 @@ class Layout:
         world_from_mesh: (4, 4).
         shaft_from_gear: (4, 4), a gear's axis at rest on its shaft.
         carrying: the shaft that carries each gear, and where.
+        closed: meshes that close parallel ways.
         drives: the trees.
     """
 
@@ -113,7 +134,12 @@ class Layout:
     world_from_mesh: Mapping[str, Array]
     shaft_from_gear: Mapping[str, Array]
     carrying: Mapping[str, tuple[str, Carried]]
+    closed: Mapping[str, Closing]
     drives: tuple[Drive, ...]
+
+    def seating(self, mesh: str) -> Closing:
+        """How the driven gear of a mesh lies in it."""
+        return self.closed.get(mesh, PLACES)
 
     def drive_of(self, mesh: str) -> Drive:
         """The tree that a mesh belongs to."""
@@ -210,14 +236,19 @@ def layout_of(meshes: Sequence[Mesh], shafts: Sequence[Shaft], reducers: Sequenc
                 before = turn[link.driver]
                 turn[link.driven] = Turning(before.offset * float(link.rate), before.rate * link.rate)
                 world[link.driven] = world[link.driver] @ _along_z(cause.offset)
+    closed: dict[str, Closing] = {}
+    busy = Counter(gear for mesh in meshes for gear in (mesh.driver, mesh.driven))
     for link in closing:
         cause = by_name[link.name]
         if isinstance(cause, Mesh):
-            (_, driver), (shaft, driven) = carrying[cause.driver], carrying[cause.driven]
-            mesh_turn[cause.name] = _of_driver(cause, driver, turn[link.driver])
-            angle = float(cause.pair.driven_angle(np.array([mesh_turn[cause.name].offset]))[0])
-            carrying[cause.driven] = shaft, replace(driven, phase=angle - driven.sense * turn[shaft].offset)
-            world_from_mesh[cause.name] = world[link.driver] @ frames[cause.driver] @ _about_z(cause.azimuth)
+            pose = world[link.driver] @ frames[cause.driver] @ _about_z(cause.azimuth)
+            world_from_mesh[cause.name] = pose
+            azimuth = _turn_between(world[link.driven] @ frames[cause.driven], pose @ _wheel_in_mesh(cause))
+            (first, driver), (last, driven) = carrying[cause.driver], carrying[cause.driven]
+            clocked = _clocked(cause, (driver, turn[first]), (driven, turn[last]), azimuth, busy)
+            carrying[cause.driver], carrying[cause.driven] = (first, clocked[0]), (last, clocked[1])
+            mesh_turn[cause.name] = _of_driver(cause, clocked[0], turn[first])
+            closed[cause.name] = clocked[2]
     return Layout(
         links=links,
         driving=driving,
@@ -229,6 +260,7 @@ def layout_of(meshes: Sequence[Mesh], shafts: Sequence[Shaft], reducers: Sequenc
         world_from_mesh=world_from_mesh,
         shaft_from_gear=frames,
         carrying=carrying,
+        closed=closed,
         drives=tuple(_drives(meshes, links, root_of, mesh_turn)),
     )
 
@@ -305,6 +337,41 @@ def _of_driver(mesh: Mesh, own: Carried, shaft: Turning) -> Turning:
 def _of_driven(mesh: Mesh, own: Carried, driver: Turning) -> Turning:
     angle = float(mesh.pair.driven_angle(np.array([driver.offset]))[0])
     return Turning(own.sense * (angle - own.phase), own.sense * mesh.rate * driver.rate)
+
+
+def _clocked(
+    mesh: Mesh,
+    driver: tuple[Carried, Turning],
+    driven: tuple[Carried, Turning],
+    azimuth: float,
+    busy: Mapping[str, int],
+) -> tuple[Carried, Carried, Closing]:
+    """Driver and driven gear of a mesh that closes parallel ways, turned on their shafts until the teeth fit.
+
+    Args:
+        mesh: that mesh.
+        driver, driven: how they sit as written, and how their shafts turn.
+        azimuth: see Closing.
+        busy: in how many meshes each gear is; one that is in several fits the others already.
+    """
+    (first, turning), (last, turned) = driver, driven
+    told = _of_driver(mesh, first, turning).offset
+    stands = last.sense * turned.offset + last.phase - azimuth
+    ahead = stands - float(mesh.pair.driven_angle(np.array([told]))[0])
+    if busy[mesh.driven] == 1:
+        return first, replace(last, phase=last.phase - ahead), Closing(azimuth)
+    pitch = mesh.pair.wheel.angular_pitch
+    whole = round(ahead / pitch) * pitch
+    rest = ahead - whole
+    if busy[mesh.driver] == 1:
+        return replace(first, phase=first.phase + rest / float(mesh.rate)), last, Closing(azimuth, whole)
+    return first, last, Closing(azimuth, whole, abs(rest) * mesh.pair.working_radii[1])
+
+
+def _turn_between(first: Array, second: Array) -> float:
+    """Azimuth of the second frame's x axis in the first one [rad], their z axes the same."""
+    turn = first[:3, :3].T @ second[:3, :3]
+    return math.atan2(turn[1, 0], turn[0, 0])
 
 
 def _drives(

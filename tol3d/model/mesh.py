@@ -45,8 +45,10 @@ class Seat:
     Args:
         mesh, gear: names.
         azimuth: of the frame at rest in that mesh, in the frame of the gear's axis at rest on its shaft [rad].
+        ahead: by which the gear's tooth 0 stands ahead of the one that the mesh counts as such [rad].
     """
 
     mesh: str
     gear: str
     azimuth: float = 0.0
+    ahead: float = 0.0

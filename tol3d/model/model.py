@@ -128,11 +128,11 @@ class Model:
     @cached_property
     def seats(self) -> tuple[Seat, ...]:
         """Every gear in each of its meshes, driver and driven of one mesh after the other."""
-        return tuple(
-            seat
-            for mesh in self.meshes
-            for seat in (Seat(mesh.name, mesh.driver, mesh.azimuth), Seat(mesh.name, mesh.driven))
-        )
+        return tuple(seat for mesh in self.meshes for seat in self._seats_in(mesh))
+
+    def _seats_in(self, mesh: Mesh) -> tuple[Seat, Seat]:
+        own = self.layout.seating(mesh.name)
+        return Seat(mesh.name, mesh.driver, mesh.azimuth), Seat(mesh.name, mesh.driven, own.azimuth, own.ahead)
 
     @cached_property
     def seat_index(self) -> Mapping[tuple[str, str], int]:

@@ -155,7 +155,7 @@ def _loop(scene: Scene, link: str, shafts: Sequence[str]) -> SceneError:
 
 
 def refuse_misfits(scene: Scene, meshes: Sequence[Mesh], layout: Layout) -> None:
-    """Refuse parallel ways that would put the shaft where they meet in two places.
+    """Refuse parallel ways that would put the shaft where they meet in two places, or whose teeth would not fit.
 
     Raises:
         SceneError: at the mesh that closes them.
@@ -170,6 +170,13 @@ def refuse_misfits(scene: Scene, meshes: Sequence[Mesh], layout: Layout) -> None
                     f"the ways to {shaft!r} do not fit: here it lies {apart:.3f} mm and {math.degrees(askew):.3f} deg "
                     f"from where {layout.driving[shaft].name!r} puts it; look at azimuths, centre distances and places "
                     "on the shafts",
+                )
+            if layout.seating(mesh.name).gap > PLACE_AS_WRITTEN:
+                raise scene.refuse(
+                    ("moves", mesh.name),
+                    f"the teeth of {mesh.driver!r} and {mesh.driven!r} do not fit: they miss each other by "
+                    f"{layout.seating(mesh.name).gap:.3f} mm, and both are in other meshes too, so that neither can be "
+                    "turned on its shaft; look at azimuths and numbers of teeth",
                 )
 
 
