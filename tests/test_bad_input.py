@@ -511,14 +511,14 @@ TRAINS = {
         "measures.lost motion of the idler: expected another shaft than the one that is held, got 'motor'",
     ),
     "gravity along the axis": (
-        "robot_shoulder",
+        "robot_shoulder_swing",
         (("gravity: [0, -1, 0]", "gravity: [-3, 0, 0]"),),
         "tip error over the swing: ",
         "measures.tip error over the swing: gravity does not turn 'shoulder flange' anywhere on this swing: its "
         "direction in the world, or the arm's centre of mass, lies along the axis",
     ),
     "a swing without gravity": (
-        "robot_shoulder",
+        "robot_shoulder_swing",
         ((", gravity: [0, -1, 0]", ""),),
         "tip error over the swing: ",
         "measures.tip error over the swing: what turns the load over a swing is gravity: give 'shoulder swing' its "
