@@ -312,9 +312,9 @@ def test_a_chain_is_followed_through_a_link_from_its_driven_side():
     summary = shoulder()
     stages = summary["trains"]["shoulder swing"]["stages"]
     stages[0] |= {"driver": "reducer output", "driven": "brake"}
-    assert shafts_along(stages_of(summary["trains"]["shoulder swing"])) == ["brake", *SHAFTS[1:]]
+    assert shafts_along(stages_of(summary["trains"]["shoulder swing"]), "brake") == ["brake", *SHAFTS[1:]]
     stages[:] = stages[:1]
-    assert shafts_along(stages_of(summary["trains"]["shoulder swing"])) == ["reducer output", "brake"]
+    assert shafts_along(stages_of(summary["trains"]["shoulder swing"]), "brake") == ["brake", "reducer output"]
 
 
 # words and units ----------------------------------------------------------------------------------

@@ -379,3 +379,33 @@ def test_derivatives_are_those_of_two_simulations(scene: str, measure: str) -> N
     largest = np.abs(differences).max(axis=1, keepdims=True)
     assert (largest > 0).all()
     assert np.abs(rates - differences).max() < 1e-4 * largest.max()
+
+
+@pytest.mark.parametrize("teeth", [(18, 22, 33), (20, 31, 60), (25, 40, 25), (17, 29, 71)])
+def test_an_idler_straight_between_two_gears_takes_from_one_what_it_gives_to_the_other(
+    teeth: tuple[int, int, int], tmp_path: Path
+) -> None:
+    """Its eccentricity opens one mesh by as much normal backlash as it closes the other; at the last gear's flanks they
+    count alike where working angles are: nothing is left of it but rounding, and the closed form stands."""
+    first, idler, last = teeth
+    parts = "".join(
+        f"  {name}: {{kind: spur_gear, teeth: {z}, module: 1 mm, face_width: 8 mm}}\n"
+        for name, z in zip(("first", "idler", "last"), teeth, strict=True)
+    )
+    text = f"""scene: straight
+parts:
+{parts}tolerances:
+  thickness: {{kind: tooth_thickness, of: idler, distribution: {{kind: normal, lower: -60 um, upper: -40 um}}}}
+  eccentricity: {{kind: eccentricity, of: idler, distribution: {{kind: rayleigh, scale: 5 um}}}}
+moves:
+  a: {{kind: mesh, driver: first, driven: idler, centre_distance: {1.002 * (first + idler) / 2:.9f} mm}}
+  b: {{kind: mesh, driver: idler, driven: last, centre_distance: {1.002 * (idler + last) / 2:.9f} mm}}
+  train: {{kind: train, driven: first, output: last}}
+measures:
+  lost motion: {{kind: lost_motion, of: train}}
+study: {{trials: 50, seed: 1, engine: analytic}}
+"""
+    form = form_of(model_of(tmp_path, text), "lost motion")
+    shares = {share.name: share.variance for share in form.shares}
+    assert shares["eccentricity"] <= 1e-12 * shares["thickness"]
+    assert form.sigma == pytest.approx(math.sqrt(shares["thickness"]), rel=1e-9)

@@ -129,9 +129,14 @@ def play_of(model: Model, measure: Measure, seats: Seats) -> Play:
     return Play(model, measure, seats.block.deviations, read)
 
 
+def analytic_play(model: Model, measure: Measure, block: Block) -> Play:
+    """The backlashes of a measure on the analytic road."""
+    return Play(model, measure, block.deviations, _Stacks(model, block))
+
+
 def analytic_values(model: Model, measure: Measure, block: Block) -> Array:
     """Values of a measure on the analytic road [mm or rad], (trials, positions)."""
-    return first_order(measure.kind, Play(model, measure, block.deviations, _Stacks(model, block)).free())
+    return first_order(measure.kind, analytic_play(model, measure, block).free())
 
 
 def analytic_backlashes(model: Model, measure: Measure, block: Block) -> Iterator[tuple[Backlash, Array]]:
@@ -243,7 +248,8 @@ def _simulate_piece(model: Model, engine: Engine | None, block: Block) -> dict[s
     for measure in model.measures:
         values = first_order(measure.kind, Play(model, measure, block.deviations, stacks).free())
         columns[f"analytic:{measure.name}"] = taken(measure, values) * measure.per_internal
-    columns.update(_stage_columns(model, "analytic", block, stacks))
+    for measure in staged_measures(model):
+        columns.update(_stage_columns("analytic", Play(model, measure, block.deviations, stacks)))
     if engine is None:
         return columns
     seen = (
@@ -270,12 +276,9 @@ def stage_column(road: str, measure: Measure, link: str) -> str:
     return f"{road}:{measure.name}:{link} [arcmin]"
 
 
-def _stage_columns(model: Model, road: str, block: Block, read: Read) -> dict[str, Array]:
-    return {
-        stage_column(road, measure, link): values[:, 0] * ARCMIN
-        for measure in staged_measures(model)
-        for link, _, values in Play(model, measure, block.deviations, read).parts()
-    }
+def _stage_columns(road: str, play: Play) -> dict[str, Array]:
+    """What the stages of a measure leave free, by column [arcmin]."""
+    return {stage_column(road, play.measure, link): values[:, 0] * ARCMIN for link, _, values in play.parts()}
 
 
 _STATUS_TEXTS = np.array([STATUS_TEXT[code] for code in range(len(STATUS_TEXT))])
@@ -293,14 +296,19 @@ class _Seen:
 def _seen(
     model: Model, block: Block, read: Read, contacts: dict[str, NDArray[np.generic]], status: NDArray[np.int8]
 ) -> _Seen:
-    values, bound = {}, np.zeros(len(block), dtype=bool)
+    values: dict[str, Array] = {}
+    stages: dict[str, Array] = {}
+    bound, staged = np.zeros(len(block), dtype=bool), staged_measures(model)
     for measure in model.measures:
         play = Play(model, measure, block.deviations, read)
         tight = play.bound()
         values[measure.name] = np.where(tight[:, None], np.nan, moved(measure.kind, play.free()))
+        if measure in staged:
+            own = _stage_columns("geometric", play)
+            stages |= {name: np.where(tight, np.nan, column) for name, column in own.items()}
         bound |= tight
     status = np.where(bound & (status == OK), INTERFERES, status).astype(np.int8)
-    return _Seen(values, contacts | _stage_columns(model, "geometric", block, read), status)
+    return _Seen(values, contacts | stages, status)
 
 
 def _measured(model: Model, engine: Engine, block: Block) -> _Seen:

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.analytic import per_normal_backlash
-from tol3d.block import Columns, stage_column, staged_measures
+from tol3d.block import ARCMIN, Columns, stage_column, staged_measures
 from tol3d.gears import LEFT
 from tol3d.model import Backlash, LostMotion, Measure, Model
 from tol3d.model.measure import AnyStage, ParallelStage, Tip
@@ -16,7 +16,6 @@ from tol3d.statistics import FeatureSums, Moments
 
 Array = NDArray[np.float64]
 
-ARCMIN = 10800 / np.pi  # in a radian
 ENDS = ("low_3sigma", "mean", "high_3sigma")
 
 
@@ -59,7 +58,7 @@ StageTallies = Mapping[str, Mapping[str, Stages]]
 
 
 def stages_of(measure: Measure) -> tuple[AnyStage, ...]:
-    """The stages that a train's measure adds up."""
+    """The stages that a train's measure adds up, from the held shaft on."""
     if not isinstance(measure.kind, LostMotion):
         raise TypeError(f"{measure.name} has no stages")
     return measure.kind.stages
@@ -99,7 +98,7 @@ def _train(model: Model, measure: Measure, kind: LostMotion, roads: Mapping[str,
     tallied = stages_of(measure)
     found = {road: _of_road(tallied, own) for road, own in roads.items()}
     published = _published(model, kind, found["analytic"])
-    tip = _tip_of(model, train.name)
+    tip = _tip_of(model, kind)
     return {
         "driven": train.driven,
         "held": train.held,
@@ -128,9 +127,11 @@ def _train(model: Model, measure: Measure, kind: LostMotion, roads: Mapping[str,
     }
 
 
-def _tip_of(model: Model, train: str) -> Tip | None:
+def _tip_of(model: Model, kind: LostMotion) -> Tip | None:
+    """The first point that the scene measures on the shaft that is read."""
     kinds = (measure.kind for measure in model.measures)
-    return next((kind.tip for kind in kinds if isinstance(kind, LostMotion) and kind.train == train and kind.tip), None)
+    read = (own for own in kinds if isinstance(own, LostMotion) and (own.train, own.shaft) == (kind.train, kind.shaft))
+    return next((own.tip for own in read if own.tip), None)
 
 
 def _link(model: Model, stage: AnyStage) -> dict[str, Any]:
@@ -174,8 +175,10 @@ def _of_road(stages: Sequence[AnyStage], tallied: Stages) -> dict[str, Ends]:
 
 
 def _published(model: Model, kind: LostMotion, ours: Mapping[str, Ends]) -> dict[str, dict[str, Ends]]:
-    """Columns of others that tell every mesh of a train, by link [arcmin]; a reducer is taken as we have it."""
-    found = {}
+    """Columns of others that tell every mesh of a train, by link [arcmin]; what is no single mesh is as we have it."""
+    found: dict[str, dict[str, Ends]] = {}
+    if not any(stage.backlash for stage in kind.stages):
+        return found
     for column in model.published:
         ends = {
             stage.link: ours[stage.link] if stage.backlash is None else _published_ends(model, column, stage.backlash)

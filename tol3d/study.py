@@ -7,9 +7,10 @@ from typing import Any
 
 from pydantic import ValidationError
 
-from tol3d.block import analytic_backlashes, mean_block, nominal_block
+from tol3d.block import analytic_backlashes, analytic_play, mean_block, nominal_block
 from tol3d.errors import InputError, SceneError
-from tol3d.model import Backlash, Measure, Model, model_from_scene
+from tol3d.model import Backlash, LostMotion, Measure, Model, model_from_scene
+from tol3d.model.measure import ParallelStage
 from tol3d.scene import Scene, load_scene, scene_from_python
 
 ZERO_BACKLASH = 1e-9  # mm or rad; nominal backlash zero is legal, and closed forms round to 1e-14
@@ -70,10 +71,10 @@ def _unsaid_by(given: Mapping[str, Any]) -> set[str]:
 
 
 def refuse_interfering_mean(scene: Scene, model: Model) -> None:
-    """Refuse a mesh whose non-working flanks overlap with every contributor at its mean.
+    """Refuse a mesh whose non-working flanks overlap with every contributor at its mean, and ways that bind then.
 
     Raises:
-        SceneError: at the mesh's centre distance, with the backlash of nominal and mean build.
+        SceneError: at the mesh with its backlash, or at the train of the ways, of nominal and mean build.
     """
     for measure in model.measures:
         mean, nominal = mean_block(model, measure), nominal_block(model)
@@ -81,6 +82,8 @@ def refuse_interfering_mean(scene: Scene, model: Model) -> None:
             if float(values.min()) < -ZERO_BACKLASH:
                 before = dict(analytic_backlashes(model, measure, nominal))[backlash]
                 raise _interfering(scene, model, measure, backlash, (float(values.min()), float(before.min())))
+        if isinstance(measure.kind, LostMotion) and analytic_play(model, measure, mean).bound().any():
+            raise _binding(scene, model, measure, measure.kind)
 
 
 def _interfering(
@@ -94,4 +97,19 @@ def _interfering(
         ("moves", mesh.name),
         f"the teeth interfere at the mean build: {name} is {mean:.3f} {own.unit} there "
         f"(nominal {nominal:.3f} {own.unit}); {mesh.pair.remedy}",
+    )
+
+
+def _binding(scene: Scene, model: Model, measure: Measure, kind: LostMotion) -> SceneError:
+    ways = ", ".join(stage.link for stage in kind.stages if isinstance(stage, ParallelStage))
+    angle = replace(measure, kind=replace(kind, quantity="lost_motion", tip=None, turned=()))
+    mean, nominal = (
+        float(analytic_play(model, angle, block).free().min()) * angle.per_internal
+        for block in (mean_block(model, angle), nominal_block(model))
+    )
+    return scene.refuse(
+        ("moves", kind.train),
+        f"the parallel ways {ways} bind each other at the mean build: the lost motion of {kind.shaft} is {mean:.3f} "
+        f"{angle.unit} there (nominal {nominal:.3f} {angle.unit}); thin the teeth, or set the gears otherwise on their "
+        "shafts",
     )

@@ -10,12 +10,14 @@ from tol3d.result import Run
 
 Array = NDArray[np.float64]
 
+LARGEST_IS_WORST = frozenset(("lost_motion", "tip_displacement", "tip_error"))  # of measures without limits
+
 
 def worst_trial(run: Run) -> int:
     """Index of the worst trial among those that seated; a curve counts by its extremes.
 
-    Nearness is counted in standard deviations of each measure. Without any limit the smallest value of
-    the first measure is the worst.
+    Nearness is counted in standard deviations of each measure. Without any limit the smallest backlash is the worst,
+    or the largest lost motion or error of a tip, of the first measure.
     """
     measures: Mapping[str, Mapping[str, Any]] = run.summary["measures"]
     road = "geometric" if run.summary["engine"] != "analytic" else "analytic"
@@ -34,10 +36,10 @@ def _margin(run: Run, road: str, name: str, measure: Mapping[str, Any]) -> Array
     values = np.asarray(run.columns(column)[column], dtype=np.float64).reshape(run.trials, -1)
     lower, upper = _limits(measure)
     below, above = values.min(axis=1), values.max(axis=1)  # nan where a position of a curve did not seat
-    margin = np.full(run.trials, np.inf)
-    if lower is not None or upper is None:
-        margin = below - (lower or 0.0)
-    if upper is not None:
-        margin = np.minimum(margin, upper - above)
-    spread = float(np.nanstd(below)) if np.isfinite(below).any() else 1.0
+    if (lower, upper) == (None, None):
+        margin = -above if measure["kind"] in LARGEST_IS_WORST else below
+    else:
+        margin = below - lower if lower is not None else np.full(run.trials, np.inf)
+        margin = np.minimum(margin, upper - above) if upper is not None else margin
+    spread = float(np.nanstd(margin)) if np.isfinite(margin).any() else 1.0
     return np.where(np.isnan(margin), np.inf, margin / (spread or 1.0))

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.analyses.compensated_swing import Swing, swing_of, swings_of, tip_error
-from tol3d.analyses.correction import Correction, at_shaft, corrections_of, stages_of
+from tol3d.analyses.correction import Correction, at_shaft, corrections_of
 from tol3d.analyses.robots import Robots, State, left_of_the_mean, simulated_robots
 from tol3d.analytic import ClosedForm, Share, closed_form
 from tol3d.block import ARCMIN
@@ -28,6 +28,7 @@ from tol3d.model.measures import lost_motion
 from tol3d.scene import Scene
 from tol3d.scene.nearest import hint
 from tol3d.simulate import Overrides, effective_model
+from tol3d.stages import stages_of
 from tol3d.study import AS_WRITTEN
 from tol3d.task import engine_of, strips_for
 
@@ -188,7 +189,8 @@ def _model_of(scene: Scene, question: CompensationQuestion, overrides: Overrides
     model = effective_model(scene, overrides)
     if model.study.trials <= MOST_ROBOTS and not model.study.until:
         return model
-    return effective_model(scene, replace(overrides, trials=min(model.study.trials, MOST_ROBOTS)))
+    most = max(model.study.replicates, MOST_ROBOTS - MOST_ROBOTS % model.study.replicates)
+    return effective_model(scene, replace(overrides, trials=min(model.study.trials, most)))
 
 
 def _train_of(scene: Scene, model: Model, name: str | None) -> Train:

@@ -12,7 +12,7 @@ from tol3d.analytic import closed_form
 from tol3d.block import ARCMIN
 from tol3d.model import Backlash, LostMotion, Measure, Model, Train
 from tol3d.model.measure import AnyStage, ParallelStage
-from tol3d.stages import stage_tallies, train_summaries
+from tol3d.stages import stage_tallies, stages_of, train_summaries
 
 Ends = Mapping[str, Any]
 
@@ -54,11 +54,6 @@ def corrections_of(
             stage["link"]: stage["published"].get(column, stage["roads"]["analytic"]) for stage in summary["stages"]
         }
         yield column, _correction(model, train, measure, compensated, known)
-
-
-def stages_of(measure: Measure) -> tuple[AnyStage, ...]:
-    """The stages of a train's measure, from the held shaft on."""
-    return measure.kind.stages if isinstance(measure.kind, LostMotion) else ()
 
 
 def _form(model: Model, measure: Measure, stage: AnyStage) -> Ends:

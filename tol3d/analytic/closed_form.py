@@ -70,7 +70,7 @@ def closed_form(model: Model, measure: Measure) -> ClosedForm | None:
     return ClosedForm(
         nominal=nominal,
         mean=nominal + sum(share.mean for share in together),
-        sigma=math.sqrt(sum(share.variance for share in together)),
+        sigma=_root(sum(share.variance for share in together)),
         shares=together,
     )
 
@@ -180,16 +180,21 @@ def _linear(model: Model, measure: Measure, contributor: Contributor, terms: Seq
         return _Linear(Share(contributor.name, coefficient, coefficient * law.mean, coefficient**2 * law.variance))
     square = law.variance + law.mean**2
     if draw.direction is None:
-        worst = math.sqrt(sum(a.amplitude * b.amplitude * _alike(a, b) for a in own for b in own))
+        worst = _root(sum(a.amplitude * b.amplitude * _alike(a, b) for a in own for b in own))
         return _Linear(Share(contributor.name, worst, 0.0, worst**2 * square / 2))
     waves = tuple((term.amplitude, term.phase - draw.direction, term.rate) for term in own)
     resting = sum(amplitude * math.cos(phase) for amplitude, phase, rate in waves if not rate)
     turning = tuple(wave for wave in waves if wave[2])
     squares = sum(a * b * _product(p, q, v, w) for a, p, v in turning for b, q, w in turning)
     variance = resting**2 * law.variance + squares * square
-    coefficient = resting if not turning else math.sqrt(resting**2 + 2 * squares)
+    coefficient = resting if not turning else _root(resting**2 + 2 * squares)
     share = Share(contributor.name, coefficient, resting * law.mean, variance)
     return _Linear(share, tuple((amplitude * law.mean, phase, rate) for amplitude, phase, rate in turning))
+
+
+def _root(square: float) -> float:
+    """Of a sum whose terms may cancel to a rounding error below 0, as those of an idler between two gears facing it."""
+    return math.sqrt(max(square, 0.0))
 
 
 def _alike(first: _ReadTerm, second: _ReadTerm) -> float:

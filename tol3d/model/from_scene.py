@@ -110,7 +110,7 @@ def _loaded(scene: Scene, mesh: Mesh, trains: tuple[Train, ...], layout: Layout,
     root = layout.root_of[layout.carrying[mesh.driver][0]]
     own = [train for train in trains if train.driven == root]
     through = [t for t in own if mesh.name in {link.name for link in links_of(layout.way(t.driven, t.output))}]
-    for train in through or own:
+    for train in through or [replace(train, gravity=None) for train in own]:  # gravity does not load a branch
         return replace(mesh, working_flank=loaded_flank(mesh, train, layout, arms))
     raise scene.refuse(
         ("moves", mesh.name, "working_flank"),

@@ -39,6 +39,8 @@ from tol3d.scene.measures import (
 
 BacklashSpec = NormalBacklashSpec | CircumferentialBacklashSpec | AngularBacklashSpec
 
+SAME_ANGLE = 1e-9  # rad; a load that changes sides at an end of a swing does not on it
+
 
 def measure_of(scene: Scene, name: str, model: Model) -> Measure:
     """A measure of a scene on its model, which has all but its measures.
@@ -130,7 +132,7 @@ def _(spec: TipErrorSpec, scene: Scene, name: str, model: Model) -> Measure:
         raise scene.refuse(
             ("measures", name, "arm"), f"expected an arm on the output {train.output!r}, got one on {arm.on!r}"
         )
-    torques = [gravity_torque(train, model.layout, model.arms, angle) for angle in shown]
+    torques = [gravity_torque(train, model.layout, model.arms, angle) for angle in (0.0, math.pi / 2)]
     if torques[0] is None:
         raise scene.refuse(
             ("measures", name), f"what turns the load over a swing is gravity: give {train.name!r} its direction"
@@ -147,7 +149,8 @@ def _(spec: TipErrorSpec, scene: Scene, name: str, model: Model) -> Measure:
 def over_swing(model: Model, train: Train, tip: Tip, shown: tuple[float, ...], name: str) -> Measure:
     """Error of a tip on a train's output over angles of the output [rad], somewhere in which gravity turns it."""
     torques = [gravity_torque(train, model.layout, model.arms, angle) or 0.0 for angle in shown]
-    changes = tuple(load_changes(model, train, (shown[0], shown[-1])))
+    ends = (shown[0] + SAME_ANGLE, shown[-1] - SAME_ANGLE)
+    changes = tuple(load_changes(model, train, ends))
     plain = lost_motion(model, train, train.output, "tip_error", tip)
     kind = replace(plain, turned=_turned(torques), changes=changes)
     rate = float(model.layout.shaft_turn[train.output].rate)  # the arm is put on at 0, the first shaft at 0
@@ -220,7 +223,7 @@ def load_changes(model: Model, train: Train, swing: tuple[float, float]) -> Iter
 
 def _turned(torques: list[float]) -> tuple[bool, ...]:
     """Where the torque has another sense than at the start; without torque the flanks stay where they were."""
-    first = math.copysign(1.0, next(torque for torque in torques if torque))
+    first = math.copysign(1.0, next((torque for torque in torques if torque), 1.0))
     turned, now = [], first
     for torque in torques:
         now = math.copysign(1.0, torque) if torque else now

@@ -231,7 +231,10 @@ def _seats(seen: Replay, rows: Mapping[str, int]) -> Mapping[str, MeshSeat]:
 
 
 def _along_shafts(seen: Replay) -> Mapping[str, MeshSeat]:
-    """Meshes at the trial's position, each driver turned to where the links before it came to rest."""
+    """Meshes at the trial's position, each driver turned to where the links before it came to rest.
+
+    Where ways meet, the first link says where the shaft rests; how gears are clocked on their shafts is not shown.
+    """
     layout, angles, meshings = seen.model.layout, seen.block.random_angle, seen.seats.meshings
     meshes = {mesh.name: mesh for mesh in seen.model.meshes}
     ahead: dict[str, float] = {}  # of its nominal angle, by shaft [rad]
@@ -240,14 +243,14 @@ def _along_shafts(seen: Replay) -> Mapping[str, MeshSeat]:
         before = ahead.get(link.driver, 0.0)
         mesh = meshes.get(link.name)
         if mesh is None:
-            ahead[link.driven] = before * float(link.rate)
+            ahead.setdefault(link.driven, before * float(link.rate))
             continue
         known = meshings[_own_key(seen, mesh)]
         meshing = Meshing(known.engine, seen.model, mesh, seen.seats.build, known.reading)
         (_, driver), (_, driven) = layout.carrying[mesh.driver], layout.carrying[mesh.driven]
         seats[mesh.name] = meshing.seat(angles[mesh.name] + driver.sense * before)
         off = seats[mesh.name].driven_angle - mesh.pair.driven_angle(angles[mesh.name])
-        ahead[link.driven] = driven.sense * float(off[0])
+        ahead.setdefault(link.driven, driven.sense * float(off[0]))
     return seats
 
 

@@ -57,7 +57,7 @@ def chain_figure(summary: Summary, train_name: str) -> Figure:
     train = summary["trains"][train_name]
     stages = stages_of(train)
     lines = sum_lines(train, summary)
-    rows = rows_of(stages, ARM if train["lever_mm"] is not None else 0.0, 0.0) if stages else []
+    rows = rows_of(stages, train["held"], ARM if train["lever_mm"] is not None else 0.0, 0.0) if stages else []
     height = HEAD + ROW * len(rows) + height_of_sums(lines)
     figure = new_figure(WIDTH, height)
     figure.set_layout_engine("none")

@@ -87,11 +87,12 @@ class ChainRow:
         return self.shaft_at(column) + self.shaft / 2, self.shaft_at(column + 1) - self.shaft / 2
 
 
-def rows_of(stages: Sequence[Stage], arm: float, top: float) -> list[ChainRow]:
+def rows_of(stages: Sequence[Stage], held: str, arm: float, top: float) -> list[ChainRow]:
     """The chain in as few rows as it needs, about as many links in each.
 
     Args:
         stages: of the train, one at least.
+        held: the shaft that it begins with.
         arm: room behind the last shaft [inch].
         top: upper end of the first row [inch].
     """
@@ -99,7 +100,7 @@ def rows_of(stages: Sequence[Stage], arm: float, top: float) -> list[ChainRow]:
     columns = -(-len(stages) // count)
     shaft = SHAFT if columns <= ROOMY else NARROW_SHAFT
     room = WIDTH - CAPTIONS - 2 * EDGE - shaft - arm
-    shafts = shafts_along(stages)
+    shafts = shafts_along(stages, held)
     senses = list(accumulate((-1 if stage.opposite else 1 for stage in stages), lambda a, b: a * b, initial=1))
     starts = range(0, len(stages), columns)
     return [

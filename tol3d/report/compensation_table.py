@@ -5,7 +5,6 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Final
 
 from rich.console import Group, RenderableType
-from rich.padding import Padding
 from rich.text import Text
 
 from tol3d.analyses.compensated_swing import Swing
@@ -15,7 +14,7 @@ from tol3d.analyses.robots import STATES, State
 from tol3d.analyses.spread import Spread
 from tol3d.gears import LEFT, Flank
 from tol3d.report.number import NOTHING, given_text, tip_mm, value_text
-from tol3d.report.sheet import Heading, Row, Sheet
+from tol3d.report.sheet import Heading, Row, Sheet, note
 
 COLUMN_WORDS: Final[Mapping[str, str]] = {"analytic": "analytic, same trials", "geometric": "3D simulation"}
 STATE_WORDS: Final[Mapping[State, str]] = {
@@ -57,7 +56,7 @@ def compensation_report(found: Sequence[Compensation]) -> Group:
     for own in found:
         blocks += [_title(own), Text(_words(own), style="dim")]
     blocks += [*_section("Δφ_c, the turn of the motor that makes good for the lost motion"), corrections_table(found)]
-    blocks += [_note(note) for note in _correction_notes(found)]
+    blocks += [note(text) for text in _correction_notes(found)]
     for unit, words in UNIT_WORDS.items():
         shown = [own for own in found if unit in own.units]
         if shown:
@@ -65,12 +64,12 @@ def compensation_report(found: Sequence[Compensation]) -> Group:
                 *_section(f"what is left {words} at a random position, {_roads(shown)}"),
                 left_table(shown, unit),
             ]
-    blocks += [_note(note) for note in LEFT_NOTES]
+    blocks += [note(text) for text in LEFT_NOTES]
     blocks += [*_section("the worst case: every stage at its high, less its mean where that is compensated")]
-    blocks += [worst_table(found), *(_note(note) for note in _worst_notes(found))]
+    blocks += [worst_table(found), *(note(text) for text in _worst_notes(found))]
     swings = [own for own in found if own.swing]
     if swings:
-        blocks += [*_section("where the load changes side over the swing"), swing_table(swings), _note(SWING_MEANS)]
+        blocks += [*_section("where the load changes side over the swing"), swing_table(swings), note(SWING_MEANS)]
     return Group(*blocks)
 
 
@@ -89,10 +88,6 @@ def _words(own: Compensation) -> str:
 
 def _section(text: str) -> tuple[str, Text]:
     return "", Text(text, style="bold cyan")
-
-
-def _note(text: str) -> Padding:
-    return Padding(Text(text, style="dim"), (0, 0, 0, 1))
 
 
 def _roads(found: Sequence[Compensation]) -> str:

@@ -4,6 +4,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from tol3d.report.number import given_text, unit_suffix
+from tol3d.worst import LARGEST_IS_WORST
 
 QUANTITY_WORDS: Mapping[str, str] = {
     "normal_backlash": "normal backlash",
@@ -87,12 +88,14 @@ def worst_words(measures: Mapping[str, Mapping[str, Any]]) -> str:
 
     >>> worst_words({"free play": {"lower_limit": 20.0, "upper_limit": None}})
     'the nearest to a limit of free play, or the furthest beyond it'
-    >>> worst_words({"free play": {"lower_limit": None, "upper_limit": None}})
+    >>> worst_words({"free play": {"lower_limit": None, "upper_limit": None, "kind": "normal_backlash"}})
     'the smallest free play, for there are no limits'
     """
     limited = [name for name, m in measures.items() if (m["lower_limit"], m["upper_limit"]) != (None, None)]
     if not limited:
-        return f"the smallest {next(iter(measures))}, for there are no limits"
+        name, measure = next(iter(measures.items()))
+        word = "largest" if measure["kind"] in LARGEST_IS_WORST else "smallest"
+        return f"the {word} {name}, for there are no limits"
     return f"the nearest to a limit of {' or '.join(limited)}, or the furthest beyond it"
 
 

@@ -88,6 +88,15 @@ def tip_mm(arcmin: float | None, lever_mm: float | None) -> float | None:
     return None if arcmin is None or lever_mm is None else arcmin * RAD_PER_ARCMIN * lever_mm
 
 
+def tip_arcmin(mm: float | None, lever_mm: float | None) -> float | None:
+    """The small turn that moves a point at a lever so far [arcmin]; None for a point on the axis.
+
+    >>> round(tip_arcmin(0.2219, 763.0), 3)
+    1.0
+    """
+    return None if mm is None or not lever_mm else mm / (RAD_PER_ARCMIN * lever_mm)
+
+
 def percent_text(value: float | None) -> str:
     """A share in percent, one decimal.
 

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from rich import box
 from rich.cells import cell_len
 from rich.console import Console, ConsoleOptions, RenderResult
+from rich.padding import Padding
 from rich.table import Table
 from rich.text import Text
 
@@ -30,6 +31,11 @@ class Row:
     label: str
     cells: Sequence[str]
     style: str = ""
+
+
+def note(text: str) -> Padding:
+    """A line below a table."""
+    return Padding(Text(text, style="dim"), (0, 0, 0, 1))
 
 
 @dataclass(frozen=True)

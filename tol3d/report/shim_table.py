@@ -4,7 +4,6 @@ from collections.abc import Iterator, Mapping
 from typing import Final
 
 from rich.console import Group, RenderableType
-from rich.padding import Padding
 from rich.text import Text
 
 from tol3d.analyses.shim import ShimPlan, closing_of
@@ -13,7 +12,8 @@ from tol3d.analyses.shimmed import MINIMUM_WORDS, UM, Shimmed
 from tol3d.analyses.stock import thickness_text
 from tol3d.report.heading import heading
 from tol3d.report.number import NOTHING, value_text
-from tol3d.report.sheet import Heading, Row, Sheet
+from tol3d.report.sheet import Heading, Row, Sheet, note
+from tol3d.report.table import LOST_MOTION_ROWS
 
 ROWS: Final[Mapping[str, str]] = {
     "low_3sigma": "low (−3 sigma)",
@@ -22,7 +22,6 @@ ROWS: Final[Mapping[str, str]] = {
     "p0.135": "0.135 % quantile",
     "sample_min": "smallest",
 }
-LOST_MOTION_ROWS: Final[Mapping[str, str]] = {"low_3sigma": "low", "mean": "mean", "high_3sigma": "high"}
 SIDES: Final[Mapping[str, str]] = {
     "behind": "behind {}, moves it towards the apex: closes",
     "in_front": "in front of {}, moves it away from the apex: opens",
@@ -33,7 +32,7 @@ def shim_report(plan: ShimPlan) -> Group:
     """Where the shims go, how thick they are, what they do to the backlash."""
     blocks: list[RenderableType] = [_title(plan), _words(plan), ""]
     blocks += [Text(f"  {shim.name}: {_place(shim)}") for shim in plan.shims]
-    blocks += ["", _table(plan), *(Padding(Text(note, style="dim"), (0, 0, 0, 1)) for note in _notes(plan))]
+    blocks += ["", _table(plan), *map(note, _notes(plan))]
     blocks += [Text(f"warning: {warning}", style="yellow") for warning in _warnings(plan)]
     return Group(*blocks)
 

@@ -1,11 +1,11 @@
 """The stages of a train as a run's summary tells them, and what each brings to the lost motion at a shaft."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Literal
 
 from tol3d.report.column import columns_of
-from tol3d.report.number import NOTHING, tip_mm
+from tol3d.report.number import NOTHING, tip_arcmin, tip_mm
 
 Summary = Mapping[str, Any]
 LinkKind = Literal["reducer", "mesh", "bevel_mesh", "parallel"]
@@ -114,32 +114,25 @@ def _stage(number: int, stage: Summary, values: Mapping[str, Any]) -> Stage:
     )
 
 
-def shafts_along(stages: Sequence[Stage]) -> list[str]:
+def shafts_along(stages: Sequence[Stage], held: str) -> list[str]:
     """The shafts from the held one to the one that is read; a link may be gone through from its driven side."""
-    return list(_walked(stages))
-
-
-def _walked(stages: Sequence[Stage]) -> Iterator[str]:
-    if not stages:
-        return
-    first = stages[0]
-    second = {stages[1].driver, stages[1].driven} if len(stages) > 1 else {first.driven}
-    at = first.driven if first.driven not in second and first.driver in second else first.driver
-    yield at
+    shafts = [held]
     for stage in stages:
-        at = stage.driver if at == stage.driven else stage.driven
-        yield at
+        shafts.append(stage.driver if shafts[-1] == stage.driven else stage.driven)
+    return shafts
 
 
 def sums_of(measure: Summary, summary: Summary) -> Sums:
     """Sums of the stages' lows, means and highs in the unit of a measure, by road and by who published them.
 
-    Empty for a measure that is no such sum, or is read at another shaft or point than the train's stages are.
+    Empty for a measure that is no such sum, or is read at another shaft, point or position than the train's stages are.
     """
     train = summary.get("trains", {}).get(measure["of"])
     if train is None or measure["kind"] not in SUMMED_KINDS or measure["take"] == "curve":
         return {}
-    if any(measure.get(key, train[key]) != train[key] for key in ("shaft", "held")):
+    if measure.get("over", "random") != "random" or any(
+        measure.get(key, train[key]) != train[key] for key in ("shaft", "held")
+    ):
         return {}
     own = train["sums"]
     roads = {road: values for road, values in own.items() if road != "published"} | dict(own.get("published", {}))
@@ -160,13 +153,20 @@ def _lever_of(measure: Summary, train: Summary) -> float | None:
 
 
 def distributions_of(train: Summary, summary: Summary) -> dict[str, Mapping[str, Any]]:
-    """The lost motion that the train's stages add up to, by road and by who published it [arcmin]."""
+    """The lost motion that the train's stages add up to, by road and by who published it: ends and mean [arcmin].
+
+    Of a train whose stages are told by a tip's displacement it is the turn that displaces the tip so far.
+    """
     measure = summary["measures"].get(train["measure"])
     if measure is None:
         return {}
-    return {
+    columns = {
         column.heading if column.road == "published" else column.road: column.values for column in columns_of(measure)
     }
+    if measure["unit"] == "arcmin":
+        return columns
+    lever = _lever_of(measure, train)
+    return {name: {key: tip_arcmin(values.get(key), lever) for key in SUM_KEYS} for name, values in columns.items()}
 
 
 def whole_ratio_text(ratio: float) -> str:

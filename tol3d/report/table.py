@@ -6,7 +6,6 @@ from dataclasses import replace
 from typing import Any
 
 from rich.console import Group, RenderableType
-from rich.padding import Padding
 from rich.text import Text
 
 from tol3d.report.column import Column, Road, best_road, columns_of, contributor_columns, ranked_contributors
@@ -21,7 +20,7 @@ from tol3d.report.number import (
     unsigned_zero,
     value_text,
 )
-from tol3d.report.sheet import Heading, Row, Sheet
+from tol3d.report.sheet import Heading, Row, Sheet, note
 from tol3d.report.stage import SUM_KEYS, Sums, sums_of
 from tol3d.report.train_table import WORST_CASE_MEANS, train_report
 
@@ -82,20 +81,15 @@ def _measure_blocks(name: str, measure: Summary, summary: Summary) -> list[Rende
     words = Text(f"{heading(measure)} · {limits_text(measure)}", style="dim")
     if measure["take"] == "curve":
         notes = [*_curve_notes(measure), *_witness_notes(name, measure, summary)]
-        return [title, words, "", curve_table(measure), *map(_note, notes)]
+        return [title, words, "", curve_table(measure), *map(note, notes)]
     notes = [*_notes(name, measure, summary)]
     sums = sums_of(measure, summary)
     notes += [WORST_CASE_MEANS] if sums else []
-    blocks: list[RenderableType] = [title, words, "", measure_table(measure, sums), *map(_note, notes)]
+    blocks: list[RenderableType] = [title, words, "", measure_table(measure, sums), *map(note, notes)]
     if measure["contributors"]:
-        blocks += ["", contributors_table(measure), _note(SHARES_MEAN)]
-        blocks += [_note(NOT_ATTRIBUTED_MEANS)] if _not_attributed(measure) else []
+        blocks += ["", contributors_table(measure), note(SHARES_MEAN)]
+        blocks += [note(NOT_ATTRIBUTED_MEANS)] if _not_attributed(measure) else []
     return blocks
-
-
-def _note(text: str) -> Padding:
-    """A line below a table."""
-    return Padding(Text(text, style="dim"), (0, 0, 0, 1))
 
 
 def _headings(columns: Sequence[Column]) -> list[Heading]:

@@ -4,11 +4,10 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 from rich.console import RenderableType
-from rich.padding import Padding
 from rich.text import Text
 
 from tol3d.report.number import percent_text, tip_mm, value_text
-from tol3d.report.sheet import Heading, Row, Sheet
+from tol3d.report.sheet import Heading, Row, Sheet, note
 from tol3d.report.stage import (
     SUM_KEYS,
     Stage,
@@ -41,21 +40,17 @@ def _train_blocks(name: str, summary: Summary) -> Iterator[RenderableType]:
         return
     yield from ("", stages_table(train, stages))
     road = "3D simulation" if leading_road(train) == "geometric" else "analytic road"
-    yield _note(STAGES_MEAN.format(road=road))
-    yield from ("", sums_table(train, summary), _note(WORST_CASE_MEANS))
+    yield note(STAGES_MEAN.format(road=road))
+    yield from ("", sums_table(train, summary), note(WORST_CASE_MEANS))
 
 
 def train_words(train: Summary) -> str:
     """The shafts from the held one to the one that is read, and the ratio of the whole train."""
-    shafts = shafts_along(stages_of(train)) or [train["held"]]
+    shafts = shafts_along(stages_of(train), train["held"])
     ratio = train["ratio"]
     turns = "" if ratio is None else f" · i = {whole_ratio_text(ratio)}, {train['driven']} and {train['output']} turn "
     turns += "" if ratio is None else ("opposite" if ratio < 0 else "the same way")
     return f"{' → '.join(shafts)} · {train['held']} held{turns}"
-
-
-def _note(text: str) -> Padding:
-    return Padding(Text(text, style="dim"), (0, 0, 0, 1))
 
 
 def stages_table(train: Summary, stages: list[Stage]) -> Sheet:

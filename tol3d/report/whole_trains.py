@@ -4,7 +4,6 @@ Gears stand where they came to rest; shafts and arms on their nominal axes, turn
 """
 
 import itertools
-import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -13,6 +12,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from tol3d import frames
 from tol3d.model import Arm, LostMotion, Model
 from tol3d.report.assembly import Assembly, PlacedGear, SeatedMesh, shows_shafts
 from tol3d.report.shaft_sizes import ShaftSizes, Span, arm_body
@@ -162,7 +162,9 @@ def _angle(assembly: Assembly, shaft: str) -> float:
     driven = [carried for carried in own if _seating(assembly, carried.gear).mesh.driven == carried.gear]
     for carried in driven or own:
         seated = _seating(assembly, carried.gear)
-        at_rest = seated.driven_angle if carried in driven else seated.driver_angle + seated.mesh.azimuth
+        lies = layout.seating(seated.mesh.name)
+        azimuth = lies.azimuth + lies.ahead if carried in driven else seated.mesh.azimuth
+        at_rest = (seated.driven_angle if carried in driven else seated.driver_angle) + azimuth
         return carried.sense * (at_rest - carried.phase)
     return layout.shaft_turn[shaft].at(_root_angle(assembly, layout.root_of[shaft]))
 
@@ -178,10 +180,7 @@ def _root_angle(assembly: Assembly, root: str) -> float:
 
 
 def _about_z(angle: float) -> Array:
-    pose = np.eye(4)
-    cos, sin = math.cos(angle), math.sin(angle)
-    pose[:2, :2] = [[cos, -sin], [sin, cos]]
-    return pose
+    return frames.transform(frames.about_z(np.array(angle)), np.zeros(3))
 
 
 def _faces(assembly: Assembly) -> Mapping[str, Span]:

@@ -18,7 +18,9 @@ class ArmSpec(PartSpec):
 
     kind: Literal["arm"]
     shaft: Name = Field(description="the shaft, or the gear that is its own")
-    points: Mapping[Name, Vector] = Field(min_length=1, description="[x, y, z] in the frame of the shaft at 0 deg")
+    points: Mapping[Name, Vector] = Field(
+        min_length=1, description="[x, y, z] in the frame of the shaft, the train's first shaft at 0 deg"
+    )
     centre_of_mass: Vector | None = Field(
         default=None, description="[x, y, z] in that frame, where gravity pulls; the last point if not given"
     )
