@@ -433,8 +433,8 @@ TRAINS = {
         "three_stage_train",
         (("ratio: -10.4", "ratio: -11"),),
         "ratio: -11",
-        "moves.indexing.ratio: expected -10.4 = -5.2 (gearbox) · -1.55 (first mesh) · -1.93548 (second mesh) · "
-        "0.666667 (third mesh), got -11",
+        "moves.indexing.ratio: expected -10.4 (its sign may be left out) = -5.2 (gearbox) · -1.55 (first mesh) · "
+        "-1.93548 (second mesh) · 0.666667 (third mesh), got -11",
     ),
     "stages that turn the other way": (
         "three_stage_train",
@@ -523,6 +523,33 @@ TRAINS = {
         "tip error over the swing: ",
         "measures.tip error over the swing: what turns the load over a swing is gravity: give 'shoulder swing' its "
         "direction",
+    ),
+    "three bearings of one shaft": (
+        "three_stage_train",
+        (("  pinion: {", "  top bearing: {kind: bearing, shaft: table shaft, at: 9 mm}\n  pinion: {"),),
+        "  top bearing:",
+        "parts.top bearing: expected two bearings of 'table shaft' at most, got a third beside 'lower bearing' and "
+        "'upper bearing'",
+    ),
+    "two bearings in one place": (
+        "three_stage_train",
+        (("upper bearing: {kind: bearing, shaft: table shaft, at: 20 mm}",
+          "upper bearing: {kind: bearing, shaft: table shaft, at: -20 mm}"),),
+        "  upper bearing: {kind",
+        "parts.upper bearing.at: expected another place than that of 'lower bearing', got '-20 mm'",
+    ),
+    "two trains that load a mesh on other flanks": (
+        "three_stage_train",
+        (("  indexing: {", "  back: {kind: train, driven: motor, output: idler}\n  indexing: {"),),
+        "  first mesh: {",
+        "moves.first mesh.working_flank: expected right or left, got either: ",
+    ),
+    "a reducer's play drawn twice": (
+        "three_stage_train",
+        (("  pinion tooth thickness:", "  more play: {kind: reducer_backlash, of: gearbox, distribution: "
+          "{kind: constant, value: 1 arcmin}}\n  pinion tooth thickness:"),),
+        "  more play:",
+        "tolerances.more play.of: expected one distribution of its play, got another one in 'gearbox play'",
     ),
     "a reducer's backlash twice": (
         "robot_shoulder",

@@ -14,10 +14,11 @@ import pytest
 from oracles.train import robot_lost_motion
 
 from tol3d import load_scene
-from tol3d.analytic import ClosedForm, closed_form
+from tol3d.analytic import ClosedForm, closed_form, stack_of
 from tol3d.block import Block, drawn_block, simulate_block
+from tol3d.build import build
 from tol3d.engines.door import exact_engine
-from tol3d.model import Measure, Model, model_from_scene
+from tol3d.model import Measure, Model, Reading, model_from_scene
 from tol3d.sensitivity import sensitivities
 from tol3d.stages import stage_tallies, train_summaries
 
@@ -215,13 +216,6 @@ def test_marks_that_turn_together_vary_together(old: str, new: str, tmp_path: Pa
     agrees(model, columns, "lost motion")
 
 
-def test_bearings_that_move_a_shaft_anywhere_have_a_closed_form(tmp_path: Path) -> None:
-    text = TABLE.replace("    mesh: second mesh\n    direction: apart", "    direction: random")
-    text = text.replace("direction: {at: 200 deg}", "direction: random")
-    model, columns = sample_of(text, tmp_path)
-    agrees(model, columns, "lost motion")
-
-
 # bearings -------------------------------------------------------------------------------------------------------
 
 BEARINGS = """
@@ -258,6 +252,57 @@ def test_one_bearing_acts_in_all_meshes_of_its_shaft(tmp_path: Path) -> None:
     assert share.coefficient == pytest.approx(expected, rel=1e-9)
     assert share.mean == pytest.approx(expected * 10e-3, rel=1e-9)
     assert share.variance == pytest.approx(expected**2 * 144e-6 / 12, rel=1e-9)
+
+
+BEVELS = """
+scene: an overhung bevel gear
+parts:
+  a: {kind: spur_gear, teeth: 20, module: 2 mm, face_width: 6 mm}
+  b: {kind: spur_gear, teeth: 30, module: 2 mm, face_width: 6 mm}
+  c: {kind: bevel_gear, teeth: 25, module: 2 mm, face_width: 8 mm}
+  d: {kind: bevel_gear, teeth: 40, module: 2 mm, face_width: 8 mm}
+  middle: {kind: shaft, carries: {b: {at: 20 mm}, c: {at: 150 mm, facing: backward}}}
+  low: {kind: bearing, shaft: middle, at: -20 mm}
+  high: {kind: bearing, shaft: middle, at: 70 mm}
+tolerances:
+  clearance:
+    kind: bearing_clearance
+    of: low
+    direction: {at: 70 deg}
+    distribution: {kind: uniform, lower: 4 um, upper: 16 um}
+moves:
+  first: {kind: mesh, driver: a, driven: b, centre_distance: 50.1 mm}
+  second: {kind: bevel_mesh, driver: c, driven: d, azimuth: 40 deg}
+  train: {kind: train, driven: a, output: d}
+measures:
+  lost motion: {kind: lost_motion, of: train}
+"""
+
+
+@pytest.mark.parametrize("scene", ["spur", "bevel"])
+@pytest.mark.parametrize("angle", [0, 35, 120, 200, 310])
+def test_a_bearing_that_moves_its_shaft_anywhere_does_in_each_direction_what_one_with_that_direction_does(
+    scene: str, angle: int, tmp_path: Path
+) -> None:
+    spur = BEARINGS.replace("tolerances:", "  high: {kind: bearing, shaft: middle, at: 90 mm}\ntolerances:")
+    text = spur if scene == "spur" else BEVELS
+    fixed = model_of(tmp_path, text.replace("70 deg", f"{angle} deg"))
+    anywhere = model_of(tmp_path, text.replace("{at: 70 deg}", "random"))
+    length, along = 0.012, math.radians(angle)
+    by_length = np.array([[length]])
+    by_vector = np.array([[length * math.cos(along), length * math.sin(along)]])
+    for made, other in (
+        (build(fixed, by_length), build(anywhere, by_vector)),
+        (exact_engine(fixed).build(by_length), exact_engine(anywhere).build(by_vector)),
+    ):
+        for name, values in vars(made).items():
+            assert vars(other)[name] == pytest.approx(values, abs=1e-14), name
+    for mesh in fixed.meshes:
+        stacks = [stack_of(model, model.mesh(mesh.name), Reading()) for model in (fixed, anywhere)]
+        for told in ("normal_backlash", "aside"):
+            first = getattr(stacks[0], told)(by_length, np.zeros(1))
+            second = getattr(stacks[1], told)(by_vector, np.zeros(1))
+            assert second == pytest.approx(first, abs=1e-14), told
 
 
 def test_a_spur_shaft_that_leans_has_no_closed_form(tmp_path: Path) -> None:

@@ -220,8 +220,12 @@ def _(effect: AxisOffset, columns: Array, sums: Sums, model: Model) -> None:
 @_add.register
 def _(effect: AxisTilt, columns: Array, sums: Sums, model: Model) -> None:
     for seat in model.seats_of(effect.part, effect.mesh):
-        axis = effect.axis if effect.mesh else in_seat(effect.axis, model.seats[seat])
-        turn = effect.per_length * columns * np.array(axis)
+        if columns.shape[1] == 2:
+            by_x, by_y = effect.matrix(model.seats[seat].azimuth).T
+            turn = columns[:, :1] * by_x + columns[:, 1:] * by_y
+        else:
+            axis = effect.axis if effect.mesh else in_seat(effect.axis, model.seats[seat])
+            turn = effect.per_length * columns * np.array(axis)
         sums.axis_turn[:, seat] += turn
         if effect.pivot != 0.0:
             pivot = np.array([0.0, 0.0, effect.pivot])

@@ -10,10 +10,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.clocking import clocking
-from tol3d.measures.ways import Form, Part, free_form, value
 from tol3d.model import Backlash, LostMotion, Measure, Model, Reading
 from tol3d.model.measure import AnyStage, ParallelStage, Stage
 from tol3d.reducer import reducer_backlash
+from tol3d.ways import Form, Part, free_form, value
 
 Array = NDArray[np.float64]
 

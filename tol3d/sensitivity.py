@@ -29,12 +29,12 @@ from tol3d.engines import OK, Engine, Gaps
 from tol3d.gears import Flank
 from tol3d.gears.flank import opposite
 from tol3d.measures import moved_rate
-from tol3d.measures.ways import Part
 from tol3d.model import Backlash, Clocking, Contributor, Measure, Model, Planar, ReducerBacklash
 from tol3d.model.contributor import Unit, single_effects, turns_with_gears
 from tol3d.moves import Meshing, MeshSeat
 from tol3d.play import positions_count, seat_key
 from tol3d.tangent import Tangent, tangent
+from tol3d.ways import Part
 
 Array = NDArray[np.float64]
 

@@ -9,6 +9,7 @@
     moves        gaps -> seated meshes      tol3d/moves/          Meshing.seat     (engines/ tell the gaps)
     measures     seated meshes -> values    tol3d/measures/       measure_backlash
     analytic     the second road            tol3d/analytic/       analytic_backlash
+    play         backlashes, together       tol3d/play.py         Play           (ways.py: where ways are parallel)
     columns      both roads, one block      tol3d/block.py        simulate_block
     statistics   of one block, or several   tol3d/tally.py        Tally          (stages.py: of a train's stages)
     task         what workers run           tol3d/task.py         Task           (execution.py: who runs it)
@@ -22,7 +23,8 @@ derivatives of measures through the contact.
 
 A gear has a seat in each mesh that it is in, and builds have a place for each seat, in that mesh's own world; shafts
 turn together (`layout.py`), so one position of the first shaft of a tree tells all. A measure is a weighted sum of
-backlashes, one of a mesh, several of a train (`block.py`: `added_up`), or what that sum moves (`measures/`).
+backlashes, one of a mesh, several of a train, or what that sum moves (`measures/lost_motion.py`); both roads go through
+`play.py`, with what they read of single meshes.
 
 Spur and bevel pairs go the same way: `gears/pair.py` says what every pair offers. A new kind of gear is one file in
 gears/, parts/, solids/, engines/exact/, analytic/ and in each folder of scene/ that it concerns, named in

@@ -9,8 +9,9 @@ from numpy.typing import NDArray
 
 from tol3d.analytic import per_normal_backlash
 from tol3d.block import ARCMIN, Columns, stage_column, staged_measures
+from tol3d.distributions import Distribution
 from tol3d.gears import LEFT
-from tol3d.model import Backlash, LostMotion, Measure, Model
+from tol3d.model import Backlash, LostMotion, Measure, Model, ReducerBacklash
 from tol3d.model.measure import AnyStage, ParallelStage, Tip
 from tol3d.statistics import FeatureSums, Moments
 
@@ -96,7 +97,7 @@ def train_summaries(model: Model, tallies: StageTallies) -> dict[str, Any]:
 def _train(model: Model, measure: Measure, kind: LostMotion, roads: Mapping[str, Stages]) -> dict[str, Any]:
     train = model.train(kind.train)
     tallied = stages_of(measure)
-    found = {road: _of_road(tallied, own) for road, own in roads.items()}
+    found = {road: _within_sheets(model, _of_road(tallied, own)) for road, own in roads.items()}
     published = _published(model, kind, found["analytic"])
     tip = _tip_of(model, kind)
     return {
@@ -172,6 +173,23 @@ def _of_road(stages: Sequence[AnyStage], tallied: Stages) -> dict[str, Ends]:
         else dict.fromkeys((*ENDS, "sigma", "sample_min", "sample_max", "share_percent"))
         for stage, moments, share in zip(stages, tallied.moments, shares, strict=True)
     }
+
+
+def _within_sheets(model: Model, ends: Mapping[str, Ends]) -> dict[str, Ends]:
+    """Ends of a reducer's play no further than its law goes, which 3 sigma may."""
+    laws = {
+        contributor.effect.reducer: contributor.distribution
+        for contributor in model.contributors
+        if isinstance(contributor.effect, ReducerBacklash)
+    }
+    return {link: _within(own, laws[link]) if link in laws else own for link, own in ends.items()}
+
+
+def _within(ends: Ends, law: Distribution) -> Ends:
+    low, high = ends["low_3sigma"], ends["high_3sigma"]
+    if low is None or high is None:
+        return ends
+    return {**ends, "low_3sigma": max(low, law.low * ARCMIN), "high_3sigma": min(high, law.high * ARCMIN)}
 
 
 def _published(model: Model, kind: LostMotion, ours: Mapping[str, Ends]) -> dict[str, dict[str, Ends]]:

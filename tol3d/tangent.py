@@ -160,8 +160,14 @@ def _(effect: AxisOffset, own: slice, columns: Array, rates: _Rates, model: Mode
 
 @_put.register
 def _(effect: AxisTilt, own: slice, columns: Array, rates: _Rates, model: Model) -> None:
-    """The pivot's own turn has a fixed axis, so that its angular velocity is the rate of its vector."""
+    """The pivot's own turn has a fixed axis, so that its angular velocity is the rate of its vector.
+
+    A planar tilt is about the gear's origin: the shaft's bearings lead its offset by an effect of their own.
+    """
     for seat in model.seats_of(effect.part, effect.mesh):
+        if columns.shape[1] == 2:
+            rates.axis_turn[:, seat, own] += effect.matrix(model.seats[seat].azimuth).T
+            continue
         axis = effect.axis if effect.mesh else in_seat(effect.axis, model.seats[seat])
         rate = effect.per_length * np.array(axis)
         turned = frames.apply(frames.about_vector(columns * rate), np.array([0.0, 0.0, effect.pivot]))

@@ -24,8 +24,11 @@ class BevelStack(Stack[BevelPair]):
         what the shift of the apex towards the mesh takes. A turn out of the plane of the axes changes nothing.
         """
         lever = self.pair.mean_cone_distance - effect.pivot * math.cos(self.gear(role).pitch_angle)
-        _, y = self.axis_of(effect, role)
-        return Term(contributor, -y * 2 * self.sin * lever * effect.per_length)
+        _, y = self.turns_of(effect, contributor, role)
+        per_turn = -2 * self.sin * lever
+        if len(y) == 1:
+            return Term(contributor, per_turn * float(y[0]))
+        return Term(contributor, per_turn * math.hypot(*y), along=math.atan2(y[1], y[0]))
 
     def axes_offset(self, contributor: Contributor, role: Role) -> Term | None:
         """2 sin(alpha) sin(delta) of the driven gear, as the source has it for its "axial distance".

@@ -272,5 +272,5 @@ def _tilts_of_one(terms: Sequence[_ReadTerm]) -> list[Share] | None:
 
 
 def _plane(term: _ReadTerm) -> str:
-    in_plane, across = term.term.tilts or (0.0, 0.0)
-    return "in" if not across else "across" if not in_plane else "both"
+    in_plane, across = term.term.tilts or ((), ())
+    return "in" if not any(across) else "across" if not any(in_plane) else "both"

@@ -5,6 +5,8 @@ Sources: ISO/TR 10064-3 (deviations of axes); ISO 21771-1:2024, 5.6 (nominal). N
 strains have different base pitches (up to 3.5 um for a pinion alone 20 K warmer).
 """
 
+import numpy as np
+
 from tol3d.analytic.stack import Role, Stack, Term
 from tol3d.gears import SpurPair
 from tol3d.model import AxisTilt, Contributor, Temperature
@@ -22,10 +24,11 @@ class SpurStack(Stack[SpurPair]):
         """
         sides = [self.reading.contact, self.reading.gap].count("face")
         half_width = min(self.pair.pinion.face_width, self.pair.wheel.face_width) / 2
-        per_tilt = sides * half_width * effect.per_length * (-1 if role == "driver" else 1)
-        x, y = self.axis_of(effect, role)
-        tilts = (per_tilt * self.sin * y, per_tilt * self.cos * x)
-        return Term(contributor, max(map(abs, tilts)), tilts=tilts)
+        per_tilt = sides * half_width * (-1 if role == "driver" else 1)
+        x, y = self.turns_of(effect, contributor, role)
+        in_plane, across = per_tilt * self.sin * y, per_tilt * self.cos * x
+        largest = float(np.abs([in_plane, across]).max())
+        return Term(contributor, largest, tilts=(tuple(in_plane.tolist()), tuple(across.tolist())))
 
     def temperature(self, effect: Temperature, contributor: Contributor) -> Term | None:
         """A growing housing opens by 2 a sin(alpha_w), a growing gear closes by 2 r_w sin(alpha_w), per strain.

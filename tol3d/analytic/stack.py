@@ -50,7 +50,7 @@ class Term:
         turns: which gear the deviation turns with, or None when it rests.
         sense: in which azimuths of the deviation count, against those of the gear.
         tilts: for what enters through the one-sided loss by tilts, not linearly: loss in the plane of the axes (about
-            y) and across it (about x) per deviation; `coefficient` is the larger of them.
+            y) and across it (about x) per component of the deviation; `coefficient` is the largest of them.
     """
 
     contributor: Contributor
@@ -58,7 +58,7 @@ class Term:
     along: float = 0.0
     turns: Role | None = None
     sense: float = 1.0
-    tilts: tuple[float, float] | None = None
+    tilts: tuple[tuple[float, ...], tuple[float, ...]] | None = None
 
     def change(self, deviation: Array, angles: tuple[Array, Array]) -> Array:
         """Change of j_bn [mm], (rows,), for deviations (rows, components) at turns (driver, driven) [rad]."""
@@ -114,9 +114,10 @@ class Stack(Generic[Pair]):
         in_plane, across = np.zeros(len(deviations)), np.zeros(len(deviations))
         for term in self.terms:
             if term.tilts is not None:
-                own = deviations[:, self.model.component_slices[term.contributor.name].start]
-                in_plane = in_plane + term.tilts[0] * own
-                across = across + term.tilts[1] * own
+                own = deviations[:, self.model.component_slices[term.contributor.name]]
+                for column, (by_plane, by_across) in zip(own.T, zip(*term.tilts, strict=True), strict=True):
+                    in_plane = in_plane + by_plane * column
+                    across = across + by_across * column
         return in_plane, across
 
     def aside(self, deviations: Array, driver_angle: Array) -> Array:
@@ -167,12 +168,14 @@ class Stack(Generic[Pair]):
         """See `_seen`, of a deviation that turns with its gear."""
         return _seen(plane.seen_from(-self._seat(role).ahead), azimuth)
 
-    def axis_of(self, effect: AxisTilt, role: Role) -> tuple[float, float]:
-        """x and y of the axis about which a gear tilts, in its frame at rest in the mesh."""
-        x, y, _ = effect.axis
+    def turns_of(self, effect: AxisTilt, contributor: Contributor, role: Role) -> tuple[Array, Array]:
+        """x and y of the rotation vector of a gear's axis per component [rad/mm], in its frame at rest in the mesh."""
         azimuth = self._seat(role).azimuth if effect.mesh is None else 0.0
-        cos, sin = math.cos(azimuth), math.sin(azimuth)
-        return cos * x + sin * y, cos * y - sin * x
+        if len(contributor.draw.components) == 2:
+            x, y, _ = effect.matrix(azimuth)
+            return x, y
+        cos, sin, (x, y, _) = math.cos(azimuth), math.sin(azimuth), effect.axis
+        return effect.per_length * np.array([cos * x + sin * y]), effect.per_length * np.array([cos * y - sin * x])
 
     def _across(self, role: Role) -> float:
         """Opening by a shift of the axis away from the mesh: 2 sin(alpha_w) cos(delta)."""

@@ -92,6 +92,9 @@ def view(
     nominal: NominalOption = False,
     mean: MeanOption = False,
     magnify: MagnifyOption = 1.0,
+    mesh: Annotated[
+        str | None, typer.Option(metavar="NAME", help="Which mesh is shown close up; by default the first.")
+    ] = None,
     screenshot: Annotated[Path | None, typer.Option(help="Write a picture instead of opening a window.")] = None,
 ) -> None:
     """Show a trial in 3D, with its contact and gap marked."""
@@ -100,7 +103,7 @@ def view(
 
     finished = open_run(run)
     which = _which(finished, trial, worst=worst, nominal=nominal, mean=mean)
-    for note in view_run(finished, which, screenshot=screenshot, magnify=magnify):
+    for note in view_run(finished, which, screenshot=screenshot, magnify=magnify, mesh=mesh):
         err_console.print(note, style="yellow")
     if screenshot:
         tell(str(screenshot))

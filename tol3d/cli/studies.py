@@ -94,11 +94,19 @@ def run(
         err_console.print(_how_to_resume(folder))
         raise typer.Exit(INTERRUPTED) from None
     out_console.print(run_report(finished.summary))
-    picture = finished.path / PICTURE
-    tell(f"run: {finished.path}" + (f"    picture: {picture}" if picture.exists() else ""))
+    tell(f"run: {finished.path}{_pictures_text(finished)}")
     if fail_on_limits and _out_of_limits(finished):
         err_console.print("limits failed", style="red")
         raise typer.Exit(LIMITS_FAILED)
+
+
+def _pictures_text(run: "Run") -> str:
+    """The pictures that were drawn of a run."""
+    from tol3d.report.picture import chain_files
+
+    pictures = [run.path / name for name in (PICTURE, *chain_files(run.summary).values())]
+    drawn = [str(picture) for picture in pictures if picture.exists()]
+    return f"    picture{'s' if len(drawn) > 1 else ''}: {', '.join(drawn)}" if drawn else ""
 
 
 def _how_to_resume(folder: Path) -> str:

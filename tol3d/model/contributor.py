@@ -93,16 +93,23 @@ class AxisOffset:
 class AxisTilt:
     """Turn of a gear's axis: the deviation [rad] times `axis`, a unit vector of the gear's frame at rest.
 
+    Planar (components x, y): the axis leans towards the vector as `plane` turns it, by the vector's length.
     `per_length` [1/mm] makes an angle of a deviation that is given as a length. The turn is about the point
     of the axis at z = `pivot` [mm] of that frame. It acts in all meshes of the gear, or in one only, in whose frame
     `axis` then is.
     """
 
     part: str
-    axis: tuple[float, float, float]
+    axis: tuple[float, float, float] = (0.0, 0.0, 0.0)
     per_length: float = 1.0
     pivot: float = 0.0
     mesh: str | None = None
+    plane: Plane = AS_COUNTED
+
+    def matrix(self, azimuth: float) -> Array:
+        """Rotation vector per component where it is planar, (3, 2), in a frame whose x lies at an azimuth [rad]."""
+        (xx, xy), (yx, yy) = self.plane.seen_from(azimuth).matrix
+        return self.per_length * np.array([[-yx, -yy], [xx, xy], [0.0, 0.0]])
 
 
 @dataclass(frozen=True)

@@ -169,11 +169,7 @@ class Tolerances:
         if not levers:
             return NOTHING
         if spec.direction == "random":
-            offsets = tuple(
-                AxisOffset(lever.own.gear, factor=0.5 * lever.share, plane=Plane(mirrored=lever.own.backward))
-                for lever in levers
-            )
-            return _Directed(_all_of(offsets), None)
+            return _Directed(_all_of(tuple(effect for lever in levers for effect in lever.anywhere())), None)
         gear = next((lever.own for lever in levers if lever.own.gear in self._gears_of(spec)), levers[0].own)
         seen = self._clearance_azimuth(spec, gear.gear)
         azimuth = -seen if gear.backward and not isinstance(spec.direction, At) else seen
@@ -261,6 +257,14 @@ class _Lever:
     def share(self) -> float:
         """What the gear moves of what the point moves."""
         return 1.0 if self.fixed is None else (self.own.at - self.fixed) / (self.moved - self.fixed)
+
+    def anywhere(self) -> Iterator[SingleEffect]:
+        """Shift and tilt of the gear's axis where the point moves by half a deviation with a direction on the shaft."""
+        plane = Plane(mirrored=self.own.backward)
+        yield AxisOffset(self.own.gear, factor=0.5 * self.share, plane=plane)
+        if self.fixed is not None:
+            per_length = 0.5 * self.own.sense / (self.moved - self.fixed)
+            yield AxisTilt(self.own.gear, per_length=per_length, plane=plane)
 
     def effects(self, azimuth: float) -> Iterator[SingleEffect]:
         """Shift and tilt of the gear's axis where the point moves by half a deviation, at an azimuth on the shaft."""

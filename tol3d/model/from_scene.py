@@ -17,6 +17,7 @@ from tol3d.model.trains import (
     loaded_flank,
     loose_gears,
     reducers_of,
+    refuse_bearings,
     refuse_misfits,
     refuse_no_trees,
     refuse_other_ratios,
@@ -38,6 +39,7 @@ def model_from_scene(scene: Scene) -> Model:
     """
     for gear in loose_gears(scene):
         raise scene.refuse(("parts", gear), f"{gear!r} takes part in no move; put it into a mesh or take it out")
+    refuse_bearings(scene)
     shafts, reducers, arms = shafts_of(scene), reducers_of(scene), arms_of(scene)
     meshes = tuple(_mesh(scene, name, move) for name, move in scene.moves.items() if isinstance(move, GearMeshSpec))
     refuse_no_trees(scene, all_links(meshes, shafts, reducers))
@@ -110,8 +112,15 @@ def _loaded(scene: Scene, mesh: Mesh, trains: tuple[Train, ...], layout: Layout,
     root = layout.root_of[layout.carrying[mesh.driver][0]]
     own = [train for train in trains if train.driven == root]
     through = [t for t in own if mesh.name in {link.name for link in links_of(layout.way(t.driven, t.output))}]
-    for train in through or [replace(train, gravity=None) for train in own]:  # gravity does not load a branch
-        return replace(mesh, working_flank=loaded_flank(mesh, train, layout, arms))
+    loading = through or [replace(train, gravity=None) for train in own]  # gravity does not load a branch
+    flanks = {loaded_flank(mesh, train, layout, arms): train.name for train in loading}
+    if len(flanks) == 2:
+        raise scene.refuse(
+            ("moves", mesh.name, "working_flank"),
+            f"expected right or left, got either: {' and '.join(map(repr, flanks.values()))} load other flanks of it",
+        )
+    for flank in flanks:
+        return replace(mesh, working_flank=flank)
     raise scene.refuse(
         ("moves", mesh.name, "working_flank"),
         f"expected right or left, got either: no train tells the load; add a move of kind train that drives {root!r}",

@@ -195,7 +195,8 @@ def _arm(scene: Scene, name: str, spec: TipDisplacementSpec | TipErrorSpec, mode
     if model.layout.root_of.get(arm.on) != train.driven or arm.on == train.held:
         raise scene.refuse(
             ("measures", name, "arm"),
-            f"expected an arm on a shaft that {train.driven!r} turns, got {spec.arm!r}, which hangs on {arm.on!r}",
+            f"expected an arm on a shaft that moves where {train.held!r} is held, such as {train.output!r}, got "
+            f"{spec.arm!r}, which hangs on {arm.on!r}",
         )
     refuse_midst(scene, ("measures", name, "arm"), model.layout, train.driven, arm.on)
     return arm

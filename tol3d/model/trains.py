@@ -14,7 +14,7 @@ from tol3d.model.pairs import internal
 from tol3d.model.shafts import Arm, Carried, Reducer, Shaft, Train, Vector
 from tol3d.scene import Scene
 from tol3d.scene.moves import GearMeshSpec, ReducerSpec, TrainSpec
-from tol3d.scene.parts import ArmSpec, GearSpec, ShaftSpec
+from tol3d.scene.parts import ArmSpec, BearingSpec, GearSpec, ShaftSpec
 from tol3d.scene.place import KeyPath
 from tol3d.scene.tolerances import ReducerBacklashSpec
 
@@ -22,24 +22,11 @@ RATIO_AS_WRITTEN = 5e-4  # relative; four digits are enough to check a drawing's
 PLACE_AS_WRITTEN = 0.05  # mm; azimuths are written with few decimals, and parallel ways need not close better
 AXES_AS_WRITTEN = 1e-3  # rad
 MOST_RATIO = 1e6  # of a reducer; beyond it somebody's finger slipped
-NO_TORQUE = 1e-9  # of the lever of the arm's weight; less is none
+NO_TORQUE = 1e-6  # of the lever of the arm's weight; less is none
 
 
 def shafts_of(scene: Scene) -> tuple[Shaft, ...]:
-    """The scene's shafts.
-
-    Raises:
-        SceneError: a gear sits on two of them.
-    """
-    carrier: dict[str, str] = {}
-    for name, part in scene.parts.items():
-        for gear in part.carries if isinstance(part, ShaftSpec) else ():
-            if gear in carrier:
-                raise scene.refuse(
-                    ("parts", name, "carries", gear),
-                    f"expected a gear that no other shaft carries, got {gear!r}, which sits on {carrier[gear]!r}",
-                )
-            carrier[gear] = name
+    """The scene's shafts."""
     return tuple(_shaft(name, part) for name, part in scene.parts.items() if isinstance(part, ShaftSpec))
 
 
@@ -50,6 +37,31 @@ def _shaft(name: str, part: ShaftSpec) -> Shaft:
     )
     sizes = (None if size is None else size.internal for size in (part.diameter, part.start, part.end))
     return Shaft(name, carries, *sizes)
+
+
+def refuse_bearings(scene: Scene) -> None:
+    """Refuse bearings that do not hold a shaft: two in one place, or more than two, which no rigid shaft fits.
+
+    Raises:
+        SceneError: at the bearing that is too many.
+    """
+    held: dict[str, list[str]] = {}
+    for name, part in scene.parts.items():
+        if not isinstance(part, BearingSpec):
+            continue
+        others = held.setdefault(part.shaft, [])
+        if len(others) == 2:
+            raise scene.refuse(
+                ("parts", name),
+                f"expected two bearings of {part.shaft!r} at most, got a third beside {others[0]!r} and {others[1]!r}: "
+                "a rigid shaft would not fit into their clearances",
+            )
+        for other in others:
+            there = scene.parts[other]
+            if isinstance(there, BearingSpec) and there.at.internal == part.at.internal:
+                sentence = f"expected another place than that of {other!r}, got '{part.at}'; two there hold no more"
+                raise scene.refuse(("parts", name, "at"), f"{sentence} than one")
+        others.append(name)
 
 
 def arms_of(scene: Scene) -> tuple[Arm, ...]:
@@ -76,25 +88,26 @@ def reducers_of(scene: Scene) -> tuple[Reducer, ...]:
     """The scene's reducers.
 
     Raises:
-        SceneError: a backlash that is stated twice, a ratio that nobody builds.
+        SceneError: two tolerances tell the play of one, a ratio that nobody builds.
     """
-    drawn = {spec.of: name for name, spec in scene.tolerances.items() if isinstance(spec, ReducerBacklashSpec)}
-    found = []
-    for name, move in scene.moves.items():
-        if isinstance(move, ReducerSpec):
-            if move.backlash is not None and name in drawn:
-                raise scene.refuse(
-                    ("moves", name, "backlash"),
-                    f"expected none, for {drawn[name]!r} tells its distribution, got '{move.backlash}'; leave out one",
-                )
-            if not 1 / MOST_RATIO <= abs(move.ratio) <= MOST_RATIO:
-                raise scene.refuse(
-                    ("moves", name, "ratio"),
-                    f"expected a ratio of 1/{MOST_RATIO:g} to {MOST_RATIO:g}, either sign, got {move.ratio:g}",
-                )
-            ratio = Fraction(str(move.ratio))
-            found.append(Reducer(name, move.driver, move.driven, ratio, internal(move.backlash), internal(move.offset)))
-    return tuple(found)
+    drawn: dict[str, str] = {}
+    for name, spec in scene.tolerances.items():
+        if isinstance(spec, ReducerBacklashSpec) and spec.of in drawn:
+            sentence = f"expected one distribution of its play, got another one in {drawn[spec.of]!r}; leave out one"
+            raise scene.refuse(("tolerances", name, "of"), sentence)
+        if isinstance(spec, ReducerBacklashSpec):
+            drawn[spec.of] = name
+    return tuple(_reducer(scene, name, move) for name, move in scene.moves.items() if isinstance(move, ReducerSpec))
+
+
+def _reducer(scene: Scene, name: str, move: ReducerSpec) -> Reducer:
+    if not 1 / MOST_RATIO <= abs(move.ratio) <= MOST_RATIO:
+        raise scene.refuse(
+            ("moves", name, "ratio"),
+            f"expected a ratio of 1/{MOST_RATIO:g} to {MOST_RATIO:g}, either sign, got {move.ratio:g}",
+        )
+    ratio = Fraction(str(move.ratio))
+    return Reducer(name, move.driver, move.driven, ratio, internal(move.backlash), internal(move.offset))
 
 
 def refuse_no_trees(scene: Scene, links: Sequence[Link]) -> None:
@@ -190,7 +203,7 @@ def refuse_other_ratios(scene: Scene, meshes: Sequence[Mesh], layout: Layout) ->
         move = scene.moves[mesh.name]
         if isinstance(move, GearMeshSpec) and move.ratio is not None:
             why = f"{mesh.pair.wheel.teeth}/{mesh.pair.pinion.teeth}, teeth of {mesh.driven!r} over {mesh.driver!r}"
-            _refuse_ratio(scene, mesh.name, move.ratio, 1 / mesh.rate, why)
+            _refuse_ratio(scene, mesh.name, move.ratio, abs(1 / mesh.rate), why)
     for name, move in scene.moves.items():
         if isinstance(move, TrainSpec) and move.ratio is not None:
             links = layout.between(move.driven, move.output)
@@ -202,7 +215,9 @@ def _refuse_ratio(scene: Scene, move: str, stated: float, real: Fraction, why: s
     """A ratio without a sign is a magnitude; one below zero says that the shafts turn opposite."""
     wanted = real if stated < 0.0 else abs(real)
     if abs(stated - float(wanted)) > RATIO_AS_WRITTEN * abs(float(real)):
-        raise scene.refuse(("moves", move, "ratio"), f"expected {_ratio_text(wanted)} = {why}, got {stated:g}")
+        loosely = " (its sign may be left out)" if real < 0 else ""
+        sentence = f"expected {_ratio_text(real)}{loosely} = {why}, got {stated:g}"
+        raise scene.refuse(("moves", move, "ratio"), sentence)
 
 
 def _ratio_text(ratio: Fraction) -> str:

@@ -19,7 +19,7 @@ CAPTIONS: Final = 1.4  # right end of the column of captions
 ARM: Final = 1.3
 SHAFT: Final = 1.5
 NARROW_SHAFT: Final = 0.92
-ROOMY: Final = 4  # links in a row, beyond which shafts are narrow
+LINK_ROOM: Final = 1.4  # between two shafts, which grow narrower for it
 MOST_IN_A_ROW: Final = 6
 MOST_PITCH: Final = 3.4
 NAMES: Final = 0.5  # heights of a row's parts, from its top
@@ -98,8 +98,8 @@ def rows_of(stages: Sequence[Stage], held: str, arm: float, top: float) -> list[
     """
     count = -(-len(stages) // MOST_IN_A_ROW)
     columns = -(-len(stages) // count)
-    shaft = SHAFT if columns <= ROOMY else NARROW_SHAFT
-    room = WIDTH - CAPTIONS - 2 * EDGE - shaft - arm
+    room = WIDTH - CAPTIONS - 2 * EDGE - arm
+    shaft = min(max((room - columns * LINK_ROOM) / (columns + 1), NARROW_SHAFT), SHAFT)
     shafts = shafts_along(stages, held)
     senses = list(accumulate((-1 if stage.opposite else 1 for stage in stages), lambda a, b: a * b, initial=1))
     starts = range(0, len(stages), columns)
@@ -109,7 +109,7 @@ def rows_of(stages: Sequence[Stage], held: str, arm: float, top: float) -> list[
             shafts=shafts[start : start + columns + 1],
             senses=senses[start : start + columns + 1],
             first=CAPTIONS + EDGE + shaft / 2,
-            pitch=min(room / columns, MOST_PITCH),
+            pitch=min((room - shaft) / columns, MOST_PITCH),
             shaft=shaft,
             top=top - index * ROW,
             last=start == starts[-1],

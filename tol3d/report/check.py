@@ -10,7 +10,7 @@ import numpy as np
 from rich.console import Group, RenderableType
 from rich.text import Text
 
-from tol3d.analytic import reference_form
+from tol3d.analytic import ClosedForm, reference_form
 from tol3d.engines import Engine
 from tol3d.engines.exact import ExactEngine
 from tol3d.gears import RIGHT, BevelGear, BevelPair, Gear, GearPair, SpurGear, SpurPair
@@ -29,6 +29,10 @@ ONE_SIDED = ("axis_in_plane", "axis_out_of_plane")  # kinds whose coefficient ac
 LEAST_SLOPE = 5e-4  # um or arcsec per unit; what rounds to 0.000 is nothing
 DISAGREES = 0.05  # of the largest slope; beyond that a coefficient of the geometry is marked
 OTHER = "≠"
+NO_SUM = (
+    "not a sum (the tighter way counts, or a tilted face touches at one end); run tells the analytic values trial by "
+    "trial"
+)
 KINK = 0.01  # of the larger slope; two sides that differ by less are one
 
 
@@ -276,13 +280,15 @@ def coefficients_tables(model: Model) -> list[RenderableType]:
     for measure in model.measures:
         names.setdefault(_of_one_value(measure), []).append(measure.name)
     engine = ExactEngine(model)
+    forms = {measure: reference_form(model, measure) for measure in names}
     headings = [Heading(word) for word in ("unit", "stack-up", "3D", "share [%]")]
     tables = [
         _titled(f"{', '.join(of)}: change by each deviation, {_where(model, measure)}", sheet)
         for measure, of in names.items()
-        if (sheet := Sheet("", headings, list(_coefficient_rows(model, engine, measure)))).rows
+        if (sheet := Sheet("", headings, list(_coefficient_rows(model, engine, measure, forms[measure])))).rows
     ]
-    return [*tables, *(Text(f" {note}", style="dim") for note in _notes(model))]
+    formless = [name for measure, of in names.items() if forms[measure] is None for name in of]
+    return [*tables, *(Text(f" {note}", style="dim") for note in _notes(model, formless))]
 
 
 def _where(model: Model, measure: Measure) -> str:
@@ -300,9 +306,8 @@ def _of_one_value(measure: Measure) -> Measure:
     return Measure("", at_one_position(measure.kind), positions, "value")
 
 
-def _coefficient_rows(model: Model, engine: Engine, measure: Measure) -> Iterator[Row]:
+def _coefficient_rows(model: Model, engine: Engine, measure: Measure, form: ClosedForm | None) -> Iterator[Row]:
     """A row for each contributor that acts on the measure."""
-    form = reference_form(model, measure)
     shares = {share.name: share for share in form.shares} if form else {}
     for contributor, slope in zip(model.contributors, mean_slopes(model, engine, measure), strict=True):
         per = (ARCSEC if measure.kind.is_angle else UM) * contributor.per_unit
@@ -337,7 +342,7 @@ def _slope_text(slope: float) -> str:
     return f"{slope:+.3f}" if abs(slope) < 1 else f"{slope:+#.3g}".rstrip(".")
 
 
-def _notes(model: Model) -> list[str]:
+def _notes(model: Model, formless: Sequence[str]) -> list[str]:
     notes = [
         "stack-up and 3D: at the mean build, per unit of the deviation; of one with a direction per length in its "
         "worst direction; a/b: below and above the mean, where they differ; "
@@ -347,6 +352,8 @@ def _notes(model: Model) -> list[str]:
     if tilts:
         more = "; of two that cross only the larger counts" if len(tilts) > 1 else ""
         notes.append(f"{', '.join(tilts)}: a tilt closes the gap whichever way it goes{more}")
+    if formless:
+        notes.append(f"no closed form: {', '.join(formless)} {'is' if len(formless) == 1 else 'are'} {NO_SUM}")
     return notes
 
 

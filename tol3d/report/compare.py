@@ -7,6 +7,8 @@ from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.transforms import ScaledTranslation
 from rich.console import Group, RenderableType
 from rich.text import Text
 
@@ -30,15 +32,18 @@ from tol3d.report.difference import Difference, difference_of
 from tol3d.report.heading import heading, position_of, reading_words
 from tol3d.report.histogram import density_label, values_label
 from tol3d.report.number import NOTHING, UNIT_SIGNS, difference_text, given_text, value_text
-from tol3d.report.sheet import Heading, Row, Sheet
+from tol3d.report.sheet import Heading, Row, Sheet, note
 from tol3d.result import Run
 
 Summary = Mapping[str, Any]
 
 NO_SIMULATION = "no 3D simulation in these runs"
+NO_ONE_MEAN = "no mean in a table: it jumps where the load changes side, and is 0 before; the picture shows its curve"
 NO_TRIALS = "these runs kept no trials (--no-trials)"
 ROADS = {"analytic": "analytic", "geometric": "3D simulation"}
 SHORT = {"analytic": "analytic", "geometric": "3D"}
+ROW_HEIGHT = 4.1  # inch, of a measure without its legend
+LEGEND_LINE, LEGEND_BELOW = 0.2, 0.5  # inch; height of a line, and from the axis to the first one
 DIFFERENCE_UNITS = {"um": ("µm", 1.0), "mm": ("µm", 1000.0), "arcmin": ("″", 60.0)}
 """Unit of small differences, and how many of it are one of the measure's unit."""
 
@@ -67,6 +72,11 @@ class Compared:
         at = measure["gear"] or measure.get("point") or measure.get("shaft")
         return cls(name, unit, kind, at, over, take, reading_words(measure["reading"]))
 
+    @property
+    def jumps(self) -> bool:
+        """Whether it is a curve whose mean over its positions says nothing: many of them are 0."""
+        return (self.kind, self.take) == ("tip_error", "curve")
+
     def found_in(self, runs: Sequence[Run]) -> list[tuple[str, Run]]:
         """The runs that have it, each with its label."""
         return [(label, run) for label, run in _labelled(runs) if self in measures_of([run])]
@@ -90,8 +100,8 @@ def comparison_report(runs: Sequence[Run]) -> Group:
     for measure in measures_of(runs):
         own = measure.found_in(runs)
         blocks += [Text("\n").append(measure.name, style="bold cyan")]
-        blocks += [Text(heading(own[0][1].summary["measures"][measure.name]), style="dim"), ""]
-        blocks += [_table(measure.name, measure.unit, own)]
+        blocks += [Text(heading(own[0][1].summary["measures"][measure.name]), style="dim")]
+        blocks += [note(NO_ONE_MEAN)] if measure.jumps else ["", _table(measure.name, measure.unit, own)]
     words = "low and high: mean ∓ 3 sigma; max and rms: of 3D simulation − analytic, trial by trial"
     words += "; shift: of the mean against the first run" if len(runs) > 1 else ""
     blocks.append(Text(f"\n{words}", style="dim"))
@@ -157,15 +167,25 @@ def draw_comparison(runs: Sequence[Run], path: Path) -> None:
     Raises:
         InputError: there are no runs, or the picture cannot be written.
     """
+    save_figure(comparison_figure(runs), path)
+
+
+def comparison_figure(runs: Sequence[Run]) -> Figure:
+    """The picture of `draw_comparison`, not yet written.
+
+    Raises:
+        InputError: there are no runs.
+    """
     measures = measures_of(runs)
-    figure = new_figure(15.0, 4.1 * len(measures) + 0.4)
+    height = ROW_HEIGHT + LEGEND_LINE * (len(runs) + 1)  # a line a run, and one of limits
+    figure = new_figure(15.0, height * len(measures) + 0.4)
     names = ",  ".join(legible(label, 50) for label, _ in _labelled(runs))
     figure.suptitle(f"{names}", fontsize=12, color=BLACK, x=0.01, ha="left")
     grid = figure.add_gridspec(len(measures), 3, width_ratios=[1.6, 1, 1.3])
     for row, measure in enumerate(measures):
         name, unit, own = measure.name, measure.unit, measure.found_in(runs)
         axes = [plain_axes(figure.add_subplot(grid[row, column])) for column in range(3)]
-        _draw_roads(axes[0], name, unit, own)
+        _draw_roads(figure, axes[0], name, unit, own)
         differences = [(label, difference_of(run, name)) for label, run in own]
         known = [(index, label, found) for index, (label, found) in enumerate(differences) if found is not None]
         instead = NO_SIMULATION if any(run.keeps_trials for _, run in own) else NO_TRIALS
@@ -174,14 +194,14 @@ def draw_comparison(runs: Sequence[Run], path: Path) -> None:
             say_instead(axes[2], instead, GREY)
         _draw_differences(axes[1], unit, known, single=len(own) == 1)
         _draw_by_position(axes[2], measure, known, single=len(own) == 1)
-    save_figure(figure, path)
+    return figure
 
 
 def _colour(index: int, *, single: bool) -> str:
     return ROAD_COLOURS["geometric"] if single else RUN_COLOURS[index % len(RUN_COLOURS)]
 
 
-def _draw_roads(axes: Axes, name: str, unit: str, runs: Sequence[tuple[str, Run]]) -> None:
+def _draw_roads(figure: Figure, axes: Axes, name: str, unit: str, runs: Sequence[tuple[str, Run]]) -> None:
     single = len(runs) == 1
     for index, (label, run) in enumerate(runs):
         measure = run.summary["measures"][name]
@@ -216,7 +236,24 @@ def _draw_roads(axes: Axes, name: str, unit: str, runs: Sequence[tuple[str, Run]
         axes.set_xlabel(f"{position_of(first)} position [deg]", fontsize=10)
         axes.set_ylabel(values_label(name, unit, 34), fontsize=10)
     title_measure(axes, name, first, 90)
-    axes.legend(fontsize=8.5, frameon=False, loc="best")
+    _add_legend(axes, figure)
+
+
+def _add_legend(axes: Axes, figure: Figure) -> None:
+    """A legend below the axis and its label, where it hides nothing; row by row in two columns."""
+    handles, labels = axes.get_legend_handles_labels()
+    rows_first = [*range(0, len(labels), 2), *range(1, len(labels), 2)]  # matplotlib fills column by column
+    axes.legend(
+        [handles[index] for index in rows_first],
+        [labels[index] for index in rows_first],
+        ncols=2,
+        loc="upper left",
+        bbox_to_anchor=(0.0, 0.0),
+        bbox_transform=axes.transAxes + ScaledTranslation(0.0, -LEGEND_BELOW, figure.dpi_scale_trans),
+        borderaxespad=0.0,
+        fontsize=8.5,
+        frameon=False,
+    )
 
 
 def _draw_curves(axes: Axes, measure: Summary, where: str, colours: Mapping[str, str]) -> None:

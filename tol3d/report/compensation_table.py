@@ -206,11 +206,19 @@ def swing_table(found: Sequence[Compensation]) -> Sheet:
     rows = [Row("at the output's angle", [_jumps(own.swing) for own in found if own.swing])]
     for link in dict.fromkeys(link for own in found if own.swing for link in own.swing.flanks):
         flanks = [own.swing.flanks.get(link) for own in found if own.swing]
-        rows.append(Row(f"{link}: flank of the driver", [_flanks_text(each) for each in flanks]))
+        rows.append(Row(f"{link}: flank of the driver{_which_change(found)}", [_flanks_text(each) for each in flanks]))
     for state in STATES:
         jumps = [_jump(own.swing, own.road, state) for own in found if own.swing]
         rows.append(Row(f"jump, {STATE_WORDS[state]} [mm]", [value_text(jump, "mm") for jump in jumps]))
     return Sheet("", _headings(found), rows)
+
+
+def _which_change(found: Sequence[Compensation]) -> str:
+    """At which change of side the flanks are told, where a swing has several."""
+    counts = {len(own.swing.jumps) for own in found if own.swing}
+    if max(counts) == 1:
+        return ""
+    return f" at the first of {counts.pop()} changes" if len(counts) == 1 else " at the first change"
 
 
 def _jumps(swing: Swing) -> str:

@@ -19,8 +19,7 @@ from typing import Any
 
 from tol3d.report.chain import draw_chain
 from tol3d.report.histogram import draw_histogram
-
-IN_FILE_NAMES = frozenset(" -_.,()+")  # besides letters and digits; anything else would be a folder or a drive
+from tol3d.report.picture import chain_files
 
 
 def main() -> None:
@@ -46,24 +45,6 @@ def _refused_chains(summary: Mapping[str, Any], folder: Path) -> Iterator[tuple[
         except Exception as error:
             (folder / file).unlink(missing_ok=True)
             yield file, _reason(error)
-
-
-def chain_files(summary: Mapping[str, Any]) -> dict[str, str]:
-    """Names of the pictures of a run's trains, by train; each another one.
-
-    >>> chain_files({"trains": {"shoulder": {}, "wrist": {}, "left/right": {}, "left:right": {}}})
-    {'shoulder': 'chain.png', 'wrist': 'chain-wrist.png', 'left/right': 'chain-left_right.png', \
-'left:right': 'chain-left_right 2.png'}
-    """
-    files = dict[str, str]()
-    for name in summary.get("trains", {}):
-        words = "".join(sign if sign.isalnum() or sign in IN_FILE_NAMES else "_" for sign in name)
-        stem, file, count = f"chain-{words}" if files else "chain", "", 1
-        while not file or file.lower() in {known.lower() for known in files.values()}:
-            file = f"{stem}{'' if count == 1 else f' {count}'}.png"
-            count += 1
-        files[name] = file
-    return files
 
 
 def _reason(error: Exception) -> str:

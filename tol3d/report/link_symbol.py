@@ -24,7 +24,9 @@ LEAST_SHARE, MOST_SHARE = 0.4, 0.6  # of the two gears' width; the smaller one h
 MOST_WIDTH: Final = 1.3
 SMALL: Final = 9.0  # points
 PLANETS: Final = 3
-APEX_ASIDE: Final = 0.1  # inch; room at the right for the line from the driven cone's top
+CONES_HALF: Final = 0.42  # inch; half the side of the square that the cones of a pair of equal gears fill
+LEAST_LINE: Final = 0.06  # inch; of a shaft's line before the cones, and between them and the line behind
+LINE_BEHIND: Final = 0.12  # inch; from the line that comes down from the driven cone's top to its shaft
 
 
 def draw_link(axes: Axes, stage: Stage, ends: tuple[float, float], y: float) -> None:
@@ -79,14 +81,15 @@ def _gear_outline(
 def _cones(axes: Axes, stage: Stage, x: float, y: float, width: float, ends: tuple[float, float]) -> None:
     """Two frusta with one apex: the driver's lies on the axis of its shaft, the driven stands on it."""
     driver, driven = stage.teeth or (1, 1)
-    half = min(0.42 * width, 0.42)
     angle = min(max(math.atan2(driver, driven), 0.5), math.pi / 2 - 0.5)  # pitch angle of the driver
-    long, tall = half * math.cos(angle) * math.sqrt(2), half * math.sin(angle) * math.sqrt(2)
-    apex = x - APEX_ASIDE
+    room = (ends[1] - ends[0] - LINE_BEHIND) / 2 - LEAST_LINE
+    long = min(CONES_HALF * math.cos(angle) * math.sqrt(2), room)
+    tall = long * math.tan(angle)
+    apex = x - LINE_BEHIND / 2
     cut = 0.42  # of the cones is left out near the apex
     lying = [(-long, -tall), (-long, tall), (-cut * long, cut * tall), (-cut * long, -cut * tall)]
     standing = [(-long, tall), (long, tall), (cut * long, cut * tall), (-cut * long, cut * tall)]
-    top, bend = y + tall + 0.1, max(ends[1] - 0.12, apex + 0.1)
+    top, bend = y + tall + 0.1, ends[1] - LINE_BEHIND
     _line(axes, (ends[0], y), (apex - long, y))
     _line(axes, (apex, y + tall), (apex, top), (bend, top), (bend, y), (ends[1], y))
     for corners in (lying, standing):

@@ -10,6 +10,8 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
+IN_FILE_NAMES = frozenset(" -_.,()+")  # besides letters and digits; anything else would be a folder or a drive
+
 Draw = Callable[[Mapping[str, Any], Path], None]
 
 COMMAND = (sys.executable, "-P", "-m", "tol3d.report.histogram_process")  # -P: not from the folder it is called in
@@ -59,3 +61,21 @@ def _draw(process: "subprocess.Popen[bytes]", summary: Mapping[str, Any], pictur
 
 def _refuse(reason: str, summary: Mapping[str, Any], picture: Path) -> None:
     raise PictureError(reason)
+
+
+def chain_files(summary: Mapping[str, Any]) -> dict[str, str]:
+    """Names of the pictures of a run's trains, by train; each another one.
+
+    >>> chain_files({"trains": {"shoulder": {}, "wrist": {}, "left/right": {}, "left:right": {}}})
+    {'shoulder': 'chain.png', 'wrist': 'chain-wrist.png', 'left/right': 'chain-left_right.png', \
+'left:right': 'chain-left_right 2.png'}
+    """
+    files = dict[str, str]()
+    for name in summary.get("trains", {}):
+        words = "".join(sign if sign.isalnum() or sign in IN_FILE_NAMES else "_" for sign in name)
+        stem, file, count = f"chain-{words}" if files else "chain", "", 1
+        while not file or file.lower() in {known.lower() for known in files.values()}:
+            file = f"{stem}{'' if count == 1 else f' {count}'}.png"
+            count += 1
+        files[name] = file
+    return files

@@ -31,6 +31,8 @@ from tol3d.report.number import measured_text
 from tol3d.report.train_picture import draw_train, label_beside, label_in_place
 from tol3d.report.whole_trains import WholeTrain, whole_trains
 from tol3d.result import Run
+from tol3d.scene.name import LONGEST_NAME
+from tol3d.scene.nearest import hint
 
 Array = NDArray[np.float64]
 
@@ -51,25 +53,28 @@ def view_run(
     *,
     screenshot: Path | None = None,
     magnify: float = 1.0,
+    mesh: str | None = None,
 ) -> tuple[str, ...]:
     """Show a build of a run in a window, or write a picture of it.
 
     Args:
         run, which, magnify: see `assemble`.
         screenshot: the picture to write; needs no display.
+        mesh: which is shown close up, and with it the train behind the same first shaft; None: the first.
 
     Returns:
         what the user should know, such as the magnification in use.
 
     Raises:
-        InputError: no such build, no display to open a window on, or the picture cannot be written.
+        InputError: no such build or mesh, no display to open a window on, or the picture cannot be written.
     """
     if screenshot is not None and screenshot.suffix.lower() not in PICTURES:
         raise InputError(f"{screenshot}: expected a picture ending in {', '.join(PICTURES)}")
     choose_window(needs_display=screenshot is None)
     assembly = assemble(run, which, magnify=magnify)
-    trains = whole_trains(assembly)
-    plotter = plot(assembly, trains, off_screen=screenshot is not None)
+    trains = _with_the_shown_first(whole_trains(assembly), _asked(assembly, mesh))
+    close = _asked(assembly, mesh) or _first(assembly, trains)
+    plotter = plot(assembly, trains, close, off_screen=screenshot is not None)
     try:
         if screenshot is None:
             plotter.show(title=f"tol3d · {assembly.label}")
@@ -79,20 +84,39 @@ def view_run(
         raise InputError(f"{screenshot}: cannot be written ({error.strerror or error}); choose another file") from None
     finally:
         plotter.close()
-    return (*assembly.notes, *_left_out(assembly, trains))
+    return (*assembly.notes, *_left_out(assembly, trains, close))
 
 
-def _close_up(assembly: Assembly, trains: Sequence[WholeTrain]) -> SeatedMesh | None:
-    """The mesh that is shown close up: the first, of a train its first; None for a train without any."""
+def _asked(assembly: Assembly, mesh: str | None) -> SeatedMesh | None:
+    """The mesh of that name; None where none was asked for.
+
+    Raises:
+        InputError: the build shows no such mesh.
+    """
+    if mesh is None:
+        return None
+    by_name = {seated.mesh.name: seated for seated in assembly.meshes}
+    if mesh not in by_name:
+        raise InputError(f"--mesh: no mesh {mesh[:LONGEST_NAME]!r} is shown of this run{hint(mesh, by_name)}")
+    return by_name[mesh]
+
+
+def _with_the_shown_first(trains: Sequence[WholeTrain], close: SeatedMesh | None) -> list[WholeTrain]:
+    """The trains in their order, before them the one that a mesh is of."""
+    return sorted(trains, key=lambda train: close is not None and close.mesh.driver not in train.shaft_of)
+
+
+def _first(assembly: Assembly, trains: Sequence[WholeTrain]) -> SeatedMesh | None:
+    """The first mesh, of a train its first; None for a train without any."""
     return next((seated for seated in assembly.meshes if not trains or seated.mesh.driver in trains[0].shaft_of), None)
 
 
-def _left_out(assembly: Assembly, trains: Sequence[WholeTrain]) -> Iterator[str]:
+def _left_out(assembly: Assembly, trains: Sequence[WholeTrain], close: SeatedMesh | None) -> Iterator[str]:
     """What the picture does not show."""
-    shown = _close_up(assembly, trains)
-    others = [seated.mesh.name for seated in assembly.meshes if seated is not shown]
-    if shown and others:
-        yield f"{'close up' if trains else 'shown'} is {shown.mesh.name}, not {', '.join(others)}"
+    others = [seated.mesh.name for seated in assembly.meshes if seated is not close]
+    if close and others:
+        what = "close up" if trains else "shown"
+        yield f"{what} is {close.mesh.name}, not {', '.join(others)} (choose with --mesh)"
     if len(trains) > 1:
         yield f"shown are the shafts behind {trains[0].root}, not those behind {', '.join(t.root for t in trains[1:])}"
 
@@ -114,9 +138,8 @@ def choose_window(*, needs_display: bool) -> None:
     raise InputError("without a display a picture needs libEGL or libOSMesa: install one (Debian: libegl1, libosmesa6)")
 
 
-def plot(assembly: Assembly, trains: Sequence[WholeTrain], *, off_screen: bool) -> pv.Plotter:
+def plot(assembly: Assembly, trains: Sequence[WholeTrain], close: SeatedMesh | None, *, off_screen: bool) -> pv.Plotter:
     """The scene: the teeth in mesh, the whole pair, a close-up of the gap; of a train, the train before the teeth."""
-    close = _close_up(assembly, trains)
     if close is None:
         plotter = pv.Plotter(off_screen=off_screen, window_size=list(WINDOW_SIZE))
         plotter.enable_anti_aliasing("ssaa")
