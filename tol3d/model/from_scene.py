@@ -6,7 +6,8 @@ from dataclasses import replace
 from tol3d.errors import SceneError
 from tol3d.gears import LEFT, RIGHT
 from tol3d.model.effects import Tolerances
-from tol3d.model.layout import Layout, all_links, layout_of, links_of
+from tol3d.model.layout import Layout, layout_of
+from tol3d.model.links import links_between_shafts, links_of
 from tol3d.model.measures import measure_of
 from tol3d.model.mesh import Mesh
 from tol3d.model.model import GearPart, Housing, Model, Study, Until
@@ -42,7 +43,7 @@ def model_from_scene(scene: Scene) -> Model:
     refuse_bearings(scene)
     shafts, reducers, arms = shafts_of(scene), reducers_of(scene), arms_of(scene)
     meshes = tuple(_mesh(scene, name, move) for name, move in scene.moves.items() if isinstance(move, GearMeshSpec))
-    refuse_no_trees(scene, all_links(meshes, shafts, reducers))
+    refuse_no_trees(scene, links_between_shafts(meshes, shafts, reducers))
     layout = layout_of(meshes, shafts, reducers)
     refuse_misfits(scene, meshes, layout)
     trains = trains_of(scene, layout)

@@ -15,7 +15,7 @@ from fractions import Fraction
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.errors import GeometryError
+from tol3d.model.links import Link, Way, back_to_root, carriers, links_between_shafts, onwards, way_between
 from tol3d.model.mesh import Mesh
 from tol3d.model.shafts import Carried, Reducer, Shaft
 
@@ -32,42 +32,6 @@ class Turning:
     def at(self, root: float) -> float:
         """The angle [rad] at an angle of the root."""
         return self.offset + float(self.rate) * root
-
-
-@dataclass(frozen=True)
-class Link:
-    """What makes one shaft turn with another: a mesh or a reducer.
-
-    `rate` is turns of the driven shaft per turn of the driver's, signed.
-    """
-
-    name: str
-    driver: str
-    driven: str
-    rate: Fraction
-
-
-@dataclass(frozen=True)
-class Parallel:
-    """Ways that part at one shaft and meet at another.
-
-    Args:
-        driver, driven: the shafts.
-        ways: the links of each, one behind the other; there may be parallel ones among them.
-    """
-
-    driver: str
-    driven: str
-    ways: tuple["Way", ...]
-
-    @property
-    def name(self) -> str:
-        """Its links' names."""
-        return " ∥ ".join(" + ".join(element.name for element in way) for way in self.ways)
-
-
-Way = tuple[Link | Parallel, ...]
-"""Links one behind the other."""
 
 
 @dataclass(frozen=True)
@@ -146,18 +110,8 @@ class Layout:
         return next(drive for drive in self.drives if mesh in drive.meshes)
 
     def behind(self, shaft: str) -> tuple[Link, ...]:
-        """The links from a shaft back to its root."""
-        links = []
-        while shaft in self.driving:
-            links.append(self.driving[shaft])
-            shaft = links[-1].driver
-        return tuple(links)
-
-    def between(self, first: str, last: str) -> tuple[Link, ...]:
-        """The links between two shafts of a tree, in the order of the way; the first of parallel ways."""
-        up, down = self.behind(first), self.behind(last)
-        common = set(up) & set(down)
-        return (*(link for link in up if link not in common), *reversed([link for link in down if link not in common]))
+        """The links from a shaft back to its root; the first of parallel ways."""
+        return back_to_root(self.driving, shaft)
 
     def way(self, first: str, last: str) -> Way:
         """What lies between two shafts of a tree, in the order of the way.
@@ -165,39 +119,7 @@ class Layout:
         Raises:
             GeometryError: one of them lies in the midst of parallel ways, or these are not apart.
         """
-        up, down = self._from_root(first), self._from_root(last)
-        common = 0
-        while common < min(len(up), len(down)) and up[common] == down[common]:
-            common += 1
-        self._refuse_midst(up[common:], down[common:])
-        return (*reversed(up[common:]), *down[common:])
-
-    def _from_root(self, shaft: str) -> Way:
-        """The way from a tree's root to a shaft."""
-        driving = [link for link in self.links if link.driven == shaft]
-        if not driving:
-            return ()
-        if len(driving) == 1:
-            return (*self._from_root(driving[0].driver), driving[0])
-        each = [self._from_root(link.driver) for link in driving]
-        common = 0
-        while all(len(way) > common for way in each) and len({way[common] for way in each}) == 1:
-            common += 1
-        ways = tuple((*way[common:], link) for way, link in zip(each, driving, strict=True))
-        inner = [link.name for way in ways for link in links_of(way)]
-        if len(set(inner)) < len(inner):
-            raise GeometryError(f"the ways to {shaft!r} share some of their links but not at their beginning")
-        first = links_of(ways[0])[0].driver
-        return (*each[0][:common], Parallel(first, shaft, ways))
-
-    def _refuse_midst(self, *parts: Way) -> None:
-        """A shaft in the midst of parallel ways is held by the others too, which a way from the root does not show."""
-        used = {link.name for way in parts for link in links_of(way)}
-        for link in self.closing:
-            loop = self._from_root(link.driven)[-1]
-            names = {inner.name for inner in links_of((loop,))}
-            if names & used and not names <= used:
-                raise GeometryError(f"a shaft in the midst of the parallel ways {loop.name}")
+        return way_between(self.links, first, last)
 
     def ratio(self, first: str, last: str) -> Fraction:
         """Turns of the first shaft per turn of the last, signed."""
@@ -206,89 +128,84 @@ class Layout:
 
 def layout_of(meshes: Sequence[Mesh], shafts: Sequence[Shaft], reducers: Sequence[Reducer]) -> Layout:
     """The layout of a model whose shafts make trees, which model/trains.py sees to."""
-    carrying = _carrying(meshes, shafts)
-    links = all_links(meshes, shafts, reducers)
+    links = links_between_shafts(meshes, shafts, reducers)
     driving: dict[str, Link] = {}
     for link in links:
         driving.setdefault(link.driven, link)
-    closing = tuple(link for link in links if driving[link.driven] is not link)
-    frames = {gear: _shaft_from_gear(own) for gear, (_, own) in carrying.items()}
-    turn: dict[str, Turning] = {}
-    world: dict[str, Array] = {}
-    root_of: dict[str, str] = {}
-    mesh_turn: dict[str, Turning] = {}
-    world_from_mesh: dict[str, Array] = {}
-    by_name: dict[str, Mesh | Reducer] = {mesh.name: mesh for mesh in meshes} | {r.name: r for r in reducers}
-    names = dict.fromkeys([*(link.driver for link in links), *(s.name for s in shafts)])
+    placing = _Placing(carriers(meshes, shafts))
+    causes: dict[str, Mesh | Reducer] = {mesh.name: mesh for mesh in meshes} | {r.name: r for r in reducers}
+    names = dict.fromkeys([*(link.driver for link in links), *(shaft.name for shaft in shafts)])
     for root in (name for name in names if name not in driving):
-        turn[root], world[root], root_of[root] = Turning(), np.eye(4), root
-        for link in _onwards(root, list(driving.values())):
-            root_of[link.driven] = root
-            cause = by_name[link.name]
-            if isinstance(cause, Mesh):
-                (_, driver), (_, driven) = carrying[cause.driver], carrying[cause.driven]
-                mesh_turn[cause.name] = _of_driver(cause, driver, turn[link.driver])
-                turn[link.driven] = _of_driven(cause, driven, mesh_turn[cause.name])
-                pose = world[link.driver] @ frames[cause.driver] @ _about_z(cause.azimuth)
-                world_from_mesh[cause.name] = pose
-                world[link.driven] = pose @ _wheel_in_mesh(cause) @ np.linalg.inv(frames[cause.driven])
-            else:
-                before = turn[link.driver]
-                turn[link.driven] = Turning(before.offset * float(link.rate), before.rate * link.rate)
-                world[link.driven] = world[link.driver] @ _along_z(cause.offset)
-    closed: dict[str, Closing] = {}
+        placing.begin(root)
+        for link in onwards(root, list(driving.values())):
+            placing.go_on(link, causes[link.name])
+    closing = tuple(link for link in links if driving[link.driven] is not link)
     busy = Counter(gear for mesh in meshes for gear in (mesh.driver, mesh.driven))
     for link in closing:
-        cause = by_name[link.name]
-        if isinstance(cause, Mesh):
-            pose = world[link.driver] @ frames[cause.driver] @ _about_z(cause.azimuth)
-            world_from_mesh[cause.name] = pose
-            azimuth = _turn_between(world[link.driven] @ frames[cause.driven], pose @ _wheel_in_mesh(cause))
-            (first, driver), (last, driven) = carrying[cause.driver], carrying[cause.driven]
-            clocked = _clocked(cause, (driver, turn[first]), (driven, turn[last]), azimuth, busy)
-            carrying[cause.driver], carrying[cause.driven] = (first, clocked[0]), (last, clocked[1])
-            mesh_turn[cause.name] = _of_driver(cause, clocked[0], turn[first])
-            closed[cause.name] = clocked[2]
+        placing.close(link, causes[link.name], busy)
     return Layout(
         links=links,
         driving=driving,
         closing=closing,
-        root_of=root_of,
-        shaft_turn=turn,
-        mesh_turn=mesh_turn,
-        world_from_shaft=world,
-        world_from_mesh=world_from_mesh,
-        shaft_from_gear=frames,
-        carrying=carrying,
-        closed=closed,
-        drives=tuple(_drives(meshes, links, root_of, mesh_turn)),
+        root_of=placing.root_of,
+        shaft_turn=placing.turn,
+        mesh_turn=placing.mesh_turn,
+        world_from_shaft=placing.world,
+        world_from_mesh=placing.world_from_mesh,
+        shaft_from_gear=placing.frames,
+        carrying=placing.carrying,
+        closed=placing.closed,
+        drives=tuple(_drives(meshes, links, placing.root_of, placing.mesh_turn)),
     )
 
 
-def all_links(meshes: Sequence[Mesh], shafts: Sequence[Shaft], reducers: Sequence[Reducer]) -> tuple[Link, ...]:
-    """The reducers and meshes of a model as links of its shafts."""
-    carrying = _carrying(meshes, shafts)
-    return (
-        *(Link(r.name, r.driver, r.driven, 1 / r.ratio) for r in reducers),
-        *(_link(mesh, carrying) for mesh in meshes),
-    )
+class _Placing:
+    """Collects where shafts and meshes lie and how they turn, link by link from the roots on."""
 
+    def __init__(self, carrying: dict[str, tuple[str, Carried]]) -> None:
+        self.carrying = carrying
+        self.frames = {gear: _shaft_from_gear(own) for gear, (_, own) in carrying.items()}
+        self.root_of: dict[str, str] = {}
+        self.turn: dict[str, Turning] = {}
+        self.world: dict[str, Array] = {}
+        self.mesh_turn: dict[str, Turning] = {}
+        self.world_from_mesh: dict[str, Array] = {}
+        self.closed: dict[str, Closing] = {}
 
-def _carrying(meshes: Sequence[Mesh], shafts: Sequence[Shaft]) -> dict[str, tuple[str, Carried]]:
-    carrying = {own.gear: (shaft.name, own) for shaft in shafts for own in shaft.carries}
-    for gear in (gear for mesh in meshes for gear in (mesh.driver, mesh.driven)):
-        carrying.setdefault(gear, (gear, Carried(gear)))
-    return carrying
+    def begin(self, root: str) -> None:
+        """A root lies in the origin."""
+        self.root_of[root], self.turn[root], self.world[root] = root, Turning(), np.eye(4)
 
+    def go_on(self, link: Link, cause: Mesh | Reducer) -> None:
+        """A link places the shaft that it drives."""
+        self.root_of[link.driven] = self.root_of[link.driver]
+        if isinstance(cause, Reducer):
+            before = self.turn[link.driver]
+            self.turn[link.driven] = Turning(before.offset * float(link.rate), before.rate * link.rate)
+            self.world[link.driven] = self.world[link.driver] @ _along_z(cause.offset)
+            return
+        (_, driver), (_, driven) = self.carrying[cause.driver], self.carrying[cause.driven]
+        self.mesh_turn[cause.name] = _of_driver(cause, driver, self.turn[link.driver])
+        self.turn[link.driven] = _of_driven(cause, driven, self.mesh_turn[cause.name])
+        pose = self._place_mesh(link, cause)
+        self.world[link.driven] = pose @ _wheel_in_mesh(cause) @ np.linalg.inv(self.frames[cause.driven])
 
-def links_of(way: Way) -> tuple[Link, ...]:
-    """Every link of a way, those of parallel ones too."""
-    found: list[Link] = []
-    for element in way:
-        found += (
-            [element] if isinstance(element, Link) else [link for inner in element.ways for link in links_of(inner)]
-        )
-    return tuple(found)
+    def close(self, link: Link, cause: Mesh | Reducer, busy: Mapping[str, int]) -> None:
+        """A link finds the shaft that it drives in its place, and has the teeth fit there; see _clocked."""
+        if isinstance(cause, Reducer):
+            return
+        pose = self._place_mesh(link, cause)
+        azimuth = _turn_between(self.world[link.driven] @ self.frames[cause.driven], pose @ _wheel_in_mesh(cause))
+        (first, driver), (last, driven) = self.carrying[cause.driver], self.carrying[cause.driven]
+        clocked = _clocked(cause, (driver, self.turn[first]), (driven, self.turn[last]), azimuth, busy)
+        self.carrying[cause.driver], self.carrying[cause.driven] = (first, clocked[0]), (last, clocked[1])
+        self.mesh_turn[cause.name] = _of_driver(cause, clocked[0], self.turn[first])
+        self.closed[cause.name] = clocked[2]
+
+    def _place_mesh(self, link: Link, mesh: Mesh) -> Array:
+        pose = self.world[link.driver] @ self.frames[mesh.driver] @ _about_z(mesh.azimuth)
+        self.world_from_mesh[mesh.name] = pose
+        return np.asarray(pose)
 
 
 def misfit(layout: Layout, mesh: Mesh) -> tuple[float, float]:
@@ -299,34 +216,6 @@ def misfit(layout: Layout, mesh: Mesh) -> tuple[float, float]:
     here = layout.world_from_shaft[shaft]
     axes = float(np.linalg.norm(np.cross(there[:3, 2], here[:3, 2])))
     return float(np.linalg.norm(there[:3, 3] - here[:3, 3])), axes if there[:3, 2] @ here[:3, 2] > 0.0 else np.pi
-
-
-def loop_of(links: Sequence[Link]) -> tuple[str, ...]:
-    """Shafts that drive each other in a ring, the first of them again at the end; empty where there are none."""
-    driver = {link.driven: link.driver for link in links}
-    for start in driver:
-        way = [start]
-        while way[-1] in driver and len(way) <= len(driver):
-            way.append(driver[way[-1]])
-            if way[-1] == start:
-                return tuple(reversed(way))
-    return ()
-
-
-def _onwards(root: str, links: Sequence[Link]) -> Iterator[Link]:
-    """The links of a root's tree, each behind the one that drives it."""
-    waiting = [root]
-    while waiting:
-        shaft = waiting.pop(0)
-        for link in links:
-            if link.driver == shaft:
-                yield link
-                waiting.append(link.driven)
-
-
-def _link(mesh: Mesh, carrying: Mapping[str, tuple[str, Carried]]) -> Link:
-    (driver, first), (driven, second) = carrying[mesh.driver], carrying[mesh.driven]
-    return Link(mesh.name, driver, driven, mesh.rate * first.sense * second.sense)
 
 
 def _of_driver(mesh: Mesh, own: Carried, shaft: Turning) -> Turning:

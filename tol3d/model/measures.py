@@ -8,7 +8,7 @@ from typing import Literal
 
 import numpy as np
 
-from tol3d.model.layout import Link, Parallel
+from tol3d.model.links import Link, Parallel
 from tol3d.model.measure import (
     AnyStage,
     Backlash,

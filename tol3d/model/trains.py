@@ -8,7 +8,8 @@ import numpy as np
 
 from tol3d.errors import GeometryError, SceneError
 from tol3d.gears import LEFT, RIGHT, Flank
-from tol3d.model.layout import Layout, Link, loop_of, misfit
+from tol3d.model.layout import Layout, misfit
+from tol3d.model.links import Link, loop_of
 from tol3d.model.mesh import Mesh
 from tol3d.model.pairs import internal
 from tol3d.model.shafts import Arm, Carried, Reducer, Shaft, Train, Vector
@@ -206,7 +207,7 @@ def refuse_other_ratios(scene: Scene, meshes: Sequence[Mesh], layout: Layout) ->
             _refuse_ratio(scene, mesh.name, move.ratio, abs(1 / mesh.rate), why)
     for name, move in scene.moves.items():
         if isinstance(move, TrainSpec) and move.ratio is not None:
-            links = layout.between(move.driven, move.output)
+            links = reversed(layout.behind(move.output))
             each = " · ".join(f"{_ratio_text(1 / link.rate)} ({link.name})" for link in links) or "the same shaft"
             _refuse_ratio(scene, name, move.ratio, layout.ratio(move.driven, move.output), each)
 

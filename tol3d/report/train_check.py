@@ -9,7 +9,7 @@ from rich.text import Text
 
 from tol3d.gears import LEFT
 from tol3d.model import Model, Train
-from tol3d.model.layout import Parallel, Way, links_of
+from tol3d.model.links import Parallel, Way, links_of
 from tol3d.model.trains import gravity_torque
 from tol3d.report.number import NOTHING
 from tol3d.report.sheet import Heading, Row, Sheet
