@@ -8,7 +8,9 @@ import re
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from matplotlib.colors import to_hex
 from matplotlib.image import imread
+from matplotlib.patches import FancyBboxPatch, Polygon
 from matplotlib.text import Text
 from rich.console import Console
 
@@ -29,6 +31,7 @@ DEGREES_PER_UM = 0.12195  # times j_n [um] over the gear's diameter [mm]: the pa
 SPUR, BEVEL = (34.0, 54.0, 75.0), (72.0, 90.0, 108.0)  # um; low, mean and high of the paper's Tables 4 and 8
 SPUR_DIAMETER, BEVEL_DIAMETER = 275.0, 102.1  # mm
 KEYS = ("low_3sigma", "mean", "high_3sigma")
+CONES, SHAFT = "#009e73", "#f3f3f3"  # colours in the picture of a train
 
 
 def lost_motion(backlashes: tuple[float, ...], diameter: float) -> dict[str, float]:
@@ -392,7 +395,7 @@ def test_a_shaft_turns_against_the_motor_behind_an_odd_number_of_reversals():
 
 
 @pytest.mark.parametrize("lever", [LEVER, None])
-@pytest.mark.parametrize("count", [1, 2, 3, 6, 7, 9, 12])
+@pytest.mark.parametrize("count", [1, 2, 3, 4, 5, 6, 7, 9, 12])
 def test_no_two_labels_overlap_and_none_leaves_the_picture(count, lever):
     figure = chain_figure(long_train(count, lever), "shoulder swing")
     figure.canvas.draw()
@@ -407,6 +410,22 @@ def test_no_two_labels_overlap_and_none_leaves_the_picture(count, lever):
     for (text, box), (other, beside) in itertools.combinations(boxes, 2):
         apart = box.x1 <= beside.x0 or beside.x1 <= box.x0 or box.y1 <= beside.y0 or beside.y1 <= box.y0
         assert apart, (text, other)
+
+
+@pytest.mark.parametrize("teeth", [(31, 31), (20, 40), (40, 20)])
+@pytest.mark.parametrize("lever", [LEVER, None])
+@pytest.mark.parametrize("count", [1, 3, 4, 5, 6, 8])
+def test_no_cone_reaches_under_a_shaft(count, lever, teeth):
+    summary = long_train(count, lever)
+    for each in summary["trains"]["shoulder swing"]["stages"]:
+        each |= {"kind": "bevel_mesh", "teeth": list(teeth)}
+    figure = chain_figure(summary, "shoulder swing")
+    cones = [patch.get_window_extent() for patch in figure.findobj(Polygon) if to_hex(patch.get_edgecolor()) == CONES]
+    shafts = [box.get_window_extent() for box in figure.findobj(FancyBboxPatch) if to_hex(box.get_facecolor()) == SHAFT]
+    assert len(cones) == 2 * count
+    assert len(shafts) > count
+    for cone, shaft in itertools.product(cones, shafts):
+        assert not cone.overlaps(shaft)
 
 
 def test_a_train_without_an_arm_shows_no_length():

@@ -373,6 +373,26 @@ def test_export_and_view_refuse_two_choices(tol3d: Command, tmp_path: Path) -> N
     assert "one of" in err
 
 
+def test_view_refuses_a_mesh_that_is_not_there(tol3d: Command, tmp_path: Path) -> None:
+    assert tol3d("run", SPUR, "--trials", "5", "--engine", "analytic", "--out", str(tmp_path / "run"))[0] == 0
+    arguments = ("--nominal", "--mesh", "gear pear", "--screenshot", str(tmp_path / "view.png"))
+    code, out, err = tol3d("view", str(tmp_path / "run"), *arguments)
+    assert (code, out) == (2, "")
+    assert err == "--mesh: no mesh 'gear pear' is shown of this run; did you mean \"gear pair\"?\n"
+
+
+def test_run_names_every_picture_that_it_drew(tol3d: Command, tmp_path: Path) -> None:
+    arguments = ("--trials", "5", "--engine", "analytic", "--out")
+    for scene, pictures in (("spur_pair", "picture: {0}/histogram.png"), ("robot_shoulder", ROBOTS_PICTURES)):
+        folder = tmp_path / scene
+        code, out, _ = tol3d("run", str(SCENES / f"{scene}.yaml"), *arguments, str(folder))
+        assert code == 0
+        assert out.splitlines()[-1] == f"run: {folder}    {pictures.format(folder)}"
+
+
+ROBOTS_PICTURES = "pictures: {0}/histogram.png, {0}/chain.png"
+
+
 def test_help_answers_in_half_a_second() -> None:
     command = [sys.executable, "-m", "tol3d.cli", "--help"]
     best = min(_seconds(command) for _ in range(3))

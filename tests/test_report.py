@@ -21,6 +21,7 @@ from matplotlib.image import imread
 from rich.console import Console
 from scipy.stats import norm
 
+from tol3d.analyses.compensation import CompensationQuestion, compensation
 from tol3d.errors import InputError
 from tol3d.gears import LEFT, RIGHT
 from tol3d.report import (
@@ -36,7 +37,8 @@ from tol3d.report.assembly import DISPLAY_DEFLECTION, OPEN_SHARE, assemble
 from tol3d.report.bars import bars_of
 from tol3d.report.canvas import VERMILLION, new_figure, plain_axes
 from tol3d.report.column import shares_of
-from tol3d.report.compare import measures_of
+from tol3d.report.compare import comparison_figure, measures_of
+from tol3d.report.compensation_table import swing_table
 from tol3d.report.difference import difference_of
 from tol3d.report.histogram import column_colours, draw_contributors, draw_curve, draw_distribution
 from tol3d.report.meshes import file_words
@@ -280,6 +282,36 @@ def test_check_report_fits_and_shows_limits_and_coefficients(run, width):
     assert f"{model.meshes[0].pair.contact_ratio:.4f}" in text
 
 
+TWO_WAYS = """
+scene: two ways
+parts:
+  in: {kind: shaft, carries: {p1: {}, p2: {at: 20 mm}}}
+  out: {kind: shaft, carries: {w1: {}, w2: {at: 20 mm}}}
+  p1: {kind: spur_gear, teeth: 20, module: 1 mm, face_width: 9 mm}
+  p2: {kind: spur_gear, teeth: 20, module: 1 mm, face_width: 9 mm}
+  w1: {kind: spur_gear, teeth: 40, module: 1 mm, face_width: 9 mm}
+  w2: {kind: spur_gear, teeth: 40, module: 1 mm, face_width: 9 mm}
+tolerances:
+  t1: {kind: tooth_thickness, of: p1, distribution: {kind: normal, lower: -40 um, upper: -20 um}}
+  t2: {kind: tooth_thickness, of: p2, distribution: {kind: normal, lower: -40 um, upper: -20 um}}
+moves:
+  m1: {kind: mesh, driver: p1, driven: w1, centre_distance: 30 mm}
+  m2: {kind: mesh, driver: p2, driven: w2, centre_distance: 30 mm}
+  two: {kind: train, driven: in, output: out}
+measures:
+  both: {kind: lost_motion, of: two}
+  first: {kind: angular_backlash, of: m1}
+study: {trials: 10}
+"""
+
+
+def test_check_names_the_measures_that_no_closed_form_tells(run, tmp_path):
+    (tmp_path / "ways.yaml").write_text(TWO_WAYS, encoding="utf-8")
+    text = one_line(check_report(effective_model(load_scene(tmp_path / "ways.yaml"))))
+    assert "no closed form of both: not a sum (the tighter way counts, or a tilted face touches at one end);" in text
+    assert "no closed form" not in one_line(check_report(model_of(run)))
+
+
 def test_check_marks_coefficients_on_which_geometry_and_stack_up_disagree():
     text = printed(check_report(effective_model(load_scene(SCENES / "bevel_pair.yaml"))), 80)
     # by an exact solver 0.5311 and 0.4358 where the stack-up has their mean, and nothing for axes that pass each other
@@ -329,6 +361,45 @@ def test_measures_of_one_name_over_other_positions_are_compared_apart(run, tmp_p
     draw_comparison([run, run], tmp_path / "same.png")
     rows = [imread(tmp_path / name).shape[0] for name in ("apart.png", "same.png")]
     assert rows[0] > 1.25 * rows[1]  # four rows of axes, not three
+
+
+def test_an_error_that_jumps_over_the_swing_has_no_mean_in_the_comparison(tmp_path):
+    scene = SCENES / "robot_shoulder_swing.yaml"
+    swing = run_scene(scene, overrides=Overrides(trials=4, witness=0), out=tmp_path / "swing")
+    errors = [name for name, measure in swing.summary["measures"].items() if measure["kind"] == "tip_error"]
+    text = printed(comparison_report([swing]), 160)
+    assert (
+        len(errors)
+        == text.count("no row: it is 0 with the load on one side and jumps where the load changes side")
+        == 1
+    )
+    others = len(swing.summary["measures"]) - len(errors)
+    assert [text.count(f" {road} ") for road in ("analytic   ", "3D   ")] == [others, others]
+    for name in errors:
+        below = text.split(f"\n{name}\n")[1].split("\n\n")[0]
+        assert len(below.splitlines()) == 2
+
+
+def test_legends_of_a_comparison_lie_below_the_axes_and_hide_nothing(run):
+    figure = comparison_figure([run, run, run])
+    figure.canvas.draw()
+    rows = figure.axes[::3]
+    assert len(rows) == 3
+    for axes, below in zip(rows, [*rows[1:], None], strict=True):
+        legend = axes.get_legend().get_window_extent()
+        assert legend.y1 <= axes.xaxis.label.get_window_extent().y0
+        assert legend.y0 >= (below.title.get_window_extent().y1 if below else 0)
+        assert (legend.x0 >= 0, legend.x1 <= figure.axes[1].get_tightbbox().x0) == (True, True)
+
+
+def test_flanks_of_a_swing_with_several_changes_of_side_are_told_at_the_first(tmp_path):
+    scene = tmp_path / "swing.yaml"
+    text = (SCENES / "robot_shoulder_swing.yaml").read_text("utf-8")
+    for end, label in (("60", "spur pair: flank of the driver "), ("180", "of the driver at the first of 2 changes ")):
+        scene.write_text(re.sub(r"start: -60 deg, end: 60 deg", f"start: -{end} deg, end: {end} deg", text), "utf-8")
+        found = compensation(load_scene(scene), CompensationQuestion(None, 2, 4))
+        lines = printed(swing_table([found]), 120).splitlines()
+        assert sum(label in line for line in lines) == (1 if end == "60" else 2)
 
 
 def test_comparing_nothing_is_refused():

@@ -13,6 +13,7 @@ import pytest
 import trimesh
 from matplotlib.image import imread
 
+from tol3d.errors import InputError
 from tol3d.report import export_run, view_run
 from tol3d.report.assembly import DISPLAY_DEFLECTION, assemble
 from tol3d.report.train_picture import Frame, _places
@@ -308,12 +309,31 @@ def test_the_picture_shows_every_shaft_in_its_colour_beside_the_close_ups(run, t
     picture = tmp_path / "train.png"
     notes = view_run(run, TRIAL, screenshot=picture)
     assert capfd.readouterr().err == ""
-    assert notes[-1] == "close up is first, not second, bevels"
+    assert notes[-1] == "close up is first, not second, bevels (choose with --mesh)"
     pixels = np.round(255 * imread(picture)[:, : int(0.66 * 1800), :3])
     for colour in set(train.colours.values()):
         wanted = np.array([*bytes.fromhex(colour[1:])])
         # labels are flat: each of its own colour, 60 x 20 pixels and more
         assert (np.abs(pixels - wanted).max(axis=2) < 3).sum() > 500
+
+
+@renders
+def test_the_close_ups_are_those_of_the_mesh_that_was_chosen(run, tmp_path) -> None:
+    """In the nominal build its gap is nothing but rounding: that is drawn as a point."""
+    pictures = {}
+    for name in (None, "first", "bevels"):
+        notes = view_run(run, "nominal", screenshot=tmp_path / "chosen.png", mesh=name)
+        shown = name or "first"
+        others = ", ".join(mesh for mesh in MESHES if mesh != shown)
+        assert notes[-1] == f"close up is {shown}, not {others} (choose with --mesh)"
+        pictures[name] = imread(tmp_path / "chosen.png")[:, int(0.67 * 1800) :]
+    assert (pictures[None] == pictures["first"]).all()
+    assert (np.abs(pictures["bevels"] - pictures["first"]) > 0.2).mean() > 0.1
+
+
+def test_a_mesh_that_is_not_there_is_refused_with_the_nearest(run, tmp_path) -> None:
+    with pytest.raises(InputError, match=r"^--mesh: no mesh 'bevel' is shown of this run; did you mean \"bevels\"\?$"):
+        view_run(run, TRIAL, screenshot=tmp_path / "none.png", mesh="bevel")
 
 
 REDUCERS = """
@@ -368,8 +388,12 @@ def test_trees_of_shafts_that_nothing_connects_are_files_of_their_own(tmp_path) 
     held = [set(trimesh.load_scene(path).graph.nodes_geometry) for path in files]
     assert held == [set(CENTRES) | BODIES, {"lone", "mate"}]
     assert view_run(run, 0, screenshot=tmp_path / "two.png") == (
-        "close up is first, not lone pair, second, bevels",
+        "close up is first, not lone pair, second, bevels (choose with --mesh)",
         "shown are the shafts behind motor, not those behind lone",
+    )
+    assert view_run(run, 0, screenshot=tmp_path / "lone.png", mesh="lone pair") == (
+        "close up is lone pair, not first, second, bevels (choose with --mesh)",
+        "shown are the shafts behind lone, not those behind motor",
     )
 
 

@@ -353,7 +353,7 @@ def _notes(model: Model, formless: Sequence[str]) -> list[str]:
         more = "; of two that cross only the larger counts" if len(tilts) > 1 else ""
         notes.append(f"{', '.join(tilts)}: a tilt closes the gap whichever way it goes{more}")
     if formless:
-        notes.append(f"no closed form: {', '.join(formless)} {'is' if len(formless) == 1 else 'are'} {NO_SUM}")
+        notes.append(f"no closed form of {', '.join(formless)}: {NO_SUM}")
     return notes
 
 

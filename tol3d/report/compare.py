@@ -38,7 +38,7 @@ from tol3d.result import Run
 Summary = Mapping[str, Any]
 
 NO_SIMULATION = "no 3D simulation in these runs"
-NO_ONE_MEAN = "no mean in a table: it jumps where the load changes side, and is 0 before; the picture shows its curve"
+NO_ONE_MEAN = "no row: it is 0 with the load on one side and jumps where the load changes side; the picture shows it"
 NO_TRIALS = "these runs kept no trials (--no-trials)"
 ROADS = {"analytic": "analytic", "geometric": "3D simulation"}
 SHORT = {"analytic": "analytic", "geometric": "3D"}

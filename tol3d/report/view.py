@@ -42,6 +42,7 @@ DRIVER_COLOUR, DRIVEN_COLOUR = "#7FB2D9", "#F0C36D"
 TEETH_HIGH: Final = 2.9  # modules from the middle of the teeth in mesh to the upper edge of the picture
 GAPS_HIGH: Final = 3.0  # gaps from the middle of the gap to the upper edge of the close-up
 LEAST_HIGH: Final = 0.03  # mm; a close-up of no gap at all still shows something
+LEAST_GAP: Final = 1e-4  # mm; VTK keeps coordinates in single precision, in which nearer ends may be one point
 VIEW_ANGLE: Final = 12.0  # deg; enough perspective to show flanks, little enough to look through the gap
 WHOLE_ELEVATION: Final = 22.0  # deg; the whole assembly is seen from above the front
 PICTURES: Final = (".png", ".jpg", ".jpeg", ".tif", ".tiff", ".bmp")
@@ -70,10 +71,11 @@ def view_run(
     """
     if screenshot is not None and screenshot.suffix.lower() not in PICTURES:
         raise InputError(f"{screenshot}: expected a picture ending in {', '.join(PICTURES)}")
-    choose_window(needs_display=screenshot is None)
     assembly = assemble(run, which, magnify=magnify)
-    trains = _with_the_shown_first(whole_trains(assembly), _asked(assembly, mesh))
-    close = _asked(assembly, mesh) or _first(assembly, trains)
+    asked = _asked(assembly, mesh)
+    choose_window(needs_display=screenshot is None)
+    trains = _with_the_shown_first(whole_trains(assembly), asked)
+    close = asked or _first(assembly, trains)
     plotter = plot(assembly, trains, close, off_screen=screenshot is not None)
     try:
         if screenshot is None:
@@ -215,7 +217,7 @@ def _draw_teeth(plotter: pv.Plotter, seated: SeatedMesh, parts: Parts, front: fl
     middle = contact
     if np.isfinite(seated.gap).all():
         ends = [_in_front(seated, point, front) for point in seated.gap]
-        if seated.gap_value > 0.0:
+        if seated.gap_value > LEAST_GAP:
             plotter.add_mesh(pv.Tube(pointa=ends[0], pointb=ends[1], radius=0.6 * size), color=GAP_COLOUR)
         for end in ends:
             plotter.add_mesh(pv.Sphere(radius=size, center=end), color=GAP_COLOUR)
@@ -249,7 +251,7 @@ def _draw_gap(plotter: pv.Plotter, seated: SeatedMesh, parts: Parts, front: floa
         return
     ends = np.stack([_in_front(seated, point, front) for point in seated.gap])
     high = max(GAPS_HIGH * seated.gap_value, LEAST_HIGH)
-    if seated.gap_value > 0.0:
+    if seated.gap_value > LEAST_GAP:
         plotter.add_mesh(pv.Line(*ends), color=GAP_COLOUR, line_width=4, lighting=False)
     plotter.add_points(ends, color=GAP_COLOUR, point_size=12, render_points_as_spheres=True)
     beside = np.array([0.3 * high, 0.0, 0.0])
