@@ -16,15 +16,15 @@ from rich.console import Console
 
 from tol3d.report import picture
 from tol3d.report.canvas import new_figure, plain_axes
-from tol3d.report.chain import chain_figure
 from tol3d.report.compare import Compared
 from tol3d.report.heading import heading, limits_text
 from tol3d.report.histogram import density_label, draw_curve, values_label
-from tol3d.report.label import wrapped
 from tol3d.report.number import difference_text
-from tol3d.report.stage import shafts_along, stages_of, sums_of
 from tol3d.report.table import curve_table, run_report
-from tol3d.report.train_table import train_report
+from tol3d.report.trains.chain import chain_figure
+from tol3d.report.trains.label import wrapped
+from tol3d.report.trains.stage import shafts_along, stages_of, sums_of
+from tol3d.report.trains.table import train_report
 
 LEVER = 763.0  # mm, of the robot's arm
 DEGREES_PER_UM = 0.12195  # times j_n [um] over the gear's diameter [mm]: the paper's lost motion of a pair

@@ -8,8 +8,8 @@ import pytest
 from tol3d.analyses.compensation import CompensationQuestion, compensation
 from tol3d.errors import SceneError
 from tol3d.model import Measure, model_from_scene
-from tol3d.report.stage import distributions_of, sums_of
-from tol3d.report.train_table import sums_table
+from tol3d.report.trains.stage import distributions_of, sums_of
+from tol3d.report.trains.table import sums_table
 from tol3d.scene import load_scene
 from tol3d.simulate import Overrides, run_scene
 from tol3d.worst import worst_trial

@@ -19,7 +19,7 @@ from tol3d.model.measure import at_one_position
 from tol3d.report.heading import QUANTITY_WORDS, TAKE_WORDS, reading_words
 from tol3d.report.number import NOTHING, UNIT_SIGNS, given_text, percent_text, unsigned_zero, value_text
 from tol3d.report.sheet import Heading, Row, Sheet
-from tol3d.report.train_check import train_blocks
+from tol3d.report.trains.check import train_blocks
 from tol3d.sensitivity import STEP_ASIDE, mean_slopes
 from tol3d.units import angle_text
 

@@ -17,9 +17,9 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
-from tol3d.report.chain import draw_chain
 from tol3d.report.histogram import draw_histogram
 from tol3d.report.picture import chain_files
+from tol3d.report.trains.chain import draw_chain
 
 
 def main() -> None:

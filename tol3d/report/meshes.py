@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from tol3d.errors import InputError
 from tol3d.report.assembly import Assembly, PlacedGear, SeatedMesh, Which, assemble
-from tol3d.report.whole_trains import WholeTrain, whole_trains
+from tol3d.report.trains.whole_trains import WholeTrain, whole_trains
 from tol3d.result import Run
 from tol3d.solids import PosedGear, PosedPart, export_step
 

@@ -21,8 +21,8 @@ from tol3d.report.number import (
     value_text,
 )
 from tol3d.report.sheet import Heading, Row, Sheet, note
-from tol3d.report.stage import SUM_KEYS, Sums, sums_of
-from tol3d.report.train_table import WORST_CASE_MEANS, train_report
+from tol3d.report.trains.stage import SUM_KEYS, Sums, sums_of
+from tol3d.report.trains.table import WORST_CASE_MEANS, train_report
 
 Summary = Mapping[str, Any]
 

@@ -28,8 +28,8 @@ from tol3d.report.drawn_solids import (
     set_background,
 )
 from tol3d.report.number import measured_text
-from tol3d.report.train_picture import draw_train, label_beside, label_in_place
-from tol3d.report.whole_trains import WholeTrain, whole_trains
+from tol3d.report.trains.picture import draw_train, label_beside, label_in_place
+from tol3d.report.trains.whole_trains import WholeTrain, whole_trains
 from tol3d.result import Run
 from tol3d.scene.name import LONGEST_NAME
 from tol3d.scene.nearest import hint

@@ -21,7 +21,7 @@ from tol3d.report.drawn_solids import (
     poly_data,
     set_background,
 )
-from tol3d.report.whole_trains import WholeTrain
+from tol3d.report.trains.whole_trains import WholeTrain
 
 Array = NDArray[np.float64]
 

@@ -8,7 +8,7 @@ from rich.text import Text
 
 from tol3d.report.number import percent_text, tip_mm, value_text
 from tol3d.report.sheet import Heading, Row, Sheet, note
-from tol3d.report.stage import (
+from tol3d.report.trains.stage import (
     SUM_KEYS,
     Stage,
     distributions_of,

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from tol3d import frames
 from tol3d.model import Arm, LostMotion, Model
 from tol3d.report.assembly import Assembly, PlacedGear, SeatedMesh, shows_shafts
-from tol3d.report.shaft_sizes import ShaftSizes, Span, arm_body
+from tol3d.report.trains.shaft_sizes import ShaftSizes, Span, arm_body
 from tol3d.solids import PosedBody, display_mesh
 
 Array = NDArray[np.float64]

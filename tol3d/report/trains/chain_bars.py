@@ -7,7 +7,8 @@ from matplotlib.axes import Axes
 from matplotlib.patches import Rectangle
 
 from tol3d.report.canvas import BLACK
-from tol3d.report.chain_grid import (
+from tol3d.report.number import NOTHING, tip_mm
+from tol3d.report.trains.chain_grid import (
     BARS,
     CAPTIONS,
     EDGE,
@@ -18,10 +19,9 @@ from tol3d.report.chain_grid import (
     draw_caption,
     published_colours,
 )
-from tol3d.report.label import wrapped
-from tol3d.report.link_symbol import LINK_COLOURS
-from tol3d.report.number import NOTHING, tip_mm
-from tol3d.report.stage import Stage, share_text
+from tol3d.report.trains.label import wrapped
+from tol3d.report.trains.link_symbol import LINK_COLOURS
+from tol3d.report.trains.stage import Stage, share_text
 
 Summary = Mapping[str, Any]
 
