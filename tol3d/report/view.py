@@ -45,6 +45,8 @@ LEAST_HIGH: Final = 0.03  # mm; a close-up of no gap at all still shows somethin
 LEAST_GAP: Final = 1e-4  # mm; VTK keeps coordinates in single precision, in which nearer ends may be one point
 VIEW_ANGLE: Final = 12.0  # deg; enough perspective to show flanks, little enough to look through the gap
 WHOLE_ELEVATION: Final = 22.0  # deg; the whole assembly is seen from above the front
+LETTER: Final = 0.14  # modules; a letter of a label, which begins so much further left where it would be cut
+ROOMY_NAME: Final = 15  # letters that have room
 PICTURES: Final = (".png", ".jpg", ".jpeg", ".tif", ".tiff", ".bmp")
 
 
@@ -225,8 +227,10 @@ def _draw_teeth(plotter: pv.Plotter, seated: SeatedMesh, parts: Parts, front: fl
         add_label(plotter, (ends[0] + ends[1]) / 2 + beside, _gap_text(seated), GAP_COLOUR)
         middle = (contact + (ends[0] + ends[1]) / 2) / 2
     for part, role, aside in zip((seated.driver, seated.driven), ("driver", "driven"), (-1.0, 1.0), strict=True):
-        place = middle + module * np.array([2.1 * aside - 0.8, -2.65, 0.0])
-        add_label(plotter, place, f"{part.name} ({role})", EDGE_COLOUR)
+        text = f"{part.name} ({role})"
+        over = LETTER * max(0, len(text) - ROOMY_NAME) if aside > 0.0 else 0.0
+        place = middle + module * np.array([2.1 * aside - 0.8 - over, -2.65, 0.0])
+        add_label(plotter, place, text, EDGE_COLOUR)
     _look(plotter, middle, TEETH_HIGH * module, 0.0)
     _with_perspective(plotter)
 
