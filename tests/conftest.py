@@ -1,11 +1,14 @@
-"""Shared ground: the paper's spur pair as a model, and engines on the strips of real solids."""
+"""Shared ground: the paper's spur pair as a model, engines on the strips of real solids, the command line."""
 
+import sys
+from collections.abc import Callable
 from functools import cache
 from pathlib import Path
 
 import hypothesis
 import pytest
 
+from tol3d import cli
 from tol3d.engines.fcl import FclEngine
 from tol3d.gears import SpurGear
 from tol3d.model import Model, model_from_scene
@@ -14,6 +17,8 @@ from tol3d.solids import FlankStrips, measuring_strips
 
 hypothesis.settings.register_profile("tol3d", deadline=None)  # shared machines stall for longer than any deadline
 hypothesis.settings.load_profile("tol3d")
+
+Command = Callable[..., tuple[int, str, str]]
 
 SPUR_PAIR = Path(__file__).resolve().parent.parent / "scenes" / "spur_pair.yaml"
 
@@ -38,3 +43,21 @@ def engine_of():
         return FclEngine(model, {part.name: strips_of(part.gear, steps) for part in model.gears})
 
     return make
+
+
+@pytest.fixture
+def tol3d(monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]) -> Command:
+    """Runs `tol3d ARGUMENTS` in this process: exit code, stdout, stderr."""
+
+    def command(*arguments: str) -> tuple[int, str, str]:
+        monkeypatch.setattr(sys, "argv", ["tol3d", *arguments])
+        capfd.readouterr()
+        try:
+            cli.main()
+            code = 0
+        except SystemExit as stop:
+            code = int(stop.code or 0)
+        out, err = capfd.readouterr()
+        return code, out, err
+
+    return command

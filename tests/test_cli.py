@@ -31,24 +31,6 @@ SPUR = str(SCENES / "spur_pair.yaml")
 Command = Callable[..., tuple[int, str, str]]
 
 
-@pytest.fixture
-def tol3d(monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]) -> Command:
-    """Runs `tol3d ARGUMENTS` in this process: exit code, stdout, stderr."""
-
-    def command(*arguments: str) -> tuple[int, str, str]:
-        monkeypatch.setattr(sys, "argv", ["tol3d", *arguments])
-        capfd.readouterr()
-        try:
-            cli.main()
-            code = 0
-        except SystemExit as stop:
-            code = int(stop.code or 0)
-        out, err = capfd.readouterr()
-        return code, out, err
-
-    return command
-
-
 def test_run_prints_the_table_and_writes_the_run(tol3d: Command, tmp_path: Path) -> None:
     code, out, _ = tol3d("run", SPUR, "--trials", "100", "--out", str(tmp_path / "spur"))
     assert code == 0

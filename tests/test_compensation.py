@@ -2,7 +2,6 @@
 
 import math
 import re
-import sys
 import tomllib
 from collections.abc import Callable
 from functools import cache
@@ -12,19 +11,20 @@ import numpy as np
 import pytest
 from rich.console import Console
 
-from tol3d import Overrides, cli, load_scene, run_scene
+from tol3d import Overrides, load_scene, run_scene
 from tol3d.analyses import robots as robots_module
 from tol3d.analyses.compensation import Compensation, CompensationQuestion, compensation
 from tol3d.analyses.correction import CLOSED_FORM
 from tol3d.analyses.robots import STATES, left_of_the_mean
 from tol3d.analyses.spread import Spread
-from tol3d.block import ARCMIN, drawn_block, simulate_block
+from tol3d.block import drawn_block, simulate_block
 from tol3d.engines.door import exact_engine
 from tol3d.errors import InputError
 from tol3d.gears.flank import opposite
 from tol3d.report.compensation_picture import compensation_figure
 from tol3d.report.compensation_table import compensation_report
 from tol3d.report.number import tip_mm
+from tol3d.units import ARCMIN
 
 SCENES = Path(__file__).resolve().parent.parent / "scenes"
 SWING = SCENES / "robot_shoulder_swing.yaml"
@@ -362,27 +362,20 @@ Command = Callable[..., tuple[int, str, str]]
 
 
 @pytest.fixture
-def tol3d(monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]) -> Command:
-    """Runs `tol3d compensate ARGUMENTS` in this process: exit code, stdout, stderr, blanks as one."""
+def compensate(tol3d: Command) -> Command:
+    """Runs `tol3d compensate ARGUMENTS`, as `tol3d` does, blanks in stderr as one."""
 
     def command(*arguments: str) -> tuple[int, str, str]:
-        monkeypatch.setattr(sys, "argv", ["tol3d", "compensate", *arguments])
-        capfd.readouterr()
-        try:
-            cli.main()
-            code = 0
-        except SystemExit as stop:
-            code = int(stop.code or 0)
-        out, err = capfd.readouterr()
+        code, out, err = tol3d("compensate", *arguments)
         return code, out, " ".join(err.split())
 
     return command
 
 
-def test_the_command_prints_the_tables_and_draws_the_picture(tol3d: Command, tmp_path: Path) -> None:
+def test_the_command_prints_the_tables_and_draws_the_picture(compensate: Command, tmp_path: Path) -> None:
     picture = tmp_path / "compensation.png"
     arguments = ("--trials", "30", "--positions", "4", "--train", "shoulder swing", "--out", str(picture))
-    code, out, _ = tol3d("robot_shoulder", str(SHIMMED), *arguments)
+    code, out, _ = compensate("robot_shoulder", str(SHIMMED), *arguments)
     assert code == 0
     assert out.count("30 robots, seed 1; each robot's own mean at 4 positions") == 2
     assert picture.read_bytes().startswith(b"\x89PNG")
@@ -398,9 +391,9 @@ REFUSED = {
 
 
 @pytest.mark.parametrize("what", REFUSED)
-def test_what_cannot_be_answered_gets_one_message_and_exit_code_2(tol3d: Command, what: str) -> None:
+def test_what_cannot_be_answered_gets_one_message_and_exit_code_2(compensate: Command, what: str) -> None:
     arguments, words = REFUSED[what]
-    code, out, err = tol3d(*arguments)
+    code, out, err = compensate(*arguments)
     assert (code, out) == (2, "")
     assert words in err
 

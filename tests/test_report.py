@@ -760,3 +760,9 @@ def test_perturbed_gear_is_the_mesh_turned_flank_by_flank(run):
     off = np.abs((azimuth + gear.angular_pitch / 2) % gear.angular_pitch - gear.angular_pitch / 2)
     assert on_flank.sum() > 500
     assert (off * radius[on_flank]).max() < 1e-5  # mm; the CAD spline is true to 0.01 um
+
+
+def test_the_process_that_draws_pictures_loads_no_runs_and_no_models() -> None:
+    code = "import sys, tol3d.report.histogram_process as _; print(*sys.modules)"
+    loaded = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout.split()
+    assert not {"pyarrow", "tol3d.result", "tol3d.model", "scipy", "cadquery"} & set(loaded)

@@ -6,7 +6,6 @@ Jiang et al., J. Zhejiang Univ. (Eng. Sci.) 58(8), 2024, section 4: the low of 7
 
 import math
 import re
-import sys
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 from functools import cache
@@ -16,7 +15,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tol3d import Overrides, cli, load_scene, run_scene
+from tol3d import Overrides, load_scene, run_scene
 from tol3d.analyses import Pieces, ShimPlan, ShimQuestion, Step, Stock, shim_plan, stock_of
 from tol3d.analyses.shim import closing_of, formula_thickness
 from tol3d.analyses.shim_choice import shims_of
@@ -303,26 +302,19 @@ Command = Callable[..., tuple[int, str, str]]
 
 
 @pytest.fixture
-def tol3d(monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]) -> Command:
-    """Runs `tol3d shim ARGUMENTS` in this process: exit code, stdout, stderr, blanks as one."""
+def shim_command(tol3d: Command) -> Command:
+    """Runs `tol3d shim ARGUMENTS`, as `tol3d` does, blanks in stderr as one."""
 
     def command(*arguments: str) -> tuple[int, str, str]:
-        monkeypatch.setattr(sys, "argv", ["tol3d", "shim", *arguments])
-        capfd.readouterr()
-        try:
-            cli.main()
-            code = 0
-        except SystemExit as stop:
-            code = int(stop.code or 0)
-        out, err = capfd.readouterr()
+        code, out, err = tol3d("shim", *arguments)
         return code, out, " ".join(err.split())
 
     return command
 
 
-def test_the_command_prints_lines_that_make_the_scene_it_writes(tol3d: Command, tmp_path: Path) -> None:
+def test_the_command_prints_lines_that_make_the_scene_it_writes(shim_command: Command, tmp_path: Path) -> None:
     path = tmp_path / "shimmed.yaml"
-    code, out, _ = tol3d(BEVEL, "--target-min", "24 um", "--round", "nearest", "--out", str(path))
+    code, out, _ = shim_command(BEVEL, "--target-min", "24 um", "--round", "nearest", "--out", str(path))
     assert code == 0
     lines = [line for line in out.splitlines() if "kind: shim" in line]
     assert lines == [
@@ -364,17 +356,17 @@ REFUSED = {
 
 
 @pytest.mark.parametrize("what", REFUSED)
-def test_what_cannot_be_answered_gets_one_message_and_exit_code_2(tol3d: Command, what: str) -> None:
+def test_what_cannot_be_answered_gets_one_message_and_exit_code_2(shim_command: Command, what: str) -> None:
     scene, options, words = REFUSED[what]
-    code, out, err = tol3d(scene, "--target-min", *options)
+    code, out, err = shim_command(scene, "--target-min", *options)
     assert (code, out) == (2, "")
     assert re.search(words, err), err
 
 
-def test_a_file_is_never_written_over(tol3d: Command, tmp_path: Path) -> None:
+def test_a_file_is_never_written_over(shim_command: Command, tmp_path: Path) -> None:
     path = tmp_path / "there.yaml"
     path.write_text("mine", "utf-8")
-    code, _, err = tol3d(BEVEL, "--target-min", "24 um", "--out", str(path))
+    code, _, err = shim_command(BEVEL, "--target-min", "24 um", "--out", str(path))
     assert code == 2
     assert "there is one already" in err
     assert path.read_text("utf-8") == "mine"
@@ -387,9 +379,9 @@ def test_shims_that_undo_each_other_are_refused() -> None:
         shim_plan(with_tolerances(scene, {"driven shim": front}), ShimQuestion(24 * UM))
 
 
-def test_builds_that_interfere_are_told_of(tol3d: Command) -> None:
+def test_builds_that_interfere_are_told_of(shim_command: Command) -> None:
     """Mean - 3 sigma at nothing: 1.35 of 1000 builds of a normal backlash lie below it."""
-    code, out, _ = tol3d(BEVEL, "--target-min", "0 um")
+    code, out, _ = shim_command(BEVEL, "--target-min", "0 um")
     assert code == 0
     assert "of 2000 builds with the chosen shims" in out
     own = plan(target=0.0)

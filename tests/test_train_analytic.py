@@ -254,29 +254,14 @@ def test_one_bearing_acts_in_all_meshes_of_its_shaft(tmp_path: Path) -> None:
     assert share.variance == pytest.approx(expected**2 * 144e-6 / 12, rel=1e-9)
 
 
-BEVELS = """
-scene: an overhung bevel gear
-parts:
-  a: {kind: spur_gear, teeth: 20, module: 2 mm, face_width: 6 mm}
-  b: {kind: spur_gear, teeth: 30, module: 2 mm, face_width: 6 mm}
-  c: {kind: bevel_gear, teeth: 25, module: 2 mm, face_width: 8 mm}
-  d: {kind: bevel_gear, teeth: 40, module: 2 mm, face_width: 8 mm}
-  middle: {kind: shaft, carries: {b: {at: 20 mm}, c: {at: 150 mm, facing: backward}}}
-  low: {kind: bearing, shaft: middle, at: -20 mm}
-  high: {kind: bearing, shaft: middle, at: 70 mm}
-tolerances:
-  clearance:
-    kind: bearing_clearance
-    of: low
-    direction: {at: 70 deg}
-    distribution: {kind: uniform, lower: 4 um, upper: 16 um}
-moves:
-  first: {kind: mesh, driver: a, driven: b, centre_distance: 50.1 mm}
-  second: {kind: bevel_mesh, driver: c, driven: d, azimuth: 40 deg}
-  train: {kind: train, driven: a, output: d}
-measures:
-  lost motion: {kind: lost_motion, of: train}
-"""
+BEVELS = (
+    BEARINGS.replace("  c: {kind: spur_gear", "  c: {kind: bevel_gear")
+    .replace("  d: {kind: spur_gear", "  d: {kind: bevel_gear")
+    .replace("c: {at: 60 mm", "c: {at: 150 mm")
+    .replace("tolerances:", "  high: {kind: bearing, shaft: middle, at: 70 mm}\ntolerances:")
+    .replace("{kind: mesh, driver: c, driven: d, centre_distance: 65.1 mm,", "{kind: bevel_mesh, driver: c, driven: d,")
+)
+"""A bevel gear behind both bearings of its shaft."""
 
 
 @pytest.mark.parametrize("scene", ["spur", "bevel"])

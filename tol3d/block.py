@@ -18,6 +18,7 @@ from tol3d.measures import measure_backlash, moved, read_backlash, turning_gear
 from tol3d.model import Backlash, LostMotion, Measure, Mesh, Model, Study
 from tol3d.moves import Meshing, MeshSeat
 from tol3d.play import Play, Read, SeatKey, positions_count, seat_key, seat_keys
+from tol3d.units import ARCMIN
 
 Array = NDArray[np.float64]
 Columns = Mapping[str, NDArray[np.generic]]
@@ -27,7 +28,6 @@ BUILDS_AT_ONCE = 4096  # builds x positions: 2.5 MB of them
 BLOCK_TRIALS = 65_536  # trials whose statistics are folded together, and that are written as one file
 AUTO_BLOCK_TRIALS = 16_384  # of a study that may stop after any block
 AUTO_FCL_BLOCK_TRIALS = 2048  # the same where a trial is slow: a second of them
-ARCMIN = 10800 / math.pi  # in a radian
 BLOCK_VALUES = 2**22  # values of a curve in one block: 32 MB
 
 

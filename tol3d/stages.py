@@ -8,12 +8,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.analytic import per_normal_backlash
-from tol3d.block import ARCMIN, Columns, stage_column, staged_measures
+from tol3d.block import Columns, stage_column, staged_measures
 from tol3d.distributions import Distribution
 from tol3d.gears import LEFT
 from tol3d.model import Backlash, LostMotion, Measure, Model, ReducerBacklash
 from tol3d.model.measure import AnyStage, ParallelStage, Tip
 from tol3d.statistics import FeatureSums, Moments
+from tol3d.units import ARCMIN
 
 Array = NDArray[np.float64]
 

@@ -14,6 +14,9 @@ from pydantic_core import PydanticCustomError, core_schema
 
 Dimension = Literal["length", "angle", "temperature", "expansion"]
 
+ARCMIN: Final = 10800 / math.pi  # in a radian
+RAD_PER_ARCMIN: Final = math.pi / 10800
+
 FACTORS: Final[dict[Dimension, dict[str, float]]] = {
     "length": {"mm": 1.0, "um": 1e-3, "nm": 1e-6, "m": 1e3, "cm": 10.0},
     "angle": {
@@ -21,7 +24,7 @@ FACTORS: Final[dict[Dimension, dict[str, float]]] = {
         "mrad": 1e-3,
         "urad": 1e-6,
         "deg": math.pi / 180,
-        "arcmin": math.pi / 10800,
+        "arcmin": RAD_PER_ARCMIN,
         "arcsec": math.pi / 648000,
     },
     "temperature": {"K": 1.0},

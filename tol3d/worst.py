@@ -1,19 +1,20 @@
 """The worst trial of a run: the one nearest to a limit, or furthest beyond it."""
 
 from collections.abc import Mapping
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.result import Run
+if TYPE_CHECKING:  # who only wants the words loads no files of runs
+    from tol3d.result import Run
 
 Array = NDArray[np.float64]
 
-LARGEST_IS_WORST = frozenset(("lost_motion", "tip_displacement", "tip_error"))  # of measures without limits
+TRAIN_KINDS = frozenset(("lost_motion", "tip_displacement", "tip_error"))  # measures of trains: the larger the worse
 
 
-def worst_trial(run: Run) -> int:
+def worst_trial(run: "Run") -> int:
     """Index of the worst trial among those that seated; a curve counts by its extremes.
 
     Nearness is counted in standard deviations of each measure. Without any limit the smallest backlash is the worst,
@@ -30,14 +31,14 @@ def _limits(measure: Mapping[str, Any]) -> tuple[float | None, float | None]:
     return measure["lower_limit"], measure["upper_limit"]
 
 
-def _margin(run: Run, road: str, name: str, measure: Mapping[str, Any]) -> Array:
+def _margin(run: "Run", road: str, name: str, measure: Mapping[str, Any]) -> Array:
     """How far each trial is inside the limits, in sigmas; infinite where it gave no value."""
     column = f"{road}:{name}"
     values = np.asarray(run.columns(column)[column], dtype=np.float64).reshape(run.trials, -1)
     lower, upper = _limits(measure)
     below, above = values.min(axis=1), values.max(axis=1)  # nan where a position of a curve did not seat
     if (lower, upper) == (None, None):
-        margin = -above if measure["kind"] in LARGEST_IS_WORST else below
+        margin = -above if measure["kind"] in TRAIN_KINDS else below
     else:
         margin = below - lower if lower is not None else np.full(run.trials, np.inf)
         margin = np.minimum(margin, upper - above) if upper is not None else margin

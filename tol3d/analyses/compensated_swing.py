@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from tol3d.analyses.robots import Robots, State
 from tol3d.analytic import first_order
-from tol3d.block import ARCMIN, drawn_block, simulate_block
+from tol3d.block import drawn_block, simulate_block
 from tol3d.engines import Engine
 from tol3d.gears import Flank
 from tol3d.gears.flank import opposite
@@ -18,6 +18,7 @@ from tol3d.measures import moved
 from tol3d.model import LostMotion, Measure, Model, Train
 from tol3d.model.measures import load_changes, over_swing
 from tol3d.model.trains import gravity_torque, loaded_flank
+from tol3d.units import ARCMIN
 
 Array = NDArray[np.float64]
 
@@ -121,12 +122,9 @@ def tip_error(kind: LostMotion, road: str, angle: Array) -> Array:
 def _flanks(
     model: Model, train: Train, kind: LostMotion, shown: tuple[float, ...]
 ) -> Iterator[tuple[str, tuple[Flank, Flank]]]:
-    """A load is held as if the motor drove against it; on its other side the other flanks work."""
-    torques = (gravity_torque(train, model.layout, model.arms, angle) for angle in shown)
-    first = next(torque for torque in torques if torque)
-    sense = -1 if first * model.layout.shaft_turn[train.output].rate > 0.0 else 1
-    against = replace(train, gravity=None, sense=sense)
+    """Those that the load leaves to work where the swing begins, and on its other side."""
+    loaded = next(angle for angle in shown if gravity_torque(train, model.layout, model.arms, angle))
     for stage in kind.singles:
         if stage.backlash is not None:
-            flank = loaded_flank(model.mesh(stage.link), against, model.layout, model.arms)
+            flank = loaded_flank(model.mesh(stage.link), train, model.layout, model.arms, loaded)
             yield stage.link, (flank, opposite(flank))

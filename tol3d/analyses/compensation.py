@@ -19,7 +19,6 @@ from tol3d.analyses.compensated_swing import Swing, swing_of, swings_of, tip_err
 from tol3d.analyses.correction import Correction, at_shaft, corrections_of
 from tol3d.analyses.robots import Robots, State, left_of_the_mean, simulated_robots
 from tol3d.analytic import ClosedForm, Share, closed_form
-from tol3d.block import ARCMIN
 from tol3d.errors import InputError
 from tol3d.model import LostMotion, Measure, Model, Positions, ReducerBacklash, Train
 from tol3d.model.contributor import Contributor, TurningOffset, single_effects
@@ -31,6 +30,7 @@ from tol3d.simulate import Overrides, effective_model
 from tol3d.stages import stages_of
 from tol3d.study import AS_WRITTEN
 from tol3d.task import engine_of, strips_for
+from tol3d.units import ARCMIN
 
 Array = NDArray[np.float64]
 Unit = Literal["mm", "arcmin"]

@@ -9,10 +9,10 @@ from typing import Any, Final
 
 from tol3d.analyses.robots import Robots
 from tol3d.analytic import closed_form
-from tol3d.block import ARCMIN
 from tol3d.model import Backlash, LostMotion, Measure, Model, Train
 from tol3d.model.measure import AnyStage, ParallelStage
 from tol3d.stages import stage_tallies, stages_of, train_summaries
+from tol3d.units import ARCMIN
 
 Ends = Mapping[str, Any]
 

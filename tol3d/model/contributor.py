@@ -12,11 +12,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.distributions import Distribution
+from tol3d.units import RAD_PER_ARCMIN
 
 Array = NDArray[np.float64]
 Unit = Literal["um", "mrad", "K", "arcmin"]
 
-INTERNAL_PER_UNIT: dict[Unit, float] = {"um": 1e-3, "mrad": 1e-3, "K": 1.0, "arcmin": math.pi / 10800}
+INTERNAL_PER_UNIT: dict[Unit, float] = {"um": 1e-3, "mrad": 1e-3, "K": 1.0, "arcmin": RAD_PER_ARCMIN}
 
 
 @dataclass(frozen=True)

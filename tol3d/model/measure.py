@@ -4,6 +4,8 @@ import math
 from dataclasses import dataclass, replace
 from typing import Literal
 
+from tol3d.units import ARCMIN
+
 BacklashQuantity = Literal["normal_backlash", "circumferential_backlash", "angular_backlash", "rest_angle"]
 TrainQuantity = Literal["lost_motion", "tip_displacement", "tip_error"]
 Take = Literal["value", "min", "max", "range", "curve"]
@@ -237,4 +239,4 @@ class Measure:
     @property
     def per_internal(self) -> float:
         """What one mm or rad is in that unit."""
-        return {"arcmin": 10800 / math.pi, "mm": 1.0, "um": 1000.0}[self.unit]
+        return {"arcmin": ARCMIN, "mm": 1.0, "um": 1000.0}[self.unit]

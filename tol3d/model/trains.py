@@ -18,6 +18,7 @@ from tol3d.scene.moves import GearMeshSpec, ReducerSpec, TrainSpec
 from tol3d.scene.parts import ArmSpec, BearingSpec, GearSpec, ShaftSpec
 from tol3d.scene.place import KeyPath
 from tol3d.scene.tolerances import ReducerBacklashSpec
+from tol3d.units import Quantity
 
 RATIO_AS_WRITTEN = 5e-4  # relative; four digits are enough to check a drawing's ratio
 PLACE_AS_WRITTEN = 0.05  # mm; azimuths are written with few decimals, and parallel ways need not close better
@@ -80,8 +81,8 @@ def arms_of(scene: Scene) -> tuple[Arm, ...]:
     )
 
 
-def _vector(lengths: Sequence[object]) -> Vector:
-    x, y, z = (internal(length) for length in lengths)  # type: ignore[arg-type]
+def _vector(lengths: Sequence[Quantity]) -> Vector:
+    x, y, z = (length.internal for length in lengths)
     return x, y, z
 
 
@@ -291,13 +292,13 @@ def loose_gears(scene: Scene) -> Iterator[str]:
 # which flank works ----------------------------------------------------------------------------------
 
 
-def loaded_flank(mesh: Mesh, train: Train, layout: Layout, arms: Sequence[Arm]) -> Flank:
-    """The driver's flank that works in a mesh: what gravity leaves to it at angle 0, or the motor's sense.
+def loaded_flank(mesh: Mesh, train: Train, layout: Layout, arms: Sequence[Arm], angle: float = 0.0) -> Flank:
+    """The driver's flank that works in a mesh: by gravity at an angle of the output [rad], or by the motor's sense.
 
     A shaft that gravity turns one way is held by its driver as if that drove it the other way; a driver that turns
     counter-clockwise about its own z pushes with its left flank.
     """
-    torque = gravity_torque(train, layout, arms, 0.0)
+    torque = gravity_torque(train, layout, arms, angle)
     shaft, carried = layout.carrying[mesh.driver]
     sense = train.sense if not torque else -math.copysign(1.0, torque) * layout.shaft_turn[train.output].rate
     return LEFT if carried.sense * sense * layout.shaft_turn[shaft].rate > 0.0 else RIGHT

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from tol3d.report.number import given_text, unit_suffix
-from tol3d.worst import LARGEST_IS_WORST
+from tol3d.worst import TRAIN_KINDS
 
 QUANTITY_WORDS: Mapping[str, str] = {
     "normal_backlash": "normal backlash",
@@ -14,7 +14,6 @@ QUANTITY_WORDS: Mapping[str, str] = {
     "tip_displacement": "displacement by the lost motion",
     "tip_error": "error by the lost motion",
 }
-TRAIN_KINDS = frozenset(("lost_motion", "tip_displacement", "tip_error"))
 TAKE_WORDS: Mapping[str, str] = {"value": "", "min": "smallest ", "max": "largest ", "range": "range of ", "curve": ""}
 OVER_WORDS: Mapping[str, str] = {
     "random": "at a random position of the driver each trial",
@@ -94,7 +93,7 @@ def worst_words(measures: Mapping[str, Mapping[str, Any]]) -> str:
     limited = [name for name, m in measures.items() if (m["lower_limit"], m["upper_limit"]) != (None, None)]
     if not limited:
         name, measure = next(iter(measures.items()))
-        word = "largest" if measure["kind"] in LARGEST_IS_WORST else "smallest"
+        word = "largest" if measure["kind"] in TRAIN_KINDS else "smallest"
         return f"the {word} {name}, for there are no limits"
     return f"the nearest to a limit of {' or '.join(limited)}, or the furthest beyond it"
 

@@ -1,13 +1,11 @@
 """Numbers as a reader wants them: lengths in um, those at an arm's tip in mm, angles in minutes and seconds of arc."""
 
-import math
 from typing import Final
 
-from tol3d.units import angle_text
+from tol3d.units import RAD_PER_ARCMIN, angle_text
 
 NOTHING: Final = "–"
 UNIT_SIGNS: Final = {"um": "µm", "mm": "mm", "arcmin": "′", "mrad": "mrad", "K": "K"}
-RAD_PER_ARCMIN: Final = math.pi / 10800
 MANY_UM: Final = 1000.0  # um; from there on a nanometre says nothing
 UM_PER_MM: Final = 1000.0
 

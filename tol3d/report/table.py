@@ -23,6 +23,7 @@ from tol3d.report.number import (
 from tol3d.report.sheet import Heading, Row, Sheet, note
 from tol3d.report.trains.stage import SUM_KEYS, Sums, sums_of
 from tol3d.report.trains.table import WORST_CASE_MEANS, train_report
+from tol3d.worst import TRAIN_KINDS
 
 Summary = Mapping[str, Any]
 
@@ -170,7 +171,8 @@ def _sum_rows(sums: Sums, columns: Sequence[Column], unit: str) -> Iterator[Row]
 def _notes(name: str, measure: Summary, summary: Summary) -> Iterator[str]:
     unit, agreement = measure["unit"], measure.get("agreement")
     if agreement and agreement.get("compared"):
-        yield agreement_line(agreement, unit, summary.get("chord_error_um"))
+        of_train = measure.get("kind") in TRAIN_KINDS
+        yield agreement_line(agreement, unit, summary.get("chord_error_um"), " in each mesh" if of_train else "")
     yield from _witness_notes(name, measure, summary)
     own = measure[best_road(measure)]
     if own.get("mean_se") is not None and own.get("sigma_se") is not None:
@@ -202,8 +204,11 @@ def _by_replicates(sample: Summary, summary: Summary) -> str:
     return f" of {SAMPLER_WORDS[study['sampler']]}, by the spread of {study['replicates']} replicates"
 
 
-def agreement_line(agreement: Summary, unit: str, chord_error_um: float | None) -> str:
-    """How far the two roads differ trial by trial, and what the tessellation may explain of it."""
+def agreement_line(agreement: Summary, unit: str, chord_error_um: float | None, whose: str = "") -> str:
+    """How far the two roads differ trial by trial, and what the tessellation may explain of it.
+
+    `whose` says of what the normal backlash is, where that is not the measure's one mesh.
+    """
     line = (
         f"3D simulation − analytic, trial by trial: at most {difference_text(agreement['max_abs_difference'], unit)}, "
         f"rms {difference_text(agreement['rms_difference'], unit)}, "
@@ -215,8 +220,8 @@ def agreement_line(agreement: Summary, unit: str, chord_error_um: float | None) 
         return f"{line}; the flanks are the mathematical ones: this is what the stack-up neglects"
     whole = FLANKS_OF_A_BACKLASH * chord_error_um
     return (
-        f"{line}; up to {whole:.3f} µm of normal backlash may be chord error ({chord_error_um:.3f} µm on each of "
-        f"{FLANKS_OF_A_BACKLASH} flanks), the rest is what the stack-up neglects"
+        f"{line}; up to {whole:.3f} µm of normal backlash{whose} may be chord error ({chord_error_um:.3f} µm on each "
+        f"of {FLANKS_OF_A_BACKLASH} flanks), the rest is what the stack-up neglects"
     )
 
 
