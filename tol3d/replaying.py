@@ -1,5 +1,6 @@
 """One trial of a run again: its deviations, build, contacts and values."""
 
+import warnings
 from collections.abc import Mapping
 from dataclasses import dataclass, fields, replace
 from pathlib import Path
@@ -9,9 +10,13 @@ from tol3d.block import Block, Seats, drawn_block, seat_block, simulate_block
 from tol3d.engines.door import exact_engine
 from tol3d.errors import InputError
 from tol3d.model import Model, Study, Until, model_from_scene
-from tol3d.result import Run, open_run
+from tol3d.result import Run, differences, open_run
 from tol3d.scene import load_scene
-from tol3d.task import engine_of, strips_for
+from tol3d.task import engine_of, installed_versions, strips_for
+
+
+class ElsewhereWarning(UserWarning):
+    """A run was made with other packages or on another kind of processor; its trials again differ by rounding."""
 
 
 @dataclass(frozen=True)
@@ -48,14 +53,22 @@ def model_of(run: Run) -> Model:
 
 
 def replay(run: Run | Path | str, trial: int) -> Replay:
-    """Trial k of a run again, bit for bit: its deviations, build, contacts and values.
+    """Trial k of a run again: its deviations, build, contacts and values.
+
+    Bit for bit with the packages and on the kind of processor that made the run, elsewhere to rounding.
 
     Raises:
         RunError: the run has no such trial.
+
+    Warns:
+        ElsewhereWarning: they are others here.
     """
     run = run if isinstance(run, Run) else open_run(Path(run))
     if not 0 <= trial < run.trials:
         raise InputError(f"trial {trial}: expected 0 to {run.trials - 1}")
+    if found := differences(run.fingerprint["versions"], dict(installed_versions())):
+        words = f"{run.path}: made elsewhere ({'; '.join(found)}), so its trials again differ by rounding"
+        warnings.warn(words, ElsewhereWarning, stacklevel=2)
     model = model_of(run)
     return replay_block(model, drawn_block(model, model.study.seed, trial, 1))
 

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from tol3d.blockfiles import MENDED, BlockFiles, block_name
 from tol3d.errors import RunError
 from tol3d.files import FileContent, Files, kept_name
+from tol3d.processor import unlike
 
 Columns = dict[str, NDArray[np.generic]]
 
@@ -120,7 +121,7 @@ class Run:
 
     @property
     def fingerprint(self) -> Fingerprint:
-        """What makes its blocks its own: scene, files, study, versions, blocks."""
+        """What makes its blocks its own: scene, files, study, versions and processor, blocks."""
         files = dict(self.summary["files"])
         versions = {name: version for name, version in self.summary["versions"].items() if name != "python"}
         blocks = self.summary.get("blocks")
@@ -157,7 +158,8 @@ def differences(there: Fingerprint, asked: Fingerprint) -> list[str]:
         if isinstance(old, Mapping) and isinstance(new, Mapping):
             found += [f"{key}: {words}" for words in differences(old, new)]
         elif old != new:
-            found.append("the scene's text" if key == "scene" else f"{key} {old} there, {new} now")
+            there_only, now_only = unlike(old, new)
+            found.append("the scene's text" if key == "scene" else f"{key} {there_only} there, {now_only} now")
     return found
 
 

@@ -17,6 +17,7 @@ from tol3d.engines.door import exact_engine
 from tol3d.errors import RunError
 from tol3d.execution import Way, suggested_workers
 from tol3d.model import Model
+from tol3d.processor import processor, unlike
 from tol3d.solids import FlankStrips, measuring_strips
 from tol3d.statistics import Grid
 from tol3d.tally import Tally
@@ -78,7 +79,7 @@ class Task:
         grids: the empty grid of each scalar measure; none for a pilot, which has no statistics.
         fingerprint: tells studies apart.
         keep_trials: whether the columns of a whole block are wanted, or its statistics only.
-        versions: of the packages that decide the last bit.
+        versions: of what decides the last bit, as installed_versions has it.
     """
 
     model: Model
@@ -144,8 +145,9 @@ def _engine_of(task: Task) -> Engine | None:
 
 @cache
 def installed_versions() -> tuple[tuple[str, str], ...]:
-    """Versions of the packages that decide a result's last bit, here."""
-    return tuple((name, importlib.metadata.version(name)) for name in VERSIONS_OF)
+    """What decides a result's last bit, here: versions of packages, and the processor."""
+    packages = {name: importlib.metadata.version(name) for name in VERSIONS_OF}
+    return tuple({**packages, **processor()}.items())
 
 
 @cache
@@ -153,9 +155,15 @@ def refuse_other_versions(versions: tuple[tuple[str, str], ...]) -> None:
     """Refuse to work for a run whose results might differ in the last bit.
 
     Raises:
-        RunError: a package has another version here.
+        RunError: a package has another version here, or the processor is of another kind.
     """
-    own = dict(installed_versions())
-    other = [f"{name} {own[name]} instead of {version}" for name, version in versions if own[name] != version]
-    if other:
-        raise RunError(f"a worker has {', '.join(other)}: results could differ in the last bit; install the same there")
+    asked, own = dict(versions), dict(installed_versions())
+    pairs = {
+        name: unlike(own.get(name), asked.get(name)) for name in {**asked, **own} if own.get(name) != asked.get(name)
+    }
+    if pairs:
+        other = "; ".join(f"{name} {here} instead of {there}" for name, (here, there) in pairs.items())
+        raise RunError(
+            f"a worker has {other}: results could differ in the last bit; install the same packages there, and start "
+            "the run on a machine with the workers' kind of processor"
+        )

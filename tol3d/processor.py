@@ -1,0 +1,67 @@
+"""What this machine's processor and mathematical library add to the last bits of a result.
+
+Three choose their instructions by the processor they find: the compiler of the kernels, NumPy's loops, and the C
+library's sines and logarithms. One build read with another choice of any of them differs by 4e-9 um at most, so runs
+are of one kind of processor.
+"""
+
+import os
+import platform
+from collections.abc import Mapping
+from functools import cache
+
+import llvmlite.binding
+import numpy as np
+
+ARITHMETIC_OF_X86 = ("sse", "ssse", "avx", "fma", "xop", "f16c", "amx")
+"""How the names of x86 features begin that widen, fuse or replace floating-point instructions; the others add none.
+Of another architecture all features count."""
+X86 = ("x86", "amd64", "i386", "i686")
+
+COMPILER_SETTINGS = ("NUMBA_OPT", "NUMBA_LOOP_VECTORIZE", "NUMBA_SLP_VECTORIZE", "NUMBA_ENABLE_AVX")
+"""Variables by which numba makes other code for the same processor."""
+
+
+@cache
+def processor() -> Mapping[str, str]:
+    """What decides the last bits here, by name; lists have commas."""
+    settings = [f"{name}={os.environ[name]}" for name in COMPILER_SETTINGS if os.environ.get(name)]
+    return {
+        "processor": ",".join([os.environ.get("NUMBA_CPU_NAME") or llvmlite.binding.get_host_cpu_name(), *settings]),
+        "instructions": ",".join(_instructions()),
+        "numpy instructions": ",".join(_numpy_instructions()),
+        "libm": " ".join(filter(None, platform.libc_ver())) or f"{platform.system()} {platform.release()}",
+    }
+
+
+def unlike(there: object, here: object) -> tuple[object, object]:
+    """Two values that differ, of two lists such as `processor` has only what the other one lacks."""
+    if not (isinstance(there, str) and isinstance(here, str) and ("," in there or "," in here)):
+        return there, here
+    others, own = there.split(","), here.split(",")
+    return _without(others, own), _without(own, others)
+
+
+def _without(names: list[str], known: list[str]) -> str:
+    return ",".join(name for name in names if name not in known) or "nothing more"
+
+
+def _instructions() -> list[str]:
+    """What the compiler may use, as far as it decides results."""
+    stated = os.environ.get("NUMBA_CPU_FEATURES", "" if _generic() else None)
+    if stated is None:
+        stated = llvmlite.binding.get_host_cpu_features().flatten()
+    used = sorted(name.removeprefix("+") for name in stated.split(",") if name.startswith("+"))
+    if not platform.machine().lower().startswith(X86):
+        return used
+    return [name for name in used if name.startswith(ARITHMETIC_OF_X86)]
+
+
+def _generic() -> bool:
+    return os.environ.get("NUMBA_CPU_NAME", "").lower() == "generic"
+
+
+def _numpy_instructions() -> list[str]:
+    """Sets of instructions for which NumPy has loops of their own and found the processor to have them."""
+    config = np.show_config(mode="dicts") or {}
+    return list(config.get("SIMD Extensions", {}).get("found", []))
