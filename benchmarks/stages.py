@@ -1,6 +1,6 @@
 """What a trial of an exact study costs, stage by stage, on one core.
 
-    python benchmarks/stages.py [--trials 65536]
+    python benchmarks/stages.py [--trials 65536] [--rounds 7]
 
 Prints µs of processor time a trial for the draws, the builds, the contact, the stack-up, the whole block of columns and
 its statistics, least of several rounds, for the spur and the bevel pair. For the imports see startup.py.
@@ -8,7 +8,7 @@ its statistics, least of several rounds, for the spur and the bevel pair. For th
 
 import argparse
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from rich.console import Console
@@ -19,53 +19,57 @@ from tol3d.block import analytic_values, drawn_block, simulate_block
 from tol3d.engines.door import exact_engine
 from tol3d.features import features
 from tol3d.measures import turning_gear
+from tol3d.model import Backlash
 from tol3d.study import Overrides, effective_model
 from tol3d.tally import PILOT_TRIALS, Tally, grids_of
 
 SCENES = Path(__file__).resolve().parent.parent / "scenes"
-ROUNDS = 7
+SYSTEMS = ("spur_pair", "bevel_pair")
 
 
-def cost(stage: Callable[[], object], trials: int) -> float:
-    """µs of processor time a trial, least of ROUNDS."""
+def cost(stage: Callable[[], object], trials: int, rounds: int) -> float:
+    """µs of processor time a trial, least of the rounds."""
     stage()
     found = []
-    for _ in range(ROUNDS):
+    for _ in range(rounds):
         started = time.thread_time()
         stage()
         found.append(time.thread_time() - started)
     return min(found) / trials * 1e6
 
 
-def stages(scene: Path, trials: int) -> dict[str, float]:
+def stages(scene: Path, trials: int, rounds: int) -> dict[str, float]:
     """Cost of each stage."""
     model = effective_model(load_scene(scene), Overrides(engine="exact", witness=0))
     engine, mesh, seed = exact_engine(model), model.meshes[0], model.study.seed
     block = drawn_block(model, seed, 0, trials)
     made, angles = engine.build(block.deviations), block.random_angle[mesh.name]
-    turning = frozenset(gear for measure in model.measures if (gear := turning_gear(measure.kind, mesh)))
+    kinds = [measure.kind for measure in model.measures if isinstance(measure.kind, Backlash)]
+    turning = frozenset(gear for kind in kinds if (gear := turning_gear(kind, mesh)))
     columns = simulate_block(model, engine, block)
     grids = grids_of(model, simulate_block(model, engine, block.part(0, PILOT_TRIALS)))
     measure = model.measures[0]
-    reading = measure.kind.reading
-    return {
-        "draws": cost(lambda: drawn_block(model, seed, 0, trials), trials),
-        "builds": cost(lambda: engine.build(block.deviations), trials),
-        "contact, gap and free turn": cost(lambda: engine.read(made, mesh, reading, angles, turning), trials),
-        "stack-up": cost(lambda: analytic_values(model, measure, block), trials),
-        "all columns, without draws": cost(lambda: simulate_block(model, engine, block), trials),
-        "features of the contributors": cost(lambda: features(model, measure, columns), trials),
-        "statistics, features included": cost(lambda: Tally.of(model, grids, columns), trials),
+    reading = kinds[0].reading
+    work: dict[str, Callable[[], object]] = {
+        "draws": lambda: drawn_block(model, seed, 0, trials),
+        "builds": lambda: engine.build(block.deviations),
+        "contact, gap and free turn": lambda: engine.read(made, mesh, reading, angles, turning),
+        "stack-up": lambda: analytic_values(model, measure, block),
+        "all columns, without draws": lambda: simulate_block(model, engine, block),
+        "features of the contributors": lambda: features(model, measure, columns),
+        "statistics, features included": lambda: Tally.of(model, grids, columns),
     }
+    return {name: cost(stage, trials, rounds) for name, stage in work.items()}
 
 
-def main() -> None:
+def main(arguments: Sequence[str] | None = None) -> None:
     """Measure and print."""
-    parser = argparse.ArgumentParser(description=__doc__)
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--trials", type=int, default=65_536)
-    trials = parser.parse_args().trials
-    found = {name: stages(SCENES / f"{name}.yaml", trials) for name in ("spur_pair", "bevel_pair")}
-    table = Table(title=f"µs of one core a trial, blocks of {trials}")
+    parser.add_argument("--rounds", type=int, default=7)
+    given = parser.parse_args(arguments)
+    found = {name: stages(SCENES / f"{name}.yaml", given.trials, given.rounds) for name in SYSTEMS}
+    table = Table(title=f"µs of one core a trial, blocks of {given.trials}")
     table.add_column("stage")
     for name in found:
         table.add_column(name, justify="right")

@@ -1,6 +1,6 @@
 """How long `tol3d run spur_pair` takes, cold and warm, and what its imports cost.
 
-    python benchmarks/startup.py [--runs 5] [--cold]
+    python benchmarks/startup.py [--runs 5] [--cold] [--ways NAME …] [--packages NAME …]
 
 What a package costs is the time of its own modules, as `python -X importtime` tells it, in the process of a plain run;
 the picture's process is not in it, for it loads beside the study. Below stand packages that have no place on that path,
@@ -23,12 +23,21 @@ import sys
 import tempfile
 import time
 from collections import Counter
+from collections.abc import Mapping, Sequence
 from importlib.util import find_spec
 from pathlib import Path
 
 RUN = ("-m", "tol3d.cli", "run", "spur_pair")
 LINE = re.compile(r"import time:\s+(\d+) \|\s+(\d+) \| +(\S+)")
 SHOWN = 16
+WAYS: Mapping[str, tuple[str, ...]] = {
+    "as it is": (),
+    "without the witness": ("--witness", "0"),
+    "without the picture": ("--no-picture",),
+    "without both": ("--witness", "0", "--no-picture"),
+    "--engine analytic, without the picture": ("--engine", "analytic", "--no-picture"),
+    "--engine fcl": ("--engine", "fcl"),
+}
 LEFT_OUT = ("scipy.stats", "pint", "matplotlib.figure", "cadquery", "pyvista", "trimesh", "distributed", "pandas")
 
 
@@ -49,23 +58,16 @@ def imports(arguments: tuple[str, ...]) -> list[tuple[str, int]]:
     return [(found[3], int(found[1])) for line in done.stderr.splitlines() if (found := LINE.match(line))]
 
 
-def print_walls(runs: int) -> None:
+def print_walls(runs: int, ways: Sequence[str]) -> None:
     """Warm wall times, smallest and median."""
-    for words, more in (
-        ("as it is", ()),
-        ("without the witness", ("--witness", "0")),
-        ("without the picture", ("--no-picture",)),
-        ("without both", ("--witness", "0", "--no-picture")),
-        ("--engine analytic, without the picture", ("--engine", "analytic", "--no-picture")),
-        ("--engine fcl", ("--engine", "fcl")),
-    ):
-        taken = sorted(seconds((*RUN, *more)) for _ in range(runs))
-        print(f"  {words:40} {taken[0]:5.2f} s   (median {taken[runs // 2]:.2f} s)")
+    for way in ways:
+        taken = sorted(seconds((*RUN, *WAYS[way])) for _ in range(runs))
+        print(f"  {way:40} {taken[0]:5.2f} s   (median {taken[runs // 2]:.2f} s)")
     print(f"  {'tol3d --help':40} {min(seconds(('-m', 'tol3d.cli', '--help')) for _ in range(runs)):5.2f} s")
 
 
-def print_imports() -> None:
-    """What the imports of a plain run cost, by package."""
+def print_imports(packages: Sequence[str]) -> None:
+    """What the imports of a plain run cost, by package, and what other packages would."""
     found = imports((*RUN, "--witness", "0", "--no-picture"))
     own: Counter[str] = Counter()
     for module, us in found:
@@ -77,7 +79,7 @@ def print_imports() -> None:
     print(f"  {f'{len(own) - SHOWN} others':24} {rest / 1000:7.1f} ms")
     loaded = {module for module, _ in found}
     print("not on that path:")
-    for package in LEFT_OUT:
+    for package in packages:
         if find_spec(package.partition(".")[0]) is None:
             print(f"  {package:24}   not installed")
             continue
@@ -85,22 +87,24 @@ def print_imports() -> None:
         print(f"  {package:24} {cost / 1000:7.1f} ms{'   (LOADED)' if package in loaded else ''}")
 
 
-def main() -> None:
+def main(arguments: Sequence[str] | None = None) -> None:
     """Measure and print."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--runs", type=int, default=5, help="warm runs, of which the quickest counts")
     parser.add_argument("--cold", action="store_true", help="also once without anything in the cache")
-    arguments = parser.parse_args()
-    if arguments.cold:
+    parser.add_argument("--ways", nargs="+", choices=WAYS, default=list(WAYS), metavar="NAME")
+    parser.add_argument("--packages", nargs="+", default=list(LEFT_OUT), metavar="NAME")
+    given = parser.parse_args(arguments)
+    print(f"{os.cpu_count()} cores, Python {sys.version.split()[0]}, {Path(sys.executable)}")
+    if given.cold:
         with tempfile.TemporaryDirectory() as cache:
             print(f"tol3d run spur_pair, cold: CAD, strips and kernels made, {seconds(RUN, cache):.1f} s")
             print(f"  the second time {seconds(RUN, cache):.2f} s")
     seconds(RUN)
     print("tol3d run spur_pair, warm:")
-    print_walls(arguments.runs)
-    print_imports()
+    print_walls(given.runs, given.ways)
+    print_imports(given.packages)
 
 
 if __name__ == "__main__":
-    print(f"{os.cpu_count()} cores, Python {sys.version.split()[0]}, {Path(sys.executable)}")
     main()

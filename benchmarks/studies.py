@@ -1,11 +1,11 @@
 """Whole studies: engines, systems, numbers of trials, workers; trials/s, seconds and memory, beside the naive way.
 
-    python benchmarks/studies.py [--quick] [--hundred-million]
+    python benchmarks/studies.py [--quick] [--hundred-million] [--systems NAME …] [--rounds N] [--most TRIALS] [--warm]
 
 Each row is a process of its own, from the scene to the run on disk. Trials/s are those of the whole simulation stage
 (draws, builds, contact, both roads, statistics, writing), as summary.json tells them; seconds are those of the process;
 memory is its peak. "Cold" has an empty cache: kernels are compiled and solids built. The naive way turns whole
-tessellated gears in FCL, see fcl_speed.py; its rate and FCL's are measured in the same run, so that ratios hold on a
+tessellated gears in FCL, see whole_gears.py; its rate and FCL's are measured in the same run, so that ratios hold on a
 noisy machine. Medians of `--rounds` rounds; the range beside them tells how noisy the machine was.
 """
 
@@ -17,22 +17,21 @@ import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
 
-from fcl_speed import naive_rate
 from rich.console import Console
 from rich.table import Table
+from whole_gears import whole_gears_rate
 
 from tol3d import load_scene
 from tol3d.study import Overrides, effective_model
 
 SCENES = Path(__file__).resolve().parent.parent / "scenes"
-WHOLE_FACE = (
-    "kind: normal_backlash, of: bevel pair,",
-    "kind: normal_backlash, of: bevel pair, read_at: face, tooth: all,",
-)
+HUNDRED_MILLION = 10**8
+TRIALS, QUICK_TRIALS = 8_000_000, 1_000_000
+WIDTH = 150  # characters
 PROGRAM = """
 import json, resource, sys
 from tol3d.simulate import Execution, Overrides, run_scene
@@ -42,6 +41,22 @@ run = run_scene(scene, out=out, overrides=Overrides(trials=int(trials), engine=e
 peak = max(resource.getrusage(who).ru_maxrss for who in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN))
 print(json.dumps(run.summary["timing"] | {"peak_mb": peak / 1000}))
 """
+
+
+@dataclass(frozen=True)
+class System:
+    """A scene of tol3d's, its measures read as `read` says in the words of scenes, or as they are."""
+
+    scene: str
+    read: Mapping[str, str] | None = None
+
+
+SYSTEMS: Mapping[str, System] = {
+    "spur pair": System("spur_pair"),
+    "bevel pair, mean section, one tooth": System("bevel_pair", {"read_at": "mean_section", "tooth": "driven"}),
+    "bevel pair, mean section, all teeth": System("bevel_pair", {"read_at": "mean_section", "tooth": "all"}),
+    "bevel pair, whole face, all teeth": System("bevel_pair", {"read_at": "face", "tooth": "all"}),
+}
 
 
 @dataclass(frozen=True)
@@ -81,82 +96,84 @@ def measured(study: Study, scene: Path) -> Found:
         return Found(timing["trials_per_s"], seconds, timing["peak_mb"])
 
 
-def studies(*, quick: bool, huge: bool) -> Iterator[Study]:
-    """The rows."""
-    many = 1_000_000 if quick else 8_000_000
-    for system in ("spur pair", "bevel pair", "bevel pair, whole face, all teeth"):
-        yield Study(system, "exact", 2000, 1, cold=True)
-        yield Study(system, "exact", 2000, 1)
-        yield Study(system, "exact", many // 4, 1)
-        yield Study(system, "exact", many, 2)
-        yield Study(system, "exact", many // 2, 2, "kept")
-        yield Study(system, "fcl", 2000, 1)
-        yield Study(system, "analytic", many // 4, 2)
-    if huge:
-        yield Study("spur pair", "exact", 10**8, 2)
+def studies_of(system: str, trials: int) -> tuple[Study, ...]:
+    """The rows of a system, `trials` being those of the largest."""
+    return (
+        Study(system, "exact", 2000, 1, cold=True),
+        Study(system, "exact", 2000, 1),
+        Study(system, "exact", trials // 4, 1),
+        Study(system, "exact", trials, 2),
+        Study(system, "exact", trials // 2, 2, "kept"),
+        Study(system, "fcl", 2000, 1),
+        Study(system, "analytic", trials // 4, 2),
+    )
 
 
-def scenes_in(folder: Path) -> dict[str, Path]:
-    """Scene files of the systems; the whole-face one is the bevel pair read otherwise."""
-    bevel = (SCENES / "bevel_pair.yaml").read_text(encoding="utf-8")
-    whole = bevel.replace(*WHOLE_FACE).replace("{kind: angular_backlash, of: bevel pair}", WHOLE_FACE_TURN)
-    if whole.count("read_at: face") != 2:
-        raise SystemExit("bevel_pair.yaml reads otherwise than this benchmark expects")
-    (folder / "whole_face.yaml").write_text(whole, encoding="utf-8")
-    return {
-        "spur pair": SCENES / "spur_pair.yaml",
-        "bevel pair": SCENES / "bevel_pair.yaml",
-        "bevel pair, whole face, all teeth": folder / "whole_face.yaml",
-    }
+def asked(given: argparse.Namespace) -> Iterator[Study]:
+    """The rows that the arguments want; of those that are the same the first."""
+    trials = QUICK_TRIALS if given.quick else TRIALS
+    rows = [study for system in given.systems for study in studies_of(system, trials)]
+    if given.hundred_million:
+        rows.append(Study("spur pair", "exact", HUNDRED_MILLION, 2))
+    if given.warm:
+        rows = [study for study in rows if not study.cold]
+    if given.most:
+        rows = [replace(study, trials=min(study.trials, given.most)) for study in rows]
+    yield from dict.fromkeys(rows)
 
 
-WHOLE_FACE_TURN = "{kind: angular_backlash, of: bevel pair, read_at: face, tooth: all}"
+def scene_of(system: System, folder: Path) -> Path:
+    """The file of a system's scene, written to the folder where its measures are read otherwise than in tol3d's."""
+    own = SCENES / f"{system.scene}.yaml"
+    if system.read is None:
+        return own
+    scene = load_scene(own).model_dump(mode="json", exclude_unset=True)
+    scene["measures"] = {name: {**measure, **system.read} for name, measure in scene["measures"].items()}
+    path = folder / f"{'_'.join((system.scene, *system.read.values()))}.yaml"
+    path.write_text(json.dumps(scene), encoding="utf-8")  # JSON is YAML too
+    return path
 
 
-def main() -> None:
+def add_row(table: Table, study: Study, found: Sequence[Found], naive: float) -> None:
+    """A row: medians of what was found."""
+    rates = sorted(each.rate for each in found)
+    rate = statistics.median(rates)
+    table.add_row(
+        study.system,
+        study.engine,
+        f"{study.trials:,}",
+        str(study.workers),
+        study.keep + (", cold" if study.cold else ""),
+        f"{rate:,.0f}",
+        f"{rates[0]:,.0f} … {rates[-1]:,.0f}",
+        f"{rate / naive:,.0f}",
+        f"{statistics.median(each.seconds for each in found):.1f}",
+        f"{max(each.peak_mb for each in found):.0f}",
+    )
+
+
+def main(arguments: Sequence[str] | None = None) -> None:
     """Measure and print."""
-    parser = argparse.ArgumentParser(description=__doc__)
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--rounds", type=int, default=3)
     parser.add_argument("--naive", type=int, default=20, help="trials of the naive way")
     parser.add_argument("--quick", action="store_true", help="an eighth of the trials")
+    parser.add_argument("--most", type=int, help="no row has more trials than that")
+    parser.add_argument("--systems", nargs="+", choices=SYSTEMS, default=list(SYSTEMS), metavar="NAME")
+    parser.add_argument("--warm", action="store_true", help="without the rows that have an empty cache")
     parser.add_argument("--hundred-million", action="store_true", help="a spur study of 10^8 trials too")
-    arguments = parser.parse_args()
-    model = effective_model(load_scene(SCENES / "spur_pair.yaml"), Overrides(engine="fcl", witness=0))
-    naive = statistics.median(naive_rate(model, arguments.naive)[0] for _ in range(arguments.rounds))
+    given = parser.parse_args(arguments)
+    spur = effective_model(load_scene(SCENES / "spur_pair.yaml"), Overrides(engine="fcl", witness=0))
+    naive = statistics.median(whole_gears_rate(spur, given.naive)[0] for _ in range(given.rounds))
     table = Table(title=f"naive way, spur pair: {naive:.1f} trials/s")
-    for name in (
-        "system",
-        "engine",
-        "trials",
-        "workers",
-        "keeps",
-        "trials/s",
-        "range",
-        "× naive",
-        "process s",
-        "peak MB",
-    ):
+    for name in ("system", "engine", "trials", "workers", "keeps", "trials/s", "range", "× naive", "s", "peak MB"):
         table.add_column(name, justify="left" if name in ("system", "engine", "keeps") else "right")
     with tempfile.TemporaryDirectory() as folder:
-        scenes = scenes_in(Path(folder))
-        for study in studies(quick=arguments.quick, huge=arguments.hundred_million):
-            rounds = 1 if study.trials >= 10**8 or study.cold else arguments.rounds
-            found = [measured(study, scenes[study.system]) for _ in range(rounds)]
-            rates = sorted(each.rate for each in found)
-            rate = statistics.median(rates)
-            table.add_row(
-                study.system,
-                study.engine,
-                f"{study.trials:,}",
-                str(study.workers),
-                study.keep + (", cold" if study.cold else ""),
-                f"{rate:,.0f}",
-                f"{rates[0]:,.0f} … {rates[-1]:,.0f}",
-                f"{rate / naive:,.0f}",
-                f"{statistics.median(each.seconds for each in found):.1f}",
-                f"{max(each.peak_mb for each in found):.0f}",
-            )
-    Console(width=150).print(table)
+        for study in asked(given):
+            rounds = 1 if study.trials >= HUNDRED_MILLION or study.cold else given.rounds
+            scene = scene_of(SYSTEMS[study.system], Path(folder))
+            add_row(table, study, [measured(study, scene) for _ in range(rounds)], naive)
+    Console(width=WIDTH).print(table)
 
 
 if __name__ == "__main__":

@@ -2,6 +2,7 @@
 
 import re
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -28,10 +29,10 @@ def test_the_two_commands_stand_at_the_top() -> None:
 
 def test_its_python_runs(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(ROOT)
-    names: dict[str, object] = {}
+    names: dict[str, Any] = {}
     exec(indented_block("import tol3d"), names)
     columns, again = names["columns"], names["again"]
-    assert again.geometric["normal backlash"] == np.min(columns["geometric:normal backlash"])  # type: ignore[index, attr-defined]
+    assert again.geometric["normal backlash"] == np.min(columns["geometric:normal backlash"])
 
 
 def test_its_scene_runs(tmp_path: Path) -> None:

@@ -37,6 +37,11 @@ class Gear(Protocol):
         ...
 
     @property
+    def bore(self) -> float:
+        """Diameter [mm] of the hole for the shaft; 0 means none."""
+        ...
+
+    @property
     def angular_pitch(self) -> float:
         """2 pi / z [rad]."""
         ...

@@ -74,7 +74,7 @@ class ShaftSizes:
                 yield bore, low, high
 
     def _bore(self, gear: str) -> float:
-        return float(self._model.gear(gear).gear.bore)  # type: ignore[attr-defined]  # every kind of gear has one
+        return self._model.gear(gear).gear.bore
 
     def _shaft(self, name: str) -> Shaft:
         """A shaft, or a gear that is its own."""
