@@ -28,7 +28,7 @@ DOORS = {
     "pyarrow": ("tol3d/parquet.py",),
     "rich": ("tol3d/cli/", "tol3d/report/"),
     "typer": ("tol3d/cli/",),
-    "pandas": (),
+    "pandas": ("tol3d/result.py", "tol3d/frame.py"),
 }
 """Which files may import each heavy library."""
 

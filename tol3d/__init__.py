@@ -1,10 +1,11 @@
 """tol3d: an open 3D tolerance simulator for gears and robots.
 
     import tol3d
-    run = tol3d.run_scene("scenes/spur_pair.yaml")
-    run.columns("geometric:normal backlash")
+    run = tol3d.run_scene("spur_pair")
+    run.frame()
 
-Names are loaded when they are first used, so that `tol3d --help` stays quick.
+Names are loaded when they are first used, so that `import tol3d` and `tol3d --help` stay quick. docs/python.md shows
+every one of them at work.
 """
 
 from importlib import import_module
@@ -12,16 +13,23 @@ from importlib.metadata import version
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from tol3d.errors import InputError, RunError, SceneError, Tol3dError
-    from tol3d.gears import SpurGear, SpurPair
-    from tol3d.result import Run, open_run
+    from tol3d.errors import InputError as InputError
+    from tol3d.errors import RunError as RunError
+    from tol3d.errors import SceneError as SceneError
+    from tol3d.errors import Tol3dError
+    from tol3d.gears import SpurGear as SpurGear
+    from tol3d.gears import SpurPair as SpurPair
+    from tol3d.report.notebook import Replay as Replay
+    from tol3d.report.notebook import check_scene, compare_runs, export_trial, find_shims, replay, view_trial
+    from tol3d.result import Run as Run
+    from tol3d.result import open_run
     from tol3d.scene import Scene, load_scene
-    from tol3d.simulate import Overrides, Replay, replay, run_scene
+    from tol3d.simulate import Overrides, run_scene
 
 _HOMES = {
     "InputError": "tol3d.errors",
     "Overrides": "tol3d.simulate",
-    "Replay": "tol3d.simulate",
+    "Replay": "tol3d.report.notebook",
     "Run": "tol3d.result",
     "RunError": "tol3d.errors",
     "Scene": "tol3d.scene",
@@ -29,27 +37,31 @@ _HOMES = {
     "SpurGear": "tol3d.gears",
     "SpurPair": "tol3d.gears",
     "Tol3dError": "tol3d.errors",
+    "check_scene": "tol3d.report.notebook",
+    "compare_runs": "tol3d.report.notebook",
+    "export_trial": "tol3d.report.notebook",
+    "find_shims": "tol3d.report.notebook",
     "load_scene": "tol3d.scene",
     "open_run": "tol3d.result",
-    "replay": "tol3d.simulate",
+    "replay": "tol3d.report.notebook",
     "run_scene": "tol3d.simulate",
+    "view_trial": "tol3d.report.notebook",
 }
+"""Where each name lives; what functions return and raise, and gears, are here for annotations and `except`."""
 
 __all__ = [
-    "InputError",
     "Overrides",
-    "Replay",
-    "Run",
-    "RunError",
     "Scene",
-    "SceneError",
-    "SpurGear",
-    "SpurPair",
     "Tol3dError",
+    "check_scene",
+    "compare_runs",
+    "export_trial",
+    "find_shims",
     "load_scene",
     "open_run",
     "replay",
     "run_scene",
+    "view_trial",
 ]
 
 
@@ -59,3 +71,8 @@ def __getattr__(name: str) -> Any:
     if name in _HOMES:
         return getattr(import_module(_HOMES[name]), name)
     raise AttributeError(f"module 'tol3d' has no attribute {name!r}")
+
+
+def __dir__() -> list[str]:
+    """What a notebook completes."""
+    return sorted({*__all__, "__version__"})

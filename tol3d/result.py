@@ -9,7 +9,7 @@ import warnings
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,7 +17,12 @@ from numpy.typing import NDArray
 from tol3d.blockfiles import MENDED, BlockFiles, block_name
 from tol3d.errors import RunError
 from tol3d.files import FileContent, Files, kept_name
+from tol3d.frame import Curves, frame_of
 from tol3d.processor import unlike
+from tol3d.worst import worst_trial
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 Columns = dict[str, NDArray[np.generic]]
 
@@ -37,7 +42,7 @@ class DamageWarning(UserWarning):
     """A block of a run is damaged and is made again."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Run:
     """A finished run.
 
@@ -48,6 +53,12 @@ class Run:
 
     path: Path
     summary: Mapping[str, Any]
+
+    def __repr__(self) -> str:
+        """Which run it is, and where."""
+        study = self.summary["study"]
+        words = (f"{self.trials} trials", f"seed {study.get('seed')}", f"engine {study.get('engine')}")
+        return f"<Run {str(self.path)!r}: {', '.join((str(self.summary.get('scene')), *words))}>"
 
     @property
     def trials(self) -> int:
@@ -91,6 +102,28 @@ class Run:
         pieces = [blocks.read(name, names or None) for name in blocks.names]
         return {name: np.concatenate([piece[name] for piece in pieces]) for name in pieces[0]}
 
+    def frame(self, *names: str, curves: Curves = "split") -> "pd.DataFrame":
+        """Columns as a DataFrame of pandas, a row a trial; all of them by default.
+
+        Args:
+            names: columns, as in `column_names`.
+            curves: "split" gives every position of a curve a column (`geometric:curve:45 deg`), "drop" leaves
+                curves out.
+
+        Raises:
+            RunError: as `columns`.
+            MissingPackageError: pandas is not installed.
+        """
+        return frame_of(self.columns(*names), self.summary["measures"], curves)
+
+    def worst(self, measure: str | None = None) -> int:
+        """Trial that is nearest to a limit of a measure, or furthest beyond it; see `tol3d.worst.worst_trial`.
+
+        Raises:
+            RunError: no such measure, or the run kept no trials.
+        """
+        return worst_trial(self, measure)
+
     @property
     def scene_path(self) -> Path:
         """The scene as it was when the run was made.
@@ -129,12 +162,13 @@ class Run:
         return {"scene": files.pop(SCENE, None), "files": files, "study": study, "versions": versions, "blocks": blocks}
 
 
-def open_run(path: Path) -> Run:
+def open_run(path: Path | str) -> Run:
     """Open a run's folder; executes nothing of it.
 
     Raises:
         RunError: not a run, or damaged.
     """
+    path = Path(path)
     try:
         summary = json.loads((path / SUMMARY).read_text(encoding="utf-8"))
     except FileNotFoundError:

@@ -41,6 +41,7 @@ import platform
 import sys
 import tempfile
 import time
+import warnings
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
@@ -80,6 +81,11 @@ SETUP_STAGE: Mapping[str, str] = {
 
 COMPILING = "compiling kernels, once on this machine"
 
+
+class TemporaryRunWarning(UserWarning):
+    """A run was given no folder; the text says where it is."""
+
+
 Stage = Callable[[str], None]
 Finisher = Callable[[Path, Mapping[str, Any]], None]
 
@@ -111,9 +117,10 @@ def run_scene(
     """Run a scene's study and keep it on disk.
 
     Args:
-        scene: a scene or the path of one.
+        scene: a scene, the path of one, or the name of a bundled one.
         overrides: what is said otherwise than in the scene's study.
-        out: the run's folder; None takes a temporary one.
+        out: the run's folder; None takes a new one in the system's temporary folder, says where that is, and leaves
+            it there until the user or the system deletes it.
         execution: who runs it and what is kept; the results are the same to the last bit for any.
         trust_parts: allow files outside the scene's folder.
         watch: who is told.
@@ -124,7 +131,7 @@ def run_scene(
     started = time.perf_counter()
     scene = load(scene, trust_parts=trust_parts)
     model = effective_model(scene, overrides)
-    folder = Path(out) if out is not None else Path(tempfile.mkdtemp(prefix="tol3d-")) / "run"
+    folder = Path(out) if out is not None else _temporary(scene)
     fingerprint = _fingerprint(scene, model, execution)
     if execution.resume and (whole := whole_run(folder, fingerprint)):
         return whole
@@ -152,6 +159,14 @@ def run_scene(
         }
         watch.finisher(writer.picture_path("."), summary)
         return writer.finish(summary)
+
+
+def _temporary(scene: Scene) -> Path:
+    """A run's folder in the system's temporary one, told of before the run, so that a stopped one is found too."""
+    folder = Path(tempfile.mkdtemp(prefix="tol3d-")) / scene.source.stem
+    told = f"no out was given: the run is written to {folder}, and stays there until you delete it"
+    warnings.warn(told, TemporaryRunWarning, stacklevel=3)
+    return folder
 
 
 def _setup_stage(model: Model) -> str:

@@ -31,9 +31,9 @@ AS_WRITTEN = Overrides()
 
 
 def load(scene: Scene | Path | str, *, trust_parts: bool = False) -> Scene:
-    """A scene from a path, or the scene itself; one that was made in Python is checked first."""
+    """A scene from a path or a bundled name, or the scene itself; one made in Python is checked first."""
     if not isinstance(scene, Scene):
-        return load_scene(Path(scene), trust_parts=trust_parts)
+        return load_scene(scene, trust_parts=trust_parts)
     return scene if scene.text else scene_from_python(scene, trust_parts=trust_parts)
 
 

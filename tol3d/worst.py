@@ -6,6 +6,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from tol3d.errors import RunError
+
 if TYPE_CHECKING:  # who only wants the words loads no files of runs
     from tol3d.result import Run
 
@@ -14,16 +16,25 @@ Array = NDArray[np.float64]
 TRAIN_KINDS = frozenset(("lost_motion", "tip_displacement", "tip_error"))  # measures of trains: the larger the worse
 
 
-def worst_trial(run: "Run") -> int:
+def worst_trial(run: "Run", measure: str | None = None) -> int:
     """Index of the worst trial among those that seated; a curve counts by its extremes.
 
     Nearness is counted in standard deviations of each measure. Without any limit the smallest backlash is the worst,
     or the largest lost motion or error of a tip, of the first measure.
+
+    Args:
+        run: one that kept its trials.
+        measure: the only one that is judged; all that have limits by default.
+
+    Raises:
+        RunError: no such measure, or the run kept no trials.
     """
     measures: Mapping[str, Mapping[str, Any]] = run.summary["measures"]
+    if measure is not None and measure not in measures:
+        raise RunError(f"{run.path}: no measure {measure!r}; there are: {', '.join(measures)}")
     road = "geometric" if run.summary["engine"] != "analytic" else "analytic"
     limited = {name: m for name, m in measures.items() if _limits(m) != (None, None)}
-    judged = limited or dict([*measures.items()][:1])
+    judged = {measure: measures[measure]} if measure else limited or dict([*measures.items()][:1])
     return int(np.argmin(np.min([_margin(run, road, name, measure) for name, measure in judged.items()], axis=0)))
 
 

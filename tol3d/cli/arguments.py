@@ -1,6 +1,5 @@
 """The app, and the arguments that several commands take."""
 
-import os
 from enum import StrEnum
 from pathlib import Path
 from typing import Annotated
@@ -54,21 +53,8 @@ def scene_path(text: str) -> Path:
     """A scene's file: the path itself, or the scene of that name that tol3d brings along.
 
     Raises:
-        InputError: a bare name, and there is neither.
+        SceneError: a bare name, and there is neither.
     """
-    from importlib.resources import files
+    from tol3d.scene import bundled
 
-    path = Path(text)
-    if os.path.isfile(path) or path.suffix or len(path.parts) > 1:
-        return path
-    brought = {Path(str(file)).stem: Path(str(file)) for file in files("tol3d.scenes").iterdir()}
-    scenes = {name: file for name, file in sorted(brought.items()) if file.suffix == ".yaml"}
-    if text in scenes or os.path.exists(path):
-        return scenes.get(text, path)
-
-    from tol3d.errors import InputError
-    from tol3d.scene.name import LONGEST_NAME
-    from tol3d.scene.nearest import nearest
-
-    listed = f"(tol3d brings along: {', '.join(scenes)})"
-    raise InputError(f"{text[:LONGEST_NAME]}: no such file, and no scene of that name {listed}{nearest(text, scenes)}")
+    return bundled.scene_path(text)

@@ -11,7 +11,8 @@ if TYPE_CHECKING:
     from tol3d.report.check import check_report
     from tol3d.report.compare import comparison_report, draw_comparison
     from tol3d.report.histogram import draw_histogram
-    from tol3d.report.meshes import export_run
+    from tol3d.report.meshes import export_run, part_meshes
+    from tol3d.report.shim_table import shim_report
     from tol3d.report.table import run_report
     from tol3d.report.view import view_run
 
@@ -21,7 +22,9 @@ _HOMES = {
     "draw_comparison": "tol3d.report.compare",
     "draw_histogram": "tol3d.report.histogram",
     "export_run": "tol3d.report.meshes",
+    "part_meshes": "tol3d.report.meshes",
     "run_report": "tol3d.report.table",
+    "shim_report": "tol3d.report.shim_table",
     "view_run": "tol3d.report.view",
 }
 
@@ -31,7 +34,9 @@ __all__ = [
     "draw_comparison",
     "draw_histogram",
     "export_run",
+    "part_meshes",
     "run_report",
+    "shim_report",
     "view_run",
 ]
 

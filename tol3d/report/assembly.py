@@ -145,17 +145,26 @@ def assemble(run: Run, which: Which, *, magnify: float = 1.0) -> Assembly:
     if not (math.isfinite(magnify) and magnify >= 0.0):
         raise InputError(f"magnify: expected a number of at least 0, got {magnify:g}")
     label, seen = _replayed(run, which)
-    rows = _rows(seen)
-    meshes = _seated(seen, rows)
+    plain = assembly_of(seen, label)
+    if magnify == 1.0:
+        return plain
+    used, seen, meshes, note = _magnified(seen, _rows(seen), magnify)
+    label += f"-x{used:g}" if used != 1.0 else ""
+    return Assembly(seen.model, label, used, meshes, seen.geometric, (*plain.notes, note))
+
+
+def assembly_of(seen: Replay, label: str) -> Assembly:
+    """A build that was replayed, seated again, under a label.
+
+    Raises:
+        RunError: its working flanks found no contact.
+    """
+    meshes = _seated(seen, _rows(seen))
     for seat in meshes:
         if seat.status == NO_CONTACT:
             raise RunError(f"{label}: the working flanks of {seat.mesh.name} found no contact; choose another build")
-    used, notes = 1.0, [_said(label, seen)]
-    if magnify != 1.0:
-        used, seen, meshes, note = _magnified(seen, rows, magnify)
-        label += f"-x{used:g}" if used != 1.0 else ""
-        notes.append(note)
-    return Assembly(seen.model, label, used, meshes, seen.geometric, tuple(note for note in notes if note))
+    said = _said(label, seen)
+    return Assembly(seen.model, label, 1.0, meshes, seen.geometric, (said,) if said else ())
 
 
 def _replayed(run: Run, which: Which) -> tuple[str, Replay]:

@@ -93,6 +93,17 @@ def _coloured(vertices: Array, triangles: NDArray[np.int64], colour: Colour) -> 
     return trimesh.Trimesh(vertices, triangles, process=False, vertex_colors=colours)
 
 
+def part_meshes(assembly: Assembly) -> dict[str, trimesh.Trimesh]:
+    """Every part of a build as a closed mesh [mm], by its name: gears, and of trains shafts, arms and reducers too.
+
+    In the world of its mesh, or where shafts connect gears in that of the first shaft.
+    """
+    trains = whole_trains(assembly)
+    if trains:
+        return {name: mesh for train in trains for name, mesh in _train_meshes(train).items()}
+    return {name: mesh for seated in assembly.meshes for name, mesh in _pair_meshes(seated).items()}
+
+
 # single pairs -------------------------------------------------------------------------------------
 
 
@@ -108,9 +119,12 @@ def _write_parts(ending: str) -> Callable[[Assembly, SeatedMesh, Path], list[Pat
 
 
 def _write_scene(assembly: Assembly, seated: SeatedMesh, out: Path) -> list[Path]:
+    return [_written(_scene_path(assembly, seated, out, "glb"), _glb(_pair_meshes(seated)))]
+
+
+def _pair_meshes(seated: SeatedMesh) -> dict[str, trimesh.Trimesh]:
     parts = zip((seated.driver, seated.driven), COLOURS, strict=True)
-    content = _glb({part.name: triangle_mesh(part, colour) for part, colour in parts})
-    return [_written(_scene_path(assembly, seated, out, "glb"), content)]
+    return {part.name: triangle_mesh(part, colour) for part, colour in parts}
 
 
 def _glb(meshes: Mapping[str, trimesh.Trimesh]) -> object:

@@ -7,6 +7,7 @@ from pydantic import ValidationError
 
 from tol3d.errors import SceneError
 from tol3d.files import Files, read_file
+from tol3d.scene.bundled import scene_path
 from tol3d.scene.place import Origin
 from tol3d.scene.problems import messages
 from tol3d.scene.references import loose_ends, refuse, unreadable_files
@@ -14,18 +15,18 @@ from tol3d.scene.schema import Scene
 from tol3d.scene.text import read_scene_text
 
 
-def load_scene(path: Path, *, trust_parts: bool = False, files: Files | None = None) -> Scene:
+def load_scene(path: Path | str, *, trust_parts: bool = False, files: Files | None = None) -> Scene:
     """Read a scene and the files that it names; this runs none of it and builds no geometry.
 
     Args:
-        path: the YAML file.
+        path: the YAML file, or the name of a scene that tol3d brings along.
         trust_parts: whether the scene may name files outside its own folder.
         files: the contents of the files that it names, where they are known; none is read then.
 
     Raises:
         SceneError: one or several messages `file:line: place: what was expected, what came`.
     """
-    data, origin = read_scene_text(Path(path))
+    data, origin = read_scene_text(scene_path(path))
     try:
         scene = Scene.model_validate(data, context=origin)
     except ValidationError as error:

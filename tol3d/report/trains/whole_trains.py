@@ -60,6 +60,12 @@ class WholeTrain:
         """Closed triangle mesh of each part: vertices (n, 3) [mm], triangles (m, 3)."""
         return {part.name: part.mesh() for part in self.gears} | {body.name: body_mesh(body) for body in self.bodies}
 
+    @property
+    def poses(self) -> Mapping[str, Array]:
+        """World from each part's own frame (4, 4) [mm]."""
+        gears = {part.name: part.world_from_gear for part in self.gears}
+        return gears | {body.name: body.world_from_part for body in self.bodies}
+
 
 def body_mesh(body: PosedBody) -> tuple[Array, NDArray[np.int64]]:
     """Closed triangle mesh in the world: vertices (n, 3) [mm], triangles (m, 3)."""

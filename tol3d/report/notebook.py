@@ -1,0 +1,303 @@
+"""What the commands show, for notebooks and scripts: tables, pictures, files and parts in space, nothing printed.
+
+Objects here show themselves where a notebook ends a cell with them; `str()` is the text of a table, `path` is where a
+picture lies. Libraries that draw are loaded by who asks for a drawing.
+"""
+
+import operator
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from io import StringIO
+from pathlib import Path
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+from numpy.typing import NDArray
+from rich.console import Console, RenderableType
+
+from tol3d import report, simulate
+from tol3d.analyses import ShimPlan, ShimQuestion, length_of, shim_plan, stock_of
+from tol3d.analyses.shim import Rounding
+from tol3d.analyses.shimmed import Minimum
+from tol3d.model import Model
+from tol3d.report.assembly import Assembly, Which, assembly_of
+from tol3d.report.trains.whole_trains import whole_trains
+from tol3d.result import Run, open_run
+from tol3d.scene import Scene
+from tol3d.scene.edit import tolerance_lines
+from tol3d.study import AS_WRITTEN, Overrides, effective_model, load
+
+if TYPE_CHECKING:
+    import trimesh
+
+    from tol3d.report.meshes import Exported
+
+Array = NDArray[np.float64]
+
+TEXT_WIDTH: Final = 120  # columns of a table as text, as wide as a notebook's cell
+
+
+@dataclass(frozen=True, repr=False)
+class Report:
+    """Tables as a command shows them; `str()` is their text.
+
+    Args:
+        tables: for rich's console, in colours.
+    """
+
+    tables: RenderableType
+
+    def __str__(self) -> str:
+        console = Console(file=StringIO(), width=TEXT_WIDTH, highlight=False, markup=False, color_system=None)
+        with console.capture() as captured:
+            console.print(self.tables)
+        return captured.get()
+
+    def __repr__(self) -> str:
+        return str(self)
+
+    def __rich__(self) -> RenderableType:
+        return self.tables
+
+
+@dataclass(frozen=True, repr=False)
+class Picture:
+    """A picture that was drawn, shown inline by notebooks.
+
+    Args:
+        path: where it lies; None of a window that was closed again.
+        notes: what the user should know, such as the magnification in use.
+    """
+
+    path: Path | None
+    notes: tuple[str, ...] = ()
+
+    def __repr__(self) -> str:
+        return "\n".join((f"<Picture {str(self.path)!r}>", *self.notes))
+
+    def _repr_png_(self) -> bytes | None:
+        """Its bytes, for notebooks."""
+        return self.path.read_bytes() if self.path and self.path.suffix.lower() == ".png" else None
+
+
+@dataclass(frozen=True, repr=False)
+class Check(Report):
+    """What a scene means.
+
+    Args:
+        model: the parts, moves, measures and contributors, in mm and rad.
+    """
+
+    model: Model
+
+
+@dataclass(frozen=True, repr=False)
+class Comparison(Report):
+    """Runs laid over each other.
+
+    Args:
+        picture: of their histograms; None where no `out` was given.
+    """
+
+    picture: Picture | None
+
+
+@dataclass(frozen=True, repr=False)
+class Shims(Report):
+    """The thickness of shims for a wanted minimum of backlash.
+
+    Args:
+        plan: the answer in numbers; `plan.scene` is the scene with the chosen shims.
+    """
+
+    plan: ShimPlan
+
+    @property
+    def tolerances(self) -> str:
+        """The tolerances of the chosen shims, to paste into a scene."""
+        return tolerance_lines(self.plan.tolerances)
+
+
+@dataclass(frozen=True, repr=False)
+class Replay(simulate.Replay):
+    """One trial again, with its parts in space.
+
+    Parts are where they came to rest, in the world of their mesh (the driver's axis is z, the driven one at +x), or
+    where shafts connect gears in that of the first shaft. A measure of several positions shows the extreme that it
+    takes, or its first.
+
+    Args:
+        trial: its number.
+    """
+
+    trial: int
+
+    def __repr__(self) -> str:
+        return f"<Replay of trial {self.trial} of {self.model.name}: {self.status}, {dict(self.geometric)}>"
+
+    @cached_property
+    def assembly(self) -> Assembly:
+        """Its gears, contacts and gaps, mesh by mesh.
+
+        Raises:
+            RunError: its working flanks found no contact.
+        """
+        return assembly_of(self, f"trial-{self.trial}")
+
+    @cached_property
+    def poses(self) -> Mapping[str, Array]:
+        """World from each part's own frame, by its name (4, 4) [mm].
+
+        Raises:
+            RunError: its working flanks found no contact.
+        """
+        if trains := whole_trains(self.assembly):
+            return {name: pose for train in trains for name, pose in train.poses.items()}
+        placed = (part for seated in self.assembly.meshes for part in (seated.driver, seated.driven))
+        return {part.name: part.world_from_gear for part in placed}
+
+    @cached_property
+    def meshes(self) -> "Mapping[str, trimesh.Trimesh]":
+        """Each part as a closed mesh in the world, its deviations and growth on it, by its name [mm].
+
+        Raises:
+            RunError: its working flanks found no contact.
+        """
+        return report.part_meshes(self.assembly)
+
+
+def check_scene(scene: Scene | Path | str, *, overrides: Overrides = AS_WRITTEN, trust_parts: bool = False) -> Check:
+    """What a scene means before any trial, as `tol3d check` shows it.
+
+    Args:
+        scene: a scene, its path, or the name of a bundled one.
+        overrides: what is said otherwise than in its study.
+        trust_parts: allow files outside the scene's folder.
+
+    Raises:
+        SceneError: it cannot be read or built.
+    """
+    model = effective_model(load(scene, trust_parts=trust_parts), overrides)
+    return Check(report.check_report(model), model)
+
+
+def compare_runs(runs: Sequence[Run | Path | str], *, out: Path | str | None = None) -> Comparison:
+    """Runs beside each other, as `tol3d compare` shows them.
+
+    Args:
+        runs: finished runs, or their folders.
+        out: the picture to draw; None draws none.
+
+    Raises:
+        RunError: one is no run. InputError: there are none, or the picture cannot be written.
+    """
+    opened = [opened_run(run) for run in runs]
+    if out is not None:
+        report.draw_comparison(opened, Path(out))
+    return Comparison(report.comparison_report(opened), None if out is None else Picture(Path(out)))
+
+
+def export_trial(
+    run: Run | Path | str,
+    trial: Which = "worst",
+    *,
+    format: str = "glb",
+    magnify: float = 1.0,
+    out: Path | str = ".",
+) -> "Exported":
+    """Write the perturbed parts of a build where they ended up, as `tol3d export` does.
+
+    Args:
+        run: a finished run, or its folder.
+        trial: its number, or "worst", "nominal", "mean".
+        format: "stl" and "ply" a file a part, "glb", "step" and any of a train one.
+        magnify: scales the deviations and seats again.
+        out: the folder; made if missing.
+
+    Returns:
+        the files, and notes on them.
+
+    Raises:
+        InputError: no such build or format, or the folder cannot be written.
+    """
+    return report.export_run(opened_run(run), _which(trial), format, magnify=magnify, out=Path(out))
+
+
+def view_trial(
+    run: Run | Path | str,
+    trial: Which = "worst",
+    *,
+    out: Path | str | None = None,
+    magnify: float = 1.0,
+    mesh: str | None = None,
+) -> Picture:
+    """Show a build in 3D with contact and gap marked, as `tol3d view` does.
+
+    Args:
+        run: a finished run, or its folder.
+        trial: its number, or "worst", "nominal", "mean".
+        out: the picture to write; None opens a window and waits until it is closed.
+        magnify: scales the deviations and seats again.
+        mesh: which is shown close up; by default the first.
+
+    Raises:
+        InputError: no such build or mesh, no display, or the picture cannot be written.
+    """
+    picture = None if out is None else Path(out)
+    notes = report.view_run(opened_run(run), _which(trial), screenshot=picture, magnify=magnify, mesh=mesh)
+    return Picture(picture, notes)
+
+
+def find_shims(
+    scene: Scene | Path | str,
+    target_min: str,
+    *,
+    measure: str | None = None,
+    shims: Sequence[str] = (),
+    minimum: Minimum = "low_3sigma",
+    stock: str = "0.001 mm",
+    rounding: Rounding = "down",
+    overrides: Overrides = AS_WRITTEN,
+    trust_parts: bool = False,
+) -> Shims:
+    """The thickness of shims with which a bevel pair has a wanted minimum of backlash, as `tol3d shim` finds it.
+
+    Args:
+        scene: a scene, its path, or the name of a bundled one.
+        target_min: the minimum with its unit, such as "24 um".
+        measure: whose minimum; the only normal backlash of a bevel mesh.
+        shims: names of the scene's shims, or of gears for a new one behind each.
+        minimum: which number is called so.
+        stock: thicknesses there are: a step, or pieces with commas between them.
+        rounding: "down" never falls below the target, "nearest" takes the nearest thickness.
+        overrides: what is said otherwise than in the scene's study.
+        trust_parts: allow files outside the scene's folder.
+
+    Raises:
+        InputError: no such measure or shims, or no thickness that gives that minimum.
+    """
+    target = length_of("target_min", target_min)
+    question = ShimQuestion(target, measure, tuple(shims), minimum, stock_of(stock), rounding)
+    plan = shim_plan(load(scene, trust_parts=trust_parts), question, overrides)
+    return Shims(report.shim_report(plan), plan)
+
+
+def replay(run: Run | Path | str, trial: int) -> Replay:
+    """Trial k of a run again, bit for bit, with its parts in space.
+
+    Raises:
+        RunError: no run, or changed since. InputError: the run has no such trial.
+    """
+    index = operator.index(trial)
+    return Replay(**vars(simulate.replay(run, index)), trial=index)
+
+
+def opened_run(run: Run | Path | str) -> Run:
+    """A run from its folder, or the run itself."""
+    return run if isinstance(run, Run) else open_run(run)
+
+
+def _which(trial: Which) -> Which:
+    """A trial's number of any integer type, or the word for a build."""
+    return trial if isinstance(trial, str) else operator.index(trial)

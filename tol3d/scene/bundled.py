@@ -1,0 +1,35 @@
+"""The scenes that tol3d brings along, found by their names."""
+
+import os
+from collections.abc import Mapping
+from importlib.resources import files
+from pathlib import Path
+from typing import Final
+
+from tol3d.errors import SceneError
+from tol3d.scene.name import LONGEST_NAME
+from tol3d.scene.nearest import nearest
+
+PACKAGE: Final = "tol3d.scenes"
+
+
+def bundled_scenes() -> Mapping[str, Path]:
+    """The scenes that tol3d brings along, by name."""
+    brought = (Path(str(file)) for file in files(PACKAGE).iterdir())
+    return {path.stem: path for path in sorted(brought) if path.suffix == ".yaml"}
+
+
+def scene_path(scene: Path | str) -> Path:
+    """A scene's file: the path itself, or the scene of that name that tol3d brings along.
+
+    Raises:
+        SceneError: a bare name, and there is neither.
+    """
+    path, text = Path(scene), str(scene)
+    if os.path.isfile(path) or path.suffix or len(path.parts) > 1:
+        return path
+    scenes = bundled_scenes()
+    if text in scenes or os.path.exists(path):
+        return scenes.get(text, path)
+    listed = f"(tol3d brings along: {', '.join(scenes)})"
+    raise SceneError(f"{text[:LONGEST_NAME]}: no such file, and no scene of that name {listed}{nearest(text, scenes)}")
