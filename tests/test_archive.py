@@ -60,6 +60,7 @@ def test_a_file_from_anywhere_is_kept_inside_the_run(named: str, tmp_path: Path)
     run = run_scene(scene, overrides=FEW, out=tmp_path / "runs" / "run", trust_parts=True)
     assert {path: path.read_bytes() for path in before} == before
     assert {path.relative_to(run.path).parts[0] for path in run.path.rglob("*")} == {
+        "SHA256SUMS",
         "scene.yaml",
         "summary.json",
         "trials",
@@ -100,17 +101,19 @@ def test_two_runs_into_one_folder_at_once_are_refused(tmp_path: Path) -> None:
     with pytest.raises(RunError, match="another run is being written there"):
         RunWriter(tmp_path / "run", {"scene": "2"}, {})
     del first
-    RunWriter(tmp_path / "run", {"scene": "2"}, {})
+    RunWriter(tmp_path / "run", {"scene": "2"}, {}, force=True)
 
 
-def test_blocks_of_another_study_are_thrown_away(tmp_path: Path) -> None:
+def test_blocks_of_another_study_are_thrown_away_by_force_only(tmp_path: Path) -> None:
     first = RunWriter(tmp_path / "run", {"scene": "1"}, {})
     first.write(0, {"a": np.arange(3.0)})
     del first
     again = RunWriter(tmp_path / "run", {"scene": "1"}, {})
     assert again.read(0)["a"].tolist() == [0.0, 1.0, 2.0]
     del again
-    assert RunWriter(tmp_path / "run", {"scene": "2"}, {}).read(0) is None
+    with pytest.raises(RunError, match="an interrupted run of another study is kept there"):
+        RunWriter(tmp_path / "run", {"scene": "2"}, {})
+    assert RunWriter(tmp_path / "run", {"scene": "2"}, {}, force=True).read(0) is None
 
 
 # scenes made in Python ------------------------------------------------------------------------------

@@ -216,8 +216,8 @@ def test_threads_and_processes_give_the_bits_of_one(tmp_path: Path, monkeypatch:
     monkeypatch.setattr(block_module, "BLOCK_TRIALS", 300)
     for engine in ("exact", "analytic", "fcl"):
         study = Overrides(trials=1000, engine=engine, witness=0)
-        alone = run_scene(SPUR, overrides=study, out=tmp_path / "alone")
-        spread = run_scene(SPUR, overrides=study, out=tmp_path / "spread", execution=Execution(workers=2))
+        alone = run_scene(SPUR, overrides=study, out=tmp_path / f"{engine} alone")
+        spread = run_scene(SPUR, overrides=study, out=tmp_path / f"{engine} spread", execution=Execution(workers=2))
         assert spread.summary["measures"] == alone.summary["measures"]
         mine, its = alone.columns(), spread.columns()
         assert mine.keys() == its.keys()

@@ -114,7 +114,7 @@ def test_an_older_run_is_replaced_and_anything_else_is_left_alone(tmp_path: Path
     study = Overrides(trials=20, engine="analytic")
     folder = tmp_path / "run"
     run_scene(SPUR, overrides=study, out=folder)
-    assert run_scene(SPUR, overrides=Overrides(trials=30, engine="analytic"), out=folder).trials == 30
+    assert run_scene(SPUR, overrides=study, out=folder).trials == 20
     other = tmp_path / "mine"
     other.mkdir()
     (other / "thesis.txt").write_text("precious")
@@ -204,7 +204,12 @@ def test_pieces_of_an_unfinished_block_are_kept(tmp_path: Path, monkeypatch: pyt
     assert told[:3] == [256, 256, 256]
     assert sum(told) == 2000
     assert_same_bits(whole.columns(), resumed.columns())
-    assert sorted(path.name for path in (tmp_path / "cut").iterdir()) == ["scene.yaml", "summary.json", "trials"]
+    assert sorted(path.name for path in (tmp_path / "cut").iterdir()) == [
+        "SHA256SUMS",
+        "scene.yaml",
+        "summary.json",
+        "trials",
+    ]
 
 
 def test_a_damaged_block_of_a_run_is_named(tmp_path: Path) -> None:

@@ -5,17 +5,23 @@ of Parquet pass such names over. A line is added after its file is whole, so a k
 """
 
 import hashlib
+import re
 import threading
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import suppress
 from pathlib import Path
 
-from tol3d.durable import write_whole
+from tol3d.durable import UNFINISHED, named_in_errors, write_whole
 from tol3d.errors import RunError
+from tol3d.files import UnreadableFileError, read_contained
 from tol3d.parquet import Columns, ParquetError, columns_of, names_of, parquet_of
 
 CHECKSUMS = "_SHA256SUMS"
 SUFFIX = ".parquet"
 MENDED = "`tol3d run` with --resume makes it again"
+NAME = re.compile(r"block-[0-9]{6,}(-[0-9]+)?")  # of a block, or of a piece of one that begins at a trial
+LARGEST_LIST = 100_000_000  # bytes; a line a block, of 10^10 trials 14 MB
+LARGEST_BLOCK = 2**31  # bytes; 65 536 trials of 4000 columns
 
 
 def block_name(index: int) -> str:
@@ -33,10 +39,17 @@ class BlockFiles:
     Args:
         folder: where they are.
         units: unit of each column, kept in the files' metadata.
+        rows: how many trials a file has, where that is known; another number is damage, found before they are read.
     """
 
-    def __init__(self, folder: Path, units: Mapping[str, str] | None = None) -> None:
+    def __init__(
+        self,
+        folder: Path,
+        units: Mapping[str, str] | None = None,
+        rows: Callable[[str], int | None] = lambda name: None,
+    ) -> None:
         self.folder = folder
+        self._rows = rows
         self._units = units or {}
         self._list = folder / CHECKSUMS
         self._adding = threading.Lock()
@@ -49,7 +62,8 @@ class BlockFiles:
     @property
     def names(self) -> list[str]:
         """The files that are there or should be, in order."""
-        return sorted({path.stem for path in self.folder.glob(f"*{SUFFIX}")} | self._sums.keys())
+        there = {path.stem for path in self.folder.glob(f"*{SUFFIX}") if NAME.fullmatch(path.stem)}
+        return sorted(there | self._sums.keys())
 
     def __contains__(self, name: object) -> bool:
         """Whether a file was finished; it may be damaged or gone since."""
@@ -71,7 +85,7 @@ class BlockFiles:
             RunError: it is missing, damaged, or not the file that was written.
         """
         try:
-            return columns_of(self._content(name), columns)
+            return columns_of(self._content(name), columns, self._rows(name))
         except ParquetError as error:
             raise self._damaged(name, str(error)) from None
 
@@ -85,11 +99,10 @@ class BlockFiles:
 
     def _content(self, name: str) -> bytes:
         try:
-            content = self.path(name).read_bytes()
-        except OSError as error:
-            raise self._damaged(name, error.strerror or str(error)) from None
-        # a folder without any list was written before there were checksums
-        if (self._sums or self._list.exists()) and hashlib.sha256(content).hexdigest() != self._sums.get(name):
+            content = read_contained(self.path(name), self.folder, LARGEST_BLOCK)
+        except UnreadableFileError as error:
+            raise self._damaged(name, str(error)) from None
+        if hashlib.sha256(content).hexdigest() != self._sums.get(name):
             raise self._damaged(name, "not the file that was written: its SHA-256 is another")
         return content
 
@@ -101,7 +114,7 @@ class BlockFiles:
         content = parquet_of(columns, self._units)
         sha256 = hashlib.sha256(content).hexdigest()
         write_whole(self.path(name), content)
-        with self._adding, self._list.open("a", encoding="utf-8") as stream:
+        with self._adding, named_in_errors(self._list), self._list.open("a", encoding="utf-8") as stream:
             stream.write(_line(name, sha256))
             self._sums[name] = sha256
 
@@ -111,8 +124,23 @@ class BlockFiles:
             self.path(name).unlink(missing_ok=True)
             self._sums.pop(name, None)
 
+    def clear(self) -> None:
+        """Take all of them away, their list, and the folder if nothing else is in it."""
+        self._remove_unfinished()
+        self.remove(self.names)
+        self._list.unlink(missing_ok=True)
+        with suppress(OSError):
+            self.folder.rmdir()
+
+    def _remove_unfinished(self) -> None:
+        """Take away what a kill left of files that were being written."""
+        for path in self.folder.glob(f"*{UNFINISHED}"):
+            if path.name == CHECKSUMS + UNFINISHED or NAME.fullmatch(path.name.removesuffix(SUFFIX + UNFINISHED)):
+                path.unlink(missing_ok=True)
+
     def settle(self) -> None:
         """Write the list anew: each file once, no line that a kill or a full disk cut short."""
+        self._remove_unfinished()
         write_whole(self._list, "".join(_line(name, self._sums[name]) for name in sorted(self._sums)).encode())
 
 
@@ -120,11 +148,14 @@ def _line(name: str, sha256: str) -> str:
     return f"{sha256}  {name}{SUFFIX}\n"
 
 
-def _listed(path: Path) -> list[tuple[str, str]]:
+def _listed(path: Path) -> Iterator[tuple[str, str]]:
     """Names and checksums of a list; lines that were cut short are none."""
     try:
-        lines = path.read_text("utf-8", errors="replace").splitlines()
-    except OSError:
-        return []
-    pairs = (line.split("  ", 1) for line in lines if line.endswith(SUFFIX))
-    return [(pair[1].removesuffix(SUFFIX), pair[0]) for pair in pairs if len(pair) == 2 and len(pair[0]) == 64]
+        lines = read_contained(path, path.parent, LARGEST_LIST).decode("utf-8", errors="replace").splitlines()
+    except UnreadableFileError:
+        return
+    for line in lines:
+        sha256, _, file = line.partition("  ")
+        name = file.removesuffix(SUFFIX)
+        if len(sha256) == 64 and file.endswith(SUFFIX) and NAME.fullmatch(name):
+            yield name, sha256

@@ -1,26 +1,51 @@
-"""Files that are whole or not there, also after a kill or a power cut."""
+"""Files that are whole or not there, also after a kill or a power cut; and whose fault it is when they are not."""
 
 import errno
 import os
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
-NO_SPACE = (errno.ENOSPC, errno.EDQUOT)
+UNFINISHED = ".writing"
+NO_SPACE = (errno.ENOSPC, getattr(errno, "EDQUOT", errno.ENOSPC))  # Windows has no quotas of its own number
+REFUSED_BY_DISK = frozenset((*NO_SPACE, errno.EFBIG, errno.EIO, errno.EROFS))
 
 
 def write_whole(path: Path, content: bytes | memoryview) -> None:
-    """Write beside the file's place, bring it to the disk and rename it there; nothing is left of a failure."""
-    beside = path.with_name(path.name + ".writing")
+    """Write beside the file's place, bring it to the disk and rename it there; nothing is left of a failure.
+
+    Raises:
+        OSError: it names the file.
+    """
+    beside = path.with_name(path.name + UNFINISHED)
     try:
-        with beside.open("wb") as stream:
-            stream.write(content)
-            stream.flush()
-            os.fsync(stream.fileno())
-        os.replace(beside, path)
+        with named_in_errors(path):
+            with beside.open("wb") as stream:
+                stream.write(content)
+                stream.flush()
+                os.fsync(stream.fileno())
+            os.replace(beside, path)
     except OSError:
         beside.unlink(missing_ok=True)
+        raise
+
+
+@contextmanager
+def named_in_errors(path: Path) -> Iterator[None]:
+    """Within it an OSError names the file that is written, where the system's own error names none."""
+    try:
+        yield
+    except OSError as error:
+        if error.filename is None or str(error.filename).endswith(UNFINISHED):
+            error.filename = str(path)
         raise
 
 
 def lacks_space(error: OSError) -> bool:
     """Whether a write failed because the disk, or the user's share of it, is full."""
     return error.errno in NO_SPACE
+
+
+def refused_by_disk(error: OSError) -> bool:
+    """Whether a write failed by the disk or the system's limits: neither the user's input nor the code is wrong."""
+    return error.errno in REFUSED_BY_DISK

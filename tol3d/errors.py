@@ -27,3 +27,7 @@ class GeometryError(InputError):
 
 class RunError(InputError):
     """A folder is not a run, is damaged, or cannot be written."""
+
+
+class DiskError(RunError):
+    """The disk or the system refuses a write: neither the input nor tol3d is at fault; exit code 4."""

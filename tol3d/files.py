@@ -1,7 +1,9 @@
 """Files that a scene names: read once, so that what ran, what is kept and what is hashed are the same bytes."""
 
 import hashlib
+import os
 import re
+import stat
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
@@ -10,6 +12,7 @@ from pathlib import Path
 from tol3d.errors import SceneError
 
 LARGEST_FILE = 20_000_000  # bytes; about two million values, seconds to parse
+NO_WAIT = getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0)  # which Windows lacks, and which it needs
 KEPT_HASH, KEPT_NAME = 12, 60  # characters of the name under which a run keeps a file
 
 
@@ -60,3 +63,47 @@ def kept_name(name: str, sha256: str) -> str:
     '000000000000-wheel_thickness.csv'
     """
     return f"{sha256[:KEPT_HASH]}-{re.sub(r'[^A-Za-z0-9.-]', '_', Path(name).name)[-KEPT_NAME:]}"
+
+
+class UnreadableFileError(Exception):
+    """A file that is not read; its text says why, without the file's name."""
+
+
+def contained(name: str) -> bool:
+    """Whether a relative path stays in the folder that it starts from, by its words.
+
+    >>> contained("trials/block-000000.parquet"), contained("../mine"), contained("/etc/passwd"), contained("C:/x")
+    (True, False, False, False)
+    """
+    return not ({"", ".", ".."} & set(name.split("/")) or "\\" in name or ":" in name or "\0" in name)
+
+
+def read_contained(path: Path, folder: Path, largest: int) -> bytes:
+    """Read a plain file of a folder that a stranger may have made.
+
+    Args:
+        path: the file.
+        folder: it lies in here, links followed.
+        largest: more bytes are refused before they are read.
+
+    Raises:
+        UnreadableFileError: it is missing, a pipe, a device, too large, or a link that leads out of the folder.
+    """
+    try:
+        if not path.resolve(strict=True).is_relative_to(folder.resolve()):
+            raise UnreadableFileError(f"a link that leads out of {folder}")
+        descriptor = os.open(path, os.O_RDONLY | NO_WAIT)  # of a pipe nothing is waited for
+        with open(descriptor, "rb") as stream:
+            state = os.fstat(descriptor)
+            if not stat.S_ISREG(state.st_mode):
+                raise UnreadableFileError("expected a plain file, got a folder, a pipe or a device")
+            if state.st_size > largest:
+                raise UnreadableFileError(f"{state.st_size} bytes, expected at most {largest}")
+            content = stream.read(largest + 1)
+    except OSError as error:
+        raise UnreadableFileError(error.strerror or str(error)) from None
+    except (ValueError, RuntimeError) as error:  # a NUL in the name, links in a circle
+        raise UnreadableFileError(str(error)) from None
+    if len(content) > largest:
+        raise UnreadableFileError(f"more than {largest} bytes")
+    return content

@@ -1,24 +1,27 @@
-"""The run on disk: summary.json, trials/ in Parquet with their checksums, the scene and every file it read.
+"""The run on disk: summary.json, trials/ in Parquet, the scene and every file it read, and the checksums of all.
 
 `writer.py` writes it into `<name>.partial` and renames that at the end, so a folder of that name is always whole.
 """
 
 import json
-import shutil
 import warnings
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.blockfiles import MENDED, BlockFiles, block_name
+from tol3d.blockfiles import CHECKSUMS, MENDED, BlockFiles, block_name
+from tol3d.durable import UNFINISHED
 from tol3d.errors import RunError
-from tol3d.files import FileContent, Files, kept_name
+from tol3d.files import LARGEST_FILE, FileContent, Files, UnreadableFileError, kept_name, read_contained
 from tol3d.frame import Curves, frame_of
+from tol3d.manifest import TRIALS, Manifest
 from tol3d.processor import unlike
+from tol3d.summary_schema import summary_of
 from tol3d.worst import worst_trial
 
 if TYPE_CHECKING:
@@ -28,12 +31,14 @@ Columns = dict[str, NDArray[np.generic]]
 
 SUMMARY = "summary.json"
 SCENE = "scene.yaml"
-TRIALS = "trials"
 PIECES = "pieces"
 CHECKPOINT = "checkpoint"
 FINGERPRINT = "fingerprint.json"
 FILES = "files"
+STUDY = ("scene", "files", "study")  # of a fingerprint; the rest decides the last bits only
+LARGEST_FINGERPRINT = 10_000_000  # bytes; it names every file of the scene and every `until`
 LOCK = "lock"
+LARGEST_SUMMARY = 50_000_000  # bytes; a thousand curves of a thousand positions
 
 Fingerprint = Mapping[str, Any]
 
@@ -66,23 +71,51 @@ class Run:
         return int(self.summary["trials"])
 
     @property
+    def block_trials(self) -> int:
+        """Trials of a block, but for the last one."""
+        return int(self.summary["blocks"]["trials"])
+
+    @property
     def keeps_trials(self) -> bool:
         """Whether it holds its trials one by one, not their statistics only."""
-        return bool(self.summary.get("blocks", {}).get("kept", True))
+        return bool(self.summary["blocks"]["kept"])
+
+    @property
+    def manifest(self) -> Manifest:
+        """Its own files with their checksums.
+
+        Raises:
+            RunError: it has no such list.
+        """
+        return Manifest.read(self.path)
 
     @property
     def blocks(self) -> BlockFiles:
         """The files of its trials.
 
         Raises:
-            RunError: it kept no trials.
+            RunError: it kept no trials, or their list of checksums was changed since.
         """
         if not self.keeps_trials:
             raise RunError(
                 f"{self.path}: this run kept its statistics only (--no-trials); run the scene again without "
                 "--no-trials for columns, or replay single trials by their number"
             )
-        return BlockFiles(self.path / TRIALS)
+        try:
+            self.manifest.content(f"{TRIALS}/{CHECKSUMS}")
+        except RunError as error:
+            raise RunError(f"{error}; {MENDED}") from None
+        return BlockFiles(self.path / TRIALS, rows=self._trials_of)
+
+    def _trials_of(self, name: str) -> int | None:
+        """How many trials the file of a block holds."""
+        return self._block_sizes.get(name)
+
+    @cached_property
+    def _block_sizes(self) -> Mapping[str, int]:
+        """Trials of each block, by the name of its file, in order."""
+        size, firsts = self.block_trials, range(0, self.trials, self.block_trials)
+        return {block_name(index): min(size, self.trials - first) for index, first in enumerate(firsts)}
 
     @property
     def column_names(self) -> tuple[str, ...]:
@@ -95,11 +128,7 @@ class Run:
         Raises:
             RunError: no such column, the run kept no trials, or a block is damaged.
         """
-        blocks = self.blocks
-        unknown = [name for name in names if name not in blocks.column_names]
-        if unknown:
-            raise RunError(f"{self.path}: no column {unknown[0]!r}; there are: {', '.join(blocks.column_names)}")
-        pieces = [blocks.read(name, names or None) for name in blocks.names]
+        pieces = [*self.pieces(*names)]
         return {name: np.concatenate([piece[name] for piece in pieces]) for name in pieces[0]}
 
     def frame(self, *names: str, curves: Curves = "split") -> "pd.DataFrame":
@@ -124,6 +153,26 @@ class Run:
         """
         return worst_trial(self, measure)
 
+    def pieces(self, *names: str) -> Iterator[Columns]:
+        """Columns block by block, in the order of the trials: memory does not grow with their number.
+
+        Raises:
+            RunError: no such column, the run kept no trials, or a block is damaged.
+        """
+        blocks = self.blocks
+        known = blocks.column_names
+        unknown = [name for name in names if name not in known]
+        if unknown:
+            raise RunError(f"{self.path}: no column {unknown[0]!r}; there are: {', '.join(known)}")
+        shapes: dict[str, Any] | None = None
+        for block in self._block_sizes:
+            piece = blocks.read(block, names or known)
+            found = {name: (values.shape[1:], values.dtype.kind) for name, values in piece.items()}
+            shapes = shapes or found
+            if found != shapes:
+                raise RunError(f"{blocks.path(block)}: its columns are not those of the first block; {MENDED}")
+            yield piece
+
     @property
     def scene_path(self) -> Path:
         """The scene as it was when the run was made.
@@ -145,9 +194,9 @@ class Run:
 
     def _kept(self, name: str, path: Path) -> FileContent:
         try:
-            file = FileContent(path, path.read_bytes())
-        except OSError as error:
-            raise RunError(f"{path}: cannot be read ({error.strerror}); the run is damaged") from None
+            file = FileContent(path, read_contained(path, self.path, LARGEST_FILE))
+        except UnreadableFileError as error:
+            raise RunError(f"{path}: cannot be read ({error}); the run is damaged") from None
         if file.sha256 != self.summary["files"].get(name):
             raise RunError(f"{path}: was changed since the run was made, so its trials cannot be made again")
         return file
@@ -163,25 +212,35 @@ class Run:
 
 
 def open_run(path: Path | str) -> Run:
-    """Open a run's folder; executes nothing of it.
+    """Open a run's folder, which a stranger may have made; executes nothing of it.
+
+    Checked here are the summary's checksum, all its keys and values, and the number of blocks; scene, files and trials
+    are checked when they are read. That nothing was changed is not to say who made it.
 
     Raises:
-        RunError: not a run, or damaged.
+        RunError: not a run, damaged, or changed since it was made.
     """
     path = Path(path)
-    try:
-        summary = json.loads((path / SUMMARY).read_text(encoding="utf-8"))
-    except FileNotFoundError:
-        hint = "; it was not finished: run the scene again to go on" if path.name.endswith(".partial") else ""
-        raise RunError(f"{path}: expected a run's folder with {SUMMARY} in it{hint}") from None
-    except (OSError, ValueError) as error:
-        raise RunError(f"{path / SUMMARY}: cannot be read ({error})") from None
-    if not isinstance(summary, dict) or not {"trials", "measures", "study", "files"} <= summary.keys():
-        raise RunError(f"{path / SUMMARY}: expected the summary of a tol3d run")
-    run = Run(path, summary)
-    if run.keeps_trials and not run.blocks.names:
-        raise RunError(f"{path / TRIALS}: expected Parquet files with the trials, found none")
+    run = read_run(path)
+    if run.keeps_trials:
+        there, expected = len(run.blocks.names), -(-run.trials // run.block_trials)
+        if there != expected:
+            words = f"expected {expected} Parquet files with the trials, found {there}"
+            raise RunError(f"{path / TRIALS}: {words}; {MENDED}")
     return run
+
+
+def read_run(path: Path) -> Run:
+    """A run by its summary alone: its blocks may be damaged.
+
+    Raises:
+        RunError: not a run, or its summary is damaged or was changed since it was made.
+    """
+    if not (path / SUMMARY).exists():
+        hint = "; it was not finished: run the scene again to go on" if path.name.endswith(".partial") else ""
+        raise RunError(f"{path}: expected a run's folder with {SUMMARY} in it{hint}")
+    content = Manifest.read(path).content(SUMMARY, LARGEST_SUMMARY)
+    return Run(path, summary_of(content, path / SUMMARY))
 
 
 def differences(there: Fingerprint, asked: Fingerprint) -> list[str]:
@@ -197,6 +256,27 @@ def differences(there: Fingerprint, asked: Fingerprint) -> list[str]:
     return found
 
 
+def another_study(there: Fingerprint, asked: Fingerprint) -> list[str]:
+    """In what a run that is there is of another study than the one that is asked for, in words."""
+    found = differences(*({key: print_.get(key) for key in STUDY} for print_ in (there, asked)))
+    if _keeps(there) and not _keeps(asked):
+        found.append("it holds the trials, too, and this would keep statistics only")
+    return found
+
+
+def _keeps(fingerprint: Fingerprint) -> bool:
+    return bool((fingerprint.get("blocks") or {}).get("kept"))
+
+
+def interrupted(partial: Path) -> Fingerprint | None:
+    """The fingerprint of the interrupted run in a folder; None where there is none, {} where it was being cleared."""
+    try:
+        read: Any = json.loads(read_contained(partial / FINGERPRINT, partial, LARGEST_FINGERPRINT))
+    except (UnreadableFileError, ValueError, RecursionError):
+        return None
+    return read if isinstance(read, Mapping) and (not read or "scene" in read) else None
+
+
 def partial_of(path: Path) -> Path:
     """The folder in which a run that goes to `path` is written."""
     path = path.resolve()  # so that "." has a name
@@ -207,16 +287,22 @@ def whole_run(path: Path, fingerprint: Fingerprint) -> Run | None:
     """The finished run of that fingerprint, if no other was begun there since and all its blocks are whole."""
     if partial_of(path).exists() or not (path / SUMMARY).is_file():
         return None
-    run = open_run(path)
-    if differences(run.fingerprint, fingerprint):
+    run = read_run(path)
+    if differences(run.fingerprint, fingerprint) or (run.keeps_trials and not _has_whole_blocks(run)):
         return None
-    if run.keeps_trials:
-        count = -(-run.trials // int(run.summary["blocks"]["trials"]))
-        whole = [whole_file(run.blocks, block_name(index)) for index in range(count)]  # tells of each damaged one
-        if not all(whole):
-            return None
-    tidy(path)
+    tidy_after_kill(run)
     return run
+
+
+def _has_whole_blocks(run: Run) -> bool:
+    """Whether every block is as it was written; each damaged one is told of."""
+    try:
+        blocks = run.blocks
+    except RunError as error:
+        tell_of_damage(error)
+        return False
+    whole = [whole_file(blocks, name) for name in blocks.names]
+    return len(whole) == -(-run.trials // run.block_trials) and all(whole)
 
 
 def whole_file(files: BlockFiles, name: str) -> bool:
@@ -233,8 +319,16 @@ def tell_of_damage(error: RunError) -> None:
     warnings.warn(str(error).removesuffix(f"; {MENDED}") + "; it is made again", DamageWarning, stacklevel=2)
 
 
+def tidy_after_kill(run: Run) -> None:
+    """Take away what a kill between the end of a run and its tidying left; nothing that was not that run's."""
+    there = interrupted(run.path)
+    if there and not differences({key: there.get(key) for key in STUDY}, {key: run.fingerprint[key] for key in STUDY}):
+        tidy(run.path)
+
+
 def tidy(folder: Path) -> None:
     """Take away what only an unfinished run needs; of a kill in here the finished run bears what was left."""
-    for name in (LOCK, CHECKPOINT, FINGERPRINT):
+    for name in (LOCK, CHECKPOINT, CHECKPOINT + UNFINISHED):
         (folder / name).unlink(missing_ok=True)
-    shutil.rmtree(folder / PIECES, ignore_errors=True)
+    BlockFiles(folder / PIECES).clear()
+    (folder / FINGERPRINT).unlink(missing_ok=True)  # last, for it tells that the others are ours

@@ -49,14 +49,15 @@ from pathlib import Path
 from typing import Any
 
 from tol3d.block import block_trials, positions_in_all
-from tol3d.durable import lacks_space
+from tol3d.durable import lacks_space, refused_by_disk
 from tol3d.engines import Engine
 from tol3d.engines.door import exact_is_compiled
-from tol3d.errors import RunError
+from tol3d.errors import DiskError, RunError
 from tol3d.execution import ONE_WORKER, Execution, pool_of
 from tol3d.files import FileContent
 from tol3d.folding import Outcome, Plan, Progress, run_blocks
 from tol3d.model import Model
+from tol3d.occupant import free_folder
 from tol3d.replaying import Replay, model_of, replay, replay_block
 from tol3d.result import Fingerprint, Run, whole_run
 from tol3d.scene import Scene
@@ -112,6 +113,7 @@ def run_scene(
     out: Path | str | None = None,
     execution: Execution = ONE_WORKER,
     trust_parts: bool = False,
+    force: bool = False,
     watch: Watch = Watch(),
 ) -> Run:
     """Run a scene's study and keep it on disk.
@@ -120,9 +122,11 @@ def run_scene(
         scene: a scene, the path of one, or the name of a bundled one.
         overrides: what is said otherwise than in the scene's study.
         out: the run's folder; None takes a new one in the system's temporary folder, says where that is, and leaves
-            it there until the user or the system deletes it.
+            it there until the user or the system deletes it. A run of the same
+            study there is replaced, if nothing but its own files is in its folder.
         execution: who runs it and what is kept; the results are the same to the last bit for any.
         trust_parts: allow files outside the scene's folder.
+        force: replace a run of another study too; one that holds more than its own files is moved aside.
         watch: who is told.
 
     Raises:
@@ -136,7 +140,12 @@ def run_scene(
     if execution.resume and (whole := whole_run(folder, fingerprint)):
         return whole
     writer = RunWriter(
-        folder, fingerprint, _column_units(model), keep_trials=execution.keep_trials, resume=execution.resume
+        folder,
+        fingerprint,
+        _column_units(model),
+        keep_trials=execution.keep_trials,
+        resume=execution.resume,
+        force=force,
     )
     plan = Plan(model.study.trials, block_trials(model), positions_in_all(model))
     with _told_of_a_full_disk(writer, plan):
@@ -157,7 +166,8 @@ def run_scene(
             "timing": _timing(outcome, prepared - started, simulate_s, pool.slots),
             "versions": {"python": platform.python_version(), **dict(installed_versions())},
         }
-        watch.finisher(writer.picture_path("."), summary)
+        with writer.pictures() as place:
+            watch.finisher(place, summary)
         return writer.finish(summary)
 
 
@@ -198,15 +208,23 @@ def _told_of_a_full_disk(writer: RunWriter, plan: Plan) -> Iterator[None]:
     try:
         yield
     except OSError as error:
-        if lacks_space(error):
+        if refused_by_disk(error):
             kept = min(writer.kept_blocks(Tally) * plan.block_trials, plan.trials)
-            raise RunError(
-                f"{writer.path}: no space left on the disk: {kept} of {plan.trials} trials are kept in "
-                f"{writer.partial}; make room, then the same command goes on"
+            why, way = _why(error, writer)
+            raise DiskError(
+                f"{why}: {kept} of {plan.trials} trials are kept in {writer.partial}; {way}, then the same command "
+                "goes on"
             ) from None
         if str(error.filename or "").startswith(str(writer.partial)):
             raise RunError(f"{error.filename}: cannot be written ({error.strerror})") from None
         raise
+
+
+def _why(error: OSError, writer: RunWriter) -> tuple[str, str]:
+    """What the disk refused, and what helps."""
+    if lacks_space(error):
+        return f"{writer.path}: no space left on the disk", "make room"
+    return f"{error.filename or writer.partial}: cannot be written ({error.strerror})", "mend the disk or its limits"
 
 
 def _timing(outcome: Outcome[Tally], setup_s: float, simulate_s: float, slots: int) -> dict[str, float | None]:
@@ -231,6 +249,16 @@ def _peak_memory_mb() -> float | None:
 
 def _text_of(scene: Scene) -> FileContent:
     return FileContent(scene.source, scene.text.encode())
+
+
+def folder_for(scene: Scene, model: Model, execution: Execution, runs: Path) -> tuple[Path, str]:
+    """Where a run of a scene goes by default, and what is in the folder of the scene's name where it is another one.
+
+    Args:
+        scene, model, execution: of the run.
+        runs: the folder of all runs.
+    """
+    return free_folder(runs / scene.source.stem, _fingerprint(scene, model, execution), resume=execution.resume)
 
 
 def _fingerprint(scene: Scene, model: Model, execution: Execution) -> Fingerprint:
@@ -258,6 +286,7 @@ __all__ = [
     "Replay",
     "Watch",
     "effective_model",
+    "folder_for",
     "load",
     "model_of",
     "replay",

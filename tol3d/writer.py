@@ -2,18 +2,22 @@
 
 import json
 import os
-import shutil
-from collections.abc import Mapping
+import secrets
+import warnings
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any, TypeVar
 
 from filelock import FileLock, Timeout
 
-from tol3d.blockfiles import BlockFiles, block_name
+from tol3d.blockfiles import CHECKSUMS, BlockFiles, block_name
 from tol3d.checkpoint import Checkpoint
-from tol3d.durable import write_whole
-from tol3d.errors import RunError
+from tol3d.durable import refused_by_disk, write_whole
+from tol3d.errors import DiskError, RunError
 from tol3d.files import FileContent, Files, kept_name
+from tol3d.manifest import TRIALS, Manifest, own_paths_of_trials
+from tol3d.occupant import MovedAsideWarning, free_aside, occupant_of
 from tol3d.result import (
     CHECKPOINT,
     FILES,
@@ -22,13 +26,14 @@ from tol3d.result import (
     PIECES,
     SCENE,
     SUMMARY,
-    TRIALS,
     Columns,
     Fingerprint,
     Run,
+    another_study,
     differences,
-    open_run,
+    interrupted,
     partial_of,
+    read_run,
     tell_of_damage,
     tidy,
     whole_file,
@@ -37,6 +42,7 @@ from tol3d.result import (
 T = TypeVar("T")
 
 BEGINNING = {LOCK, f"{FINGERPRINT}.writing"}  # what there may be before the fingerprint
+DRAWN = "drawn"  # folder of pictures until they are whole
 NOBODYS = "{}"  # the fingerprint of no run
 
 
@@ -44,11 +50,12 @@ class RunWriter:
     """Writes a run: blocks as they come, the rest at the end. Implements execution.BlockStore.
 
     Args:
-        path: the run's folder to be; an older run there is replaced at the end, anything else refused.
+        path: the run's folder to be; see `occupant` for what may be there.
         fingerprint: what makes the blocks of an interrupted run this run's own.
         units: unit of each column, kept in the files' metadata.
         keep_trials: False keeps no blocks.
         resume: there must be an interrupted run of this fingerprint, or a finished one with damaged blocks.
+        force: replace a run of another study; what holds anything else is moved aside.
 
     Raises:
         RunError: the folder is something else, cannot be written, or is being written by another run.
@@ -62,14 +69,17 @@ class RunWriter:
         *,
         keep_trials: bool = True,
         resume: bool = False,
+        force: bool = False,
     ) -> None:
         self.path = path.resolve()
         self.partial = partial_of(path)
         self._fingerprint = json.loads(json.dumps(fingerprint))
         self._lock = FileLock(self.partial / LOCK)
         self._keep_trials = keep_trials
-        if self.path.exists() and not (self.path / SUMMARY).is_file():
-            raise RunError(f"{self.path}: exists and is not a tol3d run; choose another folder with --out")
+        self._force = force
+        self._pictures: list[str] = []
+        if not resume and (occupant := occupant_of(self.path, self._fingerprint)):
+            occupant.refuse(force=force)
         try:
             if resume:
                 self._reopen()
@@ -79,10 +89,12 @@ class RunWriter:
             self._blocks.settle()
             self._pieces.settle()
         except OSError as error:
+            if refused_by_disk(error):
+                raise DiskError(f"{error.filename or self.partial}: cannot be written ({error.strerror})") from None
             raise RunError(f"{self.partial}: cannot be written ({error.strerror}); choose another --out") from None
 
     def _reopen(self) -> None:
-        """A finished run with damaged blocks becomes an interrupted one.
+        """A finished run with damaged blocks becomes an interrupted one, with all that lies in its folder.
 
         Raises:
             RunError: there is nothing to go on with.
@@ -91,13 +103,19 @@ class RunWriter:
             return
         if not self.path.exists():
             raise RunError(f"{self.path}: nothing to resume, neither a run nor {self.partial.name} is there")
-        self._refuse_another(open_run(self.path).fingerprint, f"{self.path}: nothing to resume, this is a finished run")
+        run = read_run(self.path)
+        self._refuse_another(run.fingerprint, f"{self.path}: nothing to resume, this is a finished run")
+        made_again = (SUMMARY, f"{TRIALS}/{CHECKSUMS}")
+        if changed := [name for name in run.manifest.foreign() if name in run.manifest.sums and name not in made_again]:
+            raise RunError(f"{self.path / changed[0]}: was changed since the run was made; move it away first")
         write_whole(self.path / FINGERPRINT, self._mark)
         os.replace(self.path, self.partial)
 
     def _refuse_another(self, there: Fingerprint, words: str) -> None:
         if found := differences(there, self._fingerprint):
-            raise RunError(f"{words} of something else ({'; '.join(found)}); without --resume it is started anew")
+            raise RunError(
+                f"{words} of something else ({'; '.join(found)}); choose another --out, or --force without --resume"
+            )
 
     @property
     def _mark(self) -> bytes:
@@ -105,19 +123,25 @@ class RunWriter:
 
     def _open_partial(self, *, resume: bool) -> None:
         mark = self.partial / FINGERPRINT
-        if self.partial.exists() and not mark.is_file() and {file.name for file in self.partial.iterdir()} - BEGINNING:
+        there = interrupted(self.partial)
+        if self.partial.exists() and there is None and {file.name for file in self.partial.iterdir()} - BEGINNING:
             raise RunError(f"{self.partial}: exists and is not an interrupted run; move it away")
         self.partial.mkdir(parents=True, exist_ok=True)
         try:
             self._lock.acquire(blocking=False)
         except Timeout:
             raise RunError(f"{self.path}: another run is being written there; choose another --out") from None
-        if mark.is_file() and mark.read_bytes() != self._mark:
+        if there is not None and there != self._fingerprint:
             if resume:
-                self._refuse_another(json.loads(mark.read_bytes()), f"{self.partial}: this is an interrupted run")
+                self._refuse_another(there, f"{self.partial}: this is an interrupted run")
+            if there and not self._force and (others := another_study(there, self._fingerprint)):
+                raise RunError(
+                    f"{self.partial}: an interrupted run of another study is kept there ({'; '.join(others)}); choose "
+                    "another --out, or --force, which throws it away"
+                )
             write_whole(mark, NOBODYS.encode())  # killed in here, the next run sees that the rest is not its own
             for folder in (TRIALS, PIECES):
-                shutil.rmtree(self.partial / folder, ignore_errors=True)
+                BlockFiles(self.partial / folder).clear()
             (self.partial / CHECKPOINT).unlink(missing_ok=True)
         write_whole(mark, self._mark)
         for folder in (TRIALS, PIECES):
@@ -166,7 +190,6 @@ class RunWriter:
 
     def keep(self, scene: FileContent, files: Files) -> dict[str, str]:
         """Keep the scene and the files that it names; the SHA-256 of each by its name."""
-        shutil.rmtree(self.partial / FILES, ignore_errors=True)
         places = {name: self.partial / FILES / kept_name(name, file.sha256) for name, file in files.items()}
         everything = {name: (path, files[name]) for name, path in places.items()} | {
             SCENE: (self.partial / SCENE, scene)
@@ -174,11 +197,21 @@ class RunWriter:
         for path, file in everything.values():
             path.parent.mkdir(exist_ok=True)
             write_whole(path, file.content)
+        self._kept = [path.relative_to(self.partial).as_posix() for path, _ in everything.values()]
         return {name: file.sha256 for name, (_, file) in everything.items()}
 
-    def picture_path(self, name: str) -> Path:
-        """Where a picture of the run goes."""
-        return self.partial / name
+    @contextmanager
+    def pictures(self) -> Iterator[Path]:
+        """Within it a folder for pictures, which are the run's own afterwards."""
+        drawn = self.partial / DRAWN
+        drawn.mkdir(exist_ok=True)
+        for unfinished in drawn.iterdir():  # of a kill
+            unfinished.unlink()
+        yield drawn
+        for picture in sorted(drawn.iterdir()):
+            os.replace(picture, self.partial / picture.name)
+            self._pictures.append(picture.name)
+        drawn.rmdir()
 
     def finish(self, summary: Mapping[str, Any]) -> Run:
         """Write the summary and put the run in its place; killed before that, the same command goes on."""
@@ -186,17 +219,47 @@ class RunWriter:
         if self._keep_trials:
             self._blocks.settle()
         else:
-            shutil.rmtree(self.partial / TRIALS)
+            self._blocks.clear()
         write_whole(self.partial / SUMMARY, text.encode())
+        lists = own_paths_of_trials(self._keep_trials)
+        Manifest.of(self.partial, {SUMMARY, *self._kept, *self._pictures, *lists, *self._older()}).write()
         self._lock.release()
-        old = self.path.with_name(self.path.name + ".old")
-        shutil.rmtree(old, ignore_errors=True)
-        if self.path.exists():
-            os.replace(self.path, old)
-        os.replace(self.partial, self.path)
-        shutil.rmtree(old, ignore_errors=True)
-        tidy(self.path)
+        self._put_in_place()
         return Run(self.path, json.loads(text))
+
+    def _older(self) -> Iterator[str]:
+        """Files of a finished run that is mended, such as pictures, where they are as they were."""
+        with suppress(RunError):
+            older = Manifest.read(self.partial)
+            changed = older.foreign()
+            yield from (name for name in older.sums if name not in changed and (self.partial / name).is_file())
+
+    def _put_in_place(self) -> None:
+        """Rename the folder; what lies there is deleted where it may be replaced, else moved aside."""
+        old = self._moved_away() if self.path.exists() else None
+        os.replace(self.partial, self.path)
+        tidy(self.path)
+        if old is not None and not Manifest.read(old).remove():  # something came into it since
+            self._move_aside(old, "more than the run")
+
+    def _moved_away(self) -> Path | None:
+        """Free the run's place: the old run's new name if it may be deleted, None if it was moved aside."""
+        try:
+            occupant = occupant_of(self.path, self._fingerprint)
+        except RunError:
+            self._move_aside(self.path, "something else than a run")
+            return None
+        if occupant is not None and (occupant.foreign or (occupant.others and not self._force)):
+            self._move_aside(self.path, occupant.reason.removeprefix("holds "))
+            return None
+        old = self.path.with_name(f"{self.path.name}.replaced-{os.getpid()}-{secrets.token_hex(4)}")
+        os.rename(self.path, old)
+        return old
+
+    def _move_aside(self, folder: Path, what: str) -> None:
+        aside = free_aside(self.path)
+        os.rename(folder, aside)
+        warnings.warn(f"{self.path}: held {what}, and was moved aside to {aside}", MovedAsideWarning, stacklevel=2)
 
 
 def _piece_name(index: int, first: int | str) -> str:

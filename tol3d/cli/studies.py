@@ -39,7 +39,12 @@ def run(
     witness: Annotated[
         int | None, typer.Option(min=0, help="Trials of an exact study that FCL measures again.")
     ] = None,
-    out: Annotated[Path | None, typer.Option(help="The run's folder; runs/<scene> by default.")] = None,
+    out: Annotated[
+        Path | None, typer.Option(help="The run's folder; by default runs/<scene>, or -2, -3 … of another study.")
+    ] = None,
+    force: Annotated[
+        bool, typer.Option("--force", help="Replace a run of another study; what else lies there is moved aside.")
+    ] = False,
     workers: Annotated[
         int | None, typer.Option(min=1, help="Threads or processes; by default one, or all cores for a long study.")
     ] = None,
@@ -55,6 +60,8 @@ def run(
     trust_parts: TrustParts = False,
 ) -> None:
     """Simulate a scene: analytic model and 3D simulation side by side."""
+    if force and resume:
+        raise typer.BadParameter("--resume goes on with what --force would replace; leave out one of them")
     if workers is not None and scheduler is not None:
         raise typer.BadParameter("--scheduler has its own workers; leave out --workers")
     draw = context.with_resource(_drawing(wanted=not no_picture))  # it loads what it draws with beside all that follows
@@ -63,18 +70,22 @@ def run(
 
     from tol3d.execution import Execution
     from tol3d.report import run_report
-    from tol3d.simulate import Overrides, Watch, effective_model, load, run_scene, workers_for
+    from tol3d.simulate import Overrides, Watch, effective_model, folder_for, load, run_scene, workers_for
 
     path = scene_path(scene)
     overrides = Overrides(trials, seed, engine.value if engine else None, sampler.value if sampler else None, witness)
-    folder = out or Path("runs") / path.stem
     loaded = load(path, trust_parts=trust_parts)
     model = effective_model(loaded, overrides)
     for warning in model.warnings:
         warn(warning)
     if told := long_study(model):
         err_console.print(told)
-    own = workers or workers_for(model)
+    execution = Execution(workers or workers_for(model), scheduler, keep_trials=not no_trials, resume=resume)
+    folder, taken = out or Path("runs") / path.stem, ""
+    if out is None and not force:
+        folder, taken = folder_for(loaded, model, execution, Path("runs"))
+    if taken:
+        err_console.print(f"{taken}: this run goes to {folder} (--force would replace the other)")
     columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn())
     try:
         with _stopped_in_order(), Progress(*columns, console=err_console, transient=True) as progress:
@@ -83,7 +94,8 @@ def run(
                 loaded,
                 overrides=overrides,
                 out=folder,
-                execution=Execution(own, scheduler, keep_trials=not no_trials, resume=resume),
+                execution=execution,
+                force=force,
                 watch=Watch(
                     stage=lambda text: progress.update(bar, description=text),
                     progress=lambda done: progress.advance(bar, done),

@@ -90,8 +90,6 @@ def _ends(analytic: Array, geometric: Array) -> tuple[float, float]:
 
 def _blocks(run: Run, names: tuple[str, str], position: str | None) -> Iterator[tuple[Array, Array, Array | None]]:
     """Analytic and geometric values and positions, one file of trials at a time."""
-    blocks = run.blocks
-    for block in blocks.names:
-        columns = blocks.read(block, (*names, *((position,) if position else ())))
+    for columns in run.pieces(*names, *((position,) if position else ())):
         analytic, geometric = (np.asarray(columns[name], dtype=np.float64) for name in names)
         yield analytic, geometric, np.asarray(columns[position], dtype=np.float64) if position else None
