@@ -367,6 +367,12 @@ def read(folder: Path, content: str | bytes, column: str = "e", unit: str = "um"
         "n;e\r\n1;3.5\r\n\r\n2;-1\r\n3;2e0",
         "\ufeff e ,n\n 3.5,1\n-1 ,2\n2e0,3\n",
         '"n","e"\n"1, or so","3.5"\n2,-1\n3,2.0\n',
+        "n;e\n1;3,5\n2;-1\n3;2,0\n",  # decimal commas, as spreadsheets write them in half of Europe
+        "n;e\n1;3,500\n2;-1,000\n3;2,000\n",
+        "e;\n3,5;\n-1;\n2,0e0;\n",
+        "e\n3,5\n-1\n2\n",  # a column alone needs no separator
+        "e\n3,500\n-1,000\n2,00\n",
+        "n,e,\n1,3.5,\n2,-1\n3,2,,\n",  # empty cells at the end
     ],
 )
 def test_a_column_is_read_whatever_the_dialect(tmp_path: Path, content: str) -> None:
@@ -381,7 +387,14 @@ def test_the_unit_scales_the_column(tmp_path: Path) -> None:
     ("content", "message"),
     [
         ("n,e\n1,3.5\n2,soft\n", "measured.csv:3: column 'e': expected a number such as 4.5, got 'soft'"),
-        ("n;e\n1;3,5\n", "measured.csv:2: column 'e': expected a number such as 4.5, got '3,5'"),
+        ("n;e\n1;3,5\n2;3.5\n", "measured.csv:3: column 'e': expected decimal commas as in line 2, or none in all of"),
+        ("n;e\n1;3,5\n2;1.234,5\n", "measured.csv:3: column 'e': expected decimal commas as in line 2"),
+        ("n;e\n1;3,5\n2;1,234,5\n", "measured.csv:3: column 'e': expected a number such as 4.5, got '1,234,5'"),
+        ("n;e\n1;3;5\n", "measured.csv:2: expected 2 cells, as in the header, got 3"),
+        ("n,e\n1,3,5\n2,4,5\n", "measured.csv:2: expected 2 cells, as in the header, got 3; where numbers have decimal"),
+        ('n,e\n1,"3,5"\n2,"4,5"\n', "measured.csv:2: column 'e': expected a number such as 4.5, got '3,5'; where numb"),
+        ("e\n12\n1,234\n-5,600\n", "measured.csv:3: column 'e': expected a number such as 4.5, got '1,234', which ma"),
+        ("e\n1\n3,5,7\n", "measured.csv:3: column 'e': expected a number such as 4.5, got '3,5,7'"),
         ("n,e\n1,3.5\n\n2\n", "measured.csv:4: column 'e': expected a number such as 4.5, got an empty cell"),
         ("e\n1\nnan\n", "measured.csv:3: column 'e': expected a number such as 4.5, got 'nan'"),
         ("e\n1\n1e999\n", "measured.csv:3: column 'e': expected a number such as 4.5, got '1e999'"),

@@ -3,10 +3,12 @@
 import csv
 import io
 import math
-from collections.abc import Iterator
+import re
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Literal, Self
+from pathlib import Path
+from typing import TYPE_CHECKING, Final, Literal, Self
 
 import numpy as np
 from pydantic import model_validator
@@ -16,6 +18,14 @@ from tol3d.errors import SceneError
 from tol3d.files import FileContent, Files
 from tol3d.strict import refused
 from tol3d.units import BARE_NUMBER, MICRO_SIGNS, UNITS, Quantity
+
+if TYPE_CHECKING:
+    from _csv import Reader
+
+DECIMAL_COMMA: Final = re.compile(r"[+-]?\d*,\d+(?:[eE][+-]?\d+)?")
+THOUSANDS: Final = re.compile(r"[+-]?[1-9]\d{0,2},\d{3}")
+NUMBER_WORDS: Final = "a number such as 4.5"
+COMMA_HINT: Final = "where numbers have decimal commas, put semicolons between the cells"
 
 
 @dataclass(frozen=True, eq=False)
@@ -67,7 +77,10 @@ class Empirical(Distribution):
 
 
 class EmpiricalSpec(DistributionSpec):
-    """`{file, column, unit}`: a CSV file with a header row; commas or semicolons between the cells."""
+    """`{file, column, unit}`: a CSV file with a header row; commas or semicolons between the cells.
+
+    Numbers have decimal points, or decimal commas where these separate no cells.
+    """
 
     kind: Literal["empirical"]
     file: str
@@ -109,33 +122,77 @@ class EmpiricalSpec(DistributionSpec):
 
 def _column(file: FileContent, column: str) -> list[float]:
     """The numbers under the header `column`, at least two."""
-    path, rows = file.path, _rows(file)
-    header_line, header = next(rows, (1, []))
+    path, (table, separator) = file.path, _table(file)
+    header_line, header = next(table, (1, []))
     names = [name.strip() for name in header]
     if names.count(column.strip()) != 1:
         found = ", ".join(repr(name) for name in names) or "an empty file"
         raise SceneError(f"{path}:{header_line}: expected one column named {column!r} in the header, got {found}")
-    index = names.index(column.strip())
-    values = [_number(row, index, f"{path}:{line}: column {column!r}") for line, row in rows]
-    if len(values) < 2:
-        raise SceneError(f"{path}: expected at least two values in column {column!r}, got {len(values)}")
-    return values
+    alone, index = len(names) == 1, names.index(column.strip())
+    cells: list[_Cell] = []
+    for line, row in table:
+        if alone:  # a comma in it separates nothing
+            row = [separator.join(row)]
+        elif any(cell.strip() for cell in row[len(names) :]):
+            hint = f"; {COMMA_HINT}" if separator == "," else ""
+            raise SceneError(f"{path}:{line}: expected {len(names)} cells, as in the header, got {len(row)}{hint}")
+        cells.append((line, row[index].strip() if index < len(row) else ""))
+    if len(cells) < 2:
+        raise SceneError(f"{path}: expected at least two values in column {column!r}, got {len(cells)}")
+    return _Column(path, column, cells).numbers(commas=separator == ";" or alone, sure=separator == ";")
 
 
-def _number(row: list[str], index: int, place: str) -> float:
-    cell = row[index] if index < len(row) else ""
-    number = float(cell) if BARE_NUMBER.fullmatch(cell) else math.nan
-    if not math.isfinite(number):
-        shown = repr(cell if len(cell) <= 60 else cell[:57] + "…") if cell.strip() else "an empty cell"
-        raise SceneError(f"{place}: expected a number such as 4.5, got {shown}")
-    return number
+_Cell = tuple[int, str]
+"""The line of a cell, and its text."""
 
 
-def _rows(file: FileContent) -> Iterator[tuple[int, list[str]]]:
-    """The rows of a CSV file that are not blank, with their line numbers."""
+@dataclass(frozen=True)
+class _Column:
+    """A column of a file, and the errors that name a cell of it."""
+
+    path: Path
+    name: str
+    cells: Sequence[_Cell]
+
+    def numbers(self, *, commas: bool, sure: bool) -> list[float]:
+        """Its numbers, with decimal points or with decimal commas.
+
+        Args:
+            commas: whether a comma may be a decimal one: not where it separates cells.
+            sure: whether it can be nothing else; 1,234 alone may be a thousand.
+        """
+        with_comma = [cell for cell in self.cells if "," in cell[1] and DECIMAL_COMMA.fullmatch(cell[1])]
+        if not with_comma:
+            return [self._number(cell, cell[1]) for cell in self.cells]
+        first = with_comma[0]
+        if not commas:
+            raise self._refused(first, NUMBER_WORDS, f"; {COMMA_HINT}")
+        if point := next((cell for cell in self.cells if "." in cell[1]), None):
+            raise self._refused(point, f"decimal commas as in line {first[0]}, or none in all of the column")
+        if not sure and all(THOUSANDS.fullmatch(text) for _, text in with_comma):
+            raise self._refused(first, NUMBER_WORDS, ", which may be a thousand: write a decimal point, or no comma")
+        return [self._number(cell, cell[1].replace(",", ".")) for cell in self.cells]
+
+    def _number(self, cell: _Cell, text: str) -> float:
+        number = float(text) if BARE_NUMBER.fullmatch(text) else math.nan
+        if not math.isfinite(number):
+            raise self._refused(cell, NUMBER_WORDS)
+        return number
+
+    def _refused(self, cell: _Cell, expected: str, hint: str = "") -> SceneError:
+        line, text = cell
+        shown = repr(text if len(text) <= 60 else text[:57] + "…") if text else "an empty cell"
+        return SceneError(f"{self.path}:{line}: column {self.name!r}: expected {expected}, got {shown}{hint}")
+
+
+def _table(file: FileContent) -> tuple[Iterator[tuple[int, list[str]]], str]:
+    """The rows of a CSV file that are not blank, with their line numbers, and what separates the cells."""
     text = _text(file)
-    header = text.lstrip().partition("\n")[0]
-    reader = csv.reader(io.StringIO(text, newline=""), delimiter=";" if ";" in header else ",", strict=True)
+    separator = ";" if ";" in text.lstrip().partition("\n")[0] else ","
+    return _rows(file, csv.reader(io.StringIO(text, newline=""), delimiter=separator, strict=True)), separator
+
+
+def _rows(file: FileContent, reader: "Reader") -> Iterator[tuple[int, list[str]]]:
     try:
         for row in reader:
             if any(cell.strip() for cell in row):
