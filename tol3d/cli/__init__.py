@@ -21,6 +21,7 @@ __all__ = ["analyses", "app", "main", "showing", "studies"]
 
 COMMANDS = (
     studies.run,
+    showing.scenes,
     showing.check,
     showing.compare,
     analyses.shim,

@@ -30,6 +30,21 @@ def check(scene: SceneArgument, trust_parts: TrustParts = False) -> None:
     out_console.print(check_report(effective_model(load(scene_path(scene), trust_parts=trust_parts))))
 
 
+def scenes(
+    copy: Annotated[
+        str | None, typer.Option(metavar="NAME", help="Copy that scene, with its files, to edit it.")
+    ] = None,
+    out: Annotated[Path, typer.Option(help="Folder to copy into.")] = Path("."),
+) -> None:
+    """List the scenes that tol3d brings along, or copy one to start your own from."""
+    from tol3d.scene.collection import copy_scene, scene_lines
+
+    for line in scene_lines() if copy is None else map(str, copy_scene(copy, out)):
+        tell(line)
+    if copy is None:
+        err_console.print("tol3d run NAME runs one; tol3d scenes --copy NAME puts its file here to start your own from")
+
+
 def schema() -> None:
     """Print the JSON Schema of scenes, for editors."""
     import json

@@ -1,0 +1,47 @@
+"""The scenes that tol3d brings along, told in a line each, and copied for their user to edit."""
+
+from pathlib import Path
+
+from tol3d.errors import InputError
+from tol3d.files import FileContent
+from tol3d.scene.bundled import bundled_scenes
+from tol3d.scene.load import load_scene
+from tol3d.scene.nearest import hint
+
+
+def scene_lines() -> tuple[str, ...]:
+    """A line for each bundled scene: the name to run it by, its own name, its description."""
+    scenes = {name: load_scene(path) for name, path in bundled_scenes().items()}
+    width = max(map(len, scenes))
+    told = {
+        name: ": ".join(part for part in (scene.scene, scene.description) if part) for name, scene in scenes.items()
+    }
+    return tuple(f"{name:<{width}}  {text}" for name, text in told.items())
+
+
+def copy_scene(name: str, folder: Path) -> tuple[Path, ...]:
+    """Copy a bundled scene and the files that it names into a folder; nothing there is overwritten.
+
+    Returns:
+        the scene's file, and those that it names.
+
+    Raises:
+        InputError: no such scene, a file of that name is there, or the folder cannot be written.
+    """
+    scenes = bundled_scenes()
+    if name not in scenes:
+        raise InputError(f"expected the name of a bundled scene, got {name!r}{hint(name, scenes)}")
+    scene = load_scene(scenes[name])
+    text = FileContent(scene.source, scene.source.read_bytes())
+    copies = {folder / scenes[name].name: text} | {folder / own: file for own, file in scene.files.items()}
+    there = next((path for path in copies if path.exists()), None)
+    if there is not None:
+        raise InputError(f"{there}: is there already; choose another folder, or move it away")
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        for path, file in copies.items():
+            with path.open("xb") as stream:
+                stream.write(file.content)
+    except OSError as error:
+        raise InputError(f"{folder}: cannot be written ({error.strerror or error}); choose another folder") from None
+    return tuple(copies)
