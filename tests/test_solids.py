@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 import trimesh
 
+from tol3d.cachefolder import cache_folder
 from tol3d.errors import RunError
 from tol3d.gears import LEFT, RIGHT, SpurGear
 from tol3d.solids import (
@@ -312,7 +313,7 @@ def test_every_field_of_a_gear_is_in_the_key(own_cache, field) -> None:
 def test_a_changed_builder_makes_old_entries_unreachable(own_cache, monkeypatch) -> None:
     measuring_strips(SMALL, 20)
     monkeypatch.setattr(flank_strips, "cad", _refuse_to_build)
-    monkeypatch.setattr(cache.pkgutil, "get_data", lambda package, name: b"another program")
+    monkeypatch.setattr(cache, "sources_of", lambda module: {module: "another program"})
     with pytest.raises(AssertionError, match="built again"):
         measuring_strips(SMALL, 20)
 
@@ -350,7 +351,7 @@ def test_a_disk_that_fills_up_leaves_no_torn_file(own_cache, monkeypatch) -> Non
     def full(*_):
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr(cache.os, "replace", full)
+    monkeypatch.setattr(os, "replace", full)
     with pytest.warns(CacheWarning, match="No space left"):
         measuring_strips(SMALL, 20)
     assert list(own_cache.iterdir()) == []
@@ -401,9 +402,9 @@ def test_a_warm_run_loads_no_cad(own_cache) -> None:
 
 def test_the_folder_is_the_users_cache_unless_stated(monkeypatch) -> None:
     monkeypatch.delenv("TOL3D_CACHE")
-    assert cache.folder().name == "tol3d"
+    assert cache_folder().name == "tol3d"
     monkeypatch.setenv("TOL3D_CACHE", os.path.join("some", "where"))
-    assert str(cache.folder()) == os.path.join("some", "where")
+    assert str(cache_folder()) == os.path.join("some", "where")
 
 
 @pytest.mark.slow

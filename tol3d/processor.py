@@ -34,6 +34,11 @@ def processor() -> Mapping[str, str]:
     }
 
 
+def target() -> list[str]:
+    """All that the compiler makes machine code for: code of another target may not even run here."""
+    return [llvmlite.binding.get_process_triple(), *processor().values(), _features()]
+
+
 def unlike(there: object, here: object) -> tuple[object, object]:
     """Two values that differ, of two lists such as `processor` has only what the other one lacks."""
     if not (isinstance(there, str) and isinstance(here, str) and ("," in there or "," in here)):
@@ -48,17 +53,17 @@ def _without(names: list[str], known: list[str]) -> str:
 
 def _instructions() -> list[str]:
     """What the compiler may use, as far as it decides results."""
-    stated = os.environ.get("NUMBA_CPU_FEATURES", "" if _generic() else None)
-    if stated is None:
-        stated = llvmlite.binding.get_host_cpu_features().flatten()
-    used = sorted(name.removeprefix("+") for name in stated.split(",") if name.startswith("+"))
+    used = sorted(name.removeprefix("+") for name in _features().split(",") if name.startswith("+"))
     if not platform.machine().lower().startswith(X86):
         return used
     return [name for name in used if name.startswith(ARITHMETIC_OF_X86)]
 
 
-def _generic() -> bool:
-    return os.environ.get("NUMBA_CPU_NAME", "").lower() == "generic"
+def _features() -> str:
+    """What the compiler is told that the processor has (+) and has not (-)."""
+    generic = os.environ.get("NUMBA_CPU_NAME", "").lower() == "generic"
+    stated = os.environ.get("NUMBA_CPU_FEATURES", "" if generic else None)
+    return str(llvmlite.binding.get_host_cpu_features().flatten()) if stated is None else stated
 
 
 def _numpy_instructions() -> list[str]:

@@ -12,6 +12,8 @@ from tol3d.gears import Gear
 from tol3d.solids.bodies import Body
 from tol3d.solids.posed_gear import PosedPart
 
+CAD = "tol3d.solids.cad"
+
 Arrays = dict[str, NDArray[np.generic]]
 
 
@@ -33,4 +35,4 @@ class Cad(Protocol):
 
 def cad() -> Cad:
     """The module that talks to CadQuery, imported at the first call."""
-    return cast(Cad, importlib.import_module("tol3d.solids.cad"))
+    return cast(Cad, importlib.import_module(CAD))

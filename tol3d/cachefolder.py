@@ -1,0 +1,92 @@
+"""The cache on disk: whole entries in a folder that nobody but its user may write to.
+
+Compiled kernels are among them, and loading one runs it: who may write there may run what he likes as whoever starts
+tol3d next. An entry is a file, its bytes followed by their SHA-256: a torn or damaged one counts as none. It is written
+aside and renamed, so processes that make the same thing at once end with a whole one. The folder may be deleted at any
+time.
+"""
+
+import contextlib
+import hashlib
+import os
+import stat
+import tempfile
+from pathlib import Path
+
+import platformdirs
+
+from tol3d.errors import InputError
+
+FOLDER_VARIABLE = "TOL3D_CACHE"
+DIGEST_BYTES = 32
+PRIVATE = 0o700
+OTHERS_WRITE = stat.S_IWGRP | stat.S_IWOTH
+ROOT = 0  # may write anywhere, so a folder of its own is none the worse
+
+
+class CacheError(InputError):
+    """The cache's folder belongs to somebody else, or others may write to it."""
+
+
+def cache_folder() -> Path:
+    """Where entries are kept: TOL3D_CACHE, or the user's cache folder; it need not be there.
+
+    Raises:
+        CacheError: others could have put something there. Systems without POSIX's owners and modes are not asked.
+    """
+    stated = os.environ.get(FOLDER_VARIABLE)
+    folder = Path(stated) if stated else platformdirs.user_cache_path("tol3d", appauthor=False)
+    if hasattr(os, "getuid"):
+        _refuse_others(folder)
+    return folder
+
+
+def _refuse_others(folder: Path) -> None:
+    try:
+        found = folder.stat()
+    except OSError:  # not there: it is made for this user alone; or not to be seen, and then not used
+        return
+    if not stat.S_ISDIR(found.st_mode):
+        return
+    way_out = f"{FOLDER_VARIABLE} names another folder"
+    if found.st_uid not in (os.getuid(), ROOT):
+        raise CacheError(
+            f"{folder}: this folder of cached kernels belongs to user {found.st_uid}, who could have you run anything; "
+            f"expected one of your own: {way_out}"
+        )
+    if found.st_mode & OTHERS_WRITE:
+        raise CacheError(
+            f"{folder}: others may write to this folder of cached kernels (mode {stat.S_IMODE(found.st_mode):o}) and "
+            f"could have you run anything; expected mode 700: delete it, or `chmod 700` it if you know all that is in "
+            f"it; {way_out}"
+        )
+
+
+def read_entry(name: str) -> bytes | None:
+    """An entry as it was written; None where there is none, or none that is whole."""
+    try:
+        content = (cache_folder() / name).read_bytes()
+    except OSError:
+        return None
+    payload, digest = content[:-DIGEST_BYTES], content[-DIGEST_BYTES:]
+    return payload if payload and hashlib.sha256(payload).digest() == digest else None
+
+
+def write_entry(name: str, payload: bytes) -> None:
+    """Keep an entry, all or nothing.
+
+    Raises:
+        OSError: it cannot be written.
+    """
+    folder = cache_folder()
+    folder.parent.mkdir(parents=True, exist_ok=True)
+    folder.mkdir(mode=PRIVATE, exist_ok=True)
+    handle, unfinished = tempfile.mkstemp(dir=folder, prefix=Path(name).stem, suffix=".partial")
+    try:
+        with os.fdopen(handle, "wb") as file:
+            file.write(payload + hashlib.sha256(payload).digest())
+        os.replace(unfinished, folder / name)
+    except OSError:
+        with contextlib.suppress(OSError):
+            os.unlink(unfinished)
+        raise

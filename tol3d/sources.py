@@ -1,0 +1,71 @@
+"""Sources of modules and of all that they import: what decides what they do, of this package."""
+
+import ast
+import importlib.util
+from collections.abc import Iterator, Mapping
+from functools import cache
+
+PACKAGE = __name__.partition(".")[0]
+
+
+def sources_of(*modules: str) -> Mapping[str, str]:
+    """Texts of some modules and of those of this package that they import, directly or not, by their names.
+
+    Import statements count wherever they stand; what is imported by a name made up while running is not seen. Packages
+    count where they are imported from: not as parents of a module.
+
+    Raises:
+        OSError: one has no source.
+    """
+    found: dict[str, str] = {}
+    waiting = list(modules)
+    while waiting:
+        name = waiting.pop()
+        if name not in found:
+            found[name] = source(name)
+            waiting += _imports(name, found[name])
+    return dict(sorted(found.items()))
+
+
+@cache
+def source(module: str) -> str:
+    """Text of a module."""
+    spec = importlib.util.find_spec(module)
+    text = getattr(spec.loader, "get_source", lambda name: None)(module) if spec else None
+    if text is None:
+        raise OSError(f"{module}: no source")
+    return str(text)
+
+
+@cache
+def _imports(module: str, text: str) -> tuple[str, ...]:
+    """Modules of this package that a module names in its imports."""
+    return tuple(name for name in _named(module, ast.parse(text)) if name.partition(".")[0] == PACKAGE)
+
+
+def _named(module: str, tree: ast.Module) -> Iterator[str]:
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Import):
+            yield from (alias.name for alias in node.names)
+        elif isinstance(node, ast.ImportFrom):
+            origin = _origin(module, node)
+            yield origin
+            if origin.partition(".")[0] == PACKAGE and _is_package(origin):
+                yield from (name for alias in node.names if _is_module(name := f"{origin}.{alias.name}"))
+
+
+def _origin(module: str, node: ast.ImportFrom) -> str:
+    """From where is imported, without leading dots."""
+    stated = "." * node.level + (node.module or "")
+    return importlib.util.resolve_name(stated, module if _is_package(module) else module.rpartition(".")[0])
+
+
+@cache
+def _is_package(module: str) -> bool:
+    spec = importlib.util.find_spec(module)
+    return spec is not None and spec.submodule_search_locations is not None
+
+
+@cache
+def _is_module(name: str) -> bool:
+    return importlib.util.find_spec(name) is not None
