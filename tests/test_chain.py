@@ -17,12 +17,13 @@ from rich.console import Console
 from tol3d.report import picture
 from tol3d.report.canvas import new_figure, plain_axes
 from tol3d.report.compare import Compared
+from tol3d.report.curve import draw_curve
+from tol3d.report.distribution import density_label, values_label
 from tol3d.report.heading import heading, limits_text
-from tol3d.report.histogram import density_label, draw_curve, values_label
+from tol3d.report.label import wrapped
 from tol3d.report.number import difference_text
 from tol3d.report.table import curve_table, run_report
 from tol3d.report.trains.chain import chain_figure
-from tol3d.report.trains.label import wrapped
 from tol3d.report.trains.stage import shafts_along, stages_of, sums_of
 from tol3d.report.trains.table import train_report
 
@@ -328,9 +329,7 @@ def test_limits_differences_and_labels_of_a_tip_are_in_mm():
     assert limits_text(tip) == "upper limit 2.21 mm"
     assert difference_text(0.00125, "mm") == "1.250 µm"
     assert (values_label("tip", "mm"), density_label("mm")) == ("tip [mm]", "% of trials per mm")
-    assert heading(tip) == (
-        "displacement of tip of arm by the lost motion, at a random position of the motor each trial"
-    )
+    assert heading(tip) == ("displacement of tip of arm by the lost motion, at a random position each trial")
     assert heading(MEASURES["lost motion"]).startswith("lost motion of shoulder flange, motor held, at a random")
     assert Compared.of("tip", tip) != Compared.of("tip", tip | {"point": "elbow"})
 

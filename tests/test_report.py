@@ -37,10 +37,13 @@ from tol3d.report.assembly import DISPLAY_DEFLECTION, OPEN_SHARE, assemble
 from tol3d.report.bars import bars_of
 from tol3d.report.canvas import VERMILLION, new_figure, plain_axes
 from tol3d.report.column import shares_of
-from tol3d.report.compare import comparison_figure, measures_of
+from tol3d.report.compare import measures_of
+from tol3d.report.comparison_picture import comparison_figure
 from tol3d.report.compensation_table import swing_table
+from tol3d.report.contributor_bars import draw_contributors
+from tol3d.report.curve import draw_curve
 from tol3d.report.difference import difference_of
-from tol3d.report.histogram import column_colours, draw_contributors, draw_curve, draw_distribution
+from tol3d.report.distribution import column_colours, draw_distribution
 from tol3d.report.meshes import file_words
 from tol3d.report.sheet import Heading, Row, Sheet
 from tol3d.result import Run
@@ -213,8 +216,8 @@ def test_no_zero_has_a_sign(run):
     text = printed(run_report(dict(run.summary) | {"measures": {"free play": measure}}), 120)
     axes = plain_axes(new_figure(4, 4).add_subplot())
     columns = shares_of(measure)
-    draw_contributors(axes, measure, columns, column_colours(columns))
-    draw_distribution(plain_axes(new_figure(4, 4).add_subplot()), "free play", measure)
+    draw_contributors(axes, measure, column_colours(columns))
+    draw_distribution(plain_axes(new_figure(4, 4).add_subplot()), measure)
     signed = re.compile(r"(?<![\d.])-0(\.0*)?(?![\d.])")
     assert not signed.search("\n".join([text, *(label.get_text() for label in axes.texts)]))
     assert "0.000" in row_of(text, "Ppk")

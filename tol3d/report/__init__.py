@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from tol3d.report.check import check_report
-    from tol3d.report.compare import comparison_report, draw_comparison
+    from tol3d.report.compare import comparison_report
+    from tol3d.report.comparison_picture import draw_comparison
     from tol3d.report.histogram import draw_histogram
     from tol3d.report.meshes import export_run, part_meshes
     from tol3d.report.shim_table import shim_report
@@ -19,7 +20,7 @@ if TYPE_CHECKING:
 _HOMES = {
     "check_report": "tol3d.report.check",
     "comparison_report": "tol3d.report.compare",
-    "draw_comparison": "tol3d.report.compare",
+    "draw_comparison": "tol3d.report.comparison_picture",
     "draw_histogram": "tol3d.report.histogram",
     "export_run": "tol3d.report.meshes",
     "part_meshes": "tol3d.report.meshes",

@@ -1,9 +1,8 @@
 """Figures without a window: colours that colour-blind readers can tell apart, and how a picture is saved."""
 
 import warnings
-from collections.abc import Mapping
 from pathlib import Path
-from typing import Any, Final
+from typing import Final
 
 from matplotlib.axes import Axes
 from matplotlib.axis import Axis
@@ -11,9 +10,10 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.layout_engine import ConstrainedLayoutEngine
 from matplotlib.ticker import FuncFormatter, MultipleLocator
+from matplotlib.transforms import ScaledTranslation
 
 from tol3d.errors import InputError
-from tol3d.report.heading import heading
+from tol3d.report.label import wrapped
 
 # Okabe and Ito 2008, "Color Universal Design": eight colours for all kinds of colour vision
 ORANGE: Final = "#E69F00"
@@ -31,6 +31,12 @@ PUBLISHED_COLOURS: Final = (GREEN, PURPLE, SKY, GREY)
 RUN_COLOURS: Final = (BLUE, ORANGE, GREEN, PURPLE, SKY, VERMILLION, GREY, BLACK)
 OUTSIDE: Final = VERMILLION
 
+NAME_SIZE: Final = 12.0  # points
+WORDS_SIZE: Final = 9.0
+LINE_SPACING: Final = 1.2
+TITLE_LIFT: Final = 4.0  # points, from the axes to the words above them
+MOST_LINES: Final = 5  # of names and words; enough for the longest names there may be
+LEGEND_BELOW: Final = 0.5  # inch, from the axis to the first line of the legend below it
 DOTS_PER_INCH: Final = 150
 ANGLE_STEPS: Final = (0.1, 0.2, 0.5, 1, 2, 5, 10, 15, 20, 30, 60, 120, 300, 600, 900, 1800, 3600)  # arc seconds
 MOST_TICKS: Final = 9
@@ -57,10 +63,45 @@ def plain_axes(axes: Axes) -> Axes:
     return axes
 
 
-def title_measure(axes: Axes, name: str, measure: Mapping[str, Any], longest: int) -> None:
-    """A measure's name above its axes, and below it in one line of at most `longest` characters what it is."""
-    axes.set_title(f"{legible(name, 60)}\n", loc="left", fontsize=12, fontweight="bold")
-    axes.text(0, 1.03, legible(heading(measure), longest), transform=axes.transAxes, fontsize=9, color=GREY)
+def title_axes(axes: Axes, name: str, words: str, width: float) -> None:
+    """A name above axes and below it what they show, both whole, in lines of at most `width` [inch]."""
+    below = wrapped(words, width, WORDS_SIZE, MOST_LINES)
+    above = wrapped(name, width, NAME_SIZE, MOST_LINES, "bold")
+    lines = below.count("\n") + 1
+    lift = 2.5 * TITLE_LIFT + lines * LINE_SPACING * WORDS_SIZE
+    axes.set_title(above, loc="left", fontsize=NAME_SIZE, fontweight="bold", pad=lift)
+    told = axes.annotate(
+        below,
+        (0, 1),
+        xycoords="axes fraction",
+        xytext=(0, TITLE_LIFT),
+        textcoords="offset points",
+        va="bottom",
+        linespacing=LINE_SPACING,
+        fontsize=WORDS_SIZE,
+        color=GREY,
+    )
+    told.set_in_layout(False)  # lines are broken already, and the name above them keeps their room
+
+
+def legend_below(axes: Axes, columns: int) -> None:
+    """A legend below the axis and its label, where it hides nothing; row by row in so many columns."""
+    figure = axes.get_figure(root=True)
+    handles, labels = axes.get_legend_handles_labels()
+    if figure is None or not labels:
+        return
+    rows_first = [index for column in range(columns) for index in range(column, len(labels), columns)]
+    axes.legend(  # matplotlib fills column by column
+        [handles[index] for index in rows_first],
+        [labels[index] for index in rows_first],
+        ncols=columns,
+        loc="upper left",
+        bbox_to_anchor=(0.0, 0.0),
+        bbox_transform=axes.transAxes + ScaledTranslation(0.0, -LEGEND_BELOW, figure.dpi_scale_trans),
+        borderaxespad=0.0,
+        fontsize=8.5,
+        frameon=False,
+    )
 
 
 def say_instead(axes: Axes, text: str, colour: str) -> None:
@@ -101,9 +142,3 @@ def save_figure(figure: Figure, path: Path) -> None:
             figure.savefig(path, facecolor="white")
     except OSError as error:
         raise InputError(f"{path}: cannot be written ({error.strerror or error}); choose another file") from None
-
-
-def legible(text: str, longest: int = 34) -> str:
-    """A user's name as a label: no mathematics in its dollar signs, not longer than fits."""
-    short = text if len(text) <= longest else text[: longest - 1] + "…"
-    return short.replace("$", r"\$")

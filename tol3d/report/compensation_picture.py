@@ -21,13 +21,13 @@ from tol3d.report.canvas import (
     PURPLE,
     VERMILLION,
     label_angles,
-    legible,
     new_figure,
     plain_axes,
     save_figure,
     say_instead,
 )
 from tol3d.report.compensation_table import COLUMN_WORDS, STATE_WORDS, TOLD_OF_TIPS
+from tol3d.report.label import legible
 from tol3d.report.number import given_text, short_text, tip_mm
 
 Array = NDArray[np.float64]

@@ -24,8 +24,8 @@ OVER_WORDS: Mapping[str, str] = {
 }
 TRAIN_OVER_WORDS: Mapping[str, str] = {
     **OVER_WORDS,
-    "random": "at a random position of the motor each trial",
-    "at": "at one position of the motor",
+    "random": "at a random position each trial",
+    "at": "at one position",
 }
 
 READING_WORDS: Mapping[tuple[str, str], str] = {
@@ -54,9 +54,9 @@ def heading(measure: Mapping[str, Any]) -> str:
     'smallest normal backlash of gear pair over one turn of the driver'
     >>> lost = {"of": "swing", "shaft": "flange", "held": "motor", "over": "random"}
     >>> heading({"kind": "lost_motion", **lost})
-    'lost motion of flange, motor held, at a random position of the motor each trial'
+    'lost motion of flange, motor held, at a random position each trial'
     >>> heading({"kind": "tip_displacement", "arm": "arm", "point": "tip", **lost})
-    'displacement of tip of arm by the lost motion, at a random position of the motor each trial'
+    'displacement of tip of arm by the lost motion, at a random position each trial'
     """
     if measure["kind"] in TRAIN_KINDS:
         return f"{_train_quantity(measure)}, {TRAIN_OVER_WORDS[measure['over']]}"

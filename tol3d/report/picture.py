@@ -4,12 +4,14 @@ import json
 import subprocess
 import sys
 import warnings
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from functools import partial
+from itertools import count
 from pathlib import Path
 from typing import Any
 
+MOST_TOGETHER = 4  # measures in one picture; of more, each has one of its own
 IN_FILE_NAMES = frozenset(" -_.,()+")  # besides letters and digits; anything else would be a folder or a drive
 
 Draw = Callable[[Mapping[str, Any], Path], None]
@@ -22,14 +24,15 @@ class PictureError(Exception):
 
 
 class PictureWarning(UserWarning):
-    """The chain of a train that could not be drawn beside the histogram."""
+    """The picture of a train or of one measure that could not be drawn beside the histogram."""
 
 
 @contextmanager
 def drawing() -> Iterator[Draw]:
     """Within it a process that can draw gets ready, and draws one run: its summary, and where its histogram goes.
 
-    The chains of its trains go beside the histogram; one that cannot be drawn is a PictureWarning.
+    The chains of its trains, and where there are many measures a picture of each, go beside the histogram; one that
+    cannot be drawn is a PictureWarning.
 
     Raises:
         PictureError: by the drawing, which leaves no half of a picture.
@@ -63,6 +66,18 @@ def _refuse(reason: str, summary: Mapping[str, Any], picture: Path) -> None:
     raise PictureError(reason)
 
 
+def measure_files(summary: Mapping[str, Any]) -> dict[str, str]:
+    """Names of the pictures of a run's measures, where there are too many for one; each another one.
+
+    >>> measure_files({"measures": {"play": {}, "turn": {}}})
+    {}
+    >>> list(measure_files({"measures": dict.fromkeys(["a/b", "a:b", "c", "d", "e"])}).values())
+    ['histogram-a_b.png', 'histogram-a_b 2.png', 'histogram-c.png', 'histogram-d.png', 'histogram-e.png']
+    """
+    names = list(summary["measures"])
+    return _files([(name, f"histogram-{_words(name)}") for name in names]) if len(names) > MOST_TOGETHER else {}
+
+
 def chain_files(summary: Mapping[str, Any]) -> dict[str, str]:
     """Names of the pictures of a run's trains, by train; each another one.
 
@@ -70,12 +85,19 @@ def chain_files(summary: Mapping[str, Any]) -> dict[str, str]:
     {'shoulder': 'chain.png', 'wrist': 'chain-wrist.png', 'left/right': 'chain-left_right.png', \
 'left:right': 'chain-left_right 2.png'}
     """
+    names = list(summary.get("trains", {}))
+    return _files([(name, f"chain-{_words(name)}" if index else "chain") for index, name in enumerate(names)])
+
+
+def _words(name: str) -> str:
+    return "".join(sign if sign.isalnum() or sign in IN_FILE_NAMES else "_" for sign in name)
+
+
+def _files(stems: Sequence[tuple[str, str]]) -> dict[str, str]:
+    """A file for each name by its stem; all differ, even if case does not count."""
     files = dict[str, str]()
-    for name in summary.get("trains", {}):
-        words = "".join(sign if sign.isalnum() or sign in IN_FILE_NAMES else "_" for sign in name)
-        stem, file, count = f"chain-{words}" if files else "chain", "", 1
-        while not file or file.lower() in {known.lower() for known in files.values()}:
-            file = f"{stem}{'' if count == 1 else f' {count}'}.png"
-            count += 1
-        files[name] = file
+    for name, stem in stems:
+        taken = {known.casefold() for known in files.values()}
+        indexed = (f"{stem}{'' if index == 1 else f' {index}'}.png" for index in count(1))
+        files[name] = next(file for file in indexed if file.casefold() not in taken)
     return files

@@ -7,6 +7,7 @@ from matplotlib.axes import Axes
 from matplotlib.patches import Rectangle
 
 from tol3d.report.canvas import BLACK
+from tol3d.report.label import wrapped
 from tol3d.report.number import NOTHING, tip_mm
 from tol3d.report.trains.chain_grid import (
     BARS,
@@ -19,7 +20,6 @@ from tol3d.report.trains.chain_grid import (
     draw_caption,
     published_colours,
 )
-from tol3d.report.trains.label import wrapped
 from tol3d.report.trains.link_symbol import LINK_COLOURS
 from tol3d.report.trains.stage import Stage, share_text
 

@@ -1,13 +1,18 @@
 """Labels that fit: users' names broken into lines of a width."""
 
+from collections.abc import Sequence
 from typing import Final
 
 from matplotlib.font_manager import FontProperties
 from matplotlib.textpath import text_to_path
 
-from tol3d.report.canvas import legible
-
 POINTS_PER_INCH: Final = 72.0
+
+
+def legible(text: str, longest: int = 34) -> str:
+    """A user's name as a label: no mathematics in its dollar signs, not longer than fits."""
+    short = text if len(text) <= longest else text[: longest - 1] + "…"
+    return short.replace("$", r"\$")
 
 
 def wrapped(text: str, width: float, size: float, lines: int, weight: str = "normal") -> str:
@@ -20,7 +25,7 @@ def wrapped(text: str, width: float, size: float, lines: int, weight: str = "nor
         rest = rest[len(line) :].lstrip()
     if rest:
         last = found[-1] + "…"
-        while len(last) > 1 and _text_width(last, size, weight) > width:
+        while len(last) > 1 and text_width(last, size, weight) > width:
             last = last[:-2] + "…"
         found[-1] = last
     return "\n".join(legible(line, len(line)) for line in found)
@@ -28,18 +33,23 @@ def wrapped(text: str, width: float, size: float, lines: int, weight: str = "nor
 
 def _longest_start(text: str, width: float, size: float, weight: str) -> str:
     """As many words as fit in a line, or as much of the first word."""
-    if _text_width(text, size, weight) <= width:
+    if text_width(text, size, weight) <= width:
         return text
     ends = [k for k, sign in enumerate(text) if sign == " "] or []
-    fitting = [k for k in ends if _text_width(text[:k], size, weight) <= width]
+    fitting = [k for k in ends if text_width(text[:k], size, weight) <= width]
     if fitting:
         return text[: fitting[-1]]
-    cut = next(k for k in range(len(text), 0, -1) if k == 1 or _text_width(text[:k], size, weight) <= width)
+    cut = next(k for k in range(len(text), 0, -1) if k == 1 or text_width(text[:k], size, weight) <= width)
     return text[:cut]
 
 
-def _text_width(text: str, size: float, weight: str) -> float:
-    """Width of a line of text [inch]."""
+def text_width(text: str, size: float, weight: str) -> float:
+    """Width of a line of text [inch], in points of `size`."""
     font = FontProperties(size=size, weight=weight)
     width, _, _ = text_to_path.get_text_width_height_descent(text, font, ismath=False)
     return float(width) / POINTS_PER_INCH
+
+
+def widest(labels: Sequence[str], size: float) -> float:
+    """Width of the widest line of any of the labels [inch]; 0 without any."""
+    return max((text_width(line, size, "normal") for label in labels for line in label.split("\n")), default=0.0)

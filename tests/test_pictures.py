@@ -1,0 +1,319 @@
+"""What the pictures of a run show: held by their artists and the data in them, never by their pixels."""
+
+import math
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+from matplotlib.collections import PolyCollection
+from matplotlib.colors import to_hex
+from matplotlib.figure import Figure
+from matplotlib.text import Text
+
+from tol3d.report import picture
+from tol3d.report.canvas import OUTSIDE, new_figure, plain_axes
+from tol3d.report.column import columns_of
+from tol3d.report.comparison_picture import comparison_figure
+from tol3d.report.contributor_bars import draw_contributors
+from tol3d.report.curve import draw_curve
+from tol3d.report.distribution import column_colours, draw_distribution, draw_ranges
+from tol3d.report.ends import is_bounded
+from tol3d.report.heading import heading
+from tol3d.report.histogram import histogram_figure, overview_figure
+from tol3d.report.label import legible
+from tol3d.report.picture import measure_files
+
+LONGEST = 80  # characters; of a name in a scene
+READING = {"contact": "face", "gap": "section", "teeth": "driven"}
+BACKLASH: dict[str, Any] = {"kind": "normal_backlash", "of": "gear pair", "gear": None, "reading": READING}
+
+
+def sample_of(values: np.ndarray) -> dict[str, Any]:
+    """What summary.json holds of a road's values, as far as pictures read it."""
+    mean, sigma = float(values.mean()), float(values.std(ddof=1))
+    quantiles = dict(zip(("p0.135", "p50", "p99.865"), np.quantile(values, [0.00135, 0.5, 0.99865]), strict=True))
+    ends = {"low_3sigma": mean - 3 * sigma, "high_3sigma": mean + 3 * sigma}
+    found = {"sample_min": float(values.min()), "sample_max": float(values.max()), "failed_ppm": 0.0}
+    ppm = {"below_limit_ppm": 0.0, "above_limit_ppm": 0.0}
+    return {"count": len(values), "mean": mean, "sigma": sigma} | ends | found | ppm | quantiles
+
+
+def measure_of(values: np.ndarray, names: tuple[str, ...] = (), **said: Any) -> dict[str, Any]:
+    """A measure whose roads found the same values; its contributors have equal shares."""
+    counts, edges = np.histogram(values, 64)
+    sample = sample_of(values)
+    counted = {"lower_edge": edges[0], "bin_width": edges[1] - edges[0]}
+    shares = {"analytic_percent": 100 / max(len(names), 1), "geometric_percent": 100 / max(len(names), 1)}
+    measure = BACKLASH | {"unit": "um", "over": "random", "take": "value", "lower_limit": None, "upper_limit": None}
+    measure |= {"analytic": sample, "geometric": sample, "published": {}}
+    measure |= {"histogram": counted | {"counts": {road: counts.tolist() for road in ("analytic", "geometric")}}}
+    return measure | {"contributors": [{"name": name} | shares for name in names]} | said
+
+
+def summary_of(measures: dict[str, Any], trials: int = 2000) -> dict[str, Any]:
+    return {"scene": "a scene", "trials": trials, "seed": 1, "status": {"ok": trials}, "measures": measures}
+
+
+def normals(count: int, seed: int = 0) -> np.ndarray:
+    return np.random.default_rng(seed).normal(50.0, 2.0, count)
+
+
+def long_name(first: str) -> str:
+    """A name of the longest there may be, told from others by its end."""
+    words = "tooth thickness of the second planet of the left stage by the gauge room"
+    return f"{words[: LONGEST - len(first) - 1]} {first}".rjust(LONGEST, "x")
+
+
+def whole(text: str) -> str:
+    return text.replace("\n", "").replace(" ", "")
+
+
+def texts_of(figure: Figure) -> list[str]:
+    return [whole(text.get_text()) for text in figure.findobj(Text) if text.get_visible()]
+
+
+def boxes_of(figure: Figure) -> list[tuple[str, Any]]:
+    """Every title, word, legend and label of a row or a contributor, with its place [pixels]."""
+    figure.canvas.draw()
+    told = [text for axes in figure.axes for text in (axes.title, axes._left_title, *axes.texts)]
+    told += [text for axes in figure.axes if (legend := axes.get_legend()) for text in legend.get_texts()]
+    told += [label for axes in figure.axes for label in axes.get_yticklabels() if not _is_number(label.get_text())]
+    told += [figure._suptitle] if figure._suptitle else []
+    return [(text.get_text(), text.get_window_extent()) for text in told if text.get_text().strip()]
+
+
+def _is_number(text: str) -> bool:
+    return text.replace("−", "").replace(".", "").isdigit() or not text
+
+
+def assert_apart(figure: Figure) -> None:
+    """No text of a picture leaves it or covers another one."""
+    boxes = boxes_of(figure)
+    width, height = figure.canvas.get_width_height()
+    for index, (text, box) in enumerate(boxes):
+        assert (box.x0 >= 0, box.x1 <= width, box.y0 >= 0, box.y1 <= height) == (True,) * 4, text
+        for other, beside in boxes[:index]:
+            apart = box.x1 <= beside.x0 or beside.x1 <= box.x0 or box.y1 <= beside.y0 or beside.y1 <= box.y0
+            assert apart, (text, other)
+
+
+def axes_of(draw: Any, *arguments: Any) -> Any:
+    axes = plain_axes(new_figure(9, 4).add_subplot())
+    draw(axes, *arguments)
+    return axes
+
+
+# curves -------------------------------------------------------------------------------------------
+
+
+def curve(spread: float) -> dict[str, Any]:
+    """A curve of sigma 2 whose trials reach `spread` to both sides."""
+    mean = [50.0, 51.0, 52.0]
+    own = {"mean": mean, "sigma": [2.0] * 3, "min": [m - spread for m in mean], "max": [m + spread for m in mean]}
+    own |= {"below_limit_ppm": 0.0, "above_limit_ppm": 0.0, "failed_ppm": 0.0}
+    measure = BACKLASH | {"unit": "um", "over": "turn", "take": "curve", "lower_limit": None, "upper_limit": None}
+    return measure | {"position_deg": [0.0, 120.0, 240.0], "curve": {"analytic": own, "geometric": own}}
+
+
+@pytest.mark.parametrize("spread", [3.0, 6.0, 9.0])
+def test_three_sigma_is_the_one_band_of_a_curve_whether_its_trials_reach_further_or_not(spread: float) -> None:
+    """With sigma 2 the band goes from -6 to +6, whatever the trials reach, which lines tell."""
+    axes = axes_of(draw_curve, "play", curve(spread))
+    (band,) = (each for each in axes.collections if isinstance(each, PolyCollection))
+    heights = band.get_paths()[0].vertices[:, 1]
+    assert (heights.min(), heights.max()) == pytest.approx((44.0, 58.0))
+    assert band.get_label() == "3D simulation, ±3 sigma"
+    reached = {tuple(line.get_ydata()) for line in axes.lines if line.get_linestyle() != "-"}
+    assert {(50.0 - spread, 51.0 - spread, 52.0 - spread), (50.0 + spread, 51.0 + spread, 52.0 + spread)} <= reached
+
+
+# ends ---------------------------------------------------------------------------------------------
+
+
+def test_normal_samples_are_told_by_three_sigma_and_uniform_ones_by_quantiles() -> None:
+    """Two chances of a thousandth each in 2000 studies: 4 are expected at most, 14 or more have a chance of 1e-4."""
+    rng = np.random.default_rng(3)
+    sizes = rng.integers(20, 3000, 2000)
+    alarms = sum(is_bounded(measure_of(rng.normal(size=size))) for size in sizes)
+    assert alarms <= 14
+    assert all(is_bounded(measure_of(rng.uniform(size=size))) for size in (1000, 3000, 10_000))
+
+
+def test_the_bars_of_a_range_end_where_its_trials_do() -> None:
+    """A range of a Rayleigh law that begins at 8: mean - 3 sigma is 8 + 1.2533 - 3 * 0.6551 = 7.29, where none is."""
+    values = 8.0 + np.random.default_rng(1).rayleigh(1.0, 4000)
+    measure = measure_of(values, published={"a paper": {"low_3sigma": 7.0, "high_3sigma": 12.0}})
+    assert measure["geometric"]["low_3sigma"] == pytest.approx(7.29, abs=0.05)  # sigma / sqrt(n) = 0.01, 3 of it
+    axes = axes_of(draw_ranges, measure, column_colours(columns_of(measure)))
+    bars = [tuple(line.get_xdata()) for line in axes.lines if len(line.get_xdata()) == 2]
+    low, high = (float(np.quantile(values, p)) for p in (0.00135, 0.99865))
+    assert bars == [pytest.approx((low, high)), pytest.approx((low, high)), (7.0, 12.0)]
+    marked = [text.get_text() for text in axes_of(draw_distribution, measure).texts]
+    assert [text.split("\n")[0] for text in marked] == ["0.135 %", "mean", "99.865 %"]
+    figure = histogram_figure(summary_of({"swing": measure}))
+    assert any("0.135%and99.865%ofthetrials" in text for text in texts_of(figure))
+
+
+def test_the_bars_of_a_normal_measure_end_at_three_sigma() -> None:
+    measure = measure_of(normals(4000))
+    axes = axes_of(draw_ranges, measure, column_colours(columns_of(measure)))
+    assert tuple(axes.lines[0].get_xdata()) == (measure["analytic"]["low_3sigma"], measure["analytic"]["high_3sigma"])
+    marked = [text.get_text().split("\n")[0] for text in axes_of(draw_distribution, measure).texts]
+    assert marked == ["−3σ", "mean", "+3σ"]
+
+
+# names --------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("count", [1, 2, 9, 10, 40])
+def test_contributors_bear_their_whole_names_and_no_words_cover_each_other(count: int) -> None:
+    names = tuple(long_name(f"no. {k}") for k in range(count))
+    told = {long_name("a paper"): {"contributors": {names[0]: 30.0}, "mean": 50.0}}
+    measure = measure_of(normals(500), names, published=told, lower_limit=40.0, upper_limit=80.0)
+    figure = histogram_figure(summary_of({long_name("play"): measure, "turn": measure}))
+    texts = texts_of(figure)
+    for name in names[:9]:
+        assert whole(name) in texts, name
+    assert ("31others" in texts) == (count == 40)
+    assert ("1other" in texts) == (count == 10)
+    assert_apart(figure)
+
+
+def test_a_share_below_zero_is_a_bar_of_no_length() -> None:
+    """Regression gives some to what does nothing: its number stands behind the axis' line, not in the names."""
+    measure = measure_of(normals(500), ("one", "two"))
+    measure["contributors"][1]["geometric_percent"] = -0.3
+    axes = axes_of(draw_contributors, measure, column_colours(columns_of(measure)))
+    assert min(bar.get_width() for bar in axes.patches) == 0.0
+
+
+@pytest.mark.parametrize("upper", [56.2, 57.0, 200.0])
+def test_no_limit_strikes_through_the_words_at_the_ends(upper: float) -> None:
+    """The limit's line ends below them, wherever it stands."""
+    axes = axes_of(draw_distribution, measure_of(normals(2000), upper_limit=upper))
+    axes.figure.canvas.draw()
+    lowest = min(text.get_window_extent().y0 for text in axes.texts if text.get_text().startswith(("+3σ", "mean")))
+    lines = [line for line in axes.lines if to_hex(line.get_color()) == OUTSIDE.lower()]
+    assert len(lines) == (upper < 100)
+    for line in lines:
+        assert line.get_window_extent().y1 < lowest
+
+
+@pytest.mark.parametrize("sigma", [0.0, 1e-9, 1e-3, 1.0, 30.0])
+def test_words_at_mean_and_ends_stand_apart_however_narrow_the_trials_are(sigma: float) -> None:
+    values = 50.0 + sigma * np.random.default_rng(2).normal(size=2000)
+    told = {"a paper": {"low_3sigma": 20.0, "mean": 55.0, "high_3sigma": 90.0}}
+    measure = measure_of(values, ("one",), published=told, lower_limit=15.0)
+    assert_apart(histogram_figure(summary_of({"play": measure})))
+
+
+# many measures ------------------------------------------------------------------------------------
+
+
+def test_each_of_many_measures_has_a_file_and_a_place_in_the_overview() -> None:
+    kinds = [measure_of(normals(500, seed), ("one",), lower_limit=45.0, over="turn", take="min") for seed in range(19)]
+    measures = {long_name(f"no. {k}"): kind for k, kind in enumerate(kinds)} | {"over a turn": curve(5.0)}
+    files = measure_files(summary_of(measures))
+    assert list(files) == list(measures)
+    assert len({file.casefold() for file in files.values()}) == 20
+    figure = overview_figure(summary_of(measures))
+    assert len(figure.axes) == 20
+    texts = texts_of(figure)
+    assert all(whole(name) in texts for name in measures)
+    assert_apart(figure)
+
+
+def test_a_run_of_many_measures_draws_a_picture_of_each(tmp_path: Path) -> None:
+    measures = {f"play {k}": measure_of(normals(50, k), ("one",)) for k in range(5)}
+    with picture.drawing() as draw:
+        draw(summary_of(measures), tmp_path / "histogram.png")
+    expected = {"histogram.png", *(f"histogram-play {k}.png" for k in range(5))}
+    assert {path.name for path in tmp_path.iterdir()} == expected
+
+
+def test_a_measure_that_cannot_be_drawn_costs_a_warning_and_no_other_picture(tmp_path: Path) -> None:
+    measures = {f"play {k}": measure_of(normals(50, k), ("one",)) for k in range(5)}
+    measures["play 3"]["published"] = {"a paper": {"contributors": {"one": "much"}}}
+    with (
+        picture.drawing() as draw,
+        pytest.warns(picture.PictureWarning, match=r"^histogram-play 3\.png could not be drawn"),
+    ):
+        draw(summary_of(measures), tmp_path / "histogram.png")
+    assert not (tmp_path / "histogram-play 3.png").exists()
+    assert len(list(tmp_path.iterdir())) == 5
+
+
+# comparisons --------------------------------------------------------------------------------------
+
+
+def run_of(path: str, measures: dict[str, Any]) -> Any:
+    """A run that kept no trials, as far as comparisons read it."""
+    return SimpleNamespace(path=Path(path), summary=summary_of(measures), keeps_trials=False, column_names=())
+
+
+def test_a_comparison_names_every_run_in_each_of_its_rows_in_one_colour() -> None:
+    """The second run reads another section of the same name: a row of its own, which says where it is read."""
+    section = {"reading": READING | {"teeth": "driver"}, "lower_limit": 45.0}
+    runs = [
+        run_of("/runs/a/pair", {"play": measure_of(normals(500))}),
+        run_of("/runs/b/pair", {"play": measure_of(normals(500, 1), **section)}),
+        run_of(f"/runs/b/{long_name('third')}", {"play": measure_of(normals(500, 2)), "turn": measure_of(normals(9))}),
+    ]
+    figure = comparison_figure(runs)
+    rows = figure.axes[::3]
+    named = [[whole(text.get_text()) for text in axes.get_legend().get_texts()] for axes in rows]
+    third = whole(long_name("third"))
+    assert [[name for name in row if name in ("a/pair", "b/pair", third)] for row in named] == [
+        ["a/pair", third],
+        ["b/pair"],
+        [third],
+    ]
+    colours: dict[str, set[str]] = {}
+    for axes in rows:
+        for handle, label in zip(*axes.get_legend_handles_labels(), strict=True):
+            if whole(label) in ("a/pair", "b/pair", third):
+                colours.setdefault(whole(label), set()).add(to_hex(handle.get_facecolor()))
+    assert [len(own) for own in colours.values()] == [1, 1, 1]
+    assert len(set.union(*colours.values())) == 3
+    texts = texts_of(figure)
+    assert whole(heading(runs[0].summary["measures"]["play"])) in texts
+    assert whole(heading(runs[1].summary["measures"]["play"])) in texts
+    assert heading(runs[1].summary["measures"]["play"]).endswith("gap in its middle, one driver tooth")
+    assert_apart(figure)
+
+
+def test_limits_that_runs_do_not_share_say_whose_they_are() -> None:
+    limits = (46.0, 47.0, None)
+    runs = [run_of(f"/{k}", {"play": measure_of(normals(500), lower_limit=each)}) for k, each in enumerate(limits)]
+    texts = texts_of(comparison_figure(runs))
+    assert "LSL46µmof0" in texts
+    assert "LSL47µmof1" in texts
+    shared = texts_of(comparison_figure(runs[:1] * 2))
+    assert shared.count("LSL46µm") == 1
+
+
+def test_no_line_of_a_comparison_runs_through_its_legends() -> None:
+    runs = [run_of(f"/runs/{long_name(str(k))}", {"play": measure_of(normals(500, k))}) for k in range(3)]
+    figure = comparison_figure(runs)
+    figure.canvas.draw()
+    for axes in figure.axes:
+        legend = axes.get_legend()
+        if legend:
+            assert legend.get_window_extent().y1 <= axes.get_window_extent().y0
+
+
+# words --------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("kind", ["lost_motion", "tip_displacement"])
+@pytest.mark.parametrize("over", ["random", "at"])
+def test_a_train_without_a_motor_is_told_without_one(kind: str, over: str) -> None:
+    measure = {"kind": kind, "of": "stage", "over": over, "take": "value", "shaft": "output", "held": "input"}
+    assert "motor" not in heading(measure | {"arm": "arm", "point": "tip"})
+
+
+def test_a_cut_name_says_so() -> None:
+    assert legible("a" * 40, 34) == "a" * 33 + "…"
+    assert math.isclose(len(legible("b" * 34)), 34)

@@ -1,0 +1,252 @@
+"""Runs laid over each other: histograms of both roads, the difference of every trial beside."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Final
+
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.patches import Rectangle
+
+from tol3d.report.bars import bars_of
+from tol3d.report.canvas import (
+    BLACK,
+    GREY,
+    OUTSIDE,
+    ROAD_COLOURS,
+    RUN_COLOURS,
+    label_angles,
+    legend_below,
+    new_figure,
+    plain_axes,
+    save_figure,
+    say_instead,
+    title_axes,
+)
+from tol3d.report.compare import Compared, labelled, measures_of
+from tol3d.report.curve import Stepped, position_label
+from tol3d.report.difference import Difference, difference_of
+from tol3d.report.distribution import density_label, values_label
+from tol3d.report.heading import heading, position_of
+from tol3d.report.label import wrapped
+from tol3d.report.number import given_text, unit_suffix
+from tol3d.result import Run
+
+Summary = Mapping[str, Any]
+
+NO_SIMULATION: Final = "no 3D simulation in these runs"
+NO_TRIALS: Final = "these runs kept no trials (--no-trials)"
+ROADS: Final = {"analytic": "analytic", "geometric": "3D simulation"}
+WIDTH: Final = 15.0  # inch; of the picture, and of words and legends in its columns
+WORDS: Final = (5.2, 3.2, 4.2)
+ROW_HEIGHT: Final = 4.3  # inch, of a measure without its legend
+LEGEND_LINE: Final = 0.2  # inch
+LEGEND_MARK: Final = 0.6  # inch, in front of a legend's words
+LEGEND_SIZE: Final = 8.5  # points
+HEAD_SIZE: Final = 12.0
+DIFFERENCE_UNITS: Final = {"um": ("µm", 1.0), "mm": ("µm", 1000.0), "arcmin": ("″", 60.0)}
+"""Unit of small differences, and how many of it are one of the measure's unit."""
+
+
+@dataclass(frozen=True)
+class Shown:
+    """A run as it is shown in every row: its label, and the colours of both its roads."""
+
+    label: str
+    run: Run
+    colours: Mapping[str, str]
+
+
+def draw_comparison(runs: Sequence[Run], path: Path) -> None:
+    """Draw a row a measure: histograms of both roads, histogram of their differences, differences by position.
+
+    Raises:
+        InputError: there are no runs, or the picture cannot be written.
+    """
+    save_figure(comparison_figure(runs), path)
+
+
+def comparison_figure(runs: Sequence[Run]) -> Figure:
+    """The picture of `draw_comparison`, not yet written.
+
+    Raises:
+        InputError: there are no runs.
+    """
+    measures = measures_of(runs)
+    shown = _shown(runs)
+    own = [[each for each in shown if measure in measures_of([each.run])] for measure in measures]
+    heights = [ROW_HEIGHT + LEGEND_LINE * _legend_lines(each) for each in own]
+    figure = new_figure(WIDTH, sum(heights) + 0.4)
+    names = wrapped(",   ".join(each.label for each in shown), WIDTH - 0.5, HEAD_SIZE, 4)
+    figure.suptitle(names, fontsize=HEAD_SIZE, color=BLACK, x=0.01, ha="left")
+    grid = figure.add_gridspec(len(measures), 3, width_ratios=[1.6, 1, 1.3], height_ratios=heights)
+    for row, (measure, found) in enumerate(zip(measures, own, strict=True)):
+        axes = [plain_axes(figure.add_subplot(grid[row, column])) for column in range(3)]
+        _draw_roads(axes[0], measure, found, single=len(runs) == 1)
+        differences = [(each, difference_of(each.run, measure.name)) for each in found]
+        known = [(each, difference) for each, difference in differences if difference is not None]
+        instead = NO_SIMULATION if any(each.run.keeps_trials for each in found) else NO_TRIALS
+        if not known:
+            say_instead(axes[1], instead, GREY)
+            say_instead(axes[2], instead, GREY)
+        _draw_differences(axes[1], measure.unit, known, single=len(runs) == 1)
+        _draw_by_position(axes[2], measure, known)
+    return figure
+
+
+def _shown(runs: Sequence[Run]) -> list[Shown]:
+    """Every run in a colour of its own; a single one in those of its roads."""
+    if len(runs) == 1:
+        return [Shown(label, run, ROAD_COLOURS) for label, run in labelled(runs)]
+    colours = [RUN_COLOURS[index % len(RUN_COLOURS)] for index in range(len(runs))]
+    named = zip(labelled(runs), colours, strict=True)
+    return [Shown(label, run, dict.fromkeys(ROADS, colour)) for (label, run), colour in named]
+
+
+def _legend_lines(shown: Sequence[Shown]) -> int:
+    """Lines of the longest legend of a row: runs, roads and limits, or runs with their differences."""
+    breaks = sum(_broken(each.label, 1).count("\n") for each in shown)
+    return breaks + 2 * len(shown) + 3
+
+
+def _broken(text: str, column: int) -> str:
+    """Words of a legend in lines of the width of their column."""
+    return wrapped(text, WORDS[column] - LEGEND_MARK, LEGEND_SIZE, 6)
+
+
+# both roads ---------------------------------------------------------------------------------------
+
+
+def _draw_roads(axes: Axes, measure: Compared, shown: Sequence[Shown], *, single: bool) -> None:
+    name, unit = measure.name, measure.unit
+    first = shown[0].run.summary["measures"][name]
+    curve = first["take"] == "curve"
+    for each in shown:
+        (_draw_curves if curve else _draw_histograms)(axes, each.run.summary["measures"][name], each.colours, single)
+    _add_marks(axes, shown, curve=curve, single=single)
+    if curve:
+        label_angles(axes.yaxis, unit)
+        axes.set_xlabel(position_label(first), fontsize=10)
+        axes.set_ylabel(values_label(name, unit, 34), fontsize=10)
+    else:
+        _mark_limits(axes, name, shown)
+        label_angles(axes.xaxis, unit)
+        axes.set_xlabel(values_label(name, unit), fontsize=10)
+        axes.set_ylabel(density_label(unit), fontsize=10)
+    title_axes(axes, name, heading(first), WORDS[0])
+    legend_below(axes, 1)
+
+
+def _draw_histograms(axes: Axes, measure: Summary, colours: Mapping[str, str], single: bool) -> None:
+    for road, bars in bars_of(measure["histogram"]).items():
+        filled = road == "geometric"
+        axes.stairs(
+            bars.density,
+            bars.edges,
+            fill=filled,
+            alpha=0.45 if filled else 1.0,
+            linestyle="-" if filled or single else "--",
+            linewidth=0.0 if filled else 1.8,
+            color=colours[road],
+        )
+
+
+def _draw_curves(axes: Axes, measure: Summary, colours: Mapping[str, str], single: bool) -> None:
+    stepped = Stepped(measure)
+    for road, style in (("geometric", "-"), ("analytic", "--")):
+        if road in measure["curve"]:
+            axes.plot(stepped.x, stepped(measure["curve"][road]["mean"]), style, linewidth=2, color=colours[road])
+
+
+def _add_marks(axes: Axes, shown: Sequence[Shown], *, curve: bool, single: bool) -> None:
+    """What the legend tells: the colour of each run, and how its roads are drawn."""
+    word = ", mean" if curve else ""
+    if not single:
+        for each in shown:
+            axes.add_patch(_unseen(each.colours["geometric"], _broken(each.label, 0)))
+    own = shown[0].colours if single else dict.fromkeys(ROADS, GREY)
+    dashed = "-" if single and not curve else "--"
+    if curve:
+        axes.plot([], [], color=own["geometric"], linewidth=2, label=f"{ROADS['geometric']}{word}")
+    else:
+        axes.add_patch(_unseen(own["geometric"], ROADS["geometric"]))
+    axes.plot([], [], dashed, color=own["analytic"], linewidth=1.8, label=f"{ROADS['analytic']}{word}")
+
+
+def _unseen(colour: str, label: str) -> Rectangle:
+    """A patch for the legend alone."""
+    return Rectangle((0, 0), 0, 0, facecolor=colour, alpha=0.45, linewidth=0, label=label)
+
+
+def _mark_limits(axes: Axes, name: str, shown: Sequence[Shown]) -> None:
+    """Limits that lie in the picture; those that not all runs share in the colour of theirs."""
+    low, high = axes.get_xlim()
+    for key, word in (("lower_limit", "LSL"), ("upper_limit", "USL")):
+        limits = [each.run.summary["measures"][name].get(key) for each in shown]
+        shared = len(set(limits)) == 1
+        for each, limit in list(zip(shown, limits, strict=True))[: 1 if shared else None]:
+            if limit is None or not low <= limit <= high:
+                continue
+            unit = each.run.summary["measures"][name]["unit"]
+            text = f"{word} {given_text(limit, unit)}{unit_suffix(unit)}" + ("" if shared else f" of {each.label}")
+            colour = OUTSIDE if shared else each.colours["geometric"]
+            axes.axvline(limit, color=colour, linewidth=2, label=_broken(text, 0))
+
+
+# their difference ---------------------------------------------------------------------------------
+
+
+Known = Sequence[tuple[Shown, Difference]]
+
+
+def _draw_differences(axes: Axes, unit: str, known: Known, *, single: bool) -> None:
+    word, factor = DIFFERENCE_UNITS[unit]
+    title_axes(axes, "3D simulation − analytic", "of every trial", WORDS[1])
+    if not known:
+        return
+    for each, found in known:
+        text = f"max {factor * found.largest:.3f} {word}, rms {factor * found.rms:.3f} {word}"
+        axes.stairs(
+            found.bars.density / factor,
+            factor * found.bars.edges,
+            fill=True,
+            alpha=0.45,
+            color=each.colours["geometric"],
+            label=text if single else f"{_broken(each.label, 1)}:\n{text}",
+        )
+    axes.axvline(0, color=BLACK, linewidth=0.8)
+    axes.set_xlabel(f"difference of a trial [{word}]", fontsize=10)
+    axes.set_ylabel("share of trials", fontsize=10)
+    axes.set_yticks([])
+    axes.locator_params(axis="x", nbins=6)
+    axes.set_ylim(bottom=0)
+    legend_below(axes, 1)
+
+
+def _draw_by_position(axes: Axes, measure: Compared, known: Known) -> None:
+    word, factor = DIFFERENCE_UNITS[measure.unit]
+    turning = position_of({"kind": measure.kind})
+    by_position = all(found.by_position for _, found in known)
+    title_axes(axes, "difference", f"by position of the {turning}" if by_position else "by value", WORDS[2])
+    if not known:
+        return
+    for each, found in known:
+        axes.plot(
+            found.at,
+            factor * found.values,
+            linestyle="",
+            marker=".",
+            markersize=3.5,
+            markeredgewidth=0,
+            alpha=0.5,
+            color=each.colours["geometric"],
+        )
+    axes.axhline(0, color=BLACK, linewidth=0.8)
+    if by_position:
+        turn = " within its turn" if turning == "driver" else ""
+        axes.set_xlabel(f"{turning} position{turn} [deg]", fontsize=10)
+    else:
+        label_angles(axes.xaxis, measure.unit)
+        axes.set_xlabel(f"analytic: {values_label(measure.name, measure.unit, 40)}", fontsize=10)
+    axes.set_ylabel(f"difference [{word}]", fontsize=10)

@@ -1,0 +1,56 @@
+"""From where to where a measure's bars go: mean ∓ 3 sigma, or quantiles where trials do not reach so far."""
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any, Final
+
+from tol3d.report.column import Column, best_road
+
+Summary = Mapping[str, Any]
+
+SHORT_OF_3_SIGMA: Final = 2.5  # sigma; a quantile nearer to the mean than this is no end of a normal law
+BY_CHANCE: Final = 1e-3  # at most, that so many trials of a normal law would all stay that near to their mean
+QUANTILES: Final = ("p0.135", "p99.865")
+THREE_SIGMA: Final = ("low_3sigma", "high_3sigma")
+QUANTILES_MEAN: Final = "; marked are 0.135 % and 99.865 % of the trials, which end before mean ± 3 sigma"
+
+
+@dataclass(frozen=True)
+class Ends:
+    """The ends of a bar in the measure's unit, None where one is not known, and what they are called."""
+
+    low: float | None
+    high: float | None
+    words: tuple[str, str] = ("−3σ", "+3σ")
+
+    @classmethod
+    def of(cls, column: Column, *, bounded: bool) -> "Ends":
+        """Of a column of a measure that is `bounded` or not."""
+        if bounded and all(column.value(key) is not None for key in QUANTILES):
+            low, high = (column.value(key) for key in QUANTILES)
+            return cls(low, high, ("0.135 %", "99.865 %"))
+        low, high = (column.value(key) for key in THREE_SIGMA)
+        return cls(low, high)
+
+
+def is_bounded(measure: Summary) -> bool:
+    """Whether mean ∓ 3 sigma lies where a measure has no values: a range near 0, a sum of a few uniform laws.
+
+    One of its outer quantiles lies within SHORT_OF_3_SIGMA of its mean, and trials are enough to tell: n of a normal
+    law all stay within k sigma on one side of their mean with a chance of (1 − Φ(−k))^n.
+
+    >>> uniform = {"mean": 0.0, "sigma": 1.0, "p0.135": -1.73, "p99.865": 1.73}
+    >>> [is_bounded({"analytic": uniform | {"count": count}}) for count in (100, 1000)]
+    [False, True]
+    """
+    sample = measure.get(best_road(measure), {})
+    known = [sample.get(key) for key in ("mean", "sigma", "count", *QUANTILES)]
+    if any(value is None for value in known):
+        return False
+    mean, sigma, count, low, high = known
+    nearest = min(mean - low, high - mean)
+    if not sigma or nearest > SHORT_OF_3_SIGMA * sigma:
+        return False
+    beyond = math.erfc(nearest / sigma / math.sqrt(2)) / 2
+    return bool(count * math.log1p(-beyond) < math.log(BY_CHANCE))
