@@ -378,7 +378,7 @@ def test_run_names_every_picture_that_it_drew(tol3d: Command, tmp_path: Path) ->
         assert out.splitlines()[-1] == f"run: {folder}    {pictures.format(folder)}"
 
 
-ROBOTS_PICTURES = "pictures: {0}/histogram.png, {0}/chain.png"
+ROBOTS_PICTURES = "pictures: {0}/histogram.png, {0}/chain.png, {0}/histogram-*.png"
 
 
 def test_help_answers_in_half_a_second() -> None:

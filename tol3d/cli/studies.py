@@ -114,10 +114,12 @@ def run(
 
 def _pictures_text(run: "Run") -> str:
     """The pictures that were drawn of a run."""
-    from tol3d.report.picture import chain_files
+    from tol3d.report.picture import chain_files, measure_files
 
     pictures = [run.path / name for name in (PICTURE, *chain_files(run.summary).values())]
     drawn = [str(picture) for picture in pictures if picture.exists()]
+    if any((run.path / name).exists() for name in measure_files(run.summary).values()):
+        drawn.append(str(run.path / "histogram-*.png"))
     return f"    picture{'s' if len(drawn) > 1 else ''}: {', '.join(drawn)}" if drawn else ""
 
 

@@ -1,5 +1,6 @@
 """Labels that fit: users' names broken into lines of a width."""
 
+import warnings
 from collections.abc import Sequence
 from typing import Final
 
@@ -46,7 +47,9 @@ def _longest_start(text: str, width: float, size: float, weight: str) -> str:
 def text_width(text: str, size: float, weight: str) -> float:
     """Width of a line of text [inch], in points of `size`."""
     font = FontProperties(size=size, weight=weight)
-    width, _, _ = text_to_path.get_text_width_height_descent(text, font, ismath=False)
+    with warnings.catch_warnings():
+        warnings.filterwarnings("ignore", r"Glyph \d+ .* missing")  # of a user's name: shown as a box
+        width, _, _ = text_to_path.get_text_width_height_descent(text, font, ismath=False)
     return float(width) / POINTS_PER_INCH
 
 

@@ -74,7 +74,7 @@ def measure_files(summary: Mapping[str, Any]) -> dict[str, str]:
     >>> list(measure_files({"measures": dict.fromkeys(["a/b", "a:b", "c", "d", "e"])}).values())
     ['histogram-a_b.png', 'histogram-a_b 2.png', 'histogram-c.png', 'histogram-d.png', 'histogram-e.png']
     """
-    names = list(summary["measures"])
+    names = list(summary.get("measures", {}))
     return _files([(name, f"histogram-{_words(name)}") for name in names]) if len(names) > MOST_TOGETHER else {}
 
 
