@@ -329,6 +329,15 @@ def test_the_command_prints_lines_that_make_the_scene_it_writes(shim_command: Co
     )
 
 
+@pytest.mark.parametrize(("rounding", "taken"), [("down", "0.04 mm"), ("nearest", "0.05 mm")])
+def test_a_thickness_is_rounded_as_it_was_asked(shim_command: Command, rounding: str, taken: str) -> None:
+    """48.3 um by the geometry, 48.2 by the formula: of steps of 10 um 40 lie below them, and 50 nearest."""
+    code, out, _ = shim_command(BEVEL, "--target-min", "24 um", "--stock", "0.01 mm", "--round", rounding)
+    assert code == 0
+    values = [found[1] for line in out.splitlines() if (found := re.search(r"kind: shim, .*value: (\S+ mm)", line))]
+    assert values == [taken, taken]
+
+
 REFUSED = {
     "too tight": (
         BEVEL,
