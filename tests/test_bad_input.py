@@ -5,7 +5,6 @@ import random
 import re
 import subprocess
 import sys
-import time
 from pathlib import Path
 
 import pytest
@@ -20,7 +19,7 @@ from tol3d.scene.text import MAX_BYTES, MAX_DEPTH
 
 SPUR_PAIR = (Path(__file__).parent.parent / "scenes" / "spur_pair.yaml").read_text(encoding="utf-8")
 EVERY_FIELD = (Path(__file__).parent.parent / "scenes" / "every_field.yaml").read_text(encoding="utf-8")
-SOON = 2.0  # s; what a user takes for at once on a busy machine
+HANGS = 120  # s; a guard against waiting for ever, no claim
 JARGON = re.compile(
     r"Input should|validation error|pydantic|Traceback|another value here|\[key\]|function-|[a-z]Spec\b"
 )
@@ -28,10 +27,8 @@ JARGON = re.compile(
 
 def problems(path: Path) -> tuple[str, ...]:
     """What is said of a scene, checked for what holds of every message."""
-    start = time.perf_counter()
     with pytest.raises(SceneError) as caught:
         load_scene(path)
-    assert time.perf_counter() - start < SOON
     said = caught.value.problems
     assert 1 <= len(said) <= MOST_PROBLEMS + 1
     for problem in said:
@@ -705,7 +702,10 @@ def test_an_endless_file_is_refused() -> None:
 def test_a_pipe_is_refused_and_not_waited_for(tmp_path: Path) -> None:
     pipe = tmp_path / "scene.yaml"
     os.mkfifo(pipe)
-    assert problems(pipe) == (f"{pipe}: expected a scene file, got a pipe or a device",)
+    command = [sys.executable, "-m", "tol3d.cli", "check", str(pipe)]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=HANGS)
+    assert (done.returncode, done.stdout) == (2, "")
+    assert done.stderr == f"{pipe}: expected a scene file, got a pipe or a device\n"
 
 
 def test_bytes_that_are_no_text_are_refused_with_their_line(tmp_path: Path) -> None:
@@ -729,10 +729,52 @@ def test_a_megabyte_of_anything_is_refused_without_a_crash(tmp_path: Path, text:
     assert len(text) < MAX_BYTES
     path = tmp_path / "scene.yaml"
     path.write_text(text)
-    start = time.perf_counter()
     with pytest.raises(SceneError):
         load_scene(path)
-    assert time.perf_counter() - start < 5 * SOON  # a megabyte that has to be parsed may take some seconds
+
+
+GROWING = {
+    "one word": lambda n: "a" * n,
+    "blanks": lambda n: " " * n,
+    "escapes": lambda n: '"' + "\\u0041" * (n // 6),
+    "a list": lambda n: "[" + "a," * (n // 2),
+    "a list deep down": lambda n: "[ " * 40 + "a, " * (n // 3),
+    "anchors": lambda n: "&a " * (n // 3),
+    "aliases": lambda n: "a: &a [x]\nb: [" + "*a, " * (n // 4),
+    "lines": lambda n: "a: |\n" + " x\n" * (n // 3),
+    "keys": lambda n: "".join(f"k{k}: 1\n" for k in range(n // 8)),
+    "brackets": lambda n: "[" * n,
+    "braces": lambda n: "{a: " * (n // 4),
+    "indents": lambda n: "- " * (n // 2),
+    "quotes": lambda n: "a: '" + "''" * (n // 2),
+    "comments": lambda n: "#\n" * (n // 2),
+    "names": lambda n: f"scene: {'n' * n}\nparts: {{{'p' * n}: {{kind: spur_gear}}}}\n",
+}
+
+
+@pytest.mark.parametrize("what", GROWING)
+def test_the_work_on_a_text_grows_with_its_length_and_no_faster(what: str, tmp_path: Path) -> None:
+    """Calls that are made while it is refused, Python's and C's: twice the text, twice the calls at most."""
+    path = tmp_path / "scene.yaml"
+
+    def calls(length: int) -> int:
+        path.write_text(GROWING[what](length), "utf-8")
+        counted = 0
+
+        def count(frame: object, event: str, argument: object) -> None:
+            nonlocal counted
+            counted += 1
+
+        sys.setprofile(count)
+        try:
+            with pytest.raises(SceneError):
+                load_scene(path)
+        finally:
+            sys.setprofile(None)
+        return counted
+
+    once, twice = calls(3000), calls(6000)
+    assert twice <= 2.1 * once + 1000  # what is done once for any text, such as imports, is done in the first
 
 
 def test_an_alias_bomb_is_refused_and_a_few_aliases_are_not(tmp_path: Path) -> None:
@@ -755,7 +797,7 @@ def test_an_alias_of_what_holds_it_is_refused(tmp_path: Path) -> None:
 
 fuzz = settings(
     max_examples=60,
-    deadline=None,  # the machine is shared; each message has its own bound on time
+    deadline=None,  # the machine is shared
     suppress_health_check=[HealthCheck.function_scoped_fixture],
 )
 WORDS = sorted(set(re.findall(r"[\w.]+|[^\w\s]", EVERY_FIELD + SPUR_PAIR)) | {"null", "~", "[]", "{}", "[1]", "{a: 1}"})

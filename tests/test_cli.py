@@ -381,16 +381,19 @@ def test_run_names_every_picture_that_it_drew(tol3d: Command, tmp_path: Path) ->
 ROBOTS_PICTURES = "pictures: {0}/histogram.png, {0}/chain.png, {0}/histogram-*.png"
 
 
-def test_help_answers_in_half_a_second() -> None:
-    command = [sys.executable, "-m", "tol3d.cli", "--help"]
-    best = min(_seconds(command) for _ in range(3))
-    # machines are shared: the claim is 0.5 s on an idle one; what is held here is that nothing heavy is loaded
-    assert best < 2.0
+HANGS = 120  # s; a guard against waiting for ever, no claim
+MODULES_OF_HELP = 450  # 365 of them with today's typer and rich; NumPy alone would bring 140 more
+
+
+def test_help_loads_the_command_line_and_what_prints_it() -> None:
+    """The half second that it takes is its imports: counted, for a clock tells of the machine."""
     code = "import sys; sys.argv = ['tol3d', '--help']\nfrom tol3d import cli\n"
-    code += "try:\n    cli.main()\nexcept SystemExit:\n"
-    heavy = "    print([m for m in ('numpy', 'scipy', 'cadquery', 'fcl', 'matplotlib', 'pyarrow') if m in sys.modules])"
-    done = subprocess.run([sys.executable, "-c", code + heavy], capture_output=True, text=True, check=True)
-    assert done.stdout.splitlines()[-1] == "[]"
+    code += "try:\n    cli.main()\nexcept SystemExit:\n    print(*sys.modules)"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, timeout=HANGS)
+    loaded = done.stdout.splitlines()[-1].split()
+    own = [name for name in loaded if name.startswith("tol3d.")]
+    assert [name for name in own if not name.startswith(("tol3d.cli", "tol3d.errors"))] == []
+    assert len(loaded) < MODULES_OF_HELP
 
 
 NEVER = ("pint", "matplotlib", "scipy.stats", "cadquery", "OCP", "pyvista", "trimesh", "distributed", "pandas")
@@ -426,9 +429,3 @@ def test_a_command_loads_what_it_needs_and_nothing_heavy_besides(what: str, tmp_
 def measuring_strips_of_the_spur_pair() -> None:
     """Have them in the cache."""
     strips_of(model_from_scene(load_scene(Path(SPUR))))
-
-
-def _seconds(command: list[str]) -> float:
-    started = time.perf_counter()
-    subprocess.run(command, check=True, capture_output=True)
-    return time.perf_counter() - started

@@ -8,7 +8,6 @@ import shutil
 import signal
 import subprocess
 import sys
-import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
@@ -17,10 +16,11 @@ import pytest
 
 from tol3d import InputError, Overrides, Run, RunError, open_run, replay, run_scene
 from tol3d import block as block_module
-from tol3d.checkpoint import CheckpointWarning
+from tol3d.checkpoint import Checkpoint, CheckpointWarning
 from tol3d.execution import Execution
 from tol3d.result import DamageWarning
 from tol3d.simulate import Watch
+from tol3d.tally import Tally
 from tol3d.worst import worst_trial
 
 SPUR = Path(__file__).resolve().parent.parent / "scenes" / "spur_pair.yaml"
@@ -29,15 +29,25 @@ ANALYTIC = Overrides(trials=10 * BLOCK, engine="analytic")
 STATISTICS_ONLY = Execution(keep_trials=False)
 RESUME = Execution(resume=True)
 
-# `tol3d` with small blocks and frequent checkpoints, each block made to last 20 ms, so that kills fall everywhere
+HANGS = 300  # s; a guard against waiting for ever, no claim
+
+# `tol3d` with small blocks and frequent checkpoints, each block made to last 20 ms, so that kills fall everywhere;
+# it sends itself a signal before it puts a file in its place for the so-manieth time, if it was told to
 SMALL_BLOCKS = f"""
-import sys, time
+import os, sys, time
 from tol3d import block, cli, folding, task
 block.BLOCK_TRIALS = {BLOCK}
-folding.KEEP_EVERY = 0.05
+folding.KEEP_EVERY = 0.0
 made = task.simulate_block
 task.simulate_block = lambda *arguments: (time.sleep(0.02), made(*arguments))[1]
-sys.argv = ["tol3d", *sys.argv[1:]]
+told, at = (int(word) for word in sys.argv[1:3])
+real, calls = os.replace, iter(range(10**9))
+def replace(*arguments):
+    if next(calls) == at:
+        os.kill(os.getpid(), told)
+    real(*arguments)
+os.replace = replace
+sys.argv = ["tol3d", *sys.argv[3:]]
 cli.main()
 """
 
@@ -47,8 +57,23 @@ def small_blocks(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(block_module, "BLOCK_TRIALS", BLOCK)
 
 
-def command(out: Path, *more: str) -> list[str]:
-    return [sys.executable, "-c", SMALL_BLOCKS, "run", str(SPUR), "--out", str(out), *more]
+def command(out: Path, *more: str, told: signal.Signals = signal.SIGKILL, at: int = -1) -> list[str]:
+    """`tol3d run` as above; `told` at the file of number `at`, from 0 on, or never."""
+    words = ["run", str(SPUR), "--out", str(out), *more]
+    return [sys.executable, "-c", SMALL_BLOCKS, str(int(told)), str(at), *words]
+
+
+def ended(*arguments: str) -> subprocess.CompletedProcess[str]:
+    """A command that has ended, however."""
+    return subprocess.run(arguments, capture_output=True, text=True, timeout=HANGS)
+
+
+def kept_blocks(out: Path) -> int:
+    """How many blocks an interrupted run has kept: as files, or else in its statistics."""
+    partial = out.with_name(out.name + ".partial")
+    files = len(list((partial / "trials").glob("*.parquet")))
+    counted = Checkpoint(partial / "checkpoint", Tally).read()
+    return max(files, counted[0] if counted else 0)
 
 
 def assert_same_run(first: Run, second: Run) -> None:
@@ -64,27 +89,47 @@ def assert_same_run(first: Run, second: Run) -> None:
         assert np.array_equal(mine.get("status", 0), its.get("status", 0))
 
 
-def killed_and_resumed(out: Path, kills: int, seed: int, *more: str) -> Run:
-    """A run that was killed `kills` times at random moments between its start and its end, and resumed each time."""
+def killed_by_the_clock_and_resumed(out: Path, kills: int, seed: int, *more: str) -> Run:
+    """A run that was killed `kills` times at random moments after its first trials, and resumed each time."""
     moments = random.Random(seed)
     done = 0
-    while done < kills:
+    for _ in range(10 * kills):
         process = subprocess.Popen(command(out, *more), stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
-        while process.poll() is None and not out.with_name(out.name + ".partial").exists():
-            time.sleep(0.001)
         try:
-            process.wait(moments.uniform(0.0, 1.2))
+            process.wait(moments.uniform(0.0, 1.8))
         except subprocess.TimeoutExpired:
             process.send_signal(signal.SIGKILL)
-            process.wait()
+            process.wait(HANGS)
             done += 1
         else:
             assert process.returncode == 0, process.stderr and process.stderr.read()
             shutil.rmtree(out)  # it had ended: from the start again
-    subprocess.run(command(out, *more), check=True, capture_output=True)
+        if done == kills:
+            break
+    assert done == kills
+    assert ended(*command(out, *more)).returncode == 0
     return open_run(out)
 
 
+def killed_while_writing_and_resumed(out: Path, kills: int, seed: int, *more: str) -> Run:
+    """A run that was killed `kills` times before it put some file in its place, and resumed each time."""
+    moments = random.Random(seed)
+    kept = [0]
+    for _ in range(kills):
+        # four files are written before the first block, and of each block two: 13 files in at most five blocks
+        killed = ended(*command(out, *more, at=moments.randrange(6, 13)))
+        assert killed.returncode == -signal.SIGKILL, killed.stderr
+        assert not out.exists()
+        kept.append(kept_blocks(out))
+        assert kept[-2] < kept[-1] < BLOCKS  # each went on from what the one before had left, and left some to do
+    whole = ended(*command(out, *more))
+    assert whole.returncode == 0, whole.stderr
+    resumed = open_run(out)
+    assert resumed.summary["timing"]["resumed_trials"] == kept[-1] * BLOCK
+    return resumed
+
+
+BLOCKS = 26
 KINDS = {
     "exact": ("--engine", "exact", "--witness", "0", "--trials", str(25 * BLOCK + 77), "--workers", "2"),
     "exact, statistics only": (
@@ -99,31 +144,29 @@ KINDS = {
 @pytest.mark.parametrize("kind", KINDS)
 def test_killed_at_twenty_moments_a_run_ends_with_the_same_bits(kind: str, tmp_path: Path) -> None:
     subprocess.run(command(tmp_path / "whole", *KINDS[kind]), check=True, capture_output=True)
-    resumed = killed_and_resumed(tmp_path / "killed", 20, 20, *KINDS[kind])
+    resumed = killed_by_the_clock_and_resumed(tmp_path / "killed", 20, 20, *KINDS[kind])
     assert_same_run(open_run(tmp_path / "whole"), resumed)
     assert sorted(path.name for path in tmp_path.iterdir()) == ["killed", "whole"]
 
 
 @pytest.mark.parametrize("kind", ["exact", "exact, statistics only"])
-def test_killed_at_three_moments_a_run_ends_with_the_same_bits(kind: str, tmp_path: Path) -> None:
-    subprocess.run(command(tmp_path / "whole", *KINDS[kind]), check=True, capture_output=True)
-    resumed = killed_and_resumed(tmp_path / "killed", 3, 3, *KINDS[kind])
+def test_killed_at_two_files_a_run_ends_with_the_same_bits(kind: str, tmp_path: Path) -> None:
+    more = (*KINDS[kind], "--no-picture")
+    subprocess.run(command(tmp_path / "whole", *more), check=True, capture_output=True)
+    resumed = killed_while_writing_and_resumed(tmp_path / "killed", 2, 3, *more)
     assert_same_run(open_run(tmp_path / "whole"), resumed)
 
 
 def test_ctrl_c_tells_the_command_that_goes_on(tmp_path: Path) -> None:
     out = tmp_path / "run"
-    process = subprocess.Popen(command(out, *KINDS["analytic"]), stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
-    while not list(tmp_path.glob("run.partial/trials/*.parquet")):
-        time.sleep(0.01)
-    process.send_signal(signal.SIGINT)
-    assert process.stderr is not None
-    told = process.stderr.read().decode()
-    assert process.wait() == 130
+    stopped = ended(*command(out, *KINDS["analytic"], told=signal.SIGINT, at=12))
+    assert stopped.returncode == 130, stopped.stderr
+    told = stopped.stderr
     line = told.splitlines()[-1]
     assert line == f"tol3d run {SPUR} --out {out} {' '.join(KINDS['analytic'])} --resume"
     assert "Traceback" not in told
-    subprocess.run([*command(out), *line.split()[5:]], check=True, capture_output=True)
+    assert 0 < kept_blocks(out) < BLOCKS
+    subprocess.run([*command(out), *line.split()[5:]], check=True, capture_output=True, timeout=HANGS)
     assert 0 < open_run(out).summary["timing"]["resumed_trials"] < 25 * BLOCK
 
 

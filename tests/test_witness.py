@@ -15,7 +15,7 @@ from tol3d.engines.door import exact_engine
 from tol3d.execution import Execution
 from tol3d.model import Model
 from tol3d.simulate import effective_model, load
-from tol3d.witness import ALLOWANCE_MM, witness_summary, witness_warnings, witnessed_trials
+from tol3d.witness import witness_summary, witness_warnings, witnessed_trials
 
 SCENES = Path(__file__).resolve().parent.parent / "scenes"
 SPUR = SCENES / "spur_pair.yaml"
@@ -97,7 +97,8 @@ def test_chord_errors_are_all_that_fcl_sees_more(run: Run) -> None:
     for own, unit in ((normal, 1.0), (turn, arcmin_per_um)):
         assert 0 < own["mean_difference"] <= own["rms_difference"] <= own["max_abs_difference"]
         assert own["max_abs_difference"] < own["expected_at_most"] + 0.005 * unit  # and FCL's own rounding
-        assert own["allowance"] == pytest.approx(1e3 * ALLOWANCE_MM * unit, rel=1e-9)
+        # at module 2.5: a tip edge's 0.03, FCL's own 0.005, a section's squares; more would hide what is wrong
+        assert 0.035 * unit < own["allowance"] <= 0.0501 * unit
 
 
 def test_twice_the_profile_steps_see_a_quarter_of_the_difference(model_of: Modelling) -> None:
@@ -167,6 +168,21 @@ def test_an_engine_that_sees_other_gears_is_warned_of(model_of: Modelling) -> No
     assert len(warnings) == 2
     assert warnings[0].startswith("witness: FCL finds 6.8")
     assert "um more or less normal backlash of trial " in warnings[0]
+
+
+@pytest.mark.parametrize(("apart", "told"), [(0.0, False), (0.4, True), (-0.4, True)])
+def test_gears_that_lie_a_quarter_of_a_micrometre_otherwise_are_warned_of(
+    model_of: Modelling, apart: float, told: bool
+) -> None:
+    """2 sin 20 deg of 0.4 um are 0.27 um, beyond 0.08 of chords and 0.05 of whatever else, of either sign.
+
+    Chords make FCL see up to 0.08 um more, so of 0.27 um less it sees 0.19 at least.
+    """
+    text = SPUR.read_text("utf-8")
+    model = model_of(text)
+    other = model_of(text.replace("centre_distance: 172.5 mm", f"centre_distance: {172.5 + apart / 1000} mm"))
+    witness = witness_summary(model, exact_engine(other), 2000)
+    assert bool(witness_warnings(model, witness)) == told
 
 
 def test_what_chords_and_the_allowance_explain_is_not_warned_of() -> None:
