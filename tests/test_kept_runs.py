@@ -7,6 +7,7 @@ import pytest
 
 from tol3d import Overrides, RunError, open_run, replay, run_scene
 from tol3d import block as block_module
+from tol3d.blockfiles import BlockFiles, block_name
 from tol3d.execution import Execution
 from tol3d.result import DamageWarning
 from tol3d.simulate import Watch
@@ -90,8 +91,23 @@ def test_a_block_without_a_line_in_the_list_is_refused_and_mended(
     (blocks / "block-000003.parquet").write_bytes((blocks / "block-000005.parquet").read_bytes())
     with pytest.raises(RunError):
         open_run(run.path).columns()
-    with pytest.warns(DamageWarning, match=r"block-000003"):
+    with pytest.warns(DamageWarning):
         mended = run_scene(SPUR, overrides=STUDY, out=tmp_path / "run", execution=Execution(resume=True))
     assert mended.summary["timing"]["resumed_trials"] == 7 * BLOCK
     after = mended.columns()
     assert all(np.array_equal(before[name], after[name]) for name in before)
+
+
+def test_a_file_of_a_block_without_a_line_is_none_of_the_run(tmp_path: Path) -> None:
+    """A kill leaves one that nobody vouches for: it is not counted, not read and not held to be whole."""
+    files = BlockFiles(tmp_path)
+    for index in range(3):
+        files.write(block_name(index), {"a": np.arange(4.0) + index})
+    lines = (tmp_path / LIST).read_text("utf-8").splitlines(keepends=True)
+    (tmp_path / LIST).write_text("".join(line for line in lines if block_name(1) not in line), "utf-8")
+    again = BlockFiles(tmp_path)
+    assert [block_name(index) in again for index in range(3)] == [True, False, True]
+    for asked in (again.read, again.verify):
+        with pytest.raises(RunError, match="its SHA-256 is another"):
+            asked(block_name(1))
+    assert again.read(block_name(2))["a"].tolist() == [2.0, 3.0, 4.0, 5.0]

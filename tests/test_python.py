@@ -8,10 +8,12 @@ import sys
 import tempfile
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import fcl
 import numpy as np
 import pytest
+import trimesh
 
 import tol3d
 from tol3d.frame import MissingPackageError
@@ -128,13 +130,13 @@ def test_the_worst_of_a_measure_is_the_trial_nearest_to_its_limit(spur: Run) -> 
 # replays ------------------------------------------------------------------------------------------------------
 
 
-def distance(first: object, second: object) -> float:
+def distance(first: trimesh.Trimesh, second: trimesh.Trimesh) -> float:
     """Of two triangle meshes [mm], by FCL in double precision."""
 
-    def shape(mesh: object) -> fcl.CollisionObject:
+    def shape(mesh: trimesh.Trimesh) -> fcl.CollisionObject:
         model = fcl.BVHModel()
-        model.beginModel(len(mesh.vertices), len(mesh.faces))  # type: ignore[attr-defined]
-        model.addSubModel(mesh.vertices, mesh.faces)  # type: ignore[attr-defined]
+        model.beginModel(len(mesh.vertices), len(mesh.faces))
+        model.addSubModel(mesh.vertices, mesh.faces)
         model.endModel()
         return fcl.CollisionObject(model, fcl.Transform())
 
@@ -268,11 +270,11 @@ def test_the_page_runs_as_it_stands(tmp_path: Path, monkeypatch: pytest.MonkeyPa
     text = (ROOT / "docs" / "python.md").read_text("utf-8")
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
-    names: dict[str, object] = {}
+    names: dict[str, Any] = {}
     for block in code_blocks(text):
         exec(block, names)
     assert all(f"tol3d.{name}" in text for name in tol3d.__all__)
-    mean = names["pair"].summary["measures"]["backlash"]["geometric"]["mean"]  # type: ignore[attr-defined]
+    mean = names["pair"].summary["measures"]["backlash"]["geometric"]["mean"]
     # sigma of each is 20/6 um, of the sum cos 20 deg of it times sqrt 2: four standard errors of 1000 trials
     assert mean == pytest.approx(80 * math.cos(math.radians(20)), abs=4 * 4.43 / math.sqrt(1000))
     assert json.loads((tmp_path / "runs" / "spur_pair" / SUMMARY).read_text("utf-8"))["trials"] == 2000
