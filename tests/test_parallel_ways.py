@@ -271,9 +271,8 @@ def test_ways_bind_as_often_as_one_pinion_sits_beyond_the_play(tmp_path: Path) -
     wanted = FREE - SLOW * np.abs(told(model, block, "right pinion clocking"))
     beside = np.abs(wanted) > AGREES  # of a trial that is on the edge either may be said
     assert np.array_equal(tight[beside], wanted[beside] < 0)
-    assert np.isnan(found["geometric"][tight]).all()
-    assert np.abs(found["geometric"] - wanted)[~tight].max() < AGREES
-    assert np.abs(found["analytic"] - wanted).max() < AGREES
+    for road in ("geometric", "analytic"):  # what binds is less than nothing by what the ways lack
+        assert np.abs(found[road] - wanted).max() < AGREES
 
 
 # the mechanism, turned to its ends -------------------------------------------------------------------------------

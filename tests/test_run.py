@@ -140,7 +140,7 @@ def test_trials_that_interfere_keep_their_row_and_their_status(tmp_path: Path) -
     columns = run.columns()
     failed = columns["status"] == "interferes"
     assert 20 < failed.sum() < 180
-    assert np.array_equal(np.isnan(columns["geometric:normal backlash"]), failed)
+    assert np.array_equal(columns["geometric:normal backlash"] < -1e-3, failed)  # a nanometre less than free is free
     # what the closed form calls an overlap by more than the mesh error has that status, and only that
     analytic = columns["analytic:normal backlash"]
     assert failed[analytic < -0.15].all()

@@ -18,6 +18,7 @@ from tol3d.statistics import (
     LimitCounts,
     Moments,
     Proportion,
+    equivalent_ppk,
     pp,
     ppk,
     shares,
@@ -238,14 +239,38 @@ def test_limit_counts_merge_and_keep_failures_apart(values: Array, cuts: list[in
     merged = reduce(LimitCounts.merge, parts)
     assert merged == LimitCounts.of(values, lower, upper)
     good = [value for value in values if not math.isnan(value)]
-    assert merged.below_limit == Proportion(sum(value < lower for value in good), len(good))
-    assert merged.above_limit == Proportion(sum(value > upper for value in good), len(good))
+    assert merged.below_limit == Proportion(sum(value < lower for value in good), len(values))
+    assert merged.above_limit == Proportion(sum(value > upper for value in good), len(values))
     assert merged.failures == Proportion(len(values) - len(good), len(values))
+    inside = sum(lower <= value <= upper for value in good)
+    assert merged.out_of_limits == Proportion(len(values) - inside, len(values))
 
 
-def test_without_a_limit_nothing_is_outside() -> None:
-    counts = LimitCounts.of(np.array([-1e9, 1e9, math.nan]), None, None)
-    assert (counts.below, counts.above, counts.good, counts.failed) == (0, 0, 2, 1)
+def test_without_a_limit_nothing_is_outside_but_what_failed() -> None:
+    counts = LimitCounts.of(np.array([-1e9, 1e9, math.nan]), None, None, np.array([False, False, True]))
+    assert (counts.below, counts.above, counts.good, counts.failed, counts.out) == (0, 0, 2, 1, 1)
+
+
+def test_trials_that_lack_what_is_measured_are_below_a_lower_limit_and_out_of_any() -> None:
+    """Of five trials one is within 2 and 8, one below, one above, one is jammed and one was not measured."""
+    values, lacking = np.array([5.0, 1.0, 9.0, math.nan, math.nan]), np.array([False, False, False, True, False])
+    assert LimitCounts.of(values, 2.0, 8.0, lacking) == LimitCounts(good=3, failed=2, below=2, above=1, out=4)
+    assert LimitCounts.of(values, None, 8.0, lacking) == LimitCounts(good=3, failed=2, below=0, above=1, out=3)
+    assert LimitCounts.of(values, 2.0, None, lacking) == LimitCounts(good=3, failed=2, below=2, above=0, out=3)
+
+
+def test_a_curve_below_one_limit_and_above_the_other_is_out_once() -> None:
+    counts = LimitCounts.of_spans(np.array([1.0, 3.0]), np.array([9.0, 4.0]), 2.0, 8.0)
+    assert (counts.below, counts.above, counts.out) == (1, 1, 1)
+
+
+def test_the_equivalent_ppk_of_a_share_is_that_of_a_normal_with_as_much_out_on_one_side() -> None:
+    for index in (1.33, 1.0, 0.3, -0.2):
+        out = Proportion(round(1e9 * stats.norm.sf(3 * index)), 10**9)
+        assert equivalent_ppk(out) == pytest.approx(index, abs=1e-5)
+    assert equivalent_ppk(Proportion(0, 2000)) == pytest.approx(stats.norm.isf(0.5 / 2000) / 3)
+    assert equivalent_ppk(Proportion(2000, 2000)) == pytest.approx(-stats.norm.isf(0.5 / 2000) / 3)
+    assert equivalent_ppk(Proportion(0, 0)) is None
 
 
 def test_performance_indices() -> None:

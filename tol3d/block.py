@@ -4,7 +4,7 @@ Columns are in the user's units (um, mrad, K, deg, arcmin), trial on axis 0; a c
 """
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -17,11 +17,13 @@ from tol3d.engines import INTERFERES, OK, STATUS_TEXT, Engine, MeshReading, Read
 from tol3d.measures import measure_backlash, moved, read_backlash, turning_gear
 from tol3d.model import Backlash, LostMotion, Measure, Mesh, Model, Study
 from tol3d.moves import Meshing, MeshSeat
+from tol3d.outcome import status_column
 from tol3d.play import Play, Read, SeatKey, positions_count, seat_key, seat_keys
 from tol3d.units import ARCMIN
 
 Array = NDArray[np.float64]
 Columns = Mapping[str, NDArray[np.generic]]
+Status = NDArray[np.int8]
 
 ROWS_AT_ONCE = 65_536  # trials x positions; keeps poses and gaps of a turn's curves in some tens of megabytes
 BUILDS_AT_ONCE = 4096  # builds x positions: 2.5 MB of them
@@ -226,8 +228,9 @@ def simulate_block(model: Model, engine: Engine | None, block: Block) -> dict[st
 
     Returns:
         deviations, `position:<mesh> [deg]`, `analytic:<measure>`, and with an engine
-        `geometric:<measure>`, `contact:<mesh>.x|y|z [mm]`, `contact:<mesh>.tooth` and `status`; for each train also
-        its stages, `analytic:<measure>:<link> [arcmin]`, and with an engine `geometric:...`.
+        `geometric:<measure>`, `status:<measure>`, `contact:<mesh>.x|y|z [mm]`, `contact:<mesh>.tooth` and `status`,
+        the worst of them all; for each train also its stages, `analytic:<measure>:<link> [arcmin]`, and with an
+        engine `geometric:...`. A geometric value below 0 whose status is "interferes" is an overlap.
     """
     rows = max(1, ROWS_AT_ONCE // max(positions_count(measure) for measure in model.measures))
     pieces = [_simulate_piece(model, engine, block.part(first, first + rows)) for first in range(0, len(block), rows)]
@@ -258,8 +261,7 @@ def _simulate_piece(model: Model, engine: Engine | None, block: Block) -> dict[s
     for measure in model.measures:
         columns[f"geometric:{measure.name}"] = taken(measure, seen.values[measure.name]) * measure.per_internal
     columns.update(seen.others)
-    columns["status"] = _STATUS_TEXTS[seen.status]
-    return columns
+    return columns | _status_columns(seen.status)
 
 
 def staged_measures(model: Model) -> tuple[Measure, ...]:
@@ -284,31 +286,64 @@ def _stage_columns(road: str, play: Play) -> dict[str, Array]:
 _STATUS_TEXTS = np.array([STATUS_TEXT[code] for code in range(len(STATUS_TEXT))])
 
 
+def _status_columns(by_measure: Mapping[str, Status]) -> dict[str, NDArray[np.generic]]:
+    """Texts of the codes (trials,) of each measure, and the worst of all; where that is OK they share one array."""
+    worst = np.max([*by_measure.values()], axis=0)
+    text = _STATUS_TEXTS[worst]
+    all_ok = not worst.any()
+    own = {status_column(name): text if all_ok else _STATUS_TEXTS[codes] for name, codes in by_measure.items()}
+    return {**own, "status": text}
+
+
 @dataclass(frozen=True)
 class _Seen:
-    """The geometric road of a block: values by measure (trials, positions), other columns, status (trials,)."""
+    """The geometric road of a block: values by measure (trials, positions), other columns, status by measure."""
 
     values: Mapping[str, Array]
     others: Mapping[str, NDArray[np.generic]]
-    status: NDArray[np.int8]
+    status: Mapping[str, Status]
 
 
 def _seen(
-    model: Model, block: Block, read: Read, contacts: dict[str, NDArray[np.generic]], status: NDArray[np.int8]
+    model: Model,
+    block: Block,
+    read: Read,
+    contacts: dict[str, NDArray[np.generic]],
+    seated: Mapping[SeatKey, Status],
 ) -> _Seen:
+    """Measures of meshes that are read; `seated` tells the status of each, (trials x positions,), positions fastest."""
     values: dict[str, Array] = {}
     stages: dict[str, Array] = {}
-    bound, staged = np.zeros(len(block), dtype=bool), staged_measures(model)
+    status: dict[str, Status] = {}
+    staged = staged_measures(model)
     for measure in model.measures:
         play = Play(model, measure, block.deviations, read)
-        tight = play.bound()
-        values[measure.name] = np.where(tight[:, None], np.nan, moved(measure.kind, play.free()))
+        codes = _codes(play, seated)
+        values[measure.name] = moved(measure.kind, _free_or_overlap(play, codes))
+        status[measure.name] = codes.max(axis=1)
         if measure in staged:
-            own = _stage_columns("geometric", play)
-            stages |= {name: np.where(tight, np.nan, column) for name, column in own.items()}
-        bound |= tight
-    status = np.where(bound & (status == OK), INTERFERES, status).astype(np.int8)
+            stages |= _stage_columns("geometric", play)
     return _Seen(values, contacts | stages, status)
+
+
+def _codes(play: Play, seated: Mapping[SeatKey, Status]) -> Status:
+    """What became of the meshes that a measure reads, the worst of them, (trials, positions)."""
+    shape = (len(play.deviations), positions_count(play.measure))
+    codes = np.zeros(shape, dtype=np.int8)
+    for key in seat_keys(play.model, play.measure):
+        codes = np.maximum(codes, seated[key].reshape(shape))
+    if not play.measure.kind.adds_up:
+        codes[play.bound() & (codes == OK)] = INTERFERES
+    return codes
+
+
+def _free_or_overlap(play: Play, codes: Status) -> Array:
+    """What a measure's backlashes leave free; a train that is jammed at one stage is not free by the others' play."""
+    free = play.free()
+    jammed = codes == INTERFERES
+    if isinstance(play.measure.kind, Backlash) or not jammed.any():
+        return free
+    return np.where(jammed, play.overlap(), free)
 
 
 def _measured(model: Model, engine: Engine, block: Block) -> _Seen:
@@ -327,9 +362,7 @@ def _measured(model: Model, engine: Engine, block: Block) -> _Seen:
             known[backlash, key] = values.reshape(len(block), -1)
         return known[backlash, key]
 
-    return _seen(
-        model, block, read, contacts, _worst_status([seat.status for seat in seats.seats.values()], len(block))
-    )
+    return _seen(model, block, read, contacts, {key: seat.status for key, seat in seats.seats.items()})
 
 
 def _read_in_pieces(model: Model, engine: ReadingEngine, block: Block) -> _Seen:
@@ -341,7 +374,7 @@ def _read_in_pieces(model: Model, engine: ReadingEngine, block: Block) -> _Seen:
     return _Seen(
         {name: np.concatenate([seen.values[name] for seen in each]) for name in each[0].values},
         {name: np.concatenate([seen.others[name] for seen in each]) for name in each[0].others},
-        np.concatenate([seen.status for seen in each]),
+        {name: np.concatenate([seen.status[name] for seen in each]) for name in each[0].status},
     )
 
 
@@ -360,8 +393,7 @@ def _read(model: Model, engine: ReadingEngine, block: Block) -> _Seen:
     def read(backlash: Backlash, key: SeatKey) -> Array:
         return read_backlash(backlash, model.mesh(backlash.mesh), readings[key]).reshape(len(block), -1)
 
-    status = _worst_status([reading.status for reading in readings.values()], len(block))
-    return _seen(model, block, read, contacts, status)
+    return _seen(model, block, read, contacts, {key: reading.status for key, reading in readings.items()})
 
 
 def _backlashes_by_key(model: Model) -> dict[SeatKey, list[Backlash]]:
@@ -388,10 +420,3 @@ def _contact_columns(
     }
     columns[f"contact:{mesh.name}.tooth"] = tooth[first] % mesh.pair.pinion.teeth
     return columns
-
-
-def _worst_status(each: Sequence[NDArray[np.int8]], trials_count: int) -> NDArray[np.int8]:
-    worst = np.full(trials_count, OK, dtype=np.int8)
-    for status in each:
-        worst = np.maximum(worst, status.reshape(trials_count, -1).max(axis=1))
-    return worst

@@ -72,11 +72,23 @@ class Play:
         for stage in kind.stages:
             yield stage.link, stage.factor, self.of(stage)
 
+    def overlap(self) -> Array:
+        """What meshes and parallel ways lack together where they bind [mm or rad], (trials, positions), 0 or less.
+
+        That of a train which is jammed somewhere: the play of its other stages does not free it.
+        """
+        if isinstance(self.measure.kind, Backlash):
+            return np.minimum(self.free(), 0.0)
+        stages = (stage for stage in self.measure.kind.stages if not _is_reducer(stage))
+        return np.asarray(sum(stage.factor * np.minimum(self.of(stage), 0.0) for stage in stages))
+
     def bound(self) -> NDArray[np.bool_]:
-        """Trials in which parallel ways bind each other at any position, (trials,)."""
+        """Where parallel ways bind each other, (trials, positions)."""
+        tight = np.zeros((len(self.deviations), positions_count(self.measure)), dtype=bool)
         stages = self.measure.kind.stages if isinstance(self.measure.kind, LostMotion) else ()
-        tight = [np.any(self.of(stage) < -FREE, axis=1) for stage in _parallel(stages)]
-        return np.any(tight, axis=0) if tight else np.zeros(len(self.deviations), dtype=bool)
+        for stage in _parallel(stages):
+            tight |= self.of(stage) < -FREE
+        return tight
 
     def of(self, stage: AnyStage) -> Array:
         """What a stage leaves free at the shaft that it drives [rad], (trials, positions)."""
@@ -102,6 +114,10 @@ class Play:
 
     def _flank(self, stage: Stage) -> int | None:
         return None if stage.backlash is None else self.model.mesh(stage.backlash.mesh).working_flank
+
+
+def _is_reducer(stage: AnyStage) -> bool:
+    return isinstance(stage, Stage) and stage.backlash is None
 
 
 def _parallel(stages: Iterable[AnyStage]) -> Iterator[ParallelStage]:

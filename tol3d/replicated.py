@@ -15,6 +15,7 @@ from tol3d.statistics.limits import CONFIDENCE
 
 Array = NDArray[np.float64]
 Rows = Mapping[int, slice]
+Mask = NDArray[np.bool_]
 
 LEAST_COUNT = 5.0  # a replicate, in the mean, inside and outside a limit: fewer are not near a normal
 
@@ -38,12 +39,15 @@ class Replicated:
     limits: Mapping[int, LimitCounts]
 
     @classmethod
-    def of(cls, values: Array, rows: Rows, lower: float | None, upper: float | None) -> "Replicated":
-        """Of a block of values (trials,), nan where a trial failed; None is no limit."""
+    def of(
+        cls, values: Array, rows: Rows, lower: float | None, upper: float | None, lacking: Mask | None = None
+    ) -> "Replicated":
+        """Of a block of values (trials,), nan where a trial failed; limits and `lacking` as in LimitCounts.of."""
         own = {replicate: values[part] for replicate, part in rows.items()}
+        short = {replicate: None if lacking is None else lacking[part] for replicate, part in rows.items()}
         return cls(
             {replicate: Moments.of(part[~np.isnan(part)]) for replicate, part in own.items()},
-            {replicate: LimitCounts.of(part, lower, upper) for replicate, part in own.items()},
+            {replicate: LimitCounts.of(part, lower, upper, short[replicate]) for replicate, part in own.items()},
         )
 
     def merge(self, other: "Replicated") -> "Replicated":
@@ -74,6 +78,11 @@ class Replicated:
     def above_interval_ppm(self) -> tuple[float, float] | None:
         """Bounds [ppm] of the true share above the upper limit, as _interval_ppm makes them."""
         return self._interval_ppm(lambda counts: counts.above_limit)
+
+    @property
+    def out_interval_ppm(self) -> tuple[float, float] | None:
+        """Bounds [ppm] of the true share that is out of limits or failed, as _interval_ppm makes them."""
+        return self._interval_ppm(lambda counts: counts.out_of_limits)
 
     def _interval_ppm(self, share_of: Callable[[LimitCounts], Proportion]) -> tuple[float, float] | None:
         """Student's interval of the replicates' shares, which are independent of each other.

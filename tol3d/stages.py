@@ -13,6 +13,7 @@ from tol3d.distributions import Distribution
 from tol3d.gears import LEFT
 from tol3d.model import Backlash, LostMotion, Measure, Model, ReducerBacklash
 from tol3d.model.measure import AnyStage, ParallelStage, Tip
+from tol3d.outcome import told
 from tol3d.statistics import FeatureSums, Moments
 from tol3d.units import ARCMIN
 
@@ -23,7 +24,7 @@ ENDS = ("low_3sigma", "mean", "high_3sigma")
 
 @dataclass(frozen=True)
 class Stages:
-    """One road's stages of a train, in the order of the measure's; trials of which any stage failed are left out.
+    """One road's stages of a train, in the order of the measure's; trials that did not seat are left out.
 
     Args:
         moments: of each stage's own lost motion, at the shaft that it drives [arcmin].
@@ -40,7 +41,8 @@ class Stages:
         if names[0] not in columns:
             return None
         rows = np.stack([np.asarray(columns[name], dtype=np.float64) for name in names])
-        rows = rows[:, ~np.isnan(rows.sum(axis=0))]
+        whole = np.asarray(told(columns, road, measure.name).values, dtype=np.float64)
+        rows = rows[:, ~np.isnan(rows.sum(axis=0) + whole)]
         return cls(tuple(Moments.of(row) for row in rows), FeatureSums.of_each(rows[:-1], rows[-1:])[0])
 
     def merge(self, other: "Stages") -> "Stages":

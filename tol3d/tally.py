@@ -11,9 +11,11 @@ from tol3d.analytic import ClosedForm, closed_form
 from tol3d.engines import STATUS_TEXT
 from tol3d.features import feature_groups, feature_key, features
 from tol3d.model import Measure, Model
-from tol3d.replicated import Replicated, rows_of_replicates
+from tol3d.outcome import SEATED, Told, status_column, told
+from tol3d.replicated import rows_of_replicates
+from tol3d.sample import Sample, finite, in_unit, lacking_of
 from tol3d.stages import StageTallies, merged, stage_tallies
-from tol3d.statistics import Agreement, FeatureSums, Grid, LimitCounts, Moments, pp, ppk, shares
+from tol3d.statistics import Agreement, FeatureSums, Grid, LimitCounts, Moments, shares
 from tol3d.statistics.door import quick_products
 from tol3d.statistics.grid import BINS
 from tol3d.statistics.variance_shares import Products, plain_products
@@ -26,7 +28,6 @@ GRID_SIGMAS = 12.0  # the grid spans the mean +- this many sigma of both roads: 
 LEAST_SPAN = 1e-3  # mm or rad; for a model in which nothing varies
 HISTOGRAM_BINS = 64  # bars kept in summary.json for pictures
 ROADS = ("analytic", "geometric")
-QUANTILES = {"p0.135": 0.00135, "p50": 0.5, "p99.865": 0.99865}
 
 
 def grids_of(model: Model, pilot: Columns) -> Mapping[str, Grid]:
@@ -45,7 +46,9 @@ def grids_of(model: Model, pilot: Columns) -> Mapping[str, Grid]:
 def _grid(measure: Measure, form: ClosedForm | None, pilot: Columns) -> Grid:
     spans = [(form.mean * measure.per_internal, form.sigma * measure.per_internal)] if form else []
     for road in ("analytic", "geometric"):
-        values = np.asarray(pilot.get(f"{road}:{measure.name}", ()), dtype=np.float64)
+        if f"{road}:{measure.name}" not in pilot:
+            continue
+        values = told(pilot, road, measure.name).values
         good = values[~np.isnan(values)]
         spans += [(float(good.mean()), float(good.std()))] if len(good) else []
     reach = [max(GRID_SIGMAS * sigma, LEAST_SPAN * measure.per_internal) for _, sigma in spans]
@@ -55,50 +58,10 @@ def _grid(measure: Measure, form: ClosedForm | None, pilot: Columns) -> Grid:
 
 
 @dataclass(frozen=True)
-class Sample:
-    """One road's sample of one measure: moments, limits, a fine grid of counts.
-
-    `replicated` is the sample by replicates where its trials are not independent, and tells its errors then.
-    """
-
-    moments: Moments
-    grid: Grid
-    limits: LimitCounts
-    replicated: Replicated | None = None
-
-    @classmethod
-    def of(cls, measure: Measure, values: Array, empty: Grid, rows: Mapping[int, slice]) -> "Sample":
-        """Sample of a block; values (trials,) in the measure's unit, nan where a trial failed.
-
-        Args:
-            measure: what was measured.
-            values: of the block's trials.
-            empty: the measure's grid.
-            rows: which of them belong to each replicate; empty for independent trials.
-        """
-        good = values[~np.isnan(values)]
-        lower, upper = in_unit(measure, measure.lower_limit), in_unit(measure, measure.upper_limit)
-        return cls(
-            moments=Moments.of(good),
-            grid=empty.add(good),
-            limits=LimitCounts.of(values, lower=lower, upper=upper),
-            replicated=Replicated.of(values, rows, lower, upper) if rows else None,
-        )
-
-    def merge(self, other: "Sample") -> "Sample":
-        """Both samples as one."""
-        return Sample(
-            self.moments.merge(other.moments),
-            self.grid.merge(other.grid),
-            self.limits.merge(other.limits),
-            self.replicated.merge(other.replicated) if self.replicated and other.replicated else None,
-        )
-
-
-@dataclass(frozen=True)
 class MeasureTally:
-    """All that is kept of one measure."""
+    """All that is kept of one measure; `status` counts what became of its trials on the geometric road."""
 
+    status: Mapping[str, int]
     analytic: Sample
     geometric: Sample | None
     agreement: Agreement | None
@@ -108,6 +71,7 @@ class MeasureTally:
     def merge(self, other: "MeasureTally") -> "MeasureTally":
         """Both tallies as one."""
         return MeasureTally(
+            _added(self.status, other.status),
             self.analytic.merge(other.analytic),
             self.geometric.merge(other.geometric) if self.geometric and other.geometric else None,
             self.agreement.merge(other.agreement) if self.agreement and other.agreement else None,
@@ -126,10 +90,10 @@ class _Block:
     columns: Columns
     rows: Mapping[int, slice]
 
-    def values(self, road: str, measure: Measure) -> Array | None:
-        """A measure's column; None where that road was not gone."""
-        column = self.columns.get(f"{road}:{measure.name}")
-        return None if column is None else np.asarray(column, dtype=np.float64)
+    def told(self, measures: Sequence[Measure]) -> dict[tuple[str, str], Told]:
+        """What each road that was gone tells of each measure, by road and name."""
+        keys = [(road, measure.name) for measure in measures for road in ROADS]
+        return {(r, name): told(self.columns, r, name) for r, name in keys if f"{r}:{name}" in self.columns}
 
     @property
     def _products(self) -> Products:
@@ -137,30 +101,31 @@ class _Block:
 
     def tally(self, measures: Sequence[Measure], grids: Mapping[str, Grid]) -> dict[str, MeasureTally]:
         """Tallies of scalar measures."""
-        sums = self._sums(measures)
+        found = self.told(measures)
+        sums = self._sums(measures, {key: own.values for key, own in found.items()})
         tallies = {}
         for measure in measures:
-            analytic, geometric = (self.values(road, measure) for road in ROADS)
-            if analytic is None:
-                raise ValueError(f"no analytic column of {measure.name}")
+            analytic, geometric = found["analytic", measure.name], found.get(("geometric", measure.name))
             empty = grids[measure.name]
-            seen = geometric is not None
             tallies[measure.name] = MeasureTally(
+                status_counts(self.columns, measure),
                 Sample.of(measure, analytic, empty, self.rows),
-                Sample.of(measure, geometric, empty, self.rows) if geometric is not None else None,
-                Agreement.of(geometric, analytic) if geometric is not None else None,
+                Sample.of(measure, geometric, empty, self.rows) if geometric else None,
+                Agreement.of(geometric.values, analytic.values) if geometric else None,
                 sums["analytic", measure.name],
-                sums["geometric", measure.name] if seen else None,
+                sums["geometric", measure.name] if geometric else None,
             )
         return tallies
 
-    def _sums(self, measures: Sequence[Measure]) -> dict[tuple[str, str], FeatureSums]:
+    def _sums(
+        self, measures: Sequence[Measure], values: Mapping[tuple[str, str], Array]
+    ) -> dict[tuple[str, str], FeatureSums]:
         """What each road's column of each measure has in common with its features, by road and name."""
         sums: dict[tuple[str, str], FeatureSums] = {}
         for key in dict.fromkeys(map(feature_key, measures)):
             alike = [measure for measure in measures if feature_key(measure) == key]
             seen = features(self.model, alike[0], self.columns)
-            columns = {(r, m.name): column for m in alike for r in ROADS if (column := self.values(r, m)) is not None}
+            columns = {(r, m.name): values[r, m.name] for m in alike for r in ROADS if (r, m.name) in values}
             whole = {name: column for name, column in columns.items() if not np.isnan(np.min(column))}
             if whole:
                 each = FeatureSums.of_each(seen, np.stack(list(whole.values())), self._products)
@@ -173,31 +138,38 @@ class _Block:
 
 @dataclass(frozen=True)
 class CurveTally:
-    """A curve measure: moments at each position, for both roads, and the trials with any position out of limits."""
+    """A curve measure: moments at each position, for both roads, and the trials with any position out of limits.
 
+    A trial counts at every position, or where one of them did not seat at none.
+    """
+
+    status: Mapping[str, int]
     analytic: tuple[Moments, ...]
     geometric: tuple[Moments, ...] | None
-    below: Mapping[str, LimitCounts]
-    above: Mapping[str, LimitCounts]
+    limits: Mapping[str, LimitCounts]
+    deepest: float
 
     @classmethod
     def of(cls, measure: Measure, columns: Columns) -> "CurveTally":
         """Tally of one block of columns."""
-
-        curves = {
-            road: np.asarray(columns[f"{road}:{measure.name}"], dtype=np.float64)
-            for road in ("analytic", "geometric")
-            if f"{road}:{measure.name}" in columns
-        }
+        curves = {road: told(columns, road, measure.name) for road in ROADS if f"{road}:{measure.name}" in columns}
         moments = {
-            road: tuple(Moments.of(column[~np.isnan(column)]) for column in values.T) for road, values in curves.items()
+            road: tuple(Moments.of(column[~np.isnan(column)]) for column in own.values.T)
+            for road, own in curves.items()
         }
         lower, upper = in_unit(measure, measure.lower_limit), in_unit(measure, measure.upper_limit)
+        limits = {
+            road: LimitCounts.of_spans(
+                own.values.min(axis=1), own.values.max(axis=1), lower, upper, lacking_of(measure, own)
+            )
+            for road, own in curves.items()
+        }
         return cls(
+            status_counts(columns, measure),
             moments["analytic"],
             moments.get("geometric"),
-            below={road: LimitCounts.of(values.min(axis=1), lower, None) for road, values in curves.items()},
-            above={road: LimitCounts.of(values.max(axis=1), None, upper) for road, values in curves.items()},
+            limits,
+            min(own.deepest for own in curves.values()),
         )
 
     def merge(self, other: "CurveTally") -> "CurveTally":
@@ -207,10 +179,11 @@ class CurveTally:
             return tuple(a.merge(b) for a, b in zip(mine, its, strict=True))
 
         return CurveTally(
+            _added(self.status, other.status),
             merged(self.analytic, other.analytic),
             merged(self.geometric, other.geometric) if self.geometric and other.geometric else None,
-            {road: counts.merge(other.below[road]) for road, counts in self.below.items()},
-            {road: counts.merge(other.above[road]) for road, counts in self.above.items()},
+            {road: counts.merge(other.limits[road]) for road, counts in self.limits.items()},
+            min(self.deepest, other.deepest),
         )
 
 
@@ -229,16 +202,12 @@ class Tally:
     def of(cls, model: Model, grids: Mapping[str, Grid], columns: Columns, first: int = 0) -> "Tally":
         """Tally of one block that begins at trial `first`; `grids` as grids_of gives them."""
         trials = len(next(iter(columns.values())))
-        status = columns.get("status")
-        counts = {text: trials if text == "ok" else 0 for text in STATUS_TEXT.values()}
-        if status is not None:
-            counts = {text: int(np.count_nonzero(status == text)) for text in STATUS_TEXT.values()}
         rows = rows_of_replicates(model.study, first, trials)
         scalars = [measure for measure in model.measures if measure.take != "curve"]
         curves = [measure for measure in model.measures if measure.take == "curve"]
         return cls(
             trials,
-            counts,
+            _counted(columns.get("status"), trials),
             _unphysical(model, columns),
             _Block(model, columns, rows).tally(scalars, grids),
             {measure.name: CurveTally.of(measure, columns) for measure in curves},
@@ -249,12 +218,30 @@ class Tally:
         """Both tallies as one; fold blocks in their order."""
         return Tally(
             self.trials + other.trials,
-            {text: count + other.status[text] for text, count in self.status.items()},
-            {name: count + other.unphysical[name] for name, count in self.unphysical.items()},
+            _added(self.status, other.status),
+            _added(self.unphysical, other.unphysical),
             {name: tally.merge(other.measures[name]) for name, tally in self.measures.items()},
             {name: tally.merge(other.curves[name]) for name, tally in self.curves.items()},
             merged(self.stages, other.stages),
         )
+
+
+def status_counts(columns: Columns, measure: Measure) -> dict[str, int]:
+    """How many trials of a block ended how, for one measure; those of the analytic road all seat."""
+    return _counted(columns.get(status_column(measure.name)), len(columns[f"analytic:{measure.name}"]))
+
+
+def _counted(status: NDArray[np.generic] | None, trials: int) -> dict[str, int]:
+    """How many of the trials have each status (trials,)."""
+    seated = trials if status is None else int(np.count_nonzero(status == SEATED))
+    failed = (text for text in STATUS_TEXT.values() if text != SEATED)
+    if seated == trials:
+        return {SEATED: trials, **dict.fromkeys(failed, 0)}
+    return {SEATED: seated, **{text: int(np.count_nonzero(status == text)) for text in failed}}
+
+
+def _added(mine: Mapping[str, int], its: Mapping[str, int]) -> dict[str, int]:
+    return {name: count + its[name] for name, count in mine.items()}
 
 
 def _unphysical(model: Model, columns: Columns) -> dict[str, int]:
@@ -264,78 +251,6 @@ def _unphysical(model: Model, columns: Columns) -> dict[str, int]:
             drawn = np.asarray(columns[contributor.columns[0]], dtype=np.float64)
             counts[contributor.name] = int(np.count_nonzero(drawn < contributor.least / contributor.per_unit))
     return counts
-
-
-def in_unit(measure: Measure, value: float | None) -> float | None:
-    """A length or angle in the measure's unit; None stays None."""
-    return None if value is None else value * measure.per_internal
-
-
-def sample_summary(measure: Measure, sample: Sample) -> dict[str, Any]:
-    """A sample as summary.json shows it, in the measure's unit."""
-    moments, limits = sample.moments, sample.limits
-    lower, upper = in_unit(measure, measure.lower_limit), in_unit(measure, measure.upper_limit)
-    errors = sample.replicated or _Independent(moments, limits)
-    summary: dict[str, Any] = {
-        "count": moments.count,
-        "mean": moments.mean if moments.count else None,
-        "sigma": moments.sigma,
-        "low_3sigma": moments.mean - 3 * moments.sigma,
-        "high_3sigma": moments.mean + 3 * moments.sigma,
-        "sample_min": moments.minimum,
-        "sample_max": moments.maximum,
-        **{name: _quantile(sample, p) for name, p in QUANTILES.items()},
-        "quantile_error": sample.grid.width,
-        "outside_grid": sample.grid.underflow + sample.grid.overflow,
-        "below_limit_ppm": limits.below_limit.ppm,
-        "below_limit_ppm_95": errors.below_interval_ppm,
-        "above_limit_ppm": limits.above_limit.ppm,
-        "above_limit_ppm_95": errors.above_interval_ppm,
-        "failed_ppm": limits.failures.ppm,
-        "mean_se": errors.mean_se,
-        "sigma_se": errors.sigma_se,
-        "error_by": "sample" if sample.replicated is None else "replicates",
-        "skewness": moments.skewness,
-        "kurtosis": moments.excess_kurtosis,
-        "pp": pp(lower, upper, moments.sigma),
-        "ppk": ppk(lower, upper, moments.mean, moments.sigma),
-    }
-    return {key: _finite(value) for key, value in summary.items()}
-
-
-@dataclass(frozen=True)
-class _Independent:
-    """Errors of a sample of independent trials."""
-
-    moments: Moments
-    limits: LimitCounts
-
-    @property
-    def mean_se(self) -> float:
-        return self.moments.mean_se
-
-    @property
-    def sigma_se(self) -> float:
-        return self.moments.sigma_se
-
-    @property
-    def below_interval_ppm(self) -> tuple[float, float] | None:
-        return self.limits.below_limit.interval_ppm() if self.moments.count else None
-
-    @property
-    def above_interval_ppm(self) -> tuple[float, float] | None:
-        return self.limits.above_limit.interval_ppm() if self.moments.count else None
-
-
-def _quantile(sample: Sample, p: float) -> float | None:
-    """The grid's quantile, which lies within a bin, not beyond the sample's own ends."""
-    value = sample.grid.quantile(p)
-    return None if value is None else min(max(value, sample.moments.minimum), sample.moments.maximum)
-
-
-def _finite(value: Any) -> Any:
-    """JSON has no nan: what cannot be told (a sigma of one trial) is null."""
-    return None if isinstance(value, float) and not np.isfinite(value) else value
 
 
 def histograms(tally: MeasureTally) -> dict[str, Any]:
@@ -362,4 +277,4 @@ def share_percents(
     if sums is None:
         return dict.fromkeys(groups, (None, None))
     found = shares(sums, groups)
-    return {name: (_finite(100 * found.share[name]), _finite(100 * found.standard_error[name])) for name in groups}
+    return {name: (finite(100 * found.share[name]), finite(100 * found.standard_error[name])) for name in groups}

@@ -15,6 +15,7 @@ from tol3d.analytic import first_order, per_normal_backlash
 from tol3d.block import Block, Columns, drawn_block, simulate_block
 from tol3d.engines import Engine
 from tol3d.model import Measure, Model
+from tol3d.outcome import status_column
 from tol3d.samplers.monte_carlo import uniforms
 from tol3d.task import fcl_engine, strips_of
 
@@ -56,7 +57,7 @@ def witness_summary(model: Model, engine: Engine, trials: int) -> dict[str, Any]
         "profile_steps": model.study.profile_steps,
         "measures": {
             measure.name: {
-                **_differences(_values(seen, measure) - _values(given, measure), chosen),
+                **_differences(_difference(seen, given, measure), chosen),
                 "expected_at_most": _of_gaps(model, measure, FLANKS_OF_A_BACKLASH * fcl.chord_error),
                 "allowance": _of_gaps(model, measure, ALLOWANCE_MM),
             }
@@ -109,8 +110,16 @@ def _joined(blocks: Sequence[Block]) -> Block:
     )
 
 
-def _values(columns: Columns, measure: Measure) -> Array:
-    return np.asarray(columns[f"geometric:{measure.name}"], dtype=np.float64)
+def _difference(seen: Columns, given: Columns, measure: Measure) -> Array:
+    """By how much two engines differ, (trials,) or (trials, positions); nan where trials end with another status.
+
+    A train that is jammed by one engine only differs by all of its other stages' play.
+    """
+    column = f"geometric:{measure.name}"
+    difference = np.asarray(seen[column], dtype=np.float64) - np.asarray(given[column], dtype=np.float64)
+    status = status_column(measure.name)
+    difference[seen[status] != given[status]] = np.nan
+    return difference
 
 
 def _differences(difference: Array, chosen: NDArray[np.int64]) -> dict[str, float | int | None]:

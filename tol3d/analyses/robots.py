@@ -19,6 +19,7 @@ from tol3d.engines import Engine
 from tol3d.model import Measure, Model
 from tol3d.model.layout import Drive
 from tol3d.model.measure import AnyStage
+from tol3d.outcome import SEATED, status_column
 from tol3d.samplers import MonteCarlo, Stream
 
 Array = NDArray[np.float64]
@@ -73,7 +74,7 @@ def simulated_robots(
     columns = {name: np.concatenate([piece[name] for piece in pieces]) for name in pieces[0]}
     roads = [road for road in ("analytic", "geometric") if f"{road}:{measure.name}" in columns]
     return Robots(
-        seated=np.all(columns["status"] == "ok", axis=1) if "status" in columns else np.ones(model.study.trials, bool),
+        seated=_seated(columns, measure, model.study.trials),
         columns={name: each[:, -1] for name, each in columns.items()},
         lost={road: columns[f"{road}:{measure.name}"][:, -1].astype(np.float64) for road in roads},
         own={road: _own_mean(columns, road, measure, compensated) for road in roads},
@@ -86,6 +87,12 @@ def _columns(
     """Columns (robots, P + 1), the study's own position last."""
     columns = simulate_block(model, engine, robots_block(model, first, count, positions))
     return {name: values.reshape(count, positions + 1) for name, values in columns.items()}
+
+
+def _seated(columns: Columns, measure: Measure, robots: int) -> NDArray[np.bool_]:
+    """Robots whose measure seats at every position, (robots,); all of them on the analytic road."""
+    status = columns.get(status_column(measure.name))
+    return np.ones(robots, bool) if status is None else np.all(status == SEATED, axis=1)
 
 
 def _own_mean(columns: Columns, road: str, measure: Measure, compensated: Sequence[AnyStage]) -> Array:

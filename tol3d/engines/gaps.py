@@ -113,7 +113,8 @@ class MeshReading:
     Args:
         driver_angle, driven_angle: turns of the gears at rest [rad], (rows,).
         gap: smallest gap of the non-working flanks [mm], (rows,).
-        driven_turn, driver_turn: free turn of one gear, the other held at rest [rad], (rows,); nan where not wanted.
+        driven_turn, driver_turn: free turn of one gear, the other held at rest [rad], (rows,); below 0 where the
+            non-working flanks overlap; nan where not wanted.
         contact: point on the driver [mm], (rows, 3), world.
         tooth: the driver's tooth that touches, (rows,).
         status: (rows,), as the mesh move has it.

@@ -1,4 +1,4 @@
-"""What became of a mesh that was brought to contact."""
+"""What became of a mesh that was brought to contact; a larger code is worse, for less is known of the build."""
 
 from typing import Final
 
@@ -8,4 +8,5 @@ NO_CONTACT: Final = 2
 OUT_OF_RANGE: Final = 3
 
 STATUS_TEXT: Final = {OK: "ok", INTERFERES: "interferes", NO_CONTACT: "no contact", OUT_OF_RANGE: "out of range"}
-"""INTERFERES: the non-working flanks overlap. OUT_OF_RANGE: so far from nominal that other teeth may meet."""
+"""INTERFERES: the non-working flanks overlap, by what a measure below 0 tells. OUT_OF_RANGE: so far from nominal that
+other teeth may meet."""

@@ -50,6 +50,18 @@ def columns_of(measure: Mapping[str, Any]) -> list[Column]:
     ]
 
 
+def seated_text(measure: Mapping[str, Any]) -> str:
+    """Of how many trials a measure's mean and sigma are, where some of them failed; else nothing.
+
+    >>> seated_text({"status": {"ok": 19441, "interferes": 559}}), seated_text({"status": {"ok": 20}})
+    ('of 19441 of 20000 that seated', '')
+    """
+    status: Mapping[str, int] = measure.get("status", {})
+    trials = sum(status.values())
+    seated = status.get("ok", trials)
+    return f"of {seated} of {trials} that seated" if seated != trials else ""
+
+
 def best_road(measure: Mapping[str, Any]) -> Road:
     """The road that a summary is told by: the 3D simulation where there is one."""
     return "geometric" if "geometric" in measure or "geometric" in measure.get("curve", {}) else "analytic"

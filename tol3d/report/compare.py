@@ -10,9 +10,10 @@ from rich.console import Group, RenderableType
 from rich.text import Text
 
 from tol3d.errors import InputError
+from tol3d.report.column import seated_text
 from tol3d.report.difference import difference_of
 from tol3d.report.heading import heading, reading_words
-from tol3d.report.number import NOTHING, UNIT_SIGNS, difference_text, value_text
+from tol3d.report.number import NOTHING, UNIT_SIGNS, difference_text, share_text, value_text
 from tol3d.report.sheet import Heading, Row, Sheet, note
 from tol3d.result import Run
 
@@ -78,9 +79,16 @@ def comparison_report(runs: Sequence[Run]) -> Group:
         blocks += [Text(heading(own[0][1].summary["measures"][measure.name]), style="dim")]
         blocks += [note(NO_ONE_MEAN)] if measure.jumps else ["", _table(measure.name, measure.unit, own)]
     words = "low and high: mean ∓ 3 sigma; max and rms: of 3D simulation − analytic, trial by trial"
+    words += (
+        "; means and sigmas are of the trials that seated, out of limits is of all of them" if _any_failed(runs) else ""
+    )
     words += "; shift: of the mean against the first run" if len(runs) > 1 else ""
     blocks.append(Text(f"\n{words}", style="dim"))
     return Group(*blocks)
+
+
+def _any_failed(runs: Sequence[Run]) -> bool:
+    return any(seated_text(measure) for run in runs for measure in run.summary["measures"].values())
 
 
 def labelled(runs: Sequence[Run]) -> list[tuple[str, Run]]:
@@ -103,18 +111,31 @@ def _end_of(path: Path, others: Sequence[Path]) -> str:
 
 def _table(name: str, unit: str, runs: Sequence[tuple[str, Run]]) -> Sheet:
     shift = ("shift",) if len(runs) > 1 else ()
-    numbers = ("trials", "mean", "sigma", "low", "high", "max", "rms", *shift)
+    out = ("out of limits",) if any(_judged(run.summary["measures"][name]) for _, run in runs) else ()
+    numbers = ("trials", "mean", "sigma", "low", "high", *out, "max", "rms", *shift)
     headings = [Heading("road", words=True), *(Heading(word) for word in numbers)]
     rows, first = [], dict[str, float]()
     for label, run in runs:
         for index, (road, sample) in enumerate(_samples(run.summary["measures"][name])):
             mean = sample.get("mean")
-            cells = [SHORT[road], str(sample.get("count", "")), *(value_text(sample.get(key), unit) for key in KEYS)]
+            cells = [SHORT[road], _trials_text(sample), *(value_text(sample.get(key), unit) for key in KEYS)]
+            cells += [share_text(sample.get("out_ppm"))] if out else []
             cells += _differences(run, name, unit) if road == "geometric" else [NOTHING, NOTHING]
             if shift:
                 cells.append(NOTHING if mean is None else _bare(mean - first.setdefault(road, mean), unit))
             rows.append(Row(label if index == 0 else "", cells))
     return Sheet("run" if unit == "arcmin" else f"run [{UNIT_SIGNS[unit]}]", headings, rows, repeated=1)
+
+
+def _judged(measure: Summary) -> bool:
+    """Whether trials of a measure can be out: it has a limit, or some of them failed."""
+    return (measure["lower_limit"], measure["upper_limit"]) != (None, None) or bool(seated_text(measure))
+
+
+def _trials_text(sample: Summary) -> str:
+    """How many trials its mean and sigma are of, and of how many there were where some failed."""
+    count, trials = sample.get("count", ""), sample.get("trials")
+    return f"{count} of {trials}" if trials is not None and count not in ("", trials) else str(count)
 
 
 def _samples(measure: Summary) -> Iterator[tuple[str, Summary]]:
@@ -124,7 +145,13 @@ def _samples(measure: Summary) -> Iterator[tuple[str, Summary]]:
             yield road, measure[road]
         elif road in measure.get("curve", {}):
             curve = {key: [v for v in measure["curve"][road][key] if v is not None] for key in ("mean", "sigma")}
-            yield road, {key: float(np.mean(values)) for key, values in curve.items() if values}
+            own = {key: float(np.mean(values)) for key, values in curve.items() if values}
+            status = measure.get("status", {}) if road == "geometric" else {}
+            out = measure["curve"][road].get("out_ppm")
+            yield (
+                road,
+                own | {"out_ppm": out, **({"count": status["ok"], "trials": sum(status.values())} if status else {})},
+            )
 
 
 def _differences(run: Run, name: str, unit: str) -> list[str]:

@@ -24,6 +24,7 @@ from tol3d.report.canvas import (
     say_instead,
     title_axes,
 )
+from tol3d.report.column import seated_text
 from tol3d.report.compare import Compared, labelled, measures_of
 from tol3d.report.curve import Stepped, position_label
 from tol3d.report.difference import Difference, difference_of
@@ -124,7 +125,7 @@ def _draw_roads(axes: Axes, measure: Compared, shown: Sequence[Shown], *, single
     curve = first["take"] == "curve"
     for each in shown:
         (_draw_curves if curve else _draw_histograms)(axes, each.run.summary["measures"][name], each.colours, single)
-    _add_marks(axes, shown, curve=curve, single=single)
+    _add_marks(axes, name, shown, curve=curve, single=single)
     if curve:
         label_angles(axes.yaxis, unit)
         axes.set_xlabel(position_label(first), fontsize=10)
@@ -159,18 +160,20 @@ def _draw_curves(axes: Axes, measure: Summary, colours: Mapping[str, str], singl
             axes.plot(stepped.x, stepped(measure["curve"][road]["mean"]), style, linewidth=2, color=colours[road])
 
 
-def _add_marks(axes: Axes, shown: Sequence[Shown], *, curve: bool, single: bool) -> None:
-    """What the legend tells: the colour of each run, and how its roads are drawn."""
+def _add_marks(axes: Axes, name: str, shown: Sequence[Shown], *, curve: bool, single: bool) -> None:
+    """What the legend tells: the colour of each run, of how many trials it is where some failed, how roads are drawn."""
+    seated = [f", {text}" if (text := seated_text(each.run.summary["measures"][name])) else "" for each in shown]
     word = ", mean" if curve else ""
     if not single:
-        for each in shown:
-            axes.add_patch(_unseen(each.colours["geometric"], _broken(each.label, 0)))
+        for each, text in zip(shown, seated, strict=True):
+            axes.add_patch(_unseen(each.colours["geometric"], _broken(f"{each.label}{text}", 0)))
     own = shown[0].colours if single else dict.fromkeys(ROADS, GREY)
+    own_seated = seated[0] if single else ""
     dashed = "-" if single and not curve else "--"
     if curve:
-        axes.plot([], [], color=own["geometric"], linewidth=2, label=f"{ROADS['geometric']}{word}")
+        axes.plot([], [], color=own["geometric"], linewidth=2, label=f"{ROADS['geometric']}{word}{own_seated}")
     else:
-        axes.add_patch(_unseen(own["geometric"], ROADS["geometric"]))
+        axes.add_patch(_unseen(own["geometric"], f"{ROADS['geometric']}{own_seated}"))
     axes.plot([], [], dashed, color=own["analytic"], linewidth=1.8, label=f"{ROADS['analytic']}{word}")
 
 

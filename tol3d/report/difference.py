@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from tol3d.outcome import status_column, told
 from tol3d.report.bars import Bars
 from tol3d.result import Run
 
@@ -45,17 +46,16 @@ def difference_of(run: Run, measure: str) -> Difference | None:
     Memory does not grow with the number of trials: one block of columns is held at a time.
     """
     summary = run.summary["measures"][measure]
-    names = (f"analytic:{measure}", f"geometric:{measure}")
-    if not set(names) <= set(run.column_names):
+    if not {f"analytic:{measure}", f"geometric:{measure}"} <= set(run.column_names):
         return None
     own = f"position:{summary['of']} [deg]"  # a train has none
     position = own if summary["over"] == "random" and own in run.column_names else None
-    ends = np.array([_ends(analytic, geometric) for analytic, geometric, _ in _blocks(run, names, position)])
+    ends = np.array([_ends(analytic, geometric) for analytic, geometric, _ in _blocks(run, measure, position)])
     low, high = float(ends.min()), float(ends.max())
     edges = np.linspace(low, max(high, low + SMALLEST_SPAN), BARS + 1)
     counts, total, squares = np.zeros(BARS), 0, 0.0
     at, values = np.empty(0), np.empty(0)
-    for analytic, geometric, places in _blocks(run, names, position):
+    for analytic, geometric, places in _blocks(run, measure, position):
         difference = (geometric - analytic).ravel()
         known = ~np.isnan(difference)
         counts += np.histogram(difference[known], edges)[0]
@@ -88,8 +88,10 @@ def _ends(analytic: Array, geometric: Array) -> tuple[float, float]:
     return float(np.min(known, initial=0.0)), float(np.max(known, initial=0.0))
 
 
-def _blocks(run: Run, names: tuple[str, str], position: str | None) -> Iterator[tuple[Array, Array, Array | None]]:
-    """Analytic and geometric values and positions, one file of trials at a time."""
-    for columns in run.pieces(*names, *((position,) if position else ())):
-        analytic, geometric = (np.asarray(columns[name], dtype=np.float64) for name in names)
+def _blocks(run: Run, measure: str, position: str | None) -> Iterator[tuple[Array, Array, Array | None]]:
+    """Analytic and geometric values and positions, one file of trials at a time; nan where a trial did not seat."""
+    wanted = (f"analytic:{measure}", f"geometric:{measure}", status_column(measure))
+    asked = tuple(name for name in wanted if name in run.column_names)
+    for columns in run.pieces(*asked, *((position,) if position else ())):
+        analytic, geometric = (told(columns, road, measure).values for road in ("analytic", "geometric"))
         yield analytic, geometric, np.asarray(columns[position], dtype=np.float64) if position else None

@@ -85,12 +85,18 @@ def position_of(measure: Mapping[str, Any]) -> str:
 def worst_words(measures: Mapping[str, Mapping[str, Any]]) -> str:
     """What makes a trial the worst, see `worst_trial`.
 
+    >>> worst_words({"free play": {"lower_limit": 20.0, "upper_limit": None, "status": {"interferes": 3}}})
+    'the deepest jammed by free play'
+
     >>> worst_words({"free play": {"lower_limit": 20.0, "upper_limit": None}})
     'the nearest to a limit of free play, or the furthest beyond it'
     >>> worst_words({"free play": {"lower_limit": None, "upper_limit": None, "kind": "normal_backlash"}})
     'the smallest free play, for there are no limits'
     """
     limited = [name for name, m in measures.items() if (m["lower_limit"], m["upper_limit"]) != (None, None)]
+    judged = limited or [*measures][:1]
+    if jammed := [name for name in judged if measures[name].get("status", {}).get("interferes")]:
+        return f"the deepest jammed by {' or '.join(jammed)}"
     if not limited:
         name, measure = next(iter(measures.items()))
         word = "largest" if measure["kind"] in TRAIN_KINDS else "smallest"

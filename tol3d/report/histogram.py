@@ -23,7 +23,7 @@ from tol3d.report.canvas import (
     save_figure,
     title_axes,
 )
-from tol3d.report.column import best_road, columns_of, shares_of
+from tol3d.report.column import best_road, columns_of, seated_text, shares_of
 from tol3d.report.contributor_bars import NAME_SIZE, ROAD_WORDS, draw_contributors, height_of_contributors, labels_of
 from tol3d.report.curve import Stepped, draw_curve, position_label
 from tol3d.report.distribution import (
@@ -92,7 +92,7 @@ def histogram_figure(summary: Summary) -> Figure:
     for row, (name, measure) in enumerate(measures.items()):
         if measure["take"] == "curve":
             axes = plain_axes(figure.add_subplot(rows[row, 0]))
-            title_axes(axes, name, heading(measure), CURVE_WORDS)
+            title_axes(axes, name, _words(measure), CURVE_WORDS)
             draw_curve(axes, name, measure)
         else:
             _draw_scalar(figure, rows[row, 0], name, measure, colours)
@@ -103,9 +103,15 @@ def _headed(summary: Summary, height: float) -> Figure:
     figure = new_figure(WIDTH, height)
     failed = sum(count for status, count in summary["status"].items() if status != "ok")
     words = f"{summary['scene']}   ·   {summary['trials']} trials, seed {summary['seed']}"
-    words += f", {failed} not seated" if failed else ""
+    words += f", {failed} failed" if failed else ""
     figure.suptitle(wrapped(words, WIDTH - 0.4, HEAD_SIZE, 2), fontsize=HEAD_SIZE, color=BLACK, x=0.01, ha="left")
     return figure
+
+
+def _words(measure: Summary) -> str:
+    """What a measure is, and of how many trials its picture is where some of them failed."""
+    seated = seated_text(measure)
+    return f"{heading(measure)}; 3D simulation {seated}" if seated else heading(measure)
 
 
 def _height(measure: Summary) -> float:
@@ -129,7 +135,7 @@ def _draw_scalar(figure: Figure, place: SubplotSpec, name: str, measure: Summary
     below = height_of_ranges(measure) + 0.15
     parts = left.subgridspec(2, 1, height_ratios=[_height(measure) - below - 0.9, below], hspace=0.02)
     axes = plain_axes(figure.add_subplot(parts[0, 0]))
-    words = heading(measure) + (QUANTILES_MEAN if is_bounded(measure) else "")
+    words = _words(measure) + (QUANTILES_MEAN if is_bounded(measure) else "")
     title_axes(axes, name, words, _words_width(measure) if shares else CURVE_WORDS)
     draw_distribution(axes, measure)
     ranges = figure.add_subplot(parts[1, 0], sharex=axes)
@@ -197,7 +203,7 @@ def _small_words(measure: Summary) -> str:
         f"{ppm_text(measure[road].get(f'{side}_limit_ppm'))} ppm {side}" for side, limit in sides
         if measure.get(limit) is not None
     ]  # fmt: skip
-    return "; ".join([words, *out])
+    return "; ".join([words, *out, *([seated] if (seated := seated_text(measure)) else [])])
 
 
 def _small_curve(axes: Axes, name: str, measure: Summary) -> None:

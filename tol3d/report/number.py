@@ -8,6 +8,8 @@ NOTHING: Final = "–"
 UNIT_SIGNS: Final = {"um": "µm", "mm": "mm", "arcmin": "′", "mrad": "mrad", "K": "K"}
 MANY_UM: Final = 1000.0  # um; from there on a nanometre says nothing
 UM_PER_MM: Final = 1000.0
+LEAST_PERCENT: Final = 1000.0  # ppm; smaller shares are told in ppm, as quality people do
+ALMOST_ALL: Final = 999_999.0  # ppm
 
 
 def value_text(value: float | None, unit: str) -> str:
@@ -102,6 +104,17 @@ def percent_text(value: float | None) -> str:
     ('0.0', '22.0')
     """
     return NOTHING if value is None else unsigned_zero(f"{value:.1f}")
+
+
+def share_text(ppm: float | None) -> str:
+    """A share of all trials with its unit: in % from a tenth of a per cent on, else in ppm.
+
+    >>> share_text(306500.0), share_text(2700.0), share_text(999.0), share_text(0.0519), share_text(None)
+    ('30.65 %', '0.27 %', '999 ppm', '0.0519 ppm', '–')
+    """
+    if ppm is None or ppm < LEAST_PERCENT:
+        return NOTHING if ppm is None else f"{ppm_text(ppm)} ppm"
+    return f"{f'{ppm / 1e4:.4g}' if ppm < ALMOST_ALL else '100'} %"
 
 
 def ppm_text(value: float | None) -> str:

@@ -109,7 +109,10 @@ def _notes(plan: ShimPlan) -> Iterator[str]:
 def _warnings(plan: ShimPlan) -> Iterator[str]:
     for words, own in (("as it stands", plan.before), ("with the chosen shims", plan.chosen)):
         if own.failed:
-            yield f"{own.failed} of {own.trials} builds {words} have no backlash to measure (they interfere); left out"
+            yield (
+                f"{own.failed} of {own.trials} builds {words} jam or find no contact; the numbers above are of the "
+                f"{own.trials - own.failed} that seated"
+            )
     if plan.chosen.minimum < plan.question.target - plan.chosen.resolution:
         short = UM * (plan.question.target - plan.chosen.minimum)
         yield f"the chosen thickness leaves {short:.3f} µm less than the target; --round down would not"

@@ -8,7 +8,15 @@ from typing import Any
 from rich.console import Group, RenderableType
 from rich.text import Text
 
-from tol3d.report.column import Column, Road, best_road, columns_of, contributor_columns, ranked_contributors
+from tol3d.report.column import (
+    Column,
+    Road,
+    best_road,
+    columns_of,
+    contributor_columns,
+    ranked_contributors,
+    seated_text,
+)
 from tol3d.report.heading import heading, limits_text, position_of
 from tol3d.report.number import (
     NOTHING,
@@ -48,6 +56,10 @@ NOT_ATTRIBUTED_MEANS = (
     f"{NOT_ATTRIBUTED}: the share of the variance that the regression on the contributors leaves unexplained: "
     "interactions and what is not linear"
 )
+FAILURES_COUNT = (
+    "ppm are of all trials: a jammed build is below every lower limit, one that failed otherwise is out in all; Ppk of "
+    "such a column is Φ⁻¹(1 − share out)/3; its other numbers are of the trials that seated"
+)
 SHARES_MEAN = (
     "shares of the variance; high–low–mean: squares of the ranges that each contributor alone gives between its ends, "
     "the others at their means"
@@ -55,7 +67,7 @@ SHARES_MEAN = (
 ATTRIBUTING: Set[Road] = frozenset(("analytic", "geometric"))
 CURVE_ROWS = 12  # positions of a curve that are printed; the picture and the columns have them all
 SHARE_HEADINGS: Mapping[Road, str] = {"analytic": "analytic", "geometric": "3D simulation"}
-STATUS_WORDS = {"ok": "seated", "interferes": "interfering", "no contact": "without contact"}
+STATUS_WORDS = {"ok": "seated", "interferes": "jammed", "no contact": "without contact"}
 SAMPLER_WORDS = {"sobol": "scrambled Sobol' points", "latin_hypercube": "Latin hypercubes"}
 TOO_FEW_TO_BOUND = "too few trials on one side of the limit in each replicate to bound the true share"
 FLANKS_OF_A_BACKLASH = 4  # two at the contact, two at the gap; each may miss the true flank by the chord error
@@ -101,7 +113,8 @@ def _headings(columns: Sequence[Column]) -> list[Heading]:
 def measure_table(measure: Summary, sums: Sums) -> Sheet:
     """Statistics of one scalar measure, one column a road, the published ones last; below, sums of a train's stages."""
     columns, unit = columns_of(measure), measure["unit"]
-    rows = [Row(label, [_cell(column, key, unit) for column in columns]) for key, label in ROWS.items()]
+    rows = [*_failure_rows(measure, columns)]
+    rows += [Row(label, [_cell(column, key, unit) for column in columns]) for key, label in ROWS.items()]
     rows += [
         Row(label, [ppm_text(_ppm(column, key, measure)) for column in columns])
         for key, label in _limit_rows(measure).items()
@@ -129,24 +142,44 @@ def _index_text(value: float | None) -> str:
     return NOTHING if value is None else unsigned_zero(f"{value:.3f}")
 
 
+def _failure_rows(measure: Summary, columns: Sequence[Column]) -> Iterator[Row]:
+    """How many trials seated, and how the others failed; nothing where all of them seated."""
+    if not seated_text(measure):
+        return
+    own = {"geometric": measure["status"], "analytic": {"ok": sum(measure["status"].values())}}
+    for status, count in measure["status"].items():
+        if count or status == "ok":
+            cells = [str(own[c.road].get(status, 0)) if c.road in own else NOTHING for c in columns]
+            yield Row(f"trials {STATUS_WORDS.get(status, status)}", cells)
+
+
 def _limit_rows(measure: Summary) -> dict[str, str]:
     unit = measure["unit"]
-    return {
+    sides = {
         f"{side}_limit_ppm": f"{side} {given_text(measure[limit], unit)}{unit_suffix(unit)} [ppm]"
         for side, limit in (("below", "lower_limit"), ("above", "upper_limit"))
         if measure.get(limit) is not None
     }
+    in_all = len(sides) > 1 or (sides and seated_text(measure))
+    return {**sides, "out_ppm": "out in all [ppm]"} if in_all else sides
 
 
 def _ppm(column: Column, key: str, measure: Summary) -> float | None:
     """Counted, or for the closed form that of a normal measure."""
     if column.road != "closed form":
         return column.value(key)
-    mean, sigma = column.values["mean"], column.values["sigma"]
+    mean, sigma, lower, upper = (*(column.values[k] for k in ("mean", "sigma")), *limits_of(measure))
     if not sigma:
         return None
-    margin = mean - measure["lower_limit"] if key.startswith("below") else measure["upper_limit"] - mean
-    return 1e6 * math.erfc(margin / sigma / math.sqrt(2)) / 2
+    margins = {"below_limit_ppm": None if lower is None else mean - lower}
+    margins["above_limit_ppm"] = None if upper is None else upper - mean
+    asked = margins.values() if key == "out_ppm" else [margins[key]]
+    return sum(1e6 * math.erfc(margin / sigma / math.sqrt(2)) / 2 for margin in asked if margin is not None)
+
+
+def limits_of(measure: Summary) -> tuple[float | None, float | None]:
+    """Lower and upper limit of a measure, None for none."""
+    return measure.get("lower_limit"), measure.get("upper_limit")
 
 
 def _lost_motion_rows(measure: Summary, columns: Sequence[Column]) -> Iterator[Row]:
@@ -175,9 +208,10 @@ def _notes(name: str, measure: Summary, summary: Summary) -> Iterator[str]:
         yield agreement_line(agreement, unit, summary.get("chord_error_um"), " in each mesh" if of_train else "")
     yield from _witness_notes(name, measure, summary)
     own = measure[best_road(measure)]
+    seated = " that seated" if seated_text(measure) else ""
     if own.get("mean_se") is not None and own.get("sigma_se") is not None:
         yield (
-            f"sampling error of {own['count']} trials{_by_replicates(own, summary)}: "
+            f"sampling error of {own['count']} trials{seated}{_by_replicates(own, summary)}: "
             f"mean ±{difference_text(own['mean_se'], unit)}, "
             f"sigma ±{difference_text(own['sigma_se'], unit)} (one standard error)"
         )
@@ -189,6 +223,8 @@ def _notes(name: str, measure: Summary, summary: Summary) -> Iterator[str]:
             yield f"{_limit_rows(measure)[key]}: the true share lies between {low} and {high} ppm (95 % confidence)"
         elif own.get("error_by") == "replicates":
             yield f"{_limit_rows(measure)[key]}: {TOO_FEW_TO_BOUND}"
+    if limits and seated_text(measure):
+        yield FAILURES_COUNT
     if limits and "analytic_closed_form" in measure:
         yield "ppm of the closed form: as if the measure were normal"
     if "lost_motion" in measure:
@@ -297,6 +333,8 @@ def _curve_notes(measure: Summary) -> Iterator[str]:
     shown, count = len(_shown_positions(measure)), len(measure["position_deg"])
     if shown < count:
         yield f"{shown} of {count} positions shown; all in summary.json"
+    if seated := seated_text(measure):
+        yield f"3D mean, sigma, smallest and largest are {seated} at every position"
     words = {"lower_limit": "below", "upper_limit": "above"}
     for limit, word in words.items():
         if measure.get(limit) is not None:

@@ -2,7 +2,7 @@
 
 from tol3d.statistics.agreement import Agreement
 from tol3d.statistics.grid import Grid, Histogram
-from tol3d.statistics.limits import LimitCounts, Proportion, pp, ppk
+from tol3d.statistics.limits import LimitCounts, Proportion, equivalent_ppk, pp, ppk
 from tol3d.statistics.moments import Moments
 from tol3d.statistics.variance_shares import FeatureSums, Shares, shares
 
@@ -15,6 +15,7 @@ __all__ = [
     "Moments",
     "Proportion",
     "Shares",
+    "equivalent_ppk",
     "pp",
     "ppk",
     "shares",

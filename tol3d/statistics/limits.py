@@ -8,8 +8,11 @@ import scipy
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
+Mask = NDArray[np.bool_]
 
 CONFIDENCE = 0.95  # of the interval beside a ppm; what engineers expect when nothing is said
+
+HALF_A_TRIAL = 0.5  # trials; what is less than one of all that were run cannot be told from none
 
 
 @dataclass(frozen=True)
@@ -42,44 +45,87 @@ class Proportion:
 
 @dataclass(frozen=True)
 class LimitCounts:
-    """How many trials are good, failed, and of the good ones below and above the limits."""
+    """How many trials gave a value, failed, and lie out of the limits.
+
+    A share out of limits is one of ALL trials: a build that cannot be put together is not a good one.
+
+    Args:
+        good: trials that gave a value.
+        failed: the others.
+        below: trials below the lower limit, those failed ones among them that lack what is measured.
+        above: trials above the upper limit.
+        out: trials that are not good within both limits, each once; without limits those that failed.
+    """
 
     good: int = 0
     failed: int = 0
     below: int = 0
     above: int = 0
+    out: int = 0
 
     @classmethod
-    def of(cls, values: Array, lower: float | None, upper: float | None) -> Self:
+    def of(cls, values: Array, lower: float | None, upper: float | None, lacking: Mask | None = None) -> Self:
         """Counts of one block of values (trials,), NaN where the trial failed; None is no limit.
 
         A value at a limit is within it.
+
+        Args:
+            values, lower, upper: as said.
+            lacking: (trials,), failed trials that count as below any lower limit; None for none.
         """
-        failed = int(np.count_nonzero(np.isnan(values)))
-        below = 0 if lower is None else int(np.count_nonzero(values < lower))
-        above = 0 if upper is None else int(np.count_nonzero(values > upper))
-        return cls(len(values) - failed, failed, below, above)
+        return cls.of_spans(values, values, lower, upper, lacking)
+
+    @classmethod
+    def of_spans(
+        cls, lowest: Array, highest: Array, lower: float | None, upper: float | None, lacking: Mask | None = None
+    ) -> Self:
+        """The same of trials that have several values, from the lowest to the highest of each (trials,)."""
+        failed = int(np.count_nonzero(np.isnan(lowest)))
+        below = np.zeros(len(lowest), dtype=bool) if lower is None else lowest < lower
+        above = np.zeros(len(lowest), dtype=bool) if upper is None else highest > upper
+        short = 0 if lower is None or lacking is None else int(np.count_nonzero(lacking & np.isnan(lowest)))
+        return cls(
+            good=len(lowest) - failed,
+            failed=failed,
+            below=int(np.count_nonzero(below)) + short,
+            above=int(np.count_nonzero(above)),
+            out=int(np.count_nonzero(below | above)) + failed,
+        )
 
     def merge(self, other: Self) -> Self:
         """The counts of both."""
         return type(self)(
-            self.good + other.good, self.failed + other.failed, self.below + other.below, self.above + other.above
+            self.good + other.good,
+            self.failed + other.failed,
+            self.below + other.below,
+            self.above + other.above,
+            self.out + other.out,
         )
 
     @property
+    def total(self) -> int:
+        """All trials."""
+        return self.good + self.failed
+
+    @property
     def below_limit(self) -> Proportion:
-        """Of the good trials, those below the lower limit."""
-        return Proportion(self.below, self.good)
+        """Of all trials, those below the lower limit."""
+        return Proportion(self.below, self.total)
 
     @property
     def above_limit(self) -> Proportion:
-        """Of the good trials, those above the upper limit."""
-        return Proportion(self.above, self.good)
+        """Of all trials, those above the upper limit."""
+        return Proportion(self.above, self.total)
 
     @property
     def failures(self) -> Proportion:
         """Of all trials, those that gave no value."""
-        return Proportion(self.failed, self.good + self.failed)
+        return Proportion(self.failed, self.total)
+
+    @property
+    def out_of_limits(self) -> Proportion:
+        """Of all trials, those that are not good within the limits: 1 less the yield."""
+        return Proportion(self.out, self.total)
 
 
 def pp(lower: float | None, upper: float | None, sigma: float) -> float | None:
@@ -99,6 +145,21 @@ def ppk(lower: float | None, upper: float | None, mean: float, sigma: float) -> 
     """
     margins = [margin for margin in (_difference(mean, lower), _difference(upper, mean)) if margin is not None]
     return min(margins) / (3 * sigma) if margins and sigma > 0 else None
+
+
+def equivalent_ppk(out: Proportion) -> float | None:
+    """The Ppk of a normal measure with one limit that has this share out: PHI^-1(1 - p)/3. None of no trials.
+
+    For measures of which a part failed, whose mean and sigma are those of the others only. No share is told nearer to 0
+    or 1 than half a trial, so that it stays finite.
+
+    >>> round(equivalent_ppk(Proportion(1350, 1_000_000)), 3), round(equivalent_ppk(Proportion(1, 2)), 3)
+    (1.0, 0.0)
+    """
+    if not out.total:
+        return None
+    half = HALF_A_TRIAL / out.total
+    return 0.0 - float(scipy.special.ndtri(min(max(out.count / out.total, half), 1 - half))) / 3
 
 
 def _difference(larger: float | None, smaller: float | None) -> float | None:

@@ -136,7 +136,8 @@ def read_rows(
         shafts, centre, flank_turn, flank_offset, scale: of a Build, (rows, gears, ...).
         driver_angles: (rows,) [rad].
         readings: (rows, READINGS), written: the driven gear's angle at rest [rad], the gap of the non-working flanks
-            [mm], the turns of driven and driver until they touch [rad], the contact on the driver, world [mm].
+            [mm], the turns of driven and driver until they touch [rad], the contact on the driver, world [mm]; gap
+            and turns are below 0 where those flanks overlap.
         teeth: (rows,), written: the driver's tooth that touches.
         status: (rows,), written.
     """
@@ -183,9 +184,10 @@ def read_rows(
                 near = seen(build, near_at, angle, closing)
             end, last = closed(near, build, near_at, closing)
             if last.known and last.gap < math.inf:
-                readings[row, DRIVEN_TURN] = abs(end.driven - at.driven)
+                readings[row, DRIVEN_TURN] = sigma * (end.driven - at.driven)
         if which[7]:
-            readings[row, DRIVER_TURN] = abs(driver_turn(build, at, Look(-sigma, which[3], which[4] != 0, 0.0)))
+            turn = driver_turn(build, at, Look(-sigma, which[3], which[4] != 0, 0.0))
+            readings[row, DRIVER_TURN] = sigma * turn
 
 
 def gap_rows(
