@@ -237,9 +237,9 @@ def test_a_curve_says_how_many_of_its_positions_are_shown(run):
     assert "10 of 30 positions shown; all in summary.json" in text
 
 
-def test_failed_trials_are_told_in_ppm(run):
+def test_failed_trials_are_told_in_per_cent(run):
     summary = dict(run.summary) | {"status": {"ok": 21, "interferes": 3, "no contact": 0}}
-    assert "21 seated, 3 interfering (125000 ppm)" in printed(run_report(summary), 120)
+    assert "21 seated, 3 jammed (12.5 %)" in printed(run_report(summary), 120)
 
 
 def test_report_of_the_analytic_engine_has_no_column_of_a_simulation(run):

@@ -24,6 +24,7 @@ from tol3d.report.number import (
     given_text,
     percent_text,
     ppm_text,
+    share_text,
     unit_suffix,
     unsigned_zero,
     value_text,
@@ -350,7 +351,7 @@ def _status_line(summary: Summary) -> Text:
     failed = {text: count for text, count in summary["status"].items() if text != "ok" and count}
     line = Text("\ntrials: ").append(f"{summary['status'].get('ok', 0)} seated")
     for status, count in failed.items():
-        line.append(f", {count} {STATUS_WORDS.get(status, status)} ({ppm_text(1e6 * count / trials)} ppm)", "red")
+        line.append(f", {count} {STATUS_WORDS.get(status, status)} ({share_text(1e6 * count / trials)})", "red")
     return line if failed else line.append(", none failed")
 
 
