@@ -8,11 +8,13 @@ from typing import Any
 
 import pytest
 
+from tol3d.engines import STATUS_TEXT
 from tol3d.scene import Scene
 from tol3d.units import FACTORS
 
 DOCS = (Path(__file__).resolve().parent.parent / "docs" / "scene.md").read_text("utf-8")
 SCHEMA: Mapping[str, Any] = Scene.model_json_schema()
+FAILURES = "Builds that fail, and what ppm means"
 KINDS = ("parts", "tolerances", "moves", "measures")
 
 COMMON_TEXT = {
@@ -145,9 +147,13 @@ def test_the_table_of_units_is_that_of_the_grammar() -> None:
         assert row == set(units)
 
 
+def test_the_table_of_what_becomes_of_a_build_has_every_status() -> None:
+    assert [status.strip("`") for status, _ in table(FAILURES, "status").rows] == [*STATUS_TEXT.values()]
+
+
 def test_no_table_is_forgotten() -> None:
     known = {(section.capitalize(), "kind") for section in KINDS}
-    known |= {("Distributions", "kind"), ("Units", "what")}
+    known |= {("Distributions", "kind"), ("Units", "what"), (FAILURES, "status")}
     known |= {("Study and published columns", head) for head in ("engine", "sampler")}
     assert {(each.section, each.head[0].strip("`")) for each in tables()} == known
 
@@ -156,6 +162,6 @@ def test_every_word_of_the_page_that_looks_like_a_field_is_one() -> None:
     """Between backticks stand words of the grammar, or of the command line."""
     known = {*vocabulary(SCHEMA), *Scene.model_fields, *(unit for units in FACTORS.values() for unit in units)}
     known |= {kind for section in KINDS for kind in kinds(section)} | set(laws())
-    others = {"no", "on", "interferes"}  # words of YAML 1.1, and a status
+    others = {"no", "on", "status", "ok", "interferes", "ppk_by"}  # of YAML 1.1; of a run's columns and summary
     outside_of_code = re.sub(r"^```.*?^```", "", DOCS, flags=re.MULTILINE | re.DOTALL)
     assert words(outside_of_code) - known - others == set()

@@ -161,7 +161,7 @@ def _draw_curves(axes: Axes, measure: Summary, colours: Mapping[str, str], singl
 
 
 def _add_marks(axes: Axes, name: str, shown: Sequence[Shown], *, curve: bool, single: bool) -> None:
-    """What the legend tells: the colour of each run, of how many trials it is where some failed, how roads are drawn."""
+    """What the legend tells: the colour of each run, of how many trials it is if some failed, how roads are drawn."""
     seated = [f", {text}" if (text := seated_text(each.run.summary["measures"][name])) else "" for each in shown]
     word = ", mean" if curve else ""
     if not single:
