@@ -5,6 +5,7 @@ from typing import Final
 import numpy as np
 import pyvista as pv
 from numpy.typing import NDArray
+from vtkmodules.vtkFiltersGeneral import vtkContourTriangulator
 
 Array = NDArray[np.float64]
 
@@ -28,6 +29,15 @@ def add_solid(plotter: pv.Plotter, mesh: pv.PolyData, colour: str) -> None:
     """A solid and its sharp edges."""
     plotter.add_mesh(mesh, color=colour, smooth_shading=False, specular=0.25, specular_power=15, ambient=0.15)
     _add_edges(plotter, mesh)
+
+
+def add_section(plotter: pv.Plotter, outline: pv.PolyData, colour: str) -> None:
+    """What a plane cuts of a solid, filled, and its outline."""
+    filler = vtkContourTriangulator()
+    filler.SetInputData(outline)
+    filler.Update()
+    plotter.add_mesh(pv.wrap(filler.GetOutput()), color=colour, lighting=False)
+    plotter.add_mesh(outline, color=EDGE_COLOUR, line_width=1.2, lighting=False)
 
 
 def add_round_solid(plotter: pv.Plotter, mesh: pv.PolyData, colour: str) -> None:

@@ -21,12 +21,14 @@ from tol3d.report.drawn_solids import (
     EDGE_COLOUR,
     GAP_COLOUR,
     add_label,
+    add_section,
     add_solid,
     add_title,
     arrow,
     poly_data,
     set_background,
 )
+from tol3d.report.gap_section import gap_section
 from tol3d.report.number import measured_text
 from tol3d.report.trains.picture import draw_train, label_beside, label_in_place
 from tol3d.report.trains.whole_trains import WholeTrain, whole_trains
@@ -44,7 +46,8 @@ GAPS_HIGH: Final = 3.0  # gaps from the middle of the gap to the upper edge of t
 LEAST_HIGH: Final = 0.03  # mm; a close-up of no gap at all still shows something
 LEAST_GAP: Final = 1e-4  # mm; VTK keeps coordinates in single precision, in which nearer ends may be one point
 VIEW_ANGLE: Final = 12.0  # deg; enough perspective to show flanks, little enough to look through the gap
-WHOLE_ELEVATION: Final = 22.0  # deg; the whole assembly is seen from above the front
+FRONT: Final = np.array([0.0, 0.0, 1.0])
+FROM_ABOVE: Final = np.array([0.0, np.sin(np.radians(22.0)), np.cos(np.radians(22.0))])  # the front, for the whole
 LETTER: Final = 0.14  # modules; a letter of a label, which begins so much further left where it would be cut
 ROOMY_NAME: Final = 15  # letters that have room
 PICTURES: Final = (".png", ".jpg", ".jpeg", ".tif", ".tiff", ".bmp")
@@ -231,7 +234,7 @@ def _draw_teeth(plotter: pv.Plotter, seated: SeatedMesh, parts: Parts, front: fl
         over = LETTER * max(0, len(text) - ROOMY_NAME) if aside > 0.0 else 0.0
         place = middle + module * np.array([2.1 * aside - 0.8 - over, -2.65, 0.0])
         add_label(plotter, place, text, EDGE_COLOUR)
-    _look(plotter, middle, TEETH_HIGH * module, 0.0)
+    _look(plotter, middle, TEETH_HIGH * module, FRONT)
     _with_perspective(plotter)
 
 
@@ -244,24 +247,28 @@ def _draw_whole(plotter: pv.Plotter, seated: SeatedMesh, parts: Parts, front: fl
     bounds = np.array([mesh.bounds for _, mesh in parts])
     low, high = bounds[:, 0::2].min(axis=0), bounds[:, 1::2].max(axis=0)
     add_title(plotter, f"{seated.mesh.name}, whole", 10)
-    _look(plotter, (low + high) / 2, 0.6 * max(high[1] - low[1], (high[0] - low[0]) * 0.86), WHOLE_ELEVATION)
+    _look(plotter, (low + high) / 2, 0.6 * max(high[1] - low[1], (high[0] - low[0]) * 0.86), FROM_ABOVE)
 
 
 def _draw_gap(plotter: pv.Plotter, seated: SeatedMesh, parts: Parts, front: float) -> None:
-    _add_parts(plotter, parts)
+    set_background(plotter)
     if not np.isfinite(seated.gap).all():
+        _add_parts(plotter, parts)
         add_title(plotter, "non-working flanks overlap", 10)
-        _look(plotter, _in_front(seated, seated.contact, front), 0.5 * seated.driver.gear.module, 0.0)
+        _look(plotter, _in_front(seated, seated.contact, front), 0.5 * seated.driver.gear.module, FRONT)
         return
-    ends = np.stack([_in_front(seated, point, front) for point in seated.gap])
+    section = gap_section(seated, [mesh for _, mesh in parts])
+    for outline, colour in zip(section.outlines, (DRIVER_COLOUR, DRIVEN_COLOUR), strict=True):
+        add_section(plotter, outline, colour)
     high = max(GAPS_HIGH * seated.gap_value, LEAST_HIGH)
+    ends = section.ends + 0.01 * high * section.towards  # before the sections
     if seated.gap_value > LEAST_GAP:
         plotter.add_mesh(pv.Line(*ends), color=GAP_COLOUR, line_width=4, lighting=False)
     plotter.add_points(ends, color=GAP_COLOUR, point_size=12, render_points_as_spheres=True)
-    beside = np.array([0.3 * high, 0.0, 0.0])
-    add_label(plotter, ends.mean(axis=0) + beside, _gap_text(seated), GAP_COLOUR)
-    add_title(plotter, f"close-up, {2000 * high:.0f} µm high", 10)
-    _look(plotter, ends.mean(axis=0), high, 0.0)
+    right = np.cross([0.0, 1.0, 0.0], section.towards)
+    add_label(plotter, section.middle + 0.3 * high * right, _gap_text(seated), GAP_COLOUR)
+    add_title(plotter, f"cut across the gap, {2000 * high:.0f} µm high", 10)
+    _look(plotter, section.middle, high, section.towards)
 
 
 def _title(assembly: Assembly, seated: SeatedMesh, driver: str) -> str:
@@ -287,12 +294,10 @@ def _in_front(seated: SeatedMesh, point: Array, front: float) -> Array:
     return np.array([point[0], point[1], front])
 
 
-def _look(plotter: pv.Plotter, middle: Array, high: float, elevation: float) -> None:
-    """Look at a point from the front, `high` mm from it to the upper edge, from some degrees above."""
-    angle = np.radians(elevation)
-    away = 1000.0 * np.array([0.0, np.sin(angle), np.cos(angle)])
+def _look(plotter: pv.Plotter, middle: Array, high: float, towards: Array) -> None:
+    """Look at a point from the side to which a unit vector shows, `high` mm from it to the picture's upper edge."""
     plotter.camera.focal_point = tuple(middle)
-    plotter.camera.position = tuple(middle + away)
+    plotter.camera.position = tuple(middle + 1000.0 * towards)
     plotter.camera.up = (0.0, 1.0, 0.0)
     plotter.camera.parallel_projection = True
     plotter.camera.parallel_scale = high
