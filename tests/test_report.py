@@ -308,11 +308,11 @@ study: {trials: 10}
 """
 
 
-def test_check_names_the_measures_that_no_closed_form_tells(run, tmp_path):
+def test_check_names_the_measures_whose_shares_no_closed_form_tells(run, tmp_path):
     (tmp_path / "ways.yaml").write_text(TWO_WAYS, encoding="utf-8")
     text = one_line(check_report(effective_model(load_scene(tmp_path / "ways.yaml"))))
-    assert "no closed form of both: not a sum (the tighter way counts, or a tilted face touches at one end);" in text
-    assert "no closed form" not in one_line(check_report(model_of(run)))
+    assert "no shares of both: the tighter way counts, which is no sum; run tells the shares of its trials" in text
+    assert "no shares" not in one_line(check_report(model_of(run)))
 
 
 def test_check_marks_coefficients_on_which_geometry_and_stack_up_disagree():

@@ -54,7 +54,8 @@ def tilt(of: str, size: str) -> dict[str, Any]:
 
 def test_measures_without_a_closed_form_have_quantiles_too(tmp_path: Path) -> None:
     tilts = {"bores": tilt("pair", "10 um"), "bearings": tilt("pair", "6 um")}
-    run = run_scene(made(tilts, {"play": {}}), overrides=FEW, out=tmp_path / "run")
+    widest = {"over": "turn", "take": "max", "positions": 4}
+    run = run_scene(made(tilts, {"play": widest}), overrides=FEW, out=tmp_path / "run")
     play = run.summary["measures"]["play"]
     assert "analytic_closed_form" not in play
     values = np.sort(run.columns("analytic:play")["analytic:play"])

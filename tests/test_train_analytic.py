@@ -1,6 +1,6 @@
 """The stack-up of whole trains: closed forms by hand and by a large sample, shares of stages, derivatives.
 
-The table of three_stage_train.yaml, its two bearings left out where a closed form is wanted: what leans has none.
+The table of three_stage_train.yaml, its two bearings left out: what leans is told by test_leaning.py.
 """
 
 import math
@@ -11,7 +11,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from oracles.train import robot_lost_motion
+from oracles.train import robot_lost_motion, table_lost_motion
 
 from tol3d import load_scene
 from tol3d.analytic import ClosedForm, closed_form, stack_of
@@ -26,7 +26,6 @@ SCENES = Path(__file__).resolve().parent.parent / "scenes"
 TABLE = (SCENES / "three_stage_train.yaml").read_text(encoding="utf-8")
 MANY = 100_000
 ARCMIN = 10800 / math.pi  # in a radian
-UM = 1e-3  # mm
 ALPHA = math.radians(20.0)
 
 
@@ -70,64 +69,8 @@ def form_of(model: Model, name: str) -> ClosedForm:
 # by hand --------------------------------------------------------------------------------------------------------
 
 
-def involute(angle: float) -> float:
-    return math.tan(angle) - angle
-
-
-@cache
-def arms() -> Mapping[str, float]:
-    """What an um of normal backlash is at the encoder [rad]: over the driven base radius, times what follows."""
-    encoder = {"first mesh": 31 / 60 * 48 / 32, "second mesh": 48 / 32, "third mesh": 1.0}
-    radii = {"first mesh": 15.5, "second mesh": 30.0, "third mesh": 12.8}
-    return {mesh: UM * encoder[mesh] / (radii[mesh] * math.cos(ALPHA)) for mesh in radii}
-
-
-def by_hand() -> tuple[float, float, dict[str, float]]:
-    """Nominal value, mean and variances by contributor [rad] of the lost motion at the encoder."""
-    first, second, third = arms().values()
-    working = math.acos(25.5 * math.cos(ALPHA) / 25.75)
-    cos, sin, opened = math.cos(ALPHA), math.sin(ALPHA), math.sin(working)
-    nominal = first * 1e3 * (2 * 25.5 * cos * (involute(working) - involute(ALPHA)) - 2 * 0.25 * sin)
-    gearbox = math.radians(1 / 60) * 20 / 60 * 48 / 32  # of an arcmin
-    means = {
-        "gearbox play": gearbox * (2 + 4 + 9) / 3,
-        "pinion tooth thickness": first * cos * 30,
-        "idler tooth thickness": (first + second) * cos * 30,
-        "table gear tooth thickness": second * cos * 40,
-        "encoder driver tooth thickness": third * cos * 32,
-        "encoder gear tooth thickness": third * cos * 28,
-        # half of 9 um away from the pinion, and by 60 deg of it towards the table's gear
-        "idler bearing clearance": 4.5 * (2 * opened * first - 2 * sin * math.cos(math.radians(60)) * second),
-    }
-    # an offset of the idler's centre opens both: away from the pinion at 0 deg, from the table's gear at 240 deg
-    at_idler = 2 * opened * first + 2 * sin * second * np.exp(1j * math.radians(240))
-    # on the table's shaft away from the idler is 0 deg; its upper gear looks down and sees the encoder at -75 deg,
-    # 75 deg of the shaft: away is 255 deg
-    low, high = 2 * sin * second, 2 * sin * third * np.exp(1j * math.radians(255))
-    # both marks stand at 7 deg of the shaft: 12 and 8 um swing together, each takes half of what they share
-    shared = 12 * 8 * (low * high.conjugate()).real / 2
-    variances = {
-        "gearbox play": gearbox**2 * (4 + 16 + 81 - 8 - 36 - 18) / 18,
-        "pinion tooth thickness": (first * cos * 16 / 6) ** 2,
-        "idler tooth thickness": ((first + second) * cos * 16 / 6) ** 2,
-        "table gear tooth thickness": (second * cos * 20 / 6) ** 2,
-        "encoder driver tooth thickness": (third * cos * 16 / 6) ** 2,
-        "encoder gear tooth thickness": (third * cos * 12 / 6) ** 2,
-        "pinion eccentricity": (2 * opened * first * 3) ** 2,
-        "idler eccentricity": abs(at_idler * 5) ** 2,
-        "table gear eccentricity": low**2 * (12**2 + 1) / 2 + shared,
-        "encoder driver eccentricity": abs(high) ** 2 * (8**2 + 1) / 2 + shared,
-        "table shaft run-out": abs(2 * (low + high)) ** 2,
-        "first centre distance": (2 * opened * first * 5) ** 2,
-        "second centre distance": (2 * sin * second * 6) ** 2,
-        "third centre distance": (2 * sin * third) ** 2 * 24**2 / 12,
-        "idler bearing clearance": (opened * first - sin * math.cos(math.radians(60)) * second) ** 2 * 12**2 / 12,
-    }
-    return nominal, nominal + sum(means.values()), variances
-
-
 def test_the_closed_form_at_the_encoder_follows_by_hand(upright: Model) -> None:
-    nominal, mean, variances = by_hand()
+    nominal, mean, variances = table_lost_motion()
     form = form_of(upright, "lost motion")
     assert (form.nominal, form.mean) == pytest.approx((nominal, mean), rel=1e-9)
     assert {share.name: share.variance for share in form.shares} == pytest.approx(variances, rel=1e-9)
@@ -288,12 +231,6 @@ def test_a_bearing_that_moves_its_shaft_anywhere_does_in_each_direction_what_one
             first = getattr(stacks[0], told)(by_length, np.zeros(1))
             second = getattr(stacks[1], told)(by_vector, np.zeros(1))
             assert second == pytest.approx(first, abs=1e-14), told
-
-
-def test_a_spur_shaft_that_leans_has_no_closed_form(tmp_path: Path) -> None:
-    text = BEARINGS.replace("tolerances:", "  high: {kind: bearing, shaft: middle, at: 90 mm}\ntolerances:")
-    model = model_of(tmp_path, text)
-    assert closed_form(model, measure_of(model, "lost motion")) is None
 
 
 BEVEL = """

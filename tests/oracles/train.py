@@ -158,3 +158,66 @@ def robot_lost_motion() -> tuple[float, dict[str, float]]:
         mean += own * 1e-3 / arm
         variances |= {name: variance * 1e-6 / arm**2 for name, variance in each.items()}
     return mean, variances
+
+
+# the indexing table in closed form -------------------------------------------------------------------------------
+
+UM = 1e-3  # mm
+
+
+def involute(angle: float) -> float:
+    return math.tan(angle) - angle
+
+
+def arms() -> Mapping[str, float]:
+    """What an um of normal backlash is at the encoder [rad]: over the driven base radius, times what follows."""
+    encoder = {"first mesh": 31 / 60 * 48 / 32, "second mesh": 48 / 32, "third mesh": 1.0}
+    radii = {"first mesh": 15.5, "second mesh": 30.0, "third mesh": 12.8}
+    return {mesh: UM * encoder[mesh] / (radii[mesh] * math.cos(ALPHA)) for mesh in radii}
+
+
+def table_lost_motion() -> tuple[float, float, dict[str, float]]:
+    """Nominal value, mean and variances by contributor [rad] of the lost motion at three_stage_train.yaml's encoder.
+
+    Its shaft stands upright; what its two bearings do comes on top.
+    """
+    first, second, third = arms().values()
+    working = math.acos(25.5 * math.cos(ALPHA) / 25.75)
+    cos, sin, opened = math.cos(ALPHA), math.sin(ALPHA), math.sin(working)
+    nominal = first * 1e3 * (2 * 25.5 * cos * (involute(working) - involute(ALPHA)) - 2 * 0.25 * sin)
+    gearbox = math.radians(1 / 60) * 20 / 60 * 48 / 32  # of an arcmin
+    means = {
+        "gearbox play": gearbox * (2 + 4 + 9) / 3,
+        "pinion tooth thickness": first * cos * 30,
+        "idler tooth thickness": (first + second) * cos * 30,
+        "table gear tooth thickness": second * cos * 40,
+        "encoder driver tooth thickness": third * cos * 32,
+        "encoder gear tooth thickness": third * cos * 28,
+        # half of 9 um away from the pinion, and by 60 deg of it towards the table's gear
+        "idler bearing clearance": 4.5 * (2 * opened * first - 2 * sin * math.cos(math.radians(60)) * second),
+    }
+    # an offset of the idler's centre opens both: away from the pinion at 0 deg, from the table's gear at 240 deg
+    at_idler = 2 * opened * first + 2 * sin * second * np.exp(1j * math.radians(240))
+    # on the table's shaft away from the idler is 0 deg; its upper gear looks down and sees the encoder at -75 deg,
+    # 75 deg of the shaft: away is 255 deg
+    low, high = 2 * sin * second, 2 * sin * third * np.exp(1j * math.radians(255))
+    # both marks stand at 7 deg of the shaft: 12 and 8 um swing together, each takes half of what they share
+    shared = 12 * 8 * (low * high.conjugate()).real / 2
+    variances = {
+        "gearbox play": gearbox**2 * (4 + 16 + 81 - 8 - 36 - 18) / 18,
+        "pinion tooth thickness": (first * cos * 16 / 6) ** 2,
+        "idler tooth thickness": ((first + second) * cos * 16 / 6) ** 2,
+        "table gear tooth thickness": (second * cos * 20 / 6) ** 2,
+        "encoder driver tooth thickness": (third * cos * 16 / 6) ** 2,
+        "encoder gear tooth thickness": (third * cos * 12 / 6) ** 2,
+        "pinion eccentricity": (2 * opened * first * 3) ** 2,
+        "idler eccentricity": abs(at_idler * 5) ** 2,
+        "table gear eccentricity": low**2 * (12**2 + 1) / 2 + shared,
+        "encoder driver eccentricity": abs(high) ** 2 * (8**2 + 1) / 2 + shared,
+        "table shaft run-out": abs(2 * (low + high)) ** 2,
+        "first centre distance": (2 * opened * first * 5) ** 2,
+        "second centre distance": (2 * sin * second * 6) ** 2,
+        "third centre distance": (2 * sin * third) ** 2 * 24**2 / 12,
+        "idler bearing clearance": (opened * first - sin * math.cos(math.radians(60)) * second) ** 2 * 12**2 / 12,
+    }
+    return nominal, nominal + sum(means.values()), variances

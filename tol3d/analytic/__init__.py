@@ -1,7 +1,8 @@
 """The reference road: nominal values and stack-ups with their sources. It never sees a mesh, a pose or an engine."""
 
 from tol3d.analytic.backlash import analytic_backlash, first_order, per_normal_backlash, stack_of
-from tol3d.analytic.closed_form import ClosedForm, Share, closed_form, reference_form
+from tol3d.analytic.closed_form import ClosedForm, closed_form, reference_form
+from tol3d.analytic.share import Share
 from tol3d.analytic.stack import Stack, Term
 
 __all__ = [

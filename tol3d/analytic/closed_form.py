@@ -2,8 +2,9 @@
 
 Contributors are independent, so means and variances add; what one of them does in several meshes is added up first.
 Deviations with a direction count by the mean square of their length; tilts by numerical integration of their one-sided
-loss. Offsets of fixed direction that turn together are the exception: a random position turns them alike, so they vary
-together, and each takes half of their covariance.
+loss, together with all else where contributors do more than tilt one mesh (`leaning.py`). Offsets of fixed direction
+that turn together are the exception: a random position turns them alike, so they vary together, and each takes half of
+their covariance.
 """
 
 import math
@@ -14,6 +15,8 @@ from fractions import Fraction
 import numpy as np
 
 from tol3d.analytic.backlash import per_normal_backlash, stack_of
+from tol3d.analytic.leaning import leaning_groups, leaning_shares
+from tol3d.analytic.share import Share
 from tol3d.analytic.stack import Stack, Term
 from tol3d.gears import GearPair
 from tol3d.model import Contributor, LostMotion, Measure, Model, Planar, Positions, ReducerBacklash
@@ -23,29 +26,20 @@ TILT_NODES = 2000  # midpoint rule in u, a plane; its error on |x| of a normal i
 
 
 @dataclass(frozen=True)
-class Share:
-    """A contributor's part in a measure.
+class ClosedForm:
+    """Moments of a measure by the stack-up [mm or rad].
 
     Args:
-        name: the contributor's.
-        coefficient: change of the measure per deviation, internal units (mm, rad, K).
-        mean, variance: its part of the measure's mean [mm or rad] and variance.
+        nominal, mean, sigma: of the measure.
+        shares: of the contributors that act on it.
+        leaning: names of those that shift axes and lean them: their coefficients are mean slopes.
     """
-
-    name: str
-    coefficient: float
-    mean: float
-    variance: float
-
-
-@dataclass(frozen=True)
-class ClosedForm:
-    """Moments of a measure by the stack-up [mm or rad]."""
 
     nominal: float
     mean: float
     sigma: float
     shares: tuple[Share, ...]
+    leaning: frozenset[str] = frozenset()
 
     def percent(self, name: str) -> float:
         """Share of the variance [%] of a contributor; 0 when nothing varies."""
@@ -58,20 +52,28 @@ def closed_form(model: Model, measure: Measure) -> ClosedForm | None:
     """Closed form of a measure read at one position; None for extremes over a turn and parallel ways."""
     if measure.take != "value" or not measure.kind.adds_up:
         return None
-    terms = [term for part in _parts(model, measure) for term in part.terms]
-    tilts = _tilt_shares(terms)
-    if tilts is None:
-        return None
-    linear = [term for term in terms if term.term.tilts is None]
+    parts = tuple(_parts(model, measure))
+    terms = [term for part in parts for term in part.terms]
+    groups = leaning_groups([part.stack for part in parts])
+    plain = {group: tilts for group in groups if (tilts := _plain_tilts(group, terms)) is not None}
+    leaning = [group for group in groups if group not in plain]
+    names = frozenset(contributor.name for group in leaning for contributor in group)
+    linear = [term for term in terms if term.term.tilts is None and term.term.contributor.name not in names]
     own = [own for contributor in model.contributors if (own := _linear(model, measure, contributor, linear))]
     shares = _with_covariances(own) if measure.positions.over == "random" else [each.share for each in own]
+    shares += [share for tilts in plain.values() for share in tilts]
+    shares += [Share(term.term.contributor.name, 0.0, 0.0, 0.0) for term in terms if _plane(term) == "none"]
+    stacks = [(part.factor, part.stack) for part in parts]
+    for group in leaning:
+        shares += leaning_shares(stacks, group)
     nominal = _nominal(model, measure)
-    together = tuple(_merged(model, [*shares, *tilts]))
+    together = tuple(_merged(model, shares))
     return ClosedForm(
         nominal=nominal,
         mean=nominal + sum(share.mean for share in together),
         sigma=_root(sum(share.variance for share in together)),
         shares=together,
+        leaning=names,
     )
 
 
@@ -235,42 +237,34 @@ def _merged(model: Model, shares: Sequence[Share]) -> Iterator[Share]:
             )
 
 
-def _tilt_shares(terms: Sequence[_ReadTerm]) -> list[Share] | None:
-    """Shares of -max(|in plane|, |out of plane|) of every mesh; None where a contributor tilts and does else too."""
-    tilts = [term for term in terms if term.term.tilts is not None]
-    names = [term.term.contributor.name for term in tilts]
-    others = {term.term.contributor.name for term in terms if term.term.tilts is None}
-    if len(set(names)) < len(names) or others & set(names):
-        return None
-    shares: list[Share] = []
-    for mesh in dict.fromkeys(term.mesh for term in tilts):
-        found = _tilts_of_one([term for term in tilts if term.mesh == mesh])
-        if found is None:
-            return None
-        shares += found
-    return shares
-
-
-def _tilts_of_one(terms: Sequence[_ReadTerm]) -> list[Share] | None:
-    """The same of one mesh; None with several tilts in one plane.
+def _plain_tilts(group: Sequence[Contributor], terms: Sequence[_ReadTerm]) -> list[Share] | None:
+    """Shares of -max(|in plane|, |out of plane|) of a mesh whose tilts do nothing else; None of any other group.
 
     The variance is split by the conditional means (first-order Sobol'), the rest in equal parts.
     """
-    planes = [_plane(term) for term in terms]
-    if len(terms) > 1 and sorted(planes) != ["across", "in"]:
+    own = [term for term in terms if term.term.contributor in group]
+    only_tilts = len(own) == len(group) and all(term.term.tilts for term in own)
+    if not only_tilts or any(isinstance(contributor.draw, Planar) for contributor in group):
+        return None
+    if len(own) > 2 or (len(own) == 2 and sorted(_plane(term) for term in own) != ["across", "in"]):
         return None
     nodes = (np.arange(TILT_NODES) + 0.5) / TILT_NODES
-    losses = [np.abs(term.amplitude * term.term.contributor.distribution.ppf(nodes)) for term in terms]
+    losses = [np.abs(term.amplitude * term.term.contributor.distribution.ppf(nodes)) for term in own]
     loss = -losses[0] if len(losses) == 1 else -np.maximum(losses[0][:, None], losses[1][None, :])
     mean, variance = float(loss.mean()), float(loss.var())
-    own = [variance] if len(losses) == 1 else [float(loss.mean(axis=1).var()), float(loss.mean(axis=0).var())]
-    rest = (variance - sum(own)) / len(own)
+    alone = [variance] if len(losses) == 1 else [float(loss.mean(axis=1).var()), float(loss.mean(axis=0).var())]
+    rest = (variance - sum(alone)) / len(alone)
     return [
-        Share(term.term.contributor.name, -abs(term.amplitude), mean / len(terms), v + rest)
-        for term, v in zip(terms, own, strict=True)
+        Share(term.term.contributor.name, -abs(term.amplitude), mean / len(own), v + rest)
+        for term, v in zip(own, alone, strict=True)
     ]
 
 
 def _plane(term: _ReadTerm) -> str:
-    in_plane, across = term.term.tilts or ((), ())
+    """In which plane a term tilts; in none where the middle of the face is read."""
+    if term.term.tilts is None:
+        return "no tilt"
+    in_plane, across = term.term.tilts
+    if not term.term.leans:
+        return "none"
     return "in" if not any(across) else "across" if not any(in_plane) else "both"

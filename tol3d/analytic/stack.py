@@ -60,6 +60,11 @@ class Term:
     sense: float = 1.0
     tilts: tuple[tuple[float, ...], tuple[float, ...]] | None = None
 
+    @property
+    def leans(self) -> bool:
+        """Whether it enters through the loss by tilts; none does in a mesh that is read in the middle of its face."""
+        return self.tilts is not None and any(map(any, self.tilts))
+
     def change(self, deviation: Array, angles: tuple[Array, Array]) -> Array:
         """Change of j_bn [mm], (rows,), for deviations (rows, components) at turns (driver, driven) [rad]."""
         if deviation.shape[1] == 1:

@@ -2,38 +2,22 @@
 
 import math
 import re
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
 from functools import singledispatch
 
-import numpy as np
 from rich.console import Group, RenderableType
 from rich.text import Text
 
-from tol3d.analytic import ClosedForm, reference_form
-from tol3d.engines import Engine
-from tol3d.engines.exact import ExactEngine
 from tol3d.gears import RIGHT, BevelGear, BevelPair, Gear, GearPair, SpurGear, SpurPair
-from tol3d.model import Backlash, Contributor, Measure, Model, Planar, Positions
-from tol3d.model.measure import at_one_position
+from tol3d.model import Backlash, Contributor, Measure, Model, Planar
+from tol3d.report.coefficients import coefficients_tables
 from tol3d.report.heading import QUANTITY_WORDS, TAKE_WORDS, reading_words
-from tol3d.report.number import NOTHING, UNIT_SIGNS, given_text, percent_text, unsigned_zero, value_text
-from tol3d.report.sheet import Heading, Row, Sheet
+from tol3d.report.number import NOTHING, UNIT_SIGNS, degrees_text, given_text, unsigned_zero, value_text
+from tol3d.report.sheet import Heading, Row, Sheet, titled
 from tol3d.report.trains.check import train_blocks
-from tol3d.sensitivity import STEP_ASIDE, mean_slopes
 from tol3d.units import angle_text
 
 UM = 1000.0  # um in a mm
-ARCSEC = 648000 / math.pi  # arcsec in a rad
-ONE_SIDED = ("axis_in_plane", "axis_out_of_plane")  # kinds whose coefficient acts by absolute value
-LEAST_SLOPE = 5e-4  # um or arcsec per unit; what rounds to 0.000 is nothing
-DISAGREES = 0.05  # of the largest slope; beyond that a coefficient of the geometry is marked
-OTHER = "≠"
-NO_SUM = (
-    "not a sum (the tighter way counts, or a tilted face touches at one end); run tells the analytic values trial by "
-    "trial"
-)
-KINK = 0.01  # of the larger slope; two sides that differ by less are one
 
 
 def check_report(model: Model) -> Group:
@@ -55,14 +39,10 @@ def check_report(model: Model) -> Group:
     return Group(*blocks)
 
 
-def _titled(title: str, sheet: Sheet) -> Group:
-    return Group(Text(f"\n{title}", style="bold cyan"), sheet)
-
-
 def _side_by_side(title: str, names: Sequence[str], rows: Mapping[str, Sequence[str]]) -> Group:
     """A column for each name."""
     headings = [Heading(name) for name in names]
-    return _titled(title, Sheet("", headings, [Row(label, cells) for label, cells in rows.items()]))
+    return titled(title, Sheet("", headings, [Row(label, cells) for label, cells in rows.items()]))
 
 
 def gears_table(model: Model) -> Group:
@@ -91,7 +71,7 @@ def _(gear: SpurGear) -> dict[str, str]:
     return {
         "teeth z": str(gear.teeth),
         "module m [mm]": f"{gear.module:g}",
-        "pressure angle α [°]": _degrees(gear.pressure_angle),
+        "pressure angle α [°]": degrees_text(gear.pressure_angle),
         "face width b [mm]": f"{gear.face_width:g}",
         "profile shift x": f"{gear.profile_shift:g}",
         "addendum, dedendum [m]": f"{gear.addendum:g}, {gear.dedendum:g}",
@@ -114,7 +94,7 @@ def _(gear: BevelGear) -> dict[str, str]:
     return {
         "teeth z": str(gear.teeth),
         "module m [mm]": f"{gear.module:g}",
-        "pressure angle α [°]": _degrees(gear.pressure_angle),
+        "pressure angle α [°]": degrees_text(gear.pressure_angle),
         "face width b [mm]": f"{gear.face_width:g}",
         "profile shift x": f"{gear.profile_shift:g}",
         "addendum, dedendum [m]": f"{gear.addendum:g}, {gear.dedendum:g}",
@@ -159,7 +139,7 @@ def _(pair: SpurPair) -> dict[str, str]:
     return {
         "centre distance a [mm]": f"{pair.centre_distance:.4f}",
         "without backlash at [mm]": f"{pair.zero_backlash_centre_distance:.4f}",
-        "working pressure angle α_w [°]": _degrees(pair.working_pressure_angle),
+        "working pressure angle α_w [°]": degrees_text(pair.working_pressure_angle),
         "contact ratio ε_α": f"{pair.contact_ratio:.4f}",
         "same teeth meet after [turns]": str(pair.long_period_turns),
         "nominal normal backlash [µm]": value_text(pair.normal_backlash * UM, "um"),
@@ -172,7 +152,7 @@ def _(pair: SpurPair) -> dict[str, str]:
 @pair_rows.register
 def _(pair: BevelPair) -> dict[str, str]:
     return {
-        "shaft angle Σ [°]": _degrees(pair.shaft_angle),
+        "shaft angle Σ [°]": degrees_text(pair.shaft_angle),
         "mean cone distance R_m [mm]": f"{pair.mean_cone_distance:.4f}",
         "contact ratio ε_α": f"{pair.contact_ratio:.4f}",
         "same teeth meet after [turns]": str(pair.long_period_turns),
@@ -185,7 +165,7 @@ def measures_table(model: Model) -> Group:
     rows = []
     for measure in model.measures:
         rows.append(Row(measure.name, (_what(measure), _positions(measure), _limits(measure))))
-    return _titled("measures", Sheet("", [Heading(word, words=True) for word in ("what", "positions", "limits")], rows))
+    return titled("measures", Sheet("", [Heading(word, words=True) for word in ("what", "positions", "limits")], rows))
 
 
 def _what(measure: Measure) -> str:
@@ -203,12 +183,12 @@ def _what(measure: Measure) -> str:
 def _positions(measure: Measure) -> str:
     positions = measure.positions
     if positions.over == "swing":
-        first, last = (_degrees(angle) for angle in (positions.shown[0], positions.shown[-1]))
+        first, last = (degrees_text(angle) for angle in (positions.shown[0], positions.shown[-1]))
         return f"{positions.count} from {first}° to {last}° of the output"
     if positions.over == "at" and not isinstance(measure.kind, Backlash):
-        return f"first shaft at {_degrees(positions.angle)}°"
+        return f"first shaft at {degrees_text(positions.angle)}°"
     if positions.over == "at":
-        return f"driver at {_degrees(positions.angle)}°"
+        return f"driver at {degrees_text(positions.angle)}°"
     if positions.over == "random":
         return "random"
     turns = f"{positions.turns} turn{'' if positions.turns == 1 else 's'}"
@@ -235,7 +215,7 @@ def contributors_table(model: Model) -> Group:
         cells = (*map(unsigned_zero, numbers), UNIT_SIGNS[contributor.unit])
         rows.append(Row(contributor.name, (distribution_words(contributor), *cells)))
     table = Sheet("", [Heading("law", words=True), *map(Heading, ("low", "high", "sigma", "unit"))], rows)
-    return Group(_titled("contributors", table), *coefficients_tables(model))
+    return Group(titled("contributors", table), *coefficients_tables(model))
 
 
 def distribution_words(contributor: Contributor) -> str:
@@ -244,118 +224,4 @@ def distribution_words(contributor: Contributor) -> str:
     if not isinstance(contributor.draw, Planar):
         return law
     direction = contributor.draw.direction
-    return f"{law}, random direction" if direction is None else f"{law}, at {_degrees(direction)}°"
-
-
-# coefficients of both roads ------------------------------------------------------------------------
-
-
-@dataclass(frozen=True)
-class _Coefficient:
-    """Change of a measure per unit of a contributor, in the units that are shown; two slopes where there is a kink."""
-
-    below: float
-    above: float
-
-    def __str__(self) -> str:
-        if math.isnan(self.below + self.above):
-            return NOTHING
-        if self.differs(_Coefficient(self.above, self.below), KINK):
-            return f"{_slope_text(self.below)}/{_slope_text(self.above)}"
-        return _slope_text((self.below + self.above) / 2)
-
-    def differs(self, other: "_Coefficient", share: float) -> bool:
-        """Whether either slope is off by more than a share of the largest of all."""
-        slopes = (self.below, self.above, other.below, other.above)
-        off = max(abs(self.below - other.below), abs(self.above - other.above))
-        return off > max(share * max(map(abs, slopes)), LEAST_SLOPE)
-
-
-def coefficients_tables(model: Model) -> list[RenderableType]:
-    """For each measure the coefficients of both roads at the mean build, and the stack-up's shares of the variance.
-
-    Of a measure that takes an extreme or a curve those of its value at a random position, the driver at 0.
-    """
-    names: dict[Measure, list[str]] = {}
-    for measure in model.measures:
-        names.setdefault(_of_one_value(measure), []).append(measure.name)
-    engine = ExactEngine(model)
-    forms = {measure: reference_form(model, measure) for measure in names}
-    headings = [Heading(word) for word in ("unit", "stack-up", "3D", "share [%]")]
-    tables = [
-        _titled(f"{', '.join(of)}: change by each deviation, {_where(model, measure)}", sheet)
-        for measure, of in names.items()
-        if (sheet := Sheet("", headings, list(_coefficient_rows(model, engine, measure, forms[measure])))).rows
-    ]
-    formless = [name for measure, of in names.items() if forms[measure] is None for name in of]
-    return [*tables, *(Text(f" {note}", style="dim") for note in _notes(model, formless))]
-
-
-def _where(model: Model, measure: Measure) -> str:
-    """At which position coefficients are told."""
-    of_driver = measure.positions.over == "at" and isinstance(measure.kind, Backlash)
-    alone = len(model.layout.links) == len(model.layout.drives)
-    what = "driver" if of_driver or alone else "first shaft"
-    return f"{what} at {_degrees(measure.positions.angle)}°"
-
-
-def _of_one_value(measure: Measure) -> Measure:
-    """What coefficients are told of: measures that are equal here have the same."""
-    at = measure.take == "value" and measure.positions.over == "at"
-    positions = measure.positions if at else Positions("random", 1, 1)
-    return Measure("", at_one_position(measure.kind), positions, "value")
-
-
-def _coefficient_rows(model: Model, engine: Engine, measure: Measure, form: ClosedForm | None) -> Iterator[Row]:
-    """A row for each contributor that acts on the measure."""
-    shares = {share.name: share for share in form.shares} if form else {}
-    for contributor, slope in zip(model.contributors, mean_slopes(model, engine, measure), strict=True):
-        per = (ARCSEC if measure.kind.is_angle else UM) * contributor.per_unit
-        unit = f"{'″' if measure.kind.is_angle else 'µm'}/{UNIT_SIGNS[contributor.unit]}"
-        found = _Coefficient(slope.below * per, slope.above * per)
-        share = shares.get(contributor.name)
-        if form and share:
-            expected = _by_stack_up(contributor, share.coefficient * per)
-            percent = percent_text(form.percent(contributor.name))
-            yield Row(contributor.name, (unit, str(expected), _beside(found, expected), percent))
-        elif found.differs(_Coefficient(0.0, 0.0), 0.0):
-            yield Row(contributor.name, (unit, NOTHING, str(found), NOTHING))
-
-
-def _by_stack_up(contributor: Contributor, coefficient: float) -> _Coefficient:
-    """A tilt acts by its absolute value: away from 0 one slope, at 0 two."""
-    if contributor.kind not in ONE_SIDED:
-        return _Coefficient(coefficient, coefficient)
-    sides = np.sign(contributor.distribution.mean + STEP_ASIDE[contributor.unit] * np.array([-1.0, 1.0]))
-    return _Coefficient(*(coefficient * sides).tolist())
-
-
-def _beside(found: _Coefficient, expected: _Coefficient) -> str:
-    """The coefficient of the geometry, marked where it is another one."""
-    return f"{OTHER} {found}" if found.differs(expected, DISAGREES) else str(found)
-
-
-def _slope_text(slope: float) -> str:
-    """A slope with three digits, or three decimals where it is small; 0 has no sign."""
-    if abs(slope) < LEAST_SLOPE:
-        return "0.000"
-    return f"{slope:+.3f}" if abs(slope) < 1 else f"{slope:+#.3g}".rstrip(".")
-
-
-def _notes(model: Model, formless: Sequence[str]) -> list[str]:
-    notes = [
-        "stack-up and 3D: at the mean build, per unit of the deviation; of one with a direction per length in its "
-        "worst direction; a/b: below and above the mean, where they differ; "
-        f"{OTHER}: the geometry disagrees by more than {100 * DISAGREES:g} %"
-    ]
-    tilts = [c.name for c in model.contributors if c.kind in ONE_SIDED]
-    if tilts:
-        more = "; of two that cross only the larger counts" if len(tilts) > 1 else ""
-        notes.append(f"{', '.join(tilts)}: a tilt closes the gap whichever way it goes{more}")
-    if formless:
-        notes.append(f"no closed form of {', '.join(formless)}: {NO_SUM}")
-    return notes
-
-
-def _degrees(angle: float) -> str:
-    return f"{round(math.degrees(angle), 4):g}"
+    return f"{law}, random direction" if direction is None else f"{law}, at {degrees_text(direction)}°"

@@ -22,6 +22,7 @@ from tol3d.analyses.shim import Rounding
 from tol3d.analyses.shimmed import Minimum
 from tol3d.model import Model
 from tol3d.report.assembly import Assembly, Which, assembly_of
+from tol3d.report.coefficients import Coefficient, coefficients_of
 from tol3d.report.trains.whole_trains import whole_trains
 from tol3d.result import Run, open_run
 from tol3d.scene import Scene
@@ -90,6 +91,11 @@ class Check(Report):
     """
 
     model: Model
+
+    @cached_property
+    def coefficients(self) -> Mapping[str, Sequence[Coefficient]]:
+        """What each contributor does to each measure by its name, by either road, with its share of the variance."""
+        return coefficients_of(self.model)
 
 
 @dataclass(frozen=True, repr=False)

@@ -1,5 +1,6 @@
 """Numbers as a reader wants them: lengths in um, those at an arm's tip in mm, angles in minutes and seconds of arc."""
 
+import math
 from typing import Final
 
 from tol3d.units import RAD_PER_ARCMIN, angle_text
@@ -115,6 +116,15 @@ def share_text(ppm: float | None) -> str:
     if ppm is None or ppm < LEAST_PERCENT:
         return NOTHING if ppm is None else f"{ppm_text(ppm)} ppm"
     return f"{f'{ppm / 1e4:.4g}' if ppm < ALMOST_ALL else '100'} %"
+
+
+def degrees_text(angle: float) -> str:
+    """An angle [rad] in degrees, four decimals at most.
+
+    >>> degrees_text(0.34906585), degrees_text(0.0)
+    ('20', '0')
+    """
+    return f"{round(math.degrees(angle), 4):g}"
 
 
 def ppm_text(value: float | None) -> str:

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 from rich import box
 from rich.cells import cell_len
-from rich.console import Console, ConsoleOptions, RenderResult
+from rich.console import Console, ConsoleOptions, Group, RenderResult
 from rich.padding import Padding
 from rich.table import Table
 from rich.text import Text
@@ -36,6 +36,11 @@ class Row:
 def note(text: str) -> Padding:
     """A line below a table."""
     return Padding(Text(text, style="dim"), (0, 0, 0, 1))
+
+
+def titled(title: str, sheet: "Sheet") -> Group:
+    """A table under its title."""
+    return Group(Text(f"\n{title}", style="bold cyan"), sheet)
 
 
 @dataclass(frozen=True)

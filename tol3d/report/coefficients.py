@@ -1,0 +1,203 @@
+"""Coefficients of a scene's contributors in its measures, by the stack-up and by the geometry, before any trial."""
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from rich.console import RenderableType
+from rich.text import Text
+
+from tol3d import trials
+from tol3d.analytic import Share, reference_form
+from tol3d.block import analytic_values, stated_block
+from tol3d.engines import Engine
+from tol3d.engines.exact import ExactEngine
+from tol3d.model import Backlash, Contributor, Measure, Model, Positions
+from tol3d.model.measure import at_one_position
+from tol3d.report.number import NOTHING, UNIT_SIGNS, degrees_text, percent_text
+from tol3d.report.sheet import Heading, Row, Sheet, titled
+from tol3d.sensitivity import STEP_ASIDE, Slope, mean_slopes
+
+UM = 1000.0  # um in a mm
+ARCSEC = 648000 / math.pi  # arcsec in a rad
+ONE_SIDED = ("axis_in_plane", "axis_out_of_plane")  # kinds whose coefficient acts by absolute value
+LEAST_SLOPE = 5e-4  # um or arcsec per unit; what rounds to 0.000 is nothing
+DISAGREES = 0.05  # of the largest slope; beyond that a coefficient of the geometry is marked
+KINK = 0.01  # of the larger slope; two sides that differ by less are one
+OTHER = "≠"
+NO_SUM = "the tighter way counts, which is no sum; run tells the shares of its trials"
+
+
+@dataclass(frozen=True)
+class Slopes:
+    """Change of a measure per unit of a contributor, below and above its mean; nan where neither seats."""
+
+    below: float
+    above: float
+
+    def __str__(self) -> str:
+        if math.isnan(self.below + self.above):
+            return NOTHING
+        if self.differs(Slopes(self.above, self.below), KINK):
+            return f"{_slope_text(self.below)}/{_slope_text(self.above)}"
+        return _slope_text((self.below + self.above) / 2)
+
+    def differs(self, other: "Slopes", share: float) -> bool:
+        """Whether either slope is off by more than a share of the largest of all."""
+        slopes = (self.below, self.above, other.below, other.above)
+        off = max(abs(self.below - other.below), abs(self.above - other.above))
+        return off > max(share * max(map(abs, slopes)), LEAST_SLOPE)
+
+
+LEVEL = Slopes(0.0, 0.0)
+UNKNOWN = Slopes(math.nan, math.nan)
+
+
+@dataclass(frozen=True)
+class Coefficient:
+    """What a contributor does to a measure at the mean build, one with a direction in its worst one.
+
+    Args:
+        name: the contributor's.
+        unit: of the slopes, "µm/µm" or "″/K".
+        stack_up, geometry: by either road.
+        percent: its share of the variance by the stack-up; None where ways are parallel, or only the geometry sees it.
+    """
+
+    name: str
+    unit: str
+    stack_up: Slopes
+    geometry: Slopes
+    percent: float | None
+
+    @property
+    def disagrees(self) -> bool:
+        """Whether the geometry has another slope than the stack-up."""
+        return self.geometry.differs(self.stack_up, DISAGREES)
+
+
+Coefficients = Mapping[Measure, Sequence[Coefficient]]
+
+
+def coefficients_of(model: Model) -> Mapping[str, Sequence[Coefficient]]:
+    """For each measure the coefficients of the contributors that act on it, see `Coefficient`.
+
+    Of a measure that takes an extreme or a curve those of its value at a random position, the driver at 0.
+    """
+    known = _coefficients(model)
+    return {measure.name: known[_of_one_value(measure)] for measure in model.measures}
+
+
+def coefficients_tables(model: Model) -> list[RenderableType]:
+    """The same as tables, one for all measures that have the same."""
+    names: dict[Measure, list[str]] = {}
+    for measure in model.measures:
+        names.setdefault(_of_one_value(measure), []).append(measure.name)
+    headings = [Heading(word) for word in ("unit", "stack-up", "3D", "share [%]")]
+    tables = [
+        titled(
+            f"{', '.join(names[measure])}: change by each deviation, {_where(model, measure)}",
+            Sheet("", headings, [_row(own) for own in rows]),
+        )
+        for measure, rows in _coefficients(model).items()
+        if rows
+    ]
+    formless = [name for measure, of in names.items() if not measure.kind.adds_up for name in of]
+    return [*tables, *(Text(f" {note}", style="dim") for note in _notes(model, formless))]
+
+
+def _row(own: Coefficient) -> Row:
+    geometry = f"{OTHER} {own.geometry}" if own.disagrees else str(own.geometry)
+    percent = NOTHING if own.percent is None else percent_text(own.percent)
+    return Row(own.name, (own.unit, str(own.stack_up), geometry, percent))
+
+
+def _where(model: Model, measure: Measure) -> str:
+    """At which position coefficients are told."""
+    of_driver = measure.positions.over == "at" and isinstance(measure.kind, Backlash)
+    alone = len(model.layout.links) == len(model.layout.drives)
+    what = "driver" if of_driver or alone else "first shaft"
+    return f"{what} at {degrees_text(measure.positions.angle)}°"
+
+
+def _of_one_value(measure: Measure) -> Measure:
+    """What coefficients are told of: measures that are equal here have the same."""
+    at = measure.take == "value" and measure.positions.over == "at"
+    positions = measure.positions if at else Positions("random", 1, 1)
+    return Measure("", at_one_position(measure.kind), positions, "value")
+
+
+def _coefficients(model: Model) -> Coefficients:
+    engine = ExactEngine(model)
+    measures = dict.fromkeys(_of_one_value(measure) for measure in model.measures)
+    return {measure: tuple(_of_measure(model, engine, measure)) for measure in measures}
+
+
+def _of_measure(model: Model, engine: Engine, measure: Measure) -> Iterator[Coefficient]:
+    """One for each contributor that acts on the measure."""
+    form = reference_form(model, measure)
+    shares = {share.name: share for share in form.shares} if form else {}
+    seen = mean_slopes(model, engine, measure)
+    by_road = _road_slopes(model, measure, seen)
+    for contributor, slope, on_road in zip(model.contributors, seen, by_road, strict=True):
+        per = (ARCSEC if measure.kind.is_angle else UM) * contributor.per_unit
+        unit = f"{'″' if measure.kind.is_angle else 'µm'}/{UNIT_SIGNS[contributor.unit]}"
+        found = Slopes(slope.below * per, slope.above * per)
+        share = shares.get(contributor.name)
+        if form is None or contributor.name in form.leaning:
+            expected = on_road
+        else:
+            expected = _linear(contributor, share) if share else UNKNOWN
+        told = Slopes(expected.below * per, expected.above * per)
+        if share or found.differs(LEVEL, 0.0) or told.differs(LEVEL, 0.0):
+            percent = form.percent(contributor.name) if form and share else None
+            yield Coefficient(contributor.name, unit, told, found, percent)
+
+
+def _linear(contributor: Contributor, share: Share) -> Slopes:
+    """Of what acts linearly; a tilt acts by its absolute value: away from 0 one slope, at 0 two."""
+    if contributor.kind not in ONE_SIDED:
+        return Slopes(share.coefficient, share.coefficient)
+    sides = np.sign(contributor.distribution.mean + STEP_ASIDE[contributor.unit] * np.array([-1.0, 1.0]))
+    return Slopes(*(share.coefficient * sides).tolist())
+
+
+def _road_slopes(model: Model, measure: Measure, along: Sequence[Slope]) -> list[Slopes]:
+    """Slopes of the analytic road's values at the mean build [internal units], in the directions that are stated.
+
+    Where a contributor is no term of a sum: it leans axes, or only the tighter of parallel ways counts. The road is
+    straight from kink to kink, so that differences over STEP_ASIDE are exact.
+    """
+    mean = trials.mean_deviations(model, measure.positions)
+    steps = np.zeros((len(along), model.component_count))
+    for step, contributor, slope in zip(steps, model.contributors, along, strict=True):
+        towards = [1.0] if slope.direction is None else [math.cos(slope.direction), math.sin(slope.direction)]
+        step[model.component_slices[contributor.name]] = np.array(towards) * STEP_ASIDE[contributor.unit]
+    rows = np.concatenate([mean, mean - steps, mean + steps])
+    middle, *values = analytic_values(model, measure, stated_block(model, rows))[:, 0]
+    below, above = np.array(values).reshape(2, -1)
+    lengths = np.array([STEP_ASIDE[contributor.unit] for contributor in model.contributors])
+    return [Slopes(*sides) for sides in np.stack([middle - below, above - middle], axis=1) / lengths[:, None]]
+
+
+def _slope_text(slope: float) -> str:
+    """A slope with three digits, or three decimals where it is small; 0 has no sign."""
+    if abs(slope) < LEAST_SLOPE:
+        return "0.000"
+    return f"{slope:+.3f}" if abs(slope) < 1 else f"{slope:+#.3g}".rstrip(".")
+
+
+def _notes(model: Model, formless: Sequence[str]) -> list[str]:
+    notes = [
+        "stack-up and 3D: at the mean build, per unit of the deviation; of one with a direction per length in its "
+        "worst direction; a/b: below and above the mean, where they differ; "
+        f"{OTHER}: the geometry disagrees by more than {100 * DISAGREES:g} %"
+    ]
+    tilts = [c.name for c in model.contributors if c.kind in ONE_SIDED]
+    if tilts:
+        more = "; of two that cross only the larger counts" if len(tilts) > 1 else ""
+        notes.append(f"{', '.join(tilts)}: a tilt closes the gap whichever way it goes{more}")
+    if formless:
+        notes.append(f"no shares of {', '.join(formless)}: {NO_SUM}")
+    return notes
