@@ -258,7 +258,7 @@ def check_poses(name: str, count: int, seed: int, read_at: str, flank: int, engi
     poses = posed(CASES[name], count, seed, flank)
     error = 1000 * (measured(poses, engine_of(poses.model), READINGS[read_at]) - found_by_search(poses, read_at))
     assert np.abs(error).max() <= SEARCH_BOUND
-    assert error.min() >= -0.035  # strips lie inside the teeth; but see AT_TIP_EDGES of the spur pairs
+    assert error.min() >= -0.01  # strips lie inside the teeth; FCL's own rounding and the oracle's zooms
 
 
 @pytest.mark.parametrize("read_at", READINGS)

@@ -1,13 +1,18 @@
 """The witness: distances between measuring strips of the CAD flanks, by the Flexible Collision Library.
 
-One BVH a tooth flank, as full-width strips. FCL tells no depth of overlap, so the strips are pulled
-inward by SLACK along their normals and the gap is the distance less the slack of both: the flanks may
-overlap by up to twice the slack and the distance stays away from zero. A tip edge is pulled in along its
-own normal; where it touches a flank whose normal differs by delta, the gap reads SLACK (1 - cos delta)
-too little: 0.03 um at 0.045 rad, as gears 700 ppm apart in pitch have it.
+One BVH a tooth flank, as full-width strips. FCL tells no depth of overlap, so the strips are pulled inward by a slack
+along their normals, and both nearest points are put back afterwards, each by what it was pulled: the gap is their
+distance along the line on which FCL found them. The flanks may overlap by up to the slack of both and the distance
+stays away from zero. Between flanks that line is the normal of both, and what is put back is the slack. An edge that
+touches (a tip, an end of the face) was pulled along a normal of its own, delta off that line, and comes back beside it
+by slack sin delta, from where the other flank curves away by (slack sin delta)^2/(2 r): that is added. What is left
+of it is 0.0073 um a millimetre of module at delta = 0.46 rad.
+
+All lengths here go with the module, so that gears that are alike in all but their size read alike.
 """
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 from functools import lru_cache
 
 import fcl
@@ -19,13 +24,13 @@ from tol3d.build import Build
 from tol3d.engines.gaps import Array, Gaps, Teeth
 from tol3d.gears import Flank
 from tol3d.model import Mesh, Model
-from tol3d.solids import WHOLE_FACE, FlankStrips, Span, strip_mesh
+from tol3d.solids import WHOLE_FACE, FlankStrips, PulledStrip, Span
 
-SLACK = 0.030  # mm a flank; deep enough for any start of the turn, small against the curvature radius
+SLACK = 0.012  # modules a flank; deep enough for any start of the turn, small against the curvature radius
 MESHES_KEPT = 64  # grown strips kept for reuse; a constant temperature needs one a flank
-SECTION_WIDTH = 2e-3  # mm along the face; a gap that grows with it by 1 um a mm is read 0.001 um off
-LAST_STEP = 0.5e-3  # mm
-OUT_OF_REACH = 1e-3  # mm; a distance below this has lost its normal: the overlap is as deep as the slack
+SECTION_WIDTH = 0.8e-3  # modules along the face; a gap that grows with it by 1 um a mm is read 0.001 um off at 2.5 mm
+LAST_STEP = 0.2e-3  # modules; the gap is linear in the turn to 0.4e-6 modules over it
+OUT_OF_REACH = 0.4e-3  # modules; a distance below this has lost its normal: the overlap is as deep as the slack
 
 
 class FclEngine:
@@ -46,15 +51,13 @@ class FclEngine:
         self._held = lru_cache(maxsize=MESHES_KEPT)(self._make_object)
         self._moved = lru_cache(maxsize=MESHES_KEPT)(self._make_object)
 
-    @property
-    def depth(self) -> float:
+    def depth(self, mesh: Mesh) -> float:
         """Overlap [mm] that can still be measured: the slack of both flanks."""
-        return 2 * SLACK - OUT_OF_REACH
+        return (2 * SLACK - OUT_OF_REACH) * _module(mesh)
 
-    @property
-    def last_step(self) -> float:
-        """0.5e-3 mm: the gap is linear in the turn to 1e-6 mm over it."""
-        return LAST_STEP
+    def last_step(self, mesh: Mesh) -> float:
+        """See LAST_STEP [mm]."""
+        return LAST_STEP * _module(mesh)
 
     @property
     def chord_error(self) -> float:
@@ -62,12 +65,15 @@ class FclEngine:
         return max(strips.chord_error for strips in self._strips.values())
 
     def _make_object(self, gear: str, flank: Flank, scale: float, span: Span) -> fcl.CollisionObject:
-        vertices, triangles = strip_mesh(self._strips[gear], flank, SLACK, scale, span)
+        vertices, triangles = self._strip(gear, flank, span).mesh(scale)
         hierarchy = fcl.BVHModel()
         hierarchy.beginModel(len(vertices), len(triangles))
         hierarchy.addSubModel(vertices, triangles)
         hierarchy.endModel()
         return fcl.CollisionObject(hierarchy, fcl.Transform())
+
+    def _strip(self, gear: str, flank: Flank, span: Span) -> PulledStrip:
+        return PulledStrip(self._strips[gear], flank, SLACK * self._model.gear(gear).gear.module, span)
 
     def gaps(
         self,
@@ -91,6 +97,7 @@ class FclEngine:
 
         distance = np.full(wanted.shape, np.nan)
         points = np.full((*wanted.shape, 2, 3), np.nan)
+        triangles = np.zeros((*wanted.shape, 2), dtype=np.int64)
         request = self._request
         scales = build.scale
         span = self._section(mesh) if section else WHOLE_FACE
@@ -101,12 +108,22 @@ class FclEngine:
             result = fcl.DistanceResult()
             distance[row, pair] = fcl.distance(fixed, moved, request, result)
             points[row, pair] = result.nearest_points
-        offsets = build.flank_offset[:, [driver, driven]]
-        return self._gaps(distance, offsets, points, (driver_rotation, driver_origin), driver_teeth)
+            triangles[row, pair] = result.b1, result.b2
+        at = np.nonzero(wanted)
+        back, curvature = np.full(points.shape, np.nan), np.full((*wanted.shape, 2), np.nan)
+        poses = ((np.eye(3), np.zeros(3)), (rotation[at], translation[at]))
+        strips = (self._strip(mesh.driver, flank, span), self._strip(mesh.driven, flank, WHOLE_FACE))
+        for side, (strip, seat, (turn, shift)) in enumerate(zip(strips, (driver, driven), poses, strict=True)):
+            scale, triangle = scales[at[0], seat], triangles[..., side][at]
+            own = frames.apply(frames.transposed(turn), points[..., side, :][at] - shift)
+            back[..., side, :][at] = frames.apply(turn, strip.put_back(scale, triangle, own))
+            curvature[..., side][at] = strip.curvature(scale, triangle)
+        found = _Found(distance, points, back, curvature, distance < OUT_OF_REACH * _module(mesh))
+        return found.gaps(build.flank_offset[:, [driver, driven]], (driver_rotation, driver_origin), driver_teeth)
 
     def _section(self, mesh: Mesh) -> Span:
-        """A strip of the driver's face, SECTION_WIDTH wide, in the middle of the common face."""
-        half = SECTION_WIDTH / (2 * mesh.pair.pinion.face_width)
+        """A strip of the driver's face, SECTION_WIDTH modules wide, in the middle of the common face."""
+        half = SECTION_WIDTH * _module(mesh) / (2 * mesh.pair.pinion.face_width)
         return mesh.pair.pinion_section - half, mesh.pair.pinion_section + half
 
     def _flank_poses(self, build: Build, gear: int, angle: Array, teeth: Teeth, flank: Flank) -> tuple[Array, Array]:
@@ -118,22 +135,49 @@ class FclEngine:
         pitch = self._model.gear(seat.gear).gear.angular_pitch
         return build.tooth_pose(gear, angle, pitch * teeth - flank * build.flank_turn[:, gear, None])
 
-    @staticmethod
-    def _gaps(
-        distance: Array, offsets: Array, points: Array, driver_pose: tuple[Array, Array], driver_teeth: Teeth
-    ) -> Gaps:
-        """Signed gaps of distances; flanks offset along their normals are parallel, so that the gap is less by that."""
-        deep = distance < OUT_OF_REACH
-        safe = np.where(deep | np.isnan(distance), np.nan, distance)
+
+@dataclass(frozen=True)
+class _Found:
+    """What FCL found between pulled strips, in the frames of the driver's flanks.
+
+    Args:
+        distance: (trials, pairs) [mm].
+        points: (trials, pairs, 2, 3) [mm], the nearest ones.
+        back: (trials, pairs, 2, 3) [mm], what puts each of them back onto its flank.
+        curvature: (trials, pairs, 2), of the flanks there [1/mm].
+        deep: (trials, pairs), whether the distance tells nothing.
+    """
+
+    distance: Array
+    points: Array
+    back: Array
+    curvature: Array
+    deep: NDArray[np.bool_]
+
+    def gaps(self, offsets: Array, driver_pose: tuple[Array, Array], driver_teeth: Teeth) -> Gaps:
+        """Signed gaps; flanks offset along their normals are parallel, so that the gap is less by that."""
+        safe = np.where(self.deep | np.isnan(self.distance), np.nan, self.distance)
+        normal = (self.points[..., 1, :] - self.points[..., 0, :]) / safe[..., None]
+        along = (self.back * normal[..., None, :]).sum(axis=-1)
+        beside = (self.back**2).sum(axis=-1) - along**2
+        # a flank curves away from beside which the other's edge was put: the driver's against the normal
+        away = np.array([-0.5, 0.5]) * beside[..., ::-1] * self.curvature
+        moved = self.back + away[..., None] * normal[..., None, :]
+        opened = along + away
         rotation, origin = driver_pose
-        first = frames.apply(rotation, points[..., 0, :]) + origin[:, None]
-        second = frames.apply(rotation, points[..., 1, :]) + origin[:, None]
-        normal = (second - first) / safe[..., None]
+        in_world = frames.apply(rotation, normal)
+        first, second = (
+            frames.apply(rotation, self.points[..., side, :] + moved[..., side, :]) + origin[:, None] for side in (0, 1)
+        )
         return Gaps(
-            value=safe - 2 * SLACK - offsets.sum(axis=1)[:, None],
-            deep=deep,
-            driver_point=first + (SLACK + offsets[:, 0, None, None]) * normal,
-            driven_point=second - (SLACK + offsets[:, 1, None, None]) * normal,
-            normal=normal,
+            value=safe + opened[..., 1] - opened[..., 0] - offsets.sum(axis=1)[:, None],
+            deep=self.deep,
+            driver_point=first + offsets[:, 0, None, None] * in_world,
+            driven_point=second - offsets[:, 1, None, None] * in_world,
+            normal=in_world,
             driver_teeth=driver_teeth,
         )
+
+
+def _module(mesh: Mesh) -> float:
+    return mesh.pair.pinion.module

@@ -66,13 +66,11 @@ class Gaps:
 class Engine(Protocol):
     """Anything that can tell gaps."""
 
-    @property
-    def depth(self) -> float:
-        """How deep an overlap [mm] the engine can still measure."""
+    def depth(self, mesh: Mesh) -> float:
+        """How deep an overlap [mm] of a mesh's flanks the engine can still measure."""
         ...
 
-    @property
-    def last_step(self) -> float:
+    def last_step(self, mesh: Mesh) -> float:
         """A turn that moves flanks by no more [mm] may be the last: gaps are linear over it, as known."""
         ...
 

@@ -14,9 +14,9 @@ from tol3d.model import Mesh, Model, Reading
 Array = NDArray[np.float64]
 Status = NDArray[np.int8]
 
-LAST_ERROR = 2e-6  # mm; what the last step may miss where contact jumps along a face on which the arm varies
+LAST_ERROR = 0.8e-6  # modules; what the last step may miss where contact jumps along a face on which the arm varies
 TURN_STEPS = 40  # steps; Newton takes two or three, backing out of an overlap one for each engine depth
-TIE = 2e-3  # mm; a pair that has this much further to go than the first one is not asked again,
+TIE = 0.8e-3  # modules; a pair that has this much further to go than the first one is not asked again,
 TIE_SHARE = 0.02  # of the step itself, for the gaps' curvature: (0.4 mm)^2/(2 x 20 mm) is 1 % of 0.4 mm
 ROOT_FINDING_NOISE = 1e-6  # mm; a free play above minus this is called free
 
@@ -124,9 +124,9 @@ class Meshing:
         mover_name = self.mesh.driver if turn_driver else self.mesh.driven
         seat = self.model.seat_index[self.mesh.name, mover_name]
         base_radius = self.mesh.gear(mover_name).base_radius
-        last_step = self.engine.last_step
+        depth, last_step = self.engine.depth(self.mesh), self.engine.last_step(self.mesh)
         if pair.arm_spread:
-            last_step = min(last_step, LAST_ERROR / pair.arm_spread)
+            last_step = min(last_step, LAST_ERROR * pair.pinion.module / pair.arm_spread)
         axis_point, axis = self.build.axis(seat)
         opening = float(pair.opening_sense(flank))
         section = self.reading.contact == "section"
@@ -147,11 +147,11 @@ class Meshing:
             deep = np.asarray(gaps.deep.any(axis=1))
             least = reach.min(axis=1)
             lost = ~deep & np.isinf(least)  # no faces overlap
-            step = np.where(deep, -self.engine.depth / base_radius, np.where(lost, 0.0, least))
+            step = np.where(deep, -depth / base_radius, np.where(lost, 0.0, least))
             mover[rows] -= opening * step
             resting = ~deep & ~lost & (np.abs(step) * base_radius < last_step)
             at_rest.keep(rows[resting], gaps, resting, rate * step[:, None])
-            tie = TIE / base_radius + (TIE_SHARE + pair.arm_spread) * np.abs(step)
+            tie = TIE * pair.pinion.module / base_radius + (TIE_SHARE + pair.arm_spread) * np.abs(step)
             tied = reach <= (step + tie)[:, None]
             wanted[rows] &= deep[:, None] | tied
             touched[rows[resting]] = True

@@ -4,6 +4,7 @@ from tol3d.solids.bodies import ArmBody, Collar, ShaftBody
 from tol3d.solids.display_mesh import DisplayMesh, display_mesh
 from tol3d.solids.flank_strips import WHOLE_FACE, FlankStrips, Span, measuring_strips, strip_mesh
 from tol3d.solids.posed_gear import PosedBody, PosedGear, PosedPart
+from tol3d.solids.pulled_strip import PulledStrip
 from tol3d.solids.step import export_step
 
 __all__ = [
@@ -15,6 +16,7 @@ __all__ = [
     "PosedBody",
     "PosedGear",
     "PosedPart",
+    "PulledStrip",
     "ShaftBody",
     "Span",
     "display_mesh",

@@ -25,6 +25,8 @@ from tol3d.model import Mesh, Model, Reading
 Array = NDArray[np.float64]
 Teeth = NDArray[np.int64]
 
+DEPTH = 1.0  # mm
+LAST_STEP = 1e-8  # mm
 WHICH_TEETH = {"all": ALL_TEETH, "driver": DRIVER_TOOTH, "driven": DRIVEN_TOOTH}
 
 
@@ -45,8 +47,6 @@ class PairKernels:
 class ExactEngine:
     """Gaps and backlashes of the mathematical flanks of a model's meshes."""
 
-    depth = 1.0  # mm; any overlap can be told
-    last_step = 1e-8  # mm; what is left of a gap after it goes with its square
     chord_error = 0.0
 
     def __init__(self, model: Model) -> None:
@@ -58,6 +58,14 @@ class ExactEngine:
     def kept(self) -> bool:
         """Whether this machine has compiled what its studies need."""
         return all(pair.read.kept for pair in self._pairs.values())
+
+    def depth(self, mesh: Mesh) -> float:
+        """1 mm: any overlap can be told."""
+        return DEPTH
+
+    def last_step(self, mesh: Mesh) -> float:
+        """1e-8 mm: what is left of a gap after it goes with its square."""
+        return LAST_STEP
 
     def build(self, deviations: Array) -> Build:
         """See ReadingEngine.build."""

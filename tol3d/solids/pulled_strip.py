@@ -1,0 +1,58 @@
+"""The strip of one flank, pulled into its tooth, and where its points lay before."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from tol3d.gears import Flank
+from tol3d.solids.flank_strips import WHOLE_FACE, Array, FlankStrips, Span, Triangles, strip_mesh
+
+
+@dataclass(frozen=True, eq=False)
+class PulledStrip:
+    """The strip of one flank as strip_mesh makes it; arguments as there."""
+
+    strips: FlankStrips
+    flank: Flank
+    slack: float
+    span: Span = WHOLE_FACE
+
+    def mesh(self, scale: float) -> tuple[Array, Triangles]:
+        """Vertices [mm] and triangles of a gear that has grown by `scale`."""
+        return strip_mesh(self.strips, self.flank, self.slack, scale, self.span)
+
+    def put_back(self, scale: Array, triangle: Triangles, point: Array) -> Array:
+        """Which vectors put points of the strip back onto the flank: (n, 3) [mm], out of the tooth.
+
+        A vertex was pulled along its normal, what lies between vertices by their mixture.
+
+        Args:
+            scale: (n,), growth of the gear.
+            triangle: (n,), on which each point lies.
+            point: (n, 3) [mm].
+        """
+        normals = self.strips.normals[self.flank]
+        _, triangles = self.mesh(1.0)
+        end, step = np.divmod(triangles[triangle], len(normals))
+        corners = self._points(np.array(self.span)[end], step) * scale[:, None, None] - self.slack * normals[step]
+        one, other, here = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0], point - corners[:, 0]
+        normal = np.cross(one, other)
+        area = (normal * normal).sum(axis=-1)
+        second = (np.cross(here, other) * normal).sum(axis=-1) / area
+        third = (np.cross(one, here) * normal).sum(axis=-1) / area
+        weights = np.stack([1 - second - third, second, third], axis=-1)
+        return np.asarray(self.slack * (weights[..., None] * normals[step]).sum(axis=1))
+
+    def curvature(self, scale: Array, triangle: Triangles) -> Array:
+        """Of the flank along its profile where triangles lie, in the middle of the span: (n,) [1/mm]."""
+        normals = self.strips.normals[self.flank]
+        step = triangle % (len(normals) - 1)
+        middle = np.full(step.shape, sum(self.span) / 2)
+        chord = self._points(middle, step + 1) - self._points(middle, step)
+        turned = normals[step + 1] - normals[step]
+        return np.asarray(np.sqrt((turned * turned).sum(axis=-1) / (chord * chord).sum(axis=-1)) / scale)
+
+    def _points(self, at: Array, step: Triangles) -> Array:
+        """Points of the flank at some shares of the face's width, not grown."""
+        inner, outer = self.strips.inner[self.flank][step], self.strips.outer[self.flank][step]
+        return np.asarray((1 - at)[..., None] * inner + at[..., None] * outer)
