@@ -203,7 +203,7 @@ def _published(model: Model, measure: Measure) -> dict[str, Any]:
     """Other people's columns for this measure, in its unit."""
     return {
         column: {
-            key: value if key == "contributors" else value * measure.per_internal
+            key: value * measure.per_internal if isinstance(value, float) else value
             for key, value in measures[measure.name].items()
         }
         for column, measures in model.published.items()

@@ -28,12 +28,14 @@ class Correction:
         motor: turn of the motor that makes good for them together [arcmin].
         before: sum of all stages' highs at the shaft that is read [arcmin].
         left: sum of what their highs exceed their means by, and of the highs of what is not compensated [arcmin].
+        left_of: by how much each compensated link's own high exceeds its mean, at its driven shaft [arcmin].
     """
 
     means: Mapping[str, float | None]
     motor: float | None
     before: float | None
     left: float | None
+    left_of: Mapping[str, float | None]
 
 
 def corrections_of(
@@ -83,6 +85,7 @@ def _correction(
         motor=_total([(turns[link], mean) for link, mean in means.items()]),
         before=before,
         left=None if before is None or known is None else before - known,
+        left_of={link: _total([(1.0, ends[link].get("high_3sigma")), (-1.0, mean)]) for link, mean in means.items()},
     )
 
 

@@ -161,6 +161,7 @@ def _published(scene: Scene) -> dict[str, dict[str, dict[str, object]]]:
             measure: {
                 **{key: quantity.internal for key, quantity in values.quantities().items()},
                 **({"contributors": dict(values.contributors)} if values.contributors else {}),
+                **({"description": values.description} if values.description else {}),
             }
             for measure, values in measures.items()
         }

@@ -177,6 +177,9 @@ def worst_table(found: Sequence[Compensation]) -> Sheet:
             rows.append(Row(f"  {word}", [_angle(value) for value in values]))
             if any(tip is not None for tip in tips):
                 rows.append(Row("  – of the tip [mm]", [value_text(tip, "mm") for tip in tips]))
+        for link in dict.fromkeys(link for own in known if own for link in own.left_of):
+            left = [own.left_of.get(link) if own else None for own in known]
+            rows.append(Row(f"  – of {link}, at its driven shaft", [_angle(value) for value in left]))
     rows += _published_rows(found)
     return Sheet("sum at the output", _headings(found), rows)
 

@@ -94,7 +94,7 @@ def _measure_blocks(name: str, measure: Summary, summary: Summary) -> list[Rende
     title = Text("\n").append(name, style="bold cyan")
     words = Text(f"{heading(measure)} · {limits_text(measure)}", style="dim")
     if measure["take"] == "curve":
-        notes = [*_curve_notes(measure), *_witness_notes(name, measure, summary)]
+        notes = [*_curve_notes(measure), *_witness_notes(name, measure, summary), *_published_notes(measure)]
         return [title, words, "", curve_table(measure), *map(note, notes)]
     notes = [*_notes(name, measure, summary)]
     sums = sums_of(measure, summary)
@@ -231,6 +231,14 @@ def _notes(name: str, measure: Summary, summary: Summary) -> Iterator[str]:
     if "lost_motion" in measure:
         gear = measure["lost_motion"]["of"]
         yield f"lost motion: the turn of {gear} that this normal backlash leaves free, j_n over the arm of its flank"
+    yield from _published_notes(measure)
+
+
+def _published_notes(measure: Summary) -> Iterator[str]:
+    """What the scene says of other people's numbers."""
+    for column, values in measure.get("published", {}).items():
+        if values.get("description"):
+            yield f"{column}: {values['description']}"
 
 
 def _by_replicates(sample: Summary, summary: Summary) -> str:

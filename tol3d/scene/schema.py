@@ -158,6 +158,7 @@ class PublishedMeasure(Strict):
     contributors: Mapping[Name, Percent] = Field(
         default_factory=dict, description="share of each tolerance [% of the variance]"
     )
+    description: str = Field(default="", description="what must be known of these numbers, shown below the table")
 
     def quantities(self) -> dict[str, Quantity]:
         """Every dimensioned number that was given, by its field."""
