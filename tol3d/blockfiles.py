@@ -14,7 +14,7 @@ from pathlib import Path
 from tol3d.durable import UNFINISHED, named_in_errors, write_whole
 from tol3d.errors import RunError
 from tol3d.files import UnreadableFileError, read_contained
-from tol3d.parquet import Columns, ParquetError, columns_of, names_of, parquet_of
+from tol3d.parquet import Columns, ParquetError, Shape, columns_of, names_of, parquet_of
 
 CHECKSUMS = "_SHA256SUMS"
 SUFFIX = ".parquet"
@@ -39,17 +39,17 @@ class BlockFiles:
     Args:
         folder: where they are.
         units: unit of each column, kept in the files' metadata.
-        rows: how many trials a file has, where that is known; another number is damage, found before they are read.
+        shape: of each file, where that is known; another one is damage, found before anything is unpacked.
     """
 
     def __init__(
         self,
         folder: Path,
         units: Mapping[str, str] | None = None,
-        rows: Callable[[str], int | None] = lambda name: None,
+        shape: Callable[[str], Shape | None] = lambda name: None,
     ) -> None:
         self.folder = folder
-        self._rows = rows
+        self._shape = shape
         self._units = units or {}
         self._list = folder / CHECKSUMS
         self._adding = threading.Lock()
@@ -85,7 +85,7 @@ class BlockFiles:
             RunError: it is missing, damaged, or not the file that was written.
         """
         try:
-            return columns_of(self._content(name), columns, self._rows(name))
+            return columns_of(self._content(name), columns, self._shape(name))
         except ParquetError as error:
             raise self._damaged(name, str(error)) from None
 

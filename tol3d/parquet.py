@@ -1,6 +1,7 @@
 """Columns as Parquet, in memory: what a block's file holds. The only place that knows Parquet."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 import pyarrow as pa
@@ -42,32 +43,45 @@ def parquet_of(columns: Columns, units: Mapping[str, str]) -> memoryview:
     return memoryview(stream.getvalue())
 
 
-def columns_of(content: bytes, names: Sequence[str] | None = None, rows: int | None = None) -> Columns:
+@dataclass(frozen=True)
+class Shape:
+    """What a block of trials should be, known before any of it is read.
+
+    Args:
+        rows: how many trials it has.
+        width: how many positions a column has, 1 but for curves.
+    """
+
+    rows: int
+    width: Callable[[str], int]
+
+
+def columns_of(content: bytes, names: Sequence[str] | None = None, shape: Shape | None = None) -> Columns:
     """Columns of a Parquet file's content; all of them by default.
 
     Args:
         content: of the file, which a stranger may have made.
         names: of the columns that are wanted.
-        rows: how many there are; nothing is read of a file that tells another number.
+        shape: of the block, where it is known; nothing is unpacked of a file that tells another.
 
     Raises:
-        ParquetError: it is damaged, has other rows, lacks a column, or holds what no column of a run is.
+        ParquetError: it is damaged, has another shape, lacks a column, or holds what no column of a run is.
     """
     try:
         file = pq.ParquetFile(pa.BufferReader(content))
         wanted = list(file.schema_arrow.names if names is None else names)
-        _refuse_surprises(file, wanted, rows)
+        _refuse_surprises(file, wanted, shape)
         table = file.read(columns=wanted)
     except (OSError, ValueError, pa.ArrowException) as error:
         raise ParquetError((str(error).splitlines() or ["unreadable"])[0]) from None
     return {name: _to_numpy(table.column(name)) for name in wanted}
 
 
-def _refuse_surprises(file: pq.ParquetFile, wanted: Sequence[str], rows: int | None) -> None:
+def _refuse_surprises(file: pq.ParquetFile, wanted: Sequence[str], shape: Shape | None) -> None:
     """Refuse what is not a block of trials before any of it is unpacked: a few MB may hold as many GB of zeros."""
     told = file.metadata.num_rows
-    if rows is not None and told != rows:
-        raise ParquetError(f"{told} trials where there should be {rows}")
+    if shape is not None and told != shape.rows:
+        raise ParquetError(f"{told} trials where there should be {shape.rows}")
     if told > MOST_ROWS:
         raise ParquetError(f"{told} trials, expected at most {MOST_ROWS} in one file")
     schema = file.schema_arrow
@@ -78,7 +92,10 @@ def _refuse_surprises(file: pq.ParquetFile, wanted: Sequence[str], rows: int | N
             raise ParquetError(f"no column {name!r:.100}")
         if not _is_of_runs(schema.field(name).type):
             raise ParquetError(f"column {name!r:.100} holds {schema.field(name).type!s:.60}, which no run keeps")
-    widths = sum(field.type.list_size if pa.types.is_fixed_size_list(field.type) else 1 for field in schema)
+        width = _width_of(schema.field(name).type)
+        if shape is not None and width != shape.width(name):
+            raise ParquetError(f"column {name!r:.100} has {width} positions where there should be {shape.width(name)}")
+    widths = sum(_width_of(field.type) for field in schema)
     groups = [file.metadata.row_group(index) for index in range(file.metadata.num_row_groups)]
     chunks = [group.column(index) for group in groups for index in range(group.num_columns)]
     values, size = sum(chunk.num_values for chunk in chunks), sum(chunk.total_uncompressed_size for chunk in chunks)
@@ -86,6 +103,10 @@ def _refuse_surprises(file: pq.ParquetFile, wanted: Sequence[str], rows: int | N
         raise ParquetError("more values than its trials have")
     if size > BYTES_A_VALUE * values + BYTES_A_COLUMN * max(1, len(chunks)):
         raise ParquetError(f"{size} bytes for {values} values")
+
+
+def _width_of(kind: pa.DataType) -> int:
+    return int(kind.list_size) if pa.types.is_fixed_size_list(kind) else 1
 
 
 def _is_of_runs(kind: pa.DataType) -> bool:

@@ -20,6 +20,7 @@ from tol3d.errors import RunError
 from tol3d.files import LARGEST_FILE, FileContent, Files, UnreadableFileError, kept_name, read_contained
 from tol3d.frame import Curves, frame_of
 from tol3d.manifest import TRIALS, Manifest
+from tol3d.parquet import Shape
 from tol3d.processor import unlike
 from tol3d.summary_schema import summary_of
 from tol3d.worst import worst_trial
@@ -35,6 +36,7 @@ PIECES = "pieces"
 CHECKPOINT = "checkpoint"
 FINGERPRINT = "fingerprint.json"
 FILES = "files"
+STATUS = "status"  # columns of words begin so; all others are numbers
 STUDY = ("scene", "files", "study")  # of a fingerprint; the rest decides the last bits only
 LARGEST_FINGERPRINT = 10_000_000  # bytes; it names every file of the scene and every `until`
 LOCK = "lock"
@@ -105,11 +107,18 @@ class Run:
             self.manifest.content(f"{TRIALS}/{CHECKSUMS}")
         except RunError as error:
             raise RunError(f"{error}; {MENDED}") from None
-        return BlockFiles(self.path / TRIALS, rows=self._trials_of)
+        return BlockFiles(self.path / TRIALS, shape=self._shape_of)
 
-    def _trials_of(self, name: str) -> int | None:
-        """How many trials the file of a block holds."""
-        return self._block_sizes.get(name)
+    def _shape_of(self, name: str) -> Shape | None:
+        """What the file of a block holds."""
+        rows = self._block_sizes.get(name)
+        return None if rows is None else Shape(rows, self._width_of)
+
+    def _width_of(self, column: str) -> int:
+        """How many positions a column has: 1, or those of a curve."""
+        road, _, name = column.partition(":")
+        measure = self.summary["measures"].get(name, {}) if road in ("analytic", "geometric") else {}
+        return len(measure["position_deg"]) if measure.get("take") == "curve" else 1
 
     @cached_property
     def _block_sizes(self) -> Mapping[str, int]:
@@ -120,7 +129,16 @@ class Run:
     @property
     def column_names(self) -> tuple[str, ...]:
         """Names of the columns of trials/; none in a run that kept no trials."""
-        return self.blocks.column_names if self.keeps_trials else ()
+        return self._columns_in(self.blocks) if self.keeps_trials else ()
+
+    def _columns_in(self, blocks: BlockFiles) -> tuple[str, ...]:
+        """Names of the columns of the first block, which has every measure that the summary tells of."""
+        roads = ("analytic",) if self.summary["engine"] == "analytic" else ("analytic", "geometric")
+        needed = (f"{road}:{name}" for name in self.summary["measures"] for road in roads)
+        known = blocks.column_names
+        if missing := next((name for name in needed if name not in known), None):
+            raise RunError(f"{blocks.folder}: no column {missing!r}, which the summary tells of; {MENDED}")
+        return known
 
     def columns(self, *names: str) -> dict[str, NDArray[np.generic]]:
         """Columns as numpy arrays, trial on axis 0 (a curve: positions on axis 1); all of them by default.
@@ -160,17 +178,15 @@ class Run:
             RunError: no such column, the run kept no trials, or a block is damaged.
         """
         blocks = self.blocks
-        known = blocks.column_names
+        known = self._columns_in(blocks)
         unknown = [name for name in names if name not in known]
         if unknown:
             raise RunError(f"{self.path}: no column {unknown[0]!r}; there are: {', '.join(known)}")
-        shapes: dict[str, Any] | None = None
         for block in self._block_sizes:
             piece = blocks.read(block, names or known)
-            found = {name: (values.shape[1:], values.dtype.kind) for name, values in piece.items()}
-            shapes = shapes or found
-            if found != shapes:
-                raise RunError(f"{blocks.path(block)}: its columns are not those of the first block; {MENDED}")
+            for name, values in piece.items():
+                if (values.dtype.kind == "U") != name.startswith(STATUS):
+                    raise RunError(f"{blocks.path(block)}: column {name!r:.100} holds something else; {MENDED}")
             yield piece
 
     @property

@@ -38,6 +38,7 @@ from tol3d.result import (
     tidy,
     whole_file,
 )
+from tol3d.summary_schema import written
 
 T = TypeVar("T")
 
@@ -215,7 +216,7 @@ class RunWriter:
 
     def finish(self, summary: Mapping[str, Any]) -> Run:
         """Write the summary and put the run in its place; killed before that, the same command goes on."""
-        text = json.dumps(summary, indent=1, ensure_ascii=False, allow_nan=False) + "\n"
+        text = written(summary)
         if self._keep_trials:
             self._blocks.settle()
         else:

@@ -1,6 +1,7 @@
 """The command line: arguments, exit codes, progress. The only place that prints.
 
-Exit codes: 0 done, 1 limits failed (with --fail-on-limits), 2 wrong input, 3 a fault of tol3d, 130 interrupted.
+Exit codes: 0 done, 1 limits failed (with --fail-on-limits), 2 wrong input, 3 a fault of tol3d, 4 the disk or the
+system refused a write (full, read-only, broken, a limit on files), 130 interrupted.
 Imports stand inside the functions here, so that `tol3d --help` loads no numpy, no CAD and no plotting.
 """
 
@@ -15,7 +16,7 @@ import typer
 
 from tol3d.cli import analyses, showing, studies
 from tol3d.cli.arguments import app
-from tol3d.cli.console import DONE, FAULT, INTERRUPTED, WRONG_INPUT, err_console, warn
+from tol3d.cli.console import DISK, DONE, FAULT, INTERRUPTED, WRONG_INPUT, err_console, warn, write_plainly
 
 __all__ = ["analyses", "app", "main", "showing", "studies"]
 
@@ -81,10 +82,13 @@ def _plain_warnings() -> Iterator[None]:
 
 @contextmanager
 def _exit_codes() -> Iterator[None]:
-    from tol3d.errors import InputError
+    from tol3d.errors import DiskError, InputError
 
     try:
         yield
+    except DiskError as error:
+        err_console.print(str(error))
+        sys.exit(DISK)
     except InputError as error:
         err_console.print(str(error))
         sys.exit(WRONG_INPUT)
@@ -94,12 +98,27 @@ def _exit_codes() -> Iterator[None]:
     except BrokenPipeError:
         sys.exit(DONE)
     except Exception as error:
+        if refused := _refused_write(error):
+            err_console.print(refused)
+            sys.exit(DISK)
         import traceback
 
         err_console.print(f"a fault in tol3d, not in your scene: {type(error).__name__}: {error}")
         err_console.print("please report it with the scene and these lines:")
         err_console.print("".join(traceback.format_exception(error)[-3:]).rstrip())
         sys.exit(FAULT)
+
+
+def _refused_write(error: Exception) -> str:
+    """What is said of a write that the disk refused; nothing of other errors."""
+    from tol3d.durable import refused_by_disk
+
+    if not isinstance(error, OSError) or not refused_by_disk(error):
+        return ""
+    place = error.filename or "a temporary file or the cache"
+    return (
+        f"{place}: cannot be written ({error.strerror}); nothing is wrong with the input: mend the disk or its limits"
+    )
 
 
 @contextmanager
@@ -115,5 +134,6 @@ def _few_collections() -> Iterator[None]:
 
 def main() -> None:
     """Entry point of the `tol3d` command."""
+    write_plainly()
     with _few_collections(), _plain_warnings(), _exit_codes():
         app()

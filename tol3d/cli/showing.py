@@ -45,13 +45,18 @@ def scenes(
         err_console.print("tol3d run NAME runs one; tol3d scenes --copy NAME puts its file here to start your own from")
 
 
-def schema() -> None:
-    """Print the JSON Schema of scenes, for editors."""
+def schema(
+    summary: Annotated[bool, typer.Option("--summary", help="That of a run's summary.json instead.")] = False,
+) -> None:
+    """Print the JSON Schema of scenes, for editors; or that of summary.json, for programs that read runs."""
     import json
 
-    from tol3d.scene import Scene
+    if summary:
+        from tol3d.summary_schema import RunSummary as Described
+    else:
+        from tol3d.scene import Scene as Described  # type: ignore[assignment]
 
-    typer.echo(json.dumps(Scene.model_json_schema(), indent=2, ensure_ascii=False))
+    typer.echo(json.dumps(Described.model_json_schema(), indent=2, ensure_ascii=False))
 
 
 def compare(
