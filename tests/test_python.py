@@ -127,6 +127,28 @@ def test_the_worst_of_a_measure_is_the_trial_nearest_to_its_limit(spur: Run) -> 
         spur.worst("backlash")
 
 
+def test_a_jam_is_the_worst_and_can_be_looked_at(tmp_path: Path) -> None:
+    """Both gears touch on both flanks of a tooth: where the working ones are brought to touch, the others overlap."""
+    gear = {"kind": "spur_gear", "module": "2 mm", "face_width": "10 mm"}
+    law = {"kind": "normal", "lower": "-40 um", "upper": "50 um"}
+    scene = tol3d.Scene.model_validate(
+        {
+            "scene": "tight",
+            "parts": {"pinion": {**gear, "teeth": 20}, "wheel": {**gear, "teeth": 30}},
+            "tolerances": {"distance": {"kind": "centre_distance", "of": "pair", "distribution": law}},
+            "moves": {"pair": {"kind": "mesh", "driver": "pinion", "driven": "wheel", "centre_distance": "50 mm"}},
+            "measures": {"play": {"kind": "normal_backlash", "of": "pair"}},
+            "study": {"trials": 100},
+        }
+    )
+    run = tol3d.run_scene(scene, out=tmp_path / "run")
+    worst = run.worst("play")
+    assert worst == np.argmin(run.frame()["distance [um]"])
+    again = tol3d.replay(run, worst)
+    assert again.geometric["play"] < -10  # um
+    assert distance(again.meshes["pinion"], again.meshes["wheel"]) == 0.0
+
+
 # replays ------------------------------------------------------------------------------------------------------
 
 

@@ -290,7 +290,7 @@ def find_shims(
 
 
 def replay(run: Run | Path | str, trial: int) -> Replay:
-    """Trial k of a run again, bit for bit, with its parts in space.
+    """Trial k of a run again, with its parts in space; see `simulate.replay`.
 
     Raises:
         RunError: no run, or changed since. InputError: the run has no such trial.
