@@ -218,6 +218,9 @@ def test_what_a_replay_was_asked_for_is_that_trial(spur: Run) -> None:
     column = "geometric:normal backlash"
     assert again.geometric["normal backlash"] == spur.columns(column)[column][5]
     assert "trial 5" in repr(again)
+    for wrong in ("worst", 5.0, None, 60, -1):
+        with pytest.raises(tol3d.InputError, match="trial"):
+            tol3d.replay(spur, wrong)  # type: ignore[arg-type]
 
 
 # what the commands show ---------------------------------------------------------------------------------------

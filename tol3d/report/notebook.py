@@ -20,6 +20,7 @@ from tol3d import report, simulate
 from tol3d.analyses import ShimPlan, ShimQuestion, length_of, shim_plan, stock_of
 from tol3d.analyses.shim import Rounding
 from tol3d.analyses.shimmed import Minimum
+from tol3d.errors import InputError
 from tol3d.model import Model
 from tol3d.report.assembly import Assembly, Which, assembly_of
 from tol3d.report.coefficients import Coefficient, coefficients_of
@@ -295,7 +296,7 @@ def replay(run: Run | Path | str, trial: int) -> Replay:
     Raises:
         RunError: no run, or changed since. InputError: the run has no such trial.
     """
-    index = operator.index(trial)
+    index = _index(trial)
     return Replay(**vars(simulate.replay(run, index)), trial=index)
 
 
@@ -306,4 +307,11 @@ def opened_run(run: Run | Path | str) -> Run:
 
 def _which(trial: Which) -> Which:
     """A trial's number of any integer type, or the word for a build."""
-    return trial if isinstance(trial, str) else operator.index(trial)
+    return trial if isinstance(trial, str) else _index(trial)
+
+
+def _index(trial: int) -> int:
+    try:
+        return operator.index(trial)
+    except TypeError:
+        raise InputError(f"trial: expected a whole number from 0 on, got {trial!r}") from None
