@@ -24,6 +24,7 @@ ARCSEC = 648000 / math.pi  # arcsec in a rad
 ONE_SIDED = ("axis_in_plane", "axis_out_of_plane")  # kinds whose coefficient acts by absolute value
 LEAST_SLOPE = 5e-4  # um or arcsec per unit; what rounds to 0.000 is nothing
 DISAGREES = 0.05  # of the largest slope; beyond that a coefficient of the geometry is marked
+BESIDE = 0.01  # of a step aside; what a slope is taken over there
 KINK = 0.01  # of the larger slope; two sides that differ by less are one
 OTHER = "≠"
 NO_SUM = "the tighter way counts, which is no sum; run tells the shares of its trials"
@@ -164,21 +165,22 @@ def _linear(contributor: Contributor, share: Share) -> Slopes:
 
 
 def _road_slopes(model: Model, measure: Measure, along: Sequence[Slope]) -> list[Slopes]:
-    """Slopes of the analytic road's values at the mean build [internal units], in the directions that are stated.
+    """Slopes of the analytic road's values beside the mean build [internal units], in the directions that are stated.
 
-    Where a contributor is no term of a sum: it leans axes, or only the tighter of parallel ways counts. The road is
-    straight from kink to kink, so that differences over STEP_ASIDE are exact.
+    Where a contributor is no term of a sum: it leans axes, or only the tighter of parallel ways counts. Taken
+    STEP_ASIDE of the mean build, where those of the geometry are; the road is straight from kink to kink.
     """
     mean = trials.mean_deviations(model, measure.positions)
-    steps = np.zeros((len(along), model.component_count))
-    for step, contributor, slope in zip(steps, model.contributors, along, strict=True):
-        towards = [1.0] if slope.direction is None else [math.cos(slope.direction), math.sin(slope.direction)]
-        step[model.component_slices[contributor.name]] = np.array(towards) * STEP_ASIDE[contributor.unit]
-    rows = np.concatenate([mean, mean - steps, mean + steps])
-    middle, *values = analytic_values(model, measure, stated_block(model, rows))[:, 0]
-    below, above = np.array(values).reshape(2, -1)
     lengths = np.array([STEP_ASIDE[contributor.unit] for contributor in model.contributors])
-    return [Slopes(*sides) for sides in np.stack([middle - below, above - middle], axis=1) / lengths[:, None]]
+    steps = np.zeros((len(along), model.component_count))
+    for step, length, contributor, slope in zip(steps, lengths, model.contributors, along, strict=True):
+        towards = [1.0] if slope.direction is None else [math.cos(slope.direction), math.sin(slope.direction)]
+        step[model.component_slices[contributor.name]] = np.array(towards) * length
+    ends = (-1 - BESIDE, -1 + BESIDE, 1 - BESIDE, 1 + BESIDE)
+    rows = np.concatenate([mean + end * steps for end in ends])
+    values = analytic_values(model, measure, stated_block(model, rows))[:, 0].reshape(len(ends), -1)
+    sides = (values[1::2] - values[::2]) / (2 * BESIDE * lengths)
+    return [Slopes(float(below), float(above)) for below, above in sides.T]
 
 
 def _slope_text(slope: float) -> str:
