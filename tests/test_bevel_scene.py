@@ -186,4 +186,4 @@ def test_a_bevel_scene_runs_from_text_to_replay(tmp_path: Path) -> None:
     (value, *_), *_ = run.columns("geometric:play").values()
     # 0.1 mm of arc in the middle of the face leave cos(20 deg) of it, and chord errors
     assert value == pytest.approx(93.969, abs=0.1)
-    assert run.summary["measures"]["play"]["reading"] == {"contact": "section", "gap": "section", "teeth": "driven"}
+    assert run.summary["measures"]["play"]["reading"] == {"contact": "section", "gap": "section", "teeth": "all"}

@@ -46,7 +46,7 @@ tolerances:
 moves:
   pair: {kind: bevel_mesh, driver: pinion, driven: wheel}
 measures:
-  play: {kind: normal_backlash, of: pair}
+  play: {kind: normal_backlash, of: pair, tooth: driven}
 study: {trials: 2000, seed: 4}
 """
 

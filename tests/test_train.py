@@ -108,8 +108,9 @@ def test_the_robots_lost_motion_is_that_of_its_pairs_run_alone(engine: str, tria
 def test_a_swing_reads_the_train_where_its_output_stands(position: float, tmp_path: Path) -> None:
     """The arm stands at 0 with the motor; the flange turns against it, for the bevel driver looks back."""
     motor = np.radians(position) * -152 * 110 / 28
-    there = f"measures:\n  there: {{kind: lost_motion, of: shoulder swing, over: {{at: {float(motor)!r} rad}}}}"
-    robot = changed("robot_shoulder_swing", tmp_path, ("measures:", there))
+    over = f"{{at: {float(motor)!r} rad}}"
+    there = f"measures:\n  there: {{kind: lost_motion, of: shoulder swing, tooth: driven, over: {over}}}"
+    robot = changed("robot_shoulder_swing", tmp_path, ("\nmeasures:", f"\n{there}"))
     found = simulate_block(robot, exact_engine(robot), drawn_block(robot, 1, 0, 20))
     swing = next(measure for measure in robot.measures if measure.take == "curve")
     at = round((position + 60) / 5)

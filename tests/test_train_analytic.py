@@ -252,7 +252,7 @@ moves:
   corner: {{kind: bevel_mesh, driver: p, driven: w}}
   train: {{kind: train, driven: motor, output: w}}
 measures:
-  lost motion: {{kind: lost_motion, of: train}}
+  lost motion: {{kind: lost_motion, of: train, tooth: driven}}
 """
 
 

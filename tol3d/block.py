@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from tol3d import trials
 from tol3d.analytic import analytic_backlash, first_order, per_normal_backlash
 from tol3d.build import Build, build
-from tol3d.engines import INTERFERES, OK, STATUS_TEXT, Engine, MeshReading, ReadingEngine
+from tol3d.engines import INTERFERES, OK, OUT_OF_RANGE, STATUS_TEXT, Engine, MeshReading, ReadingEngine
 from tol3d.measures import measure_backlash, moved, read_backlash, turning_gear
 from tol3d.model import Backlash, LostMotion, Measure, Mesh, Model, Study
 from tol3d.moves import Meshing, MeshSeat
@@ -319,7 +319,9 @@ def _seen(
     for measure in model.measures:
         play = Play(model, measure, block.deviations, read)
         codes = _codes(play, seated)
-        values[measure.name] = moved(measure.kind, _free_or_overlap(play, codes))
+        free = _free_or_overlap(play, codes)
+        codes[np.isnan(free) & (codes == OK)] = OUT_OF_RANGE  # a turn whose end cannot be told
+        values[measure.name] = moved(measure.kind, free)
         status[measure.name] = codes.max(axis=1)
         if measure in staged:
             stages |= _stage_columns("geometric", play)

@@ -97,6 +97,7 @@ def _what(kind: Kind) -> dict[str, Any]:
         "of": kind.train,
         "gear": None,
         "reading": None,
+        "readings": {backlash.mesh: vars(backlash.reading) for _, backlash in kind.backlashes},
         "shaft": kind.shaft,
         "held": kind.held,
         "arm": kind.tip.arm if kind.tip else None,

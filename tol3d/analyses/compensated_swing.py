@@ -64,13 +64,13 @@ def usual_swing(model: Model, train: Train) -> tuple[Measure, LostMotion] | None
     """So far to both sides of where the load changes side next to 0; None without gravity or a tip on the output."""
     kinds = [measure.kind for measure in model.measures if isinstance(measure.kind, LostMotion)]
     own = [kind for kind in kinds if (kind.train, kind.shaft) == (train.name, train.output)]
-    tip = next((kind.tip for kind in own if kind.tip), None)
+    plain = next((kind for kind in own if kind.tip), None)
     changes = [*load_changes(model, train, (-math.pi, math.pi))]
-    if tip is None or not changes:
+    if plain is None or plain.tip is None or not changes:
         return None
     middle = min(changes, key=abs)
     shown = tuple(np.linspace(middle - USUAL_REACH, middle + USUAL_REACH, USUAL_POSITIONS).tolist())
-    measure = over_swing(model, train, tip, shown, f"{tip.point} of {tip.arm} over the swing")
+    measure = over_swing(model, train, plain, shown, f"{plain.tip.point} of {plain.tip.arm} over the swing")
     return (measure, measure.kind) if isinstance(measure.kind, LostMotion) else None
 
 

@@ -24,6 +24,7 @@ from tol3d.model import LostMotion, Measure, Model, Positions, ReducerBacklash, 
 from tol3d.model.contributor import Contributor, TurningOffset, single_effects
 from tol3d.model.measure import AnyStage
 from tol3d.model.measures import lost_motion
+from tol3d.model.readings import reader_like, refuse_idle_teeth
 from tol3d.scene import Scene
 from tol3d.scene.nearest import hint
 from tol3d.simulate import Overrides, effective_model
@@ -212,13 +213,16 @@ def _kind(model: Model, train: Train, quantity: str) -> LostMotion | None:
 
 
 def _measure(scene: Scene, model: Model, train: Train, like: LostMotion | None) -> Measure:
-    """The lost motion at a random position, at the shaft of another measure or else at the train's output."""
-    kind = lost_motion(model, train, like.shaft if like else train.output, "lost_motion")
+    """The lost motion at a random position, read where and as another measure is, or else at the train's output."""
+    shaft = like.shaft if like else train.output
+    kind = lost_motion(model, train, shaft, "lost_motion", reader_like(like))
     if not kind.stages:
         raise scene.refuse(
             ("moves", train.name), f"nothing to compensate: there is no link between {kind.held!r} and {kind.shaft!r}"
         )
-    return Measure(f"lost motion of {train.name}", kind, Positions("random", 1, 1), "value")
+    measure = Measure(f"lost motion of {train.name}", kind, Positions("random", 1, 1), "value")
+    refuse_idle_teeth(scene, ("moves", train.name), measure, model)
+    return measure
 
 
 def _law_of(model: Model, stage: AnyStage) -> Contributor | None:

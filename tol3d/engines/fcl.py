@@ -111,6 +111,7 @@ class FclEngine:
             triangles[row, pair] = result.b1, result.b2
         at = np.nonzero(wanted)
         back, curvature = np.full(points.shape, np.nan), np.full((*wanted.shape, 2), np.nan)
+        at_end = np.zeros(wanted.shape, dtype=bool)
         poses = ((np.eye(3), np.zeros(3)), (rotation[at], translation[at]))
         strips = (self._strip(mesh.driver, flank, span), self._strip(mesh.driven, flank, WHOLE_FACE))
         for side, (strip, seat, (turn, shift)) in enumerate(zip(strips, (driver, driven), poses, strict=True)):
@@ -118,7 +119,8 @@ class FclEngine:
             own = frames.apply(frames.transposed(turn), points[..., side, :][at] - shift)
             back[..., side, :][at] = frames.apply(turn, strip.put_back(scale, triangle, own))
             curvature[..., side][at] = strip.curvature(scale, triangle)
-        found = _Found(distance, points, back, curvature, distance < OUT_OF_REACH * _module(mesh))
+            at_end[at] |= strip.at_end(scale, own)
+        found = _Found(distance, points, back, curvature, distance < OUT_OF_REACH * _module(mesh), at_end)
         return found.gaps(build.flank_offset[:, [driver, driven]], (driver_rotation, driver_origin), driver_teeth)
 
     def _section(self, mesh: Mesh) -> Span:
@@ -146,6 +148,7 @@ class _Found:
         back: (trials, pairs, 2, 3) [mm], what puts each of them back onto its flank.
         curvature: (trials, pairs, 2), of the flanks there [1/mm].
         deep: (trials, pairs), whether the distance tells nothing.
+        at_end: (trials, pairs), whether either point is where its flank ends.
     """
 
     distance: Array
@@ -153,6 +156,7 @@ class _Found:
     back: Array
     curvature: Array
     deep: NDArray[np.bool_]
+    at_end: NDArray[np.bool_]
 
     def gaps(self, offsets: Array, driver_pose: tuple[Array, Array], driver_teeth: Teeth) -> Gaps:
         """Signed gaps; flanks offset along their normals are parallel, so that the gap is less by that."""
@@ -172,6 +176,7 @@ class _Found:
         return Gaps(
             value=safe + opened[..., 1] - opened[..., 0] - offsets.sum(axis=1)[:, None],
             deep=self.deep,
+            at_end=self.at_end,
             driver_point=first + offsets[:, 0, None, None] * in_world,
             driven_point=second - offsets[:, 1, None, None] * in_world,
             normal=in_world,

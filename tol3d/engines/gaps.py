@@ -22,6 +22,7 @@ class Gaps:
         value: (trials, pairs) [mm], shortest distance, negative where the flanks overlap;
             nan where the pair was not asked for or overlaps deeper than the engine can tell.
         deep: (trials, pairs), True in that last case.
+        at_end: (trials, pairs), whether either flank ends at its nearest point: at its tip edge, or where it begins.
         driver_point, driven_point: (trials, pairs, 3) [mm], the nearest points on the flanks, world.
         normal: (trials, pairs, 3), unit vector from the driver's flank to the driven's.
         driver_teeth: (trials, pairs), which tooth of the driver each pair is.
@@ -29,6 +30,7 @@ class Gaps:
 
     value: Array
     deep: NDArray[np.bool_]
+    at_end: NDArray[np.bool_]
     driver_point: Array
     driven_point: Array
     normal: Array
@@ -39,6 +41,7 @@ class Gaps:
         return Gaps(
             value=self.value[rows],
             deep=self.deep[rows],
+            at_end=self.at_end[rows],
             driver_point=self.driver_point[rows],
             driven_point=self.driven_point[rows],
             normal=self.normal[rows],

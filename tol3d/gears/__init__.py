@@ -4,7 +4,7 @@ from tol3d.gears.bevel_gear import BevelGear, pitch_angles
 from tol3d.gears.bevel_pair import BevelPair
 from tol3d.gears.flank import LEFT, RIGHT, Flank
 from tol3d.gears.involute import inverse_involute, involute
-from tol3d.gears.one_tooth import driver_teeth_at_one_tooth
+from tol3d.gears.one_tooth import driver_teeth_at_one_tooth, one_tooth_acts, one_tooth_share
 from tol3d.gears.pair import Displaced, Gear, GearPair
 from tol3d.gears.spherical_involute import inverse_spherical_involute, spherical_involute
 from tol3d.gears.spur_gear import SpurGear
@@ -25,6 +25,8 @@ __all__ = [
     "inverse_involute",
     "inverse_spherical_involute",
     "involute",
+    "one_tooth_acts",
+    "one_tooth_share",
     "pitch_angles",
     "spherical_involute",
 ]

@@ -277,13 +277,19 @@ class BevelPair:
         return np.asarray(mate * self.wheel.angular_pitch + opened - driver_angle / self.ratio, dtype=np.float64)
 
     @property
-    def touching_azimuths(self) -> tuple[float, float]:
+    def active_azimuths(self) -> tuple[float, float]:
         """A tooth at azimuth psi touches at the in-plane angle q = q_p + sin(beta) (s/(2 r_e) - sigma psi)."""
         gear = self.pinion
-        at_pitch = gear.pitch_q + math.sin(gear.base_angle) * gear.pitch_half_angle
-        # cones that tilt bring edges to touch as far again beyond the path as cylinders do
-        per_azimuth, margin = math.sin(gear.base_angle), 2 * CONTACT_MARGIN * gear.angular_pitch
-        return (at_pitch - gear.tip_q) / per_azimuth - margin, (at_pitch - self.start_q) / per_azimuth + margin
+        per_azimuth = math.sin(gear.base_angle)
+        at_pitch = gear.pitch_q + per_azimuth * gear.pitch_half_angle
+        return (at_pitch - gear.tip_q) / per_azimuth, (at_pitch - self.start_q) / per_azimuth
+
+    @property
+    def touching_azimuths(self) -> tuple[float, float]:
+        """The path of contact and twice CONTACT_MARGIN: cones that tilt bring edges to touch so far beyond it."""
+        lowest, highest = self.active_azimuths
+        margin = 2 * CONTACT_MARGIN * self.pinion.angular_pitch
+        return lowest - margin, highest + margin
 
     def candidate_teeth(self, driver_angle: Array, flank: Flank) -> tuple[NDArray[np.int64], NDArray[np.bool_]]:
         """Pinion teeth that may touch on that flank: see gears.pair."""

@@ -1,14 +1,21 @@
-"""One tooth in its space: both of its flanks are looked at, and no other tooth's."""
+"""One tooth in its space: both of its flanks are looked at, and no other tooth's.
+
+A flank is in action between the start and the end of the path of contact, where the mate's tip and its own end it (ISO
+21771, active flank). Beyond, a neighbour carries, and the tip edge that is nearest there tells no backlash.
+"""
 
 from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.gears.flank import RIGHT, Flank
+from tol3d.gears.flank import LEFT, RIGHT, Flank
+from tol3d.gears.pair import GearPair
 
 Array = NDArray[np.float64]
 Owner = Literal["driver", "driven"]
+
+ROUNDING = 1e-9  # pitches; a flank that so nearly ends where it is looked at does not end there
 
 
 def driver_teeth_at_one_tooth(
@@ -28,3 +35,27 @@ def driver_teeth_at_one_tooth(
     above = 1 if flank == RIGHT else 0
     tooth = -np.round(place) if owner == "driver" else above - np.round(place + 0.5)
     return np.asarray(tooth.astype(np.int64)[:, None])
+
+
+def one_tooth_acts(pair: GearPair, driver_angle: Array, owner: Owner) -> NDArray[np.bool_]:
+    """Whether both flanks of the one tooth are on the nominal path of contact, (rows,), at driver angles [rad]."""
+    pitch = pair.pinion.angular_pitch
+    lowest, highest = pair.active_azimuths
+    acts = np.ones(len(driver_angle), dtype=bool)
+    for flank in (RIGHT, LEFT):
+        teeth = driver_teeth_at_one_tooth(driver_angle, pitch, flank, owner)[:, 0]
+        azimuth = flank * (driver_angle + pitch * teeth)
+        acts &= (lowest - ROUNDING * pitch <= azimuth) & (azimuth <= highest + ROUNDING * pitch)
+    return acts
+
+
+def one_tooth_share(pair: GearPair, owner: Owner) -> float:
+    """Share of all positions, 0 to 1, at which they are.
+
+    As the driver turns by a pitch, the flanks of its own tooth next to the line of centres stand at azimuths, times
+    sigma, of f and -f, f from -1/2 to 1/2 of a pitch; those of the driven tooth are met at f and 1 - f, f from 0 to 1.
+    """
+    lowest, highest = (azimuth / pair.pinion.angular_pitch for azimuth in pair.active_azimuths)
+    together, first, last = (0.0, -0.5, 0.5) if owner == "driver" else (1.0, 0.0, 1.0)
+    begin, end = max(first, lowest, together - highest), min(last, highest, together - lowest)
+    return min(1.0, max(0.0, end - begin + ROUNDING))

@@ -188,8 +188,13 @@ class GearPair(Protocol):
         ...
 
     @property
+    def active_azimuths(self) -> tuple[float, float]:
+        """Azimuths [rad] of a pinion's tooth, times sigma, between which it is on the path of contact."""
+        ...
+
+    @property
     def touching_azimuths(self) -> tuple[float, float]:
-        """Azimuths [rad] of a pinion's tooth, times sigma, between which it may touch: its path and CONTACT_MARGIN."""
+        """Azimuths [rad] of a pinion's tooth, times sigma, between which it may touch: its path and a margin."""
         ...
 
     def candidate_teeth(self, driver_angle: Array, flank: Flank) -> tuple[Teeth, NDArray[np.bool_]]:

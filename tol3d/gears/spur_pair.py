@@ -250,11 +250,17 @@ class SpurPair:
         )
 
     @property
-    def touching_azimuths(self) -> tuple[float, float]:
+    def active_azimuths(self) -> tuple[float, float]:
         """A tooth at azimuth psi touches at the roll t = alpha_w + eta_b - sigma psi."""
         at_pitch = self.working_pressure_angle + self.pinion.base_half_angle
+        return at_pitch - self.pinion.tip_roll, at_pitch - self.start_roll
+
+    @property
+    def touching_azimuths(self) -> tuple[float, float]:
+        """The path of contact, and CONTACT_MARGIN."""
+        lowest, highest = self.active_azimuths
         margin = CONTACT_MARGIN * self.pinion.angular_pitch
-        return at_pitch - self.pinion.tip_roll - margin, at_pitch - self.start_roll + margin
+        return lowest - margin, highest + margin
 
     def candidate_teeth(self, driver_angle: Array, flank: Flank) -> tuple[NDArray[np.int64], NDArray[np.bool_]]:
         """Pinion teeth that may touch on that flank: see gears.pair."""

@@ -4,7 +4,6 @@ import math
 from collections.abc import Iterator
 from dataclasses import replace
 from functools import singledispatch
-from typing import Literal
 
 import numpy as np
 
@@ -16,13 +15,13 @@ from tol3d.model.measure import (
     Measure,
     ParallelStage,
     Positions,
-    Reading,
     Stage,
     Tip,
     TrainQuantity,
 )
 from tol3d.model.mesh import Mesh
 from tol3d.model.model import Model
+from tol3d.model.readings import Reader, reader_of, refuse_idle_teeth
 from tol3d.model.shafts import Arm, Train
 from tol3d.model.trains import gravity_torque, refuse_midst
 from tol3d.scene import Scene
@@ -46,15 +45,13 @@ def measure_of(scene: Scene, name: str, model: Model) -> Measure:
     """A measure of a scene on its model, which has all but its measures.
 
     Raises:
-        SceneError: a shaft or an arm that is not on the train, a swing without a load.
+        SceneError: a shaft or an arm that is not on the train, a swing without a load, one tooth that is out of action.
     """
     spec = scene.measures[name]
     measure = _measure(spec, scene, name, model)
-    return Measure(
-        name=name,
-        kind=measure.kind,
-        positions=measure.positions,
-        take=measure.take,
+    refuse_idle_teeth(scene, ("measures", name, "tooth"), measure, model)
+    return replace(
+        measure,
         lower_limit=None if spec.lower_limit is None else spec.lower_limit.internal,
         upper_limit=None if spec.upper_limit is None else spec.upper_limit.internal,
     )
@@ -72,25 +69,8 @@ def _(spec: BacklashSpec, scene: Scene, name: str, model: Model) -> Measure:
     mesh = model.mesh(spec.of)
     gear = getattr(spec, "gear", None) or mesh.driven
     return Measure(
-        name, Backlash(spec.kind, mesh.name, gear, _reading(spec, mesh)), _positions_of_mesh(spec, mesh), spec.take
+        name, Backlash(spec.kind, mesh.name, gear, reader_of(spec)(mesh)), _positions_of_mesh(spec, mesh), spec.take
     )
-
-
-def _reading(spec: BacklashSpec, mesh: Mesh) -> Reading:
-    """What was said, or what fits the pair. A free turn goes from contact to contact, and both are read alike."""
-    fitting = default_reading(mesh)
-    read_at = spec.read_at or ("mean_section" if fitting.contact == "section" else "face")
-    contact: Literal["face", "section"] = "section" if read_at == "mean_section" else "face"
-    return Reading(
-        contact=contact,
-        gap="section" if read_at == "face_contact" and spec.kind == "normal_backlash" else contact,
-        teeth=spec.tooth or fitting.teeth,
-    )
-
-
-def default_reading(mesh: Mesh) -> Reading:
-    """The whole face and all teeth of a cylinder, the middle section of one driven tooth of a cone."""
-    return Reading("section", "section", "driven") if mesh.pair.arm_spread > 0.0 else Reading()
 
 
 def _positions_of_mesh(spec: BacklashSpec, mesh: Mesh) -> Positions:
@@ -114,13 +94,15 @@ def _(spec: LostMotionSpec, scene: Scene, name: str, model: Model) -> Measure:
     refuse_midst(scene, ("measures", name, "shaft"), model.layout, train.driven, shaft)
     if shaft == train.held:
         raise scene.refuse(("measures", name), f"expected another shaft than the one that is held, got {shaft!r}")
-    return Measure(name, lost_motion(model, train, shaft, "lost_motion"), _positions(spec), "value")
+    kind = lost_motion(model, train, shaft, "lost_motion", reader_of(spec))
+    return Measure(name, kind, _positions(spec), "value")
 
 
 @_measure.register
 def _(spec: TipDisplacementSpec, scene: Scene, name: str, model: Model) -> Measure:
     arm = _arm(scene, name, spec, model)
-    kind = lost_motion(model, model.train(spec.of), arm.on, "tip_displacement", _tip(arm, spec.point))
+    tip, read = _tip(arm, spec.point), reader_of(spec)
+    kind = lost_motion(model, model.train(spec.of), arm.on, "tip_displacement", read, tip)
     return Measure(name, kind, _positions(spec), "value")
 
 
@@ -143,16 +125,23 @@ def _(spec: TipErrorSpec, scene: Scene, name: str, model: Model) -> Measure:
             f"gravity does not turn {train.output!r} anywhere on this swing: its direction in the world, or the arm's "
             "centre of mass, lies along the axis",
         )
-    return over_swing(model, train, _tip(arm, spec.point), shown, name)
+    plain = lost_motion(model, train, train.output, "tip_error", reader_of(spec), _tip(arm, spec.point))
+    return over_swing(model, train, plain, shown, name)
 
 
-def over_swing(model: Model, train: Train, tip: Tip, shown: tuple[float, ...], name: str) -> Measure:
-    """Error of a tip on a train's output over angles of the output [rad], somewhere in which gravity turns it."""
+def over_swing(model: Model, train: Train, plain: LostMotion, shown: tuple[float, ...], name: str) -> Measure:
+    """Error of a tip over angles of the output [rad], somewhere in which gravity turns it.
+
+    Args:
+        model, train: whose.
+        plain: the lost motion at the output that moves the tip.
+        shown: the angles.
+        name: of the measure.
+    """
     torques = [gravity_torque(train, model.layout, model.arms, angle) or 0.0 for angle in shown]
     ends = (shown[0] + SAME_ANGLE, shown[-1] - SAME_ANGLE)
     changes = tuple(load_changes(model, train, ends))
-    plain = lost_motion(model, train, train.output, "tip_error", tip)
-    kind = replace(plain, turned=_turned(torques), changes=changes)
+    kind = replace(plain, quantity="tip_error", turned=_turned(torques), changes=changes)
     rate = float(model.layout.shaft_turn[train.output].rate)  # the arm is put on at 0, the first shaft at 0
     positions = Positions("swing", 1, len(shown), angles=tuple(angle / rate for angle in shown), shown=shown)
     return Measure(name, kind, positions, "curve")
@@ -163,29 +152,27 @@ def lost_motion(
     train: Train,
     shaft: str,
     quantity: TrainQuantity,
+    read: Reader,
     tip: Tip | None = None,
 ) -> LostMotion:
-    """What a train's links leave free at one of its shafts."""
-    return LostMotion(quantity, train.name, shaft, train.held, _stages(model, train.held, shaft), tip)
+    """What a train's links leave free at one of its shafts, its meshes read as `read` says."""
+    stages = tuple(_stage(model, element, shaft, read) for element in model.layout.way(train.held, shaft))
+    return LostMotion(quantity, train.name, shaft, train.held, stages, tip)
 
 
-def _stages(model: Model, held: str, shaft: str) -> tuple[AnyStage, ...]:
-    return tuple(_stage(model, element, shaft) for element in model.layout.way(held, shaft))
-
-
-def _stage(model: Model, element: Link | Parallel, shaft: str) -> AnyStage:
+def _stage(model: Model, element: Link | Parallel, shaft: str, read: Reader) -> AnyStage:
     """A link or several parallel ways, read at a shaft."""
     layout = model.layout
     if isinstance(element, Parallel):
         ratio = float(layout.ratio(shaft, element.driven))
-        ways = tuple(tuple(_stage(model, inner, element.driven) for inner in way) for way in element.ways)
+        ways = tuple(tuple(_stage(model, inner, element.driven, read) for inner in way) for way in element.ways)
         return ParallelStage(element.name, abs(ratio), element.driver, element.driven, ways, 1 if ratio > 0.0 else -1)
     ratio = float(layout.ratio(shaft, element.driven))
     mesh = next((mesh for mesh in model.meshes if mesh.name == element.name), None)
     if mesh is None:
         return Stage(element.name, abs(ratio), None)
     _, carried = layout.carrying[mesh.driven]
-    backlash = Backlash("angular_backlash", mesh.name, mesh.driven, default_reading(mesh))
+    backlash = Backlash("angular_backlash", mesh.name, mesh.driven, read(mesh))
     return Stage(element.name, abs(ratio), backlash, carried.sense if ratio > 0.0 else -carried.sense)
 
 

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.build import Build
-from tol3d.engines import INTERFERES, NO_CONTACT, OK, Engine, Gaps
+from tol3d.engines import INTERFERES, NO_CONTACT, OK, OUT_OF_RANGE, Engine, Gaps
 from tol3d.gears import Displaced, Flank, driver_teeth_at_one_tooth
 from tol3d.gears.flank import opposite
 from tol3d.model import Mesh, Model, Reading
@@ -29,7 +29,8 @@ class MeshSeat:
         driver_angle, driven_angle: turns [rad], (rows,).
         working: gaps of the working flanks at rest; the touching pair's is 0.
         non_working: gaps of the other flanks of the driver's teeth in their spaces.
-        status: (rows,), OK, INTERFERES (the non-working flanks overlap) or NO_CONTACT.
+        status: (rows,), OK, INTERFERES (the non-working flanks overlap), NO_CONTACT, or OUT_OF_RANGE (of one tooth, a
+            flank is out of action).
     """
 
     driver_angle: Array
@@ -73,8 +74,15 @@ class Meshing:
         deep = non_working.deep.any(axis=1)
         overlap = deep | (play < -ROOT_FINDING_NOISE)
         nowhere = ~touched | (np.isnan(play) & ~deep)
-        status = np.select([nowhere, overlap], [NO_CONTACT, INTERFERES], OK).astype(np.int8)
+        idle = self._idle(working) | self._idle(non_working)
+        status = np.select([idle, nowhere, overlap], [OUT_OF_RANGE, NO_CONTACT, INTERFERES], OK).astype(np.int8)
         return MeshSeat(driver_angle, angles[1], working, non_working, status)
+
+    def _idle(self, gaps: Gaps) -> NDArray[np.bool_]:
+        """Rows (rows,) in which the one tooth that is looked at has left the path of contact."""
+        if self.reading.teeth == "all":
+            return np.zeros(len(gaps.value), dtype=bool)
+        return np.asarray(gaps.at_end[:, 0])
 
     def rows(self, rows: NDArray[np.intp]) -> "Meshing":
         """The same for some builds."""
@@ -118,7 +126,7 @@ class Meshing:
             known: the gaps at the start where they have been measured already.
 
         Returns:
-            angles of both gears at contact, the gaps there, and which rows reached contact.
+            angles of both gears at contact, the gaps there, and which rows reached contact, in action.
         """
         pair = self.mesh.pair
         mover_name = self.mesh.driver if turn_driver else self.mesh.driven
@@ -158,7 +166,8 @@ class Meshing:
             rows = rows[~(resting | lost)]
             if not len(rows):
                 break
-        return (turned[0], turned[1]), at_rest.gaps(), touched
+        ends = at_rest.gaps()
+        return (turned[0], turned[1]), ends, touched & ~self._idle(ends)
 
 
 class _AtRest:
@@ -168,15 +177,17 @@ class _AtRest:
         self._teeth = teeth
         self._value = np.full(teeth.shape, np.nan)
         self._deep = np.zeros(teeth.shape, dtype=bool)
+        self._at_end = np.zeros(teeth.shape, dtype=bool)
         self._vectors = np.full((3, *teeth.shape, 3), np.nan)
 
     def keep(self, rows: NDArray[np.intp], gaps: Gaps, chosen: NDArray[np.bool_], closed: Array) -> None:
         """Keep the chosen rows; `closed` [mm] is what the last step takes off each gap."""
         self._value[rows] = (gaps.value - closed)[chosen]
+        self._at_end[rows] = gaps.at_end[chosen]
         for kept, vectors in zip(self._vectors, (gaps.driver_point, gaps.driven_point, gaps.normal), strict=True):
             kept[rows] = vectors[chosen]
 
     def gaps(self) -> Gaps:
         """The gaps at rest; nan for pairs that could not touch first and for rows that found no rest."""
         driver_point, driven_point, normal = self._vectors
-        return Gaps(self._value, self._deep, driver_point, driven_point, normal, self._teeth)
+        return Gaps(self._value, self._deep, self._at_end, driver_point, driven_point, normal, self._teeth)

@@ -173,11 +173,12 @@ def _what(measure: Measure) -> str:
     if not isinstance(kind, Backlash):
         stages = " + ".join(stage.link for stage in kind.stages)
         moves = f"{kind.tip.point} of {kind.tip.arm} ({kind.tip.lever:g} mm from the axis) by the " if kind.tip else ""
-        return f"{moves}lost motion of {kind.shaft}, {kind.held} held: {stages}"
+        read = {backlash.mesh: vars(backlash.reading) for _, backlash in kind.backlashes}
+        return f"{moves}lost motion of {kind.shaft}, {kind.held} held: {stages}{reading_words({'readings': read})}"
     gear = f" of {kind.gear}" if kind.is_angle else ""
     curve = " (curve)" if measure.take == "curve" else ""
     what = f"{TAKE_WORDS[measure.take]}{QUANTITY_WORDS[kind.quantity]}{gear}, {kind.mesh}"
-    return what + curve + reading_words(vars(kind.reading))
+    return what + curve + reading_words({"reading": vars(kind.reading)})
 
 
 def _positions(measure: Measure) -> str:

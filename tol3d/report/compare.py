@@ -46,7 +46,7 @@ class Compared:
         """From a measure's summary."""
         unit, kind, over, take = (measure[key] for key in ("unit", "kind", "over", "take"))
         at = measure["gear"] or measure.get("point") or measure.get("shaft")
-        return cls(name, unit, kind, at, over, take, reading_words(measure["reading"]))
+        return cls(name, unit, kind, at, over, take, reading_words(measure))
 
     @property
     def jumps(self) -> bool:

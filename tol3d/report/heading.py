@@ -35,14 +35,26 @@ READING_WORDS: Mapping[tuple[str, str], str] = {
 }
 
 
-def reading_words(reading: Mapping[str, str] | None) -> str:
-    """Where on the face and at which teeth, unless it is everywhere and all; a train has no one reading.
+def reading_words(measure: Mapping[str, Any]) -> str:
+    """Where on the face and at which teeth a measure is read, unless it is everywhere and all; of a train, each mesh.
 
-    >>> reading_words({"contact": "section", "gap": "section", "teeth": "driven"})
+    >>> section = {"contact": "section", "gap": "section", "teeth": "driven"}
+    >>> reading_words({"reading": section})
     '; mean section, one driven tooth'
+    >>> reading_words({"reading": None, "readings": {"first": section, "second": section}})
+    '; mean section, one driven tooth'
+    >>> reading_words({"readings": {"first": section, "second": {"contact": "face", "gap": "face", "teeth": "all"}}})
+    '; first: mean section, one driven tooth'
     """
-    if reading is None:
-        return ""
+    if measure.get("reading"):
+        return _reading_words(measure["reading"])
+    each = {mesh: _reading_words(reading) for mesh, reading in measure.get("readings", {}).items()}
+    if len(set(each.values())) == 1:
+        return next(iter(each.values()))
+    return "".join(f"; {mesh}: {words[2:]}" for mesh, words in each.items() if words)
+
+
+def _reading_words(reading: Mapping[str, str]) -> str:
     teeth = {"driver": ", one driver tooth", "driven": ", one driven tooth"}
     return READING_WORDS[reading["contact"], reading["gap"]] + teeth.get(reading["teeth"], "")
 
@@ -59,11 +71,10 @@ def heading(measure: Mapping[str, Any]) -> str:
     'displacement of tip of arm by the lost motion, at a random position each trial'
     """
     if measure["kind"] in TRAIN_KINDS:
-        return f"{_train_quantity(measure)}, {TRAIN_OVER_WORDS[measure['over']]}"
+        return f"{_train_quantity(measure)}, {TRAIN_OVER_WORDS[measure['over']]}{reading_words(measure)}"
     gear = f" of {measure['gear']} in" if measure["kind"] == "angular_backlash" else " of"
     quantity = TAKE_WORDS[measure["take"]] + QUANTITY_WORDS[measure["kind"]]
-    reading = reading_words(measure["reading"]) if "reading" in measure else ""
-    return f"{quantity}{gear} {measure['of']} {OVER_WORDS[measure['over']]}{reading}"
+    return f"{quantity}{gear} {measure['of']} {OVER_WORDS[measure['over']]}{reading_words(measure)}"
 
 
 def _train_quantity(measure: Mapping[str, Any]) -> str:

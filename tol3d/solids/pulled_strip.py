@@ -3,9 +3,12 @@
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from tol3d.gears import Flank
 from tol3d.solids.flank_strips import WHOLE_FACE, Array, FlankStrips, Span, Triangles, strip_mesh
+
+AT_END = 1e-5  # of the slack; FCL's nearest point is an edge to its rounding, or else lies off it by any length
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,6 +45,17 @@ class PulledStrip:
         third = (np.cross(one, here) * normal).sum(axis=-1) / area
         weights = np.stack([1 - second - third, second, third], axis=-1)
         return np.asarray(self.slack * (weights[..., None] * normals[step]).sum(axis=1))
+
+    def at_end(self, scale: Array, point: Array) -> NDArray[np.bool_]:
+        """Which points (n, 3) [mm] of the strip lie on an edge that ends its profile, (n,); arguments as above."""
+        found = np.zeros(len(point), dtype=bool)
+        for end in (0, -1):
+            inner, outer = self.strips.inner[self.flank][end], self.strips.outer[self.flank][end]
+            along = (outer - inner) / np.sqrt(((outer - inner) ** 2).sum())
+            apart = point - (scale[:, None] * inner - self.slack * self.strips.normals[self.flank][end])
+            across = apart - (apart * along).sum(axis=-1, keepdims=True) * along
+            found |= (across * across).sum(axis=-1) < (AT_END * self.slack) ** 2
+        return found
 
     def curvature(self, scale: Array, triangle: Triangles) -> Array:
         """Of the flank along its profile where triangles lie, in the middle of the span: (n,) [1/mm]."""

@@ -120,7 +120,7 @@ def bevel_foot(
         distance * sin_beyond - offset,
         foot_q,
         distance * cos_beyond,
-        at,
+        at - offset * nearness,
         x,
         y,
         z,
@@ -157,4 +157,4 @@ def bevel_line_of_action(
     face: float,
 ) -> Nearest:
     """Nothing is closed as soon as the apexes part."""
-    return Nearest(0.0, 0.0, NOWHERE, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+    return Nearest(0.0, 0.0, NOWHERE, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, False, 0.0)

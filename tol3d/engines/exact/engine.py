@@ -86,6 +86,7 @@ class ExactEngine:
         pair = self._pairs[mesh.name]
         value = np.empty(wanted.shape)
         vectors = np.empty((*wanted.shape, 3, 3))
+        at_end = np.empty(wanted.shape, dtype=bool)
         pair.gaps(
             *pair.numbers,
             np.array([*self._seats(mesh), flank, section], dtype=np.int64),
@@ -93,10 +94,12 @@ class ExactEngine:
             *(_array(values) for values in (*angles, driver_teeth, wanted)),
             value,
             vectors,
+            at_end,
         )
         return Gaps(
             value=np.where(np.isinf(value), np.nan, value),
             deep=np.zeros(wanted.shape, dtype=bool),
+            at_end=at_end,
             driver_point=vectors[..., 0, :],
             driven_point=vectors[..., 1, :],
             normal=vectors[..., 2, :],

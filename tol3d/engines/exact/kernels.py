@@ -10,7 +10,7 @@ BUILD = "float64[:, :, :, ::1], float64[:, :, ::1], float64[:, ::1], float64[:, 
 READ = f"int64[::1], {BUILD}, float64[::1], float64[:, ::1], int64[::1], int8[::1]"
 GAPS = (
     f"int64[::1], {BUILD}, float64[::1], float64[::1], int64[:, ::1], boolean[:, ::1], "
-    "float64[:, ::1], float64[:, :, :, ::1]"
+    "float64[:, ::1], float64[:, :, :, ::1], boolean[:, ::1]"
 )
 
 SPUR = (SpurTooth, SpurTooth, PairNumbers, Pose)

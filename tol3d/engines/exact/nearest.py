@@ -119,23 +119,24 @@ def nearest(
     )
     lean = (at.gap + offset) * at.nearness * at.nearness
     if not overlap:
-        return Nearest(math.inf, math.inf, CLOSED, profile, face, at.x, at.y, at.z, at.nx, at.ny, at.nz, lean)
+        return Nearest(math.inf, math.inf, CLOSED, profile, face, at.x, at.y, at.z, at.nx, at.ny, at.nz, False, lean)
     # where the mate's face ends, its edge is nearest to own flank: to second order the gap is the same, not the normal
     inside = own.low < face < own.high and own.begin < profile < own.end
-    at_end = last_fall <= SHARP_FALL and inside and not mate.low + END < at.face < mate.high - END
-    if mate.begin <= at.profile <= mate.end and not at_end:
+    face_ends = last_fall <= SHARP_FALL and inside and not mate.low + END < at.face < mate.high - END
+    if mate.begin <= at.profile <= mate.end and not face_ends:
         gap = at.gap + fall
         turn = turn_to(mate, gap, offset, at)
         how = CLOSED if mate.begin <= at.touching <= mate.end else AT_EDGE
         if profile <= own.begin:  # what lies below is no flank, and no edge either
             how = BEYOND
-        return Nearest(gap, turn, how, profile, face, at.x, at.y, at.z, at.nx, at.ny, at.nz, lean)
+        at_end = not own.begin < profile < own.end
+        return Nearest(gap, turn, how, profile, face, at.x, at.y, at.z, at.nx, at.ny, at.nz, at_end, lean)
     edge = min(max(at.profile, mate.begin), mate.end)
-    its, its_fall, _, _, overlap = lowest(
+    its, its_fall, its_own, _, overlap = lowest(
         mate, own, inverse(pose), mate_azimuth, own_azimuth, sigma, offset, edge, at.face, per_turn, last_fall
     )
     if not overlap:
-        return Nearest(math.inf, math.inf, CLOSED, profile, face, at.x, at.y, at.z, at.nx, at.ny, at.nz, lean)
+        return Nearest(math.inf, math.inf, CLOSED, profile, face, at.x, at.y, at.z, at.nx, at.ny, at.nz, False, lean)
     how = AT_EDGE if own.begin < its.profile <= own.end and at.profile >= mate.begin else BEYOND
     # the foot on own flank, and the way from the mate's edge to it, in the mate's frame
     apart = its.gap + offset
@@ -148,4 +149,5 @@ def nearest(
     nz = -(pose.zx * its.nx + pose.zy * its.ny + pose.zz * its.nz)
     arm = abs(ny * x - nx * y)
     gap = its.gap + its_fall
-    return Nearest(gap, gap / arm, how, its.profile, its.face, x, y, z, nx, ny, nz, 0.0)
+    at_end = not (mate.begin < its_own < mate.end and own.begin < its.profile < own.end)
+    return Nearest(gap, gap / arm, how, its.profile, its.face, x, y, z, nx, ny, nz, at_end, 0.0)

@@ -28,7 +28,7 @@ class Foot(NamedTuple):
     Args:
         gap: signed distance [mm] from the foot, positive outside the mate's tooth.
         profile, face: parameters of the foot on the mate [rad; mm].
-        touching: profile parameter of the point itself on the mate's flank, once that has turned to it [rad].
+        touching: profile parameter of the foot once the mate's flank has turned to the point [rad].
         x, y, z: the point in the mate's frame [mm].
         nx, ny, nz: unit normal of the mate at the foot, out of its tooth.
         by_profile, by_face: derivatives of the gap by the point's parameters [mm/rad; 1],
@@ -66,6 +66,7 @@ class Nearest(NamedTuple):
         profile, face: where on `own`.
         x, y, z: the point of `own` [mm].
         nx, ny, nz: unit vector from the mate to it.
+        at_end: whether either flank ends there, at its tip edge or where its profile begins: it is not in action.
         lean: sine [1/mm], over the distance from the apex, of the angle between that and the mate's normal once it
             has turned to the point: 0 for a cylinder.
     """
@@ -81,6 +82,7 @@ class Nearest(NamedTuple):
     nx: float
     ny: float
     nz: float
+    at_end: bool
     lean: float
 
 

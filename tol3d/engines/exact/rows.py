@@ -159,14 +159,14 @@ def read_rows(
         opened = build.driver_turn / pair.ratio + build.driven_turn
         start = standing(build, angle, pair.driven_start - angle / pair.ratio + sigma * opened)
         at, side = closed(seen(build, start, angle, working), build, start, working)
-        if side.gap == math.inf:
+        if side.gap == math.inf and side.acts:
             status[row] = NO_CONTACT
-        if side.gap == math.inf or not side.known:
+        if side.gap == math.inf or not side.known or not side.acts:
             continue
         other = seen(build, at, angle, gap)
-        if other.gap == math.inf:
+        if other.gap == math.inf and other.acts:
             status[row] = NO_CONTACT
-        if other.gap == math.inf or not other.known:
+        if other.gap == math.inf or not other.known or not other.acts:
             continue
         status[row] = INTERFERES if other.gap < -FREE else OK
         readings[row, DRIVEN_ANGLE] = at.driven
@@ -183,7 +183,7 @@ def read_rows(
                 near_at = driven_on(at, sigma * other.turn)
                 near = seen(build, near_at, angle, closing)
             end, last = closed(near, build, near_at, closing)
-            if last.known and last.gap < math.inf:
+            if last.known and last.acts and last.gap < math.inf:
                 readings[row, DRIVEN_TURN] = sigma * (end.driven - at.driven)
         if which[7]:
             turn = driver_turn(build, at, Look(-sigma, which[3], which[4] != 0, 0.0))
@@ -207,6 +207,7 @@ def gap_rows(
     wanted: NDArray[np.bool_],
     value: Array,
     vectors: Array,
+    at_end: NDArray[np.bool_],
 ) -> None:
     """Gaps of the tooth pairs that are asked for.
 
@@ -216,6 +217,7 @@ def gap_rows(
         driver_teeth, wanted: (rows, pairs).
         value: (rows, pairs) [mm], written; nan where not wanted, inf where the faces do not overlap.
         vectors: (rows, pairs, 3, 3), written: points on driver and driven, normal from driver to driven; world.
+        at_end: (rows, pairs), written: whether either flank ends there.
     """
     gears = (which[0], which[1])
     sigma = float(which[2])
@@ -229,6 +231,7 @@ def gap_rows(
         for k in range(driver_teeth.shape[1]):
             value[row, k] = np.nan
             vectors[row, k] = np.nan
+            at_end[row, k] = False
             if not wanted[row, k]:
                 continue
             tooth = float(driver_teeth[row, k])
@@ -236,6 +239,7 @@ def gap_rows(
             value[row, k] = near.gap
             if near.gap == math.inf:
                 continue
+            at_end[row, k] = near.at_end
             ahead, back = flank_offset[row, gears[0]], near.gap + flank_offset[row, gears[0]]
             x, y = near.x + at.fx, near.y + at.fy
             for i in range(3):

@@ -13,7 +13,7 @@ import numpy as np
 from tol3d.compiled import part
 from tol3d.engines.exact.foot import section
 from tol3d.engines.exact.nearest import QUICK_FALL, nearest
-from tol3d.engines.exact.numbers import ALIKE, AT_EDGE, BEYOND, Nearest, PairNumbers, Pose
+from tol3d.engines.exact.numbers import ALIKE, AT_EDGE, BEYOND, CLOSED, Nearest, PairNumbers, Pose
 from tol3d.engines.exact.small_angles import turned
 
 LOOKS = 8  # at the candidate pairs until they are at rest; the second one is needed only far from the start
@@ -95,6 +95,7 @@ class Side(NamedTuple):
         turn: the smallest turn of the driven gear [rad] that closes a pair.
         settled: whether that turn is exact.
         known: whether no flank ends on both sides where it is needed.
+        acts: of one tooth, whether its flank is in action there: nearest, and to touch, between both flanks' ends.
         tooth: of the driver, whose pair that is.
         x, y, z, nx, ny, nz: the driver's point and the normal towards it, in the driven shaft's frame.
     """
@@ -103,6 +104,7 @@ class Side(NamedTuple):
     turn: float
     settled: bool
     known: bool
+    acts: bool
     tooth: int
     x: float
     y: float
@@ -257,7 +259,7 @@ def seen(build: Build, at: Turn, seen_at: float, look: Look) -> Side:
     one_base_pitch = abs(build.driven.base * pair.driven_pitch - pitch) < SAME_PITCH * pitch
     eccentricity = abs(at.fx) + abs(at.fy)
     gap, turn, edge_turn, doubtful, least = math.inf, math.inf, math.inf, math.inf, math.inf
-    best_tooth = 0
+    best_tooth, acts = 0, True
     x, y, z, nx, ny, nz = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
     in_middle = (0.5 * (pair.lowest + pair.highest) - sigma * at.driver) / pair.driver_pitch
     for step in range(count):
@@ -265,6 +267,10 @@ def seen(build: Build, at: Turn, seen_at: float, look: Look) -> Side:
         near = pair_nearest(build, at, sigma, tooth, pose, own, middle.low, look.per_turn, QUICK_FALL)
         if near.gap == math.inf:
             continue
+        if look.teeth != ALL_TEETH:
+            # a gap is read as the flanks stand, one that is closed where they come to touch
+            touches = near.how == CLOSED or near.how == ALIKE
+            acts = not near.at_end and near.how != BEYOND and (touches or look.per_turn == 0.0)
         if near.how == BEYOND:
             doubtful = min(doubtful, near.gap)
             continue
@@ -284,7 +290,7 @@ def seen(build: Build, at: Turn, seen_at: float, look: Look) -> Side:
             break
     most = ASIDE if look.in_section or pair.along == 0.0 else ASIDE_ON_FACE
     settled = edge_turn >= turn and eccentricity * abs(turn) < most
-    return Side(gap, turn, settled, doubtful >= gap - DOUBT, best_tooth, x, y, z, nx, ny, nz)
+    return Side(gap, turn, settled, doubtful >= gap - DOUBT, acts, best_tooth, x, y, z, nx, ny, nz)
 
 
 @part
@@ -312,7 +318,7 @@ def driver_turn(build: Build, at: Turn, look: Look) -> float:
     for _ in range(LOOKS):
         now = standing(build, angle, at.driven)
         side = seen(build, now, at.driver, look)
-        if side.gap == math.inf or not side.known:
+        if side.gap == math.inf or not side.known or not side.acts:
             return math.nan
         # the driver's point turns about the driver's axis, whose direction is the pose's last column
         x, y, z = side.x - p.x, side.y - p.y, side.z - p.z

@@ -89,7 +89,7 @@ def spur_foot(
         tangent - mate.base * foot_roll - offset,
         foot_roll,
         height,
-        tangent * mate.per_base,
+        (tangent - offset) * mate.per_base,
         x,
         y,
         height,
@@ -127,7 +127,7 @@ def spur_line_of_action(
     From its ends the flanks stand r_b t away, t = alpha_w + eta_b - sigma (azimuth off the line of centres): what is
     left of T is the gap, the same for every pair of one base pitch.
     """
-    nowhere = Nearest(0.0, 0.0, NOWHERE, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+    nowhere = Nearest(0.0, 0.0, NOWHERE, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, False, 0.0)
     square, bases = pose.x * pose.x + pose.y * pose.y, own.base + mate.base
     if pose.xz != 0.0 or pose.yz != 0.0 or square <= bases * bases:
         return nowhere
@@ -153,4 +153,4 @@ def spur_line_of_action(
     along = tangent - own.base * roll
     at = min(max(face, low), high)
     x, y = mate.base * ux + along * nx, mate.base * uy + along * ny
-    return Nearest(gap, gap * mate.per_base, ALIKE, roll, at, x, y, at + pose.z, nx, ny, 0.0, 0.0)
+    return Nearest(gap, gap * mate.per_base, ALIKE, roll, at, x, y, at + pose.z, nx, ny, 0.0, False, 0.0)

@@ -6,6 +6,7 @@ from pydantic import Field
 
 from tol3d.scene.measures.angular_backlash import AngularBacklashSpec
 from tol3d.scene.measures.circumferential_backlash import CircumferentialBacklashSpec
+from tol3d.scene.measures.flank_measure import FlankMeasureSpec
 from tol3d.scene.measures.lost_motion import LostMotionSpec
 from tol3d.scene.measures.measure import MeasureSpec
 from tol3d.scene.measures.mesh_measure import MeshMeasureSpec
@@ -28,6 +29,7 @@ MeasureUnion = Annotated[
 __all__ = [
     "AngularBacklashSpec",
     "CircumferentialBacklashSpec",
+    "FlankMeasureSpec",
     "LostMotionSpec",
     "MeasureSpec",
     "MeasureUnion",

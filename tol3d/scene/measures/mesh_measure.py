@@ -1,11 +1,12 @@
-"""What every measure of one mesh has in common: over which positions, what is taken, where and of which teeth."""
+"""What every measure of one mesh has in common: over which positions, and what is taken."""
 
 from typing import Annotated, Literal, Self
 
 from pydantic import Discriminator, Field, Tag, model_validator
 
 from tol3d.scene.direction import At, FixedAngle, known_word, shape
-from tol3d.scene.measures.measure import MOST_POSITIONS, MeasureSpec, Take
+from tol3d.scene.measures.flank_measure import FlankMeasureSpec
+from tol3d.scene.measures.measure import MOST_POSITIONS, Take
 from tol3d.scene.moves import MESHES
 from tol3d.scene.name import Name
 from tol3d.scene.reference import Reference
@@ -20,7 +21,7 @@ Over = Annotated[
 ]
 
 
-class MeshMeasureSpec(MeasureSpec):
+class MeshMeasureSpec(FlankMeasureSpec):
     """A measure that is read on a mesh."""
 
     of: Name = Field(description="the mesh move")
@@ -35,16 +36,6 @@ class MeshMeasureSpec(MeasureSpec):
         ge=FEWEST_POSITIONS,
         le=MOST_POSITIONS,
         description="positions a turn, for turn and long_period",
-    )
-    read_at: Literal["mean_section", "face_contact", "face"] | None = Field(
-        default=None,
-        description="where on the face: contact and gap in the section in its middle (bevel gears if not given), "
-        "contact over the face and the gap in that section, or both over the face (spur gears if not given)",
-    )
-    tooth: Literal["driver", "driven", "all"] | None = Field(
-        default=None,
-        description="which teeth: one tooth of the driver or the driven gear in its space, or all that may touch; "
-        "driven for bevel gears, all for spur gears if not given",
     )
 
     @property

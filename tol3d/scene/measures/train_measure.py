@@ -4,12 +4,13 @@ from typing import ClassVar
 
 from pydantic import Field
 
-from tol3d.scene.measures.measure import MeasureSpec, Take
+from tol3d.scene.measures.flank_measure import FlankMeasureSpec
+from tol3d.scene.measures.measure import Take
 from tol3d.scene.name import Name
 from tol3d.scene.reference import Reference
 
 
-class TrainMeasureSpec(MeasureSpec):
+class TrainMeasureSpec(FlankMeasureSpec):
     """A measure that is read on a train: a number a trial, for kinds that do not say otherwise."""
 
     take: ClassVar[Take] = "value"
