@@ -393,6 +393,23 @@ def test_a_shaft_turns_against_the_motor_behind_an_odd_number_of_reversals():
     assert [text for text in texts if text in "↺↻"] == ["↺", "↺", "↻", "↺"]
 
 
+def test_ends_that_are_those_of_a_data_sheet_are_told_so_and_no_other_ones():
+    """A reducer's play of sigma 1.5′ about 5′ that its law ends at 2′ and 9′; 3 sigma would be 0.5′ and 9.5′."""
+    summary = shoulder()
+    law = {"low_3sigma": 2.0, "mean": 5.0, "high_3sigma": 9.0, "sigma": 1.5}
+    for own in summary["trains"]["shoulder swing"]["stages"][0]["roads"].values():
+        own |= law
+    texts = texts_of(chain_figure(summary, "shoulder swing"))
+    assert [text for text in texts if text.endswith("law's")] == ["2′00.0″ … 9′00.0″, its law's"]
+
+
+def test_a_chain_says_of_how_many_trials_it_is_where_some_failed():
+    summary = shoulder()
+    measure = summary["trains"]["shoulder swing"]["measure"]
+    summary["measures"][measure] = summary["measures"][measure] | {"status": {"ok": 1900, "interferes": 100}}
+    assert any("of 1900 of 2000 that seated" in text for text in texts_of(chain_figure(summary, "shoulder swing")))
+
+
 @pytest.mark.parametrize("lever", [LEVER, None])
 @pytest.mark.parametrize("count", [1, 2, 3, 4, 5, 6, 7, 9, 12])
 def test_no_two_labels_overlap_and_none_leaves_the_picture(count, lever):

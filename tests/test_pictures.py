@@ -13,6 +13,7 @@ from matplotlib.figure import Figure
 from matplotlib.text import Text
 
 from tol3d.report import picture
+from tol3d.report.bars import bars_of
 from tol3d.report.canvas import OUTSIDE, new_figure, plain_axes
 from tol3d.report.column import columns_of
 from tol3d.report.comparison_picture import comparison_figure
@@ -243,6 +244,41 @@ def test_a_measure_that_cannot_be_drawn_costs_a_warning_and_no_other_picture(tmp
         draw(summary_of(measures), tmp_path / "histogram.png")
     assert not (tmp_path / "histogram-play 3.png").exists()
     assert len(list(tmp_path.iterdir())) == 5
+
+
+# failed trials ------------------------------------------------------------------------------------
+
+
+def jammed() -> dict[str, Any]:
+    """A measure of which a third of 3000 trials jam: those below 48, by the 3D simulation alone."""
+    values = normals(3000)
+    seated = values[np.sort(values)[1000] <= values]
+    measure = measure_of(values, lower_limit=49.0)
+    counts = np.histogram(seated, 64, (values.min(), values.max()))[0]
+    measure["histogram"]["counts"]["geometric"] = counts.tolist()
+    out = {"trials": 3000, "below_limit_ppm": 400_000.0, "out_ppm": 400_000.0}
+    measure["geometric"] = sample_of(seated) | out
+    return measure | {"status": {"ok": len(seated), "interferes": 3000 - len(seated)}}
+
+
+def test_what_failed_is_missing_in_the_bars_and_makes_the_others_no_more() -> None:
+    """Both roads found the same values of what seated: their bars are as high there, and 2/3 of 100 % in all."""
+    bars = bars_of(jammed())
+    assert float(np.sum(bars["geometric"].density * np.diff(bars["geometric"].edges))) == pytest.approx(200 / 3)
+    assert float(np.sum(bars["analytic"].density * np.diff(bars["analytic"].edges))) == pytest.approx(100.0)
+    higher = bars["geometric"].density[bars["geometric"].middles > 50.0]
+    assert higher == pytest.approx(bars["analytic"].density[bars["analytic"].middles > 50.0])
+
+
+def test_a_picture_says_how_many_seated_and_what_is_out_of_all() -> None:
+    figure = histogram_figure(summary_of({"play": jammed()}, 3000))
+    texts = texts_of(figure)
+    assert any("of2000of3000thatseated,outinall40%" in text for text in texts)
+    assert any("LSL49µm40%below" in text for text in texts)
+    many = overview_figure(summary_of({f"play {k}": jammed() for k in range(5)}, 3000))
+    assert sum("40%below" in text and "of2000of3000thatseated" in text for text in texts_of(many)) == 5
+    assert_apart(figure)
+    assert_apart(many)
 
 
 # comparisons --------------------------------------------------------------------------------------

@@ -414,7 +414,7 @@ def test_comparing_nothing_is_refused():
 @given(st.lists(st.integers(0, 10**6), min_size=1, max_size=64), st.floats(1e-3, 1e3))
 def test_bars_hold_every_trial_once(counts, width):
     histogram = {"lower_edge": -3.0, "bin_width": width, "counts": {"analytic": counts}}
-    bars = bars_of(histogram)["analytic"]
+    bars = bars_of({"histogram": histogram})["analytic"]
     held = float(np.sum(bars.density * np.diff(bars.edges)))
     assert held == pytest.approx(100.0 if sum(counts) else 0.0)
     first = np.flatnonzero(counts)[0] if sum(counts) else 0  # merging moves no count outside its bar

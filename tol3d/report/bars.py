@@ -30,16 +30,31 @@ class Bars:
         return (self.edges[:-1] + self.edges[1:]) / 2
 
 
-def bars_of(histogram: Mapping[str, Any]) -> dict[str, Bars]:
-    """Bars of each road of a summary's histogram; none when nothing was counted."""
+def bars_of(measure: Mapping[str, Any]) -> dict[str, Bars]:
+    """Bars of each road of a measure's summary; none when nothing was counted.
+
+    Densities are of all trials: what failed is missing, and does not make the others seem more.
+    """
+    histogram = measure["histogram"]
     if not histogram:
         return {}
     total = max(sum(counts) for counts in histogram["counts"].values())
     merged = _neighbours_in_one(len(next(iter(histogram["counts"].values()))), total)
     return {
-        road: _bars(np.asarray(counts, dtype=np.float64), merged, histogram["lower_edge"], histogram["bin_width"])
+        road: _bars(
+            _seated(measure.get(road, {})) * np.asarray(counts, dtype=np.float64) / (sum(counts) or 1),
+            merged,
+            histogram["lower_edge"],
+            histogram["bin_width"],
+        )
         for road, counts in histogram["counts"].items()
     }
+
+
+def _seated(sample: Mapping[str, Any]) -> float:
+    """The share of a road's trials that seated."""
+    count, trials = sample.get("count"), sample.get("trials")
+    return count / trials if count and trials else 1.0
 
 
 def _neighbours_in_one(bars: int, total: int) -> int:
@@ -48,10 +63,9 @@ def _neighbours_in_one(bars: int, total: int) -> int:
     return max(1, round(bars / wanted))
 
 
-def _bars(counts: Array, merged: int, lower: float, width: float) -> Bars:
-    bars = -(-len(counts) // merged)
+def _bars(shares: Array, merged: int, lower: float, width: float) -> Bars:
+    bars = -(-len(shares) // merged)
     padded = np.zeros(bars * merged)
-    padded[: len(counts)] = counts
+    padded[: len(shares)] = shares
     edges: Array = lower + merged * width * np.arange(bars + 1, dtype=np.float64)
-    total = counts.sum() or 1.0
-    return Bars(edges, 100 * padded.reshape(bars, merged).sum(axis=1) / (total * merged * width))
+    return Bars(edges, 100 * padded.reshape(bars, merged).sum(axis=1) / (merged * width))

@@ -140,7 +140,7 @@ def _draw_roads(axes: Axes, measure: Compared, shown: Sequence[Shown], *, single
 
 
 def _draw_histograms(axes: Axes, measure: Summary, colours: Mapping[str, str], single: bool) -> None:
-    for road, bars in bars_of(measure["histogram"]).items():
+    for road, bars in bars_of(measure).items():
         filled = road == "geometric"
         axes.stairs(
             bars.density,

@@ -21,7 +21,7 @@ from tol3d.report.canvas import (
 from tol3d.report.column import Column, best_road, columns_of
 from tol3d.report.ends import Ends, is_bounded
 from tol3d.report.label import legible, wrapped
-from tol3d.report.number import UNIT_SIGNS, given_text, measured_text, ppm_text, short_text, unit_suffix
+from tol3d.report.number import UNIT_SIGNS, given_text, measured_text, share_text, short_text, unit_suffix
 
 Summary = Mapping[str, Any]
 
@@ -49,7 +49,7 @@ def density_label(unit: str) -> str:
 def draw_distribution(axes: Axes, measure: Summary) -> None:
     """Both roads' histograms over each other, the closed form's normal curve, limits, mean and ends of the trials."""
     unit = measure["unit"]
-    bars = bars_of(measure["histogram"])
+    bars = bars_of(measure)
     if not bars:
         say_instead(axes, NO_VALUES, OUTSIDE)
         return
@@ -154,7 +154,7 @@ def _mark_limits(axes: Axes, measure: Summary, span: tuple[float, float], sample
             continue
         lower = key == "lower_limit"
         text = f"{word} {given_text(limit, unit)}{unit_suffix(unit)}\n"
-        text += f"{ppm_text(sample.get(f'{side}_limit_ppm'))} ppm {side}"
+        text += f"{share_text(sample.get(f'{side}_limit_ppm'))} {side}"
         inside = span[0] <= limit <= span[1]
         if inside:
             axes.axvline(limit, ymax=LINE_TOP, color=OUTSIDE, linewidth=2.0)

@@ -42,7 +42,7 @@ from tol3d.report.distribution import (
 from tol3d.report.ends import QUANTILES_MEAN, Ends, is_bounded
 from tol3d.report.heading import heading
 from tol3d.report.label import widest, wrapped
-from tol3d.report.number import UNIT_SIGNS, ppm_text, short_text
+from tol3d.report.number import UNIT_SIGNS, share_text, short_text
 from tol3d.report.picture import measure_files
 
 Summary = Mapping[str, Any]
@@ -111,7 +111,10 @@ def _headed(summary: Summary, height: float) -> Figure:
 def _words(measure: Summary) -> str:
     """What a measure is, and of how many trials its picture is where some of them failed."""
     seated = seated_text(measure)
-    return f"{heading(measure)}; 3D simulation {seated}" if seated else heading(measure)
+    if not seated:
+        return heading(measure)
+    out = measure["curve"]["geometric"] if measure["take"] == "curve" else measure["geometric"]
+    return f"{heading(measure)}; 3D simulation {seated}, out in all {share_text(out.get('out_ppm'))}"
 
 
 def _height(measure: Summary) -> float:
@@ -169,7 +172,7 @@ def overview_figure(summary: Summary) -> Figure:
 
 
 def _small_histogram(axes: Axes, name: str, measure: Summary) -> None:
-    unit, bars = measure["unit"], bars_of(measure["histogram"])
+    unit, bars = measure["unit"], bars_of(measure)
     axes.set_yticks([])
     if not bars:
         title_axes(axes, name, NO_VALUES, OVERVIEW_WORDS)
@@ -200,7 +203,7 @@ def _small_words(measure: Summary) -> str:
     words = ", ".join(f"{word} {short_text(value, unit)}" for word, value in known if value is not None)
     sides = (("below", "lower_limit"), ("above", "upper_limit"))
     out = [
-        f"{ppm_text(measure[road].get(f'{side}_limit_ppm'))} ppm {side}" for side, limit in sides
+        f"{share_text(measure[road].get(f'{side}_limit_ppm'))} {side}" for side, limit in sides
         if measure.get(limit) is not None
     ]  # fmt: skip
     return "; ".join([words, *out, *([seated] if (seated := seated_text(measure)) else [])])

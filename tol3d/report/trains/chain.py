@@ -10,6 +10,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Circle, FancyBboxPatch, Patch, Polygon
 
 from tol3d.report.canvas import BLACK, GREY, OUTSIDE, new_figure, save_figure, say_instead
+from tol3d.report.column import seated_text
 from tol3d.report.label import legible, wrapped
 from tol3d.report.number import NOTHING, given_text, value_text
 from tol3d.report.trains.chain_bars import bar_scale, draw_bars
@@ -40,6 +41,7 @@ LINE: Final = 0.19  # inch, from line to line of text
 SENSE_ABOVE: Final = 0.14  # inch, of the shaft's box
 TIP_REACH: Final = 0.42  # inch, of the arrow at the tip
 LINE_CAPTIONS: Final = ("ratio", "working flank", "own lost motion", "low … high (±3σ)")
+OF_ITS_LAW: Final = ", its law's"  # behind ends that are nearer than 3 sigma
 NO_LINKS: Final = "there is no link between the shaft that is held and the one that is read"
 
 
@@ -82,6 +84,8 @@ def _draw_head(axes: Axes, name: str, train: Summary, summary: Summary) -> None:
     ratio = "" if train["ratio"] is None else f",  i = {whole_ratio_text(train['ratio'])}"
     ways = f"{legible(train['driven'], 40)} → {legible(train['output'], 40)}{ratio}"
     words = f"{ways}   ·   {legible(train['held'], 40)} held   ·   {summary['trials']} trials, seed {summary['seed']}"
+    seated = seated_text(summary["measures"].get(train["measure"], {}))
+    words += f"   ·   {seated}" if seated else ""
     axes.text(EDGE, HEAD - 0.63, words, fontsize=STRONG, color=GREY, va="center")
     marks: list[Patch | Line2D] = [
         Patch(facecolor=GREY, label="mean"),
@@ -125,7 +129,8 @@ def _link_lines(stage: Stage) -> Iterator[tuple[str, str]]:
     yield stage.ratio_text, "bold"
     yield stage.working_flank or NOTHING, "normal"
     yield value_text(stage.own.mean, "arcmin"), "normal"
-    yield f"{value_text(stage.own.low, 'arcmin')} … {value_text(stage.own.high, 'arcmin')}", "normal"
+    ends = f"{value_text(stage.own.low, 'arcmin')} … {value_text(stage.own.high, 'arcmin')}"
+    yield ends + (OF_ITS_LAW if stage.within_its_law else ""), "normal"
 
 
 def _draw_shaft(axes: Axes, row: ChainRow, column: int) -> None:

@@ -13,6 +13,7 @@ Sums = Mapping[str, Mapping[str, float | None]]
 
 SUM_KEYS: Mapping[str, str] = {"low_3sigma": "lows", "mean": "means", "high_3sigma": "highs"}
 MANY_TURNS = 1e6  # no decimals from there on
+ROUNDING = 1e-6  # sigma
 SUMMED_KINDS = frozenset(("lost_motion", "tip_displacement"))
 
 
@@ -56,6 +57,7 @@ class Stage:
         at_shaft: what it brings to the lost motion of the shaft that is read.
         share: of the variance there [%].
         published: others' angular backlash at the driven shaft, by who says so.
+        within_its_law: whether an end of `own` is that of a data sheet's law, nearer than 3 sigma.
     """
 
     number: int
@@ -71,6 +73,7 @@ class Stage:
     at_shaft: Range
     share: float | None
     published: Mapping[str, Range]
+    within_its_law: bool = False
 
     @property
     def opposite(self) -> bool:
@@ -111,7 +114,19 @@ def _stage(number: int, stage: Summary, values: Mapping[str, Any]) -> Stage:
         at_shaft=own.times(factor),
         share=values.get("share_percent"),
         published={name: Range.of(told) for name, told in stage.get("published", {}).items()},
+        within_its_law=stage["kind"] == "reducer" and _nearer_than_3_sigma(own, values.get("sigma")),
     )
+
+
+def _nearer_than_3_sigma(own: Range, sigma: float | None) -> bool:
+    """Whether an end lies nearer to the mean than 3 sigma, by more than rounding.
+
+    >>> _nearer_than_3_sigma(Range(2.0, 5.0, 9.0), 1.5), _nearer_than_3_sigma(Range(0.5, 5.0, 9.5), 1.5)
+    (True, False)
+    """
+    if sigma is None or own.low is None or own.mean is None or own.high is None:
+        return False
+    return min(own.mean - own.low, own.high - own.mean) < (3 - ROUNDING) * sigma
 
 
 def shafts_along(stages: Sequence[Stage], held: str) -> list[str]:
