@@ -7,12 +7,14 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from pydantic import ValidationError
 from rich.console import Console, RenderableType
 
 from tol3d.analyses.compensation import CompensationQuestion, compensation
 from tol3d.report.compensation_table import worst_table
 from tol3d.report.table import run_report
 from tol3d.scene import load_scene
+from tol3d.scene.schema import PublishedMeasure
 from tol3d.simulate import Overrides, run_scene
 
 SCENES = Path(__file__).resolve().parent.parent / "scenes"
@@ -96,3 +98,15 @@ def test_what_compensation_leaves_of_each_pair_is_the_papers() -> None:
     assert left == {"– of spur pair": "33.5″", "– of bevel pair": "1′17.4″"}
     by_hand = (0.12195 * (75 - 54) / 275 * 3600, 0.12195 * (61 - 43) / 102.1 * 3600)
     assert by_hand == pytest.approx((33.5, 77.4), abs=0.05)
+
+
+@pytest.mark.parametrize(
+    ("said", "told"),
+    [("a\x1b[31mb", "without invisible characters"), ("a" * 2001, "up to 2000"), ("two\n lines\n", "two lines")],
+)
+def test_a_description_is_one_line_that_moves_no_cursor(said: str, told: str) -> None:
+    if told.startswith(("without", "up")):
+        with pytest.raises(ValidationError, match=told):
+            PublishedMeasure.model_validate({"description": said})
+    else:
+        assert PublishedMeasure.model_validate({"description": said}).description == told

@@ -216,6 +216,7 @@ class PublishedColumn(Strict):
     high_3sigma: Number = LEFT_OUT
     sigma: Number = LEFT_OUT
     contributors: Mapping[Label, Number] = LEFT_OUT
+    description: Sentence = LEFT_OUT
 
 
 class MeasureSummary(Strict):

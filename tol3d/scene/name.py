@@ -1,4 +1,4 @@
-"""The names that a user gives to parts, tolerances, moves, measures and columns."""
+"""The names that a user gives to parts, tolerances, moves, measures and columns, and remarks that are printed."""
 
 import unicodedata
 from typing import Annotated
@@ -9,6 +9,7 @@ from tol3d.strict import refused
 from tol3d.units import shown
 
 LONGEST_NAME = 80  # characters; names become columns of tables and headings of reports
+LONGEST_REMARK = 2000  # characters; a page
 FORBIDDEN = "/\\:"  # they would make paths, and mark the road in the columns of a result
 INVISIBLE = {"Cc", "Cf", "Cs", "Zl", "Zp"}  # Unicode categories: control, format, surrogates, line and paragraph ends
 COMPONENT_ENDINGS = (".x", ".y")  # columns of a result end so where a contributor has two components
@@ -28,3 +29,16 @@ def _checked(name: str) -> str:
 
 Name = Annotated[str, AfterValidator(_checked), Field(json_schema_extra={"minLength": 1, "maxLength": LONGEST_NAME})]
 """Any text of 1 to 80 characters without / \\ : or invisible characters, NFC-normalised."""
+
+
+def _one_line(text: str) -> str:
+    words = " ".join(text.split())
+    if len(words) > LONGEST_REMARK:
+        raise refused("", f"a text of up to {LONGEST_REMARK} characters", f"{len(words)} of them")
+    if any(unicodedata.category(sign) in INVISIBLE for sign in words):
+        raise refused("", "a text without invisible characters", shown(words))
+    return words
+
+
+Remark = Annotated[str, AfterValidator(_one_line), Field(json_schema_extra={"maxLength": LONGEST_REMARK})]
+"""Words that are printed below a table: up to 2000 characters in one line, whatever lines they were written in."""

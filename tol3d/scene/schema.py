@@ -14,7 +14,7 @@ from tol3d.files import Files
 from tol3d.samplers.replicates import REPLICATES, SamplerKind, uneven
 from tol3d.scene.measures import MeasureUnion
 from tol3d.scene.moves import MoveUnion
-from tol3d.scene.name import Name
+from tol3d.scene.name import Name, Remark
 from tol3d.scene.nearest import nearest
 from tol3d.scene.parts import PartUnion
 from tol3d.scene.place import KeyPath, Origin, Place
@@ -158,7 +158,7 @@ class PublishedMeasure(Strict):
     contributors: Mapping[Name, Percent] = Field(
         default_factory=dict, description="share of each tolerance [% of the variance]"
     )
-    description: str = Field(default="", description="what must be known of these numbers, shown below the table")
+    description: Remark = Field(default="", description="what must be known of these numbers, shown below the table")
 
     def quantities(self) -> dict[str, Quantity]:
         """Every dimensioned number that was given, by its field."""
