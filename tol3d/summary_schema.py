@@ -210,7 +210,6 @@ class CurveRoads(Strict):
 class PublishedColumn(Strict):
     """What somebody else found for a measure, in its unit."""
 
-    description: Sentence = LEFT_OUT
     low_3sigma: Number = LEFT_OUT
     mean: Number = LEFT_OUT
     high_3sigma: Number = LEFT_OUT
