@@ -48,6 +48,23 @@ def build(gear: SpurGear) -> NamedSolid:
     return extruded(list(_outline(gear)), bore, gear.face_width)
 
 
+def build_tooth(gear: SpurGear) -> NamedSolid:
+    """Tooth 0 alone, cut off along the chord between its fillets' ends: its faces are those of `build` to the last bit.
+
+    For gears of so many teeth that all of them would take minutes and gigabytes. The face beneath it is "cut".
+
+    Raises:
+        GeometryError: no valid solid comes of it.
+    """
+    sides: dict[Flank, _Side] = {RIGHT: _side(gear, RIGHT), LEFT: _side(gear, LEFT)}
+    corners = _corners(gear, 0, sides)
+    tooth = _Tooth(gear, 0, sides, corners)
+    tip = _arc("tooth 0 tip", _circle(gear, (0.0, 0.0), gear.tip_radius), corners[RIGHT, "tip"], corners[LEFT, "tip"])
+    chord = BRepBuilderAPI_MakeEdge(corners[LEFT, "bottom"], corners[RIGHT, "bottom"]).Edge()
+    outline = [*tooth.rising(), tip, *tooth.falling(), NamedEdge("cut", cq.Edge(chord))]
+    return extruded(outline, [], gear.face_width)
+
+
 def flank_intervals(gear: SpurGear) -> int:
     """Spline intervals over a flank, uniform in roll, so that h^4 max|P''''| 5/384 <= FLANK_ERROR.
 

@@ -30,7 +30,7 @@ BUILDS_AT_ONCE = 4096  # builds x positions: 2.5 MB of them
 BLOCK_TRIALS = 65_536  # trials whose statistics are folded together, and that are written as one file
 AUTO_BLOCK_TRIALS = 16_384  # of a study that may stop after any block
 AUTO_FCL_BLOCK_TRIALS = 2048  # the same where a trial is slow: a second of them
-BLOCK_VALUES = 2**22  # values of a curve in one block: 32 MB
+BLOCK_VALUES = 2**22  # values of a curve, or of all draws, in one block: 32 MB
 
 
 @dataclass(frozen=True)
@@ -172,9 +172,10 @@ class _Stacks:
 
 
 def block_trials(model: Model) -> int:
-    """Trials of a canonical block: fewer where curves keep many positions of each trial."""
+    """Trials of a canonical block: fewer where curves keep many positions of each trial, or a trial has many draws."""
     kept = max((positions_count(measure) for measure in model.measures if measure.take == "curve"), default=1)
-    return min(_most_block_trials(model.study), 1 << int(math.log2(BLOCK_VALUES / kept)))
+    values = max(kept, model.component_count, 1)
+    return max(min(_most_block_trials(model.study), 1 << int(math.log2(BLOCK_VALUES / values))), 1)
 
 
 def _most_block_trials(study: Study) -> int:

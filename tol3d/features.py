@@ -6,10 +6,13 @@ position; over a whole turn only its length matters. Squares catch one-sided eff
 
 from collections.abc import Mapping, Sequence, Set
 from dataclasses import replace
+from functools import lru_cache
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from tol3d.analytic import reference_form
 from tol3d.block import Columns, position_column
 from tol3d.model import (
     Backlash,
@@ -29,6 +32,9 @@ from tol3d.model.contributor import SingleEffect, single_effects
 Array = NDArray[np.float64]
 
 FEATURES_EACH = 2  # columns a contributor: value and square, or the two components of a vector
+MOST_REGRESSED = 128
+"""Contributors of a measure that are regressed on: the sums of products of all pairs of their features go with their
+square, and with more of them shares of the variance sink below the errors of any number of trials."""
 
 
 def acting(model: Model, measure: Measure) -> tuple[Contributor, ...]:
@@ -53,17 +59,50 @@ def _acts(effect: SingleEffect, meshes: Sequence[Mesh], reducers: Set[str], cloc
     return any(only in (None, mesh.name) and parts & {mesh.driver, mesh.driven, mesh.housing} for mesh in meshes)
 
 
+def regressed(model: Model, measure: Measure) -> tuple[Contributor, ...]:
+    """The contributors whose shares are told: all that act on a measure, or the largest MOST_REGRESSED of them.
+
+    What counts there is the variance by the stack-up; where it has no closed form, the scene's order.
+    """
+    contributors = acting(model, measure)
+    return contributors if len(contributors) <= MOST_REGRESSED else _largest(_Itself(model), _Itself(measure))
+
+
+class _Itself:
+    """A thing as a key: itself, not its like."""
+
+    def __init__(self, thing: Any) -> None:
+        self.thing = thing
+
+    def __hash__(self) -> int:
+        return id(self.thing)
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, _Itself) and other.thing is self.thing
+
+
+@lru_cache(maxsize=64)
+def _largest(model: _Itself, measure: _Itself) -> tuple[Contributor, ...]:
+    """The largest contributors of a measure, in the scene's order; each block asks for them anew."""
+    contributors = acting(model.thing, measure.thing)
+    form = reference_form(model.thing, measure.thing)
+    variance = {share.name: share.variance for share in form.shares} if form else {}
+    largest = sorted(contributors, key=lambda contributor: -variance.get(contributor.name, 0.0))[:MOST_REGRESSED]
+    names = {contributor.name for contributor in largest}
+    return tuple(contributor for contributor in contributors if contributor.name in names)
+
+
 def feature_groups(model: Model, measure: Measure) -> Mapping[str, slice]:
-    """Which feature columns of a measure belong to each contributor that acts on it."""
+    """Which feature columns of a measure belong to each contributor that is regressed on."""
     return {
         contributor.name: slice(FEATURES_EACH * k, FEATURES_EACH * (k + 1))
-        for k, contributor in enumerate(acting(model, measure))
+        for k, contributor in enumerate(regressed(model, measure))
     }
 
 
 def features(model: Model, measure: Measure, columns: Columns) -> Array:
-    """Features of a block for one measure, a row each, (2 x acting contributors, trials), over each one's sigma."""
-    contributors, groups = acting(model, measure), feature_groups(model, measure)
+    """Features of a block for one measure, a row each, (2 x regressed contributors, trials), over each one's sigma."""
+    contributors, groups = regressed(model, measure), feature_groups(model, measure)
     turning = _Turning(_angles(model, measure, columns) if measure.take == "value" else {})
     trials = len(next(iter(columns.values())))
     rows = np.empty((FEATURES_EACH * len(contributors), trials))

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from tol3d.analytic import closed_form, per_normal_backlash
 from tol3d.block import Block, mean_block, nominal_block, simulate_block, stated_block
 from tol3d.engines import Engine
-from tol3d.features import acting
+from tol3d.features import MOST_REGRESSED, acting
 from tol3d.high_low_mean import high_low_mean_percents
 from tol3d.model import Backlash, Kind, Measure, Model
 from tol3d.outcome import SEATED, told
@@ -35,7 +35,13 @@ def study_summary(model: Model, engine: Engine | None, tally: Tally) -> dict[str
         "chord_error_um": engine.chord_error * 1000 if engine else None,
         "measures": measure_summaries(model, engine, tally),
         "trains": train_summaries(model, tally.stages),
-        "warnings": [*failures(model, tally), *model.warnings, *_unphysical_draws(tally), *shortfalls(model, tally)],
+        "warnings": [
+            *failures(model, tally),
+            *_too_many(model),
+            *model.warnings,
+            *_unphysical_draws(tally),
+            *shortfalls(model, tally),
+        ],
     }
 
 
@@ -59,6 +65,20 @@ def failures(model: Model, tally: Tally) -> Iterator[str]:
 def _status(measure: Measure, tally: Tally) -> Mapping[str, int]:
     """How many trials of a measure ended how."""
     return (tally.curves if measure.take == "curve" else tally.measures)[measure.name].status
+
+
+def _too_many(model: Model) -> Iterator[str]:
+    """A sentence for measures of more contributors than shares are told of."""
+    alike: dict[int, list[str]] = {}
+    for measure in model.measures:
+        if (count := len(acting(model, measure))) > MOST_REGRESSED:
+            alike.setdefault(count, []).append(measure.name)
+    for count, names in alike.items():
+        yield (
+            f"{', '.join(names)}: {count} tolerances act; shares of the 3D simulation are told of the {MOST_REGRESSED} "
+            "that matter most by the stack-up (or come first, where it has no closed form), the others are in none; "
+            "no high-low-mean shares"
+        )
 
 
 def _unphysical_draws(tally: Tally) -> Iterator[str]:
@@ -171,7 +191,12 @@ def _statistics(model: Model, engine: Engine | None, measure: Measure, tally: Ta
 
 
 def _high_low_mean(model: Model, engine: Engine | None, measure: Measure) -> Mapping[str, float | None]:
-    """High-low-mean shares on the geometric road, or on the analytic one where there is no engine."""
+    """High-low-mean shares on the geometric road, or on the analytic one where there is no engine.
+
+    None of any where there are too many: each takes builds of its own, and each build all contributors.
+    """
+    if len(acting(model, measure)) > MOST_REGRESSED:
+        return dict.fromkeys((contributor.name for contributor in model.contributors), None)
     alone = replace(model, measures=(measure,))
     road = "geometric" if engine else "analytic"
 

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from tol3d.analytic import ClosedForm, closed_form
 from tol3d.engines import STATUS_TEXT
-from tol3d.features import feature_groups, feature_key, features
+from tol3d.features import acting, feature_groups, feature_key, features
 from tol3d.model import Measure, Model
 from tol3d.outcome import SEATED, Told, status_column, told
 from tol3d.replicated import rows_of_replicates
@@ -273,8 +273,10 @@ def share_percents(
     model: Model, measure: Measure, sums: FeatureSums | None
 ) -> dict[str, tuple[float | None, float | None]]:
     """Share of the variance [%] of each acting contributor by regression, its standard error; None where unknown."""
-    groups = feature_groups(model, measure)
+    unknown = dict.fromkeys((contributor.name for contributor in acting(model, measure)), (None, None))
     if sums is None:
-        return dict.fromkeys(groups, (None, None))
+        return {**unknown}
+    groups = feature_groups(model, measure)
     found = shares(sums, groups)
-    return {name: (finite(100 * found.share[name]), finite(100 * found.standard_error[name])) for name in groups}
+    told = {name: (finite(100 * found.share[name]), finite(100 * found.standard_error[name])) for name in groups}
+    return {**unknown, **told}

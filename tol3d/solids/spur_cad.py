@@ -14,12 +14,13 @@ from OCP.TopAbs import TopAbs_REVERSED
 
 from tol3d.gears import LEFT, RIGHT, SpurGear
 from tol3d.parts.named_solid import BACK, NamedSolid
-from tol3d.parts.spur_gear import SIDES, build, flank_name
+from tol3d.parts.spur_gear import SIDES, build, build_tooth, flank_name
 from tol3d.solids.door import Arrays
 from tol3d.solids.triangulation import DISPLAY_ANGLE, corners_of, edge_curve, largest_sagitta, mesh_of, nodes_of
 
 Array = NDArray[np.float64]
 
+MOST_TEETH = 500  # of a gear that is built whole for its strips: 15 s; each further one 0.03 s and 0.2 MB
 VANISHING = 1e-6  # rad, |dS/du| over |d2S/du2|: the roll; nearer to the base circle the direction is the second's
 
 
@@ -28,7 +29,7 @@ VANISHING = 1e-6  # rad, |dS/du| over |d2S/du2|: the roll; nearer to the base ci
 
 def sample_flanks(gear: SpurGear, steps: int) -> Arrays:
     """See cad.sample_flanks."""
-    part = build(gear)
+    part = build(gear) if gear.teeth <= MOST_TEETH else build_tooth(gear)
     roll = np.linspace(gear.form_roll**1.5, gear.tip_roll**1.5, steps + 1) ** (2 / 3)
     roll[[0, -1]] = gear.form_roll, gear.tip_roll
     faces = {flank: _Ruled(part.faces[flank_name(0, flank)]) for flank in (RIGHT, LEFT)}

@@ -60,15 +60,15 @@ class Assembly:
 
 def assembly_of(model: Model) -> Assembly:
     """The assembly of a model."""
-    without = replace(model, contributors=tuple(_without_pivot(c) for c in model.contributors))
     terms, coefficients = [], []
-    for component in range(model.component_count):
-        alone = np.zeros((1, model.component_count))
-        alone[0, component] = 1.0
-        for slot, coefficient in enumerate(_slots(without, summed(without, alone))):
-            if coefficient != 0.0:
-                terms.append((component, slot))
-                coefficients.append(coefficient)
+    for contributor in model.contributors:
+        alone = replace(model, contributors=(_without_pivot(contributor),))
+        first = model.component_slices[contributor.name].start
+        for component, unit in enumerate(np.eye(alone.component_count)):
+            for slot, coefficient in enumerate(_slots(alone, summed(alone, unit[None]))):
+                if coefficient != 0.0:
+                    terms.append((first + component, slot))
+                    coefficients.append(coefficient)
     pivots, levers = [], []
     for contributor in model.contributors:
         for effect in single_effects(contributor.effect):
