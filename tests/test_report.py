@@ -166,16 +166,16 @@ def test_rows_hold_the_statistics_of_the_columns(run):
     lows = [f"{v.mean() - 3 * v.std(ddof=1):.3f}" for v in values.values()]
     assert row_of(text, "low (−3 sigma)")[1:3] == lows
     assert row_of(text, "smallest")[1:3] == [f"{v.min():.3f}" for v in values.values()]
-    below = [f"{1e6 * np.mean(v < 62):.0f}" for v in values.values()]
-    assert row_of(text, "below 62 µm [ppm]")[1:3] == below
-    assert int(below[0]) > 0  # the limit lies inside the sample, or this says nothing
+    below = [f"{100 * np.mean(v < 62):.4g}" for v in values.values()]
+    assert row_of(text, "below 62 µm")[2:6:2] == below  # each with its %
+    assert float(below[0]) > 0  # the limit lies inside the sample, or this says nothing
 
 
-def test_closed_form_ppm_is_that_of_a_normal(run):
+def test_a_closed_form_s_share_out_of_limits_is_that_of_a_normal(run):
     form = run.summary["measures"]["free play"]["analytic_closed_form"]
-    expected = 1e6 * norm.cdf(62, form["mean"], form["sigma"])
-    shown = float(row_of(printed(run_report(run.summary), 120), "below 62 µm [ppm]")[0])
-    assert shown == pytest.approx(expected, abs=0.5)  # three digits are shown, whole ones from 100 on
+    expected = 100 * norm.cdf(62, form["mean"], form["sigma"])
+    shown, unit = row_of(printed(run_report(run.summary), 120), "below 62 µm")[:2]
+    assert (float(shown), unit) == (pytest.approx(expected, rel=5e-4), "%")  # four digits are shown
 
 
 def test_lost_motion_is_normal_backlash_over_the_base_radius(run):

@@ -310,7 +310,7 @@ def test_a_summary_says_by_what_its_errors_are_known(tmp_path: Path) -> None:
     assert summary["measures"]["normal backlash"]["contributors"][0]["geometric_percent_se"] is None
     text = printed(summary)
     assert "sampling error of 1024 trials of scrambled Sobol' points, by the spread of 8 replicates: mean ±" in text
-    assert "below 15 µm [ppm]: too few trials on one side of the limit in each replicate" in text
+    assert "below 15 µm: too few trials on one side of the limit in each replicate" in text
     assert json.loads(json.dumps(summary["study"]))["sampler"] == "sobol"
 
 

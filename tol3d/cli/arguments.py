@@ -1,10 +1,15 @@
 """The app, and the arguments that several commands take."""
 
+import math
+import re
 from enum import StrEnum
 from pathlib import Path
 from typing import Annotated
 
 import typer
+
+PPM_PER = {"%": 1e4, "ppm": 1.0}
+SHARE = re.compile(r"\s*(?P<number>\d+\.?\d*|\.\d+)\s*(?P<unit>%|ppm)\s*")
 
 app = typer.Typer(
     name="tol3d",
@@ -47,6 +52,19 @@ def trials_or_auto(text: str) -> int | str:
     if not text.isdecimal() or int(text) < 1:
         raise typer.BadParameter(f"expected a whole number from 1 on, or auto, got {text!r}")
     return int(text)
+
+
+def accepted_ppm(text: str) -> float:
+    """A share of the trials with its unit [ppm], as --accept gives it.
+
+    >>> accepted_ppm("0.27 %"), accepted_ppm("100ppm")
+    (2700.0, 100.0)
+    """
+    found = SHARE.fullmatch(text)
+    ppm = float(found["number"]) * PPM_PER[found["unit"]] if found else math.nan
+    if not 0.0 <= ppm < PPM_PER["%"] * 100:
+        raise typer.BadParameter(f'expected a share of the trials, such as "0.27 %" or "100 ppm", got {text!r}')
+    return ppm
 
 
 def scene_path(text: str) -> Path:

@@ -11,7 +11,15 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from tol3d.cli.arguments import EngineName, SamplerName, SceneArgument, TrustParts, scene_path, trials_or_auto
+from tol3d.cli.arguments import (
+    EngineName,
+    SamplerName,
+    SceneArgument,
+    TrustParts,
+    accepted_ppm,
+    scene_path,
+    trials_or_auto,
+)
 from tol3d.cli.console import INTERRUPTED, LIMITS_FAILED, err_console, out_console, tell, warn
 
 if TYPE_CHECKING:
@@ -56,7 +64,21 @@ def run(
         bool, typer.Option("--resume", help="Go on with an interrupted run, or mend a damaged one; never start anew.")
     ] = False,
     no_picture: Annotated[bool, typer.Option("--no-picture", help=f"Draw no {PICTURE}.")] = False,
-    fail_on_limits: Annotated[bool, typer.Option(help="Exit with 1 when a trial is out of limits or failed.")] = False,
+    accept: Annotated[
+        Any,
+        typer.Option(parser=accepted_ppm, metavar="SHARE", help="Share of trials that may be out of limits; 0.27 %."),
+    ] = None,
+    fail_on_limits: Annotated[
+        bool,
+        typer.Option(
+            "--fail-on-limits",
+            help="Exit with 1 when a trial is out of limits or failed; with --accept, when a verdict is not OK.",
+        ),
+    ] = False,
+    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Print the verdict and warnings only.")] = False,
+    verbose: Annotated[
+        bool, typer.Option("--verbose", "-v", help="Print the tables of every measure, however many there are.")
+    ] = False,
     trust_parts: TrustParts = False,
 ) -> None:
     """Simulate a scene: analytic model and 3D simulation side by side."""
@@ -64,12 +86,15 @@ def run(
         raise typer.BadParameter("--resume goes on with what --force would replace; leave out one of them")
     if workers is not None and scheduler is not None:
         raise typer.BadParameter("--scheduler has its own workers; leave out --workers")
+    if quiet and verbose:
+        raise typer.BadParameter("--quiet says less and --verbose more; leave out one of them")
     draw = context.with_resource(_drawing(wanted=not no_picture))  # it loads what it draws with beside all that follows
 
     from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
 
     from tol3d.execution import Execution
-    from tol3d.report import run_report
+    from tol3d.report.table import Detail, run_report
+    from tol3d.report.verdict import ACCEPTED_PPM, all_ok
     from tol3d.simulate import Overrides, Watch, effective_model, folder_for, load, run_scene, workers_for
 
     path = scene_path(scene)
@@ -105,9 +130,12 @@ def run(
     except KeyboardInterrupt:
         err_console.print(_how_to_resume(folder))
         raise typer.Exit(INTERRUPTED) from None
-    out_console.print(run_report(finished.summary))
-    tell(f"run: {finished.path}{_pictures_text(finished)}")
-    if fail_on_limits and _out_of_limits(finished):
+    shown = Detail.VERDICT if quiet else Detail.MEASURES if verbose else Detail.fitting(finished.summary)
+    out_console.print(run_report(finished.summary, shown, ACCEPTED_PPM if accept is None else accept))
+    if not quiet:
+        tell(f"run: {finished.path}{_pictures_text(finished)}")
+    failed = _out_of_limits(finished) if accept is None else not all_ok(finished.summary, accept)
+    if fail_on_limits and failed:
         err_console.print("limits failed", style="red")
         raise typer.Exit(LIMITS_FAILED)
 

@@ -110,11 +110,13 @@ def percent_text(value: float | None) -> str:
 def share_text(ppm: float | None) -> str:
     """A share of all trials with its unit: in % from a tenth of a per cent on, else in ppm.
 
-    >>> share_text(306500.0), share_text(2700.0), share_text(999.0), share_text(0.0519), share_text(None)
-    ('30.65 %', '0.27 %', '999 ppm', '0.0519 ppm', '–')
+    >>> share_text(306500.0), share_text(2700.0), share_text(999.0), share_text(0.0519), share_text(0.0)
+    ('30.65 %', '0.27 %', '999 ppm', '0.0519 ppm', '0')
     """
-    if ppm is None or ppm < LEAST_PERCENT:
-        return NOTHING if ppm is None else f"{ppm_text(ppm)} ppm"
+    if not ppm:
+        return NOTHING if ppm is None else "0"
+    if ppm < LEAST_PERCENT:
+        return f"{ppm_text(ppm)} ppm"
     return f"{f'{ppm / 1e4:.4g}' if ppm < ALMOST_ALL else '100'} %"
 
 

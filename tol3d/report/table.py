@@ -3,6 +3,7 @@
 import math
 from collections.abc import Iterator, Mapping, Sequence, Set
 from dataclasses import replace
+from enum import Enum
 from typing import Any
 
 from rich.console import Group, RenderableType
@@ -23,7 +24,6 @@ from tol3d.report.number import (
     difference_text,
     given_text,
     percent_text,
-    ppm_text,
     share_text,
     unit_suffix,
     unsigned_zero,
@@ -31,7 +31,8 @@ from tol3d.report.number import (
 )
 from tol3d.report.sheet import Heading, Row, Sheet, note
 from tol3d.report.trains.stage import SUM_KEYS, Sums, sums_of
-from tol3d.report.trains.table import WORST_CASE_MEANS, train_report
+from tol3d.report.trains.table import train_report
+from tol3d.report.verdict import ACCEPTED_PPM, verdict_report
 from tol3d.worst import TRAIN_KINDS
 
 Summary = Mapping[str, Any]
@@ -58,14 +59,19 @@ NOT_ATTRIBUTED_MEANS = (
     "interactions and what is not linear"
 )
 FAILURES_COUNT = (
-    "ppm are of all trials: a jammed build is below every lower limit, one that failed otherwise is out in all; Ppk of "
-    "such a column is Φ⁻¹(1 − share out)/3; its other numbers are of the trials that seated"
+    "out of limits is a share of all trials: a jammed build is below every lower limit, one that failed otherwise is "
+    "out in all; Ppk of such a column is Φ⁻¹(1 − share out)/3; its other numbers are of the trials that seated"
+)
+LOST_MOTION_MEANS = (
+    "lost motion: the turn of the driven gear that a normal backlash leaves free, j_n over the arm of its flank"
 )
 SHARES_MEAN = (
     "shares of the variance; high–low–mean: squares of the ranges that each contributor alone gives between its ends, "
     "the others at their means"
 )
 ATTRIBUTING: Set[Road] = frozenset(("analytic", "geometric"))
+MOST_TABLES = 4  # measures whose tables are shown unasked; of 6 they took 288 lines
+MORE_TABLES = "tables of every measure: -v"
 CURVE_ROWS = 12  # positions of a curve that are printed; the picture and the columns have them all
 SHARE_HEADINGS: Mapping[Road, str] = {"analytic": "analytic", "geometric": "3D simulation"}
 STATUS_WORDS = {"ok": "seated", "interferes": "jammed", "no contact": "without contact"}
@@ -74,14 +80,35 @@ TOO_FEW_TO_BOUND = "too few trials on one side of the limit in each replicate to
 FLANKS_OF_A_BACKLASH = 4  # two at the contact, two at the gap; each may miss the true flank by the chord error
 
 
-def run_report(summary: Summary) -> Group:
-    """All tables of a run: measures, contributors, trains, how the roads agree, what failed, how long it took."""
+class Detail(Enum):
+    """How much of a run is shown: one row a measure, that and its trains, or tables of every measure too."""
+
+    VERDICT = 0
+    TRAINS = 1
+    MEASURES = 2
+
+    @classmethod
+    def fitting(cls, summary: Summary) -> "Detail":
+        """What fits a screen or two: tables of every measure unless there are many."""
+        return cls.MEASURES if len(summary["measures"]) <= MOST_TABLES else cls.TRAINS
+
+
+def run_report(summary: Summary, detail: Detail = Detail.MEASURES, accepted_ppm: float = ACCEPTED_PPM) -> Group:
+    """A run as tables: measures, contributors, trains, how the roads agree, what failed, the verdict, warnings."""
+    warnings = [Text(f"warning: {warning}", style="yellow") for warning in summary.get("warnings", ())]
+    verdict = verdict_report(summary, accepted_ppm, blame=detail is not Detail.MEASURES)
+    if detail is Detail.VERDICT:
+        return Group(*verdict, *warnings)
     blocks: list[RenderableType] = [_run_line(summary)]
-    for name, measure in summary["measures"].items():
-        blocks += _measure_blocks(name, measure, summary)
-    blocks += [*train_report(summary), _status_line(summary), _time_line(summary)]
-    blocks += [Text(f"warning: {warning}", style="yellow") for warning in summary.get("warnings", ())]
-    return Group(*blocks)
+    if detail is Detail.MEASURES:
+        for name, measure in summary["measures"].items():
+            blocks += _measure_blocks(name, measure, summary)
+    blocks += train_report(summary)
+    if detail is Detail.MEASURES and (meanings := list(_meanings(summary))):
+        blocks += [Text("\nnotes", style="bold cyan"), *map(note, meanings)]
+    blocks += verdict
+    blocks += [] if detail is Detail.MEASURES else [note(MORE_TABLES)]
+    return Group(*blocks, _status_line(summary), _time_line(summary), *warnings)
 
 
 def _run_line(summary: Summary) -> Text:
@@ -98,12 +125,26 @@ def _measure_blocks(name: str, measure: Summary, summary: Summary) -> list[Rende
         return [title, words, "", curve_table(measure), *map(note, notes)]
     notes = [*_notes(name, measure, summary)]
     sums = sums_of(measure, summary)
-    notes += [WORST_CASE_MEANS] if sums else []
     blocks: list[RenderableType] = [title, words, "", measure_table(measure, sums), *map(note, notes)]
     if measure["contributors"]:
-        blocks += ["", contributors_table(measure), note(SHARES_MEAN)]
-        blocks += [note(NOT_ATTRIBUTED_MEANS)] if _not_attributed(measure) else []
+        blocks += ["", contributors_table(measure)]
     return blocks
+
+
+def _meanings(summary: Summary) -> Iterator[str]:
+    """What words in the tables of measures mean, each once for all of them."""
+    scalars = [measure for measure in summary["measures"].values() if measure["take"] != "curve"]
+    if any(measure["contributors"] for measure in scalars):
+        yield SHARES_MEAN
+    if any(map(_not_attributed, scalars)):
+        yield NOT_ATTRIBUTED_MEANS
+    limited = [measure for measure in scalars if _limit_rows(measure)]
+    if any(map(seated_text, limited)):
+        yield FAILURES_COUNT
+    if any("analytic_closed_form" in measure for measure in limited):
+        yield "out of limits by the closed form: as if the measure were normal"
+    if any("lost_motion" in measure for measure in scalars):
+        yield LOST_MOTION_MEANS
 
 
 def _headings(columns: Sequence[Column]) -> list[Heading]:
@@ -117,7 +158,7 @@ def measure_table(measure: Summary, sums: Sums) -> Sheet:
     rows = [*_failure_rows(measure, columns)]
     rows += [Row(label, [_cell(column, key, unit) for column in columns]) for key, label in ROWS.items()]
     rows += [
-        Row(label, [ppm_text(_ppm(column, key, measure)) for column in columns])
+        Row(label, [share_text(_ppm(column, key, measure)) for column in columns])
         for key, label in _limit_rows(measure).items()
     ]
     rows += [
@@ -157,12 +198,12 @@ def _failure_rows(measure: Summary, columns: Sequence[Column]) -> Iterator[Row]:
 def _limit_rows(measure: Summary) -> dict[str, str]:
     unit = measure["unit"]
     sides = {
-        f"{side}_limit_ppm": f"{side} {given_text(measure[limit], unit)}{unit_suffix(unit)} [ppm]"
+        f"{side}_limit_ppm": f"{side} {given_text(measure[limit], unit)}{unit_suffix(unit)}"
         for side, limit in (("below", "lower_limit"), ("above", "upper_limit"))
         if measure.get(limit) is not None
     }
     in_all = len(sides) > 1 or (sides and seated_text(measure))
-    return {**sides, "out_ppm": "out in all [ppm]"} if in_all else sides
+    return {**sides, "out_ppm": "out in all"} if in_all else sides
 
 
 def _ppm(column: Column, key: str, measure: Summary) -> float | None:
@@ -216,21 +257,13 @@ def _notes(name: str, measure: Summary, summary: Summary) -> Iterator[str]:
             f"mean ±{difference_text(own['mean_se'], unit)}, "
             f"sigma ±{difference_text(own['sigma_se'], unit)} (one standard error)"
         )
-    limits = list(_limit_rows(measure))
-    for key in limits:
+    for key, label in _limit_rows(measure).items():
         low_high = own.get(f"{key}_95")
         if low_high:
-            low, high = (ppm_text(bound) for bound in low_high)
-            yield f"{_limit_rows(measure)[key]}: the true share lies between {low} and {high} ppm (95 % confidence)"
+            low, high = map(share_text, low_high)
+            yield f"{label}: the true share lies between {low} and {high} (95 % confidence)"
         elif own.get("error_by") == "replicates":
-            yield f"{_limit_rows(measure)[key]}: {TOO_FEW_TO_BOUND}"
-    if limits and seated_text(measure):
-        yield FAILURES_COUNT
-    if limits and "analytic_closed_form" in measure:
-        yield "ppm of the closed form: as if the measure were normal"
-    if "lost_motion" in measure:
-        gear = measure["lost_motion"]["of"]
-        yield f"lost motion: the turn of {gear} that this normal backlash leaves free, j_n over the arm of its flank"
+            yield f"{label}: {TOO_FEW_TO_BOUND}"
     yield from _published_notes(measure)
 
 
@@ -348,8 +381,8 @@ def _curve_notes(measure: Summary) -> Iterator[str]:
     for limit, word in words.items():
         if measure.get(limit) is not None:
             given = given_text(measure[limit], measure["unit"]) + unit_suffix(measure["unit"])
-            yield f"anywhere {word} {given} [ppm of the trials]: " + ", ".join(
-                f"{'3D' if road == 'geometric' else road} {ppm_text(own[f'{word}_limit_ppm'])}"
+            yield f"anywhere {word} {given}, of all trials: " + ", ".join(
+                f"{'3D' if road == 'geometric' else road} {share_text(own[f'{word}_limit_ppm'])}"
                 for road, own in measure["curve"].items()
             )
 
