@@ -1,5 +1,6 @@
 """A CAD solid whose faces bear the names of the edges that swept them."""
 
+import errno
 import os
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -12,9 +13,11 @@ from OCP.BRepPrimAPI import BRepPrimAPI_MakePrism
 from OCP.gp import gp_Dir, gp_Pln, gp_Pnt, gp_Vec
 from OCP.TopoDS import TopoDS_Wire
 
-from tol3d.errors import GeometryError, RunError
+from tol3d.errors import GeometryError, unwritable
 
 FRONT, BACK = "front", "back"
+STEP_END = b"END-ISO-10303-21;"  # ISO 10303-21: the last token of every such file
+MOST_BLANKS = 16  # bytes behind it
 
 
 @dataclass(frozen=True)
@@ -83,8 +86,21 @@ def to_step(part: NamedSolid, path: Path) -> None:
     unfinished = path.with_name(f"{path.name}.{os.getpid()}.partial")
     try:
         part.solid.exportStep(str(unfinished))
+        refuse_cut_step(unfinished)
         os.replace(unfinished, path)
     except OSError as error:
-        raise RunError(f"{path}: the STEP file cannot be written ({error.strerror})") from error
+        raise unwritable(path, error, "choose another file") from error
     finally:
         unfinished.unlink(missing_ok=True)
+
+
+def refuse_cut_step(path: Path) -> None:
+    """Raise unless a STEP file has its end: OCC says nothing of a disk that is full.
+
+    Raises:
+        OSError: it was cut short.
+    """
+    with path.open("rb") as stream:
+        stream.seek(max(0, stream.seek(0, os.SEEK_END) - len(STEP_END) - MOST_BLANKS))
+        if STEP_END not in stream.read():
+            raise OSError(errno.EIO, "the CAD kernel wrote a part of it only")

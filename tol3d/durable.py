@@ -1,14 +1,13 @@
 """Files that are whole or not there, also after a kill or a power cut; and whose fault it is when they are not."""
 
-import errno
 import os
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
+from tol3d.errors import NO_SPACE
+
 UNFINISHED = ".writing"
-NO_SPACE = (errno.ENOSPC, getattr(errno, "EDQUOT", errno.ENOSPC))  # Windows has no quotas of its own number
-REFUSED_BY_DISK = frozenset((*NO_SPACE, errno.EFBIG, errno.EIO, errno.EROFS))
 
 
 def write_whole(path: Path, content: bytes | memoryview) -> None:
@@ -32,20 +31,14 @@ def write_whole(path: Path, content: bytes | memoryview) -> None:
 
 @contextmanager
 def named_in_errors(path: Path) -> Iterator[None]:
-    """Within it an OSError names the file that is written, where the system's own error names none."""
+    """Within it an OSError names the file that is written: the system's own may name none, or one beside it."""
     try:
         yield
     except OSError as error:
-        if error.filename is None or str(error.filename).endswith(UNFINISHED):
-            error.filename = str(path)
+        error.filename = str(path)
         raise
 
 
 def lacks_space(error: OSError) -> bool:
     """Whether a write failed because the disk, or the user's share of it, is full."""
     return error.errno in NO_SPACE
-
-
-def refused_by_disk(error: OSError) -> bool:
-    """Whether a write failed by the disk or the system's limits: neither the user's input nor the code is wrong."""
-    return error.errno in REFUSED_BY_DISK

@@ -1,4 +1,10 @@
-"""What a user must mend, said in the user's words; everything else is a fault of ours."""
+"""What a user must mend, said in the user's words; everything else is a fault of ours, or of the disk."""
+
+import errno
+from pathlib import Path
+
+NO_SPACE = (errno.ENOSPC, getattr(errno, "EDQUOT", errno.ENOSPC))  # Windows has no quotas of its own number
+REFUSED_BY_DISK = frozenset((*NO_SPACE, errno.EFBIG, errno.EIO, errno.EROFS))
 
 
 class Tol3dError(Exception):
@@ -31,3 +37,22 @@ class RunError(InputError):
 
 class DiskError(RunError):
     """The disk or the system refuses a write: neither the input nor tol3d is at fault; exit code 4."""
+
+
+def refused_by_disk(error: OSError) -> bool:
+    """Whether a write failed by the disk or the system's limits: neither the user's input nor the code is wrong."""
+    return error.errno in REFUSED_BY_DISK
+
+
+def unwritable(path: Path, error: OSError, advice: str) -> RunError:
+    """The error to raise for a file that cannot be written.
+
+    Args:
+        path: the file or folder.
+        error: what the system said.
+        advice: what helps where another place would be better; a disk that refuses is said to be mended.
+    """
+    why = f"{path}: cannot be written ({error.strerror or error})"
+    if refused_by_disk(error):
+        return DiskError(f"{why}; nothing is wrong with the input: mend the disk or its limits")
+    return RunError(f"{why}; {advice}" if advice else why)

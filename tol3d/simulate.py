@@ -49,10 +49,10 @@ from pathlib import Path
 from typing import Any
 
 from tol3d.block import block_trials, positions_in_all
-from tol3d.durable import lacks_space, refused_by_disk
+from tol3d.durable import lacks_space
 from tol3d.engines import Engine
 from tol3d.engines.door import exact_is_compiled
-from tol3d.errors import DiskError, RunError
+from tol3d.errors import DiskError, RunError, refused_by_disk
 from tol3d.execution import ONE_WORKER, Execution, pool_of
 from tol3d.files import FileContent
 from tol3d.folding import Outcome, Plan, Progress, run_blocks

@@ -44,6 +44,9 @@ DIMENSION_WORDS: Final[dict[Dimension, str]] = {
     "temperature": "temperature difference",
     "expansion": "expansion coefficient",
 }
+LARGEST: Final[dict[Dimension, float]] = {"length": 1e6, "angle": 1e4, "temperature": 1e4, "expansion": 1.0}
+"""Of a quantity in a scene [mm, rad, K, 1/K]: a kilometre, 1600 turns; products of such stay finite."""
+LEAST_POSITIVE: Final = 1e-9  # mm or rad; a thousandth of an atom, a nanometre at a kilometre
 MICRO_SIGNS: Final = str.maketrans({"µ": "u", "μ": "u"})
 NUMBER: Final = r"[+-]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][+-]?[0-9]+)?"  # YAML 1.2 core schema, 10.3.2
 NUMBER_UNIT: Final = re.compile(rf"\s*({NUMBER})\s+(\S+)\s*")
@@ -135,12 +138,10 @@ class Positive:
         return core_schema.no_info_after_validator_function(self._checked, handler(source))
 
     def _checked(self, quantity: Quantity) -> Quantity:
+        if 0.0 < quantity.internal < LEAST_POSITIVE and quantity.dimension in ("length", "angle"):
+            raise _value_refused(f"at least {LEAST_POSITIVE:g} {_base_unit(quantity.dimension)}", quantity)
         if not quantity.number > 0.0:
-            raise PydanticCustomError(
-                "value_refused",
-                "expected {expected}, got {got}",
-                {"expected": f"a {quantity.dimension} of more than zero", "got": repr(str(quantity))},
-            )
+            raise _value_refused(f"a {quantity.dimension} of more than zero", quantity)
         return quantity
 
 
@@ -203,10 +204,24 @@ def _quantity_schema(dimensions: tuple[Dimension, ...]) -> core_schema.CoreSchem
             raise PydanticCustomError("quantity", "{reason}", {"reason": str(error), "expected": dimensions}) from None
         if dimensions:
             refuse_dimension(quantity, dimensions)
+        if abs(quantity.internal) > LARGEST[quantity.dimension]:
+            largest = f"{LARGEST[quantity.dimension]:g} {_base_unit(quantity.dimension)}"
+            raise _value_refused(f"a number from -{largest} to {largest}", quantity)
         return quantity
 
     return core_schema.no_info_plain_validator_function(
         quantity_or_error, serialization=core_schema.plain_serializer_function_ser_schema(str)
+    )
+
+
+def _base_unit(dimension: Dimension) -> str:
+    """The unit inside: mm, rad, K, 1/K."""
+    return next(iter(FACTORS[dimension]))
+
+
+def _value_refused(expected: str, quantity: Quantity) -> PydanticCustomError:
+    return PydanticCustomError(
+        "value_refused", "expected {expected}, got {got}", {"expected": expected, "got": repr(str(quantity))}
     )
 
 

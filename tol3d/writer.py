@@ -13,8 +13,8 @@ from filelock import FileLock, Timeout
 
 from tol3d.blockfiles import CHECKSUMS, BlockFiles, block_name
 from tol3d.checkpoint import Checkpoint
-from tol3d.durable import refused_by_disk, write_whole
-from tol3d.errors import DiskError, RunError
+from tol3d.durable import write_whole
+from tol3d.errors import DiskError, RunError, refused_by_disk
 from tol3d.files import FileContent, Files, kept_name
 from tol3d.manifest import TRIALS, Manifest, own_paths_of_trials
 from tol3d.occupant import MovedAsideWarning, free_aside, occupant_of

@@ -111,14 +111,13 @@ def _exit_codes() -> Iterator[None]:
 
 def _refused_write(error: Exception) -> str:
     """What is said of a write that the disk refused; nothing of other errors."""
-    from tol3d.durable import refused_by_disk
+    from pathlib import Path
+
+    from tol3d.errors import refused_by_disk, unwritable
 
     if not isinstance(error, OSError) or not refused_by_disk(error):
         return ""
-    place = error.filename or "a temporary file or the cache"
-    return (
-        f"{place}: cannot be written ({error.strerror}); nothing is wrong with the input: mend the disk or its limits"
-    )
+    return str(unwritable(Path(error.filename or "standard output, or a temporary file"), error, ""))
 
 
 @contextmanager

@@ -12,7 +12,7 @@ from matplotlib.layout_engine import ConstrainedLayoutEngine
 from matplotlib.ticker import FuncFormatter, MultipleLocator
 from matplotlib.transforms import ScaledTranslation
 
-from tol3d.errors import InputError
+from tol3d.errors import InputError, unwritable
 from tol3d.report.label import wrapped
 
 # Okabe and Ito 2008, "Color Universal Design": eight colours for all kinds of colour vision
@@ -141,4 +141,4 @@ def save_figure(figure: Figure, path: Path) -> None:
             warnings.filterwarnings("ignore", r"Glyph \d+ .* missing")  # of a user's name: shown as a box
             figure.savefig(path, facecolor="white")
     except OSError as error:
-        raise InputError(f"{path}: cannot be written ({error.strerror or error}); choose another file") from None
+        raise unwritable(path, error, "choose another file") from None

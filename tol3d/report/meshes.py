@@ -12,7 +12,8 @@ import numpy as np
 import trimesh
 from numpy.typing import NDArray
 
-from tol3d.errors import InputError
+from tol3d.durable import named_in_errors
+from tol3d.errors import InputError, unwritable
 from tol3d.report.assembly import Assembly, PlacedGear, SeatedMesh, Which, assemble
 from tol3d.report.trains.whole_trains import WholeTrain, whole_trains
 from tol3d.result import Run
@@ -70,7 +71,7 @@ def export_run(
         out.mkdir(parents=True, exist_ok=True)
         files = list(_files(assembly, fmt, out))
     except OSError as error:
-        raise InputError(f"{out}: cannot be written ({error.strerror or error}); choose another folder") from None
+        raise unwritable(Path(error.filename or out), error, "choose another folder") from None
     return Exported(tuple(files), assembly.notes)
 
 
@@ -228,8 +229,9 @@ def _written(path: Path, content: object) -> Path:
     """Write a file aside and rename it, so that it is whole or not there."""
     beside = path.with_name(f"{path.name}.{os.getpid()}.partial")
     try:
-        beside.write_bytes(content if isinstance(content, bytes) else str(content).encode())
-        os.replace(beside, path)
+        with named_in_errors(path):
+            beside.write_bytes(content if isinstance(content, bytes) else str(content).encode())
+            os.replace(beside, path)
     finally:
         beside.unlink(missing_ok=True)
     return path

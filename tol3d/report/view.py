@@ -13,7 +13,7 @@ import pyvista as pv
 from numpy.typing import NDArray
 
 from tol3d.engines import OK, STATUS_TEXT
-from tol3d.errors import InputError
+from tol3d.errors import InputError, unwritable
 from tol3d.moves.mesh import ROOT_FINDING_NOISE
 from tol3d.report.assembly import Assembly, PlacedGear, SeatedMesh, Which, assemble
 from tol3d.report.drawn_solids import (
@@ -88,7 +88,7 @@ def view_run(
         else:
             plotter.screenshot(screenshot)
     except OSError as error:
-        raise InputError(f"{screenshot}: cannot be written ({error.strerror or error}); choose another file") from None
+        raise unwritable(screenshot or Path("the window"), error, "choose another file") from None
     finally:
         plotter.close()
     return (*assembly.notes, *_left_out(assembly, trains, close))

@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from tol3d.errors import InputError
+from tol3d.errors import InputError, unwritable
 from tol3d.files import FileContent
 from tol3d.scene.bundled import bundled_scenes
 from tol3d.scene.load import load_scene
@@ -43,5 +43,5 @@ def copy_scene(name: str, folder: Path) -> tuple[Path, ...]:
             with path.open("xb") as stream:
                 stream.write(file.content)
     except OSError as error:
-        raise InputError(f"{folder}: cannot be written ({error.strerror or error}); choose another folder") from None
+        raise unwritable(folder, error, "choose another folder") from None
     return tuple(copies)

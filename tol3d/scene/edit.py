@@ -9,7 +9,7 @@ from typing import Any, Final
 from ruamel.yaml import YAML
 from ruamel.yaml.comments import CommentedMap
 
-from tol3d.errors import InputError
+from tol3d.errors import InputError, unwritable
 from tol3d.scene.load import load_scene
 from tol3d.scene.place import Origin
 from tol3d.scene.schema import Scene
@@ -50,7 +50,7 @@ def write_scene(scene: Scene, path: Path) -> None:
     except FileExistsError:
         raise InputError(f"{path}: expected the name of a new file, there is one already") from None
     except OSError as error:
-        raise InputError(f"{path}: cannot be written ({error.strerror})") from None
+        raise unwritable(path, error, "choose another file") from None
     if load_scene(path, files=scene.files).model_dump() != scene.model_dump():
         path.unlink()
         raise InputError(f"{path}: {scene.source} is written in a way that cannot be edited; paste the lines instead")

@@ -14,10 +14,10 @@ import numpy as np
 from numpy.typing import NDArray
 from OCP.gp import gp_Trsf
 
-from tol3d.errors import RunError
+from tol3d.errors import unwritable
 from tol3d.gears import BevelGear, Gear, SpurGear
 from tol3d.parts import arm, bevel_gear, shaft, spur_gear
-from tol3d.parts.named_solid import NamedSolid
+from tol3d.parts.named_solid import NamedSolid, refuse_cut_step
 from tol3d.solids import bevel_cad, body_cad, spur_cad
 from tol3d.solids.bodies import ArmBody, Body, ShaftBody
 from tol3d.solids.door import Arrays
@@ -76,9 +76,10 @@ def write_step(parts: Sequence[PosedPart], path: Path, colours: Sequence[str]) -
     unfinished = path.with_name(f"{path.name}.{os.getpid()}.partial")
     try:
         assembly.export(str(unfinished), exportType="STEP")
+        refuse_cut_step(unfinished)
         os.replace(unfinished, path)
     except OSError as error:
-        raise RunError(f"{path}: the STEP file cannot be written ({error.strerror})") from error
+        raise unwritable(path, error, "choose another file") from error
     finally:
         unfinished.unlink(missing_ok=True)
 
