@@ -11,6 +11,7 @@
     analytic     the second road            tol3d/analytic/       analytic_backlash
     play         backlashes, together       tol3d/play.py         Play           (ways.py: where ways are parallel)
     columns      both roads, one block      tol3d/block.py        simulate_block
+    outcome      which trials seated, jam  tol3d/outcome.py      Told           (sample.py: statistics of one road)
     statistics   of one block, or several   tol3d/tally.py        Tally          (stages.py: of a train's stages)
     task         what workers run           tol3d/task.py         Task           (execution.py: who runs it)
     blocks       run, kept, folded in order tol3d/folding.py      run_blocks
