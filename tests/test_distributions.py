@@ -282,8 +282,6 @@ def test_law_is_in_internal_units(unit: str, factor: float) -> None:
         ({"kind": "normal", "mean": "0 um", "sigma": "1 um", "lower": "0 um"}, "kind", "either lower and upper"),
         ({"kind": "uniform", "lower": "3 um", "upper": "-1 um"}, "lower", "less than upper (-1 um)"),
         ({"kind": "uniform", "lower": "1 um", "upper": "1 deg"}, "", "quantities of one dimension"),
-        ({"kind": "uniform", "lower": "1 um", "upper": "1e300 m"}, "upper", "less than 1e9"),
-        ({"kind": "constant", "value": "1e20 m"}, "value", "less than 1e9"),
         ({"kind": "triangular", "lower": "0 um", "mode": "4 um", "upper": "3 um"}, "mode", "between lower and upper"),
         ({"kind": "triangular", "lower": "3 um", "mode": "2 um", "upper": "1 um"}, "lower", "less than upper"),
         ({"kind": "rayleigh", "scale": "-1 um"}, "scale", "more than 0"),
