@@ -10,6 +10,8 @@ from numpy.typing import NDArray
 from tol3d.analytic import closed_form, per_normal_backlash
 from tol3d.block import Block, mean_block, nominal_block, simulate_block, stated_block
 from tol3d.engines import Engine
+from tol3d.explaining import explanations
+from tol3d.explanation import Explanation, faults
 from tol3d.features import MOST_REGRESSED, acting
 from tol3d.high_low_mean import high_low_mean_percents
 from tol3d.model import Backlash, Kind, Measure, Model
@@ -25,6 +27,7 @@ FAILURE_WORDS = {"interferes": "jam", "no contact": "find no contact", "out of r
 
 def study_summary(model: Model, engine: Engine | None, tally: Tally) -> dict[str, Any]:
     """What a study found: everything of summary.json but files, timing and versions."""
+    explained = explanations(model, engine, tally)
     return {
         "scene": model.name,
         "seed": model.study.seed,
@@ -33,11 +36,12 @@ def study_summary(model: Model, engine: Engine | None, tally: Tally) -> dict[str
         "study": vars(model.study),
         "status": dict(tally.status),
         "chord_error_um": engine.chord_error * 1000 if engine else None,
-        "measures": measure_summaries(model, engine, tally),
+        "measures": measure_summaries(model, engine, tally, explained),
         "trains": train_summaries(model, tally.stages),
         "warnings": [
             *failures(model, tally),
             *_too_many(model),
+            *faults(explained),
             *model.warnings,
             *_unphysical_draws(tally),
             *shortfalls(model, tally),
@@ -87,7 +91,9 @@ def _unphysical_draws(tally: Tally) -> Iterator[str]:
             yield f"{name}: {count} of {tally.trials} draws are below zero, which no clearance is; kept as drawn"
 
 
-def measure_summaries(model: Model, engine: Engine | None, tally: Tally) -> dict[str, Any]:
+def measure_summaries(
+    model: Model, engine: Engine | None, tally: Tally, explained: Mapping[str, Explanation]
+) -> dict[str, Any]:
     """The measures as summary.json shows them: statistics of both roads, contributors, published columns."""
     return {
         measure.name: {
@@ -101,7 +107,7 @@ def measure_summaries(model: Model, engine: Engine | None, tally: Tally) -> dict
             "status": dict(_status(measure, tally)),
             "nominal": _single(model, engine, measure, nominal_block(model)),
             "mean_build": _single(model, engine, measure, mean_block(model, measure)),
-            **_statistics(model, engine, measure, tally),
+            **_statistics(model, engine, measure, tally, explained.get(measure.name)),
             "published": _published(model, measure),
         }
         for measure in model.measures
@@ -149,7 +155,9 @@ def _single(model: Model, engine: Engine | None, measure: Measure, block: Block)
     return {road: value(road) for road in ("analytic", "geometric")}
 
 
-def _statistics(model: Model, engine: Engine | None, measure: Measure, tally: Tally) -> dict[str, Any]:
+def _statistics(
+    model: Model, engine: Engine | None, measure: Measure, tally: Tally, explanation: Explanation | None
+) -> dict[str, Any]:
     if measure.take == "curve":
         return _curve(model, measure, tally)
     own = tally.measures[measure.name]
@@ -172,6 +180,7 @@ def _statistics(model: Model, engine: Engine | None, measure: Measure, tally: Ta
             "rms_difference": own.agreement.rms if seen else None,
             "mean_difference": own.agreement.mean if seen else None,
             "compared": own.agreement.count,
+            "explanation": explanation.summary() if explanation else None,
         }
     independent = own.analytic.replicated is None  # what the error of a share by regression is worked out for
     by_sample = share_percents(model, measure, own.analytic_features)

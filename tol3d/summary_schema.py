@@ -163,6 +163,7 @@ class Explanation(Strict):
     left_rms: Known
     mean_left: Known
     mean_allowed: Known
+    largest_trial: Count | None = Field(description="the trial with the largest difference")
 
 
 class Agreement(Strict):

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.analytic import ClosedForm, closed_form
+from tol3d.disagreement import Disagreement
 from tol3d.engines import STATUS_TEXT
 from tol3d.features import acting, feature_groups, feature_key, features
 from tol3d.model import Measure, Model
@@ -28,6 +29,7 @@ GRID_SIGMAS = 12.0  # the grid spans the mean +- this many sigma of both roads: 
 LEAST_SPAN = 1e-3  # mm or rad; for a model in which nothing varies
 HISTOGRAM_BINS = 64  # bars kept in summary.json for pictures
 ROADS = ("analytic", "geometric")
+DIFFERENCE = "difference"  # of the two, beside them
 
 
 def grids_of(model: Model, pilot: Columns) -> Mapping[str, Grid]:
@@ -67,6 +69,7 @@ class MeasureTally:
     agreement: Agreement | None
     analytic_features: FeatureSums
     geometric_features: FeatureSums | None
+    disagreement: Disagreement | None
 
     def merge(self, other: "MeasureTally") -> "MeasureTally":
         """Both tallies as one."""
@@ -79,6 +82,7 @@ class MeasureTally:
             self.geometric_features.merge(other.geometric_features)
             if self.geometric_features and other.geometric_features
             else None,
+            self.disagreement.merge(other.disagreement) if self.disagreement and other.disagreement else None,
         )
 
 
@@ -89,6 +93,7 @@ class _Block:
     model: Model
     columns: Columns
     rows: Mapping[int, slice]
+    first: int
 
     def told(self, measures: Sequence[Measure]) -> dict[tuple[str, str], Told]:
         """What each road that was gone tells of each measure, by road and name."""
@@ -102,7 +107,10 @@ class _Block:
     def tally(self, measures: Sequence[Measure], grids: Mapping[str, Grid]) -> dict[str, MeasureTally]:
         """Tallies of scalar measures."""
         found = self.told(measures)
-        sums = self._sums(measures, {key: own.values for key, own in found.items()})
+        values = {key: own.values for key, own in found.items()}
+        both = [measure.name for measure in measures if ("geometric", measure.name) in values]
+        values |= {(DIFFERENCE, name): values["geometric", name] - values["analytic", name] for name in both}
+        sums = self._sums(measures, values)
         tallies = {}
         for measure in measures:
             analytic, geometric = found["analytic", measure.name], found.get(("geometric", measure.name))
@@ -114,6 +122,9 @@ class _Block:
                 Agreement.of(geometric.values, analytic.values) if geometric else None,
                 sums["analytic", measure.name],
                 sums["geometric", measure.name] if geometric else None,
+                Disagreement.of(self.first, values[DIFFERENCE, measure.name], sums[DIFFERENCE, measure.name])
+                if geometric
+                else None,
             )
         return tallies
 
@@ -125,14 +136,20 @@ class _Block:
         for key in dict.fromkeys(map(feature_key, measures)):
             alike = [measure for measure in measures if feature_key(measure) == key]
             seen = features(self.model, alike[0], self.columns)
-            columns = {(r, m.name): values[r, m.name] for m in alike for r in ROADS if (r, m.name) in values}
+            roads = (*ROADS, DIFFERENCE)
+            columns = {(r, m.name): values[r, m.name] for m in alike for r in roads if (r, m.name) in values}
             whole = {name: column for name, column in columns.items() if not np.isnan(np.min(column))}
             if whole:
                 each = FeatureSums.of_each(seen, np.stack(list(whole.values())), self._products)
                 sums |= dict(zip(whole, each, strict=True))
-            for name in columns.keys() - whole.keys():
-                good = ~np.isnan(columns[name])
-                sums[name] = FeatureSums.of_each(seen[:, good], columns[name][None, good], self._products)[0]
+            for measure in alike:  # what failed is the same trials on every road of a measure that lacks some
+                lacking = [(r, measure.name) for r in roads if (r, measure.name) in columns.keys() - whole.keys()]
+                if lacking:
+                    rows = np.stack([columns[name] for name in lacking])
+                    good = ~np.isnan(rows).any(axis=0)
+                    sums |= dict(
+                        zip(lacking, FeatureSums.of_each(seen[:, good], rows[:, good], self._products), strict=True)
+                    )
         return sums
 
 
@@ -209,7 +226,7 @@ class Tally:
             trials,
             _counted(columns.get("status"), trials),
             _unphysical(model, columns),
-            _Block(model, columns, rows).tally(scalars, grids),
+            _Block(model, columns, rows, first).tally(scalars, grids),
             {measure.name: CurveTally.of(measure, columns) for measure in curves},
             stage_tallies(model, columns),
         )

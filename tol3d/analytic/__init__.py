@@ -3,7 +3,8 @@
 from tol3d.analytic.backlash import analytic_backlash, first_order, per_normal_backlash, stack_of
 from tol3d.analytic.closed_form import ClosedForm, closed_form, reference_form
 from tol3d.analytic.share import Share
-from tol3d.analytic.stack import Stack, Term
+from tol3d.analytic.stack import Stack
+from tol3d.analytic.term import Term
 
 __all__ = [
     "ClosedForm",

@@ -17,7 +17,8 @@ import numpy as np
 from tol3d.analytic.backlash import per_normal_backlash, stack_of
 from tol3d.analytic.leaning import leaning_groups, leaning_shares
 from tol3d.analytic.share import Share
-from tol3d.analytic.stack import Stack, Term
+from tol3d.analytic.stack import Stack
+from tol3d.analytic.term import Term
 from tol3d.gears import GearPair
 from tol3d.model import Contributor, LostMotion, Measure, Model, Planar, Positions, ReducerBacklash
 from tol3d.model.measure import at_one_position

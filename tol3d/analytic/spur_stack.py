@@ -5,11 +5,16 @@ Sources: ISO/TR 10064-3 (deviations of axes); ISO 21771-1:2024, 5.6 (nominal). N
 strains have different base pitches (up to 3.5 um for a pinion alone 20 K warmer).
 """
 
+import math
+
 import numpy as np
 
-from tol3d.analytic.stack import Role, Stack, Term
+from tol3d.analytic.neglect import Neglect, Part
+from tol3d.analytic.stack import Stack
+from tol3d.analytic.term import Role, Term
 from tol3d.gears import SpurPair
 from tol3d.model import AxisTilt, Contributor, Temperature
+from tol3d.model.contributor import single_effects
 
 
 class SpurStack(Stack[SpurPair]):
@@ -43,3 +48,36 @@ class SpurStack(Stack[SpurPair]):
         if not touched:
             return None
         return Term(contributor, sum(2 * self.sin * strain[p] * self.model.expansions[p] for p in touched))
+
+    @property
+    def neglects(self) -> tuple[Neglect, ...]:
+        """Base pitches that grow apart, and the nominal backlash that grows.
+
+        A pair whose contact lies s along the path from the pitch point gains or loses s times the difference of the
+        gears' strains, on each flank side; both sides may touch at the end of the longer part of the path. A pair
+        that grows as a whole scales its nominal backlash.
+        """
+        growth = {part: self._growth(part) for part in (self.mesh.driver, self.mesh.driven, self.mesh.housing) if part}
+        if not any(growth.values()):
+            return ()
+        apart = (*growth[self.mesh.driver], *(term.times(-1.0) for term in growth[self.mesh.driven]))
+        scaled = (Part(abs(self.nominal), terms) for terms in growth.values())
+        return (
+            Neglect("base pitches of gears that grow by different strains", (Part(2 * self._longest_path, apart),)),
+            Neglect("growth of the nominal backlash", tuple(scaled)),
+        )
+
+    def _growth(self, part: str) -> tuple[Term, ...]:
+        """Strain of a part by each temperature that acts on it [1/K]."""
+        return tuple(
+            Term(contributor, self.model.expansions[part])
+            for contributor in self.model.contributors
+            for effect in single_effects(contributor.effect)
+            if isinstance(effect, Temperature) and part in effect.parts
+        )
+
+    @property
+    def _longest_path(self) -> float:
+        """Longer part of the path of contact, from pitch point to tip [mm]: r_b (tan alpha_a - tan alpha_w)."""
+        at_pitch = math.tan(self.pair.working_pressure_angle)
+        return max(gear.base_radius * (gear.tip_roll - at_pitch) for gear in (self.pair.pinion, self.pair.wheel))

@@ -7,13 +7,14 @@ alpha_w = alpha and delta = 45 deg.
 """
 
 import math
-from dataclasses import dataclass
 from functools import singledispatchmethod
-from typing import Generic, Literal, TypeVar
+from typing import Generic, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
+from tol3d.analytic.neglect import Neglect
+from tol3d.analytic.term import Role, Term
 from tol3d.gears import Gear, GearPair
 from tol3d.model import (
     AxesOffset,
@@ -33,45 +34,7 @@ from tol3d.model import (
 from tol3d.model.contributor import Plane, SingleEffect, single_effects
 
 Array = NDArray[np.float64]
-Role = Literal["driver", "driven"]
 Pair = TypeVar("Pair", bound=GearPair, covariant=True)
-
-
-@dataclass(frozen=True)
-class Term:
-    """A contributor's first-order change of the normal backlash.
-
-    Args:
-        contributor: whose it is.
-        coefficient: change of j_bn per deviation [mm/mm, mm/rad, mm/K]; for a deviation with a
-            direction, per length along its worst direction.
-        along: that direction for Planar draws, as the azimuth [rad] of largest opening in the gear's frame at
-            rest; for a turning offset the gear's turn is subtracted.
-        turns: which gear the deviation turns with, or None when it rests.
-        sense: in which azimuths of the deviation count, against those of the gear.
-        tilts: for what enters through the one-sided loss by tilts, not linearly: loss in the plane of the axes (about
-            y) and across it (about x) per component of the deviation; `coefficient` is the largest of them.
-    """
-
-    contributor: Contributor
-    coefficient: float
-    along: float = 0.0
-    turns: Role | None = None
-    sense: float = 1.0
-    tilts: tuple[tuple[float, ...], tuple[float, ...]] | None = None
-
-    @property
-    def leans(self) -> bool:
-        """Whether it enters through the loss by tilts; none does in a mesh that is read in the middle of its face."""
-        return self.tilts is not None and any(map(any, self.tilts))
-
-    def change(self, deviation: Array, angles: tuple[Array, Array]) -> Array:
-        """Change of j_bn [mm], (rows,), for deviations (rows, components) at turns (driver, driven) [rad]."""
-        if deviation.shape[1] == 1:
-            return self.coefficient * deviation[:, 0]
-        turn = np.zeros(len(deviation)) if self.turns is None else angles[0 if self.turns == "driver" else 1]
-        azimuth = self.along - self.sense * turn
-        return self.coefficient * (np.cos(azimuth) * deviation[:, 0] + np.sin(azimuth) * deviation[:, 1])
 
 
 class Stack(Generic[Pair]):
@@ -299,6 +262,11 @@ class Stack(Generic[Pair]):
     def temperature(self, effect: Temperature, contributor: Contributor) -> Term | None:
         """Change by parts that grow."""
         return None
+
+    @property
+    def neglects(self) -> tuple[Neglect, ...]:
+        """What it leaves out of the first order, each with its size; nothing else may differ to first order."""
+        return ()
 
 
 def _seen(plane: Plane, azimuth: float) -> tuple[float, float]:

@@ -9,6 +9,7 @@ from typing import Any
 from rich.console import Group, RenderableType
 from rich.text import Text
 
+from tol3d.report.agreement import agreement_lines, unexplained_lines
 from tol3d.report.column import (
     Column,
     Road,
@@ -77,7 +78,6 @@ SHARE_HEADINGS: Mapping[Road, str] = {"analytic": "analytic", "geometric": "3D s
 STATUS_WORDS = {"ok": "seated", "interferes": "jammed", "no contact": "without contact"}
 SAMPLER_WORDS = {"sobol": "scrambled Sobol' points", "latin_hypercube": "Latin hypercubes"}
 TOO_FEW_TO_BOUND = "too few trials on one side of the limit in each replicate to bound the true share"
-FLANKS_OF_A_BACKLASH = 4  # two at the contact, two at the gap; each may miss the true flank by the chord error
 
 
 class Detail(Enum):
@@ -126,6 +126,7 @@ def _measure_blocks(name: str, measure: Summary, summary: Summary) -> list[Rende
     notes = [*_notes(name, measure, summary)]
     sums = sums_of(measure, summary)
     blocks: list[RenderableType] = [title, words, "", measure_table(measure, sums), *map(note, notes)]
+    blocks += [Text(f" {line}", style="bold red") for line in unexplained_lines(measure.get("agreement") or {})]
     if measure["contributors"]:
         blocks += ["", contributors_table(measure)]
     return blocks
@@ -247,7 +248,7 @@ def _notes(name: str, measure: Summary, summary: Summary) -> Iterator[str]:
     unit, agreement = measure["unit"], measure.get("agreement")
     if agreement and agreement.get("compared"):
         of_train = measure.get("kind") in TRAIN_KINDS
-        yield agreement_line(agreement, unit, summary.get("chord_error_um"), " in each mesh" if of_train else "")
+        yield from agreement_lines(agreement, unit, summary.get("chord_error_um"), " in each mesh" if of_train else "")
     yield from _witness_notes(name, measure, summary)
     own = measure[best_road(measure)]
     seated = " that seated" if seated_text(measure) else ""
@@ -280,27 +281,6 @@ def _by_replicates(sample: Summary, summary: Summary) -> str:
         return ""
     study = summary["study"]
     return f" of {SAMPLER_WORDS[study['sampler']]}, by the spread of {study['replicates']} replicates"
-
-
-def agreement_line(agreement: Summary, unit: str, chord_error_um: float | None, whose: str = "") -> str:
-    """How far the two roads differ trial by trial, and what the tessellation may explain of it.
-
-    `whose` says of what the normal backlash is, where that is not the measure's one mesh.
-    """
-    line = (
-        f"3D simulation − analytic, trial by trial: at most {difference_text(agreement['max_abs_difference'], unit)}, "
-        f"rms {difference_text(agreement['rms_difference'], unit)}, "
-        f"mean {difference_text(agreement['mean_difference'], unit)}"
-    )
-    if chord_error_um is None:
-        return line
-    if not chord_error_um:
-        return f"{line}; the flanks are the mathematical ones: this is what the stack-up neglects"
-    whole = FLANKS_OF_A_BACKLASH * chord_error_um
-    return (
-        f"{line}; up to {whole:.3f} µm of normal backlash{whose} may be chord error ({chord_error_um:.3f} µm on each "
-        f"of {FLANKS_OF_A_BACKLASH} flanks), the rest is what the stack-up neglects"
-    )
 
 
 def _witness_notes(name: str, measure: Summary, summary: Summary) -> Iterator[str]:

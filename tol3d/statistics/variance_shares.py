@@ -119,7 +119,7 @@ def shares(sums: FeatureSums, groups: Mapping[str, slice]) -> Shares:
     features = [column for group in groups.values() for column in range(len(sums.means) - 1)[group]]
     if sums.count <= len(features) + 1:
         return Shares(dict.fromkeys(groups, math.nan), dict.fromkeys(groups, math.nan), math.nan)
-    sigma = _sigmas(sums)
+    sigma = column_sigmas(sums)
     if sigma[-1] == 0:
         return Shares(dict.fromkeys(groups, 0.0), dict.fromkeys(groups, 0.0), 0.0)
     explained = _explained(sums, sigma, [column for column in features if sigma[column] > 0])
@@ -129,7 +129,7 @@ def shares(sums: FeatureSums, groups: Mapping[str, slice]) -> Shares:
     return Shares(share, errors, unexplained)
 
 
-def _sigmas(sums: FeatureSums) -> Array:
+def column_sigmas(sums: FeatureSums) -> Array:
     """Standard deviation of each column, exactly 0 for one that holds rounding errors only."""
     sigma: Array = np.sqrt(np.diagonal(sums.comoments) / sums.count)
     return np.where(sigma > CONSTANT_RTOL * np.abs(sums.means), sigma, 0.0)
