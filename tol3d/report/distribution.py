@@ -146,6 +146,15 @@ def _mark_ends(axes: Axes, measure: Summary, span: tuple[float, float]) -> None:
         )
 
 
+def out_text(ppm: float | None, side: str) -> str:
+    """What share of all trials is on the wrong side of a limit.
+
+    >>> out_text(0.0, "below"), out_text(27_000.0, "above")
+    ('none below', '2.7 % above')
+    """
+    return f"{share_text(ppm) if ppm != 0 else 'none'} {side}"
+
+
 def _mark_limits(axes: Axes, measure: Summary, span: tuple[float, float], sample: Summary) -> None:
     unit = measure["unit"]
     for key, word, side in (("lower_limit", "LSL", "below"), ("upper_limit", "USL", "above")):
@@ -154,7 +163,7 @@ def _mark_limits(axes: Axes, measure: Summary, span: tuple[float, float], sample
             continue
         lower = key == "lower_limit"
         text = f"{word} {given_text(limit, unit)}{unit_suffix(unit)}\n"
-        text += f"{share_text(sample.get(f'{side}_limit_ppm'))} {side}"
+        text += out_text(sample.get(f"{side}_limit_ppm"), side)
         inside = span[0] <= limit <= span[1]
         if inside:
             axes.axvline(limit, ymax=LINE_TOP, color=OUTSIDE, linewidth=2.0)

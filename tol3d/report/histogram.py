@@ -35,6 +35,7 @@ from tol3d.report.distribution import (
     draw_distribution,
     draw_ranges,
     height_of_ranges,
+    out_text,
     range_labels,
     shown_span,
     values_label,
@@ -203,7 +204,7 @@ def _small_words(measure: Summary) -> str:
     words = ", ".join(f"{word} {short_text(value, unit)}" for word, value in known if value is not None)
     sides = (("below", "lower_limit"), ("above", "upper_limit"))
     out = [
-        f"{share_text(measure[road].get(f'{side}_limit_ppm'))} {side}" for side, limit in sides
+        out_text(measure[road].get(f"{side}_limit_ppm"), side) for side, limit in sides
         if measure.get(limit) is not None
     ]  # fmt: skip
     return "; ".join([words, *out, *([seated] if (seated := seated_text(measure)) else [])])
