@@ -1,4 +1,4 @@
-"""A disk that refuses a write: exit code 4, the file named, nothing half written, and nobody else blamed."""
+"""A disk that refuses a write: exit code 2, the file named, nothing half written, and nobody else blamed."""
 
 import errno
 import math
@@ -37,14 +37,14 @@ def refused(number: int) -> Callable[..., None]:
 
 
 @pytest.mark.parametrize("number", REFUSALS)
-def test_a_refused_write_of_a_run_names_its_file_and_exits_with_4(
+def test_a_refused_write_of_a_run_names_its_file_and_exits_with_2(
     number: int, tol3d: Callable[..., tuple[int, str, str]], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(os, "fsync", refused(number))
     with pytest.raises(DiskError):
         run_scene(SPUR, overrides=FEW, out=tmp_path / "python")
     code, _, err = tol3d("run", str(SPUR), "--engine", "analytic", "--no-picture", "--out", str(tmp_path / "run"))
-    assert code == 4
+    assert code == 2
     assert str(tmp_path / "run.partial") in err
     assert os.strerror(number) in err
     assert "fault in tol3d" not in err
@@ -52,7 +52,7 @@ def test_a_refused_write_of_a_run_names_its_file_and_exits_with_4(
 
 
 @pytest.mark.parametrize("number", REFUSALS)
-def test_a_refused_picture_or_export_names_its_file_and_exits_with_4(
+def test_a_refused_picture_or_export_names_its_file_and_exits_with_2(
     number: int,
     tol3d: Callable[..., tuple[int, str, str]],
     finished: Run,
@@ -66,7 +66,7 @@ def test_a_refused_picture_or_export_names_its_file_and_exits_with_4(
         (("export", str(finished.path), "--trial", "3", "--out", str(tmp_path)), tmp_path / "trial-3.glb"),
     ):
         code, _, err = tol3d(*command)
-        assert code == 4, err
+        assert code == 2, err
         assert err.startswith(f"{place}: cannot be written ({os.strerror(number)}); nothing is wrong with the input")
 
 
@@ -91,7 +91,7 @@ def test_a_limit_on_the_size_of_files_is_told_and_the_same_command_goes_on(tmp_p
     command += ["--no-picture", "--out", str(tmp_path / "run")]
     limited = ["bash", "-c", f'ulimit -f {LARGEST}; exec "$@"', "bash", *command]
     told = subprocess.run(limited, capture_output=True, text=True)
-    assert told.returncode == 4, told.stderr
+    assert told.returncode == 2, told.stderr
     block = tmp_path / "run.partial" / "trials" / "block-000000.parquet"
     assert f"{block}: cannot be written (File too large): 0 of 2000 trials are kept" in told.stderr
     subprocess.run(command, check=True, capture_output=True)

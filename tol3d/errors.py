@@ -36,7 +36,7 @@ class RunError(InputError):
 
 
 class DiskError(RunError):
-    """The disk or the system refuses a write: neither the input nor tol3d is at fault; exit code 4."""
+    """The disk or the system refuses a write: tol3d is not at fault; exit code 2."""
 
 
 def refused_by_disk(error: OSError) -> bool:

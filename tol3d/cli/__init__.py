@@ -1,7 +1,7 @@
 """The command line: arguments, exit codes, progress. The only place that prints.
 
-Exit codes: 0 done, 1 limits failed (with --fail-on-limits), 2 wrong input, 3 a fault of tol3d, 4 the disk or the
-system refused a write (full, read-only, broken, a limit on files), 130 interrupted.
+Exit codes: 0 done, 1 limits failed (with --fail-on-limits), 2 wrong input or a write that the disk or the system refused
+(full, read-only, broken, a limit on files), 3 a fault of tol3d, 130 interrupted.
 Imports stand inside the functions here, so that `tol3d --help` loads no numpy, no CAD and no plotting.
 """
 
@@ -16,7 +16,7 @@ import typer
 
 from tol3d.cli import analyses, showing, studies
 from tol3d.cli.arguments import app
-from tol3d.cli.console import DISK, DONE, FAULT, INTERRUPTED, WRONG_INPUT, err_console, warn, write_plainly
+from tol3d.cli.console import DONE, FAULT, INTERRUPTED, WRONG_INPUT, err_console, warn, write_plainly
 
 __all__ = ["analyses", "app", "main", "showing", "studies"]
 
@@ -82,13 +82,10 @@ def _plain_warnings() -> Iterator[None]:
 
 @contextmanager
 def _exit_codes() -> Iterator[None]:
-    from tol3d.errors import DiskError, InputError
+    from tol3d.errors import InputError
 
     try:
         yield
-    except DiskError as error:
-        err_console.print(str(error))
-        sys.exit(DISK)
     except InputError as error:
         err_console.print(str(error))
         sys.exit(WRONG_INPUT)
@@ -100,7 +97,7 @@ def _exit_codes() -> Iterator[None]:
     except Exception as error:
         if refused := _refused_write(error):
             err_console.print(refused)
-            sys.exit(DISK)
+            sys.exit(WRONG_INPUT)
         import traceback
 
         err_console.print(f"a fault in tol3d, not in your scene: {type(error).__name__}: {error}")

@@ -14,7 +14,7 @@ from typing import Final
 from rich.console import Console, ConsoleOptions, RenderableType
 from rich.segment import Segment
 
-DONE, LIMITS_FAILED, WRONG_INPUT, FAULT, DISK, INTERRUPTED = 0, 1, 2, 3, 4, 130
+DONE, LIMITS_FAILED, WRONG_INPUT, FAULT, INTERRUPTED = 0, 1, 2, 3, 130
 
 PLAIN_SIGNS: Final = {
     "−": "-",
