@@ -40,9 +40,12 @@ class Shimmed:
 
     @property
     def minimum(self) -> float:
-        """The number that is called so [mm]."""
+        """The number that is called so [mm]; the smallest of the trials is the deepest jam where any is jammed."""
         minimum = float(self.found["geometric"][self.called]) / UM
-        return min(minimum, BELOW_NOTHING) if self.failed > UNMEASURED[self.called] * self.trials else minimum
+        if self.failed <= UNMEASURED[self.called] * self.trials:
+            return minimum
+        deepest = self.found["geometric"]["deepest_overlap"]
+        return min(minimum, deepest / UM if self.called == "sample_min" and deepest is not None else BELOW_NOTHING)
 
     @property
     def failed(self) -> int:

@@ -1,7 +1,7 @@
 """The command line: arguments, exit codes, progress. The only place that prints.
 
-Exit codes: 0 done, 1 limits failed (with --fail-on-limits), 2 wrong input or a write that the disk or the system refused
-(full, read-only, broken, a limit on files), 3 a fault of tol3d, 130 interrupted.
+Exit codes: 0 done, 1 limits failed (with --fail-on-limits), 2 wrong input, or a write that the disk or the system
+refused (full, read-only, broken, a limit on files), 3 a fault of tol3d, 130 interrupted.
 Imports stand inside the functions here, so that `tol3d --help` loads no numpy, no CAD and no plotting.
 """
 
