@@ -107,12 +107,11 @@ def bends(model: Model, engine: Engine) -> Mapping[str, Mapping[str, float]]:
     steps = np.diag([BEND_SIGMAS * c.draw.sigma for c in model.contributors for _ in c.draw.components])
     builds = np.concatenate([middle, middle + steps, middle - steps])
     drawn = drawn_block(model, model.study.seed, 0, BEND_POSITIONS)
-    block = Block(
-        np.tile(builds, (BEND_POSITIONS, 1)),
-        {mesh: np.repeat(angle, len(builds)) for mesh, angle in drawn.random_angle.items()},
-    )
-    found = _differences(alike, simulate_block(alike, engine, block))
-    return {name: _bends(model, values.reshape(BEND_POSITIONS, -1)) for name, values in found.items()}
+    each = []
+    for position in range(BEND_POSITIONS):  # one by one, for builds go with the square of the contributors
+        angles = {mesh: np.full(len(builds), angle[position]) for mesh, angle in drawn.random_angle.items()}
+        each.append(_differences(alike, simulate_block(alike, engine, Block(builds, angles))))
+    return {m.name: _bends(model, np.stack([found[m.name] for found in each])) for m in alike.measures}
 
 
 def _bends(model: Model, values: Array) -> Mapping[str, float]:
