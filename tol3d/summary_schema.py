@@ -95,7 +95,7 @@ class Sample(Strict):
     count: Count = Field(description="trials with a value")
     trials: Count
     mean: Known
-    sigma: Known
+    sigma: NotNegative | None
     low_3sigma: Known
     high_3sigma: Known
     sample_min: Known

@@ -49,7 +49,7 @@ def is_bounded(measure: Summary) -> bool:
     if any(value is None for value in known):
         return False
     mean, sigma, count, low, high = known
-    nearest = min(mean - low, high - mean)
+    nearest = max(0.0, min(mean - low, high - mean))  # a far outlier pulls the mean out of its quantiles
     if not sigma or nearest > SHORT_OF_3_SIGMA * sigma:
         return False
     beyond = math.erfc(nearest / sigma / math.sqrt(2)) / 2
