@@ -217,10 +217,13 @@ class _Case:
                 )
 
     def _largest_percent(self, besides: list[str]) -> float:
-        groups = feature_groups(self.model, self.measure)
+        """The largest part of the other contributors that is beyond chance, of its own effect [%]."""
         fit = self.fits.difference
-        shares = [100 * fit.effect(own) / self.fits.own[name] for name, own in groups.items() if name not in besides]
-        return max(shares, default=0.0)
+        found = [0.0]
+        for name, own in feature_groups(self.model, self.measure).items():
+            if name not in besides and standard_errors(fit.coefficients[own], fit.covariance[own, own]) > SURE:
+                found.append(100 * fit.effect(own) / self.fits.own[name])
+        return max(found)
 
     # what is left -----------------------------------------------------------------------------------
 

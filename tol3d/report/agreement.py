@@ -68,4 +68,5 @@ def _left_out(linear: Sequence[Summary]) -> Iterator[str]:
         own = sorted((part for part in linear if part["by"] == reason), key=lambda part: -part["percent"])
         named = ", ".join(f"{part['contributor']} {percent_text(part['percent'])} %" for part in own[:NAMED])
         more = f" and {len(own) - NAMED} more" if len(own) > NAMED else ""
-        yield f"the stack-up leaves out: {reason} (of their own effects: {named}{more})"
+        what = reason if reason.startswith("second order") else f"the stack-up leaves out: {reason}"
+        yield f"{what} (of their own effects: {named}{more})"
