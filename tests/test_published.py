@@ -26,7 +26,8 @@ SHOWN = ("spur_pair", "bevel_pair", "bevel_pair_3dcs", "robot_shoulder", "robot_
 def printed(shown: RenderableType, width: int) -> str:
     console = Console(file=io.StringIO(), width=width)
     console.print(shown)
-    text: str = console.file.getvalue()  # type: ignore[attr-defined]
+    assert isinstance(console.file, io.StringIO)
+    text = console.file.getvalue()
     return text
 
 
