@@ -223,6 +223,10 @@ CHANGES = {
         ("  reducer run-out:", "  wheel:"),
         "tolerances.wheel: expected a name of its own, got 'wheel', which already stands in parts (line 13)",
     ),
+    "a measure with a mesh's name": (
+        ("  lost motion:\n    kind", "  gear pair:\n    kind"),
+        "measures.gear pair: expected a name of its own, got 'gear pair', which already stands in moves (line ",
+    ),
     "take without over": (
         ("kind: normal_backlash", "take: min\n    kind: normal_backlash"),
         "measures.normal backlash.take: expected over: turn or over: long_period beside it, got over: random",

@@ -6,6 +6,8 @@ from pathlib import Path
 import pytest
 from ruamel.yaml import YAML
 
+from tol3d.scene.bundled import scene_path
+
 SCENES = Path(__file__).resolve().parent.parent / "scenes"
 Command = Callable[..., tuple[int, str, str]]
 
@@ -44,3 +46,12 @@ def test_an_unknown_scene_is_refused_with_the_nearest(tol3d: Command, tmp_path: 
     code, _, err = tol3d("scenes", "--copy", "spur_pear", "--out", str(tmp_path))
     assert code == 2
     assert 'did you mean "spur_pair"?' in err
+
+
+def test_a_file_of_ones_own_comes_before_the_scene_of_its_name(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert scene_path("spur_pair").samefile(SCENES / "spur_pair.yaml")
+    (tmp_path / "spur_pair").mkdir()  # such as that of its runs
+    assert scene_path("spur_pair").samefile(SCENES / "spur_pair.yaml")
+    (tmp_path / "bevel_pair").write_text("mine", "utf-8")
+    assert scene_path("bevel_pair") == Path("bevel_pair")

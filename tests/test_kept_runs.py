@@ -78,6 +78,18 @@ def test_a_kept_table_of_measured_values_that_was_changed_is_refused(tmp_path: P
         replay(run.path, 3)
 
 
+def test_a_run_of_other_measured_values_is_another_study(tmp_path: Path) -> None:
+    """The scene's text is the same; what it draws from is not."""
+    scene, few = with_measured_thickness(tmp_path), Overrides(trials=10, engine="analytic")
+    run = run_scene(scene, overrides=few, out=tmp_path / "run")
+    thickness = run.columns()["wheel tooth thickness [um]"]
+    (table,) = tmp_path.glob("*.csv")
+    table.write_text(table.read_text("utf-8").replace("-30", "-90"), "utf-8")
+    with pytest.raises(RunError, match=rf"run: holds another study \(files: {table.name} .* there, .* now\)"):
+        run_scene(scene, overrides=few, out=tmp_path / "run")
+    assert np.array_equal(open_run(tmp_path / "run").columns()["wheel tooth thickness [um]"], thickness)
+
+
 def test_a_block_without_a_line_in_the_list_is_refused_and_mended(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:

@@ -203,3 +203,14 @@ def test_the_shift_of_a_mean_has_its_sign(run: Run, tmp_path: Path) -> None:
         assert shifts[:half] == [0.0] * half
         # 0.1 %: the slope at the new distance is another
         assert [sign * shift for shift in shifts[half:]] == pytest.approx([expected] * half, rel=2e-3, abs=ROUNDING)
+
+
+def test_what_is_out_of_limits_is_compared_where_one_run_has_some(run: Run, tmp_path: Path) -> None:
+    """Runs of the same measure, with limits and without."""
+    (tmp_path / "scene.yaml").write_text(SCENE.replace(", lower_limit: 250 um, upper_limit: 320 um", ""), "utf-8")
+    free = run_scene(tmp_path / "scene.yaml", overrides=Overrides(trials=20, engine="analytic"), out=tmp_path / "free")
+    for runs, told in (([run, free], True), ([free, run], True), ([free], False)):
+        console = Console(file=io.StringIO(), width=WIDE)
+        console.print(comparison_report(runs))
+        (headings,) = (line for line in text_of(console).splitlines() if line.lstrip().startswith("run [µm]"))
+        assert ("out of limits" in headings) == told

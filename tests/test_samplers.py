@@ -123,6 +123,18 @@ def test_each_stratum_holds_one_point(seed: int, size: int, replicate: int) -> N
     assert 0.0 < drawn.min() <= drawn.max() < 1.0
 
 
+def test_a_permutation_is_of_its_seed_stream_and_replicate() -> None:
+    drawn = [
+        LatinHypercube(1, 64).uniforms(A, 0, 64),
+        LatinHypercube(2, 64).uniforms(A, 0, 64),
+        LatinHypercube(1, 64).uniforms(A, 64, 64),
+        LatinHypercube(1, 64).uniforms(replace(A, component="1"), 0, 64),
+        LatinHypercube(1, 64).uniforms(replace(A, name="b"), 0, 64),
+    ]
+    # the places inside the strata differ anyhow; which trial has which of 64! orders does so by the keys alone
+    assert len({np.floor(values * 64).tobytes() for values in drawn}) == len(drawn)
+
+
 def test_places_stay_inside_their_strata_in_the_largest_studies() -> None:
     size = 5 * 10**9
     sampler = LatinHypercube(1, size)

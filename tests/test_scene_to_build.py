@@ -203,6 +203,15 @@ def test_tolerances_of_one_gear_add_up(tmp_path: Path) -> None:
     assert_gear(made, 1, whole, CENTRE_DISTANCE)
 
 
+def test_temperatures_of_one_part_add_up(tmp_path: Path) -> None:
+    day, run = CASES["all cold"].text, CASES["warm housing"].text + CASES["warm driver"].text.replace("it:", "too:")
+    text = day.replace("it:", "day:") + run.replace("20 K", "35 K")
+    made = built(model_of(tmp_path, text, mesh=f"{MESH}, housing: housing"))
+    # the pinion and the housing are 35 K - 20 K warmer, 10e-6 and 25e-6 1/K, and the wheel 20 K colder, 20e-6 1/K
+    assert_gear(made, 0, Gear(growth=150.0), 0.0)
+    assert_gear(made, 1, Gear((19.0875063597, 0.0, 0.0), growth=-400.0), CENTRE_DISTANCE)
+
+
 # random directions ------------------------------------------------------------------------------------------
 
 TRIALS = 400

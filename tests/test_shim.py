@@ -88,6 +88,13 @@ def test_46_um_take_two_shims_of_47_55_um() -> None:
     )  # the paper rounds to nearest
 
 
+def test_what_shims_take_that_are_on_is_counted() -> None:
+    scene = load_scene(Path(SHIMMED))
+    shims = shims_of(scene, effective_model(scene).mesh("bevel pair"), ())
+    # 48 um are on, and 10 um too much is left
+    assert formula_thickness(10 * UM, shims) == pytest.approx(48 * UM + 10 * UM / PAPERS, rel=1e-12)
+
+
 def test_the_paper_shim_takes_46_um_of_the_low() -> None:
     own = plan(rounding="nearest")
     form = own.before.found["analytic_closed_form"]

@@ -246,6 +246,11 @@ def test_limit_counts_merge_and_keep_failures_apart(values: Array, cuts: list[in
     assert merged.out_of_limits == Proportion(len(values) - inside, len(values))
 
 
+def test_a_value_at_a_limit_is_within_it() -> None:
+    values = np.array([2.0, 5.0, 8.0, np.nextafter(2.0, 0.0), np.nextafter(8.0, 9.0)])
+    assert LimitCounts.of(values, 2.0, 8.0) == LimitCounts(good=5, failed=0, below=1, above=1, out=2)
+
+
 def test_without_a_limit_nothing_is_outside_but_what_failed() -> None:
     counts = LimitCounts.of(np.array([-1e9, 1e9, math.nan]), None, None, np.array([False, False, True]))
     assert (counts.below, counts.above, counts.good, counts.failed, counts.out) == (0, 0, 2, 1, 1)

@@ -26,12 +26,18 @@ def columns_of(model: Model, first: int, count: int):
     return simulate_block(model, None, block)
 
 
-def stopped(model: Model, most: int) -> Tally:
+def with_twice_the_spread(model: Model, first: int, count: int):
+    """As if there were geometry, and it told twice what the stack-up does."""
+    columns = columns_of(model, first, count)
+    return columns | {f"geometric:{own.name}": 2 * columns[f"analytic:{own.name}"] for own in model.measures}
+
+
+def stopped(model: Model, most: int, columns=columns_of) -> Tally:
     """Blocks merged in their order until it is enough, or `most` trials are there."""
-    grids, asked = grids_of(model, columns_of(model, 0, PILOT_TRIALS)), enough(model)
-    tally = Tally.of(model, grids, columns_of(model, 0, BLOCK))
+    grids, asked = grids_of(model, columns(model, 0, PILOT_TRIALS)), enough(model)
+    tally = Tally.of(model, grids, columns(model, 0, BLOCK))
     while not asked(tally) and tally.trials < most:
-        tally = tally.merge(Tally.of(model, grids, columns_of(model, tally.trials, BLOCK), tally.trials))
+        tally = tally.merge(Tally.of(model, grids, columns(model, tally.trials, BLOCK), tally.trials))
     return tally
 
 
@@ -72,6 +78,12 @@ def test_it_goes_on_until_every_measure_is_known(paper_model: Model, sigma: floa
     assert form is not None
     loose, tight = Until(NAME, sigma / 10, sigma / 10), Until("lost motion", form.sigma / 120, None)
     assert_stops_at(120**2, stopped(waiting(paper_model, loose, tight), 10**6).trials)
+
+
+def test_with_geometry_it_waits_for_the_errors_of_that(paper_model: Model, sigma: float) -> None:
+    model = waiting(paper_model, Until(NAME, sigma / 50, None))
+    model = replace(model, study=replace(model.study, engine="fcl"))  # its sums are numpy's
+    assert_stops_at(100**2, stopped(model, 10**6, with_twice_the_spread).trials)  # 2500 by the stack-up
 
 
 def test_without_a_stated_error_it_is_never_enough(paper_model: Model) -> None:
