@@ -58,7 +58,7 @@ def test_what_a_scene_says_of_other_peoples_numbers_is_printed_below_them_whole(
 def test_the_papers_sigmas_and_its_mean_stand_in_its_columns() -> None:
     spur = published("spur_pair", "paper, analytic", "normal backlash")
     bevel = published("bevel_pair", "paper, analytic", "normal backlash")
-    assert um(spur.mean) == pytest.approx(53.0)
+    assert (um(spur.mean), um(spur.sigma)) == pytest.approx((53.0, 7.0))
     assert (um(bevel.mean), um(bevel.sigma)) == pytest.approx((89.5, 6.7))
     for scene in ("robot_shoulder", "bevel_pair_3dcs"):
         name = "bevel normal backlash" if scene == "robot_shoulder" else "normal backlash"
