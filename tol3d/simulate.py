@@ -11,12 +11,13 @@
     analytic     the second road            tol3d/analytic/       analytic_backlash
     play         backlashes, together       tol3d/play.py         Play           (ways.py: where ways are parallel)
     columns      both roads, one block      tol3d/block.py        simulate_block
-    outcome      which trials seated, jam  tol3d/outcome.py      Told           (sample.py: statistics of one road)
+    outcome      which trials seated, jam   tol3d/outcome.py      told           (sample.py: statistics of one road)
     statistics   of one block, or several   tol3d/tally.py        Tally          (stages.py: of a train's stages)
     task         what workers run           tol3d/task.py         Task           (execution.py: who runs it)
     blocks       run, kept, folded in order tol3d/folding.py      run_blocks
     witness      some trials again, by FCL  tol3d/witness.py      witness_summary
-    result       the run on disk            tol3d/result.py       Run            (writer.py: RunWriter)
+    explanation  why both roads differ      tol3d/explaining.py   explanations   (second_look.py: which order it is of)
+    result       the run on disk            tol3d/result.py       Run            (writer.py, manifest.py, occupant.py)
 
 The exact engine goes build, moves and measures in one compiled kernel (engines/exact/: foot -> nearest -> seating ->
 rows), to the same result as by its gaps; `compiled.py` is the door to numba. `tangent.py` and `sensitivity.py` take the
