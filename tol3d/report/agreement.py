@@ -48,8 +48,10 @@ def unexplained_lines(agreement: Summary) -> list[str]:
 
 def _of_first_order(explanation: Summary) -> str:
     other = "other " if explanation["linear"] else ""
-    largest = f"{explanation['largest_percent']:.2g}"
-    return f"no {other}contributor's part in it is above {largest} % of its own effect"
+    largest = explanation["largest_percent"]
+    if not largest:  # counts what is beyond chance
+        return f"no {other}contributor has a part in it beyond chance"
+    return f"no {other}contributor's part in it is above {largest:.2g} % of its own effect"
 
 
 def _of_second_order(explanation: Summary, unit: str) -> str:

@@ -12,6 +12,7 @@ from rich.text import Text
 from tol3d.errors import InputError
 from tol3d.report.column import seated_text
 from tol3d.report.difference import difference_of
+from tol3d.report.ends import is_bounded
 from tol3d.report.heading import heading, reading_words
 from tol3d.report.number import NOTHING, UNIT_SIGNS, difference_text, share_text, value_text
 from tol3d.report.sheet import Heading, Row, Sheet, note
@@ -20,6 +21,8 @@ from tol3d.result import Run
 Summary = Mapping[str, Any]
 
 NO_ONE_MEAN = "no row: it is 0 with the load on one side and jumps where the load changes side; the picture shows it"
+SHOWN_APART = "not all of these runs read it alike, at the same positions and teeth: it is shown apart, without a shift"
+ENDS_BEFORE = "trials end before mean ∓ 3 sigma here: low and high are no ends of theirs"
 SHORT = {"analytic": "analytic", "geometric": "3D"}
 KEYS = ("mean", "sigma", "low_3sigma", "high_3sigma")
 
@@ -78,6 +81,8 @@ def comparison_report(runs: Sequence[Run]) -> Group:
         blocks += [Text("\n").append(measure.name, style="bold cyan")]
         blocks += [Text(heading(own[0][1].summary["measures"][measure.name]), style="dim")]
         blocks += [note(NO_ONE_MEAN)] if measure.jumps else ["", _table(measure.name, measure.unit, own)]
+        blocks += [note(SHOWN_APART)] if len(own) < _named_alike(measure.name, runs) else []
+        blocks += [note(ENDS_BEFORE)] if any(is_bounded(run.summary["measures"][measure.name]) for _, run in own) else []
     words = "low and high: mean ∓ 3 sigma; max and rms: of 3D simulation − analytic, trial by trial"
     words += (
         "; means and sigmas are of the trials that seated, out of limits is of all of them" if _any_failed(runs) else ""
@@ -85,6 +90,10 @@ def comparison_report(runs: Sequence[Run]) -> Group:
     words += "; shift: of the mean against the first run" if len(runs) > 1 else ""
     blocks.append(Text(f"\n{words}", style="dim"))
     return Group(*blocks)
+
+
+def _named_alike(name: str, runs: Sequence[Run]) -> int:
+    return sum(name in run.summary["measures"] for run in runs)
 
 
 def _any_failed(runs: Sequence[Run]) -> bool:

@@ -1,7 +1,7 @@
 """Tables for the terminal in which no number is ever cut: columns that find no room go on in a table below."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from rich import box
 from rich.cells import cell_len
@@ -17,11 +17,12 @@ LABELS_SHARE = 3  # else they keep a third of the width
 
 @dataclass(frozen=True)
 class Heading:
-    """Head of a column; words stand left and wrap, numbers right and whole."""
+    """Head of a column; words stand left and wrap, numbers right and whole; an optional one goes where room lacks."""
 
     text: str
     style: str = ""
     words: bool = False
+    optional: bool = False
 
 
 @dataclass(frozen=True)
@@ -47,8 +48,8 @@ def titled(title: str, sheet: "Sheet") -> Group:
 class Sheet:
     """A table: a column of labels and one for each heading.
 
-    In a narrow terminal labels, headings and words wrap; where that is not enough, the columns that are left
-    stand in a table below, beside the labels and the first `repeated` columns.
+    In a narrow terminal labels, headings and words wrap; where that is not enough, optional columns are left out, and
+    then the columns that are left stand in a table below, beside the labels and the first `repeated` columns.
     """
 
     corner: str
@@ -58,10 +59,17 @@ class Sheet:
 
     def __rich_console__(self, console: Console, options: ConsoleOptions) -> RenderResult:
         width = options.max_width
-        for number, widths in enumerate(self._tables(width)):
+        sheet = self if len(self._tables(width)) == 1 else self._needed()
+        for number, widths in enumerate(sheet._tables(width)):
             if number:
                 yield Text()
-            yield self._table(widths)
+            yield sheet._table(widths)
+
+    def _needed(self) -> "Sheet":
+        """It without its optional columns."""
+        kept = [index for index, heading in enumerate(self.headings) if not heading.optional]
+        rows = [replace(row, cells=[row.cells[index] for index in kept]) for row in self.rows]
+        return replace(self, headings=[self.headings[index] for index in kept], rows=rows)
 
     def _column(self, index: int) -> list[str]:
         """Everything in a column, its head first; column 0 is that of the labels."""

@@ -19,6 +19,7 @@ from tol3d.report.column import (
     ranked_contributors,
     seated_text,
 )
+from tol3d.report.ends import is_bounded
 from tol3d.report.heading import heading, limits_text, position_of
 from tol3d.report.number import (
     NOTHING,
@@ -258,6 +259,8 @@ def _notes(name: str, measure: Summary, summary: Summary) -> Iterator[str]:
             f"mean ±{difference_text(own['mean_se'], unit)}, "
             f"sigma ±{difference_text(own['sigma_se'], unit)} (one standard error)"
         )
+    if is_bounded(measure):
+        yield "trials end before mean ∓ 3 sigma here: the quantiles tell more than low and high"
     for key, label in _limit_rows(measure).items():
         low_high = own.get(f"{key}_95")
         if low_high:

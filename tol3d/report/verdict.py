@@ -80,9 +80,9 @@ def verdict_report(
 
 def verdict_table(summary: Summary, accepted_ppm: float = ACCEPTED_PPM, *, blame: bool = False) -> Sheet:
     """A row a measure, by the 3D simulation where there is one."""
-    words = ("mean", "low", "high", "limits", "out of limits (95 %)", "Ppk")
-    headings = [Heading("verdict", words=True), *(Heading(word) for word in words)]
-    headings += [Heading("mostly from", words=True)] if blame else []
+    headings = [Heading("verdict", words=True), *(Heading(word) for word in ("mean", "low", "high"))]
+    headings += [Heading("limits"), Heading("out of limits (95 %)", words=True), Heading("Ppk")]
+    headings += [Heading("mostly from", words=True, optional=True)] if blame else []
     rows = [_row(name, measure, accepted_ppm, blame=blame) for name, measure in summary["measures"].items()]
     return Sheet("measure", headings, rows, repeated=1)
 

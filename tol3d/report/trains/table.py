@@ -22,8 +22,9 @@ from tol3d.report.trains.stage import (
 Summary = Mapping[str, Any]
 
 ROAD_WORDS = {"analytic": "analytic (same trials)", "geometric": "3D simulation"}
-WORST_CASE_MEANS = "a sum of the stages' highs is a worst case; high (+3 sigma) is the distribution of the sum"
+WORST_CASE_MEANS = "a sum of the stages' highs is a worst case; mean + 3 sigma of the sum is of its distribution"
 STAGES_MEAN = "low, mean, high: a stage's own angular backlash at its driven shaft, mean ∓ 3 sigma; by the {road}"
+OF_LAWS = "; of a data sheet's law its ends, where they are nearer than 3 sigma"
 
 
 def train_report(summary: Summary) -> list[RenderableType]:
@@ -40,7 +41,7 @@ def _train_blocks(name: str, summary: Summary) -> Iterator[RenderableType]:
         return
     yield from ("", stages_table(train, stages))
     road = "3D simulation" if leading_road(train) == "geometric" else "analytic road"
-    yield note(STAGES_MEAN.format(road=road))
+    yield note(STAGES_MEAN.format(road=road) + (OF_LAWS if any(stage.within_its_law for stage in stages) else ""))
     yield from ("", sums_table(train, summary), note(WORST_CASE_MEANS))
 
 
