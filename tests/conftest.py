@@ -1,5 +1,6 @@
 """Shared ground: the paper's spur pair as a model, engines on the strips of real solids, the command line."""
 
+import os
 import sys
 from collections.abc import Callable
 from functools import cache
@@ -15,8 +16,11 @@ from tol3d.model import Model, model_from_scene
 from tol3d.scene import load_scene
 from tol3d.solids import FlankStrips, measuring_strips
 
-hypothesis.settings.register_profile("tol3d", deadline=None)  # shared machines stall for longer than any deadline
-hypothesis.settings.load_profile("tol3d")
+# shared machines stall for longer than any deadline and examples are the same;
+# HYPOTHESIS_PROFILE=search tries others
+hypothesis.settings.register_profile("tol3d", deadline=None, derandomize=True)
+hypothesis.settings.register_profile("search", deadline=None)
+hypothesis.settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE", "tol3d"))
 
 Command = Callable[..., tuple[int, str, str]]
 

@@ -195,6 +195,14 @@ def test_arrays_that_are_whole_but_none_are_built_anew(folder: Path) -> None:
     assert len(made) == 4
 
 
+def test_a_pipe_in_the_place_of_an_entry_counts_as_none(folder: Path) -> None:
+    """And is not waited for: nobody writes into it."""
+    write_entry("entry", b"payload")
+    (folder / "entry").unlink()
+    os.mkfifo(folder / "entry")
+    assert read_entry("entry") is None
+
+
 # several processes ----------------------------------------------------------------------------------------------------
 
 TOGETHER = """

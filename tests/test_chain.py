@@ -253,7 +253,7 @@ def test_measures_of_a_train_have_the_sums_of_its_stages_below():
     assert row_of(tip, "sum of the stages' highs") == ["2.2172"] * 3
     assert row_of(tip, "high (+3 sigma)")[-1] == "2.21578"  # 599″ of 763 mm, published: pi / 648000 each
     assert "[mm]" in tip
-    note = "a sum of the stages' highs is a worst case; high (+3 sigma) is the distribution of the sum"
+    note = "a sum of the stages' highs is a worst case; mean + 3 sigma of the sum is of its distribution"
     assert text.count(note) == 1  # beside the train, for its measures too
     means = sum(FACTORS[k] * OWN[k]["mean"] for k in range(3)) * MM_PER_ARCMIN
     assert row_of(tip, "sum of the stages' means")[0] == f"{means:.4f}"

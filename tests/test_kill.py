@@ -143,16 +143,16 @@ KINDS = {
 @pytest.mark.slow
 @pytest.mark.parametrize("kind", KINDS)
 def test_killed_at_twenty_moments_a_run_ends_with_the_same_bits(kind: str, tmp_path: Path) -> None:
-    subprocess.run(command(tmp_path / "whole", *KINDS[kind]), check=True, capture_output=True)
+    subprocess.run(command(tmp_path / "whole", *KINDS[kind]), check=True, capture_output=True, timeout=HANGS)
     resumed = killed_by_the_clock_and_resumed(tmp_path / "killed", 20, 20, *KINDS[kind])
     assert_same_run(open_run(tmp_path / "whole"), resumed)
     assert sorted(path.name for path in tmp_path.iterdir()) == ["killed", "whole"]
 
 
-@pytest.mark.parametrize("kind", ["exact", "exact, statistics only"])
+@pytest.mark.parametrize("kind", ["exact", pytest.param("exact, statistics only", marks=pytest.mark.slow)])
 def test_killed_at_two_files_a_run_ends_with_the_same_bits(kind: str, tmp_path: Path) -> None:
     more = (*KINDS[kind], "--no-picture")
-    subprocess.run(command(tmp_path / "whole", *more), check=True, capture_output=True)
+    subprocess.run(command(tmp_path / "whole", *more), check=True, capture_output=True, timeout=HANGS)
     resumed = killed_while_writing_and_resumed(tmp_path / "killed", 2, 3, *more)
     assert_same_run(open_run(tmp_path / "whole"), resumed)
 
@@ -324,8 +324,8 @@ def tiny_disk(tmp_path: Path) -> Iterator[Path]:
 @pytest.mark.skipif(shutil.which("mount") is None, reason="no mount")
 def test_a_full_disk_is_told_and_loses_nothing(tiny_disk: Path, tmp_path: Path) -> None:
     study = ("--engine", "analytic", "--trials", str(10 * BLOCK), "--workers", "2")
-    subprocess.run(command(tmp_path / "whole", *study), check=True, capture_output=True)
-    told = subprocess.run(command(tiny_disk / "run", *study), capture_output=True, text=True)
+    subprocess.run(command(tmp_path / "whole", *study), check=True, capture_output=True, timeout=HANGS)
+    told = subprocess.run(command(tiny_disk / "run", *study), capture_output=True, text=True, timeout=HANGS)
     assert told.returncode == 2, told.stderr
     kept = list((tiny_disk / "run.partial" / "trials").glob("*.parquet"))
     words = f"no space left on the disk: {len(kept) * BLOCK} of {10 * BLOCK} trials are kept in {tiny_disk}/run.partial"
@@ -333,7 +333,7 @@ def test_a_full_disk_is_told_and_loses_nothing(tiny_disk: Path, tmp_path: Path) 
     assert 1 <= len(kept) < 10
     before = {path: path.read_bytes() for path in kept}
     subprocess.run(["mount", "-o", "remount,size=20m", str(tiny_disk)], check=True)
-    subprocess.run(command(tiny_disk / "run", *study), check=True, capture_output=True)
+    subprocess.run(command(tiny_disk / "run", *study), check=True, capture_output=True, timeout=HANGS)
     finished = open_run(tiny_disk / "run")
     assert finished.summary["timing"]["resumed_trials"] >= len(kept) * BLOCK
     assert all((finished.path / "trials" / path.name).read_bytes() == content for path, content in before.items())

@@ -209,7 +209,7 @@ def test_an_edit_of_a_summary_is_refused(scene: str, request: pytest.FixtureRequ
     assert edited > 500
 
 
-@pytest.mark.parametrize("share", [0.04, pytest.param(1.0, marks=pytest.mark.slow)], ids=["some edits", "all edits"])
+@pytest.mark.parametrize("share", [0.02, pytest.param(1.0, marks=pytest.mark.slow)], ids=["some edits", "all edits"])
 @pytest.mark.parametrize("scene", ["whole", "train"])
 def test_an_edit_with_its_checksum_is_refused_or_harmless(
     scene: str, share: float, request: pytest.FixtureRequest, tmp_path: Path

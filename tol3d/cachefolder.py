@@ -64,8 +64,11 @@ def _refuse_others(folder: Path) -> None:
 
 def read_entry(name: str) -> bytes | None:
     """An entry as it was written; None where there is none, or none that is whole."""
+    path = cache_folder() / name
     try:
-        content = (cache_folder() / name).read_bytes()
+        if not stat.S_ISREG(path.stat().st_mode):  # a pipe would be waited for
+            return None
+        content = path.read_bytes()
     except OSError:
         return None
     payload, digest = content[:-DIGEST_BYTES], content[-DIGEST_BYTES:]

@@ -56,7 +56,8 @@ def closed_form(model: Model, measure: Measure) -> ClosedForm | None:
     parts = tuple(_parts(model, measure))
     terms = [term for part in parts for term in part.terms]
     groups = leaning_groups([part.stack for part in parts])
-    plain = {group: tilts for group in groups if (tilts := _plain_tilts(group, terms)) is not None}
+    alike = all(part.stack.both_sides_alike for part in parts)
+    plain = {group: tilts for group in groups if (tilts := _plain_tilts(group, terms, alike)) is not None}
     leaning = [group for group in groups if group not in plain]
     names = frozenset(contributor.name for group in leaning for contributor in group)
     linear = [term for term in terms if term.term.tilts is None and term.term.contributor.name not in names]
@@ -238,8 +239,10 @@ def _merged(model: Model, shares: Sequence[Share]) -> Iterator[Share]:
             )
 
 
-def _plain_tilts(group: Sequence[Contributor], terms: Sequence[_ReadTerm]) -> list[Share] | None:
+def _plain_tilts(group: Sequence[Contributor], terms: Sequence[_ReadTerm], alike: bool) -> list[Share] | None:
     """Shares of -max(|in plane|, |out of plane|) of a mesh whose tilts do nothing else; None of any other group.
+
+    Of two tilts only where both flank sides are read alike: else the loss is another.
 
     The variance is split by the conditional means (first-order Sobol'), the rest in equal parts.
     """
@@ -247,7 +250,7 @@ def _plain_tilts(group: Sequence[Contributor], terms: Sequence[_ReadTerm]) -> li
     only_tilts = len(own) == len(group) and all(term.term.tilts for term in own)
     if not only_tilts or any(isinstance(contributor.draw, Planar) for contributor in group):
         return None
-    if len(own) > 2 or (len(own) == 2 and sorted(_plane(term) for term in own) != ["across", "in"]):
+    if len(own) > 2 or (len(own) == 2 and (not alike or sorted(_plane(term) for term in own) != ["across", "in"])):
         return None
     nodes = (np.arange(TILT_NODES) + 0.5) / TILT_NODES
     losses = [np.abs(term.amplitude * term.term.contributor.distribution.ppf(nodes)) for term in own]

@@ -1,8 +1,8 @@
 """Shares of contributors that lean the axis of a spur gear and shift it too, as the bearings of a shaft do.
 
-What a lean takes, -max(|in the plane of the axes|, |across it|), is no sum, so that mean and variance are integrated
-over the laws of all contributors of one group: those that lean the same gears. The rule is one net of fixed points, no
-trials: no seed or number of trials is in it. Of the variance each contributor has what it does alone (first-order
+What a lean takes, `Stack.lost`, is no sum, so that mean and variance are integrated over the laws of all contributors
+of one group: those that lean the same gears. The rule is one net of fixed points, no trials: no seed or number of
+trials is in it. Of the variance each contributor has what it does alone (first-order
 Sobol' index); what several do together is shared in the ratio of what each has in it (total less first-order index),
 in equal parts where two act together.
 Source: Saltelli et al., Comput. Phys. Commun. 181 (2010), table 2 (the estimators of both indices).
@@ -78,7 +78,7 @@ def _change(parts: Sequence[tuple[float, Stack[GearPair]]], deviations: Mapping[
             else:
                 in_plane += own @ term.tilts[0]
                 across += own @ term.tilts[1]
-        total -= factor * np.maximum(np.abs(in_plane), np.abs(across))
+        total -= factor * stack.lost(in_plane, across)
     return total
 
 

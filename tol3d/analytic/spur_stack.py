@@ -24,8 +24,9 @@ class SpurStack(Stack[SpurPair]):
         """The tighter end of the face loses b/2 times the tilt on each flank side.
 
         In plane (about y): b sin(alpha_w); out of plane (about x): b cos(alpha_w); b the smaller face
-        width. The larger of both counts, so the loss is one-sided and shifts the mean. A flank side that is read in
-        the middle of the face loses nothing, nor do gears that lean alike: a driver's lean counts against its mate's.
+        width. Which ends are the tighter ones tells `lost`; the loss is one-sided and shifts the mean. A flank side
+        that is read in the middle of the face loses nothing, nor do gears that lean alike: a driver's lean counts
+        against its mate's.
         """
         sides = [self.reading.contact, self.reading.gap].count("face")
         half_width = min(self.pair.pinion.face_width, self.pair.wheel.face_width) / 2

@@ -71,11 +71,27 @@ class Stack(Generic[Pair]):
         total = np.full(len(deviations), self.nominal)
         for term in (term for term in self.terms if term.tilts is None):
             total = total + term.change(deviations[:, self.model.component_slices[term.contributor.name]], angles)
-        in_plane, across = self._lost_by_tilts(deviations)
-        return total - np.maximum(np.abs(in_plane), np.abs(across))
+        return total - self.lost(*self._lost_by_tilts(deviations))
+
+    @property
+    def both_sides_alike(self) -> bool:
+        """Whether both flank sides are read at the same place of the face; else tilts count on the working one only."""
+        return self.reading.contact == self.reading.gap
+
+    def lost(self, in_plane: Array, across: Array) -> Array:
+        """Normal backlash [mm] that tilts take, (rows,), of what they take in the plane of the axes and across it.
+
+        Half a face times |a + b| on the side of the driver's right flanks, |a - b| on the other: 2 max(|a|, |b|) of
+        both together.
+        """
+        if self.both_sides_alike:
+            return np.maximum(np.abs(in_plane), np.abs(across))
+        return np.abs(in_plane + self.mesh.working_flank * across)
 
     def _lost_by_tilts(self, deviations: Array) -> tuple[Array, Array]:
-        """What tilts in the plane of the axes and across it take from both flank sides together [mm], signed, (rows,).
+        """What tilts in the plane of the axes and across it take from the flank sides that are read over the face.
+
+        Signed [mm], (rows,).
 
         The ends of the face at which the two count are the same on one flank side and opposite on the other.
         """
@@ -98,7 +114,10 @@ class Stack(Generic[Pair]):
         """
         angles = (driver_angle, self.pair.driven_angle(driver_angle))
         in_plane, across = self._lost_by_tilts(deviations)
-        total = (np.abs(in_plane + across) - np.abs(in_plane - across)) / 4
+        if self.both_sides_alike:
+            total = (np.abs(in_plane + across) - np.abs(in_plane - across)) / 4
+        else:
+            total = self.mesh.working_flank * self.lost(in_plane, across) / 2
         for term in self.sideways:
             total = total + term.change(deviations[:, self.model.component_slices[term.contributor.name]], angles)
         return total

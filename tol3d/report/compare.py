@@ -21,7 +21,7 @@ from tol3d.result import Run
 Summary = Mapping[str, Any]
 
 NO_ONE_MEAN = "no row: it is 0 with the load on one side and jumps where the load changes side; the picture shows it"
-SHOWN_APART = "not all of these runs read it alike, at the same positions and teeth: it is shown apart, without a shift"
+SHOWN_APART = "not all of these runs read it alike, at the same positions and teeth: shown apart"
 ENDS_BEFORE = "trials end before mean ∓ 3 sigma here: low and high are no ends of theirs"
 SHORT = {"analytic": "analytic", "geometric": "3D"}
 KEYS = ("mean", "sigma", "low_3sigma", "high_3sigma")
@@ -82,7 +82,8 @@ def comparison_report(runs: Sequence[Run]) -> Group:
         blocks += [Text(heading(own[0][1].summary["measures"][measure.name]), style="dim")]
         blocks += [note(NO_ONE_MEAN)] if measure.jumps else ["", _table(measure.name, measure.unit, own)]
         blocks += [note(SHOWN_APART)] if len(own) < _named_alike(measure.name, runs) else []
-        blocks += [note(ENDS_BEFORE)] if any(is_bounded(run.summary["measures"][measure.name]) for _, run in own) else []
+        bounded = any(is_bounded(run.summary["measures"][measure.name]) for _, run in own)
+        blocks += [note(ENDS_BEFORE)] if bounded else []
     words = "low and high: mean ∓ 3 sigma; max and rms: of 3D simulation − analytic, trial by trial"
     words += (
         "; means and sigmas are of the trials that seated, out of limits is of all of them" if _any_failed(runs) else ""
