@@ -209,7 +209,7 @@ def test_an_edit_of_a_summary_is_refused(scene: str, request: pytest.FixtureRequ
     assert edited > 500
 
 
-@pytest.mark.parametrize("share", [0.02, pytest.param(1.0, marks=pytest.mark.slow)], ids=["some edits", "all edits"])
+@pytest.mark.parametrize("share", [0.02, pytest.param(0.3, marks=pytest.mark.slow)], ids=["some edits", "many edits"])
 @pytest.mark.parametrize("scene", ["whole", "train"])
 def test_an_edit_with_its_checksum_is_refused_or_harmless(
     scene: str, share: float, request: pytest.FixtureRequest, tmp_path: Path
@@ -235,7 +235,7 @@ def test_an_edit_with_its_checksum_is_drawn_and_replayed_or_refused(
     folder = Path(shutil.copytree(request.getfixturevalue(scene), tmp_path / "run"))
     summary = summary_in(folder)
     drawn = 0
-    for path, value in edits(folder, 0.1):
+    for path, value in edits(folder, 0.02):
         sealed(folder, SUMMARY, replaced(summary, path, value))
         try:
             opened = open_run(folder)
@@ -244,7 +244,7 @@ def test_an_edit_with_its_checksum_is_drawn_and_replayed_or_refused(
             model_of(opened)
         except InputError:
             continue
-    assert drawn > 20
+    assert drawn > 4
 
 
 @pytest.mark.parametrize(

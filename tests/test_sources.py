@@ -153,18 +153,23 @@ print(sorted(set(run.columns("status")["status"].tolist())))
 def test_kernels_have_the_codes_of_today(tmp_path: Path) -> None:
     shutil.copytree(ROOT / "tol3d", tmp_path / "tol3d", ignore=shutil.ignore_patterns("__pycache__"))
     environment = os.environ | {"PYTHONPATH": str(tmp_path), "TOL3D_CACHE": str(tmp_path / "cache")}
-    command = [sys.executable, "-c", STATUSES, str(ROOT / "scenes" / "spur_pair.yaml")]
+    text = (ROOT / "scenes" / "spur_pair.yaml").read_text("utf-8")
+    far = text.replace("lower: -20 um, upper: 20 um", "lower: -2 mm, upper: 2 mm")
+    (tmp_path / "far.yaml").write_text(far, "utf-8")
+    command = [sys.executable, "-c", STATUSES, str(tmp_path / "far.yaml")]
 
     def statuses() -> str:
         done = subprocess.run(command, env=environment, cwd=tmp_path, capture_output=True, text=True, check=True)
         return done.stdout.strip()
 
-    assert statuses() == "['ok']"
+    before = statuses()
+    assert "out of range" in before
+    assert "no contact" not in before
     codes = tmp_path / "tol3d" / "engines" / "status.py"
     text = codes.read_text()
     codes.write_text(
-        text.replace("OK: Final = 0", "OK: Final = 1").replace("INTERFERES: Final = 1", "INTERFERES: Final = 0")
+        text.replace("NO_CONTACT: Final = 2", "NO_CONTACT: Final = 3").replace("RANGE: Final = 3", "RANGE: Final = 2")
     )
     assert codes.read_text() != text
-    # a kernel with the codes of before would call each trial jammed
-    assert statuses() == "['ok']"
+    # a kernel with the codes of before would say that trials out of range have no contact
+    assert statuses() == before

@@ -87,7 +87,9 @@ def test_the_robots_lost_motion_is_that_of_its_pairs_run_alone(engine: str, tria
     robot, make = model_of(SCENES / "robot_shoulder.yaml"), engines()[engine]
     block = drawn_block(robot, 1, 0, trials)
     words = {1: "right", -1: "left"}
-    spur = changed("spur_pair", tmp_path, ("flank: right", f"flank: {words[robot.mesh('spur pair').working_flank]}"))
+    flank = words[robot.mesh("spur pair").working_flank]
+    one_tooth = ("gear: wheel\n", "gear: wheel\n    tooth: driven\n")  # as the robot reads it
+    spur = changed("spur_pair", tmp_path, ("flank: right", f"flank: {flank}"), one_tooth)
     bevel = changed("bevel_pair", tmp_path, ("flank: left", f"flank: {words[robot.mesh('bevel pair').working_flank]}"))
     angle = block.random_angle["spur pair"]
     free_spur = alone(robot, spur, block, SPUR, angle, make)

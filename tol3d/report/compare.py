@@ -157,11 +157,8 @@ def _samples(measure: Summary) -> Iterator[tuple[str, Summary]]:
             curve = {key: [v for v in measure["curve"][road][key] if v is not None] for key in ("mean", "sigma")}
             own = {key: float(np.mean(values)) for key, values in curve.items() if values}
             status = measure.get("status", {}) if road == "geometric" else {}
-            out = measure["curve"][road].get("out_ppm")
-            yield (
-                road,
-                own | {"out_ppm": out, **({"count": status["ok"], "trials": sum(status.values())} if status else {})},
-            )
+            counted = {"count": status.get("ok", 0), "trials": sum(status.values())} if status else {}
+            yield road, own | {"out_ppm": measure["curve"][road].get("out_ppm"), **counted}
 
 
 def _differences(run: Run, name: str, unit: str) -> list[str]:
