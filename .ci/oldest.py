@@ -12,16 +12,9 @@ from pathlib import Path
 
 BOUND = re.compile(r"([\w.-]+)>=([\d.]+)")
 TESTS = (
-    *("test_printed_tables", "test_readme", "test_cli", "test_scene", "test_scene_docs", "test_distributions"),
-    *(
-        "test_solids",
-        "test_report",
-        "test_python",
-        "test_kept_runs",
-        "test_samplers",
-        "test_exact",
-        "test_train_export",
-    ),
+    *("project/test_readme", "project/test_python", "scene/test_scene", "scene/test_scene_docs", "cli/test_cli"),
+    *("distributions/test_distributions", "samplers/test_samplers", "solids/test_solids", "gearing/test_exact"),
+    *("report/test_printed_tables", "report/test_report", "report/test_train_export", "runs/test_kept_runs"),
 )
 """What meets every dependency: scenes, laws, samplers, compiled kernels, solids, FCL, tables, pictures, views."""
 

@@ -22,11 +22,11 @@ os.environ.setdefault("OMP_NUM_THREADS", "1")
 from whole_gears import DEFLECTION, whole_gears_rate
 
 from tol3d import load_scene
-from tol3d.block import drawn_block, simulate_block
-from tol3d.engines.fcl import FclEngine
-from tol3d.model import Backlash, Model, Reading
-from tol3d.study import Overrides, effective_model
-from tol3d.task import strips_of
+from tol3d.gearing.engines.fcl import FclEngine
+from tol3d.gearing.model import Backlash, Model, Reading
+from tol3d.study.block import drawn_block, simulate_block
+from tol3d.study.overrides import Overrides, effective_model
+from tol3d.study.task import strips_of
 
 SCENES = Path(__file__).resolve().parent.parent / "scenes"
 WARM_UP_TRIALS = 50  # the first use builds the BVHs

@@ -15,13 +15,13 @@ from rich.console import Console
 from rich.table import Table
 
 from tol3d import load_scene
-from tol3d.block import analytic_values, drawn_block, simulate_block
-from tol3d.engines.door import exact_engine
-from tol3d.features import features
-from tol3d.measures import turning_gear
-from tol3d.model import Backlash
-from tol3d.study import Overrides, effective_model
-from tol3d.tally import PILOT_TRIALS, Tally, grids_of
+from tol3d.gearing.engines.lazy import exact_engine
+from tol3d.gearing.measures import turning_gear
+from tol3d.gearing.model import Backlash
+from tol3d.study.block import analytic_values, drawn_block, simulate_block
+from tol3d.study.overrides import Overrides, effective_model
+from tol3d.study.regressors import features
+from tol3d.study.tally import PILOT_TRIALS, Tally, grids_of
 
 SCENES = Path(__file__).resolve().parent.parent / "scenes"
 SYSTEMS = ("spur_pair", "bevel_pair")

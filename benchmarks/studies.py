@@ -26,7 +26,7 @@ from rich.table import Table
 from whole_gears import whole_gears_rate
 
 from tol3d import load_scene
-from tol3d.study import Overrides, effective_model
+from tol3d.study.overrides import Overrides, effective_model
 
 SCENES = Path(__file__).resolve().parent.parent / "scenes"
 HUNDRED_MILLION = 10**8

@@ -18,8 +18,8 @@ from rich.table import Table
 from studies import SCENES, Study, measured
 
 from tol3d import load_scene
-from tol3d.block import positions_in_all
-from tol3d.study import Overrides, effective_model
+from tol3d.study.block import positions_in_all
+from tol3d.study.overrides import Overrides, effective_model
 
 TARGET = 200_000  # trials/s of the shoulder on two workers
 CONTACTS, QUICK_CONTACTS = 4_000_000, 500_000  # of each worker

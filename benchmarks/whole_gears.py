@@ -6,11 +6,11 @@ from dataclasses import replace
 import fcl
 import numpy as np
 
-from tol3d.block import drawn_block, nominal_block
-from tol3d.build import Build, build
-from tol3d.model import Model
+from tol3d.gearing.build import Build, build
+from tol3d.gearing.model import Model
 from tol3d.solids import display_mesh
-from tol3d.trials import mean_deviations
+from tol3d.study.block import drawn_block, nominal_block
+from tol3d.study.draws import mean_deviations
 
 DEFLECTION = 0.001  # mm; as fine as whole gears can be tessellated in reasonable time
 GAP_XTOL = 1e-4  # mm; where the secant steps stop: each contact is found with at most this much gap left

@@ -4,15 +4,15 @@ import os
 import sys
 from collections.abc import Callable
 from functools import cache
-from pathlib import Path
 
 import hypothesis
 import pytest
+from places import SCENES
 
 from tol3d import cli
-from tol3d.engines.fcl import FclEngine
+from tol3d.gearing.engines.fcl import FclEngine
+from tol3d.gearing.model import Model, model_from_scene
 from tol3d.gears import SpurGear
-from tol3d.model import Model, model_from_scene
 from tol3d.scene import load_scene
 from tol3d.solids import FlankStrips, measuring_strips
 
@@ -24,7 +24,7 @@ hypothesis.settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE", "tol3d"))
 
 Command = Callable[..., tuple[int, str, str]]
 
-SPUR_PAIR = Path(__file__).resolve().parent.parent / "scenes" / "spur_pair.yaml"
+SPUR_PAIR = SCENES / "spur_pair.yaml"
 
 
 @cache

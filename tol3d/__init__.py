@@ -21,8 +21,8 @@ if TYPE_CHECKING:
     from tol3d.gears import SpurPair as SpurPair
     from tol3d.report.notebook import Replay as Replay
     from tol3d.report.notebook import check_scene, compare_runs, export_trial, find_shims, replay, view_trial
-    from tol3d.result import Run as Run
-    from tol3d.result import open_run
+    from tol3d.runs.run import Run as Run
+    from tol3d.runs.run import open_run
     from tol3d.scene import Scene, load_scene
     from tol3d.simulate import Overrides, run_scene
 
@@ -30,7 +30,7 @@ _HOMES = {
     "InputError": "tol3d.errors",
     "Overrides": "tol3d.simulate",
     "Replay": "tol3d.report.notebook",
-    "Run": "tol3d.result",
+    "Run": "tol3d.runs.run",
     "RunError": "tol3d.errors",
     "Scene": "tol3d.scene",
     "SceneError": "tol3d.errors",
@@ -42,7 +42,7 @@ _HOMES = {
     "export_trial": "tol3d.report.notebook",
     "find_shims": "tol3d.report.notebook",
     "load_scene": "tol3d.scene",
-    "open_run": "tol3d.result",
+    "open_run": "tol3d.runs.run",
     "replay": "tol3d.report.notebook",
     "run_scene": "tol3d.simulate",
     "view_trial": "tol3d.report.notebook",

@@ -1,23 +1,23 @@
 """Read this first: the way of the data, stage by stage.
 
-    scene        what the user wrote        tol3d/scene/          load_scene
-    model        what it means, mm and rad  tol3d/model/          model_from_scene
-    layout       shafts in trees, one world tol3d/model/layout.py Model.layout
-    solids       CAD, strips of its flanks  parts/, tol3d/solids/ measuring_strips (for FCL, engine or witness)
-    trials       seed -> deviations         tol3d/trials.py       drawn_block
-    build        deviations -> poses        tol3d/build.py        build
-    moves        gaps -> seated meshes      tol3d/moves/          Meshing.seat     (engines/ tell the gaps)
-    measures     seated meshes -> values    tol3d/measures/       measure_backlash
-    analytic     the second road            tol3d/analytic/       analytic_backlash
-    play         backlashes, together       tol3d/play.py         Play           (ways.py: where ways are parallel)
-    columns      both roads, one block      tol3d/block.py        simulate_block
-    outcome      which trials seated, jam   tol3d/outcome.py      told           (sample.py: statistics of one road)
-    statistics   of one block, or several   tol3d/tally.py        Tally          (stages.py: of a train's stages)
-    task         what workers run           tol3d/task.py         Task           (execution.py: who runs it)
-    blocks       run, kept, folded in order tol3d/folding.py      run_blocks
-    witness      some trials again, by FCL  tol3d/witness.py      witness_summary
-    explanation  why both roads differ      tol3d/explaining.py   explanations   (second_look.py: which order it is of)
-    result       the run on disk            tol3d/result.py       Run            (writer.py, manifest.py, occupant.py)
+    scene        what the user wrote        scene/                      load_scene
+    model        what it means, mm and rad  gearing/model/              model_from_scene
+    layout       shafts in trees, one world gearing/model/layout.py     Model.layout
+    solids       CAD, strips of its flanks  parts/, solids/             measuring_strips (for FCL, engine or witness)
+    draws        seed -> deviations         study/draws.py              drawn_block
+    build        deviations -> poses        gearing/build.py            build
+    meshing      gaps -> seated meshes      gearing/meshing/            Meshing.seat     (engines/ give the gaps)
+    measures     seated meshes -> values    gearing/measures/           measure_backlash
+    stack-up     the second road            gearing/stack_up/           analytic_backlash
+    play         backlashes, together       gearing/play.py             Play             (load_paths.py: in parallel)
+    columns      both roads, one block      study/block.py              simulate_block
+    outcome      which trials seated, jam   runs/outcome.py             told
+    statistics   of one block, or several   study/tally.py              Tally            (sample.py: one road's)
+    task         what workers run           study/task.py               Task             (execution/pools.py: who runs)
+    blocks       run, kept, folded in order execution/folding.py        run_blocks
+    witness      some trials again, by FCL  study/witness.py            witness_summary
+    explanation  why both roads differ      study/agreement/            explanations
+    result       the run on disk            runs/run.py                 Run              (writer.py, manifest.py)
 
 The exact engine goes build, moves and measures in one compiled kernel (engines/exact/: foot -> nearest -> seating ->
 rows), to the same result as by its gaps; `compiled.py` is the door to numba. `tangent.py` and `sensitivity.py` take the
@@ -50,26 +50,26 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
-from tol3d.block import block_trials, positions_in_all
-from tol3d.durable import lacks_space
-from tol3d.engines import Engine
-from tol3d.engines.door import exact_is_compiled
 from tol3d.errors import DiskError, RunError, refused_by_disk
-from tol3d.execution import ONE_WORKER, Execution, pool_of
+from tol3d.execution.folding import Outcome, Plan, Progress, run_blocks
+from tol3d.execution.pools import ONE_WORKER, Execution, pool_of
 from tol3d.files import FileContent
-from tol3d.folding import Outcome, Plan, Progress, run_blocks
-from tol3d.model import Model
-from tol3d.occupant import free_folder
-from tol3d.replaying import Replay, model_of, replay, replay_block
-from tol3d.result import Fingerprint, Run, whole_run
+from tol3d.gearing.engines import Engine
+from tol3d.gearing.engines.lazy import exact_is_compiled
+from tol3d.gearing.model import Model
+from tol3d.runs.atomic_write import lacks_space
+from tol3d.runs.occupant import free_folder
+from tol3d.runs.run import Fingerprint, Run, whole_run
+from tol3d.runs.writer import RunWriter
 from tol3d.scene import Scene
-from tol3d.stopping import enough
-from tol3d.study import AS_WRITTEN, Overrides, effective_model, load
-from tol3d.summary import study_summary
-from tol3d.tally import PILOT_TRIALS, Tally, grids_of
-from tol3d.task import Task, installed_versions, strips_for, strips_of, way_of, workers_for
-from tol3d.witness import witness_summary, witness_warnings
-from tol3d.writer import RunWriter
+from tol3d.study.block import block_trials, positions_in_all
+from tol3d.study.overrides import AS_WRITTEN, Overrides, effective_model, load
+from tol3d.study.replaying import Replay, model_of, replay, replay_block
+from tol3d.study.stopping import enough
+from tol3d.study.summary import study_summary
+from tol3d.study.tally import PILOT_TRIALS, Tally, grids_of
+from tol3d.study.task import Task, installed_versions, strips_for, strips_of, way_of, workers_for
+from tol3d.study.witness import witness_summary, witness_warnings
 
 try:
     import resource

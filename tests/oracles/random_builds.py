@@ -8,9 +8,9 @@ from scipy.spatial.transform import Rotation
 from oracles.bevel_brute_force import BevelMesh, BevelNumbers
 from oracles.brute_force import Mesh as SearchedSpurs
 from oracles.involute_gear import InvoluteGear
-from tol3d.build import Build
+from tol3d.gearing.build import Build
+from tol3d.gearing.model import GearPart, Mesh, Model, Study
 from tol3d.gears import BevelGear, BevelPair, SpurGear, SpurPair
-from tol3d.model import GearPart, Mesh, Model, Study
 
 
 @dataclass(frozen=True)

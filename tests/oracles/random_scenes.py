@@ -10,7 +10,7 @@ import numpy as np
 
 from tol3d import Scene
 from tol3d.errors import GeometryError, SceneError
-from tol3d.model import model_from_scene
+from tol3d.gearing.model import model_from_scene
 
 Data = dict[str, Any]
 

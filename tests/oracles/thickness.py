@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from tol3d.build import Build
-from tol3d.model import Model
+from tol3d.gearing.build import Build
+from tol3d.gearing.model import Model
 
 
 def thickness_of(model: Model, made: Build) -> np.ndarray:

@@ -9,15 +9,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.analyses.robots import Robots, State
-from tol3d.analytic import first_order
-from tol3d.block import drawn_block, simulate_block
-from tol3d.engines import Engine
+from tol3d.gearing.engines import Engine
+from tol3d.gearing.measures import moved
+from tol3d.gearing.model import LostMotion, Measure, Model, Train
+from tol3d.gearing.model.measures import load_changes, over_swing
+from tol3d.gearing.model.trains import gravity_torque, loaded_flank
+from tol3d.gearing.stack_up import first_order
 from tol3d.gears import Flank
 from tol3d.gears.flank import opposite
-from tol3d.measures import moved
-from tol3d.model import LostMotion, Measure, Model, Train
-from tol3d.model.measures import load_changes, over_swing
-from tol3d.model.trains import gravity_torque, loaded_flank
+from tol3d.study.block import drawn_block, simulate_block
 from tol3d.units import ARCMIN
 
 Array = NDArray[np.float64]

@@ -18,19 +18,19 @@ from numpy.typing import NDArray
 from tol3d.analyses.compensated_swing import Swing, swing_of, swings_of, tip_error
 from tol3d.analyses.correction import Correction, at_shaft, corrections_of
 from tol3d.analyses.robots import Robots, State, left_of_the_mean, simulated_robots
-from tol3d.analytic import ClosedForm, Share, closed_form
 from tol3d.errors import InputError
-from tol3d.model import LostMotion, Measure, Model, Positions, ReducerBacklash, Train
-from tol3d.model.contributor import Contributor, TurningOffset, single_effects
-from tol3d.model.measure import AnyStage
-from tol3d.model.measures import lost_motion
-from tol3d.model.readings import reader_like, refuse_idle_teeth
+from tol3d.gearing.model import LostMotion, Measure, Model, Positions, ReducerBacklash, Train
+from tol3d.gearing.model.contributor import Contributor, TurningOffset, single_effects
+from tol3d.gearing.model.measure import AnyStage
+from tol3d.gearing.model.measures import lost_motion
+from tol3d.gearing.model.readings import reader_like, refuse_idle_teeth
+from tol3d.gearing.stack_up import ClosedForm, Share, closed_form
 from tol3d.scene import Scene
 from tol3d.scene.nearest import hint
 from tol3d.simulate import Overrides, effective_model
-from tol3d.stages import stages_of
-from tol3d.study import AS_WRITTEN
-from tol3d.task import engine_of, strips_for
+from tol3d.study.overrides import AS_WRITTEN
+from tol3d.study.stages import stages_of
+from tol3d.study.task import engine_of, strips_for
 from tol3d.units import ARCMIN
 
 Array = NDArray[np.float64]

@@ -8,10 +8,10 @@ from dataclasses import dataclass, replace
 from typing import Any, Final
 
 from tol3d.analyses.robots import Robots
-from tol3d.analytic import closed_form
-from tol3d.model import Backlash, LostMotion, Measure, Model, Train
-from tol3d.model.measure import AnyStage, ParallelStage
-from tol3d.stages import stage_tallies, stages_of, train_summaries
+from tol3d.gearing.model import Backlash, LostMotion, Measure, Model, Train
+from tol3d.gearing.model.measure import AnyStage, ParallelStage
+from tol3d.gearing.stack_up import closed_form
+from tol3d.study.stages import stage_tallies, stages_of, train_summaries
 from tol3d.units import ARCMIN
 
 Ends = Mapping[str, Any]

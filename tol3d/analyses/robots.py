@@ -13,14 +13,14 @@ from typing import Final, Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d import trials
-from tol3d.block import ROWS_AT_ONCE, Block, Columns, simulate_block, stage_column
-from tol3d.engines import Engine
-from tol3d.model import Measure, Model
-from tol3d.model.layout import Drive
-from tol3d.model.measure import AnyStage
-from tol3d.outcome import SEATED, status_column
+from tol3d.gearing.engines import Engine
+from tol3d.gearing.model import Measure, Model
+from tol3d.gearing.model.layout import Drive
+from tol3d.gearing.model.measure import AnyStage
+from tol3d.runs.outcome import SEATED, status_column
 from tol3d.samplers import MonteCarlo, Stream
+from tol3d.study import draws as trials
+from tol3d.study.block import ROWS_AT_ONCE, Block, Columns, simulate_block, stage_column
 
 Array = NDArray[np.float64]
 State = Literal["before", "batch", "robot"]

@@ -14,7 +14,7 @@ from tol3d.distributions.triangular import TriangularSpec
 from tol3d.distributions.truncated_normal import TruncatedNormalSpec
 from tol3d.distributions.uniform import UniformSpec
 from tol3d.errors import InputError
-from tol3d.model import Mesh
+from tol3d.gearing.model import Mesh
 from tol3d.scene import Scene
 from tol3d.scene.edit import with_tolerances
 from tol3d.scene.measures import MeasureSpec, NormalBacklashSpec

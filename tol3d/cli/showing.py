@@ -10,7 +10,7 @@ from tol3d.cli.arguments import RunArgument, SceneArgument, TrustParts, scene_pa
 from tol3d.cli.console import err_console, out_console, tell
 
 if TYPE_CHECKING:
-    from tol3d.result import Run
+    from tol3d.runs.run import Run
 
 
 class MeshFormat(StrEnum):
@@ -52,7 +52,7 @@ def schema(
     import json
 
     if summary:
-        from tol3d.summary_schema import RunSummary as Described
+        from tol3d.runs.summary_schema import RunSummary as Described
     else:
         from tol3d.scene import Scene as Described  # type: ignore[assignment]
 
@@ -65,7 +65,7 @@ def compare(
 ) -> None:
     """Lay the histograms of both roads of one or several runs over each other, with the per-trial difference."""
     from tol3d.report import comparison_report, draw_comparison
-    from tol3d.result import open_run
+    from tol3d.runs.run import open_run
 
     opened = [open_run(path) for path in runs]
     draw_comparison(opened, out)
@@ -94,7 +94,7 @@ def export(
 ) -> None:
     """Write the perturbed parts of a trial where they ended up."""
     from tol3d.report import export_run
-    from tol3d.result import open_run
+    from tol3d.runs.run import open_run
 
     finished = open_run(run)
     which = _which(finished, trial, worst=worst, nominal=nominal, mean=mean)
@@ -119,7 +119,7 @@ def view(
 ) -> None:
     """Show a trial in 3D, with its contact and gap marked."""
     from tol3d.report.view import view_run
-    from tol3d.result import open_run
+    from tol3d.runs.run import open_run
 
     finished = open_run(run)
     which = _which(finished, trial, worst=worst, nominal=nominal, mean=mean)
@@ -133,7 +133,7 @@ def _which(run: "Run", trial: int | None, *, worst: bool, nominal: bool, mean: b
     """The one build that was asked for; the worst when nothing was said. Tells which trial that is."""
     from tol3d.errors import InputError
     from tol3d.report.heading import worst_words
-    from tol3d.worst import worst_trial
+    from tol3d.runs.worst import worst_trial
 
     words = [word for word, said in (("worst", worst), ("nominal", nominal), ("mean", mean)) if said]
     if len(words) + (trial is not None) > 1:

@@ -25,8 +25,8 @@ from tol3d.cli.console import INTERRUPTED, LIMITS_FAILED, err_console, out_conso
 if TYPE_CHECKING:
     from types import FrameType
 
-    from tol3d.model import Model
-    from tol3d.result import Run
+    from tol3d.gearing.model import Model
+    from tol3d.runs.run import Run
 
 CONTACTS_PER_MINUTE = {"fcl": 180_000, "exact": 40_000_000, "analytic": 40_000_000}
 """By an engine on one core, draws and statistics included; only for the estimate before what takes a minute or more."""
@@ -92,7 +92,7 @@ def run(
 
     from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
 
-    from tol3d.execution import Execution
+    from tol3d.execution.pools import Execution
     from tol3d.report.table import Detail, run_report
     from tol3d.report.verdict import ACCEPTED_PPM, all_ok
     from tol3d.simulate import Overrides, Watch, effective_model, folder_for, load, run_scene, workers_for
@@ -155,7 +155,7 @@ def _how_to_resume(folder: Path) -> str:
     """What is kept of an interrupted run, and the command that goes on with it."""
     import shlex
 
-    from tol3d.result import partial_of
+    from tol3d.runs.run import partial_of
 
     partial = partial_of(folder)
     if not partial.exists():
@@ -185,7 +185,7 @@ def _drawing(*, wanted: bool) -> "Iterator[Callable[[Path, Mapping[str, Any]], N
 
 def long_study(model: "Model") -> str:
     """What is said before a study that takes a minute of one core or more; nothing of a shorter one."""
-    from tol3d.block import positions_in_all
+    from tol3d.study.block import positions_in_all
 
     positions = positions_in_all(model)
     minutes = model.study.trials * positions / CONTACTS_PER_MINUTE[model.study.engine]

@@ -8,18 +8,18 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.block import Block, mean_block, nominal_block
-from tol3d.engines import NO_CONTACT, OK
 from tol3d.errors import InputError, RunError
+from tol3d.gearing.engines import NO_CONTACT, OK
+from tol3d.gearing.meshing import Meshing, MeshSeat
+from tol3d.gearing.model import Measure, Mesh, Model
+from tol3d.gearing.play import SeatKey, seat_keys
 from tol3d.gears import Gear
-from tol3d.model import Measure, Mesh, Model
-from tol3d.moves import Meshing, MeshSeat
-from tol3d.play import SeatKey, seat_keys
 from tol3d.report.number import measured_text
-from tol3d.result import Run
+from tol3d.runs.run import Run
+from tol3d.runs.worst import worst_trial
 from tol3d.simulate import Replay, model_of, replay, replay_block
 from tol3d.solids import DisplayMesh, display_mesh
-from tol3d.worst import worst_trial
+from tol3d.study.block import Block, mean_block, nominal_block
 
 Array = NDArray[np.float64]
 Which = int | str

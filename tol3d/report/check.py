@@ -8,8 +8,8 @@ from functools import singledispatch
 from rich.console import Group, RenderableType
 from rich.text import Text
 
+from tol3d.gearing.model import Backlash, Contributor, Measure, Model, Planar
 from tol3d.gears import RIGHT, BevelGear, BevelPair, Gear, GearPair, SpurGear, SpurPair
-from tol3d.model import Backlash, Contributor, Measure, Model, Planar
 from tol3d.report.coefficients import coefficients_tables
 from tol3d.report.heading import QUANTITY_WORDS, TAKE_WORDS, reading_words
 from tol3d.report.number import NOTHING, UNIT_SIGNS, degrees_text, given_text, unsigned_zero, value_text

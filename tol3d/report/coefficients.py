@@ -8,16 +8,16 @@ import numpy as np
 from rich.console import RenderableType
 from rich.text import Text
 
-from tol3d import trials
-from tol3d.analytic import Share, reference_form
-from tol3d.block import analytic_values, stated_block
-from tol3d.engines import Engine
-from tol3d.engines.exact import ExactEngine
-from tol3d.model import Backlash, Contributor, Measure, Model, Positions
-from tol3d.model.measure import at_one_position
+from tol3d.gearing.engines import Engine
+from tol3d.gearing.engines.exact import ExactEngine
+from tol3d.gearing.model import Backlash, Contributor, Measure, Model, Positions
+from tol3d.gearing.model.measure import at_one_position
+from tol3d.gearing.sensitivity import STEP_ASIDE, Slope, mean_slopes
+from tol3d.gearing.stack_up import Share, reference_form
 from tol3d.report.number import NOTHING, UNIT_SIGNS, degrees_text, percent_text
 from tol3d.report.sheet import Heading, Row, Sheet, titled
-from tol3d.sensitivity import STEP_ASIDE, Slope, mean_slopes
+from tol3d.study import draws as trials
+from tol3d.study.block import analytic_values, stated_block
 
 UM = 1000.0  # um in a mm
 ARCSEC = 648000 / math.pi  # arcsec in a rad

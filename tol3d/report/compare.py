@@ -16,7 +16,7 @@ from tol3d.report.ends import is_bounded
 from tol3d.report.heading import heading, reading_words
 from tol3d.report.number import NOTHING, UNIT_SIGNS, difference_text, share_text, value_text
 from tol3d.report.sheet import Heading, Row, Sheet, note
-from tol3d.result import Run
+from tol3d.runs.run import Run
 
 Summary = Mapping[str, Any]
 

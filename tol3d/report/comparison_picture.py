@@ -32,7 +32,7 @@ from tol3d.report.distribution import density_label, values_label
 from tol3d.report.heading import heading, position_of
 from tol3d.report.label import wrapped
 from tol3d.report.number import given_text, unit_suffix
-from tol3d.result import Run
+from tol3d.runs.run import Run
 
 Summary = Mapping[str, Any]
 

@@ -7,9 +7,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.outcome import status_column, told
 from tol3d.report.bars import Bars
-from tol3d.result import Run
+from tol3d.runs.outcome import status_column, told
+from tol3d.runs.run import Run
 
 Array = NDArray[np.float64]
 

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from tol3d.report.number import given_text, unit_suffix
-from tol3d.worst import TRAIN_KINDS
+from tol3d.runs.worst import TRAIN_KINDS
 
 QUANTITY_WORDS: Mapping[str, str] = {
     "normal_backlash": "normal backlash",

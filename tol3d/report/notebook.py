@@ -21,14 +21,14 @@ from tol3d.analyses import ShimPlan, ShimQuestion, length_of, shim_plan, stock_o
 from tol3d.analyses.shim import Rounding
 from tol3d.analyses.shimmed import Minimum
 from tol3d.errors import InputError
-from tol3d.model import Model
+from tol3d.gearing.model import Model
 from tol3d.report.assembly import Assembly, Which, assembly_of
 from tol3d.report.coefficients import Coefficient, coefficients_of
 from tol3d.report.trains.whole_trains import whole_trains
-from tol3d.result import Run, open_run
+from tol3d.runs.run import Run, open_run
 from tol3d.scene import Scene
 from tol3d.scene.edit import tolerance_lines
-from tol3d.study import AS_WRITTEN, Overrides, effective_model, load
+from tol3d.study.overrides import AS_WRITTEN, Overrides, effective_model, load
 
 if TYPE_CHECKING:
     import trimesh

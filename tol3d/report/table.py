@@ -35,7 +35,7 @@ from tol3d.report.sheet import Heading, Row, Sheet, note
 from tol3d.report.trains.stage import SUM_KEYS, Sums, sums_of
 from tol3d.report.trains.table import train_report
 from tol3d.report.verdict import ACCEPTED_PPM, verdict_report
-from tol3d.worst import TRAIN_KINDS
+from tol3d.runs.worst import TRAIN_KINDS
 
 Summary = Mapping[str, Any]
 

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.compiled import high_product, kernel, part
+from tol3d.numerics.compiled import high_product, kernel, part
 from tol3d.samplers.monte_carlo import DRAW_BITS, stream_key
 from tol3d.samplers.stream import Stream
 

@@ -8,7 +8,7 @@ from OCP.GeomAPI import GeomAPI_ProjectPointOnSurf
 from OCP.gp import gp_Pnt
 
 from tol3d.parts.named_solid import NamedSolid
-from tol3d.solids.door import Arrays
+from tol3d.solids.lazy import Arrays
 from tol3d.solids.triangulation import SAGITTA_MARGIN, triangulated
 
 Array = NDArray[np.float64]

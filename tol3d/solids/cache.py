@@ -10,11 +10,11 @@ from importlib.metadata import PackageNotFoundError, version
 
 import numpy as np
 
-from tol3d.cachefolder import FOLDER_VARIABLE, cache_folder, read_entry, write_entry
 from tol3d.gears import Gear
+from tol3d.numerics.cache_folder import FOLDER_VARIABLE, cache_folder, read_entry, write_entry
+from tol3d.numerics.sources import sources_of
 from tol3d.solids.bodies import Body
-from tol3d.solids.door import CAD, Arrays
-from tol3d.sources import sources_of
+from tol3d.solids.lazy import CAD, Arrays
 
 PACKAGES = ("cadquery", "cadquery-ocp", "numpy", "scipy")
 

@@ -1,4 +1,4 @@
-"""The CAD side of every kind of gear and body, and STEP. Import it through tol3d.solids.door.
+"""The CAD side of every kind of gear and body, and STEP. Import it through tol3d.solids.lazy.
 
 A kind registers here what its own file does.
 """
@@ -20,7 +20,7 @@ from tol3d.parts import arm, bevel_gear, shaft, spur_gear
 from tol3d.parts.named_solid import NamedSolid, refuse_cut_step
 from tol3d.solids import bevel_cad, body_cad, spur_cad
 from tol3d.solids.bodies import ArmBody, Body, ShaftBody
-from tol3d.solids.door import Arrays
+from tol3d.solids.lazy import Arrays
 from tol3d.solids.posed_gear import PosedPart
 
 Array = NDArray[np.float64]

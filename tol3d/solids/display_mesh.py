@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from tol3d.gears import Gear
 from tol3d.solids.bodies import Body
 from tol3d.solids.cache import cached
-from tol3d.solids.door import cad
+from tol3d.solids.lazy import cad
 
 Array = NDArray[np.float64]
 

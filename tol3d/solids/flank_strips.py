@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from tol3d.gears import LEFT, RIGHT, Flank, Gear
 from tol3d.solids.cache import cached
-from tol3d.solids.door import cad
+from tol3d.solids.lazy import cad
 
 Array = NDArray[np.float64]
 Triangles = NDArray[np.int64]

@@ -15,7 +15,7 @@ from OCP.TopAbs import TopAbs_REVERSED
 from tol3d.gears import LEFT, RIGHT, SpurGear
 from tol3d.parts.named_solid import BACK, NamedSolid
 from tol3d.parts.spur_gear import SIDES, build, build_tooth, flank_name
-from tol3d.solids.door import Arrays
+from tol3d.solids.lazy import Arrays
 from tol3d.solids.triangulation import DISPLAY_ANGLE, corners_of, edge_curve, largest_sagitta, mesh_of, nodes_of
 
 Array = NDArray[np.float64]

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Final
 
-from tol3d.solids.door import cad
+from tol3d.solids.lazy import cad
 from tol3d.solids.posed_gear import PosedPart
 
 COLOURS: Final = ("steelblue", "darkorange", "seagreen", "goldenrod", "slategray", "indianred")

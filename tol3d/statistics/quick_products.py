@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.compiled import kernel
+from tol3d.numerics.compiled import kernel
 
 Array = NDArray[np.float64]
 

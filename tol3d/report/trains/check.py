@@ -7,10 +7,10 @@ from numpy.typing import NDArray
 from rich.console import RenderableType
 from rich.text import Text
 
+from tol3d.gearing.model import Model, Train
+from tol3d.gearing.model.links import Parallel, Way, links_of
+from tol3d.gearing.model.trains import gravity_torque
 from tol3d.gears import LEFT
-from tol3d.model import Model, Train
-from tol3d.model.links import Parallel, Way, links_of
-from tol3d.model.trains import gravity_torque
 from tol3d.report.number import NOTHING
 from tol3d.report.sheet import Heading, Row, Sheet
 from tol3d.units import angle_text

@@ -8,7 +8,7 @@ from collections.abc import Iterator, Mapping
 from functools import cache
 from typing import Final
 
-from tol3d.model import Arm, Model, Reducer, Shaft
+from tol3d.gearing.model import Arm, Model, Reducer, Shaft
 from tol3d.solids import ArmBody, Collar, ShaftBody
 
 PITCH_SHARE: Final = 0.3  # of the smallest pitch diameter on a shaft, where none of its gears has a bore

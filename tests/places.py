@@ -1,0 +1,8 @@
+"""Where the tree's folders lie, for tests wherever they stand."""
+
+from pathlib import Path
+from typing import Final
+
+ROOT: Final = Path(__file__).resolve().parent.parent
+TESTS: Final = ROOT / "tests"
+SCENES: Final = ROOT / "scenes"

@@ -1,0 +1,95 @@
+"""The house: layers, doors of the heavy libraries, nothing imported inside functions, packages all shipped."""
+
+import ast
+import subprocess
+import sys
+import tomllib
+from pathlib import Path
+
+import pytest
+from places import ROOT
+
+PACKAGE_FOLDERS = {"tol3d": ROOT / "tol3d", "tol3d.parts": ROOT / "parts", "tol3d.scenes": ROOT / "scenes"}
+
+DOORS = {
+    "fcl": ("tol3d/gearing/engines/fcl.py",),
+    "cadquery": ("tol3d/solids/", "parts/"),
+    "OCP": ("tol3d/solids/", "parts/"),
+    "trimesh": ("tol3d/solids/", "parts/", "tol3d/report/"),
+    "pyvista": ("tol3d/report/",),
+    "vtk": ("tol3d/report/",),
+    "vtkmodules": ("tol3d/report/",),
+    "matplotlib": ("tol3d/report/",),
+    "ruamel": ("tol3d/scene/",),
+    "yaml": (),
+    "joblib": ("tol3d/execution/pools.py",),
+    "dask": ("tol3d/execution/pools.py",),
+    "distributed": ("tol3d/execution/pools.py",),
+    "pyarrow": ("tol3d/runs/parquet.py",),
+    "rich": ("tol3d/cli/", "tol3d/report/"),
+    "typer": ("tol3d/cli/",),
+    "pandas": ("tol3d/runs/run.py", "tol3d/runs/frame.py"),
+}
+"""Which files may import each heavy library."""
+
+MAY_IMPORT_INSIDE_FUNCTIONS = ("tol3d/cli/",)
+
+
+def python_files() -> list[Path]:
+    return sorted(path for folder in PACKAGE_FOLDERS.values() for path in folder.rglob("*.py"))
+
+
+def imported_names(tree: ast.AST) -> list[str]:
+    names = [alias.name for node in ast.walk(tree) if isinstance(node, ast.Import) for alias in node.names]
+    return names + [node.module for node in ast.walk(tree) if isinstance(node, ast.ImportFrom) and node.module]
+
+
+def test_layers_are_kept() -> None:
+    done = subprocess.run(
+        [Path(sys.executable).with_name("lint-imports"), "--no-cache"], cwd=ROOT, capture_output=True, text=True
+    )
+    assert done.returncode == 0, done.stdout + done.stderr
+
+
+@pytest.mark.parametrize("library", DOORS)
+def test_a_heavy_library_has_one_door(library: str) -> None:
+    strangers = [
+        str(path.relative_to(ROOT))
+        for path in python_files()
+        if any(name.split(".")[0] == library for name in imported_names(ast.parse(path.read_text("utf-8"))))
+        and not str(path.relative_to(ROOT)).startswith(DOORS[library] or ("nowhere",))
+    ]
+    assert strangers == []
+
+
+def test_imports_stand_at_the_top() -> None:
+    hidden = [
+        f"{path.relative_to(ROOT)}:{node.lineno}"
+        for path in python_files()
+        if not str(path.relative_to(ROOT)).startswith(MAY_IMPORT_INSIDE_FUNCTIONS)
+        for function in ast.walk(ast.parse(path.read_text("utf-8")))
+        if isinstance(function, ast.FunctionDef | ast.AsyncFunctionDef)
+        for node in ast.walk(function)
+        if isinstance(node, ast.Import | ast.ImportFrom)
+    ]
+    assert hidden == []
+
+
+def test_every_package_is_shipped() -> None:
+    declared = set(tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["tool"]["setuptools"]["packages"])
+    found = {
+        ".".join((name, *init.parent.relative_to(folder).parts))
+        for name, folder in PACKAGE_FOLDERS.items()
+        for init in folder.rglob("__init__.py")
+    }
+    assert declared == found
+
+
+def test_strict_types() -> None:
+    done = subprocess.run([sys.executable, "-m", "mypy"], cwd=ROOT, capture_output=True, text=True)
+    assert done.returncode == 0, done.stdout + done.stderr
+
+
+def test_no_lint() -> None:
+    done = subprocess.run([sys.executable, "-m", "ruff", "check", "."], cwd=ROOT, capture_output=True, text=True)
+    assert done.returncode == 0, done.stdout + done.stderr

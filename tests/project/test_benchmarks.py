@@ -1,0 +1,142 @@
+"""The benchmarks run, a few trials each, and what README's speeds are compared with measures the right thing."""
+
+import ast
+import importlib
+import re
+import tomllib
+from collections.abc import Mapping
+from pathlib import Path
+
+import pytest
+import studies
+import whole_gears
+from places import ROOT
+
+from tol3d import load_scene
+from tol3d.gearing.model import Backlash
+from tol3d.study.overrides import Overrides, effective_model
+
+FOLDER = ROOT / "benchmarks"
+NUMBER = r"([\d,]*\.?\d+)"
+
+FEW: Mapping[str, tuple[str, ...]] = {
+    "convergence": ("--studies", "2", "--largest", "1024"),
+    "fcl_speed": ("--trials", "10", "--naive", "1", "--rounds", "1"),
+    "memory": ("--trials", "100"),
+    "stages": ("--trials", "1024", "--rounds", "1"),
+    "startup": ("--runs", "1", "--ways", "without both", "--packages", "colorsys", "no_such_package"),
+    "studies": ("--naive", "1", "--rounds", "1", "--most", "100", "--warm", "--systems", "spur pair"),
+    "trains": ("--rounds", "1", "--contacts", "400", "--trains", "split torque"),
+}
+"""Arguments with which each benchmark takes seconds."""
+
+ROWS: Mapping[str, tuple[str, ...]] = {
+    "convergence": tuple(
+        rf"sigma driver at one position +{sampler} +order -?[\d.]+ +at 1024: {NUMBER} um"
+        for sampler in ("Monte Carlo", "Latin hypercube", "scrambled Sobol'")
+    ),
+    "fcl_speed": (
+        rf"strips, normal backlash +{NUMBER} trials/s",
+        rf"strips, every measure +{NUMBER} trials/s",
+        rf"naive, whole gears +{NUMBER} trials/s",
+        rf"strips, mean section, one tooth +{NUMBER} trials/s",
+        rf"strips, whole face, all teeth +{NUMBER} trials/s",
+    ),
+    "memory": (rf"100 trials, exact: +{NUMBER} MB",),
+    "stages": (rf"draws +│ +{NUMBER} │ +{NUMBER}", rf"statistics, features included +│ +{NUMBER} │ +{NUMBER}"),
+    "startup": (
+        rf"without both +{NUMBER} s",
+        rf"tol3d --help +{NUMBER} s",
+        rf" numba +{NUMBER} ms",
+        rf"colorsys +{NUMBER} ms",
+        "no_such_package +(not installed)",
+    ),
+    "studies": (
+        rf"naive way, spur pair: {NUMBER} trials/s",
+        rf"spur pair │ exact +│ +100 │ +1 │ statistics │ +{NUMBER}",
+        rf"spur pair │ exact +│ +100 │ +2 │ statistics │ +{NUMBER}",
+        rf"spur pair │ exact +│ +100 │ +2 │ kept +│ +{NUMBER}",
+        rf"spur pair │ fcl +│ +100 │ +1 │ statistics │ +{NUMBER}",
+        rf"spur pair │ analytic +│ +100 │ +2 │ statistics │ +{NUMBER}",
+    ),
+    "trains": (rf"split torque │ +100 │ +1 │ +{NUMBER}", rf"split torque │ +200 │ +2 │ +{NUMBER}"),
+}
+"""What each prints then: a split train has four meshes, so 400 contacts are 100 trials."""
+
+
+def benchmarks() -> list[str]:
+    """Names of the files that are run."""
+    return sorted(path.stem for path in FOLDER.glob("*.py") if "\ndef main(" in path.read_text("utf-8"))
+
+
+@pytest.mark.parametrize("name", benchmarks())
+def test_a_benchmark_runs_and_prints_every_row(
+    name: str, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("OMP_NUM_THREADS", "1")  # what fcl_speed sets where nothing is said, for this test only
+    out = tmp_path / "convergence.png"
+    more = ("--out", str(out)) if name == "convergence" else ()
+    importlib.import_module(name).main([*FEW[name], *more])
+    printed = capsys.readouterr().out
+    for row in ROWS[name]:
+        found = re.search(row, printed)
+        assert found, f"no row {row!r} in\n{printed}"
+        assert all(float(number.replace(",", "")) > 0 for number in found.groups() if number != "not installed")
+    assert out.exists() == bool(more)
+
+
+def test_whole_gears_find_the_backlash_of_thinned_teeth() -> None:
+    """(Δs1 + Δs2) cos α of the means (24.5 and 26.5 µm thinner) at the nominal centre distance.
+
+    Chords lie inside the flanks and make each contact late by the chord errors of both gears at most; each contact is
+    found with a gap of GAP_XTOL at most.
+    """
+    model = effective_model(load_scene(studies.SCENES / "spur_pair.yaml"), Overrides())
+    model = whole_gears.with_mean_thickness(model)
+    gears = whole_gears.WholeGears(model)
+    found = whole_gears.nominal_free_turn(gears, model) * 110 * 2.5 / 2 * 0.9396926207859084  # base radius, cos 20°
+    expected = (0.0245 + 0.0265) * 0.9396926207859084
+    assert gears.chord_error < 0.0015
+    assert -2 * whole_gears.GAP_XTOL < found - expected < 2 * gears.chord_error
+
+
+@pytest.mark.parametrize("name", studies.SYSTEMS)
+def test_systems_are_read_as_they_say(name: str, tmp_path: Path) -> None:
+    """Every measure of the written scene: what the table's row says is what is measured."""
+    expected = {
+        "bevel pair, mean section, one tooth": ("section", "section", "driven"),
+        "bevel pair, mean section, all teeth": ("section", "section", "all"),
+        "bevel pair, whole face, all teeth": ("face", "face", "all"),
+        "spur pair": ("face", "face", "all"),
+    }
+    scene = studies.scene_of(studies.SYSTEMS[name], tmp_path)
+    model = effective_model(load_scene(scene), Overrides())
+    for measure in model.measures:
+        assert isinstance(measure.kind, Backlash)
+        reading = measure.kind.reading
+        assert (reading.contact, reading.gap, reading.teeth) == expected[name]
+
+
+def test_no_ignore_hides_an_attribute() -> None:
+    """A comment that silences mypy about an attribute outlives the attribute: a benchmark stopped that way."""
+    hiding = [
+        f"{path.relative_to(ROOT)}:{number}"
+        for folder in ("tol3d", "parts", "benchmarks", "tests")
+        for path in sorted((ROOT / folder).rglob("*.py"))
+        for number, line in enumerate(path.read_text("utf-8").splitlines(), 1)
+        for codes in re.findall(r"[#] type: ignore(\[[\w, -]*\])?", line)
+        if not codes or "attr-defined" in codes or "union-attr" in codes
+    ]
+    assert hiding == []
+
+
+def test_benchmarks_are_typed() -> None:
+    """Every function says what it takes and gives; mypy, which the suite runs, then checks them strictly."""
+    untyped = [
+        f"{path.name}:{node.lineno} {node.name}"
+        for path in sorted(FOLDER.glob("*.py"))
+        for node in ast.walk(ast.parse(path.read_text("utf-8")))
+        if isinstance(node, ast.FunctionDef) and node.returns is None
+    ]
+    assert untyped == []
+    assert "benchmarks" in tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["tool"]["mypy"]["files"]

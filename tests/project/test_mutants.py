@@ -1,0 +1,110 @@
+"""The tests keep their teeth: each mutant of tests/mutants.toml, a fault put into the program, is found by its tests.
+
+A mutant is a text in a file, another in its place, and the tests that must fail then. They run on a copy of the tree,
+never on the tree itself. Where a mutant's text is gone because the program has changed, put the fault into the new
+lines by hand, see its tests fail, and write the new text down; drop the entry only where the fault cannot be made any
+more.
+"""
+
+import compileall
+import os
+import re
+import shutil
+import subprocess
+import sys
+import tomllib
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from py_compile import PycInvalidationMode
+
+import pytest
+from places import ROOT
+
+LIST = ROOT / "tests" / "mutants.toml"
+FAILED, PASSED = 1, 0  # pytest's exit codes; others mean that it could not run
+HANGS = 900  # s; a guard against waiting for ever, no claim
+COPIED = ("tol3d", "parts", "scenes", "tests", "docs", "README.md", "pyproject.toml")
+
+
+@dataclass(frozen=True)
+class Mutant:
+    """A fault: what it is, where, which text stands for which, and the tests that must fail of it."""
+
+    fault: str
+    file: str
+    old: str
+    new: str
+    tests: tuple[str, ...]
+
+
+MUTANTS = [
+    Mutant(**{**entry, "tests": tuple(entry["tests"])}) for entry in tomllib.loads(LIST.read_text("utf-8"))["mutant"]
+]
+
+
+class Tree:
+    """A copy of the tree, in which Python finds tol3d, its parts and its scenes."""
+
+    def __init__(self, folder: Path) -> None:
+        self.folder = folder
+        for name in COPIED:
+            ignored = shutil.ignore_patterns("__pycache__")
+            source, target = ROOT / name, folder / name
+            shutil.copytree(source, target, ignore=ignored) if source.is_dir() else shutil.copy(source, target)
+        for name in ("parts", "scenes"):  # they are installed inside the package
+            (folder / "tol3d" / name).symlink_to(Path("..") / name)
+        (folder / "cache").mkdir(mode=0o700)
+        for name in ("tol3d", "parts", "tests"):
+            # by their content: a mutant is written within the second that times of files are compared by
+            compileall.compile_dir(folder / name, quiet=2, invalidation_mode=PycInvalidationMode.CHECKED_HASH)
+
+    def pytest(self, *tests: str) -> subprocess.CompletedProcess[str]:
+        """Run tests there, slow ones too."""
+        more = {"PYTHONPATH": str(self.folder), "PYTHONDONTWRITEBYTECODE": "1"}
+        if "TOL3D_CACHE" not in os.environ:
+            more["TOL3D_CACHE"] = str(self.folder / "cache")
+        options = ("-n", "0", "-q", "-p", "no:cacheprovider", "--tb=line", "-m", "slow or not slow")
+        command = [sys.executable, "-m", "pytest", *options, *tests]
+        environment = os.environ | more
+        return subprocess.run(command, cwd=self.folder, env=environment, capture_output=True, text=True, timeout=HANGS)
+
+
+@pytest.fixture(scope="module")
+def tree(tmp_path_factory: pytest.TempPathFactory) -> Tree:
+    """The copy, on which every test of the list passes as long as nothing is wrong."""
+    made = Tree(tmp_path_factory.mktemp("mutants"))
+    done = made.pytest(*sorted({test for mutant in MUTANTS for test in mutant.tests}))
+    assert done.returncode == PASSED, done.stdout[-3000:]
+    return made
+
+
+@pytest.fixture
+def mutated(tree: Tree, request: pytest.FixtureRequest) -> Iterator[tuple[Tree, Mutant]]:
+    """The copy with one fault in it."""
+    mutant: Mutant = request.param
+    path = tree.folder / mutant.file
+    text = path.read_text("utf-8")
+    path.write_text(text.replace(mutant.old, mutant.new), "utf-8")
+    yield tree, mutant
+    path.write_text(text, "utf-8")
+
+
+@pytest.mark.parametrize("mutant", MUTANTS, ids=lambda mutant: mutant.fault)
+def test_a_mutant_s_text_is_there_once_and_its_tests_too(mutant: Mutant) -> None:
+    count = (ROOT / mutant.file).read_text("utf-8").count(mutant.old)
+    told = f"{LIST.name}, {mutant.fault!r}; what to do then says {Path(__file__).name}"
+    assert count == 1, f"expected its text once in {mutant.file}, found it {count} times: {told}"
+    assert mutant.old != mutant.new
+    for test in mutant.tests:
+        file, _, name = test.partition("::")
+        defined = re.search(rf"^def {name.partition('[')[0]}\(", (ROOT / file).read_text("utf-8"), re.MULTILINE)
+        assert defined, f"there is no test {test}: {told}"
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("mutated", MUTANTS, ids=lambda mutant: mutant.fault, indirect=True)
+def test_a_mutant_is_killed(mutated: tuple[Tree, Mutant]) -> None:
+    tree, mutant = mutated
+    done = tree.pytest(*mutant.tests)
+    assert done.returncode == FAILED, f"{mutant.fault}: survives\n{done.stdout[-3000:]}"

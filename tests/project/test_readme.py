@@ -1,0 +1,88 @@
+"""What the README shows is what runs."""
+
+import os
+import re
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from places import ROOT
+
+from tol3d import load_scene, run_scene
+
+README = (ROOT / "README.md").read_text("utf-8")
+
+
+def indented_block(first_line: str) -> str:
+    """The indented block of the README that begins with a line."""
+    start = README.index(f"    {first_line}")
+    lines = README[start:].splitlines()
+    count = next(k for k, line in enumerate(lines) if line and not line.startswith("    "))
+    return "\n".join(line[4:] for line in lines[:count])
+
+
+def test_the_two_commands_stand_at_the_top() -> None:
+    top = README[:2000]
+    assert "python3 -m venv .venv && .venv/bin/pip install -e . && .venv/bin/tol3d run scenes/spur_pair.yaml" in top
+    assert 'python3 -m venv .venv && .venv/bin/pip install -e ".[test]" && .venv/bin/pytest' in top
+
+
+def test_its_python_runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    names: dict[str, Any] = {}
+    exec(indented_block("import tol3d"), names)
+    columns, again = names["columns"], names["again"]
+    assert again.geometric["normal backlash"] == np.min(columns["geometric:normal backlash"])
+
+
+def test_its_scene_runs(tmp_path: Path) -> None:
+    scene = tmp_path / "scene.yaml"
+    scene.write_text(indented_block("scene: spur pair at the drive end"), "utf-8")
+    load_scene(scene)
+    assert run_scene(scene, out=tmp_path / "run").summary["status"]["ok"] == 2000
+
+
+NUMBER = re.compile(r"\d+(?:\.\d+)?")
+WIDTH = 120  # characters of the README's block
+
+
+def differs(shown: str, printed: str) -> bool:
+    """Whether two lines differ in a word, or in a number by more than one of its last digit.
+
+    That much rounding may do on another machine, whose geometric columns have other last bits.
+    """
+    if NUMBER.sub("#", shown) != NUMBER.sub("#", printed):
+        return True
+    for mine, its in zip(NUMBER.findall(shown), NUMBER.findall(printed), strict=True):
+        digits = len(mine.partition(".")[2])
+        if digits != len(its.partition(".")[2]) or abs(float(mine) - float(its)) > 1.001 * 10**-digits:
+            return True
+    return False
+
+
+def test_the_block_it_shows_is_what_its_first_command_prints(tmp_path: Path) -> None:
+    """Line by line, in their order; the README may leave out lines. What is told of time and place is not shown there.
+
+    Where this fails because the tables have changed, paste what the command prints at a width of 120 characters.
+    """
+    command = re.search(r"\.venv/bin/tol3d (run scenes/\S+)\n", README)
+    assert command is not None
+    arguments = [*command[1].split(), "--out", str(tmp_path / "run"), "--no-picture"]
+    done = subprocess.run(
+        [sys.executable, "-m", "tol3d.cli", *arguments],
+        cwd=ROOT,
+        env=os.environ | {"COLUMNS": str(WIDTH), "PYTHONUTF8": "1"},
+        capture_output=True,
+        encoding="utf-8",
+        check=True,
+        timeout=600,  # s; a guard against hanging, not a claim
+    )
+    printed = iter(line.rstrip() for line in done.stdout.splitlines())
+    block = [line.rstrip() for line in indented_block("spur pair at the drive end · ").splitlines() if line.strip()]
+    assert any(line.startswith("mean ") for line in block)
+    for line in block:
+        found = next((other for other in printed if not differs(line, other)), None)
+        assert found is not None, f"README shows, but `tol3d {command[1]}` does not print next: {line!r}"

@@ -1,0 +1,188 @@
+"""The verdict at the terminal: a row a measure, by a rule that can be checked, and how much is printed beside it."""
+
+import io
+from pathlib import Path
+
+import numpy as np
+import pytest
+from places import SCENES
+from rich.console import Console
+from scipy import stats
+
+from tol3d import Overrides, Run, run_scene
+from tol3d.report.table import MOST_TABLES, Detail, run_report
+from tol3d.report.verdict import ACCEPTED_PPM, Judged, all_ok, verdict_table
+
+SPUR = SCENES / "spur_pair.yaml"
+
+
+def printed(renderable, width: int = 200) -> list[str]:
+    console = Console(file=io.StringIO(), width=width)
+    console.print(renderable)
+    return console.file.getvalue().splitlines()
+
+
+def spur(folder: Path, limits: str, trials: int = 4000, centre: float = 172.5) -> Run:
+    """The spur pair with other limits of its normal backlash, N(53.4, 7.2) um."""
+    text = SPUR.read_text("utf-8")
+    for old, new in (
+        ("    lower_limit: 15 um  # the paper's lower limit\n", limits),
+        ("centre_distance: 172.5 mm", f"centre_distance: {centre} mm"),
+        ("witness: 20", "witness: 0"),
+    ):
+        assert text.count(old) == 1, old
+        text = text.replace(old, new)
+    folder.mkdir(exist_ok=True)
+    (folder / "scene.yaml").write_text(text, "utf-8")
+    return run_scene(folder / "scene.yaml", overrides=Overrides(trials=trials), out=folder / "run")
+
+
+def measure(below: int, trials: int, limit: float | None = 15.0) -> dict:
+    ci = stats.binomtest(below, trials).proportion_ci(0.95, "exact")
+    sample = {"out_ppm": 1e6 * below / trials, "out_ppm_95": [1e6 * ci.low, 1e6 * ci.high]}
+    return {"take": "value", "geometric": sample, "lower_limit": limit, "upper_limit": None}
+
+
+@pytest.mark.parametrize(
+    ("below", "trials", "verdict"),
+    [
+        (0, 1364, "too few trials"),  # 1 - 0.025^(1/n) falls below 0.0027 at n = 1365
+        (0, 1365, "OK"),
+        (540, 200_000, "too few trials"),  # exactly what is accepted: no number of trials tells
+        (485, 200_000, "OK"),  # 55 is 2.4 standard errors of sqrt(540)
+        (595, 200_000, "NOT OK"),
+        (1, 20, "too few trials"),
+        (5, 20, "NOT OK"),
+    ],
+)
+def test_a_verdict_is_told_where_the_whole_interval_is_on_one_side(below: int, trials: int, verdict: str) -> None:
+    assert pytest.approx(2e6 * stats.norm.sf(3), rel=1e-3) == ACCEPTED_PPM
+    assert Judged.of(measure(below, trials)).verdict == verdict
+
+
+def test_verdicts_are_wrong_for_one_study_in_twenty_at_most() -> None:
+    """Of measures that have just as much out as is accepted, by the binomial law of 5000 trials: no sampling."""
+    counts = np.arange(40)
+    wrong = [Judged.of(measure(int(k), 5000)).verdict != "too few trials" for k in counts]
+    assert stats.binom(5000, 0.0027).pmf(counts) @ wrong <= 0.05
+    assert stats.binom(5000, 0.0027).sf(39) < 1e-6
+
+
+def test_without_limits_only_failed_trials_are_judged() -> None:
+    assert Judged.of(measure(0, 20, limit=None)).verdict == "no limits"
+    assert Judged.of(measure(5, 20, limit=None)).verdict == "NOT OK"
+
+
+def test_a_study_that_cannot_bound_its_share_has_too_few_trials() -> None:
+    own = measure(3, 4096)
+    own["geometric"]["out_ppm_95"] = None  # of replicates with few trials out
+    assert Judged.of(own).verdict == "too few trials"
+
+
+def test_a_row_has_what_is_counted_of_the_trials(tmp_path: Path) -> None:
+    run = spur(tmp_path, "    lower_limit: 45 um\n    upper_limit: 70 um\n")
+    values = run.columns("geometric:normal backlash")["geometric:normal backlash"]
+    out = int(((values < 45) | (values > 70)).sum())
+    ci = stats.binomtest(out, 4000).proportion_ci(0.95, "exact")
+    (row,) = [line for line in printed(verdict_table(run.summary)) if line.startswith("normal backlash")]
+    mean, sigma = values.mean(), values.std(ddof=1)
+    ends = "  ".join(f"{value:.1f} µm" for value in (mean, mean - 3 * sigma, mean + 3 * sigma))
+    shares = [f"{100 * share:.4g} %" for share in (out / 4000, ci.low, ci.high)]
+    ppk = min(mean - 45, 70 - mean) / 3 / sigma
+    assert row.split("  ", 1)[1].strip() == (
+        f"NOT OK   {ends}  45 to 70 µm  {shares[0]} ({shares[1]} to {shares[2]})  {ppk:.2f}"
+    )
+    (other,) = [line for line in printed(verdict_table(run.summary)) if line.startswith("lost motion")]
+    assert other.split()[2] == "–"  # no limits, no verdict
+
+
+def test_failed_builds_are_out_of_a_measure_that_has_no_limits(tmp_path: Path) -> None:
+    run = spur(tmp_path, "", centre=172.442)
+    status = run.summary["measures"]["lost motion"]["status"]
+    share = 100 * status["interferes"] / 4000
+    assert share > 2
+    (row,) = [line for line in printed(verdict_table(run.summary)) if line.startswith("lost motion")]
+    assert "NOT OK" in row
+    assert f"{share:.4g} %" in row
+    assert not all_ok(run.summary, ACCEPTED_PPM)
+    assert all_ok(run.summary, 50_000)
+
+
+def test_a_curve_and_a_bounded_measure_say_what_their_ends_are(tmp_path: Path) -> None:
+    each = "  {0}: {{kind: normal_backlash, of: gear pair, over: turn, positions: 6, take: {1}, lower_limit: 40 um}}\n"
+    text = SPUR.read_text("utf-8").replace(
+        "measures:\n  normal", f"measures:\n{each.format('curve', 'curve')}  normal", 1
+    )
+    (tmp_path / "scene.yaml").write_text(text, "utf-8")
+    run = run_scene(tmp_path / "scene.yaml", overrides=Overrides(trials=500, witness=0), out=tmp_path / "run")
+    curve = run.columns("geometric:curve")["geometric:curve"]
+    (row,) = [line for line in printed(verdict_table(run.summary)) if line.startswith("curve")]
+    low = (curve.mean(axis=0) - 3 * curve.std(axis=0, ddof=1)).min()
+    high = (curve.mean(axis=0) + 3 * curve.std(axis=0, ddof=1)).max()
+    assert f"–  {low:.1f} µm  {high:.1f} µm" in row
+    assert f"{100 * (curve < 40).any(axis=1).mean():.4g} %" in row
+    assert "of a curve over its positions" in " ".join(printed(run_report(run.summary, Detail.VERDICT)))
+
+
+# how much is printed --------------------------------------------------------------------------------------------------
+
+
+def test_many_measures_are_a_row_each_and_their_tables_come_when_asked(tmp_path: Path) -> None:
+    study = Overrides(trials=200, witness=0)
+    run = run_scene(SCENES / "robot_shoulder.yaml", overrides=study, out=tmp_path / "run")
+    assert len(run.summary["measures"]) > MOST_TABLES
+    assert Detail.fitting(run.summary) is Detail.TRAINS
+    short, whole = (printed(run_report(run.summary, each), 120) for each in (Detail.TRAINS, Detail.MEASURES))
+    assert len(short) < 60 < 200 < len(whole)
+    for name in run.summary["measures"]:
+        assert any(line.startswith(name) for line in short), name
+    assert any("train shoulder swing" in line for line in short)
+    assert any("tables of every measure: -v" in line for line in short)
+    shares = "squares of the ranges that each contributor alone"
+    assert sum(shares in line for line in whole) == 1  # once for all measures
+    assert not any(shares in line for line in short)
+
+
+def test_quiet_prints_the_verdict_and_verbose_every_table(tol3d, tmp_path: Path) -> None:
+    arguments = ("run", "robot_shoulder", "--trials", "100", "--witness", "0", "--no-picture")
+    lengths = {}
+    for said in ((), ("-q",), ("-v",)):
+        code, out, _ = tol3d(*arguments, *said, "--out", str(tmp_path / "run"))
+        assert code == 0
+        lengths[said] = len(out.splitlines())
+        assert "verdict" in out
+        assert ("run: " in out) == (said != ("-q",))
+    assert lengths["-q",] < lengths[()] < lengths["-v",]
+    code, _, err = tol3d(*arguments, "-q", "-v")
+    assert code == 2
+    assert "leave out one of them" in err
+
+
+def test_the_exit_code_follows_the_accepted_share_where_one_is_said(tol3d, tmp_path: Path) -> None:
+    """Below 40 um lie 3.1 % of N(53.4, 7.2): of 4000 trials 125, and 88 to 161 but for one seed in a thousand."""
+    text = (
+        SPUR.read_text("utf-8").replace("lower_limit: 15 um", "lower_limit: 40 um").replace("witness: 20", "witness: 0")
+    )
+    (tmp_path / "scene.yaml").write_text(text, "utf-8")
+    arguments = (
+        "run",
+        str(tmp_path / "scene.yaml"),
+        "--trials",
+        "4000",
+        "--no-picture",
+        "--out",
+        str(tmp_path / "run"),
+    )
+    for said, code in (
+        ((), 0),
+        (("--accept", "1 %"), 0),
+        (("--fail-on-limits",), 1),
+        (("--fail-on-limits", "--accept", "1 %"), 1),
+        (("--fail-on-limits", "--accept", "3.1 %"), 1),  # too few trials to say
+        (("--fail-on-limits", "--accept", "50000 ppm"), 0),
+    ):
+        assert tol3d(*arguments, *said)[0] == code, said
+    for wrong in ("0.27", "-1 %", "100 %", "few"):
+        code, _, err = tol3d(*arguments, "--accept", wrong)
+        assert code == 2
+        assert "expected a share of the trials" in err

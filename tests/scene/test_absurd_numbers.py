@@ -1,0 +1,153 @@
+"""Numbers that no scene means: each is refused with its place and what would do, or simulated; none is a fault."""
+
+import random
+import re
+import shutil
+import warnings
+from collections.abc import Iterator
+from io import StringIO
+from pathlib import Path
+from typing import Any
+
+import pytest
+from places import SCENES
+from rich.console import Console
+from ruamel.yaml import YAML
+
+from tol3d import InputError, Overrides, run_scene
+from tol3d.errors import SceneError
+from tol3d.report import check_report, run_report
+from tol3d.simulate import effective_model, load
+from tol3d.units import FACTORS, LARGEST, LEAST_POSITIVE
+
+NUMBER_UNIT = re.compile(r"\s*[+-]?[0-9.]+(?:[eE][+-]?[0-9]+)?\s+(\S+)\s*")
+NUMBERS = ("1e300", "-1e300", "1e-300", "1e12", "-1e9", "1e6", "1e-12", "0")
+WHOLE = (10**30, 10**9, 10**6, 0, -1)
+REAL = (1e300, -1e300, 1e-300, 1e9, 0.0)
+KeyPath = tuple[str | int, ...]
+
+
+def leaves(value: Any, path: KeyPath = ()) -> Iterator[tuple[KeyPath, Any]]:
+    if isinstance(value, dict):
+        for key, item in value.items():
+            yield from leaves(item, (*path, key))
+    elif isinstance(value, list):
+        for index, item in enumerate(value):
+            yield from leaves(item, (*path, index))
+    else:
+        yield path, value
+
+
+def absurd(value: Any) -> list[Any]:
+    """What may stand in a number's place."""
+    if isinstance(value, str) and (match := NUMBER_UNIT.fullmatch(value)):
+        return [f"{number} {match[1]}" for number in NUMBERS]
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        return []
+    return list(WHOLE if isinstance(value, int) else REAL)
+
+
+def edited(name: str, share: float) -> Iterator[tuple[KeyPath, Any, str]]:
+    """Scenes with one absurd number, the same ones every time."""
+    text, chosen = (SCENES / f"{name}.yaml").read_text("utf-8"), random.Random(name)
+    for path, value in leaves(_read(text)):
+        for wrong in absurd(value):
+            if chosen.random() < share:
+                data = at = _read(text)
+                for key in path[:-1]:
+                    at = at[key]
+                at[path[-1]] = wrong
+                stream = StringIO()
+                YAML().dump(data, stream)
+                yield path, wrong, stream.getvalue()
+
+
+def _read(text: str) -> Any:
+    return YAML(typ="safe", pure=True).load(text)
+
+
+def printed(report: Any) -> str:
+    page = StringIO()
+    Console(file=page, width=120, markup=False).print(report)
+    return page.getvalue()
+
+
+@pytest.mark.parametrize("name", ["spur_pair", "every_field", "every_bevel_field", "robot_shoulder_swing"])
+def test_an_absurd_number_is_refused_or_checked(name: str, tmp_path: Path) -> None:
+    for file in SCENES.glob("*.csv"):
+        shutil.copy(file, tmp_path)
+    said, checked = [], 0
+    for _, _, text in edited(name, 0.15):
+        scene = tmp_path / "scene.yaml"
+        scene.write_text(text, "utf-8")
+        try:
+            printed(check_report(effective_model(load(scene))))
+            checked += 1
+        except InputError as error:  # anything else would be a fault
+            said.append(str(error))
+    assert checked > 5
+    assert len(said) > 15
+    assert all(text.startswith(str(tmp_path / "scene.yaml")) for text in said)
+
+
+@pytest.mark.slow
+@pytest.mark.filterwarnings("ignore")
+@pytest.mark.parametrize("engine", ["exact", "analytic"])
+@pytest.mark.parametrize("name", ["spur_pair", "every_field", "every_bevel_field", "robot_shoulder_swing"])
+def test_an_absurd_number_is_refused_or_simulated(name: str, engine: str, tmp_path: Path) -> None:
+    for file in SCENES.glob("*.csv"):
+        shutil.copy(file, tmp_path)
+    simulated = 0
+    for _, _, text in edited(name, 0.5):
+        scene = tmp_path / "scene.yaml"
+        scene.write_text(text, "utf-8")
+        study = Overrides(trials=3, engine=engine, witness=0)
+        try:
+            run = run_scene(scene, overrides=study, out=tmp_path / "run", force=True)
+            printed(run_report(run.summary))
+            simulated += 1
+        except InputError:
+            continue
+    assert simulated > 5
+
+
+ABSURD = {
+    "face_width": ("face_width: 20 mm", "face_width: 1e300 mm", "parts.pinion.face_width", "1e+06 mm"),
+    "module": ("module: 2.5 mm", "module: 1e300 mm", "parts.pinion.module", "1e+06 mm"),
+    "fine module": ("module: 2.5 mm", "module: 1e-300 mm", "parts.pinion.module", "at least 1e-09 mm"),
+    "teeth": ("teeth: 28", "teeth: 1000000000", "parts.pinion.teeth", "at most 10000"),
+    "distance": ("centre_distance: 172.5 mm", "centre_distance: 1e9 m", "moves.gear pair.centre_distance", "1e+06 mm"),
+    "law": ("scale: 4.5 um", "scale: 1e200 um", "tolerances.pinion eccentricity.distribution.scale", "1e+06 mm"),
+    "limit": ("lower_limit: 15 um", "lower_limit: -1e100 m", "measures.normal backlash.lower_limit", "1e+06 mm"),
+    "trials": ("trials: 2000", f"trials: {10**30}", "study.trials", "at most 1e+10"),
+    "seed": ("seed: 1", f"seed: {10**30}", "study.seed", "at most"),
+}
+
+
+@pytest.mark.parametrize("what", ABSURD)
+def test_an_absurd_number_is_refused_with_its_place_and_what_would_do(what: str, tmp_path: Path) -> None:
+    old, new, place, expected = ABSURD[what]
+    text = (SCENES / "spur_pair.yaml").read_text("utf-8")
+    assert old in text
+    scene = tmp_path / "scene.yaml"
+    scene.write_text(text.replace(old, new, 1), "utf-8")
+    with pytest.raises(SceneError) as caught:
+        load(scene)
+    said = str(caught.value)
+    assert place in said
+    assert expected in said
+
+
+def test_a_limit_as_a_run_s_option_is_refused_alike(tol3d: Any, tmp_path: Path) -> None:
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        code, _, err = tol3d("run", "spur_pair", "--trials", str(10**30), "--out", str(tmp_path / "run"))
+    assert code == 2
+    assert "trials" in err
+    assert not (tmp_path / "run").exists()
+
+
+def test_bounds_of_quantities_stay_finite_in_products() -> None:
+    # volumes and fourth powers of the largest length, and the curvature of the least, are far from a double's ends
+    assert LARGEST["length"] ** 4 / LEAST_POSITIVE**2 < 1e300
+    assert LARGEST.keys() == FACTORS.keys()

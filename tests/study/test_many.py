@@ -1,0 +1,139 @@
+"""Scenes of very many tolerances or teeth: what they take goes with their number, not with its square."""
+
+import math
+import tracemalloc
+from pathlib import Path
+
+import numpy as np
+import pytest
+from conftest import SPUR_PAIR
+
+from tol3d.gearing.build import build
+from tol3d.gearing.engines.exact.assembly import assembly_of
+from tol3d.gearing.model import Model, model_from_scene
+from tol3d.gears import SpurGear
+from tol3d.scene import load_scene
+from tol3d.simulate import Execution, run_scene
+from tol3d.solids import spur_cad
+from tol3d.solids.spur_cad import sample_flanks
+from tol3d.study.block import block_trials, drawn_block
+from tol3d.study.regressors import MOST_REGRESSED, acting, feature_groups, regressed
+from tol3d.study.tally import PILOT_TRIALS, Tally, grids_of
+from tol3d.study.task import Task, installed_versions
+
+HEAD = """scene: many
+parts:
+  pinion: {kind: spur_gear, teeth: 28, module: 2.5 mm, pressure_angle: 20 deg, face_width: 20 mm}
+  wheel:  {kind: spur_gear, teeth: 110, module: 2.5 mm, pressure_angle: 20 deg, face_width: 20 mm}
+moves: {gear pair: {kind: mesh, driver: pinion, driven: wheel, centre_distance: 172.5 mm, working_flank: right}}
+measures: {normal backlash: {kind: normal_backlash, of: gear pair}}
+tolerances:
+  thick: {kind: tooth_thickness, of: pinion, distribution: {kind: normal, lower: -90 um, upper: -79 um}}
+"""
+SMALL = "{kind: centre_distance, of: gear pair, distribution: {kind: normal, lower: -0.2 um, upper: 0.2 um}}"
+LARGE = "{kind: centre_distance, of: gear pair, distribution: {kind: normal, lower: -3 um, upper: 3 um}}"
+TURNING = "{kind: eccentricity, of: wheel, distribution: {kind: rayleigh, scale: 0.1 um}}"
+
+
+def scene_of(folder: Path, tolerances: int, trials: int = 1000) -> Path:
+    """A pair with so many tolerances more; each hundredth moves it most, each third is eccentric."""
+    kinds = (LARGE if k % 100 == 7 else TURNING if k % 3 == 0 else SMALL for k in range(tolerances))
+    lines = "".join(f"  t{k}: {kind}\n" for k, kind in enumerate(kinds))
+    path = folder / f"many {tolerances}.yaml"
+    path.write_text(f"{HEAD}{lines}study: {{trials: {trials}, seed: 1, engine: exact, witness: 0}}\n", "utf-8")
+    return path
+
+
+def model_of(folder: Path, tolerances: int) -> Model:
+    return model_from_scene(load_scene(scene_of(folder, tolerances)))
+
+
+def test_a_block_holds_no_more_draws_however_many_a_trial_has(tmp_path: Path, paper_model: Model) -> None:
+    assert block_trials(paper_model) == 65_536  # ordinary scenes keep theirs, and with them their bits
+    for tolerances in (200, 1500):
+        model = model_of(tmp_path, tolerances)
+        assert block_trials(model) * model.component_count <= 2**22
+        assert block_trials(model) * model.component_count > 2**20
+
+
+def test_statistics_of_many_tolerances_grow_with_their_number_at_most(tmp_path: Path) -> None:
+    sizes = {}
+    for tolerances in (300, 1500):
+        model = model_of(tmp_path, tolerances)
+        pilot = Task(model, None, {}, str(tolerances), False, installed_versions())
+        grids = grids_of(model, pilot.columns(0, PILOT_TRIALS))
+        columns = pilot.columns(0, 200)
+        Tally.of(model, grids, columns)  # what is found once, and kept
+        tracemalloc.start()
+        kept = Tally.of(model, grids, columns)
+        sizes[tolerances] = tracemalloc.get_traced_memory()[1]
+        tracemalloc.stop()
+        assert kept.measures["normal backlash"].geometric_features is not None
+    # products of all pairs of 3000 features are 72 MB a road, against 2.9 MB of 600
+    assert sizes[1500] < 2 * sizes[300]
+
+
+def test_the_largest_contributors_have_shares_and_the_others_are_told_to_have_none(tmp_path: Path) -> None:
+    run = run_scene(scene_of(tmp_path, 400, trials=4000), out=tmp_path / "run", execution=Execution(keep_trials=False))
+    model = model_of(tmp_path, 400)
+    measure = model.measures[0]
+    assert len(acting(model, measure)) == 401
+    chosen = [contributor.name for contributor in regressed(model, measure)]
+    assert len(chosen) == len(feature_groups(model, measure)) == MOST_REGRESSED
+    assert {"thick", "t7", "t107", "t207", "t307"} <= set(chosen)
+    told = {each["name"]: each for each in run.summary["measures"]["normal backlash"]["contributors"]}
+    assert len(told) == 401
+    assert {name for name, each in told.items() if each["geometric_percent"] is not None} == set(chosen)
+    # by hand: thickness 11 um / 6 cos 20 deg; centre distances 6 um / 6 and 0.4 um / 6, times 2 sin 20 deg
+    thick, large, small = ((11 / 6 * math.cos(0.349066)) ** 2, (2 * 0.34202) ** 2, (0.4 / 6 * 2 * 0.34202) ** 2)
+    turning = (2 * 0.34202 * 0.1) ** 2
+    counts = {"turning": sum(k % 3 == 0 and k % 100 != 7 for k in range(400))}
+    counts["small"] = 400 - 4 - counts["turning"]
+    total = thick + 4 * large + counts["small"] * small + counts["turning"] * turning
+    for name, own in (("thick", thick), ("t107", large)):
+        assert told[name]["analytic_percent"] == pytest.approx(100 * own / total, rel=0.01)
+        # standard errors of 4000 trials
+        found, error = told[name]["geometric_percent"], told[name]["geometric_percent_se"]
+        assert abs(found - 100 * own / total) < 5 * error
+    assert any("401 tolerances act" in warning for warning in run.summary["warnings"])
+
+
+def test_few_contributors_are_all_regressed_on(paper_model: Model) -> None:
+    measure = paper_model.measures[0]
+    assert regressed(paper_model, measure) == acting(paper_model, measure)
+
+
+def test_an_assembly_found_one_contributor_at_a_time_builds_as_build_does(tmp_path: Path) -> None:
+    for model in (model_of(tmp_path, 20), model_from_scene(load_scene(SPUR_PAIR.with_name("three_stage_train.yaml")))):
+        block = drawn_block(model, 3, 0, 50)
+        made, expected = assembly_of(model).build(block.deviations), build(model, block.deviations)
+        for name, values in vars(expected).items():
+            assert np.abs(vars(made)[name] - values).max() < 1e-12, name
+
+
+@pytest.mark.parametrize(
+    "gear",
+    [
+        SpurGear(28, 2.5, math.radians(20), 20.0, bore=20.0),
+        SpurGear(42, 2.5, math.radians(20), 15.0, profile_shift=0.2),
+        SpurGear(12, 2.5, math.radians(25), 20.0, profile_shift=0.6),
+    ],
+    ids=["from the base circle", "from the fillet", "full round"],
+)
+def test_strips_of_one_tooth_alone_are_those_of_the_whole_gear(gear: SpurGear, monkeypatch) -> None:
+    whole = sample_flanks(gear, 30)
+    monkeypatch.setattr(spur_cad, "MOST_TEETH", 0)
+    alone = sample_flanks(gear, 30)
+    assert whole.keys() == alone.keys()
+    assert all(np.array_equal(whole[name], alone[name]) for name in whole)
+
+
+def test_a_gear_of_ten_thousand_teeth_has_a_witness(tmp_path: Path) -> None:
+    """Built whole it took five minutes and some gigabytes; a clock or a meter of memory is not asked, a tooth is."""
+    text = HEAD.replace("teeth: 110", "teeth: 10000").replace("172.5 mm", "12535 mm")
+    path = tmp_path / "scene.yaml"
+    path.write_text(f"{text}study: {{trials: 50, seed: 1, engine: exact, witness: 5}}\n", "utf-8")
+    run = run_scene(path, out=tmp_path / "run")
+    own = run.summary["witness"]["measures"]["normal backlash"]
+    assert 0 < own["max_abs_difference"] <= own["expected_at_most"] + own["allowance"]
+    assert own["compared"] == 5

@@ -1,0 +1,113 @@
+"""What the paper printed stands beside ours in words that its own numbers bear out."""
+
+import io
+import math
+import re
+from pathlib import Path
+from typing import Any
+
+import pytest
+from places import SCENES
+from pydantic import ValidationError
+from rich.console import Console, RenderableType
+
+from tol3d.analyses.compensation import CompensationQuestion, compensation
+from tol3d.report.compensation_table import worst_table
+from tol3d.report.table import run_report
+from tol3d.scene import load_scene
+from tol3d.scene.schema import PublishedMeasure
+from tol3d.simulate import Overrides, run_scene
+
+COS, SIN = math.cos(math.radians(20)), math.sin(math.radians(20))
+JUST_RUN = Overrides(trials=20, engine="analytic")
+SHOWN = ("spur_pair", "bevel_pair", "bevel_pair_3dcs", "robot_shoulder", "robot_shoulder_shimmed", "every_field")
+
+
+def printed(shown: RenderableType, width: int) -> str:
+    console = Console(file=io.StringIO(), width=width)
+    console.print(shown)
+    assert isinstance(console.file, io.StringIO)
+    text = console.file.getvalue()
+    return text
+
+
+def published(scene: str, column: str, measure: str) -> Any:
+    return load_scene(SCENES / f"{scene}.yaml").published[column][measure]
+
+
+def um(quantity: Any) -> float:
+    return float(1000 * quantity.internal)
+
+
+@pytest.mark.parametrize("scene", SHOWN)
+def test_what_a_scene_says_of_other_peoples_numbers_is_printed_below_them_whole(scene: str, tmp_path: Path) -> None:
+    run = run_scene(SCENES / f"{scene}.yaml", overrides=JUST_RUN, out=tmp_path / "run")
+    text = " ".join(printed(run_report(run.summary), 90).split())
+    told = [
+        (measure, column, values.description)
+        for column, measures in load_scene(SCENES / f"{scene}.yaml").published.items()
+        for measure, values in measures.items()
+        if values.description
+    ]
+    assert told
+    for measure, column, description in told:
+        assert run.summary["measures"][measure]["published"][column]["description"] == description
+        assert f"{column}: {' '.join(description.split())}" in text
+
+
+def test_the_papers_sigmas_and_its_mean_stand_in_its_columns() -> None:
+    spur = published("spur_pair", "paper, analytic", "normal backlash")
+    bevel = published("bevel_pair", "paper, analytic", "normal backlash")
+    assert (um(spur.mean), um(spur.sigma)) == pytest.approx((53.0, 7.0))
+    assert (um(bevel.mean), um(bevel.sigma)) == pytest.approx((89.5, 6.7))
+    for scene in ("robot_shoulder", "bevel_pair_3dcs"):
+        name = "bevel normal backlash" if scene == "robot_shoulder" else "normal backlash"
+        assert um(published(scene, "paper, analytic", name).sigma) == pytest.approx(6.7)
+
+
+def test_the_words_on_table_3_follow_from_tables_1_and_3() -> None:
+    """Variances as the paper has them, its section 2.1; shares of Table 3 beside them."""
+    thickness, centre_distance = 11**2 * COS**2 / 36, 4 / 9 * 20**2 * SIN**2
+    rest = (27**2 + 31**2 + 8**2) * SIN**2 / 9 + 28**2 * SIN**2 / 36
+    whole = 2 * thickness + centre_distance + rest
+    table3 = published("spur_pair", "paper, 3DCS", "normal backlash")
+    share = table3.contributors["pinion tooth thickness"] / 100
+    told = math.sqrt(thickness / share)
+    numbers = [float(text) for text in re.findall(r"\d+(?:\.\d+)?", table3.description.replace("Table 4", "").replace("Table 3", "").replace("(Table 1)", ""))]  # fmt: skip # noqa: E501
+    expected = [11, math.sqrt(thickness), 22, told, 54, 3 * told, 34, 75, 100 * thickness / whole]
+    expected.append(100 * centre_distance / whole)
+    assert numbers == [pytest.approx(value, abs=0.05 if value < 10 else 0.5) for value in expected]
+    assert 3 * told < 0.55 * (75 - 34) / 2  # they do not go together: a little over half of the printed range
+
+
+@pytest.mark.parametrize("scene", ["bevel_pair", "bevel_pair_3dcs"])
+def test_the_sigma_of_3dcs_is_marked_as_derived_and_agrees_with_table_7(scene: str) -> None:
+    told = published(scene, "paper, 3DCS", "normal backlash")
+    assert um(told.sigma) == pytest.approx((um(told.high_3sigma) - um(told.low_3sigma)) / 6)
+    assert "derived, not printed" in told.description
+    of_thickness = math.sqrt(21**2 * COS**2 / 36 / (told.contributors["driver tooth thickness"] / 100))
+    assert of_thickness == pytest.approx(um(told.sigma), rel=0.002)
+
+
+def test_what_compensation_leaves_of_each_pair_is_the_papers() -> None:
+    """34″ and 1′17″: highs less means, (75 - 54) and (61 - 43) um, by 0.12195/d degrees each, d 275 and 102.1 mm."""
+    scene = load_scene(SCENES / "robot_shoulder_shimmed.yaml")
+    found = compensation(scene, CompensationQuestion(None, 1, 2))
+    text = printed(worst_table([found]), 120)
+    of_paper = text[text.index("paper, 3DCS") :].splitlines()
+    left = {line.split(",")[0].strip(): line.split()[-1] for line in of_paper if "at its driven shaft" in line}
+    assert left == {"– of spur pair": "33.5″", "– of bevel pair": "1′17.4″"}
+    by_hand = (0.12195 * (75 - 54) / 275 * 3600, 0.12195 * (61 - 43) / 102.1 * 3600)
+    assert by_hand == pytest.approx((33.5, 77.4), abs=0.05)
+
+
+@pytest.mark.parametrize(
+    ("said", "told"),
+    [("a\x1b[31mb", "without invisible characters"), ("a" * 2001, "up to 2000"), ("two\n lines\n", "two lines")],
+)
+def test_a_description_is_one_line_that_moves_no_cursor(said: str, told: str) -> None:
+    if told.startswith(("without", "up")):
+        with pytest.raises(ValidationError, match=told):
+            PublishedMeasure.model_validate({"description": said})
+    else:
+        assert PublishedMeasure.model_validate({"description": said}).description == told

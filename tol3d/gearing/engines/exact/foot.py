@@ -1,0 +1,71 @@
+"""What a kind of gear has to tell the kernels: the foot of a point of one flank on the other, and how gears grow.
+
+The bodies here are never run: as a kernel is compiled for a kind of teeth, each call becomes that kind's variant.
+"""
+
+import math
+from typing import Any
+
+from tol3d.gearing.engines.exact.numbers import Foot, Nearest
+
+TURN = 2.0 * math.pi
+PER_TURN = 1.0 / TURN
+
+
+def foot(
+    own: Any,
+    mate: Any,
+    pose: Any,
+    own_azimuth: float,
+    mate_azimuth: float,
+    sigma: float,
+    offset: float,
+    profile: float,
+    face: float,
+) -> Foot:
+    """The foot on the mate's endless flank of a point of own flank; one variant a kind of gears.
+
+    Args:
+        own, mate: the gears' teeth.
+        pose: mate from own.
+        own_azimuth, mate_azimuth: of the middle of the teeth [rad], their flanks' turns included.
+        sigma: side of the flanks, the same for both.
+        offset: of both flanks along their normals, together [mm].
+        profile, face: the point's parameters.
+    """
+    raise NotImplementedError
+
+
+def grown(tooth: Any, scale: float) -> Any:
+    """The teeth of a gear that has grown about its origin; one variant a kind."""
+    raise NotImplementedError
+
+
+def section(tooth: Any, share: float) -> Any:
+    """The teeth with no more of the face than one section, at a share of it; one variant a kind."""
+    raise NotImplementedError
+
+
+def turn_to(mate: Any, gap: float, offset: float, at: Foot) -> float:
+    """By how much the mate must turn [rad] for its flank to pass through a point; one variant a kind.
+
+    Args:
+        mate: its teeth.
+        gap: [mm] of the point whose Foot is `at`, or a little less.
+        offset: that it holds [mm].
+    """
+    raise NotImplementedError
+
+
+def line_of_action(
+    own: Any,
+    mate: Any,
+    pose: Any,
+    own_azimuth: float,
+    mate_azimuth: float,
+    sigma: float,
+    offset: float,
+    face: float,
+) -> Nearest:
+    """The nearest points of two flanks where they are known in closed form; NOWHERE in general. One variant a kind."""
+    raise NotImplementedError

@@ -1,0 +1,250 @@
+"""Rows of builds through the contact: the loops that every kind of pair has in common; kernels.py compiles them."""
+
+import math
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tol3d.gearing.engines.exact.foot import grown, section
+from tol3d.gearing.engines.exact.nearest import SHARP_FALL
+from tol3d.gearing.engines.exact.numbers import PairNumbers, Pose
+from tol3d.gearing.engines.exact.seating import (
+    Build,
+    Look,
+    closed,
+    driven_on,
+    driver_turn,
+    pair_nearest,
+    pose_at,
+    seen,
+    standing,
+)
+from tol3d.gearing.engines.status import INTERFERES, NO_CONTACT, OK, OUT_OF_RANGE
+from tol3d.numerics.compiled import part
+
+Array = NDArray[np.float64]
+Integers = NDArray[np.int64]
+
+FREE = 1e-6  # mm; a play above minus this is called free
+DRIVEN_ANGLE, GAP, DRIVEN_TURN, DRIVER_TURN, CONTACT = 0, 1, 2, 3, 4
+READINGS = 7  # columns of what is read of a row: the four above, and the contact's x, y, z
+
+
+@part
+def pose_of(shafts: Array, row: int, driver: int, driven: int) -> Pose:
+    """Where the driven shaft's frame sees the driver's; `shafts` (rows, gears, 4, 4) as in a Build."""
+    a, b = shafts[row, driver], shafts[row, driven]
+    x, y, z = a[0, 3] - b[0, 3], a[1, 3] - b[1, 3], a[2, 3] - b[2, 3]
+    return Pose(
+        b[0, 0] * a[0, 0] + b[1, 0] * a[1, 0] + b[2, 0] * a[2, 0],
+        b[0, 0] * a[0, 1] + b[1, 0] * a[1, 1] + b[2, 0] * a[2, 1],
+        b[0, 0] * a[0, 2] + b[1, 0] * a[1, 2] + b[2, 0] * a[2, 2],
+        b[0, 1] * a[0, 0] + b[1, 1] * a[1, 0] + b[2, 1] * a[2, 0],
+        b[0, 1] * a[0, 1] + b[1, 1] * a[1, 1] + b[2, 1] * a[2, 1],
+        b[0, 1] * a[0, 2] + b[1, 1] * a[1, 2] + b[2, 1] * a[2, 2],
+        b[0, 2] * a[0, 0] + b[1, 2] * a[1, 0] + b[2, 2] * a[2, 0],
+        b[0, 2] * a[0, 1] + b[1, 2] * a[1, 1] + b[2, 2] * a[2, 1],
+        b[0, 2] * a[0, 2] + b[1, 2] * a[1, 2] + b[2, 2] * a[2, 2],
+        b[0, 0] * x + b[1, 0] * y + b[2, 0] * z,
+        b[0, 1] * x + b[1, 1] * y + b[2, 1] * z,
+        b[0, 2] * x + b[1, 2] * y + b[2, 2] * z,
+    )
+
+
+@part
+def build_of(
+    pinion: Any,
+    wheel: Any,
+    pair: PairNumbers,
+    nominal: Pose,
+    gears: tuple[int, int],
+    shafts: Array,
+    centre: Array,
+    flank_turn: Array,
+    flank_offset: Array,
+    scale: Array,
+    row: int,
+) -> Build:
+    """The Build of a row."""
+    driver, driven = gears
+    return Build(
+        grown(pinion, scale[row, driver]),
+        grown(wheel, scale[row, driven]),
+        pair,
+        pose_of(shafts, row, driver, driven),
+        nominal,
+        centre[row, driver, 0],
+        centre[row, driver, 1],
+        centre[row, driven, 0],
+        centre[row, driven, 1],
+        flank_turn[row, driver],
+        flank_turn[row, driven],
+        flank_offset[row, driver] + flank_offset[row, driven],
+    )
+
+
+@part
+def within_reach(build: Build, driver_scale: float, driven_scale: float) -> bool:
+    """Whether the candidate teeth are those of the nominal pose still.
+
+    Gears that grow with their housing are the nominal ones at another scale. Where base pitches differ by d a tip
+    touches sqrt(2 rho d) before the path of contact begins, rho the relative radius of curvature, at most a quarter
+    of the tangent of both base circles.
+    """
+    pair, rest, p = build.pair, build.nominal, build.pose
+    square = (p.xx - rest.xx) ** 2 + (p.xy - rest.xy) ** 2 + (p.xz - rest.xz) ** 2
+    square += (p.yx - rest.yx) ** 2 + (p.yy - rest.yy) ** 2 + (p.yz - rest.yz) ** 2
+    square += (p.zx - rest.zx) ** 2 + (p.zy - rest.zy) ** 2 + (p.zz - rest.zz) ** 2
+    mean = 0.5 * (driver_scale + driven_scale)
+    dx, dy, dz = p.x - mean * rest.x, p.y - mean * rest.y, pair.along * (p.z - rest.z)
+    moved = math.sqrt(dx * dx + dy * dy + dz * dz) + math.sqrt(square / 2.0) * pair.lever
+    moved += math.sqrt(build.driver_x * build.driver_x + build.driver_y * build.driver_y)
+    moved += math.sqrt(build.driven_x * build.driven_x + build.driven_y * build.driven_y)
+    if pair.along == 0.0 and driver_scale != driven_scale:
+        apart, bases = math.hypot(rest.x, rest.y), build.driver.base + build.driven.base
+        tangent = math.sqrt(max(apart * apart - bases * bases, 0.0))
+        pitches = abs(build.driven.base * pair.driven_pitch - build.driver.base * pair.driver_pitch)
+        moved += 0.5 * abs(driver_scale - driven_scale) * apart + math.sqrt(0.5 * tangent * pitches) * tangent / apart
+    return moved <= pair.reach
+
+
+def read_rows(
+    pinion: Any,
+    wheel: Any,
+    pair: PairNumbers,
+    nominal: Pose,
+    which: Integers,
+    shafts: Array,
+    centre: Array,
+    flank_turn: Array,
+    flank_offset: Array,
+    scale: Array,
+    driver_angles: Array,
+    readings: Array,
+    teeth: Integers,
+    status: NDArray[np.int8],
+) -> None:
+    """Seat every row and read it.
+
+    Args:
+        pinion, wheel: the nominal teeth of driver and driven.
+        pair: which of them may meet.
+        nominal: where the driven's shaft sees the driver's in the nominal pair.
+        which: driver and driven in the arrays of the build; working flank; teeth; whether contact and gap are those of
+            the section; whether the turns of driven and of driver are wanted.
+        shafts, centre, flank_turn, flank_offset, scale: of a Build, (rows, gears, ...).
+        driver_angles: (rows,) [rad].
+        readings: (rows, READINGS), written: the driven gear's angle at rest [rad], the gap of the non-working flanks
+            [mm], the turns of driven and driver until they touch [rad], the contact on the driver, world [mm]; gap
+            and turns are below 0 where those flanks overlap.
+        teeth: (rows,), written: the driver's tooth that touches.
+        status: (rows,), written.
+    """
+    gears = (which[0], which[1])
+    sigma = float(which[2])
+    working = Look(sigma, which[3], which[4] != 0, 1.0)
+    gap = Look(-sigma, which[3], which[5] != 0, 0.0)
+    closing = Look(-sigma, which[3], which[4] != 0, 1.0)
+    tapers = pair.along > 0.0
+    gap_closes = which[5] == which[4] and (which[4] != 0 or not tapers)
+    for row in range(len(driver_angles)):
+        build = build_of(pinion, wheel, pair, nominal, gears, shafts, centre, flank_turn, flank_offset, scale, row)
+        angle = driver_angles[row]
+        readings[row, :] = np.nan
+        teeth[row] = 0
+        status[row] = OUT_OF_RANGE
+        if not within_reach(build, scale[row, gears[0]], scale[row, gears[1]]):
+            continue
+        opened = build.driver_turn / pair.ratio + build.driven_turn
+        start = standing(build, angle, pair.driven_start - angle / pair.ratio + sigma * opened)
+        at, side = closed(seen(build, start, angle, working), build, start, working)
+        if side.gap == math.inf and side.acts:
+            status[row] = NO_CONTACT
+        if side.gap == math.inf or not side.known or not side.acts:
+            continue
+        other = seen(build, at, angle, gap)
+        if other.gap == math.inf and other.acts:
+            status[row] = NO_CONTACT
+        if other.gap == math.inf or not other.known or not other.acts:
+            continue
+        status[row] = INTERFERES if other.gap < -FREE else OK
+        readings[row, DRIVEN_ANGLE] = at.driven
+        readings[row, GAP] = other.gap
+        out = flank_offset[row, gears[0]]
+        x, y, z = side.x - out * side.nx, side.y - out * side.ny, side.z - out * side.nz
+        shaft = shafts[row, gears[1]]
+        for k in range(3):
+            readings[row, CONTACT + k] = shaft[k, 0] * x + shaft[k, 1] * y + shaft[k, 2] * z + shaft[k, 3]
+        teeth[row] = side.tooth
+        if which[6]:
+            near_at, near = at, other
+            if not gap_closes:  # the smallest gap tells nearly by how much
+                near_at = driven_on(at, sigma * other.turn)
+                near = seen(build, near_at, angle, closing)
+            end, last = closed(near, build, near_at, closing)
+            if last.known and last.acts and last.gap < math.inf:
+                readings[row, DRIVEN_TURN] = sigma * (end.driven - at.driven)
+        if which[7]:
+            turn = driver_turn(build, at, Look(-sigma, which[3], which[4] != 0, 0.0))
+            readings[row, DRIVER_TURN] = sigma * turn
+
+
+def gap_rows(
+    pinion: Any,
+    wheel: Any,
+    pair: PairNumbers,
+    nominal: Pose,
+    which: Integers,
+    shafts: Array,
+    centre: Array,
+    flank_turn: Array,
+    flank_offset: Array,
+    scale: Array,
+    driver_angles: Array,
+    driven_angles: Array,
+    driver_teeth: Integers,
+    wanted: NDArray[np.bool_],
+    value: Array,
+    vectors: Array,
+    at_end: NDArray[np.bool_],
+) -> None:
+    """Gaps of the tooth pairs that are asked for.
+
+    Args:
+        pinion ... scale: as in `read_rows`, but for `which`: driver, driven, flank, whether of the section.
+        driver_angles, driven_angles: (rows,) [rad].
+        driver_teeth, wanted: (rows, pairs).
+        value: (rows, pairs) [mm], written; nan where not wanted, inf where the faces do not overlap.
+        vectors: (rows, pairs, 3, 3), written: points on driver and driven, normal from driver to driven; world.
+        at_end: (rows, pairs), written: whether either flank ends there.
+    """
+    gears = (which[0], which[1])
+    sigma = float(which[2])
+    for row in range(len(driver_angles)):
+        build = build_of(pinion, wheel, pair, nominal, gears, shafts, centre, flank_turn, flank_offset, scale, row)
+        at = standing(build, driver_angles[row], driven_angles[row])
+        pose = pose_at(build, at)
+        middle = section(build.driver, pair.section)
+        own = middle if which[3] else build.driver
+        shaft = shafts[row, gears[1]]
+        for k in range(driver_teeth.shape[1]):
+            value[row, k] = np.nan
+            vectors[row, k] = np.nan
+            at_end[row, k] = False
+            if not wanted[row, k]:
+                continue
+            tooth = float(driver_teeth[row, k])
+            near = pair_nearest(build, at, sigma, tooth, pose, own, middle.low, 0.0, SHARP_FALL)
+            value[row, k] = near.gap
+            if near.gap == math.inf:
+                continue
+            at_end[row, k] = near.at_end
+            ahead, back = flank_offset[row, gears[0]], near.gap + flank_offset[row, gears[0]]
+            x, y = near.x + at.fx, near.y + at.fy
+            for i in range(3):
+                normal = shaft[i, 0] * near.nx + shaft[i, 1] * near.ny + shaft[i, 2] * near.nz
+                point = shaft[i, 0] * x + shaft[i, 1] * y + shaft[i, 2] * near.z + shaft[i, 3]
+                vectors[row, k, 0, i] = point - ahead * normal
+                vectors[row, k, 1, i] = point - back * normal
+                vectors[row, k, 2, i] = -normal

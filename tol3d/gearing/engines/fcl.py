@@ -1,0 +1,188 @@
+"""The witness: distances between measuring strips of the CAD flanks, by the Flexible Collision Library.
+
+One BVH a tooth flank, as full-width strips. FCL tells no depth of overlap, so the strips are pulled inward by a slack
+along their normals, and both nearest points are put back afterwards, each by what it was pulled: the gap is their
+distance along the line on which FCL found them. The flanks may overlap by up to the slack of both and the distance
+stays away from zero. Between flanks that line is the normal of both, and what is put back is the slack. An edge that
+touches (a tip, an end of the face) was pulled along a normal of its own, delta off that line, and comes back beside it
+by slack sin delta, from where the other flank curves away by (slack sin delta)^2/(2 r): that is added. What is left
+of it is 0.0073 um a millimetre of module at delta = 0.46 rad.
+
+All lengths here go with the module, so that gears that are alike in all but their size read alike.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import lru_cache
+
+import fcl
+import numpy as np
+from numpy.typing import NDArray
+
+from tol3d.gearing.build import Build
+from tol3d.gearing.engines.gaps import Array, Gaps, Teeth
+from tol3d.gearing.model import Mesh, Model
+from tol3d.gears import Flank
+from tol3d.numerics import frames
+from tol3d.solids import WHOLE_FACE, FlankStrips, PulledStrip, Span
+
+SLACK = 0.012  # modules a flank; deep enough for any start of the turn, small against the curvature radius
+MESHES_KEPT = 64  # grown strips kept for reuse; a constant temperature needs one a flank
+SECTION_WIDTH = 0.8e-3  # modules along the face; a gap that grows with it by 1 um a mm is read 0.001 um off at 2.5 mm
+LAST_STEP = 0.2e-3  # modules; the gap is linear in the turn to 0.4e-6 modules over it
+OUT_OF_REACH = 0.4e-3  # modules; a distance below this has lost its normal: the overlap is as deep as the slack
+
+
+class FclEngine:
+    """Gaps from the measuring strips of every gear of a model.
+
+    Args:
+        model: gears and meshes.
+        strips: measuring strips of each gear by name, sampled from its solid.
+
+    FCL's objects do not pickle: make the engine in the worker.
+    """
+
+    def __init__(self, model: Model, strips: Mapping[str, FlankStrips]) -> None:
+        self._model = model
+        self._strips = strips
+        self._request = fcl.DistanceRequest(enable_nearest_points=True)
+        # apart: a gear between two others is held in one mesh and moved in the other, and an object keeps its place
+        self._held = lru_cache(maxsize=MESHES_KEPT)(self._make_object)
+        self._moved = lru_cache(maxsize=MESHES_KEPT)(self._make_object)
+
+    def depth(self, mesh: Mesh) -> float:
+        """Overlap [mm] that can still be measured: the slack of both flanks."""
+        return (2 * SLACK - OUT_OF_REACH) * _module(mesh)
+
+    def last_step(self, mesh: Mesh) -> float:
+        """See LAST_STEP [mm]."""
+        return LAST_STEP * _module(mesh)
+
+    @property
+    def chord_error(self) -> float:
+        """Largest sagitta [mm] of a strip's steps; a pair's gap is at most the sum of two too large."""
+        return max(strips.chord_error for strips in self._strips.values())
+
+    def _make_object(self, gear: str, flank: Flank, scale: float, span: Span) -> fcl.CollisionObject:
+        vertices, triangles = self._strip(gear, flank, span).mesh(scale)
+        hierarchy = fcl.BVHModel()
+        hierarchy.beginModel(len(vertices), len(triangles))
+        hierarchy.addSubModel(vertices, triangles)
+        hierarchy.endModel()
+        return fcl.CollisionObject(hierarchy, fcl.Transform())
+
+    def _strip(self, gear: str, flank: Flank, span: Span) -> PulledStrip:
+        return PulledStrip(self._strips[gear], flank, SLACK * self._model.gear(gear).gear.module, span)
+
+    def gaps(
+        self,
+        build: Build,
+        mesh: Mesh,
+        flank: Flank,
+        angles: tuple[Array, Array],
+        driver_teeth: Teeth,
+        wanted: NDArray[np.bool_],
+        *,
+        section: bool = False,
+    ) -> Gaps:
+        """See Engine.gaps."""
+        driver, driven = (self._model.seat_index[mesh.name, gear] for gear in (mesh.driver, mesh.driven))
+        driven_teeth = mesh.pair.mating_teeth(driver_teeth, flank)
+        driver_rotation, driver_origin = self._flank_poses(build, driver, angles[0], driver_teeth, flank)
+        driven_rotation, driven_origin = self._flank_poses(build, driven, angles[1], driven_teeth, flank)
+        world_to_driver = frames.transposed(driver_rotation)
+        rotation = frames.matmul(world_to_driver, driven_rotation)
+        translation = frames.apply(world_to_driver, (driven_origin - driver_origin)[:, None])
+
+        distance = np.full(wanted.shape, np.nan)
+        points = np.full((*wanted.shape, 2, 3), np.nan)
+        triangles = np.zeros((*wanted.shape, 2), dtype=np.int64)
+        request = self._request
+        scales = build.scale
+        span = self._section(mesh) if section else WHOLE_FACE
+        for row, pair in zip(*np.nonzero(wanted), strict=True):
+            fixed = self._held(mesh.driver, flank, scales[row, driver], span)
+            moved = self._moved(mesh.driven, flank, scales[row, driven], WHOLE_FACE)
+            moved.setTransform(fcl.Transform(rotation[row, pair], translation[row, pair]))
+            result = fcl.DistanceResult()
+            distance[row, pair] = fcl.distance(fixed, moved, request, result)
+            points[row, pair] = result.nearest_points
+            triangles[row, pair] = result.b1, result.b2
+        at = np.nonzero(wanted)
+        back, curvature = np.full(points.shape, np.nan), np.full((*wanted.shape, 2), np.nan)
+        at_end = np.zeros(wanted.shape, dtype=bool)
+        poses = ((np.eye(3), np.zeros(3)), (rotation[at], translation[at]))
+        strips = (self._strip(mesh.driver, flank, span), self._strip(mesh.driven, flank, WHOLE_FACE))
+        for side, (strip, seat, (turn, shift)) in enumerate(zip(strips, (driver, driven), poses, strict=True)):
+            scale, triangle = scales[at[0], seat], triangles[..., side][at]
+            own = frames.apply(frames.transposed(turn), points[..., side, :][at] - shift)
+            back[..., side, :][at] = frames.apply(turn, strip.put_back(scale, triangle, own))
+            curvature[..., side][at] = strip.curvature(scale, triangle)
+            at_end[at] |= strip.at_end(scale, own)
+        found = _Found(distance, points, back, curvature, distance < OUT_OF_REACH * _module(mesh), at_end)
+        return found.gaps(build.flank_offset[:, [driver, driven]], (driver_rotation, driver_origin), driver_teeth)
+
+    def _section(self, mesh: Mesh) -> Span:
+        """A strip of the driver's face, SECTION_WIDTH modules wide, in the middle of the common face."""
+        half = SECTION_WIDTH * _module(mesh) / (2 * mesh.pair.pinion.face_width)
+        return mesh.pair.pinion_section - half, mesh.pair.pinion_section + half
+
+    def _flank_poses(self, build: Build, gear: int, angle: Array, teeth: Teeth, flank: Flank) -> tuple[Array, Array]:
+        """Poses of the flanks of some teeth: the tooth's place, turned by the flank's own turn.
+
+        For an involute that turn is a thickness deviation exactly: parallel involutes are one involute turned.
+        """
+        seat = self._model.seats[gear]
+        pitch = self._model.gear(seat.gear).gear.angular_pitch
+        return build.tooth_pose(gear, angle, pitch * teeth - flank * build.flank_turn[:, gear, None])
+
+
+@dataclass(frozen=True)
+class _Found:
+    """What FCL found between pulled strips, in the frames of the driver's flanks.
+
+    Args:
+        distance: (trials, pairs) [mm].
+        points: (trials, pairs, 2, 3) [mm], the nearest ones.
+        back: (trials, pairs, 2, 3) [mm], what puts each of them back onto its flank.
+        curvature: (trials, pairs, 2), of the flanks there [1/mm].
+        deep: (trials, pairs), whether the distance tells nothing.
+        at_end: (trials, pairs), whether either point is where its flank ends.
+    """
+
+    distance: Array
+    points: Array
+    back: Array
+    curvature: Array
+    deep: NDArray[np.bool_]
+    at_end: NDArray[np.bool_]
+
+    def gaps(self, offsets: Array, driver_pose: tuple[Array, Array], driver_teeth: Teeth) -> Gaps:
+        """Signed gaps; flanks offset along their normals are parallel, so that the gap is less by that."""
+        safe = np.where(self.deep | np.isnan(self.distance), np.nan, self.distance)
+        normal = (self.points[..., 1, :] - self.points[..., 0, :]) / safe[..., None]
+        along = (self.back * normal[..., None, :]).sum(axis=-1)
+        beside = (self.back**2).sum(axis=-1) - along**2
+        # a flank curves away from beside which the other's edge was put: the driver's against the normal
+        away = np.array([-0.5, 0.5]) * beside[..., ::-1] * self.curvature
+        moved = self.back + away[..., None] * normal[..., None, :]
+        opened = along + away
+        rotation, origin = driver_pose
+        in_world = frames.apply(rotation, normal)
+        first, second = (
+            frames.apply(rotation, self.points[..., side, :] + moved[..., side, :]) + origin[:, None] for side in (0, 1)
+        )
+        return Gaps(
+            value=safe + opened[..., 1] - opened[..., 0] - offsets.sum(axis=1)[:, None],
+            deep=self.deep,
+            at_end=self.at_end,
+            driver_point=first + offsets[:, 0, None, None] * in_world,
+            driven_point=second - offsets[:, 1, None, None] * in_world,
+            normal=in_world,
+            driver_teeth=driver_teeth,
+        )
+
+
+def _module(mesh: Mesh) -> float:
+    return mesh.pair.pinion.module

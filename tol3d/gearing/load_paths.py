@@ -1,0 +1,87 @@
+"""What is free at the shaft where parallel ways meet: what all of them leave free, the intersection of their plays.
+
+The free turn of a shaft on one way is an interval: from where its driven gear rests on the working flank to where the
+other flank touches, links one behind the other added up. All is linear in what each mesh tells, its play and the angle
+at which it rests, once it is known which way ends first on either side; so derivatives go the same way as values.
+"""
+
+from collections.abc import Callable, Mapping
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tol3d.gearing.model.measure import AnyStage, ParallelStage, Stage
+
+Array = NDArray[np.float64]
+
+Part = tuple[Stage, Literal["play", "rest"]]
+Told = Callable[[Part], Array]
+"""A stage's own play [rad], or the angle at which its driven gear rests [rad]; (trials, positions)."""
+
+Form = Mapping[Part, Array]
+"""Weights of what the stages tell, each (trials, positions) or a scalar."""
+
+Flank = Callable[[Stage], int | None]
+"""The driver's flank that works in a stage; None for a reducer, whose play lies to both sides alike."""
+
+
+def value(form: Form, told: Told) -> Array:
+    """What a form adds up to [rad], (trials, positions)."""
+    return np.asarray(sum(weight * told(part) for part, weight in form.items()))
+
+
+def free_form(stage: ParallelStage, flank: Flank, told: Told) -> Form:
+    """What is free at the shaft where ways meet; below 0 they bind each other."""
+    low, high = _meeting(stage, flank, told)
+    return _sum(high, {part: -weight for part, weight in low.items()})
+
+
+def _meeting(stage: ParallelStage, flank: Flank, told: Told) -> tuple[Form, Form]:
+    """Both ends of what is free on all ways."""
+    each = [_ends_of_way(way, flank, told) for way in stage.ways]
+    lows, highs = [low for low, _ in each], [high for _, high in each]
+    return (
+        _chosen(lows, np.argmax([value(form, told) for form in lows], axis=0)),
+        _chosen(highs, np.argmin([value(form, told) for form in highs], axis=0)),
+    )
+
+
+def _ends_of_way(way: tuple[AnyStage, ...], flank: Flank, told: Told) -> tuple[Form, Form]:
+    low: Form = {}
+    high: Form = {}
+    for stage in way:
+        ends = _ends(stage, flank, told)
+        low, high = _sum(low, ends[0]), _sum(high, ends[1])
+    return low, high
+
+
+def _ends(stage: AnyStage, flank: Flank, told: Told) -> tuple[Form, Form]:
+    """Both ends of what a stage leaves free, at the shaft where its ways meet."""
+    factor = np.array(stage.sense * stage.factor)
+    if isinstance(stage, ParallelStage):
+        both = tuple({part: factor * weight for part, weight in form.items()} for form in _meeting(stage, flank, told))
+        return (both[0], both[1]) if stage.sense > 0 else (both[1], both[0])
+    side = flank(stage)
+    if side is None:
+        half = np.array(stage.factor / 2)
+        return {(stage, "play"): -half}, {(stage, "play"): half}
+    # a right flank (1) is left by a turn in the positive sense
+    resting: Form = {(stage, "rest"): factor}
+    turned: Form = {(stage, "rest"): factor, (stage, "play"): factor * side}
+    return (resting, turned) if factor * side > 0.0 else (turned, resting)
+
+
+def _sum(first: Form, second: Form) -> Form:
+    zero = np.array(0.0)
+    return {part: np.asarray(first.get(part, zero) + second.get(part, zero)) for part in {**first, **second}}
+
+
+def _chosen(forms: list[Form], which: NDArray[np.intp]) -> Form:
+    """Row by row one of several forms."""
+    parts = dict.fromkeys(part for form in forms for part in form)
+    zero = np.array(0.0)
+    return {
+        part: np.select([which == k for k in range(len(forms))], [form.get(part, zero) for form in forms])
+        for part in parts
+    }

@@ -1,0 +1,58 @@
+"""What a scene means: parts, contributors, moves and measures in mm and rad. Nothing here is text any more."""
+
+from tol3d.gearing.model.contributor import (
+    AxesOffset,
+    AxisOffset,
+    AxisTilt,
+    Clocking,
+    Contributor,
+    Effect,
+    Planar,
+    ReducerBacklash,
+    Scalar,
+    Temperature,
+    Together,
+    ToothThickness,
+    TurningOffset,
+)
+from tol3d.gearing.model.layout import Layout
+from tol3d.gearing.model.measure import Backlash, Kind, LostMotion, Measure, Positions, Reading
+from tol3d.gearing.model.mesh import Mesh, Seat
+from tol3d.gearing.model.model import GearPart, Model, Study, Until
+from tol3d.gearing.model.shafts import Arm, Reducer, Shaft, Train
+
+from tol3d.gearing.model.from_scene import model_from_scene  # isort: skip  (needs the names above)
+
+__all__ = [
+    "Arm",
+    "AxesOffset",
+    "AxisOffset",
+    "AxisTilt",
+    "Backlash",
+    "Clocking",
+    "Contributor",
+    "Effect",
+    "GearPart",
+    "Kind",
+    "Layout",
+    "LostMotion",
+    "Measure",
+    "Mesh",
+    "Model",
+    "Planar",
+    "Positions",
+    "Reading",
+    "Reducer",
+    "ReducerBacklash",
+    "Scalar",
+    "Seat",
+    "Shaft",
+    "Study",
+    "Temperature",
+    "Together",
+    "ToothThickness",
+    "Train",
+    "TurningOffset",
+    "Until",
+    "model_from_scene",
+]

@@ -1,0 +1,169 @@
+"""Scene to model: text becomes meaning, units become mm and rad, gears become geometry or are refused."""
+
+from collections.abc import Iterator
+from dataclasses import replace
+
+from tol3d.errors import SceneError
+from tol3d.gearing.model.effects import Tolerances
+from tol3d.gearing.model.layout import Layout, layout_of
+from tol3d.gearing.model.links import links_between_shafts, links_of
+from tol3d.gearing.model.measures import measure_of
+from tol3d.gearing.model.mesh import Mesh
+from tol3d.gearing.model.model import GearPart, Housing, Model, Study, Until
+from tol3d.gearing.model.pairs import internal, pair_of, undercut_warning
+from tol3d.gearing.model.shafts import Arm, Train
+from tol3d.gearing.model.trains import (
+    arms_of,
+    loaded_flank,
+    loose_gears,
+    reducers_of,
+    refuse_bearings,
+    refuse_misfits,
+    refuse_no_trees,
+    refuse_other_ratios,
+    shafts_of,
+    trains_of,
+)
+from tol3d.gears import LEFT, RIGHT
+from tol3d.scene import Scene
+from tol3d.scene.moves import GearMeshSpec
+from tol3d.scene.parts import GearSpec, HousingSpec
+from tol3d.scene.schema import Study as StudySpec
+from tol3d.units import Quantity
+
+
+def model_from_scene(scene: Scene) -> Model:
+    """What a scene means.
+
+    Raises:
+        SceneError: gears that cannot be made or run together, with their numbers and place.
+    """
+    for gear in loose_gears(scene):
+        raise scene.refuse(("parts", gear), f"{gear!r} takes part in no move; put it into a mesh or take it out")
+    refuse_bearings(scene)
+    shafts, reducers, arms = shafts_of(scene), reducers_of(scene), arms_of(scene)
+    meshes = tuple(_mesh(scene, name, move) for name, move in scene.moves.items() if isinstance(move, GearMeshSpec))
+    refuse_no_trees(scene, links_between_shafts(meshes, shafts, reducers))
+    layout = layout_of(meshes, shafts, reducers)
+    refuse_misfits(scene, meshes, layout)
+    trains = trains_of(scene, layout)
+    refuse_other_ratios(scene, meshes, layout)
+    meshes = tuple(_loaded(scene, mesh, trains, layout, arms) for mesh in meshes)
+    by_name = {mesh.name: mesh for mesh in meshes}
+    tolerances = Tolerances(scene, by_name, layout)
+    model = Model(
+        name=scene.scene,
+        gears=tuple(_gears(scene, by_name)),
+        housings=tuple(
+            Housing(name, internal(part.expansion))
+            for name, part in scene.parts.items()
+            if isinstance(part, HousingSpec)
+        ),
+        contributors=tuple(tolerances.contributor(name, spec) for name, spec in scene.tolerances.items()),
+        meshes=meshes,
+        measures=(),
+        study=_study(scene.study),
+        published=_published(scene),
+        gear_warnings=tuple(_warnings(meshes)),
+        shafts=shafts,
+        reducers=reducers,
+        arms=arms,
+        trains=trains,
+    )
+    return replace(model, measures=tuple(measure_of(scene, name, model) for name in scene.measures))
+
+
+def _study(spec: StudySpec) -> Study:
+    """The study; an automatic one is its trials at most, and when it may stop before."""
+    return Study(
+        trials=spec.at_most if spec.trials == "auto" else spec.trials,
+        seed=spec.seed,
+        sampler=spec.sampler,
+        replicates=spec.parts,
+        until=tuple(
+            Until(name, _internal(errors.mean), _internal(errors.sigma)) for name, errors in spec.until.items()
+        ),
+        engine=spec.engine,
+        witness=spec.witness,
+        profile_steps=spec.profile_steps,
+    )
+
+
+def _internal(quantity: Quantity | None) -> float | None:
+    return None if quantity is None else quantity.internal
+
+
+def _mesh(scene: Scene, name: str, move: GearMeshSpec) -> Mesh:
+    return Mesh(
+        name=name,
+        driver=move.driver,
+        driven=move.driven,
+        pair=pair_of(move, name, scene),
+        working_flank=LEFT if move.working_flank == "left" else RIGHT,
+        housing=getattr(move, "housing", None),
+        azimuth=move.azimuth.internal,
+    )
+
+
+def _loaded(scene: Scene, mesh: Mesh, trains: tuple[Train, ...], layout: Layout, arms: tuple[Arm, ...]) -> Mesh:
+    """The mesh with the flank that works by the load, where the scene leaves it to that."""
+    move = scene.moves[mesh.name]
+    if not isinstance(move, GearMeshSpec) or move.working_flank != "either":
+        return mesh
+    root = layout.root_of[layout.carrying[mesh.driver][0]]
+    own = [train for train in trains if train.driven == root]
+    through = [t for t in own if mesh.name in {link.name for link in links_of(layout.way(t.driven, t.output))}]
+    loading = through or [replace(train, gravity=None) for train in own]  # gravity does not load a branch
+    flanks = {loaded_flank(mesh, train, layout, arms): train.name for train in loading}
+    if len(flanks) == 2:
+        raise scene.refuse(
+            ("moves", mesh.name, "working_flank"),
+            f"expected right or left, got either: {' and '.join(map(repr, flanks.values()))} load other flanks of it",
+        )
+    for flank in flanks:
+        return replace(mesh, working_flank=flank)
+    raise scene.refuse(
+        ("moves", mesh.name, "working_flank"),
+        f"expected right or left, got either: no train tells the load; add a move of kind train that drives {root!r}",
+    )
+
+
+def _gears(scene: Scene, meshes: dict[str, Mesh]) -> Iterator[GearPart]:
+    for name, part in scene.parts.items():
+        if isinstance(part, GearSpec):
+            first, *others = scene.meshes_of(name)
+            gear = meshes[first].gear(name)
+            for other in others:
+                if meshes[other].gear(name) != gear:
+                    raise _other_shape(scene, name, first, other)
+            yield GearPart(name, gear, internal(part.expansion))
+
+
+def _other_shape(scene: Scene, gear: str, first: str, other: str) -> SceneError:
+    """A bevel gear's pitch angle follows from its mate."""
+    return scene.refuse(
+        ("moves", other),
+        f"{gear!r} would need another pitch angle than in {first!r}: a bevel gear can be in several meshes only where "
+        "shaft angle and mate are alike",
+    )
+
+
+def _warnings(meshes: tuple[Mesh, ...]) -> Iterator[str]:
+    for mesh in meshes:
+        for name in (mesh.driver, mesh.driven):
+            if warning := undercut_warning(mesh.gear(name)):
+                yield f"{name}: {warning}"
+
+
+def _published(scene: Scene) -> dict[str, dict[str, dict[str, object]]]:
+    return {
+        column: {
+            measure: {
+                **{key: quantity.internal for key, quantity in values.quantities().items()},
+                **({"contributors": dict(values.contributors)} if values.contributors else {}),
+                **({"description": values.description} if values.description else {}),
+            }
+            for measure, values in measures.items()
+        }
+        for column, measures in scene.published.items()
+    }

@@ -1,0 +1,177 @@
+"""The whole model: frozen, in mm and rad, ready for trials."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Any, Literal, NamedTuple
+
+from tol3d.errors import InputError
+from tol3d.gearing.model.contributor import Contributor
+from tol3d.gearing.model.layout import Layout, layout_of
+from tol3d.gearing.model.measure import Backlash, Measure
+from tol3d.gearing.model.mesh import Mesh, Seat
+from tol3d.gearing.model.shafts import Arm, Reducer, Shaft, Train
+from tol3d.gears import Gear
+from tol3d.samplers.replicates import SamplerKind, balanced_trials, is_power_of_two, uneven
+
+
+@dataclass(frozen=True)
+class GearPart:
+    """A gear: its nominal geometry and its coefficient of expansion [1/K]."""
+
+    name: str
+    gear: Gear
+    expansion: float = 0.0
+
+
+@dataclass(frozen=True)
+class Housing:
+    """What holds the axes apart: it gives the centre distance its coefficient of expansion [1/K]."""
+
+    name: str
+    expansion: float
+
+
+class Until(NamedTuple):
+    """Standard errors [mm or rad] of a measure's mean and sigma at which a study may stop; None is not asked for."""
+
+    measure: str
+    mean: float | None
+    sigma: float | None
+
+
+@dataclass(frozen=True)
+class Study:
+    """How many trials, drawn from which seed and how, by which engine, with how many profile steps a flank.
+
+    With `until` the trials are those at most. `replicates` of a sampler are parts of equal size, each randomised
+    anew.
+    """
+
+    trials: int = 2000
+    seed: int = 1
+    sampler: SamplerKind = "monte_carlo"
+    replicates: int = 1
+    until: tuple[Until, ...] = ()
+    engine: Literal["exact", "fcl", "analytic"] = "exact"
+    witness: int = 0
+    profile_steps: int = 120
+
+    def __post_init__(self) -> None:
+        """Refuse trials that the replicates cannot share evenly: a run's may be other than its scene's.
+
+        Raises:
+            InputError: with the nearest numbers that would do.
+        """
+        if problem := uneven(self.sampler, self.trials, self.replicates):
+            raise InputError(f"trials: expected {problem}, got {self.trials}")
+
+    @property
+    def replicate_trials(self) -> int:
+        """Trials of one replicate."""
+        return self.trials // self.replicates
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """What makes its numbers worse than they need be."""
+        if self.sampler != "sobol" or is_power_of_two(self.replicate_trials):
+            return ()
+        return (
+            f"study: Sobol' points are even in powers of two, not in {self.replicate_trials} a replicate; "
+            f"take {balanced_trials(self.trials, self.replicates)} trials",
+        )
+
+
+@dataclass(frozen=True)
+class Model:
+    """Everything that a trial needs. Parts, contributors and measures keep the scene's order.
+
+    `gear_warnings` are what the gears' geometry may spoil. A gear that no shaft carries is a shaft of its own.
+    """
+
+    name: str
+    gears: tuple[GearPart, ...]
+    housings: tuple[Housing, ...]
+    contributors: tuple[Contributor, ...]
+    meshes: tuple[Mesh, ...]
+    measures: tuple[Measure, ...]
+    study: Study
+    published: Mapping[str, Mapping[str, Mapping[str, Any]]] = field(default_factory=dict)
+    gear_warnings: tuple[str, ...] = ()
+    shafts: tuple[Shaft, ...] = ()
+    reducers: tuple[Reducer, ...] = ()
+    arms: tuple[Arm, ...] = ()
+    trains: tuple[Train, ...] = ()
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """What may spoil the numbers of this study."""
+        return (*self.gear_warnings, *self.study.warnings)
+
+    def gear(self, name: str) -> GearPart:
+        """The gear of that name."""
+        return next(part for part in self.gears if part.name == name)
+
+    def mesh(self, name: str) -> Mesh:
+        """The mesh of that name."""
+        return next(mesh for mesh in self.meshes if mesh.name == name)
+
+    def train(self, name: str) -> Train:
+        """The train of that name."""
+        return next(train for train in self.trains if train.name == name)
+
+    @cached_property
+    def layout(self) -> Layout:
+        """Where its shafts lie and how they turn with each other."""
+        return layout_of(self.meshes, self.shafts, self.reducers)
+
+    @cached_property
+    def seats(self) -> tuple[Seat, ...]:
+        """Every gear in each of its meshes, driver and driven of one mesh after the other."""
+        return tuple(seat for mesh in self.meshes for seat in self._seats_in(mesh))
+
+    def _seats_in(self, mesh: Mesh) -> tuple[Seat, Seat]:
+        own = self.layout.seating(mesh.name)
+        return Seat(mesh.name, mesh.driver, mesh.azimuth), Seat(mesh.name, mesh.driven, own.azimuth, own.ahead)
+
+    @cached_property
+    def seat_index(self) -> Mapping[tuple[str, str], int]:
+        """Position of each mesh's gear in arrays over seats."""
+        return {(seat.mesh, seat.gear): index for index, seat in enumerate(self.seats)}
+
+    def seats_of(self, gear: str, mesh: str | None = None) -> tuple[int, ...]:
+        """Positions of a gear in arrays over seats: in all of its meshes, or in one."""
+        if mesh is not None:
+            return (self.seat_index[mesh, gear],)
+        return tuple(index for index, seat in enumerate(self.seats) if seat.gear == gear)
+
+    def driver_angles(self, measure: Measure, mesh: str) -> tuple[float, ...] | None:
+        """Angles of a mesh's driver [rad] at which a measure is read in every trial; None for the trial's own.
+
+        A mesh's own positions are its driver's; those of a train are its first shaft's.
+        """
+        fixed = measure.positions.fixed
+        if fixed is None or isinstance(measure.kind, Backlash):
+            return fixed
+        return tuple(self.layout.mesh_turn[mesh].at(angle) for angle in fixed)
+
+    @cached_property
+    def expansions(self) -> Mapping[str, float]:
+        """Coefficient of expansion [1/K] of every part."""
+        gears = {part.name: part.expansion for part in self.gears}
+        return gears | {part.name: part.expansion for part in self.housings}
+
+    @cached_property
+    def component_slices(self) -> Mapping[str, slice]:
+        """Which columns of the deviations belong to each contributor."""
+        slices, start = {}, 0
+        for contributor in self.contributors:
+            width = len(contributor.draw.components)
+            slices[contributor.name] = slice(start, start + width)
+            start += width
+        return slices
+
+    @property
+    def component_count(self) -> int:
+        """Columns of the deviations."""
+        return sum(len(contributor.draw.components) for contributor in self.contributors)

@@ -1,0 +1,128 @@
+"""What a measure's backlashes leave free, together: added up along a train, compared where parallel ways meet.
+
+Both roads go through here; what a single backlash is, each of them reads for itself.
+"""
+
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tol3d.gearing.clocking import clocking
+from tol3d.gearing.load_paths import Form, Part, free_form, value
+from tol3d.gearing.model import Backlash, LostMotion, Measure, Model, Reading
+from tol3d.gearing.model.measure import AnyStage, ParallelStage, Stage
+from tol3d.gearing.reducer import reducer_backlash
+
+Array = NDArray[np.float64]
+
+FREE = 1e-9  # rad; ways that overlap by rounding errors do not bind each other
+
+Angles = tuple[float, ...] | None
+"""Driver angles [rad] that every trial shares; None for those of the trial."""
+
+SeatKey = tuple[str, Angles, Reading]
+"""Mesh, positions and reading: backlashes that share them share their contacts."""
+
+Read = Callable[[Backlash, SeatKey], Array]
+"""Values (trials, positions) of a backlash [mm or rad] where it is read."""
+
+
+def seat_key(model: Model, measure: Measure, backlash: Backlash) -> SeatKey:
+    """Where and how a measure reads one of its backlashes."""
+    return backlash.mesh, model.driver_angles(measure, backlash.mesh), backlash.reading
+
+
+def seat_keys(model: Model, measure: Measure) -> tuple[SeatKey, ...]:
+    """The same of all of them."""
+    return tuple(seat_key(model, measure, backlash) for _, backlash in measure.kind.backlashes)
+
+
+def positions_count(measure: Measure) -> int:
+    """At how many positions a measure is read in one trial."""
+    return 1 if measure.positions.fixed is None else len(measure.positions.fixed)
+
+
+@dataclass(frozen=True, eq=False)
+class Play:
+    """The backlashes of a measure in some trials.
+
+    Args:
+        model, measure: what is read.
+        deviations: (trials, components) [mm, rad, K].
+        read: tells each backlash.
+    """
+
+    model: Model
+    measure: Measure
+    deviations: Array
+    read: Read
+
+    def free(self) -> Array:
+        """What they leave free together [mm or rad], (trials, positions)."""
+        return np.asarray(sum(factor * values for _, factor, values in self.parts()))
+
+    def parts(self) -> Iterator[tuple[str, float, Array]]:
+        """What is added up: the name of each mesh, reducer or set of parallel ways, its factor, and what it leaves."""
+        kind = self.measure.kind
+        if isinstance(kind, Backlash):
+            yield kind.mesh, 1.0, self.read(kind, seat_key(self.model, self.measure, kind))
+            return
+        for stage in kind.stages:
+            yield stage.link, stage.factor, self.of(stage)
+
+    def overlap(self) -> Array:
+        """What meshes and parallel ways lack together where they bind [mm or rad], (trials, positions), 0 or less.
+
+        That of a train which is jammed somewhere: the play of its other stages does not free it.
+        """
+        if isinstance(self.measure.kind, Backlash):
+            return np.minimum(self.free(), 0.0)
+        stages = (stage for stage in self.measure.kind.stages if not _is_reducer(stage))
+        return np.asarray(sum(stage.factor * np.minimum(self.of(stage), 0.0) for stage in stages))
+
+    def bound(self) -> NDArray[np.bool_]:
+        """Where parallel ways bind each other, (trials, positions)."""
+        tight = np.zeros((len(self.deviations), positions_count(self.measure)), dtype=bool)
+        stages = self.measure.kind.stages if isinstance(self.measure.kind, LostMotion) else ()
+        for stage in _parallel(stages):
+            tight |= self.of(stage) < -FREE
+        return tight
+
+    def of(self, stage: AnyStage) -> Array:
+        """What a stage leaves free at the shaft that it drives [rad], (trials, positions)."""
+        return value(self.form(stage), self.told)
+
+    def form(self, stage: AnyStage) -> Form:
+        """That as a weighted sum of what its meshes and reducers tell."""
+        if isinstance(stage, Stage):
+            return {(stage, "play"): np.array(1.0)}
+        return free_form(stage, self._flank, self.told)
+
+    def told(self, part: Part) -> Array:
+        """A stage's own play, or the angle at which its driven gear rests on its shaft [rad], (trials, positions)."""
+        stage, what = part
+        if stage.backlash is None:
+            own = reducer_backlash(self.model, stage.link, self.deviations)
+            return np.broadcast_to(own[:, None], (len(own), positions_count(self.measure)))
+        key = seat_key(self.model, self.measure, stage.backlash)
+        if what == "play":
+            return self.read(stage.backlash, key)
+        sits = clocking(self.model, self.model.mesh(stage.backlash.mesh), self.deviations)
+        return self.read(replace(stage.backlash, quantity="rest_angle"), key) + sits[:, None]
+
+    def _flank(self, stage: Stage) -> int | None:
+        return None if stage.backlash is None else self.model.mesh(stage.backlash.mesh).working_flank
+
+
+def _is_reducer(stage: AnyStage) -> bool:
+    return isinstance(stage, Stage) and stage.backlash is None
+
+
+def _parallel(stages: Iterable[AnyStage]) -> Iterator[ParallelStage]:
+    """All parallel ways among some stages, those on a way of others too."""
+    for stage in stages:
+        if isinstance(stage, ParallelStage):
+            yield stage
+            yield from (inner for way in stage.ways for inner in _parallel(way))

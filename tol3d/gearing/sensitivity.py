@@ -1,0 +1,361 @@
+"""Derivatives of measures by deviations, through the contacts that seat a mesh.
+
+A gap changes by how its nearest points move along its normal, for they stay nearest to first order (envelope
+theorem). The driven gear's turn keeps the gap of the touching pair zero, which tells its rate (implicit function
+theorem), and the measure's own gap or turn follows. Where two pairs tie, or a gap lies all along a face, a
+measure has a kink, and the derivative is that of the one pair or point which the engine tells.
+
+Neglected: what an engine's normals lack. At contacts of edges one that tells the normal of a flank, not of the
+nearest points, is off by the slope of the gap along that edge.
+"""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tol3d.gearing.clocking import clocking_rate
+from tol3d.gearing.engines import OK, Engine, Gaps
+from tol3d.gearing.load_paths import Part
+from tol3d.gearing.measures import moved_rate
+from tol3d.gearing.meshing import Meshing, MeshSeat
+from tol3d.gearing.model import Backlash, Clocking, Contributor, Measure, Model, Planar, ReducerBacklash
+from tol3d.gearing.model.contributor import Unit, single_effects, turns_with_gears
+from tol3d.gearing.play import positions_count, seat_key
+from tol3d.gearing.rates import Tangent, tangent
+from tol3d.gears import Flank
+from tol3d.gears.flank import opposite
+from tol3d.numerics import frames
+from tol3d.study import draws as trials
+from tol3d.study.block import (
+    ROWS_AT_ONCE,
+    Block,
+    Seats,
+    geometric_values,
+    play_of,
+    seat_block,
+    stated_block,
+)
+
+Array = NDArray[np.float64]
+
+# mm, rad, K; tells two sides of a kink apart (1 um of a gap by the end of a face) and bends nothing (1e-5 of a slope)
+STEP_ASIDE: dict[Unit, float] = {"um": 1e-4, "mrad": 1e-5, "arcmin": 1e-5, "K": 0.1}
+
+
+def sensitivities(model: Model, engine: Engine, block: Block, measure: Measure) -> Array:
+    """Derivatives of what a measure takes by each component of the deviations, each trial at its own build.
+
+    Args:
+        model, engine: what is built, and what tells its gaps.
+        block: deviations and driver positions of the trials.
+        measure: of that model, or one like it.
+
+    Returns:
+        (trials, components) [mm or rad per mm, rad, K], columns as in `model.component_slices`; for a curve
+        (trials, positions, components). nan where a trial did not seat.
+    """
+    size = max(1, ROWS_AT_ONCE // positions_count(measure))
+    pieces = (block.part(first, first + size) for first in range(0, len(block), size))
+    return np.concatenate([_sensitivities(model, engine, piece, measure) for piece in pieces])
+
+
+def _sensitivities(model: Model, engine: Engine, block: Block, measure: Measure) -> Array:
+    alone = replace(model, measures=(measure,))
+    seats, count = seat_block(alone, engine, block), positions_count(measure)
+    moves = tangent(model, seats.build, block.deviations).rows(np.repeat(np.arange(len(block)), count))
+    rates = _free_rates(alone, measure, moves, seats).reshape(len(block), count, -1)
+    rates *= moved_rate(measure.kind, play_of(model, measure, seats).free())[..., None]
+    return taken_rates(measure, geometric_values(model, measure, seats), rates)
+
+
+def _free_rates(model: Model, measure: Measure, moves: Tangent, seats: Seats) -> Array:
+    """Derivatives of what the backlashes of a measure leave free, (rows, components)."""
+    kind = measure.kind
+    if isinstance(kind, Backlash):
+        key = seat_key(model, measure, kind)
+        return _rates(kind, seats.meshings[key], moves, seats.seats[key])
+    total = np.zeros((len(moves.scale), model.component_count))
+    play = play_of(model, measure, seats)
+    for stage in kind.stages:
+        for part, weight in play.form(stage).items():
+            rows = np.broadcast_to(weight, (len(seats.block), positions_count(measure))).reshape(-1, 1)
+            total += stage.factor * rows * _part_rates(model, measure, moves, seats, part)
+    return total
+
+
+def _part_rates(model: Model, measure: Measure, moves: Tangent, seats: Seats, part: Part) -> Array:
+    """Derivatives of what a stage tells, (rows, components)."""
+    stage, what = part
+    rates = np.zeros((len(moves.scale), model.component_count))
+    if stage.backlash is None:
+        for contributor in model.contributors:
+            if contributor.effect == ReducerBacklash(stage.link):
+                rates[:, model.component_slices[contributor.name]] = 1.0
+        return rates
+    key = seat_key(model, measure, stage.backlash)
+    if what == "play":
+        return _rates(stage.backlash, seats.meshings[key], moves, seats.seats[key])
+    for contributor in model.contributors:
+        for effect in single_effects(contributor.effect):
+            if isinstance(effect, Clocking):
+                rate = clocking_rate(effect, model.mesh(stage.backlash.mesh))
+                rates[:, model.component_slices[contributor.name]] += rate
+    resting = replace(stage.backlash, quantity="rest_angle")
+    return rates + _rates(resting, seats.meshings[key], moves, seats.seats[key])
+
+
+def _rates(backlash: Backlash, meshing: Meshing, moves: Tangent, seat: MeshSeat) -> Array:
+    """Derivatives of a backlash at every position, (rows, components); nan where the mesh did not seat."""
+    good = np.flatnonzero(seat.status == OK)
+    rates = np.full((len(seat.status), meshing.model.component_count), np.nan)
+    contacts = _Contacts(meshing.rows(good), moves.rows(good))
+    at_rest = (seat.driver_angle[good], seat.driven_angle[good])
+    if backlash.quantity == "rest_angle":
+        section = meshing.reading.contact == "section"
+        rates[good] = contacts.nearest(
+            meshing.mesh.working_flank, at_rest, seat.working.rows(good), section=section
+        ).driven_turn
+        return rates
+    if backlash.quantity == "normal_backlash":
+        rates[good] = _of_gap(contacts, at_rest, seat.working.rows(good), seat.non_working.rows(good))
+        return rates
+    turn_driver = backlash.is_angle and backlash.gear == meshing.mesh.driver
+    turn = _of_turn(contacts, at_rest, seat.working.rows(good), turn_driver=turn_driver)
+    rates[good] = turn if backlash.is_angle else turn * meshing.mesh.pair.working_radii[1]
+    return rates
+
+
+def _of_gap(contacts: "_Contacts", at_rest: tuple[Array, Array], working: Gaps, non_working: Gaps) -> Array:
+    """Derivatives of the least gap of the non-working flanks at rest."""
+    reading, flank = contacts.meshing.reading, contacts.meshing.mesh.working_flank
+    touch = contacts.nearest(flank, at_rest, working, section=reading.contact == "section")
+    gap = contacts.nearest(opposite(flank), at_rest, non_working, section=reading.gap == "section")
+    return gap.by_deviation + gap.by_turn[1][:, None] * touch.driven_turn
+
+
+def _of_turn(contacts: "_Contacts", at_rest: tuple[Array, Array], working: Gaps, *, turn_driver: bool) -> Array:
+    """Derivatives of the turn of one gear from its rest to the contact of the non-working flanks."""
+    meshing, flank = contacts.meshing, contacts.meshing.mesh.working_flank
+    section = meshing.reading.contact == "section"
+    touch = contacts.nearest(flank, at_rest, working, section=section)
+    at_end, ends, touched = meshing.turn_to_contact(opposite(flank), at_rest, turn_driver=turn_driver)
+    end = contacts.nearest(opposite(flank), at_end, ends, section=section)
+    mover = 0 if turn_driver else 1
+    if turn_driver:
+        rate = -(end.by_deviation + end.by_turn[1][:, None] * touch.driven_turn) / end.by_turn[0][:, None]
+    else:
+        rate = end.driven_turn - touch.driven_turn
+    rate *= np.sign(at_end[mover] - at_rest[mover])[:, None]
+    rate[~touched] = np.nan
+    return rate
+
+
+@dataclass(frozen=True)
+class _GapRates:
+    """How one gap of each row changes.
+
+    Args:
+        by_deviation: (rows, components) [mm per mm, rad, K], both gears held at their turns.
+        by_turn: of driver and driven, each (rows,) [mm/rad].
+    """
+
+    by_deviation: Array
+    by_turn: tuple[Array, Array]
+
+    @property
+    def driven_turn(self) -> Array:
+        """Turn of the driven gear [rad] that keeps the gap as it is, (rows, components)."""
+        return -self.by_deviation / self.by_turn[1][:, None]
+
+
+@dataclass(frozen=True)
+class _Contacts:
+    """Builds of a mesh with their tangents, one row a trial and position."""
+
+    meshing: Meshing
+    moves: Tangent
+
+    def nearest(self, flank: Flank, angles: tuple[Array, Array], gaps: Gaps, *, section: bool) -> _GapRates:
+        """Rates of the least of some gaps at turns (rows,) [rad]; asked again, for gaps at rest lie a step away."""
+        meshing = self.meshing
+        first = np.argmin(np.where(np.isnan(gaps.value), np.inf, gaps.value), axis=1)
+        teeth = np.take_along_axis(gaps.driver_teeth, first[:, None], axis=1)
+        wanted = np.ones(teeth.shape, dtype=bool)
+        gap = meshing.engine.gaps(meshing.build, meshing.mesh, flank, angles, teeth, wanted, section=section)
+        mesh = meshing.mesh
+        driver, driven = (meshing.model.seat_index[mesh.name, name] for name in (mesh.driver, mesh.driven))
+        normal = gap.normal[:, 0]
+        turns = [gap.per_turn(*meshing.build.axis(gear), of_driver=gear == driver)[:, 0] for gear in (driver, driven)]
+        behind = self._along(driver, angles[0], flank, gap.driver_point[:, 0], -normal)
+        before = self._along(driven, angles[1], flank, gap.driven_point[:, 0], normal)
+        return _GapRates(behind + before, (turns[0], turns[1]))
+
+    def _along(self, gear: int, angle: Array, flank: Flank, point: Array, normal: Array) -> Array:
+        """How fast a gear's flank recedes [mm] at a point, (rows, components); the normal points into the gear.
+
+        A flank that is turned out of its tooth turns about the gear's own centre, against the sign of the driver's
+        flank on both gears. Growth moves the flank that has no offset yet.
+        """
+        made, moves = self.meshing.build, self.moves
+        shaft, (origin, axis) = made.world_from_shaft[:, gear, :3, :3], made.axis(gear)
+        arm = point - made.centre_of(gear, angle)
+        grown = _dot(arm + made.flank_offset[:, gear, None] * normal, normal) / made.scale[:, gear]
+        across = frames.apply(frames.transposed(frames.matmul(shaft, frames.about_z(angle))), normal)
+        return (
+            _dot(moves.origin[:, gear], normal[:, None])
+            + _dot(moves.turn[:, gear], np.cross(point - origin, normal)[:, None])
+            + _dot(moves.centre[:, gear], across[:, None, :2])
+            - moves.flank_turn[:, gear] * (flank * _dot(np.cross(axis, arm), normal))[:, None]
+            - moves.flank_offset[:, gear]
+            + moves.scale[:, gear] * grown[:, None]
+        )
+
+
+def _dot(left: Array, right: Array) -> Array:
+    """Scalar products over the last axis."""
+    return np.asarray((left * right).sum(axis=-1))
+
+
+# what is taken over positions ---------------------------------------------------------------------
+
+
+def taken_rates(measure: Measure, values: Array, rates: Array) -> Array:
+    """Derivatives of `taken`: (trials, components), or (trials, positions, components) for a curve.
+
+    Args:
+        measure: what is taken of its values.
+        values: (trials, positions).
+        rates: their derivatives, (trials, positions, components).
+    """
+    if measure.take == "curve":
+        return rates
+    if measure.take == "value":
+        return rates[:, 0]
+    closed = measure.positions.closed
+    highest, lowest = peak_weights(values, closed=closed), peak_weights(-values, closed=closed)
+    weights = {"max": highest, "min": lowest, "range": highest - lowest}[measure.take]
+    return np.asarray((weights[:, :, None] * rates).sum(axis=1))
+
+
+def peak_weights(values: Array, *, closed: bool) -> Array:
+    """Weights of the samples (trials, positions) in the highest point of the parabola that `taken` lays through them.
+
+    They are Lagrange's at the highest point. Its place moves with the samples, but there the parabola is level, and
+    where the place is an end of the three samples it does not move: the weights serve for the derivative too.
+    """
+    count, rows = values.shape[1], np.arange(len(values))
+    peak = np.argmax(values, axis=1)
+    weights = np.zeros_like(values)
+    if count < 3:
+        weights[rows, peak] = 1.0
+        return weights
+    centre = peak if closed else np.clip(peak, 1, count - 2)
+    before, after = (centre - 1) % count, (centre + 1) % count
+    bend = 2 * values[rows, centre] - values[rows, before] - values[rows, after]
+    slope = (values[rows, after] - values[rows, before]) / 2
+    bent = bend > 0.0
+    place = np.clip(slope / np.where(bent, bend, 1.0), -1.0, 1.0)
+    weights[rows, centre] = 1 - place**2
+    weights[rows, before] = (place**2 - place) / 2
+    weights[rows, after] = (place**2 + place) / 2
+    weights[~bent] = 0.0
+    weights[rows[~bent], peak[~bent]] = 1.0
+    return weights
+
+
+# by contributor -----------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class ContributorSensitivity:
+    """Derivatives of a measure by one contributor.
+
+    Args:
+        name: the contributor's.
+        value: (trials,), or (trials, positions) for a curve [mm or rad per mm, rad, K]; of a deviation with a
+            direction per length in its worst direction, never negative.
+        direction: that direction, of the largest increase [rad], the same shape; None for a deviation without.
+    """
+
+    name: str
+    value: Array
+    direction: Array | None = None
+
+    def along(self, angle: float) -> Array:
+        """Derivative by a length in a stated direction [rad]."""
+        return self.value if self.direction is None else self.value * np.cos(self.direction - angle)
+
+
+def by_contributor(model: Model, rates: Array) -> tuple[ContributorSensitivity, ...]:
+    """Derivatives (..., components) as `sensitivities` gives them, one entry a contributor of the model."""
+    return tuple(_grouped(c, rates[..., model.component_slices[c.name]]) for c in model.contributors)
+
+
+def _grouped(contributor: Contributor, own: Array) -> ContributorSensitivity:
+    if not isinstance(contributor.draw, Planar):
+        return ContributorSensitivity(contributor.name, own[..., 0])
+    x, y = own[..., 0], own[..., 1]
+    return ContributorSensitivity(contributor.name, np.hypot(x, y), np.arctan2(y, x))
+
+
+@dataclass(frozen=True)
+class Slope:
+    """How a measure changes with one contributor alone, others at their means; at a kink differently on both sides.
+
+    Args:
+        name: the contributor's.
+        below, above: derivative [mm or rad per mm, rad, K] on the side of smaller and of larger deviations; nan
+            where neither side seats.
+        direction: along which a deviation with a direction is taken [rad]: the one in which the measure grows most,
+            or its own fixed one; None for a deviation without.
+    """
+
+    name: str
+    below: float
+    above: float
+    direction: float | None = None
+
+
+def mean_slopes(model: Model, engine: Engine, measure: Measure) -> tuple[Slope, ...]:
+    """Slopes of a measure with one value, at the mean build, the driver at 0 for random positions.
+
+    At a nominal build pairs tie and gaps lie all along a face, so that each slope is taken STEP_ASIDE of it.
+    """
+    middle = trials.mean_deviations(model, measure.positions)
+    unit_steps = np.eye(model.component_count)
+    gradients = _beside(model, engine, measure, middle, unit_steps)
+    gradient = np.array([_either(*gradients[:, :, k][:, k]).mean() for k in range(model.component_count)])
+    directions = [_direction(c, measure, gradient[model.component_slices[c.name]]) for c in model.contributors]
+    steps = np.zeros((len(directions), model.component_count))
+    for step, contributor, direction in zip(steps, model.contributors, directions, strict=True):
+        along = [1.0] if direction is None else [np.cos(direction), np.sin(direction)]
+        step[model.component_slices[contributor.name]] = along
+    sides = (_beside(model, engine, measure, middle, steps) * steps).sum(axis=2)
+    both = [_either(*own) for own in sides.T]
+    return tuple(
+        Slope(contributor.name, float(below), float(above), direction)
+        for contributor, (below, above), direction in zip(model.contributors, both, directions, strict=True)
+    )
+
+
+def _beside(model: Model, engine: Engine, measure: Measure, middle: Array, steps: Array) -> Array:
+    """Derivatives (2, steps, components) below and above a build (1, components), STEP_ASIDE along each step."""
+    lengths = np.array([STEP_ASIDE[c.unit] for c in model.contributors for _ in c.draw.components])
+    rows = np.concatenate([middle - lengths * steps, middle + lengths * steps])
+    return sensitivities(model, engine, stated_block(model, rows), measure).reshape(2, len(steps), -1)
+
+
+def _either(below: float, above: float) -> Array:
+    """Both sides; one that does not seat takes the other's."""
+    return np.array([above if np.isnan(below) else below, below if np.isnan(above) else above])
+
+
+def _direction(contributor: Contributor, measure: Measure, gradient: Array) -> float | None:
+    draw = contributor.draw
+    if not isinstance(draw, Planar):
+        return None
+    turns_at_random = turns_with_gears(contributor.effect) and measure.positions.over == "random"
+    if draw.direction is not None and not turns_at_random:
+        return draw.direction
+    return float(np.arctan2(gradient[1], gradient[0]))

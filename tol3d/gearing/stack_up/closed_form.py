@@ -1,0 +1,274 @@
+"""Mean, standard deviation and variance shares of a measure without drawing anything.
+
+Contributors are independent, so means and variances add; what one of them does in several meshes is added up first.
+Deviations with a direction count by the mean square of their length; tilts by numerical integration of their one-sided
+loss, together with all else where contributors do more than tilt one mesh (`leaning.py`). Offsets of fixed direction
+that turn together are the exception: a random position turns them alike, so they vary together, and each takes half of
+their covariance.
+"""
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from fractions import Fraction
+
+import numpy as np
+
+from tol3d.gearing.model import Contributor, LostMotion, Measure, Model, Planar, Positions, ReducerBacklash
+from tol3d.gearing.model.measure import at_one_position
+from tol3d.gearing.stack_up.backlash import per_normal_backlash, stack_of
+from tol3d.gearing.stack_up.leaning import leaning_groups, leaning_shares
+from tol3d.gearing.stack_up.share import Share
+from tol3d.gearing.stack_up.stack import Stack
+from tol3d.gearing.stack_up.term import Term
+from tol3d.gears import GearPair
+
+TILT_NODES = 2000  # midpoint rule in u, a plane; its error on |x| of a normal is under 1e-6 of sigma
+
+
+@dataclass(frozen=True)
+class ClosedForm:
+    """Moments of a measure by the stack-up [mm or rad].
+
+    Args:
+        nominal, mean, sigma: of the measure.
+        shares: of the contributors that act on it.
+        leaning: names of those that shift axes and lean them: their coefficients are mean slopes.
+    """
+
+    nominal: float
+    mean: float
+    sigma: float
+    shares: tuple[Share, ...]
+    leaning: frozenset[str] = frozenset()
+
+    def percent(self, name: str) -> float:
+        """Share of the variance [%] of a contributor; 0 when nothing varies."""
+        total = sum(share.variance for share in self.shares)
+        own = sum(share.variance for share in self.shares if share.name == name)
+        return 100.0 * own / total if total > 0.0 else 0.0
+
+
+def closed_form(model: Model, measure: Measure) -> ClosedForm | None:
+    """Closed form of a measure read at one position; None for extremes over a turn and parallel ways."""
+    if measure.take != "value" or not measure.kind.adds_up:
+        return None
+    parts = tuple(_parts(model, measure))
+    terms = [term for part in parts for term in part.terms]
+    groups = leaning_groups([part.stack for part in parts])
+    alike = all(part.stack.both_sides_alike for part in parts)
+    plain = {group: tilts for group in groups if (tilts := _plain_tilts(group, terms, alike)) is not None}
+    leaning = [group for group in groups if group not in plain]
+    names = frozenset(contributor.name for group in leaning for contributor in group)
+    linear = [term for term in terms if term.term.tilts is None and term.term.contributor.name not in names]
+    own = [own for contributor in model.contributors if (own := _linear(model, measure, contributor, linear))]
+    shares = _with_covariances(own) if measure.positions.over == "random" else [each.share for each in own]
+    shares += [share for tilts in plain.values() for share in tilts]
+    shares += [Share(term.term.contributor.name, 0.0, 0.0, 0.0) for term in terms if _plane(term) == "none"]
+    stacks = [(part.factor, part.stack) for part in parts]
+    for group in leaning:
+        shares += leaning_shares(stacks, group)
+    nominal = _nominal(model, measure)
+    together = tuple(_merged(model, shares))
+    return ClosedForm(
+        nominal=nominal,
+        mean=nominal + sum(share.mean for share in together),
+        sigma=_root(sum(share.variance for share in together)),
+        shares=together,
+        leaning=names,
+    )
+
+
+def reference_form(model: Model, measure: Measure) -> ClosedForm | None:
+    """Closed form of the measure, or of its value at a random position where it takes an extreme or a curve."""
+    at_random = replace(measure, kind=at_one_position(measure.kind), positions=Positions("random", 1, 1), take="value")
+    return closed_form(model, measure) or closed_form(model, at_random)
+
+
+@dataclass(frozen=True)
+class _ReadTerm:
+    """A term of the stack-up of one mesh, as a measure reads it.
+
+    Args:
+        mesh: which.
+        term: of the mesh's normal backlash.
+        factor: change of the measure by that [1 or rad/mm, ...].
+        phase: azimuth of largest opening where the deviation is counted [rad], the first shaft at 0 or the mesh
+            where it is read.
+        rate: turns by which it goes back per turn of the first shaft; 0 at fixed positions and for what rests.
+    """
+
+    mesh: str
+    term: Term
+    factor: float
+    phase: float
+    rate: Fraction
+
+    @property
+    def amplitude(self) -> float:
+        """Change of the measure per length in the worst direction."""
+        return self.factor * self.term.coefficient
+
+
+@dataclass(frozen=True)
+class _Part:
+    """A mesh that a measure reads."""
+
+    model: Model
+    measure: Measure
+    stack: Stack[GearPair]
+    factor: float
+
+    @property
+    def terms(self) -> Iterator[_ReadTerm]:
+        """Its terms."""
+        for term in self.stack.terms:
+            turn, rate = self._turn_of(term)
+            phase = term.along - term.sense * turn
+            yield _ReadTerm(self.stack.mesh.name, term, self.factor, phase, int(term.sense) * rate)
+
+    def _turn_of(self, term: Term) -> tuple[float, Fraction]:
+        """Where the gear that a term turns with stands [rad], and how fast it goes."""
+        if term.turns is None:
+            return 0.0, Fraction(0)
+        mesh = self.stack.mesh
+        turning = self.model.layout.mesh_turn[mesh.name]
+        angles = self.model.driver_angles(self.measure, mesh.name)
+        angle, rate = (turning.offset, turning.rate) if angles is None else (angles[0], Fraction(0))
+        if term.turns == "driver":
+            return angle, rate
+        return float(mesh.pair.driven_angle(np.array([angle]))[0]), rate * mesh.rate
+
+
+def _lever(measure: Measure) -> float:
+    """What the measure makes of what its backlashes leave free."""
+    kind = measure.kind
+    return kind.tip.lever if isinstance(kind, LostMotion) and kind.tip else 1.0
+
+
+def _parts(model: Model, measure: Measure) -> Iterator[_Part]:
+    for factor, backlash in measure.kind.backlashes:
+        stack = stack_of(model, model.mesh(backlash.mesh), backlash.reading)
+        yield _Part(model, measure, stack, _lever(measure) * factor * per_normal_backlash(model, backlash))
+
+
+def _nominal(model: Model, measure: Measure) -> float:
+    reducers = {reducer.name: reducer.backlash for reducer in model.reducers}
+    data_sheets = sum(_lever(measure) * factor * reducers[name] for factor, name in measure.kind.reducers)
+    return data_sheets + sum(part.factor * part.stack.nominal for part in _parts(model, measure))
+
+
+@dataclass(frozen=True)
+class _Linear:
+    """A contributor's linear part: its share, and the waves in which a fixed direction acts as the gears turn.
+
+    A wave is its mean amplitude, phase [rad] and rate.
+    """
+
+    share: Share
+    waves: tuple[tuple[float, float, Fraction], ...] = ()
+
+
+def _linear(model: Model, measure: Measure, contributor: Contributor, terms: Sequence[_ReadTerm]) -> _Linear | None:
+    own = [term for term in terms if term.term.contributor is contributor]
+    by_reducers = sum(
+        _lever(measure) * factor
+        for factor, reducer in measure.kind.reducers
+        if contributor.effect == ReducerBacklash(reducer)
+    )
+    if not own and not by_reducers:
+        return None
+    law, draw = contributor.distribution, contributor.draw
+    if not isinstance(draw, Planar):
+        coefficient = sum(term.amplitude for term in own) + by_reducers
+        return _Linear(Share(contributor.name, coefficient, coefficient * law.mean, coefficient**2 * law.variance))
+    square = law.variance + law.mean**2
+    if draw.direction is None:
+        worst = _root(sum(a.amplitude * b.amplitude * _alike(a, b) for a in own for b in own))
+        return _Linear(Share(contributor.name, worst, 0.0, worst**2 * square / 2))
+    waves = tuple((term.amplitude, term.phase - draw.direction, term.rate) for term in own)
+    resting = sum(amplitude * math.cos(phase) for amplitude, phase, rate in waves if not rate)
+    turning = tuple(wave for wave in waves if wave[2])
+    squares = sum(a * b * _product(p, q, v, w) for a, p, v in turning for b, q, w in turning)
+    variance = resting**2 * law.variance + squares * square
+    coefficient = resting if not turning else _root(resting**2 + 2 * squares)
+    share = Share(contributor.name, coefficient, resting * law.mean, variance)
+    return _Linear(share, tuple((amplitude * law.mean, phase, rate) for amplitude, phase, rate in turning))
+
+
+def _root(square: float) -> float:
+    """Of a sum whose terms may cancel to a rounding error below 0, as those of an idler between two gears facing it."""
+    return math.sqrt(max(square, 0.0))
+
+
+def _alike(first: _ReadTerm, second: _ReadTerm) -> float:
+    """Mean over the positions of the cosine between the worst directions of two terms."""
+    return math.cos(first.phase - second.phase) if first.rate == second.rate else 0.0
+
+
+def _product(first: float, second: float, first_rate: Fraction, second_rate: Fraction) -> float:
+    """Mean over the positions of the product of two cosines that go on with the turns."""
+    same = math.cos(first - second) / 2 if first_rate == second_rate else 0.0
+    opposite = math.cos(first + second) / 2 if first_rate == -second_rate else 0.0
+    return same + opposite
+
+
+def _with_covariances(each: Sequence[_Linear]) -> list[Share]:
+    """Shares with the covariances of offsets that turn together at a random position."""
+    laws = {linear.share.name: linear for linear in each}
+    shares = []
+    for name, linear in laws.items():
+        others = [other for known, other in laws.items() if known != name]
+        added = sum(
+            a * b * _product(p, q, v, w) for other in others for a, p, v in linear.waves for b, q, w in other.waves
+        )
+        shares.append(replace(linear.share, variance=linear.share.variance + added))
+    return shares
+
+
+def _merged(model: Model, shares: Sequence[Share]) -> Iterator[Share]:
+    """One share a contributor, in the model's order: what it does in tilts and else added up."""
+    for contributor in model.contributors:
+        own = [share for share in shares if share.name == contributor.name]
+        if own:
+            yield Share(
+                contributor.name,
+                sum(share.coefficient for share in own),
+                sum(share.mean for share in own),
+                sum(share.variance for share in own),
+            )
+
+
+def _plain_tilts(group: Sequence[Contributor], terms: Sequence[_ReadTerm], alike: bool) -> list[Share] | None:
+    """Shares of -max(|in plane|, |out of plane|) of a mesh whose tilts do nothing else; None of any other group.
+
+    Of two tilts only where both flank sides are read alike: else the loss is another.
+
+    The variance is split by the conditional means (first-order Sobol'), the rest in equal parts.
+    """
+    own = [term for term in terms if term.term.contributor in group]
+    only_tilts = len(own) == len(group) and all(term.term.tilts for term in own)
+    if not only_tilts or any(isinstance(contributor.draw, Planar) for contributor in group):
+        return None
+    if len(own) > 2 or (len(own) == 2 and (not alike or sorted(_plane(term) for term in own) != ["across", "in"])):
+        return None
+    nodes = (np.arange(TILT_NODES) + 0.5) / TILT_NODES
+    losses = [np.abs(term.amplitude * term.term.contributor.distribution.ppf(nodes)) for term in own]
+    loss = -losses[0] if len(losses) == 1 else -np.maximum(losses[0][:, None], losses[1][None, :])
+    mean, variance = float(loss.mean()), float(loss.var())
+    alone = [variance] if len(losses) == 1 else [float(loss.mean(axis=1).var()), float(loss.mean(axis=0).var())]
+    rest = (variance - sum(alone)) / len(alone)
+    return [
+        Share(term.term.contributor.name, -abs(term.amplitude), mean / len(own), v + rest)
+        for term, v in zip(own, alone, strict=True)
+    ]
+
+
+def _plane(term: _ReadTerm) -> str:
+    """In which plane a term tilts; in none where the middle of the face is read."""
+    if term.term.tilts is None:
+        return "no tilt"
+    in_plane, across = term.term.tilts
+    if not term.term.leans:
+        return "none"
+    return "in" if not any(across) else "across" if not any(in_plane) else "both"

@@ -1,0 +1,1 @@
+"""Numbers: poses of many trials, compiled kernels and where they are kept, what decides a last bit."""

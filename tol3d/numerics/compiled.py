@@ -1,0 +1,201 @@
+"""The door to numba: functions become machine code, at their first use and once a machine.
+
+What was compiled is kept in the user's cache, under a name made of all that it is made of: the sources of the kernel's
+module and of all that they import (a kernel freezes the constants it finds there), the compiler, and the processor it
+compiles for. Studies of other engines than the exact one compile nothing.
+"""
+
+import contextlib
+import hashlib
+import io
+import json
+import platform
+import tempfile
+import threading
+import zipfile
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from functools import cached_property
+from pathlib import Path
+from typing import Any, TypeVar
+
+import llvmlite
+import numba
+import numpy as np
+from llvmlite import ir
+from numba import types as numba_types
+from numba.core import sigutils as numba_signatures
+from numba.extending import intrinsic, overload
+
+from tol3d.numerics.cache_folder import read_entry, write_entry
+from tol3d.numerics.processor import target
+from tol3d.numerics.sources import sources_of
+
+Function = TypeVar("Function", bound=Callable[..., Any])
+
+# forced inlining keeps the tuples of numbers in registers: a third of the time; fused products round once, not twice
+SETTINGS: Any = {"error_model": "numpy", "nogil": True, "forceinline": True, "fastmath": {"contract"}}
+
+
+def part(function: Function) -> Function:
+    """A function that kernels are made of: compiled into them, for whatever they hand it."""
+    compiled: Function = numba.njit(**SETTINGS)(function)
+    return compiled
+
+
+_VARIANTS_IN: dict[type, set[str]] = {}  # modules of the variants for a kind
+
+
+def variant(of: Callable[..., Any], kind: type) -> Callable[[Function], Function]:
+    """What a function does for a first argument of some kind, a NamedTuple; chosen as kernels compile."""
+
+    def register(function: Function) -> Function:
+        _VARIANTS_IN.setdefault(kind, set()).add(function.__module__)
+
+        @overload(of, strict=False, jit_options=SETTINGS)
+        def chosen(*arguments: Any) -> Function | None:
+            return function if getattr(arguments[0], "instance_class", None) is kind else None
+
+        return function
+
+    return register
+
+
+def _high_product(context: Any, left: Any, right: Any) -> Any:
+    """Upper 64 bits of the product of two 64-bit words, for which Python's words have no operator."""
+
+    def made(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+        wide = ir.IntType(128)
+        product = builder.mul(*(builder.zext(argument, wide) for argument in arguments))
+        return builder.trunc(builder.lshr(product, ir.Constant(wide, 64)), ir.IntType(64))
+
+    return numba_types.uint64(numba_types.uint64, numba_types.uint64), made
+
+
+high_product: Any = intrinsic(_high_product)
+
+
+class Kernel:
+    """A compiled function of arrays; it holds no lock while it runs, so that threads run several at once.
+
+    Args:
+        function: what it does, in the words of Python.
+        tuples: kinds of its first arguments, NamedTuples of floats.
+        arrays: types of the others in numba's words. It is compiled for these only.
+        reassociated: whether sums may be taken in another order than they are written, for speed; on one machine that
+            is always the same.
+    """
+
+    def __init__(
+        self, function: Callable[..., None], tuples: Sequence[Any], arrays: str, *, reassociated: bool = False
+    ) -> None:
+        self._function = function
+        self._tuples = tuples
+        self._arrays = arrays
+        self._settings = SETTINGS | {"fastmath": {"contract", "reassoc", "nsz"}} if reassociated else SETTINGS
+
+    def __call__(self, *arguments: Any) -> None:
+        """Run it; results go into arrays among the arguments."""
+        self._compiled(*arguments)
+
+    @property
+    def kept(self) -> bool:
+        """Whether this machine has compiled it before: whether using it takes no more than loading it."""
+        return self._read() is not None
+
+    @cached_property
+    def name(self) -> str | None:
+        """Of its entry in the cache: changes with all that it is made of. None where that cannot be told."""
+        try:
+            made_of = _made_of(self._function, self._tuples)
+        except OSError:
+            return None
+        told = json.dumps([made_of, self._arrays, self._settings], sort_keys=True, default=sorted)  # sets have no order
+        return f"kernel-{self._function.__name__}-{hashlib.sha256(told.encode()).hexdigest()[:32]}.zip"
+
+    @cached_property
+    def _compiled(self) -> Callable[..., None]:
+        types: Any = numba_types
+        numbers = [types.NamedUniTuple(types.float64, len(kind._fields), kind) for kind in self._tuples]
+        signatures: Any = numba_signatures
+        arrays, _ = signatures.normalize_signature(f"void({self._arrays})")
+        signature = (*numbers, *arrays)
+        with _ONE_AT_A_TIME:
+            return self._loaded(signature) or self._compiled_now(signature)
+
+    def _loaded(self, signature: tuple[Any, ...]) -> Callable[..., None] | None:
+        """It from the cache; None where that has none that can be used."""
+        content = self._read()
+        if content is None:
+            return None
+        try:
+            with _numbas_folder() as folder:
+                zipfile.ZipFile(io.BytesIO(content)).extractall(folder)
+                made: Any = self._made(signature, cache=True)
+        except Exception:  # whole, but of no use to this numba: whatever it stumbles over, compiling does without
+            return None
+        used: Callable[..., None] | None = made if made.stats.cache_hits else None
+        return used
+
+    def _compiled_now(self, signature: tuple[Any, ...]) -> Callable[..., None]:
+        """It compiled, and kept where that can be."""
+        with contextlib.ExitStack() as stack:
+            try:
+                folder = stack.enter_context(_numbas_folder())
+                made = self._made(signature, cache=True)
+            except (OSError, RuntimeError):  # nowhere to put it: compiled for this process only
+                return self._made(signature, cache=False)
+            files = [path for path in sorted(folder.rglob("*")) if path.is_file()]
+            if files and self.name:
+                with contextlib.suppress(OSError):
+                    write_entry(self.name, _packed(folder, files))
+        return made
+
+    def _read(self) -> bytes | None:
+        return read_entry(self.name) if self.name else None
+
+    def _made(self, signature: tuple[Any, ...], *, cache: bool) -> Callable[..., None]:
+        made: Callable[..., None] = numba.njit(signature, cache=cache, **self._settings)(self._function)
+        return made
+
+
+_ONE_AT_A_TIME = threading.RLock()  # numba's folder is one for the whole process
+
+
+def _made_of(function: Callable[..., None], tuples: Sequence[type]) -> dict[str, Any]:
+    """All that a kernel is made of but its own types and settings."""
+    modules = {function.__module__, *(kind.__module__ for kind in tuples)}
+    modules = modules.union(*(_VARIANTS_IN.get(kind, set()) for kind in tuples))
+    return {
+        "function": [function.__qualname__, function.__code__.co_filename],  # by which numba knows it
+        "kinds": [f"{kind.__module__}.{kind.__qualname__}" for kind in tuples],
+        "sources": sources_of(*modules),
+        "versions": [numba.__version__, llvmlite.__version__, np.__version__, platform.python_version()],
+        "target": target(),
+    }
+
+
+def _packed(folder: Path, files: Sequence[Path]) -> bytes:
+    """Files as an archive, by their places in a folder."""
+    archive = io.BytesIO()
+    with zipfile.ZipFile(archive, "w") as entries:
+        for path in files:
+            entries.write(path, path.relative_to(folder))
+    return archive.getvalue()
+
+
+def kernel(*tuples: Any, arrays: str, reassociated: bool = False) -> Callable[[Callable[..., None]], Kernel]:
+    """Make a function a kernel; see Kernel."""
+    return lambda function: Kernel(function, tuples, arrays, reassociated=reassociated)
+
+
+@contextmanager
+def _numbas_folder() -> Iterator[Path]:
+    """A folder for what numba reads and writes while it is open, and nobody else does."""
+    config: Any = numba.config
+    with tempfile.TemporaryDirectory(prefix="tol3d-kernel-") as name:
+        before, config.CACHE_DIR = config.CACHE_DIR, name
+        try:
+            yield Path(name)
+        finally:
+            config.CACHE_DIR = before

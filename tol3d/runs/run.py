@@ -1,0 +1,350 @@
+"""The run on disk: summary.json, trials/ in Parquet, the scene and every file it read, and the checksums of all.
+
+`writer.py` writes it into `<name>.partial` and renames that at the end, so a folder of that name is always whole.
+"""
+
+import json
+import warnings
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tol3d.runs.block_files import CHECKSUMS, MENDED, BlockFiles, block_name
+from tol3d.runs.atomic_write import UNFINISHED
+from tol3d.errors import RunError
+from tol3d.files import LARGEST_FILE, FileContent, Files, UnreadableFileError, kept_name, read_contained
+from tol3d.runs.frame import Curves, frame_of
+from tol3d.runs.manifest import TRIALS, Manifest
+from tol3d.runs.parquet import Shape
+from tol3d.numerics.processor import unlike
+from tol3d.runs.summary_schema import summary_of
+from tol3d.runs.worst import worst_trial
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+Columns = dict[str, NDArray[np.generic]]
+
+SUMMARY = "summary.json"
+SCENE = "scene.yaml"
+PIECES = "pieces"
+CHECKPOINT = "checkpoint"
+FINGERPRINT = "fingerprint.json"
+FILES = "files"
+STATUS = "status"  # columns of words begin so; all others are numbers
+STUDY = ("scene", "files", "study")  # of a fingerprint; the rest decides the last bits only
+LARGEST_FINGERPRINT = 10_000_000  # bytes; it names every file of the scene and every `until`
+LOCK = "lock"
+LARGEST_SUMMARY = 50_000_000  # bytes; a thousand curves of a thousand positions
+
+Fingerprint = Mapping[str, Any]
+
+
+class DamageWarning(UserWarning):
+    """A block of a run is damaged and is made again."""
+
+
+@dataclass(frozen=True, repr=False)
+class Run:
+    """A finished run.
+
+    Args:
+        path: its folder.
+        summary: what summary.json holds: statistics of each measure, contributors, timing, versions.
+    """
+
+    path: Path
+    summary: Mapping[str, Any]
+
+    def __repr__(self) -> str:
+        """Which run it is, and where."""
+        study = self.summary["study"]
+        words = (f"{self.trials} trials", f"seed {study.get('seed')}", f"engine {study.get('engine')}")
+        return f"<Run {str(self.path)!r}: {', '.join((str(self.summary.get('scene')), *words))}>"
+
+    @property
+    def trials(self) -> int:
+        """How many trials were run."""
+        return int(self.summary["trials"])
+
+    @property
+    def block_trials(self) -> int:
+        """Trials of a block, but for the last one."""
+        return int(self.summary["blocks"]["trials"])
+
+    @property
+    def keeps_trials(self) -> bool:
+        """Whether it holds its trials one by one, not their statistics only."""
+        return bool(self.summary["blocks"]["kept"])
+
+    @property
+    def manifest(self) -> Manifest:
+        """Its own files with their checksums.
+
+        Raises:
+            RunError: it has no such list.
+        """
+        return Manifest.read(self.path)
+
+    @property
+    def blocks(self) -> BlockFiles:
+        """The files of its trials.
+
+        Raises:
+            RunError: it kept no trials, or their list of checksums was changed since.
+        """
+        if not self.keeps_trials:
+            raise RunError(
+                f"{self.path}: this run kept its statistics only (--no-trials); run the scene again without "
+                "--no-trials for columns, or replay single trials by their number"
+            )
+        try:
+            self.manifest.content(f"{TRIALS}/{CHECKSUMS}")
+        except RunError as error:
+            raise RunError(f"{error}; {MENDED}") from None
+        return BlockFiles(self.path / TRIALS, shape=self._shape_of)
+
+    def _shape_of(self, name: str) -> Shape | None:
+        """What the file of a block holds."""
+        rows = self._block_sizes.get(name)
+        return None if rows is None else Shape(rows, self._width_of)
+
+    def _width_of(self, column: str) -> int:
+        """How many positions a column has: 1, or those of a curve."""
+        road, _, name = column.partition(":")
+        measure = self.summary["measures"].get(name, {}) if road in ("analytic", "geometric") else {}
+        return len(measure["position_deg"]) if measure.get("take") == "curve" else 1
+
+    @cached_property
+    def _block_sizes(self) -> Mapping[str, int]:
+        """Trials of each block, by the name of its file, in order."""
+        size, firsts = self.block_trials, range(0, self.trials, self.block_trials)
+        return {block_name(index): min(size, self.trials - first) for index, first in enumerate(firsts)}
+
+    @property
+    def column_names(self) -> tuple[str, ...]:
+        """Names of the columns of trials/; none in a run that kept no trials."""
+        return self._columns_in(self.blocks) if self.keeps_trials else ()
+
+    def _columns_in(self, blocks: BlockFiles) -> tuple[str, ...]:
+        """Names of the columns of the first block, which has every measure that the summary tells of."""
+        roads = ("analytic",) if self.summary["engine"] == "analytic" else ("analytic", "geometric")
+        needed = (f"{road}:{name}" for name in self.summary["measures"] for road in roads)
+        known = blocks.column_names
+        if missing := next((name for name in needed if name not in known), None):
+            raise RunError(f"{blocks.folder}: no column {missing!r}, which the summary tells of; {MENDED}")
+        return known
+
+    def columns(self, *names: str) -> dict[str, NDArray[np.generic]]:
+        """Columns as numpy arrays, trial on axis 0 (a curve: positions on axis 1); all of them by default.
+
+        Raises:
+            RunError: no such column, the run kept no trials, or a block is damaged.
+        """
+        pieces = [*self.pieces(*names)]
+        return {name: np.concatenate([piece[name] for piece in pieces]) for name in pieces[0]}
+
+    def frame(self, *names: str, curves: Curves = "split") -> "pd.DataFrame":
+        """Columns as a DataFrame of pandas, a row a trial; all of them by default.
+
+        Args:
+            names: columns, as in `column_names`.
+            curves: "split" gives every position of a curve a column (`geometric:curve:45 deg`), "drop" leaves
+                curves out.
+
+        Raises:
+            RunError: as `columns`.
+            MissingPackageError: pandas is not installed.
+        """
+        return frame_of(self.columns(*names), self.summary["measures"], curves)
+
+    def worst(self, measure: str | None = None) -> int:
+        """Trial that is nearest to a limit of a measure, or furthest beyond it; see `tol3d.runs.worst.worst_trial`.
+
+        Raises:
+            RunError: no such measure, or the run kept no trials.
+        """
+        return worst_trial(self, measure)
+
+    def pieces(self, *names: str) -> Iterator[Columns]:
+        """Columns block by block, in the order of the trials: memory does not grow with their number.
+
+        Raises:
+            RunError: no such column, the run kept no trials, or a block is damaged.
+        """
+        blocks = self.blocks
+        known = self._columns_in(blocks)
+        unknown = [name for name in names if name not in known]
+        if unknown:
+            raise RunError(f"{self.path}: no column {unknown[0]!r}; there are: {', '.join(known)}")
+        for block in self._block_sizes:
+            piece = blocks.read(block, names or known)
+            for name, values in piece.items():
+                if (values.dtype.kind == "U") != name.startswith(STATUS):
+                    raise RunError(f"{blocks.path(block)}: column {name!r:.100} holds something else; {MENDED}")
+            yield piece
+
+    @property
+    def scene_path(self) -> Path:
+        """The scene as it was when the run was made.
+
+        Raises:
+            RunError: it is not there, or was changed since.
+        """
+        return self._kept(SCENE, self.path / SCENE).path
+
+    @property
+    def files(self) -> Files:
+        """The files that the scene names, as they were then, by the names it gives them.
+
+        Raises:
+            RunError: one is not there, or was changed since.
+        """
+        kept = {name: sha256 for name, sha256 in self.summary["files"].items() if name != SCENE}
+        return {name: self._kept(name, self.path / FILES / kept_name(name, kept[name])) for name in kept}
+
+    def _kept(self, name: str, path: Path) -> FileContent:
+        try:
+            file = FileContent(path, read_contained(path, self.path, LARGEST_FILE))
+        except UnreadableFileError as error:
+            raise RunError(f"{path}: cannot be read ({error}); the run is damaged") from None
+        if file.sha256 != self.summary["files"].get(name):
+            raise RunError(f"{path}: was changed since the run was made, so its trials cannot be made again")
+        return file
+
+    @property
+    def fingerprint(self) -> Fingerprint:
+        """What makes its blocks its own: scene, files, study, versions and processor, blocks."""
+        files = dict(self.summary["files"])
+        versions = {name: version for name, version in self.summary["versions"].items() if name != "python"}
+        blocks = self.summary.get("blocks")
+        study = self.summary["study"]
+        return {"scene": files.pop(SCENE, None), "files": files, "study": study, "versions": versions, "blocks": blocks}
+
+
+def open_run(path: Path | str) -> Run:
+    """Open a run's folder, which a stranger may have made; executes nothing of it.
+
+    Checked here are the summary's checksum, all its keys and values, and the number of blocks; scene, files and trials
+    are checked when they are read. That nothing was changed is not to say who made it.
+
+    Raises:
+        RunError: not a run, damaged, or changed since it was made.
+    """
+    path = Path(path)
+    run = read_run(path)
+    if run.keeps_trials:
+        there, expected = len(run.blocks.names), -(-run.trials // run.block_trials)
+        if there != expected:
+            words = f"expected {expected} Parquet files with the trials, found {there}"
+            raise RunError(f"{path / TRIALS}: {words}; {MENDED}")
+    return run
+
+
+def read_run(path: Path) -> Run:
+    """A run by its summary alone: its blocks may be damaged.
+
+    Raises:
+        RunError: not a run, or its summary is damaged or was changed since it was made.
+    """
+    if not (path / SUMMARY).exists():
+        hint = "; it was not finished: run the scene again to go on" if path.name.endswith(".partial") else ""
+        raise RunError(f"{path}: expected a run's folder with {SUMMARY} in it{hint}")
+    content = Manifest.read(path).content(SUMMARY, LARGEST_SUMMARY)
+    return Run(path, summary_of(content, path / SUMMARY))
+
+
+def differences(there: Fingerprint, asked: Fingerprint) -> list[str]:
+    """In what a run that is there differs from the one that is asked for, in words."""
+    found = []
+    for key in {**there, **asked}:
+        old, new = there.get(key), asked.get(key)
+        if isinstance(old, Mapping) and isinstance(new, Mapping):
+            found += [f"{key}: {words}" for words in differences(old, new)]
+        elif old != new:
+            there_only, now_only = unlike(old, new)
+            found.append("the scene's text" if key == "scene" else f"{key} {there_only} there, {now_only} now")
+    return found
+
+
+def another_study(there: Fingerprint, asked: Fingerprint) -> list[str]:
+    """In what a run that is there is of another study than the one that is asked for, in words."""
+    found = differences(*({key: print_.get(key) for key in STUDY} for print_ in (there, asked)))
+    if _keeps(there) and not _keeps(asked):
+        found.append("it holds the trials, too, and this would keep statistics only")
+    return found
+
+
+def _keeps(fingerprint: Fingerprint) -> bool:
+    return bool((fingerprint.get("blocks") or {}).get("kept"))
+
+
+def interrupted(partial: Path) -> Fingerprint | None:
+    """The fingerprint of the interrupted run in a folder; None where there is none, {} where it was being cleared."""
+    try:
+        read: Any = json.loads(read_contained(partial / FINGERPRINT, partial, LARGEST_FINGERPRINT))
+    except (UnreadableFileError, ValueError, RecursionError):
+        return None
+    return read if isinstance(read, Mapping) and (not read or "scene" in read) else None
+
+
+def partial_of(path: Path) -> Path:
+    """The folder in which a run that goes to `path` is written."""
+    path = path.resolve()  # so that "." has a name
+    return path.with_name(path.name + ".partial")
+
+
+def whole_run(path: Path, fingerprint: Fingerprint) -> Run | None:
+    """The finished run of that fingerprint, if no other was begun there since and all its blocks are whole."""
+    if partial_of(path).exists() or not (path / SUMMARY).is_file():
+        return None
+    run = read_run(path)
+    if differences(run.fingerprint, fingerprint) or (run.keeps_trials and not _has_whole_blocks(run)):
+        return None
+    tidy_after_kill(run)
+    return run
+
+
+def _has_whole_blocks(run: Run) -> bool:
+    """Whether every block is as it was written; each damaged one is told of."""
+    try:
+        blocks = run.blocks
+    except RunError as error:
+        tell_of_damage(error)
+        return False
+    whole = [whole_file(blocks, name) for name in blocks.names]
+    return len(whole) == -(-run.trials // run.block_trials) and all(whole)
+
+
+def whole_file(files: BlockFiles, name: str) -> bool:
+    """Whether a file is as it was written; a damaged one is told of."""
+    try:
+        files.verify(name)
+    except RunError as error:
+        tell_of_damage(error)
+        return False
+    return True
+
+
+def tell_of_damage(error: RunError) -> None:
+    warnings.warn(str(error).removesuffix(f"; {MENDED}") + "; it is made again", DamageWarning, stacklevel=2)
+
+
+def tidy_after_kill(run: Run) -> None:
+    """Take away what a kill between the end of a run and its tidying left; nothing that was not that run's."""
+    there = interrupted(run.path)
+    if there and not differences({key: there.get(key) for key in STUDY}, {key: run.fingerprint[key] for key in STUDY}):
+        tidy(run.path)
+
+
+def tidy(folder: Path) -> None:
+    """Take away what only an unfinished run needs; of a kill in here the finished run bears what was left."""
+    for name in (LOCK, CHECKPOINT, CHECKPOINT + UNFINISHED):
+        (folder / name).unlink(missing_ok=True)
+    BlockFiles(folder / PIECES).clear()
+    (folder / FINGERPRINT).unlink(missing_ok=True)  # last, for it tells that the others are ours

@@ -1,0 +1,72 @@
+"""The worst trial of a run: the one nearest to a limit, or furthest beyond it."""
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tol3d.errors import RunError
+from tol3d.runs.outcome import status_column, told
+
+if TYPE_CHECKING:  # who only wants the words loads no files of runs
+    from tol3d.runs.run import Run
+
+Array = NDArray[np.float64]
+
+JAMMED_BY = -1e9  # sigmas; no build that seats is so far beyond a limit
+TRAIN_KINDS = frozenset(("lost_motion", "tip_displacement", "tip_error"))  # measures of trains: the larger the worse
+
+
+def worst_trial(run: "Run", measure: str | None = None) -> int:
+    """Index of the worst trial of a run.
+
+    Where any trial is jammed it is the one that is jammed deepest; else, among those that seated, the one nearest to a
+    limit, or furthest beyond it. Nearness and depth are counted in standard deviations of each measure; a curve counts
+    by its extremes. Without any limit the smallest backlash is the worst, or the largest lost motion or error of a tip,
+    of the first measure. A trial without contact or out of range cannot be shown, and is never the worst.
+
+    Args:
+        run: one that kept its trials.
+        measure: the only one that is judged; all that have limits by default.
+
+    Raises:
+        RunError: no such measure, or the run kept no trials.
+    """
+    measures: Mapping[str, Mapping[str, Any]] = run.summary["measures"]
+    if measure is not None and measure not in measures:
+        raise RunError(f"{run.path}: no measure {measure!r}; there are: {', '.join(measures)}")
+    road = "geometric" if run.summary["engine"] != "analytic" else "analytic"
+    limited = {name: m for name, m in measures.items() if _limits(m) != (None, None)}
+    judged = {measure: measures[measure]} if measure else limited or dict([*measures.items()][:1])
+    return int(np.argmin(np.min([_margin(run, road, name, measure) for name, measure in judged.items()], axis=0)))
+
+
+def _limits(measure: Mapping[str, Any]) -> tuple[float | None, float | None]:
+    return measure["lower_limit"], measure["upper_limit"]
+
+
+def _margin(run: "Run", road: str, name: str, measure: Mapping[str, Any]) -> Array:
+    """How far each trial is inside the limits, in sigmas; infinite where it gave no value, far below all if jammed."""
+    wanted = (f"{road}:{name}", status_column(name))
+    found = told(run.columns(*(column for column in wanted if column in run.column_names)), road, name)
+    values = found.values.reshape(run.trials, -1)
+    lower, upper = _limits(measure)
+    below, above = values.min(axis=1), values.max(axis=1)  # nan where a position of a curve did not seat
+    if (lower, upper) == (None, None):
+        margin = -above if measure["kind"] in TRAIN_KINDS else below
+    else:
+        margin = below - lower if lower is not None else np.full(run.trials, np.inf)
+        margin = np.minimum(margin, upper - above) if upper is not None else margin
+    spread = (float(np.nanstd(margin)) if np.isfinite(margin).any() else 1.0) or 1.0
+    margin = np.where(np.isnan(margin), np.inf, margin / spread)
+    if found.jammed is not None:
+        margin[found.jammed] = JAMMED_BY + _overlaps(run, road, name)[found.jammed] / spread
+    return margin
+
+
+def _overlaps(run: "Run", road: str, name: str) -> Array:
+    """The smallest value of each trial (trials,); of one whose overlap is too deep to tell, deeper than any other."""
+    column = f"{road}:{name}"
+    smallest = np.asarray(run.columns(column)[column], dtype=np.float64).reshape(run.trials, -1).min(axis=1)
+    return np.where(np.isnan(smallest), JAMMED_BY, smallest)

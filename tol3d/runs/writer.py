@@ -1,0 +1,277 @@
+"""Writes a run into `<name>.partial`, block by block, and puts it in its place at the end."""
+
+import json
+import os
+import secrets
+import warnings
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager, suppress
+from pathlib import Path
+from typing import Any, TypeVar
+
+from filelock import FileLock, Timeout
+
+from tol3d.runs.block_files import CHECKSUMS, BlockFiles, block_name
+from tol3d.runs.checkpoint import Checkpoint
+from tol3d.runs.atomic_write import write_whole
+from tol3d.errors import DiskError, RunError, refused_by_disk
+from tol3d.files import FileContent, Files, kept_name
+from tol3d.runs.manifest import TRIALS, Manifest, own_paths_of_trials
+from tol3d.runs.occupant import MovedAsideWarning, free_aside, occupant_of
+from tol3d.runs.run import (
+    CHECKPOINT,
+    FILES,
+    FINGERPRINT,
+    LOCK,
+    PIECES,
+    SCENE,
+    SUMMARY,
+    Columns,
+    Fingerprint,
+    Run,
+    another_study,
+    differences,
+    interrupted,
+    partial_of,
+    read_run,
+    tell_of_damage,
+    tidy,
+    whole_file,
+)
+from tol3d.runs.summary_schema import written
+
+T = TypeVar("T")
+
+BEGINNING = {LOCK, f"{FINGERPRINT}.writing"}  # what there may be before the fingerprint
+DRAWN = "drawn"  # folder of pictures until they are whole
+NOBODYS = "{}"  # the fingerprint of no run
+
+
+class RunWriter:
+    """Writes a run: blocks as they come, the rest at the end. Implements execution.BlockStore.
+
+    Args:
+        path: the run's folder to be; see `occupant` for what may be there.
+        fingerprint: what makes the blocks of an interrupted run this run's own.
+        units: unit of each column, kept in the files' metadata.
+        keep_trials: False keeps no blocks.
+        resume: there must be an interrupted run of this fingerprint, or a finished one with damaged blocks.
+        force: replace a run of another study; what holds anything else is moved aside.
+
+    Raises:
+        RunError: the folder is something else, cannot be written, or is being written by another run.
+    """
+
+    def __init__(
+        self,
+        path: Path,
+        fingerprint: Fingerprint,
+        units: Mapping[str, str],
+        *,
+        keep_trials: bool = True,
+        resume: bool = False,
+        force: bool = False,
+    ) -> None:
+        self.path = path.resolve()
+        self.partial = partial_of(path)
+        self._fingerprint = json.loads(json.dumps(fingerprint))
+        self._lock = FileLock(self.partial / LOCK)
+        self._keep_trials = keep_trials
+        self._force = force
+        self._pictures: list[str] = []
+        if not resume and (occupant := occupant_of(self.path, self._fingerprint)):
+            occupant.refuse(force=force)
+        try:
+            if resume:
+                self._reopen()
+            self._open_partial(resume=resume)
+            self._blocks = BlockFiles(self.partial / TRIALS, units)
+            self._pieces = BlockFiles(self.partial / PIECES, units)
+            self._blocks.settle()
+            self._pieces.settle()
+        except OSError as error:
+            if refused_by_disk(error):
+                raise DiskError(f"{error.filename or self.partial}: cannot be written ({error.strerror})") from None
+            raise RunError(f"{self.partial}: cannot be written ({error.strerror}); choose another --out") from None
+
+    def _reopen(self) -> None:
+        """A finished run with damaged blocks becomes an interrupted one, with all that lies in its folder.
+
+        Raises:
+            RunError: there is nothing to go on with.
+        """
+        if self.partial.exists():
+            return
+        if not self.path.exists():
+            raise RunError(f"{self.path}: nothing to resume, neither a run nor {self.partial.name} is there")
+        run = read_run(self.path)
+        self._refuse_another(run.fingerprint, f"{self.path}: nothing to resume, this is a finished run")
+        made_again = (SUMMARY, f"{TRIALS}/{CHECKSUMS}")
+        if changed := [name for name in run.manifest.foreign() if name in run.manifest.sums and name not in made_again]:
+            raise RunError(f"{self.path / changed[0]}: was changed since the run was made; move it away first")
+        write_whole(self.path / FINGERPRINT, self._mark)
+        os.replace(self.path, self.partial)
+
+    def _refuse_another(self, there: Fingerprint, words: str) -> None:
+        if found := differences(there, self._fingerprint):
+            raise RunError(
+                f"{words} of something else ({'; '.join(found)}); choose another --out, or --force without --resume"
+            )
+
+    @property
+    def _mark(self) -> bytes:
+        return json.dumps(self._fingerprint, sort_keys=True, indent=1).encode()
+
+    def _open_partial(self, *, resume: bool) -> None:
+        mark = self.partial / FINGERPRINT
+        there = interrupted(self.partial)
+        if self.partial.exists() and there is None and {file.name for file in self.partial.iterdir()} - BEGINNING:
+            raise RunError(f"{self.partial}: exists and is not an interrupted run; move it away")
+        self.partial.mkdir(parents=True, exist_ok=True)
+        try:
+            self._lock.acquire(blocking=False)
+        except Timeout:
+            raise RunError(f"{self.path}: another run is being written there; choose another --out") from None
+        if there is not None and there != self._fingerprint:
+            if resume:
+                self._refuse_another(there, f"{self.partial}: this is an interrupted run")
+            if there and not self._force and (others := another_study(there, self._fingerprint)):
+                raise RunError(
+                    f"{self.partial}: an interrupted run of another study is kept there ({'; '.join(others)}); choose "
+                    "another --out, or --force, which throws it away"
+                )
+            write_whole(mark, NOBODYS.encode())  # killed in here, the next run sees that the rest is not its own
+            for folder in (TRIALS, PIECES):
+                BlockFiles(self.partial / folder).clear()
+            (self.partial / CHECKPOINT).unlink(missing_ok=True)
+        write_whole(mark, self._mark)
+        for folder in (TRIALS, PIECES):
+            (self.partial / folder).mkdir(exist_ok=True)
+
+    # blocks -------------------------------------------------------------------------------------------
+
+    def checkpoint(self, kind: type[T]) -> Checkpoint[T]:
+        """Where the statistics of the first blocks are kept."""
+        return Checkpoint(self.partial / CHECKPOINT, kind)
+
+    def read(self, index: int) -> Columns | None:
+        """A block that an interrupted run has finished, or None; a damaged one is told of and counts as none."""
+        return _read(self._blocks, block_name(index))
+
+    def holds(self, index: int) -> bool:
+        """Whether a finished block need not be made again; a damaged one is told of."""
+        return not self._keep_trials or whole_file(self._blocks, block_name(index))
+
+    def write(self, index: int, columns: Columns) -> None:
+        """Write a finished block; its pieces go."""
+        if self._keep_trials:
+            self._blocks.write(block_name(index), columns)
+        self._pieces.remove([name for name in self._pieces.names if name.startswith(_piece_name(index, ""))])
+
+    def read_piece(self, index: int, first: int) -> Columns | None:
+        """A piece of an unfinished block that begins at a trial, or None; a damaged one counts as none."""
+        return _read(self._pieces, _piece_name(index, first))
+
+    def write_piece(self, index: int, first: int, columns: Columns) -> None:
+        """Keep a piece of an unfinished block."""
+        self._pieces.write(_piece_name(index, first), columns)
+
+    def drop_from(self, index: int) -> None:
+        """Take away this block and those behind it."""
+        self._blocks.remove([name for name in self._blocks.names if name >= block_name(index)])
+
+    def kept_blocks(self, kind: type[Any]) -> int:
+        """How many blocks need not be made again; of a run without trials those in its statistics of type `kind`."""
+        if self._keep_trials:
+            return len(self._blocks.names)
+        counted = self.checkpoint(kind).read()
+        return counted[0] if counted else 0
+
+    # the rest -----------------------------------------------------------------------------------------
+
+    def keep(self, scene: FileContent, files: Files) -> dict[str, str]:
+        """Keep the scene and the files that it names; the SHA-256 of each by its name."""
+        places = {name: self.partial / FILES / kept_name(name, file.sha256) for name, file in files.items()}
+        everything = {name: (path, files[name]) for name, path in places.items()} | {
+            SCENE: (self.partial / SCENE, scene)
+        }
+        for path, file in everything.values():
+            path.parent.mkdir(exist_ok=True)
+            write_whole(path, file.content)
+        self._kept = [path.relative_to(self.partial).as_posix() for path, _ in everything.values()]
+        return {name: file.sha256 for name, (_, file) in everything.items()}
+
+    @contextmanager
+    def pictures(self) -> Iterator[Path]:
+        """Within it a folder for pictures, which are the run's own afterwards."""
+        drawn = self.partial / DRAWN
+        drawn.mkdir(exist_ok=True)
+        for unfinished in drawn.iterdir():  # of a kill
+            unfinished.unlink()
+        yield drawn
+        for picture in sorted(drawn.iterdir()):
+            os.replace(picture, self.partial / picture.name)
+            self._pictures.append(picture.name)
+        drawn.rmdir()
+
+    def finish(self, summary: Mapping[str, Any]) -> Run:
+        """Write the summary and put the run in its place; killed before that, the same command goes on."""
+        text = written(summary)
+        if self._keep_trials:
+            self._blocks.settle()
+        else:
+            self._blocks.clear()
+        write_whole(self.partial / SUMMARY, text.encode())
+        lists = own_paths_of_trials(self._keep_trials)
+        Manifest.of(self.partial, {SUMMARY, *self._kept, *self._pictures, *lists, *self._older()}).write()
+        self._lock.release()
+        self._put_in_place()
+        return Run(self.path, json.loads(text))
+
+    def _older(self) -> Iterator[str]:
+        """Files of a finished run that is mended, such as pictures, where they are as they were."""
+        with suppress(RunError):
+            older = Manifest.read(self.partial)
+            changed = older.foreign()
+            yield from (name for name in older.sums if name not in changed and (self.partial / name).is_file())
+
+    def _put_in_place(self) -> None:
+        """Rename the folder; what lies there is deleted where it may be replaced, else moved aside."""
+        old = self._moved_away() if self.path.exists() else None
+        os.replace(self.partial, self.path)
+        tidy(self.path)
+        if old is not None and not Manifest.read(old).remove():  # something came into it since
+            self._move_aside(old, "more than the run")
+
+    def _moved_away(self) -> Path | None:
+        """Free the run's place: the old run's new name if it may be deleted, None if it was moved aside."""
+        try:
+            occupant = occupant_of(self.path, self._fingerprint)
+        except RunError:
+            self._move_aside(self.path, "something else than a run")
+            return None
+        if occupant is not None and (occupant.foreign or (occupant.others and not self._force)):
+            self._move_aside(self.path, occupant.reason.removeprefix("holds "))
+            return None
+        old = self.path.with_name(f"{self.path.name}.replaced-{os.getpid()}-{secrets.token_hex(4)}")
+        os.rename(self.path, old)
+        return old
+
+    def _move_aside(self, folder: Path, what: str) -> None:
+        aside = free_aside(self.path)
+        os.rename(folder, aside)
+        warnings.warn(f"{self.path}: held {what}, and was moved aside to {aside}", MovedAsideWarning, stacklevel=2)
+
+
+def _piece_name(index: int, first: int | str) -> str:
+    return f"{block_name(index)}-{first}"
+
+
+def _read(files: BlockFiles, name: str) -> Columns | None:
+    if name not in files:
+        return None
+    try:
+        return files.read(name)
+    except RunError as error:
+        tell_of_damage(error)
+        return None

@@ -1,0 +1,1 @@
+"""What is asked of a system, drawn, tallied, stopped and found."""

@@ -1,0 +1,1 @@
+"""How far the two roads lie apart, and what explains it."""

@@ -1,0 +1,314 @@
+"""What explains the difference of the two roads: decided contributor by contributor and trial by trial, or warned of.
+
+A stack-up is of first order. So the difference (geometric - analytic) may be of second order, which `second_look.py`
+tells; and of first order only where the stack-up says that it leaves something out, and by how much at most
+(`analytic/neglect.py`). Anything else is an error of one of the roads.
+"""
+
+import math
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tol3d.gearing.engines import Engine
+from tol3d.gearing.model import Contributor, Measure, Model, Planar
+from tol3d.gearing.neglected import alone, neglected, of_gaps
+from tol3d.statistics.linear_fit import LEAST_FREEDOM, LinearFit, effect_of, standard_errors
+from tol3d.study import draws as trials
+from tol3d.study.agreement.explanation import Explanation, LinearPart
+from tol3d.study.agreement.road_fits import RoadFits, sigma_of
+from tol3d.study.agreement.second_look import SecondLook, bends, scalars_of, second_look
+from tol3d.study.block import simulate_block, stated_block
+from tol3d.study.regressors import feature_groups
+from tol3d.study.tally import Tally
+
+Array = NDArray[np.float64]
+
+SURE = 5.0  # standard errors; by chance once in two million
+SUREST = 1e6  # standard errors that are told; without any chance there are infinitely many
+SHARE = 0.02  # of a contributor's own effect; a wrong coefficient of 3 % and half a pitch of 110 teeth are beyond it
+LEAST_LEFT = 0.01  # of the measure's sigma; what adds 0.005 % to it is not told from 0 by 10^8 trials
+LARGEST_LEFT = 5.0  # times that; the most that one of very many trials may be off by kinks of an extreme over a turn
+FURTHER_LOOKS = 256  # trials looked at again beyond the regressors: what is left of 256 has an rms known to 4 %
+FURTHER_SLOW_LOOKS = 64  # by an engine with chord errors, which takes a millisecond for each of the three builds
+FLANKS_OF_A_BACKLASH = 4  # two at the contact, two at the gap; each may miss the true flank by the chord error
+CHORDS_OF_A_LOOK = 4  # backlashes' chord errors in a second look: 4 D(1/2) - D(1) - 3 D(0), none of them below 0
+SECOND_ORDER = "second order, for the means lie off the nominal build"
+NAMED_BENDS = 3  # contributors named for the second order
+NAMED_SHARE = 0.1  # of the largest second difference; smaller ones are not named
+
+
+def explanations(model: Model, engine: Engine | None, tally: Tally) -> dict[str, Explanation]:
+    """What explains the difference of each scalar measure that both roads gave."""
+    measures = [m for m in scalars_of(model) if engine is not None and tally.measures[m.name].disagreement]
+    if engine is None or not measures:
+        return {}
+    fits = {measure.name: RoadFits.of(model, measure, tally.measures[measure.name]) for measure in measures}
+    undecided = {m.name: Explanation(undecided=_too_few(model, m, tally)) for m in measures if fits[m.name] is None}
+    if len(undecided) == len(measures):
+        return undecided
+    widest = max(len(feature_groups(model, measure)) for measure in measures)
+    looked = 2 * widest + (FURTHER_SLOW_LOOKS if engine.chord_error else FURTHER_LOOKS)
+    worst = [own.trial for m in measures if (own := tally.measures[m.name].disagreement)]
+    look = second_look(model, engine, looked, [max(trial, 0) for trial in worst])
+    bent, by_means = bends(model, engine), _effects_of_means(model)
+    return undecided | {
+        measure.name: _Case(
+            model, measure, fit, look, looked + k, looked, by_means[measure.name], chords_of(model, measure, engine)
+        ).explained(bent[measure.name])
+        for k, measure in enumerate(measures)
+        if (fit := fits[measure.name]) is not None
+    }
+
+
+def chords_of(model: Model, measure: Measure, engine: Engine) -> float:
+    """What of a measure may be chord error, in its unit."""
+    return of_gaps(model, measure, FLANKS_OF_A_BACKLASH * engine.chord_error)
+
+
+def _too_few(model: Model, measure: Measure, tally: Tally) -> str:
+    own = tally.measures[measure.name].disagreement
+    compared = own.sums.count if own else 0
+    needed = 2 * len(feature_groups(model, measure)) + LEAST_FREEDOM + 1
+    return f"{compared} trials are too few to tell what explains that, {needed} are enough"
+
+
+def _effects_of_means(model: Model) -> Mapping[str, Mapping[str, float]]:
+    """How far each contributor's mean shifts each measure on the analytic road, in its unit, by measure and name."""
+    found = {}
+    for measure in scalars_of(model):
+        middle = trials.mean_deviations(model, measure.positions)
+        rows = np.zeros((len(model.contributors) + 1, model.component_count))
+        for row, contributor in zip(rows[1:], model.contributors, strict=True):
+            own = model.component_slices[contributor.name]
+            row[own] = middle[0, own]
+        columns = simulate_block(replace(model, measures=(measure,)), None, stated_block(model, rows))
+        values = np.asarray(columns[f"analytic:{measure.name}"], dtype=np.float64)
+        found[measure.name] = dict(zip(model.component_slices, np.abs(values[1:] - values[0]).tolist(), strict=True))
+    return found
+
+
+@dataclass(frozen=True, eq=False)
+class _Case:
+    """A measure whose difference is to be explained.
+
+    Args:
+        model, measure: what was studied.
+        fits: of all its trials.
+        look: a second look at `looked` trials and others behind them, of which `worst` has the largest difference.
+        means: how far each contributor's mean shifts the measure.
+        chords: what of a difference may be chord error.
+    """
+
+    model: Model
+    measure: Measure
+    fits: RoadFits
+    look: SecondLook
+    worst: int
+    looked: int
+    means: Mapping[str, float]
+    chords: float
+
+    def explained(self, bent: Mapping[str, float]) -> Explanation:
+        """What explains it; `bent` are the second differences of each contributor."""
+        name, first = self.measure.name, slice(0, self.looked)
+        curved = np.where(np.arange(len(self.look.block)) < self.looked, self.look.second_order[name], np.nan)
+        straight = np.where(np.isnan(curved), np.nan, self.look.left(name))
+        second, left = (LinearFit.of(self.look.sums(name, target)) for target in (curved, straight))
+        bounds = neglected(self.model, self.measure, self.look.block)
+        parts = tuple(self._linear_parts(second))
+        mean = self._mean(curved, second, sum((own[first].mean() for own in bounds.values()), 0.0))
+        allowed = math.hypot(LEAST_LEFT * self.fits.sigma, _rms(sum(bounds.values(), np.zeros(len(curved)))[first]))
+        known = not np.isnan(curved[first]).all()
+        left_rms = min(left.residual, self.fits.difference.residual) if left else None
+        return Explanation(
+            faults=(
+                *self._unexplained(parts),
+                *self._beyond(left_rms, allowed + CHORDS_OF_A_LOOK * self.chords),
+                *self._beyond_in_the_worst(bounds, mean),
+                *self._mean_fault(mean),
+            ),
+            linear=parts,
+            largest_trial=self.fits.disagreement.trial,
+            largest_percent=self._largest_percent([part.contributor for part in parts]),
+            neglected={words: _rms(own[first]) for words, own in bounds.items()},
+            second_order_rms=_rms(curved[first]) if known else None,
+            second_order_mean=float(np.nanmean(curved[first])) if known else None,
+            second_order_of=_largest(bent),
+            left_rms=left_rms,
+            mean_left=mean.left,
+            mean_allowed=mean.allowed,
+        )
+
+    # linear parts -----------------------------------------------------------------------------------
+
+    def _linear_parts(self, second: LinearFit | None) -> Iterator[LinearPart]:
+        """Contributors whose linear part is beyond chance and SHARE, with what explains it."""
+        fit = self.fits.difference
+        for name, group in feature_groups(self.model, self.measure).items():
+            sure = standard_errors(fit.coefficients[group], fit.covariance[group, group])
+            size, own = fit.effect(group), self.fits.own[name]
+            if sure > SURE and size > SHARE * own:
+                yield LinearPart(name, 100 * size / own, min(sure, SUREST), self._reason(name, group, second))
+
+    def _reason(self, name: str, group: slice, second: LinearFit | None) -> str:
+        """What explains a contributor's linear part, "" where nothing does."""
+        allowed = SHARE * self.fits.own[name]
+        left, sure = self._of_first_order(group, second)
+        if left <= allowed:
+            return SECOND_ORDER
+        if sure <= SURE:
+            return f"{SECOND_ORDER}, as far as {self.looked} builds tell"
+        beyond_chance = left * (1 - SURE / sure)
+        sizes = {words: _rms(own) for words, own in self._left_out_by(name).items()}
+        reasons: list[str] = []
+        for words, size in sorted(sizes.items(), key=lambda item: -item[1]):
+            if size > 0.0:
+                reasons.append(words)
+                allowed += size
+                if beyond_chance <= allowed:
+                    return " and ".join(reasons)
+        return ""
+
+    def _left_out_by(self, name: str) -> Mapping[str, Array]:
+        """What the stack-up leaves out of a contributor's effect, at most.
+
+        Where positions or parallel ways are compared all that is left out helps to choose one of them, and by that
+        what any contributor does; its part in the difference is no larger than the difference then. Else it is told to
+        scale: the contributor varies in all trials more or less than in those looked at.
+        """
+        block = self.look.block.part(0, self.looked)
+        if self.measure.take != "value" or not self.measure.kind.adds_up:
+            return neglected(self.model, self.measure, block)
+        middle = trials.mean_deviations(self.model, self.measure.positions)
+        found = neglected(self.model, self.measure, alone(self.model, block, name, middle))
+        group = feature_groups(self.model, self.measure)[name]
+        seen = self.look.regressors[self.measure.name][group, : self.looked].var(axis=1)
+        spread = np.diagonal(self.fits.difference.spread)[group]
+        first = np.s_[:] if isinstance(self._contributor(name).draw, Planar) else np.s_[:1]  # a square is no component
+        to_scale = math.sqrt(spread[first].sum() / seen[first].sum()) if seen[first].any() else 1.0
+        return {words: to_scale * own for words, own in found.items()}
+
+    def _contributor(self, name: str) -> Contributor:
+        return next(own for own in self.model.contributors if own.name == name)
+
+    def _of_first_order(self, group: slice, second: LinearFit | None) -> tuple[float, float]:
+        """Linear part of a contributor less that of second order [unit of the measure]; in standard errors of both."""
+        fit = self.fits.difference
+        coefficients, covariance, spread = (
+            fit.coefficients[group],
+            fit.covariance[group, group],
+            fit.spread[group, group],
+        )
+        if second is not None:
+            coefficients = coefficients - second.coefficients[group]
+            covariance = covariance + second.covariance[group, group]
+        return effect_of(coefficients, spread), standard_errors(coefficients, covariance)
+
+    def _unexplained(self, parts: tuple[LinearPart, ...]) -> Iterator[str]:
+        for part in parts:
+            if not part.by:
+                yield (
+                    f"the two roads disagree on {part.contributor}: their difference depends on it by "
+                    f"{part.percent:.3g} % of its own effect ({part.standard_errors:.3g} standard errors), "
+                    "which no second-order term explains; one of the roads is wrong there"
+                )
+
+    def _largest_percent(self, besides: list[str]) -> float:
+        """The largest part of the other contributors that is beyond chance, of its own effect [%]."""
+        fit = self.fits.difference
+        found = [0.0]
+        for name, own in feature_groups(self.model, self.measure).items():
+            if name not in besides and standard_errors(fit.coefficients[own], fit.covariance[own, own]) > SURE:
+                found.append(100 * fit.effect(own) / self.fits.own[name])
+        return max(found)
+
+    # what is left -----------------------------------------------------------------------------------
+
+    def _beyond(self, left_rms: float | None, allowed: float) -> Iterator[str]:
+        if left_rms is not None and left_rms > allowed:
+            yield (
+                f"differences of rms {left_rms:.3g} {self.measure.unit} are neither linear in a contributor nor of "
+                f"second order; at most {allowed:.3g} {self.measure.unit} of that are explained"
+            )
+
+    def _beyond_in_the_worst(self, bounds: Mapping[str, Array], mean: "_Mean") -> Iterator[str]:
+        """The trial of the largest difference, where more of it than contributors may be off is not of second order."""
+        straight, whole = self.look.left(self.measure.name), self.look.whole[self.measure.name]
+        left = min(abs(float(straight[self.worst])), abs(float(whole[self.worst])))
+        regressors = self.look.regressors[self.measure.name][:, self.worst]
+        allowed = mean.allowed + CHORDS_OF_A_LOOK * self.chords + LARGEST_LEFT * LEAST_LEFT * self.fits.sigma
+        allowed += sum(float(own[self.worst]) for own in bounds.values())
+        for name, group in feature_groups(self.model, self.measure).items():
+            spread = math.sqrt(np.trace(self.fits.difference.spread[group, group]))
+            reach = float(np.hypot(*regressors[group])) / spread if spread > 0.0 else 0.0
+            allowed += SHARE * self.fits.own[name] * reach
+        if left > allowed:  # not where it is nan
+            yield (
+                f"trial {self.fits.disagreement.trial} differs by {self.fits.disagreement.largest:.3g} "
+                f"{self.measure.unit}, of which {left:.3g} {self.measure.unit} are not of second order; {allowed:.3g} "
+                f"{self.measure.unit} are explained"
+            )
+
+    # means ------------------------------------------------------------------------------------------
+
+    def _mean(self, curved: Array, second: LinearFit | None, left_out: float) -> "_Mean":
+        """The difference of the means less what is of second order, and how much of it may be left."""
+        sums, nominal = self.fits.disagreement.sums, self.look.nominal[self.measure.name][: self.looked]
+        known = curved[~np.isnan(curved)]
+        if not len(known):
+            known, nominal = np.zeros(1), np.zeros(1)
+        error = math.hypot(sigma_of(sums) / math.sqrt(sums.count), float(known.std()) / math.sqrt(len(known)))
+        allowed = SURE * error + LEAST_LEFT * self.fits.sigma + left_out + self.chords
+        groups = feature_groups(self.model, self.measure)
+        for name, shift in self.means.items():
+            if name in groups:
+                allowed += self._accuracy(name, groups[name], second) * shift
+        at_nominal = float(np.nanmean(nominal))
+        return _Mean(
+            float(sums.means[-1]), error, at_nominal, float(sums.means[-1] - known.mean()) - at_nominal, allowed
+        )
+
+    def _accuracy(self, name: str, group: slice, second: LinearFit | None) -> float:
+        """To which share of its effect both roads are known to agree on a contributor's coefficient, SHARE at most."""
+        fit, own = self.fits.difference, self.fits.own[name]
+        if not fit.spread[group, group].any():
+            return SHARE
+        left, _ = self._of_first_order(group, second)
+        chance = math.sqrt(max(float(np.trace(fit.covariance[group, group] @ fit.spread[group, group])), 0.0))
+        return min((left + SURE * chance) / own, SHARE)
+
+    def _mean_fault(self, mean: "_Mean") -> Iterator[str]:
+        unit = self.measure.unit
+        if abs(mean.nominal) > LEAST_LEFT * self.fits.sigma + self.chords:
+            yield f"the roads differ by {mean.nominal:.3g} {unit} in the mean at the nominal build already"
+        if abs(mean.left) > mean.allowed:
+            yield (
+                f"the means differ by {mean.difference:.3g} {unit} (standard error {mean.error:.2g} {unit}), of which "
+                f"{mean.left:.3g} {unit} are not of second order; {mean.allowed:.3g} {unit} are explained"
+            )
+
+
+@dataclass(frozen=True)
+class _Mean:
+    """A difference of means: whole, its standard error, that of the nominal build, what is left beside second order."""
+
+    difference: float
+    error: float
+    nominal: float
+    left: float
+    allowed: float
+
+
+def _rms(values: Array) -> float:
+    known = values[~np.isnan(values)]
+    return float(np.sqrt(np.mean(known**2))) if len(known) else 0.0
+
+
+def _largest(bent: Mapping[str, float]) -> tuple[str, ...]:
+    """Names of the largest second differences, the largest first; none where they are not known."""
+    ranked = sorted((name for name, bend in bent.items() if bend), key=lambda name: -abs(bent[name]))
+    most = abs(bent[ranked[0]]) if ranked else 0.0
+    return tuple(name for name in ranked[:NAMED_BENDS] if abs(bent[name]) > NAMED_SHARE * most)

@@ -1,0 +1,168 @@
+"""One road's sample of one measure: gathered block by block, shown in summary.json."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tol3d.gearing.model import Measure
+from tol3d.runs.outcome import Mask, Told
+from tol3d.statistics import Grid, LimitCounts, Moments, equivalent_ppk, pp, ppk
+from tol3d.study.replicated import Replicated
+
+Array = NDArray[np.float64]
+
+QUANTILES = {"p0.135": 0.00135, "p50": 0.5, "p99.865": 0.99865}
+
+
+def in_unit(measure: Measure, value: float | None) -> float | None:
+    """A length or angle in the measure's unit; None stays None."""
+    return None if value is None else value * measure.per_internal
+
+
+def lacking_of(measure: Measure, told: Told) -> Mask | None:
+    """Trials that lack what is measured, and so are below every lower limit: the jammed ones.
+
+    But for a range: that of a jammed build says nothing of how far its backlash swings, so it counts as failed only.
+    """
+    return None if measure.take == "range" else told.jammed
+
+
+@dataclass(frozen=True)
+class Sample:
+    """One road's sample of one measure.
+
+    Args:
+        moments, grid: of the trials that seated.
+        limits: of all trials.
+        deepest: the largest overlap of a jammed trial, as a value below 0; inf where none is known.
+        replicated: the sample by replicates where its trials are not independent, and tells its errors then.
+    """
+
+    moments: Moments
+    grid: Grid
+    limits: LimitCounts
+    deepest: float
+    replicated: Replicated | None = None
+
+    @classmethod
+    def of(cls, measure: Measure, told: Told, empty: Grid, rows: Mapping[int, slice]) -> "Sample":
+        """Sample of a block.
+
+        Args:
+            measure: what was measured.
+            told: of the block's trials, values (trials,).
+            empty: the measure's grid.
+            rows: which of them belong to each replicate; empty for independent trials.
+        """
+        values, lacking = told.values, lacking_of(measure, told)
+        good = values[~np.isnan(values)]
+        lower, upper = in_unit(measure, measure.lower_limit), in_unit(measure, measure.upper_limit)
+        return cls(
+            moments=Moments.of(good),
+            grid=empty.add(good),
+            limits=LimitCounts.of(values, lower, upper, lacking),
+            deepest=told.deepest,
+            replicated=Replicated.of(values, rows, lower, upper, lacking) if rows else None,
+        )
+
+    def merge(self, other: "Sample") -> "Sample":
+        """Both samples as one."""
+        return Sample(
+            self.moments.merge(other.moments),
+            self.grid.merge(other.grid),
+            self.limits.merge(other.limits),
+            min(self.deepest, other.deepest),
+            self.replicated.merge(other.replicated) if self.replicated and other.replicated else None,
+        )
+
+
+def sample_summary(measure: Measure, sample: Sample) -> dict[str, Any]:
+    """A sample as summary.json shows it, in the measure's unit."""
+    moments, limits = sample.moments, sample.limits
+    lower, upper = in_unit(measure, measure.lower_limit), in_unit(measure, measure.upper_limit)
+    errors = sample.replicated or _Independent(moments, limits)
+    by_share = limits.failed > 0 and (lower, upper) != (None, None)
+    summary: dict[str, Any] = {
+        "count": moments.count,
+        "trials": limits.total,
+        "mean": moments.mean if moments.count else None,
+        "sigma": moments.sigma,
+        "low_3sigma": moments.mean - 3 * moments.sigma,
+        "high_3sigma": moments.mean + 3 * moments.sigma,
+        "sample_min": moments.minimum,
+        "sample_max": moments.maximum,
+        **{name: _quantile(sample, p) for name, p in QUANTILES.items()},
+        "quantile_error": sample.grid.width,
+        "outside_grid": sample.grid.underflow + sample.grid.overflow,
+        "below_limit_ppm": limits.below_limit.ppm,
+        "below_limit_ppm_95": errors.below_interval_ppm,
+        "above_limit_ppm": limits.above_limit.ppm,
+        "above_limit_ppm_95": errors.above_interval_ppm,
+        "failed_ppm": limits.failures.ppm,
+        "out_ppm": limits.out_of_limits.ppm,
+        "out_ppm_95": errors.out_interval_ppm,
+        "deepest_overlap": sample.deepest,
+        "mean_se": errors.mean_se,
+        "sigma_se": errors.sigma_se,
+        "error_by": "sample" if sample.replicated is None else "replicates",
+        "skewness": moments.skewness,
+        "kurtosis": moments.excess_kurtosis,
+        "pp": pp(lower, upper, moments.sigma),
+        "ppk": equivalent_ppk(limits.out_of_limits) if by_share else ppk(lower, upper, moments.mean, moments.sigma),
+        "ppk_by": "share out of limits" if by_share else "mean and sigma",
+    }
+    return {key: finite(value) for key, value in summary.items()}
+
+
+@dataclass(frozen=True)
+class _Independent:
+    """Errors of a sample of independent trials."""
+
+    moments: Moments
+    limits: LimitCounts
+
+    @property
+    def mean_se(self) -> float:
+        return self.moments.mean_se
+
+    @property
+    def sigma_se(self) -> float:
+        return self.moments.sigma_se
+
+    @property
+    def below_interval_ppm(self) -> tuple[float, float] | None:
+        return self.limits.below_limit.interval_ppm() if self.limits.total else None
+
+    @property
+    def above_interval_ppm(self) -> tuple[float, float] | None:
+        return self.limits.above_limit.interval_ppm() if self.limits.total else None
+
+    @property
+    def out_interval_ppm(self) -> tuple[float, float] | None:
+        return self.limits.out_of_limits.interval_ppm() if self.limits.total else None
+
+
+def _quantile(sample: Sample, p: float) -> float | None:
+    """The grid's quantile, which lies within a bin, not beyond the sample's own ends."""
+    value = sample.grid.quantile(p)
+    return None if value is None else min(max(value, sample.moments.minimum), sample.moments.maximum)
+
+
+def finite(value: Any) -> Any:
+    """JSON has no nan: what cannot be told (a sigma of one trial) is null."""
+    return None if isinstance(value, float) and not np.isfinite(value) else value
+
+
+def curve_limits(limits: LimitCounts, *, independent: bool) -> dict[str, Any]:
+    """What is out of the limits anywhere on a curve, as summary.json shows it; intervals for independent trials."""
+    return {
+        "trials": limits.total,
+        "below_limit_ppm": limits.below_limit.ppm,
+        "above_limit_ppm": limits.above_limit.ppm,
+        "failed_ppm": limits.failures.ppm,
+        "out_ppm": limits.out_of_limits.ppm,
+        "out_ppm_95": limits.out_of_limits.interval_ppm() if independent and limits.total else None,
+    }
