@@ -24,7 +24,7 @@ from tol3d.report.canvas import BLACK, BLUE, GREY, ORANGE, new_figure, plain_axe
 from tol3d.samplers.replicates import REPLICATES, SamplerKind
 from tol3d.scene import load_scene
 from tol3d.statistics import Moments
-from tol3d.study import draws as trials
+from tol3d.study import draws
 from tol3d.study.block import Block, analytic_values
 from tol3d.study.replicated import Replicated, rows_of_replicates
 
@@ -65,7 +65,7 @@ def study(model: Model, measure: Measure, sampler: SamplerKind, size: int, seed:
     parts = 1 if sampler == "monte_carlo" else REPLICATES
     own = replace(model.study, trials=size, seed=seed, sampler=sampler, replicates=parts)
     model = replace(model, study=own)
-    block = Block(trials.deviations(model, seed, 0, size), trials.driver_angles(model, seed, 0, size))
+    block = Block(draws.deviations(model, seed, 0, size), draws.driver_angles(model, seed, 0, size))
     values = analytic_values(model, measure, block)[:, 0] * measure.per_internal
     moments = Moments.of(values)
     rows = rows_of_replicates(own, 0, size)

@@ -20,7 +20,7 @@ from tol3d.gearing.meshing import Meshing
 from tol3d.gearing.model import Model, Reading, model_from_scene
 from tol3d.gears import LEFT, RIGHT
 from tol3d.scene import load_scene
-from tol3d.study import draws as trials
+from tol3d.study import draws
 
 SPUR_PAIR = (SCENES / "spur_pair.yaml").read_text("utf-8")
 
@@ -44,7 +44,7 @@ def model_of(folder: Path, tolerances: str, *, parts: str = DRIVER + DRIVEN + HO
 
 
 def built(model: Model, count: int = 1) -> Build:
-    return build(model, trials.deviations(model, seed=1, first=0, count=count))
+    return build(model, draws.deviations(model, seed=1, first=0, count=count))
 
 
 @dataclass(frozen=True)

@@ -19,7 +19,7 @@ from tol3d.gearing.model.layout import Drive
 from tol3d.gearing.model.measure import AnyStage
 from tol3d.runs.outcome import SEATED, status_column
 from tol3d.samplers import MonteCarlo, Stream
-from tol3d.study import draws as trials
+from tol3d.study import draws
 from tol3d.study.block import ROWS_AT_ONCE, Block, Columns, simulate_block, stage_column
 
 Array = NDArray[np.float64]
@@ -109,7 +109,7 @@ def _mean(values: NDArray[np.generic]) -> Array:
 def robots_block(model: Model, first: int, count: int, positions: int) -> Block:
     """Robots first ... first + count - 1, each at P + 1 positions, positions fastest, the study's own last."""
     seed = model.study.seed
-    own = trials.driver_angles(model, seed, first, count)
+    own = draws.driver_angles(model, seed, first, count)
     angles: dict[str, Array] = {}
     for drive in model.layout.drives:
         root = 2 * math.pi * float(drive.turns) * _shares(drive, seed, first, count, positions)
@@ -117,7 +117,7 @@ def robots_block(model: Model, first: int, count: int, positions: int) -> Block:
             turning = model.layout.mesh_turn[mesh]
             spread = turning.offset + float(turning.rate) * root
             angles[mesh] = np.concatenate([spread, own[mesh][:, None]], axis=1).ravel()
-    deviations = trials.deviations(model, seed, first, count)
+    deviations = draws.deviations(model, seed, first, count)
     return Block(np.repeat(deviations, positions + 1, axis=0), angles)
 
 

@@ -26,7 +26,7 @@ from tol3d.gearing.rates import Tangent, tangent
 from tol3d.gears import Flank
 from tol3d.gears.flank import opposite
 from tol3d.numerics import frames
-from tol3d.study import draws as trials
+from tol3d.study import draws
 from tol3d.study.block import (
     ROWS_AT_ONCE,
     Block,
@@ -322,7 +322,7 @@ def mean_slopes(model: Model, engine: Engine, measure: Measure) -> tuple[Slope, 
 
     At a nominal build pairs tie and gaps lie all along a face, so that each slope is taken STEP_ASIDE of it.
     """
-    middle = trials.mean_deviations(model, measure.positions)
+    middle = draws.mean_deviations(model, measure.positions)
     unit_steps = np.eye(model.component_count)
     gradients = _beside(model, engine, measure, middle, unit_steps)
     gradient = np.array([_either(*gradients[:, :, k][:, k]).mean() for k in range(model.component_count)])

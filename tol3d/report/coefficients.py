@@ -16,7 +16,7 @@ from tol3d.gearing.sensitivity import STEP_ASIDE, Slope, mean_slopes
 from tol3d.gearing.stack_up import Share, reference_form
 from tol3d.report.number import NOTHING, UNIT_SIGNS, degrees_text, percent_text
 from tol3d.report.sheet import Heading, Row, Sheet, titled
-from tol3d.study import draws as trials
+from tol3d.study import draws
 from tol3d.study.block import analytic_values, stated_block
 
 UM = 1000.0  # um in a mm
@@ -170,7 +170,7 @@ def _road_slopes(model: Model, measure: Measure, along: Sequence[Slope]) -> list
     Where a contributor is no term of a sum: it leans axes, or only the tighter of parallel ways counts. Taken
     STEP_ASIDE of the mean build, where those of the geometry are; the road is straight from kink to kink.
     """
-    mean = trials.mean_deviations(model, measure.positions)
+    mean = draws.mean_deviations(model, measure.positions)
     lengths = np.array([STEP_ASIDE[contributor.unit] for contributor in model.contributors])
     steps = np.zeros((len(along), model.component_count))
     for step, length, contributor, slope in zip(steps, lengths, model.contributors, along, strict=True):

@@ -18,7 +18,7 @@ from tol3d.gearing.model import Backlash, LostMotion, Measure, Mesh, Model, Stud
 from tol3d.gearing.play import Play, Read, SeatKey, positions_count, seat_key, seat_keys
 from tol3d.gearing.stack_up import analytic_backlash, first_order, per_normal_backlash
 from tol3d.runs.outcome import status_column
-from tol3d.study import draws as trials
+from tol3d.study import draws
 from tol3d.units import ARCMIN
 
 Array = NDArray[np.float64]
@@ -56,7 +56,7 @@ class Block:
 
 def drawn_block(model: Model, seed: int, first: int, count: int) -> Block:
     """Trials first ... first + count - 1 as the seed draws them."""
-    return Block(trials.deviations(model, seed, first, count), trials.driver_angles(model, seed, first, count))
+    return Block(draws.deviations(model, seed, first, count), draws.driver_angles(model, seed, first, count))
 
 
 def stated_block(model: Model, deviations: Array) -> Block:
@@ -67,7 +67,7 @@ def stated_block(model: Model, deviations: Array) -> Block:
 
 def mean_block(model: Model, measure: Measure) -> Block:
     """One trial with every contributor at its mean over the positions of a measure, the first shafts at 0."""
-    return stated_block(model, trials.mean_deviations(model, measure.positions))
+    return stated_block(model, draws.mean_deviations(model, measure.positions))
 
 
 def nominal_block(model: Model) -> Block:

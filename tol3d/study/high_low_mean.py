@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from tol3d.gearing.model import Contributor, Measure, Model, Planar
 from tol3d.gearing.model.contributor import turns_with_gears
-from tol3d.study import draws as trials
+from tol3d.study import draws
 
 Array = NDArray[np.float64]
 Values = Callable[[Array], Array]
@@ -28,7 +28,7 @@ def high_low_mean_percents(model: Model, measure: Measure, values: Values) -> Ma
     Returns:
         percents by the contributor's name; None where a build does not seat, 0 where nothing moves the measure.
     """
-    mean = trials.mean_deviations(model, measure.positions)
+    mean = draws.mean_deviations(model, measure.positions)
     middle = values(mean)[0]
     ranges = {}
     for contributor in model.contributors:

@@ -16,7 +16,7 @@ from tol3d.gearing.engines import Engine
 from tol3d.gearing.model import Contributor, Measure, Model, Planar
 from tol3d.gearing.neglected import alone, neglected, of_gaps
 from tol3d.statistics.linear_fit import LEAST_FREEDOM, LinearFit, effect_of, standard_errors
-from tol3d.study import draws as trials
+from tol3d.study import draws
 from tol3d.study.agreement.explanation import Explanation, LinearPart
 from tol3d.study.agreement.road_fits import RoadFits, sigma_of
 from tol3d.study.agreement.second_look import SecondLook, bends, scalars_of, second_look
@@ -79,7 +79,7 @@ def _effects_of_means(model: Model) -> Mapping[str, Mapping[str, float]]:
     """How far each contributor's mean shifts each measure on the analytic road, in its unit, by measure and name."""
     found = {}
     for measure in scalars_of(model):
-        middle = trials.mean_deviations(model, measure.positions)
+        middle = draws.mean_deviations(model, measure.positions)
         rows = np.zeros((len(model.contributors) + 1, model.component_count))
         for row, contributor in zip(rows[1:], model.contributors, strict=True):
             own = model.component_slices[contributor.name]
@@ -182,7 +182,7 @@ class _Case:
         block = self.look.block.part(0, self.looked)
         if self.measure.take != "value" or not self.measure.kind.adds_up:
             return neglected(self.model, self.measure, block)
-        middle = trials.mean_deviations(self.model, self.measure.positions)
+        middle = draws.mean_deviations(self.model, self.measure.positions)
         found = neglected(self.model, self.measure, alone(self.model, block, name, middle))
         group = feature_groups(self.model, self.measure)[name]
         seen = self.look.regressors[self.measure.name][group, : self.looked].var(axis=1)

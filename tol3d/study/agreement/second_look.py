@@ -16,7 +16,7 @@ from tol3d.gearing.engines import Engine
 from tol3d.gearing.model import Backlash, Measure, Model, Positions
 from tol3d.runs.outcome import told
 from tol3d.statistics import FeatureSums
-from tol3d.study import draws as trials
+from tol3d.study import draws
 from tol3d.study.block import Block, Columns, drawn_block, simulate_block
 from tol3d.study.regressors import features
 
@@ -103,7 +103,7 @@ def bends(model: Model, engine: Engine) -> Mapping[str, Mapping[str, float]]:
     components: their sum. Its ninth is what it shifts the mean by. nan where a build does not seat.
     """
     alike = replace(model, measures=scalars_of(model))
-    middle = trials.mean_deviations(model, Positions("random", 1, 1))
+    middle = draws.mean_deviations(model, Positions("random", 1, 1))
     steps = np.diag([BEND_SIGMAS * c.draw.sigma for c in model.contributors for _ in c.draw.components])
     builds = np.concatenate([middle, middle + steps, middle - steps])
     drawn = drawn_block(model, model.study.seed, 0, BEND_POSITIONS)
