@@ -1,0 +1,1 @@
+"""A run on disk: its blocks of trials, what is kept of them, and who may replace it."""
