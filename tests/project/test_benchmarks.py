@@ -8,6 +8,7 @@ from collections.abc import Mapping
 from pathlib import Path
 
 import pytest
+import structure
 import studies
 import whole_gears
 from places import ROOT
@@ -26,6 +27,7 @@ FEW: Mapping[str, tuple[str, ...]] = {
     "stages": ("--trials", "1024", "--rounds", "1"),
     "startup": ("--runs", "1", "--ways", "without both", "--packages", "colorsys", "no_such_package"),
     "studies": ("--naive", "1", "--rounds", "1", "--most", "100", "--warm", "--systems", "spur pair"),
+    "structure": ("--trials", "16", "--route"),
     "trains": ("--rounds", "1", "--contacts", "400", "--trains", "split torque"),
 }
 """Arguments with which each benchmark takes seconds."""
@@ -58,6 +60,14 @@ ROWS: Mapping[str, tuple[str, ...]] = {
         rf"spur pair │ exact +│ +100 │ +2 │ kept +│ +{NUMBER}",
         rf"spur pair │ fcl +│ +100 │ +1 │ statistics │ +{NUMBER}",
         rf"spur pair │ analytic +│ +100 │ +2 │ statistics │ +{NUMBER}",
+    ),
+    "structure": (
+        rf"rooms +│ +{NUMBER}",
+        rf"import levels of rooms +│ +{NUMBER}",
+        rf"arrows between rooms +│ +{NUMBER}",
+        rf"largest file \(lines\) +│ +[\w/.]+ \({NUMBER}\)",
+        rf"run_scene: returns to a room left before +│ +{NUMBER}",
+        "run_scene calls .*runs > .*execution",
     ),
     "trains": (rf"split torque │ +100 │ +1 │ +{NUMBER}", rf"split torque │ +200 │ +2 │ +{NUMBER}"),
 }
@@ -98,6 +108,28 @@ def test_whole_gears_find_the_backlash_of_thinned_teeth() -> None:
     expected = (0.0245 + 0.0265) * 0.9396926207859084
     assert gears.chord_error < 0.0015
     assert -2 * whole_gears.GAP_XTOL < found - expected < 2 * gears.chord_error
+
+
+def test_levels_are_the_longest_path_with_each_cycle_one_place() -> None:
+    """hall -> study <-> library -> cellar, and a short cut from the hall to the cellar: three levels, by hand."""
+    files = {
+        "house.hall": {"house.study.desk", "house.cellar"},
+        "house.study.desk": {"house.study.lamp", "house.library"},
+        "house.study.lamp": set[str](),
+        "house.library": {"house.study.lamp", "house.cellar"},
+        "house.cellar": set[str](),
+    }
+    rooms = structure.arrows_between_rooms(files)
+    assert rooms == {
+        "hall": {"study", "cellar"},
+        "study": {"library"},
+        "library": {"study", "cellar"},
+        "cellar": set(),
+    }
+    assert structure.named(rooms) == ("library <-> study",)
+    assert structure.levels(rooms) == 3
+    assert structure.named(files) == ()
+    assert structure.levels(files) == 4  # hall, desk, library, and below it lamp or cellar
 
 
 @pytest.mark.parametrize("name", studies.SYSTEMS)

@@ -6,9 +6,8 @@ import numpy as np
 import pytest
 
 from tol3d import Overrides, RunError, Scene, SceneError, open_run, replay, run_scene
-from tol3d.simulate import Watch
 from tol3d.runs.writer import RunWriter
-from places import SCENES
+from tol3d.simulate import Watch
 
 MEASURED = "n,e\n1,-30\n2,-25\n3,-21\n4,-35\n"
 SCENE = """

@@ -11,13 +11,13 @@ from pathlib import Path
 import cadquery as cq
 import pytest
 from matplotlib.figure import Figure
+from places import SCENES
 
 from tol3d import InputError, Overrides, Run, RunError, open_run, run_scene
 from tol3d.errors import DiskError, refused_by_disk, unwritable
 from tol3d.gears import SpurGear
 from tol3d.parts import named_solid, spur_gear
 from tol3d.report import export_run
-from places import SCENES
 
 SPUR = SCENES / "spur_pair.yaml"
 FEW = Overrides(trials=40, engine="analytic", witness=0)

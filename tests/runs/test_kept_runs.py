@@ -4,14 +4,14 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from places import SCENES
 
 from tol3d import Overrides, RunError, open_run, replay, run_scene
-from tol3d.study import block as block_module
-from tol3d.runs.block_files import BlockFiles, block_name
 from tol3d.execution.pools import Execution
+from tol3d.runs.block_files import BlockFiles, block_name
 from tol3d.runs.run import DamageWarning
 from tol3d.simulate import Watch
-from places import SCENES
+from tol3d.study import block as block_module
 
 SPUR = SCENES / "spur_pair.yaml"
 BLOCK = 1000

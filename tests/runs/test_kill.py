@@ -13,16 +13,16 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-
 from places import SCENES
+
 from tol3d import InputError, Overrides, Run, RunError, open_run, replay, run_scene
-from tol3d.study import block as block_module
-from tol3d.runs.checkpoint import Checkpoint, CheckpointWarning
 from tol3d.execution.pools import Execution
+from tol3d.runs.checkpoint import Checkpoint, CheckpointWarning
 from tol3d.runs.run import DamageWarning
-from tol3d.simulate import Watch
-from tol3d.study.tally import Tally
 from tol3d.runs.worst import worst_trial
+from tol3d.simulate import Watch
+from tol3d.study import block as block_module
+from tol3d.study.tally import Tally
 
 SPUR = SCENES / "spur_pair.yaml"
 BLOCK = 2000

@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
+from places import SCENES
 
 from tol3d import Overrides, RunError, open_run, run_scene
 from tol3d.cli.arguments import scene_path
@@ -14,7 +15,6 @@ from tol3d.execution.pools import Execution
 from tol3d.runs.manifest import MANIFEST
 from tol3d.runs.occupant import MovedAsideWarning
 from tol3d.simulate import Watch, effective_model, folder_for, load
-from places import SCENES
 
 SPUR = SCENES / "spur_pair.yaml"
 FEW = Overrides(trials=20, engine="analytic", witness=0)

@@ -11,16 +11,16 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from places import SCENES
 
 from tol3d import InputError, Overrides, RunError, open_run, replay, run_scene
 from tol3d.execution import folding
-from tol3d.study import block as block_module
 from tol3d.execution.pools import Execution
 from tol3d.runs.run import DamageWarning
+from tol3d.runs.worst import worst_trial
 from tol3d.scene import load_scene
 from tol3d.simulate import Watch
-from tol3d.runs.worst import worst_trial
-from places import SCENES
+from tol3d.study import block as block_module
 
 SPUR = SCENES / "spur_pair.yaml"
 

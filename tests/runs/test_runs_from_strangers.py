@@ -16,19 +16,19 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
+from places import SCENES
 from rich.console import Console
 
 from tol3d import InputError, Overrides, Run, RunError, open_run, replay, run_scene
-from tol3d.runs.block_files import CHECKSUMS
 from tol3d.cli.console import SafeConsole, shown_controls
 from tol3d.files import contained
-from tol3d.runs.manifest import MANIFEST
 from tol3d.report import comparison_report, draw_comparison, run_report
+from tol3d.runs.block_files import CHECKSUMS
+from tol3d.runs.manifest import MANIFEST
 from tol3d.runs.run import SUMMARY
-from tol3d.simulate import model_of
 from tol3d.runs.summary_schema import RunSummary, SchemaWarning, written
 from tol3d.runs.worst import worst_trial
-from places import SCENES
+from tol3d.simulate import model_of
 
 TRIALS = 24
 ESCAPE = "\x1b[2J\x1b]0;owned\x07"
@@ -301,7 +301,7 @@ def test_the_schema_that_is_printed_is_valid_and_accepts_runs(tol3d: Any, whole:
 def test_a_key_that_the_schema_lacks_is_told_when_it_is_written(whole: Path) -> None:
     summary = summary_in(whole)
     summary["measures"]["normal backlash curve"]["new key"] = 1.0
-    with pytest.warns(SchemaWarning, match=r"curve\.new key: unknown key.*written down in tol3d/runs/summary_schema\.py"):
+    with pytest.warns(SchemaWarning, match=r"curve\.new key: unknown key.*written down in tol3d/runs/.*schema\.py"):
         text = written(summary)
     assert json.loads(text) == summary
 

@@ -11,9 +11,9 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from pathlib import Path
 
-from tol3d.runs.atomic_write import UNFINISHED, named_in_errors, write_whole
 from tol3d.errors import RunError
 from tol3d.files import UnreadableFileError, read_contained
+from tol3d.runs.atomic_write import UNFINISHED, named_in_errors, write_whole
 from tol3d.runs.parquet import Columns, ParquetError, Shape, columns_of, names_of, parquet_of
 
 CHECKSUMS = "_SHA256SUMS"

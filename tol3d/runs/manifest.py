@@ -11,10 +11,10 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path, PurePosixPath
 
-from tol3d.runs.block_files import CHECKSUMS, BlockFiles
-from tol3d.runs.atomic_write import write_whole
 from tol3d.errors import RunError
 from tol3d.files import UnreadableFileError, contained, read_contained
+from tol3d.runs.atomic_write import write_whole
+from tol3d.runs.block_files import CHECKSUMS, BlockFiles
 
 MANIFEST = "SHA256SUMS"
 TRIALS = "trials"

@@ -14,14 +14,14 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.runs.block_files import CHECKSUMS, MENDED, BlockFiles, block_name
-from tol3d.runs.atomic_write import UNFINISHED
 from tol3d.errors import RunError
 from tol3d.files import LARGEST_FILE, FileContent, Files, UnreadableFileError, kept_name, read_contained
+from tol3d.numerics.processor import unlike
+from tol3d.runs.atomic_write import UNFINISHED
+from tol3d.runs.block_files import CHECKSUMS, MENDED, BlockFiles, block_name
 from tol3d.runs.frame import Curves, frame_of
 from tol3d.runs.manifest import TRIALS, Manifest
 from tol3d.runs.parquet import Shape
-from tol3d.numerics.processor import unlike
 from tol3d.runs.summary_schema import summary_of
 from tol3d.runs.worst import worst_trial
 

@@ -11,11 +11,11 @@ from typing import Any, TypeVar
 
 from filelock import FileLock, Timeout
 
-from tol3d.runs.block_files import CHECKSUMS, BlockFiles, block_name
-from tol3d.runs.checkpoint import Checkpoint
-from tol3d.runs.atomic_write import write_whole
 from tol3d.errors import DiskError, RunError, refused_by_disk
 from tol3d.files import FileContent, Files, kept_name
+from tol3d.runs.atomic_write import write_whole
+from tol3d.runs.block_files import CHECKSUMS, BlockFiles, block_name
+from tol3d.runs.checkpoint import Checkpoint
 from tol3d.runs.manifest import TRIALS, Manifest, own_paths_of_trials
 from tol3d.runs.occupant import MovedAsideWarning, free_aside, occupant_of
 from tol3d.runs.run import (
