@@ -17,7 +17,7 @@ import trimesh
 from places import ROOT
 
 import tol3d
-from tol3d.report.assembly import DISPLAY_DEFLECTION
+from tol3d.gearing.display import DISPLAY_DEFLECTION
 from tol3d.runs.frame import MissingPackageError
 from tol3d.runs.run import SUMMARY, Run
 from tol3d.scene.bundled import bundled_scenes

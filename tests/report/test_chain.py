@@ -14,6 +14,9 @@ from matplotlib.patches import FancyBboxPatch, Polygon
 from matplotlib.text import Text
 from rich.console import Console
 
+from tol3d.gearing.presenting.chain import chain_figure
+from tol3d.gearing.presenting.stage import shafts_along, stages_of, sums_of
+from tol3d.gearing.presenting.train_tables import train_report
 from tol3d.report import picture
 from tol3d.report.canvas import new_figure, plain_axes
 from tol3d.report.compare import Compared
@@ -23,9 +26,6 @@ from tol3d.report.heading import heading, limits_text
 from tol3d.report.label import wrapped
 from tol3d.report.number import difference_text
 from tol3d.report.table import curve_table, run_report
-from tol3d.report.trains.chain import chain_figure
-from tol3d.report.trains.stage import shafts_along, stages_of, sums_of
-from tol3d.report.trains.table import train_report
 
 LEVER = 763.0  # mm, of the robot's arm
 DEGREES_PER_UM = 0.12195  # times j_n [um] over the gear's diameter [mm]: the paper's lost motion of a pair

@@ -6,10 +6,10 @@ import pyvista as pv
 from places import SCENES
 from scipy.spatial import cKDTree
 
+from tol3d.gearing.display import CONE_DEFLECTION, DISPLAY_DEFLECTION, assemble
+from tol3d.gearing.presenting.gap_section import GapSection, gap_section
 from tol3d.gears import BevelPair
-from tol3d.report.assembly import CONE_DEFLECTION, DISPLAY_DEFLECTION, assemble
 from tol3d.report.drawn_solids import poly_data
-from tol3d.report.gap_section import GapSection, gap_section
 from tol3d.report.view import _as_seen
 from tol3d.runs.run import Run
 from tol3d.simulate import Overrides, run_scene

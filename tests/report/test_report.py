@@ -24,6 +24,7 @@ from scipy.stats import norm
 
 from tol3d.analyses.compensation import CompensationQuestion, compensation
 from tol3d.errors import InputError
+from tol3d.gearing.display import DISPLAY_DEFLECTION, OPEN_SHARE, assemble
 from tol3d.gears import LEFT, RIGHT
 from tol3d.report import (
     check_report,
@@ -34,7 +35,6 @@ from tol3d.report import (
     run_report,
     view_run,
 )
-from tol3d.report.assembly import DISPLAY_DEFLECTION, OPEN_SHARE, assemble
 from tol3d.report.bars import bars_of
 from tol3d.report.canvas import VERMILLION, new_figure, plain_axes
 from tol3d.report.column import shares_of
@@ -45,7 +45,7 @@ from tol3d.report.contributor_bars import draw_contributors
 from tol3d.report.curve import draw_curve
 from tol3d.report.difference import difference_of
 from tol3d.report.distribution import column_colours, draw_distribution
-from tol3d.report.meshes import file_words
+from tol3d.report.export import file_words
 from tol3d.report.sheet import Heading, Row, Sheet
 from tol3d.runs.run import Run
 from tol3d.scene import load_scene

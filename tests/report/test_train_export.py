@@ -14,10 +14,10 @@ import trimesh
 from matplotlib.image import imread
 
 from tol3d.errors import InputError
+from tol3d.gearing.display import DISPLAY_DEFLECTION, assemble
+from tol3d.gearing.presenting.whole_trains import HOUSING_COLOUR, WholeTrain, whole_trains
 from tol3d.report import export_run, view_run
-from tol3d.report.assembly import DISPLAY_DEFLECTION, assemble
-from tol3d.report.trains.picture import Frame, _places
-from tol3d.report.trains.whole_trains import HOUSING_COLOUR, WholeTrain, whole_trains
+from tol3d.report.whole import Frame, _places
 from tol3d.simulate import run_scene
 
 TRIAL = 2

@@ -9,8 +9,8 @@ from places import SCENES
 from tol3d.analyses.compensation import CompensationQuestion, compensation
 from tol3d.errors import SceneError
 from tol3d.gearing.model import Measure, model_from_scene
-from tol3d.report.trains.stage import distributions_of, sums_of
-from tol3d.report.trains.table import sums_table
+from tol3d.gearing.presenting.stage import distributions_of, sums_of
+from tol3d.gearing.presenting.train_tables import sums_table
 from tol3d.runs.worst import worst_trial
 from tol3d.scene import load_scene
 from tol3d.simulate import Overrides, run_scene

@@ -11,8 +11,8 @@ if TYPE_CHECKING:
     from tol3d.report.check import check_report
     from tol3d.report.compare import comparison_report
     from tol3d.report.comparison_picture import draw_comparison
+    from tol3d.report.export import export_run, part_meshes
     from tol3d.report.histogram import draw_histogram
-    from tol3d.report.meshes import export_run, part_meshes
     from tol3d.report.shim_table import shim_report
     from tol3d.report.table import run_report
     from tol3d.report.view import view_run
@@ -22,8 +22,8 @@ _HOMES = {
     "comparison_report": "tol3d.report.compare",
     "draw_comparison": "tol3d.report.comparison_picture",
     "draw_histogram": "tol3d.report.histogram",
-    "export_run": "tol3d.report.meshes",
-    "part_meshes": "tol3d.report.meshes",
+    "export_run": "tol3d.report.export",
+    "part_meshes": "tol3d.report.export",
     "run_report": "tol3d.report.table",
     "shim_report": "tol3d.report.shim_table",
     "view_run": "tol3d.report.view",

@@ -9,12 +9,12 @@ from rich.console import Group, RenderableType
 from rich.text import Text
 
 from tol3d.gearing.model import Backlash, Contributor, Measure, Model, Planar
+from tol3d.gearing.presenting.train_check import train_blocks
 from tol3d.gears import RIGHT, BevelGear, BevelPair, Gear, GearPair, SpurGear, SpurPair
 from tol3d.report.coefficients import coefficients_tables
 from tol3d.report.heading import QUANTITY_WORDS, TAKE_WORDS, reading_words
 from tol3d.report.number import NOTHING, UNIT_SIGNS, degrees_text, given_text, unsigned_zero, value_text
 from tol3d.report.sheet import Heading, Row, Sheet, titled
-from tol3d.report.trains.check import train_blocks
 from tol3d.units import angle_text
 
 UM = 1000.0  # um in a mm

@@ -19,9 +19,9 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
+from tol3d.gearing.presenting.chain import draw_chain
 from tol3d.report.histogram import draw_histogram, draw_measure
 from tol3d.report.picture import chain_files, measure_files
-from tol3d.report.trains.chain import draw_chain
 
 
 def main() -> None:

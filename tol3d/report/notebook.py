@@ -21,10 +21,10 @@ from tol3d.analyses import ShimPlan, ShimQuestion, length_of, shim_plan, stock_o
 from tol3d.analyses.shim import Rounding
 from tol3d.analyses.shimmed import Minimum
 from tol3d.errors import InputError
+from tol3d.gearing.display import Assembly, Which, assembly_of
 from tol3d.gearing.model import Model
-from tol3d.report.assembly import Assembly, Which, assembly_of
+from tol3d.gearing.presenting.whole_trains import whole_trains
 from tol3d.report.coefficients import Coefficient, coefficients_of
-from tol3d.report.trains.whole_trains import whole_trains
 from tol3d.runs.run import Run, open_run
 from tol3d.scene import Scene
 from tol3d.scene.edit import tolerance_lines
@@ -33,7 +33,7 @@ from tol3d.study.overrides import AS_WRITTEN, Overrides, effective_model, load
 if TYPE_CHECKING:
     import trimesh
 
-    from tol3d.report.meshes import Exported
+    from tol3d.report.export import Exported
 
 Array = NDArray[np.float64]
 

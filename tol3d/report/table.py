@@ -9,6 +9,8 @@ from typing import Any
 from rich.console import Group, RenderableType
 from rich.text import Text
 
+from tol3d.gearing.presenting.stage import SUM_KEYS, Sums, sums_of
+from tol3d.gearing.presenting.train_tables import train_report
 from tol3d.report.agreement import agreement_lines, unexplained_lines
 from tol3d.report.column import (
     Column,
@@ -32,8 +34,6 @@ from tol3d.report.number import (
     value_text,
 )
 from tol3d.report.sheet import Heading, Row, Sheet, note
-from tol3d.report.trains.stage import SUM_KEYS, Sums, sums_of
-from tol3d.report.trains.table import train_report
 from tol3d.report.verdict import ACCEPTED_PPM, verdict_report
 from tol3d.runs.worst import TRAIN_KINDS
 

@@ -13,9 +13,11 @@ import pyvista as pv
 from numpy.typing import NDArray
 
 from tol3d.errors import InputError, unwritable
+from tol3d.gearing.display import Assembly, PlacedGear, SeatedMesh, Which, assemble
 from tol3d.gearing.engines import OK, STATUS_TEXT
 from tol3d.gearing.meshing.mesh import ROOT_FINDING_NOISE
-from tol3d.report.assembly import Assembly, PlacedGear, SeatedMesh, Which, assemble
+from tol3d.gearing.presenting.gap_section import gap_section
+from tol3d.gearing.presenting.whole_trains import WholeTrain, whole_trains
 from tol3d.report.drawn_solids import (
     CONTACT_COLOUR,
     EDGE_COLOUR,
@@ -28,10 +30,8 @@ from tol3d.report.drawn_solids import (
     poly_data,
     set_background,
 )
-from tol3d.report.gap_section import gap_section
 from tol3d.report.number import measured_text
-from tol3d.report.trains.picture import draw_train, label_beside, label_in_place
-from tol3d.report.trains.whole_trains import WholeTrain, whole_trains
+from tol3d.report.whole import draw_train, label_beside, label_in_place
 from tol3d.runs.run import Run
 from tol3d.scene.name import LONGEST_NAME
 from tol3d.scene.nearest import hint

@@ -12,10 +12,10 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from tol3d.gearing.display import Assembly, PlacedGear, SeatedMesh, shows_shafts
 from tol3d.gearing.model import Arm, LostMotion, Model
+from tol3d.gearing.presenting.shaft_sizes import ShaftSizes, Span, arm_body
 from tol3d.numerics import frames
-from tol3d.report.assembly import Assembly, PlacedGear, SeatedMesh, shows_shafts
-from tol3d.report.trains.shaft_sizes import ShaftSizes, Span, arm_body
 from tol3d.solids import PosedBody, display_mesh
 
 Array = NDArray[np.float64]

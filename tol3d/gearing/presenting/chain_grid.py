@@ -7,8 +7,8 @@ from typing import Any, Final
 
 from matplotlib.axes import Axes
 
+from tol3d.gearing.presenting.stage import Stage, shafts_along
 from tol3d.report.canvas import GREY, PUBLISHED_COLOURS
-from tol3d.report.trains.stage import Stage, shafts_along
 
 Summary = Mapping[str, Any]
 

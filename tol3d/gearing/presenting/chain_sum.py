@@ -7,12 +7,12 @@ from typing import Any, Final
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from tol3d.gearing.presenting.chain_grid import LIGHT, SMALL, TEXT, WIDTH, published_colours
+from tol3d.gearing.presenting.link_symbol import LINK_COLOURS
+from tol3d.gearing.presenting.stage import Range, Stage, distributions_of, leading_road
 from tol3d.report.canvas import BLACK, OUTSIDE, ROAD_COLOURS, label_angles, plain_axes
 from tol3d.report.label import legible
 from tol3d.report.number import short_text, tip_mm, value_text
-from tol3d.report.trains.chain_grid import LIGHT, SMALL, TEXT, WIDTH, published_colours
-from tol3d.report.trains.link_symbol import LINK_COLOURS
-from tol3d.report.trains.stage import Range, Stage, distributions_of, leading_road
 
 Summary = Mapping[str, Any]
 

@@ -9,12 +9,8 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Circle, FancyBboxPatch, Patch, Polygon
 
-from tol3d.report.canvas import BLACK, GREY, OUTSIDE, new_figure, save_figure, say_instead
-from tol3d.report.column import seated_text
-from tol3d.report.label import legible, wrapped
-from tol3d.report.number import NOTHING, given_text, value_text
-from tol3d.report.trains.chain_bars import bar_scale, draw_bars
-from tol3d.report.trains.chain_grid import (
+from tol3d.gearing.presenting.chain_bars import bar_scale, draw_bars
+from tol3d.gearing.presenting.chain_grid import (
     ARM,
     CHAIN,
     EDGE,
@@ -30,9 +26,13 @@ from tol3d.report.trains.chain_grid import (
     published_colours,
     rows_of,
 )
-from tol3d.report.trains.chain_sum import draw_sums, height_of_sums, sum_lines
-from tol3d.report.trains.link_symbol import draw_link
-from tol3d.report.trains.stage import Stage, stages_of, whole_ratio_text
+from tol3d.gearing.presenting.chain_sum import draw_sums, height_of_sums, sum_lines
+from tol3d.gearing.presenting.link_symbol import draw_link
+from tol3d.gearing.presenting.stage import Stage, stages_of, whole_ratio_text
+from tol3d.report.canvas import BLACK, GREY, OUTSIDE, new_figure, save_figure, say_instead
+from tol3d.report.column import seated_text
+from tol3d.report.label import legible, wrapped
+from tol3d.report.number import NOTHING, given_text, value_text
 
 Summary = Mapping[str, Any]
 

@@ -6,9 +6,7 @@ from typing import Any
 from rich.console import RenderableType
 from rich.text import Text
 
-from tol3d.report.number import percent_text, tip_mm, value_text
-from tol3d.report.sheet import Heading, Row, Sheet, note
-from tol3d.report.trains.stage import (
+from tol3d.gearing.presenting.stage import (
     SUM_KEYS,
     Stage,
     distributions_of,
@@ -18,6 +16,8 @@ from tol3d.report.trains.stage import (
     stages_of,
     whole_ratio_text,
 )
+from tol3d.report.number import percent_text, tip_mm, value_text
+from tol3d.report.sheet import Heading, Row, Sheet, note
 
 Summary = Mapping[str, Any]
 

@@ -13,8 +13,8 @@ import trimesh
 from numpy.typing import NDArray
 
 from tol3d.errors import InputError, unwritable
-from tol3d.report.assembly import Assembly, PlacedGear, SeatedMesh, Which, assemble
-from tol3d.report.trains.whole_trains import WholeTrain, whole_trains
+from tol3d.gearing.display import Assembly, PlacedGear, SeatedMesh, Which, assemble
+from tol3d.gearing.presenting.whole_trains import WholeTrain, whole_trains
 from tol3d.runs.atomic_write import named_in_errors
 from tol3d.runs.run import Run
 from tol3d.solids import PosedGear, PosedPart, export_step

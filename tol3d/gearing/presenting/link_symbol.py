@@ -8,8 +8,8 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.patches import Circle, FancyBboxPatch, Patch, Polygon
 
+from tol3d.gearing.presenting.stage import LinkKind, Stage
 from tol3d.report.canvas import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE
-from tol3d.report.trains.stage import LinkKind, Stage
 
 LINK_COLOURS: Final[Mapping[LinkKind, str]] = {
     "reducer": ORANGE,

@@ -10,6 +10,7 @@ import pyvista as pv
 from numpy.typing import NDArray
 from scipy.optimize import isotonic_regression, linear_sum_assignment
 
+from tol3d.gearing.presenting.whole_trains import WholeTrain
 from tol3d.report.drawn_solids import (
     CONTACT_COLOUR,
     EDGE_COLOUR,
@@ -21,7 +22,6 @@ from tol3d.report.drawn_solids import (
     poly_data,
     set_background,
 )
-from tol3d.report.trains.whole_trains import WholeTrain
 
 Array = NDArray[np.float64]
 

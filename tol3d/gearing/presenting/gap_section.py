@@ -8,8 +8,8 @@ import numpy as np
 import pyvista as pv
 from numpy.typing import NDArray
 
+from tol3d.gearing.display import SeatedMesh
 from tol3d.gears import BevelPair
-from tol3d.report.assembly import SeatedMesh
 
 Array = NDArray[np.float64]
 

@@ -6,10 +6,7 @@ from typing import Any, Final
 from matplotlib.axes import Axes
 from matplotlib.patches import Rectangle
 
-from tol3d.report.canvas import BLACK
-from tol3d.report.label import wrapped
-from tol3d.report.number import NOTHING, tip_mm
-from tol3d.report.trains.chain_grid import (
+from tol3d.gearing.presenting.chain_grid import (
     BARS,
     CAPTIONS,
     EDGE,
@@ -20,8 +17,11 @@ from tol3d.report.trains.chain_grid import (
     draw_caption,
     published_colours,
 )
-from tol3d.report.trains.link_symbol import LINK_COLOURS
-from tol3d.report.trains.stage import Stage, share_text
+from tol3d.gearing.presenting.link_symbol import LINK_COLOURS
+from tol3d.gearing.presenting.stage import Stage, share_text
+from tol3d.report.canvas import BLACK
+from tol3d.report.label import wrapped
+from tol3d.report.number import NOTHING, tip_mm
 
 Summary = Mapping[str, Any]
 

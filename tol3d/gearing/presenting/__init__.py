@@ -1,0 +1,1 @@
+"""How gears in mesh and their trains are shown: chains, tables of stages, parts in one world, gaps."""

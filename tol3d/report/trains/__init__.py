@@ -1,1 +1,0 @@
-"""How a train is shown: its chain, its stages as tables, its parts in one world."""
