@@ -1,7 +1,8 @@
 """The worst trial of a run: the one nearest to a limit, or furthest beyond it."""
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any
+from pathlib import Path
+from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -9,16 +10,27 @@ from numpy.typing import NDArray
 from tol3d.errors import RunError
 from tol3d.runs.outcome import status_column, told
 
-if TYPE_CHECKING:  # who only wants the words loads no files of runs
-    from tol3d.runs.run import Run
-
 Array = NDArray[np.float64]
 
 JAMMED_BY = -1e9  # sigmas; no build that seats is so far beyond a limit
 TRAIN_KINDS = frozenset(("lost_motion", "tip_displacement", "tip_error"))  # measures of trains: the larger the worse
 
 
-def worst_trial(run: "Run", measure: str | None = None) -> int:
+class KeptTrials(Protocol):
+    """What is read of a run: its summary, and columns as numpy arrays with the trial on axis 0."""
+
+    @property
+    def path(self) -> Path: ...
+    @property
+    def summary(self) -> Mapping[str, Any]: ...
+    @property
+    def trials(self) -> int: ...
+    @property
+    def column_names(self) -> tuple[str, ...]: ...
+    def columns(self, *names: str) -> dict[str, NDArray[np.generic]]: ...
+
+
+def worst_trial(run: KeptTrials, measure: str | None = None) -> int:
     """Index of the worst trial of a run.
 
     Where any trial is jammed it is the one that is jammed deepest; else, among those that seated, the one nearest to a
@@ -46,7 +58,7 @@ def _limits(measure: Mapping[str, Any]) -> tuple[float | None, float | None]:
     return measure["lower_limit"], measure["upper_limit"]
 
 
-def _margin(run: "Run", road: str, name: str, measure: Mapping[str, Any]) -> Array:
+def _margin(run: KeptTrials, road: str, name: str, measure: Mapping[str, Any]) -> Array:
     """How far each trial is inside the limits, in sigmas; infinite where it gave no value, far below all if jammed."""
     wanted = (f"{road}:{name}", status_column(name))
     found = told(run.columns(*(column for column in wanted if column in run.column_names)), road, name)
@@ -65,7 +77,7 @@ def _margin(run: "Run", road: str, name: str, measure: Mapping[str, Any]) -> Arr
     return margin
 
 
-def _overlaps(run: "Run", road: str, name: str) -> Array:
+def _overlaps(run: KeptTrials, road: str, name: str) -> Array:
     """The smallest value of each trial (trials,); of one whose overlap is too deep to tell, deeper than any other."""
     column = f"{road}:{name}"
     smallest = np.asarray(run.columns(column)[column], dtype=np.float64).reshape(run.trials, -1).min(axis=1)
