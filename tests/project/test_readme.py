@@ -63,14 +63,12 @@ def differs(shown: str, printed: str) -> bool:
     return False
 
 
-def test_the_block_it_shows_is_what_its_first_command_prints(tmp_path: Path) -> None:
-    """Line by line, in their order; the README may leave out lines. What is told of time and place is not shown there.
-
-    Where this fails because the tables have changed, paste what the command prints at a width of 120 characters.
-    """
+@pytest.fixture(scope="module")
+def first_command(tmp_path_factory: pytest.TempPathFactory) -> list[str]:
+    """What README's first command prints, line by line, at the width of its block."""
     command = re.search(r"\.venv/bin/tol3d (run scenes/\S+)\n", README)
     assert command is not None
-    arguments = [*command[1].split(), "--out", str(tmp_path / "run"), "--no-picture"]
+    arguments = [*command[1].split(), "--out", str(tmp_path_factory.mktemp("runs") / "run"), "--no-picture"]
     done = subprocess.run(
         [sys.executable, "-m", "tol3d.cli", *arguments],
         cwd=ROOT,
@@ -80,9 +78,31 @@ def test_the_block_it_shows_is_what_its_first_command_prints(tmp_path: Path) -> 
         check=True,
         timeout=600,  # s; a guard against hanging, not a claim
     )
-    printed = iter(line.rstrip() for line in done.stdout.splitlines())
+    return [line.rstrip() for line in done.stdout.splitlines()]
+
+
+def test_the_block_it_shows_is_what_its_first_command_prints(first_command: list[str]) -> None:
+    """Line by line, in their order; the README may leave out lines. What is told of time and place is not shown there.
+
+    Where this fails because the tables have changed, paste what the command prints at a width of 120 characters.
+    """
+    printed = iter(first_command)
     block = [line.rstrip() for line in indented_block("spur pair at the drive end · ").splitlines() if line.strip()]
     assert any(line.startswith("mean ") for line in block)
     for line in block:
         found = next((other for other in printed if not differs(line, other)), None)
-        assert found is not None, f"README shows, but `tol3d {command[1]}` does not print next: {line!r}"
+        assert found is not None, f"README shows, but its first command does not print next: {line!r}"
+
+
+def test_the_manual_explains_every_row_and_column_of_the_first_table(first_command: list[str]) -> None:
+    """Labels of the rows and of our own columns, as they are printed; no label that is not."""
+    manual = (ROOT / "docs" / "manual.md").read_text("utf-8")
+    explained = {
+        head: set(re.findall(r"`([^`]+)`", "".join(re.findall(r"^\| (`[^|]*) \|", table, re.MULTILINE))))
+        for head, table in re.findall(r"^\| (column|row) \|.*\n\|---.*\n((?:\|.*\n)+)", manual, re.MULTILINE)
+    }
+    start = next(k for k, line in enumerate(first_command) if line.startswith("[µm]"))
+    end = next(k for k, line in enumerate(first_command) if k > start and line.startswith(" "))
+    head, *rows = (re.split(r"  +", line) for line in first_command[start:end] if line and set(line) != {"─"})
+    ours = {column for column in head[1:] if not column.startswith("paper")}
+    assert explained == {"column": ours, "row": {row[0] for row in rows} - {"mean", "sigma", "smallest", "largest"}}
