@@ -10,8 +10,8 @@ from places import ROOT
 from ruamel.yaml import YAML
 
 from tol3d.errors import SceneError
+from tol3d.gearing.grammar.parts import gears_on
 from tol3d.scene import Scene, load_scene
-from tol3d.scene.parts import gears_on
 from tol3d.scene.reference import SORT_WORDS, ShaftReference, sorts_text
 
 DOCUMENT = (ROOT / "docs" / "scene.md").read_text(encoding="utf-8")

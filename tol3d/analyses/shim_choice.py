@@ -14,13 +14,13 @@ from tol3d.distributions.triangular import TriangularSpec
 from tol3d.distributions.truncated_normal import TruncatedNormalSpec
 from tol3d.distributions.uniform import UniformSpec
 from tol3d.errors import InputError
+from tol3d.gearing.grammar.measures import MeasureSpec, NormalBacklashSpec
+from tol3d.gearing.grammar.moves import BevelMeshSpec
+from tol3d.gearing.grammar.tolerances import ShimSpec
 from tol3d.gearing.model import Mesh
 from tol3d.scene import Scene
 from tol3d.scene.edit import with_tolerances
-from tol3d.scene.measures import MeasureSpec, NormalBacklashSpec
-from tol3d.scene.moves import BevelMeshSpec
 from tol3d.scene.nearest import hint
-from tol3d.scene.tolerances import ShimSpec
 from tol3d.units import FACTORS, Quantity
 
 MOVED_FIELDS: Final[Mapping[type[DistributionSpec], tuple[str, ...]]] = {

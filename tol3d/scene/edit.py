@@ -10,10 +10,10 @@ from ruamel.yaml import YAML
 from ruamel.yaml.comments import CommentedMap
 
 from tol3d.errors import InputError, unwritable
+from tol3d.gearing.grammar.tolerances import ToleranceSpec
 from tol3d.scene.load import load_scene
 from tol3d.scene.place import Origin
 from tol3d.scene.schema import Scene
-from tol3d.scene.tolerances import ToleranceSpec
 
 UNBROKEN: Final = 10_000  # characters; no entry is broken into lines where its author did not
 INDENT: Final = 2

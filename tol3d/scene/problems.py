@@ -7,9 +7,9 @@ from typing import Any, Final, get_args
 from pydantic import ValidationError
 from pydantic_core import ErrorDetails
 
+from tol3d.gearing.grammar.tolerances import ToleranceSpec, ToleranceUnion
 from tol3d.scene.nearest import hint, nearest
 from tol3d.scene.place import KeyPath, Origin, key_text
-from tol3d.scene.tolerances import ToleranceSpec, ToleranceUnion
 from tol3d.units import EXAMPLES, FACTORS, Dimension, expectation, shown
 
 MOST_PROBLEMS = 8  # what a screen shows and a person mends in one go

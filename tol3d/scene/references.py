@@ -7,8 +7,8 @@ from typing import Final
 
 from tol3d.distributions.empirical import EmpiricalSpec
 from tol3d.errors import SceneError
+from tol3d.gearing.grammar.parts import ShaftSpec
 from tol3d.scene.nearest import hint
-from tol3d.scene.parts import ShaftSpec
 from tol3d.scene.place import KeyPath
 from tol3d.scene.problems import first_few
 from tol3d.scene.reference import SORT_WORDS, Contradiction, Reference, ShaftReference

@@ -11,14 +11,14 @@ from pydantic import BeforeValidator, Discriminator, Field, PrivateAttr, Tag, mo
 from tol3d.distributions.empirical import EmpiricalSpec
 from tol3d.errors import SceneError
 from tol3d.files import Files
+from tol3d.gearing.grammar.measures import MeasureUnion
+from tol3d.gearing.grammar.moves import MoveUnion
+from tol3d.gearing.grammar.parts import PartUnion
+from tol3d.gearing.grammar.tolerances import ToleranceUnion
 from tol3d.samplers.replicates import REPLICATES, SamplerKind, uneven
-from tol3d.scene.measures import MeasureUnion
-from tol3d.scene.moves import MoveUnion
 from tol3d.scene.name import Name, Remark
 from tol3d.scene.nearest import nearest
-from tol3d.scene.parts import PartUnion
 from tol3d.scene.place import KeyPath, Origin, Place
-from tol3d.scene.tolerances import ToleranceUnion
 from tol3d.strict import Strict, refused
 from tol3d.units import Positive, Quantity, shown
 

@@ -5,6 +5,25 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import singledispatchmethod
 
+from tol3d.gearing.grammar.parts import BearingSpec, ShaftSpec
+from tol3d.gearing.grammar.tolerances import (
+    AxesOffsetSpec,
+    AxialShiftSpec,
+    AxisInPlaneSpec,
+    AxisOutOfPlaneSpec,
+    BearingClearanceSpec,
+    CentreDistanceSpec,
+    ClockingSpec,
+    EccentricitySpec,
+    MountingFaceSpec,
+    ReducerBacklashSpec,
+    RunOutSpec,
+    ShaftAngleSpec,
+    ShimSpec,
+    TemperatureSpec,
+    ToleranceSpec,
+    ToothThicknessSpec,
+)
 from tol3d.gearing.model.contributor import (
     AxesOffset,
     AxisOffset,
@@ -29,25 +48,6 @@ from tol3d.gearing.model.shafts import Carried
 from tol3d.gears import BevelPair
 from tol3d.scene import Scene
 from tol3d.scene.direction import At
-from tol3d.scene.parts import BearingSpec, ShaftSpec
-from tol3d.scene.tolerances import (
-    AxesOffsetSpec,
-    AxialShiftSpec,
-    AxisInPlaneSpec,
-    AxisOutOfPlaneSpec,
-    BearingClearanceSpec,
-    CentreDistanceSpec,
-    ClockingSpec,
-    EccentricitySpec,
-    MountingFaceSpec,
-    ReducerBacklashSpec,
-    RunOutSpec,
-    ShaftAngleSpec,
-    ShimSpec,
-    TemperatureSpec,
-    ToleranceSpec,
-    ToothThicknessSpec,
-)
 
 Vector = tuple[float, float, float]
 

@@ -4,6 +4,8 @@ from collections.abc import Iterator
 from dataclasses import replace
 
 from tol3d.errors import SceneError
+from tol3d.gearing.grammar.moves import GearMeshSpec
+from tol3d.gearing.grammar.parts import GearSpec, HousingSpec
 from tol3d.gearing.model.effects import Tolerances
 from tol3d.gearing.model.layout import Layout, layout_of
 from tol3d.gearing.model.links import links_between_shafts, links_of
@@ -26,8 +28,6 @@ from tol3d.gearing.model.trains import (
 )
 from tol3d.gears import LEFT, RIGHT
 from tol3d.scene import Scene
-from tol3d.scene.moves import GearMeshSpec
-from tol3d.scene.parts import GearSpec, HousingSpec
 from tol3d.scene.schema import Study as StudySpec
 from tol3d.units import Quantity
 

@@ -7,6 +7,15 @@ from functools import singledispatch
 
 import numpy as np
 
+from tol3d.gearing.grammar.measures import (
+    AngularBacklashSpec,
+    CircumferentialBacklashSpec,
+    LostMotionSpec,
+    MeasureSpec,
+    NormalBacklashSpec,
+    TipDisplacementSpec,
+    TipErrorSpec,
+)
 from tol3d.gearing.model.links import Link, Parallel
 from tol3d.gearing.model.measure import (
     AnyStage,
@@ -26,15 +35,6 @@ from tol3d.gearing.model.shafts import Arm, Train
 from tol3d.gearing.model.trains import gravity_torque, refuse_midst
 from tol3d.scene import Scene
 from tol3d.scene.direction import At
-from tol3d.scene.measures import (
-    AngularBacklashSpec,
-    CircumferentialBacklashSpec,
-    LostMotionSpec,
-    MeasureSpec,
-    NormalBacklashSpec,
-    TipDisplacementSpec,
-    TipErrorSpec,
-)
 
 BacklashSpec = NormalBacklashSpec | CircumferentialBacklashSpec | AngularBacklashSpec
 

@@ -4,10 +4,10 @@ import math
 from functools import singledispatch
 
 from tol3d.errors import GeometryError
+from tol3d.gearing.grammar.moves import BevelMeshSpec, GearMeshSpec, MeshSpec
+from tol3d.gearing.grammar.parts import BevelGearSpec, GearSpec, SpurGearSpec
 from tol3d.gears import BevelGear, BevelPair, Gear, GearPair, SpurGear, SpurPair, pitch_angles
 from tol3d.scene import Scene
-from tol3d.scene.moves import BevelMeshSpec, GearMeshSpec, MeshSpec
-from tol3d.scene.parts import BevelGearSpec, GearSpec, SpurGearSpec
 from tol3d.units import Quantity
 
 PITCH_ANGLE_AS_WRITTEN = math.radians(0.01)  # two decimals of a degree are enough to check a drawing's angle

@@ -5,12 +5,12 @@ from typing import Literal
 
 import numpy as np
 
+from tol3d.gearing.grammar.measures import FlankMeasureSpec
 from tol3d.gearing.model.measure import Kind, Measure, Reading
 from tol3d.gearing.model.mesh import Mesh
 from tol3d.gearing.model.model import Model
 from tol3d.gears import one_tooth_acts, one_tooth_share
 from tol3d.scene import Scene
-from tol3d.scene.measures import FlankMeasureSpec
 
 Reader = Callable[[Mesh], Reading]
 """How each mesh on a path is read."""

@@ -7,6 +7,9 @@ from fractions import Fraction
 import numpy as np
 
 from tol3d.errors import GeometryError, SceneError
+from tol3d.gearing.grammar.moves import GearMeshSpec, ReducerSpec, TrainSpec
+from tol3d.gearing.grammar.parts import ArmSpec, BearingSpec, GearSpec, ShaftSpec
+from tol3d.gearing.grammar.tolerances import ReducerBacklashSpec
 from tol3d.gearing.model.layout import Layout, misfit
 from tol3d.gearing.model.links import Link, loop_of
 from tol3d.gearing.model.mesh import Mesh
@@ -14,10 +17,7 @@ from tol3d.gearing.model.pairs import internal
 from tol3d.gearing.model.shafts import Arm, Carried, Reducer, Shaft, Train, Vector
 from tol3d.gears import LEFT, RIGHT, Flank
 from tol3d.scene import Scene
-from tol3d.scene.moves import GearMeshSpec, ReducerSpec, TrainSpec
-from tol3d.scene.parts import ArmSpec, BearingSpec, GearSpec, ShaftSpec
 from tol3d.scene.place import KeyPath
-from tol3d.scene.tolerances import ReducerBacklashSpec
 from tol3d.units import Quantity
 
 RATIO_AS_WRITTEN = 5e-4  # relative; four digits are enough to check a drawing's ratio

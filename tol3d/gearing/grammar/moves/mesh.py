@@ -1,0 +1,26 @@
+"""Two spur gears on parallel axes."""
+
+from typing import Annotated, ClassVar, Literal
+
+from pydantic import Field
+
+from tol3d.gearing.grammar.moves.gear_mesh import GearMeshSpec
+from tol3d.scene.name import Name
+from tol3d.scene.reference import Reference, Sort
+from tol3d.units import Of, Positive, Quantity
+
+
+class MeshSpec(GearMeshSpec):
+    """A mesh: its world has the driver's axis as z and the driven axis at +x, at the centre distance."""
+
+    sort: ClassVar[Sort] = "mesh"
+    gear_sort: ClassVar[Sort] = "spur_gear"
+
+    kind: Literal["mesh"]
+    centre_distance: Annotated[Quantity, Of("length"), Positive()] = Field(description="nominal distance of the axes")
+    housing: Name | None = Field(default=None, description="the housing whose expansion changes the centre distance")
+
+    def references(self) -> tuple[Reference, ...]:
+        """Two gears, and the housing if there is one."""
+        gears = super().references()
+        return gears if self.housing is None else (*gears, Reference(("housing",), self.housing, ("housing",)))

@@ -1,0 +1,20 @@
+"""A straight bevel gear with spherical-involute flanks."""
+
+from typing import Annotated, ClassVar, Literal
+
+from pydantic import Field
+
+from tol3d.gearing.grammar.parts.gear import GearSpec
+from tol3d.scene.reference import Sort
+from tol3d.units import Of, Positive, Quantity
+
+
+class BevelGearSpec(GearSpec):
+    """A straight bevel gear by the words of ISO 23509; its depth and thickness taper towards the apex."""
+
+    sort: ClassVar[Sort] = "bevel_gear"
+
+    kind: Literal["bevel_gear"]
+    pitch_angle: Annotated[Quantity, Of("angle"), Positive()] | None = Field(
+        default=None, description="of the pitch cone; follows from the teeth and the shaft angle if not given"
+    )

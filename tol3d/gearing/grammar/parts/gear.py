@@ -1,0 +1,30 @@
+"""What every kind of gear has in common."""
+
+from typing import Annotated, Final
+
+from pydantic import Field
+
+from tol3d.scene.part import Length, PartSpec
+from tol3d.scene.reference import Sort
+from tol3d.units import Of, Positive, Quantity
+
+MOST_TEETH = 10_000  # far more than anyone hobs; keeps a slip of the finger from building for days
+
+GEARS: Final[tuple[Sort, ...]] = ("spur_gear", "bevel_gear")
+
+
+class GearSpec(PartSpec):
+    """A gear by the words of ISO 21771-1; profile_shift, addendum and dedendum count in modules."""
+
+    teeth: int = Field(ge=1, le=MOST_TEETH, description="number of teeth z")
+    module: Length = Field(description="module m; of a bevel gear at the outer end")
+    pressure_angle: Annotated[Quantity, Of("angle"), Positive()] = Field(
+        default=Quantity(20.0, "deg"),
+        description="pressure angle at the reference circle, or on the pitch cone",
+        json_schema_extra={"default": "20 deg"},  # pydantic would show the Quantity's fields
+    )
+    face_width: Length = Field(description="face width b")
+    profile_shift: float = Field(default=0.0, description="profile shift coefficient x; positive is a thicker tooth")
+    addendum: float = Field(default=1.0, gt=0.0, description="addendum factor, in modules")
+    dedendum: float = Field(default=1.25, gt=0.0, description="dedendum factor, in modules")
+    bore: Length | None = Field(default=None, description="diameter of the bore; none if not given")

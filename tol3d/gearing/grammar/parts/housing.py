@@ -1,0 +1,14 @@
+"""The housing that holds the axes of a mesh apart."""
+
+from typing import ClassVar, Literal
+
+from tol3d.scene.part import PartSpec
+from tol3d.scene.reference import Sort
+
+
+class HousingSpec(PartSpec):
+    """A housing: its expansion changes the centre distance of the meshes that name it."""
+
+    sort: ClassVar[Sort] = "housing"
+
+    kind: Literal["housing"]

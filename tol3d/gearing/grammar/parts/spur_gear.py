@@ -1,0 +1,20 @@
+"""An external involute spur gear."""
+
+from typing import ClassVar, Literal
+
+from pydantic import Field
+
+from tol3d.gearing.grammar.parts.gear import GearSpec
+from tol3d.scene.part import Length
+from tol3d.scene.reference import Sort
+
+
+class SpurGearSpec(GearSpec):
+    """A spur gear; its tooth thickness is an arc at the reference circle."""
+
+    sort: ClassVar[Sort] = "spur_gear"
+
+    kind: Literal["spur_gear"]
+    root_fillet: Length | None = Field(
+        default=None, description="radius between flank and root circle; 0.38 m (ISO 53) or the full round if not given"
+    )

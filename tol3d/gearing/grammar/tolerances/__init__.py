@@ -1,0 +1,61 @@
+"""Kinds of tolerance, one file each."""
+
+from typing import Annotated
+
+from pydantic import Field
+
+from tol3d.gearing.grammar.tolerances.axes_offset import AxesOffsetSpec
+from tol3d.gearing.grammar.tolerances.axial_shift import AxialShiftSpec
+from tol3d.gearing.grammar.tolerances.axis_in_plane import AxisInPlaneSpec
+from tol3d.gearing.grammar.tolerances.axis_out_of_plane import AxisOutOfPlaneSpec
+from tol3d.gearing.grammar.tolerances.bearing_clearance import BearingClearanceSpec
+from tol3d.gearing.grammar.tolerances.centre_distance import CentreDistanceSpec
+from tol3d.gearing.grammar.tolerances.clocking import ClockingSpec
+from tol3d.gearing.grammar.tolerances.eccentricity import EccentricitySpec
+from tol3d.gearing.grammar.tolerances.mounting_face import MountingFaceSpec
+from tol3d.gearing.grammar.tolerances.reducer_backlash import ReducerBacklashSpec
+from tol3d.gearing.grammar.tolerances.run_out import RunOutSpec
+from tol3d.gearing.grammar.tolerances.shaft_angle import ShaftAngleSpec
+from tol3d.gearing.grammar.tolerances.shim import ShimSpec
+from tol3d.gearing.grammar.tolerances.temperature import TemperatureSpec
+from tol3d.gearing.grammar.tolerances.tooth_thickness import ToothThicknessSpec
+from tol3d.scene.tolerance import ToleranceSpec
+
+ToleranceUnion = Annotated[
+    ToothThicknessSpec
+    | EccentricitySpec
+    | RunOutSpec
+    | CentreDistanceSpec
+    | BearingClearanceSpec
+    | ClockingSpec
+    | AxisInPlaneSpec
+    | AxisOutOfPlaneSpec
+    | AxialShiftSpec
+    | AxesOffsetSpec
+    | MountingFaceSpec
+    | ShaftAngleSpec
+    | ShimSpec
+    | TemperatureSpec
+    | ReducerBacklashSpec,
+    Field(discriminator="kind"),
+]
+
+__all__ = [
+    "AxesOffsetSpec",
+    "AxialShiftSpec",
+    "AxisInPlaneSpec",
+    "AxisOutOfPlaneSpec",
+    "BearingClearanceSpec",
+    "CentreDistanceSpec",
+    "ClockingSpec",
+    "EccentricitySpec",
+    "MountingFaceSpec",
+    "ReducerBacklashSpec",
+    "RunOutSpec",
+    "ShaftAngleSpec",
+    "ShimSpec",
+    "TemperatureSpec",
+    "ToleranceSpec",
+    "ToleranceUnion",
+    "ToothThicknessSpec",
+]

@@ -1,0 +1,14 @@
+"""Offset of the axes of a bevel mesh."""
+
+from typing import ClassVar, Literal
+
+from tol3d.gearing.grammar.tolerances.mesh_tolerance import MeshToleranceSpec
+from tol3d.scene.reference import Sort
+
+
+class AxesOffsetSpec(MeshToleranceSpec):
+    """f_a, a length: the axes pass each other by it; the driven one lies at +y of the mesh's world."""
+
+    sorts: ClassVar[tuple[Sort, ...]] = ("bevel_mesh",)
+
+    kind: Literal["axes_offset"]

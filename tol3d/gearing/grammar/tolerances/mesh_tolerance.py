@@ -1,0 +1,21 @@
+"""What every tolerance of a mesh has in common."""
+
+from typing import ClassVar
+
+from pydantic import Field
+
+from tol3d.scene.name import Name
+from tol3d.scene.reference import Reference, Sort
+from tol3d.scene.tolerance import ToleranceSpec
+
+
+class MeshToleranceSpec(ToleranceSpec):
+    """A tolerance of how two axes lie to each other."""
+
+    sorts: ClassVar[tuple[Sort, ...]] = ("mesh",)
+
+    of: Name = Field(description="the mesh move")
+
+    def references(self) -> tuple[Reference, ...]:
+        """The mesh."""
+        return (Reference(("of",), self.of, self.sorts),)

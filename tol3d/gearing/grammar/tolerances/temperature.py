@@ -1,0 +1,54 @@
+"""Uniform temperature of some parts."""
+
+from collections.abc import Iterator, Mapping
+from typing import Annotated, Any, ClassVar, Literal
+
+from pydantic import BeforeValidator, Field, WithJsonSchema
+
+from tol3d.gearing.grammar.moves import MoveSpec
+from tol3d.gearing.grammar.parts import PartSpec
+from tol3d.scene.name import LONGEST_NAME, Name
+from tol3d.scene.reference import Contradiction, Reference
+from tol3d.scene.tolerance import ToleranceSpec
+from tol3d.strict import refused
+from tol3d.units import Dimension, shown
+
+NAME_SCHEMA = {"type": "string", "minLength": 1, "maxLength": LONGEST_NAME}
+
+
+def _names(value: Any) -> Any:
+    names = (value,) if isinstance(value, str) else tuple(value) if isinstance(value, list | tuple) else ()
+    if not names or not all(isinstance(name, str) for name in names):
+        raise refused("", "the name of a part, or a list of such names", shown(value))
+    repeated = next((name for index, name in enumerate(names) if name in names[:index]), None)
+    if repeated is not None:
+        raise refused("", "each part once", f"{shown(repeated)} twice")
+    return names
+
+
+Parts = Annotated[
+    tuple[Name, ...],
+    BeforeValidator(_names),
+    WithJsonSchema({"anyOf": [NAME_SCHEMA, {"type": "array", "items": NAME_SCHEMA, "minItems": 1}]}),
+]
+
+
+class TemperatureSpec(ToleranceSpec):
+    """A temperature difference from 20 degC, the same throughout the parts; each grows by its own coefficient."""
+
+    dimensions: ClassVar[tuple[Dimension, ...]] = ("temperature",)
+
+    kind: Literal["temperature"]
+    of: Parts = Field(description="the parts that are warmer: one name or a list")
+
+    def references(self) -> tuple[Reference, ...]:
+        """Every part."""
+        return tuple(Reference(("of", index), name, ("spur_gear", "housing")) for index, name in enumerate(self.of))
+
+    def contradictions(self, parts: Mapping[str, PartSpec], moves: Mapping[str, MoveSpec]) -> Iterator[Contradiction]:
+        """A part without a coefficient of expansion would take no notice."""
+        for index, name in enumerate(self.of):
+            if parts[name].expansion is None:
+                yield Contradiction(
+                    ("of", index), "a part with its coefficient of expansion", f"{name!r} without expansion:"
+                )
