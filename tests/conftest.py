@@ -2,11 +2,11 @@
 
 import os
 import sys
-from collections.abc import Callable
 from functools import cache
 
 import hypothesis
 import pytest
+from fixtures import Command, EngineOf
 from places import SCENES
 
 from tol3d import cli
@@ -21,8 +21,6 @@ from tol3d.solids import FlankStrips, measuring_strips
 hypothesis.settings.register_profile("tol3d", deadline=None, derandomize=True)
 hypothesis.settings.register_profile("search", deadline=None)
 hypothesis.settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE", "tol3d"))
-
-Command = Callable[..., tuple[int, str, str]]
 
 SPUR_PAIR = SCENES / "spur_pair.yaml"
 
@@ -39,7 +37,7 @@ def paper_model() -> Model:
 
 
 @pytest.fixture(scope="session")
-def engine_of():
+def engine_of() -> EngineOf:
     """FCL on the measuring strips of a model's gears, `steps` on each flank (the study's own, if not said)."""
 
     def make(model: Model, steps: int | None = None) -> FclEngine:

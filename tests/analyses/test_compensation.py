@@ -3,12 +3,12 @@
 import math
 import re
 import tomllib
-from collections.abc import Callable
 from functools import cache
 from pathlib import Path
 
 import numpy as np
 import pytest
+from fixtures import Command
 from places import SCENES
 from rich.console import Console
 
@@ -356,9 +356,6 @@ def test_rows_of_the_picture_share_their_scale_and_hold_every_robot() -> None:
     for axes in left:
         shares = [patch.get_data().values for patch in axes.patches]
         assert [values.sum() for values in shares] == pytest.approx([100.0] * 6)  # filled and outlined, a state each
-
-
-Command = Callable[..., tuple[int, str, str]]
 
 
 @pytest.fixture

@@ -6,12 +6,13 @@ Jiang et al., J. Zhejiang Univ. (Eng. Sci.) 58(8), 2024, section 4: the low of 7
 
 import math
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import replace
 from functools import cache
 from pathlib import Path
 
 import pytest
+from fixtures import Command
 from hypothesis import given
 from hypothesis import strategies as st
 from places import SCENES
@@ -304,8 +305,6 @@ def test_new_shims_take_names_that_are_free(tmp_path: Path) -> None:
 
 
 # the command --------------------------------------------------------------------------------------
-
-Command = Callable[..., tuple[int, str, str]]
 
 
 @pytest.fixture

@@ -8,11 +8,11 @@ import subprocess
 import sys
 import time
 import warnings
-from collections.abc import Callable
 from pathlib import Path
 
 import jsonschema
 import pytest
+from fixtures import Command
 from places import SCENES
 from ruamel.yaml import YAML
 
@@ -27,8 +27,6 @@ from tol3d.solids.cache import CacheWarning
 from tol3d.study.task import strips_of, workers_for
 
 SPUR = str(SCENES / "spur_pair.yaml")
-
-Command = Callable[..., tuple[int, str, str]]
 
 
 def test_run_prints_the_table_and_writes_the_run(tol3d: Command, tmp_path: Path) -> None:

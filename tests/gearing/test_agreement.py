@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 import pytest
+from fixtures import EngineOf
 from oracles import brute_force, exact_eccentric
 from oracles.involute_gear import InvoluteGear
 from oracles.poses import world_from_gears
@@ -31,6 +32,7 @@ from tol3d.gearing.model import (
 from tol3d.gearing.model.model import Housing
 from tol3d.gearing.stack_up import analytic_backlash, closed_form
 from tol3d.gears import LEFT, RIGHT, SpurGear, SpurPair
+from tol3d.gears.flank import Flank
 from tol3d.study.block import drawn_block, simulate_block
 
 ALPHA = math.radians(20.0)
@@ -49,7 +51,7 @@ def oracle_gear(gear: SpurGear, thickness: object = 0.0, growth: float = 1.0) ->
     ).grown(growth)
 
 
-def with_flank(model: Model, flank: int) -> Model:
+def with_flank(model: Model, flank: Flank) -> Model:
     return replace(model, meshes=tuple(replace(mesh, working_flank=flank) for mesh in model.meshes))
 
 
@@ -79,7 +81,7 @@ class Rows:
 
 
 @pytest.fixture(scope="module", params=[RIGHT, LEFT], ids=["right", "left"])
-def rows(request: pytest.FixtureRequest, paper_model: Model, engine_of) -> Rows:
+def rows(request: pytest.FixtureRequest, paper_model: Model, engine_of: EngineOf) -> Rows:
     model = with_flank(paper_model, request.param)
     mesh = model.meshes[0]
     block = drawn_block(model, model.study.seed, 0, model.study.trials)
@@ -218,7 +220,7 @@ CASES = {
 LARGEST_TILT = 1e-3  # rad
 
 
-def posed(case: Case, count: int, seed: int, flank: int) -> Posed:
+def posed(case: Case, count: int, seed: int, flank: Flank) -> Posed:
     """Builds with tilts about any transverse axis up to 1 mrad, shifts of 30 um, faces up to 30 % past each other."""
     rng = np.random.default_rng(seed)
     gears = (case.pinion, case.wheel)
@@ -249,7 +251,7 @@ def assert_agree(measured: np.ndarray, found: np.ndarray, chord_error: float) ->
     assert error.max() <= 4 * chord_error + FREE_OF_CHORDS
 
 
-def check_normal_backlash(case: Case, count: int, seed: int, flank: int, engine_of) -> None:
+def check_normal_backlash(case: Case, count: int, seed: int, flank: Flank, engine_of: EngineOf) -> None:
     poses = posed(case, count, seed, flank)
     engine = engine_of(poses.model)
     meshing = Meshing(engine, poses.model, poses.mesh, poses.made, Reading())
@@ -263,19 +265,21 @@ def check_normal_backlash(case: Case, count: int, seed: int, flank: int, engine_
 
 @pytest.mark.parametrize("flank", [RIGHT, LEFT], ids=["right", "left"])
 @pytest.mark.parametrize("name", CASES)
-def test_tilted_and_shifted_gears_agree_with_brute_force_to_0_1_um(name: str, flank: int, engine_of) -> None:
+def test_tilted_and_shifted_gears_agree_with_brute_force_to_0_1_um(
+    name: str, flank: Flank, engine_of: EngineOf
+) -> None:
     check_normal_backlash(CASES[name], 6, 5 + flank, flank, engine_of)
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("flank", [RIGHT, LEFT], ids=["right", "left"])
 @pytest.mark.parametrize("name", CASES)
-def test_two_hundred_poses_agree_with_brute_force_to_0_1_um(name: str, flank: int, engine_of) -> None:
+def test_two_hundred_poses_agree_with_brute_force_to_0_1_um(name: str, flank: Flank, engine_of: EngineOf) -> None:
     check_normal_backlash(CASES[name], 200, 50 + flank, flank, engine_of)
 
 
 @pytest.mark.parametrize("flank", [RIGHT, LEFT], ids=["right", "left"])
-def test_free_turns_of_either_gear_agree_with_brute_force(flank: int, engine_of) -> None:
+def test_free_turns_of_either_gear_agree_with_brute_force(flank: Flank, engine_of: EngineOf) -> None:
     poses = posed(CASES["paper"], 5, 11, flank)
     mesh, engine = poses.mesh, engine_of(poses.model)
     meshing = Meshing(engine, poses.model, mesh, poses.made, Reading())
@@ -292,7 +296,7 @@ def test_free_turns_of_either_gear_agree_with_brute_force(flank: int, engine_of)
     )
 
 
-def test_first_contact_lies_on_the_flank_of_a_tooth_that_the_search_finds_touching(engine_of) -> None:
+def test_first_contact_lies_on_the_flank_of_a_tooth_that_the_search_finds_touching(engine_of: EngineOf) -> None:
     poses = posed(CASES["paper"], 6, 21, RIGHT)
     searched = poses.searched
     engine = engine_of(poses.model)
@@ -316,7 +320,9 @@ def test_first_contact_lies_on_the_flank_of_a_tooth_that_the_search_finds_touchi
 
 @pytest.mark.parametrize("side", [RIGHT, LEFT], ids=["right", "left"])
 @pytest.mark.parametrize("of_driver", [True, False], ids=["driver turns", "driven turns"])
-def test_a_gap_s_derivative_by_a_turn_is_its_difference_quotient(of_driver: bool, side: int, engine_of) -> None:
+def test_a_gap_s_derivative_by_a_turn_is_its_difference_quotient(
+    of_driver: bool, side: int, engine_of: EngineOf
+) -> None:
     poses = posed(CASES["paper"], 6, 31, RIGHT)
     mesh, engine = poses.mesh, engine_of(poses.model)
     seat = Meshing(engine, poses.model, mesh, poses.made, Reading()).seat(poses.driver_angle)
@@ -358,7 +364,7 @@ def warm_model(expansions: tuple[float, float, float]) -> Model:
 
 
 @pytest.mark.parametrize("kelvin", [-40.0, 20.0, 60.0])
-def test_gears_of_one_material_in_a_housing_of_another_are_a_scaled_pair(kelvin: float, engine_of) -> None:
+def test_gears_of_one_material_in_a_housing_of_another_are_a_scaled_pair(kelvin: float, engine_of: EngineOf) -> None:
     steel, aluminium = 11.5e-6, 23.5e-6
     model = warm_model((steel, steel, aluminium))
     made = build(model, np.full((6, 1), kelvin))
@@ -376,7 +382,7 @@ def test_gears_of_one_material_in_a_housing_of_another_are_a_scaled_pair(kelvin:
     assert stack[0] == pytest.approx(exact, abs=0.3e-3)
 
 
-def test_a_warm_pinion_in_a_cold_house_closes_until_it_interferes(engine_of) -> None:
+def test_a_warm_pinion_in_a_cold_house_closes_until_it_interferes(engine_of: EngineOf) -> None:
     model = warm_model((11.5e-6, 0.0, 0.0))
     made = build(model, np.array([[0.0], [100.0], [3000.0]]))
     engine, mesh = engine_of(model), model.meshes[0]
@@ -397,7 +403,7 @@ def assert_same_bits(first: dict[str, np.ndarray], second: dict[str, np.ndarray]
         assert np.ascontiguousarray(first[name]).tobytes() == np.ascontiguousarray(second[name]).tobytes(), name
 
 
-def test_a_trial_alone_has_the_bits_of_the_same_trial_among_many(paper_model: Model, engine_of) -> None:
+def test_a_trial_alone_has_the_bits_of_the_same_trial_among_many(paper_model: Model, engine_of: EngineOf) -> None:
     together = simulate_block(paper_model, engine_of(paper_model), drawn_block(paper_model, 1, 0, 60))
     fresh = engine_of(paper_model)
     for trial in (0, 1, 31, 59):
@@ -406,7 +412,9 @@ def test_a_trial_alone_has_the_bits_of_the_same_trial_among_many(paper_model: Mo
 
 
 @pytest.mark.parametrize("size", [1, 7, 59])
-def test_columns_do_not_depend_on_how_trials_are_cut_into_blocks(size: int, paper_model: Model, engine_of) -> None:
+def test_columns_do_not_depend_on_how_trials_are_cut_into_blocks(
+    size: int, paper_model: Model, engine_of: EngineOf
+) -> None:
     engine = engine_of(paper_model)
     whole = simulate_block(paper_model, engine, drawn_block(paper_model, 3, 0, 60))
     parts = [

@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from fixtures import EngineOf
 from oracles import bevel_brute_force
 from oracles.bevel_brute_force import BevelMesh, BevelNumbers
 from scipy.spatial.transform import Rotation
@@ -20,6 +21,7 @@ from tol3d.gearing.measures import measure_backlash
 from tol3d.gearing.meshing import Meshing
 from tol3d.gearing.model import Backlash, GearPart, Mesh, Model, Reading, Study, model_from_scene
 from tol3d.gears import LEFT, RIGHT, BevelGear, BevelPair, pitch_angles
+from tol3d.gears.flank import Flank
 from tol3d.scene import Scene
 from tol3d.simulate import load
 from tol3d.study.block import Block, simulate_block
@@ -64,7 +66,7 @@ EIGHT_PHASES = tuple((k + 0.37) / 8 for k in range(8))  # of a pitch
 
 
 def gaps(
-    engine_of,
+    engine_of: EngineOf,
     tolerances: dict[str, Tolerance],
     phases: tuple[float, ...] = EIGHT_PHASES,
     steps: int = 128,
@@ -95,7 +97,7 @@ def gaps(
 )
 @pytest.mark.parametrize("tooth", ["driven", "driver", "all"])
 def test_42_5_um_off_each_gear_leave_another_gap_for_each_reading(
-    along_face: str, read_at: str, expected: float, tooth: str, engine_of
+    along_face: str, read_at: str, expected: float, tooth: str, engine_of: EngineOf
 ) -> None:
     found = gaps(engine_of, thinned("-42.5 um", along_face=along_face), read_at=read_at, tooth=tooth)
     assert np.abs(found - expected).max() <= MESH_BOUND
@@ -103,12 +105,14 @@ def test_42_5_um_off_each_gear_leave_another_gap_for_each_reading(
 
 @pytest.mark.parametrize(("arc", "expected"), [("10 um", 100.81142), ("-10 um", 87.13063)])
 @pytest.mark.parametrize("tilts", ["driver", "driven"])
-def test_ten_um_of_shaft_angle_at_the_mean_cone_distance(arc: str, expected: float, tilts: str, engine_of) -> None:
+def test_ten_um_of_shaft_angle_at_the_mean_cone_distance(
+    arc: str, expected: float, tilts: str, engine_of: EngineOf
+) -> None:
     tolerances = thinned("-50 um") | {"shaft angle": constant("shaft_angle", "pair", arc, tilts=tilts)}
     assert np.abs(gaps(engine_of, tolerances) - expected).max() <= MESH_BOUND
 
 
-def test_two_shims_behind_the_gears_take_46_33_um(engine_of) -> None:
+def test_two_shims_behind_the_gears_take_46_33_um(engine_of: EngineOf) -> None:
     shims = {f"{gear} shim": constant("shim", gear, "0.048 mm") for gear in ("driver", "driven")}
     thin = thinned("-42.5 um", along_face="constant")
     at = {"phases": (0.0,), "tooth": "all", "steps": FINE}
@@ -144,7 +148,7 @@ COEFFICIENTS = {
 
 
 @pytest.mark.parametrize("name", COEFFICIENTS)
-def test_coefficients_of_one_tooth_in_its_space(name: str, engine_of) -> None:
+def test_coefficients_of_one_tooth_in_its_space(name: str, engine_of: EngineOf) -> None:
     deviation, expected = COEFFICIENTS[name]
     thin = thinned("-42.5 um", along_face="constant")
     up, down = (gaps(engine_of, thin | deviation(f"{um} um"), tooth="driven", steps=FINE) for um in (10, -10))
@@ -198,7 +202,7 @@ def numbers_of(gear: BevelGear, turned: float, offset: float) -> BevelNumbers:
     )
 
 
-def posed(case: Case, count: int, seed: int, flank: int) -> Posed:
+def posed(case: Case, count: int, seed: int, flank: Flank) -> Posed:
     """Both gears anywhere within 20 um and 0.4 mrad of their place, eccentric, their teeth thinner both ways."""
     rng = np.random.default_rng(seed)
     angles = pitch_angles(*case.teeth, math.radians(case.degrees))
@@ -252,7 +256,7 @@ def found_by_search(poses: Posed, read_at: str) -> np.ndarray:
     return np.array(found)
 
 
-def check_poses(name: str, count: int, seed: int, read_at: str, flank: int, engine_of) -> None:
+def check_poses(name: str, count: int, seed: int, read_at: str, flank: Flank, engine_of: EngineOf) -> None:
     poses = posed(CASES[name], count, seed, flank)
     error = 1000 * (measured(poses, engine_of(poses.model), READINGS[read_at]) - found_by_search(poses, read_at))
     assert np.abs(error).max() <= SEARCH_BOUND
@@ -261,7 +265,7 @@ def check_poses(name: str, count: int, seed: int, read_at: str, flank: int, engi
 
 @pytest.mark.parametrize("read_at", READINGS)
 @pytest.mark.parametrize("name", CASES)
-def test_displaced_gears_agree_with_brute_force_to_0_08_um(name: str, read_at: str, engine_of) -> None:
+def test_displaced_gears_agree_with_brute_force_to_0_08_um(name: str, read_at: str, engine_of: EngineOf) -> None:
     flank = LEFT if name in ("published", "60 deg") else RIGHT
     check_poses(name, 2, 5, read_at, flank, engine_of)
 
@@ -269,12 +273,12 @@ def test_displaced_gears_agree_with_brute_force_to_0_08_um(name: str, read_at: s
 @pytest.mark.slow
 @pytest.mark.parametrize("read_at", READINGS)
 @pytest.mark.parametrize("name", CASES)
-def test_seventy_poses_agree_with_brute_force_to_0_08_um(name: str, read_at: str, engine_of) -> None:
+def test_seventy_poses_agree_with_brute_force_to_0_08_um(name: str, read_at: str, engine_of: EngineOf) -> None:
     for flank in (LEFT, RIGHT):
         check_poses(name, 3, 40, read_at, flank, engine_of)
 
 
-def test_the_nearest_points_are_apart_by_the_gap_along_its_normal(engine_of) -> None:
+def test_the_nearest_points_are_apart_by_the_gap_along_its_normal(engine_of: EngineOf) -> None:
     poses = posed(CASES["published"], 4, 3, LEFT)
     meshing = Meshing(engine_of(poses.model), poses.model, poses.model.meshes[0], poses.made, READINGS["face"])
     seat = meshing.seat(poses.driver_angle)

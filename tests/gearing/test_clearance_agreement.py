@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from fixtures import EngineOf
 from oracles import exact_eccentric
 from oracles.involute_gear import InvoluteGear
 from places import SCENES
@@ -86,7 +87,7 @@ def exact_backlash(columns: dict[str, np.ndarray], shifts: dict[str, np.ndarray]
 @pytest.mark.parametrize("direction", ["apart", "tooth_force", "{at: 50 deg}", "random"])
 @pytest.mark.parametrize("gear", ["pinion", "wheel"])
 def test_both_roads_take_a_clearance_as_the_text_means_it(
-    gear: str, direction: str, flank: str, sigma: int, tmp_path: Path, engine_of
+    gear: str, direction: str, flank: str, sigma: int, tmp_path: Path, engine_of: EngineOf
 ) -> None:
     model = clearance_scene(tmp_path, gear, direction, flank)
     columns = simulate_block(model, engine_of(model), drawn_block(model, 1, 0, TRIALS))
@@ -101,7 +102,7 @@ def test_both_roads_take_a_clearance_as_the_text_means_it(
 
 @pytest.mark.parametrize("gear", ["pinion", "wheel"])
 def test_a_clearance_apart_opens_by_sin_alpha_a_micrometre_whichever_gear_has_it(
-    gear: str, tmp_path: Path, engine_of
+    gear: str, tmp_path: Path, engine_of: EngineOf
 ) -> None:
     model = clearance_scene(tmp_path, gear, "apart", "right")
     columns = simulate_block(model, engine_of(model), drawn_block(model, 1, 0, TRIALS))

@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from fixtures import EngineOf
 from oracles import exact_eccentric
 from oracles.involute_gear import InvoluteGear
 from oracles.thickness import thickness_of
@@ -15,6 +16,7 @@ from tol3d.gearing.measures import measure_backlash, read_backlash
 from tol3d.gearing.meshing import Meshing
 from tol3d.gearing.model import Backlash, Measure, Model, Positions, Reading, model_from_scene
 from tol3d.gears import LEFT, RIGHT
+from tol3d.gears.flank import Flank
 from tol3d.scene import load_scene
 from tol3d.study.block import Block, drawn_block, geometric_values, seat_block, simulate_block, taken
 
@@ -39,7 +41,9 @@ def exact_of(model: Model, block: Block, angle: np.ndarray) -> np.ndarray:
 
 
 @pytest.mark.parametrize("flank", [RIGHT, LEFT], ids=["right", "left"])
-def test_mean_error_of_the_strips_falls_with_the_square_of_the_step(flank: int, paper_model: Model, engine_of) -> None:
+def test_mean_error_of_the_strips_falls_with_the_square_of_the_step(
+    flank: Flank, paper_model: Model, engine_of: EngineOf
+) -> None:
     model = replace(paper_model, meshes=(replace(paper_model.meshes[0], working_flank=flank),))
     mesh, block = model.meshes[0], drawn_block(model, 5, 0, TRIALS)
     angle, made = block.random_angle[mesh.name], build(model, block.deviations)
@@ -64,7 +68,7 @@ def test_mean_error_of_the_strips_falls_with_the_square_of_the_step(flank: int, 
 FCL_NOISE = 0.002e-3  # mm; a section is a strip 2 um wide, over which a bevel pair's gap grows by 1e-6 mm
 
 
-def errors_of_fcl(scene: str, trials: int, densities: tuple[int, ...], engine_of) -> np.ndarray:
+def errors_of_fcl(scene: str, trials: int, densities: tuple[int, ...], engine_of: EngineOf) -> np.ndarray:
     """FCL's normal backlash less the exact engine's [mm], (densities, trials)."""
     model = model_from_scene(load_scene(SCENES / scene))
     mesh, kind = model.meshes[0], next(m.kind for m in model.measures if m.kind.quantity == "normal_backlash")
@@ -80,7 +84,7 @@ def errors_of_fcl(scene: str, trials: int, densities: tuple[int, ...], engine_of
 
 @pytest.mark.slow
 @pytest.mark.parametrize("scene", ["spur_pair.yaml", "bevel_pair.yaml"])
-def test_fcl_converges_to_the_exact_engine_with_the_square_of_the_step(scene: str, engine_of) -> None:
+def test_fcl_converges_to_the_exact_engine_with_the_square_of_the_step(scene: str, engine_of: EngineOf) -> None:
     densities = (60, 120, 240, 480)
     errors = errors_of_fcl(scene, 400, densities, engine_of)
     rms = np.sqrt((errors**2).mean(axis=1))  # seen: 0.070, 0.018, 0.0047, 0.0012 um; bevel 0.22, 0.054, 0.012, 0.0023
@@ -126,7 +130,7 @@ def dense_extremes(model: Model, block: Block, turns: int, count: int) -> tuple[
 
 @pytest.mark.parametrize(("over", "turns", "scan"), [("turn", 1, 721), ("long_period", 55, 4000)])
 def test_extremes_over_positions_agree_with_a_dense_scan(
-    over: str, turns: int, scan: int, paper_model: Model, engine_of
+    over: str, turns: int, scan: int, paper_model: Model, engine_of: EngineOf
 ) -> None:
     measures = tuple(replace(extreme(take, over, 24 * turns, turns), name=take) for take in ("min", "max", "range"))
     model = replace(paper_model, measures=measures)
@@ -139,7 +143,7 @@ def test_extremes_over_positions_agree_with_a_dense_scan(
         assert np.abs(columns[f"analytic:{take}"] - 1000 * expected).max() <= 0.06, take
 
 
-def test_a_curve_is_the_values_at_its_positions(paper_model: Model, engine_of) -> None:
+def test_a_curve_is_the_values_at_its_positions(paper_model: Model, engine_of: EngineOf) -> None:
     curve = extreme("curve", "turn", 8)
     model = replace(paper_model, measures=(curve,))
     block, engine = drawn_block(model, 2, 0, 3), engine_of(model)

@@ -32,6 +32,7 @@ from tol3d.gearing.measures import measure_backlash, read_backlash
 from tol3d.gearing.meshing import Meshing
 from tol3d.gearing.model import Backlash, Reading
 from tol3d.gears import LEFT, RIGHT, SpurGear, SpurPair
+from tol3d.gears.flank import Flank
 
 ALPHA = math.radians(20.0)
 WHOLE_FACE = Reading()
@@ -163,7 +164,9 @@ def test_the_closed_form_s_own_rounds_have_converged_to_1e_11_mm(monkeypatch: py
 
 @given(pair=spur_pairs(), flank=st.sampled_from([RIGHT, LEFT]), seed=st.integers(0, 2**32))
 @settings(max_examples=60)
-def test_parallel_eccentric_gears_leave_the_backlash_of_the_closed_form(pair: SpurPair, flank: int, seed: int) -> None:
+def test_parallel_eccentric_gears_leave_the_backlash_of_the_closed_form(
+    pair: SpurPair, flank: Flank, seed: int
+) -> None:
     builds = random_builds(pair, flank, 100, seed, spread=within_reach_of(pair, PARALLEL), thinner=0.05)
     expected, seen = closed_form(builds), read(builds)
     assert (seen.status[expected > 0.0] == OK).all()
@@ -173,7 +176,7 @@ def test_parallel_eccentric_gears_leave_the_backlash_of_the_closed_form(pair: Sp
 
 @given(pair=spur_pairs(room=ROOM), flank=st.sampled_from([RIGHT, LEFT]), seed=st.integers(0, 2**32))
 @settings(max_examples=30)
-def test_gaps_too_leave_the_backlash_of_the_closed_form(pair: SpurPair, flank: int, seed: int) -> None:
+def test_gaps_too_leave_the_backlash_of_the_closed_form(pair: SpurPair, flank: Flank, seed: int) -> None:
     builds = random_builds(pair, flank, 100, seed, spread=within_reach_of(pair, PARALLEL), thinner=0.05)
     expected, meshing = closed_form(builds), meshing_of(builds)
     seat = meshing.seat(builds.driver_angle)
@@ -183,7 +186,7 @@ def test_gaps_too_leave_the_backlash_of_the_closed_form(pair: SpurPair, flank: i
 
 @given(pair=spur_pairs(), flank=st.sampled_from([RIGHT, LEFT]), seed=st.integers(0, 2**32))
 @settings(max_examples=40)
-def test_a_concentric_gear_s_free_turn_is_the_gap_over_its_base_radius(pair: SpurPair, flank: int, seed: int) -> None:
+def test_a_concentric_gear_s_free_turn_is_the_gap_over_its_base_radius(pair: SpurPair, flank: Flank, seed: int) -> None:
     spread = replace(within_reach_of(pair, PARALLEL), centre=0.0)
     builds = random_builds(pair, flank, 50, seed, spread=spread, thinner=0.1)
     seen, expected = read(builds), closed_form(builds)
@@ -195,7 +198,7 @@ def test_a_concentric_gear_s_free_turn_is_the_gap_over_its_base_radius(pair: Spu
 
 @pytest.mark.parametrize("name", PAIRS)
 @FLANKS
-def test_the_general_kernel_continues_the_shortcut_for_parallel_axes(name: str, flank: int) -> None:
+def test_the_general_kernel_continues_the_shortcut_for_parallel_axes(name: str, flank: Flank) -> None:
     pair = PAIRS[name]
     builds = random_builds(pair, flank, 500, 8, spread=PARALLEL, thinner=0.1)
     shafts = builds.made.world_from_shaft.copy()
@@ -227,7 +230,7 @@ def taken(builds: Builds, rows: slice | np.ndarray) -> Builds:
     return replace(builds, made=made, driver_angle=builds.driver_angle[rows])
 
 
-def searched(builds: Builds, driver: np.ndarray, driven: np.ndarray, flank: int) -> np.ndarray:
+def searched(builds: Builds, driver: np.ndarray, driven: np.ndarray, flank: Flank) -> np.ndarray:
     """Smallest distance of one side, by the search [mm]."""
     found = search.spur_distances(searched_spurs(builds), driver, driven, flank, offsets=builds.made.flank_offset)
     return found[1].min(axis=1)
@@ -251,7 +254,7 @@ def check_against_search(builds: Builds) -> None:
 @pytest.mark.parametrize("spread", SPREADS)
 @FLANKS
 @pytest.mark.parametrize("name", PAIRS)
-def test_seats_gaps_and_free_turns_agree_with_a_search_of_the_surfaces(name: str, flank: int, spread: str) -> None:
+def test_seats_gaps_and_free_turns_agree_with_a_search_of_the_surfaces(name: str, flank: Flank, spread: str) -> None:
     builds = random_builds(PAIRS[name], flank, 8, 3, spread=SPREADS[spread], thinner=0.12)
     assert (read(builds).status == OK).all()
     check_against_search(builds)
@@ -260,7 +263,7 @@ def test_seats_gaps_and_free_turns_agree_with_a_search_of_the_surfaces(name: str
 @pytest.mark.slow
 @given(pair=spur_pairs(1.5, ROOM), flank=st.sampled_from([RIGHT, LEFT]), seed=st.integers(0, 2**32))
 @settings(max_examples=60)
-def test_any_pair_in_any_pose_agrees_with_a_search_of_the_surfaces(pair: SpurPair, flank: int, seed: int) -> None:
+def test_any_pair_in_any_pose_agrees_with_a_search_of_the_surfaces(pair: SpurPair, flank: Flank, seed: int) -> None:
     for spread in SPREADS.values():
         own = within_reach_of(pair, spread)
         check_against_search(random_builds(pair, flank, 12, seed, spread=own, thinner=0.15))
@@ -317,7 +320,7 @@ def section_by(lowest):
 
 @given(pair=spur_pairs(1.5, ROOM), flank=st.sampled_from([RIGHT, LEFT]), seed=st.integers(0, 2**32))
 @settings(max_examples=30)
-def test_at_the_end_of_a_turn_one_pair_touches_and_none_overlaps(pair: SpurPair, flank: int, seed: int) -> None:
+def test_at_the_end_of_a_turn_one_pair_touches_and_none_overlaps(pair: SpurPair, flank: Flank, seed: int) -> None:
     spread = within_reach_of(pair, SPREADS["warm"])
     builds = random_builds(pair, flank, 100, seed, spread=spread, thinner=0.15)
     seen, engine = read(builds), ExactEngine(builds.model)
@@ -346,7 +349,7 @@ def test_at_the_end_of_a_turn_one_pair_touches_and_none_overlaps(pair: SpurPair,
     reading=st.sampled_from(CANDIDATE_READINGS),
 )
 @settings(max_examples=60)
-def test_reading_at_once_equals_reading_by_gaps(pair: SpurPair, flank: int, seed: int, reading: Reading) -> None:
+def test_reading_at_once_equals_reading_by_gaps(pair: SpurPair, flank: Flank, seed: int, reading: Reading) -> None:
     spread = within_reach_of(pair, replace(SPREADS["tilted"], growth=2e-4))
     builds = random_builds(pair, flank, 100, seed, spread=spread, thinner=0.1)
     seen, meshing = read(builds, reading), meshing_of(builds, reading)
@@ -374,7 +377,7 @@ def local(world_from_gear: np.ndarray, points: np.ndarray) -> np.ndarray:
 
 @pytest.mark.parametrize("name", PAIRS)
 @FLANKS
-def test_nearest_points_lie_on_both_flanks_and_the_normal_is_the_flank_s(name: str, flank: int) -> None:
+def test_nearest_points_lie_on_both_flanks_and_the_normal_is_the_flank_s(name: str, flank: Flank) -> None:
     pair = PAIRS[name]
     builds = random_builds(pair, flank, 100, 9, spread=Spread(past=0.2, offset=0.0), thinner=0.12)
     seen, engine = read(builds), ExactEngine(builds.model)
@@ -406,7 +409,7 @@ def test_nearest_points_lie_on_both_flanks_and_the_normal_is_the_flank_s(name: s
     assert inside > 20
 
 
-def off_flank(gear: InvoluteGear, points: np.ndarray, teeth: np.ndarray, flank: int) -> np.ndarray:
+def off_flank(gear: InvoluteGear, points: np.ndarray, teeth: np.ndarray, flank: Flank) -> np.ndarray:
     """Signed distance (n,) [mm] of points in the gear's frame to a flank of its own."""
     numbers = np.array(search._spur_numbers(gear, np.zeros(len(points))))
     azimuths = gear.pitch * teeth
@@ -423,7 +426,7 @@ def on_the_flank(gear: InvoluteGear, point: np.ndarray, radius: np.ndarray) -> n
     return (radius < tip - edge) & (radius > np.ravel(gear.base_radius) + edge) & (np.abs(point[:, 2]) < half - edge)
 
 
-def string_direction(gear: InvoluteGear, point: np.ndarray, flank: int) -> np.ndarray:
+def string_direction(gear: InvoluteGear, point: np.ndarray, flank: Flank) -> np.ndarray:
     """Unit normal (n, 3) out of a flank in the gear's frame."""
     radius = np.hypot(point[:, 0], point[:, 1])
     along = np.arctan2(point[:, 1], point[:, 0]) + flank * np.arccos(np.ravel(gear.base_radius) / radius)
@@ -432,7 +435,7 @@ def string_direction(gear: InvoluteGear, point: np.ndarray, flank: int) -> np.nd
 
 @pytest.mark.parametrize("of_driver", [True, False], ids=["driver turns", "driven turns"])
 @FLANKS
-def test_a_gap_s_derivative_by_a_turn_is_its_central_difference(flank: int, of_driver: bool) -> None:
+def test_a_gap_s_derivative_by_a_turn_is_its_central_difference(flank: Flank, of_driver: bool) -> None:
     pair = PAIRS["wide"]
     builds = random_builds(pair, flank, 100, 31, spread=Spread(past=0.2, growth=2e-4, offset=0.0), thinner=0.12)
     engine, step = ExactEngine(builds.model), 1e-4  # rad; 3 um, over which bends of 1/r leave h^2/6 = 1e-9 of the slope

@@ -17,6 +17,7 @@ from tol3d.gearing.measures import measure_backlash, read_backlash
 from tol3d.gearing.meshing import Meshing
 from tol3d.gearing.model import Backlash, Reading
 from tol3d.gears import LEFT, RIGHT, BevelGear, BevelPair, driver_teeth_at_one_tooth, pitch_angles
+from tol3d.gears.flank import Flank
 
 ALPHA = math.radians(20.0)
 SEARCH_BOUND = 5e-6  # mm, as promised; seen: 6e-7 at seats, 1.3e-6 of gaps, which is GAP_SLANT
@@ -78,7 +79,7 @@ def one_build(builds: Builds, reading: Reading, place: str):
         yield mesh.between(at, at) if getattr(reading, place) == "section" else mesh
 
 
-def smallest(meshes, builds: Builds, reading: Reading, driver: np.ndarray, driven: np.ndarray, flank: int):
+def smallest(meshes, builds: Builds, reading: Reading, driver: np.ndarray, driven: np.ndarray, flank: Flank):
     """Smallest distances of one side by the search [mm], of those teeth that the reading looks at."""
     found, pitch = [], builds.mesh.pair.pinion.angular_pitch
     for row, mesh in enumerate(meshes):
@@ -124,7 +125,9 @@ def test_seats_gaps_and_free_turns_agree_with_a_search_of_the_surfaces(name: str
 @pytest.mark.parametrize("reading", READINGS)
 @pytest.mark.parametrize("name", PAIRS)
 @FLANKS
-def test_a_thousand_poses_agree_with_a_search_of_the_surfaces(name: str, reading: str, teeth: str, flank: int) -> None:
+def test_a_thousand_poses_agree_with_a_search_of_the_surfaces(
+    name: str, reading: str, teeth: str, flank: Flank
+) -> None:
     own = replace(READINGS[reading], teeth=teeth)
     for spread in SPREADS.values():
         check_against_search(random_builds(PAIRS[name], flank, 8, 40, spread=spread, thinner=THINNER), own)
@@ -146,7 +149,7 @@ def test_the_search_and_the_brute_force_find_the_same_distances() -> None:
 # by hand --------------------------------------------------------------------------------------------------------------
 
 
-def undisturbed(pair: BevelPair, flank: int, turned: tuple[float, float], offset: float) -> Builds:
+def undisturbed(pair: BevelPair, flank: Flank, turned: tuple[float, float], offset: float) -> Builds:
     """Gears in their places, thinner by arcs at the mean radius or along the normals [mm]."""
     builds = random_builds(pair, flank, 50, 3, spread=Spread(*[0.0] * 7), thinner=0.0)
     radii = np.array([pair.pinion.mean_radius, pair.wheel.mean_radius])
@@ -160,7 +163,7 @@ def undisturbed(pair: BevelPair, flank: int, turned: tuple[float, float], offset
 
 @pytest.mark.parametrize("name", PAIRS)
 @FLANKS
-def test_thinner_cones_leave_a_gap_proportional_to_the_cone_distance(name: str, flank: int) -> None:
+def test_thinner_cones_leave_a_gap_proportional_to_the_cone_distance(name: str, flank: Flank) -> None:
     pair = PAIRS[name]
     builds = undisturbed(pair, flank, (-0.08, -0.05), 0.0)
     angle = sum(
@@ -189,7 +192,7 @@ def test_thinner_cones_leave_a_gap_proportional_to_the_cone_distance(name: str, 
 )
 @settings(max_examples=60)
 def test_reading_at_once_equals_reading_by_gaps(
-    name: str, flank: int, seed: int, reading: str, teeth: str, spread: str
+    name: str, flank: Flank, seed: int, reading: str, teeth: str, spread: str
 ) -> None:
     pair, own = PAIRS[name], replace(READINGS[reading], teeth=teeth)
     builds = random_builds(pair, flank, 100, seed, spread=SPREADS[spread], thinner=THINNER)
@@ -213,7 +216,7 @@ def test_reading_at_once_equals_reading_by_gaps(
 
 @pytest.mark.parametrize("name", PAIRS)
 @FLANKS
-def test_nearest_points_lie_on_both_flanks_and_are_apart_by_the_gap(name: str, flank: int) -> None:
+def test_nearest_points_lie_on_both_flanks_and_are_apart_by_the_gap(name: str, flank: Flank) -> None:
     pair = PAIRS[name]
     spread = replace(SPREADS["usual"], offset=0.0)
     builds = random_builds(pair, flank, 30, 9, spread=spread, thinner=THINNER)
@@ -239,7 +242,7 @@ def test_nearest_points_lie_on_both_flanks_and_are_apart_by_the_gap(name: str, f
 
 @pytest.mark.parametrize("of_driver", [True, False], ids=["driver turns", "driven turns"])
 @FLANKS
-def test_a_gap_s_derivative_by_a_turn_is_its_central_difference(flank: int, of_driver: bool) -> None:
+def test_a_gap_s_derivative_by_a_turn_is_its_central_difference(flank: Flank, of_driver: bool) -> None:
     pair = PAIRS["31 to 31"]
     spread = replace(SPREADS["usual"], offset=0.0)
     builds = random_builds(pair, flank, 100, 31, spread=spread, thinner=THINNER)
@@ -300,7 +303,7 @@ def test_gears_far_off_their_axes_have_a_status_or_the_right_number(centre: floa
 
 @pytest.mark.parametrize("name", PAIRS)
 @FLANKS
-def test_every_candidate_pair_s_gap_is_that_of_the_search(name: str, flank: int) -> None:
+def test_every_candidate_pair_s_gap_is_that_of_the_search(name: str, flank: Flank) -> None:
     pair = PAIRS[name]
     builds = in_range(
         random_builds(pair, flank, 20, 3, spread=replace(SPREADS["wide"], growth=0.0), thinner=THINNER),

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from conftest import Command
+from fixtures import Command
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from oracles.thinned_pairs import ThinnedPair, random_pair

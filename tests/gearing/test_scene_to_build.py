@@ -10,6 +10,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from fixtures import EngineOf
 from oracles import brute_force, poses
 from oracles.involute_gear import InvoluteGear
 from places import SCENES
@@ -19,6 +20,7 @@ from tol3d.gearing.engines import OK
 from tol3d.gearing.meshing import Meshing
 from tol3d.gearing.model import Model, Reading, model_from_scene
 from tol3d.gears import LEFT, RIGHT
+from tol3d.gears.flank import Flank
 from tol3d.scene import load_scene
 from tol3d.study import draws
 
@@ -268,7 +270,7 @@ def test_each_trial_has_its_own_draw(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("said", "flank"), [(", working_flank: right", RIGHT), (", working_flank: left", LEFT), ("", RIGHT)]
 )
-def test_the_working_flank_of_the_text_is_the_model_s(said: str, flank: int, tmp_path: Path) -> None:
+def test_the_working_flank_of_the_text_is_the_model_s(said: str, flank: Flank, tmp_path: Path) -> None:
     (mesh,) = model_of(tmp_path, "  {}\n", mesh=MESH + said).meshes
     assert mesh.working_flank == flank
     assert (mesh.driver, mesh.driven) == ("pinion", "wheel")
@@ -280,7 +282,7 @@ STRIPS = 0.05e-3  # mm; two flanks touch, each a chord error of 0.021 um inside 
 
 @pytest.mark.parametrize(("word", "pushes"), [("left", True), ("right", False)])
 def test_a_driver_that_turns_counter_clockwise_pushes_with_its_left_flank(
-    word: str, pushes: bool, tmp_path: Path, engine_of
+    word: str, pushes: bool, tmp_path: Path, engine_of: EngineOf
 ) -> None:
     """Seated, then turned a little further counter-clockwise: only the left flank digs into its mate."""
     path = tmp_path / "scene.yaml"

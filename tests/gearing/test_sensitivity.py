@@ -35,6 +35,7 @@ from tol3d.gearing.model.model import Housing
 from tol3d.gearing.rates import left_jacobian, tangent
 from tol3d.gearing.sensitivity import by_contributor, mean_slopes, peak_weights, sensitivities, taken_rates
 from tol3d.gears import LEFT, RIGHT, BevelGear, BevelPair, SpurGear, SpurPair, pitch_angles
+from tol3d.gears.flank import Flank
 from tol3d.study.block import Block, geometric_values, seat_block, stated_block, taken
 
 ALPHA = math.radians(20.0)
@@ -96,14 +97,14 @@ def pair_of(name: str) -> SpurPair | BevelPair:
 PAIRS = ("spur", "bevel 17/43", "bevel 31/31")
 
 
-def model_of(pair: SpurPair | BevelPair, flank: int, acting: tuple[Contributor, ...]) -> Model:
+def model_of(pair: SpurPair | BevelPair, flank: Flank, acting: tuple[Contributor, ...]) -> Model:
     mesh = Mesh("mesh", "pinion", "wheel", pair, flank, "housing")
     gears = (GearPart("pinion", pair.pinion, 11e-6), GearPart("wheel", pair.wheel, 17e-6))
     return Model("posed", gears, (Housing("housing", 23e-6),), acting, (mesh,), (), Study())
 
 
 @cache
-def far_model(name: str, flank: int) -> tuple[Model, ExactEngine]:
+def far_model(name: str, flank: Flank) -> tuple[Model, ExactEngine]:
     model = model_of(pair_of(name), flank, contributors(effect_of_every_kind()))
     return model, ExactEngine(model)
 
@@ -171,7 +172,7 @@ SMOOTH = 9
 @pytest.mark.parametrize("flank", [LEFT, RIGHT], ids=["left", "right"])
 @pytest.mark.parametrize("kind", KINDS)
 @pytest.mark.parametrize("name", PAIRS)
-def test_derivatives_far_from_nominal_are_those_of_central_differences(name: str, kind: str, flank: int) -> None:
+def test_derivatives_far_from_nominal_are_those_of_central_differences(name: str, kind: str, flank: Flank) -> None:
     model, engine = far_model(name, flank)
     measure = Measure("play", KINDS[kind], AT_RANDOM, "value")
     bound = DIFFERENCES_BOUND if "face" not in vars(measure.kind.reading).values() else FACE_BOUND

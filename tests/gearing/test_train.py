@@ -20,6 +20,7 @@ from tol3d import load_scene
 from tol3d.gearing.build import build
 from tol3d.gearing.engines.lazy import exact_engine
 from tol3d.gearing.model import Model, Reading, model_from_scene
+from tol3d.gears.flank import Flank
 from tol3d.study.block import Block, drawn_block, simulate_block
 from tol3d.study.task import fcl_engine, strips_of
 
@@ -166,7 +167,7 @@ class Pair:
     widths: tuple[float, float]
     shift: float
     apart: float
-    flank: int
+    flank: Flank
     thickness: np.ndarray
     centres: tuple[np.ndarray, np.ndarray]
     axes: tuple[np.ndarray, np.ndarray]
@@ -322,7 +323,7 @@ def seats_of_engine(model: Model, block: Block) -> Callable[[str], train.Seat]:
         section = mesh.pair.arm_spread > 0
         reading = Reading("section", "section", "driven") if section else Reading()
 
-        def seat(angle: np.ndarray, flank: int) -> np.ndarray:
+        def seat(angle: np.ndarray, flank: Flank) -> np.ndarray:
             return engine.read(made, replace(mesh, working_flank=flank), reading, angle).driven_angle
 
         return seat

@@ -29,6 +29,7 @@ from tol3d.gears import (
     pitch_angles,
     spherical_involute,
 )
+from tol3d.gears.flank import Flank
 from tol3d.gears.spherical_involute import (
     flank_directions,
     flank_normals,
@@ -137,7 +138,7 @@ base_angles = st.floats(1.0, 85.0).map(lambda degrees: degrees * DEG)
 
 @FLANKS
 @pytest.mark.parametrize("degrees", [3.0, 20.0, 41.641143, 65.0, 84.0])
-def test_flanks_are_what_a_line_of_a_rolling_plane_draws(degrees: float, flank: int) -> None:
+def test_flanks_are_what_a_line_of_a_rolling_plane_draws(degrees: float, flank: Flank) -> None:
     base = degrees * DEG
     rolls = np.linspace(0.0, 1.2, 25)
     found = flank_directions(rolls * math.sin(base), base, 0.0, flank)
@@ -199,7 +200,9 @@ def test_on_small_cones_the_spherical_involute_is_the_plane_one() -> None:
 
 @FLANKS
 @given(base_angles, st.floats(0.01, 1.0), st.floats(-3.0, 3.0))
-def test_normals_stand_on_the_flank_and_point_out_of_the_tooth(flank: int, base: float, share: float, start: float):
+def test_normals_stand_on_the_flank_and_point_out_of_the_tooth(
+    flank: Flank, base: float, share: float, start: float
+) -> None:
     q, step = np.array([share * math.sin(base)]), 1e-5 * math.sin(base)
     along = flank_directions(q + step, base, start, flank) - flank_directions(q - step, base, start, flank)
     direction, normal = flank_directions(q, base, start, flank), flank_normals(q, base, start, flank)
@@ -216,7 +219,9 @@ def test_normals_stand_on_the_flank_and_point_out_of_the_tooth(flank: int, base:
 @FLANKS
 @settings(deadline=None)
 @given(gears(), st.floats(0.02, 0.98), st.floats(-0.5, 0.5))
-def test_distance_to_a_flank_is_what_a_search_of_it_finds(flank: int, gear: BevelGear, share: float, off: float):
+def test_distance_to_a_flank_is_what_a_search_of_it_finds(
+    flank: Flank, gear: BevelGear, share: float, off: float
+) -> None:
     q = np.array([gear.form_q + share * (gear.tip_q - gear.form_q)])
     reach = gear.outer_cone_distance
     # off by up to half a module, but less than the radius of curvature R tan q inwards
@@ -239,7 +244,7 @@ def test_distance_to_a_flank_is_what_a_search_of_it_finds(flank: int, gear: Beve
 @FLANKS
 @given(base_angles, st.floats(0.05, 1.0), st.floats(-0.3, 0.3), st.floats(-6.0, 6.0))
 def test_the_flank_turned_by_the_distance_s_angle_passes_the_point(
-    flank: int, base: float, share: float, turn: float, start: float
+    flank: Flank, base: float, share: float, turn: float, start: float
 ) -> None:
     """g = R sin(q - q_f): a flank turned about its axis stays at one normal distance, R sin(sin(base) turn)."""
     q, reach = np.array([share * math.sin(base)]), 70.0
@@ -289,7 +294,7 @@ def test_diameters_and_cones_of_a_20_to_40_pair_at_right_angles() -> None:
 
 @FLANKS
 @given(gears())
-def test_teeth_take_their_share_of_the_pitch_cone(flank: int, gear: BevelGear) -> None:
+def test_teeth_take_their_share_of_the_pitch_cone(flank: Flank, gear: BevelGear) -> None:
     """The arc s = m (pi/2 + 2 x tan alpha) of the heel lies between the flanks, half on each side of the x axis."""
     direction = gear.flank_directions(np.array([gear.pitch_q]), flank)[0]
     assert math.acos(direction[2]) == pytest.approx(gear.pitch_angle, abs=1e-12)
@@ -300,7 +305,7 @@ def test_teeth_take_their_share_of_the_pitch_cone(flank: int, gear: BevelGear) -
 
 @FLANKS
 @given(gears())
-def test_flanks_reach_from_the_root_or_base_cone_to_the_tip_cone(flank: int, gear: BevelGear) -> None:
+def test_flanks_reach_from_the_root_or_base_cone_to_the_tip_cone(flank: Flank, gear: BevelGear) -> None:
     oracle = plain(gear)
     directions = gear.flank_directions(np.array([gear.form_q, gear.tip_q]), flank)
     points = oracle.flank_points(1.0, np.array(oracle.rolls), 0, flank)
@@ -352,7 +357,9 @@ def test_teeth_that_nowhere_meet_are_said_to_meet_at_the_equator() -> None:
     ("teeth", "mate", "degrees", "shift"),
     [(10, 40, 90, 0.0), (8, 8, 90, 0.0), (12, 30, 60, -0.2), (13, 40, 90, 0.1), (6, 6, 90, 0.2), (9, 11, 120, -0.1)],
 )
-def test_undercut_begins_where_the_corner_of_a_crown_gear_leaves_the_flank(teeth, mate, degrees, shift) -> None:
+def test_undercut_begins_where_the_corner_of_a_crown_gear_leaves_the_flank(
+    teeth, mate, degrees: float, shift: float
+) -> None:
     delta = pitch_angles(teeth, mate, degrees * DEG)[0]
     gear = BevelGear(teeth, 3.0, ALPHA, 5.0, delta, profile_shift=shift)
     depth = math.atan(gear.module * (1 - shift) / gear.outer_cone_distance)
@@ -363,7 +370,7 @@ def test_undercut_begins_where_the_corner_of_a_crown_gear_leaves_the_flank(teeth
 
 
 @pytest.mark.parametrize(("teeth", "mate", "shift"), [(20, 40, 0.0), (13, 13, 0.0), (10, 40, 0.41)])
-def test_without_undercut_the_crown_gear_leaves_the_flank_down_to_the_base_cone(teeth, mate, shift) -> None:
+def test_without_undercut_the_crown_gear_leaves_the_flank_down_to_the_base_cone(teeth, mate, shift: float) -> None:
     delta = pitch_angles(teeth, mate, RIGHT_ANGLE)[0]
     gear = BevelGear(teeth, 3.0, ALPHA, 5.0, delta, profile_shift=shift)
     depth = math.atan(gear.module * (1 - shift) / gear.outer_cone_distance)
@@ -403,7 +410,7 @@ def test_thirteen_teeth_are_the_fewest_of_a_mitre_gear_without_any_undercut() ->
     ("teeth", "degrees", "expected"),
     [((31, 31), 90, (45, 45)), ((20, 40), 90, (26.56505, 63.43495)), ((25, 25), 120, (60, 60)), ((20, 40), 60, None)],
 )
-def test_pitch_cones_touch_along_a_line_and_roll(teeth, degrees, expected) -> None:
+def test_pitch_cones_touch_along_a_line_and_roll(teeth, degrees: float, expected) -> None:
     first, second = pitch_angles(*teeth, degrees * DEG)
     assert first + second == pytest.approx(degrees * DEG, abs=1e-15)
     assert teeth[0] * math.sin(second) == pytest.approx(teeth[1] * math.sin(first), rel=1e-15)
@@ -446,7 +453,7 @@ def test_contact_ratio_is_what_the_tip_cones_cut_out_of_the_plane_of_action(pair
     assert pair.contact_ratio == pytest.approx(path / base_pitch, abs=1e-10)
 
 
-def gaps_on_a_slice(pair: BevelPair, driver: float, driven: float, flank: int, slice_at: float) -> np.ndarray:
+def gaps_on_a_slice(pair: BevelPair, driver: float, driven: float, flank: Flank, slice_at: float) -> np.ndarray:
     """Distances [mm] of the pairs in contact by the product's own list, by a search along the profile, on one slice."""
     teeth, near = pair.candidate_teeth(np.array([driver]), flank)
     mates = pair.mating_teeth(teeth, flank)
@@ -464,7 +471,7 @@ def gaps_on_a_slice(pair: BevelPair, driver: float, driven: float, flank: int, s
 @FLANKS
 @settings(max_examples=40, deadline=None)
 @given(pair=pairs(), driver=st.floats(-20.0, 20.0), along=st.floats(0.0, 1.0))
-def test_nominal_teeth_touch_on_both_flanks_at_any_ratio_and_shaft_angle(flank, pair, driver, along) -> None:
+def test_nominal_teeth_touch_on_both_flanks_at_any_ratio_and_shaft_angle(flank: Flank, pair, driver, along) -> None:
     driven = pair.driven_angle(np.array([driver]))
     told = pair.start_angle(np.array([driver]), flank, np.zeros((1, 2)))
     assert told == pytest.approx(driven, abs=1e-13)
@@ -526,7 +533,7 @@ def test_ten_um_of_shaft_angle_change_the_gap_as_the_pressure_angles_do(arc: flo
 @FLANKS
 @settings(max_examples=20, deadline=None)
 @given(pair=pairs(), driver=st.floats(-20.0, 20.0), thickness=st.tuples(st.floats(-0.05, 0.05), st.floats(-0.05, 0.0)))
-def test_start_angle_is_where_teeth_of_other_thickness_touch(flank, pair, driver, thickness) -> None:
+def test_start_angle_is_where_teeth_of_other_thickness_touch(flank: Flank, pair, driver, thickness) -> None:
     driven = pair.start_angle(np.array([driver]), flank, np.array([thickness]))
     mesh = mesh_of(pair, 1)
     turned = [t / (2 * g.mean_radius) for t, g in zip(thickness, (pair.pinion, pair.wheel), strict=True)]
@@ -538,7 +545,7 @@ def test_start_angle_is_where_teeth_of_other_thickness_touch(flank, pair, driver
 
 @FLANKS
 @given(pair=pairs(), driver=st.floats(-20.0, 20.0), opened=st.floats(0.0, 0.02))
-def test_turning_either_gear_in_the_opening_sense_opens_that_flank_side(flank, pair, driver, opened) -> None:
+def test_turning_either_gear_in_the_opening_sense_opens_that_flank_side(flank: Flank, pair, driver, opened) -> None:
     """By as much as its own base cone's arm says: R sin(sin(beta) turn)."""
     heel = pair.face[1]
     sense = pair.opening_sense(flank)
@@ -595,7 +602,7 @@ TOUCHING = 1e-6  # mm
 @FLANKS
 @pytest.mark.parametrize("shifted", [-0.05, 0.0, 0.05])
 @pytest.mark.parametrize("name", PAIRS)
-def test_candidate_teeth_hold_every_pair_that_a_scan_finds_touching(name: str, shifted: float, flank: int) -> None:
+def test_candidate_teeth_hold_every_pair_that_a_scan_finds_touching(name: str, shifted: float, flank: Flank) -> None:
     """At random positions, also with the wheel's apex off by a twentieth of a module along both axes and across."""
     pair = PAIRS[name]
     pair.refuse_interference()
@@ -618,7 +625,7 @@ def test_candidate_teeth_hold_every_pair_that_a_scan_finds_touching(name: str, s
 
 
 @FLANKS
-def test_candidates_are_on_average_the_contact_ratio_and_its_margins(flank: int) -> None:
+def test_candidates_are_on_average_the_contact_ratio_and_its_margins(flank: Flank) -> None:
     for pair in PAIRS.values():
         _, may_touch = pair.candidate_teeth(np.arange(1000) / 1000 * pair.pinion.angular_pitch, flank)
         assert may_touch.sum(axis=1).mean() == pytest.approx(pair.contact_ratio + 2 * 0.30, abs=2e-3)
@@ -656,7 +663,7 @@ def test_on_nearly_parallel_axes_a_bevel_pair_is_a_spur_pair() -> None:
 
 
 @FLANKS
-def test_flanks_on_nearly_parallel_axes_are_involutes(flank: int) -> None:
+def test_flanks_on_nearly_parallel_axes_are_involutes(flank: Flank) -> None:
     spur = SpurGear(28, 2.5, ALPHA, 20.0, profile_shift=0.2)
     rolls = np.linspace(0.0, spur.tip_roll, 9)
     errors = []

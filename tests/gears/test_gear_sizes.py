@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 from functools import cache
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -97,7 +98,7 @@ def both(model: Model, module: float) -> Both:
 
 @pytest.mark.parametrize("module", MODULES)
 @pytest.mark.parametrize(("text", "teeth"), [(SPUR, (12, 20)), (SPUR, (28, 110)), (BEVEL, (14, 25))])
-def test_chords_explain_what_fcl_reads_of_gears_of_any_size(tmp_path, text, teeth, module: float) -> None:
+def test_chords_explain_what_fcl_reads_of_gears_of_any_size(tmp_path: Path, text: str, teeth, module: float) -> None:
     seen = both(model_of(tmp_path, text, module, teeth, module), module)
     for name in ("backlash", "whole") if text == BEVEL else ("backlash",):
         error = seen.fcl[name] - seen.exact[name]
@@ -108,7 +109,7 @@ def test_chords_explain_what_fcl_reads_of_gears_of_any_size(tmp_path, text, teet
 
 
 @pytest.mark.parametrize(("text", "teeth"), [(SPUR, (12, 20)), (BEVEL, (14, 25))])
-def test_gears_alike_in_all_but_their_size_read_alike(tmp_path, text, teeth) -> None:
+def test_gears_alike_in_all_but_their_size_read_alike(tmp_path: Path, text: str, teeth) -> None:
     reference = both(model_of(tmp_path, text, 2.5, teeth, 2.5), 2.5)
     for module in MODULES:
         seen = both(model_of(tmp_path, text, module, teeth, module), module)
@@ -122,7 +123,7 @@ def test_gears_alike_in_all_but_their_size_read_alike(tmp_path, text, teeth) -> 
 
 @pytest.mark.parametrize("module", [0.05, 0.1, 20.0])
 @pytest.mark.parametrize(("text", "teeth"), [(SPUR, (17, 43)), (BEVEL, (17, 43))])
-def test_deviations_need_not_go_with_the_module(tmp_path, text, teeth, module: float) -> None:
+def test_deviations_need_not_go_with_the_module(tmp_path: Path, text: str, teeth, module: float) -> None:
     grade = 5 * module if module < 1 else module / 10  # small gears are made coarser, large ones finer
     seen = both(model_of(tmp_path, text, module, teeth, grade), module)
     for name in ("backlash", "whole") if text == BEVEL else ("backlash",):
@@ -190,7 +191,7 @@ study: {{trials: 300, seed: 1, engine: exact, witness: 100}}
 
 
 @pytest.mark.parametrize("tooth", ["driver", "all"])
-def test_a_witness_of_edges_is_content(tmp_path, tooth: str) -> None:
+def test_a_witness_of_edges_is_content(tmp_path: Path, tooth: str) -> None:
     """Of a pair so far shifted that tips reach far down their mates' flanks."""
     path = tmp_path / "scene.yaml"
     path.write_text(ONE_TOOTH.format(tooth=tooth, face="face_width: 10 mm"), "utf-8")
@@ -203,7 +204,7 @@ def test_a_witness_of_edges_is_content(tmp_path, tooth: str) -> None:
     assert witness_warnings(model, witness) == []
 
 
-def test_a_small_gear_s_witness_warns_of_little(tmp_path) -> None:
+def test_a_small_gear_s_witness_warns_of_little(tmp_path: Path) -> None:
     """At module 0.05 chords explain 0.0025 um: 0.1 um further apart, 2 sin 20 deg of it more backlash, is told."""
     model = model_of(tmp_path, SPUR, 0.05, (12, 20), 0.05)
     apart = model_of(tmp_path, SPUR.replace("{a}", "0.8196"), 0.05, (12, 20), 0.05)
@@ -215,7 +216,7 @@ def test_a_small_gear_s_witness_warns_of_little(tmp_path) -> None:
     assert witness_warnings(apart, other)
 
 
-def test_each_mesh_of_a_train_has_the_bound_of_its_own_gears(tmp_path) -> None:
+def test_each_mesh_of_a_train_has_the_bound_of_its_own_gears(tmp_path: Path) -> None:
     scene = (
         "scene: two sizes\n"
         "parts:\n"

@@ -16,6 +16,7 @@ from scipy.optimize import brentq
 
 from tol3d.errors import GeometryError
 from tol3d.gears import LEFT, RIGHT, Displaced, SpurGear, SpurPair, inverse_involute, involute
+from tol3d.gears.flank import Flank
 
 ALPHA = math.radians(20.0)
 EXACT = 1e-9  # mm; what the closed forms must keep of each other over all sizes here
@@ -103,7 +104,7 @@ def test_a_negative_involute_is_refused() -> None:
 
 @FLANKS
 @given(gears())
-def test_flank_points_lie_where_the_polar_involute_does(flank: int, gear: SpurGear) -> None:
+def test_flank_points_lie_where_the_polar_involute_does(flank: Flank, gear: SpurGear) -> None:
     roll = np.linspace(0.0, gear.tip_roll, 7)
     points = plain(gear).flank_points(gear.base_radius * roll, 0.0, 0, flank)
     assert np.abs(gear.flank_points(roll, flank) - points[:, :2]).max() < EXACT
@@ -142,7 +143,7 @@ def test_flanks_are_what_a_rolling_rack_leaves(gear: SpurGear) -> None:
 
 @FLANKS
 @given(gears())
-def test_normals_are_unit_vectors_out_of_the_tooth_across_the_flank(flank: int, gear: SpurGear) -> None:
+def test_normals_are_unit_vectors_out_of_the_tooth_across_the_flank(flank: Flank, gear: SpurGear) -> None:
     step = 1e-5
     roll = np.linspace(0.2, 1.0, 5) * gear.tip_roll
     along = gear.flank_points(roll + step, flank) - gear.flank_points(roll - step, flank)
@@ -207,7 +208,7 @@ FILLETS = {
 
 @FLANKS
 @pytest.mark.parametrize("name", FILLETS)
-def test_fillets_continue_flank_and_root_circle_in_point_and_direction(name: str, flank: int) -> None:
+def test_fillets_continue_flank_and_root_circle_in_point_and_direction(name: str, flank: Flank) -> None:
     gear = FILLETS[name]
     assert (gear.root_radius > gear.base_radius) == name.startswith("root above")
     centre, top, bottom = (np.array(p(flank)) for p in (gear.fillet_centre, gear.fillet_top, gear.fillet_bottom))
@@ -314,7 +315,7 @@ def test_circumferential_backlash_grows_by_two_tan_alpha_w_per_mm() -> None:
 
 @FLANKS
 @pytest.mark.parametrize("shifts", [(0.0, 0.0), (0.4, -0.1)])
-def test_backlash_is_the_distance_that_a_search_of_the_flanks_finds(flank: int, shifts: tuple[float, float]) -> None:
+def test_backlash_is_the_distance_that_a_search_of_the_flanks_finds(flank: Flank, shifts: tuple[float, float]) -> None:
     pinion = SpurGear(17, 2.0, ALPHA, 10.0, profile_shift=shifts[0], tooth_thickness_deviation=-0.03)
     wheel = SpurGear(31, 2.0, ALPHA, 10.0, profile_shift=shifts[1], tooth_thickness_deviation=-0.04)
     pair = SpurPair(pinion, wheel, 48.0 + 2 * sum(shifts) + 0.03)
@@ -327,7 +328,7 @@ def test_backlash_is_the_distance_that_a_search_of_the_flanks_finds(flank: int, 
 
 
 @FLANKS
-def test_touching_angle_is_where_a_search_turns_the_wheel_to(flank: int) -> None:
+def test_touching_angle_is_where_a_search_turns_the_wheel_to(flank: Flank) -> None:
     pinion, wheel = SpurGear(17, 2.0, ALPHA, 10.0, profile_shift=0.4), SpurGear(31, 2.0, ALPHA, 10.0)
     pair = SpurPair(pinion, wheel, 48.9)
     angle, line = np.linspace(-3.0, 30.0, 5), np.array([48.93, -0.4])
@@ -415,7 +416,7 @@ TOUCHING = 1e-6  # mm
 @FLANKS
 @pytest.mark.parametrize("shifted", [-0.05, 0.0, 0.05])
 @pytest.mark.parametrize("name", PAIRS)
-def test_candidate_teeth_hold_every_pair_that_a_scan_finds_touching(name: str, shifted: float, flank: int) -> None:
+def test_candidate_teeth_hold_every_pair_that_a_scan_finds_touching(name: str, shifted: float, flank: Flank) -> None:
     """At random positions, also with the axes nearer or further by a twentieth of a module than the pair's."""
     pair = PAIRS[name]
     pair.refuse_interference()
@@ -438,7 +439,7 @@ def test_candidate_teeth_hold_every_pair_that_a_scan_finds_touching(name: str, s
 
 
 @FLANKS
-def test_candidates_are_on_average_the_contact_ratio_and_its_margins(flank: int) -> None:
+def test_candidates_are_on_average_the_contact_ratio_and_its_margins(flank: Flank) -> None:
     for pair in PAIRS.values():
         _, may_touch = pair.candidate_teeth(np.arange(1000) / 1000 * pair.pinion.angular_pitch, flank)
         assert may_touch.sum(axis=1).mean() == pytest.approx(pair.contact_ratio + 2 * 0.15, abs=2e-3)

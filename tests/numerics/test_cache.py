@@ -11,7 +11,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from conftest import SPUR_PAIR, Command
+from conftest import SPUR_PAIR
+from fixtures import Command
 
 from tol3d.gears import SpurGear
 from tol3d.numerics import compiled

@@ -16,6 +16,7 @@ from scipy.spatial.transform import Rotation
 
 from oracles.brute_force import zoomed_minimum
 from oracles.poses import world_from_gears
+from tol3d.gears.flank import Flank
 
 TEETH_EACH_SIDE = 2  # teeth beyond the one nearest to the mesh: 5 pitches, a path of contact has 2
 ROLL_POINTS, ROLL_ZOOMS = 11, 7  # a zoom keeps two of ten cells: 5^6 times finer than 20 mm/10 is 0.13 um
@@ -91,16 +92,16 @@ class BevelNumbers:
 
         return brentq(too_high, 0.0, math.pi / 2 / math.sin(self.base_angle), xtol=1e-15, rtol=1e-15)
 
-    def lines(self, roll, tooth, flank):
+    def lines(self, roll, tooth, flank: Flank):
         """The lines of a flank, in the gear's frame."""
         return line(self.base_angle, roll, np.asarray(tooth) * self.pitch - flank * self.start, flank)
 
-    def flank_points(self, cone_distance, roll, tooth, flank):
+    def flank_points(self, cone_distance, roll, tooth, flank: Flank):
         """Points (..., 3) on a flank in the gear's frame; all arguments broadcast."""
         drawn = self.lines(roll, tooth, flank)
         return np.asarray(cone_distance)[..., None] * drawn.direction + self.offset * drawn.outwards
 
-    def signed_distance(self, points, tooth, flank):
+    def signed_distance(self, points, tooth, flank: Flank):
         """Shortest distance [mm] of points (..., 3) in the gear's frame to one flank, negative inside the tooth.
 
         The flank ends at tip cone, root or base cone, toe and heel; a point beyond an end is measured to that edge.
@@ -115,7 +116,7 @@ class BevelNumbers:
         below_tip = points[..., 2] > math.cos(self.tip_angle) * np.linalg.norm(points, axis=-1)
         return np.where(in_face & ((kept_roll == roll) | ((outside < 0.0) & below_tip)), outside, to_edge)
 
-    def _foot(self, points, tooth, flank):
+    def _foot(self, points, tooth, flank: Flank):
         """Roll [rad] of the line of the endless flank that is nearest to each point: nothing of it points upwards."""
         begin, end = self.rolls
         shape = np.broadcast_shapes(points.shape[:-1], np.shape(tooth))
@@ -142,7 +143,7 @@ class Line:
     outwards: np.ndarray
 
 
-def line(base_angle, roll, start, flank):
+def line(base_angle, roll, start, flank: Flank):
     """The line of the plane that touches the cone at azimuth start + flank roll, turned back within it by roll sin."""
     sin, cos = math.sin(base_angle), math.cos(base_angle)
     about = np.asarray(start + flank * np.asarray(roll, dtype=float))
@@ -192,14 +193,14 @@ class BevelMesh:
         return replace(self, driver=replace(self.driver, face=(near, far)))
 
 
-def nominal_shafts(shaft_angle, count):
+def nominal_shafts(shaft_angle, count: int):
     """world_from_shaft of driver and driven, (2, count, 4, 4): apexes at the origin, the mesh at azimuth 0 of both."""
     driven = np.eye(4)
     driven[:3, :3] = Rotation.from_euler("y", shaft_angle).as_matrix() @ np.diag([-1.0, -1.0, 1.0])
     return np.stack([np.tile(np.eye(4), (count, 1, 1)), np.tile(driven, (count, 1, 1))])
 
 
-def distances(mesh, driver_angle, driven_angle, flank):
+def distances(mesh, driver_angle, driven_angle, flank: Flank):
     """Driver teeth (n, pairs), their distances to the mating flanks and those flanks' teeth, each (n, pairs)."""
     around = np.arange(-TEETH_EACH_SIDE, TEETH_EACH_SIDE + 1)
     teeth = np.round(-driver_angle / mesh.driver.pitch)[:, None] + around
@@ -224,12 +225,12 @@ def distances(mesh, driver_angle, driven_angle, flank):
     return teeth, zoomed_minimum(along_the_face, near, far, (CONE_POINTS, CONE_ZOOMS)), mates
 
 
-def smallest_distance(mesh, driver_angle, driven_angle, flank):
+def smallest_distance(mesh, driver_angle, driven_angle, flank: Flank):
     """Shortest distance (n,) [mm] of the driver's flanks of one side to the driven gear's, negative in overlap."""
     return distances(mesh, driver_angle, driven_angle, flank)[1].min(axis=1)
 
 
-def turn_until_contact(mesh, driver_angle, driven_angle, flank):
+def turn_until_contact(mesh, driver_angle, driven_angle, flank: Flank):
     """Turn the driven gear until that flank side just touches; its angles (n,) [rad].
 
     Opening a right flank (sigma = +1) turns it counter-clockwise about its own axis. Secant steps after the first.
@@ -252,7 +253,7 @@ def turn_until_contact(mesh, driver_angle, driven_angle, flank):
     raise AssertionError(f"no contact: distances {distance}")
 
 
-def _where_it_changes_sign(mesh, driver_angle, driven_angle, flank):
+def _where_it_changes_sign(mesh, driver_angle, driven_angle, flank: Flank):
     """The turn (n,) at which the distance, which may jump at an edge there, stops being negative."""
     reach = EDGE_JUMP / (mesh.driver.face[0] * math.sin(mesh.driven.base_angle)) * flank
     closed, opened = driven_angle - 2 * reach, driven_angle + 2 * reach

@@ -10,6 +10,7 @@ import numpy as np
 
 from oracles.involute_gear import InvoluteGear
 from oracles.poses import world_from_gears
+from tol3d.gears.flank import Flank
 
 TEETH_EACH_SIDE = 2  # teeth beyond the one nearest to the line of centres: 5 pitches, a path of contact has 2
 ROLL_POINTS, ROLL_ZOOMS = 13, 8  # a zoom keeps two of twelve cells: 6^7 times finer than 20 mm/12 is 0.006 um
@@ -42,12 +43,12 @@ class Mesh:
         return np.linalg.inv(driven) @ driver
 
 
-def smallest_distance(mesh: Mesh, driver_angle, driven_angle, flank) -> np.ndarray:
+def smallest_distance(mesh: Mesh, driver_angle, driven_angle, flank: Flank) -> np.ndarray:
     """Shortest distance (n,) [mm] of the driver's flanks of one side to the driven gear's, negative in overlap."""
     return distances(mesh, driver_angle, driven_angle, flank)[1].min(axis=1)
 
 
-def distances(mesh: Mesh, driver_angle, driven_angle, flank) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def distances(mesh: Mesh, driver_angle, driven_angle, flank: Flank) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Driver teeth (n, pairs), their distances to the mating flanks and those flanks' teeth, each (n, pairs)."""
     around = np.arange(-TEETH_EACH_SIDE, TEETH_EACH_SIDE + 1)
     teeth = np.round(-driver_angle / mesh.driver.pitch)[:, None] + around
@@ -86,7 +87,7 @@ def zoomed_minimum(function, low, high, grid) -> np.ndarray:
     return np.take_along_axis(values, best, -1)[..., 0]
 
 
-def turn_until_contact(mesh: Mesh, driver_angle, driven_angle, flank, *, turn_driver: bool = False):
+def turn_until_contact(mesh: Mesh, driver_angle, driven_angle, flank: Flank, *, turn_driver: bool = False):
     """Turn one gear until that flank side just touches; the angles (driver, driven), each (n,) [rad].
 
     Opening a right flank (sigma = +1) turns either gear counter-clockwise.

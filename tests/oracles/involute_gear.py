@@ -9,6 +9,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from tol3d.gears.flank import Flank
+
 BELOW_BASE = 0.0  # mm of string: the flank is followed down to its base circle, where no mate ever reaches
 
 
@@ -71,14 +73,14 @@ class InvoluteGear:
         """Tooth thickness [mm] as an arc at a radius."""
         return 2 * radius * self.half_angle(radius)
 
-    def flank_points(self, string, z, tooth, flank):
+    def flank_points(self, string, z, tooth, flank: Flank):
         """Points (..., 3) on a flank; `string` [mm] = sqrt(r^2 - r_b^2), all arguments broadcast."""
         string, z, tooth = np.broadcast_arrays(string, z, tooth)
         radius = np.hypot(self.base_radius, string)
         azimuth = self.pitch * tooth - flank * self.half_angle(radius)
         return np.stack([radius * np.cos(azimuth), radius * np.sin(azimuth), z], axis=-1)
 
-    def signed_distance(self, points, tooth, flank):
+    def signed_distance(self, points, tooth, flank: Flank):
         """Shortest distance [mm] of points (..., 3) in the gear's frame to one flank, negative inside the tooth.
 
         The flank ends at tip circle, base circle and faces; a point beyond an end is measured to that edge.

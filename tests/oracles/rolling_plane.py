@@ -45,7 +45,7 @@ class CrownRack:
     high-azimuth side, and azimuths count from where it crosses the pitch cone.
     """
 
-    def __init__(self, pitch_angle, pressure_angle, depth=math.inf):
+    def __init__(self, pitch_angle, pressure_angle, depth=math.inf) -> None:
         """`depth` [rad]: where the crown gear's flank ends below its pitch plane (infinite: nowhere)."""
         self._pitch_angle, self._pressure_angle, self._depth = pitch_angle, pressure_angle, depth
         base = math.pi / 2 - pressure_angle

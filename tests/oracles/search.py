@@ -12,6 +12,7 @@ from numba import njit
 
 from oracles.bevel_brute_force import BevelMesh
 from oracles.brute_force import Mesh
+from tol3d.gears.flank import Flank
 
 TEETH_EACH_SIDE = 2  # beyond the one nearest to the mesh: 5 pitches, a path of contact has 2
 PROFILE_POINTS, PROFILE_ZOOMS = 13, 9  # two of twelve cells are kept: 6^8 times finer than 20 mm/12, 1e-6 mm
@@ -46,7 +47,7 @@ def zooming(function, points, zooms):
 
 
 @njit(nogil=True)
-def spur_point(gear, string, azimuth, flank):
+def spur_point(gear, string, azimuth: float, flank: Flank):
     """A flank's point (x, y): its radius is hypot(base, string), its tooth narrows by the involute function."""
     base, half, offset = gear[0], gear[1], gear[5]
     roll = string / base
@@ -59,7 +60,7 @@ def spur_point(gear, string, azimuth, flank):
 
 
 @njit(nogil=True)
-def spur_distance(gear, x, y, z, azimuth, flank):
+def spur_distance(gear, x, y, z, azimuth: float, flank: Flank):
     """See InvoluteGear.signed_distance; `offset` moves a flank and its edges along its normals."""
     base, half, tip, tip_string, half_face, offset = gear
     radius = max(math.hypot(x, y), base)
@@ -98,13 +99,13 @@ _spur_lowest = zooming(_spur_section, FACE_POINTS, FACE_ZOOMS)
 
 
 @njit(nogil=True)
-def _spur_pairs(own, mate, pose, own_azimuth, mate_azimuth, flank, low, high, found):
+def _spur_pairs(own, mate, pose, own_azimuth, mate_azimuth, flank: Flank, low, high, found):
     for k in range(len(own_azimuth)):
         fixed = (own, mate, pose, own_azimuth[k], mate_azimuth[k], flank)
         found[k] = _spur_section(fixed, low) if low == high else _spur_lowest(fixed, low, high)[0]
 
 
-def spur_distances(mesh: Mesh, driver_angle, driven_angle, flank, *, offsets=None, section=None):
+def spur_distances(mesh: Mesh, driver_angle, driven_angle, flank: Flank, *, offsets=None, section=None):
     """As brute_force.distances; `offsets` (n, 2) [mm] along the normals, `section` a height on the driver [mm]."""
     count = len(driver_angle)
     offsets = np.zeros((count, 2)) if offsets is None else offsets
@@ -136,7 +137,7 @@ def _spur_numbers(gear, offset):
 
 
 @njit(nogil=True)
-def bevel_line(gear, roll, azimuth, flank):
+def bevel_line(gear, roll, azimuth: float, flank: Flank):
     """Direction of a flank's line and its normal out of the tooth; see bevel_brute_force.line."""
     sin, cos = gear[0], gear[1]
     about = azimuth + flank * (roll - gear[2])
@@ -148,7 +149,7 @@ def bevel_line(gear, roll, azimuth, flank):
 
 
 @njit(nogil=True)
-def bevel_foot(gear, x, y, z, azimuth, flank):
+def bevel_foot(gear, x, y, z, azimuth: float, flank: Flank):
     """Roll of the line of the endless flank that is nearest: nothing of the point points upwards."""
     sin, cos = gear[0], gear[1]
     low, high = gear[3] - BEYOND, gear[4] + BEYOND
@@ -176,7 +177,7 @@ def bevel_foot(gear, x, y, z, azimuth, flank):
 
 
 @njit(nogil=True)
-def bevel_distance(gear, x, y, z, azimuth, flank):
+def bevel_distance(gear, x, y, z, azimuth: float, flank: Flank):
     """See BevelNumbers.signed_distance."""
     roll = bevel_foot(gear, x, y, z, azimuth, flank)
     (dx, dy, dz), (ox, oy, oz) = bevel_line(gear, roll, azimuth, flank)
@@ -216,7 +217,7 @@ _bevel_lowest = zooming(_bevel_section, FACE_POINTS, FACE_ZOOMS)
 
 
 @njit(nogil=True)
-def _bevel_pairs(own, mate, pose, own_azimuth, mate_azimuth, flank, found):
+def _bevel_pairs(own, mate, pose, own_azimuth, mate_azimuth, flank: Flank, found):
     for k in range(len(own_azimuth)):
         fixed = (own, mate, pose, own_azimuth[k], mate_azimuth[k], flank)
         if own[7] == own[8]:
@@ -225,7 +226,7 @@ def _bevel_pairs(own, mate, pose, own_azimuth, mate_azimuth, flank, found):
             found[k] = _bevel_lowest(fixed, own[7], own[8])[0]
 
 
-def bevel_distances(mesh: BevelMesh, driver_angle, driven_angle, flank):
+def bevel_distances(mesh: BevelMesh, driver_angle, driven_angle, flank: Flank):
     """As bevel_brute_force.distances, of one build."""
     around = np.arange(-TEETH_EACH_SIDE, TEETH_EACH_SIDE + 1)
     teeth = np.round(-driver_angle / mesh.driver.pitch)[:, None] + around

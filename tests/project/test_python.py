@@ -14,6 +14,7 @@ import fcl
 import numpy as np
 import pytest
 import trimesh
+from fixtures import Command
 from places import ROOT
 
 import tol3d
@@ -226,7 +227,7 @@ def test_what_a_replay_was_asked_for_is_that_trial(spur: Run) -> None:
 # what the commands show ---------------------------------------------------------------------------------------
 
 
-def test_python_shows_what_the_command_shows(tol3d_command, spur: Run, tmp_path: Path) -> None:
+def test_python_shows_what_the_command_shows(tol3d_command: Command, spur: Run, tmp_path: Path) -> None:
     for found, arguments in (
         (tol3d.check_scene("spur_pair"), ("check", "spur_pair")),
         (tol3d.compare_runs([spur, str(spur.path)]), ("compare", str(spur.path), str(spur.path))),
@@ -253,7 +254,7 @@ def test_pictures_and_files_lie_where_they_say(spur: Run, tmp_path: Path) -> Non
     assert all(path.stat().st_size > 0 for path in exported.files)
 
 
-def test_shims_from_python_are_those_of_the_command(tol3d_command) -> None:
+def test_shims_from_python_are_those_of_the_command(tol3d_command: Command) -> None:
     found = tol3d.find_shims("bevel_pair", "24 um", overrides=tol3d.Overrides(trials=200))
     code, out, _ = tol3d_command("shim", "bevel_pair", "--target-min", "24 um", "--trials", "200")
     assert code == 0
@@ -262,7 +263,7 @@ def test_shims_from_python_are_those_of_the_command(tol3d_command) -> None:
 
 
 @pytest.fixture
-def tol3d_command(tol3d):  # the fixture of conftest.py, whose name the module has here
+def tol3d_command(tol3d: Command):  # the fixture of conftest.py, whose name the module has here
     return tol3d
 
 

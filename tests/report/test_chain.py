@@ -4,19 +4,22 @@ import io
 import itertools
 import math
 import re
+from pathlib import Path
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from matplotlib.colors import to_hex
+from matplotlib.figure import Figure
 from matplotlib.image import imread
 from matplotlib.patches import FancyBboxPatch, Polygon
 from matplotlib.text import Text
-from rich.console import Console
+from rich.console import Console, RenderableType
 
 from tol3d.gearing.presenting.chain import chain_figure
 from tol3d.gearing.presenting.stage import shafts_along, stages_of, sums_of
 from tol3d.gearing.presenting.train_tables import train_report
+from tol3d.gears.flank import Flank
 from tol3d.report import picture
 from tol3d.report.canvas import new_figure, plain_axes
 from tol3d.report.compare import Compared
@@ -56,7 +59,7 @@ def road(own: dict[str, float], share: float) -> dict[str, float]:
     }
 
 
-def stage(link, kind, driver, driven, teeth, ratio, flank, factor, own, share):
+def stage(link, kind, driver, driven, teeth, ratio, flank: Flank, factor, own, share):
     return {
         "link": link,
         "kind": kind,
@@ -185,7 +188,7 @@ def long_train(count: int, lever: float | None = LEVER) -> dict:
     return summary_of(stages, lever=lever)
 
 
-def printed(renderable, width: int = 140) -> str:
+def printed(renderable: RenderableType, width: int = 140) -> str:
     console = Console(file=io.StringIO(), width=width)
     console.print(renderable)
     return console.file.getvalue()
@@ -202,14 +205,14 @@ def all_printed(summary: dict, width: int = 140) -> str:
 # tables -------------------------------------------------------------------------------------------
 
 
-def test_the_paper_s_worst_case_of_the_shoulder_is_9_minutes_59_4_seconds_and_2_217_mm_at_the_tip():
+def test_the_paper_s_worst_case_of_the_shoulder_is_9_minutes_59_4_seconds_and_2_217_mm_at_the_tip() -> None:
     """Section 4: a maximum of 9′59″ and 2.21 mm (its 2.2172 cut short)."""
     text = all_printed(shoulder())
     assert row_of(text, "sum of the stages' highs") == ["9′59.4″"] * 3
     assert row_of(text, "tip of arm, sum of highs [mm]") == ["2.2172"] * 3
 
 
-def test_each_stage_stands_with_the_paper_s_lost_motion_ratio_and_sense():
+def test_each_stage_stands_with_the_paper_s_lost_motion_ratio_and_sense() -> None:
     text = all_printed(shoulder())
     assert row_of(text, "planetary reducer")[:8] == ["i", "=", "152", "same", "1′00.0″", "1′00.0″", "1′00.0″", "15.3″"]
     spur, bevel = row_of(text, "spur pair"), row_of(text, "bevel pair")
@@ -223,7 +226,7 @@ def test_each_stage_stands_with_the_paper_s_lost_motion_ratio_and_sense():
     assert "i = 597.143, motor and shoulder flange turn the same way" in text  # 152 * 110/28
 
 
-def test_mean_and_3_sigma_of_the_sum_stand_beside_the_worst_case_and_are_less():
+def test_mean_and_3_sigma_of_the_sum_stand_beside_the_worst_case_and_are_less() -> None:
     """Means add up, spreads only in squares: sqrt(a² + b²) < a + b."""
     seconds = 3600 * DEGREES_PER_UM
     mean = 28 / 110 * 60 + seconds * (54 / SPUR_DIAMETER + 90 / BEVEL_DIAMETER)
@@ -238,14 +241,14 @@ def test_mean_and_3_sigma_of_the_sum_stand_beside_the_worst_case_and_are_less():
 
 
 @pytest.mark.parametrize("width", [80, 120])
-def test_trains_fit_the_width_of_a_terminal(width):
+def test_trains_fit_the_width_of_a_terminal(width: int) -> None:
     for summary in (shoulder(), long_train(12)):
         text = printed(run_report(summary), width)
         assert max(map(len, text.splitlines())) <= width
         assert "…" not in text
 
 
-def test_measures_of_a_train_have_the_sums_of_its_stages_below():
+def test_measures_of_a_train_have_the_sums_of_its_stages_below() -> None:
     """In their own units, with what the paper prints for the train: 9′59″ and 2.21 mm."""
     text = printed(run_report(shoulder()))
     turn, tip = text.split("train shoulder swing")[0].split("tip displacement")
@@ -267,20 +270,20 @@ def test_measures_of_a_train_have_the_sums_of_its_stages_below():
         {"kind": "tip_displacement", "arm": "arm", "point": "elbow"},
     ],
 )
-def test_a_measure_at_another_shaft_or_point_has_no_sums_of_these_stages(other):
+def test_a_measure_at_another_shaft_or_point_has_no_sums_of_these_stages(other) -> None:
     summary = shoulder()
     assert sums_of(summary["measures"]["lost motion"], summary)
     assert sums_of(summary["measures"]["lost motion"] | other, summary) == {}
 
 
-def test_another_point_of_the_arm_moves_by_its_own_lever():
+def test_another_point_of_the_arm_moves_by_its_own_lever() -> None:
     summary = shoulder()
     elbow = summary["measures"]["tip displacement"] | {"point": "elbow", "lever_mm": LEVER / 2}
     highs = sums_of(elbow, summary)["geometric"]["high_3sigma"]
     assert highs == pytest.approx(2.2172 / 2, abs=0.5e-4)
 
 
-def test_a_run_without_trains_prints_none():
+def test_a_run_without_trains_prints_none() -> None:
     summary = shoulder() | {"trains": {}}
     assert train_report(summary) == []
     assert "sum of the stages" not in printed(run_report(summary))
@@ -288,7 +291,7 @@ def test_a_run_without_trains_prints_none():
     assert train_report(summary) == []
 
 
-def test_an_analytic_study_is_told_by_its_own_road():
+def test_an_analytic_study_is_told_by_its_own_road() -> None:
     summary = shoulder()
     train = summary["trains"]["shoulder swing"]
     for each in train["stages"]:
@@ -301,7 +304,7 @@ def test_an_analytic_study_is_told_by_its_own_road():
     assert row_of(text, "spur pair")[5] == "2′00.0″"
 
 
-def test_numbers_that_nobody_knows_are_dashes():
+def test_numbers_that_nobody_knows_are_dashes() -> None:
     summary = shoulder()
     train = summary["trains"]["shoulder swing"]
     train["stages"][1]["roads"]["geometric"] = dict.fromkeys(train["stages"][1]["roads"]["geometric"])
@@ -311,7 +314,7 @@ def test_numbers_that_nobody_knows_are_dashes():
     assert "–" in texts_of(chain_figure(summary, "shoulder swing"))
 
 
-def test_a_chain_is_followed_through_a_link_from_its_driven_side():
+def test_a_chain_is_followed_through_a_link_from_its_driven_side() -> None:
     """Held is a branch of the motor's shaft: from it back to the motor, and on to the output."""
     summary = shoulder()
     stages = summary["trains"]["shoulder swing"]["stages"]
@@ -324,7 +327,7 @@ def test_a_chain_is_followed_through_a_link_from_its_driven_side():
 # words and units ----------------------------------------------------------------------------------
 
 
-def test_limits_differences_and_labels_of_a_tip_are_in_mm():
+def test_limits_differences_and_labels_of_a_tip_are_in_mm() -> None:
     tip = MEASURES["tip displacement"]
     assert limits_text(tip) == "upper limit 2.21 mm"
     assert difference_text(0.00125, "mm") == "1.250 µm"
@@ -345,7 +348,7 @@ def tip_error() -> dict:
     return MEASURES["tip displacement"] | fields | curve | {"kind": "tip_error", "contributors": []}
 
 
-def test_a_tip_s_error_is_told_over_the_output_s_angle_in_mm():
+def test_a_tip_s_error_is_told_over_the_output_s_angle_in_mm() -> None:
     text = printed(curve_table(tip_error()))
     assert "output at [°]" in text
     rows = {line.split()[0]: line.split()[1] for line in text.splitlines() if re.match(r" *-?\d+\.\d ", line)}
@@ -366,15 +369,15 @@ def test_a_tip_s_error_is_told_over_the_output_s_angle_in_mm():
 # pictures -----------------------------------------------------------------------------------------
 
 
-def artists_of(figure) -> list[Text]:
+def artists_of(figure: Figure) -> list[Text]:
     return [text for text in figure.findobj(Text) if text.get_visible() and text.get_text().strip()]
 
 
-def texts_of(figure) -> list[str]:
+def texts_of(figure: Figure) -> list[str]:
     return [text.get_text() for text in artists_of(figure)]
 
 
-def test_the_picture_tells_ratios_own_lost_motions_shares_and_the_worst_case():
+def test_the_picture_tells_ratios_own_lost_motions_shares_and_the_worst_case() -> None:
     texts = texts_of(chain_figure(shoulder(), "shoulder swing"))
     for text in ("i = 152", "110/28 = 3.929", "31/31 = 1", "54.3″ … 1′59.7″", "5′09.6″ … 7′44.4″", "left", "right"):
         assert text in texts
@@ -387,13 +390,13 @@ def test_the_picture_tells_ratios_own_lost_motions_shares_and_the_worst_case():
     assert "tip of arm\nlever 763 mm" in texts
 
 
-def test_a_shaft_turns_against_the_motor_behind_an_odd_number_of_reversals():
+def test_a_shaft_turns_against_the_motor_behind_an_odd_number_of_reversals() -> None:
     """Motor and reducer's output alike; the spur pair reverses, and the bevel pair once more."""
     texts = texts_of(chain_figure(shoulder(), "shoulder swing"))
     assert [text for text in texts if text in "↺↻"] == ["↺", "↺", "↻", "↺"]
 
 
-def test_ends_that_are_those_of_a_data_sheet_are_told_so_and_no_other_ones():
+def test_ends_that_are_those_of_a_data_sheet_are_told_so_and_no_other_ones() -> None:
     """A reducer's play of sigma 1.5′ about 5′ that its law ends at 2′ and 9′; 3 sigma would be 0.5′ and 9.5′."""
     summary = shoulder()
     law = {"low_3sigma": 2.0, "mean": 5.0, "high_3sigma": 9.0, "sigma": 1.5}
@@ -403,7 +406,7 @@ def test_ends_that_are_those_of_a_data_sheet_are_told_so_and_no_other_ones():
     assert [text for text in texts if text.endswith("law's")] == ["2′00.0″ … 9′00.0″, its law's"]
 
 
-def test_a_chain_says_of_how_many_trials_it_is_where_some_failed():
+def test_a_chain_says_of_how_many_trials_it_is_where_some_failed() -> None:
     summary = shoulder()
     measure = summary["trains"]["shoulder swing"]["measure"]
     summary["measures"][measure] = summary["measures"][measure] | {"status": {"ok": 1900, "interferes": 100}}
@@ -412,7 +415,7 @@ def test_a_chain_says_of_how_many_trials_it_is_where_some_failed():
 
 @pytest.mark.parametrize("lever", [LEVER, None])
 @pytest.mark.parametrize("count", [1, 2, 3, 4, 5, 6, 7, 9, 12])
-def test_no_two_labels_overlap_and_none_leaves_the_picture(count, lever):
+def test_no_two_labels_overlap_and_none_leaves_the_picture(count: int, lever: float) -> None:
     figure = chain_figure(long_train(count, lever), "shoulder swing")
     figure.canvas.draw()
     width, height = figure.canvas.get_width_height()
@@ -431,7 +434,7 @@ def test_no_two_labels_overlap_and_none_leaves_the_picture(count, lever):
 @pytest.mark.parametrize("teeth", [(31, 31), (20, 40), (40, 20)])
 @pytest.mark.parametrize("lever", [LEVER, None])
 @pytest.mark.parametrize("count", [1, 3, 4, 5, 6, 8])
-def test_no_cone_reaches_under_a_shaft(count, lever, teeth):
+def test_no_cone_reaches_under_a_shaft(count: int, lever: float, teeth) -> None:
     summary = long_train(count, lever)
     for each in summary["trains"]["shoulder swing"]["stages"]:
         each |= {"kind": "bevel_mesh", "teeth": list(teeth)}
@@ -444,12 +447,12 @@ def test_no_cone_reaches_under_a_shaft(count, lever, teeth):
         assert not cone.overlaps(shaft)
 
 
-def test_a_train_without_an_arm_shows_no_length():
+def test_a_train_without_an_arm_shows_no_length() -> None:
     assert not any("mm" in text for text in texts_of(chain_figure(long_train(4, lever=None), "shoulder swing")))
 
 
 @given(st.text(alphabet="aWi $", min_size=1, max_size=60).filter(str.strip), st.floats(0.4, 3.0))
-def test_a_wrapped_name_keeps_its_letters_or_ends_in_an_ellipsis(text, width):
+def test_a_wrapped_name_keeps_its_letters_or_ends_in_an_ellipsis(text: str, width: int) -> None:
     lines = wrapped(text, width, 9.0, 3).replace("\\$", "$")
     assert lines.count("\n") < 3
     kept = lines.replace("\n", "").replace(" ", "")
@@ -460,7 +463,7 @@ def test_a_wrapped_name_keeps_its_letters_or_ends_in_an_ellipsis(text, width):
 # the run's process --------------------------------------------------------------------------------
 
 
-def test_a_run_with_trains_draws_a_picture_of_each_beside_the_histogram(tmp_path):
+def test_a_run_with_trains_draws_a_picture_of_each_beside_the_histogram(tmp_path: Path) -> None:
     summary = shoulder()
     summary["trains"]["wrist: a/b"] = summary["trains"]["shoulder swing"]
     with picture.drawing() as draw:
@@ -469,7 +472,7 @@ def test_a_run_with_trains_draws_a_picture_of_each_beside_the_histogram(tmp_path
     assert imread(tmp_path / "chain.png").shape[1] >= 1600
 
 
-def test_a_chain_that_cannot_be_drawn_costs_a_warning_and_not_the_histogram(tmp_path):
+def test_a_chain_that_cannot_be_drawn_costs_a_warning_and_not_the_histogram(tmp_path: Path) -> None:
     summary = shoulder()
     summary["trains"]["shoulder swing"]["stages"][1]["kind"] = "belt"
     with (

@@ -19,7 +19,7 @@ STEPS = 200  # places on each segment of an outline
 
 
 @pytest.fixture(scope="module", params=["bevel_pair", "every_bevel_field", "every_field"])
-def run(request, tmp_path_factory) -> Run:
+def run(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Run:
     """Equal and unequal cones, and a spur pair whose axes lean and whose faces are not equally wide."""
     overrides = Overrides(trials=4, engine="exact", witness=0)
     return run_scene(SCENES / f"{request.param}.yaml", overrides=overrides, out=tmp_path_factory.mktemp("gap") / "run")

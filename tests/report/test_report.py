@@ -19,7 +19,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from matplotlib.image import imread
 from places import SCENES
-from rich.console import Console
+from rich.console import Console, RenderableType
 from scipy.stats import norm
 
 from tol3d.analyses.compensation import CompensationQuestion, compensation
@@ -80,13 +80,13 @@ GREEN, RED = (0, 113, 79), (192, 58, 0)  # of the marks at contact and gap
 
 
 @pytest.fixture(scope="session")
-def run(tmp_path_factory) -> Run:
+def run(tmp_path_factory: pytest.TempPathFactory) -> Run:
     folder = tmp_path_factory.mktemp("report")
     (folder / "small.yaml").write_text(SCENE, encoding="utf-8")
     return run_scene(folder / "small.yaml", out=folder / "small")
 
 
-def printed(renderable, width: int) -> str:
+def printed(renderable: RenderableType, width: int) -> str:
     console = Console(file=io.StringIO(), width=width)
     console.print(renderable)
     return console.file.getvalue()
@@ -100,18 +100,18 @@ def row_of(text: str, label: str) -> list[str]:
 
 
 @pytest.mark.parametrize("width", [80, 120])
-def test_run_report_fits_the_width_without_losing_a_word_or_a_number(run, width):
+def test_run_report_fits_the_width_without_losing_a_word_or_a_number(run: Run, width: int) -> None:
     text = printed(run_report(run.summary), width)
     assert max(len(line) for line in text.splitlines()) <= width
     assert "…" not in text
     assert "\x1b" not in text  # plain, since no terminal is there
 
 
-def one_line(renderable) -> str:
+def one_line(renderable: RenderableType) -> str:
     return " ".join(printed(renderable, 120).split())
 
 
-def test_the_witness_is_told_below_each_measure_with_what_its_chords_explain(run):
+def test_the_witness_is_told_below_each_measure_with_what_its_chords_explain(run: Run) -> None:
     text, measures = one_line(run_report(run.summary)), run.summary["witness"]["measures"]
     assert list(measures) == list(run.summary["measures"])
     for name, to_text in (("free play", "{:.3f} µm".format), ("shape", "{:.3f} µm".format)):
@@ -123,7 +123,7 @@ def test_the_witness_is_told_below_each_measure_with_what_its_chords_explain(run
     assert text.count("witness: FCL") == 3
 
 
-def test_chord_errors_are_spoken_of_only_where_there_are_any(run):
+def test_chord_errors_are_spoken_of_only_where_there_are_any(run: Run) -> None:
     without = dict(run.summary)
     without.pop("witness")
     text = one_line(run_report(without))
@@ -137,7 +137,7 @@ NUMBER = re.compile(r"[-+±]?\d[\d.′″]*")
 
 
 @pytest.mark.parametrize("width", [30, 40, 60])
-def test_no_number_is_cut_in_a_narrow_terminal(run, width):
+def test_no_number_is_cut_in_a_narrow_terminal(run: Run, width: int) -> None:
     for report in (run_report(run.summary), check_report(model_of(run)), comparison_report([run, run])):
         wide, narrow = printed(report, 300), printed(report, width)
         assert max(len(line) for line in narrow.splitlines()) <= width
@@ -149,14 +149,14 @@ def test_no_number_is_cut_in_a_narrow_terminal(run, width):
     st.lists(st.lists(st.integers(0, 10**9).map(str), min_size=3, max_size=3), min_size=1, max_size=6),
     st.integers(25, 80),
 )
-def test_a_sheet_shows_every_cell_once_within_its_width(rows, width):
+def test_a_sheet_shows_every_cell_once_within_its_width(rows, width: int) -> None:
     sheet = Sheet("of", [Heading(f"heading {k}") for k in range(3)], [Row("a label", cells) for cells in rows])
     lines = printed(sheet, width).splitlines()
     assert max(map(len, lines)) <= width
     assert sorted(re.findall(r"\d+", "\n".join(lines))) == sorted([*"012", *(cell for row in rows for cell in row)])
 
 
-def test_rows_hold_the_statistics_of_the_columns(run):
+def test_rows_hold_the_statistics_of_the_columns(run: Run) -> None:
     text = printed(run_report(run.summary), 120)
     values = {road: run.columns(f"{road}:free play")[f"{road}:free play"] for road in ("analytic", "geometric")}
     means = row_of(text, "mean")
@@ -170,21 +170,21 @@ def test_rows_hold_the_statistics_of_the_columns(run):
     assert float(below[0]) > 0  # the limit lies inside the sample, or this says nothing
 
 
-def test_a_closed_form_s_share_out_of_limits_is_that_of_a_normal(run):
+def test_a_closed_form_s_share_out_of_limits_is_that_of_a_normal(run: Run) -> None:
     form = run.summary["measures"]["free play"]["analytic_closed_form"]
     expected = 100 * norm.cdf(62, form["mean"], form["sigma"])
     shown, unit = row_of(printed(run_report(run.summary), 120), "below 62 µm")[:2]
     assert (float(shown), unit) == (pytest.approx(expected, rel=5e-4), "%")  # four digits are shown
 
 
-def test_lost_motion_is_normal_backlash_over_the_base_radius(run):
+def test_lost_motion_is_normal_backlash_over_the_base_radius(run: Run) -> None:
     mean = run.summary["measures"]["free play"]["geometric"]["mean"]
     base_radius = 25 * math.cos(math.radians(20))  # m z cos(alpha) / 2 of 25 teeth, module 2
     minutes, seconds = divmod(math.degrees(mean / 1000 / base_radius) * 3600, 60)
     assert row_of(printed(run_report(run.summary), 120), "lost motion, mean")[2] == f"{minutes:.0f}′{seconds:04.1f}″"
 
 
-def test_contributors_are_sorted_by_the_share_of_the_simulation(run):
+def test_contributors_are_sorted_by_the_share_of_the_simulation(run: Run) -> None:
     measure = run.summary["measures"]["free play"]
     text = printed(run_report(run.summary), 120)
     names = sorted(measure["contributors"], key=lambda c: -c["geometric_percent"])
@@ -194,7 +194,7 @@ def test_contributors_are_sorted_by_the_share_of_the_simulation(run):
         assert f"{contributor['geometric_percent']:.1f} ±" in line.replace("-0.0", "0.0")
 
 
-def test_what_no_contributor_explains_is_told_and_explained(run):
+def test_what_no_contributor_explains_is_told_and_explained(run: Run) -> None:
     measure = run.summary["measures"]["free play"]
     whole = [c | {"analytic_percent": 20.0, "geometric_percent": 20.0} for c in measure["contributors"]]
     partly = [c | {"analytic_percent": 20.0, "geometric_percent": 18.0} for c in measure["contributors"]]
@@ -207,7 +207,7 @@ def test_what_no_contributor_explains_is_told_and_explained(run):
     assert "that the regression on the contributors leaves unexplained" in texts[1]
 
 
-def test_no_zero_has_a_sign(run):
+def test_no_zero_has_a_sign(run: Run) -> None:
     measure = run.summary["measures"]["free play"]
     shares = [c | {"geometric_percent": -0.01} for c in measure["contributors"]]
     geometric = dict(measure["geometric"]) | {"ppk": -0.0001, "mean": -1e-5}
@@ -222,7 +222,7 @@ def test_no_zero_has_a_sign(run):
     assert "0.000" in row_of(text, "Ppk")
 
 
-def test_a_curve_says_how_many_of_its_positions_are_shown(run):
+def test_a_curve_says_how_many_of_its_positions_are_shown(run: Run) -> None:
     shape = run.summary["measures"]["shape"]
     assert "positions shown" not in printed(run_report(run.summary), 120)
     curve = {
@@ -236,12 +236,12 @@ def test_a_curve_says_how_many_of_its_positions_are_shown(run):
     assert "10 of 30 positions shown; all in summary.json" in text
 
 
-def test_failed_trials_are_told_in_per_cent(run):
+def test_failed_trials_are_told_in_per_cent(run: Run) -> None:
     summary = dict(run.summary) | {"status": {"ok": 21, "interferes": 3, "no contact": 0}}
     assert "21 seated, 3 jammed (12.5 %)" in printed(run_report(summary), 120)
 
 
-def test_report_of_the_analytic_engine_has_no_column_of_a_simulation(run):
+def test_report_of_the_analytic_engine_has_no_column_of_a_simulation(run: Run) -> None:
     measures = {
         name: {key: value for key, value in measure.items() if key not in ("geometric", "agreement")}
         for name, measure in run.summary["measures"].items()
@@ -258,7 +258,7 @@ AT_EDGE = 0.01  # the warm pinion's pitch is 115 ppm larger: contact begins at a
 
 
 @pytest.mark.parametrize("width", [80, 120])
-def test_check_report_fits_and_shows_limits_and_coefficients(run, width):
+def test_check_report_fits_and_shows_limits_and_coefficients(run: Run, width: int) -> None:
     model = model_of(run)
     text = printed(check_report(model), width)
     assert max(len(line) for line in text.splitlines()) <= width
@@ -307,14 +307,14 @@ study: {trials: 10}
 """
 
 
-def test_check_names_the_measures_whose_shares_no_closed_form_tells(run, tmp_path):
+def test_check_names_the_measures_whose_shares_no_closed_form_tells(run: Run, tmp_path: Path) -> None:
     (tmp_path / "ways.yaml").write_text(TWO_WAYS, encoding="utf-8")
     text = one_line(check_report(effective_model(load_scene(tmp_path / "ways.yaml"))))
     assert "no shares of both: the tighter way counts, which is no sum; run tells the shares of its trials" in text
     assert "no shares" not in one_line(check_report(model_of(run)))
 
 
-def test_check_marks_coefficients_on_which_geometry_and_stack_up_disagree():
+def test_check_marks_coefficients_on_which_geometry_and_stack_up_disagree() -> None:
     text = printed(check_report(effective_model(load_scene(SCENES / "bevel_pair.yaml"))), 80)
     # by an exact solver 0.5311 and 0.4358 where the stack-up has their mean, and nothing for axes that pass each other
     for name, cells in {
@@ -327,7 +327,7 @@ def test_check_marks_coefficients_on_which_geometry_and_stack_up_disagree():
     assert "the geometry disagrees by more than 5 %" in " ".join(text.split())
 
 
-def test_coefficients_of_tilts_differ_below_and_above_the_mean(run, tmp_path):
+def test_coefficients_of_tilts_differ_below_and_above_the_mean(run: Run, tmp_path: Path) -> None:
     tilts = "  {0}: {{kind: {0}, of: gear pair, distribution: {{kind: uniform, lower: -9 um, upper: 9 um}}}}\n"
     assert "a tilt closes" not in printed(check_report(model_of(run)), 120)
     scene = tmp_path / "tilted.yaml"
@@ -340,7 +340,7 @@ def test_coefficients_of_tilts_differ_below_and_above_the_mean(run, tmp_path):
         assert [float(slope) for slope in cell.split("/")] == pytest.approx([lost, -lost], abs=6e-4)
 
 
-def test_comparison_gives_the_largest_and_rms_difference_of_the_columns(run):
+def test_comparison_gives_the_largest_and_rms_difference_of_the_columns(run: Run) -> None:
     columns = run.columns("analytic:free play", "geometric:free play")
     difference = columns["geometric:free play"] - columns["analytic:free play"]
     text = printed(comparison_report([run]), 80)
@@ -349,7 +349,7 @@ def test_comparison_gives_the_largest_and_rms_difference_of_the_columns(run):
     assert line[-2:] == [f"{np.abs(difference).max():.3f}", f"{np.sqrt(np.mean(difference**2)):.3f}"]
 
 
-def test_measures_of_one_name_over_other_positions_are_compared_apart(run):
+def test_measures_of_one_name_over_other_positions_are_compared_apart(run: Run) -> None:
     play = run.summary["measures"]["free play"]
     other = replace(
         run, summary=dict(run.summary) | {"measures": {"free play": play | {"over": "turn", "take": "min"}}}
@@ -363,7 +363,7 @@ def test_measures_of_one_name_over_other_positions_are_compared_apart(run):
     assert rows == [4, 3]
 
 
-def test_an_error_that_jumps_over_the_swing_has_no_mean_in_the_comparison(tmp_path):
+def test_an_error_that_jumps_over_the_swing_has_no_mean_in_the_comparison(tmp_path: Path) -> None:
     scene = SCENES / "robot_shoulder_swing.yaml"
     swing = run_scene(scene, overrides=Overrides(trials=4, witness=0), out=tmp_path / "swing")
     errors = [name for name, measure in swing.summary["measures"].items() if measure["kind"] == "tip_error"]
@@ -380,7 +380,7 @@ def test_an_error_that_jumps_over_the_swing_has_no_mean_in_the_comparison(tmp_pa
         assert len(below.splitlines()) == 2
 
 
-def test_legends_of_a_comparison_lie_below_the_axes_and_hide_nothing(run):
+def test_legends_of_a_comparison_lie_below_the_axes_and_hide_nothing(run: Run) -> None:
     figure = comparison_figure([run, run, run])
     figure.canvas.draw()
     rows = figure.axes[::3]
@@ -392,7 +392,7 @@ def test_legends_of_a_comparison_lie_below_the_axes_and_hide_nothing(run):
         assert (legend.x0 >= 0, legend.x1 <= figure.axes[1].get_tightbbox().x0) == (True, True)
 
 
-def test_flanks_of_a_swing_with_several_changes_of_side_are_told_at_the_first(tmp_path):
+def test_flanks_of_a_swing_with_several_changes_of_side_are_told_at_the_first(tmp_path: Path) -> None:
     scene = tmp_path / "swing.yaml"
     text = (SCENES / "robot_shoulder_swing.yaml").read_text("utf-8")
     for end, label in (("60", "spur pair: flank of the driver "), ("180", "of the driver at the first of 2 changes ")):
@@ -402,7 +402,7 @@ def test_flanks_of_a_swing_with_several_changes_of_side_are_told_at_the_first(tm
         assert sum(label in line for line in lines) == (1 if end == "60" else 2)
 
 
-def test_comparing_nothing_is_refused():
+def test_comparing_nothing_is_refused() -> None:
     with pytest.raises(InputError, match="at least one run"):
         comparison_report([])
 
@@ -411,7 +411,7 @@ def test_comparing_nothing_is_refused():
 
 
 @given(st.lists(st.integers(0, 10**6), min_size=1, max_size=64), st.floats(1e-3, 1e3))
-def test_bars_hold_every_trial_once(counts, width):
+def test_bars_hold_every_trial_once(counts, width: int) -> None:
     histogram = {"lower_edge": -3.0, "bin_width": width, "counts": {"analytic": counts}}
     bars = bars_of({"histogram": histogram})["analytic"]
     held = float(np.sum(bars.density * np.diff(bars.edges)))
@@ -426,7 +426,7 @@ def pixels_of(picture: Path, colour: tuple[int, int, int], apart: int = 12) -> i
     return int(np.count_nonzero(np.abs(pixels - colour).max(axis=-1) <= apart))
 
 
-def test_histogram_shows_what_is_out_of_limits_in_its_colour(run, tmp_path):
+def test_histogram_shows_what_is_out_of_limits_in_its_colour(run: Run, tmp_path: Path) -> None:
     """Moving the lower limit above the mean colours half of the bars; the line alone has far fewer pixels."""
     counted = {}
     colour = tuple(int(VERMILLION[k : k + 2], 16) for k in (1, 3, 5))
@@ -439,7 +439,7 @@ def test_histogram_shows_what_is_out_of_limits_in_its_colour(run, tmp_path):
     assert high > 20 * max(low, 100)
 
 
-def test_every_kind_of_measure_is_drawn(run, tmp_path):
+def test_every_kind_of_measure_is_drawn(run: Run, tmp_path: Path) -> None:
     """Three rows: two histograms and a curve, in a picture as tall as they need."""
     draw_histogram(run.summary, tmp_path / "all.png")
     draw_histogram(dict(run.summary) | {"measures": dict([*run.summary["measures"].items()][:1])}, tmp_path / "one.png")
@@ -460,7 +460,7 @@ def without_seats(run: Run, positions: set[int]) -> dict:
     return dict(shape) | {"curve": dict(shape["curve"]) | {"geometric": dict(own) | lost}}
 
 
-def test_a_curve_is_drawn_where_trials_seated_and_open_where_none_did(run, tmp_path):
+def test_a_curve_is_drawn_where_trials_seated_and_open_where_none_did(run: Run, tmp_path: Path) -> None:
     measure = without_seats(run, {1, 3})
     axes = plain_axes(new_figure(6, 4).add_subplot())
     draw_curve(axes, "shape", measure)
@@ -469,7 +469,7 @@ def test_a_curve_is_drawn_where_trials_seated_and_open_where_none_did(run, tmp_p
     printed(run_report(dict(run.summary) | {"measures": {"shape": measure}}), 80)
 
 
-def test_a_curve_without_any_seated_trial_says_so(run, tmp_path):
+def test_a_curve_without_any_seated_trial_says_so(run: Run, tmp_path: Path) -> None:
     measure = without_seats(run, {0, 1, 2, 3, 4})
     measure["curve"]["analytic"] |= {key: [None] * 5 for key in ("mean", "sigma", "min", "max")}
     axes = plain_axes(new_figure(6, 4).add_subplot())
@@ -478,23 +478,23 @@ def test_a_curve_without_any_seated_trial_says_so(run, tmp_path):
     draw_histogram(dict(run.summary) | {"measures": {"shape": measure}}, tmp_path / "none.png")
 
 
-def test_signs_that_no_font_has_are_no_warning(run, tmp_path):
+def test_signs_that_no_font_has_are_no_warning(run: Run, tmp_path: Path) -> None:
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         draw_histogram(dict(run.summary) | {"scene": "歯車 🦷"}, tmp_path / "emoji.png")
 
 
-def test_a_picture_of_another_format_is_refused(run, tmp_path):
+def test_a_picture_of_another_format_is_refused(run: Run, tmp_path: Path) -> None:
     with pytest.raises(InputError, match=r"ending in \.png"):
         draw_histogram(run.summary, tmp_path / "histogram.docx")
 
 
-def test_a_picture_in_a_missing_folder_is_refused(run, tmp_path):
+def test_a_picture_in_a_missing_folder_is_refused(run: Run, tmp_path: Path) -> None:
     with pytest.raises(InputError, match="cannot be written"):
         draw_comparison([run], tmp_path / "missing" / "c.png")
 
 
-def test_difference_is_that_of_the_columns_at_their_positions(run):
+def test_difference_is_that_of_the_columns_at_their_positions(run: Run) -> None:
     found = difference_of(run, "free play")
     names = ("analytic:free play", "geometric:free play", "position:gear pair [deg]")
     analytic, geometric, position = run.columns(*names).values()
@@ -504,12 +504,12 @@ def test_difference_is_that_of_the_columns_at_their_positions(run):
     assert float(np.sum(found.bars.density * np.diff(found.bars.edges))) == pytest.approx(100.0)
 
 
-def test_comparison_of_two_runs_is_drawn(run, tmp_path):
+def test_comparison_of_two_runs_is_drawn(run: Run, tmp_path: Path) -> None:
     draw_comparison([run, run], tmp_path / "c.png")
     assert imread(tmp_path / "c.png")[..., :3].std() > 0.05
 
 
-def test_a_run_loads_neither_cad_nor_meshes_nor_views(run, tmp_path):
+def test_a_run_loads_neither_cad_nor_meshes_nor_views(run: Run, tmp_path: Path) -> None:
     """Its strips are cached by the fixture; the picture and the table are made too."""
     program = (
         "import sys; from pathlib import Path; from tol3d.simulate import run_scene, Overrides, Watch\n"
@@ -554,7 +554,7 @@ def loaded(exported, fmt: str) -> list[trimesh.Trimesh]:
 
 
 @pytest.mark.parametrize("fmt", ["glb", "ply", "stl"])
-def test_exported_trial_is_the_trial_that_ran(run, tmp_path, fmt):
+def test_exported_trial_is_the_trial_that_ran(run: Run, tmp_path: Path, fmt: str) -> None:
     """Working flanks touch and non-working ones are as far apart as the trial's column says.
 
     Both within the chord errors of the display meshes and of the measuring strips, two flanks each, at the
@@ -575,7 +575,7 @@ def test_exported_trial_is_the_trial_that_ran(run, tmp_path, fmt):
     assert column > 10 * (shown + measured + FLOAT32_NOISE)
 
 
-def test_step_holds_the_perturbed_solids(run, tmp_path):
+def test_step_holds_the_perturbed_solids(run: Run, tmp_path: Path) -> None:
     """Their volumes are those of the gears' exact sections, thickness deviation and growth included."""
     cadquery = pytest.importorskip("cadquery")
     exported = export_run(run, TRIAL, "step", out=tmp_path)
@@ -589,7 +589,7 @@ def test_step_holds_the_perturbed_solids(run, tmp_path):
         assert abs(exact - plain) > 1e-5 * exact  # so that the deviation shows in it
 
 
-def test_parts_of_like_names_are_exported_to_files_of_their_own(run, tmp_path):
+def test_parts_of_like_names_are_exported_to_files_of_their_own(run: Run, tmp_path: Path) -> None:
     scene = tmp_path / "like.yaml"
     scene.write_text(SCENE.replace("the wheel", "Gear_1").replace("pinion", "gear 1"), encoding="utf-8")
     like = run_scene(scene, out=tmp_path / "like", overrides=Overrides(trials=2, engine="analytic"))
@@ -600,18 +600,18 @@ def test_parts_of_like_names_are_exported_to_files_of_their_own(run, tmp_path):
 
 
 @given(st.lists(st.sampled_from(["a b", "a_b", "A_B", "a_b_2", "a?b", "c"]), unique=True))
-def test_file_words_all_differ_even_if_case_does_not_count(names):
+def test_file_words_all_differ_even_if_case_does_not_count(names: list[str]) -> None:
     words = file_words(names)
     assert list(words) == names
     assert len({word.casefold() for word in words.values()}) == len(names)
 
 
-def test_step_is_not_magnified(run, tmp_path):
+def test_step_is_not_magnified(run: Run, tmp_path: Path) -> None:
     with pytest.raises(InputError, match="leave out --magnify"):
         export_run(run, TRIAL, "step", magnify=2, out=tmp_path)
 
 
-def test_magnified_gap_grows_along_the_stack_up(run):
+def test_magnified_gap_grows_along_the_stack_up(run: Run) -> None:
     """j(X) = j(0) + X (j(1) - j(0)), to second order: squares of 20 um times X over the gears' 20 mm, times X^2."""
     factor = 8.0
     nominal = model_of(run).meshes[0].pair.normal_backlash
@@ -625,7 +625,7 @@ def test_magnified_gap_grows_along_the_stack_up(run):
     )
 
 
-def test_magnification_is_capped_where_the_gap_would_leave_its_space_or_a_tip_would_fold(run):
+def test_magnification_is_capped_where_the_gap_would_leave_its_space_or_a_tip_would_fold(run: Run) -> None:
     assembly = assemble(run, TRIAL, magnify=1e4)
     seated = assembly.meshes[0]
     widest = OPEN_SHARE * seated.driver.gear.base_pitch
@@ -638,7 +638,7 @@ def test_magnification_is_capped_where_the_gap_would_leave_its_space_or_a_tip_wo
     assert seated.tip_clearance > 0
 
 
-def test_a_magnified_tip_keeps_its_points_in_their_order(run):
+def test_a_magnified_tip_keeps_its_points_in_their_order(run: Run) -> None:
     """Told by azimuths alone: corners that pass the points between them would fold the tip."""
     for magnify, whole in ((1.0, True), (assemble(run, TRIAL, magnify=1e4).magnify, True), (60.0, False)):
         part = assemble(run, TRIAL).meshes[0].driver
@@ -653,19 +653,19 @@ def test_a_magnified_tip_keeps_its_points_in_their_order(run):
         assert part.unfolded is whole
 
 
-def test_no_magnification_at_all_is_the_nominal_build(run):
+def test_no_magnification_at_all_is_the_nominal_build(run: Run) -> None:
     """Only the driver's position differs: nominal builds have the same backlash at any."""
     none, nominal = assemble(run, TRIAL, magnify=0.0), assemble(run, "nominal")
     assert none.meshes[0].gap_value == pytest.approx(nominal.meshes[0].gap_value, abs=1e-8)  # mm; where steps end
     assert none.label == f"trial-{TRIAL}-x0"
 
 
-def test_worst_is_the_trial_nearest_to_a_limit(run):
+def test_worst_is_the_trial_nearest_to_a_limit(run: Run) -> None:
     values = run.columns("geometric:free play")["geometric:free play"]
     assert assemble(run, "worst").label == f"trial-{np.argmin(values)}"
 
 
-def test_marks_lie_on_both_gears(run):
+def test_marks_lie_on_both_gears(run: Run) -> None:
     """Contact and gap ends are on the meshes' surfaces, within their chord errors."""
     seated = assemble(run, TRIAL).meshes[0]
     within = 2e-3 * run.summary["chord_error_um"] + 2 * DISPLAY_DEFLECTION
@@ -700,17 +700,17 @@ def test_marks_lie_on_both_gears(run):
         (0, "obj", "expected one of stl, ply, glb, step"),
     ],
 )
-def test_what_is_not_there_is_refused_in_words(run, tmp_path, which, fmt, message):
+def test_what_is_not_there_is_refused_in_words(run: Run, tmp_path: Path, which: str, fmt: str, message: str) -> None:
     with pytest.raises(InputError, match=message):
         export_run(run, which, fmt, out=tmp_path)
 
 
-def test_magnify_must_be_a_number(run):
+def test_magnify_must_be_a_number(run: Run) -> None:
     with pytest.raises(InputError, match="at least 0"):
         assemble(run, TRIAL, magnify=math.nan)
 
 
-def test_export_where_nothing_can_be_written_is_refused(run, tmp_path):
+def test_export_where_nothing_can_be_written_is_refused(run: Run, tmp_path: Path) -> None:
     (tmp_path / "file").write_text("")
     with pytest.raises(InputError, match="choose another folder"):
         export_run(run, TRIAL, "stl", out=tmp_path / "file")
@@ -727,7 +727,9 @@ renders = pytest.mark.skipif(
 
 
 @renders
-def test_view_marks_contact_and_gap_and_keeps_quiet(run, tmp_path, capfd):
+def test_view_marks_contact_and_gap_and_keeps_quiet(
+    run: Run, tmp_path: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
     picture = tmp_path / "view.png"
     notes = view_run(run, TRIAL, screenshot=picture, magnify=5)
     assert any("magnified 5 times" in note for note in notes)
@@ -737,7 +739,7 @@ def test_view_marks_contact_and_gap_and_keeps_quiet(run, tmp_path, capfd):
     assert pixels_of(picture, (255, 255, 255), apart=24) > 10_000  # one looks through the gap, and round the gears
 
 
-def test_a_window_without_a_display_is_refused(run, monkeypatch):
+def test_a_window_without_a_display_is_refused(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
     if sys.platform != "linux":
         pytest.skip("only X needs DISPLAY")
     monkeypatch.delenv("DISPLAY", raising=False)
@@ -745,7 +747,7 @@ def test_a_window_without_a_display_is_refused(run, monkeypatch):
         view_run(run, TRIAL)
 
 
-def test_perturbed_gear_is_the_mesh_turned_flank_by_flank(run):
+def test_perturbed_gear_is_the_mesh_turned_flank_by_flank(run: Run) -> None:
     """A gear made with its deviation and growth has the flanks of the display mesh that was only turned and scaled."""
     part = assemble(run, TRIAL).meshes[0].driver
     at_origin = replace(part, world_from_gear=np.eye(4))

@@ -13,6 +13,7 @@ import pytest
 import trimesh
 from matplotlib.image import imread
 
+from tol3d import Run
 from tol3d.errors import InputError
 from tol3d.gearing.display import DISPLAY_DEFLECTION, assemble
 from tol3d.gearing.presenting.whole_trains import HOUSING_COLOUR, WholeTrain, whole_trains
@@ -63,7 +64,7 @@ BODIES = {"motor", "input", "output", "flange", "arm", "gearbox"}
 
 
 @pytest.fixture(scope="module")
-def run(tmp_path_factory):
+def run(tmp_path_factory: pytest.TempPathFactory):
     folder = tmp_path_factory.mktemp("train")
     (folder / "train.yaml").write_text(SCENE, encoding="utf-8")
     return run_scene(folder / "train.yaml", out=folder / "run")
@@ -116,7 +117,7 @@ def test_a_gear_and_its_shaft_are_turned_alike(train: WholeTrain) -> None:
         assert poses[gear][:3, :3] == pytest.approx(expected, abs=1e-9)
 
 
-def test_an_arm_stands_at_0_with_the_motor_and_keeps_its_place_on_its_shaft(run, train: WholeTrain) -> None:
+def test_an_arm_stands_at_0_with_the_motor_and_keeps_its_place_on_its_shaft(run: Run, train: WholeTrain) -> None:
     """However the teeth lie to the shaft: they turn the flange by some angle before the motor has turned at all."""
     (nominal,) = whole_trains(assemble(run, "nominal"))
     seen = []
@@ -178,7 +179,7 @@ def exported(run, folder: Path) -> dict[str, trimesh.Trimesh]:
 
 
 @pytest.mark.parametrize("name", MESHES)
-def test_teeth_mesh_in_the_one_world(run, train: WholeTrain, tmp_path, name: str) -> None:
+def test_teeth_mesh_in_the_one_world(run: Run, train: WholeTrain, tmp_path: Path, name: str) -> None:
     """Turned back by half of its play the driven gear stands free on both sides by half of the normal backlash.
 
     Turned the other way it digs in: so the working flanks touched, and the trial's own column says how far the
@@ -205,7 +206,7 @@ def test_teeth_mesh_in_the_one_world(run, train: WholeTrain, tmp_path, name: str
 # files ----------------------------------------------------------------------------------------------
 
 
-def test_a_step_file_holds_every_part_once(run, train: WholeTrain, tmp_path) -> None:
+def test_a_step_file_holds_every_part_once(run: Run, train: WholeTrain, tmp_path: Path) -> None:
     cadquery = pytest.importorskip("cadquery")
     (path,) = export_run(run, TRIAL, "step", out=tmp_path).files
     assert path.name == f"trial-{TRIAL}.step"
@@ -226,7 +227,7 @@ def test_a_step_file_holds_every_part_once(run, train: WholeTrain, tmp_path) -> 
 
 
 @pytest.mark.parametrize("ending", ["stl", "ply"])
-def test_one_mesh_file_holds_all_parts(run, train: WholeTrain, tmp_path, ending: str) -> None:
+def test_one_mesh_file_holds_all_parts(run: Run, train: WholeTrain, tmp_path: Path, ending: str) -> None:
     (path,) = export_run(run, TRIAL, ending, out=tmp_path).files
     assert path.name == f"trial-{TRIAL}.{ending}"
     whole = trimesh.load_mesh(path)
@@ -282,7 +283,7 @@ def test_motor_and_gearbox_stand_one_behind_the_other(train: WholeTrain) -> None
         assert middle[:2] == pytest.approx([0.0, 0.0], abs=0.1)
 
 
-def test_wide_bores_are_filled_by_collars(tmp_path) -> None:
+def test_wide_bores_are_filled_by_collars(tmp_path: Path) -> None:
     scene = tmp_path / "wide.yaml"
     scene.write_text(SCENE.replace("diameter: 6 mm", "diameter: 6 mm, start: -8 mm").replace(
         "teeth: 18, module: 1 mm, face_width: 6 mm", "teeth: 18, module: 1 mm, face_width: 6 mm, bore: 9 mm"),
@@ -305,7 +306,9 @@ renders = pytest.mark.skipif(
 
 
 @renders
-def test_the_picture_shows_every_shaft_in_its_colour_beside_the_close_ups(run, train, tmp_path, capfd) -> None:
+def test_the_picture_shows_every_shaft_in_its_colour_beside_the_close_ups(
+    run: Run, train, tmp_path: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
     picture = tmp_path / "train.png"
     notes = view_run(run, TRIAL, screenshot=picture)
     assert capfd.readouterr().err == ""
@@ -318,7 +321,7 @@ def test_the_picture_shows_every_shaft_in_its_colour_beside_the_close_ups(run, t
 
 
 @renders
-def test_the_close_ups_are_those_of_the_mesh_that_was_chosen(run, tmp_path) -> None:
+def test_the_close_ups_are_those_of_the_mesh_that_was_chosen(run: Run, tmp_path: Path) -> None:
     """In the nominal build its gap is nothing but rounding: that is drawn as a point."""
     pictures = {}
     for name in (None, "first", "bevels"):
@@ -331,7 +334,7 @@ def test_the_close_ups_are_those_of_the_mesh_that_was_chosen(run, tmp_path) -> N
     assert (np.abs(pictures["bevels"] - pictures["first"]) > 0.2).mean() > 0.1
 
 
-def test_a_mesh_that_is_not_there_is_refused_with_the_nearest(run, tmp_path) -> None:
+def test_a_mesh_that_is_not_there_is_refused_with_the_nearest(run: Run, tmp_path: Path) -> None:
     with pytest.raises(InputError, match=r"^--mesh: no mesh 'bevel' is shown of this run; did you mean \"bevels\"\?$"):
         view_run(run, TRIAL, screenshot=tmp_path / "none.png", mesh="bevel")
 
@@ -356,7 +359,7 @@ study: {trials: 2, seed: 5}
 
 
 @renders
-def test_a_train_of_reducers_alone_is_exported_and_seen_without_a_close_up(tmp_path) -> None:
+def test_a_train_of_reducers_alone_is_exported_and_seen_without_a_close_up(tmp_path: Path) -> None:
     (tmp_path / "reducers.yaml").write_text(REDUCERS, encoding="utf-8")
     run = run_scene(tmp_path / "reducers.yaml", out=tmp_path / "run")
     (train,) = whole_trains(assemble(run, "nominal"))
@@ -380,7 +383,7 @@ moves:
 
 
 @renders
-def test_trees_of_shafts_that_nothing_connects_are_files_of_their_own(tmp_path) -> None:
+def test_trees_of_shafts_that_nothing_connects_are_files_of_their_own(tmp_path: Path) -> None:
     (tmp_path / "two.yaml").write_text(SCENE.replace("\nmoves:", LONE_PAIR), encoding="utf-8")
     run = run_scene(tmp_path / "two.yaml", out=tmp_path / "run")
     files = export_run(run, 0, "glb", out=tmp_path).files

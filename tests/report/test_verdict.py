@@ -5,8 +5,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from fixtures import Command
 from places import SCENES
-from rich.console import Console
+from rich.console import Console, RenderableType
 from scipy import stats
 
 from tol3d import Overrides, Run, run_scene
@@ -16,7 +17,7 @@ from tol3d.report.verdict import ACCEPTED_PPM, Judged, all_ok, verdict_table
 SPUR = SCENES / "spur_pair.yaml"
 
 
-def printed(renderable, width: int = 200) -> list[str]:
+def printed(renderable: RenderableType, width: int = 200) -> list[str]:
     console = Console(file=io.StringIO(), width=width)
     console.print(renderable)
     return console.file.getvalue().splitlines()
@@ -143,7 +144,7 @@ def test_many_measures_are_a_row_each_and_their_tables_come_when_asked(tmp_path:
     assert not any(shares in line for line in short)
 
 
-def test_quiet_prints_the_verdict_and_verbose_every_table(tol3d, tmp_path: Path) -> None:
+def test_quiet_prints_the_verdict_and_verbose_every_table(tol3d: Command, tmp_path: Path) -> None:
     arguments = ("run", "robot_shoulder", "--trials", "100", "--witness", "0", "--no-picture")
     lengths = {}
     for said in ((), ("-q",), ("-v",)):
@@ -158,7 +159,7 @@ def test_quiet_prints_the_verdict_and_verbose_every_table(tol3d, tmp_path: Path)
     assert "leave out one of them" in err
 
 
-def test_the_exit_code_follows_the_accepted_share_where_one_is_said(tol3d, tmp_path: Path) -> None:
+def test_the_exit_code_follows_the_accepted_share_where_one_is_said(tol3d: Command, tmp_path: Path) -> None:
     """Below 40 um lie 3.1 % of N(53.4, 7.2): of 4000 trials 125, and 88 to 161 but for one seed in a thousand."""
     text = (
         SPUR.read_text("utf-8").replace("lower_limit: 15 um", "lower_limit: 40 um").replace("witness: 20", "witness: 0")

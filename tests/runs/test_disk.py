@@ -10,6 +10,7 @@ from pathlib import Path
 
 import cadquery as cq
 import pytest
+from fixtures import Command
 from matplotlib.figure import Figure
 from places import SCENES
 
@@ -39,7 +40,7 @@ def refused(number: int) -> Callable[..., None]:
 
 @pytest.mark.parametrize("number", REFUSALS)
 def test_a_refused_write_of_a_run_names_its_file_and_exits_with_2(
-    number: int, tol3d: Callable[..., tuple[int, str, str]], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    number: int, tol3d: Command, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(os, "fsync", refused(number))
     with pytest.raises(DiskError):
@@ -55,7 +56,7 @@ def test_a_refused_write_of_a_run_names_its_file_and_exits_with_2(
 @pytest.mark.parametrize("number", REFUSALS)
 def test_a_refused_picture_or_export_names_its_file_and_exits_with_2(
     number: int,
-    tol3d: Callable[..., tuple[int, str, str]],
+    tol3d: Command,
     finished: Run,
     tmp_path: Path,
     monkeypatch: pytest.MonkeyPatch,
@@ -71,9 +72,7 @@ def test_a_refused_picture_or_export_names_its_file_and_exits_with_2(
         assert err.startswith(f"{place}: cannot be written ({os.strerror(number)}); nothing is wrong with the input")
 
 
-def test_a_place_that_is_not_ours_to_write_is_wrong_input(
-    tol3d: Callable[..., tuple[int, str, str]], tmp_path: Path, finished: Run
-) -> None:
+def test_a_place_that_is_not_ours_to_write_is_wrong_input(tol3d: Command, tmp_path: Path, finished: Run) -> None:
     for number in (errno.EACCES, errno.ENOENT, errno.ENOTDIR, errno.EPERM):
         error = unwritable(tmp_path, OSError(number, os.strerror(number)), "choose another")
         assert not isinstance(error, DiskError)

@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
+from fixtures import Command
 from places import SCENES
 
 from tol3d import Overrides, RunError, open_run, run_scene
@@ -319,7 +320,9 @@ def test_by_default_an_interrupted_run_is_found_again(tmp_path: Path, monkeypatc
     assert default_folder(SPUR, MORE, Execution(resume=True)) == Path("runs") / "spur_pair"  # says what is there
 
 
-def test_the_command_says_where_it_went_and_why(tol3d, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_command_says_where_it_went_and_why(
+    tol3d: Command, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.chdir(tmp_path)
     study = ("run", "spur_pair", "--engine", "analytic", "--no-picture", "--trials")
     assert tol3d(*study, "20")[0] == 0

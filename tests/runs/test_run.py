@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 from places import SCENES
 
-from tol3d import InputError, Overrides, RunError, open_run, replay, run_scene
+from tol3d import InputError, Overrides, Run, RunError, open_run, replay, run_scene
 from tol3d.execution import folding
 from tol3d.execution.pools import Execution
 from tol3d.runs.run import DamageWarning
@@ -41,19 +41,19 @@ def spur_run(tmp_path_factory: pytest.TempPathFactory):
     return run_scene(SPUR, overrides=Overrides(trials=300), out=tmp_path_factory.mktemp("runs") / "spur")
 
 
-def test_two_workers_give_the_same_bits_as_one(spur_run, tmp_path: Path) -> None:
+def test_two_workers_give_the_same_bits_as_one(spur_run: Run, tmp_path: Path) -> None:
     other = run_scene(SPUR, overrides=Overrides(trials=300), out=tmp_path / "two", execution=Execution(workers=2))
     assert_same_bits(spur_run.columns(), other.columns())
     for name, measure in spur_run.summary["measures"].items():
         assert other.summary["measures"][name] == measure
 
 
-def test_more_trials_leave_the_first_ones_as_they_were(spur_run, tmp_path: Path) -> None:
+def test_more_trials_leave_the_first_ones_as_they_were(spur_run: Run, tmp_path: Path) -> None:
     fewer = run_scene(SPUR, overrides=Overrides(trials=120), out=tmp_path / "fewer")
     assert_same_bits(spur_run.columns(), fewer.columns(), slice(120))
 
 
-def test_a_replayed_trial_has_the_run_s_bits(spur_run) -> None:
+def test_a_replayed_trial_has_the_run_s_bits(spur_run: Run) -> None:
     columns = spur_run.columns()
     for trial in (0, 17, 299):
         again = replay(spur_run, trial)
@@ -63,12 +63,12 @@ def test_a_replayed_trial_has_the_run_s_bits(spur_run) -> None:
             assert again.analytic[name] == columns[f"analytic:{name}"][trial]
 
 
-def test_replay_of_a_trial_that_is_not_there_is_refused(spur_run) -> None:
+def test_replay_of_a_trial_that_is_not_there_is_refused(spur_run: Run) -> None:
     with pytest.raises(InputError, match="expected 0 to 299"):
         replay(spur_run, 300)
 
 
-def test_adding_a_contributor_leaves_the_others_draws_as_they_were(spur_run, tmp_path: Path) -> None:
+def test_adding_a_contributor_leaves_the_others_draws_as_they_were(spur_run: Run, tmp_path: Path) -> None:
     text = SPUR.read_text("utf-8")
     added = "tolerances:\n  another one: {kind: axial_shift, of: wheel, distribution: {kind: constant, value: 5 um}}\n"
     scene = tmp_path / "more.yaml"
@@ -80,11 +80,11 @@ def test_adding_a_contributor_leaves_the_others_draws_as_they_were(spur_run, tmp
             assert np.array_equal(before[name][:50], columns[name]), name
 
 
-def test_the_worst_trial_is_the_one_nearest_to_the_limit(spur_run) -> None:
+def test_the_worst_trial_is_the_one_nearest_to_the_limit(spur_run: Run) -> None:
     assert worst_trial(spur_run) == int(np.argmin(spur_run.columns()["geometric:normal backlash"]))
 
 
-def test_summary_agrees_with_the_columns(spur_run) -> None:
+def test_summary_agrees_with_the_columns(spur_run: Run) -> None:
     columns, summary = spur_run.columns(), json.loads((spur_run.path / "summary.json").read_text("utf-8"))
     for name, measure in summary["measures"].items():
         for road in ("analytic", "geometric"):
@@ -98,7 +98,7 @@ def test_summary_agrees_with_the_columns(spur_run) -> None:
         assert measure["agreement"]["max_abs_difference"] == pytest.approx(np.abs(difference).max(), rel=1e-12)
 
 
-def test_a_run_keeps_the_scene_and_its_study(spur_run) -> None:
+def test_a_run_keeps_the_scene_and_its_study(spur_run: Run) -> None:
     assert (spur_run.path / "scene.yaml").read_text("utf-8") == SPUR.read_text("utf-8")
     assert spur_run.summary["study"]["trials"] == 300
     assert spur_run.summary["files"].keys() == {"scene.yaml"}
@@ -268,7 +268,7 @@ def test_draws_below_zero_of_a_clearance_are_kept_and_counted(tmp_path: Path) ->
     assert warning.startswith(f"bearing clearance: {below} of 20000 draws are below zero")
 
 
-def test_damaged_runs_are_refused_by_name(spur_run, tmp_path: Path) -> None:
+def test_damaged_runs_are_refused_by_name(spur_run: Run, tmp_path: Path) -> None:
     with pytest.raises(RunError, match="expected a run's folder"):
         open_run(tmp_path)
     (tmp_path / "summary.json").write_text("[1, 2")

@@ -16,6 +16,7 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
+from fixtures import Command
 from places import SCENES
 from rich.console import Console
 
@@ -286,7 +287,7 @@ def test_a_missing_or_unknown_key_is_named(run: Path) -> None:
 # the schema -----------------------------------------------------------------------------------------
 
 
-def test_the_schema_that_is_printed_is_valid_and_accepts_runs(tol3d: Any, whole: Path, train: Path) -> None:
+def test_the_schema_that_is_printed_is_valid_and_accepts_runs(tol3d: Command, whole: Path, train: Path) -> None:
     code, out, _ = tol3d("schema", "--summary")
     assert code == 0
     schema = json.loads(out)
@@ -420,7 +421,7 @@ def test_the_number_of_blocks_is_believed_to_the_files_alone(run: Path) -> None:
 # what is printed ------------------------------------------------------------------------------------
 
 
-def test_escapes_of_a_summary_reach_no_terminal(tol3d: Any, run: Path, tmp_path: Path) -> None:
+def test_escapes_of_a_summary_reach_no_terminal(tol3d: Command, run: Path, tmp_path: Path) -> None:
     summary = summary_in(run)
     for path in (("scene",), ("warnings",), ("measures", "normal backlash curve", "of"), ("versions", "numpy")):
         spoilt = [f"beware {ESCAPE}"] if path == ("warnings",) else f"a{ESCAPE}\u202eb"

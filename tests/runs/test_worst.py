@@ -6,12 +6,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from fixtures import Command
 from numpy.typing import NDArray
 
 from tol3d import Run, run_scene
 from tol3d.runs.worst import worst_trial
-
-Command = Callable[..., tuple[int, str, str]]
 
 TRAIN = """
 scene: one stage and an arm

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from fixtures import Command
 from places import SCENES
 from rich.console import Console
 from ruamel.yaml import YAML
@@ -138,7 +139,7 @@ def test_an_absurd_number_is_refused_with_its_place_and_what_would_do(what: str,
     assert expected in said
 
 
-def test_a_limit_as_a_run_s_option_is_refused_alike(tol3d: Any, tmp_path: Path) -> None:
+def test_a_limit_as_a_run_s_option_is_refused_alike(tol3d: Command, tmp_path: Path) -> None:
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         code, _, err = tol3d("run", "spur_pair", "--trials", str(10**30), "--out", str(tmp_path / "run"))

@@ -1,15 +1,13 @@
 """The scenes that tol3d brings along: listed in a line each, copied with the files that they name."""
 
-from collections.abc import Callable
 from pathlib import Path
 
 import pytest
+from fixtures import Command
 from places import SCENES
 from ruamel.yaml import YAML
 
 from tol3d.scene.bundled import scene_path
-
-Command = Callable[..., tuple[int, str, str]]
 
 
 def test_every_scene_has_a_line_with_its_name_and_description(tol3d: Command) -> None:

@@ -4,6 +4,7 @@ import dataclasses
 import itertools
 import math
 from collections.abc import Mapping
+from pathlib import Path
 
 import cadquery as cq
 import numpy as np
@@ -17,6 +18,7 @@ from scipy.integrate import quad
 
 from tol3d.errors import GeometryError
 from tol3d.gears import LEFT, RIGHT, BevelGear, pitch_angles
+from tol3d.gears.flank import Flank
 from tol3d.parts.bevel_cones import BACK_RIM, FRONT_RIM, RIM_SHARE
 from tol3d.parts.bevel_flank import FLANK_ERROR, flank_intervals, sample_flank
 from tol3d.parts.bevel_gear import build
@@ -132,7 +134,7 @@ def expected_faces(gear: BevelGear) -> set[str]:
     return names | ({"bore"} if gear.bore else set())
 
 
-def flank_deviation(gear: BevelGear, faces: Mapping[str, cq.Face], tooth: int, flank: int, samples: int) -> float:
+def flank_deviation(gear: BevelGear, faces: Mapping[str, cq.Face], tooth: int, flank: Flank, samples: int) -> float:
     """Largest distance [mm] of a flank's face from the lines of the rolled plane, at toe and heel."""
     surface = BRepAdaptor_Surface(faces[flank_name(tooth, flank)].wrapped)
     numbers, worst = plain(gear), 0.0
@@ -166,7 +168,7 @@ def test_flank_faces_are_true_between_their_spline_points(gear: BevelGear) -> No
 
 
 @pytest.mark.parametrize("flank", [RIGHT, LEFT], ids=["right", "left"])
-def test_flank_faces_are_drawn_by_a_plane_that_rolls_step_by_step(flank: int) -> None:
+def test_flank_faces_are_drawn_by_a_plane_that_rolls_step_by_step(flank: Flank) -> None:
     gear = GEARS["17 of 17/43 at 90 deg, root below base"]
     surface = BRepAdaptor_Surface(build(gear).faces[flank_name(5, flank)].wrapped)
     _, _, base = cone_angles(gear)
@@ -291,7 +293,7 @@ def test_root_cones_hardly_below_the_base_cone_make_a_valid_solid(off: float) ->
     assert len(part.solid.Faces()) == len(part.faces)
 
 
-def test_step_file_comes_back_as_the_same_solid(tmp_path) -> None:
+def test_step_file_comes_back_as_the_same_solid(tmp_path: Path) -> None:
     part = build(PAPER)
     to_step(part, tmp_path / "bevel.step")
     again = cq.importers.importStep(str(tmp_path / "bevel.step")).val()
@@ -324,7 +326,7 @@ def test_occ_can_cut_and_triangulate_the_solid() -> None:
 )
 @settings(max_examples=60, deadline=None, derandomize=True)
 def test_any_gear_that_can_be_made_is_one_true_solid(
-    teeth, alpha, delta, face, shift, addendum, dedendum, bore
+    teeth, alpha: float, delta: float, face: float, shift: float, addendum: float, dedendum: float, bore: float
 ) -> None:
     outer = teeth / math.sin(delta * DEG)
     try:

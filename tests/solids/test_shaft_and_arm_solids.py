@@ -24,7 +24,7 @@ SHAFT_FACES = {"side", "front", "back", "front chamfer", "back chamfer"}
 
 
 @pytest.fixture(autouse=True)
-def _own_cache(tmp_path, monkeypatch):
+def _own_cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
     monkeypatch.setenv("TOL3D_CACHE", str(tmp_path / "cache"))
 
 
@@ -147,7 +147,7 @@ def test_a_shaft_without_volume_is_refused(lengths: tuple[float, float, float]) 
 
 @given(diameter=st.floats(5.0, 80.0), reach=st.floats(2.0, 30.0), turn=st.floats(0.0, 6.28), z=st.floats(-200, 200))
 @settings(max_examples=8, deadline=None, derandomize=True)
-def test_a_straight_arm_is_hub_bar_and_ball_less_what_they_share(diameter, reach, turn, z) -> None:
+def test_a_straight_arm_is_hub_bar_and_ball_less_what_they_share(diameter: float, reach: float, turn: float, z) -> None:
     length = reach * diameter
     part = arm([(length * math.cos(turn), length * math.sin(turn), z)], diameter)
     assert part.solid.isValid()
@@ -217,13 +217,13 @@ def step_again(part: NamedSolid, path: Path) -> cq.Shape:
     return again
 
 
-def test_a_shaft_s_step_file_comes_back_as_the_same_solid(tmp_path) -> None:
+def test_a_shaft_s_step_file_comes_back_as_the_same_solid(tmp_path: Path) -> None:
     part = shaft(25.0, -30.0, 110.0)
     assert step_again(part, tmp_path / "shaft.step").Volume() == pytest.approx(part.solid.Volume(), rel=1e-9)
 
 
 @each_arm
-def test_an_arm_s_step_file_comes_back_as_the_same_solid(tmp_path, points) -> None:
+def test_an_arm_s_step_file_comes_back_as_the_same_solid(tmp_path: Path, points) -> None:
     part = arm(points, 40.0)
     assert step_again(part, tmp_path / "arm.step").Volume() == pytest.approx(part.solid.Volume(), rel=ARM_VOLUME)
 
@@ -231,7 +231,7 @@ def test_an_arm_s_step_file_comes_back_as_the_same_solid(tmp_path, points) -> No
 @pytest.mark.slow
 @given(points=st.lists(st.tuples(*3 * [st.floats(-500.0, 500.0)]), min_size=1, max_size=4))
 @settings(max_examples=40, deadline=None, derandomize=True)
-def test_any_points_give_an_arm_that_comes_back_from_step(tmp_path_factory, points) -> None:
+def test_any_points_give_an_arm_that_comes_back_from_step(tmp_path_factory: pytest.TempPathFactory, points) -> None:
     part = arm(points, 20.0)
     again = step_again(part, tmp_path_factory.mktemp("step") / "arm.step")
     assert again.Volume() == pytest.approx(part.solid.Volume(), rel=ARM_VOLUME)
@@ -271,7 +271,7 @@ def test_an_arm_s_mesh_is_closed_and_as_large_as_its_chord_error_allows(points) 
     assert abs(mesh.volume - arm(points, 40.0).solid.Volume()) <= 1.1 * chord_error * mesh.area
 
 
-def test_a_body_s_mesh_is_kept_and_read_back_without_cad(monkeypatch) -> None:
+def test_a_body_s_mesh_is_kept_and_read_back_without_cad(monkeypatch: pytest.MonkeyPatch) -> None:
     body = ShaftBody(60.0, -30.0, 110.0)
     built = display_mesh(body, 0.2)
 
@@ -287,7 +287,7 @@ def test_a_body_s_mesh_is_kept_and_read_back_without_cad(monkeypatch) -> None:
             display_mesh(other, 0.2)
 
 
-def test_a_step_assembly_takes_shafts_and_arms_at_their_poses(tmp_path) -> None:
+def test_a_step_assembly_takes_shafts_and_arms_at_their_poses(tmp_path: Path) -> None:
     pose = np.eye(4)
     pose[:3, :3] = [[0, 0, 1], [1, 0, 0], [0, 1, 0]]
     pose[:3, 3] = 5.0, 6.0, 7.0

@@ -6,6 +6,7 @@ import os
 import subprocess
 import sys
 import warnings
+from pathlib import Path
 
 import cadquery as cq
 import numpy as np
@@ -14,6 +15,7 @@ import trimesh
 
 from tol3d.errors import RunError
 from tol3d.gears import LEFT, RIGHT, SpurGear
+from tol3d.gears.flank import Flank
 from tol3d.numerics.cache_folder import cache_folder
 from tol3d.solids import (
     FlankStrips,
@@ -41,16 +43,18 @@ SMALL = SpurGear(8, 1.0, 20 * DEG, 5.0, profile_shift=0.4)
 
 
 @pytest.fixture(scope="module")
-def shared_cache(tmp_path_factory):
+def shared_cache(tmp_path_factory: pytest.TempPathFactory):
     return tmp_path_factory.mktemp("cache")
 
 
 @pytest.fixture(autouse=True)
-def _cache_of_the_tests(shared_cache, monkeypatch):
+def _cache_of_the_tests(shared_cache, monkeypatch: pytest.MonkeyPatch):
     monkeypatch.setenv("TOL3D_CACHE", str(shared_cache))
 
 
-def rack_contact(gear: SpurGear, moved: np.ndarray, flank: int, thinner: float = 0.0) -> tuple[np.ndarray, np.ndarray]:
+def rack_contact(
+    gear: SpurGear, moved: np.ndarray, flank: Flank, thinner: float = 0.0
+) -> tuple[np.ndarray, np.ndarray]:
     """Flank points of tooth 0 and outward normals, made by the straight flank of a rack that moved by s [mm].
 
     The rack's flank stands at the pressure angle; it touches where the normal through the pitch point
@@ -75,7 +79,7 @@ def rack_place(gear: SpurGear, radius: np.ndarray, thinner: float = 0.0) -> np.n
     return thickness / 2 - (root - r * math.sin(alpha)) / math.cos(alpha)
 
 
-def off_the_rack(gear: SpurGear, points: np.ndarray, flank: int, thinner: float = 0.0) -> np.ndarray:
+def off_the_rack(gear: SpurGear, points: np.ndarray, flank: Flank, thinner: float = 0.0) -> np.ndarray:
     """Distances [mm] of points (n, 2) from the rack-made flank at the same radii."""
     exact, _ = rack_contact(gear, rack_place(gear, np.hypot(*points.T), thinner), flank, thinner)
     return np.hypot(*(points - exact).T)
@@ -100,7 +104,7 @@ def test_strips_lie_on_the_flank_a_rack_makes(gear: SpurGear) -> None:
         assert np.array_equal(end[flank], np.hstack([profile, np.full((len(profile), 1), side * gear.face_width / 2)]))
 
 
-def _deviation_of_chords(gear: SpurGear, strips: FlankStrips, flank: int) -> np.ndarray:
+def _deviation_of_chords(gear: SpurGear, strips: FlankStrips, flank: Flank) -> np.ndarray:
     """Largest distance of the rack-made flank from each chord, (steps,), from 200 places a chord."""
     ends = rack_place(gear, np.hypot(*strips.inner[flank].T[:2]))
     # uniform in the square root: where the involute has its cusp, roll ~ place and arc ~ roll^2
@@ -239,7 +243,7 @@ def test_a_thickened_display_mesh_is_the_mesh_of_the_thicker_gear() -> None:
 # STEP -----------------------------------------------------------------------------------------------
 
 
-def test_step_assembly_keeps_names_places_and_volumes(tmp_path) -> None:
+def test_step_assembly_keeps_names_places_and_volumes(tmp_path: Path) -> None:
     angle = 0.3
     pose = np.eye(4)
     pose[:2, :2] = [[math.cos(angle), -math.sin(angle)], [math.sin(angle), math.cos(angle)]]
@@ -259,7 +263,7 @@ def test_step_assembly_keeps_names_places_and_volumes(tmp_path) -> None:
     assert [file.name for file in tmp_path.iterdir()] == ["pair.step"]
 
 
-def test_step_to_a_folder_that_is_not_there_is_refused_by_name(tmp_path) -> None:
+def test_step_to_a_folder_that_is_not_there_is_refused_by_name(tmp_path: Path) -> None:
     with pytest.raises(RunError, match="nowhere"):
         export_step([PosedGear("a", SMALL, np.eye(4))], tmp_path / "nowhere" / "a.step")
 
@@ -268,7 +272,7 @@ def test_step_to_a_folder_that_is_not_there_is_refused_by_name(tmp_path) -> None
 
 
 @pytest.fixture
-def own_cache(tmp_path, monkeypatch):
+def own_cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
     monkeypatch.setenv("TOL3D_CACHE", str(tmp_path / "kept"))
     return tmp_path / "kept"
 
@@ -284,7 +288,9 @@ def _same(first: FlankStrips, second: FlankStrips) -> bool:
     return numbers and all(np.array_equal(one, other) for one, other in pairs)
 
 
-def test_what_is_kept_is_read_back_bit_for_bit_without_building(own_cache, monkeypatch) -> None:
+def test_what_is_kept_is_read_back_bit_for_bit_without_building(
+    own_cache: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     built = measuring_strips(SMALL, 20)
     monkeypatch.setattr(flank_strips, "cad", _refuse_to_build)
     assert _same(built, measuring_strips(SMALL, 20))
@@ -293,7 +299,7 @@ def test_what_is_kept_is_read_back_bit_for_bit_without_building(own_cache, monke
 
 
 @pytest.mark.parametrize("field", dataclasses.fields(SpurGear), ids=lambda field: field.name)
-def test_every_field_of_a_gear_is_in_the_key(own_cache, field) -> None:
+def test_every_field_of_a_gear_is_in_the_key(own_cache: Path, field) -> None:
     value = getattr(SMALL, field.name)
     # a last-bit change counts; None becomes what it stands for, another description all the same
     changed = value + 1 if field.name == "teeth" else math.nextafter(0.38 if value is None else value, math.inf)
@@ -309,7 +315,7 @@ def test_every_field_of_a_gear_is_in_the_key(own_cache, field) -> None:
     assert built == [SMALL, other]
 
 
-def test_a_changed_builder_makes_old_entries_unreachable(own_cache, monkeypatch) -> None:
+def test_a_changed_builder_makes_old_entries_unreachable(own_cache: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     measuring_strips(SMALL, 20)
     monkeypatch.setattr(flank_strips, "cad", _refuse_to_build)
     monkeypatch.setattr(cache, "sources_of", lambda module: {module: "another program"})
@@ -328,7 +334,7 @@ def test_a_changed_builder_makes_old_entries_unreachable(own_cache, monkeypatch)
     ],
     ids=["empty", "half", "one byte short", "one bit", "noise"],
 )
-def test_a_damaged_entry_is_built_anew_and_mended(own_cache, monkeypatch, damage) -> None:
+def test_a_damaged_entry_is_built_anew_and_mended(own_cache: Path, monkeypatch: pytest.MonkeyPatch, damage) -> None:
     built = measuring_strips(SMALL, 20)
     (entry,) = own_cache.iterdir()
     whole = entry.read_bytes()
@@ -338,7 +344,7 @@ def test_a_damaged_entry_is_built_anew_and_mended(own_cache, monkeypatch, damage
     assert _same(built, measuring_strips(SMALL, 20))
 
 
-def test_a_folder_that_cannot_be_written_costs_a_warning_only(own_cache) -> None:
+def test_a_folder_that_cannot_be_written_costs_a_warning_only(own_cache: Path) -> None:
     own_cache.write_text("a file where the folder should be")
     with pytest.warns(CacheWarning, match="TOL3D_CACHE"):
         strips = measuring_strips(SMALL, 20)
@@ -346,7 +352,7 @@ def test_a_folder_that_cannot_be_written_costs_a_warning_only(own_cache) -> None
     assert own_cache.is_file()
 
 
-def test_a_disk_that_fills_up_leaves_no_torn_file(own_cache, monkeypatch) -> None:
+def test_a_disk_that_fills_up_leaves_no_torn_file(own_cache: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     def full(*_):
         raise OSError(28, "No space left on device")
 
@@ -372,7 +378,7 @@ print(hashlib.sha256(b"".join(strips.inner[f].tobytes() for f in (1, -1))).hexdi
 """
 
 
-def test_two_processes_that_build_at_once_end_with_one_whole_entry(own_cache, tmp_path) -> None:
+def test_two_processes_that_build_at_once_end_with_one_whole_entry(own_cache: Path, tmp_path: Path) -> None:
     ready = [str(tmp_path / "first"), str(tmp_path / "second")]
     runs = [
         subprocess.Popen([sys.executable, "-c", BUILD_TOGETHER, *names], stdout=subprocess.PIPE, text=True)
@@ -393,13 +399,13 @@ print(sorted({"cadquery", "OCP", "scipy"} & set(sys.modules)))
 """
 
 
-def test_a_warm_run_loads_no_cad(own_cache) -> None:
+def test_a_warm_run_loads_no_cad(own_cache: Path) -> None:
     measuring_strips(SMALL, 20)
     warm = subprocess.run([sys.executable, "-c", WARM], capture_output=True, text=True, check=True)
     assert warm.stdout.strip() == "[]"
 
 
-def test_the_folder_is_the_users_cache_unless_stated(monkeypatch) -> None:
+def test_the_folder_is_the_users_cache_unless_stated(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.delenv("TOL3D_CACHE")
     assert cache_folder().name == "tol3d"
     monkeypatch.setenv("TOL3D_CACHE", os.path.join("some", "where"))
@@ -407,7 +413,7 @@ def test_the_folder_is_the_users_cache_unless_stated(monkeypatch) -> None:
 
 
 @pytest.mark.slow
-def test_the_reference_wheel_has_the_chord_error_that_is_promised(own_cache) -> None:
+def test_the_reference_wheel_has_the_chord_error_that_is_promised(own_cache: Path) -> None:
     wheel = SpurGear(110, 2.5, 20 * DEG, 20.0)
     with warnings.catch_warnings():
         warnings.simplefilter("error")

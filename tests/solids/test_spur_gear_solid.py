@@ -2,6 +2,7 @@
 
 import dataclasses
 import math
+from pathlib import Path
 
 import cadquery as cq
 import numpy as np
@@ -12,6 +13,7 @@ from OCP.BRepAdaptor import BRepAdaptor_Surface
 
 from tol3d.errors import GeometryError
 from tol3d.gears import LEFT, RIGHT, SpurGear
+from tol3d.gears.flank import Flank
 from tol3d.parts.named_solid import NamedEdge, extruded, to_step
 from tol3d.parts.spur_gear import FLANK_ERROR, build, flank_intervals, flank_name
 
@@ -34,7 +36,7 @@ GEARS = {
 each_gear = pytest.mark.parametrize("gear", GEARS.values(), ids=GEARS.keys())
 
 
-def rack_flank(gear: SpurGear, radius: np.ndarray, flank: int) -> np.ndarray:
+def rack_flank(gear: SpurGear, radius: np.ndarray, flank: Flank) -> np.ndarray:
     """Points of tooth 0 at given radii, from the straight flank of the rack that would cut it.
 
     The rack's flank stands at the pressure angle and moves along the pitch line x = r while the gear
@@ -90,7 +92,7 @@ def expected_faces(gear: SpurGear) -> set[str]:
     return names | ({"bore"} if gear.bore else set())
 
 
-def flank_deviation(gear: SpurGear, faces: dict[str, cq.Face], tooth: int, flank: int, samples: int) -> float:
+def flank_deviation(gear: SpurGear, faces: dict[str, cq.Face], tooth: int, flank: Flank, samples: int) -> float:
     """Largest distance [mm] of a flank's face from the rack's flank, at all three of its heights."""
     surface = BRepAdaptor_Surface(faces[flank_name(tooth, flank)].wrapped)
     worst = 0.0
@@ -203,7 +205,7 @@ def test_a_thicker_tooth_grows_by_its_deviation() -> None:
         assert -flank * (arcs[1] - arcs[0]) == pytest.approx(0.04, abs=FLANK_BOUND)
 
 
-def test_step_file_comes_back_as_the_same_solid(tmp_path) -> None:
+def test_step_file_comes_back_as_the_same_solid(tmp_path: Path) -> None:
     part = build(PINION)
     to_step(part, tmp_path / "pinion.step")
     again = cq.importers.importStep(str(tmp_path / "pinion.step")).val()
@@ -233,7 +235,7 @@ def test_an_outline_that_crosses_itself_is_refused() -> None:
 )
 @settings(max_examples=60, deadline=None, derandomize=True)
 def test_any_gear_that_can_be_made_is_one_true_solid(
-    teeth, angle, shift, addendum, dedendum, fillet, deviation
+    teeth, angle, shift: float, addendum: float, dedendum: float, fillet: float, deviation: float
 ) -> None:
     try:
         gear = SpurGear(teeth, 2.0, angle * DEG, 10.0, shift, addendum, dedendum, None, 0.0, deviation)

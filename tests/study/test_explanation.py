@@ -97,13 +97,13 @@ def assert_blames(found: Explanation, name: str) -> None:
 # sabotage of the analytic road ----------------------------------------------------------------------
 
 
-def test_a_flipped_eccentricity_sign_is_named_with_twice_its_own_effect(monkeypatch) -> None:
+def test_a_flipped_eccentricity_sign_is_named_with_twice_its_own_effect(monkeypatch: pytest.MonkeyPatch) -> None:
     found = sabotaged(monkeypatch, "spur_pair", "pinion eccentricity", -1.0)["normal backlash"]
     assert_blames(found, "pinion eccentricity")
     assert found.linear[0].percent == pytest.approx(200.0, abs=0.5)
 
 
-def test_half_a_pitch_of_the_wheel_is_named_by_its_eccentricity(monkeypatch) -> None:
+def test_half_a_pitch_of_the_wheel_is_named_by_its_eccentricity(monkeypatch: pytest.MonkeyPatch) -> None:
     """pi/110 rad of 2 sin 20 deg times 31/6 um: 0.101 um; 2.86 % of its own effect, whatever the sample."""
 
     def make(right: Callable[..., Any]) -> Callable[..., Any]:
@@ -129,7 +129,7 @@ def test_half_a_pitch_of_the_wheel_is_named_by_its_eccentricity(monkeypatch) -> 
     assert found.linear[0].percent == pytest.approx(200 * math.sin(math.pi / 220), rel=0.03)
 
 
-def test_a_cosine_for_a_sine_is_named(monkeypatch) -> None:
+def test_a_cosine_for_a_sine_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
     found = sabotaged(monkeypatch, "spur_pair", "centre distance", 1 / math.tan(ALPHA))["normal backlash"]
     assert_blames(found, "centre distance")
     assert found.linear[0].percent == pytest.approx(
@@ -139,19 +139,25 @@ def test_a_cosine_for_a_sine_is_named(monkeypatch) -> None:
 
 @pytest.mark.parametrize("factor", [1.03, 0.97, 2.0])
 @pytest.mark.parametrize("name", CONTRIBUTORS)
-def test_a_coefficient_that_is_3_percent_off_or_doubled_is_named(name: str, factor: float, monkeypatch) -> None:
+def test_a_coefficient_that_is_3_percent_off_or_doubled_is_named(
+    name: str, factor: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
     for found in sabotaged(monkeypatch, "spur_pair", name, factor).values():
         assert_blames(found, name)
 
 
-def test_an_error_of_1_percent_is_below_the_2_that_may_be_and_told_all_the_same(monkeypatch) -> None:
+def test_an_error_of_1_percent_is_below_the_2_that_may_be_and_told_all_the_same(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     found = sabotaged(monkeypatch, "spur_pair", "centre distance", 1.01)["normal backlash"]
     assert found.faults == ()
     assert found.largest_percent == pytest.approx(1.0, abs=0.06)  # 0.04 % is the geometry's own
 
 
 @pytest.mark.parametrize("name", ["axis in plane", "axis out of plane", "temperature", "wheel bearing clearance"])
-def test_one_sided_losses_and_temperatures_are_held_to_their_coefficients(name: str, monkeypatch) -> None:
+def test_one_sided_losses_and_temperatures_are_held_to_their_coefficients(
+    name: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
     """Of two tilts that cross only the larger counts: what one of them takes too much, the other takes less often."""
     found = sabotaged(monkeypatch, "every_field", name, 1.05)["normal backlash"]
     blamed = {part.contributor for part in found.linear if not part.by}
@@ -160,18 +166,18 @@ def test_one_sided_losses_and_temperatures_are_held_to_their_coefficients(name: 
 
 
 @pytest.mark.parametrize("name", ["idler eccentricity", "third centre distance", "upper bearing clearance"])
-def test_a_contributor_of_a_train_is_named_in_its_lost_motion(name: str, monkeypatch) -> None:
+def test_a_contributor_of_a_train_is_named_in_its_lost_motion(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     assert_blames(sabotaged(monkeypatch, "three_stage_train", name, 1.03)["lost motion"], name)
 
 
-def test_a_wrong_nominal_backlash_is_told_as_such(monkeypatch) -> None:
+def test_a_wrong_nominal_backlash_is_told_as_such(monkeypatch: pytest.MonkeyPatch) -> None:
     """0.2 um is 3 % of sigma."""
     with altered(monkeypatch, Stack, "normal_backlash", lambda right: lambda self, *of: right(self, *of) + 0.2e-3):
         found = explained(model_of("spur_pair"))["normal backlash"]
     assert any("differ by -0.2 um in the mean at the nominal build" in fault for fault in found.faults)
 
 
-def test_a_wrong_coefficient_of_what_does_not_vary_is_seen_in_the_mean(monkeypatch) -> None:
+def test_a_wrong_coefficient_of_what_does_not_vary_is_seen_in_the_mean(monkeypatch: pytest.MonkeyPatch) -> None:
     """A constant -60 um of thickness: 5 % of 60 um cos(20 deg) is 2.82 um, of which 2 %, 1.13 um, and 0.07 may be."""
     model = model_of("spur_pair")
     constant = replace(
@@ -211,20 +217,20 @@ def geometry_with(patch: pytest.MonkeyPatch, name: str, other: Callable[[np.ndar
         return explained(model, 8000)["normal backlash"]
 
 
-def test_a_contributor_that_the_geometry_forgets_is_named_and_the_means_differ(monkeypatch) -> None:
+def test_a_contributor_that_the_geometry_forgets_is_named_and_the_means_differ(monkeypatch: pytest.MonkeyPatch) -> None:
     found = geometry_with(monkeypatch, "bearing clearance", lambda drawn: 0.0 * drawn)
     assert_blames(found, "bearing clearance")
     assert any("the means differ by -5.4" in fault for fault in found.faults)  # sin(20 deg) of 2…30 um: 16 um
 
 
-def test_a_kink_that_only_the_geometry_has_is_of_first_order(monkeypatch) -> None:
+def test_a_kink_that_only_the_geometry_has_is_of_first_order(monkeypatch: pytest.MonkeyPatch) -> None:
     """20 % of |x| besides x: no linear part, for |x| is even, but an even part of 0.2 times 0.6 of the own effect."""
     found = geometry_with(monkeypatch, "centre distance", lambda drawn: drawn + 0.2 * np.abs(drawn))
     assert_blames(found, "centre distance")
     assert any("neither linear in a contributor nor of second order" in fault for fault in found.faults)
 
 
-def test_one_trial_of_thousands_that_jumps_is_told_by_its_number(monkeypatch) -> None:
+def test_one_trial_of_thousands_that_jumps_is_told_by_its_number(monkeypatch: pytest.MonkeyPatch) -> None:
     """5 um beyond 3.5 sigma of the centre distance are 3.4 um; one trial of 2000, which no linear part shows."""
     beyond = 3.5 * 0.04 / 6
     found = geometry_with(
@@ -256,12 +262,14 @@ def test_the_bevel_pair_names_what_its_stack_up_leaves_out() -> None:
 
 
 @pytest.mark.parametrize("name", ["driver tooth thickness", "driven tooth thickness", "shaft angle"])
-def test_what_a_bevel_stack_up_does_not_leave_out_is_held_to_3_percent(name: str, monkeypatch) -> None:
+def test_what_a_bevel_stack_up_does_not_leave_out_is_held_to_3_percent(
+    name: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
     assert_blames(sabotaged(monkeypatch, "bevel_pair", name, 1.03)["normal backlash"], name)
 
 
 @pytest.mark.parametrize("name", ["driver eccentricity", "driven back face", "driver bearing clearance"])
-def test_a_flipped_sign_on_a_bevel_pair_is_more_than_it_leaves_out(name: str, monkeypatch) -> None:
+def test_a_flipped_sign_on_a_bevel_pair_is_more_than_it_leaves_out(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     assert_blames(sabotaged(monkeypatch, "bevel_pair", name, -1.0)["normal backlash"], name)
 
 
@@ -309,7 +317,7 @@ def printed(summary: Mapping[str, Any]) -> str:
     return " ".join(console.export_text().split())
 
 
-def test_what_is_decided_is_printed_and_a_fault_is_loud(tmp_path: Path, monkeypatch) -> None:
+def test_what_is_decided_is_printed_and_a_fault_is_loud(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     asked = Overrides(trials=500, witness=0)
     right = run_scene(SCENES / "spur_pair.yaml", overrides=asked, out=tmp_path / "right").summary
     with altered(monkeypatch, Stack, "normal_backlash", scaled("pinion eccentricity", -1.0)):

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from fixtures import Command
 from oracles import exact_eccentric
 from oracles.involute_gear import InvoluteGear
 from places import SCENES
@@ -362,7 +363,7 @@ def test_the_worst_build_is_the_one_that_is_jammed_deepest(run: Run, truth: np.n
     assert worst_trial(jammed_lost_motion) == int(jammed_lost_motion.columns("tc [um]")["tc [um]"].argmax())
 
 
-def test_the_command_fails_on_limits_where_a_build_jams_without_any(tol3d, tmp_path: Path) -> None:
+def test_the_command_fails_on_limits_where_a_build_jams_without_any(tol3d: Command, tmp_path: Path) -> None:
     scene = tight(tmp_path, ("    lower_limit: 15 um  # the paper's lower limit\n", ""))
     arguments = ("run", str(scene), "--trials", "2000", "--out", str(tmp_path / "run"), "--no-picture")
     code, out, _ = tol3d(*arguments, "--fail-on-limits")

@@ -120,7 +120,7 @@ def test_an_assembly_found_one_contributor_at_a_time_builds_as_build_does(tmp_pa
     ],
     ids=["from the base circle", "from the fillet", "full round"],
 )
-def test_strips_of_one_tooth_alone_are_those_of_the_whole_gear(gear: SpurGear, monkeypatch) -> None:
+def test_strips_of_one_tooth_alone_are_those_of_the_whole_gear(gear: SpurGear, monkeypatch: pytest.MonkeyPatch) -> None:
     whole = sample_flanks(gear, 30)
     monkeypatch.setattr(spur_cad, "MOST_TEETH", 0)
     alone = sample_flanks(gear, 30)

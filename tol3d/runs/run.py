@@ -28,7 +28,7 @@ from tol3d.runs.worst import worst_trial
 if TYPE_CHECKING:
     import pandas as pd
 
-Columns = dict[str, NDArray[np.generic]]
+Columns = dict[str, NDArray[Any]]
 
 SUMMARY = "summary.json"
 SCENE = "scene.yaml"
@@ -140,7 +140,7 @@ class Run:
             raise RunError(f"{blocks.folder}: no column {missing!r}, which the summary tells of; {MENDED}")
         return known
 
-    def columns(self, *names: str) -> dict[str, NDArray[np.generic]]:
+    def columns(self, *names: str) -> dict[str, NDArray[Any]]:
         """Columns as numpy arrays, trial on axis 0 (a curve: positions on axis 1); all of them by default.
 
         Raises:
