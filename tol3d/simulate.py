@@ -4,7 +4,7 @@
     model        what it means, mm and rad  gearing/model/              model_from_scene
     layout       shafts in trees, one world gearing/model/layout.py     Model.layout
     solids       CAD, strips of its flanks  parts/, solids/             measuring_strips (for FCL, engine or witness)
-    draws        seed -> deviations         study/draws.py              drawn_block
+    draws        seed -> deviations         study/draws.py              deviations
     build        deviations -> poses        gearing/build.py            build
     meshing      gaps -> seated meshes      gearing/meshing/            Meshing.seat     (engines/ give the gaps)
     measures     seated meshes -> values    gearing/measures/           measure_backlash
