@@ -32,7 +32,7 @@ from tol3d.gearing.model import (
     TurningOffset,
 )
 from tol3d.gearing.model.model import Housing
-from tol3d.gearing.rates import left_jacobian, tangent
+from tol3d.gearing.rates import build_rates, left_jacobian
 from tol3d.gearing.sensitivity import by_contributor, mean_slopes, peak_weights, sensitivities, taken_rates
 from tol3d.gears import LEFT, RIGHT, BevelGear, BevelPair, SpurGear, SpurPair, pitch_angles
 from tol3d.gears.flank import Flank
@@ -199,7 +199,7 @@ def test_what_is_taken_over_a_turn_has_the_derivatives_of_central_differences(na
     assert worst_error(model, engine, far_block(model, 2, SMOOTH), measure, share=0.1) <= 5 * DIFFERENCES_BOUND
 
 
-# the pose tangent, without any contact ----------------------------------------------------------------------------
+# the rates of poses, without any contact ----------------------------------------------------------------------------
 
 
 def test_the_left_jacobian_turns_a_rotation_vectors_rate_into_an_angular_velocity() -> None:
@@ -213,11 +213,11 @@ def test_the_left_jacobian_turns_a_rotation_vectors_rate_into_an_angular_velocit
 
 
 @pytest.mark.parametrize("name", ["spur", "bevel 17/43"])
-def test_the_tangent_of_builds_with_large_tilts_is_that_of_central_differences(name: str) -> None:
+def test_the_rates_of_builds_with_large_tilts_are_those_of_central_differences(name: str) -> None:
     model, _ = far_model(name, LEFT)
     deviations = np.random.default_rng(2).uniform(-0.4, 0.4, (7, model.component_count))
     made = build(model, deviations)
-    rates = tangent(model, made, deviations)
+    rates = build_rates(model, made, deviations)
     h = 1e-5
     for k in range(model.component_count):
         after, before = (build(model, deviations + step * np.eye(model.component_count)[k]) for step in (h, -h))

@@ -19,8 +19,8 @@ from tol3d.analyses.compensated_swing import Swing, swing_of, swings_of, tip_err
 from tol3d.analyses.correction import Correction, at_shaft, corrections_of
 from tol3d.analyses.robots import Robots, State, left_of_the_mean, simulated_robots
 from tol3d.errors import InputError
-from tol3d.gearing.model import LostMotion, Measure, Model, Positions, ReducerBacklash, Train
-from tol3d.gearing.model.contributor import Contributor, TurningOffset, single_effects
+from tol3d.gearing.model import LostMotion, Measure, Model, Positions, Train
+from tol3d.gearing.model.contributor import Contributor
 from tol3d.gearing.model.measure import AnyStage
 from tol3d.gearing.model.measures import lost_motion
 from tol3d.gearing.model.readings import reader_like, refuse_idle_teeth
@@ -227,7 +227,7 @@ def _measure(scene: Scene, model: Model, train: Train, like: LostMotion | None) 
 
 def _law_of(model: Model, stage: AnyStage) -> Contributor | None:
     """The contributor that draws a reducer's backlash; without one only its maximum is known."""
-    return next((own for own in model.contributors if own.effect == ReducerBacklash(stage.link)), None)
+    return next((own for own in model.contributors if own.effect.play_of(stage.link)), None)
 
 
 # what is left -------------------------------------------------------------------------------------
@@ -260,8 +260,8 @@ def _turning(model: Model, form: ClosedForm) -> Iterator[tuple[Share, float]]:
     shares = {share.name: share for share in form.shares}
     layout = model.layout
     for contributor in model.contributors:
-        effect = single_effects(contributor.effect)[0]
-        if contributor.name in shares and isinstance(effect, TurningOffset):
-            shaft = layout.carrying[effect.part][0]
+        gear = contributor.effect.turns_with
+        if contributor.name in shares and gear is not None:
+            shaft = layout.carrying[gear][0]
             drive = next(drive for drive in layout.drives if drive.root == layout.root_of[shaft])
             yield shares[contributor.name], abs(float(layout.shaft_turn[shaft].rate * drive.turns))

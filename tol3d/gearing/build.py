@@ -4,25 +4,13 @@ A Build knows nothing of positions: the poses at a turn come from `world_from_ge
 """
 
 from dataclasses import dataclass
-from functools import singledispatch
 
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.gearing.model import (
-    AxesOffset,
-    AxisOffset,
-    AxisTilt,
-    Clocking,
-    Effect,
-    Model,
-    ReducerBacklash,
-    Seat,
-    Temperature,
-    Together,
-    ToothThickness,
-    TurningOffset,
-)
+from tol3d.gearing.displacements import Displacement, Growth, Lever, displacements
+from tol3d.gearing.displacements.slots import CENTRE, FLANK_OFFSET, FLANK_TURN, OFFSET, SLOTS, TURN
+from tol3d.gearing.model import Model
 from tol3d.numerics import frames
 
 Array = NDArray[np.float64]
@@ -102,42 +90,43 @@ class Build:
 
 @dataclass
 class Sums:
-    """What the contributors add up to, before poses are made of it; axis 1 follows `model.seats`.
+    """What the contributors add up to, before poses are made of it.
 
     Args:
-        axis_offset, axis_turn: (trials, seats, 3) [mm; rad, a rotation vector], in the seat's frame at rest.
-        centre: (trials, seats, 2) [mm].
-        flank_turn, flank_offset: (trials, seats) [rad; mm].
+        seats: (trials, seats, slots) [mm or rad], see displacements/slots.py; axis 1 follows `model.seats`.
         temperature: (trials,) [K], by part.
     """
 
-    axis_offset: Array
-    axis_turn: Array
-    centre: Array
-    flank_turn: Array
-    flank_offset: Array
+    seats: Array
     temperature: dict[str, Array]
 
     def growth(self, model: Model, part: str) -> Array:
         """By how much a part has grown, (trials,)."""
-        return self.temperature.get(part, np.zeros(len(self.flank_turn))) * model.expansions[part]
+        return self.temperature.get(part, np.zeros(len(self.seats))) * model.expansions[part]
 
 
 def summed(model: Model, deviations: Array) -> Sums:
     """What the deviations (trials, components) [mm, rad, K] add up to."""
-    trials, seats = len(deviations), len(model.seats)
-    sums = Sums(
-        axis_offset=np.zeros((trials, seats, 3)),
-        axis_turn=np.zeros((trials, seats, 3)),
-        centre=np.zeros((trials, seats, 2)),
-        flank_turn=np.zeros((trials, seats)),
-        flank_offset=np.zeros((trials, seats)),
-        temperature={},
-    )
+    sums = Sums(np.zeros((len(deviations), len(model.seats), SLOTS)), {})
     for contributor in model.contributors:
         columns = deviations[:, model.component_slices[contributor.name]]
-        _add(contributor.effect, columns, sums, model)
+        for effect in contributor.effect.singles:
+            for term in displacements(effect, model, columns.shape[1]):
+                _add(term, columns, sums)
     return sums
+
+
+def _add(term: Displacement | Lever | Growth, columns: Array, sums: Sums) -> None:
+    """Add what deviations (trials, components) displace."""
+    match term:
+        case Displacement():
+            sums.seats[:, term.seat, term.slots] += term.change(columns)
+        case Lever():
+            pivot = np.array([0.0, 0.0, term.pivot])
+            turned = frames.apply(frames.about_vector(columns * term.turn), pivot)
+            sums.seats[:, term.seat, OFFSET : OFFSET + 3] += pivot - turned
+        case Growth():
+            sums.temperature[term.part] = sums.temperature.get(term.part, 0.0) + columns[:, 0]
 
 
 def build(model: Model, deviations: Array) -> Build:
@@ -149,8 +138,8 @@ def build(model: Model, deviations: Array) -> Build:
     """
     trials, seats = len(deviations), len(model.seats)
     sums = summed(model, deviations)
-    origin = sums.axis_offset
-    axis_turn = sums.axis_turn
+    origin = sums.seats[..., OFFSET : OFFSET + 3]
+    axis_turn = sums.seats[..., TURN : TURN + 3].copy()
     shafts = np.zeros((trials, seats, 4, 4))
     shafts[..., :3, :3] = np.eye(3)
     shafts[..., 3, 3] = 1.0
@@ -171,90 +160,9 @@ def build(model: Model, deviations: Array) -> Build:
         scale[:, index] += sums.growth(model, seat.gear)
     return Build(
         world_from_shaft=shafts,
-        centre=sums.centre,
+        centre=sums.seats[..., CENTRE : CENTRE + 2].copy(),
         axis_turn=axis_turn,
-        flank_turn=sums.flank_turn,
-        flank_offset=sums.flank_offset,
+        flank_turn=sums.seats[..., FLANK_TURN].copy(),
+        flank_offset=sums.seats[..., FLANK_OFFSET].copy(),
         scale=scale,
     )
-
-
-def in_seat(vector: tuple[float, float, float], seat: Seat) -> Array:
-    """A vector of a gear's frame at rest on its shaft, in the gear's frame at rest in one of its meshes."""
-    if seat.azimuth == 0.0:
-        return np.array(vector)
-    (x, y, z), cos, sin = vector, np.cos(seat.azimuth), np.sin(seat.azimuth)
-    return np.array([cos * x + sin * y, cos * y - sin * x, z])
-
-
-@singledispatch
-def _add(effect: Effect, columns: Array, sums: Sums, model: Model) -> None:
-    """Add one contributor's deviations (trials, components); one function an effect."""
-    raise TypeError(f"build.py has no function for the effect {type(effect).__name__}")
-
-
-@_add.register
-def _(effect: ToothThickness, columns: Array, sums: Sums, model: Model) -> None:
-    for seat in model.seats_of(effect.part):
-        sums.flank_turn[:, seat] += effect.turn * columns[:, 0]
-        sums.flank_offset[:, seat] += effect.offset * columns[:, 0]
-
-
-@_add.register
-def _(effect: TurningOffset, columns: Array, sums: Sums, model: Model) -> None:
-    for seat in model.seats_of(effect.part):
-        sums.centre[:, seat] += effect.plane.seen_from(-model.seats[seat].ahead).turned(columns)
-
-
-@_add.register
-def _(effect: AxisOffset, columns: Array, sums: Sums, model: Model) -> None:
-    for seat in model.seats_of(effect.part, effect.mesh):
-        if columns.shape[1] == 2:
-            plane = effect.plane.seen_from(model.seats[seat].azimuth)
-            sums.axis_offset[:, seat, :2] += effect.factor * plane.turned(columns)
-        else:
-            direction = effect.direction if effect.mesh else in_seat(effect.direction, model.seats[seat])
-            sums.axis_offset[:, seat] += effect.factor * columns * np.array(direction)
-
-
-@_add.register
-def _(effect: AxisTilt, columns: Array, sums: Sums, model: Model) -> None:
-    for seat in model.seats_of(effect.part, effect.mesh):
-        if columns.shape[1] == 2:
-            by_x, by_y = effect.matrix(model.seats[seat].azimuth).T
-            turn = columns[:, :1] * by_x + columns[:, 1:] * by_y
-        else:
-            axis = effect.axis if effect.mesh else in_seat(effect.axis, model.seats[seat])
-            turn = effect.per_length * columns * np.array(axis)
-        sums.axis_turn[:, seat] += turn
-        if effect.pivot != 0.0:
-            pivot = np.array([0.0, 0.0, effect.pivot])
-            sums.axis_offset[:, seat] += pivot - frames.apply(frames.about_vector(turn), pivot)
-
-
-@_add.register
-def _(effect: AxesOffset, columns: Array, sums: Sums, model: Model) -> None:
-    mesh = model.mesh(effect.mesh)
-    sums.axis_offset[:, model.seat_index[mesh.name, effect.part]] += columns * mesh.pair.world_from_wheel[1]
-
-
-@_add.register
-def _(effect: Temperature, columns: Array, sums: Sums, model: Model) -> None:
-    for part in effect.parts:
-        sums.temperature[part] = sums.temperature.get(part, 0.0) + columns[:, 0]
-
-
-@_add.register
-def _(effect: ReducerBacklash, columns: Array, sums: Sums, model: Model) -> None:
-    """A data sheet moves no axis and no flank."""
-
-
-@_add.register
-def _(effect: Clocking, columns: Array, sums: Sums, model: Model) -> None:
-    """A mesh finds its rest for any turn of its gears: the shafts tell the difference, see clocking.py."""
-
-
-@_add.register
-def _(effect: Together, columns: Array, sums: Sums, model: Model) -> None:
-    for single in effect.effects:
-        _add(single, columns, sums, model)

@@ -3,16 +3,13 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.gearing.model import Clocking, Mesh, Model
-from tol3d.gearing.model.contributor import single_effects
+from tol3d.gearing.model import Mesh, Model
 
 Array = NDArray[np.float64]
 
 
 def clocking(model: Model, mesh: Mesh, deviations: Array) -> Array:
     """Turn of the shaft that a mesh drives, about the driven gear's z, by how its gears sit on their shafts [rad].
-
-    A driver that sits ahead takes the driven gear with it, a driven gear that sits ahead leaves its shaft behind.
 
     Args:
         model, mesh: the mesh.
@@ -23,12 +20,6 @@ def clocking(model: Model, mesh: Mesh, deviations: Array) -> Array:
     """
     total = np.zeros(len(deviations))
     for contributor in model.contributors:
-        own = deviations[:, model.component_slices[contributor.name].start]
-        for effect in single_effects(contributor.effect):
-            total = total + clocking_rate(effect, mesh) * own if isinstance(effect, Clocking) else total
+        if rate := contributor.effect.clocking(mesh):
+            total = total + rate * deviations[:, model.component_slices[contributor.name].start]
     return total
-
-
-def clocking_rate(effect: Clocking, mesh: Mesh) -> float:
-    """The same per deviation."""
-    return float(mesh.rate) * (effect.part == mesh.driver) - (effect.part == mesh.driven)

@@ -4,32 +4,21 @@ Rates are per mm, rad or K of a component of the deviations. Like a Build they k
 """
 
 from dataclasses import dataclass
-from functools import singledispatch
 
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.gearing.build import Build, in_seat
-from tol3d.gearing.model import (
-    AxesOffset,
-    AxisOffset,
-    AxisTilt,
-    Clocking,
-    Effect,
-    Model,
-    ReducerBacklash,
-    Temperature,
-    Together,
-    ToothThickness,
-    TurningOffset,
-)
+from tol3d.gearing.build import Build
+from tol3d.gearing.displacements import Displacement, Growth, Lever, displacements
+from tol3d.gearing.displacements.slots import CENTRE, FLANK_OFFSET, FLANK_TURN, OFFSET, SLOTS, TURN
+from tol3d.gearing.model import Model
 from tol3d.numerics import frames
 
 Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
-class Tangent:
+class BuildRates:
     """Rates of a block of builds; axis 1 follows `model.seats`, axis 2 the components of the deviations.
 
     Args:
@@ -46,24 +35,12 @@ class Tangent:
     flank_offset: Array
     scale: Array
 
-    def rows(self, rows: NDArray[np.intp]) -> "Tangent":
+    def rows(self, rows: NDArray[np.intp]) -> "BuildRates":
         """The rates of some builds."""
-        return Tangent(**{name: rates[rows] for name, rates in vars(self).items()})
+        return BuildRates(**{name: rates[rows] for name, rates in vars(self).items()})
 
 
-@dataclass
-class _Rates:
-    """What the contributors put in, before the seats' frames at rest are placed in the world."""
-
-    axis_offset: Array  # (trials, seats, components, 3), in the seat's frame at rest
-    axis_turn: Array  # the same shape: rate of the rotation vector there
-    centre: Array  # (trials, seats, components, 2)
-    flank_turn: Array  # (trials, seats, components)
-    flank_offset: Array  # (trials, seats, components)
-    temperature: dict[str, Array]  # part -> (components,)
-
-
-def tangent(model: Model, made: Build, deviations: Array) -> Tangent:
+def build_rates(model: Model, made: Build, deviations: Array) -> BuildRates:
     """Rates of builds by each component of their deviations.
 
     Args:
@@ -72,23 +49,12 @@ def tangent(model: Model, made: Build, deviations: Array) -> Tangent:
         deviations: (trials, components) [mm, rad, K], columns as in `model.component_slices`.
     """
     shape = (len(deviations), len(model.seats), model.component_count)
-    components = model.component_count
-    rates = _Rates(
-        axis_offset=np.zeros((*shape, 3)),
-        axis_turn=np.zeros((*shape, 3)),
-        centre=np.zeros((*shape, 2)),
-        flank_turn=np.zeros(shape),
-        flank_offset=np.zeros(shape),
-        temperature={},
-    )
-    for contributor in model.contributors:
-        own = model.component_slices[contributor.name]
-        _put(contributor.effect, own, deviations[:, own], rates, model)
+    seats, temperature = _summed(model, deviations)
 
     def growth(part: str) -> Array:
-        return rates.temperature.get(part, np.zeros(components)) * model.expansions[part]
+        return temperature.get(part, np.zeros(model.component_count)) * model.expansions[part]
 
-    origin, axis_turn = rates.axis_offset, rates.axis_turn
+    origin, axis_turn = seats[..., OFFSET : OFFSET + 3], seats[..., TURN : TURN + 3]
     for mesh in model.meshes:
         driven = model.seat_index[mesh.name, mesh.driven]
         rest = mesh.pair.world_from_wheel
@@ -99,14 +65,39 @@ def tangent(model: Model, made: Build, deviations: Array) -> Tangent:
     scale = np.zeros(shape)
     for index, seat in enumerate(model.seats):
         scale[:, index] = growth(seat.gear)
-    return Tangent(
+    return BuildRates(
         origin=origin,
         turn=frames.apply(left_jacobian(made.axis_turn)[:, :, None], axis_turn),
-        centre=rates.centre,
-        flank_turn=rates.flank_turn,
-        flank_offset=rates.flank_offset,
+        centre=seats[..., CENTRE : CENTRE + 2],
+        flank_turn=seats[..., FLANK_TURN],
+        flank_offset=seats[..., FLANK_OFFSET],
         scale=scale,
     )
+
+
+def _summed(model: Model, deviations: Array) -> tuple[Array, dict[str, Array]]:
+    """Rates of what `build.summed` adds up: (trials, seats, components, slots), and (components,) by part."""
+    seats = np.zeros((len(deviations), len(model.seats), model.component_count, SLOTS))
+    temperature: dict[str, Array] = {}
+    for contributor in model.contributors:
+        own = model.component_slices[contributor.name]
+        columns = deviations[:, own]
+        for effect in contributor.effect.singles:
+            for term in displacements(effect, model, columns.shape[1]):
+                match term:
+                    case Displacement():
+                        seats[:, term.seat, own, term.slots] += term.rates
+                    case Lever():
+                        seats[:, term.seat, own, OFFSET : OFFSET + 3] += _swung(term, columns)[:, None]
+                    case Growth():
+                        temperature.setdefault(term.part, np.zeros(model.component_count))[own] += 1.0
+    return seats, temperature
+
+
+def _swung(lever: Lever, columns: Array) -> Array:
+    """Rate of a seat's origin by a turn about a pivot, (trials, 3); the axis of that turn is fixed."""
+    turned = frames.apply(frames.about_vector(columns * lever.turn), np.array([0.0, 0.0, lever.pivot]))
+    return np.asarray(-np.cross(lever.turn, turned))
 
 
 def left_jacobian(vector: Array) -> Array:
@@ -126,79 +117,3 @@ def left_jacobian(vector: Array) -> Array:
         [np.stack([zero, -z, y], axis=-1), np.stack([z, zero, -x], axis=-1), np.stack([-y, x, zero], axis=-1)], axis=-2
     )
     return np.eye(3) + first[..., None, None] * cross + second[..., None, None] * frames.matmul(cross, cross)
-
-
-@singledispatch
-def _put(effect: Effect, own: slice, columns: Array, rates: _Rates, model: Model) -> None:
-    """Put in one contributor's rates: its `own` components with deviations (trials, own); one function an effect."""
-    raise TypeError(f"tangent.py has no function for the effect {type(effect).__name__}")
-
-
-@_put.register
-def _(effect: ToothThickness, own: slice, columns: Array, rates: _Rates, model: Model) -> None:
-    for seat in model.seats_of(effect.part):
-        rates.flank_turn[:, seat, own] += effect.turn
-        rates.flank_offset[:, seat, own] += effect.offset
-
-
-@_put.register
-def _(effect: TurningOffset, own: slice, columns: Array, rates: _Rates, model: Model) -> None:
-    for seat in model.seats_of(effect.part):
-        rates.centre[:, seat, own] += effect.plane.seen_from(-model.seats[seat].ahead).matrix.T
-
-
-@_put.register
-def _(effect: AxisOffset, own: slice, columns: Array, rates: _Rates, model: Model) -> None:
-    for seat in model.seats_of(effect.part, effect.mesh):
-        if columns.shape[1] == 2:
-            plane = effect.plane.seen_from(model.seats[seat].azimuth)
-            rates.axis_offset[:, seat, own, :2] += effect.factor * plane.matrix.T
-        else:
-            direction = effect.direction if effect.mesh else in_seat(effect.direction, model.seats[seat])
-            rates.axis_offset[:, seat, own] += effect.factor * np.array(direction)
-
-
-@_put.register
-def _(effect: AxisTilt, own: slice, columns: Array, rates: _Rates, model: Model) -> None:
-    """The pivot's own turn has a fixed axis, so that its angular velocity is the rate of its vector.
-
-    A planar tilt is about the gear's origin: the shaft's bearings lead its offset by an effect of their own.
-    """
-    for seat in model.seats_of(effect.part, effect.mesh):
-        if columns.shape[1] == 2:
-            rates.axis_turn[:, seat, own] += effect.matrix(model.seats[seat].azimuth).T
-            continue
-        axis = effect.axis if effect.mesh else in_seat(effect.axis, model.seats[seat])
-        rate = effect.per_length * np.array(axis)
-        turned = frames.apply(frames.about_vector(columns * rate), np.array([0.0, 0.0, effect.pivot]))
-        rates.axis_turn[:, seat, own] += rate
-        rates.axis_offset[:, seat, own] += -np.cross(rate, turned)[:, None]
-
-
-@_put.register
-def _(effect: AxesOffset, own: slice, columns: Array, rates: _Rates, model: Model) -> None:
-    mesh = model.mesh(effect.mesh)
-    rates.axis_offset[:, model.seat_index[mesh.name, effect.part], own] += mesh.pair.world_from_wheel[1]
-
-
-@_put.register
-def _(effect: Temperature, own: slice, columns: Array, rates: _Rates, model: Model) -> None:
-    for part in effect.parts:
-        rate = rates.temperature.setdefault(part, np.zeros(model.component_count))
-        rate[own] += 1.0
-
-
-@_put.register
-def _(effect: ReducerBacklash, own: slice, columns: Array, rates: _Rates, model: Model) -> None:
-    """A data sheet moves no axis and no flank."""
-
-
-@_put.register
-def _(effect: Clocking, own: slice, columns: Array, rates: _Rates, model: Model) -> None:
-    """A mesh finds its rest for any turn of its gears: the shafts tell the difference, see clocking.py."""
-
-
-@_put.register
-def _(effect: Together, own: slice, columns: Array, rates: _Rates, model: Model) -> None:
-    for single in effect.effects:
-        _put(single, own, columns, rates, model)

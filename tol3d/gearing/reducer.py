@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.gearing.model import Model, ReducerBacklash
+from tol3d.gearing.model import Model
 
 Array = NDArray[np.float64]
 
@@ -18,6 +18,6 @@ def reducer_backlash(model: Model, name: str, deviations: Array) -> Array:
     reducer = next(reducer for reducer in model.reducers if reducer.name == name)
     total = np.full(len(deviations), reducer.backlash)
     for contributor in model.contributors:
-        if contributor.effect == ReducerBacklash(name):
-            total = total + deviations[:, model.component_slices[contributor.name].start]
+        if rate := contributor.effect.play_of(name):
+            total = total + rate * deviations[:, model.component_slices[contributor.name].start]
     return total

@@ -14,15 +14,14 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.gearing.clocking import clocking_rate
 from tol3d.gearing.engines import OK, Engine, Gaps
 from tol3d.gearing.load_paths import Part
 from tol3d.gearing.measures import moved_rate
 from tol3d.gearing.meshing import Meshing, MeshSeat
-from tol3d.gearing.model import Backlash, Clocking, Contributor, Measure, Model, Planar, ReducerBacklash
-from tol3d.gearing.model.contributor import Unit, single_effects, turns_with_gears
+from tol3d.gearing.model import Backlash, Contributor, Measure, Model, Planar
+from tol3d.gearing.model.contributor import Unit
 from tol3d.gearing.play import positions_count, seat_key
-from tol3d.gearing.rates import Tangent, tangent
+from tol3d.gearing.rates import BuildRates, build_rates
 from tol3d.gears import Flank
 from tol3d.gears.flank import opposite
 from tol3d.numerics import frames
@@ -63,13 +62,13 @@ def sensitivities(model: Model, engine: Engine, block: Block, measure: Measure) 
 def _sensitivities(model: Model, engine: Engine, block: Block, measure: Measure) -> Array:
     alone = replace(model, measures=(measure,))
     seats, count = seat_block(alone, engine, block), positions_count(measure)
-    moves = tangent(model, seats.build, block.deviations).rows(np.repeat(np.arange(len(block)), count))
+    moves = build_rates(model, seats.build, block.deviations).rows(np.repeat(np.arange(len(block)), count))
     rates = _free_rates(alone, measure, moves, seats).reshape(len(block), count, -1)
     rates *= moved_rate(measure.kind, play_of(model, measure, seats).free())[..., None]
     return taken_rates(measure, geometric_values(model, measure, seats), rates)
 
 
-def _free_rates(model: Model, measure: Measure, moves: Tangent, seats: Seats) -> Array:
+def _free_rates(model: Model, measure: Measure, moves: BuildRates, seats: Seats) -> Array:
     """Derivatives of what the backlashes of a measure leave free, (rows, components)."""
     kind = measure.kind
     if isinstance(kind, Backlash):
@@ -84,28 +83,25 @@ def _free_rates(model: Model, measure: Measure, moves: Tangent, seats: Seats) ->
     return total
 
 
-def _part_rates(model: Model, measure: Measure, moves: Tangent, seats: Seats, part: Part) -> Array:
+def _part_rates(model: Model, measure: Measure, moves: BuildRates, seats: Seats, part: Part) -> Array:
     """Derivatives of what a stage tells, (rows, components)."""
     stage, what = part
     rates = np.zeros((len(moves.scale), model.component_count))
     if stage.backlash is None:
         for contributor in model.contributors:
-            if contributor.effect == ReducerBacklash(stage.link):
-                rates[:, model.component_slices[contributor.name]] = 1.0
+            rates[:, model.component_slices[contributor.name]] = contributor.effect.play_of(stage.link)
         return rates
     key = seat_key(model, measure, stage.backlash)
     if what == "play":
         return _rates(stage.backlash, seats.meshings[key], moves, seats.seats[key])
     for contributor in model.contributors:
-        for effect in single_effects(contributor.effect):
-            if isinstance(effect, Clocking):
-                rate = clocking_rate(effect, model.mesh(stage.backlash.mesh))
-                rates[:, model.component_slices[contributor.name]] += rate
+        rate = contributor.effect.clocking(model.mesh(stage.backlash.mesh))
+        rates[:, model.component_slices[contributor.name]] += rate
     resting = replace(stage.backlash, quantity="rest_angle")
     return rates + _rates(resting, seats.meshings[key], moves, seats.seats[key])
 
 
-def _rates(backlash: Backlash, meshing: Meshing, moves: Tangent, seat: MeshSeat) -> Array:
+def _rates(backlash: Backlash, meshing: Meshing, moves: BuildRates, seat: MeshSeat) -> Array:
     """Derivatives of a backlash at every position, (rows, components); nan where the mesh did not seat."""
     good = np.flatnonzero(seat.status == OK)
     rates = np.full((len(seat.status), meshing.model.component_count), np.nan)
@@ -171,10 +167,10 @@ class _GapRates:
 
 @dataclass(frozen=True)
 class _Contacts:
-    """Builds of a mesh with their tangents, one row a trial and position."""
+    """Builds of a mesh with their rates, one row a trial and position."""
 
     meshing: Meshing
-    moves: Tangent
+    moves: BuildRates
 
     def nearest(self, flank: Flank, angles: tuple[Array, Array], gaps: Gaps, *, section: bool) -> _GapRates:
         """Rates of the least of some gaps at turns (rows,) [rad]; asked again, for gaps at rest lie a step away."""
@@ -355,7 +351,7 @@ def _direction(contributor: Contributor, measure: Measure, gradient: Array) -> f
     draw = contributor.draw
     if not isinstance(draw, Planar):
         return None
-    turns_at_random = turns_with_gears(contributor.effect) and measure.positions.over == "random"
+    turns_at_random = contributor.effect.turns_with is not None and measure.positions.over == "random"
     if draw.direction is not None and not turns_at_random:
         return draw.direction
     return float(np.arctan2(gradient[1], gradient[0]))

@@ -12,7 +12,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.gearing.model import Model, Planar, Positions
-from tol3d.gearing.model.contributor import turns_with_gears
 from tol3d.gearing.model.layout import Drive
 from tol3d.samplers import LatinHypercube, MonteCarlo, Sampler, Sobol, Stream
 from tol3d.samplers.lazy import quick_monte_carlo
@@ -74,7 +73,7 @@ def mean_deviations(model: Model, positions: Positions) -> Array:
         if not isinstance(contributor.draw, Planar):
             row[:, columns] = mean
         elif contributor.draw.direction is not None and not (
-            positions.over == "random" and turns_with_gears(contributor.effect)
+            positions.over == "random" and contributor.effect.turns_with is not None
         ):
             angle = contributor.draw.direction
             row[:, columns] = (mean * math.cos(angle), mean * math.sin(angle))

@@ -11,7 +11,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.gearing.model import Contributor, Measure, Model, Planar
-from tol3d.gearing.model.contributor import turns_with_gears
 from tol3d.study import draws
 
 Array = NDArray[np.float64]
@@ -52,7 +51,7 @@ def _ends(contributor: Contributor, measure: Measure, states: Values) -> Array:
     law, draw = contributor.distribution, contributor.draw
     if not isinstance(draw, Planar):
         return np.array([[law.low], [law.high]])
-    turns_at_random = turns_with_gears(contributor.effect) and measure.positions.over == "random"
+    turns_at_random = contributor.effect.turns_with is not None and measure.positions.over == "random"
     if draw.direction is not None and not turns_at_random:
         return np.outer([law.low, law.high], [math.cos(draw.direction), math.sin(draw.direction)])
     east, west, north, south = states(law.radius * np.array([[1.0, 0.0], [-1.0, 0.0], [0.0, 1.0], [0.0, -1.0]]))

@@ -14,18 +14,14 @@ from numpy.typing import NDArray
 
 from tol3d.gearing.model import (
     Backlash,
-    Clocking,
     Contributor,
+    Effect,
     Measure,
     Mesh,
     Model,
     Planar,
     Positions,
-    ReducerBacklash,
-    Temperature,
-    TurningOffset,
 )
-from tol3d.gearing.model.contributor import SingleEffect, single_effects
 from tol3d.gearing.stack_up import reference_form
 from tol3d.study.block import Columns, position_column
 
@@ -41,22 +37,18 @@ def acting(model: Model, measure: Measure) -> tuple[Contributor, ...]:
     """The contributors that act on a measure: on one of its meshes, or one of its reducers."""
     meshes = [model.mesh(backlash.mesh) for _, backlash in measure.kind.backlashes]
     reducers = {name for _, name in measure.kind.reducers}
-    clocked = {gear for mesh in meshes if not measure.kind.adds_up for gear in (mesh.driver, mesh.driven)}
+    clocked = () if measure.kind.adds_up else meshes
     return tuple(
-        contributor
-        for contributor in model.contributors
-        if any(_acts(effect, meshes, reducers, clocked) for effect in single_effects(contributor.effect))
+        contributor for contributor in model.contributors if _acts(contributor.effect, meshes, reducers, clocked)
     )
 
 
-def _acts(effect: SingleEffect, meshes: Sequence[Mesh], reducers: Set[str], clocked: Set[str]) -> bool:
-    if isinstance(effect, Clocking):
-        return effect.part in clocked
-    if isinstance(effect, ReducerBacklash):
-        return effect.reducer in reducers
-    parts = set(effect.parts) if isinstance(effect, Temperature) else {effect.part}
-    only = getattr(effect, "mesh", None)
-    return any(only in (None, mesh.name) and parts & {mesh.driver, mesh.driven, mesh.housing} for mesh in meshes)
+def _acts(effect: Effect, meshes: Sequence[Mesh], reducers: Set[str], clocked: Sequence[Mesh]) -> bool:
+    return (
+        any(effect.acts_in(mesh) for mesh in meshes)
+        or any(effect.clocking(mesh) for mesh in clocked)
+        or any(effect.play_of(reducer) for reducer in reducers)
+    )
 
 
 def regressed(model: Model, measure: Measure) -> tuple[Contributor, ...]:
@@ -142,7 +134,7 @@ class _Turning:
         self._angles = angles
         self._known: dict[str, tuple[Array, Array]] = {}
 
-    def __contains__(self, part: str) -> bool:
+    def __contains__(self, part: str | None) -> bool:
         return part in self._angles
 
     def __getitem__(self, part: str) -> tuple[Array, Array]:
@@ -151,11 +143,10 @@ class _Turning:
         return self._known[part]
 
 
-def _acting_effect(contributor: Contributor, turning: _Turning) -> SingleEffect:
+def _acting_effect(contributor: Contributor, turning: _Turning) -> Effect:
     """What a contributor does to the gears that are read; of a shaft to the first of them, for they turn alike."""
-    effects = single_effects(contributor.effect)
-    read = (effect for effect in effects if isinstance(effect, TurningOffset) and effect.part in turning)
-    return next(read, effects[0])
+    effects = contributor.effect.singles
+    return next((effect for effect in effects if effect.turns_with in turning), effects[0])
 
 
 def _fill(rows: Array, contributor: Contributor, values: Sequence[Array], turning: _Turning) -> None:
@@ -167,12 +158,12 @@ def _fill(rows: Array, contributor: Contributor, values: Sequence[Array], turnin
         np.square(rows[0], out=rows[1])
         return
     x, y = values
-    if not isinstance(effect, TurningOffset):
+    if effect.turns_with is None:
         np.multiply(x, per_spread, out=rows[0])
         np.multiply(y, per_spread, out=rows[1])
-    elif effect.part in turning:
-        cos, sin = turning[effect.part]
-        y = -y if effect.plane.mirrored else y
+    elif effect.turns_with in turning:
+        cos, sin = turning[effect.turns_with]
+        y = -y if effect.mirrored else y
         np.multiply(cos * x - sin * y, per_spread, out=rows[0])
         np.multiply(sin * x + cos * y, per_spread, out=rows[1])
     else:

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.distributions import Distribution
-from tol3d.gearing.model import Backlash, LostMotion, Measure, Model, ReducerBacklash
+from tol3d.gearing.model import Backlash, LostMotion, Measure, Model
 from tol3d.gearing.model.measure import AnyStage, ParallelStage, Tip
 from tol3d.gearing.stack_up import per_normal_backlash
 from tol3d.gears import LEFT
@@ -181,9 +181,10 @@ def _of_road(stages: Sequence[AnyStage], tallied: Stages) -> dict[str, Ends]:
 def _within_sheets(model: Model, ends: Mapping[str, Ends]) -> dict[str, Ends]:
     """Ends of a reducer's play no further than its law goes, which 3 sigma may."""
     laws = {
-        contributor.effect.reducer: contributor.distribution
+        link: contributor.distribution
+        for link in ends
         for contributor in model.contributors
-        if isinstance(contributor.effect, ReducerBacklash)
+        if contributor.effect.play_of(link)
     }
     return {link: _within(own, laws[link]) if link in laws else own for link, own in ends.items()}
 

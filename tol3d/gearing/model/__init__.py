@@ -1,15 +1,13 @@
 """What a scene means: parts, contributors, moves and measures in mm and rad. Nothing here is text any more."""
 
-from tol3d.gearing.model.contributor import (
+from tol3d.gearing.model.contributor import Contributor, Planar, Scalar
+from tol3d.gearing.model.effects import (
     AxesOffset,
     AxisOffset,
     AxisTilt,
     Clocking,
-    Contributor,
     Effect,
-    Planar,
     ReducerBacklash,
-    Scalar,
     Temperature,
     Together,
     ToothThickness,

@@ -6,7 +6,6 @@ from dataclasses import replace
 from tol3d.errors import SceneError
 from tol3d.gearing.grammar.moves import GearMeshSpec
 from tol3d.gearing.grammar.parts import GearSpec, HousingSpec
-from tol3d.gearing.model.effects import Tolerances
 from tol3d.gearing.model.layout import Layout, layout_of
 from tol3d.gearing.model.links import links_between_shafts, links_of
 from tol3d.gearing.model.measures import measure_of
@@ -14,6 +13,7 @@ from tol3d.gearing.model.mesh import Mesh
 from tol3d.gearing.model.model import GearPart, Housing, Model, Study, Until
 from tol3d.gearing.model.pairs import internal, pair_of, undercut_warning
 from tol3d.gearing.model.shafts import Arm, Train
+from tol3d.gearing.model.tolerances import Tolerances
 from tol3d.gearing.model.trains import (
     arms_of,
     loaded_flank,

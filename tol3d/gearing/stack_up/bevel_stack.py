@@ -11,7 +11,7 @@ import math
 from collections.abc import Iterator
 
 from tol3d.gearing.model import AxesOffset, AxisOffset, AxisTilt, Contributor, ToothThickness, TurningOffset
-from tol3d.gearing.model.contributor import SingleEffect, single_effects
+from tol3d.gearing.model.effects import Effect
 from tol3d.gearing.stack_up.neglect import Neglect, Part
 from tol3d.gearing.stack_up.stack import Stack
 from tol3d.gearing.stack_up.term import Role, Term
@@ -102,10 +102,10 @@ class BevelStack(Stack[BevelPair]):
             return max(pair.pinion.tip_q - pair.pinion.pitch_q, pair.pinion.pitch_q - pair.start_q)
         return math.sin(gear.base_angle) * (gear.pitch_half_angle + gear.angular_pitch / 2)
 
-    def _acting(self) -> Iterator[tuple[Role, SingleEffect, Contributor]]:
+    def _acting(self) -> Iterator[tuple[Role, Effect, Contributor]]:
         """The effects in this mesh, and of which gear."""
         for contributor in self.model.contributors:
-            for effect in single_effects(contributor.effect):
+            for effect in contributor.effect.singles:
                 role: Role | None = None
                 if isinstance(effect, ToothThickness | TurningOffset):
                     role = self.role(effect.part)
@@ -114,7 +114,7 @@ class BevelStack(Stack[BevelPair]):
                 if role is not None:
                     yield role, effect, contributor
 
-    def _along_line(self, role: Role, effect: SingleEffect, contributor: Contributor) -> Term | None:
+    def _along_line(self, role: Role, effect: Effect, contributor: Contributor) -> Term | None:
         """Way of one apex against the other along the pitch line.
 
         sin(delta) of a shift across a gear's axis towards the mesh, cos(delta) of one along it; the driver's, and

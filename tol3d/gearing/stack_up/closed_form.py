@@ -14,7 +14,7 @@ from fractions import Fraction
 
 import numpy as np
 
-from tol3d.gearing.model import Contributor, LostMotion, Measure, Model, Planar, Positions, ReducerBacklash
+from tol3d.gearing.model import Contributor, LostMotion, Measure, Model, Planar, Positions
 from tol3d.gearing.model.measure import at_one_position
 from tol3d.gearing.stack_up.backlash import per_normal_backlash, stack_of
 from tol3d.gearing.stack_up.leaning import leaning_groups, leaning_shares
@@ -172,9 +172,9 @@ class _Linear:
 def _linear(model: Model, measure: Measure, contributor: Contributor, terms: Sequence[_ReadTerm]) -> _Linear | None:
     own = [term for term in terms if term.term.contributor is contributor]
     by_reducers = sum(
-        _lever(measure) * factor
+        _lever(measure) * factor * rate
         for factor, reducer in measure.kind.reducers
-        if contributor.effect == ReducerBacklash(reducer)
+        if (rate := contributor.effect.play_of(reducer))
     )
     if not own and not by_reducers:
         return None

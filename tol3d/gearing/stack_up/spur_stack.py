@@ -10,7 +10,6 @@ import math
 import numpy as np
 
 from tol3d.gearing.model import AxisTilt, Contributor, Temperature
-from tol3d.gearing.model.contributor import single_effects
 from tol3d.gearing.stack_up.neglect import Neglect, Part
 from tol3d.gearing.stack_up.stack import Stack
 from tol3d.gearing.stack_up.term import Role, Term
@@ -73,7 +72,7 @@ class SpurStack(Stack[SpurPair]):
         return tuple(
             Term(contributor, self.model.expansions[part])
             for contributor in self.model.contributors
-            for effect in single_effects(contributor.effect)
+            for effect in contributor.effect.singles
             if isinstance(effect, Temperature) and part in effect.parts
         )
 

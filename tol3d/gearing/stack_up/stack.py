@@ -28,7 +28,7 @@ from tol3d.gearing.model import (
     ToothThickness,
     TurningOffset,
 )
-from tol3d.gearing.model.contributor import Plane, SingleEffect, single_effects
+from tol3d.gearing.model.effects import Effect, Plane
 from tol3d.gearing.stack_up.neglect import Neglect
 from tol3d.gearing.stack_up.term import Role, Term
 from tol3d.gears import Gear, GearPair
@@ -50,13 +50,13 @@ class Stack(Generic[Pair]):
         self.terms = tuple(
             term
             for contributor in model.contributors
-            for effect in single_effects(contributor.effect)
+            for effect in contributor.effect.singles
             if (term := self._term(effect, contributor))
         )
         self.sideways = tuple(
             term
             for contributor in model.contributors
-            for effect in single_effects(contributor.effect)
+            for effect in contributor.effect.singles
             if (term := self._sideways(effect, contributor))
         )
 
@@ -125,7 +125,7 @@ class Stack(Generic[Pair]):
     # one function an effect -------------------------------------------------------------------------
 
     @singledispatchmethod
-    def _term(self, effect: SingleEffect, contributor: Contributor) -> Term | None:
+    def _term(self, effect: Effect, contributor: Contributor) -> Term | None:
         raise TypeError(f"stack.py has no function for the effect {type(effect).__name__}")
 
     def role(self, part: str, mesh: str | None = None) -> Role | None:
@@ -222,7 +222,7 @@ class Stack(Generic[Pair]):
         return None
 
     @singledispatchmethod
-    def _sideways(self, effect: SingleEffect, contributor: Contributor) -> Term | None:
+    def _sideways(self, effect: Effect, contributor: Contributor) -> Term | None:
         """What moves both rests alike; thickness and temperature do not, to first order, for tilts see `aside`."""
         return None
 

@@ -1,18 +1,17 @@
-"""Builds, compiled: what build.py adds up effect by effect is linear, so each deviation has its coefficients.
+"""Builds, compiled: displacements are linear, so that each deviation has its coefficients.
 
-They are found by asking build.py for every component alone; what an effect does stands there and nowhere else. A turn
-about a point off the gear's origin is the exception, worked out in sums.py.
+A turn about a point off the gear's origin is the exception, worked out in sums.py.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.gearing.build import Build, Sums, in_seat, summed
-from tol3d.gearing.engines.exact.sums import assemble
-from tol3d.gearing.model import AxisTilt, Contributor, Model, Together
-from tol3d.gearing.model.contributor import single_effects
+from tol3d.gearing.build import Build
+from tol3d.gearing.displacements import Displacement, Growth, Lever, displacements
+from tol3d.gearing.engines.exact.sums import SCALE, SLOTS, assemble
+from tol3d.gearing.model import Model
 
 Array = NDArray[np.float64]
 
@@ -60,23 +59,23 @@ class Assembly:
 
 def assembly_of(model: Model) -> Assembly:
     """The assembly of a model."""
-    terms, coefficients = [], []
+    terms, coefficients, pivots, levers = [], [], [], []
     for contributor in model.contributors:
-        alone = replace(model, contributors=(_without_pivot(contributor),))
-        first = model.component_slices[contributor.name].start
-        for component, unit in enumerate(np.eye(alone.component_count)):
-            for slot, coefficient in enumerate(_slots(alone, summed(alone, unit[None]))):
-                if coefficient != 0.0:
-                    terms.append((first + component, slot))
-                    coefficients.append(coefficient)
-    pivots, levers = [], []
-    for contributor in model.contributors:
-        for effect in single_effects(contributor.effect):
-            if isinstance(effect, AxisTilt) and effect.pivot != 0.0:
-                for seat in model.seats_of(effect.part, effect.mesh):
-                    axis = effect.axis if effect.mesh else in_seat(effect.axis, model.seats[seat])
-                    pivots.append((model.component_slices[contributor.name].start, seat))
-                    levers.append((*(effect.per_length * np.array(axis)), effect.pivot))
+        first, components = model.component_slices[contributor.name].start, len(contributor.draw.components)
+        totals = np.zeros((components, SLOTS * len(model.seats) + len(model.meshes)))
+        for effect in contributor.effect.singles:
+            for term in displacements(effect, model, components):
+                match term:
+                    case Displacement():
+                        start = SLOTS * term.seat
+                        totals[:, start + term.slots.start : start + term.slots.stop] += term.rates
+                    case Lever():
+                        pivots.append((first, term.seat))
+                        levers.append((*term.turn, term.pivot))
+                    case Growth():
+                        totals[:, _growing(model, term.part)] += model.expansions[term.part]
+        terms += [(first + component, slot) for component, slot in np.argwhere(totals)]
+        coefficients += totals[totals != 0.0].tolist()
     return Assembly(
         np.array(terms, dtype=np.int64).reshape(-1, 2),
         np.array(coefficients),
@@ -86,29 +85,11 @@ def assembly_of(model: Model) -> Assembly:
     )
 
 
-def _without_pivot(contributor: Contributor) -> Contributor:
-    effects = tuple(
-        replace(effect, pivot=0.0) if isinstance(effect, AxisTilt) else effect
-        for effect in single_effects(contributor.effect)
-    )
-    return replace(contributor, effect=Together(effects))
-
-
-def _slots(model: Model, sums: Sums) -> Array:
-    """What one build adds up to, a slot each."""
-    seats = [
-        [
-            *sums.axis_offset[0, index],
-            *sums.axis_turn[0, index],
-            *sums.centre[0, index],
-            sums.flank_turn[0, index],
-            sums.flank_offset[0, index],
-            sums.growth(model, seat.gear)[0],
-        ]
-        for index, seat in enumerate(model.seats)
-    ]
-    housings = [sums.growth(model, mesh.housing)[0] if mesh.housing else 0.0 for mesh in model.meshes]
-    return np.array([*np.ravel(seats), *housings])
+def _growing(model: Model, part: str) -> list[int]:
+    """Slots that a part's growth goes to: of its own seats, and of the meshes that it holds."""
+    seats = [SLOTS * index + SCALE for index, seat in enumerate(model.seats) if seat.gear == part]
+    after = SLOTS * len(model.seats)
+    return seats + [after + index for index, mesh in enumerate(model.meshes) if mesh.housing == part]
 
 
 def _rest(model: Model) -> Array:

@@ -9,12 +9,15 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from tol3d.gearing.displacements.slots import CENTRE, FLANK_OFFSET, FLANK_TURN, TURN
+from tol3d.gearing.displacements.slots import SLOTS as DISPLACED
 from tol3d.gearing.engines.exact.small_angles import sine
 from tol3d.numerics.compiled import kernel, part
 
 Array = NDArray[np.float64]
 
-OFFSET, TURN, CENTRE, FLANK_TURN, FLANK_OFFSET, SCALE, SLOTS = 0, 3, 6, 8, 9, 10, 11
+SCALE = DISPLACED  # growth of the seat's gear comes after what is displaced
+SLOTS = DISPLACED + 1
 ASSEMBLY = (
     "float64[:, ::1], int64[:, ::1], float64[::1], int64[:, ::1], float64[:, ::1], float64[:, ::1], "
     "float64[:, :, :, ::1], float64[:, :, ::1], float64[:, :, ::1], float64[:, ::1], float64[:, ::1], float64[:, ::1]"

@@ -24,23 +24,20 @@ from tol3d.gearing.grammar.tolerances import (
     ToleranceSpec,
     ToothThicknessSpec,
 )
-from tol3d.gearing.model.contributor import (
+from tol3d.gearing.model.contributor import Contributor, Planar, Scalar, Unit
+from tol3d.gearing.model.effects import (
+    NOTHING,
     AxesOffset,
     AxisOffset,
     AxisTilt,
     Clocking,
-    Contributor,
     Effect,
-    Planar,
     Plane,
     ReducerBacklash,
-    Scalar,
-    SingleEffect,
     Temperature,
     Together,
     ToothThickness,
     TurningOffset,
-    Unit,
 )
 from tol3d.gearing.model.layout import Layout
 from tol3d.gearing.model.mesh import Mesh
@@ -55,7 +52,6 @@ AROUND_X: Vector = (1.0, 0.0, 0.0)
 AROUND_Y: Vector = (0.0, 1.0, 0.0)
 AROUND_MINUS_Y: Vector = (0.0, -1.0, 0.0)
 ALONG_Z: Vector = (0.0, 0.0, 1.0)
-NOTHING = Together(())
 
 
 @dataclass(frozen=True)
@@ -107,7 +103,7 @@ class Tolerances:
 
     @singledispatchmethod
     def _effect(self, spec: ToleranceSpec) -> Effect | _Directed:
-        raise TypeError(f"effects.py has no function for {type(spec).__name__}")
+        raise TypeError(f"tolerances.py has no function for {type(spec).__name__}")
 
     @_effect.register
     def _(self, spec: ToothThicknessSpec) -> Effect | _Directed:
@@ -258,7 +254,7 @@ class _Lever:
         """What the gear moves of what the point moves."""
         return 1.0 if self.fixed is None else (self.own.at - self.fixed) / (self.moved - self.fixed)
 
-    def anywhere(self) -> Iterator[SingleEffect]:
+    def anywhere(self) -> Iterator[Effect]:
         """Shift and tilt of the gear's axis where the point moves by half a deviation with a direction on the shaft."""
         plane = Plane(mirrored=self.own.backward)
         yield AxisOffset(self.own.gear, factor=0.5 * self.share, plane=plane)
@@ -266,7 +262,7 @@ class _Lever:
             per_length = 0.5 * self.own.sense / (self.moved - self.fixed)
             yield AxisTilt(self.own.gear, per_length=per_length, plane=plane)
 
-    def effects(self, azimuth: float) -> Iterator[SingleEffect]:
+    def effects(self, azimuth: float) -> Iterator[Effect]:
         """Shift and tilt of the gear's axis where the point moves by half a deviation, at an azimuth on the shaft."""
         sense = -1.0 if self.own.backward else 1.0
         x, y = _exact(math.cos(azimuth)), _exact(math.sin(azimuth))
@@ -277,7 +273,7 @@ class _Lever:
             yield AxisTilt(self.own.gear, (-y, sense * x, 0.0), per_length=per_length)
 
 
-def _all_of(effects: tuple[SingleEffect, ...]) -> Effect:
+def _all_of(effects: tuple[Effect, ...]) -> Effect:
     return effects[0] if len(effects) == 1 else Together(effects)
 
 

@@ -1,0 +1,14 @@
+"""Backlash of reducers and gears that sit turned on their shafts displace no axis and no flank."""
+
+from collections.abc import Iterator
+
+from tol3d.gearing.displacements.displacement import Displacement, displacements
+from tol3d.gearing.model import Model
+from tol3d.gearing.model.effects import Clocking, ReducerBacklash
+
+
+@displacements.register(ReducerBacklash)
+@displacements.register(Clocking)
+def _(effect: ReducerBacklash | Clocking, model: Model, components: int) -> Iterator[Displacement]:
+    """A mesh finds its rest for any turn of its gears: the shafts tell the difference, see clocking.py."""
+    return iter(())
