@@ -20,7 +20,7 @@
     result       the run on disk            runs/run.py                 Run              (writer.py, manifest.py)
 
 The exact engine goes build, moves and measures in one compiled kernel (engines/exact/: foot -> nearest -> seating ->
-rows), to the same result as by its gaps; `compiled.py` is the door to numba. `tangent.py` and `sensitivity.py` take the
+rows), to the same result as by its gaps; `compiled.py` is the door to numba. `rates.py` and `sensitivity.py` take the
 derivatives of measures through the contact.
 
 A gear has a seat in each mesh that it is in, and builds have a place for each seat, in that mesh's own world; shafts
