@@ -2,32 +2,22 @@
 
 import os
 import sys
-from functools import cache
 
 import hypothesis
 import pytest
-from fixtures import Command, EngineOf
-from places import SCENES
+from fixtures import Command, EngineOf, strips_of
+from places import SPUR_PAIR
 
 from tol3d import cli
 from tol3d.gearing.engines.fcl import FclEngine
 from tol3d.gearing.model import Model, model_from_scene
-from tol3d.gears import SpurGear
 from tol3d.scene import load_scene
-from tol3d.solids import FlankStrips, measuring_strips
 
 # shared machines stall for longer than any deadline and examples are the same;
 # HYPOTHESIS_PROFILE=search tries others
 hypothesis.settings.register_profile("tol3d", deadline=None, derandomize=True)
 hypothesis.settings.register_profile("search", deadline=None)
 hypothesis.settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE", "tol3d"))
-
-SPUR_PAIR = SCENES / "spur_pair.yaml"
-
-
-@cache
-def strips_of(gear: SpurGear, steps: int) -> FlankStrips:
-    return measuring_strips(gear, steps)
 
 
 @pytest.fixture(scope="session")

@@ -12,7 +12,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from places import SCENES
+from places import SPUR_PAIR
 
 from tol3d import InputError, Overrides, Run, run_scene
 from tol3d.execution import pools as execution_module
@@ -22,7 +22,6 @@ from tol3d.study import block as block_module
 
 pytest.importorskip("distributed")
 
-SPUR = SCENES / "spur_pair.yaml"
 BLOCK = 1000
 STUDIES = {
     "exact": Overrides(trials=40 * BLOCK + 77, engine="exact", witness=0),
@@ -102,12 +101,12 @@ def assert_same_run(first: Run, second: Run) -> None:
 def test_two_dask_workers_give_the_bits_of_one_process(cluster, tmp_path: Path) -> None:
     address, _ = cluster
     study = STUDIES["analytic"]
-    alone = run_scene(SPUR, overrides=study, out=tmp_path / "alone")
-    spread = run_scene(SPUR, overrides=study, out=tmp_path / "dask", execution=Execution(scheduler=address))
+    alone = run_scene(SPUR_PAIR, overrides=study, out=tmp_path / "alone")
+    spread = run_scene(SPUR_PAIR, overrides=study, out=tmp_path / "dask", execution=Execution(scheduler=address))
     assert spread.summary["timing"]["workers"] == 2
     assert_same_run(alone, spread)
     bare = Execution(scheduler=address, keep_trials=False)
-    statistics = run_scene(SPUR, overrides=study, out=tmp_path / "bare", execution=bare)
+    statistics = run_scene(SPUR_PAIR, overrides=study, out=tmp_path / "bare", execution=bare)
     assert statistics.summary["measures"] == alone.summary["measures"]
 
 
@@ -116,8 +115,8 @@ def test_two_dask_workers_give_the_bits_of_one_process(cluster, tmp_path: Path) 
 def test_one_worker_killed_in_mid_run_changes_no_bit(engine: str, cluster, tmp_path: Path) -> None:
     address, workers = cluster
     study = STUDIES[engine]
-    alone = run_scene(SPUR, overrides=study, out=tmp_path / "alone")
-    two = run_scene(SPUR, overrides=study, out=tmp_path / "two", execution=Execution(workers=2))
+    alone = run_scene(SPUR_PAIR, overrides=study, out=tmp_path / "alone")
+    two = run_scene(SPUR_PAIR, overrides=study, out=tmp_path / "two", execution=Execution(workers=2))
     assert_same_run(alone, two)
     told: list[int] = []
 
@@ -128,7 +127,7 @@ def test_one_worker_killed_in_mid_run_changes_no_bit(engine: str, cluster, tmp_p
             workers[0].wait()
 
     spread = run_scene(
-        SPUR,
+        SPUR_PAIR,
         overrides=study,
         out=tmp_path / "dask",
         execution=Execution(scheduler=address),
@@ -143,7 +142,7 @@ def test_one_worker_killed_in_mid_run_changes_no_bit(engine: str, cluster, tmp_p
 def test_a_run_whose_scheduler_is_lost_goes_on_later(cluster, tmp_path: Path) -> None:
     address, _ = cluster
     study = STUDIES["analytic"]
-    alone = run_scene(SPUR, overrides=study, out=tmp_path / "alone")
+    alone = run_scene(SPUR_PAIR, overrides=study, out=tmp_path / "alone")
     scheduler = _scheduler_pid(address)
     told: list[int] = []
 
@@ -154,13 +153,13 @@ def test_a_run_whose_scheduler_is_lost_goes_on_later(cluster, tmp_path: Path) ->
 
     with pytest.raises(InputError, match=r"the scheduler was lost .*the same command goes on"):
         run_scene(
-            SPUR,
+            SPUR_PAIR,
             overrides=study,
             out=tmp_path / "run",
             execution=Execution(scheduler=address),
             watch=Watch(progress=kill_scheduler),
         )
-    resumed = run_scene(SPUR, overrides=study, out=tmp_path / "run", execution=Execution(resume=True))
+    resumed = run_scene(SPUR_PAIR, overrides=study, out=tmp_path / "run", execution=Execution(resume=True))
     assert resumed.summary["timing"]["resumed_trials"] >= 9 * BLOCK
     assert_same_run(alone, resumed)
 
@@ -180,7 +179,7 @@ def test_an_address_where_nobody_answers_is_refused(tmp_path: Path, monkeypatch:
         ("nonsense://here", "no Dask scheduler answered within"),
     ):
         with pytest.raises(InputError, match=f"--scheduler {address}: {words}"):
-            run_scene(SPUR, overrides=few, out=tmp_path / "run", execution=Execution(scheduler=address))
+            run_scene(SPUR_PAIR, overrides=few, out=tmp_path / "run", execution=Execution(scheduler=address))
 
 
 def test_a_scheduler_without_workers_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -191,7 +190,7 @@ def test_a_scheduler_without_workers_is_refused(tmp_path: Path, monkeypatch: pyt
         monkeypatch.setattr(execution_module, "ANSWER_S", 2.0)
         with pytest.raises(InputError, match="it has no workers; start some with `dask worker"):
             run_scene(
-                SPUR,
+                SPUR_PAIR,
                 overrides=Overrides(trials=10, engine="analytic"),
                 out=tmp_path / "run",
                 execution=Execution(scheduler=f"tcp://127.0.0.1:{port}"),

@@ -12,7 +12,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from numpy.typing import NDArray
-from places import SCENES
+from places import SPUR_PAIR
 
 from tol3d import Overrides, RunError, run_scene
 from tol3d.execution.folding import Columns, Plan, run_blocks
@@ -23,7 +23,6 @@ from tol3d.statistics import Moments
 from tol3d.study import block as block_module
 from tol3d.study.task import Task, installed_versions
 
-SPUR = SCENES / "spur_pair.yaml"
 BLOCK = 2000
 
 
@@ -193,7 +192,7 @@ def test_a_study_until_an_error_is_reached_has_the_trials_that_it_needs(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(block_module, "AUTO_BLOCK_TRIALS", BLOCK)
-    text = SPUR.read_text("utf-8")
+    text = SPUR_PAIR.read_text("utf-8")
     scene = tmp_path / "auto.yaml"
     line = next(line for line in text.splitlines() if line.startswith("study:"))
     scene.write_text(
@@ -217,8 +216,10 @@ def test_threads_and_processes_give_the_bits_of_one(tmp_path: Path, monkeypatch:
     monkeypatch.setattr(block_module, "BLOCK_TRIALS", 300)
     for engine in ("exact", "analytic", "fcl"):
         study = Overrides(trials=1000, engine=engine, witness=0)
-        alone = run_scene(SPUR, overrides=study, out=tmp_path / f"{engine} alone")
-        spread = run_scene(SPUR, overrides=study, out=tmp_path / f"{engine} spread", execution=Execution(workers=2))
+        alone = run_scene(SPUR_PAIR, overrides=study, out=tmp_path / f"{engine} alone")
+        spread = run_scene(
+            SPUR_PAIR, overrides=study, out=tmp_path / f"{engine} spread", execution=Execution(workers=2)
+        )
         assert spread.summary["measures"] == alone.summary["measures"]
         mine, its = alone.columns(), spread.columns()
         assert mine.keys() == its.keys()

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from places import SCENES
+from places import SPUR_PAIR
 
 from tol3d import Overrides, Scene, load_scene, run_scene
 from tol3d.distributions import Normal, Rayleigh, Uniform
@@ -28,13 +28,12 @@ from tol3d.gearing.stack_up import analytic_backlash, closed_form, stack_of
 from tol3d.gears import SpurPair
 from tol3d.study.block import analytic_values, drawn_block
 
-SPUR = SCENES / "spur_pair.yaml"
 SIN, COS = math.sin(math.radians(20)), math.cos(math.radians(20))
 
 
 @pytest.fixture(scope="module")
 def model() -> Model:
-    return model_from_scene(load_scene(SPUR))
+    return model_from_scene(load_scene(SPUR_PAIR))
 
 
 def with_contributors(model: Model, *contributors: Contributor) -> Model:

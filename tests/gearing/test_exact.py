@@ -16,6 +16,7 @@ import numpy as np
 import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
+from numba import njit
 from oracles import brute_force, exact_eccentric, search
 from oracles.involute_gear import InvoluteGear
 from oracles.poses import world_from_gears
@@ -308,7 +309,7 @@ def test_the_search_s_own_zooms_have_converged_to_1e_9_mm() -> None:
 def section_by(lowest):
     """The lowest point over the string in one section."""
 
-    @search.njit
+    @njit
     def at(fixed, z):
         return lowest((fixed, z), 0.0, fixed[0][3])[0]
 

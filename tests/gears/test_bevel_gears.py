@@ -2,7 +2,9 @@
 
 import math
 import re
+from collections.abc import Callable
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -65,16 +67,16 @@ def plain(gear: BevelGear) -> BevelNumbers:
     )
 
 
-def mesh_of(pair: BevelPair, count: int, **changed: float) -> BevelMesh:
-    """The pair at rest for that many rows, both gears with the same change (turned, offset)."""
+def mesh_of(pair: BevelPair, count: int, *, turned: float = 0.0) -> BevelMesh:
+    """The pair at rest for that many rows, the flanks of both gears turned by as much [rad]."""
     shafts, centred = nominal_shafts(pair.shaft_angle, count), np.zeros((count, 2))
-    gears = (replace(plain(gear), **changed) for gear in (pair.pinion, pair.wheel))
-    return BevelMesh(*gears, shafts[0], shafts[1], centred, centred)
+    driver, driven = (replace(plain(gear), turned=turned) for gear in (pair.pinion, pair.wheel))
+    return BevelMesh(driver, driven, shafts[0], shafts[1], centred, centred)
 
 
 def bevel_pair(teeth: tuple[int, int], degrees: float, *, shift: float = 0.0, face: float = 6.0) -> BevelPair:
     """A pair of module 2.5 as the teeth and the shaft angle want it; the wheel gets the opposite profile shift."""
-    angles = pitch_angles(*teeth, degrees * DEG)
+    angles = pitch_angles(teeth[0], teeth[1], degrees * DEG)
     first, second = (
         BevelGear(z, 2.5, ALPHA, face, delta, profile_shift=x)
         for z, delta, x in zip(teeth, angles, (shift, -shift), strict=True)
@@ -229,7 +231,7 @@ def test_distance_to_a_flank_is_what_a_search_of_it_finds(
     point = reach * gear.flank_directions(q, flank) + away * gear.flank_normals(q, flank)
     foot = nearest_on_flank(point, gear.base_angle, gear.flank_start(flank), flank)
 
-    def distance(at: np.ndarray) -> float:
+    def distance(at: np.ndarray) -> np.ndarray:
         direction = gear.flank_directions(at, flank)
         return np.linalg.norm(point - (point * direction).sum(axis=-1, keepdims=True) * direction, axis=-1)
 
@@ -308,7 +310,7 @@ def test_teeth_take_their_share_of_the_pitch_cone(flank: Flank, gear: BevelGear)
 def test_flanks_reach_from_the_root_or_base_cone_to_the_tip_cone(flank: Flank, gear: BevelGear) -> None:
     oracle = plain(gear)
     directions = gear.flank_directions(np.array([gear.form_q, gear.tip_q]), flank)
-    points = oracle.flank_points(1.0, np.array(oracle.rolls), 0, flank)
+    points = oracle.flank_points(np.array(1.0), np.array(oracle.rolls), 0, flank)
     assert np.abs(directions - points).max() * gear.outer_cone_distance < EXACT
     # the tip circle at the heel, on the back cone that stands upright on the pitch line
     radius = math.sin(gear.tip_angle) * gear.outer_cone_distance / math.cos(gear.tip_angle - gear.pitch_angle)
@@ -358,7 +360,7 @@ def test_teeth_that_nowhere_meet_are_said_to_meet_at_the_equator() -> None:
     [(10, 40, 90, 0.0), (8, 8, 90, 0.0), (12, 30, 60, -0.2), (13, 40, 90, 0.1), (6, 6, 90, 0.2), (9, 11, 120, -0.1)],
 )
 def test_undercut_begins_where_the_corner_of_a_crown_gear_leaves_the_flank(
-    teeth, mate, degrees: float, shift: float
+    teeth: int, mate: int, degrees: float, shift: float
 ) -> None:
     delta = pitch_angles(teeth, mate, degrees * DEG)[0]
     gear = BevelGear(teeth, 3.0, ALPHA, 5.0, delta, profile_shift=shift)
@@ -370,7 +372,9 @@ def test_undercut_begins_where_the_corner_of_a_crown_gear_leaves_the_flank(
 
 
 @pytest.mark.parametrize(("teeth", "mate", "shift"), [(20, 40, 0.0), (13, 13, 0.0), (10, 40, 0.41)])
-def test_without_undercut_the_crown_gear_leaves_the_flank_down_to_the_base_cone(teeth, mate, shift: float) -> None:
+def test_without_undercut_the_crown_gear_leaves_the_flank_down_to_the_base_cone(
+    teeth: int, mate: int, shift: float
+) -> None:
     delta = pitch_angles(teeth, mate, RIGHT_ANGLE)[0]
     gear = BevelGear(teeth, 3.0, ALPHA, 5.0, delta, profile_shift=shift)
     depth = math.atan(gear.module * (1 - shift) / gear.outer_cone_distance)
@@ -380,7 +384,9 @@ def test_without_undercut_the_crown_gear_leaves_the_flank_down_to_the_base_cone(
 
 
 @given(gears())
-def test_at_the_undercut_limit_the_crown_gear_s_tip_ends_where_the_plane_of_action_touches_the_base_cone(gear) -> None:
+def test_at_the_undercut_limit_the_crown_gear_s_tip_ends_where_the_plane_of_action_touches_the_base_cone(
+    gear: BevelGear,
+) -> None:
     delta, alpha = gear.pitch_angle, gear.pressure_angle
     pitch_line, down = np.array([math.sin(delta), 0, math.cos(delta)]), np.array([-math.cos(delta), 0, math.sin(delta)])
     # the plane of action holds the pitch line and leans by alpha from the crown gear's pitch plane
@@ -410,8 +416,10 @@ def test_thirteen_teeth_are_the_fewest_of_a_mitre_gear_without_any_undercut() ->
     ("teeth", "degrees", "expected"),
     [((31, 31), 90, (45, 45)), ((20, 40), 90, (26.56505, 63.43495)), ((25, 25), 120, (60, 60)), ((20, 40), 60, None)],
 )
-def test_pitch_cones_touch_along_a_line_and_roll(teeth, degrees: float, expected) -> None:
-    first, second = pitch_angles(*teeth, degrees * DEG)
+def test_pitch_cones_touch_along_a_line_and_roll(
+    teeth: tuple[int, int], degrees: float, expected: tuple[float, float] | None
+) -> None:
+    first, second = pitch_angles(teeth[0], teeth[1], degrees * DEG)
     assert first + second == pytest.approx(degrees * DEG, abs=1e-15)
     assert teeth[0] * math.sin(second) == pytest.approx(teeth[1] * math.sin(first), rel=1e-15)
     if expected:
@@ -461,7 +469,7 @@ def gaps_on_a_slice(pair: BevelPair, driver: float, driven: float, flank: Flank,
     turned = mesh.driven_from_driver(np.array([driver]), np.array([driven]))[0, :3, :3]
 
     def distance(roll: np.ndarray) -> np.ndarray:
-        points = mesh.driver.flank_points(slice_at, roll, teeth[..., None], flank)
+        points = mesh.driver.flank_points(np.array(slice_at), roll, teeth[..., None], flank)
         return mesh.driven.signed_distance(points @ turned.T, mates[..., None], flank)
 
     begin, end = (np.full(teeth.shape, roll) for roll in mesh.driver.rolls)
@@ -471,7 +479,9 @@ def gaps_on_a_slice(pair: BevelPair, driver: float, driven: float, flank: Flank,
 @FLANKS
 @settings(max_examples=40, deadline=None)
 @given(pair=pairs(), driver=st.floats(-20.0, 20.0), along=st.floats(0.0, 1.0))
-def test_nominal_teeth_touch_on_both_flanks_at_any_ratio_and_shaft_angle(flank: Flank, pair, driver, along) -> None:
+def test_nominal_teeth_touch_on_both_flanks_at_any_ratio_and_shaft_angle(
+    flank: Flank, pair: BevelPair, driver: float, along: float
+) -> None:
     driven = pair.driven_angle(np.array([driver]))
     told = pair.start_angle(np.array([driver]), flank, np.zeros((1, 2)))
     assert told == pytest.approx(driven, abs=1e-13)
@@ -498,7 +508,9 @@ def test_transmission_error_of_nominal_teeth_is_below_1e_5_um(name: str) -> None
 @pytest.mark.parametrize(
     ("share", "expected"), [(0.0, 74.8970), (0.5, 79.8739), (1.0, 84.8507)], ids=["toe", "middle", "heel"]
 )
-def test_proportional_thinning_of_42_5_um_each_leaves_a_gap_that_grows_from_the_apex(share, expected) -> None:
+def test_proportional_thinning_of_42_5_um_each_leaves_a_gap_that_grows_from_the_apex(
+    share: float, expected: float
+) -> None:
     """j_n(R) = R sin(cos(alpha) (E1 + E2)/R_m): thinner teeth are the same flanks turned."""
     thickness, at = -0.0425, PAPER_GEAR.inner_cone_distance + 9.0 * share
     closed = at * math.sin(math.cos(ALPHA) * -2 * thickness / PAPER_GEAR.mean_cone_distance) * UM
@@ -533,7 +545,9 @@ def test_ten_um_of_shaft_angle_change_the_gap_as_the_pressure_angles_do(arc: flo
 @FLANKS
 @settings(max_examples=20, deadline=None)
 @given(pair=pairs(), driver=st.floats(-20.0, 20.0), thickness=st.tuples(st.floats(-0.05, 0.05), st.floats(-0.05, 0.0)))
-def test_start_angle_is_where_teeth_of_other_thickness_touch(flank: Flank, pair, driver, thickness) -> None:
+def test_start_angle_is_where_teeth_of_other_thickness_touch(
+    flank: Flank, pair: BevelPair, driver: float, thickness: tuple[float, float]
+) -> None:
     driven = pair.start_angle(np.array([driver]), flank, np.array([thickness]))
     mesh = mesh_of(pair, 1)
     turned = [t / (2 * g.mean_radius) for t, g in zip(thickness, (pair.pinion, pair.wheel), strict=True)]
@@ -545,7 +559,9 @@ def test_start_angle_is_where_teeth_of_other_thickness_touch(flank: Flank, pair,
 
 @FLANKS
 @given(pair=pairs(), driver=st.floats(-20.0, 20.0), opened=st.floats(0.0, 0.02))
-def test_turning_either_gear_in_the_opening_sense_opens_that_flank_side(flank: Flank, pair, driver, opened) -> None:
+def test_turning_either_gear_in_the_opening_sense_opens_that_flank_side(
+    flank: Flank, pair: BevelPair, driver: float, opened: float
+) -> None:
     """By as much as its own base cone's arm says: R sin(sin(beta) turn)."""
     heel = pair.face[1]
     sense = pair.opening_sense(flank)
@@ -576,9 +592,8 @@ def turned_about_z(angle: float) -> np.ndarray:
 @pytest.mark.parametrize("widths", [(6.0, 10.0), (10.0, 6.0)])
 def test_gears_of_different_face_width_share_the_face_at_the_heel(widths: tuple[float, float]) -> None:
     pair = bevel_pair((20, 30), 60)
-    pair = BevelPair(
-        *(replace(g, face_width=b) for g, b in zip((pair.pinion, pair.wheel), widths, strict=True)), 60 * DEG
-    )
+    pinion, wheel = (replace(g, face_width=b) for g, b in zip((pair.pinion, pair.wheel), widths, strict=True))
+    pair = BevelPair(pinion, wheel, 60 * DEG)
     # sin(delta_1) = sin(60) / |(30/20 + cos(60), sin(60))|, so R_e = m z / (2 sin(delta_1))
     outer = 2.5 * 10 * math.hypot(2.0, math.sin(60 * DEG)) / math.sin(60 * DEG)
     assert pair.face == pytest.approx((outer - 6.0, outer), rel=1e-14)
@@ -648,7 +663,7 @@ def test_on_nearly_parallel_axes_a_bevel_pair_is_a_spur_pair() -> None:
     spur = SpurPair(
         SpurGear(28, 2.5, ALPHA, 20.0, profile_shift=0.2), SpurGear(40, 2.5, ALPHA, 20.0, profile_shift=-0.2), 85.0
     )
-    figures = {
+    figures: dict[str, tuple[Callable[[BevelPair], float], float]] = {
         "contact ratio": (lambda pair: pair.contact_ratio, spur.contact_ratio),
         "undercut limit": (lambda pair: pair.pinion.undercut_limit_shift, spur.pinion.undercut_limit_shift),
         "tip thickness": (lambda pair: pair.wheel.tip_thickness, spur.wheel.tip_thickness),
@@ -729,7 +744,7 @@ def numbers(text: str) -> list[float]:
     return [float(number) for number in re.findall(r"-?\d+\.?\d*(?:e-?\d+)?", text)]
 
 
-def refusal(**changed: float) -> str:
+def refusal(**changed: Any) -> str:
     with pytest.raises(GeometryError) as caught:
         replace(PAPER_GEAR, **changed)
     return str(caught.value)
@@ -754,7 +769,7 @@ def refusal(**changed: float) -> str:
         ({"bore": -1.0}, ["bore", "-1 mm"]),
     ],
 )
-def test_gears_that_cannot_be_made_are_refused_with_their_numbers(changed: dict[str, float], told: list[str]) -> None:
+def test_gears_that_cannot_be_made_are_refused_with_their_numbers(changed: dict[str, Any], told: list[str]) -> None:
     text = refusal(**changed)
     for words in told:
         assert words in text
@@ -782,7 +797,7 @@ def test_numbers_that_are_none_are_refused(field: str) -> None:
 @pytest.mark.parametrize(("teeth", "degrees"), [((17, 43), 120), ((10, 60), 100), ((20, 20), 0), ((20, 20), 180)])
 def test_shaft_angles_that_flatten_a_pitch_cone_are_refused(teeth: tuple[int, int], degrees: float) -> None:
     with pytest.raises(GeometryError, match=f"shaft_angle.*{degrees}.* deg"):
-        pitch_angles(*teeth, degrees * DEG)
+        pitch_angles(teeth[0], teeth[1], degrees * DEG)
 
 
 def pair_refusal(pinion: BevelGear, wheel: BevelGear, shaft_angle: float = RIGHT_ANGLE) -> str:
@@ -801,7 +816,7 @@ def pair_refusal(pinion: BevelGear, wheel: BevelGear, shaft_angle: float = RIGHT
         ({"profile_shift": 0.1}, ["cancel", "0 and 0.1"]),
     ],
 )
-def test_gears_that_do_not_belong_together_are_refused(changed: dict[str, float], told: list[str]) -> None:
+def test_gears_that_do_not_belong_together_are_refused(changed: dict[str, Any], told: list[str]) -> None:
     text = pair_refusal(PAPER_GEAR, replace(PAPER_GEAR, **changed))
     for words in told:
         assert words in text

@@ -3,10 +3,11 @@
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
-from conftest import strips_of
+from fixtures import strips_of
 from oracles import brute_force
 from oracles.involute_gear import InvoluteGear
 
@@ -57,7 +58,7 @@ THINNED = (
 )
 
 
-def model_of(folder, text: str, module: float, teeth: tuple[int, int], grade: float, trials: int = 40) -> Model:
+def model_of(folder: Path, text: str, module: float, teeth: tuple[int, int], grade: float, trials: int = 40) -> Model:
     """A pair whose deviations are those of module `grade` [mm]: thinned by 0.02 of it, eccentric by 0.002."""
     width = 6 * module
     distance = (sum(teeth) / 2 + 0.39) * module  # 0.01 modules less than the shifts add up to
@@ -87,7 +88,7 @@ def both(model: Model, module: float) -> Both:
     assert all((each["status"] == "ok").all() for each in columns)
     per_um = 1 / (1000 * module)
 
-    def values(each) -> dict[str, np.ndarray]:
+    def values(each: dict[str, Any]) -> dict[str, np.ndarray]:
         return {
             measure.name: each[f"geometric:{measure.name}"] * (per_um if measure.unit == "um" else 1.0)
             for measure in model.measures
@@ -98,7 +99,9 @@ def both(model: Model, module: float) -> Both:
 
 @pytest.mark.parametrize("module", MODULES)
 @pytest.mark.parametrize(("text", "teeth"), [(SPUR, (12, 20)), (SPUR, (28, 110)), (BEVEL, (14, 25))])
-def test_chords_explain_what_fcl_reads_of_gears_of_any_size(tmp_path: Path, text: str, teeth, module: float) -> None:
+def test_chords_explain_what_fcl_reads_of_gears_of_any_size(
+    tmp_path: Path, text: str, teeth: tuple[int, int], module: float
+) -> None:
     seen = both(model_of(tmp_path, text, module, teeth, module), module)
     for name in ("backlash", "whole") if text == BEVEL else ("backlash",):
         error = seen.fcl[name] - seen.exact[name]
@@ -109,7 +112,7 @@ def test_chords_explain_what_fcl_reads_of_gears_of_any_size(tmp_path: Path, text
 
 
 @pytest.mark.parametrize(("text", "teeth"), [(SPUR, (12, 20)), (BEVEL, (14, 25))])
-def test_gears_alike_in_all_but_their_size_read_alike(tmp_path: Path, text: str, teeth) -> None:
+def test_gears_alike_in_all_but_their_size_read_alike(tmp_path: Path, text: str, teeth: tuple[int, int]) -> None:
     reference = both(model_of(tmp_path, text, 2.5, teeth, 2.5), 2.5)
     for module in MODULES:
         seen = both(model_of(tmp_path, text, module, teeth, module), module)
@@ -123,7 +126,9 @@ def test_gears_alike_in_all_but_their_size_read_alike(tmp_path: Path, text: str,
 
 @pytest.mark.parametrize("module", [0.05, 0.1, 20.0])
 @pytest.mark.parametrize(("text", "teeth"), [(SPUR, (17, 43)), (BEVEL, (17, 43))])
-def test_deviations_need_not_go_with_the_module(tmp_path: Path, text: str, teeth, module: float) -> None:
+def test_deviations_need_not_go_with_the_module(
+    tmp_path: Path, text: str, teeth: tuple[int, int], module: float
+) -> None:
     grade = 5 * module if module < 1 else module / 10  # small gears are made coarser, large ones finer
     seen = both(model_of(tmp_path, text, module, teeth, grade), module)
     for name in ("backlash", "whole") if text == BEVEL else ("backlash",):
@@ -141,10 +146,13 @@ def pair_gaps(module: float, flank: Flank) -> tuple[np.ndarray, np.ndarray, floa
 
     Beside it a tip edge is nearest, whose normal lies up to half a radian off the gap.
     """
-    gears = tuple(SpurGear(z, module, ALPHA, 6 * module, profile_shift=x) for z, x in ((12, 0.4), (20, -0.4)))
+    pinion, wheel = gears = (
+        SpurGear(12, module, ALPHA, 6 * module, profile_shift=0.4),
+        SpurGear(20, module, ALPHA, 6 * module, profile_shift=-0.4),
+    )
     distance = 16 * module
-    mesh = Mesh("mesh", "pinion", "wheel", SpurPair(*gears, distance), RIGHT)
-    parts = (GearPart("pinion", gears[0]), GearPart("wheel", gears[1]))
+    mesh = Mesh("mesh", "pinion", "wheel", SpurPair(pinion, wheel, distance), RIGHT)
+    parts = (GearPart("pinion", pinion), GearPart("wheel", wheel))
     model = Model("edges", parts, (), (), (mesh,), (), Study())
     count, thinner = 50, 0.02 * module
     shafts = np.tile(np.eye(4), (count, 2, 1, 1))
@@ -154,11 +162,11 @@ def pair_gaps(module: float, flank: Flank) -> tuple[np.ndarray, np.ndarray, floa
     made = Build(shafts, np.zeros((count, 2, 2)), np.zeros((count, 2, 3)), turned, none, np.ones((count, 2)))
     driver = np.random.default_rng(5).uniform(0.0, 2 * np.pi, count)
     driven = np.asarray(mesh.pair.driven_angle(driver))
-    oracles = [
+    first, second = (
         InvoluteGear(g.teeth, g.module, g.pressure_angle, g.face_width, g.profile_shift, g.addendum, -thinner)
         for g in gears
-    ]
-    searched = brute_force.Mesh(*oracles, shafts[:, 0], shafts[:, 1], np.zeros((count, 2)), np.zeros((count, 2)))
+    )
+    searched = brute_force.Mesh(first, second, shafts[:, 0], shafts[:, 1], np.zeros((count, 2)), np.zeros((count, 2)))
     teeth, found, mates = brute_force.distances(searched, driver, driven, flank)
     teeth = teeth.astype(int)
     wanted = (found < 0.15 * module) & ((mesh.pair.mating_teeth(teeth, flank) - mates) % gears[1].teeth == 0)

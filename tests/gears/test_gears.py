@@ -3,6 +3,7 @@
 import math
 import re
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -106,7 +107,7 @@ def test_a_negative_involute_is_refused() -> None:
 @given(gears())
 def test_flank_points_lie_where_the_polar_involute_does(flank: Flank, gear: SpurGear) -> None:
     roll = np.linspace(0.0, gear.tip_roll, 7)
-    points = plain(gear).flank_points(gear.base_radius * roll, 0.0, 0, flank)
+    points = plain(gear).flank_points(gear.base_radius * roll, np.array(0.0), np.array(0), flank)
     assert np.abs(gear.flank_points(roll, flank) - points[:, :2]).max() < EXACT
     assert np.hypot(*gear.flank_points(roll, flank)[-1]) == pytest.approx(gear.tip_radius, abs=EXACT)
 
@@ -333,8 +334,8 @@ def test_touching_angle_is_where_a_search_turns_the_wheel_to(flank: Flank) -> No
     pair = SpurPair(pinion, wheel, 48.9)
     angle, line = np.linspace(-3.0, 30.0, 5), np.array([48.93, -0.4])
     thickness = (-0.03, 0.01)
-    thin = [replace(g, tooth_thickness_deviation=t) for g, t in zip((pinion, wheel), thickness, strict=True)]
-    mesh = parallel_mesh(SpurPair(*thin, pair.centre_distance), len(angle))
+    thin, other = (replace(g, tooth_thickness_deviation=t) for g, t in zip((pinion, wheel), thickness, strict=True))
+    mesh = parallel_mesh(SpurPair(thin, other, pair.centre_distance), len(angle))
     mesh.driven_shaft[:, :2, 3] = line
     origins = np.zeros((5, 2, 3))
     origins[:, 1, :2] = line
@@ -366,7 +367,7 @@ def path_of_contact(pair: SpurPair) -> float:
     def reached(centre: np.ndarray, radius: float, sense: float) -> float:
         foot = (centre - start) @ along
         off = np.linalg.norm(centre - start - foot * along)
-        return foot + sense * math.sqrt(radius**2 - off**2)
+        return float(foot + sense * math.sqrt(radius**2 - off**2))
 
     wheel_axis = np.array([pair.centre_distance, 0.0])
     return reached(np.zeros(2), first.tip_radius, 1.0) - reached(wheel_axis, second.tip_radius, -1.0)
@@ -421,9 +422,11 @@ def test_candidate_teeth_hold_every_pair_that_a_scan_finds_touching(name: str, s
     pair = PAIRS[name]
     pair.refuse_interference()
     module = pair.pinion.module
-    thin = [replace(gear, tooth_thickness_deviation=-0.1 * module) for gear in (pair.pinion, pair.wheel)]
+    thin, other = (replace(gear, tooth_thickness_deviation=-0.1 * module) for gear in (pair.pinion, pair.wheel))
     angle = np.random.default_rng(3).uniform(-50.0, 50.0, 8)
-    mesh = parallel_mesh(SpurPair(*thin, pair.centre_distance), len(angle), pair.centre_distance + shifted * module)
+    mesh = parallel_mesh(
+        SpurPair(thin, other, pair.centre_distance), len(angle), pair.centre_distance + shifted * module
+    )
     turned = brute_force.turn_until_contact(mesh, angle, brute_force.tooth_in_space(mesh, angle), flank)
     teeth, distance, mates = brute_force.distances(mesh, *turned, flank)
     candidates, may_touch = pair.candidate_teeth(angle, flank)
@@ -452,9 +455,9 @@ def numbers(text: str) -> list[float]:
     return [float(number) for number in re.findall(r"-?\d+\.?\d*(?:e-?\d+)?", text)]
 
 
-def refusal(**changed: float) -> str:
+def refusal(**changed: Any) -> str:
     with pytest.raises(GeometryError) as caught:
-        SpurGear(**({"teeth": 20, "module": 2.0, "pressure_angle": ALPHA, "face_width": 10.0} | changed))
+        replace(SpurGear(20, 2.0, ALPHA, 10.0), **changed)
     return str(caught.value)
 
 

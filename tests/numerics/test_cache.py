@@ -6,16 +6,17 @@ import os
 import stat
 import subprocess
 import sys
+import tempfile
 import zipfile
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
 import pytest
-from conftest import SPUR_PAIR
 from fixtures import Command
+from places import SPUR_PAIR
 
 from tol3d.gears import SpurGear
-from tol3d.numerics import compiled
 from tol3d.numerics.cache_folder import CacheError, cache_folder, read_entry, write_entry
 from tol3d.numerics.compiled import Kernel
 from tol3d.samplers.monte_carlo import uniforms
@@ -121,11 +122,14 @@ def drawn(kernel: Kernel, count: int = 50) -> np.ndarray:
     return values
 
 
-def cut(share: float):
+Damage = Callable[[bytes], bytes]
+
+
+def cut(share: float) -> Damage:
     return lambda content: content[: int(share * len(content))]
 
 
-DAMAGES = {
+DAMAGES: dict[str, Damage] = {
     "empty": lambda content: b"",
     **{f"cut at {share}": cut(share) for share in (0.001, 0.1, 0.5, 0.9, 0.999)},
     "noise": lambda content: np.random.default_rng(3).bytes(len(content)),
@@ -135,7 +139,7 @@ DAMAGES = {
 
 
 @pytest.mark.parametrize("damage", DAMAGES.values(), ids=DAMAGES.keys())
-def test_a_damaged_kernel_is_compiled_anew(folder: Path, damage) -> None:
+def test_a_damaged_kernel_is_compiled_anew(folder: Path, damage: Damage) -> None:
     from tol3d.samplers import quick_uniforms as module
 
     expected = drawn(fresh(module._draw))
@@ -149,7 +153,7 @@ def test_a_damaged_kernel_is_compiled_anew(folder: Path, damage) -> None:
     third = fresh(module._draw)
     assert third.kept
     assert np.array_equal(drawn(third), expected)
-    assert sum(third._compiled.stats.cache_hits.values()) == 1
+    assert sum(vars(third)["_compiled"].stats.cache_hits.values()) == 1
 
 
 def archive(**files: bytes) -> bytes:
@@ -165,7 +169,9 @@ def test_an_entry_that_is_whole_but_no_kernel_is_compiled_anew(folder: Path) -> 
 
     expected = drawn(fresh(module._draw))
     name = module._draw.name
+    assert name is not None
     good = read_entry(name)
+    assert good is not None
     names = zipfile.ZipFile(io.BytesIO(good)).namelist()
     for payload in (
         b"no archive",
@@ -182,7 +188,7 @@ def test_arrays_that_are_whole_but_none_are_built_anew(folder: Path) -> None:
     gear = SpurGear(20, 1.0, 0.35, 5.0)
     made = []
 
-    def build():
+    def build() -> dict[str, np.ndarray]:
         made.append(1)
         return {"x": np.arange(3.0)}
 
@@ -236,7 +242,7 @@ def test_a_folder_that_cannot_be_written_leaves_kernels_to_this_process(folder: 
 
 
 def test_numba_keeps_nothing_of_its_own(folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(compiled.tempfile, "tempdir", str(tmp_path / "temporary"))
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path / "temporary"))
     (tmp_path / "temporary").mkdir()
     assert len(quick_uniforms(1, "a", "", 0, 3)) == 3
     from tol3d.samplers import quick_uniforms as module

@@ -11,8 +11,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from conftest import SPUR_PAIR
 from fixtures import Command
+from places import SPUR_PAIR
 
 from tol3d.errors import RunError
 from tol3d.gearing.model import Model

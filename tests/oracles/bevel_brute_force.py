@@ -16,7 +16,7 @@ from scipy.spatial.transform import Rotation
 
 from oracles.brute_force import zoomed_minimum
 from oracles.poses import world_from_gears
-from tol3d.gears.flank import Flank
+from tol3d.gears.flank import Flank, opposite
 
 TEETH_EACH_SIDE = 2  # teeth beyond the one nearest to the mesh: 5 pitches, a path of contact has 2
 ROLL_POINTS, ROLL_ZOOMS = 11, 7  # a zoom keeps two of ten cells: 5^6 times finer than 20 mm/10 is 0.13 um
@@ -53,55 +53,57 @@ class BevelNumbers:
     offset: float = 0.0
 
     @property
-    def pitch(self):
+    def pitch(self) -> float:
         """Angle from tooth to tooth [rad]."""
         return 2 * math.pi / self.teeth
 
     @property
-    def outer(self):
+    def outer(self) -> float:
         """Cone distance of the heel [mm]; `face` may be a part of it."""
         return self.module * self.teeth / 2 / math.sin(self.pitch_angle)
 
     @property
-    def base_angle(self):
+    def base_angle(self) -> float:
         """Of the cone on which the plane rolls: it leans from the pitch line's meridian by the pressure angle."""
         return math.asin(math.sin(self.pitch_angle) * math.cos(self.pressure_angle))
 
     @cached_property
-    def start(self):
+    def start(self) -> float:
         """Azimuth [rad] of a flank on the base cone, off the middle of its tooth: by a search for the pitch cone."""
         x, y, _ = line(self.base_angle, self._roll_at(self.pitch_angle), 0.0, 1).direction
         half = math.pi / (2 * self.teeth) + 2 * self.profile_shift * math.tan(self.pressure_angle) / self.teeth
         return half + math.atan2(y, x) + self.turned
 
     @cached_property
-    def rolls(self):
+    def rolls(self) -> tuple[float, float]:
         """Rolls [rad] where the flank begins (root or base cone) and ends (tip cone)."""
         root = self.pitch_angle - math.atan((self.dedendum - self.profile_shift) * self.module / self.outer)
         return (self._roll_at(root) if root > self.base_angle else 0.0), self._roll_at(self.tip_angle)
 
     @property
-    def tip_angle(self):
+    def tip_angle(self) -> float:
         """Of the tip cone [rad]."""
         return self.pitch_angle + math.atan((self.addendum + self.profile_shift) * self.module / self.outer)
 
-    def _roll_at(self, polar):
-        def too_high(roll):
+    def _roll_at(self, polar: float) -> float:
+        def too_high(roll: float) -> float:
             x, y, z = line(self.base_angle, roll, 0.0, 1).direction
             return math.atan2(math.hypot(x, y), z) - polar
 
         return brentq(too_high, 0.0, math.pi / 2 / math.sin(self.base_angle), xtol=1e-15, rtol=1e-15)
 
-    def lines(self, roll, tooth, flank: Flank):
+    def lines(self, roll: np.ndarray | float, tooth: np.ndarray | int, flank: Flank) -> "Line":
         """The lines of a flank, in the gear's frame."""
         return line(self.base_angle, roll, np.asarray(tooth) * self.pitch - flank * self.start, flank)
 
-    def flank_points(self, cone_distance, roll, tooth, flank: Flank):
+    def flank_points(
+        self, cone_distance: np.ndarray, roll: np.ndarray, tooth: np.ndarray | int, flank: Flank
+    ) -> np.ndarray:
         """Points (..., 3) on a flank in the gear's frame; all arguments broadcast."""
         drawn = self.lines(roll, tooth, flank)
         return np.asarray(cone_distance)[..., None] * drawn.direction + self.offset * drawn.outwards
 
-    def signed_distance(self, points, tooth, flank: Flank):
+    def signed_distance(self, points: np.ndarray, tooth: np.ndarray | int, flank: Flank) -> np.ndarray:
         """Shortest distance [mm] of points (..., 3) in the gear's frame to one flank, negative inside the tooth.
 
         The flank ends at tip cone, root or base cone, toe and heel; a point beyond an end is measured to that edge.
@@ -116,7 +118,7 @@ class BevelNumbers:
         below_tip = points[..., 2] > math.cos(self.tip_angle) * np.linalg.norm(points, axis=-1)
         return np.where(in_face & ((kept_roll == roll) | ((outside < 0.0) & below_tip)), outside, to_edge)
 
-    def _foot(self, points, tooth, flank: Flank):
+    def _foot(self, points: np.ndarray, tooth: np.ndarray | int, flank: Flank) -> np.ndarray:
         """Roll [rad] of the line of the endless flank that is nearest to each point: nothing of it points upwards."""
         begin, end = self.rolls
         shape = np.broadcast_shapes(points.shape[:-1], np.shape(tooth))
@@ -143,7 +145,7 @@ class Line:
     outwards: np.ndarray
 
 
-def line(base_angle, roll, start, flank: Flank):
+def line(base_angle: float, roll: np.ndarray | float, start: np.ndarray | float, flank: Flank) -> "Line":
     """The line of the plane that touches the cone at azimuth start + flank roll, turned back within it by roll sin."""
     sin, cos = math.sin(base_angle), math.cos(base_angle)
     about = np.asarray(start + flank * np.asarray(roll, dtype=float))
@@ -160,7 +162,7 @@ def line(base_angle, roll, start, flank: Flank):
     )
 
 
-def dot(first, second):
+def dot(first: np.ndarray, second: np.ndarray) -> np.ndarray:
     """Of vectors on the last axis."""
     return (first * second).sum(axis=-1)
 
@@ -182,25 +184,27 @@ class BevelMesh:
     driver_centre: np.ndarray
     driven_centre: np.ndarray
 
-    def driven_from_driver(self, driver_angle, driven_angle):
+    def driven_from_driver(self, driver_angle: np.ndarray, driven_angle: np.ndarray) -> np.ndarray:
         """Poses (n, 4, 4) that take the driver gear's frame into the driven gear's."""
         driver = world_from_gears(self.driver_shaft, driver_angle, self.driver_centre)
         driven = world_from_gears(self.driven_shaft, driven_angle, self.driven_centre)
         return np.linalg.inv(driven) @ driver
 
-    def between(self, near, far):
+    def between(self, near: float, far: float) -> "BevelMesh":
         """The same mesh with the driver's flanks cut to cone distances near ... far [mm]; a section if equal."""
         return replace(self, driver=replace(self.driver, face=(near, far)))
 
 
-def nominal_shafts(shaft_angle, count: int):
+def nominal_shafts(shaft_angle: float, count: int) -> np.ndarray:
     """world_from_shaft of driver and driven, (2, count, 4, 4): apexes at the origin, the mesh at azimuth 0 of both."""
     driven = np.eye(4)
     driven[:3, :3] = Rotation.from_euler("y", shaft_angle).as_matrix() @ np.diag([-1.0, -1.0, 1.0])
     return np.stack([np.tile(np.eye(4), (count, 1, 1)), np.tile(driven, (count, 1, 1))])
 
 
-def distances(mesh, driver_angle, driven_angle, flank: Flank):
+def distances(
+    mesh: "BevelMesh", driver_angle: np.ndarray, driven_angle: np.ndarray, flank: Flank
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Driver teeth (n, pairs), their distances to the mating flanks and those flanks' teeth, each (n, pairs)."""
     around = np.arange(-TEETH_EACH_SIDE, TEETH_EACH_SIDE + 1)
     teeth = np.round(-driver_angle / mesh.driver.pitch)[:, None] + around
@@ -209,13 +213,13 @@ def distances(mesh, driver_angle, driven_angle, flank: Flank):
     mates = np.round((-azimuth * mesh.driver.teeth / mesh.driven.teeth - driven_angle[:, None]) / mesh.driven.pitch)
     pose = mesh.driven_from_driver(driver_angle, driven_angle)
 
-    def distance(cone_distance, roll):
+    def distance(cone_distance: np.ndarray, roll: np.ndarray) -> np.ndarray:
         own, other = (numbers.reshape(*numbers.shape, *[1] * (roll.ndim - 2)) for numbers in (teeth, mates))
         points = mesh.driver.flank_points(cone_distance[..., None], roll, own, flank)
         flat = points.reshape(len(points), -1, 3) @ np.swapaxes(pose[:, :3, :3], 1, 2) + pose[:, None, :3, 3]
         return mesh.driven.signed_distance(flat.reshape(points.shape), other, flank)
 
-    def along_the_face(cone_distance):
+    def along_the_face(cone_distance: np.ndarray) -> np.ndarray:
         begin, end = (np.full(cone_distance.shape, roll) for roll in mesh.driver.rolls)
         return zoomed_minimum(lambda roll: distance(cone_distance, roll), begin, end, (ROLL_POINTS, ROLL_ZOOMS))
 
@@ -225,12 +229,16 @@ def distances(mesh, driver_angle, driven_angle, flank: Flank):
     return teeth, zoomed_minimum(along_the_face, near, far, (CONE_POINTS, CONE_ZOOMS)), mates
 
 
-def smallest_distance(mesh, driver_angle, driven_angle, flank: Flank):
+def smallest_distance(
+    mesh: "BevelMesh", driver_angle: np.ndarray, driven_angle: np.ndarray, flank: Flank
+) -> np.ndarray:
     """Shortest distance (n,) [mm] of the driver's flanks of one side to the driven gear's, negative in overlap."""
     return distances(mesh, driver_angle, driven_angle, flank)[1].min(axis=1)
 
 
-def turn_until_contact(mesh, driver_angle, driven_angle, flank: Flank):
+def turn_until_contact(
+    mesh: "BevelMesh", driver_angle: np.ndarray, driven_angle: np.ndarray, flank: Flank
+) -> np.ndarray:
     """Turn the driven gear until that flank side just touches; its angles (n,) [rad].
 
     Opening a right flank (sigma = +1) turns it counter-clockwise about its own axis. Secant steps after the first.
@@ -253,7 +261,9 @@ def turn_until_contact(mesh, driver_angle, driven_angle, flank: Flank):
     raise AssertionError(f"no contact: distances {distance}")
 
 
-def _where_it_changes_sign(mesh, driver_angle, driven_angle, flank: Flank):
+def _where_it_changes_sign(
+    mesh: "BevelMesh", driver_angle: np.ndarray, driven_angle: np.ndarray, flank: Flank
+) -> np.ndarray:
     """The turn (n,) at which the distance, which may jump at an edge there, stops being negative."""
     reach = EDGE_JUMP / (mesh.driver.face[0] * math.sin(mesh.driven.base_angle)) * flank
     closed, opened = driven_angle - 2 * reach, driven_angle + 2 * reach
@@ -264,7 +274,9 @@ def _where_it_changes_sign(mesh, driver_angle, driven_angle, flank: Flank):
     return opened
 
 
-def normal_backlash(mesh, driver_angle, working_flank, gap_at=None):
+def normal_backlash(
+    mesh: "BevelMesh", driver_angle: np.ndarray, working_flank: Flank, gap_at: tuple[float, float] | None = None
+) -> np.ndarray:
     """Distance [mm] of the non-working flanks while the driven gear is turned onto the working ones, (n,).
 
     Args:
@@ -275,9 +287,9 @@ def normal_backlash(mesh, driver_angle, working_flank, gap_at=None):
     start = tooth_in_space(mesh, driver_angle)
     angle = turn_until_contact(mesh, driver_angle, start, working_flank)
     seen = mesh if gap_at is None else mesh.between(*gap_at)
-    return smallest_distance(seen, driver_angle, angle, -working_flank)
+    return smallest_distance(seen, driver_angle, angle, opposite(working_flank))
 
 
-def tooth_in_space(mesh, driver_angle):
+def tooth_in_space(mesh: "BevelMesh", driver_angle: np.ndarray) -> np.ndarray:
     """The driven gear's turn with a space at the mesh when the driver's tooth 0 is there, and rolling on."""
     return mesh.driven.pitch / 2 - driver_angle * mesh.driver.teeth / mesh.driven.teeth

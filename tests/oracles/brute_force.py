@@ -4,13 +4,14 @@ Every flank near the mesh is searched over roll and face, edges included, by gri
 lowest point; no line of action, no candidate list.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 
 from oracles.involute_gear import InvoluteGear
 from oracles.poses import world_from_gears
-from tol3d.gears.flank import Flank
+from tol3d.gears.flank import Flank, opposite
 
 TEETH_EACH_SIDE = 2  # teeth beyond the one nearest to the line of centres: 5 pitches, a path of contact has 2
 ROLL_POINTS, ROLL_ZOOMS = 13, 8  # a zoom keeps two of twelve cells: 6^7 times finer than 20 mm/12 is 0.006 um
@@ -36,19 +37,21 @@ class Mesh:
     driver_centre: np.ndarray
     driven_centre: np.ndarray
 
-    def driven_from_driver(self, driver_angle, driven_angle):
+    def driven_from_driver(self, driver_angle: np.ndarray, driven_angle: np.ndarray) -> np.ndarray:
         """Poses (n, 4, 4) that take the driver gear's frame into the driven gear's."""
         driver = world_from_gears(self.driver_shaft, driver_angle, self.driver_centre)
         driven = world_from_gears(self.driven_shaft, driven_angle, self.driven_centre)
         return np.linalg.inv(driven) @ driver
 
 
-def smallest_distance(mesh: Mesh, driver_angle, driven_angle, flank: Flank) -> np.ndarray:
+def smallest_distance(mesh: Mesh, driver_angle: np.ndarray, driven_angle: np.ndarray, flank: Flank) -> np.ndarray:
     """Shortest distance (n,) [mm] of the driver's flanks of one side to the driven gear's, negative in overlap."""
     return distances(mesh, driver_angle, driven_angle, flank)[1].min(axis=1)
 
 
-def distances(mesh: Mesh, driver_angle, driven_angle, flank: Flank) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def distances(
+    mesh: Mesh, driver_angle: np.ndarray, driven_angle: np.ndarray, flank: Flank
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Driver teeth (n, pairs), their distances to the mating flanks and those flanks' teeth, each (n, pairs)."""
     around = np.arange(-TEETH_EACH_SIDE, TEETH_EACH_SIDE + 1)
     teeth = np.round(-driver_angle / mesh.driver.pitch)[:, None] + around
@@ -59,12 +62,12 @@ def distances(mesh: Mesh, driver_angle, driven_angle, flank: Flank) -> tuple[np.
     )
     pose = mesh.driven_from_driver(driver_angle, driven_angle)
 
-    def distance(string, z):
+    def distance(string: np.ndarray, z: np.ndarray) -> np.ndarray:
         points = mesh.driver.flank_points(string, z[..., None], teeth[..., None, None], flank)
         flat = points.reshape(len(points), -1, 3) @ np.swapaxes(pose[:, :3, :3], 1, 2) + pose[:, None, :3, 3]
         return mesh.driven.signed_distance(flat.reshape(points.shape), mates[..., None, None], flank)
 
-    def along_the_face(z):
+    def along_the_face(z: np.ndarray) -> np.ndarray:
         string_end = np.full(z.shape, mesh.driver.tip_string)
         return zoomed_minimum(
             lambda string: distance(string, z), np.zeros(z.shape), string_end, (ROLL_POINTS, ROLL_ZOOMS)
@@ -74,7 +77,9 @@ def distances(mesh: Mesh, driver_angle, driven_angle, flank: Flank) -> tuple[np.
     return teeth, zoomed_minimum(along_the_face, -half, half, (FACE_POINTS, FACE_ZOOMS)), mates
 
 
-def zoomed_minimum(function, low, high, grid) -> np.ndarray:
+def zoomed_minimum(
+    function: Callable[[np.ndarray], np.ndarray], low: np.ndarray, high: np.ndarray, grid: tuple[int, int]
+) -> np.ndarray:
     """Minimum of `function` (...,) -> values over low ... high, each entry for itself; `grid` = points, zooms."""
     points, zooms = grid
     share = np.linspace(0.0, 1.0, points)
@@ -87,7 +92,9 @@ def zoomed_minimum(function, low, high, grid) -> np.ndarray:
     return np.take_along_axis(values, best, -1)[..., 0]
 
 
-def turn_until_contact(mesh: Mesh, driver_angle, driven_angle, flank: Flank, *, turn_driver: bool = False):
+def turn_until_contact(
+    mesh: Mesh, driver_angle: np.ndarray, driven_angle: np.ndarray, flank: Flank, *, turn_driver: bool = False
+) -> tuple[np.ndarray, np.ndarray]:
     """Turn one gear until that flank side just touches; the angles (driver, driven), each (n,) [rad].
 
     Opening a right flank (sigma = +1) turns either gear counter-clockwise.
@@ -96,27 +103,27 @@ def turn_until_contact(mesh: Mesh, driver_angle, driven_angle, flank: Flank, *, 
     mover = 0 if turn_driver else 1
     base_radius = (mesh.driver if turn_driver else mesh.driven).base_radius
     for _ in range(CONTACT_STEPS):
-        distance = smallest_distance(mesh, *angles, flank)
+        distance = smallest_distance(mesh, angles[0], angles[1], flank)
         if np.abs(distance).max() < CONTACT_XTOL:
             return angles[0], angles[1]
         angles[mover] -= flank * distance / base_radius
     raise AssertionError(f"no contact: distances {distance}")
 
 
-def normal_backlash(mesh: Mesh, driver_angle, working_flank) -> np.ndarray:
+def normal_backlash(mesh: Mesh, driver_angle: np.ndarray, working_flank: Flank) -> np.ndarray:
     """Shortest distance [mm] of the non-working flanks while the driven gear is turned onto the working ones, (n,)."""
-    angles = turn_until_contact(mesh, driver_angle, tooth_in_space(mesh, driver_angle), working_flank)
-    return smallest_distance(mesh, *angles, -working_flank)
+    driver, driven = turn_until_contact(mesh, driver_angle, tooth_in_space(mesh, driver_angle), working_flank)
+    return smallest_distance(mesh, driver, driven, opposite(working_flank))
 
 
-def free_turn(mesh: Mesh, driver_angle, working_flank, *, turn_driver: bool) -> np.ndarray:
+def free_turn(mesh: Mesh, driver_angle: np.ndarray, working_flank: Flank, *, turn_driver: bool) -> np.ndarray:
     """Turn [rad] of one gear from the working to the non-working contact, the other held, (n,)."""
     start = turn_until_contact(mesh, driver_angle, tooth_in_space(mesh, driver_angle), working_flank)
-    end = turn_until_contact(mesh, *start, -working_flank, turn_driver=turn_driver)
+    end = turn_until_contact(mesh, start[0], start[1], opposite(working_flank), turn_driver=turn_driver)
     mover = 0 if turn_driver else 1
     return np.abs(end[mover] - start[mover])
 
 
-def tooth_in_space(mesh: Mesh, driver_angle) -> np.ndarray:
+def tooth_in_space(mesh: Mesh, driver_angle: np.ndarray) -> np.ndarray:
     """The driven gear's turn with a space opposite driver tooth 0 when the driver stands at 0, and rolling on."""
     return np.pi + mesh.driven.pitch / 2 - driver_angle * mesh.driver.teeth / mesh.driven.teeth

@@ -8,12 +8,21 @@ cos alpha_w' = (r_b1 + r_b2)/|C2 - C1|. Source: ISO 21771-1:2024, 5.6, at the ce
 import numpy as np
 
 from oracles.involute_gear import InvoluteGear
+from tol3d.gears.flank import Flank
 
 TURN_ROUNDS = 6  # the wheel's turn moves its centre by e2 j/r, 1e-5 of it; each round gains that factor
 AZIMUTH_ROUNDS = 6  # of e/a each, 1e-2 for the smallest gears: 1e-12 of 0.1 mm
 
 
-def normal_backlash(pinion: InvoluteGear, wheel: InvoluteGear, thickness, axis, centres, driver_angle, working_flank):
+def normal_backlash(
+    pinion: InvoluteGear,
+    wheel: InvoluteGear,
+    thickness: np.ndarray,
+    axis: np.ndarray,
+    centres: np.ndarray,
+    driver_angle: np.ndarray,
+    working_flank: Flank,
+) -> np.ndarray:
     """j_n [mm], (n,), with the wheel turned onto the working flank.
 
     Args:
@@ -24,7 +33,8 @@ def normal_backlash(pinion: InvoluteGear, wheel: InvoluteGear, thickness, axis, 
         working_flank: sigma of the pinion's.
     """
     alpha, base = pinion.pressure_angle, pinion.base_radius + wheel.base_radius
-    nominal = sum(gear.thickness(gear.reference_radius) for gear in (pinion, wheel)) - np.pi * pinion.module
+    arcs = [gear.thickness(gear.reference_radius) for gear in (pinion, wheel)]
+    nominal = arcs[0] + arcs[1] - np.pi * pinion.module
     ratio = pinion.teeth / wheel.teeth
     free = np.zeros_like(driver_angle)
     for _ in range(TURN_ROUNDS):
@@ -41,7 +51,7 @@ def normal_backlash(pinion: InvoluteGear, wheel: InvoluteGear, thickness, axis, 
     return free
 
 
-def turned(vectors, angle):
+def turned(vectors: np.ndarray, angle: np.ndarray) -> np.ndarray:
     """Plane vectors (n, 2) turned by angles (n,)."""
     cos, sin = np.cos(angle), np.sin(angle)
     return np.stack([cos * vectors[:, 0] - sin * vectors[:, 1], sin * vectors[:, 0] + cos * vectors[:, 1]], axis=1)

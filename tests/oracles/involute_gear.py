@@ -6,12 +6,15 @@ for the flank on the low-azimuth side of its tooth, -1 for the other.
 
 import math
 from dataclasses import dataclass, replace
+from typing import Any, TypeVar
 
 import numpy as np
 
 from tol3d.gears.flank import Flank
 
 BELOW_BASE = 0.0  # mm of string: the flank is followed down to its base circle, where no mate ever reaches
+
+Number = TypeVar("Number", float, np.ndarray)
 
 
 @dataclass(frozen=True)
@@ -24,10 +27,10 @@ class InvoluteGear:
     face_width: float
     profile_shift: float = 0.0
     addendum: float = 1.0
-    thickness_deviation: float = 0.0
+    thickness_deviation: Any = 0.0  # or an array that broadcasts
 
-    def grown(self, factor: float) -> "InvoluteGear":
-        """The same gear, every length times a factor."""
+    def grown(self, factor: Any) -> "InvoluteGear":
+        """The same gear, every length times a factor, or an array of them."""
         return replace(
             self,
             module=self.module * factor,
@@ -57,7 +60,7 @@ class InvoluteGear:
         """Length [mm] of the string that draws the flank, at the tip."""
         return math.sqrt(self.tip_radius**2 - self.base_radius**2)
 
-    def half_angle(self, radius):
+    def half_angle(self, radius: Number) -> Number:
         """Half the angle [rad] of a tooth at a radius of at least the base radius.
 
         A rack of pitch pi m rolls on the reference circle; shifted out by x m its space there is
@@ -69,18 +72,18 @@ class InvoluteGear:
         at = np.arccos(np.minimum(1.0, self.base_radius / radius))
         return thickness / (2 * self.reference_radius) + (math.tan(alpha) - alpha) - (np.tan(at) - at)
 
-    def thickness(self, radius):
+    def thickness(self, radius: Number) -> Number:
         """Tooth thickness [mm] as an arc at a radius."""
         return 2 * radius * self.half_angle(radius)
 
-    def flank_points(self, string, z, tooth, flank: Flank):
+    def flank_points(self, string: np.ndarray, z: np.ndarray, tooth: np.ndarray, flank: Flank) -> np.ndarray:
         """Points (..., 3) on a flank; `string` [mm] = sqrt(r^2 - r_b^2), all arguments broadcast."""
         string, z, tooth = np.broadcast_arrays(string, z, tooth)
         radius = np.hypot(self.base_radius, string)
         azimuth = self.pitch * tooth - flank * self.half_angle(radius)
         return np.stack([radius * np.cos(azimuth), radius * np.sin(azimuth), z], axis=-1)
 
-    def signed_distance(self, points, tooth, flank: Flank):
+    def signed_distance(self, points: np.ndarray, tooth: np.ndarray, flank: Flank) -> np.ndarray:
         """Shortest distance [mm] of points (..., 3) in the gear's frame to one flank, negative inside the tooth.
 
         The flank ends at tip circle, base circle and faces; a point beyond an end is measured to that edge.

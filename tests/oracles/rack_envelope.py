@@ -41,7 +41,7 @@ class Rack:
         alpha, r = self.pressure_angle, self.reference_radius
         constant = math.pi * self.module / 4 + (r + self.profile_shift * self.module) * math.tan(alpha)
 
-        def cut_azimuth(psi):
+        def cut_azimuth(psi: np.ndarray) -> np.ndarray:
             return psi - (radius * np.sin(psi + alpha) / math.cos(alpha) - constant) / r
 
         if math.isinf(self.addendum):

@@ -11,6 +11,7 @@ from oracles.involute_gear import InvoluteGear
 from tol3d.gearing.build import Build
 from tol3d.gearing.model import GearPart, Mesh, Model, Study
 from tol3d.gears import BevelGear, BevelPair, SpurGear, SpurPair
+from tol3d.gears.flank import Flank
 
 
 @dataclass(frozen=True)
@@ -52,7 +53,7 @@ class Builds:
         return len(self.driver_angle)
 
 
-def model_of(pair: SpurPair | BevelPair, flank: int) -> Model:
+def model_of(pair: SpurPair | BevelPair, flank: Flank) -> Model:
     """A model that is one mesh, nothing deviating."""
     mesh = Mesh("mesh", "pinion", "wheel", pair, flank)
     return Model(
@@ -61,7 +62,7 @@ def model_of(pair: SpurPair | BevelPair, flank: int) -> Model:
 
 
 def random_builds(
-    pair: SpurPair | BevelPair, flank: int, count: int, seed: int, *, spread: Spread, thinner: float
+    pair: SpurPair | BevelPair, flank: Flank, count: int, seed: int, *, spread: Spread, thinner: float
 ) -> Builds:
     """Builds of a pair.
 
@@ -103,11 +104,14 @@ def in_ball(rng: np.random.Generator, shape: tuple[int, ...]) -> np.ndarray:
 
 def searched_spurs(builds: Builds) -> SearchedSpurs:
     """The same as brute_force.py sees it; offsets along normals are handed to a search apart."""
-    made, plain = builds.made, []
-    for k, gear in enumerate((builds.mesh.pair.pinion, builds.mesh.pair.wheel)):
-        plain.append(spur_numbers(gear, 2 * gear.reference_radius * made.flank_turn[:, k], made.scale[:, k]))
+    made, pair = builds.made, builds.mesh.pair
+    assert isinstance(pair, SpurPair)
+    driver, driven = (
+        spur_numbers(gear, 2 * gear.reference_radius * made.flank_turn[:, k], made.scale[:, k])
+        for k, gear in enumerate((pair.pinion, pair.wheel))
+    )
     shafts, centre = made.world_from_shaft, made.centre
-    return SearchedSpurs(*plain, shafts[:, 0], shafts[:, 1], centre[:, 0], centre[:, 1])
+    return SearchedSpurs(driver, driven, shafts[:, 0], shafts[:, 1], centre[:, 0], centre[:, 1])
 
 
 def spur_numbers(gear: SpurGear, thickness: np.ndarray, growth: np.ndarray) -> InvoluteGear:
@@ -127,15 +131,16 @@ def spur_numbers(gear: SpurGear, thickness: np.ndarray, growth: np.ndarray) -> I
 def searched_bevels(builds: Builds) -> list[BevelMesh]:
     """The same as bevel_brute_force.py sees it, build by build; growth is about the apex and ends the face."""
     made, pair = builds.made, builds.mesh.pair
+    assert isinstance(pair, BevelPair)
     searched = []
     for row in range(builds.count):
         own = slice(row, row + 1)
-        gears = (
+        driver, driven = (
             bevel_numbers(gear, made.flank_turn[row, k], made.flank_offset[row, k], made.scale[row, k])
             for k, gear in enumerate((pair.pinion, pair.wheel))
         )
         shafts, centre = made.world_from_shaft[own], made.centre[own]
-        searched.append(BevelMesh(*gears, shafts[:, 0], shafts[:, 1], centre[:, 0], centre[:, 1]))
+        searched.append(BevelMesh(driver, driven, shafts[:, 0], shafts[:, 1], centre[:, 0], centre[:, 1]))
     return searched
 
 

@@ -19,7 +19,7 @@ CUT_AWAY = 1e-10  # rad; a flank this far inside the endless rack's has been und
 POLAR_XTOL = 1e-10  # rad
 
 
-def drawn_directions(base_angle, rolls, sense=1):
+def drawn_directions(base_angle: float, rolls: np.ndarray, sense: int = 1) -> np.ndarray:
     """Where the line that began on the cone at azimuth 0 points after the plane has rolled, (n, 3).
 
     Args:
@@ -28,7 +28,7 @@ def drawn_directions(base_angle, rolls, sense=1):
         sense: +1 rolls counter-clockwise about z, -1 clockwise.
     """
 
-    def turning(roll, direction):
+    def turning(roll: float, direction: np.ndarray) -> np.ndarray:
         azimuth = sense * roll
         touching = [math.sin(base_angle) * math.cos(azimuth), math.sin(base_angle) * math.sin(azimuth)]
         # the plane's normal leans over by cos(base) for each radian of azimuth
@@ -45,7 +45,7 @@ class CrownRack:
     high-azimuth side, and azimuths count from where it crosses the pitch cone.
     """
 
-    def __init__(self, pitch_angle, pressure_angle, depth=math.inf) -> None:
+    def __init__(self, pitch_angle: float, pressure_angle: float, depth: float = math.inf) -> None:
         """`depth` [rad]: where the crown gear's flank ends below its pitch plane (infinite: nowhere)."""
         self._pitch_angle, self._pressure_angle, self._depth = pitch_angle, pressure_angle, depth
         base = math.pi / 2 - pressure_angle
@@ -53,7 +53,7 @@ class CrownRack:
         polar = np.arctan2(np.hypot(x, y), z)
         self._gained = CubicSpline(polar, np.unwrap(np.arctan2(y, x)))
 
-    def flank_azimuth(self, polar):
+    def flank_azimuth(self, polar: float) -> float:
         """Azimuth [rad] of the flank that is left at a polar angle.
 
         A place of the gear at world azimuth w lies at a depth below the pitch plane and at a crown azimuth. The
@@ -62,7 +62,7 @@ class CrownRack:
         """
         sin, cos = math.sin(self._pitch_angle), math.cos(self._pitch_angle)
 
-        def cut_azimuth(world):
+        def cut_azimuth(world: np.ndarray) -> np.ndarray:
             x, y, z = math.sin(polar) * np.cos(world), math.sin(polar) * np.sin(world), math.cos(polar)
             along, below = x * sin + z * cos, z * sin - x * cos
             crown, below = np.arctan2(y, along), np.arctan2(below, np.hypot(along, y))
@@ -81,7 +81,7 @@ class CrownRack:
             low = -high
         return float(zoomed_minimum(cut_azimuth, np.array([low]), np.array([high]), GRID)[0])
 
-    def undercut_angle(self, tip_angle):
+    def undercut_angle(self, tip_angle: float) -> float:
         """Largest polar angle [rad] at which the corner has cut below the flank that an endless rack would leave."""
         endless = CrownRack(self._pitch_angle, self._pressure_angle)
         low, high = math.asin(math.sin(self._pitch_angle) * math.cos(self._pressure_angle)), tip_angle

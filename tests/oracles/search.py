@@ -6,12 +6,15 @@ numbers instead of arrays. No line of action, no candidate list, no derivative.
 """
 
 import math
+from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 from numba import njit
 
-from oracles.bevel_brute_force import BevelMesh
+from oracles.bevel_brute_force import BevelMesh, BevelNumbers
 from oracles.brute_force import Mesh
+from oracles.involute_gear import InvoluteGear
 from tol3d.gears.flank import Flank
 
 TEETH_EACH_SIDE = 2  # beyond the one nearest to the mesh: 5 pitches, a path of contact has 2
@@ -22,11 +25,16 @@ NEWTON_STEPS = 4  # finish it: 0.1, 5e-3, 2e-5, 1e-10 rad, the last quite lost i
 BEYOND = 0.1  # rad of roll that a foot may lie beyond an end of its flank before it is put there
 
 
-def zooming(function, points, zooms):
+Numbers = tuple[float, ...]
+Vector = tuple[float, float, float]
+Lowest = Callable[[Any, float, float], tuple[float, float]]
+
+
+def zooming(function: Callable[[Any, float], float], points: int, zooms: int) -> Lowest:
     """The lowest value of `function(fixed, x)` between two ends, and where: by grids that zoom in on it."""
 
     @njit(nogil=True)
-    def lowest(fixed, low, high):
+    def lowest(fixed: Any, low: float, high: float) -> tuple[float, float]:
         value, at = math.inf, low
         for _ in range(zooms):
             value, best = math.inf, 0
@@ -47,7 +55,7 @@ def zooming(function, points, zooms):
 
 
 @njit(nogil=True)
-def spur_point(gear, string, azimuth: float, flank: Flank):
+def spur_point(gear: Numbers, string: float, azimuth: float, flank: float) -> tuple[float, float]:
     """A flank's point (x, y): its radius is hypot(base, string), its tooth narrows by the involute function."""
     base, half, offset = gear[0], gear[1], gear[5]
     roll = string / base
@@ -60,7 +68,7 @@ def spur_point(gear, string, azimuth: float, flank: Flank):
 
 
 @njit(nogil=True)
-def spur_distance(gear, x, y, z, azimuth: float, flank: Flank):
+def spur_distance(gear: Numbers, x: float, y: float, z: float, azimuth: float, flank: float) -> float:
     """See InvoluteGear.signed_distance; `offset` moves a flank and its edges along its normals."""
     base, half, tip, tip_string, half_face, offset = gear
     radius = max(math.hypot(x, y), base)
@@ -77,7 +85,7 @@ def spur_distance(gear, x, y, z, azimuth: float, flank: Flank):
 
 
 @njit(nogil=True)
-def _spur_at(fixed, string):
+def _spur_at(fixed: Any, string: float) -> float:
     (own, mate, pose, own_azimuth, mate_azimuth, flank), z = fixed
     px, py = spur_point(own, string, own_azimuth, flank)
     x = pose[0, 0] * px + pose[0, 1] * py + pose[0, 2] * z + pose[0, 3]
@@ -91,7 +99,7 @@ _over_string = zooming(_spur_at, PROFILE_POINTS, PROFILE_ZOOMS)
 
 
 @njit(nogil=True)
-def _spur_section(fixed, z):
+def _spur_section(fixed: Any, z: float) -> float:
     return _over_string((fixed, z), 0.0, fixed[0][3])[0]
 
 
@@ -99,13 +107,31 @@ _spur_lowest = zooming(_spur_section, FACE_POINTS, FACE_ZOOMS)
 
 
 @njit(nogil=True)
-def _spur_pairs(own, mate, pose, own_azimuth, mate_azimuth, flank: Flank, low, high, found):
+def _spur_pairs(
+    own: Numbers,
+    mate: Numbers,
+    pose: np.ndarray,
+    own_azimuth: np.ndarray,
+    mate_azimuth: np.ndarray,
+    flank: float,
+    low: float,
+    high: float,
+    found: np.ndarray,
+) -> None:
     for k in range(len(own_azimuth)):
         fixed = (own, mate, pose, own_azimuth[k], mate_azimuth[k], flank)
         found[k] = _spur_section(fixed, low) if low == high else _spur_lowest(fixed, low, high)[0]
 
 
-def spur_distances(mesh: Mesh, driver_angle, driven_angle, flank: Flank, *, offsets=None, section=None):
+def spur_distances(
+    mesh: Mesh,
+    driver_angle: np.ndarray,
+    driven_angle: np.ndarray,
+    flank: Flank,
+    *,
+    offsets: np.ndarray | None = None,
+    section: float | None = None,
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """As brute_force.distances; `offsets` (n, 2) [mm] along the normals, `section` a height on the driver [mm]."""
     count = len(driver_angle)
     offsets = np.zeros((count, 2)) if offsets is None else offsets
@@ -125,7 +151,7 @@ def spur_distances(mesh: Mesh, driver_angle, driven_angle, flank: Flank, *, offs
     return teeth, found, mates
 
 
-def _spur_numbers(gear, offset):
+def _spur_numbers(gear: InvoluteGear, offset: np.ndarray) -> list[Numbers]:
     base, tip = gear.base_radius, gear.tip_radius
     numbers = base, gear.half_angle(base), tip, np.sqrt(tip**2 - base**2), gear.face_width / 2
     rows = np.broadcast_arrays(*(np.ravel(number) for number in numbers), offset)
@@ -137,7 +163,7 @@ def _spur_numbers(gear, offset):
 
 
 @njit(nogil=True)
-def bevel_line(gear, roll, azimuth: float, flank: Flank):
+def bevel_line(gear: Numbers, roll: float, azimuth: float, flank: float) -> tuple[Vector, Vector]:
     """Direction of a flank's line and its normal out of the tooth; see bevel_brute_force.line."""
     sin, cos = gear[0], gear[1]
     about = azimuth + flank * (roll - gear[2])
@@ -149,7 +175,7 @@ def bevel_line(gear, roll, azimuth: float, flank: Flank):
 
 
 @njit(nogil=True)
-def bevel_foot(gear, x, y, z, azimuth: float, flank: Flank):
+def bevel_foot(gear: Numbers, x: float, y: float, z: float, azimuth: float, flank: float) -> float:
     """Roll of the line of the endless flank that is nearest: nothing of the point points upwards."""
     sin, cos = gear[0], gear[1]
     low, high = gear[3] - BEYOND, gear[4] + BEYOND
@@ -177,7 +203,7 @@ def bevel_foot(gear, x, y, z, azimuth: float, flank: Flank):
 
 
 @njit(nogil=True)
-def bevel_distance(gear, x, y, z, azimuth: float, flank: Flank):
+def bevel_distance(gear: Numbers, x: float, y: float, z: float, azimuth: float, flank: float) -> float:
     """See BevelNumbers.signed_distance."""
     roll = bevel_foot(gear, x, y, z, azimuth, flank)
     (dx, dy, dz), (ox, oy, oz) = bevel_line(gear, roll, azimuth, flank)
@@ -194,7 +220,7 @@ def bevel_distance(gear, x, y, z, azimuth: float, flank: Flank):
 
 
 @njit(nogil=True)
-def _bevel_at(fixed, roll):
+def _bevel_at(fixed: Any, roll: float) -> float:
     (own, mate, pose, own_azimuth, mate_azimuth, flank), radius = fixed
     (dx, dy, dz), (ox, oy, oz) = bevel_line(own, roll, own_azimuth, flank)
     px, py, pz = radius * dx + own[6] * ox, radius * dy + own[6] * oy, radius * dz + own[6] * oz
@@ -209,7 +235,7 @@ _over_roll = zooming(_bevel_at, PROFILE_POINTS, PROFILE_ZOOMS)
 
 
 @njit(nogil=True)
-def _bevel_section(fixed, radius):
+def _bevel_section(fixed: Any, radius: float) -> float:
     return _over_roll((fixed, radius), fixed[0][3], fixed[0][4])[0]
 
 
@@ -217,7 +243,15 @@ _bevel_lowest = zooming(_bevel_section, FACE_POINTS, FACE_ZOOMS)
 
 
 @njit(nogil=True)
-def _bevel_pairs(own, mate, pose, own_azimuth, mate_azimuth, flank: Flank, found):
+def _bevel_pairs(
+    own: Numbers,
+    mate: Numbers,
+    pose: np.ndarray,
+    own_azimuth: np.ndarray,
+    mate_azimuth: np.ndarray,
+    flank: float,
+    found: np.ndarray,
+) -> None:
     for k in range(len(own_azimuth)):
         fixed = (own, mate, pose, own_azimuth[k], mate_azimuth[k], flank)
         if own[7] == own[8]:
@@ -226,23 +260,25 @@ def _bevel_pairs(own, mate, pose, own_azimuth, mate_azimuth, flank: Flank, found
             found[k] = _bevel_lowest(fixed, own[7], own[8])[0]
 
 
-def bevel_distances(mesh: BevelMesh, driver_angle, driven_angle, flank: Flank):
+def bevel_distances(
+    mesh: BevelMesh, driver_angle: np.ndarray, driven_angle: np.ndarray, flank: Flank
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """As bevel_brute_force.distances, of one build."""
     around = np.arange(-TEETH_EACH_SIDE, TEETH_EACH_SIDE + 1)
     teeth = np.round(-driver_angle / mesh.driver.pitch)[:, None] + around
     azimuth = driver_angle[:, None] + mesh.driver.pitch * (teeth - flank / 2)
     mates = np.round((-azimuth * mesh.driver.teeth / mesh.driven.teeth - driven_angle[:, None]) / mesh.driven.pitch)
     poses = np.ascontiguousarray(mesh.driven_from_driver(driver_angle, driven_angle))
-    gears = [_bevel_numbers(gear) for gear in (mesh.driver, mesh.driven)]
+    own, mate = (_bevel_numbers(gear) for gear in (mesh.driver, mesh.driven))
     found = np.empty(teeth.shape)
     for row, pose in enumerate(poses):
         _bevel_pairs(
-            *gears, pose, mesh.driver.pitch * teeth[row], mesh.driven.pitch * mates[row], float(flank), found[row]
+            own, mate, pose, mesh.driver.pitch * teeth[row], mesh.driven.pitch * mates[row], float(flank), found[row]
         )
     return teeth, found, mates
 
 
-def _bevel_numbers(gear):
+def _bevel_numbers(gear: BevelNumbers) -> Numbers:
     base = gear.base_angle
     return tuple(
         float(number)

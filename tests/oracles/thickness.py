@@ -4,8 +4,10 @@ import numpy as np
 
 from tol3d.gearing.build import Build
 from tol3d.gearing.model import Model
+from tol3d.gears import SpurGear
 
 
 def thickness_of(model: Model, made: Build) -> np.ndarray:
     """Arcs at the reference circles of spur gears [mm], (trials, gears): half an arc turns its flank by arc/(2 r)."""
-    return made.flank_turn * np.array([2 * part.gear.reference_radius for part in model.gears])
+    gears = [part.gear for part in model.gears if isinstance(part.gear, SpurGear)]
+    return made.flank_turn * np.array([2 * gear.reference_radius for gear in gears])

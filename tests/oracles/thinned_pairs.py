@@ -5,6 +5,7 @@ The formulas stand in every handbook and are written out here, from the numbers 
 
 import math
 import tempfile
+from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -41,6 +42,7 @@ class ThinnedPair:
     @property
     def pitch_angle(self) -> float:
         """delta_1 [rad]: tan delta_1 = sin Sigma / (z2/z1 + cos Sigma)."""
+        assert self.sigma is not None, "a spur pair has no pitch angle"
         return math.atan2(math.sin(self.sigma), self.teeth[1] / self.teeth[0] + math.cos(self.sigma))
 
     @property
@@ -117,22 +119,28 @@ def random_pair(kind: str, seed: int) -> ThinnedPair:
 
 
 def _drawn(kind: str, rng: np.random.Generator) -> ThinnedPair:
-    teeth = tuple(int(z) for z in rng.integers(8, 61, 2))
+    drawn_teeth = rng.integers(8, 61, 2)
+    teeth = (int(drawn_teeth[0]), int(drawn_teeth[1]))
     module = round(float(np.exp(rng.uniform(math.log(0.5), math.log(10.0)))), 2)
     alpha = math.radians(round(float(rng.uniform(14.5, 25.0)), 1))
-    thinner = tuple(float(module * e) for e in rng.uniform(0.0, 0.03, 2))
+    thinner = _two(module * rng.uniform(0.0, 0.03, 2))
     if kind == "bevel":
         shift = round(float(rng.uniform(-0.6, 0.6)), 2)
         drawn = ThinnedPair(
             teeth, (shift, -shift), (1.0, 1.0), thinner, module, alpha, math.radians(rng.uniform(50, 120))
         )
-        faces = tuple(float(f) for f in drawn.outer * rng.uniform(0.05, 0.33, 2))
+        faces = _two(drawn.outer * rng.uniform(0.05, 0.33, 2))
         return ThinnedPair(teeth, drawn.shifts, faces, thinner, module, alpha, drawn.sigma)
-    shifts = tuple(round(float(x), 2) for x in rng.uniform(-0.5, 0.8, 2))
+    shifts = _two([round(float(x), 2) for x in rng.uniform(-0.5, 0.8, 2)])
     working = _tight_angle(sum(teeth), sum(shifts), alpha)
     distance = module * sum(teeth) * math.cos(alpha) / (2 * math.cos(working)) + module * float(rng.uniform(0.0, 0.1))
-    faces = tuple(float(module * f) for f in rng.uniform(3.0, 15.0, 2))
+    faces = _two(module * rng.uniform(3.0, 15.0, 2))
     return ThinnedPair(teeth, shifts, faces, thinner, module, alpha, None, distance)
+
+
+def _two(values: Iterable[float]) -> tuple[float, float]:
+    first, second = values
+    return float(first), float(second)
 
 
 def _tight_angle(teeth: int, shift: float, alpha: float) -> float:

@@ -152,7 +152,7 @@ def moments(terms: Terms) -> tuple[float, dict[str, float]]:
 
 def robot_lost_motion() -> tuple[float, dict[str, float]]:
     """Mean and variances by contributor of the shoulder's lost motion [rad]: 1' over 110/28, both pairs in full."""
-    mean, variances = math.radians(1 / 60) * 28 / 110, {}
+    mean, variances = math.radians(1 / 60) * 28 / 110, dict[str, float]()
     for terms, arm in robot_pairs():
         own, each = moments(terms)
         mean += own * 1e-3 / arm

@@ -263,7 +263,7 @@ def test_shims_from_python_are_those_of_the_command(tol3d_command: Command) -> N
 
 
 @pytest.fixture
-def tol3d_command(tol3d: Command):  # the fixture of conftest.py, whose name the module has here
+def tol3d_command(tol3d: Command) -> Command:  # the fixture of conftest.py, whose name the module has here
     return tol3d
 
 

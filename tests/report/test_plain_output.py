@@ -7,11 +7,10 @@ import sys
 from pathlib import Path
 
 import pytest
-from places import SCENES
+from places import SPUR_PAIR
 
 from tol3d.cli.console import PLAIN_SIGNS, PLAINLY, write_plainly
 
-SPUR = SCENES / "spur_pair.yaml"
 WESTERN = ("cp1252", "cp437", "latin-1", "ascii")
 
 
@@ -38,7 +37,7 @@ def test_every_plain_sign_is_ascii_and_no_longer_than_it_must_be() -> None:
 @pytest.mark.parametrize("encoding", WESTERN)
 def test_a_report_is_printed_in_any_encoding(encoding: str, tmp_path: Path) -> None:
     environment = os.environ | {"PYTHONIOENCODING": encoding, "PYTHONUTF8": "0"}
-    command = [sys.executable, "-m", "tol3d.cli", "run", str(SPUR), "--trials", "30", "--engine", "analytic"]
+    command = [sys.executable, "-m", "tol3d.cli", "run", str(SPUR_PAIR), "--trials", "30", "--engine", "analytic"]
     command += ["--no-picture", "--out", str(tmp_path / "run")]
     done = subprocess.run(command, capture_output=True, env=environment)
     assert done.returncode == 0, done.stderr

@@ -6,15 +6,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 from fixtures import Command
-from places import SCENES
+from places import SCENES, SPUR_PAIR
 from rich.console import Console, RenderableType
 from scipy import stats
 
 from tol3d import Overrides, Run, run_scene
 from tol3d.report.table import MOST_TABLES, Detail, run_report
 from tol3d.report.verdict import ACCEPTED_PPM, Judged, all_ok, verdict_table
-
-SPUR = SCENES / "spur_pair.yaml"
 
 
 def printed(renderable: RenderableType, width: int = 200) -> list[str]:
@@ -25,7 +23,7 @@ def printed(renderable: RenderableType, width: int = 200) -> list[str]:
 
 def spur(folder: Path, limits: str, trials: int = 4000, centre: float = 172.5) -> Run:
     """The spur pair with other limits of its normal backlash, N(53.4, 7.2) um."""
-    text = SPUR.read_text("utf-8")
+    text = SPUR_PAIR.read_text("utf-8")
     for old, new in (
         ("    lower_limit: 15 um  # the paper's lower limit\n", limits),
         ("centre_distance: 172.5 mm", f"centre_distance: {centre} mm"),
@@ -111,7 +109,7 @@ def test_failed_builds_are_out_of_a_measure_that_has_no_limits(tmp_path: Path) -
 
 def test_a_curve_and_a_bounded_measure_say_what_their_ends_are(tmp_path: Path) -> None:
     each = "  {0}: {{kind: normal_backlash, of: gear pair, over: turn, positions: 6, take: {1}, lower_limit: 40 um}}\n"
-    text = SPUR.read_text("utf-8").replace(
+    text = SPUR_PAIR.read_text("utf-8").replace(
         "measures:\n  normal", f"measures:\n{each.format('curve', 'curve')}  normal", 1
     )
     (tmp_path / "scene.yaml").write_text(text, "utf-8")
@@ -162,7 +160,9 @@ def test_quiet_prints_the_verdict_and_verbose_every_table(tol3d: Command, tmp_pa
 def test_the_exit_code_follows_the_accepted_share_where_one_is_said(tol3d: Command, tmp_path: Path) -> None:
     """Below 40 um lie 3.1 % of N(53.4, 7.2): of 4000 trials 125, and 88 to 161 but for one seed in a thousand."""
     text = (
-        SPUR.read_text("utf-8").replace("lower_limit: 15 um", "lower_limit: 40 um").replace("witness: 20", "witness: 0")
+        SPUR_PAIR.read_text("utf-8")
+        .replace("lower_limit: 15 um", "lower_limit: 40 um")
+        .replace("witness: 20", "witness: 0")
     )
     (tmp_path / "scene.yaml").write_text(text, "utf-8")
     arguments = (

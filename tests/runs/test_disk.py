@@ -12,7 +12,7 @@ import cadquery as cq
 import pytest
 from fixtures import Command
 from matplotlib.figure import Figure
-from places import SCENES
+from places import SPUR_PAIR
 
 from tol3d import InputError, Overrides, Run, RunError, open_run, run_scene
 from tol3d.errors import DiskError, refused_by_disk, unwritable
@@ -20,7 +20,6 @@ from tol3d.gears import SpurGear
 from tol3d.parts import named_solid, spur_gear
 from tol3d.report import export_run
 
-SPUR = SCENES / "spur_pair.yaml"
 FEW = Overrides(trials=40, engine="analytic", witness=0)
 REFUSALS = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EIO, errno.EROFS)
 LARGEST = 8  # blocks of 1024 bytes that a process of the test below may write to one file; a block of trials has more
@@ -28,7 +27,7 @@ LARGEST = 8  # blocks of 1024 bytes that a process of the test below may write t
 
 @pytest.fixture(scope="module")
 def finished(tmp_path_factory: pytest.TempPathFactory) -> Run:
-    return run_scene(SPUR, overrides=Overrides(trials=40, witness=0), out=tmp_path_factory.mktemp("runs") / "run")
+    return run_scene(SPUR_PAIR, overrides=Overrides(trials=40, witness=0), out=tmp_path_factory.mktemp("runs") / "run")
 
 
 def refused(number: int) -> Callable[..., None]:
@@ -44,8 +43,8 @@ def test_a_refused_write_of_a_run_names_its_file_and_exits_with_2(
 ) -> None:
     monkeypatch.setattr(os, "fsync", refused(number))
     with pytest.raises(DiskError):
-        run_scene(SPUR, overrides=FEW, out=tmp_path / "python")
-    code, _, err = tol3d("run", str(SPUR), "--engine", "analytic", "--no-picture", "--out", str(tmp_path / "run"))
+        run_scene(SPUR_PAIR, overrides=FEW, out=tmp_path / "python")
+    code, _, err = tol3d("run", str(SPUR_PAIR), "--engine", "analytic", "--no-picture", "--out", str(tmp_path / "run"))
     assert code == 2
     assert str(tmp_path / "run.partial") in err
     assert os.strerror(number) in err
@@ -87,7 +86,7 @@ def test_a_place_that_is_not_ours_to_write_is_wrong_input(tol3d: Command, tmp_pa
 
 @pytest.mark.skipif(sys.platform == "win32", reason="no limits on the size of files")
 def test_a_limit_on_the_size_of_files_is_told_and_the_same_command_goes_on(tmp_path: Path) -> None:
-    command = [sys.executable, "-m", "tol3d.cli", "run", str(SPUR), "--engine", "analytic", "--trials", "2000"]
+    command = [sys.executable, "-m", "tol3d.cli", "run", str(SPUR_PAIR), "--engine", "analytic", "--trials", "2000"]
     command += ["--no-picture", "--out", str(tmp_path / "run")]
     limited = ["bash", "-c", f'ulimit -f {LARGEST}; exec "$@"', "bash", *command]
     told = subprocess.run(limited, capture_output=True, text=True)

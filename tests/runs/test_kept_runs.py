@@ -4,7 +4,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from places import SCENES
+from places import SPUR_PAIR
 
 from tol3d import Overrides, RunError, open_run, replay, run_scene
 from tol3d.execution.pools import Execution
@@ -13,7 +13,6 @@ from tol3d.runs.run import DamageWarning
 from tol3d.simulate import Watch
 from tol3d.study import block as block_module
 
-SPUR = SCENES / "spur_pair.yaml"
 BLOCK = 1000
 STUDY = Overrides(trials=8 * BLOCK, engine="analytic")
 STATISTICS_ONLY = Execution(keep_trials=False)
@@ -30,7 +29,7 @@ def cut(out: Path, blocks: int, execution: Execution) -> None:
             raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):
-        run_scene(SPUR, overrides=STUDY, out=out, execution=execution, watch=Watch(progress=stop))
+        run_scene(SPUR_PAIR, overrides=STUDY, out=out, execution=execution, watch=Watch(progress=stop))
 
 
 def test_a_checkpoint_of_other_blocks_is_not_gone_on_from(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
@@ -39,8 +38,8 @@ def test_a_checkpoint_of_other_blocks_is_not_gone_on_from(monkeypatch: pytest.Mo
     cut(tmp_path / "run", 5, STATISTICS_ONLY)
     assert (tmp_path / "run.partial" / "checkpoint").exists()
     monkeypatch.setattr(block_module, "BLOCK_TRIALS", BLOCK // 2)
-    found = run_scene(SPUR, overrides=STUDY, out=tmp_path / "run", execution=STATISTICS_ONLY)
-    fresh = run_scene(SPUR, overrides=STUDY, out=tmp_path / "fresh", execution=STATISTICS_ONLY)
+    found = run_scene(SPUR_PAIR, overrides=STUDY, out=tmp_path / "run", execution=STATISTICS_ONLY)
+    fresh = run_scene(SPUR_PAIR, overrides=STUDY, out=tmp_path / "fresh", execution=STATISTICS_ONLY)
     assert found.summary["measures"]["normal backlash"]["analytic"]["count"] == STUDY.trials
     assert found.summary["measures"] == fresh.summary["measures"]
 
@@ -50,7 +49,7 @@ def test_a_run_that_keeps_its_trials_keeps_all_of_them_where_one_without_was_cut
 ) -> None:
     monkeypatch.setattr(block_module, "BLOCK_TRIALS", BLOCK)
     cut(tmp_path / "run", 5, STATISTICS_ONLY)
-    kept = run_scene(SPUR, overrides=STUDY, out=tmp_path / "run")
+    kept = run_scene(SPUR_PAIR, overrides=STUDY, out=tmp_path / "run")
     values = open_run(kept.path).columns("analytic:normal backlash")["analytic:normal backlash"]
     assert len(values) == STUDY.trials
     assert kept.summary["measures"]["normal backlash"]["analytic"]["mean"] == pytest.approx(values.mean(), rel=1e-12)
@@ -58,7 +57,7 @@ def test_a_run_that_keeps_its_trials_keeps_all_of_them_where_one_without_was_cut
 
 def with_measured_thickness(folder: Path) -> Path:
     """The spur pair, its wheel as thick as a file says."""
-    text = SPUR.read_text("utf-8")
+    text = SPUR_PAIR.read_text("utf-8")
     old = "{kind: normal, lower: -32 um, upper: -21 um}"
     assert text.count(old) == 1
     law = "{kind: empirical, file: measured.csv, column: s, unit: um}"
@@ -96,7 +95,7 @@ def test_a_block_without_a_line_in_the_list_is_refused_and_mended(
 ) -> None:
     """Nobody knows what such a block should be; here it is one that was exchanged for another of the run."""
     monkeypatch.setattr(block_module, "BLOCK_TRIALS", BLOCK)
-    run = run_scene(SPUR, overrides=STUDY, out=tmp_path / "run")
+    run = run_scene(SPUR_PAIR, overrides=STUDY, out=tmp_path / "run")
     before = run.columns()
     blocks = run.path / "trials"
     lines = (blocks / LIST).read_text("utf-8").splitlines(keepends=True)
@@ -105,7 +104,7 @@ def test_a_block_without_a_line_in_the_list_is_refused_and_mended(
     with pytest.raises(RunError):
         open_run(run.path).columns()
     with pytest.warns(DamageWarning):
-        mended = run_scene(SPUR, overrides=STUDY, out=tmp_path / "run", execution=Execution(resume=True))
+        mended = run_scene(SPUR_PAIR, overrides=STUDY, out=tmp_path / "run", execution=Execution(resume=True))
     assert mended.summary["timing"]["resumed_trials"] == 7 * BLOCK
     after = mended.columns()
     assert all(np.array_equal(before[name], after[name]) for name in before)

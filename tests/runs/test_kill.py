@@ -13,7 +13,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from places import SCENES
+from places import SPUR_PAIR
 
 from tol3d import InputError, Overrides, Run, RunError, open_run, replay, run_scene
 from tol3d.execution.pools import Execution
@@ -24,7 +24,6 @@ from tol3d.simulate import Watch
 from tol3d.study import block as block_module
 from tol3d.study.tally import Tally
 
-SPUR = SCENES / "spur_pair.yaml"
 BLOCK = 2000
 ANALYTIC = Overrides(trials=10 * BLOCK, engine="analytic")
 STATISTICS_ONLY = Execution(keep_trials=False)
@@ -63,7 +62,7 @@ def small_blocks(monkeypatch: pytest.MonkeyPatch) -> None:
 
 def command(out: Path, *more: str, told: signal.Signals = signal.SIGKILL, at: int = -1) -> list[str]:
     """`tol3d run` as above; `told` at the file of number `at`, from 0 on, or never."""
-    words = ["run", str(SPUR), "--out", str(out), *more]
+    words = ["run", str(SPUR_PAIR), "--out", str(out), *more]
     return [sys.executable, "-c", SMALL_BLOCKS, str(int(told)), str(at), *words]
 
 
@@ -167,7 +166,7 @@ def test_ctrl_c_tells_the_command_that_goes_on(tmp_path: Path) -> None:
     assert stopped.returncode == 130, stopped.stderr
     told = stopped.stderr
     line = told.splitlines()[-1]
-    assert line == f"tol3d run {SPUR} --out {out} {' '.join(KINDS['analytic'])} --resume"
+    assert line == f"tol3d run {SPUR_PAIR} --out {out} {' '.join(KINDS['analytic'])} --resume"
     assert "Traceback" not in told
     assert 0 < kept_blocks(out) < BLOCKS
     subprocess.run([*command(out), *line.split()[5:]], check=True, capture_output=True, timeout=HANGS)
@@ -187,13 +186,13 @@ def cut(out: Path, trials: int, overrides: Overrides = ANALYTIC, execution: Exec
             raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):
-        run_scene(SPUR, overrides=overrides, out=out, execution=execution, watch=Watch(progress=stop))
+        run_scene(SPUR_PAIR, overrides=overrides, out=out, execution=execution, watch=Watch(progress=stop))
 
 
 @pytest.mark.usefixtures("small_blocks")
 def test_statistics_without_trials_are_those_with_them(tmp_path: Path) -> None:
-    kept = run_scene(SPUR, overrides=ANALYTIC, out=tmp_path / "kept")
-    bare = run_scene(SPUR, overrides=ANALYTIC, out=tmp_path / "bare", execution=STATISTICS_ONLY)
+    kept = run_scene(SPUR_PAIR, overrides=ANALYTIC, out=tmp_path / "kept")
+    bare = run_scene(SPUR_PAIR, overrides=ANALYTIC, out=tmp_path / "bare", execution=STATISTICS_ONLY)
     assert bare.summary["measures"] == kept.summary["measures"]
     assert sorted(path.name for path in bare.path.iterdir()) == ["SHA256SUMS", "scene.yaml", "summary.json"]
     expected = kept.columns("analytic:normal backlash")["analytic:normal backlash"][4321]
@@ -205,10 +204,10 @@ def test_statistics_without_trials_are_those_with_them(tmp_path: Path) -> None:
 
 @pytest.mark.usefixtures("small_blocks")
 def test_statistics_go_on_from_their_checkpoint(tmp_path: Path) -> None:
-    whole = run_scene(SPUR, overrides=ANALYTIC, out=tmp_path / "whole", execution=STATISTICS_ONLY)
+    whole = run_scene(SPUR_PAIR, overrides=ANALYTIC, out=tmp_path / "whole", execution=STATISTICS_ONLY)
     cut(tmp_path / "run", 5 * BLOCK, execution=STATISTICS_ONLY)
     resumed = run_scene(
-        SPUR, overrides=ANALYTIC, out=tmp_path / "run", execution=Execution(keep_trials=False, resume=True)
+        SPUR_PAIR, overrides=ANALYTIC, out=tmp_path / "run", execution=Execution(keep_trials=False, resume=True)
     )
     assert resumed.summary["timing"]["resumed_trials"] == 4 * BLOCK  # progress is told before a block counts
     assert_same_run(whole, resumed)
@@ -216,14 +215,14 @@ def test_statistics_go_on_from_their_checkpoint(tmp_path: Path) -> None:
 
 @pytest.mark.usefixtures("small_blocks")
 def test_a_damaged_checkpoint_is_told_of_and_not_used(tmp_path: Path) -> None:
-    whole = run_scene(SPUR, overrides=ANALYTIC, out=tmp_path / "whole", execution=STATISTICS_ONLY)
+    whole = run_scene(SPUR_PAIR, overrides=ANALYTIC, out=tmp_path / "whole", execution=STATISTICS_ONLY)
     cut(tmp_path / "run", 5 * BLOCK, execution=STATISTICS_ONLY)
     checkpoint = tmp_path / "run.partial" / "checkpoint"
     content = bytearray(checkpoint.read_bytes())
     content[len(content) // 2] ^= 1
     checkpoint.write_bytes(content)
     with pytest.warns(CheckpointWarning, match="checkpoint: damaged"):
-        resumed = run_scene(SPUR, overrides=ANALYTIC, out=tmp_path / "run", execution=STATISTICS_ONLY)
+        resumed = run_scene(SPUR_PAIR, overrides=ANALYTIC, out=tmp_path / "run", execution=STATISTICS_ONLY)
     assert resumed.summary["timing"]["resumed_trials"] == 0
     assert_same_run(whole, resumed)
 
@@ -244,13 +243,13 @@ DAMAGES: dict[str, Callable[[Path], None]] = {"truncated": truncated, "altered":
 @pytest.mark.usefixtures("small_blocks")
 @pytest.mark.parametrize("damage", DAMAGES)
 def test_a_damaged_block_of_a_finished_run_is_refused_and_mended(damage: str, tmp_path: Path) -> None:
-    whole = run_scene(SPUR, overrides=ANALYTIC, out=tmp_path / "whole")
+    whole = run_scene(SPUR_PAIR, overrides=ANALYTIC, out=tmp_path / "whole")
     shutil.copytree(whole.path, tmp_path / "run")
     DAMAGES[damage](tmp_path / "run" / "trials" / "block-000003.parquet")
     with pytest.raises(RunError, match=r"block-000003\.parquet: damaged .*`tol3d run` with --resume makes it again"):
         open_run(tmp_path / "run").columns("analytic:normal backlash")
     with pytest.warns(DamageWarning, match=r"block-000003\.parquet: damaged .*; it is made again"):
-        mended = run_scene(SPUR, overrides=ANALYTIC, out=tmp_path / "run", execution=RESUME)
+        mended = run_scene(SPUR_PAIR, overrides=ANALYTIC, out=tmp_path / "run", execution=RESUME)
     assert mended.summary["timing"]["resumed_trials"] == 9 * BLOCK
     assert_same_run(whole, mended)
     assert sorted(path.name for path in tmp_path.iterdir()) == ["run", "whole"]
@@ -258,26 +257,26 @@ def test_a_damaged_block_of_a_finished_run_is_refused_and_mended(damage: str, tm
 
 @pytest.mark.usefixtures("small_blocks")
 def test_resuming_a_whole_run_leaves_it_as_it_is(tmp_path: Path) -> None:
-    run_scene(SPUR, overrides=ANALYTIC, out=tmp_path / "run")
+    run_scene(SPUR_PAIR, overrides=ANALYTIC, out=tmp_path / "run")
     before = {path: path.stat().st_mtime_ns for path in tmp_path.rglob("*")}
-    run_scene(SPUR, overrides=ANALYTIC, out=tmp_path / "run", execution=RESUME)
+    run_scene(SPUR_PAIR, overrides=ANALYTIC, out=tmp_path / "run", execution=RESUME)
     assert {path: path.stat().st_mtime_ns for path in tmp_path.rglob("*")} == before
 
 
 @pytest.mark.usefixtures("small_blocks")
 def test_a_block_damaged_behind_the_checkpoint_is_made_again(tmp_path: Path) -> None:
-    whole = run_scene(SPUR, overrides=ANALYTIC, out=tmp_path / "whole")
+    whole = run_scene(SPUR_PAIR, overrides=ANALYTIC, out=tmp_path / "whole")
     cut(tmp_path / "run", 5 * BLOCK)
     altered(tmp_path / "run.partial" / "trials" / "block-000001.parquet")
     with pytest.warns(DamageWarning, match=r"block-000001\.parquet"):
-        resumed = run_scene(SPUR, overrides=ANALYTIC, out=tmp_path / "run", execution=RESUME)
+        resumed = run_scene(SPUR_PAIR, overrides=ANALYTIC, out=tmp_path / "run", execution=RESUME)
     assert_same_run(whole, resumed)
 
 
 @pytest.mark.usefixtures("small_blocks")
 def test_resume_needs_something_to_go_on_with(tmp_path: Path) -> None:
     with pytest.raises(InputError, match=r"run: nothing to resume, neither a run nor run\.partial is there"):
-        run_scene(SPUR, overrides=ANALYTIC, out=tmp_path / "run", execution=RESUME)
+        run_scene(SPUR_PAIR, overrides=ANALYTIC, out=tmp_path / "run", execution=RESUME)
     assert list(tmp_path.iterdir()) == []
 
 
@@ -286,20 +285,20 @@ def test_resume_of_something_else_says_what_differs_and_leaves_it(tmp_path: Path
     cut(tmp_path / "run", 3 * BLOCK)
     before = sorted(tmp_path.rglob("*"))
     other = tmp_path / "scene.yaml"
-    other.write_text(SPUR.read_text("utf-8").replace("172.5 mm", "172.51 mm"), "utf-8")
+    other.write_text(SPUR_PAIR.read_text("utf-8").replace("172.5 mm", "172.51 mm"), "utf-8")
     seeded = Overrides(trials=ANALYTIC.trials, engine="analytic", seed=5)
     for scene, study, execution, words in (
-        (SPUR, seeded, RESUME, "study: seed 1 there, 5 now"),
+        (SPUR_PAIR, seeded, RESUME, "study: seed 1 there, 5 now"),
         (other, ANALYTIC, RESUME, "the scene's text"),
-        (SPUR, ANALYTIC, Execution(keep_trials=False, resume=True), "blocks: kept True there, False now"),
+        (SPUR_PAIR, ANALYTIC, Execution(keep_trials=False, resume=True), "blocks: kept True there, False now"),
     ):
         with pytest.raises(RunError, match=words):
             run_scene(scene, overrides=study, out=tmp_path / "run", execution=execution)
     other.unlink()
     assert sorted(tmp_path.rglob("*")) == before
-    run_scene(SPUR, overrides=ANALYTIC, out=tmp_path / "run", execution=RESUME)
+    run_scene(SPUR_PAIR, overrides=ANALYTIC, out=tmp_path / "run", execution=RESUME)
     with pytest.raises(RunError, match=r"this is a finished run of something else .*study: seed 1 there, 5 now"):
-        run_scene(SPUR, overrides=seeded, out=tmp_path / "run", execution=RESUME)
+        run_scene(SPUR_PAIR, overrides=seeded, out=tmp_path / "run", execution=RESUME)
 
 
 @pytest.mark.usefixtures("small_blocks")
@@ -307,7 +306,7 @@ def test_a_kill_before_anything_was_kept_is_in_nobody_s_way(tmp_path: Path) -> N
     (tmp_path / "run.partial").mkdir()
     for name in ("lock", "fingerprint.json.writing"):
         (tmp_path / "run.partial" / name).touch()
-    assert run_scene(SPUR, overrides=ANALYTIC, out=tmp_path / "run").trials == ANALYTIC.trials
+    assert run_scene(SPUR_PAIR, overrides=ANALYTIC, out=tmp_path / "run").trials == ANALYTIC.trials
 
 
 # a full disk --------------------------------------------------------------------------------------
@@ -355,7 +354,7 @@ def refusal(call: Callable[[], object]) -> str | None:
 
 @pytest.mark.usefixtures("small_blocks")
 def test_every_write_may_find_the_disk_full(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    whole = run_scene(SPUR, overrides=ANALYTIC, out=tmp_path / "whole")
+    whole = run_scene(SPUR_PAIR, overrides=ANALYTIC, out=tmp_path / "whole")
     real, calls = os.fsync, iter(range(10**6))
 
     def full_at(number: int) -> None:
@@ -370,7 +369,7 @@ def test_every_write_may_find_the_disk_full(tmp_path: Path, monkeypatch: pytest.
     for number in range(3, 10**6, 3):  # the first three are written before the study begins
         calls = iter(range(10**6))
         full_at(number)
-        told = refusal(lambda: run_scene(SPUR, overrides=ANALYTIC, out=tmp_path / "run"))
+        told = refusal(lambda: run_scene(SPUR_PAIR, overrides=ANALYTIC, out=tmp_path / "run"))
         if told is None:
             break
         refused += 1

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 from fixtures import Command
-from places import SCENES
+from places import SPUR_PAIR
 
 from tol3d import Overrides, RunError, open_run, run_scene
 from tol3d.cli.arguments import scene_path
@@ -17,7 +17,6 @@ from tol3d.runs.manifest import MANIFEST
 from tol3d.runs.occupant import MovedAsideWarning
 from tol3d.simulate import Watch, effective_model, folder_for, load
 
-SPUR = SCENES / "spur_pair.yaml"
 FEW = Overrides(trials=20, engine="analytic", witness=0)
 OTHER_SEED = Overrides(trials=20, engine="analytic", witness=0, seed=5)
 MORE = Overrides(trials=30, engine="analytic", witness=0)
@@ -42,7 +41,7 @@ def test_a_folder_of_a_name_that_was_once_a_backup_is_left_alone(tmp_path: Path)
     precious = project(tmp_path / "a.old")
     before = files_in(precious)
     for _ in range(2):
-        run_scene(SPUR, overrides=FEW, out=tmp_path / "a")
+        run_scene(SPUR_PAIR, overrides=FEW, out=tmp_path / "a")
     assert files_in(precious) == before
     assert sorted(path.name for path in tmp_path.iterdir()) == ["a", "a.old"]
 
@@ -62,7 +61,7 @@ def test_a_foreign_folder_with_a_summary_is_refused_even_by_force(text: str, for
     (folder / "summary.json").write_text(text, "utf-8")
     before = files_in(folder)
     with pytest.raises(RunError, match=r"project: exists and is not a tol3d run .*choose another folder with --out"):
-        run_scene(SPUR, overrides=FEW, out=folder, force=force)
+        run_scene(SPUR_PAIR, overrides=FEW, out=folder, force=force)
     assert files_in(folder) == before
     assert [path.name for path in tmp_path.iterdir()] == ["project"]
 
@@ -92,7 +91,7 @@ def drawn(place: Path, summary: object) -> None:
 
 
 def a_run(folder: Path, overrides: Overrides = FEW, *, force: bool = False) -> None:
-    run_scene(SPUR, overrides=overrides, out=folder, watch=Watch(finisher=drawn), force=force)
+    run_scene(SPUR_PAIR, overrides=overrides, out=folder, watch=Watch(finisher=drawn), force=force)
 
 
 @pytest.mark.parametrize("added", ADDED)
@@ -145,18 +144,18 @@ def test_another_study_is_refused_until_it_is_forced(other: Overrides, words: st
 def test_another_scene_of_the_same_file_name_is_refused(tmp_path: Path) -> None:
     a_run(tmp_path / "run")
     other = tmp_path / "spur_pair.yaml"
-    other.write_text(SPUR.read_text("utf-8").replace("172.5 mm", "172.51 mm"), "utf-8")
+    other.write_text(SPUR_PAIR.read_text("utf-8").replace("172.5 mm", "172.51 mm"), "utf-8")
     with pytest.raises(RunError, match=r"run: holds another study \(the scene's text\)"):
         run_scene(other, overrides=FEW, out=tmp_path / "run")
 
 
 def test_trials_are_not_replaced_by_statistics_only_but_these_by_trials(tmp_path: Path) -> None:
-    run_scene(SPUR, overrides=FEW, out=tmp_path / "run")
+    run_scene(SPUR_PAIR, overrides=FEW, out=tmp_path / "run")
     bare = Execution(keep_trials=False)
     with pytest.raises(RunError, match="holds the trials, too"):
-        run_scene(SPUR, overrides=FEW, out=tmp_path / "run", execution=bare)
-    run_scene(SPUR, overrides=FEW, out=tmp_path / "run", execution=bare, force=True)
-    assert run_scene(SPUR, overrides=FEW, out=tmp_path / "run").keeps_trials
+        run_scene(SPUR_PAIR, overrides=FEW, out=tmp_path / "run", execution=bare)
+    run_scene(SPUR_PAIR, overrides=FEW, out=tmp_path / "run", execution=bare, force=True)
+    assert run_scene(SPUR_PAIR, overrides=FEW, out=tmp_path / "run").keeps_trials
 
 
 def test_an_interrupted_run_of_another_study_is_kept_until_it_is_forced(tmp_path: Path) -> None:
@@ -164,14 +163,14 @@ def test_an_interrupted_run_of_another_study_is_kept_until_it_is_forced(tmp_path
         raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):
-        run_scene(SPUR, overrides=FEW, out=tmp_path / "run", watch=Watch(progress=stop))
+        run_scene(SPUR_PAIR, overrides=FEW, out=tmp_path / "run", watch=Watch(progress=stop))
     (tmp_path / "run.partial" / "notes.md").write_text("stopped for lunch", "utf-8")
     before = files_in(tmp_path / "run.partial")
     assert "trials/block-000000.parquet" in before
     with pytest.raises(RunError, match=r"run\.partial: an interrupted run of another study is kept there \(.*seed 1"):
-        run_scene(SPUR, overrides=OTHER_SEED, out=tmp_path / "run")
+        run_scene(SPUR_PAIR, overrides=OTHER_SEED, out=tmp_path / "run")
     assert files_in(tmp_path / "run.partial") == before
-    run = run_scene(SPUR, overrides=OTHER_SEED, out=tmp_path / "run", force=True)
+    run = run_scene(SPUR_PAIR, overrides=OTHER_SEED, out=tmp_path / "run", force=True)
     assert run.summary["timing"]["resumed_trials"] == 0
     assert (run.path / "notes.md").read_text("utf-8") == "stopped for lunch"
 
@@ -184,7 +183,7 @@ def test_a_partial_folder_of_somebody_else_is_left_alone(tmp_path: Path) -> None
     before = files_in(precious)
     for force in (False, True):
         with pytest.raises(RunError, match=r"run\.partial: exists and is not an interrupted run; move it away"):
-            run_scene(SPUR, overrides=FEW, out=tmp_path / "run", force=force)
+            run_scene(SPUR_PAIR, overrides=FEW, out=tmp_path / "run", force=force)
     assert files_in(precious) == before
 
 
@@ -198,7 +197,7 @@ def test_mending_a_run_leaves_what_is_kept_in_it(tmp_path: Path) -> None:
     whole = files_in(tmp_path / "run")
     block.write_bytes(block.read_bytes()[:-9])
     with pytest.warns(UserWarning, match="it is made again"):
-        run_scene(SPUR, overrides=FEW, out=tmp_path / "run", execution=Execution(resume=True))
+        run_scene(SPUR_PAIR, overrides=FEW, out=tmp_path / "run", execution=Execution(resume=True))
     mended = files_in(tmp_path / "run")
     assert {name for name in whole if whole[name] != mended.get(name)} <= {"summary.json", MANIFEST}
     assert [path.name for path in tmp_path.iterdir()] == ["run"]
@@ -211,7 +210,7 @@ def test_a_note_written_while_a_run_is_replaced_is_not_lost(tmp_path: Path) -> N
         (tmp_path / "run" / "notes.md").write_text("just now", "utf-8")
 
     with pytest.warns(MovedAsideWarning, match=r"notes\.md"):
-        run_scene(SPUR, overrides=FEW, out=tmp_path / "run", watch=Watch(finisher=write_a_note))
+        run_scene(SPUR_PAIR, overrides=FEW, out=tmp_path / "run", watch=Watch(finisher=write_a_note))
     assert (tmp_path / "run.1" / "notes.md").read_text("utf-8") == "just now"
     assert open_run(tmp_path / "run").trials == 20
 
@@ -286,14 +285,14 @@ def test_by_default_each_study_has_a_folder_and_finds_it_again(tmp_path: Path, m
     monkeypatch.chdir(tmp_path)
     other = tmp_path / "other" / "spur_pair.yaml"
     other.parent.mkdir()
-    other.write_text(SPUR.read_text("utf-8").replace("172.5 mm", "172.51 mm"), "utf-8")
+    other.write_text(SPUR_PAIR.read_text("utf-8").replace("172.5 mm", "172.51 mm"), "utf-8")
     plain, second, third = (Path("runs") / name for name in ("spur_pair", "spur_pair-2", "spur_pair-3"))
     for scene, overrides, expected in (
-        (SPUR, FEW, plain),
-        (SPUR, FEW, plain),
+        (SPUR_PAIR, FEW, plain),
+        (SPUR_PAIR, FEW, plain),
         (other, FEW, second),
-        (SPUR, OTHER_SEED, third),
-        (SPUR, OTHER_SEED, third),
+        (SPUR_PAIR, OTHER_SEED, third),
+        (SPUR_PAIR, OTHER_SEED, third),
         (other, FEW, second),
         (scene_path("spur_pair"), FEW, plain),  # the same text, wherever it lies
     ):
@@ -301,7 +300,7 @@ def test_by_default_each_study_has_a_folder_and_finds_it_again(tmp_path: Path, m
         assert folder == expected
         run_scene(scene, overrides=overrides, out=folder)
     (tmp_path / plain / "notes.md").write_text("kept", "utf-8")
-    assert default_folder(SPUR) == Path("runs") / "spur_pair-4"
+    assert default_folder(SPUR_PAIR) == Path("runs") / "spur_pair-4"
 
 
 def test_by_default_an_interrupted_run_is_found_again(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -311,13 +310,15 @@ def test_by_default_an_interrupted_run_is_found_again(tmp_path: Path, monkeypatc
         raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):
-        run_scene(SPUR, overrides=OTHER_SEED, out=default_folder(SPUR, OTHER_SEED), watch=Watch(progress=stop))
-    run_scene(SPUR, overrides=FEW, out=default_folder(SPUR))
+        run_scene(
+            SPUR_PAIR, overrides=OTHER_SEED, out=default_folder(SPUR_PAIR, OTHER_SEED), watch=Watch(progress=stop)
+        )
+    run_scene(SPUR_PAIR, overrides=FEW, out=default_folder(SPUR_PAIR))
     assert sorted(path.name for path in (tmp_path / "runs").iterdir()) == ["spur_pair-2", "spur_pair.partial"]
-    assert default_folder(SPUR, OTHER_SEED, Execution(resume=True)) == Path("runs") / "spur_pair"
-    assert default_folder(SPUR, OTHER_SEED) == Path("runs") / "spur_pair"
-    assert default_folder(SPUR, FEW, Execution(resume=True)) == Path("runs") / "spur_pair-2"
-    assert default_folder(SPUR, MORE, Execution(resume=True)) == Path("runs") / "spur_pair"  # says what is there
+    assert default_folder(SPUR_PAIR, OTHER_SEED, Execution(resume=True)) == Path("runs") / "spur_pair"
+    assert default_folder(SPUR_PAIR, OTHER_SEED) == Path("runs") / "spur_pair"
+    assert default_folder(SPUR_PAIR, FEW, Execution(resume=True)) == Path("runs") / "spur_pair-2"
+    assert default_folder(SPUR_PAIR, MORE, Execution(resume=True)) == Path("runs") / "spur_pair"  # says what is there
 
 
 def test_the_command_says_where_it_went_and_why(

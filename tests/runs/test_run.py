@@ -11,7 +11,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from places import SCENES
+from places import SCENES, SPUR_PAIR
 
 from tol3d import InputError, Overrides, Run, RunError, open_run, replay, run_scene
 from tol3d.execution import folding
@@ -21,8 +21,6 @@ from tol3d.runs.worst import worst_trial
 from tol3d.scene import load_scene
 from tol3d.simulate import Watch
 from tol3d.study import block as block_module
-
-SPUR = SCENES / "spur_pair.yaml"
 
 
 def assert_same_bits(first: dict[str, np.ndarray], second: dict[str, np.ndarray], rows: slice = slice(None)) -> None:
@@ -38,18 +36,18 @@ def assert_same_bits(first: dict[str, np.ndarray], second: dict[str, np.ndarray]
 
 @pytest.fixture(scope="module")
 def spur_run(tmp_path_factory: pytest.TempPathFactory):
-    return run_scene(SPUR, overrides=Overrides(trials=300), out=tmp_path_factory.mktemp("runs") / "spur")
+    return run_scene(SPUR_PAIR, overrides=Overrides(trials=300), out=tmp_path_factory.mktemp("runs") / "spur")
 
 
 def test_two_workers_give_the_same_bits_as_one(spur_run: Run, tmp_path: Path) -> None:
-    other = run_scene(SPUR, overrides=Overrides(trials=300), out=tmp_path / "two", execution=Execution(workers=2))
+    other = run_scene(SPUR_PAIR, overrides=Overrides(trials=300), out=tmp_path / "two", execution=Execution(workers=2))
     assert_same_bits(spur_run.columns(), other.columns())
     for name, measure in spur_run.summary["measures"].items():
         assert other.summary["measures"][name] == measure
 
 
 def test_more_trials_leave_the_first_ones_as_they_were(spur_run: Run, tmp_path: Path) -> None:
-    fewer = run_scene(SPUR, overrides=Overrides(trials=120), out=tmp_path / "fewer")
+    fewer = run_scene(SPUR_PAIR, overrides=Overrides(trials=120), out=tmp_path / "fewer")
     assert_same_bits(spur_run.columns(), fewer.columns(), slice(120))
 
 
@@ -69,7 +67,7 @@ def test_replay_of_a_trial_that_is_not_there_is_refused(spur_run: Run) -> None:
 
 
 def test_adding_a_contributor_leaves_the_others_draws_as_they_were(spur_run: Run, tmp_path: Path) -> None:
-    text = SPUR.read_text("utf-8")
+    text = SPUR_PAIR.read_text("utf-8")
     added = "tolerances:\n  another one: {kind: axial_shift, of: wheel, distribution: {kind: constant, value: 5 um}}\n"
     scene = tmp_path / "more.yaml"
     scene.write_text(text.replace("tolerances:\n", added, 1), "utf-8")
@@ -99,14 +97,14 @@ def test_summary_agrees_with_the_columns(spur_run: Run) -> None:
 
 
 def test_a_run_keeps_the_scene_and_its_study(spur_run: Run) -> None:
-    assert (spur_run.path / "scene.yaml").read_text("utf-8") == SPUR.read_text("utf-8")
+    assert (spur_run.path / "scene.yaml").read_text("utf-8") == SPUR_PAIR.read_text("utf-8")
     assert spur_run.summary["study"]["trials"] == 300
     assert spur_run.summary["files"].keys() == {"scene.yaml"}
     assert len(spur_run.summary["files"]["scene.yaml"]) == 64
 
 
 def test_an_analytic_run_needs_no_geometry(tmp_path: Path) -> None:
-    run = run_scene(SPUR, overrides=Overrides(trials=1000, engine="analytic"), out=tmp_path / "analytic")
+    run = run_scene(SPUR_PAIR, overrides=Overrides(trials=1000, engine="analytic"), out=tmp_path / "analytic")
     assert not [name for name in run.column_names if name.startswith("geometric:")]
     assert "geometric" not in run.summary["measures"]["normal backlash"]
 
@@ -114,13 +112,13 @@ def test_an_analytic_run_needs_no_geometry(tmp_path: Path) -> None:
 def test_an_older_run_is_replaced_and_anything_else_is_left_alone(tmp_path: Path) -> None:
     study = Overrides(trials=20, engine="analytic")
     folder = tmp_path / "run"
-    run_scene(SPUR, overrides=study, out=folder)
-    assert run_scene(SPUR, overrides=study, out=folder).trials == 20
+    run_scene(SPUR_PAIR, overrides=study, out=folder)
+    assert run_scene(SPUR_PAIR, overrides=study, out=folder).trials == 20
     other = tmp_path / "mine"
     other.mkdir()
     (other / "thesis.txt").write_text("precious")
     with pytest.raises(RunError, match="not a tol3d run"):
-        run_scene(SPUR, overrides=study, out=other)
+        run_scene(SPUR_PAIR, overrides=study, out=other)
     assert (other / "thesis.txt").read_text() == "precious"
     assert sorted(path.name for path in tmp_path.iterdir()) == ["mine", "run"]
 
@@ -129,13 +127,13 @@ def test_a_folder_that_cannot_be_written_is_refused(tmp_path: Path) -> None:
     blocked = tmp_path / "file"
     blocked.write_text("not a folder")
     with pytest.raises(RunError, match="cannot be written"):
-        run_scene(SPUR, overrides=Overrides(trials=5, engine="analytic"), out=blocked / "run")
+        run_scene(SPUR_PAIR, overrides=Overrides(trials=5, engine="analytic"), out=blocked / "run")
 
 
 def test_trials_that_interfere_keep_their_row_and_their_status(tmp_path: Path) -> None:
     scene = tmp_path / "tight.yaml"
     # +-60 um about a mean build with 2 um of play: about half of the builds cannot be put together
-    text = SPUR.read_text("utf-8").replace("centre_distance: 172.5 mm", "centre_distance: 172.425 mm")
+    text = SPUR_PAIR.read_text("utf-8").replace("centre_distance: 172.5 mm", "centre_distance: 172.425 mm")
     scene.write_text(text.replace("lower: -20 um, upper: 20 um", "lower: -60 um, upper: 60 um"), "utf-8")
     run = run_scene(scene, overrides=Overrides(trials=200), out=tmp_path / "tight")
     columns = run.columns()
@@ -160,7 +158,7 @@ def test_trials_that_interfere_keep_their_row_and_their_status(tmp_path: Path) -
 def test_a_killed_run_goes_on_where_it_was(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(block_module, "BLOCK_TRIALS", 500)
     study = Overrides(trials=3000, engine="analytic")
-    whole = run_scene(SPUR, overrides=study, out=tmp_path / "whole")
+    whole = run_scene(SPUR_PAIR, overrides=study, out=tmp_path / "whole")
     done = 0
 
     def stop_in_the_middle(count: int) -> None:
@@ -170,13 +168,13 @@ def test_a_killed_run_goes_on_where_it_was(tmp_path: Path, monkeypatch: pytest.M
             raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):
-        run_scene(SPUR, overrides=study, out=tmp_path / "cut", watch=Watch(progress=stop_in_the_middle))
+        run_scene(SPUR_PAIR, overrides=study, out=tmp_path / "cut", watch=Watch(progress=stop_in_the_middle))
     kept = sorted((tmp_path / "cut.partial" / "trials").glob("*.parquet"))
     assert len(kept) == 3
     before = [path.stat().st_mtime_ns for path in kept]
     kept[1].write_bytes(kept[1].read_bytes()[:-100])  # a damaged block is made again
     with pytest.warns(DamageWarning, match=r"block-000001\.parquet: damaged .*; it is made again"):
-        resumed = run_scene(SPUR, overrides=study, out=tmp_path / "cut")
+        resumed = run_scene(SPUR_PAIR, overrides=study, out=tmp_path / "cut")
     assert_same_bits(whole.columns(), resumed.columns())
     assert resumed.summary["measures"] == whole.summary["measures"]
     assert resumed.summary["timing"]["resumed_trials"] == 1000
@@ -188,7 +186,7 @@ def test_a_killed_run_goes_on_where_it_was(tmp_path: Path, monkeypatch: pytest.M
 def test_pieces_of_an_unfinished_block_are_kept(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(folding, "KEEP_EVERY", 0.0)
     study = Overrides(trials=2000, engine="fcl")
-    whole = run_scene(SPUR, overrides=study, out=tmp_path / "whole")
+    whole = run_scene(SPUR_PAIR, overrides=study, out=tmp_path / "whole")
     seen: list[int] = []
 
     def stop_in_the_middle(count: int) -> None:
@@ -197,11 +195,11 @@ def test_pieces_of_an_unfinished_block_are_kept(tmp_path: Path, monkeypatch: pyt
             raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):
-        run_scene(SPUR, overrides=study, out=tmp_path / "cut", watch=Watch(progress=stop_in_the_middle))
+        run_scene(SPUR_PAIR, overrides=study, out=tmp_path / "cut", watch=Watch(progress=stop_in_the_middle))
     kept = list((tmp_path / "cut.partial" / "pieces").glob("*.parquet"))
     assert len(kept) == 3  # of 256 trials each; the fourth was told of before it was kept
     told: list[int] = []
-    resumed = run_scene(SPUR, overrides=study, out=tmp_path / "cut", watch=Watch(progress=told.append))
+    resumed = run_scene(SPUR_PAIR, overrides=study, out=tmp_path / "cut", watch=Watch(progress=told.append))
     assert told[:3] == [256, 256, 256]
     assert sum(told) == 2000
     assert_same_bits(whole.columns(), resumed.columns())
@@ -214,7 +212,7 @@ def test_pieces_of_an_unfinished_block_are_kept(tmp_path: Path, monkeypatch: pyt
 
 
 def test_a_damaged_block_of_a_run_is_named(tmp_path: Path) -> None:
-    run = run_scene(SPUR, overrides=Overrides(trials=20, engine="analytic"), out=tmp_path / "run")
+    run = run_scene(SPUR_PAIR, overrides=Overrides(trials=20, engine="analytic"), out=tmp_path / "run")
     block = tmp_path / "run" / "trials" / "block-000000.parquet"
     block.write_bytes(block.read_bytes()[:-50])
     with pytest.raises(RunError, match=r"block-000000\.parquet: damaged"):
@@ -226,12 +224,12 @@ def test_a_partial_of_another_study_is_not_used(tmp_path: Path) -> None:
     folder.mkdir(parents=True)
     (folder.parent / "fingerprint.json").write_text("{}")
     (folder / "block-000000.parquet").write_text("of another study")
-    run = run_scene(SPUR, overrides=Overrides(trials=20, engine="analytic"), out=tmp_path / "run")
+    run = run_scene(SPUR_PAIR, overrides=Overrides(trials=20, engine="analytic"), out=tmp_path / "run")
     assert run.trials == 20
 
 
 def test_a_kill_leaves_no_run_behind(tmp_path: Path) -> None:
-    command = [sys.executable, "-m", "tol3d.cli", "run", str(SPUR), "--trials", "200000", "--workers", "1"]
+    command = [sys.executable, "-m", "tol3d.cli", "run", str(SPUR_PAIR), "--trials", "200000", "--workers", "1"]
     process = subprocess.Popen([*command, "--out", str(tmp_path / "run")], stderr=subprocess.DEVNULL)
     for _ in range(600):
         if (tmp_path / "run.partial").exists():
@@ -245,7 +243,7 @@ def test_a_kill_leaves_no_run_behind(tmp_path: Path) -> None:
 
 
 def test_a_curve_is_out_of_limits_where_any_position_is(tmp_path: Path) -> None:
-    text = SPUR.read_text("utf-8")
+    text = SPUR_PAIR.read_text("utf-8")
     curve = "lost curve: {kind: normal_backlash, of: gear pair, over: turn, take: curve, positions: 8, "
     measures = f"measures:\n  {curve}lower_limit: 45 um, upper_limit: 70 um}}\n"
     scene = tmp_path / "curve.yaml"
@@ -261,7 +259,7 @@ def test_a_curve_is_out_of_limits_where_any_position_is(tmp_path: Path) -> None:
 
 def test_draws_below_zero_of_a_clearance_are_kept_and_counted(tmp_path: Path) -> None:
     # N(16, 14/3) um falls below 0 with 3.0e-4: of 20 000 expect 6.1, and between 1 and 16 but for one in 1e4 seeds
-    run = run_scene(SPUR, overrides=Overrides(trials=20_000, engine="analytic"), out=tmp_path / "run")
+    run = run_scene(SPUR_PAIR, overrides=Overrides(trials=20_000, engine="analytic"), out=tmp_path / "run")
     below = int((run.columns("bearing clearance [um]")["bearing clearance [um]"] < 0).sum())
     assert 1 <= below <= 16
     (warning,) = run.summary["warnings"]

@@ -227,6 +227,7 @@ def found(model: Model, sampler: Any, trials: int, seed: int) -> np.ndarray:
     model = replace(model, study=study)
     values = 1e3 * analytic_values(model, measure, block_of(model, 0, trials))[:, 0]
     moments, form, rows = Moments.of(values), closed_form(model, measure), rows_of_replicates(study, 0, trials)
+    assert form is not None
     errors = Replicated.of(values, rows, None, None) if rows else moments
     return np.array([moments.mean - 1e3 * form.mean, moments.sigma - 1e3 * form.sigma, errors.mean_se, errors.sigma_se])
 

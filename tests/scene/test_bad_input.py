@@ -5,6 +5,7 @@ import random
 import re
 import subprocess
 import sys
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -738,7 +739,7 @@ def test_a_megabyte_of_anything_is_refused_without_a_crash(tmp_path: Path, text:
         load_scene(path)
 
 
-GROWING = {
+GROWING: dict[str, Callable[[int], str]] = {
     "one word": lambda n: "a" * n,
     "blanks": lambda n: " " * n,
     "escapes": lambda n: '"' + "\\u0041" * (n // 6),

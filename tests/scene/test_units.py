@@ -20,7 +20,7 @@ quantities = st.builds(Quantity, st.floats(allow_nan=False, allow_infinity=False
 
 @pytest.mark.parametrize(("dimension", "unit"), [(d, unit) for d, table in FACTORS.items() for unit in table])
 def test_factors_are_those_of_pint(dimension: str, unit: str) -> None:
-    registry = pint.UnitRegistry()
+    registry: pint.UnitRegistry[float] = pint.UnitRegistry()
     factor = registry.Quantity(1.0, PINT_NAMES.get(unit, unit)).to(INNER[dimension]).magnitude
     assert Quantity(1.0, unit).internal == pytest.approx(factor, rel=1e-15)  # one rounding of the quotient
 

@@ -5,17 +5,14 @@ across an axis, sin(delta) along it; cos(alpha) for an arc of a tooth, 2 sin(alp
 """
 
 import math
-import tomllib
 from collections.abc import Callable
-from functools import cache
-from typing import Any
 
 import pytest
-from places import SCENES
+from expected import expected
+from places import SCENES as FOLDER
 
-from tol3d import Overrides, Run, load_scene, run_scene
+from tol3d import Run, load_scene
 
-FOLDER = SCENES
 SCENES = sorted(path.stem for path in FOLDER.glob("*bevel*.yaml"))
 ALPHA = math.radians(20.0)
 SIN, COS = math.sin(ALPHA), math.cos(ALPHA)
@@ -68,21 +65,6 @@ BY_HAND: dict[str, Callable[[], Terms]] = {
     "bevel_pair_shimmed": lambda: published(shims=48.0),
     "every_bevel_field": every_bevel_field,
 }
-
-
-@cache
-def expected(scene: str) -> dict[str, Any]:
-    return tomllib.loads((FOLDER / f"{scene}.expected.toml").read_text("utf-8"))
-
-
-@pytest.fixture(scope="module")
-def run_of(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], Run]:
-    @cache
-    def run(scene: str) -> Run:
-        trials = Overrides(trials=expected(scene)["trials"])
-        return run_scene(FOLDER / f"{scene}.yaml", overrides=trials, out=tmp_path_factory.mktemp("runs") / scene)
-
-    return run
 
 
 def test_every_bevel_scene_is_worked_out_by_hand() -> None:

@@ -11,7 +11,7 @@ import pytest
 from places import SCENES
 
 from tol3d.gearing.engines.lazy import exact_engine
-from tol3d.gearing.model import Model, Reading, ToothThickness, model_from_scene
+from tol3d.gearing.model import Backlash, Model, Reading, ToothThickness, model_from_scene
 from tol3d.scene import load_scene
 from tol3d.study.block import drawn_block, simulate_block
 
@@ -49,6 +49,7 @@ def model_of(case: Case) -> Model:
     model = model_from_scene(load_scene(SCENES / f"{case.scene}.yaml"))
     measure = model.measures[0]
     if case.reading is not None:
+        assert isinstance(measure.kind, Backlash)
         measure = replace(measure, kind=replace(measure.kind, reading=case.reading))
     contributors = model.contributors
     if case.constant:
@@ -76,7 +77,9 @@ def check(name: str, trials: int) -> None:
     model = model_of(case)
     columns = simulate_block(model, exact_engine(model), drawn_block(model, 1, 0, trials))
     assert set(columns["status"]) == {"ok"}
-    geometric, analytic = (columns[f"{road}:{model.measures[0].name}"] for road in ("geometric", "analytic"))
+    geometric, analytic = (
+        np.asarray(columns[f"{road}:{model.measures[0].name}"], dtype=np.float64) for road in ("geometric", "analytic")
+    )
     difference = geometric - analytic
     by_chance = difference.std() / math.sqrt(trials)
     assert closed_mean(model) + difference.mean() == pytest.approx(case.mean, abs=4 * by_chance + GIVEN)

@@ -7,7 +7,6 @@ more, as plain ones: from them come the nominal and mean builds and the closed f
 
 import math
 import re
-import tomllib
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cache
@@ -15,17 +14,18 @@ from typing import Any
 
 import numpy as np
 import pytest
+from expected import expected
 from oracles import exact_eccentric
 from oracles.involute_gear import InvoluteGear
-from places import SCENES
+from places import SCENES as FOLDER
 from scipy.integrate import quad
 from scipy.stats import halfnorm, norm, uniform
 
-from tol3d import Overrides, Run, load_scene, run_scene
+from tol3d import Run, load_scene
 from tol3d.gearing.model import model_from_scene
+from tol3d.gears.flank import Flank
 from tol3d.study.block import drawn_block
 
-FOLDER = SCENES
 ELSEWHERE = re.compile("bevel|robot|train")  # test_bevel_scenes.py, test_train_scenes.py, test_compensation.py
 SCENES = sorted(path.stem for path in FOLDER.glob("*.yaml") if not ELSEWHERE.search(path.stem))
 ALPHA = math.radians(20.0)
@@ -244,11 +244,6 @@ def extremes_of_the_mean_build(stack: Stack) -> dict[str, tuple[float, float]]:
 # the files ------------------------------------------------------------------------------------------------------
 
 
-@cache
-def expected(scene: str) -> dict[str, Any]:
-    return tomllib.loads((FOLDER / f"{scene}.expected.toml").read_text("utf-8"))
-
-
 def measures_of(scene: str) -> dict[str, dict[str, Any]]:
     return {name: own for name, own in expected(scene).items() if isinstance(own, dict)}
 
@@ -288,18 +283,6 @@ def test_the_expected_extremes_and_curve_of_the_mean_build_follow_by_hand() -> N
 
 
 # the runs -------------------------------------------------------------------------------------------------------
-
-
-@pytest.fixture(scope="module")
-def run_of(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], Run]:
-    """A run of a scene with the trials of its file, on both roads."""
-
-    @cache
-    def run(scene: str) -> Run:
-        trials = Overrides(trials=expected(scene)["trials"])
-        return run_scene(FOLDER / f"{scene}.yaml", overrides=trials, out=tmp_path_factory.mktemp("runs") / scene)
-
-    return run
 
 
 def in_unit(measure: Mapping[str, Any], scene: str, um: float) -> float:
@@ -396,19 +379,27 @@ def exact_every_field(columns: Columns, angle: np.ndarray) -> np.ndarray:
         (angle, -1),
     )
     in_plane, out_of_plane = columns["axis in plane [um]"], 16 * columns["axis out of plane [mrad]"]
-    cos = 60e3 * math.cos(ALPHA) * grown / apart  # of this trial, but for its eccentricities
-    return straight - np.maximum(np.abs(in_plane) * np.sqrt(1 - cos**2), np.abs(out_of_plane) * cos)
+    own = 60e3 * math.cos(ALPHA) * grown / apart  # cosine of this trial, but for its eccentricities
+    return straight - np.maximum(np.abs(in_plane) * np.sqrt(1 - own**2), np.abs(out_of_plane) * own)
 
 
 def vector(columns: Columns, *names: str) -> np.ndarray:
     """The sum of some contributors with components x and y, (n, 2) [um]."""
-    return sum(np.stack([columns[f"{name}.{axis} [um]"] for axis in "xy"], axis=1) for name in names)
+    each = [np.stack([columns[f"{name}.{axis} [um]"] for axis in "xy"], axis=1) for name in names]
+    return np.sum(each, axis=0)
 
 
-def exact(gears, thickness: np.ndarray, axis: np.ndarray, centres, driver) -> np.ndarray:
+def exact(
+    gears: tuple[InvoluteGear, InvoluteGear],
+    thickness: np.ndarray,
+    axis: np.ndarray,
+    centres: tuple[np.ndarray, np.ndarray],
+    driver: tuple[np.ndarray, Flank],
+) -> np.ndarray:
     """`exact_eccentric.normal_backlash` with every deviation in um; driver: its angles and working flank."""
-    in_mm = (centres[0] * 1e-3, centres[1] * 1e-3)
-    return 1e3 * exact_eccentric.normal_backlash(*gears, thickness * 1e-3, axis * 1e-3, in_mm, *driver)
+    in_mm = np.stack(centres) * 1e-3
+    angle, flank = driver
+    return 1e3 * exact_eccentric.normal_backlash(gears[0], gears[1], thickness * 1e-3, axis * 1e-3, in_mm, angle, flank)
 
 
 EXACT = {"spur_pair": exact_spur_pair, "every_field": exact_every_field}

@@ -4,13 +4,13 @@ The table's shaft leans between its two bearings, never so far that another end 
 """
 
 import math
-import tomllib
 from collections.abc import Callable
-from functools import cache
 from typing import Any
 
 import numpy as np
 import pytest
+from expected import expected
+from of_kind import of_kind
 from oracles.train import (
     at_height,
     lean,
@@ -21,11 +21,11 @@ from oracles.train import (
     table_lost_motion,
     turned,
 )
-from places import SCENES
+from places import SCENES as FOLDER
 
-from tol3d import Overrides, Run, load_scene, run_scene
+from tol3d import Run, load_scene
+from tol3d.gearing.grammar.parts.arm import ArmSpec
 
-FOLDER = SCENES
 SCENES = ("robot_shoulder", "robot_shoulder_swing", "three_stage_train")
 ALPHA = math.radians(20.0)
 SIN, COS = math.sin(ALPHA), math.cos(ALPHA)
@@ -38,23 +38,8 @@ SEEN = {
 }  # where the exact engine's steps end, 1e-8 mm, and another machine's bits
 
 
-@cache
-def expected(scene: str) -> dict[str, Any]:
-    return tomllib.loads((FOLDER / f"{scene}.expected.toml").read_text("utf-8"))
-
-
 def measures_of(scene: str) -> dict[str, dict[str, Any]]:
     return {name: own for name, own in expected(scene).items() if isinstance(own, dict) and name != "stages"}
-
-
-@pytest.fixture(scope="module")
-def run_of(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], Run]:
-    @cache
-    def run(scene: str) -> Run:
-        trials = Overrides(trials=expected(scene)["trials"])
-        return run_scene(FOLDER / f"{scene}.yaml", overrides=trials, out=tmp_path_factory.mktemp("runs") / scene)
-
-    return run
 
 
 # by hand --------------------------------------------------------------------------------------------------------
@@ -193,7 +178,7 @@ def test_the_tables_expected_closed_forms_and_mean_builds_follow_by_hand() -> No
 def test_the_arm_passes_its_balance_where_its_centre_of_mass_stands_above_the_shaft() -> None:
     """Two bars of one weight per length: 637 mm up, then 420 mm across."""
     x, y = 420 * 420 / 2 / (637 + 420), (637 * 637 / 2 + 420 * 637) / (637 + 420)
-    spec = load_scene(FOLDER / "robot_shoulder.yaml").parts["arm"]
+    spec = of_kind(ArmSpec, load_scene(FOLDER / "robot_shoulder.yaml").parts["arm"])
     assert [length.internal for length in spec.centre_of_mass][:2] == pytest.approx([x, y], abs=0.05)
     balance = 90 - math.degrees(math.atan2(y, x))
     own = expected("robot_shoulder_swing")["tip error over the swing"]

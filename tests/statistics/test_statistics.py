@@ -210,7 +210,7 @@ def test_histograms_over_one_span_share_their_edges() -> None:
 def test_interval_is_that_of_clopper_and_pearson(count: int, total: int) -> None:
     oracle = stats.binomtest(count, total).proportion_ci(0.95, method="exact")
     low, high = Proportion(count, total).interval_ppm()
-    assert (low / 1e6, high / 1e6) == (pytest.approx(oracle.low, rel=1e-8), pytest.approx(oracle.high, rel=1e-8))
+    assert (low / 1e6, high / 1e6) == pytest.approx((oracle.low, oracle.high), rel=1e-8)
 
 
 def test_interval_of_none_in_n_has_its_closed_form() -> None:

@@ -9,7 +9,7 @@ import pytest
 from fixtures import Command
 from oracles import exact_eccentric
 from oracles.involute_gear import InvoluteGear
-from places import SCENES
+from places import SPUR_PAIR
 from rich.console import Console
 from scipy import stats
 
@@ -22,7 +22,6 @@ from tol3d.runs.outcome import JAMMED, SEATED, told
 from tol3d.runs.worst import worst_trial
 from tol3d.study import block
 
-SPUR = SCENES / "spur_pair.yaml"
 ALPHA = math.radians(20.0)
 TRIALS, SEED = 20_000, 1
 CENTRE = 172.442  # mm; takes 2 tan 20 deg (172.5 - 172.442) = 39.6 um of 53.4: at 7.2 um sigma one build in 36 jams
@@ -59,7 +58,7 @@ study: {{trials: 4000, seed: 2, engine: {engine}}}
 
 def tight(folder: Path, *changes: tuple[str, str], centre: float = CENTRE) -> Path:
     """The spur pair at another centre distance, its text changed."""
-    text = SPUR.read_text("utf-8").replace("witness: 20", "witness: 0")
+    text = SPUR_PAIR.read_text("utf-8").replace("witness: 20", "witness: 0")
     for old, new in (("centre_distance: 172.5 mm", f"centre_distance: {centre} mm"), *changes):
         assert text.count(old) == 1, old
         text = text.replace(old, new)

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from conftest import SPUR_PAIR
+from places import SPUR_PAIR
 
 from tol3d.gearing.build import build
 from tol3d.gearing.engines.exact.assembly import assembly_of

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from places import SCENES
+from places import SCENES, SPUR_PAIR
 
 from tol3d import Overrides, Run, run_scene
 from tol3d.execution.pools import Execution
@@ -18,7 +18,6 @@ from tol3d.gearing.model import Model
 from tol3d.simulate import effective_model, load
 from tol3d.study.witness import witness_summary, witness_warnings, witnessed_trials
 
-SPUR = SCENES / "spur_pair.yaml"
 EVERY_FIELD = SCENES / "every_field.yaml"
 MEASURES = ("normal backlash", "lost motion")
 WITNESSED = 25
@@ -67,11 +66,11 @@ def test_other_seeds_choose_other_trials() -> None:
 @pytest.fixture(scope="module")
 def run(tmp_path_factory: pytest.TempPathFactory) -> Run:
     study = Overrides(**STUDY, witness=WITNESSED)
-    return run_scene(SPUR, overrides=study, out=tmp_path_factory.mktemp("runs") / "exact")
+    return run_scene(SPUR_PAIR, overrides=study, out=tmp_path_factory.mktemp("runs") / "exact")
 
 
 def test_the_differences_are_those_of_the_same_trials_by_a_study_of_fcl(run: Run, tmp_path: Path) -> None:
-    by_fcl = run_scene(SPUR, overrides=Overrides(**STUDY, engine="fcl"), out=tmp_path / "fcl")
+    by_fcl = run_scene(SPUR_PAIR, overrides=Overrides(**STUDY, engine="fcl"), out=tmp_path / "fcl")
     chosen = witnessed_trials(STUDY["seed"], STUDY["trials"], WITNESSED)
     witness = run.summary["witness"]
     assert (witness["engine"], witness["trials"], witness["profile_steps"]) == ("fcl", WITNESSED, 120)
@@ -104,7 +103,7 @@ def test_chord_errors_are_all_that_fcl_sees_more(run: Run) -> None:
 def test_twice_the_profile_steps_see_a_quarter_of_the_difference(model_of: Modelling) -> None:
     means = []
     for steps in (60, 120):
-        model = model_of(SPUR.read_text("utf-8").replace("witness: 20", f"witness: 100, profile_steps: {steps}"))
+        model = model_of(SPUR_PAIR.read_text("utf-8").replace("witness: 20", f"witness: 100, profile_steps: {steps}"))
         means.append(summary_of(model)["measures"]["normal backlash"]["mean_difference"])
     # the mean of 100 trials has a standard error of 5 %
     assert means[0] / means[1] == pytest.approx(4.0, rel=0.2)
@@ -112,12 +111,12 @@ def test_twice_the_profile_steps_see_a_quarter_of_the_difference(model_of: Model
 
 def test_neither_workers_nor_kept_trials_change_the_witness(run: Run, tmp_path: Path) -> None:
     study, two = Overrides(**STUDY, witness=WITNESSED), Execution(2, keep_trials=False)
-    bare = run_scene(SPUR, overrides=study, out=tmp_path / "bare", execution=two)
+    bare = run_scene(SPUR_PAIR, overrides=study, out=tmp_path / "bare", execution=two)
     assert bare.summary["witness"] == run.summary["witness"]
 
 
 def test_a_run_without_a_witness_has_none(tmp_path: Path) -> None:
-    run = run_scene(SPUR, overrides=Overrides(trials=5, witness=0), out=tmp_path / "run")
+    run = run_scene(SPUR_PAIR, overrides=Overrides(trials=5, witness=0), out=tmp_path / "run")
     assert "witness" not in run.summary
 
 
@@ -142,7 +141,7 @@ def test_bevel_pairs_have_a_witness_too(scene: str) -> None:
 
 
 def test_trials_that_cannot_be_assembled_are_not_compared(tmp_path: Path) -> None:
-    wide = SPUR.read_text("utf-8").replace("lower: -20 um, upper: 20 um", "lower: -400 um, upper: 400 um")
+    wide = SPUR_PAIR.read_text("utf-8").replace("lower: -20 um, upper: 20 um", "lower: -400 um, upper: 400 um")
     run = run_scene(load(scene_of(wide, tmp_path)), overrides=Overrides(trials=60, witness=60), out=tmp_path / "run")
     witness, seated = run.summary["witness"], run.summary["status"]["ok"]
     assert 0 < seated < 60
@@ -158,7 +157,7 @@ def test_trials_that_cannot_be_assembled_are_not_compared(tmp_path: Path) -> Non
 
 
 def test_an_engine_that_sees_other_gears_is_warned_of(model_of: Modelling) -> None:
-    text = SPUR.read_text("utf-8")
+    text = SPUR_PAIR.read_text("utf-8")
     model = model_of(text)
     apart = model_of(text.replace("centre_distance: 172.5 mm", "centre_distance: 172.51 mm"))
     witness = witness_summary(model, exact_engine(apart), 2000)
@@ -178,7 +177,7 @@ def test_gears_that_lie_a_quarter_of_a_micrometre_otherwise_are_warned_of(
 
     Chords make FCL see up to 0.08 um more, so of 0.27 um less it sees 0.19 at least.
     """
-    text = SPUR.read_text("utf-8")
+    text = SPUR_PAIR.read_text("utf-8")
     model = model_of(text)
     other = model_of(text.replace("centre_distance: 172.5 mm", f"centre_distance: {172.5 + apart / 1000} mm"))
     witness = witness_summary(model, exact_engine(other), 2000)
@@ -186,7 +185,7 @@ def test_gears_that_lie_a_quarter_of_a_micrometre_otherwise_are_warned_of(
 
 
 def test_what_chords_and_the_allowance_explain_is_not_warned_of() -> None:
-    model = effective_model(load(SPUR))
+    model = effective_model(load(SPUR_PAIR))
     own = {"expected_at_most": 0.08, "allowance": 0.05, "trial_of_the_largest": 7}
 
     def told(largest: float | None, other: int = 0) -> list[str]:

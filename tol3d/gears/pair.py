@@ -16,6 +16,8 @@ Teeth = NDArray[np.int64]
 class Gear(Protocol):
     """One gear, in its own frame: z its axis, x through the middle of tooth 0."""
 
+    def __hash__(self) -> int: ...
+
     @property
     def teeth(self) -> int:
         """Number of teeth."""
