@@ -6,6 +6,7 @@ Columns are in the user's units (um, mrad, K, deg, arcmin), trial on axis 0; a c
 import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,7 +23,7 @@ from tol3d.study import draws
 from tol3d.units import ARCMIN
 
 Array = NDArray[np.float64]
-Columns = Mapping[str, NDArray[np.generic]]
+Columns = Mapping[str, NDArray[Any]]
 Status = NDArray[np.int8]
 
 ROWS_AT_ONCE = 65_536  # trials x positions; keeps poses and gaps of a turn's curves in some tens of megabytes
