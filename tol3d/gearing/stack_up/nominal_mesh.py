@@ -1,0 +1,80 @@
+"""The nominal mesh that a stack-up deviates from: where each gear sees its mate, and what shifts of it open.
+
+alpha_w is the working pressure angle, delta the pitch angle of a gear (0 for a cylinder).
+"""
+
+import math
+from typing import Generic, TypeVar
+
+import numpy as np
+
+from tol3d.gearing.model import Mesh, Model, Reading, Seat
+from tol3d.gearing.model.effects import Plane
+from tol3d.gearing.stack_up.term import Role
+from tol3d.gears import Gear, GearPair
+
+Pair = TypeVar("Pair", bound=GearPair, covariant=True)
+
+
+class NominalMesh(Generic[Pair]):
+    """One mesh of a model, for a way of reading it; `pair` is the mesh's."""
+
+    def __init__(self, model: Model, mesh: Mesh, pair: Pair, reading: Reading) -> None:
+        self.model = model
+        self.mesh = mesh
+        self.pair = pair
+        self.reading = reading
+        self.sin = math.sin(pair.working_pressure_angle)
+        self.cos = math.cos(pair.working_pressure_angle)
+
+    def role(self, part: str, mesh: str | None = None) -> Role | None:
+        """What the part is in this mesh; None where it is in others only, or is meant to act in another one."""
+        if mesh not in (None, self.mesh.name):
+            return None
+        return "driver" if part == self.mesh.driver else "driven" if part == self.mesh.driven else None
+
+    def gear(self, role: Role) -> Gear:
+        """The gear of that role."""
+        return self.pair.pinion if role == "driver" else self.pair.wheel
+
+    def seat(self, role: Role) -> Seat:
+        """The place of the gear of that role in this mesh."""
+        gear = self.mesh.driver if role == "driver" else self.mesh.driven
+        return self.model.seats[self.model.seat_index[self.mesh.name, gear]]
+
+    def across(self, role: Role) -> float:
+        """Opening by a shift of the axis away from the mesh: 2 sin(alpha_w) cos(delta)."""
+        return 2 * self.sin * math.cos(self.gear(role).pitch_angle)
+
+    def along(self, role: Role) -> float:
+        """Opening by a shift along the axis, away from the apex: 2 sin(alpha_w) sin(delta)."""
+        return 2 * self.sin * math.sin(self.gear(role).pitch_angle)
+
+    def azimuth_away(self, role: Role) -> float:
+        """Azimuth [rad], in the gear's frame at rest in the mesh, in which its axis leaves the mesh."""
+        return (self.pair.mesh_azimuths[0 if role == "driver" else 1] + math.pi) % (2 * math.pi)
+
+    def azimuth_onwards(self, role: Role) -> float:
+        """Azimuth [rad], in the gear's frame at rest in the mesh, of a shift that turns the driven gear positively.
+
+        The driven gear's teeth go on where its shift takes them back; the driver's take them along.
+        """
+        towards = self.pair.mesh_azimuths[1]
+        onwards = np.array([-math.sin(towards), math.cos(towards), 0.0])  # way of the driven teeth at the mesh
+        if role == "driven":
+            return math.atan2(-onwards[1], -onwards[0])
+        x, y, _ = self.pair.world_from_wheel @ onwards
+        return math.atan2(y, x)
+
+    def on_shaft(self, azimuth: float, role: Role, mesh: str | None = None) -> float:
+        """An azimuth of a gear's frame at rest in the mesh, in its frame at rest on its shaft [rad].
+
+        Where a deviation is stated in the frame of a mesh, named by `mesh`, it stays as it is.
+        """
+        return azimuth + (self.seat(role).azimuth if mesh is None else 0.0)
+
+
+def as_counted(plane: Plane, azimuth: float) -> tuple[float, float]:
+    """An azimuth of a gear's frame in the frame in which a deviation is counted [rad], and the sense of that."""
+    sense = -1.0 if plane.mirrored else 1.0
+    return sense * (azimuth - plane.azimuth), sense
