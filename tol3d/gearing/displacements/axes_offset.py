@@ -4,8 +4,8 @@ from collections.abc import Iterator
 
 from tol3d.gearing.displacements.displacement import Displacement, displacements
 from tol3d.gearing.displacements.slots import OFFSET
+from tol3d.gearing.effects import AxesOffset
 from tol3d.gearing.model import Model
-from tol3d.gearing.model.effects import AxesOffset
 
 
 @displacements.register

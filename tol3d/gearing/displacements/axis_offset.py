@@ -5,8 +5,8 @@ from collections.abc import Iterator
 from tol3d.gearing.displacements.displacement import Displacement, displacements
 from tol3d.gearing.displacements.seat_frame import in_seat
 from tol3d.gearing.displacements.slots import OFFSET
+from tol3d.gearing.effects import AxisOffset
 from tol3d.gearing.model import Model
-from tol3d.gearing.model.effects import AxisOffset
 
 
 @displacements.register

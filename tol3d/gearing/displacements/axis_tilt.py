@@ -5,8 +5,8 @@ from collections.abc import Iterator
 from tol3d.gearing.displacements.displacement import Displacement, Lever, displacements
 from tol3d.gearing.displacements.seat_frame import in_seat
 from tol3d.gearing.displacements.slots import TURN
+from tol3d.gearing.effects import AxisTilt
 from tol3d.gearing.model import Model
-from tol3d.gearing.model.effects import AxisTilt
 
 
 @displacements.register

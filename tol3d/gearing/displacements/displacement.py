@@ -7,8 +7,8 @@ from functools import singledispatch
 import numpy as np
 from numpy.typing import NDArray
 
+from tol3d.gearing.effects import Effect
 from tol3d.gearing.model import Model
-from tol3d.gearing.model.effects import Effect
 
 Array = NDArray[np.float64]
 

@@ -3,8 +3,8 @@
 from collections.abc import Iterator
 
 from tol3d.gearing.displacements.displacement import Displacement, displacements
+from tol3d.gearing.effects import Clocking, ReducerBacklash
 from tol3d.gearing.model import Model
-from tol3d.gearing.model.effects import Clocking, ReducerBacklash
 
 
 @displacements.register(ReducerBacklash)

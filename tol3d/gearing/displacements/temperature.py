@@ -3,8 +3,8 @@
 from collections.abc import Iterator
 
 from tol3d.gearing.displacements.displacement import Growth, displacements
+from tol3d.gearing.effects import Temperature
 from tol3d.gearing.model import Model
-from tol3d.gearing.model.effects import Temperature
 
 
 @displacements.register

@@ -6,8 +6,8 @@ import numpy as np
 
 from tol3d.gearing.displacements.displacement import Displacement, displacements
 from tol3d.gearing.displacements.slots import FLANK_TURN
+from tol3d.gearing.effects import ToothThickness
 from tol3d.gearing.model import Model
-from tol3d.gearing.model.effects import ToothThickness
 
 
 @displacements.register

@@ -1,7 +1,6 @@
 """What a scene means: parts, contributors, moves and measures in mm and rad. Nothing here is text any more."""
 
-from tol3d.gearing.model.contributor import Contributor, Planar, Scalar
-from tol3d.gearing.model.effects import (
+from tol3d.gearing.effects import (
     AxesOffset,
     AxisOffset,
     AxisTilt,
@@ -13,6 +12,7 @@ from tol3d.gearing.model.effects import (
     ToothThickness,
     TurningOffset,
 )
+from tol3d.gearing.model.contributor import Contributor, Planar, Scalar
 from tol3d.gearing.model.layout import Layout
 from tol3d.gearing.model.measure import Backlash, Kind, LostMotion, Measure, Positions, Reading
 from tol3d.gearing.model.mesh import Mesh, Seat

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.distributions import Distribution
-from tol3d.gearing.model.effects import Effect
+from tol3d.gearing.effects import Effect
 from tol3d.units import RAD_PER_ARCMIN
 
 Array = NDArray[np.float64]

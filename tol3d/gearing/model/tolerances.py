@@ -5,6 +5,20 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import singledispatchmethod
 
+from tol3d.gearing.effects import (
+    NOTHING,
+    AxesOffset,
+    AxisOffset,
+    AxisTilt,
+    Clocking,
+    Effect,
+    Plane,
+    ReducerBacklash,
+    Temperature,
+    Together,
+    ToothThickness,
+    TurningOffset,
+)
 from tol3d.gearing.grammar.parts import BearingSpec, ShaftSpec
 from tol3d.gearing.grammar.tolerances import (
     AxesOffsetSpec,
@@ -25,20 +39,6 @@ from tol3d.gearing.grammar.tolerances import (
     ToothThicknessSpec,
 )
 from tol3d.gearing.model.contributor import Contributor, Planar, Scalar, Unit
-from tol3d.gearing.model.effects import (
-    NOTHING,
-    AxesOffset,
-    AxisOffset,
-    AxisTilt,
-    Clocking,
-    Effect,
-    Plane,
-    ReducerBacklash,
-    Temperature,
-    Together,
-    ToothThickness,
-    TurningOffset,
-)
 from tol3d.gearing.model.layout import Layout
 from tol3d.gearing.model.mesh import Mesh
 from tol3d.gearing.model.shafts import Carried

@@ -8,8 +8,8 @@ from typing import Generic, TypeVar
 
 import numpy as np
 
+from tol3d.gearing.effects import Plane
 from tol3d.gearing.model import Mesh, Model, Reading, Seat
-from tol3d.gearing.model.effects import Plane
 from tol3d.gearing.stack_up.term import Role
 from tol3d.gears import Gear, GearPair
 

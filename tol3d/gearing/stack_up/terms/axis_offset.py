@@ -4,8 +4,8 @@ sin(delta) away from the apex.
 
 import math
 
+from tol3d.gearing.effects import AxisOffset
 from tol3d.gearing.model import Contributor
-from tol3d.gearing.model.effects import AxisOffset
 from tol3d.gearing.stack_up.nominal_mesh import NominalMesh, as_counted
 from tol3d.gearing.stack_up.term import Role, Term
 from tol3d.gearing.stack_up.terms.contribution import NOTHING, Contribution, contributes

@@ -5,8 +5,8 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
+from tol3d.gearing.effects import AxisTilt
 from tol3d.gearing.model import Contributor
-from tol3d.gearing.model.effects import AxisTilt
 from tol3d.gearing.stack_up.nominal_mesh import NominalMesh
 from tol3d.gearing.stack_up.term import Role, Term
 from tol3d.gearing.stack_up.terms.contribution import NOTHING, Contribution, contributes

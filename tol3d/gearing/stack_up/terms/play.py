@@ -1,7 +1,7 @@
 """Backlash of reducers and gears that sit turned on their shafts: no mesh sees them."""
 
+from tol3d.gearing.effects import Clocking, ReducerBacklash
 from tol3d.gearing.model import Contributor
-from tol3d.gearing.model.effects import Clocking, ReducerBacklash
 from tol3d.gearing.stack_up.nominal_mesh import NominalMesh
 from tol3d.gearing.stack_up.terms.contribution import NOTHING, Contribution, contributes
 from tol3d.gears import GearPair

@@ -1,7 +1,7 @@
 """Parts that grow. Of bevel pairs growth is left out: a pair of one material only scales."""
 
+from tol3d.gearing.effects import Temperature
 from tol3d.gearing.model import Contributor
-from tol3d.gearing.model.effects import Temperature
 from tol3d.gearing.stack_up.nominal_mesh import NominalMesh
 from tol3d.gearing.stack_up.term import Term
 from tol3d.gearing.stack_up.terms.contribution import NOTHING, Contribution, contributes

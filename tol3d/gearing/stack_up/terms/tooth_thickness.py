@@ -1,7 +1,7 @@
 """Thicker teeth: both flanks leave their tooth; an arc s at the reference circle takes s cos(alpha)."""
 
+from tol3d.gearing.effects import ToothThickness
 from tol3d.gearing.model import Contributor
-from tol3d.gearing.model.effects import ToothThickness
 from tol3d.gearing.stack_up.nominal_mesh import NominalMesh
 from tol3d.gearing.stack_up.term import Term
 from tol3d.gearing.stack_up.terms.contribution import NOTHING, Contribution, contributes

@@ -2,8 +2,8 @@
 
 import math
 
+from tol3d.gearing.effects import TurningOffset
 from tol3d.gearing.model import Contributor
-from tol3d.gearing.model.effects import TurningOffset
 from tol3d.gearing.stack_up.nominal_mesh import NominalMesh, as_counted
 from tol3d.gearing.stack_up.term import Term
 from tol3d.gearing.stack_up.terms.contribution import NOTHING, Contribution, contributes

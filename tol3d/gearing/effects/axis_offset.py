@@ -1,10 +1,13 @@
 """Axes that lie beside their place."""
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
-from tol3d.gearing.model.effects.effect import Effect
-from tol3d.gearing.model.effects.plane import AS_COUNTED, Plane, Vector
-from tol3d.gearing.model.mesh import Mesh
+from tol3d.gearing.effects.effect import Effect
+from tol3d.gearing.effects.plane import AS_COUNTED, Plane, Vector
+
+if TYPE_CHECKING:
+    from tol3d.gearing.model.mesh import Mesh
 
 
 @dataclass(frozen=True)
@@ -22,6 +25,6 @@ class AxisOffset(Effect):
     mesh: str | None = None
     plane: Plane = AS_COUNTED
 
-    def acts_in(self, mesh: Mesh) -> bool:
+    def acts_in(self, mesh: "Mesh") -> bool:
         """In every mesh of the gear, or in the one that is named."""
         return self.mesh in (None, mesh.name) and self.part in (mesh.driver, mesh.driven)

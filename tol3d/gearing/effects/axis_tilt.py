@@ -1,13 +1,16 @@
 """Axes that lean."""
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.gearing.model.effects.effect import Effect
-from tol3d.gearing.model.effects.plane import AS_COUNTED, Plane, Vector
-from tol3d.gearing.model.mesh import Mesh
+from tol3d.gearing.effects.effect import Effect
+from tol3d.gearing.effects.plane import AS_COUNTED, Plane, Vector
+
+if TYPE_CHECKING:
+    from tol3d.gearing.model.mesh import Mesh
 
 Array = NDArray[np.float64]
 
@@ -34,6 +37,6 @@ class AxisTilt(Effect):
         (xx, xy), (yx, yy) = self.plane.seen_from(azimuth).matrix
         return self.per_length * np.array([[-yx, -yy], [xx, xy], [0.0, 0.0]])
 
-    def acts_in(self, mesh: Mesh) -> bool:
+    def acts_in(self, mesh: "Mesh") -> bool:
         """In every mesh of the gear, or in the one that is named."""
         return self.mesh in (None, mesh.name) and self.part in (mesh.driver, mesh.driven)

@@ -1,9 +1,12 @@
 """Teeth that are thicker or thinner."""
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
-from tol3d.gearing.model.effects.effect import Effect
-from tol3d.gearing.model.mesh import Mesh
+from tol3d.gearing.effects.effect import Effect
+
+if TYPE_CHECKING:
+    from tol3d.gearing.model.mesh import Mesh
 
 
 @dataclass(frozen=True)
@@ -17,6 +20,6 @@ class ToothThickness(Effect):
     turn: float
     offset: float = 0.0
 
-    def acts_in(self, mesh: Mesh) -> bool:
+    def acts_in(self, mesh: "Mesh") -> bool:
         """In every mesh of the gear."""
         return self.part in (mesh.driver, mesh.driven)

@@ -1,10 +1,13 @@
 """Centres of gears that lie off the axis on which they turn."""
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
-from tol3d.gearing.model.effects.effect import Effect
-from tol3d.gearing.model.effects.plane import AS_COUNTED, Plane
-from tol3d.gearing.model.mesh import Mesh
+from tol3d.gearing.effects.effect import Effect
+from tol3d.gearing.effects.plane import AS_COUNTED, Plane
+
+if TYPE_CHECKING:
+    from tol3d.gearing.model.mesh import Mesh
 
 
 @dataclass(frozen=True)
@@ -14,7 +17,7 @@ class TurningOffset(Effect):
     part: str
     plane: Plane = AS_COUNTED
 
-    def acts_in(self, mesh: Mesh) -> bool:
+    def acts_in(self, mesh: "Mesh") -> bool:
         """In every mesh of the gear."""
         return self.part in (mesh.driver, mesh.driven)
 

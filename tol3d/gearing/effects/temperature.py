@@ -1,9 +1,12 @@
 """Parts that are warmer or colder."""
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
-from tol3d.gearing.model.effects.effect import Effect
-from tol3d.gearing.model.mesh import Mesh
+from tol3d.gearing.effects.effect import Effect
+
+if TYPE_CHECKING:
+    from tol3d.gearing.model.mesh import Mesh
 
 
 @dataclass(frozen=True)
@@ -12,6 +15,6 @@ class Temperature(Effect):
 
     parts: tuple[str, ...]
 
-    def acts_in(self, mesh: Mesh) -> bool:
+    def acts_in(self, mesh: "Mesh") -> bool:
         """Where a gear of the mesh, or its housing, is one of them."""
         return not {mesh.driver, mesh.driven, mesh.housing}.isdisjoint(self.parts)

@@ -2,8 +2,10 @@
 
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
-from tol3d.gearing.model.mesh import Mesh
+if TYPE_CHECKING:
+    from tol3d.gearing.model.mesh import Mesh
 
 
 class Effect(ABC):
@@ -19,10 +21,10 @@ class Effect(ABC):
         return (self,)
 
     @abstractmethod
-    def acts_in(self, mesh: Mesh) -> bool:
+    def acts_in(self, mesh: "Mesh") -> bool:
         """Whether it changes how the gears of a mesh lie to each other, or their flanks."""
 
-    def clocking(self, mesh: Mesh) -> float:
+    def clocking(self, mesh: "Mesh") -> float:
         """Turn of the shaft that a mesh drives, about the driven gear's z, with the teeth in contact [rad per unit]."""
         return 0.0
 
@@ -52,11 +54,11 @@ class Together(Effect):
         """See Effect."""
         return self.effects
 
-    def acts_in(self, mesh: Mesh) -> bool:
+    def acts_in(self, mesh: "Mesh") -> bool:
         """See Effect."""
         return any(effect.acts_in(mesh) for effect in self.effects)
 
-    def clocking(self, mesh: Mesh) -> float:
+    def clocking(self, mesh: "Mesh") -> float:
         """See Effect."""
         return sum(effect.clocking(mesh) for effect in self.effects)
 

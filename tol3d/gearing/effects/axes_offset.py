@@ -1,9 +1,12 @@
 """Axes that pass each other."""
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
-from tol3d.gearing.model.effects.effect import Effect
-from tol3d.gearing.model.mesh import Mesh
+from tol3d.gearing.effects.effect import Effect
+
+if TYPE_CHECKING:
+    from tol3d.gearing.model.mesh import Mesh
 
 
 @dataclass(frozen=True)
@@ -13,6 +16,6 @@ class AxesOffset(Effect):
     part: str
     mesh: str
 
-    def acts_in(self, mesh: Mesh) -> bool:
+    def acts_in(self, mesh: "Mesh") -> bool:
         """In that mesh."""
         return self.mesh == mesh.name

@@ -1,9 +1,12 @@
 """Backlash of reducers that are known by their data sheets."""
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
-from tol3d.gearing.model.effects.effect import Effect
-from tol3d.gearing.model.mesh import Mesh
+from tol3d.gearing.effects.effect import Effect
+
+if TYPE_CHECKING:
+    from tol3d.gearing.model.mesh import Mesh
 
 
 @dataclass(frozen=True)
@@ -12,7 +15,7 @@ class ReducerBacklash(Effect):
 
     reducer: str
 
-    def acts_in(self, mesh: Mesh) -> bool:
+    def acts_in(self, mesh: "Mesh") -> bool:
         """A data sheet moves no axis and no flank."""
         return False
 

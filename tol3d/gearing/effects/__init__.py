@@ -1,0 +1,28 @@
+"""Effects: what one deviation acts on, one a file. Data that both roads read; neither is told here how far it goes."""
+
+from tol3d.gearing.effects.axes_offset import AxesOffset
+from tol3d.gearing.effects.axis_offset import AxisOffset
+from tol3d.gearing.effects.axis_tilt import AxisTilt
+from tol3d.gearing.effects.clocking import Clocking
+from tol3d.gearing.effects.effect import NOTHING, Effect, Together
+from tol3d.gearing.effects.plane import AS_COUNTED, Plane
+from tol3d.gearing.effects.reducer_backlash import ReducerBacklash
+from tol3d.gearing.effects.temperature import Temperature
+from tol3d.gearing.effects.tooth_thickness import ToothThickness
+from tol3d.gearing.effects.turning_offset import TurningOffset
+
+__all__ = [
+    "AS_COUNTED",
+    "NOTHING",
+    "AxesOffset",
+    "AxisOffset",
+    "AxisTilt",
+    "Clocking",
+    "Effect",
+    "Plane",
+    "ReducerBacklash",
+    "Temperature",
+    "Together",
+    "ToothThickness",
+    "TurningOffset",
+]
