@@ -98,8 +98,9 @@ def test_what_shims_take_that_are_on_is_counted() -> None:
 
 def test_the_paper_shim_takes_46_um_of_the_low() -> None:
     own = plan(rounding="nearest")
-    form = own.before.found["analytic_closed_form"]
-    assert (form["mean"], form["sigma"]) == pytest.approx((89.5, 6.7), abs=0.05)
+    form = own.before.measure.analytic_closed_form
+    assert form
+    assert (form.mean, form.sigma) == pytest.approx((89.5, 6.7), abs=0.05)
     assert own.chosen.thickness == 0.048
     # 46.33 um: tests/gearing/test_bevel_agreement.py, at one position and without deviations; where in its pitch a
     # trial stands adds a tenth of a um (46.43 to first order, at the pitch point)

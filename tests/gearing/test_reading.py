@@ -21,7 +21,6 @@ from tol3d.gearing.engines.fcl import FclEngine
 from tol3d.gearing.engines.lazy import exact_engine
 from tol3d.gearing.model import Model, Reading, model_from_scene
 from tol3d.gears import LEFT, RIGHT, one_tooth_acts, one_tooth_share
-from tol3d.report.heading import heading
 from tol3d.scene import load_scene
 from tol3d.solids import measuring_strips
 from tol3d.study.block import Block, drawn_block, positions_in_all, simulate_block
@@ -361,7 +360,7 @@ def test_how_a_train_is_read_is_said(tmp_path: Path) -> None:
         "bevel pair": {"contact": "section", "gap": "section", "teeth": "driven"},
     }
     words = "; spur pair: one driven tooth; bevel pair: mean section, one driven tooth"
-    assert heading(measure).endswith(f"each trial{words}")
+    assert run.found.measures["lost motion"].words.endswith(f"each trial{words}")
 
 
 def test_shims_see_no_backlash_that_is_not_there() -> None:

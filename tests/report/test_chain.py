@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from loose_summaries import typed_measure, typed_run, valid
 from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
 from matplotlib.image import imread
@@ -199,7 +200,7 @@ def row_of(text: str, label: str) -> list[str]:
 
 
 def all_printed(summary: dict, width: int = 140) -> str:
-    return "".join(printed(block, width) for block in train_report(summary))
+    return "".join(printed(block, width) for block in train_report(typed_run(summary)))
 
 
 # tables -------------------------------------------------------------------------------------------
@@ -243,14 +244,14 @@ def test_mean_and_3_sigma_of_the_sum_stand_beside_the_worst_case_and_are_less() 
 @pytest.mark.parametrize("width", [80, 120])
 def test_trains_fit_the_width_of_a_terminal(width: int) -> None:
     for summary in (shoulder(), long_train(12)):
-        text = printed(run_report(summary), width)
+        text = printed(run_report(typed_run(summary)), width)
         assert max(map(len, text.splitlines())) <= width
         assert "…" not in text
 
 
 def test_measures_of_a_train_have_the_sums_of_its_stages_below() -> None:
     """In their own units, with what the paper prints for the train: 9′59″ and 2.21 mm."""
-    text = printed(run_report(shoulder()))
+    text = printed(run_report(typed_run(shoulder())))
     turn, tip = text.split("train shoulder swing")[0].split("tip displacement")
     assert row_of(turn, "sum of the stages' highs") == ["9′59.4″"] * 3
     assert row_of(tip, "sum of the stages' highs") == ["2.2172"] * 3
@@ -272,23 +273,23 @@ def test_measures_of_a_train_have_the_sums_of_its_stages_below() -> None:
 )
 def test_a_measure_at_another_shaft_or_point_has_no_sums_of_these_stages(other) -> None:
     summary = shoulder()
-    assert sums_of(summary["measures"]["lost motion"], summary)
-    assert sums_of(summary["measures"]["lost motion"] | other, summary) == {}
+    assert sums_of(typed_measure(summary["measures"]["lost motion"]), typed_run(summary))
+    assert sums_of(typed_measure(summary["measures"]["lost motion"] | other), typed_run(summary)) == {}
 
 
 def test_another_point_of_the_arm_moves_by_its_own_lever() -> None:
     summary = shoulder()
     elbow = summary["measures"]["tip displacement"] | {"point": "elbow", "lever_mm": LEVER / 2}
-    highs = sums_of(elbow, summary)["geometric"]["high_3sigma"]
+    highs = sums_of(typed_measure(elbow), typed_run(summary))["geometric"]["high_3sigma"]
     assert highs == pytest.approx(2.2172 / 2, abs=0.5e-4)
 
 
 def test_a_run_without_trains_prints_none() -> None:
     summary = shoulder() | {"trains": {}}
-    assert train_report(summary) == []
-    assert "sum of the stages" not in printed(run_report(summary))
+    assert train_report(typed_run(summary)) == []
+    assert "sum of the stages" not in printed(run_report(typed_run(summary)))
     del summary["trains"]  # of an older version
-    assert train_report(summary) == []
+    assert train_report(typed_run(summary)) == []
 
 
 def test_an_analytic_study_is_told_by_its_own_road() -> None:
@@ -311,7 +312,7 @@ def test_numbers_that_nobody_knows_are_dashes() -> None:
     train["sums"]["geometric"] = dict.fromkeys(KEYS)
     assert row_of(all_printed(summary), "spur pair")[4:9] == ["–"] * 5
     assert row_of(all_printed(summary), "sum of the stages' highs") == ["9′59.4″", "–", "9′59.4″"]
-    assert "–" in texts_of(chain_figure(summary, "shoulder swing"))
+    assert "–" in texts_of(chain_figure(typed_run(summary), "shoulder swing"))
 
 
 def test_a_chain_is_followed_through_a_link_from_its_driven_side() -> None:
@@ -328,13 +329,17 @@ def test_a_chain_is_followed_through_a_link_from_its_driven_side() -> None:
 
 
 def test_limits_differences_and_labels_of_a_tip_are_in_mm() -> None:
-    tip = MEASURES["tip displacement"]
+    tip = typed_measure(MEASURES["tip displacement"])
     assert limits_text(tip) == "upper limit 2.21 mm"
     assert difference_text(0.00125, "mm") == "1.250 µm"
     assert (values_label("tip", "mm"), density_label("mm")) == ("tip [mm]", "% of trials per mm")
     assert heading(tip) == ("displacement of tip of arm by the lost motion, at a random position each trial")
-    assert heading(MEASURES["lost motion"]).startswith("lost motion of shoulder flange, motor held, at a random")
-    assert Compared.of("tip", tip) != Compared.of("tip", tip | {"point": "elbow"})
+    assert heading(typed_measure(MEASURES["lost motion"])).startswith(
+        "lost motion of shoulder flange, motor held, at a random"
+    )
+    assert Compared.of("tip", tip) != Compared.of(
+        "tip", typed_measure(MEASURES["tip displacement"] | {"point": "elbow"})
+    )
 
 
 def tip_error() -> dict:
@@ -349,12 +354,14 @@ def tip_error() -> dict:
 
 
 def test_a_tip_s_error_is_told_over_the_output_s_angle_in_mm() -> None:
-    text = printed(curve_table(tip_error()))
+    error = typed_measure(tip_error())
+    assert error.curve
+    text = printed(curve_table(error, error.curve))
     assert "output at [°]" in text
     rows = {line.split()[0]: line.split()[1] for line in text.splitlines() if re.match(r" *-?\d+\.\d ", line)}
     assert (rows["-60.0"], rows["0.0"]) == ("0.0000", "1.8100")
     axes = plain_axes(new_figure(6, 4).add_subplot())
-    draw_curve(axes, "tip error", tip_error())
+    draw_curve(axes, "tip error", error)
     assert axes.get_xlabel() == "output position [deg]"
     assert axes.get_ylabel() == "tip error [mm]"
     assert axes.get_xlim() == (-60.0, 60.0)
@@ -362,7 +369,7 @@ def test_a_tip_s_error_is_told_over_the_output_s_angle_in_mm() -> None:
     legend = [text.get_text() for text in axes.get_legend().get_texts()]
     assert "USL 2.21 mm" in legend
     assert "anywhere above 2.21 mm, of all trials: analytic 12 ppm, 3D 12 ppm" in printed(
-        run_report(shoulder() | {"measures": {"tip error": tip_error()}})
+        run_report(typed_run(shoulder() | {"measures": {"tip error": tip_error()}}))
     )
 
 
@@ -378,7 +385,7 @@ def texts_of(figure: Figure) -> list[str]:
 
 
 def test_the_picture_tells_ratios_own_lost_motions_shares_and_the_worst_case() -> None:
-    texts = texts_of(chain_figure(shoulder(), "shoulder swing"))
+    texts = texts_of(chain_figure(typed_run(shoulder()), "shoulder swing"))
     for text in ("i = 152", "110/28 = 3.929", "31/31 = 1", "54.3″ … 1′59.7″", "5′09.6″ … 7′44.4″", "left", "right"):
         assert text in texts
     assert "119.7″\n0.443 mm" in texts  # 75 um: 0.12195 * 75 / 275 deg; by 763 mm
@@ -392,7 +399,7 @@ def test_the_picture_tells_ratios_own_lost_motions_shares_and_the_worst_case() -
 
 def test_a_shaft_turns_against_the_motor_behind_an_odd_number_of_reversals() -> None:
     """Motor and reducer's output alike; the spur pair reverses, and the bevel pair once more."""
-    texts = texts_of(chain_figure(shoulder(), "shoulder swing"))
+    texts = texts_of(chain_figure(typed_run(shoulder()), "shoulder swing"))
     assert [text for text in texts if text in "↺↻"] == ["↺", "↺", "↻", "↺"]
 
 
@@ -402,7 +409,7 @@ def test_ends_that_are_those_of_a_data_sheet_are_told_so_and_no_other_ones() -> 
     law = {"low_3sigma": 2.0, "mean": 5.0, "high_3sigma": 9.0, "sigma": 1.5}
     for own in summary["trains"]["shoulder swing"]["stages"][0]["roads"].values():
         own |= law
-    texts = texts_of(chain_figure(summary, "shoulder swing"))
+    texts = texts_of(chain_figure(typed_run(summary), "shoulder swing"))
     assert [text for text in texts if text.endswith("law's")] == ["2′00.0″ … 9′00.0″, its law's"]
 
 
@@ -410,13 +417,15 @@ def test_a_chain_says_of_how_many_trials_it_is_where_some_failed() -> None:
     summary = shoulder()
     measure = summary["trains"]["shoulder swing"]["measure"]
     summary["measures"][measure] = summary["measures"][measure] | {"status": {"ok": 1900, "interferes": 100}}
-    assert any("of 1900 of 2000 that seated" in text for text in texts_of(chain_figure(summary, "shoulder swing")))
+    assert any(
+        "of 1900 of 2000 that seated" in text for text in texts_of(chain_figure(typed_run(summary), "shoulder swing"))
+    )
 
 
 @pytest.mark.parametrize("lever", [LEVER, None])
 @pytest.mark.parametrize("count", [1, 2, 3, 4, 5, 6, 7, 9, 12])
 def test_no_two_labels_overlap_and_none_leaves_the_picture(count: int, lever: float) -> None:
-    figure = chain_figure(long_train(count, lever), "shoulder swing")
+    figure = chain_figure(typed_run(long_train(count, lever)), "shoulder swing")
     figure.canvas.draw()
     width, height = figure.canvas.get_width_height()
     boxes = [(text.get_text(), text.get_window_extent()) for text in artists_of(figure)]
@@ -438,7 +447,7 @@ def test_no_cone_reaches_under_a_shaft(count: int, lever: float, teeth) -> None:
     summary = long_train(count, lever)
     for each in summary["trains"]["shoulder swing"]["stages"]:
         each |= {"kind": "bevel_mesh", "teeth": list(teeth)}
-    figure = chain_figure(summary, "shoulder swing")
+    figure = chain_figure(typed_run(summary), "shoulder swing")
     cones = [patch.get_window_extent() for patch in figure.findobj(Polygon) if to_hex(patch.get_edgecolor()) == CONES]
     shafts = [box.get_window_extent() for box in figure.findobj(FancyBboxPatch) if to_hex(box.get_facecolor()) == SHAFT]
     assert len(cones) == 2 * count
@@ -448,7 +457,9 @@ def test_no_cone_reaches_under_a_shaft(count: int, lever: float, teeth) -> None:
 
 
 def test_a_train_without_an_arm_shows_no_length() -> None:
-    assert not any("mm" in text for text in texts_of(chain_figure(long_train(4, lever=None), "shoulder swing")))
+    assert not any(
+        "mm" in text for text in texts_of(chain_figure(typed_run(long_train(4, lever=None)), "shoulder swing"))
+    )
 
 
 @given(st.text(alphabet="aWi $", min_size=1, max_size=60).filter(str.strip), st.floats(0.4, 3.0))
@@ -467,17 +478,17 @@ def test_a_run_with_trains_draws_a_picture_of_each_beside_the_histogram(tmp_path
     summary = shoulder()
     summary["trains"]["wrist: a/b"] = summary["trains"]["shoulder swing"]
     with picture.drawing() as draw:
-        draw(summary, tmp_path / "histogram.png")
+        draw(valid(summary), tmp_path / "histogram.png")
     assert {path.name for path in tmp_path.iterdir()} == {"histogram.png", "chain.png", "chain-wrist_ a_b.png"}
     assert imread(tmp_path / "chain.png").shape[1] >= 1600
 
 
 def test_a_chain_that_cannot_be_drawn_costs_a_warning_and_not_the_histogram(tmp_path: Path) -> None:
     summary = shoulder()
-    summary["trains"]["shoulder swing"]["stages"][1]["kind"] = "belt"
+    (tmp_path / "chain.png").symlink_to(tmp_path / "no such folder" / "picture.png")
     with (
         picture.drawing() as draw,
-        pytest.warns(picture.PictureWarning, match=r"^chain\.png could not be drawn \('belt'\)"),
+        pytest.warns(picture.PictureWarning, match=r"^chain\.png could not be drawn \(.*No such file"),
     ):
-        draw(summary, tmp_path / "histogram.png")
+        draw(valid(summary), tmp_path / "histogram.png")
     assert {path.name for path in tmp_path.iterdir()} == {"histogram.png"}

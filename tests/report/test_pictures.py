@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from loose_summaries import typed_measure, typed_run, valid
 from matplotlib.collections import PolyCollection
 from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
@@ -25,6 +26,7 @@ from tol3d.report.heading import heading
 from tol3d.report.histogram import histogram_figure, overview_figure
 from tol3d.report.label import legible
 from tol3d.report.picture import measure_files
+from tol3d.runs.summary.run import RunSummary
 
 LONGEST = 80  # characters; of a name in a scene
 READING = {"contact": "face", "gap": "section", "teeth": "driven"}
@@ -55,6 +57,10 @@ def measure_of(values: np.ndarray, names: tuple[str, ...] = (), **said: Any) -> 
 
 def summary_of(measures: dict[str, Any], trials: int = 2000) -> dict[str, Any]:
     return {"scene": "a scene", "trials": trials, "seed": 1, "status": {"ok": trials}, "measures": measures}
+
+
+def typed_summary_of(measures: dict[str, Any], trials: int = 2000) -> RunSummary:
+    return typed_run(summary_of(measures, trials))
 
 
 def normals(count: int, seed: int = 0) -> np.ndarray:
@@ -121,7 +127,7 @@ def curve(spread: float) -> dict[str, Any]:
 @pytest.mark.parametrize("spread", [3.0, 6.0, 9.0])
 def test_three_sigma_is_the_one_band_of_a_curve_whether_its_trials_reach_further_or_not(spread: float) -> None:
     """With sigma 2 the band goes from -6 to +6, whatever the trials reach, which lines tell."""
-    axes = axes_of(draw_curve, "play", curve(spread))
+    axes = axes_of(draw_curve, "play", typed_measure(curve(spread)))
     (band,) = (each for each in axes.collections if isinstance(each, PolyCollection))
     heights = band.get_paths()[0].vertices[:, 1]
     assert (heights.min(), heights.max()) == pytest.approx((44.0, 58.0))
@@ -137,9 +143,9 @@ def test_normal_samples_are_told_by_three_sigma_and_uniform_ones_by_quantiles() 
     """Two chances of a thousandth each in 2000 studies: 4 are expected at most, 14 or more have a chance of 1e-4."""
     rng = np.random.default_rng(3)
     sizes = rng.integers(20, 3000, 2000)
-    alarms = sum(is_bounded(measure_of(rng.normal(size=size))) for size in sizes)
+    alarms = sum(is_bounded(typed_measure(measure_of(rng.normal(size=size)))) for size in sizes)
     assert alarms <= 14
-    assert all(is_bounded(measure_of(rng.uniform(size=size))) for size in (1000, 3000, 10_000))
+    assert all(is_bounded(typed_measure(measure_of(rng.uniform(size=size)))) for size in (1000, 3000, 10_000))
 
 
 def test_the_bars_of_a_range_end_where_its_trials_do() -> None:
@@ -147,21 +153,21 @@ def test_the_bars_of_a_range_end_where_its_trials_do() -> None:
     values = 8.0 + np.random.default_rng(1).rayleigh(1.0, 4000)
     measure = measure_of(values, published={"a paper": {"low_3sigma": 7.0, "high_3sigma": 12.0}})
     assert measure["geometric"]["low_3sigma"] == pytest.approx(7.29, abs=0.05)  # sigma / sqrt(n) = 0.01, 3 of it
-    axes = axes_of(draw_ranges, measure, column_colours(columns_of(measure)))
+    axes = axes_of(draw_ranges, typed_measure(measure), column_colours(columns_of(typed_measure(measure))))
     bars = [tuple(line.get_xdata()) for line in axes.lines if len(line.get_xdata()) == 2]
     low, high = (float(np.quantile(values, p)) for p in (0.00135, 0.99865))
     assert bars == [pytest.approx((low, high)), pytest.approx((low, high)), (7.0, 12.0)]
-    marked = [text.get_text() for text in axes_of(draw_distribution, measure).texts]
+    marked = [text.get_text() for text in axes_of(draw_distribution, typed_measure(measure)).texts]
     assert [text.split("\n")[0] for text in marked] == ["0.135 %", "mean", "99.865 %"]
-    figure = histogram_figure(summary_of({"swing": measure}))
+    figure = histogram_figure(typed_summary_of({"swing": measure}))
     assert any("0.135%and99.865%ofthetrials" in text for text in texts_of(figure))
 
 
 def test_the_bars_of_a_normal_measure_end_at_three_sigma() -> None:
     measure = measure_of(normals(4000))
-    axes = axes_of(draw_ranges, measure, column_colours(columns_of(measure)))
+    axes = axes_of(draw_ranges, typed_measure(measure), column_colours(columns_of(typed_measure(measure))))
     assert tuple(axes.lines[0].get_xdata()) == (measure["analytic"]["low_3sigma"], measure["analytic"]["high_3sigma"])
-    marked = [text.get_text().split("\n")[0] for text in axes_of(draw_distribution, measure).texts]
+    marked = [text.get_text().split("\n")[0] for text in axes_of(draw_distribution, typed_measure(measure)).texts]
     assert marked == ["−3σ", "mean", "+3σ"]
 
 
@@ -173,7 +179,7 @@ def test_contributors_bear_their_whole_names_and_no_words_cover_each_other(count
     names = tuple(long_name(f"no. {k}") for k in range(count))
     told = {long_name("a paper"): {"contributors": {names[0]: 30.0}, "mean": 50.0}}
     measure = measure_of(normals(500), names, published=told, lower_limit=40.0, upper_limit=80.0)
-    figure = histogram_figure(summary_of({long_name("play"): measure, "turn": measure}))
+    figure = histogram_figure(typed_summary_of({long_name("play"): measure, "turn": measure}))
     texts = texts_of(figure)
     for name in names[:9]:
         assert whole(name) in texts, name
@@ -186,14 +192,14 @@ def test_a_share_below_zero_is_a_bar_of_no_length() -> None:
     """Regression gives some to what does nothing: its number stands behind the axis' line, not in the names."""
     measure = measure_of(normals(500), ("one", "two"))
     measure["contributors"][1]["geometric_percent"] = -0.3
-    axes = axes_of(draw_contributors, measure, column_colours(columns_of(measure)))
+    axes = axes_of(draw_contributors, typed_measure(measure), column_colours(columns_of(typed_measure(measure))))
     assert min(bar.get_width() for bar in axes.patches) == 0.0
 
 
 @pytest.mark.parametrize("upper", [56.2, 57.0, 200.0])
 def test_no_limit_strikes_through_the_words_at_the_ends(upper: float) -> None:
     """The limit's line ends below them, wherever it stands."""
-    axes = axes_of(draw_distribution, measure_of(normals(2000), upper_limit=upper))
+    axes = axes_of(draw_distribution, typed_measure(measure_of(normals(2000), upper_limit=upper)))
     axes.figure.canvas.draw()
     lowest = min(text.get_window_extent().y0 for text in axes.texts if text.get_text().startswith(("+3σ", "mean")))
     lines = [line for line in axes.lines if to_hex(line.get_color()) == OUTSIDE.lower()]
@@ -207,7 +213,7 @@ def test_words_at_mean_and_ends_stand_apart_however_narrow_the_trials_are(sigma:
     values = 50.0 + sigma * np.random.default_rng(2).normal(size=2000)
     told = {"a paper": {"low_3sigma": 20.0, "mean": 55.0, "high_3sigma": 90.0}}
     measure = measure_of(values, ("one",), published=told, lower_limit=15.0)
-    assert_apart(histogram_figure(summary_of({"play": measure})))
+    assert_apart(histogram_figure(typed_summary_of({"play": measure})))
 
 
 # many measures ------------------------------------------------------------------------------------
@@ -216,10 +222,10 @@ def test_words_at_mean_and_ends_stand_apart_however_narrow_the_trials_are(sigma:
 def test_each_of_many_measures_has_a_file_and_a_place_in_the_overview() -> None:
     kinds = [measure_of(normals(500, seed), ("one",), lower_limit=45.0, over="turn", take="min") for seed in range(19)]
     measures = {long_name(f"no. {k}"): kind for k, kind in enumerate(kinds)} | {"over a turn": curve(5.0)}
-    files = measure_files(summary_of(measures))
+    files = measure_files(typed_summary_of(measures))
     assert list(files) == list(measures)
     assert len({file.casefold() for file in files.values()}) == 20
-    figure = overview_figure(summary_of(measures))
+    figure = overview_figure(typed_summary_of(measures))
     assert len(figure.axes) == 20
     texts = texts_of(figure)
     assert all(whole(name) in texts for name in measures)
@@ -229,19 +235,19 @@ def test_each_of_many_measures_has_a_file_and_a_place_in_the_overview() -> None:
 def test_a_run_of_many_measures_draws_a_picture_of_each(tmp_path: Path) -> None:
     measures = {f"play {k}": measure_of(normals(50, k), ("one",)) for k in range(5)}
     with picture.drawing() as draw:
-        draw(summary_of(measures), tmp_path / "histogram.png")
+        draw(valid(summary_of(measures)), tmp_path / "histogram.png")
     expected = {"histogram.png", *(f"histogram-play {k}.png" for k in range(5))}
     assert {path.name for path in tmp_path.iterdir()} == expected
 
 
 def test_a_measure_that_cannot_be_drawn_costs_a_warning_and_no_other_picture(tmp_path: Path) -> None:
     measures = {f"play {k}": measure_of(normals(50, k), ("one",)) for k in range(5)}
-    measures["play 3"]["published"] = {"a paper": {"contributors": {"one": "much"}}}
+    (tmp_path / "histogram-play 3.png").symlink_to(tmp_path / "no such folder" / "picture.png")
     with (
         picture.drawing() as draw,
         pytest.warns(picture.PictureWarning, match=r"^histogram-play 3\.png could not be drawn"),
     ):
-        draw(summary_of(measures), tmp_path / "histogram.png")
+        draw(valid(summary_of(measures)), tmp_path / "histogram.png")
     assert not (tmp_path / "histogram-play 3.png").exists()
     assert len(list(tmp_path.iterdir())) == 5
 
@@ -263,7 +269,7 @@ def jammed() -> dict[str, Any]:
 
 def test_what_failed_is_missing_in_the_bars_and_makes_the_others_no_more() -> None:
     """Both roads found the same values of what seated: their bars are as high there, and 2/3 of 100 % in all."""
-    bars = bars_of(jammed())
+    bars = bars_of(typed_measure(jammed()))
     assert float(np.sum(bars["geometric"].density * np.diff(bars["geometric"].edges))) == pytest.approx(200 / 3)
     assert float(np.sum(bars["analytic"].density * np.diff(bars["analytic"].edges))) == pytest.approx(100.0)
     higher = bars["geometric"].density[bars["geometric"].middles > 50.0]
@@ -271,11 +277,11 @@ def test_what_failed_is_missing_in_the_bars_and_makes_the_others_no_more() -> No
 
 
 def test_a_picture_says_how_many_seated_and_what_is_out_of_all() -> None:
-    figure = histogram_figure(summary_of({"play": jammed()}, 3000))
+    figure = histogram_figure(typed_summary_of({"play": jammed()}, 3000))
     texts = texts_of(figure)
     assert any("of2000of3000thatseated,outinall40%" in text for text in texts)
     assert any("LSL49µm40%below" in text for text in texts)
-    many = overview_figure(summary_of({f"play {k}": jammed() for k in range(5)}, 3000))
+    many = overview_figure(typed_summary_of({f"play {k}": jammed() for k in range(5)}, 3000))
     assert sum("40%below" in text and "of2000of3000thatseated" in text for text in texts_of(many)) == 5
     assert_apart(figure)
     assert_apart(many)
@@ -286,7 +292,7 @@ def test_a_picture_says_how_many_seated_and_what_is_out_of_all() -> None:
 
 def run_of(path: str, measures: dict[str, Any]) -> Any:
     """A run that kept no trials, as far as comparisons read it."""
-    return SimpleNamespace(path=Path(path), summary=summary_of(measures), keeps_trials=False, column_names=())
+    return SimpleNamespace(path=Path(path), found=typed_summary_of(measures), keeps_trials=False, column_names=())
 
 
 def test_a_comparison_names_every_run_in_each_of_its_rows_in_one_colour() -> None:
@@ -314,9 +320,9 @@ def test_a_comparison_names_every_run_in_each_of_its_rows_in_one_colour() -> Non
     assert [len(own) for own in colours.values()] == [1, 1, 1]
     assert len(set.union(*colours.values())) == 3
     texts = texts_of(figure)
-    assert whole(heading(runs[0].summary["measures"]["play"])) in texts
-    assert whole(heading(runs[1].summary["measures"]["play"])) in texts
-    assert heading(runs[1].summary["measures"]["play"]).endswith("gap in its middle, one driver tooth")
+    assert whole(heading(runs[0].found.measures["play"])) in texts
+    assert whole(heading(runs[1].found.measures["play"])) in texts
+    assert heading(runs[1].found.measures["play"]).endswith("gap in its middle, one driver tooth")
     assert_apart(figure)
 
 
@@ -347,7 +353,7 @@ def test_no_line_of_a_comparison_runs_through_its_legends() -> None:
 @pytest.mark.parametrize("over", ["random", "at"])
 def test_a_train_without_a_motor_is_told_without_one(kind: str, over: str) -> None:
     measure = {"kind": kind, "of": "stage", "over": over, "take": "value", "shaft": "output", "held": "input"}
-    assert "motor" not in heading(measure | {"arm": "arm", "point": "tip"})
+    assert "motor" not in heading(typed_measure(measure | {"arm": "arm", "point": "tip"}))
 
 
 def test_a_cut_name_says_so() -> None:

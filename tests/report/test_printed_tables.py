@@ -56,7 +56,7 @@ def run(tmp_path_factory: pytest.TempPathFactory) -> Run:
 @pytest.fixture(scope="module")
 def table(run: Run) -> Table:
     console = Console(file=io.StringIO(), width=WIDE)
-    console.print(run_report(run.summary))
+    console.print(run_report(run.found))
     return table_in(text_of(console), "[µm]")
 
 

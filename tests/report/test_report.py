@@ -17,6 +17,7 @@ import pytest
 import trimesh
 from hypothesis import given
 from hypothesis import strategies as st
+from loose_summaries import typed_measure, typed_run
 from matplotlib.image import imread
 from places import SCENES
 from rich.console import Console, RenderableType
@@ -101,7 +102,7 @@ def row_of(text: str, label: str) -> list[str]:
 
 @pytest.mark.parametrize("width", [80, 120])
 def test_run_report_fits_the_width_without_losing_a_word_or_a_number(run: Run, width: int) -> None:
-    text = printed(run_report(run.summary), width)
+    text = printed(run_report(run.found), width)
     assert max(len(line) for line in text.splitlines()) <= width
     assert "…" not in text
     assert "\x1b" not in text  # plain, since no terminal is there
@@ -112,7 +113,7 @@ def one_line(renderable: RenderableType) -> str:
 
 
 def test_the_witness_is_told_below_each_measure_with_what_its_chords_explain(run: Run) -> None:
-    text, measures = one_line(run_report(run.summary)), run.summary["witness"]["measures"]
+    text, measures = one_line(run_report(run.found)), run.summary["witness"]["measures"]
     assert list(measures) == list(run.summary["measures"])
     for name, to_text in (("free play", "{:.3f} µm".format), ("shape", "{:.3f} µm".format)):
         largest, chords = (to_text(measures[name][key]) for key in ("max_abs_difference", "expected_at_most"))
@@ -126,10 +127,10 @@ def test_the_witness_is_told_below_each_measure_with_what_its_chords_explain(run
 def test_chord_errors_are_spoken_of_only_where_there_are_any(run: Run) -> None:
     without = dict(run.summary)
     without.pop("witness")
-    text = one_line(run_report(without))
+    text = one_line(run_report(typed_run(without)))
     assert "chord error" not in text
     assert text.count("3D simulation − analytic, trial by trial") == 2  # no curves
-    by_fcl = one_line(run_report(without | {"chord_error_um": 0.021}))
+    by_fcl = one_line(run_report(typed_run(without | {"chord_error_um": 0.021})))
     assert by_fcl.count("up to 0.084 µm of normal backlash may be chord error (0.021 µm on each of 4 flanks)") == 2
 
 
@@ -138,7 +139,7 @@ NUMBER = re.compile(r"[-+±]?\d[\d.′″]*")
 
 @pytest.mark.parametrize("width", [30, 40, 60])
 def test_no_number_is_cut_in_a_narrow_terminal(run: Run, width: int) -> None:
-    for report in (run_report(run.summary), check_report(model_of(run)), comparison_report([run, run])):
+    for report in (run_report(run.found), check_report(model_of(run)), comparison_report([run, run])):
         wide, narrow = printed(report, 300), printed(report, width)
         assert max(len(line) for line in narrow.splitlines()) <= width
         assert "…" not in narrow
@@ -157,7 +158,7 @@ def test_a_sheet_shows_every_cell_once_within_its_width(rows, width: int) -> Non
 
 
 def test_rows_hold_the_statistics_of_the_columns(run: Run) -> None:
-    text = printed(run_report(run.summary), 120)
+    text = printed(run_report(run.found), 120)
     values = {road: run.columns(f"{road}:free play")[f"{road}:free play"] for road in ("analytic", "geometric")}
     means = row_of(text, "mean")
     assert means[1:3] == [f"{values[road].mean():.3f}" for road in ("analytic", "geometric")]
@@ -173,7 +174,7 @@ def test_rows_hold_the_statistics_of_the_columns(run: Run) -> None:
 def test_a_closed_form_s_share_out_of_limits_is_that_of_a_normal(run: Run) -> None:
     form = run.summary["measures"]["free play"]["analytic_closed_form"]
     expected = 100 * norm.cdf(62, form["mean"], form["sigma"])
-    shown, unit = row_of(printed(run_report(run.summary), 120), "below 62 µm")[:2]
+    shown, unit = row_of(printed(run_report(run.found), 120), "below 62 µm")[:2]
     assert (float(shown), unit) == (pytest.approx(expected, rel=5e-4), "%")  # four digits are shown
 
 
@@ -181,12 +182,12 @@ def test_lost_motion_is_normal_backlash_over_the_base_radius(run: Run) -> None:
     mean = run.summary["measures"]["free play"]["geometric"]["mean"]
     base_radius = 25 * math.cos(math.radians(20))  # m z cos(alpha) / 2 of 25 teeth, module 2
     minutes, seconds = divmod(math.degrees(mean / 1000 / base_radius) * 3600, 60)
-    assert row_of(printed(run_report(run.summary), 120), "lost motion, mean")[2] == f"{minutes:.0f}′{seconds:04.1f}″"
+    assert row_of(printed(run_report(run.found), 120), "lost motion, mean")[2] == f"{minutes:.0f}′{seconds:04.1f}″"
 
 
 def test_contributors_are_sorted_by_the_share_of_the_simulation(run: Run) -> None:
     measure = run.summary["measures"]["free play"]
-    text = printed(run_report(run.summary), 120)
+    text = printed(run_report(run.found), 120)
     names = sorted(measure["contributors"], key=lambda c: -c["geometric_percent"])
     lines = text.split("share [%]")[1].splitlines()[2 : 2 + len(names)]
     for line, contributor in zip(lines, names, strict=True):
@@ -199,7 +200,10 @@ def test_what_no_contributor_explains_is_told_and_explained(run: Run) -> None:
     whole = [c | {"analytic_percent": 20.0, "geometric_percent": 20.0} for c in measure["contributors"]]
     partly = [c | {"analytic_percent": 20.0, "geometric_percent": 18.0} for c in measure["contributors"]]
     texts = [
-        printed(run_report(dict(run.summary) | {"measures": {"m": dict(measure) | {"contributors": shares}}}), 120)
+        printed(
+            run_report(typed_run(dict(run.summary) | {"measures": {"m": dict(measure) | {"contributors": shares}}})),
+            120,
+        )
         for shares in (whole, partly)
     ]
     assert "not attributed" not in texts[0]
@@ -212,8 +216,9 @@ def test_no_zero_has_a_sign(run: Run) -> None:
     shares = [c | {"geometric_percent": -0.01} for c in measure["contributors"]]
     geometric = dict(measure["geometric"]) | {"ppk": -0.0001, "mean": -1e-5}
     measure = dict(measure) | {"contributors": shares, "geometric": geometric, "lower_limit": -0.0}
-    text = printed(run_report(dict(run.summary) | {"measures": {"free play": measure}}), 120)
+    text = printed(run_report(typed_run(dict(run.summary) | {"measures": {"free play": measure}})), 120)
     axes = plain_axes(new_figure(4, 4).add_subplot())
+    measure = typed_measure(measure)
     columns = shares_of(measure)
     draw_contributors(axes, measure, column_colours(columns))
     draw_distribution(plain_axes(new_figure(4, 4).add_subplot()), measure)
@@ -224,13 +229,13 @@ def test_no_zero_has_a_sign(run: Run) -> None:
 
 def test_a_curve_says_how_many_of_its_positions_are_shown(run: Run) -> None:
     shape = run.summary["measures"]["shape"]
-    assert "positions shown" not in printed(run_report(run.summary), 120)
+    assert "positions shown" not in printed(run_report(run.found), 120)
     curve = {
         road: own | {key: own[key] * 6 for key in ("mean", "sigma", "min", "max")}
         for road, own in shape["curve"].items()
     }
     long = dict(shape) | {"curve": curve, "position_deg": [float(k) for k in range(30)]}
-    text = printed(run_report(dict(run.summary) | {"measures": {"shape": long}}), 120)
+    text = printed(run_report(typed_run(dict(run.summary) | {"measures": {"shape": long}})), 120)
     shown = [line for line in text.splitlines() if re.match(r" *\d+\.0  ", line)]
     assert len(shown) == 10
     assert "10 of 30 positions shown; all in summary.json" in text
@@ -238,7 +243,7 @@ def test_a_curve_says_how_many_of_its_positions_are_shown(run: Run) -> None:
 
 def test_failed_trials_are_told_in_per_cent(run: Run) -> None:
     summary = dict(run.summary) | {"status": {"ok": 21, "interferes": 3, "no contact": 0}}
-    assert "21 seated, 3 jammed (12.5 %)" in printed(run_report(summary), 120)
+    assert "21 seated, 3 jammed (12.5 %)" in printed(run_report(typed_run(summary)), 120)
 
 
 def test_report_of_the_analytic_engine_has_no_column_of_a_simulation(run: Run) -> None:
@@ -249,7 +254,7 @@ def test_report_of_the_analytic_engine_has_no_column_of_a_simulation(run: Run) -
     }
     for measure in measures.values():
         measure["contributors"] = [c | {"geometric_percent": None} for c in measure["contributors"]]
-    text = printed(run_report(dict(run.summary) | {"measures": measures, "chord_error_um": None}), 80)
+    text = printed(run_report(typed_run(dict(run.summary) | {"measures": measures, "chord_error_um": None})), 80)
     assert "simulation" not in text
     assert "analytic" in text
 
@@ -413,7 +418,7 @@ def test_comparing_nothing_is_refused() -> None:
 @given(st.lists(st.integers(0, 10**6), min_size=1, max_size=64), st.floats(1e-3, 1e3))
 def test_bars_hold_every_trial_once(counts, width: int) -> None:
     histogram = {"lower_edge": -3.0, "bin_width": width, "counts": {"analytic": counts}}
-    bars = bars_of({"histogram": histogram})["analytic"]
+    bars = bars_of(typed_measure({"histogram": histogram}))["analytic"]
     held = float(np.sum(bars.density * np.diff(bars.edges)))
     assert held == pytest.approx(100.0 if sum(counts) else 0.0)
     first = np.flatnonzero(counts)[0] if sum(counts) else 0  # merging moves no count outside its bar
@@ -432,7 +437,7 @@ def test_histogram_shows_what_is_out_of_limits_in_its_colour(run: Run, tmp_path:
     colour = tuple(int(VERMILLION[k : k + 2], 16) for k in (1, 3, 5))
     for limit in (0.0, run.summary["measures"]["free play"]["geometric"]["mean"]):
         measure = dict(run.summary["measures"]["free play"]) | {"lower_limit": limit}
-        draw_histogram(dict(run.summary) | {"measures": {"free play": measure}}, tmp_path / f"{limit}.png")
+        draw_histogram(typed_run(dict(run.summary) | {"measures": {"free play": measure}}), tmp_path / f"{limit}.png")
         # bars are drawn with some white let through
         counted[limit] = pixels_of(tmp_path / f"{limit}.png", tuple(round(0.85 * c + 0.15 * 255) for c in colour))
     low, high = counted.values()
@@ -441,11 +446,12 @@ def test_histogram_shows_what_is_out_of_limits_in_its_colour(run: Run, tmp_path:
 
 def test_every_kind_of_measure_is_drawn(run: Run, tmp_path: Path) -> None:
     """Three rows: two histograms and a curve, in a picture as tall as they need."""
-    draw_histogram(run.summary, tmp_path / "all.png")
-    draw_histogram(dict(run.summary) | {"measures": dict([*run.summary["measures"].items()][:1])}, tmp_path / "one.png")
-    every, one = (imread(tmp_path / name) for name in ("all.png", "one.png"))
-    assert every.shape[1] == one.shape[1]
-    assert every.shape[0] > 2 * one.shape[0]
+    draw_histogram(run.found, tmp_path / "all.png")
+    one = dict([*run.summary["measures"].items()][:1])
+    draw_histogram(typed_run(dict(run.summary) | {"measures": one}), tmp_path / "one.png")
+    every, single = (imread(tmp_path / name) for name in ("all.png", "one.png"))
+    assert every.shape[1] == single.shape[1]
+    assert every.shape[0] > 2 * single.shape[0]
     assert (every[..., :3].std(axis=(1, 2)) > 0).mean() > 0.8  # rows of pixels with ink
 
 
@@ -463,30 +469,30 @@ def without_seats(run: Run, positions: set[int]) -> dict:
 def test_a_curve_is_drawn_where_trials_seated_and_open_where_none_did(run: Run, tmp_path: Path) -> None:
     measure = without_seats(run, {1, 3})
     axes = plain_axes(new_figure(6, 4).add_subplot())
-    draw_curve(axes, "shape", measure)
+    draw_curve(axes, "shape", typed_measure(measure))
     assert np.isnan(axes.lines[0].get_ydata()).tolist() == [False, True, False, True, False]
-    draw_histogram(dict(run.summary) | {"measures": {"shape": measure}}, tmp_path / "some.png")
-    printed(run_report(dict(run.summary) | {"measures": {"shape": measure}}), 80)
+    draw_histogram(typed_run(dict(run.summary) | {"measures": {"shape": measure}}), tmp_path / "some.png")
+    printed(run_report(typed_run(dict(run.summary) | {"measures": {"shape": measure}})), 80)
 
 
 def test_a_curve_without_any_seated_trial_says_so(run: Run, tmp_path: Path) -> None:
     measure = without_seats(run, {0, 1, 2, 3, 4})
     measure["curve"]["analytic"] |= {key: [None] * 5 for key in ("mean", "sigma", "min", "max")}
     axes = plain_axes(new_figure(6, 4).add_subplot())
-    draw_curve(axes, "shape", measure)
+    draw_curve(axes, "shape", typed_measure(measure))
     assert "no trial gave a value" in [text.get_text() for text in axes.texts]
-    draw_histogram(dict(run.summary) | {"measures": {"shape": measure}}, tmp_path / "none.png")
+    draw_histogram(typed_run(dict(run.summary) | {"measures": {"shape": measure}}), tmp_path / "none.png")
 
 
 def test_signs_that_no_font_has_are_no_warning(run: Run, tmp_path: Path) -> None:
     with warnings.catch_warnings():
         warnings.simplefilter("error")
-        draw_histogram(dict(run.summary) | {"scene": "歯車 🦷"}, tmp_path / "emoji.png")
+        draw_histogram(typed_run(dict(run.summary) | {"scene": "歯車 🦷"}), tmp_path / "emoji.png")
 
 
 def test_a_picture_of_another_format_is_refused(run: Run, tmp_path: Path) -> None:
     with pytest.raises(InputError, match=r"ending in \.png"):
-        draw_histogram(run.summary, tmp_path / "histogram.docx")
+        draw_histogram(run.found, tmp_path / "histogram.docx")
 
 
 def test_a_picture_in_a_missing_folder_is_refused(run: Run, tmp_path: Path) -> None:
@@ -512,11 +518,13 @@ def test_comparison_of_two_runs_is_drawn(run: Run, tmp_path: Path) -> None:
 def test_a_run_loads_neither_cad_nor_meshes_nor_views(run: Run, tmp_path: Path) -> None:
     """Its strips are cached by the fixture; the picture and the table are made too."""
     program = (
-        "import sys; from pathlib import Path; from tol3d.simulate import run_scene, Overrides, Watch\n"
+        "import json, sys; from pathlib import Path; from tol3d.simulate import run_scene, Overrides, Watch\n"
         "from tol3d.report import draw_histogram, run_report\n"
+        "from tol3d.runs.summary.text import typed\n"
+        "found = lambda summary: typed(json.loads(json.dumps(summary)), ValueError)\n"
         f"run = run_scene({str(run.path.parent / 'small.yaml')!r}, out=sys.argv[1], overrides=Overrides(trials=2),\n"
-        "    watch=Watch(finisher=lambda place, summary: draw_histogram(summary, place / 'h.png')))\n"
-        "run_report(run.summary)\n"
+        "    watch=Watch(finisher=lambda place, summary: draw_histogram(found(summary), place / 'h.png')))\n"
+        "run_report(run.found)\n"
         "print(sorted({'trimesh', 'pyvista', 'vtk', 'cadquery', 'matplotlib.pyplot'} & set(sys.modules)))"
     )
     done = subprocess.run([sys.executable, "-c", program, str(tmp_path / "r")], capture_output=True, text=True)

@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from fixtures import Command
+from loose_summaries import typed_measure
 from places import SCENES, SPUR_PAIR
 from rich.console import Console, RenderableType
 from scipy import stats
@@ -36,7 +37,7 @@ def spur(folder: Path, limits: str, trials: int = 4000, centre: float = 172.5) -
     return run_scene(folder / "scene.yaml", overrides=Overrides(trials=trials), out=folder / "run")
 
 
-def measure(below: int, trials: int, limit: float | None = 15.0) -> dict:
+def stated(below: int, trials: int, limit: float | None = 15.0) -> dict:
     ci = stats.binomtest(below, trials).proportion_ci(0.95, "exact")
     sample = {"out_ppm": 1e6 * below / trials, "out_ppm_95": [1e6 * ci.low, 1e6 * ci.high]}
     return {"take": "value", "geometric": sample, "lower_limit": limit, "upper_limit": None}
@@ -56,26 +57,26 @@ def measure(below: int, trials: int, limit: float | None = 15.0) -> dict:
 )
 def test_a_verdict_is_told_where_the_whole_interval_is_on_one_side(below: int, trials: int, verdict: str) -> None:
     assert pytest.approx(2e6 * stats.norm.sf(3), rel=1e-3) == ACCEPTED_PPM
-    assert Judged.of(measure(below, trials)).verdict == verdict
+    assert Judged.of(typed_measure(stated(below, trials))).verdict == verdict
 
 
 def test_verdicts_are_wrong_for_one_study_in_twenty_at_most() -> None:
     """Of measures that have just as much out as is accepted, by the binomial law of 5000 trials: no sampling."""
     counts = np.arange(40)
-    wrong = [Judged.of(measure(int(k), 5000)).verdict != "too few trials" for k in counts]
+    wrong = [Judged.of(typed_measure(stated(int(k), 5000))).verdict != "too few trials" for k in counts]
     assert stats.binom(5000, 0.0027).pmf(counts) @ wrong <= 0.05
     assert stats.binom(5000, 0.0027).sf(39) < 1e-6
 
 
 def test_without_limits_only_failed_trials_are_judged() -> None:
-    assert Judged.of(measure(0, 20, limit=None)).verdict == "no limits"
-    assert Judged.of(measure(5, 20, limit=None)).verdict == "NOT OK"
+    assert Judged.of(typed_measure(stated(0, 20, limit=None))).verdict == "no limits"
+    assert Judged.of(typed_measure(stated(5, 20, limit=None))).verdict == "NOT OK"
 
 
 def test_a_study_that_cannot_bound_its_share_has_too_few_trials() -> None:
-    own = measure(3, 4096)
+    own = stated(3, 4096)
     own["geometric"]["out_ppm_95"] = None  # of replicates with few trials out
-    assert Judged.of(own).verdict == "too few trials"
+    assert Judged.of(typed_measure(own)).verdict == "too few trials"
 
 
 def test_a_row_has_what_is_counted_of_the_trials(tmp_path: Path) -> None:
@@ -83,7 +84,7 @@ def test_a_row_has_what_is_counted_of_the_trials(tmp_path: Path) -> None:
     values = run.columns("geometric:normal backlash")["geometric:normal backlash"]
     out = int(((values < 45) | (values > 70)).sum())
     ci = stats.binomtest(out, 4000).proportion_ci(0.95, "exact")
-    (row,) = [line for line in printed(verdict_table(run.summary)) if line.startswith("normal backlash")]
+    (row,) = [line for line in printed(verdict_table(run.found)) if line.startswith("normal backlash")]
     mean, sigma = values.mean(), values.std(ddof=1)
     ends = "  ".join(f"{value:.1f} µm" for value in (mean, mean - 3 * sigma, mean + 3 * sigma))
     shares = [f"{100 * share:.4g} %" for share in (out / 4000, ci.low, ci.high)]
@@ -91,7 +92,7 @@ def test_a_row_has_what_is_counted_of_the_trials(tmp_path: Path) -> None:
     assert row.split("  ", 1)[1].strip() == (
         f"NOT OK   {ends}  45 to 70 µm  {shares[0]} ({shares[1]} to {shares[2]})  {ppk:.2f}"
     )
-    (other,) = [line for line in printed(verdict_table(run.summary)) if line.startswith("lost motion")]
+    (other,) = [line for line in printed(verdict_table(run.found)) if line.startswith("lost motion")]
     assert other.split()[2] == "–"  # no limits, no verdict
 
 
@@ -100,11 +101,11 @@ def test_failed_builds_are_out_of_a_measure_that_has_no_limits(tmp_path: Path) -
     status = run.summary["measures"]["lost motion"]["status"]
     share = 100 * status["interferes"] / 4000
     assert share > 2
-    (row,) = [line for line in printed(verdict_table(run.summary)) if line.startswith("lost motion")]
+    (row,) = [line for line in printed(verdict_table(run.found)) if line.startswith("lost motion")]
     assert "NOT OK" in row
     assert f"{share:.4g} %" in row
-    assert not all_ok(run.summary, ACCEPTED_PPM)
-    assert all_ok(run.summary, 50_000)
+    assert not all_ok(run.found, ACCEPTED_PPM)
+    assert all_ok(run.found, 50_000)
 
 
 def test_a_curve_and_a_bounded_measure_say_what_their_ends_are(tmp_path: Path) -> None:
@@ -115,12 +116,12 @@ def test_a_curve_and_a_bounded_measure_say_what_their_ends_are(tmp_path: Path) -
     (tmp_path / "scene.yaml").write_text(text, "utf-8")
     run = run_scene(tmp_path / "scene.yaml", overrides=Overrides(trials=500, witness=0), out=tmp_path / "run")
     curve = run.columns("geometric:curve")["geometric:curve"]
-    (row,) = [line for line in printed(verdict_table(run.summary)) if line.startswith("curve")]
+    (row,) = [line for line in printed(verdict_table(run.found)) if line.startswith("curve")]
     low = (curve.mean(axis=0) - 3 * curve.std(axis=0, ddof=1)).min()
     high = (curve.mean(axis=0) + 3 * curve.std(axis=0, ddof=1)).max()
     assert f"–  {low:.1f} µm  {high:.1f} µm" in row
     assert f"{100 * (curve < 40).any(axis=1).mean():.4g} %" in row
-    assert "of a curve over its positions" in " ".join(printed(run_report(run.summary, Detail.VERDICT)))
+    assert "of a curve over its positions" in " ".join(printed(run_report(run.found, Detail.VERDICT)))
 
 
 # how much is printed --------------------------------------------------------------------------------------------------
@@ -130,8 +131,8 @@ def test_many_measures_are_a_row_each_and_their_tables_come_when_asked(tmp_path:
     study = Overrides(trials=200, witness=0)
     run = run_scene(SCENES / "robot_shoulder.yaml", overrides=study, out=tmp_path / "run")
     assert len(run.summary["measures"]) > MOST_TABLES
-    assert Detail.fitting(run.summary) is Detail.TRAINS
-    short, whole = (printed(run_report(run.summary, each), 120) for each in (Detail.TRAINS, Detail.MEASURES))
+    assert Detail.fitting(run.found) is Detail.TRAINS
+    short, whole = (printed(run_report(run.found, each), 120) for each in (Detail.TRAINS, Detail.MEASURES))
     assert len(short) < 60 < 200 < len(whole)
     for name in run.summary["measures"]:
         assert any(line.startswith(name) for line in short), name

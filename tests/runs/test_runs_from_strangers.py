@@ -27,7 +27,8 @@ from tol3d.report import comparison_report, draw_comparison, run_report
 from tol3d.runs.block_files import CHECKSUMS
 from tol3d.runs.manifest import MANIFEST
 from tol3d.runs.run import SUMMARY
-from tol3d.runs.summary_schema import RunSummary, SchemaWarning, written
+from tol3d.runs.summary.kinds import default_kinds
+from tol3d.runs.summary.text import SchemaWarning, written
 from tol3d.runs.worst import worst_trial
 from tol3d.simulate import model_of
 
@@ -181,7 +182,7 @@ def told_of(run: Run) -> str:
     """What the tables say of a run, and which of its trials is the worst."""
     page = StringIO()
     console = SafeConsole(file=page, width=120, highlight=False, markup=False)
-    console.print(run_report(run.summary))
+    console.print(run_report(run.found))
     console.print(comparison_report([run]))
     return f"{page.getvalue()}\n{worst_trial(run)}"
 
@@ -296,13 +297,13 @@ def test_the_schema_that_is_printed_is_valid_and_accepts_runs(tol3d: Command, wh
         jsonschema.validate(summary_in(folder), schema)
     with pytest.raises(jsonschema.ValidationError):
         jsonschema.validate(summary_in(whole) | {"trials": "many"}, schema)
-    assert schema == RunSummary.model_json_schema()
+    assert schema == default_kinds().run.model_json_schema()
 
 
 def test_a_key_that_the_schema_lacks_is_told_when_it_is_written(whole: Path) -> None:
     summary = summary_in(whole)
     summary["measures"]["normal backlash curve"]["new key"] = 1.0
-    told = r"curve\.new key: unknown key.*written down in tol3d/runs/summary_schema\.py"
+    told = r"curve\.new key: unknown key.*written down in tol3d/runs/summary/"
     with pytest.warns(SchemaWarning, match=told):
         text = written(summary)
     assert json.loads(text) == summary
@@ -457,4 +458,4 @@ def test_bounds_of_the_schema_are_finite() -> None:
             for item in schema:
                 yield from bounds(item)
 
-    assert max(bounds(RunSummary.model_json_schema())) < 1e19
+    assert max(bounds(default_kinds().run.model_json_schema())) < 1e19

@@ -16,6 +16,7 @@ import pytest
 import scipy
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from loose_summaries import typed_run
 from places import ROOT
 from rich.console import Console
 
@@ -305,7 +306,7 @@ def summary_of(model: Model) -> dict[str, Any]:
 
 def printed(summary: dict[str, Any]) -> str:
     console = Console(width=400, record=True, file=open("/dev/null", "w"))  # noqa: SIM115
-    console.print(run_report(summary))
+    console.print(run_report(typed_run(summary)))
     return console.export_text()
 
 

@@ -105,7 +105,7 @@ def test_an_absurd_number_is_refused_or_simulated(name: str, engine: str, tmp_pa
         study = Overrides(trials=3, engine=engine, witness=0)
         try:
             run = run_scene(scene, overrides=study, out=tmp_path / "run", force=True)
-            printed(run_report(run.summary))
+            printed(run_report(run.found))
             simulated += 1
         except InputError:
             continue

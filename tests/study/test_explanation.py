@@ -16,6 +16,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from loose_summaries import typed_run
 from oracles.random_scenes import random_scenes
 from places import SCENES
 from rich.console import Console
@@ -313,7 +314,7 @@ def test_45_trials_decide() -> None:
 
 def printed(summary: Mapping[str, Any]) -> str:
     console = Console(width=400, record=True, file=io.StringIO())
-    console.print(run_report(summary))
+    console.print(run_report(typed_run(summary)))
     return " ".join(console.export_text().split())
 
 

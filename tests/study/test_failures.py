@@ -347,7 +347,7 @@ def printed(report: object) -> str:
 
 def test_tables_say_of_how_many_builds_they_are(run: Run, truth: np.ndarray) -> None:
     seated = int((truth >= -FREE).sum())
-    lines = printed(run_report(run.summary)).splitlines()
+    lines = printed(run_report(run.found)).splitlines()
     seats, jams = (next(line.split() for line in lines if line.startswith(f"trials {word}")) for word in WORDS)
     # columns: closed form, same trials, 3D simulation, two published ones
     assert seats[2:] == ["–", str(TRIALS), str(seated), "–", "–"]

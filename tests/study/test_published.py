@@ -42,7 +42,7 @@ def um(quantity: Any) -> float:
 @pytest.mark.parametrize("scene", SHOWN)
 def test_what_a_scene_says_of_other_peoples_numbers_is_printed_below_them_whole(scene: str, tmp_path: Path) -> None:
     run = run_scene(SCENES / f"{scene}.yaml", overrides=JUST_RUN, out=tmp_path / "run")
-    text = " ".join(printed(run_report(run.summary), 90).split())
+    text = " ".join(printed(run_report(run.found), 90).split())
     told = [
         (measure, column, values.description)
         for column, measures in load_scene(SCENES / f"{scene}.yaml").published.items()

@@ -4,6 +4,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from loose_summaries import typed_run
 from places import SCENES
 
 from tol3d.analyses.compensation import CompensationQuestion, compensation
@@ -58,10 +59,10 @@ def test_the_distribution_of_a_train_told_by_its_tip_is_the_turn_that_moves_the_
     )
     trains = by_tip["trains"]["t"], by_turn["trains"]["t"]
     for road in ("analytic", "geometric"):
-        found = distributions_of(trains[0], by_tip)[road]["high_3sigma"]
+        found = distributions_of(trains[0], typed_run(by_tip))[road]["high_3sigma"]
         # a chord is shorter than its arc by the turn squared over 24: 4e-7 of it at 10 minutes of arc
         assert found == pytest.approx(by_turn["measures"]["lost"][road]["high_3sigma"], rel=1e-6)
-    shown = {row.label: row.cells for row in sums_table(trains[0], by_tip).rows}
+    shown = {row.label: row.cells for row in sums_table(trains[0], typed_run(by_tip)).rows}
     assert float(shown["tip of arm, mean + 3 sigma [mm]"][1]) == pytest.approx(
         by_tip["measures"]["tip"]["geometric"]["high_3sigma"], abs=5.1e-5
     )
@@ -77,8 +78,8 @@ def test_a_point_is_told_of_its_own_shaft_only(tmp_path: Path) -> None:
 
 def test_sums_at_random_positions_are_not_those_of_one_position(tmp_path: Path) -> None:
     summary = summary_of(tmp_path, LOST, "at stop: {kind: lost_motion, of: t, over: {at: 20 deg}}")
-    assert sums_of(summary["measures"]["lost"], summary)
-    assert not sums_of(summary["measures"]["at stop"], summary)
+    assert sums_of(typed_run(summary).measures["lost"], typed_run(summary))
+    assert not sums_of(typed_run(summary).measures["at stop"], typed_run(summary))
 
 
 def clocked(folder: Path, lower: float, upper: float) -> Path:

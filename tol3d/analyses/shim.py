@@ -261,10 +261,11 @@ class _Search:
         execution = Execution(workers_for(self.model), keep_trials=False)
         with tempfile.TemporaryDirectory(prefix="tol3d-") as folder:
             run = run_scene(scene, overrides=overrides, out=Path(folder) / "run", execution=execution)
-        found, called = run.summary["measures"][self.measure], self.question.minimum
-        if found["geometric"][called] is None:
+        measure, called = run.found.measures[self.measure], self.question.minimum
+        found = measure.geometric
+        if found is None or found.value(called) is None:
             raise InputError(f"{self.measure}: none of {run.trials} builds can be measured ({_text(thickness)})")
-        return Shimmed(thickness, called, found, run.trials)
+        return Shimmed(thickness, called, measure, found, run.trials)
 
 
 def _um_text(length: float) -> str:

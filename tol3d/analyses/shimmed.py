@@ -3,9 +3,11 @@
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any, Final, Literal
+from typing import Final, Literal
 
 from tol3d.distributions.base import LOW_PROBABILITY
+from tol3d.runs.summary.measure import MeasureSummary
+from tol3d.runs.summary.sample import Sample
 
 Minimum = Literal["low_3sigma", "p0.135", "sample_min"]
 
@@ -29,39 +31,41 @@ class Shimmed:
     Args:
         thickness: of each shim [mm]; None for the scene as it stands.
         called: which number is called the minimum.
-        found: the measure, as summary.json shows it [um, arcmin].
+        measure: as summary.json shows it [um, arcmin].
+        found: what the 3D simulation found of it.
         trials: how many builds there were.
     """
 
     thickness: float | None
     called: Minimum
-    found: Mapping[str, Any]
+    measure: MeasureSummary
+    found: Sample
     trials: int
 
     @property
     def minimum(self) -> float:
         """The number that is called so [mm]; the smallest of the trials is the deepest jam where any is jammed."""
-        minimum = float(self.found["geometric"][self.called]) / UM
+        minimum = (self.found.value(self.called) or 0.0) / UM
         if self.failed <= UNMEASURED[self.called] * self.trials:
             return minimum
-        deepest = self.found["geometric"]["deepest_overlap"]
+        deepest = self.found.deepest_overlap
         return min(minimum, deepest / UM if self.called == "sample_min" and deepest is not None else BELOW_NOTHING)
 
     @property
     def failed(self) -> int:
         """Trials without a backlash to measure; its statistics are those of the others."""
-        return self.trials - int(self.found["geometric"]["count"])
+        return self.trials - self.found.count
 
     @property
     def resolution(self) -> float:
         """How well the minimum can be met [mm]: a quantile is known to a bin of the study's histogram."""
-        bin_width = self.found["geometric"]["quantile_error"] / UM if self.called == "p0.135" else 0.0
-        return max(MINIMUM_XTOL, float(bin_width))
+        bin_width = self.found.quantile_error / UM if self.called == "p0.135" else 0.0
+        return max(MINIMUM_XTOL, bin_width)
 
     @property
     def sampling_error(self) -> float | None:
         """Standard error of mean - 3 sigma [mm], as of independent mean and sigma; None for another minimum."""
-        errors = [self.found["geometric"].get(key) for key in ("mean_se", "sigma_se")]
-        if self.called != "low_3sigma" or None in errors:
+        mean, sigma = self.found.mean_se, self.found.sigma_se
+        if self.called != "low_3sigma" or mean is None or sigma is None:
             return None
-        return math.hypot(errors[0], 3 * errors[1]) / UM
+        return math.hypot(mean, 3 * sigma) / UM

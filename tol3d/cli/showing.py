@@ -51,12 +51,18 @@ def schema(
     """Print the JSON Schema of scenes, for editors; or that of summary.json, for programs that read runs."""
     import json
 
-    if summary:
-        from tol3d.runs.summary_schema import RunSummary as Described
-    else:
-        from tol3d.scene import Scene as Described  # type: ignore[assignment]
+    from pydantic import BaseModel
 
-    typer.echo(json.dumps(Described.model_json_schema(), indent=2, ensure_ascii=False))
+    described: type[BaseModel]
+    if summary:
+        from tol3d.runs.summary.kinds import default_kinds
+
+        described = default_kinds().run
+    else:
+        from tol3d.scene import Scene
+
+        described = Scene
+    typer.echo(json.dumps(described.model_json_schema(), indent=2, ensure_ascii=False))
 
 
 def compare(
@@ -142,5 +148,5 @@ def _which(run: "Run", trial: int | None, *, worst: bool, nominal: bool, mean: b
         return words[0] if trial is None else trial
     found = worst_trial(run)
     unnamed = "" if worst else "no build named: "
-    err_console.print(f"{unnamed}trial {found}, the worst: {worst_words(run.summary['measures'])}")
+    err_console.print(f"{unnamed}trial {found}, the worst: {worst_words(run.found.measures)}")
     return found

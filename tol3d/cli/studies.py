@@ -130,11 +130,11 @@ def run(
     except KeyboardInterrupt:
         err_console.print(_how_to_resume(folder))
         raise typer.Exit(INTERRUPTED) from None
-    shown = Detail.VERDICT if quiet else Detail.MEASURES if verbose else Detail.fitting(finished.summary)
-    out_console.print(run_report(finished.summary, shown, ACCEPTED_PPM if accept is None else accept))
+    shown = Detail.VERDICT if quiet else Detail.MEASURES if verbose else Detail.fitting(finished.found)
+    out_console.print(run_report(finished.found, shown, ACCEPTED_PPM if accept is None else accept))
     if not quiet:
         tell(f"run: {finished.path}{_pictures_text(finished)}")
-    failed = _out_of_limits(finished) if accept is None else not all_ok(finished.summary, accept)
+    failed = _out_of_limits(finished) if accept is None else not all_ok(finished.found, accept)
     if fail_on_limits and failed:
         err_console.print("limits failed", style="red")
         raise typer.Exit(LIMITS_FAILED)
@@ -144,9 +144,9 @@ def _pictures_text(run: "Run") -> str:
     """The pictures that were drawn of a run."""
     from tol3d.report.picture import chain_files, measure_files
 
-    pictures = [run.path / name for name in (PICTURE, *chain_files(run.summary).values())]
+    pictures = [run.path / name for name in (PICTURE, *chain_files(run.found).values())]
     drawn = [str(picture) for picture in pictures if picture.exists()]
-    if any((run.path / name).exists() for name in measure_files(run.summary).values()):
+    if any((run.path / name).exists() for name in measure_files(run.found).values()):
         drawn.append(str(run.path / "histogram-*.png"))
     return f"    picture{'s' if len(drawn) > 1 else ''}: {', '.join(drawn)}" if drawn else ""
 
@@ -218,7 +218,4 @@ def _stopped_in_order() -> Iterator[None]:
 
 
 def _out_of_limits(run: "Run") -> bool:
-    road = "analytic" if run.summary["engine"] == "analytic" else "geometric"
-    measures = run.summary["measures"].values()
-    samples = [measure["curve"][road] if measure["take"] == "curve" else measure[road] for measure in measures]
-    return any(sample["out_ppm"] for sample in samples)
+    return any(measure.shares.out_ppm for measure in run.found.measures.values())

@@ -1,6 +1,5 @@
 """Histograms from a summary, ready to be drawn: fewer bars for few trials, densities in % a unit."""
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -30,7 +29,7 @@ class Bars:
         return (self.edges[:-1] + self.edges[1:]) / 2
 
 
-def bars_of(measure: Mapping[str, Any]) -> dict[str, Bars]:
+def bars_of(measure: Any) -> dict[str, Bars]:
     """Bars of each road of a measure's summary; none when nothing was counted.
 
     Densities are of all trials: what failed is missing, and does not make the others seem more.
@@ -42,7 +41,7 @@ def bars_of(measure: Mapping[str, Any]) -> dict[str, Bars]:
     merged = _neighbours_in_one(len(next(iter(histogram["counts"].values()))), total)
     return {
         road: _bars(
-            _seated(measure.get(road, {})) * np.asarray(counts, dtype=np.float64) / (sum(counts) or 1),
+            _seated(measure.get(road) or {}) * np.asarray(counts, dtype=np.float64) / (sum(counts) or 1),
             merged,
             histogram["lower_edge"],
             histogram["bin_width"],
@@ -51,7 +50,7 @@ def bars_of(measure: Mapping[str, Any]) -> dict[str, Bars]:
     }
 
 
-def _seated(sample: Mapping[str, Any]) -> float:
+def _seated(sample: Any) -> float:
     """The share of a road's trials that seated."""
     count, trials = sample.get("count"), sample.get("trials")
     return count / trials if count and trials else 1.0

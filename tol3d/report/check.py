@@ -10,9 +10,9 @@ from rich.text import Text
 
 from tol3d.gearing.model import Backlash, Contributor, Measure, Model, Planar
 from tol3d.gearing.presenting.train_check import train_blocks
+from tol3d.gearing.summary_types import QUANTITY_WORDS, TAKE_WORDS, Reading, readings_words
 from tol3d.gears import RIGHT, BevelGear, BevelPair, Gear, GearPair, SpurGear, SpurPair
 from tol3d.report.coefficients import coefficients_tables
-from tol3d.report.heading import QUANTITY_WORDS, TAKE_WORDS, reading_words
 from tol3d.report.number import NOTHING, UNIT_SIGNS, degrees_text, given_text, unsigned_zero, value_text
 from tol3d.report.sheet import Heading, Row, Sheet, titled
 from tol3d.units import angle_text
@@ -173,12 +173,16 @@ def _what(measure: Measure) -> str:
     if not isinstance(kind, Backlash):
         stages = " + ".join(stage.link for stage in kind.stages)
         moves = f"{kind.tip.point} of {kind.tip.arm} ({kind.tip.lever:g} mm from the axis) by the " if kind.tip else ""
-        read = {backlash.mesh: vars(backlash.reading) for _, backlash in kind.backlashes}
-        return f"{moves}lost motion of {kind.shaft}, {kind.held} held: {stages}{reading_words({'readings': read})}"
+        read = {backlash.mesh: _reading(backlash) for _, backlash in kind.backlashes}
+        return f"{moves}lost motion of {kind.shaft}, {kind.held} held: {stages}{readings_words(read)}"
     gear = f" of {kind.gear}" if kind.is_angle else ""
     curve = " (curve)" if measure.take == "curve" else ""
     what = f"{TAKE_WORDS[measure.take]}{QUANTITY_WORDS[kind.quantity]}{gear}, {kind.mesh}"
-    return what + curve + reading_words({"reading": vars(kind.reading)})
+    return what + curve + _reading(kind).words
+
+
+def _reading(backlash: Backlash) -> Reading:
+    return Reading.model_validate(vars(backlash.reading))
 
 
 def _positions(measure: Measure) -> str:

@@ -29,12 +29,12 @@ from tol3d.report.compare import Compared, labelled, measures_of
 from tol3d.report.curve import Stepped, position_label
 from tol3d.report.difference import Difference, difference_of
 from tol3d.report.distribution import density_label, values_label
-from tol3d.report.heading import heading, position_of
+from tol3d.report.heading import heading
 from tol3d.report.label import wrapped
 from tol3d.report.number import given_text, unit_suffix
 from tol3d.runs.run import Run
 
-Summary = Mapping[str, Any]
+Summary = Any  # typed, read by text
 
 NO_SIMULATION: Final = "no 3D simulation in these runs"
 NO_TRIALS: Final = "these runs kept no trials (--no-trials)"
@@ -121,10 +121,10 @@ def _broken(text: str, column: int) -> str:
 
 def _draw_roads(axes: Axes, measure: Compared, shown: Sequence[Shown], *, single: bool) -> None:
     name, unit = measure.name, measure.unit
-    first = shown[0].run.summary["measures"][name]
+    first = shown[0].run.found.measures[name]
     curve = first["take"] == "curve"
     for each in shown:
-        (_draw_curves if curve else _draw_histograms)(axes, each.run.summary["measures"][name], each.colours, single)
+        (_draw_curves if curve else _draw_histograms)(axes, each.run.found.measures[name], each.colours, single)
     _add_marks(axes, name, shown, curve=curve, single=single)
     if curve:
         label_angles(axes.yaxis, unit)
@@ -162,7 +162,7 @@ def _draw_curves(axes: Axes, measure: Summary, colours: Mapping[str, str], singl
 
 def _add_marks(axes: Axes, name: str, shown: Sequence[Shown], *, curve: bool, single: bool) -> None:
     """What the legend tells: the colour of each run, of how many trials it is if some failed, how roads are drawn."""
-    seated = [f", {text}" if (text := seated_text(each.run.summary["measures"][name])) else "" for each in shown]
+    seated = [f", {text}" if (text := seated_text(each.run.found.measures[name])) else "" for each in shown]
     word = ", mean" if curve else ""
     if not single:
         for each, text in zip(shown, seated, strict=True):
@@ -186,12 +186,12 @@ def _mark_limits(axes: Axes, name: str, shown: Sequence[Shown]) -> None:
     """Limits that lie in the picture; those that not all runs share in the colour of theirs."""
     low, high = axes.get_xlim()
     for key, word in (("lower_limit", "LSL"), ("upper_limit", "USL")):
-        limits = [each.run.summary["measures"][name].get(key) for each in shown]
+        limits = [each.run.found.measures[name].get(key) for each in shown]
         shared = len(set(limits)) == 1
         for each, limit in list(zip(shown, limits, strict=True))[: 1 if shared else None]:
             if limit is None or not low <= limit <= high:
                 continue
-            unit = each.run.summary["measures"][name]["unit"]
+            unit = each.run.found.measures[name]["unit"]
             text = f"{word} {given_text(limit, unit)}{unit_suffix(unit)}" + ("" if shared else f" of {each.label}")
             colour = OUTSIDE if shared else each.colours["geometric"]
             axes.axvline(limit, color=colour, linewidth=2, label=_broken(text, 0))
@@ -229,7 +229,7 @@ def _draw_differences(axes: Axes, unit: str, known: Known, *, single: bool) -> N
 
 def _draw_by_position(axes: Axes, measure: Compared, known: Known) -> None:
     word, factor = DIFFERENCE_UNITS[measure.unit]
-    turning = position_of({"kind": measure.kind})
+    turning = measure.position_word
     by_position = all(found.by_position for _, found in known)
     title_axes(axes, "difference", f"by position of the {turning}" if by_position else "by value", WORDS[2])
     if not known:

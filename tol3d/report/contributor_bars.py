@@ -11,7 +11,7 @@ from tol3d.report.column import Column, ranked_contributors, shares_of
 from tol3d.report.label import wrapped
 from tol3d.report.number import percent_text
 
-Summary = Mapping[str, Any]
+Summary = Any  # typed, read by text
 
 MOST_CONTRIBUTORS: Final = 9  # bars; the rest is shown as one
 NAME_WIDTH, NAME_SIZE, NAME_LINES = 2.05, 9.0, 4  # inch, points; the longest names there may be fit

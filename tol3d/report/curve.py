@@ -1,6 +1,6 @@
 """A measure over the positions of a driver or an output: mean, ±3 sigma and extremes."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from typing import Any, Final
 
 import numpy as np
@@ -13,7 +13,7 @@ from tol3d.report.distribution import NO_VALUES, values_label
 from tol3d.report.heading import position_of
 from tol3d.report.number import given_text, unit_suffix
 
-Summary = Mapping[str, Any]
+Summary = Any  # typed, read by text
 Array = NDArray[np.float64]
 
 TURN: Final = 360.0  # deg; from two turns on the axis counts turns

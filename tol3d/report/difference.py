@@ -1,8 +1,7 @@
 """The difference 3D simulation − analytic of every trial of a run, gathered block by block."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,6 +9,7 @@ from numpy.typing import NDArray
 from tol3d.report.bars import Bars
 from tol3d.runs.outcome import status_column, told
 from tol3d.runs.run import Run
+from tol3d.runs.summary.measure import MeasureSummary
 
 Array = NDArray[np.float64]
 
@@ -45,11 +45,10 @@ def difference_of(run: Run, measure: str) -> Difference | None:
 
     Memory does not grow with the number of trials: one block of columns is held at a time.
     """
-    summary = run.summary["measures"][measure]
+    summary = run.found.measures[measure]
     if not {f"analytic:{measure}", f"geometric:{measure}"} <= set(run.column_names):
         return None
-    own = f"position:{summary['of']} [deg]"  # a train has none
-    position = own if summary["over"] == "random" and own in run.column_names else None
+    position = summary.position_column if summary.position_column in run.column_names else None
     ends = np.array([_ends(analytic, geometric) for analytic, geometric, _ in _blocks(run, measure, position)])
     low, high = float(ends.min()), float(ends.max())
     edges = np.linspace(low, max(high, low + SMALLEST_SPAN), BARS + 1)
@@ -69,15 +68,15 @@ def difference_of(run: Run, measure: str) -> Difference | None:
         bars=Bars(edges, 100 * counts / (count * (edges[1] - edges[0]))),
         at=at,
         values=values,
-        by_position=position is not None or summary["take"] == "curve",
+        by_position=position is not None or summary.take == "curve",
         largest=max(high, -low),
         rms=float(np.sqrt(squares / count)),
     )
 
 
-def _abscissa(summary: Mapping[str, Any], analytic: Array, places: Array | None) -> Array:
-    if summary["take"] == "curve":
-        return np.broadcast_to(summary["position_deg"], analytic.shape).ravel()
+def _abscissa(summary: MeasureSummary, analytic: Array, places: Array | None) -> Array:
+    if summary.take == "curve":
+        return np.broadcast_to(summary.position_deg or [], analytic.shape).ravel()
     return analytic if places is None else places % TURN
 
 

@@ -23,7 +23,7 @@ from tol3d.report.ends import Ends, is_bounded
 from tol3d.report.label import legible, wrapped
 from tol3d.report.number import UNIT_SIGNS, given_text, measured_text, share_text, short_text, unit_suffix
 
-Summary = Mapping[str, Any]
+Summary = Any  # typed, read by text
 
 SIGMAS_SHOWN: Final = 3.6  # of the mean; a little more than the +-3 sigma that are marked
 LIMIT_REACH: Final = 0.6  # of the shown span; a limit further off is told at the edge, not drawn to scale

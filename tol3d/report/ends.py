@@ -1,13 +1,12 @@
 """From where to where a measure's bars go: mean ∓ 3 sigma, or quantiles where trials do not reach so far."""
 
 import math
-from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, Final
 
 from tol3d.report.column import Column, best_road
 
-Summary = Mapping[str, Any]
+Summary = Any  # typed, read by text
 
 SHORT_OF_3_SIGMA: Final = 2.5  # sigma; a quantile nearer to the mean than this is no end of a normal law
 BY_CHANCE: Final = 1e-3  # at most, that so many trials of a normal law would all stay that near to their mean
@@ -44,11 +43,11 @@ def is_bounded(measure: Summary) -> bool:
     >>> [is_bounded({"analytic": uniform | {"count": count}}) for count in (100, 1000)]
     [False, True]
     """
-    sample = measure.get(best_road(measure), {})
+    sample = measure.get(best_road(measure)) or {}
     known = [sample.get(key) for key in ("mean", "sigma", "count", *QUANTILES)]
-    if any(value is None for value in known):
-        return False
     mean, sigma, count, low, high = known
+    if mean is None or sigma is None or count is None or low is None or high is None:
+        return False
     nearest = max(0.0, min(mean - low, high - mean))  # a far outlier pulls the mean out of its quantiles
     if not sigma or nearest > SHORT_OF_3_SIGMA * sigma:
         return False

@@ -46,7 +46,7 @@ from tol3d.report.label import widest, wrapped
 from tol3d.report.number import UNIT_SIGNS, share_text, short_text
 from tol3d.report.picture import measure_files
 
-Summary = Mapping[str, Any]
+Summary = Any  # typed, read by text
 
 WIDTH, CURVE_WORDS = 13.0, 9.5  # inch; of a picture, and of the words above a curve
 HISTOGRAM_SHARE: Final = 2.2  # widths of the contributors' bars

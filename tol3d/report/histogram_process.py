@@ -14,14 +14,15 @@ output, {"chain.png": "why"}.
 import json
 import signal
 import sys
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from functools import partial
 from pathlib import Path
-from typing import Any
 
 from tol3d.gearing.presenting.chain import draw_chain
 from tol3d.report.histogram import draw_histogram, draw_measure
 from tol3d.report.picture import chain_files, measure_files
+from tol3d.runs.summary.run import RunSummary
+from tol3d.runs.summary.text import typed
 
 
 def main() -> None:
@@ -31,7 +32,8 @@ def main() -> None:
     if not order:
         return
     asked = json.loads(order)
-    picture, summary = Path(asked["picture"]), asked["summary"]
+    picture = Path(asked["picture"])
+    summary = typed(asked["summary"], lambda place, words: ValueError(f"{place}: {words}"))
     print(json.dumps(dict(_refused(summary, picture.parent))), flush=True)
     try:
         draw_histogram(summary, picture)
@@ -39,7 +41,7 @@ def main() -> None:
         sys.exit(_reason(error))
 
 
-def _refused(summary: Mapping[str, Any], folder: Path) -> Iterator[tuple[str, str]]:
+def _refused(summary: RunSummary, folder: Path) -> Iterator[tuple[str, str]]:
     """Draw the chain of every train and the picture of every measure; the names of those that failed, and why."""
     chains = ((file, partial(draw_chain, summary, name)) for name, file in chain_files(summary).items())
     measures = ((file, partial(draw_measure, summary, name)) for name, file in measure_files(summary).items())

@@ -66,7 +66,7 @@ def _refuse(reason: str, summary: Mapping[str, Any], picture: Path) -> None:
     raise PictureError(reason)
 
 
-def measure_files(summary: Mapping[str, Any]) -> dict[str, str]:
+def measure_files(summary: Any) -> dict[str, str]:
     """Names of the pictures of a run's measures, where there are too many for one; each another one.
 
     >>> measure_files({"measures": {"play": {}, "turn": {}}})
@@ -74,18 +74,18 @@ def measure_files(summary: Mapping[str, Any]) -> dict[str, str]:
     >>> list(measure_files({"measures": dict.fromkeys(["a/b", "a:b", "c", "d", "e"])}).values())
     ['histogram-a_b.png', 'histogram-a_b 2.png', 'histogram-c.png', 'histogram-d.png', 'histogram-e.png']
     """
-    names = list(summary.get("measures", {}))
+    names = list(summary.get("measures") or ())
     return _files([(name, f"histogram-{_words(name)}") for name in names]) if len(names) > MOST_TOGETHER else {}
 
 
-def chain_files(summary: Mapping[str, Any]) -> dict[str, str]:
+def chain_files(summary: Any) -> dict[str, str]:
     """Names of the pictures of a run's trains, by train; each another one.
 
     >>> chain_files({"trains": {"shoulder": {}, "wrist": {}, "left/right": {}, "left:right": {}}})
     {'shoulder': 'chain.png', 'wrist': 'chain-wrist.png', 'left/right': 'chain-left_right.png', \
 'left:right': 'chain-left_right 2.png'}
     """
-    names = list(summary.get("trains", {}))
+    names = list(summary.get("trains") or ())
     return _files([(name, f"chain-{_words(name)}" if index else "chain") for index, name in enumerate(names)])
 
 

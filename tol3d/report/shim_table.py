@@ -10,10 +10,9 @@ from tol3d.analyses.shim import ShimPlan, closing_of
 from tol3d.analyses.shim_choice import Shim
 from tol3d.analyses.shimmed import MINIMUM_WORDS, UM, Shimmed
 from tol3d.analyses.stock import thickness_text
-from tol3d.report.heading import heading
 from tol3d.report.number import NOTHING, value_text
 from tol3d.report.sheet import Heading, Row, Sheet, note
-from tol3d.report.table import LOST_MOTION_ROWS
+from tol3d.report.table import CONVERTED_ROWS
 
 ROWS: Final[Mapping[str, str]] = {
     "low_3sigma": "low (−3 sigma)",
@@ -44,7 +43,7 @@ def _title(plan: ShimPlan) -> Text:
 
 def _words(plan: ShimPlan) -> Text:
     called = MINIMUM_WORDS[plan.question.minimum]
-    return Text(f"{plan.measure}: {heading(plan.before.found)}; minimum: {called}", style="dim")
+    return Text(f"{plan.measure}: {plan.before.measure.words}; minimum: {called}", style="dim")
 
 
 def _place(shim: Shim) -> str:
@@ -61,8 +60,8 @@ def _table(plan: ShimPlan) -> Sheet:
     rows = [Row("each shim [µm]", [_thickness(own, plan) for own in shown])]
     for key, label in ROWS.items():
         style = "bold" if key == plan.question.minimum else ""
-        rows.append(Row(label, [value_text(own.found["geometric"][key], "um") for own in shown], style))
-    for key, label in LOST_MOTION_ROWS.items():
+        rows.append(Row(label, [value_text(own.found.value(key), "um") for own in shown], style))
+    for key, label in CONVERTED_ROWS.items():
         rows.append(Row(f"lost motion, {label}", [_lost_motion(own, key) for own in shown]))
     headings = [Heading(text, "bold" if text == "chosen" else "") for text in columns]
     return Sheet("[µm], [′, ″ of arc]", headings, rows)
@@ -80,8 +79,8 @@ def _thickness(own: Shimmed, plan: ShimPlan) -> str:
 
 
 def _lost_motion(own: Shimmed, key: str) -> str:
-    value = own.found["geometric"][key]
-    return value_text(None if value is None else value * own.found["lost_motion"]["arcmin_per_um"], "arcmin")
+    value, free = own.found.value(key), own.measure.conversions[0]
+    return value_text(None if value is None else value * free.per_unit, free.unit)
 
 
 def _notes(plan: ShimPlan) -> Iterator[str]:
@@ -93,7 +92,7 @@ def _notes(plan: ShimPlan) -> Iterator[str]:
         f"formula: 2 sin α sin δ of each shim's gear, {closing_of(plan.shims):.5f} µm of backlash for 1 µm of every "
         "shim; geometry: the simulated minimum itself, the same draws at every thickness"
     )
-    yield f"lost motion: the turn of {plan.before.found['lost_motion']['of']} that the backlash leaves free"
+    yield f"lost motion: the turn of {plan.before.measure.conversions[0].of} that the backlash leaves free"
     study = f"{plan.before.trials} trials, 3D simulation"
     error = plan.chosen.sampling_error
     if error is None:

@@ -4,7 +4,6 @@ import math
 from collections.abc import Iterator, Mapping, Sequence, Set
 from dataclasses import replace
 from enum import Enum
-from typing import Any
 
 from rich.console import Group, RenderableType
 from rich.text import Text
@@ -15,14 +14,13 @@ from tol3d.report.agreement import agreement_lines, unexplained_lines
 from tol3d.report.column import (
     Column,
     Road,
-    best_road,
     columns_of,
     contributor_columns,
     ranked_contributors,
     seated_text,
 )
 from tol3d.report.ends import is_bounded
-from tol3d.report.heading import heading, limits_text, position_of
+from tol3d.report.heading import limits_text
 from tol3d.report.number import (
     NOTHING,
     difference_text,
@@ -35,9 +33,10 @@ from tol3d.report.number import (
 )
 from tol3d.report.sheet import Heading, Row, Sheet, note
 from tol3d.report.verdict import ACCEPTED_PPM, verdict_report
-from tol3d.runs.worst import TRAIN_KINDS
-
-Summary = Mapping[str, Any]
+from tol3d.runs.outcome import SEATED
+from tol3d.runs.summary.measure import MeasureSummary
+from tol3d.runs.summary.run import RunSummary
+from tol3d.runs.summary.sample import CurveRoads, Sample
 
 ROWS = {
     "low_3sigma": "low (−3 sigma)",
@@ -50,10 +49,10 @@ ROWS = {
     "sample_min": "smallest",
     "sample_max": "largest",
 }
-LOST_MOTION_ROWS = {"low_3sigma": "low", "mean": "mean", "high_3sigma": "high"}
+CONVERTED_ROWS = {"low_3sigma": "low", "mean": "mean", "high_3sigma": "high"}
 UNIT_HEADINGS = {"um": "[µm]", "mm": "[mm]", "arcmin": "[′, ″ of arc]"}
+SIDES = ("below", "above")
 INDICES = {"pp": "Pp", "ppk": "Ppk"}
-BUILDS = {"mean_build": "build at all means", "nominal": "nominal build"}
 UNEXPLAINED_SHOWN = 0.05  # %; less is 0.0 in print
 NOT_ATTRIBUTED = "not attributed"
 NOT_ATTRIBUTED_MEANS = (
@@ -63,9 +62,6 @@ NOT_ATTRIBUTED_MEANS = (
 FAILURES_COUNT = (
     "out of limits is a share of all trials: a jammed build is below every lower limit, one that failed otherwise is "
     "out in all; Ppk of such a column is Φ⁻¹(1 − share out)/3; its other numbers are of the trials that seated"
-)
-LOST_MOTION_MEANS = (
-    "lost motion: the turn of the driven gear that a normal backlash leaves free, j_n over the arm of its flank"
 )
 SHARES_MEAN = (
     "shares of the variance; high–low–mean: squares of the ranges that each contributor alone gives between its ends, "
@@ -89,64 +85,62 @@ class Detail(Enum):
     MEASURES = 2
 
     @classmethod
-    def fitting(cls, summary: Summary) -> "Detail":
+    def fitting(cls, run: RunSummary) -> "Detail":
         """What fits a screen or two: tables of every measure unless there are many."""
-        return cls.MEASURES if len(summary["measures"]) <= MOST_TABLES else cls.TRAINS
+        return cls.MEASURES if len(run.measures) <= MOST_TABLES else cls.TRAINS
 
 
-def run_report(summary: Summary, detail: Detail = Detail.MEASURES, accepted_ppm: float = ACCEPTED_PPM) -> Group:
+def run_report(run: RunSummary, detail: Detail = Detail.MEASURES, accepted_ppm: float = ACCEPTED_PPM) -> Group:
     """A run as tables: measures, contributors, trains, how the roads agree, what failed, the verdict, warnings."""
-    warnings = [Text(f"warning: {warning}", style="yellow") for warning in summary.get("warnings", ())]
-    verdict = verdict_report(summary, accepted_ppm, blame=detail is not Detail.MEASURES)
+    warnings = [Text(f"warning: {warning}", style="yellow") for warning in run.warnings]
+    verdict = verdict_report(run, accepted_ppm, blame=detail is not Detail.MEASURES)
     if detail is Detail.VERDICT:
         return Group(*verdict, *warnings)
-    blocks: list[RenderableType] = [_run_line(summary)]
+    blocks: list[RenderableType] = [_run_line(run)]
     if detail is Detail.MEASURES:
-        for name, measure in summary["measures"].items():
-            blocks += _measure_blocks(name, measure, summary)
-    blocks += train_report(summary)
-    if detail is Detail.MEASURES and (meanings := list(_meanings(summary))):
+        for name, measure in run.measures.items():
+            blocks += _measure_blocks(name, measure, run)
+    blocks += train_report(run)
+    if detail is Detail.MEASURES and (meanings := list(_meanings(run))):
         blocks += [Text("\nnotes", style="bold cyan"), *map(note, meanings)]
     blocks += verdict
     blocks += [] if detail is Detail.MEASURES else [note(MORE_TABLES)]
-    return Group(*blocks, _status_line(summary), _time_line(summary), *warnings)
+    return Group(*blocks, _status_line(run), _time_line(run), *warnings)
 
 
-def _run_line(summary: Summary) -> Text:
-    trials = f"{summary['trials']} trial{'' if summary['trials'] == 1 else 's'}"
-    line = Text(str(summary["scene"]), style="bold")
-    return line.append(f" · {trials} · seed {summary['seed']} · engine {summary['engine']}", "dim")
+def _run_line(run: RunSummary) -> Text:
+    trials = f"{run.trials} trial{'' if run.trials == 1 else 's'}"
+    return Text(run.scene, style="bold").append(f" · {trials} · seed {run.seed} · engine {run.engine}", "dim")
 
 
-def _measure_blocks(name: str, measure: Summary, summary: Summary) -> list[RenderableType]:
+def _measure_blocks(name: str, measure: MeasureSummary, run: RunSummary) -> list[RenderableType]:
     title = Text("\n").append(name, style="bold cyan")
-    words = Text(f"{heading(measure)} · {limits_text(measure)}", style="dim")
-    if measure["take"] == "curve":
-        notes = [*_curve_notes(measure), *_witness_notes(name, measure, summary), *_published_notes(measure)]
-        return [title, words, "", curve_table(measure), *map(note, notes)]
-    notes = [*_notes(name, measure, summary)]
-    sums = sums_of(measure, summary)
+    words = Text(f"{measure.words} · {limits_text(measure)}", style="dim")
+    if measure.curve is not None and measure.take == "curve":
+        notes = [*_curve_notes(measure, measure.curve), *_witness_notes(name, measure, run), *_published_notes(measure)]
+        return [title, words, "", curve_table(measure, measure.curve), *map(note, notes)]
+    notes = [*_notes(name, measure, run)]
+    sums = sums_of(measure, run)
     blocks: list[RenderableType] = [title, words, "", measure_table(measure, sums), *map(note, notes)]
-    blocks += [Text(f" {line}", style="bold red") for line in unexplained_lines(measure.get("agreement") or {})]
-    if measure["contributors"]:
+    blocks += [Text(f" {line}", style="bold red") for line in unexplained_lines(measure.agreement)]
+    if measure.contributors:
         blocks += ["", contributors_table(measure)]
     return blocks
 
 
-def _meanings(summary: Summary) -> Iterator[str]:
+def _meanings(run: RunSummary) -> Iterator[str]:
     """What words in the tables of measures mean, each once for all of them."""
-    scalars = [measure for measure in summary["measures"].values() if measure["take"] != "curve"]
-    if any(measure["contributors"] for measure in scalars):
+    scalars = [measure for measure in run.measures.values() if measure.take != "curve"]
+    if any(measure.contributors for measure in scalars):
         yield SHARES_MEAN
     if any(map(_not_attributed, scalars)):
         yield NOT_ATTRIBUTED_MEANS
     limited = [measure for measure in scalars if _limit_rows(measure)]
     if any(map(seated_text, limited)):
         yield FAILURES_COUNT
-    if any("analytic_closed_form" in measure for measure in limited):
+    if any(measure.analytic_closed_form for measure in limited):
         yield "out of limits by the closed form: as if the measure were normal"
-    if any("lost_motion" in measure for measure in scalars):
-        yield LOST_MOTION_MEANS
+    yield from dict.fromkeys(other.meaning for measure in scalars for other in measure.conversions)
 
 
 def _headings(columns: Sequence[Column]) -> list[Heading]:
@@ -154,9 +148,9 @@ def _headings(columns: Sequence[Column]) -> list[Heading]:
     return [Heading(column.heading, styles.get(column.road, "")) for column in columns]
 
 
-def measure_table(measure: Summary, sums: Sums) -> Sheet:
+def measure_table(measure: MeasureSummary, sums: Sums) -> Sheet:
     """Statistics of one scalar measure, one column a road, the published ones last; below, sums of a train's stages."""
-    columns, unit = columns_of(measure), measure["unit"]
+    columns, unit = columns_of(measure), measure.unit
     rows = [*_failure_rows(measure, columns)]
     rows += [Row(label, [_cell(column, key, unit) for column in columns]) for key, label in ROWS.items()]
     rows += [
@@ -168,12 +162,11 @@ def measure_table(measure: Summary, sums: Sums) -> Sheet:
         for key, label in INDICES.items()
         if any(column.value(key) is not None for column in columns)
     ]
-    builds = {label: measure.get(key) or {} for key, label in BUILDS.items()}
     rows += [
-        Row(label, [value_text(values.get(column.road), unit) for column in columns])
-        for label, values in builds.items()
+        Row(label, [value_text(build.value(column.road), unit) for column in columns])
+        for label, build in (("build at all means", measure.mean_build), ("nominal build", measure.nominal))
     ]
-    rows += [*_lost_motion_rows(measure, columns), *_sum_rows(sums, columns, unit)]
+    rows += [*_converted_rows(measure, columns), *_sum_rows(sums, columns, unit)]
     return Sheet(UNIT_HEADINGS[unit], _headings(columns), rows)
 
 
@@ -186,33 +179,34 @@ def _index_text(value: float | None) -> str:
     return NOTHING if value is None else unsigned_zero(f"{value:.3f}")
 
 
-def _failure_rows(measure: Summary, columns: Sequence[Column]) -> Iterator[Row]:
+def _failure_rows(measure: MeasureSummary, columns: Sequence[Column]) -> Iterator[Row]:
     """How many trials seated, and how the others failed; nothing where all of them seated."""
     if not seated_text(measure):
         return
-    own = {"geometric": measure["status"], "analytic": {"ok": sum(measure["status"].values())}}
-    for status, count in measure["status"].items():
-        if count or status == "ok":
+    own = {"geometric": measure.status, "analytic": {SEATED: measure.trials}}
+    for status, count in measure.status.items():
+        if count or status == SEATED:
             cells = [str(own[c.road].get(status, 0)) if c.road in own else NOTHING for c in columns]
             yield Row(f"trials {STATUS_WORDS.get(status, status)}", cells)
 
 
-def _limit_rows(measure: Summary) -> dict[str, str]:
-    unit = measure["unit"]
+def _limit_rows(measure: MeasureSummary) -> dict[str, str]:
+    unit = measure.unit
     sides = {
-        f"{side}_limit_ppm": f"{side} {given_text(measure[limit], unit)}{unit_suffix(unit)}"
-        for side, limit in (("below", "lower_limit"), ("above", "upper_limit"))
-        if measure.get(limit) is not None
+        f"{side}_limit_ppm": f"{side} {given_text(limit, unit)}{unit_suffix(unit)}"
+        for side, limit in zip(SIDES, measure.limits, strict=True)
+        if limit is not None
     }
     in_all = len(sides) > 1 or (sides and seated_text(measure))
     return {**sides, "out_ppm": "out in all"} if in_all else sides
 
 
-def _ppm(column: Column, key: str, measure: Summary) -> float | None:
+def _ppm(column: Column, key: str, measure: MeasureSummary) -> float | None:
     """Counted, or for the closed form that of a normal measure."""
-    if column.road != "closed form":
+    form = measure.analytic_closed_form
+    if column.road != "closed form" or form is None:
         return column.value(key)
-    mean, sigma, lower, upper = (*(column.values[k] for k in ("mean", "sigma")), *limits_of(measure))
+    mean, sigma, lower, upper = form.mean, form.sigma, *measure.limits
     if not sigma:
         return None
     margins = {"below_limit_ppm": None if lower is None else mean - lower}
@@ -221,19 +215,13 @@ def _ppm(column: Column, key: str, measure: Summary) -> float | None:
     return sum(1e6 * math.erfc(margin / sigma / math.sqrt(2)) / 2 for margin in asked if margin is not None)
 
 
-def limits_of(measure: Summary) -> tuple[float | None, float | None]:
-    """Lower and upper limit of a measure, None for none."""
-    return measure.get("lower_limit"), measure.get("upper_limit")
-
-
-def _lost_motion_rows(measure: Summary, columns: Sequence[Column]) -> Iterator[Row]:
-    motion = measure.get("lost_motion")
-    if motion is None:
-        return
-    for key, word in LOST_MOTION_ROWS.items():
-        turns = [(value, motion["arcmin_per_um"]) for value in (column.value(key) for column in columns)]
-        cells = [value_text(None if value is None else value * per_um, "arcmin") for value, per_um in turns]
-        yield Row(f"lost motion, {word}", cells)
+def _converted_rows(measure: MeasureSummary, columns: Sequence[Column]) -> Iterator[Row]:
+    """Low, mean and high in the other words that a measure has for them."""
+    for other in measure.conversions:
+        for key, word in CONVERTED_ROWS.items():
+            values = [column.value(key) for column in columns]
+            cells = [value_text(None if value is None else value * other.per_unit, other.unit) for value in values]
+            yield Row(f"{other.words}, {word}", cells)
 
 
 def _sum_rows(sums: Sums, columns: Sequence[Column], unit: str) -> Iterator[Row]:
@@ -245,69 +233,72 @@ def _sum_rows(sums: Sums, columns: Sequence[Column], unit: str) -> Iterator[Row]
         yield Row(f"sum of the stages' {word}", [value_text(values.get(key), unit) for values in own])
 
 
-def _notes(name: str, measure: Summary, summary: Summary) -> Iterator[str]:
-    unit, agreement = measure["unit"], measure.get("agreement")
-    if agreement and agreement.get("compared"):
-        of_train = measure.get("kind") in TRAIN_KINDS
-        yield from agreement_lines(agreement, unit, summary.get("chord_error_um"), " in each mesh" if of_train else "")
-    yield from _witness_notes(name, measure, summary)
-    own = measure[best_road(measure)]
+def _notes(name: str, measure: MeasureSummary, run: RunSummary) -> Iterator[str]:
+    unit, agreement, chords = measure.unit, measure.agreement, run.chord_error_um
+    if agreement and agreement.compared:
+        yield from agreement_lines(agreement, unit, measure.chord_words(chords) if chords else "")
+    yield from _witness_notes(name, measure, run)
+    if own := measure.sample(measure.best_road):
+        yield from _sampling_notes(measure, own, run)
+    yield from _published_notes(measure)
+
+
+def _sampling_notes(measure: MeasureSummary, own: Sample, run: RunSummary) -> Iterator[str]:
+    """How well the trials tell mean, sigma, ends and shares."""
+    unit = measure.unit
     seated = " that seated" if seated_text(measure) else ""
-    if own.get("mean_se") is not None and own.get("sigma_se") is not None:
+    if own.mean_se is not None and own.sigma_se is not None:
         yield (
-            f"sampling error of {own['count']} trials{seated}{_by_replicates(own, summary)}: "
-            f"mean ±{difference_text(own['mean_se'], unit)}, "
-            f"sigma ±{difference_text(own['sigma_se'], unit)} (one standard error)"
+            f"sampling error of {own.count} trials{seated}{_by_replicates(own, run)}: "
+            f"mean ±{difference_text(own.mean_se, unit)}, "
+            f"sigma ±{difference_text(own.sigma_se, unit)} (one standard error)"
         )
     if is_bounded(measure):
         yield "trials end before mean ∓ 3 sigma here: the quantiles tell more than low and high"
     for key, label in _limit_rows(measure).items():
-        low_high = own.get(f"{key}_95")
+        low_high = getattr(own, f"{key}_95")
         if low_high:
             low, high = map(share_text, low_high)
             yield f"{label}: the true share lies between {low} and {high} (95 % confidence)"
-        elif own.get("error_by") == "replicates":
+        elif own.error_by == "replicates":
             yield f"{label}: {TOO_FEW_TO_BOUND}"
-    yield from _published_notes(measure)
 
 
-def _published_notes(measure: Summary) -> Iterator[str]:
+def _published_notes(measure: MeasureSummary) -> Iterator[str]:
     """What the scene says of other people's numbers."""
-    for column, values in measure.get("published", {}).items():
-        if values.get("description"):
-            yield f"{column}: {values['description']}"
+    for column, values in measure.published.items():
+        if values.description:
+            yield f"{column}: {values.description}"
 
 
-def _by_replicates(sample: Summary, summary: Summary) -> str:
-    """What tells the error, where it is not the trials themselves."""
-    if sample.get("error_by") != "replicates":
+def _by_replicates(sample: Sample, run: RunSummary) -> str:
+    """What the error is found by, where it is not the trials themselves."""
+    if sample.error_by != "replicates":
         return ""
-    study = summary["study"]
-    return f" of {SAMPLER_WORDS[study['sampler']]}, by the spread of {study['replicates']} replicates"
+    return f" of {SAMPLER_WORDS[run.study.sampler]}, by the spread of {run.study.replicates} replicates"
 
 
-def _witness_notes(name: str, measure: Summary, summary: Summary) -> Iterator[str]:
+def _witness_notes(name: str, measure: MeasureSummary, run: RunSummary) -> Iterator[str]:
     """What FCL found of the trials that it measured again."""
-    witness = summary.get("witness") or {"measures": {}}
-    found = witness["measures"].get(name)
-    if found is None:
+    found = run.witness.measures.get(name) if run.witness else None
+    if run.witness is None or found is None:
         return
-    again = f"witness: FCL measured {witness['trials']} of these trials again"
-    if not found["compared"]:
+    again = f"witness: FCL measured {run.witness.trials} of these trials again"
+    if not found.compared:
         yield f"{again}: none of them has a value on both sides"
         return
-    largest = difference_text(found["max_abs_difference"], measure["unit"])
-    chords = difference_text(found["expected_at_most"], measure["unit"])
+    largest = difference_text(found.max_abs_difference, measure.unit)
+    chords = difference_text(found.expected_at_most, measure.unit)
     yield f"{again}: at most {largest} more or less (up to {chords} of that is the chord error of its strips)"
 
 
-def contributors_table(measure: Summary) -> Sheet:
+def contributors_table(measure: MeasureSummary) -> Sheet:
     """Shares of the variance, the largest first; those of the 3D simulation with their standard error."""
     shares = [
         replace(column, heading=SHARE_HEADINGS.get(column.road, column.heading))
         for column in contributor_columns(measure)
     ]
-    errors = {c["name"]: c.get("geometric_percent_se") for c in measure["contributors"]}
+    errors = {share.name: share.geometric_percent_se for share in measure.contributors}
     rows = [
         Row(name, [_share(column, name, errors[name]) for column in shares]) for name in ranked_contributors(measure)
     ]
@@ -322,7 +313,7 @@ def _share(column: Column, name: str, error: float | None) -> str:
     return f"{text} ±{error:.1f}" if column.road == "geometric" and error is not None else text
 
 
-def _not_attributed(measure: Summary) -> list[float | None]:
+def _not_attributed(measure: MeasureSummary) -> list[float | None]:
     """What each road leaves to no contributor [%], None for other columns; empty where that is nothing in print."""
     left = [
         100 - sum(share or 0.0 for share in column.percents.values()) if column.road in ATTRIBUTING else None
@@ -331,58 +322,59 @@ def _not_attributed(measure: Summary) -> list[float | None]:
     return left if any(abs(rest or 0.0) > UNEXPLAINED_SHOWN for rest in left) else []
 
 
-def curve_table(measure: Summary) -> Sheet:
+def curve_table(measure: MeasureSummary, curve: CurveRoads) -> Sheet:
     """A curve measure at some of its positions."""
-    unit, curve = measure["unit"], measure["curve"]
-    roads = [(road, word) for road, word in (("analytic", "analytic"), ("geometric", "3D")) if road in curve]
-    columns = [(road, key, f"{word} {key}") for road, word in roads for key in ("mean", "sigma")]
-    leading, word = roads[-1]
-    columns += [(leading, "min", f"{word} smallest"), (leading, "max", f"{word} largest")]
-    headings = [Heading(text, "bold" if road == "geometric" else "") for road, _, text in columns]
-    positions = [unsigned_zero(f"{position:.1f}") for position in measure["position_deg"]]
+    words = {"analytic": "analytic", "geometric": "3D"}
+    columns = [
+        (f"{words[road]} {key}", road, getattr(own, key))
+        for road, own in curve.by_road.items()
+        for key in ("mean", "sigma")
+    ]
+    leading, own = [*curve.by_road.items()][-1]
+    columns += [(f"{words[leading]} smallest", leading, own.min), (f"{words[leading]} largest", leading, own.max)]
+    headings = [Heading(text, "bold" if road == "geometric" else "") for text, road, _ in columns]
+    positions = [unsigned_zero(f"{position:.1f}") for position in measure.position_deg or ()]
     longest = max(map(len, positions), default=0)
     rows = [
-        Row(positions[index].rjust(longest), [value_text(curve[road][key][index], unit) for road, key, _ in columns])
+        Row(positions[index].rjust(longest), [value_text(values[index], measure.unit) for _, _, values in columns])
         for index in _shown_positions(measure)
     ]
-    return Sheet(f"{position_of(measure)} at [°]", headings, rows)
+    return Sheet(f"{measure.position_word} at [°]".lstrip(), headings, rows)
 
 
-def _shown_positions(measure: Summary) -> range:
-    count = len(measure["position_deg"])
+def _shown_positions(measure: MeasureSummary) -> range:
+    count = len(measure.position_deg or ())
     return range(0, count, max(1, -(-count // CURVE_ROWS)))
 
 
-def _curve_notes(measure: Summary) -> Iterator[str]:
+def _curve_notes(measure: MeasureSummary, curve: CurveRoads) -> Iterator[str]:
     """How many positions are left out, and the share of the trials that is out of a limit anywhere on its curve."""
-    shown, count = len(_shown_positions(measure)), len(measure["position_deg"])
+    shown, count = len(_shown_positions(measure)), len(measure.position_deg or ())
     if shown < count:
         yield f"{shown} of {count} positions shown; all in summary.json"
     if seated := seated_text(measure):
         yield f"3D mean, sigma, smallest and largest are {seated} at every position"
-    words = {"lower_limit": "below", "upper_limit": "above"}
-    for limit, word in words.items():
-        if measure.get(limit) is not None:
-            given = given_text(measure[limit], measure["unit"]) + unit_suffix(measure["unit"])
+    for limit, word in zip(measure.limits, SIDES, strict=True):
+        if limit is not None:
+            given = given_text(limit, measure.unit) + unit_suffix(measure.unit)
             yield f"anywhere {word} {given}, of all trials: " + ", ".join(
-                f"{'3D' if road == 'geometric' else road} {share_text(own[f'{word}_limit_ppm'])}"
-                for road, own in measure["curve"].items()
+                f"{'3D' if road == 'geometric' else road} {share_text(own.value(f'{word}_limit_ppm'))}"
+                for road, own in curve.by_road.items()
             )
 
 
-def _status_line(summary: Summary) -> Text:
-    trials = summary["trials"]
-    failed = {text: count for text, count in summary["status"].items() if text != "ok" and count}
-    line = Text("\ntrials: ").append(f"{summary['status'].get('ok', 0)} seated")
+def _status_line(run: RunSummary) -> Text:
+    failed = {text: count for text, count in run.status.items() if text != SEATED and count}
+    line = Text("\ntrials: ").append(f"{run.status.get(SEATED, 0)} seated")
     for status, count in failed.items():
-        line.append(f", {count} {STATUS_WORDS.get(status, status)} ({share_text(1e6 * count / trials)})", "red")
+        line.append(f", {count} {STATUS_WORDS.get(status, status)} ({share_text(1e6 * count / run.trials)})", "red")
     return line if failed else line.append(", none failed")
 
 
-def _time_line(summary: Summary) -> Text:
-    timing = summary["timing"]
-    workers = f" by {timing['workers']} workers" if timing.get("workers", 1) != 1 else ""
+def _time_line(run: RunSummary) -> Text:
+    timing = run.timing
+    workers = f" by {timing.workers} workers" if timing.workers != 1 else ""
     return Text(
-        f"time: {timing['setup_s']:.1f} s to set up, {timing['simulate_s']:.1f} s for the trials{workers}, "
-        f"{timing['trials_per_s']:.0f} trials/s"
+        f"time: {timing.setup_s:.1f} s to set up, {timing.simulate_s:.1f} s for the trials{workers}, "
+        f"{timing.trials_per_s:.0f} trials/s"
     )

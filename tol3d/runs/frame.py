@@ -2,12 +2,13 @@
 
 import importlib
 from collections.abc import Iterator, Mapping
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.errors import InputError
+from tol3d.runs.summary.measure import MeasureSummary
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -20,7 +21,7 @@ class MissingPackageError(InputError, ImportError):
     """A package that tol3d does without until it is asked for what needs it."""
 
 
-def frame_of(columns: Columns, measures: Mapping[str, Mapping[str, Any]], curves: Curves = "split") -> "pd.DataFrame":
+def frame_of(columns: Columns, measures: Mapping[str, MeasureSummary], curves: Curves = "split") -> "pd.DataFrame":
     """Columns as a DataFrame, a row a trial.
 
     Args:
@@ -42,11 +43,11 @@ def frame_of(columns: Columns, measures: Mapping[str, Mapping[str, Any]], curves
     return pandas.DataFrame(flat, index=pandas.RangeIndex(count, name="trial"))
 
 
-def _flat(columns: Columns, measures: Mapping[str, Mapping[str, Any]]) -> Iterator[tuple[str, NDArray[np.generic]]]:
+def _flat(columns: Columns, measures: Mapping[str, MeasureSummary]) -> Iterator[tuple[str, NDArray[np.generic]]]:
     """Columns of one value a trial; a curve as one at each of its positions."""
     for name, values in columns.items():
         if values.ndim == 1:
             yield name, values
             continue
-        positions = measures[name.split(":", 1)[1]]["position_deg"]
-        yield from ((f"{name}:{angle:.10g} deg", values[:, k]) for k, angle in enumerate(positions))
+        positions = measures[name.split(":", 1)[1]].position_deg
+        yield from ((f"{name}:{angle:.10g} deg", values[:, k]) for k, angle in enumerate(positions or ()))

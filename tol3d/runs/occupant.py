@@ -11,6 +11,7 @@ from pathlib import Path
 
 from tol3d.errors import RunError
 from tol3d.runs.run import Fingerprint, Run, another_study, interrupted, partial_of, read_run, tidy_after_kill
+from tol3d.runs.summary.kinds import SummaryKinds
 
 SHOWN = 3  # foreign files in a message
 
@@ -52,16 +53,16 @@ class Occupant:
         raise RunError(f"{self.run.path}: {self.reason}; choose another --out, or --force, which {way}")
 
 
-def occupant_of(path: Path, fingerprint: Fingerprint) -> Occupant | None:
+def occupant_of(path: Path, fingerprint: Fingerprint, kinds: SummaryKinds | None = None) -> Occupant | None:
     """The run that lies at a path; None where nothing does.
 
     Raises:
-        RunError: something lies there that is not a run, or cannot be told to be one; nothing may replace it.
+        RunError: something lies there that is not a run, or cannot be recognised as one; nothing may replace it.
     """
     if not path.exists() and not path.is_symlink():
         return None
     try:
-        run = read_run(path)
+        run = read_run(path, kinds)
         tidy_after_kill(run)
         return Occupant(run, tuple(another_study(run.fingerprint, fingerprint)), tuple(run.manifest.foreign()))
     except RunError as error:
@@ -70,7 +71,9 @@ def occupant_of(path: Path, fingerprint: Fingerprint) -> Occupant | None:
         ) from None
 
 
-def free_folder(wanted: Path, fingerprint: Fingerprint, *, resume: bool = False) -> tuple[Path, str]:
+def free_folder(
+    wanted: Path, fingerprint: Fingerprint, *, resume: bool = False, kinds: SummaryKinds | None = None
+) -> tuple[Path, str]:
     """Where a run goes by default: the wanted folder, or the first of `<name>-2`, `<name>-3` ... that another study
     has not taken. A study finds its own folder again.
 
@@ -78,6 +81,7 @@ def free_folder(wanted: Path, fingerprint: Fingerprint, *, resume: bool = False)
         wanted: the folder.
         fingerprint: of the run.
         resume: only a folder with this very study will do; the wanted one where there is none.
+        kinds: what a summary may hold; by default what this package's mechanisms add.
 
     Returns:
         the folder, and what is in the wanted one where it is another.
@@ -85,7 +89,7 @@ def free_folder(wanted: Path, fingerprint: Fingerprint, *, resume: bool = False)
     taken = ""
     for number in itertools.count(1):
         path = wanted if number == 1 else wanted.with_name(f"{wanted.name}-{number}")
-        reason = _taken(path, fingerprint, resume=resume)
+        reason = _taken(path, fingerprint, kinds, resume=resume)
         if reason is None:
             return (path, taken)
         if not reason:
@@ -94,7 +98,7 @@ def free_folder(wanted: Path, fingerprint: Fingerprint, *, resume: bool = False)
     raise AssertionError("numbers do not end")
 
 
-def _taken(path: Path, fingerprint: Fingerprint, *, resume: bool) -> str | None:
+def _taken(path: Path, fingerprint: Fingerprint, kinds: SummaryKinds | None, *, resume: bool) -> str | None:
     """Why a folder will not do; None where this study is there, "" where nothing is."""
     partial = partial_of(path)
     begun = partial.exists()
@@ -105,7 +109,7 @@ def _taken(path: Path, fingerprint: Fingerprint, *, resume: bool) -> str | None:
         if others := another_study(there, fingerprint) if there else []:
             return f"is that of an interrupted run of another study ({'; '.join(others)})"
     try:
-        occupant = occupant_of(path, fingerprint)
+        occupant = occupant_of(path, fingerprint, kinds)
     except RunError:
         return "is taken by something else"
     if occupant is None:

@@ -22,7 +22,9 @@ from tol3d.runs.block_files import CHECKSUMS, MENDED, BlockFiles, block_name
 from tol3d.runs.frame import Curves, frame_of
 from tol3d.runs.manifest import TRIALS, Manifest
 from tol3d.runs.parquet import Shape
-from tol3d.runs.summary_schema import summary_of
+from tol3d.runs.summary.kinds import SummaryKinds
+from tol3d.runs.summary.run import RunSummary
+from tol3d.runs.summary.text import parsed, typed
 from tol3d.runs.worst import worst_trial
 
 if TYPE_CHECKING:
@@ -56,31 +58,46 @@ class Run:
     Args:
         path: its folder.
         summary: what summary.json holds: statistics of each measure, contributors, timing, versions.
+        kinds: what a summary may hold; by default what this package's mechanisms add.
     """
 
     path: Path
     summary: Mapping[str, Any]
+    kinds: SummaryKinds | None = None
 
     def __repr__(self) -> str:
         """Which run it is, and where."""
-        study = self.summary["study"]
-        words = (f"{self.trials} trials", f"seed {study.get('seed')}", f"engine {study.get('engine')}")
-        return f"<Run {str(self.path)!r}: {', '.join((str(self.summary.get('scene')), *words))}>"
+        found = self.found
+        words = (found.scene, f"{self.trials} trials", f"seed {found.seed}", f"engine {found.engine}")
+        return f"<Run {str(self.path)!r}: {', '.join(words)}>"
+
+    @cached_property
+    def found(self) -> RunSummary:
+        """The summary as an object: `run.found.measures["normal backlash"].geometric.sigma`.
+
+        Raises:
+            RunError: it is not a summary as this version writes them.
+        """
+
+        def fault(place: str, words: str) -> RunError:
+            return RunError(f"{self.path / SUMMARY}: {place}: {words}; it is damaged, or of another tol3d")
+
+        return typed(self.summary, fault, self.kinds)
 
     @property
     def trials(self) -> int:
         """How many trials were run."""
-        return int(self.summary["trials"])
+        return self.found.trials
 
     @property
     def block_trials(self) -> int:
         """Trials of a block, but for the last one."""
-        return int(self.summary["blocks"]["trials"])
+        return self.found.blocks.trials
 
     @property
     def keeps_trials(self) -> bool:
         """Whether it holds its trials one by one, not their statistics only."""
-        return bool(self.summary["blocks"]["kept"])
+        return self.found.blocks.kept
 
     @property
     def manifest(self) -> Manifest:
@@ -117,8 +134,8 @@ class Run:
     def _width_of(self, column: str) -> int:
         """How many positions a column has: 1, or those of a curve."""
         road, _, name = column.partition(":")
-        measure = self.summary["measures"].get(name, {}) if road in ("analytic", "geometric") else {}
-        return len(measure["position_deg"]) if measure.get("take") == "curve" else 1
+        measure = self.found.measures.get(name) if road in ("analytic", "geometric") else None
+        return len(measure.position_deg or ()) if measure and measure.take == "curve" else 1
 
     @cached_property
     def _block_sizes(self) -> Mapping[str, int]:
@@ -132,12 +149,11 @@ class Run:
         return self._columns_in(self.blocks) if self.keeps_trials else ()
 
     def _columns_in(self, blocks: BlockFiles) -> tuple[str, ...]:
-        """Names of the columns of the first block, which has every measure that the summary tells of."""
-        roads = ("analytic",) if self.summary["engine"] == "analytic" else ("analytic", "geometric")
-        needed = (f"{road}:{name}" for name in self.summary["measures"] for road in roads)
+        """Names of the columns of the first block, which has every measure of the summary."""
+        needed = (f"{road}:{name}" for name in self.found.measures for road in self.found.roads)
         known = blocks.column_names
         if missing := next((name for name in needed if name not in known), None):
-            raise RunError(f"{blocks.folder}: no column {missing!r}, which the summary tells of; {MENDED}")
+            raise RunError(f"{blocks.folder}: no column {missing!r}, which the summary names; {MENDED}")
         return known
 
     def columns(self, *names: str) -> dict[str, NDArray[Any]]:
@@ -161,7 +177,7 @@ class Run:
             RunError: as `columns`.
             MissingPackageError: pandas is not installed.
         """
-        return frame_of(self.columns(*names), self.summary["measures"], curves)
+        return frame_of(self.columns(*names), self.found.measures, curves)
 
     def worst(self, measure: str | None = None) -> int:
         """Trial that is nearest to a limit of a measure, or furthest beyond it; see `tol3d.runs.worst.worst_trial`.
@@ -205,7 +221,7 @@ class Run:
         Raises:
             RunError: one is not there, or was changed since.
         """
-        kept = {name: sha256 for name, sha256 in self.summary["files"].items() if name != SCENE}
+        kept = {name: sha256 for name, sha256 in self.found.files.items() if name != SCENE}
         return {name: self._kept(name, self.path / FILES / kept_name(name, kept[name])) for name in kept}
 
     def _kept(self, name: str, path: Path) -> FileContent:
@@ -213,31 +229,34 @@ class Run:
             file = FileContent(path, read_contained(path, self.path, LARGEST_FILE))
         except UnreadableFileError as error:
             raise RunError(f"{path}: cannot be read ({error}); the run is damaged") from None
-        if file.sha256 != self.summary["files"].get(name):
+        if file.sha256 != self.found.files.get(name):
             raise RunError(f"{path}: was changed since the run was made, so its trials cannot be made again")
         return file
 
     @property
     def fingerprint(self) -> Fingerprint:
         """What makes its blocks its own: scene, files, study, versions and processor, blocks."""
-        files = dict(self.summary["files"])
-        versions = {name: version for name, version in self.summary["versions"].items() if name != "python"}
-        blocks = self.summary.get("blocks")
-        study = self.summary["study"]
+        files = dict(self.found.files)
+        versions = {name: version for name, version in self.found.versions.items() if name != "python"}
+        study, blocks = self.summary["study"], self.summary["blocks"]  # as they were written
         return {"scene": files.pop(SCENE, None), "files": files, "study": study, "versions": versions, "blocks": blocks}
 
 
-def open_run(path: Path | str) -> Run:
+def open_run(path: Path | str, kinds: SummaryKinds | None = None) -> Run:
     """Open a run's folder, which a stranger may have made; executes nothing of it.
 
     Checked here are the summary's checksum, all its keys and values, and the number of blocks; scene, files and trials
     are checked when they are read. That nothing was changed is not to say who made it.
 
+    Args:
+        path: the folder.
+        kinds: what a summary may hold; by default what this package's mechanisms add.
+
     Raises:
         RunError: not a run, damaged, or changed since it was made.
     """
     path = Path(path)
-    run = read_run(path)
+    run = read_run(path, kinds)
     if run.keeps_trials:
         there, expected = len(run.blocks.names), -(-run.trials // run.block_trials)
         if there != expected:
@@ -246,7 +265,7 @@ def open_run(path: Path | str) -> Run:
     return run
 
 
-def read_run(path: Path) -> Run:
+def read_run(path: Path, kinds: SummaryKinds | None = None) -> Run:
     """A run by its summary alone: its blocks may be damaged.
 
     Raises:
@@ -256,7 +275,9 @@ def read_run(path: Path) -> Run:
         hint = "; it was not finished: run the scene again to go on" if path.name.endswith(".partial") else ""
         raise RunError(f"{path}: expected a run's folder with {SUMMARY} in it{hint}")
     content = Manifest.read(path).content(SUMMARY, LARGEST_SUMMARY)
-    return Run(path, summary_of(content, path / SUMMARY))
+    run = Run(path, parsed(content, path / SUMMARY), kinds)
+    _ = run.found  # refused here, if at all
+    return run
 
 
 def differences(there: Fingerprint, asked: Fingerprint) -> list[str]:
@@ -299,11 +320,11 @@ def partial_of(path: Path) -> Path:
     return path.with_name(path.name + ".partial")
 
 
-def whole_run(path: Path, fingerprint: Fingerprint) -> Run | None:
+def whole_run(path: Path, fingerprint: Fingerprint, kinds: SummaryKinds | None = None) -> Run | None:
     """The finished run of that fingerprint, if no other was begun there since and all its blocks are whole."""
     if partial_of(path).exists() or not (path / SUMMARY).is_file():
         return None
-    run = read_run(path)
+    run = read_run(path, kinds)
     if differences(run.fingerprint, fingerprint) or (run.keeps_trials and not _has_whole_blocks(run)):
         return None
     tidy_after_kill(run)
@@ -311,27 +332,27 @@ def whole_run(path: Path, fingerprint: Fingerprint) -> Run | None:
 
 
 def _has_whole_blocks(run: Run) -> bool:
-    """Whether every block is as it was written; each damaged one is told of."""
+    """Whether every block is as it was written; warns of each damaged one."""
     try:
         blocks = run.blocks
     except RunError as error:
-        tell_of_damage(error)
+        warn_of_damage(error)
         return False
     whole = [whole_file(blocks, name) for name in blocks.names]
     return len(whole) == -(-run.trials // run.block_trials) and all(whole)
 
 
 def whole_file(files: BlockFiles, name: str) -> bool:
-    """Whether a file is as it was written; a damaged one is told of."""
+    """Whether a file is as it was written; warns of a damaged one."""
     try:
         files.verify(name)
     except RunError as error:
-        tell_of_damage(error)
+        warn_of_damage(error)
         return False
     return True
 
 
-def tell_of_damage(error: RunError) -> None:
+def warn_of_damage(error: RunError) -> None:
     warnings.warn(str(error).removesuffix(f"; {MENDED}") + "; it is made again", DamageWarning, stacklevel=2)
 
 

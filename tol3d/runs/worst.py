@@ -1,6 +1,5 @@
 """The worst trial of a run: the one nearest to a limit, or furthest beyond it."""
 
-from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, Protocol
 
@@ -9,11 +8,12 @@ from numpy.typing import NDArray
 
 from tol3d.errors import RunError
 from tol3d.runs.outcome import status_column, told
+from tol3d.runs.summary.measure import MeasureSummary
+from tol3d.runs.summary.run import RunSummary
 
 Array = NDArray[np.float64]
 
 JAMMED_BY = -1e9  # sigmas; no build that seats is so far beyond a limit
-TRAIN_KINDS = frozenset(("lost_motion", "tip_displacement", "tip_error"))  # measures of trains: the larger the worse
 
 
 class KeptTrials(Protocol):
@@ -22,7 +22,7 @@ class KeptTrials(Protocol):
     @property
     def path(self) -> Path: ...
     @property
-    def summary(self) -> Mapping[str, Any]: ...
+    def found(self) -> RunSummary: ...
     @property
     def trials(self) -> int: ...
     @property
@@ -35,8 +35,8 @@ def worst_trial(run: KeptTrials, measure: str | None = None) -> int:
 
     Where any trial is jammed it is the one that is jammed deepest; else, among those that seated, the one nearest to a
     limit, or furthest beyond it. Nearness and depth are counted in standard deviations of each measure; a curve counts
-    by its extremes. Without any limit the smallest backlash is the worst, or the largest lost motion or error of a tip,
-    of the first measure. A trial without contact or out of range cannot be shown, and is never the worst.
+    by its extremes. Without any limit it is the trial at the worse end of the first measure. A trial without
+    contact or out of range cannot be shown, and is never the worst.
 
     Args:
         run: one that kept its trials.
@@ -45,28 +45,24 @@ def worst_trial(run: KeptTrials, measure: str | None = None) -> int:
     Raises:
         RunError: no such measure, or the run kept no trials.
     """
-    measures: Mapping[str, Mapping[str, Any]] = run.summary["measures"]
+    measures = run.found.measures
     if measure is not None and measure not in measures:
         raise RunError(f"{run.path}: no measure {measure!r}; there are: {', '.join(measures)}")
-    road = "geometric" if run.summary["engine"] != "analytic" else "analytic"
-    limited = {name: m for name, m in measures.items() if _limits(m) != (None, None)}
+    road = run.found.best_road
+    limited = {name: own for name, own in measures.items() if own.has_limits}
     judged = {measure: measures[measure]} if measure else limited or dict([*measures.items()][:1])
     return int(np.argmin(np.min([_margin(run, road, name, measure) for name, measure in judged.items()], axis=0)))
 
 
-def _limits(measure: Mapping[str, Any]) -> tuple[float | None, float | None]:
-    return measure["lower_limit"], measure["upper_limit"]
-
-
-def _margin(run: KeptTrials, road: str, name: str, measure: Mapping[str, Any]) -> Array:
+def _margin(run: KeptTrials, road: str, name: str, measure: MeasureSummary) -> Array:
     """How far each trial is inside the limits, in sigmas; infinite where it gave no value, far below all if jammed."""
     wanted = (f"{road}:{name}", status_column(name))
     found = told(run.columns(*(column for column in wanted if column in run.column_names)), road, name)
     values = found.values.reshape(run.trials, -1)
-    lower, upper = _limits(measure)
+    lower, upper = measure.limits
     below, above = values.min(axis=1), values.max(axis=1)  # nan where a position of a curve did not seat
-    if (lower, upper) == (None, None):
-        margin = -above if measure["kind"] in TRAIN_KINDS else below
+    if not measure.has_limits:
+        margin = -above if measure.worse == "high" else below
     else:
         margin = below - lower if lower is not None else np.full(run.trials, np.inf)
         margin = np.minimum(margin, upper - above) if upper is not None else margin

@@ -34,11 +34,12 @@ from tol3d.runs.run import (
     interrupted,
     partial_of,
     read_run,
-    tell_of_damage,
     tidy,
+    warn_of_damage,
     whole_file,
 )
-from tol3d.runs.summary_schema import written
+from tol3d.runs.summary.kinds import SummaryKinds
+from tol3d.runs.summary.text import written
 
 T = TypeVar("T")
 
@@ -57,6 +58,7 @@ class RunWriter:
         keep_trials: False keeps no blocks.
         resume: there must be an interrupted run of this fingerprint, or a finished one with damaged blocks.
         force: replace a run of another study; what holds anything else is moved aside.
+        kinds: what a summary may hold; by default what this package's mechanisms add.
 
     Raises:
         RunError: the folder is something else, cannot be written, or is being written by another run.
@@ -71,7 +73,9 @@ class RunWriter:
         keep_trials: bool = True,
         resume: bool = False,
         force: bool = False,
+        kinds: SummaryKinds | None = None,
     ) -> None:
+        self._kinds = kinds
         self.path = path.resolve()
         self.partial = partial_of(path)
         self._fingerprint = json.loads(json.dumps(fingerprint))
@@ -79,7 +83,7 @@ class RunWriter:
         self._keep_trials = keep_trials
         self._force = force
         self._pictures: list[str] = []
-        if not resume and (occupant := occupant_of(self.path, self._fingerprint)):
+        if not resume and (occupant := occupant_of(self.path, self._fingerprint, kinds)):
             occupant.refuse(force=force)
         try:
             if resume:
@@ -104,7 +108,7 @@ class RunWriter:
             return
         if not self.path.exists():
             raise RunError(f"{self.path}: nothing to resume, neither a run nor {self.partial.name} is there")
-        run = read_run(self.path)
+        run = read_run(self.path, self._kinds)
         self._refuse_another(run.fingerprint, f"{self.path}: nothing to resume, this is a finished run")
         made_again = (SUMMARY, f"{TRIALS}/{CHECKSUMS}")
         if changed := [name for name in run.manifest.foreign() if name in run.manifest.sums and name not in made_again]:
@@ -155,11 +159,11 @@ class RunWriter:
         return Checkpoint(self.partial / CHECKPOINT, kind)
 
     def read(self, index: int) -> Columns | None:
-        """A block that an interrupted run has finished, or None; a damaged one is told of and counts as none."""
+        """A block that an interrupted run has finished, or None; warns of a damaged one, which counts as none."""
         return _read(self._blocks, block_name(index))
 
     def holds(self, index: int) -> bool:
-        """Whether a finished block need not be made again; a damaged one is told of."""
+        """Whether a finished block need not be made again; warns of a damaged one."""
         return not self._keep_trials or whole_file(self._blocks, block_name(index))
 
     def write(self, index: int, columns: Columns) -> None:
@@ -177,7 +181,7 @@ class RunWriter:
         self._pieces.write(_piece_name(index, first), columns)
 
     def drop_from(self, index: int) -> None:
-        """Take away this block and those behind it."""
+        """Take away this block and those after it."""
         self._blocks.remove([name for name in self._blocks.names if name >= block_name(index)])
 
     def kept_blocks(self, kind: type[Any]) -> int:
@@ -216,7 +220,7 @@ class RunWriter:
 
     def finish(self, summary: Mapping[str, Any]) -> Run:
         """Write the summary and put the run in its place; killed before that, the same command goes on."""
-        text = written(summary)
+        text = written(summary, self._kinds)
         if self._keep_trials:
             self._blocks.settle()
         else:
@@ -226,7 +230,7 @@ class RunWriter:
         Manifest.of(self.partial, {SUMMARY, *self._kept, *self._pictures, *lists, *self._older()}).write()
         self._lock.release()
         self._put_in_place()
-        return Run(self.path, json.loads(text))
+        return Run(self.path, json.loads(text), self._kinds)
 
     def _older(self) -> Iterator[str]:
         """Files of a finished run that is mended, such as pictures, where they are as they were."""
@@ -246,7 +250,7 @@ class RunWriter:
     def _moved_away(self) -> Path | None:
         """Free the run's place: the old run's new name if it may be deleted, None if it was moved aside."""
         try:
-            occupant = occupant_of(self.path, self._fingerprint)
+            occupant = occupant_of(self.path, self._fingerprint, self._kinds)
         except RunError:
             self._move_aside(self.path, "something else than a run")
             return None
@@ -273,5 +277,5 @@ def _read(files: BlockFiles, name: str) -> Columns | None:
     try:
         return files.read(name)
     except RunError as error:
-        tell_of_damage(error)
+        warn_of_damage(error)
         return None

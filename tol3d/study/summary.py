@@ -101,6 +101,7 @@ def measure_summaries(
             "over": measure.positions.over,
             "take": measure.take,
             "unit": measure.unit,
+            "worse": "low" if isinstance(measure.kind, Backlash) else "high",
             **_lost_motion(model, measure),
             "lower_limit": in_unit(measure, measure.lower_limit),
             "upper_limit": in_unit(measure, measure.upper_limit),

@@ -1,6 +1,6 @@
 """The picture of a train: its chain from the motor to the tip, what each link brings, and the sum of it all."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any, Final
 
@@ -34,7 +34,7 @@ from tol3d.report.column import seated_text
 from tol3d.report.label import legible, wrapped
 from tol3d.report.number import NOTHING, given_text, value_text
 
-Summary = Mapping[str, Any]
+Summary = Any  # typed, read by text
 
 SHAFT_HEIGHT: Final = 0.68  # inch
 LINE: Final = 0.19  # inch, from line to line of text

@@ -1,6 +1,6 @@
 """Bars below the chain of a train: what each link brings at the shaft that is read, and its share of the variance."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from typing import Any, Final
 
 from matplotlib.axes import Axes
@@ -23,7 +23,7 @@ from tol3d.report.canvas import BLACK
 from tol3d.report.label import wrapped
 from tol3d.report.number import NOTHING, tip_mm
 
-Summary = Mapping[str, Any]
+Summary = Any  # typed, read by text
 
 BAR_LABEL: Final = 0.46  # inch, of two lines of text
 LONG_MM: Final = 10.0  # mm; from there on two decimals, or two labels do not stand side by side

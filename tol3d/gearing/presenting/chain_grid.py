@@ -1,6 +1,6 @@
 """Where things stand in the picture of a train; all lengths in inches of the picture, sizes of text in points."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import accumulate
 from typing import Any, Final
@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 from tol3d.gearing.presenting.stage import Stage, shafts_along
 from tol3d.report.canvas import GREY, PUBLISHED_COLOURS
 
-Summary = Mapping[str, Any]
+Summary = Any  # typed, read by text
 
 WIDTH: Final = 15.0
 HEAD: Final = 0.95

@@ -1,6 +1,6 @@
 """The foot of a train's picture: the distribution of its lost motion against the sum of its stages' highs."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any, Final
 
@@ -14,7 +14,7 @@ from tol3d.report.canvas import BLACK, OUTSIDE, ROAD_COLOURS, label_angles, plai
 from tol3d.report.label import legible
 from tol3d.report.number import short_text, tip_mm, value_text
 
-Summary = Mapping[str, Any]
+Summary = Any  # typed, read by text
 
 LINE: Final = 0.34  # inch; heights and widths of the foot's parts
 ABOVE: Final = 0.15

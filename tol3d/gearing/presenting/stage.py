@@ -7,7 +7,7 @@ from typing import Any, Literal
 from tol3d.report.column import columns_of
 from tol3d.report.number import NOTHING, tip_arcmin, tip_mm
 
-Summary = Mapping[str, Any]
+Summary = Any  # typed, read by text
 LinkKind = Literal["reducer", "mesh", "bevel_mesh", "parallel"]
 Sums = Mapping[str, Mapping[str, float | None]]
 
@@ -26,7 +26,7 @@ class Range:
     high: float | None
 
     @classmethod
-    def of(cls, values: Mapping[str, Any]) -> "Range":
+    def of(cls, values: Any) -> "Range":
         """From a summary's low_3sigma, mean and high_3sigma."""
         return cls(*(values.get(key) for key in SUM_KEYS))
 
@@ -95,10 +95,10 @@ def leading_road(train: Summary) -> str:
 def stages_of(train: Summary) -> list[Stage]:
     """The stages of a train's summary, from the held shaft on, by the leading road."""
     road = leading_road(train)
-    return [_stage(number, stage, stage["roads"].get(road, {})) for number, stage in enumerate(train["stages"], 1)]
+    return [_stage(number, stage, stage["roads"].get(road) or {}) for number, stage in enumerate(train["stages"], 1)]
 
 
-def _stage(number: int, stage: Summary, values: Mapping[str, Any]) -> Stage:
+def _stage(number: int, stage: Summary, values: Any) -> Stage:
     own, factor = Range.of(values), abs(stage["factor"])
     return Stage(
         number=number,
@@ -167,7 +167,7 @@ def _lever_of(measure: Summary, train: Summary) -> float | None:
     return lever
 
 
-def distributions_of(train: Summary, summary: Summary) -> dict[str, Mapping[str, Any]]:
+def distributions_of(train: Summary, summary: Summary) -> dict[str, Any]:
     """The lost motion that the train's stages add up to, by road and by who published it: ends and mean [arcmin].
 
     Of a train whose stages are told by a tip's displacement it is the turn that displaces the tip so far.
@@ -175,7 +175,7 @@ def distributions_of(train: Summary, summary: Summary) -> dict[str, Mapping[str,
     measure = summary["measures"].get(train["measure"])
     if measure is None:
         return {}
-    columns = {
+    columns: dict[str, Any] = {
         column.heading if column.road == "published" else column.road: column.values for column in columns_of(measure)
     }
     if measure["unit"] == "arcmin":

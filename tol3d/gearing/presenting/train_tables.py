@@ -1,6 +1,6 @@
 """The trains of a run as tables: what each stage brings to the lost motion, and the worst case beside the sum."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from typing import Any
 
 from rich.console import RenderableType
@@ -19,7 +19,7 @@ from tol3d.gearing.presenting.stage import (
 from tol3d.report.number import percent_text, tip_mm, value_text
 from tol3d.report.sheet import Heading, Row, Sheet, note
 
-Summary = Mapping[str, Any]
+Summary = Any  # typed, read by text
 
 ROAD_WORDS = {"analytic": "analytic (same trials)", "geometric": "3D simulation"}
 WORST_CASE_MEANS = "a sum of the stages' highs is a worst case; mean + 3 sigma of the sum is of its distribution"

@@ -1,0 +1,288 @@
+"""What summary.json holds of gears: keys of their measures, what the measures say of themselves, and trains."""
+
+from collections.abc import Mapping, Sequence
+from typing import Annotated, Final, Literal, Self
+
+from pydantic import Field, model_validator
+
+from tol3d.runs.summary.kinds import SummaryKinds
+from tol3d.runs.summary.measure import Conversion, MeasureSummary
+from tol3d.runs.summary.run import RunSummary
+from tol3d.runs.summary.values import (
+    LEFT_OUT,
+    MOST_ENTRIES,
+    Known,
+    Label,
+    Maybe,
+    Number,
+    Numbers,
+    Section,
+    Unit,
+)
+from tol3d.strict import refused
+from tol3d.units import shown
+
+Over = Literal["random", "at", "turn", "long_period", "swing"]
+
+QUANTITY_WORDS: Final[Mapping[str, str]] = {
+    "normal_backlash": "normal backlash",
+    "circumferential_backlash": "circumferential backlash",
+    "angular_backlash": "angular backlash",
+}
+TAKE_WORDS: Final[Mapping[str, str]] = {
+    "value": "",
+    "min": "smallest ",
+    "max": "largest ",
+    "range": "range of ",
+    "curve": "",
+}
+OVER_WORDS: Final[Mapping[str, str]] = {
+    "random": "at a random position of the driver each trial",
+    "at": "at one position of the driver",
+    "turn": "over one turn of the driver",
+    "long_period": "over the long period",
+    "swing": "over the swing of the output",
+}
+TRAIN_OVER_WORDS: Final[Mapping[str, str]] = {
+    **OVER_WORDS,
+    "random": "at a random position each trial",
+    "at": "at one position",
+}
+READING_WORDS: Final[Mapping[tuple[str, str], str]] = {
+    ("face", "face"): "",
+    ("face", "section"): "; contact over the face, gap in its middle",
+    ("section", "section"): "; mean section",
+}
+TEETH_WORDS: Final[Mapping[str, str]] = {
+    "all": "",
+    "driver": ", one driver tooth",
+    "driven": ", one driven tooth",
+}
+FLANKS_OF_A_BACKLASH: Final = 4  # two at the contact, two at the gap; each may miss the true flank by the chord error
+LOST_MOTION_MEANS: Final = (
+    "lost motion: the turn of the driven gear that a normal backlash leaves free, j_n over the arm of its flank"
+)
+
+
+class Reading(Section):
+    """Where on the face, and at which teeth, contact and gap of a mesh are read."""
+
+    contact: Literal["face", "section"]
+    gap: Literal["face", "section"]
+    teeth: Literal["all", "driver", "driven"]
+
+    @property
+    def words(self) -> str:
+        """Where it is read, unless that is everywhere and at all teeth.
+
+        >>> Reading(contact="section", gap="section", teeth="driven").words
+        '; mean section, one driven tooth'
+        """
+        return READING_WORDS[self.contact, self.gap] + TEETH_WORDS[self.teeth]
+
+
+def readings_words(readings: Mapping[str, Reading]) -> str:
+    """The same of several meshes by name, once where they are alike.
+
+    >>> section = Reading(contact="section", gap="section", teeth="driven")
+    >>> readings_words({"first": section, "second": section})
+    '; mean section, one driven tooth'
+    >>> readings_words({"first": section, "second": Reading(contact="face", gap="face", teeth="all")})
+    '; first: mean section, one driven tooth'
+    """
+    each = {mesh: reading.words for mesh, reading in readings.items()}
+    if len(set(each.values())) == 1:
+        return next(iter(each.values()))
+    return "".join(f"; {mesh}: {words[2:]}" for mesh, words in each.items() if words)
+
+
+class FreeTurn(Section):
+    """What a normal backlash leaves free."""
+
+    of: Label = Field(description="the driven gear")
+    arcmin_per_um: Number
+
+
+class BacklashSummary(MeasureSummary):
+    """The backlash of a mesh; every value is in `unit`."""
+
+    kind: Literal["normal_backlash", "circumferential_backlash", "angular_backlash"]
+    of: Label = Field(description="the mesh")
+    gear: Label | None
+    reading: Reading
+    over: Over
+    lost_motion: Maybe[FreeTurn] = LEFT_OUT
+
+    @property
+    def words(self) -> str:
+        """Quantity, gear, mesh and positions: `smallest normal backlash of gear pair over one turn of the driver`."""
+        gear = f" of {self.gear} in" if self.kind == "angular_backlash" else " of"
+        quantity = TAKE_WORDS[self.take] + QUANTITY_WORDS[self.kind]
+        return f"{quantity}{gear} {self.of} {OVER_WORDS[self.over]}{self.reading.words}"
+
+    @property
+    def position_word(self) -> str:
+        """Positions are those of the driver."""
+        return "driver"
+
+    @property
+    def position_column(self) -> str | None:
+        """The driver's."""
+        return f"position:{self.of} [deg]" if self.over == "random" else None
+
+    @property
+    def identity(self) -> tuple[str | None, ...]:
+        """Kind, gear, and where on the face it is read."""
+        return self.kind, self.gear, self.reading.words
+
+    @property
+    def conversions(self) -> Sequence[Conversion]:
+        """The turn of the driven gear that a normal backlash leaves free."""
+        if self.lost_motion is None:
+            return ()
+        free = self.lost_motion
+        return (Conversion("lost motion", free.of, "arcmin", free.arcmin_per_um, LOST_MOTION_MEANS),)
+
+    def chord_words(self, chord_error_um: float) -> str:
+        """What the chords of measuring strips may explain."""
+        return _chord_words(chord_error_um, "")
+
+
+class TrainMeasureSummary(MeasureSummary):
+    """The lost motion of a train, or what it does to the tip of an arm; every value is in `unit`."""
+
+    kind: Literal["lost_motion", "tip_displacement", "tip_error"]
+    of: Label = Field(description="the train")
+    gear: None
+    reading: None
+    readings: Mapping[Label, Reading] = Field(description="of each mesh")
+    shaft: Label = Field(description="that is read")
+    held: Label = Field(description="the shaft that is held")
+    arm: Label | None
+    point: Label | None
+    lever_mm: Known
+    load_changes_deg: Numbers
+    over: Over
+
+    @property
+    def words(self) -> str:
+        """Quantity, shafts or point, and positions: `lost motion of flange, motor held, at one position`."""
+        return f"{self._quantity}, {TRAIN_OVER_WORDS[self.over]}{readings_words(self.readings)}"
+
+    @property
+    def _quantity(self) -> str:
+        if self.kind == "lost_motion":
+            return f"lost motion of {self.shaft}, {self.held} held"
+        word = "error" if self.kind == "tip_error" else "displacement"
+        return f"{word} of {self.point} of {self.arm} by the lost motion"
+
+    @property
+    def position_word(self) -> str:
+        """Positions are those of the driver, of an error those of the output."""
+        return "output" if self.kind == "tip_error" else "driver"
+
+    @property
+    def jumps(self) -> bool:
+        """A curve of an error is 0 with the load on one side."""
+        return (self.kind, self.take) == ("tip_error", "curve")
+
+    @property
+    def jumps_deg(self) -> Sequence[float]:
+        """Where the load changes side."""
+        return self.load_changes_deg
+
+    @property
+    def identity(self) -> tuple[str | None, ...]:
+        """Kind, point or shaft, and where on the faces it is read."""
+        return self.kind, self.point or self.shaft, readings_words(self.readings)
+
+    def chord_words(self, chord_error_um: float) -> str:
+        """What the chords of measuring strips may explain."""
+        return _chord_words(chord_error_um, " in each mesh")
+
+
+def _chord_words(chord_error_um: float, whose: str) -> str:
+    whole = FLANKS_OF_A_BACKLASH * chord_error_um
+    return (
+        f"up to {whole:.3f} µm of normal backlash{whose} may be chord error ({chord_error_um:.3f} µm on each of "
+        f"{FLANKS_OF_A_BACKLASH} flanks)"
+    )
+
+
+# trains -------------------------------------------------------------------------------------------
+
+
+class Ends(Section):
+    """What a road, or somebody else, found of a train's stage or of their sum [arcmin]."""
+
+    low_3sigma: Maybe[Known] = LEFT_OUT
+    mean: Maybe[Known] = LEFT_OUT
+    high_3sigma: Maybe[Known] = LEFT_OUT
+    sigma: Maybe[Known] = LEFT_OUT
+    sample_min: Maybe[Known] = LEFT_OUT
+    sample_max: Maybe[Known] = LEFT_OUT
+    share_percent: Maybe[Known] = LEFT_OUT
+
+
+class StageRoads(Section):
+    """What both roads found of a stage."""
+
+    analytic: Ends
+    geometric: Maybe[Ends] = LEFT_OUT
+
+
+class StageSummary(Section):
+    """A link of a train."""
+
+    link: Label
+    kind: Literal["mesh", "bevel_mesh", "reducer", "parallel"]
+    driver: Label
+    driven: Label
+    gears: Annotated[list[Label], Field(min_length=2, max_length=2)] | None
+    teeth: Annotated[list[Annotated[int, Field(ge=1, le=10_000)]], Field(min_length=2, max_length=2)] | None
+    ratio: Number
+    working_flank: Literal["left", "right"] | None
+    ways: Maybe[Annotated[int, Field(ge=2, le=MOST_ENTRIES, description="of parallel load paths")]] = LEFT_OUT
+    factor: Number = Field(description="turn of the shaft that is read per turn of the driven shaft")
+    roads: StageRoads
+    published: Mapping[Label, Ends]
+
+
+class Sums(Section):
+    """Sums of the stages' ends at the shaft that is read [arcmin]."""
+
+    analytic: Ends
+    geometric: Maybe[Ends] = LEFT_OUT
+    published: Mapping[Label, Ends]
+
+
+class TrainSummary(Section):
+    """A train and its stages."""
+
+    driven: Label
+    held: Label
+    output: Label
+    ratio: Number
+    shaft: Label
+    measure: Label = Field(description="whose stages these are")
+    unit: Unit
+    lever_mm: Known
+    point: Label | None
+    stages: Annotated[list[StageSummary], Field(min_length=1)]
+    sums: Sums
+
+
+class TrainsOfRun(RunSummary):
+    """The trains of a run."""
+
+    trains: Maybe[Mapping[Label, TrainSummary]] = LEFT_OUT
+
+    @model_validator(mode="after")
+    def _refuse_trains_of_nothing(self) -> Self:
+        for name, train in (self.trains or {}).items():
+            if train.measure not in self.measures:
+                raise refused(f"trains.{name}.measure", "a measure of the run", shown(train.measure))
+        return self
+
+
+SUMMARY_KINDS: Final = SummaryKinds((BacklashSummary, TrainMeasureSummary), (TrainsOfRun,))

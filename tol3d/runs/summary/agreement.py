@@ -1,0 +1,77 @@
+"""How far the roads of a measure differ and what explains it, and what the witness found; in the measure's unit."""
+
+from collections.abc import Mapping
+from typing import Literal
+
+from pydantic import Field
+
+from tol3d.runs.summary.values import (
+    LEFT_OUT,
+    Count,
+    Known,
+    Label,
+    Maybe,
+    NotNegative,
+    Number,
+    Section,
+    Sentence,
+)
+
+
+class LinearPart(Section):
+    """What a contributor adds to the difference of the roads."""
+
+    contributor: Label
+    percent: Number = Field(description="of its own effect")
+    standard_errors: Number
+    by: Sentence
+
+
+class Explanation(Section):
+    """What explains the difference of the roads, in the measure's unit."""
+
+    undecided: Sentence
+    faults: list[Sentence]
+    linear: list[LinearPart]
+    largest_percent: Number
+    neglected: Mapping[Label, Number]
+    second_order_rms: Known
+    second_order_mean: Known
+    second_order_of: list[Label]
+    left_rms: Known
+    mean_left: Known
+    mean_allowed: Known
+    largest_trial: Count | None = Field(description="the trial with the largest difference")
+
+
+class Agreement(Section):
+    """3D simulation - analytic, trial by trial, in the measure's unit."""
+
+    max_abs_difference: Known
+    rms_difference: Known
+    mean_difference: Known
+    compared: Count
+    explanation: Maybe[Explanation | None] = LEFT_OUT
+
+
+class Witnessed(Section):
+    """FCL - engine of one measure, in its unit."""
+
+    max_abs_difference: Known
+    mean_difference: Known
+    rms_difference: Known
+    trial_of_the_largest: Count | None
+    compared: Count
+    expected_at_most: NotNegative = Field(description="what chord errors explain")
+    allowance: NotNegative = Field(description="what else FCL may be off")
+
+
+class WitnessSummary(Section):
+    """What FCL found of some trials."""
+
+    engine: Literal["fcl"]
+    trials: Count
+    chord_error_um: NotNegative
+    profile_steps: int = Field(ge=8, le=2000)
+    measures: Mapping[Label, Witnessed]
+    status_differences: Count

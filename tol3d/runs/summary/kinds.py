@@ -1,0 +1,60 @@
+"""What mechanisms add to a summary: classes of their measures, by kind, and sections of their own."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cache, cached_property, reduce
+from importlib import import_module
+from operator import or_
+from typing import Annotated, Any, get_args
+
+from pydantic import Field, create_model
+
+from tol3d.runs.summary.measure import MeasureSummary
+from tol3d.runs.summary.run import RunSummary
+from tol3d.runs.summary.values import MOST_ENTRIES, Label
+
+HOME = ("tol3d.gearing.summary_types", "SUMMARY_KINDS")  # of what summaries hold where nobody says otherwise
+
+
+@dataclass(frozen=True)
+class SummaryKinds:
+    """What summaries may hold besides what every one has.
+
+    Args:
+        measures: classes of measures; `kind` of each is a Literal of the kinds that it is for.
+        runs: classes that add sections to the whole, as keys that may be missing.
+    """
+
+    measures: tuple[type[MeasureSummary], ...] = ()
+    runs: tuple[type[RunSummary], ...] = ()
+
+    def __or__(self, other: "SummaryKinds") -> "SummaryKinds":
+        """Both together."""
+        return SummaryKinds((*self.measures, *other.measures), (*self.runs, *other.runs))
+
+    @cached_property
+    def run(self) -> type[RunSummary]:
+        """The class of a whole summary."""
+        measure: Any = reduce(or_, self.measures) if self.measures else MeasureSummary
+        if len(self.measures) > 1:
+            measure = Annotated[measure, Field(discriminator="kind")]
+        measures = Annotated[Mapping[Label, measure], Field(min_length=1, max_length=MOST_ENTRIES)]
+        base: Any = self.runs or RunSummary
+        found: type[RunSummary] = create_model(
+            RunSummary.__name__, __base__=base, __doc__=RunSummary.__doc__, measures=(measures, ...)
+        )
+        return found
+
+    @cached_property
+    def tags(self) -> frozenset[str]:
+        """Kinds of measures that pydantic names in the places of errors, where the file has no such key."""
+        kinds = (get_args(measure.model_fields["kind"].annotation) for measure in self.measures)
+        return frozenset(kind for each in kinds for kind in each) if len(self.measures) > 1 else frozenset()
+
+
+@cache
+def default_kinds() -> SummaryKinds:
+    """What the mechanisms of this package add; loaded when it is first asked for, since runs/ imports no mechanism."""
+    module, name = HOME
+    found: SummaryKinds = getattr(import_module(module), name)
+    return found

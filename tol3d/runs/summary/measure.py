@@ -1,0 +1,228 @@
+"""One measure of a run: what it is, what each road found of it, and what others published."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Literal, Self, get_args
+
+from pydantic import Field, create_model, model_validator
+
+from tol3d.runs.outcome import JAMMED, SEATED
+from tol3d.runs.summary.agreement import Agreement
+from tol3d.runs.summary.sample import CurveRoads, CurveSample, Histogram, Normal, Roads, Sample
+from tol3d.runs.summary.values import (
+    LEFT_OUT,
+    Count,
+    Known,
+    Label,
+    Maybe,
+    Number,
+    Numbers,
+    Road,
+    Section,
+    Sentence,
+    Unit,
+)
+from tol3d.strict import refused
+
+Worse = Literal["low", "high"]
+
+
+class ContributorShare(Section):
+    """Shares of the variance of a measure [%]."""
+
+    name: Label
+    analytic_percent: Known
+    geometric_percent: Known
+    geometric_percent_se: Known = Field(description="one standard error")
+    high_low_mean_percent: Known
+
+
+class Published(Section):
+    """What somebody else found for a measure: numbers of a sample, in the measure's unit, and shares [%]."""
+
+    contributors: Maybe[Mapping[Label, Number]] = LEFT_OUT
+    description: Maybe[Sentence] = LEFT_OUT
+
+
+def _is_number(annotation: Any) -> bool:
+    return bool({int, float} & {annotation, *get_args(annotation), *map(_bare, get_args(annotation))})
+
+
+def _bare(annotation: Any) -> Any:
+    return get_args(annotation)[0] if get_args(annotation) else annotation
+
+
+PUBLISHED_NUMBERS = {
+    name: (Number, Field(default=LEFT_OUT, alias=field.alias))
+    for name, field in Sample.model_fields.items()
+    if _is_number(field.annotation)
+}
+"""Every number of a sample may be published."""
+
+if TYPE_CHECKING:
+    PublishedColumn = Published
+else:
+    PublishedColumn = create_model(
+        "PublishedColumn", __base__=Published, __doc__=Published.__doc__, **PUBLISHED_NUMBERS
+    )
+
+
+@dataclass(frozen=True)
+class Conversion:
+    """A measure's values in other words: `words`, of what, in `unit`, so many per unit of the measure."""
+
+    words: str
+    of: str
+    unit: Unit
+    per_unit: float
+    meaning: str
+
+
+class MeasureSummary(Section):
+    """One measure; every value is in `unit`. Mechanisms declare classes of it, with keys of their own."""
+
+    kind: Label
+    over: Label
+    take: Literal["value", "min", "max", "range", "curve"]
+    unit: Unit
+    worse: Worse = Field(description="which end is the worse where no limit says so")
+    lower_limit: Known
+    upper_limit: Known
+    status: Mapping[Label, Count] = Field(description="how many trials ended how")
+    nominal: Roads
+    mean_build: Roads
+    analytic: Maybe[Sample] = LEFT_OUT
+    analytic_closed_form: Maybe[Normal] = LEFT_OUT
+    histogram: Maybe[Histogram] = LEFT_OUT
+    geometric: Maybe[Sample] = LEFT_OUT
+    agreement: Maybe[Agreement] = LEFT_OUT
+    position_deg: Maybe[Numbers] = LEFT_OUT
+    curve: Maybe[CurveRoads] = LEFT_OUT
+    contributors: list[ContributorShare]
+    published: Mapping[Label, PublishedColumn]
+
+    # what it says of itself; a mechanism's class says it in its own words --------------------------------
+
+    @property
+    def words(self) -> str:
+        """Quantity, of what, and at which positions, in a line."""
+        return self.kind.replace("_", " ")
+
+    @property
+    def position_word(self) -> str:
+        """Whose positions those of a curve are: `driver`."""
+        return ""
+
+    @property
+    def position_column(self) -> str | None:
+        """The column with the position of each trial [deg]; None where there is none."""
+        return None
+
+    @property
+    def jumps(self) -> bool:
+        """Whether it jumps between positions, so that its mean over them says nothing."""
+        return False
+
+    @property
+    def jumps_deg(self) -> Sequence[float]:
+        """Positions [deg] at which it jumps."""
+        return ()
+
+    @property
+    def identity(self) -> tuple[str | None, ...]:
+        """What measures of one name must share, beside unit, positions and what is taken, to be compared."""
+        return (self.kind,)
+
+    @property
+    def conversions(self) -> Sequence[Conversion]:
+        """Its values in other words, shown below them."""
+        return ()
+
+    def chord_words(self, chord_error_um: float) -> str:
+        """What chord errors of measuring strips may explain of a difference; nothing where there are no strips."""
+        return ""
+
+    # ------------------------------------------------------------------------------------------------------
+
+    @property
+    def best_road(self) -> Road:
+        """The road by which it is shown: the 3D simulation where there is one."""
+        return "geometric" if self.geometric or (self.curve and self.curve.geometric) else "analytic"
+
+    @property
+    def limits(self) -> tuple[float | None, float | None]:
+        """Lower and upper limit, None for none."""
+        return self.lower_limit, self.upper_limit
+
+    @property
+    def has_limits(self) -> bool:
+        """Whether it has any."""
+        return self.limits != (None, None)
+
+    @property
+    def seated(self) -> int:
+        """How many trials seated."""
+        return self.status.get(SEATED, self.trials)
+
+    @property
+    def jammed(self) -> int:
+        """How many trials jammed."""
+        return self.status.get(JAMMED, 0)
+
+    @property
+    def trials(self) -> int:
+        """How many trials there were."""
+        return sum(self.status.values())
+
+    def sample(self, road: Road) -> Sample | None:
+        """What a road found of a measure with one value a trial."""
+        return self.geometric if road == "geometric" else self.analytic
+
+    def curve_sample(self, road: Road) -> CurveSample | None:
+        """What a road found of a curve."""
+        return getattr(self.curve, road, None)
+
+    @property
+    def shares(self) -> Sample | CurveSample:
+        """What is out of its limits, by the best road."""
+        found = self.curve_sample(self.best_road) if self.take == "curve" else self.sample(self.best_road)
+        assert found is not None, "a summary that was read has one"
+        return found
+
+    @model_validator(mode="after")
+    def _refuse_contradictions(self) -> Self:
+        said = self.model_fields_set
+        needed = {"curve", "position_deg"} if self.take == "curve" else {"analytic", "histogram"}
+        if not needed <= said:
+            raise refused("take", f"{' and '.join(sorted(needed))} beside it", self.take)
+        if self.curve is not None and self.take == "curve":
+            self._refuse_uneven_curves(self.curve)
+        elif self.histogram is not None:
+            self._refuse_uneven_histogram(self.histogram)
+        if (self.agreement is None) != (self.geometric is None):
+            raise refused("agreement", "one where there is a 3D simulation", "one of the two")
+        return self
+
+    def _refuse_uneven_curves(self, curve: CurveRoads) -> None:
+        count = len(self.position_deg or ())
+        for road in (curve.analytic, curve.geometric):
+            lists = (road.mean, road.sigma, road.min, road.max) if road is not None else ()
+            if any(len(values) != count for values in lists):
+                raise refused("curve", f"{count} values each, as positions", "another number")
+        for build in (self.nominal, self.mean_build):
+            for value in (build.analytic, build.geometric):
+                if value is not None and not (isinstance(value, list) and len(value) == count):
+                    raise refused("nominal", f"{count} values each, as positions, or null", "something else")
+
+    def _refuse_uneven_histogram(self, histogram: Histogram) -> None:
+        lower, width, counts = histogram.lower_edge, histogram.bin_width, histogram.counts
+        if len(histogram) and (lower is None or width is None or counts is None):
+            raise refused("histogram", "lower_edge, bin_width and counts", ", ".join(sorted(histogram.keys())))
+        if counts is not None and width is not None:
+            if len({len(each) for each in counts.values()}) != 1 or not width > 0.0:
+                raise refused("histogram", "as many bars of both roads, wider than 0", "something else")
+            if not any(counts.values()):
+                raise refused("histogram.counts", "at least one bar", "none")
+        for build in (self.nominal, self.mean_build):
+            if isinstance(build.analytic, list) or isinstance(build.geometric, list):
+                raise refused("nominal", "a number of each road, or null", "a list")

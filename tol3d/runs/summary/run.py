@@ -1,0 +1,108 @@
+"""The whole of summary.json: what a run of a scene found."""
+
+from collections.abc import Mapping
+from typing import Annotated, Literal, Self
+
+from pydantic import Field, model_validator
+
+from tol3d.runs.summary.agreement import WitnessSummary
+from tol3d.runs.summary.measure import MeasureSummary
+from tol3d.runs.summary.values import (
+    LEFT_OUT,
+    MOST_ENTRIES,
+    MOST_SEED,
+    Count,
+    EngineName,
+    Known,
+    Label,
+    Maybe,
+    NotNegative,
+    Positive,
+    Road,
+    Section,
+    Sentence,
+    Sha256,
+)
+from tol3d.strict import refused
+
+
+class StudySummary(Section):
+    """The study that was run: the scene's, or what was said instead of it."""
+
+    trials: Positive
+    seed: int = Field(ge=0, le=MOST_SEED)
+    sampler: Literal["monte_carlo", "sobol", "latin_hypercube"]
+    replicates: int = Field(ge=1, le=1000)
+    until: list[Annotated[list[Label | Known], Field(min_length=3, max_length=3)]] = Field(
+        description="measure, and standard errors of mean and sigma [mm or rad] at which automatic trials stop"
+    )
+    engine: EngineName
+    witness: int = Field(ge=0, le=1_000_000)
+    profile_steps: int = Field(ge=8, le=2000)
+
+
+class Blocks(Section):
+    """How trials are cut into files, and whether those are kept."""
+
+    trials: int = Field(ge=1, le=2**20)
+    kept: bool
+
+
+class Timing(Section):
+    """How long it took, on how many workers."""
+
+    setup_s: NotNegative
+    simulate_s: NotNegative
+    first_block_s: NotNegative
+    trials_per_s: NotNegative
+    resumed_trials: Count
+    workers: Count
+    peak_memory_mb: NotNegative | None
+
+
+class RunSummary(Section):
+    """summary.json: what a run of a scene found. Lengths um, of a tip mm; angles arcmin; shares ppm or %."""
+
+    scene: Label
+    seed: int = Field(ge=0, le=MOST_SEED)
+    trials: Positive
+    engine: EngineName
+    study: StudySummary
+    status: Mapping[Label, Count] = Field(description="how many trials ended how")
+    chord_error_um: NotNegative | None
+    measures: Annotated[Mapping[Label, MeasureSummary], Field(min_length=1, max_length=MOST_ENTRIES)]
+    warnings: list[Sentence]
+    witness: Maybe[WitnessSummary] = LEFT_OUT
+    blocks: Blocks
+    files: Mapping[Label, Sha256] = Field(description="SHA-256 of the scene and of every file that it names")
+    timing: Timing
+    versions: Mapping[Label, Sentence] = Field(description="of what decides a result's last bit")
+
+    @property
+    def roads(self) -> tuple[Road, ...]:
+        """The roads by which it was measured."""
+        return ("analytic",) if self.engine == "analytic" else ("analytic", "geometric")
+
+    @property
+    def best_road(self) -> Road:
+        """The road by which it is shown."""
+        return self.roads[-1]
+
+    @model_validator(mode="after")
+    def _refuse_contradictions(self) -> Self:
+        study = self.study
+        for name, here, there in (("seed", self.seed, study.seed), ("engine", self.engine, study.engine)):
+            if here != there:
+                raise refused(f"study.{name}", f"{here}, as it says for the run", there)
+        if self.trials > study.trials or (self.trials != study.trials and not study.until):
+            raise refused("study.trials", f"{self.trials}, as it says for the run", study.trials)
+        if sum(self.status.values()) != self.trials:
+            raise refused("status", f"{self.trials} trials in all", sum(self.status.values()))
+        if "scene.yaml" not in self.files:
+            raise refused("files", "scene.yaml among them", "none of that name")
+        simulated = self.engine != "analytic"
+        for name, measure in self.measures.items():
+            road = measure.curve.geometric if measure.curve and measure.take == "curve" else measure.geometric
+            if (road is not None) != simulated:
+                raise refused(f"measures.{name}", f"geometric as the engine is {self.engine}", "otherwise")
+        return self

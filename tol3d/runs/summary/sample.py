@@ -1,0 +1,104 @@
+"""Statistics of a measure's trials by either road, in the measure's unit."""
+
+from collections.abc import Mapping
+from typing import Literal
+
+from pydantic import Field
+
+from tol3d.runs.summary.values import (
+    LEFT_OUT,
+    Count,
+    Known,
+    KnownNumbers,
+    Maybe,
+    NotNegative,
+    Number,
+    Ppm,
+    PpmRange,
+    Road,
+    Section,
+)
+
+
+class Roads(Section):
+    """A value of both roads of one build; of a curve at each position; null where it does not seat."""
+
+    analytic: Known | KnownNumbers
+    geometric: Known | KnownNumbers
+
+
+class LimitShares(Section):
+    """Shares of all trials that are out of limits or failed [ppm]."""
+
+    trials: Count
+    below_limit_ppm: Ppm | None
+    above_limit_ppm: Ppm | None
+    failed_ppm: Ppm | None
+    out_ppm: Ppm | None = Field(description="failed or out of limits, of all trials")
+    out_ppm_95: PpmRange | None = Field(description="bounds of the true share, 95 % confidence")
+
+
+class Sample(LimitShares):
+    """One road's sample of a measure, in its unit."""
+
+    count: Count = Field(description="trials with a value")
+    mean: Known
+    sigma: NotNegative | None
+    low_3sigma: Known
+    high_3sigma: Known
+    sample_min: Known
+    sample_max: Known
+    p0_135: Known = Field(alias="p0.135", description="0.135 % quantile")
+    p50: Known
+    p99_865: Known = Field(alias="p99.865")
+    quantile_error: NotNegative = Field(description="width of a bin of the grid that quantiles are read from")
+    outside_grid: Count
+    below_limit_ppm_95: PpmRange | None = Field(description="bounds of the true share, 95 % confidence")
+    above_limit_ppm_95: PpmRange | None
+    deepest_overlap: Known
+    mean_se: Known = Field(description="standard error of the mean")
+    sigma_se: Known
+    error_by: Literal["sample", "replicates"]
+    skewness: Known
+    kurtosis: Known = Field(description="excess kurtosis")
+    pp: Known
+    ppk: Known
+    ppk_by: Literal["share out of limits", "mean and sigma"]
+
+
+class Normal(Section):
+    """The closed form of a measure: mean and sigma of the stack-up."""
+
+    mean: Number
+    sigma: NotNegative
+    low_3sigma: Number
+    high_3sigma: Number
+
+
+class Histogram(Section):
+    """Counts of both roads over the same bars; empty where no trial has a value."""
+
+    lower_edge: Maybe[Number] = LEFT_OUT
+    bin_width: Maybe[NotNegative] = LEFT_OUT
+    counts: Maybe[Mapping[Road, list[Count]]] = LEFT_OUT
+
+
+class CurveSample(LimitShares):
+    """One road's curves: statistics at each position, and shares of the trials with any position out of limits."""
+
+    mean: KnownNumbers
+    sigma: KnownNumbers
+    min: KnownNumbers
+    max: KnownNumbers
+
+
+class CurveRoads(Section):
+    """The curves of both roads."""
+
+    analytic: CurveSample
+    geometric: Maybe[CurveSample] = LEFT_OUT
+
+    @property
+    def by_road(self) -> Mapping[Road, CurveSample]:
+        """The curves of each road that there is."""
+        return {"analytic": self.analytic, **({"geometric": self.geometric} if self.geometric else {})}

@@ -1,0 +1,86 @@
+"""Reading and writing summary.json."""
+
+import json
+import unicodedata
+import warnings
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import Any
+
+from pydantic import ValidationError
+
+from tol3d.errors import RunError
+from tol3d.runs.summary.kinds import SummaryKinds, default_kinds
+from tol3d.runs.summary.run import RunSummary
+from tol3d.runs.summary.values import UNSAFE
+from tol3d.units import shown
+
+SUMMARY_FILE = "summary.json"
+LONGEST_MESSAGE = 400  # characters
+WHERE = "its keys are written down in tol3d/runs/summary/ and by mechanisms, one line each in the class of their place"
+
+
+class SchemaWarning(UserWarning):
+    """A summary is written that its own schema does not know; the tests take it for an error."""
+
+
+def parsed(content: bytes, path: Path) -> dict[str, Any]:
+    """The JSON of a summary's file, which a stranger may have made.
+
+    Raises:
+        RunError: it is no JSON, or not that of a summary.
+    """
+    try:
+        found = json.loads(content, parse_constant=_refuse_constant)
+    except (ValueError, RecursionError) as error:
+        raise RunError(f"{path}: cannot be read ({_printable(str(error))})") from None
+    if not isinstance(found, dict):
+        raise RunError(f"{path}: expected the summary of a tol3d run, got {shown(found)}")
+    return found
+
+
+def written(summary: Mapping[str, Any], kinds: SummaryKinds | None = None) -> str:
+    """The text of a summary; what the schema does not know is warned of, for a long study is not lost by a fault."""
+    text = json.dumps(summary, indent=1, ensure_ascii=False, allow_nan=False) + "\n"
+    try:
+        typed(json.loads(text), lambda place, words: RunError(f"{place}: {words}"), kinds)
+    except RunError as error:
+        warnings.warn(f"a fault of tol3d: {SUMMARY_FILE}: {error}; {WHERE}", SchemaWarning, stacklevel=2)
+    return text
+
+
+def typed(
+    summary: Mapping[str, Any], fault: Callable[[str, str], Exception], kinds: SummaryKinds | None = None
+) -> RunSummary:
+    """A summary as an object.
+
+    Args:
+        summary: as JSON.
+        fault: makes the error of a place and what is wrong there, which is raised.
+        kinds: what it may hold; by default what this package's mechanisms add.
+    """
+    kinds = kinds or default_kinds()
+    try:
+        return kinds.run.model_validate(summary)
+    except ValidationError as error:
+        first = error.errors(include_url=False)[0]
+    context = first.get("ctx", {})
+    extra = context.get("key") if first["type"] == "unknown_key" else context.get("field")
+    place = ".".join(map(str, (*_without_tag(first["loc"], kinds), *([extra] if extra else []))))
+    got = "" if first["type"] == "value_refused" else f", got {shown(first['input'])}"
+    raise fault(_printable(place or "the whole"), _printable(f"{first['msg']}{got}"))
+
+
+def _without_tag(loc: tuple[int | str, ...], kinds: SummaryKinds) -> tuple[int | str, ...]:
+    """A place in the file: `measures.play.normal_backlash.unit` of pydantic is measures.play.unit there."""
+    return (*loc[:2], *loc[3:]) if loc[:1] == ("measures",) and len(loc) > 2 and loc[2] in kinds.tags else loc
+
+
+def _refuse_constant(word: str) -> None:
+    raise ValueError(f"{word} is no number of JSON")
+
+
+def _printable(text: str) -> str:
+    """A short text in which a stranger's characters do nothing."""
+    safe = "".join(sign if unicodedata.category(sign) not in UNSAFE else "?" for sign in text)
+    return safe if len(safe) <= LONGEST_MESSAGE else safe[: LONGEST_MESSAGE - 1] + "…"
