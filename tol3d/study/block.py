@@ -225,7 +225,7 @@ def _parabola_peak(values: Array, *, closed: bool) -> Array:
     return np.asarray(np.where(bend > 0.0, between, values[rows, peak]))
 
 
-def simulate_block(model: Model, engine: Engine | None, block: Block) -> dict[str, NDArray[np.generic]]:
+def simulate_block(model: Model, engine: Engine | None, block: Block) -> dict[str, NDArray[Any]]:
     """All columns of a block; without an engine only the analytic ones.
 
     Returns:
