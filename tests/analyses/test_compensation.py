@@ -9,6 +9,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 from fixtures import Command
+from matplotlib.patches import StepPatch
+from of_kind import known, of_kind
 from places import SCENES
 from rich.console import Console
 
@@ -20,6 +22,7 @@ from tol3d.analyses.robots import STATES, left_of_the_mean
 from tol3d.analyses.spread import Spread
 from tol3d.errors import InputError
 from tol3d.gearing.engines.lazy import exact_engine
+from tol3d.gearing.grammar.tolerances.shim import ShimSpec
 from tol3d.gears.flank import opposite
 from tol3d.report.compensation_picture import compensation_figure
 from tol3d.report.compensation_table import compensation_report
@@ -80,7 +83,7 @@ def test_the_papers_formula_gives_its_printed_correction(scene: Path) -> None:
 @pytest.mark.parametrize("scene", PRINTED)
 def test_the_correction_of_published_means_is_the_papers_to_its_printed_digits(scene: Path) -> None:
     mean, _, printed, _ = PRINTED[scene]
-    motor = of(scene).corrections["paper, 3DCS"].motor / 60
+    motor = known(of(scene).corrections["paper, 3DCS"].motor) / 60
     assert motor == pytest.approx(RATIO * (degrees(54, 275) + degrees(mean, 102.1)), rel=1e-5)
     assert f"{motor:.2f}" == f"{printed:.2f}"
 
@@ -89,10 +92,10 @@ def test_the_correction_of_published_means_is_the_papers_to_its_printed_digits(s
 def test_worst_cases_of_published_ends_are_the_papers(scene: Path) -> None:
     mean, high, _, (before, tip) = PRINTED[scene]
     correction = of(scene).corrections["paper, 3DCS"]
-    assert 60 * correction.before == pytest.approx(before, abs=0.5)
+    assert 60 * known(correction.before) == pytest.approx(before, abs=0.5)
     assert tip_mm(correction.before, LEVER) == pytest.approx(tip, abs=0.005)
     assert (3600 * degrees(75 - 54, 275), 3600 * degrees(high - mean, 102.1)) == pytest.approx((34, 77), abs=0.6)
-    assert 60 * correction.left == pytest.approx(2 * 60 + 6, abs=0.5)
+    assert 60 * known(correction.left) == pytest.approx(2 * 60 + 6, abs=0.5)
     assert tip_mm(correction.left, LEVER) == pytest.approx(0.47, abs=0.005)
 
 
@@ -130,13 +133,13 @@ def test_uncompensated_robots_are_the_trials_of_the_study() -> None:
 def test_a_scenes_own_swing_is_that_of_its_trials() -> None:
     own = of(SWING, 100)
     columns = simulate_block(own.model, exact_engine(own.model), drawn_block(own.model, 1, 0, 100))
-    assert own.swing.output == pytest.approx(np.radians(np.linspace(-60, 60, 25)))
-    for road, curves in own.swing.curves.items():
+    assert known(own.swing).output == pytest.approx(np.radians(np.linspace(-60, 60, 25)))
+    for road, curves in known(own.swing).curves.items():
         assert curves["before"] == pytest.approx(columns[f"{road}:tip error over the swing"], rel=1e-12)
 
 
 def test_without_a_swing_in_the_scene_it_goes_as_far_to_both_sides_of_where_the_load_changes() -> None:
-    shown = np.degrees(of(ROBOT, 50).swing.output)
+    shown = np.degrees(known(of(ROBOT, 50).swing).output)
     change = math.degrees(math.atan2(83.4, 445.1))
     assert (shown[0], shown[-1], len(shown)) == pytest.approx((change - 60, change + 60, 25))
 
@@ -211,9 +214,9 @@ def test_a_reducer_with_a_distribution_is_compensated(tmp_path: Path) -> None:
     assert (own.left_out, [stage.link for stage in without.left_out]) == ((), ["planetary reducer"])
     form = own.corrections[CLOSED_FORM]
     assert form.means["planetary reducer"] == pytest.approx(0.5, rel=1e-12)
-    assert form.motor == pytest.approx(without.corrections[CLOSED_FORM].motor + 152 * 0.5, rel=1e-12)
+    assert form.motor == pytest.approx(known(without.corrections[CLOSED_FORM].motor) + 152 * 0.5, rel=1e-12)
     more = DATA_SHEET * 3 * math.sqrt(1 / 12)  # high - mean of the uniform, instead of the whole maximum
-    assert form.left - without.corrections[CLOSED_FORM].left == pytest.approx(more - DATA_SHEET, rel=1e-9)
+    assert known(form.left) - known(without.corrections[CLOSED_FORM].left) == pytest.approx(more - DATA_SHEET, rel=1e-9)
     # what a robot has of it stays as it is, and its own mean knows it
     left = own.remaining["geometric"].angles["robot"]
     assert left == pytest.approx(without.remaining["geometric"].angles["robot"] - DATA_SHEET, abs=ROUNDING)
@@ -248,13 +251,13 @@ def test_robots_that_interfere_are_counted_and_left_out_of_both_roads(tmp_path: 
         angles = tight.remaining[road].angles
         assert {len(angles[state]) for state in STATES} == {400 - tight.failed}
         assert not np.isnan(angles["robot"]).any()
-        assert len(tight.swing.curves[road]["robot"]) <= 400 - tight.failed
+        assert len(known(tight.swing).curves[road]["robot"]) <= 400 - tight.failed
     assert f"{tight.failed} of them not seated and left out" in " ".join(shown(tight).split())
 
 
 def test_an_analytic_study_has_the_analytic_road_alone(tmp_path: Path) -> None:
     own = of(changed(tmp_path, ("engine: exact, witness: 10,", "engine: analytic,")), 100)
-    assert (own.road, list(own.remaining), list(own.swing.curves)) == ("analytic", ["analytic"], ["analytic"])
+    assert (own.road, list(own.remaining), list(known(own.swing).curves)) == ("analytic", ["analytic"], ["analytic"])
     same = of(SHIMMED, 100).remaining["analytic"].angles
     assert all(own.remaining["analytic"].angles[state] == pytest.approx(same[state], rel=1e-12) for state in STATES)
     assert "3D simulation" not in shown(own)
@@ -273,36 +276,36 @@ def test_fcl_leaves_what_the_exact_engine_leaves(tmp_path: Path) -> None:
 
 
 def test_the_load_changes_side_where_the_arms_weight_passes_over_the_axis() -> None:
-    (jump,) = of(ROBOT, 50).swing.jumps
+    (jump,) = known(of(ROBOT, 50).swing).jumps
     assert jump == pytest.approx(math.atan2(83.4, 445.1), abs=1e-6)
 
 
 def test_the_other_flanks_work_behind_the_jump(tmp_path: Path) -> None:
     own = of(ROBOT, 50)
     flanks = {mesh.name: (mesh.working_flank, opposite(mesh.working_flank)) for mesh in own.model.meshes}
-    assert own.swing.flanks == flanks  # the model's are those at 0 deg, before the jump at 10.6 deg
+    assert known(own.swing).flanks == flanks  # the model's are those at 0 deg, before the jump at 10.6 deg
     over_the_other_side = changed(tmp_path, ("[83.4 mm, 445.1", "[-83.4 mm, 445.1"), scene=ROBOT)
     mirrored = of(over_the_other_side, 50)  # at 0 deg the jump lies behind
-    assert mirrored.swing.jumps == pytest.approx([-angle for angle in own.swing.jumps], abs=1e-6)
-    assert mirrored.swing.flanks == own.swing.flanks
+    assert known(mirrored.swing).jumps == pytest.approx([-angle for angle in known(own.swing).jumps], abs=1e-6)
+    assert known(mirrored.swing).flanks == known(own.swing).flanks
     now = {mesh.name: mesh.working_flank for mesh in mirrored.model.meshes}
     assert now == {name: behind for name, (_, behind) in flanks.items()}
 
 
 def test_gravity_that_pulls_up_has_the_other_flanks_work(tmp_path: Path) -> None:
-    up = of(changed(tmp_path, ("gravity: [0, -1, 0]", "gravity: [0, 1, 0]"), scene=ROBOT), 50).swing
-    down = of(ROBOT, 50).swing
+    up = known(of(changed(tmp_path, ("gravity: [0, -1, 0]", "gravity: [0, 1, 0]"), scene=ROBOT), 50).swing)
+    down = known(of(ROBOT, 50).swing)
     assert up.jumps == pytest.approx(down.jumps, abs=1e-6)
     assert up.flanks == {name: (behind, before) for name, (before, behind) in down.flanks.items()}
 
 
 def test_the_tip_is_right_before_the_jump_and_turned_back_behind_it() -> None:
     own = of(SHIMMED, 100)
-    before, batch, robot = (own.swing.curves["geometric"][state] for state in STATES)
-    behind = np.degrees(own.swing.output) > 10.62
+    before, batch, robot = (known(own.swing).curves["geometric"][state] for state in STATES)
+    behind = np.degrees(known(own.swing).output) > 10.62
     for curve in (before, batch, robot):
         assert np.all(curve[:, ~behind] == 0.0)
-    back = own.corrections["geometric"].motor / RATIO / ARCMIN
+    back = known(own.corrections["geometric"].motor) / RATIO / ARCMIN
     by_hand = 2 * LEVER * np.sin(np.arcsin(before / (2 * LEVER)) - back / 2)  # of the chord
     assert batch[:, behind] == pytest.approx(by_hand[:, behind], abs=1e-12)
     # what the motor does not know: each robot's own mean, over the same swing less spread than the batch's
@@ -354,7 +357,7 @@ def test_rows_of_the_picture_share_their_scale_and_hold_every_robot() -> None:
     assert left[0].get_xlim() == left[1].get_xlim()
     assert right[0].get_ylim() == right[1].get_ylim()
     for axes in left:
-        shares = [patch.get_data().values for patch in axes.patches]
+        shares = [of_kind(StepPatch, patch).get_data()[0] for patch in axes.patches]
         assert [values.sum() for values in shares] == pytest.approx([100.0] * 6)  # filled and outlined, a state each
 
 
@@ -438,6 +441,7 @@ def test_the_shimmed_robot_is_the_robot_with_two_shims() -> None:
     pair = load_scene(SCENES / "bevel_pair_shimmed.yaml").tolerances
     more = {name: spec for name, spec in shimmed.tolerances.items() if name not in robot.tolerances}
     assert dict(robot.tolerances) == {name: shimmed.tolerances[name] for name in robot.tolerances}
-    assert [(spec.of, spec.side, spec.distribution) for spec in more.values()] == [
-        (f"bevel {gear}", pair[f"{gear} shim"].side, pair[f"{gear} shim"].distribution) for gear in ("driver", "driven")
+    assert [(spec.of, of_kind(ShimSpec, spec).side, spec.distribution) for spec in more.values()] == [
+        (f"bevel {gear}", of_kind(ShimSpec, pair[f"{gear} shim"]).side, pair[f"{gear} shim"].distribution)
+        for gear in ("driver", "driven")
     ]

@@ -10,11 +10,13 @@ from collections.abc import Mapping
 from dataclasses import replace
 from functools import cache
 from pathlib import Path
+from typing import Any
 
 import pytest
 from fixtures import Command
 from hypothesis import given
 from hypothesis import strategies as st
+from of_kind import known
 from places import SCENES
 
 from tol3d import Overrides, load_scene, run_scene
@@ -53,9 +55,9 @@ study: {trials: 2000, seed: 4}
 
 
 @cache
-def plan(scene: str = BEVEL, target: float = 24.0, **asked: str) -> ShimPlan:
+def plan(scene: str = BEVEL, target: float = 24.0, **asked: Any) -> ShimPlan:
     """The plan for a target [um]."""
-    return shim_plan(load_scene(Path(scene)), ShimQuestion(target * UM, **asked))  # type: ignore[arg-type]
+    return shim_plan(load_scene(Path(scene)), ShimQuestion(target * UM, **asked))
 
 
 def written(folder: Path, text: str) -> Scene:
@@ -145,7 +147,7 @@ def test_the_chosen_thickness_is_verified_by_a_run_of_the_scene_with_it(tmp_path
 def test_the_minimum_falls_as_shims_grow() -> None:
     own = plan()
     assert own.other is not None
-    studies = sorted((own.by_formula, own.by_geometry, own.chosen, own.other), key=lambda study: study.thickness)
+    studies = sorted((own.by_formula, own.by_geometry, own.chosen, own.other), key=lambda study: known(study.thickness))
     lows = [own.before.minimum, *(study.minimum for study in studies)]
     assert lows == sorted(lows, reverse=True)
     assert len({round(low, 6) for low in lows}) == len(lows)
@@ -180,28 +182,29 @@ def test_other_cones_take_2_sin_alpha_sin_delta_each(tmp_path: Path, gears: tupl
     assert own.by_geometry.minimum == pytest.approx(40 * UM, abs=PROMISED)
     taken = own.before.minimum - own.by_geometry.minimum
     # 0.5 %: squares of shims of up to 0.2 mm, and where in its pitch a trial stands
-    assert taken / own.by_geometry.thickness == pytest.approx(BY_CONES[gears], rel=0.005)
+    assert taken / known(own.by_geometry.thickness) == pytest.approx(BY_CONES[gears], rel=0.005)
     # the formula is for the pitch point: both shims within 5 %, the small gear's alone is a quarter off
-    assert taken / own.by_geometry.thickness == pytest.approx(
+    assert taken / known(own.by_geometry.thickness) == pytest.approx(
         closing_of(own.shims), rel=0.25 if gears == ("pinion",) else 0.05
     )
 
 
 def test_one_shim_alone_takes_about_half() -> None:
-    one = plan(shims=("driver",))  # type: ignore[arg-type]
+    one = plan(shims=("driver",))
     assert list(one.tolerances) == ["driver shim"]
     assert closing_of(one.shims) == pytest.approx(PAPERS / 2, rel=1e-12)
     # 0.4358, tests/gearing/test_bevel_agreement.py, of one driven tooth in its space; squares of 0.1 mm as above
     taken = one.before.minimum - one.by_geometry.minimum
-    assert taken / one.by_geometry.thickness == pytest.approx(0.4358, rel=0.005)
+    assert taken / known(one.by_geometry.thickness) == pytest.approx(0.4358, rel=0.005)
 
 
 def test_shims_that_open_are_rounded_up() -> None:
-    asked = {"measure": "normal backlash", "shims": ("wheel shim",)}
-    own = shim_plan(load_scene(Path(EVERY)), ShimQuestion(100 * UM, **asked), Overrides(engine="exact"))  # type: ignore[arg-type]
+    asked = ShimQuestion(100 * UM, measure="normal backlash", shims=("wheel shim",))
+    own = shim_plan(load_scene(Path(EVERY)), asked, Overrides(engine="exact"))
     assert closing_of(own.shims) < 0.0
     assert own.other is not None
-    assert own.other.thickness < own.by_geometry.thickness < own.chosen.thickness
+    other, by_geometry, chosen = (known(s.thickness) for s in (own.other, own.by_geometry, own.chosen))
+    assert other < by_geometry < chosen
     assert own.other.minimum < own.question.target <= own.chosen.minimum
     assert own.by_geometry.minimum == pytest.approx(100 * UM, abs=PROMISED)
 
@@ -233,7 +236,7 @@ def test_stacks_are_of_three_pieces_at_most() -> None:
 
 
 def test_a_plan_keeps_to_its_stock() -> None:
-    own = plan(stock=stock_of("0.02 mm, 0.03 mm"))  # type: ignore[arg-type]
+    own = plan(stock=stock_of("0.02 mm, 0.03 mm"))
     assert own.other is not None
     assert (own.chosen.thickness, own.other.thickness) == (0.04, 0.05)  # of 48.3 um
 

@@ -9,6 +9,7 @@ import sys
 import time
 import warnings
 from pathlib import Path
+from typing import Any
 
 import jsonschema
 import pytest
@@ -283,7 +284,7 @@ def test_a_half_drawn_picture_is_taken_away(tmp_path: Path, monkeypatch: pytest.
 
 
 def test_no_picture_starts_no_process(tol3d: Command, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(picture.subprocess, "Popen", lambda *_, **__: 1 / 0)
+    monkeypatch.setattr(subprocess, "Popen", lambda *_, **__: 1 / 0)
     arguments = ("--trials", "30", "--engine", "analytic", "--no-picture", "--out", str(tmp_path / "run"))
     code, out, err = tol3d("run", SPUR, *arguments)
     assert (code, "picture:" in out, "warning" in err) == (0, False, False)
@@ -293,14 +294,19 @@ def test_no_picture_starts_no_process(tol3d: Command, tmp_path: Path, monkeypatc
 
 
 def test_a_run_from_python_starts_no_process_and_draws_nothing(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(picture.subprocess, "Popen", lambda *_, **__: 1 / 0)
+    monkeypatch.setattr(subprocess, "Popen", lambda *_, **__: 1 / 0)
     assert not (run_scene(SPUR, overrides=Overrides(trials=30), out=tmp_path / "run").path / "histogram.png").exists()
 
 
 def test_a_refused_scene_leaves_no_process_behind(tol3d: Command, monkeypatch: pytest.MonkeyPatch) -> None:
     started: list[subprocess.Popen[bytes]] = []
     really = subprocess.Popen
-    monkeypatch.setattr(picture.subprocess, "Popen", lambda *a, **k: started.append(really(*a, **k)) or started[-1])
+
+    def noted(*arguments: Any, **options: Any) -> subprocess.Popen[bytes]:
+        started.append(really(*arguments, **options))
+        return started[-1]
+
+    monkeypatch.setattr(subprocess, "Popen", noted)
     assert tol3d("run", "spur_pairs")[0] == 2
     assert [process.returncode is not None for process in started] == [True]
 

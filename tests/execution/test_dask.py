@@ -12,6 +12,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from of_kind import of_kind
 from places import SPUR_PAIR
 
 from tol3d import InputError, Overrides, Run, run_scene
@@ -67,8 +68,11 @@ def wait_for(port: int) -> None:
     raise TimeoutError(f"nobody listens at port {port}")
 
 
+Cluster = tuple[str, list[subprocess.Popen[bytes]]]
+
+
 @pytest.fixture
-def cluster(tmp_path: Path) -> Iterator[tuple[str, list[subprocess.Popen[bytes]]]]:
+def cluster(tmp_path: Path) -> Iterator[Cluster]:
     """A scheduler's address and its two workers, each one thread without a nanny that would start it anew."""
     port = free_port()
     address = f"tcp://127.0.0.1:{port}"
@@ -98,7 +102,7 @@ def assert_same_run(first: Run, second: Run) -> None:
         assert np.array_equal(bits, its[name].view(bits.dtype) if bits.dtype.kind == "i" else its[name]), name
 
 
-def test_two_dask_workers_give_the_bits_of_one_process(cluster, tmp_path: Path) -> None:
+def test_two_dask_workers_give_the_bits_of_one_process(cluster: Cluster, tmp_path: Path) -> None:
     address, _ = cluster
     study = STUDIES["analytic"]
     alone = run_scene(SPUR_PAIR, overrides=study, out=tmp_path / "alone")
@@ -112,7 +116,7 @@ def test_two_dask_workers_give_the_bits_of_one_process(cluster, tmp_path: Path) 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("engine", STUDIES)
-def test_one_worker_killed_in_mid_run_changes_no_bit(engine: str, cluster, tmp_path: Path) -> None:
+def test_one_worker_killed_in_mid_run_changes_no_bit(engine: str, cluster: Cluster, tmp_path: Path) -> None:
     address, workers = cluster
     study = STUDIES[engine]
     alone = run_scene(SPUR_PAIR, overrides=study, out=tmp_path / "alone")
@@ -122,7 +126,7 @@ def test_one_worker_killed_in_mid_run_changes_no_bit(engine: str, cluster, tmp_p
 
     def kill_one(count: int) -> None:
         told.append(count)
-        if sum(told) > study.trials / 4 and workers[0].poll() is None:
+        if sum(told) > of_kind(int, study.trials) / 4 and workers[0].poll() is None:
             os.kill(workers[0].pid, signal.SIGKILL)
             workers[0].wait()
 
@@ -139,7 +143,7 @@ def test_one_worker_killed_in_mid_run_changes_no_bit(engine: str, cluster, tmp_p
 
 
 @pytest.mark.slow
-def test_a_run_whose_scheduler_is_lost_goes_on_later(cluster, tmp_path: Path) -> None:
+def test_a_run_whose_scheduler_is_lost_goes_on_later(cluster: Cluster, tmp_path: Path) -> None:
     address, _ = cluster
     study = STUDIES["analytic"]
     alone = run_scene(SPUR_PAIR, overrides=study, out=tmp_path / "alone")

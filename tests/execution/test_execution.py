@@ -3,7 +3,7 @@
 import math
 import tempfile
 import threading
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
@@ -45,25 +45,19 @@ class Draws:
 
 @dataclass(frozen=True)
 class Shelf:
-    """Keeps blocks and checkpoints in memory."""
+    """Keeps blocks in memory."""
 
     blocks: dict[int, Columns] = field(default_factory=dict)
     pieces: dict[tuple[int, int], Columns] = field(default_factory=dict)
-    checkpoints: list[tuple[int, Moments]] = field(default_factory=list)
 
     def holds(self, index: int) -> bool:
         return index in self.blocks
 
-    def read(self, index: int | None = None) -> object:
-        if index is None:
-            return self.checkpoints[-1] if self.checkpoints else None
+    def read(self, index: int) -> Columns | None:
         return self.blocks.get(index)
 
-    def write(self, index: int, kept: Columns | Moments) -> None:
-        if isinstance(kept, Moments):
-            self.checkpoints.append((index, kept))
-        else:
-            self.blocks[index] = kept
+    def write(self, index: int, columns: Columns) -> None:
+        self.blocks[index] = columns
 
     def read_piece(self, index: int, first: int) -> Columns | None:
         return self.pieces.get((index, first))
@@ -72,11 +66,24 @@ class Shelf:
         self.pieces[index, first] = columns
 
 
+@dataclass(frozen=True)
+class Checkpoints:
+    """Keeps statistics in memory."""
+
+    kept: list[tuple[int, Moments]] = field(default_factory=list)
+
+    def read(self) -> tuple[int, Moments] | None:
+        return self.kept[-1] if self.kept else None
+
+    def write(self, blocks: int, statistics: Moments) -> None:
+        self.kept.append((blocks, statistics))
+
+
 PLAN = Plan(trials=5321, block_trials=700, positions=2)
 POOLS = {"alone": (1, Way.THREADS), "three threads": (3, Way.THREADS), "two processes": (2, Way.PROCESSES)}
 
 
-def known_to(mean_se: float) -> object:
+def known_to(mean_se: float) -> Callable[[Moments], bool]:
     return lambda moments: moments.mean_se <= mean_se
 
 
@@ -88,9 +95,9 @@ def test_a_study_gives_the_same_bits_and_stops_at_the_same_block_whoever_works(p
     for moments in blocks[1:]:
         folded.append(folded[-1].merge(moments))
     for enough, end in ((0.0, 8), (folded[3].mean_se, 4)):
-        shelf = Shelf()
+        shelf, checkpoints = Shelf(), Checkpoints()
         with pool_of(POOLS[pool][0], None, POOLS[pool][1]) as workers:
-            outcome = run_blocks(Draws(way), PLAN, workers, shelf, shelf, enough=known_to(enough))
+            outcome = run_blocks(Draws(way), PLAN, workers, shelf, checkpoints, enough=known_to(enough))
         assert outcome.statistics == folded[end - 1]
         assert outcome.trials == min(700 * end, 5321)
         values = np.concatenate([shelf.blocks[index]["value"] for index in range(end)])
@@ -99,11 +106,11 @@ def test_a_study_gives_the_same_bits_and_stops_at_the_same_block_whoever_works(p
 
 @pytest.mark.parametrize("way", Way)
 def test_a_study_that_had_enough_when_it_was_stopped_runs_no_further(way: Way) -> None:
-    shelf = Shelf()
-    run_blocks(Draws(way), replace(PLAN, trials=1400), InThisProcess(), shelf, shelf)
+    shelf, checkpoints = Shelf(), Checkpoints()
+    run_blocks(Draws(way), replace(PLAN, trials=1400), InThisProcess(), shelf, checkpoints)
     two = Draws(way).block(0, 700)[1].merge(Draws(way).block(700, 700)[1])
-    shelf.write(2, two)
-    outcome = run_blocks(Draws(way), PLAN, InThisProcess(), shelf, shelf, enough=known_to(two.mean_se))
+    checkpoints.write(2, two)
+    outcome = run_blocks(Draws(way), PLAN, InThisProcess(), shelf, checkpoints, enough=known_to(two.mean_se))
     assert (outcome.statistics, outcome.trials, outcome.resumed_trials) == (two, 1400, 1400)
     assert sorted(shelf.blocks) == [0, 1]
 

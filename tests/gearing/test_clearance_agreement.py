@@ -13,8 +13,10 @@ from fixtures import EngineOf
 from oracles import exact_eccentric
 from oracles.involute_gear import InvoluteGear
 from places import SCENES
+from vectors import vector
 
 from tol3d.gearing.model import Model, model_from_scene
+from tol3d.gears.flank import Flank
 from tol3d.scene import load_scene
 from tol3d.simulate import Overrides, run_scene
 from tol3d.study.block import drawn_block, simulate_block
@@ -39,7 +41,7 @@ def changed(folder: Path, *replacements: tuple[str, str]) -> Path:
     return path
 
 
-def direction_of(gear: str, direction: str, sigma: int) -> tuple[float, float]:
+def direction_of(gear: str, direction: str, sigma: Flank) -> tuple[float, float]:
     """Where a gear's axis goes, (x, y) in the world of the mesh; sigma is +1 for a right working flank."""
     if direction == "{at: 50 deg}":
         return 0.642787609686539, 0.766044443118978
@@ -56,18 +58,15 @@ def clearance_scene(folder: Path, gear: str, direction: str, flank: str) -> Mode
     return model_from_scene(load_scene(path))
 
 
-def shift_of_the_axis(columns: dict[str, np.ndarray], gear: str, direction: str, sigma: int) -> np.ndarray:
+def shift_of_the_axis(columns: dict[str, np.ndarray], gear: str, direction: str, sigma: Flank) -> np.ndarray:
     """Half the drawn clearance in the direction that the text means, (n, 2) [um]."""
     if direction == "random":
         return np.stack([columns[f"bearing clearance.{axis} [um]"] / 2 for axis in "xy"], axis=1)
     return columns["bearing clearance [um]"][:, None] / 2 * np.array(direction_of(gear, direction, sigma))
 
 
-def exact_backlash(columns: dict[str, np.ndarray], shifts: dict[str, np.ndarray], sigma: int) -> np.ndarray:
+def exact_backlash(columns: dict[str, np.ndarray], shifts: dict[str, np.ndarray], sigma: Flank) -> np.ndarray:
     """Normal backlash [um] of the paper's pair by the closed form, from the drawn columns, (n,)."""
-
-    def offset(*names: str) -> np.ndarray:
-        return sum(np.stack([columns[f"{name}.{axis} [um]"] for axis in "xy"], axis=1) for name in names) * 1e-3
 
     thickness = columns["pinion tooth thickness [um]"] + columns["wheel tooth thickness [um]"]
     apart = np.stack([172.5e3 + columns["centre distance [um]"], np.zeros(len(thickness))], axis=1)
@@ -77,7 +76,10 @@ def exact_backlash(columns: dict[str, np.ndarray], shifts: dict[str, np.ndarray]
         InvoluteGear(110, 2.5, ALPHA, 20.0),
         thickness * 1e-3,
         axis * 1e-3,
-        (offset("pinion eccentricity", "reducer run-out"), offset("wheel eccentricity")),
+        (
+            1e-3 * vector(columns, "pinion eccentricity", "reducer run-out"),
+            1e-3 * vector(columns, "wheel eccentricity"),
+        ),
         np.radians(columns["position:gear pair [deg]"]),
         sigma,
     )
@@ -87,7 +89,7 @@ def exact_backlash(columns: dict[str, np.ndarray], shifts: dict[str, np.ndarray]
 @pytest.mark.parametrize("direction", ["apart", "tooth_force", "{at: 50 deg}", "random"])
 @pytest.mark.parametrize("gear", ["pinion", "wheel"])
 def test_both_roads_take_a_clearance_as_the_text_means_it(
-    gear: str, direction: str, flank: str, sigma: int, tmp_path: Path, engine_of: EngineOf
+    gear: str, direction: str, flank: str, sigma: Flank, tmp_path: Path, engine_of: EngineOf
 ) -> None:
     model = clearance_scene(tmp_path, gear, direction, flank)
     columns = simulate_block(model, engine_of(model), drawn_block(model, 1, 0, TRIALS))

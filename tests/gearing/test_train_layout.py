@@ -534,5 +534,5 @@ def test_meshes_stand_anywhere_although_the_branches_of_a_train_meet_again_after
     for share in shares:
         assert kstest(share, "uniform").pvalue > 1e-3
     # one tells nothing of the others: a correlation of n pairs of uniforms has the sigma 1/sqrt(n)
-    others = np.corrcoef(shares)[np.triu_indices(3, 1)]
+    others = np.asarray(np.corrcoef(shares))[np.triu_indices(3, 1)]
     assert np.abs(others).max() < 4 / math.sqrt(count)

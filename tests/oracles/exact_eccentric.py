@@ -19,7 +19,7 @@ def normal_backlash(
     wheel: InvoluteGear,
     thickness: np.ndarray,
     axis: np.ndarray,
-    centres: np.ndarray,
+    centres: tuple[np.ndarray, np.ndarray],
     driver_angle: np.ndarray,
     working_flank: Flank,
 ) -> np.ndarray:

@@ -7,6 +7,7 @@ import subprocess
 import sys
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import cadquery as cq
 import pytest
@@ -120,7 +121,7 @@ def test_an_assembly_that_the_kernel_cut_short_is_not_there(
 ) -> None:
     real = cq.Assembly.export
 
-    def cut(assembly: cq.Assembly, name: str, **more: str) -> None:
+    def cut(assembly: cq.Assembly, name: str, **more: Any) -> None:
         real(assembly, name, **more)
         os.truncate(name, 8192)
 

@@ -35,7 +35,7 @@ def assert_same_bits(first: dict[str, np.ndarray], second: dict[str, np.ndarray]
 
 
 @pytest.fixture(scope="module")
-def spur_run(tmp_path_factory: pytest.TempPathFactory):
+def spur_run(tmp_path_factory: pytest.TempPathFactory) -> Run:
     return run_scene(SPUR_PAIR, overrides=Overrides(trials=300), out=tmp_path_factory.mktemp("runs") / "spur")
 
 

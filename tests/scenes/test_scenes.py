@@ -20,6 +20,7 @@ from oracles.involute_gear import InvoluteGear
 from places import SCENES as FOLDER
 from scipy.integrate import quad
 from scipy.stats import halfnorm, norm, uniform
+from vectors import vector
 
 from tol3d import Run, load_scene
 from tol3d.gearing.model import model_from_scene
@@ -383,12 +384,6 @@ def exact_every_field(columns: Columns, angle: np.ndarray) -> np.ndarray:
     return straight - np.maximum(np.abs(in_plane) * np.sqrt(1 - own**2), np.abs(out_of_plane) * own)
 
 
-def vector(columns: Columns, *names: str) -> np.ndarray:
-    """The sum of some contributors with components x and y, (n, 2) [um]."""
-    each = [np.stack([columns[f"{name}.{axis} [um]"] for axis in "xy"], axis=1) for name in names]
-    return np.sum(each, axis=0)
-
-
 def exact(
     gears: tuple[InvoluteGear, InvoluteGear],
     thickness: np.ndarray,
@@ -397,7 +392,7 @@ def exact(
     driver: tuple[np.ndarray, Flank],
 ) -> np.ndarray:
     """`exact_eccentric.normal_backlash` with every deviation in um; driver: its angles and working flank."""
-    in_mm = np.stack(centres) * 1e-3
+    in_mm = (centres[0] * 1e-3, centres[1] * 1e-3)
     angle, flank = driver
     return 1e3 * exact_eccentric.normal_backlash(gears[0], gears[1], thickness * 1e-3, axis * 1e-3, in_mm, angle, flank)
 

@@ -6,12 +6,16 @@ import os
 import subprocess
 import sys
 import warnings
+from collections.abc import Callable
+from functools import partial
 from pathlib import Path
+from typing import Any, NoReturn, cast
 
 import cadquery as cq
 import numpy as np
 import pytest
 import trimesh
+from of_kind import known, of_kind
 
 from tol3d.errors import RunError
 from tol3d.gears import LEFT, RIGHT, SpurGear
@@ -43,12 +47,12 @@ SMALL = SpurGear(8, 1.0, 20 * DEG, 5.0, profile_shift=0.4)
 
 
 @pytest.fixture(scope="module")
-def shared_cache(tmp_path_factory: pytest.TempPathFactory):
+def shared_cache(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return tmp_path_factory.mktemp("cache")
 
 
 @pytest.fixture(autouse=True)
-def _cache_of_the_tests(shared_cache, monkeypatch: pytest.MonkeyPatch):
+def _cache_of_the_tests(shared_cache: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("TOL3D_CACHE", str(shared_cache))
 
 
@@ -67,7 +71,8 @@ def rack_contact(
     normal = math.sin(alpha) - 1j * math.cos(alpha)
     back = np.exp(-1j * moved / r)
     points, normals = (r + d * normal) * back, normal * back
-    return tuple(np.stack([part.real, flank * part.imag], axis=-1) for part in (points, normals))
+    at, outwards = (np.stack([part.real, flank * part.imag], axis=-1) for part in (points, normals))
+    return at, outwards
 
 
 def rack_place(gear: SpurGear, radius: np.ndarray, thinner: float = 0.0) -> np.ndarray:
@@ -257,9 +262,10 @@ def test_step_assembly_keeps_names_places_and_volumes(tmp_path: Path) -> None:
         assert np.array(place.toTuple()[0]) == pytest.approx(part.world_from_part[:3, 3], abs=1e-9)
         tip = cq.Vertex.makeVertex(1, 0, 0).moved(place).toTuple()
         assert tip == pytest.approx(part.world_from_part[:3, 0] + part.world_from_part[:3, 3], abs=1e-9)
-        volume = found[part.name].obj.Volume()
-        assert volume == pytest.approx(part.gear.transverse_area * part.gear.face_width, rel=1e-6)
-    assert len({found[part.name].color.toTuple() for part in parts}) == 2
+        volume = of_kind(cq.Shape, found[part.name].obj).Volume()
+        gear = of_kind(SpurGear, part.gear)
+        assert volume == pytest.approx(gear.transverse_area * gear.face_width, rel=1e-6)
+    assert len({known(found[part.name].color).toTuple() for part in parts}) == 2
     assert [file.name for file in tmp_path.iterdir()] == ["pair.step"]
 
 
@@ -272,12 +278,12 @@ def test_step_to_a_folder_that_is_not_there_is_refused_by_name(tmp_path: Path) -
 
 
 @pytest.fixture
-def own_cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+def own_cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     monkeypatch.setenv("TOL3D_CACHE", str(tmp_path / "kept"))
     return tmp_path / "kept"
 
 
-def _refuse_to_build():
+def _refuse_to_build() -> NoReturn:
     raise AssertionError("built again")
 
 
@@ -299,19 +305,19 @@ def test_what_is_kept_is_read_back_bit_for_bit_without_building(
 
 
 @pytest.mark.parametrize("field", dataclasses.fields(SpurGear), ids=lambda field: field.name)
-def test_every_field_of_a_gear_is_in_the_key(own_cache: Path, field) -> None:
+def test_every_field_of_a_gear_is_in_the_key(own_cache: Path, field: dataclasses.Field[Any]) -> None:
     value = getattr(SMALL, field.name)
     # a last-bit change counts; None becomes what it stands for, another description all the same
     changed = value + 1 if field.name == "teeth" else math.nextafter(0.38 if value is None else value, math.inf)
-    other = dataclasses.replace(SMALL, **{field.name: changed})
-    built = []
+    other = dataclasses.replace(SMALL, **{field.name: cast(Any, changed)})
+    built: list[SpurGear] = []
 
-    def build(gear: SpurGear):
+    def build(gear: SpurGear) -> dict[str, np.ndarray]:
         built.append(gear)
         return {"x": np.zeros(1)}
 
     for gear in (SMALL, other, SMALL, other):
-        cache.cached("strips", gear, {"steps": 20}, lambda gear=gear: build(gear))
+        cache.cached("strips", gear, {"steps": 20}, partial(build, gear))
     assert built == [SMALL, other]
 
 
@@ -334,7 +340,9 @@ def test_a_changed_builder_makes_old_entries_unreachable(own_cache: Path, monkey
     ],
     ids=["empty", "half", "one byte short", "one bit", "noise"],
 )
-def test_a_damaged_entry_is_built_anew_and_mended(own_cache: Path, monkeypatch: pytest.MonkeyPatch, damage) -> None:
+def test_a_damaged_entry_is_built_anew_and_mended(
+    own_cache: Path, monkeypatch: pytest.MonkeyPatch, damage: Callable[[bytes], bytes]
+) -> None:
     built = measuring_strips(SMALL, 20)
     (entry,) = own_cache.iterdir()
     whole = entry.read_bytes()
@@ -353,7 +361,7 @@ def test_a_folder_that_cannot_be_written_costs_a_warning_only(own_cache: Path) -
 
 
 def test_a_disk_that_fills_up_leaves_no_torn_file(own_cache: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    def full(*_):
+    def full(*_: object) -> NoReturn:
         raise OSError(28, "No space left on device")
 
     monkeypatch.setattr(os, "replace", full)

@@ -17,6 +17,7 @@ from typing import Any
 import numpy as np
 import pytest
 from loose_summaries import typed_run
+from of_kind import of_kind
 from oracles.random_scenes import random_scenes
 from places import SCENES
 from rich.console import Console
@@ -27,6 +28,7 @@ from tol3d.gearing.engines.exact import ExactEngine
 from tol3d.gearing.engines.lazy import exact_engine
 from tol3d.gearing.model import Model, Scalar, model_from_scene
 from tol3d.gearing.stack_up.stack import Stack
+from tol3d.gears import BevelGear
 from tol3d.report.table import run_report
 from tol3d.study.agreement.explaining import explanations
 from tol3d.study.agreement.explanation import Explanation, faults
@@ -111,9 +113,8 @@ def test_half_a_pitch_of_the_wheel_is_named_by_its_eccentricity(monkeypatch: pyt
         def wrong(self: Stack[Any], deviations: np.ndarray, driver_angle: np.ndarray) -> np.ndarray:
             angles = (driver_angle, self.pair.driven_angle(driver_angle) - math.pi / self.pair.wheel.teeth)
             slices = self.model.component_slices
-            return self.nominal + sum(
-                term.change(deviations[:, slices[term.contributor.name]], angles) for term in self.terms
-            )
+            changes = [term.change(deviations[:, slices[term.contributor.name]], angles) for term in self.terms]
+            return self.nominal + np.sum(changes, axis=0)
 
         return wrong
 
@@ -258,7 +259,7 @@ def test_the_bevel_pair_names_what_its_stack_up_leaves_out() -> None:
     assert {part.by for part in others} == {"position within a pitch, where shifts of the gears count more or less"}
     # by the angle of the flank from the pitch line, a quarter of a pitch: sin(psi) / (sin alpha tan delta), tan 45 = 1
     pair = model_of("bevel_pair").meshes[0].pair
-    share = 100 * math.sin(pair.pinion.base_pitch_angle / 4) / math.sin(ALPHA)
+    share = 100 * math.sin(of_kind(BevelGear, pair.pinion).base_pitch_angle / 4) / math.sin(ALPHA)
     assert max(part.percent for part in others) == pytest.approx(share, rel=0.05)
 
 

@@ -12,6 +12,7 @@ from oracles.involute_gear import InvoluteGear
 from places import SPUR_PAIR
 from rich.console import Console
 from scipy import stats
+from vectors import vector
 
 from tol3d import Overrides, Run, run_scene
 from tol3d.gearing.engines import STATUS_TEXT
@@ -70,9 +71,6 @@ def tight(folder: Path, *changes: tuple[str, str], centre: float = CENTRE) -> Pa
 def closed_form(columns: Mapping[str, np.ndarray], centre: float = CENTRE) -> np.ndarray:
     """Normal backlash [um] of each trial of such a scene, negative where its teeth overlap."""
 
-    def vector(*names: str) -> np.ndarray:
-        return 1e-3 * sum(np.stack([columns[f"{name}.{axis} [um]"] for axis in "xy"], axis=1) for name in names)
-
     apart = centre + 1e-3 * (columns["centre distance [um]"] + columns["bearing clearance [um]"] / 2)
     angle = np.radians(columns["position:gear pair [deg]"])
     return 1e3 * exact_eccentric.normal_backlash(
@@ -80,7 +78,10 @@ def closed_form(columns: Mapping[str, np.ndarray], centre: float = CENTRE) -> np
         InvoluteGear(110, 2.5, ALPHA, 20.0),
         1e-3 * (columns["pinion tooth thickness [um]"] + columns["wheel tooth thickness [um]"]),
         np.stack([apart, np.zeros_like(apart)], axis=1),
-        (vector("pinion eccentricity", "reducer run-out"), vector("wheel eccentricity")),
+        (
+            1e-3 * vector(columns, "pinion eccentricity", "reducer run-out"),
+            1e-3 * vector(columns, "wheel eccentricity"),
+        ),
         angle,
         1,
     )

@@ -1,7 +1,9 @@
 """High-low-mean shares against what a first-order stack-up gives by hand."""
 
 import math
+from collections.abc import Mapping
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -10,8 +12,10 @@ from tol3d import Overrides, Scene, run_scene
 ALPHA = math.radians(20)
 SIN, COS = math.sin(ALPHA), math.cos(ALPHA)
 
+Tolerances = Mapping[str, tuple[Mapping[str, str], Mapping[str, Any]]]
 
-def made(tolerances: dict[str, object], **measure: object) -> Scene:
+
+def made(tolerances: Tolerances, **measure: object) -> Scene:
     gear = {"kind": "spur_gear", "module": "2.5 mm", "face_width": "20 mm"}
     return Scene.model_validate(
         {
@@ -72,7 +76,7 @@ def test_a_length_in_a_random_direction_acts_along_its_worst_one(tmp_path: Path)
 
 
 def test_a_fixed_direction_counts_by_its_ends(tmp_path: Path) -> None:
-    across = {
+    across: Tolerances = {
         **THIN,
         "across": (normal("-7 um", "7 um"), {"kind": "eccentricity", "of": "pinion", "direction": {"at": "90 deg"}}),
         "distance": (normal("-7 um", "7 um"), {"kind": "centre_distance", "of": "pair"}),

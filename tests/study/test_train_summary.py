@@ -1,15 +1,17 @@
 """What a summary says of a train whose first measure is a tip's, of ways that bind each other, and of odd swings."""
 
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 from loose_summaries import typed_run
+from of_kind import of_kind
 from places import SCENES
 
 from tol3d.analyses.compensation import CompensationQuestion, compensation
 from tol3d.errors import SceneError
-from tol3d.gearing.model import Measure, model_from_scene
+from tol3d.gearing.model import LostMotion, model_from_scene
 from tol3d.gearing.presenting.stage import distributions_of, sums_of
 from tol3d.gearing.presenting.train_tables import sums_table
 from tol3d.runs.worst import worst_trial
@@ -45,7 +47,7 @@ study: {{{study}}}
 """
 
 
-def summary_of(folder: Path, *measures: str, study: str = "trials: 100, seed: 3") -> dict:
+def summary_of(folder: Path, *measures: str, study: str = "trials: 100, seed: 3") -> dict[str, Any]:
     folder.mkdir(exist_ok=True)
     path = folder / "scene.yaml"
     path.write_text(TRAIN.format(measures="\n  ".join(measures), study=study))
@@ -112,8 +114,8 @@ def test_robots_are_as_many_as_the_replicates_share(tmp_path: Path) -> None:
     assert compensation(load_scene(path), CompensationQuestion(positions=1)).robots == 1992  # 83 of each of 24
 
 
-def swung(folder: Path, start: str, end: str, positions: int) -> Measure:
-    """The swing's measure with the arm's weight over the axis at 0."""
+def swung(folder: Path, start: str, end: str, positions: int) -> LostMotion:
+    """The kind of the swing's measure with the arm's weight over the axis at 0."""
     text = (SCENES / "robot_shoulder_swing.yaml").read_text("utf-8")
     for old, new in (
         ("[83.4 mm, 445.1 mm, 100 mm]", "[0 mm, 445.1 mm, 100 mm]"),
@@ -123,21 +125,21 @@ def swung(folder: Path, start: str, end: str, positions: int) -> Measure:
         text = text.replace(old, new)
     (folder / "swing.yaml").write_text(text, "utf-8")
     model = model_from_scene(load_scene(folder / "swing.yaml"))
-    return next(measure for measure in model.measures if measure.take == "curve")
+    return of_kind(LostMotion, next(measure.kind for measure in model.measures if measure.take == "curve"))
 
 
 def test_a_load_that_changes_sides_at_an_end_of_a_swing_does_not_on_it(tmp_path: Path) -> None:
-    kind = swung(tmp_path, "0 deg", "60 deg", 7).kind
+    kind = swung(tmp_path, "0 deg", "60 deg", 7)
     assert (kind.changes, any(kind.turned)) == ((), False)
 
 
 def test_a_swing_from_balance_to_balance_is_none_without_a_load(tmp_path: Path) -> None:
-    kind = swung(tmp_path, "-180 deg", "0 deg", 2).kind
+    kind = swung(tmp_path, "-180 deg", "0 deg", 2)
     assert (kind.changes, kind.turned) == ((), (False, False))
 
 
 def test_a_swing_over_two_balances_changes_flanks_twice(tmp_path: Path) -> None:
-    kind = swung(tmp_path, "-30 deg", "210 deg", 9).kind
+    kind = swung(tmp_path, "-30 deg", "210 deg", 9)
     assert np.degrees(kind.changes) == pytest.approx([0.0, 180.0], abs=1e-9)
     assert kind.turned == (False, False, *[True] * 6, False)
 

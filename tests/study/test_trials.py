@@ -48,7 +48,7 @@ def test_streams_are_uniform_and_unrelated() -> None:
         assert abs(drawn.mean() - 0.5) < 5 / math.sqrt(12 * TRIALS)
         # Kolmogorov-Smirnov at 1e-6: 2.7/sqrt(n)
         assert np.abs(np.sort(drawn) - (np.arange(TRIALS) + 0.5) / TRIALS).max() < 2.7 / math.sqrt(TRIALS)
-    correlations = np.corrcoef(streams)[np.triu_indices(len(streams), 1)]
+    correlations = np.asarray(np.corrcoef(streams))[np.triu_indices(len(streams), 1)]
     assert np.abs(correlations).max() < 5 / math.sqrt(TRIALS)
 
 

@@ -2,7 +2,7 @@
 
 import math
 from collections import Counter
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from itertools import combinations
 from pathlib import Path
 from typing import Any
@@ -21,7 +21,7 @@ from tol3d.study.witness import witness_summary, witness_warnings, witnessed_tri
 EVERY_FIELD = SCENES / "every_field.yaml"
 MEASURES = ("normal backlash", "lost motion")
 WITNESSED = 25
-STUDY = {"trials": 300, "seed": 4}
+STUDY: Mapping[str, Any] = {"trials": 300, "seed": 4}
 
 
 Modelling = Callable[[str], Model]

@@ -18,6 +18,8 @@ NO_SHIM: Final = 0.0  # mm
 class Stock(Protocol):
     """Thicknesses [mm] that can be had, from none at all on."""
 
+    def __hash__(self) -> int: ...
+
     def below(self, thickness: float) -> float:
         """The largest that is not above a thickness >= 0 [mm]."""
         ...
