@@ -6,11 +6,12 @@ import pyvista as pv
 from places import SCENES
 from scipy.spatial import cKDTree
 
-from tol3d.gearing.display import CONE_DEFLECTION, DISPLAY_DEFLECTION, assemble
+from tol3d.gearing.display import seated_build
+from tol3d.gearing.placed import CONE_DEFLECTION, DISPLAY_DEFLECTION
 from tol3d.gearing.presenting.gap_section import GapSection, gap_section
+from tol3d.gearing.presenting.panels import _as_seen
 from tol3d.gears import BevelPair
 from tol3d.report.drawn_solids import poly_data
-from tol3d.report.view import _as_seen
 from tol3d.runs.run import Run
 from tol3d.simulate import Overrides, run_scene
 
@@ -45,7 +46,7 @@ def test_the_outlines_are_as_far_apart_as_the_gap_and_the_line_reaches_from_one_
     run: Run, trial: int, magnify: float
 ) -> None:
     """Within the chord errors of both display meshes: a cut at the front of a bevel pair would be 6 % off."""
-    seated = _as_seen(assemble(run, trial, magnify=magnify).meshes[0])
+    seated = _as_seen(seated_build(run, trial, magnify=magnify).meshes[0])
     section = gap_section(seated, [poly_data(*part.mesh()) for part in (seated.driver, seated.driven)])
     chord = CONE_DEFLECTION if isinstance(seated.mesh.pair, BevelPair) else DISPLAY_DEFLECTION
     assert distance(section) == pytest.approx(seated.gap_value, abs=2 * chord)
@@ -58,7 +59,7 @@ def test_the_outlines_are_as_far_apart_as_the_gap_and_the_line_reaches_from_one_
 
 def test_a_cut_stays_inside_both_faces_where_the_gap_lies_at_an_end(run: Run) -> None:
     """Moved to the end of its face a gap is cut 2 % inside of it, where both gears are."""
-    seated = _as_seen(assemble(run, 0).meshes[0])
+    seated = _as_seen(seated_build(run, 0).meshes[0])
     meshes = [poly_data(*part.mesh()) for part in (seated.driver, seated.driven)]
     for far in (-1.0, 1.0):
         gap = seated.gap + far * np.array([0.0, 0.0, seated.driver.gear.face_width])

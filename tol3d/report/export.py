@@ -2,7 +2,7 @@
 
 import os
 import re
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import count
 from pathlib import Path
@@ -10,20 +10,15 @@ from typing import Final, cast
 
 import numpy as np
 import trimesh
-from numpy.typing import NDArray
 
 from tol3d.errors import InputError, unwritable
-from tol3d.gearing.display import Assembly, PlacedGear, SeatedMesh, Which, assemble
-from tol3d.gearing.presenting.whole_trains import WholeTrain, whole_trains
+from tol3d.report.body import Body, World
+from tol3d.report.presenter import PRESENTER, Display, Which, presenter_at
 from tol3d.runs.atomic_write import named_in_errors
 from tol3d.runs.run import Run
-from tol3d.solids import PosedGear, PosedPart, export_step
-
-Array = NDArray[np.float64]
-Colour = tuple[int, int, int, int]
+from tol3d.solids import export_step
 
 FORMATS: Final = ("stl", "ply", "glb", "step")
-COLOURS: Final[tuple[Colour, Colour]] = ((70, 130, 180, 255), (230, 159, 0, 255))  # driver, driven
 METRES_PER_MM: Final = 1e-3  # glTF 2.0, 3.4: all linear distances are in metres
 
 
@@ -47,17 +42,18 @@ def export_run(
     *,
     magnify: float = 1.0,
     out: Path = Path("."),
+    presenter: str = PRESENTER,
 ) -> Exported:
     """Write the perturbed parts of one build where they ended up.
 
     Args:
         run: a finished run.
         which: a trial, or "worst", "nominal", "mean".
-        fmt: "stl" and "ply" write a file a part [mm], "glb" one scene a mesh [m], "step" one assembly a
-            mesh [mm] with the real perturbed solids. Gears that shafts connect are written as one file in
-            one world, in any format.
-        magnify: scales the deviations and seats again, see `assemble`.
+        fmt: "stl" and "ply" write a file a part [mm], "glb" one scene a world [m], "step" one assembly a world [mm]
+            with the real perturbed solids. A world that is shown as one, such as a train, is one file in any format.
+        magnify: scales the deviations and simulates again.
         out: the folder; made if missing.
+        presenter: import path of the system's presenter.
 
     Raises:
         InputError: an unknown format or build, a STEP file magnified, or a folder that cannot be written.
@@ -66,148 +62,60 @@ def export_run(
         raise InputError(f"format: expected one of {', '.join(FORMATS)}, got {fmt!r}")
     if fmt == "step" and magnify != 1.0:
         raise InputError("a STEP file holds the real parts: leave out --magnify, or choose stl, ply or glb")
-    assembly = assemble(run, which, magnify=magnify)
+    display = presenter_at(presenter).display(run, which, magnify=magnify)
     try:
         out.mkdir(parents=True, exist_ok=True)
-        files = list(_files(assembly, fmt, out))
+        files = list(_files(display, fmt, out))
     except OSError as error:
         raise unwritable(Path(error.filename or out), error, "choose another folder") from None
-    return Exported(tuple(files), assembly.notes)
+    return Exported(tuple(files), display.notes)
 
 
-def _files(assembly: Assembly, fmt: str, out: Path) -> Iterator[Path]:
-    trains = whole_trains(assembly)
-    for train in trains:
-        yield TRAIN_WRITERS[fmt](train, _train_path(assembly, trains, train, out, fmt))
-    if not trains:
-        for mesh in assembly.meshes:
-            yield from WRITERS[fmt](assembly, mesh, out)
+def part_meshes(display: Display) -> dict[str, trimesh.Trimesh]:
+    """Every part of a build as a closed mesh in its world [mm], by its name."""
+    return {body.name: triangle_mesh(body) for world in display.worlds for body in world.bodies}
 
 
-def triangle_mesh(part: PlacedGear, colour: Colour = COLOURS[0]) -> trimesh.Trimesh:
-    """A placed gear as a closed mesh in the world [mm]."""
-    return _coloured(*part.mesh(), colour)
-
-
-def _coloured(vertices: Array, triangles: NDArray[np.int64], colour: Colour) -> trimesh.Trimesh:
-    colours = np.tile(np.array(colour, dtype=np.uint8), (len(vertices), 1))
+def triangle_mesh(body: Body) -> trimesh.Trimesh:
+    """A part as a closed mesh in the world [mm]."""
+    vertices, triangles = body.mesh
+    colours = np.tile(
+        np.array([*bytes.fromhex(body.colour.removeprefix("#")), 255], dtype=np.uint8), (len(vertices), 1)
+    )
     return trimesh.Trimesh(vertices, triangles, process=False, vertex_colors=colours)
 
 
-def part_meshes(assembly: Assembly) -> dict[str, trimesh.Trimesh]:
-    """Every part of a build as a closed mesh [mm], by its name: gears, and of trains shafts, arms and reducers too.
-
-    In the world of its mesh, or where shafts connect gears in that of the first shaft.
-    """
-    trains = whole_trains(assembly)
-    if trains:
-        return {name: mesh for train in trains for name, mesh in _train_meshes(train).items()}
-    return {name: mesh for seated in assembly.meshes for name, mesh in _pair_meshes(seated).items()}
-
-
-# single pairs -------------------------------------------------------------------------------------
-
-
-def _write_parts(ending: str) -> Callable[[Assembly, SeatedMesh, Path], list[Path]]:
-    def write(assembly: Assembly, seated: SeatedMesh, out: Path) -> list[Path]:
-        files, words = [], _part_words(assembly)
-        for part, colour in zip((seated.driver, seated.driven), COLOURS, strict=True):
-            content = triangle_mesh(part, colour).export(file_type=ending)
-            files.append(_written(out / f"{assembly.label}-{words[part.name]}.{ending}", content))
-        return files
-
-    return write
+def _files(display: Display, fmt: str, out: Path) -> Iterator[Path]:
+    """Write a file a world, or a part; tell which."""
+    worlds = display.worlds
+    parts = file_words(body.name for world in worlds for body in world.bodies)
+    names = file_words(world.name for world in worlds)
+    for world in worlds:
+        path = out / f"{display.label}{f'-{names[world.name]}' if len(worlds) > 1 else ''}.{fmt}"
+        if fmt == "step":
+            export_step([body.posed() for body in world.bodies], path, [body.colour for body in world.bodies])
+            yield path
+        elif fmt == "glb":
+            yield _written(path, _glb(world))
+        elif world.one_file:
+            yield _written(path, _joined(world.bodies).export(file_type=fmt))
+        else:
+            for body in world.bodies:
+                alone = out / f"{display.label}-{parts[body.name]}.{fmt}"
+                yield _written(alone, triangle_mesh(body).export(file_type=fmt))
 
 
-def _write_scene(assembly: Assembly, seated: SeatedMesh, out: Path) -> list[Path]:
-    return [_written(_scene_path(assembly, seated, out, "glb"), _glb(_pair_meshes(seated)))]
+def _joined(bodies: Sequence[Body]) -> trimesh.Trimesh:
+    return cast(trimesh.Trimesh, trimesh.util.concatenate([triangle_mesh(body) for body in bodies]))
 
 
-def _pair_meshes(seated: SeatedMesh) -> dict[str, trimesh.Trimesh]:
-    parts = zip((seated.driver, seated.driven), COLOURS, strict=True)
-    return {part.name: triangle_mesh(part, colour) for part, colour in parts}
-
-
-def _glb(meshes: Mapping[str, trimesh.Trimesh]) -> object:
-    """A glTF scene of named meshes [mm]."""
+def _glb(world: World) -> object:
+    """A glTF scene of named meshes."""
     scene = trimesh.Scene()
     to_metres = np.diag([METRES_PER_MM, METRES_PER_MM, METRES_PER_MM, 1.0])
-    for name, mesh in meshes.items():
-        scene.add_geometry(mesh, node_name=name, geom_name=name, transform=to_metres)
+    for body in world.bodies:
+        scene.add_geometry(triangle_mesh(body), node_name=body.name, geom_name=body.name, transform=to_metres)
     return scene.export(file_type="glb")  # type: ignore[no-untyped-call]  # trimesh annotates it in part only
-
-
-def _write_step(assembly: Assembly, seated: SeatedMesh, out: Path) -> list[Path]:
-    path = _scene_path(assembly, seated, out, "step")
-    parts = [PosedGear(part.name, part.perturbed, part.world_from_gear) for part in (seated.driver, seated.driven)]
-    export_step(parts, path)
-    return [path]
-
-
-WRITERS: Mapping[str, Callable[[Assembly, SeatedMesh, Path], list[Path]]] = {
-    "stl": _write_parts("stl"),
-    "ply": _write_parts("ply"),
-    "glb": _write_scene,
-    "step": _write_step,
-}
-
-
-def _scene_path(assembly: Assembly, seated: SeatedMesh, out: Path, ending: str) -> Path:
-    words = file_words(mesh.mesh.name for mesh in assembly.meshes)
-    mesh = f"-{words[seated.mesh.name]}" if len(words) > 1 else ""
-    return out / f"{assembly.label}{mesh}.{ending}"
-
-
-def _part_words(assembly: Assembly) -> dict[str, str]:
-    return file_words(part.name for mesh in assembly.meshes for part in (mesh.driver, mesh.driven))
-
-
-# trains -------------------------------------------------------------------------------------------
-
-
-def _train_meshes(train: WholeTrain) -> dict[str, trimesh.Trimesh]:
-    return {name: _coloured(*mesh, _rgba(train.colours[name])) for name, mesh in train.meshes.items()}
-
-
-def _rgba(colour: str) -> Colour:
-    red, green, blue = bytes.fromhex(colour.removeprefix("#"))
-    return red, green, blue, 255
-
-
-def _write_whole(ending: str) -> Callable[[WholeTrain, Path], Path]:
-    def write(train: WholeTrain, path: Path) -> Path:
-        whole = cast(trimesh.Trimesh, trimesh.util.concatenate(list(_train_meshes(train).values())))
-        return _written(path, whole.export(file_type=ending))
-
-    return write
-
-
-def _write_whole_glb(train: WholeTrain, path: Path) -> Path:
-    return _written(path, _glb(_train_meshes(train)))
-
-
-def _write_whole_step(train: WholeTrain, path: Path) -> Path:
-    gears = [PosedGear(part.name, part.perturbed, part.world_from_gear) for part in train.gears]
-    parts: list[PosedPart] = [*gears, *train.bodies]
-    export_step(parts, path, [train.colours[part.name] for part in parts])
-    return path
-
-
-TRAIN_WRITERS: Mapping[str, Callable[[WholeTrain, Path], Path]] = {
-    "stl": _write_whole("stl"),
-    "ply": _write_whole("ply"),
-    "glb": _write_whole_glb,
-    "step": _write_whole_step,
-}
-
-
-def _train_path(assembly: Assembly, trains: Sequence[WholeTrain], train: WholeTrain, out: Path, ending: str) -> Path:
-    words = file_words(each.root for each in trains)
-    root = f"-{words[train.root]}" if len(words) > 1 else ""
-    return out / f"{assembly.label}{root}.{ending}"
-
-
-# files --------------------------------------------------------------------------------------------
 
 
 def file_words(names: Iterable[str]) -> dict[str, str]:

@@ -1,26 +1,25 @@
-"""Draws a run's histogram, those of its many measures and the chains of its trains, in a process of its own.
+"""Draws a run's histogram, those of its many measures and what its system's presenter draws, in a process of its own.
 
 matplotlib takes as long to load as a whole study of 2000 trials takes to run: so it loads beside the study, and what
 is drawn comes at the end, on its standard input:
 
-    python -m tol3d.report.histogram_process < {"picture": "histogram.png", "summary": {...}}
+    python -m tol3d.report.histogram_process < {"picture": "histogram.png", "presenter": "a.module", "summary": {...}}
 
-The chain of the first train is drawn as chain.png beside the histogram, that of each further one as
-chain-<train>.png, a measure of many as histogram-<measure>.png. It ends quietly where nothing comes. What goes wrong
-with the histogram is the one line on its standard error; what goes wrong with another picture is told on its standard
-output, {"chain.png": "why"}.
+The presenter's pictures are drawn beside the histogram, a measure of many as histogram-<measure>.png. It ends quietly
+where nothing comes. What goes wrong with the histogram is the one line on its standard error; what goes wrong with
+another picture is said on its standard output, {"chain.png": "why"}.
 """
 
 import json
 import signal
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from functools import partial
 from pathlib import Path
 
-from tol3d.gearing.presenting.chain import draw_chain
 from tol3d.report.histogram import draw_histogram, draw_measure
-from tol3d.report.picture import chain_files, measure_files
+from tol3d.report.picture import measure_files, named_files
+from tol3d.report.presenter import Draw, presenter_at
 from tol3d.runs.summary.run import RunSummary
 from tol3d.runs.summary.text import typed
 
@@ -34,18 +33,23 @@ def main() -> None:
     asked = json.loads(order)
     picture = Path(asked["picture"])
     summary = typed(asked["summary"], lambda place, words: ValueError(f"{place}: {words}"))
-    print(json.dumps(dict(_refused(summary, picture.parent))), flush=True)
+    print(json.dumps(dict(_refused(_further(summary, asked["presenter"]), picture.parent))), flush=True)
     try:
         draw_histogram(summary, picture)
     except Exception as error:
         sys.exit(_reason(error))
 
 
-def _refused(summary: RunSummary, folder: Path) -> Iterator[tuple[str, str]]:
-    """Draw the chain of every train and the picture of every measure; the names of those that failed, and why."""
-    chains = ((file, partial(draw_chain, summary, name)) for name, file in chain_files(summary).items())
-    measures = ((file, partial(draw_measure, summary, name)) for name, file in measure_files(summary).items())
-    for file, draw in (*chains, *measures):
+def _further(summary: RunSummary, presenter: str) -> Iterator[tuple[str, Draw]]:
+    """Files besides the histogram, and what draws them."""
+    pictures = presenter_at(presenter).pictures(summary)
+    yield from ((file, pictures[name]) for name, file in named_files(pictures).items())
+    yield from ((file, partial(draw_measure, summary, name)) for name, file in measure_files(summary).items())
+
+
+def _refused(further: Iterable[tuple[str, Draw]], folder: Path) -> Iterator[tuple[str, str]]:
+    """Draw the further pictures; the names of those that failed, and why."""
+    for file, draw in further:
         try:
             draw(folder / file)
         except Exception as error:

@@ -21,10 +21,9 @@ from tol3d.analyses import ShimPlan, ShimQuestion, length_of, shim_plan, stock_o
 from tol3d.analyses.shim import Rounding
 from tol3d.analyses.shimmed import Minimum
 from tol3d.errors import InputError
-from tol3d.gearing.display import Assembly, Which, assembly_of
 from tol3d.gearing.model import Model
-from tol3d.gearing.presenting.whole_trains import whole_trains
 from tol3d.report.coefficients import Coefficient, coefficients_of
+from tol3d.report.presenter import PRESENTER, Display, Which, presenter_at
 from tol3d.runs.run import Run, open_run
 from tol3d.scene import Scene
 from tol3d.scene.edit import tolerance_lines
@@ -144,34 +143,31 @@ class Replay(simulate.Replay):
         return f"<Replay of trial {self.trial} of {self.model.name}: {self.status}, {dict(self.geometric)}>"
 
     @cached_property
-    def assembly(self) -> Assembly:
-        """Its gears, contacts and gaps, mesh by mesh.
+    def display(self) -> Display:
+        """Its parts where they came to rest.
 
         Raises:
-            RunError: its working flanks found no contact.
+            RunError: it cannot be shown.
         """
-        return assembly_of(self, f"trial-{self.trial}")
+        return presenter_at(PRESENTER).replayed(self, f"trial-{self.trial}")
 
     @cached_property
     def poses(self) -> Mapping[str, Array]:
         """World from each part's own frame, by its name (4, 4) [mm].
 
         Raises:
-            RunError: its working flanks found no contact.
+            RunError: it cannot be shown.
         """
-        if trains := whole_trains(self.assembly):
-            return {name: pose for train in trains for name, pose in train.poses.items()}
-        placed = (part for seated in self.assembly.meshes for part in (seated.driver, seated.driven))
-        return {part.name: part.world_from_gear for part in placed}
+        return {body.name: body.world_from_part for world in self.display.worlds for body in world.bodies}
 
     @cached_property
     def meshes(self) -> "Mapping[str, trimesh.Trimesh]":
         """Each part as a closed mesh in the world, its deviations and growth on it, by its name [mm].
 
         Raises:
-            RunError: its working flanks found no contact.
+            RunError: it cannot be shown.
         """
-        return report.part_meshes(self.assembly)
+        return report.part_meshes(self.display)
 
 
 def check_scene(scene: Scene | Path | str, *, overrides: Overrides = AS_WRITTEN, trust_parts: bool = False) -> Check:

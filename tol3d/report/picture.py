@@ -4,17 +4,20 @@ import json
 import subprocess
 import sys
 import warnings
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from functools import partial
 from itertools import count
 from pathlib import Path
 from typing import Any
 
+from tol3d.report.presenter import PRESENTER, presenter_at
+from tol3d.runs.summary.run import RunSummary
+
 MOST_TOGETHER = 4  # measures in one picture; of more, each has one of its own
 IN_FILE_NAMES = frozenset(" -_.,()+")  # besides letters and digits; anything else would be a folder or a drive
 
-Draw = Callable[[Mapping[str, Any], Path], None]
+DrawRun = Callable[[Mapping[str, Any], Path], None]
 
 COMMAND = (sys.executable, "-P", "-m", "tol3d.report.histogram_process")  # -P: not from the folder it is called in
 
@@ -24,15 +27,18 @@ class PictureError(Exception):
 
 
 class PictureWarning(UserWarning):
-    """The picture of a train or of one measure that could not be drawn beside the histogram."""
+    """A picture of the system or of one measure that could not be drawn beside the histogram."""
 
 
 @contextmanager
-def drawing() -> Iterator[Draw]:
+def drawing(presenter: str = PRESENTER) -> Iterator[DrawRun]:
     """Within it a process that can draw gets ready, and draws one run: its summary, and where its histogram goes.
 
-    The chains of its trains, and where there are many measures a picture of each, go beside the histogram; one that
-    cannot be drawn is a PictureWarning.
+    What the system's presenter draws, and where there are many measures a picture of each, go beside the histogram;
+    one that cannot be drawn is a PictureWarning.
+
+    Args:
+        presenter: import path of the system's presenter.
 
     Raises:
         PictureError: by the drawing, which leaves no half of a picture.
@@ -44,13 +50,13 @@ def drawing() -> Iterator[Draw]:
         return
     with process:
         try:
-            yield partial(_draw, process)
+            yield partial(_draw, process, presenter)
         finally:
             process.kill()
 
 
-def _draw(process: "subprocess.Popen[bytes]", summary: Mapping[str, Any], picture: Path) -> None:
-    order = json.dumps({"picture": str(picture), "summary": summary})
+def _draw(process: "subprocess.Popen[bytes]", presenter: str, summary: Mapping[str, Any], picture: Path) -> None:
+    order = json.dumps({"picture": str(picture), "presenter": presenter, "summary": summary})
     refused, told = process.communicate(order.encode())
     for name, reason in json.loads(refused or "{}").items():
         words = f"{name} could not be drawn ({reason}); the run is whole without it"
@@ -78,15 +84,18 @@ def measure_files(summary: Any) -> dict[str, str]:
     return _files([(name, f"histogram-{_words(name)}") for name in names]) if len(names) > MOST_TOGETHER else {}
 
 
-def chain_files(summary: Any) -> dict[str, str]:
-    """Names of the pictures of a run's trains, by train; each another one.
+def system_files(summary: RunSummary, presenter: str = PRESENTER) -> dict[str, str]:
+    """Names of the further pictures that a system's presenter draws of a run, by its own names; each another one."""
+    return named_files(presenter_at(presenter).pictures(summary))
 
-    >>> chain_files({"trains": {"shoulder": {}, "wrist": {}, "left/right": {}, "left:right": {}}})
-    {'shoulder': 'chain.png', 'wrist': 'chain-wrist.png', 'left/right': 'chain-left_right.png', \
-'left:right': 'chain-left_right 2.png'}
+
+def named_files(names: Iterable[str]) -> dict[str, str]:
+    """Files of pictures by their names.
+
+    >>> list(named_files(["chain", "chain-left/right", "chain-left:right"]).values())
+    ['chain.png', 'chain-left_right.png', 'chain-left_right 2.png']
     """
-    names = list(summary.get("trains") or ())
-    return _files([(name, f"chain-{_words(name)}" if index else "chain") for index, name in enumerate(names)])
+    return _files([(name, _words(name)) for name in names])
 
 
 def _words(name: str) -> str:

@@ -1,4 +1,4 @@
-"""A whole train in one picture: seen from a corner, its parts named beside it."""
+"""Bodies in one picture: seen from a corner, their names beside them."""
 
 import math
 from collections.abc import Iterator, Mapping
@@ -8,9 +8,12 @@ from typing import Final
 import numpy as np
 import pyvista as pv
 from numpy.typing import NDArray
+from scipy import ndimage
 from scipy.optimize import isotonic_regression, linear_sum_assignment
+from vtkmodules.vtkRenderingCore import vtkWorldPointPicker
 
-from tol3d.gearing.presenting.whole_trains import WholeTrain
+from tol3d.report.body import World
+from tol3d.report.camera import look
 from tol3d.report.drawn_solids import (
     CONTACT_COLOUR,
     EDGE_COLOUR,
@@ -33,8 +36,10 @@ LABEL_SIZE: Final = 11
 ARROW_SHARE: Final = 0.16  # of the picture's height
 DOT_SHARE: Final = 1 / 250  # of the picture's height, the radius of the dot at the end of a label's line
 MARK_SHARE: Final = 1 / 120  # the same at what is no part: a tip, a contact
-SAMPLES: Final = 6000  # points on each part's surface, to tell what is seen of it
-CELLS: Final = 120  # of the picture's width, in which the nearest points are seen
+PROBE_HEIGHT: Final = 480  # pixels of the pictures that are only asked what is seen in them
+LARGE_COUNTS: Final = 1 / 4  # power; of two corners from which as much is seen, the one with the larger picture
+ALIKE: Final = 0.98  # of the best corner's score: near enough to it, so that trials of a run are seen from one corner
+INSIDE_SHARE: Final = 0.6  # of the largest distance to the edge of what is seen of a body: what a label may point at
 
 
 @dataclass(frozen=True, eq=False)
@@ -83,50 +88,45 @@ class Label:
 
 
 @dataclass(frozen=True, eq=False)
-class TrainPicture:
-    """A train as it is drawn: from where one looks, what the picture shows, and what is named in it."""
+class Whole:
+    """Bodies as they are drawn: from where one looks, what the picture shows, and what is named in it."""
 
     eye: Eye
     frame: Frame
     labels: tuple[Label, ...]
 
 
-def draw_train(
-    plotter: pv.Plotter, train: WholeTrain, marks: Mapping[str, Array], width_by_height: float
-) -> TrainPicture:
-    """Draw a train into the plotter's current picture, without its labels.
+def draw_whole(plotter: pv.Plotter, world: World, width_by_height: float, marks: Mapping[str, Array]) -> None:
+    """Draw all bodies of a world with their names: beside them in a picture, at them in a window.
 
     Args:
-        plotter: where.
-        train: what.
-        marks: points that are named besides parts and tips, (3,) [mm].
+        plotter: at its current renderer.
+        world: what.
         width_by_height: of the picture.
+        marks: points that are named besides those of the world, (3,) [mm].
     """
     set_background(plotter)
-    for part in train.gears:
-        add_solid(plotter, poly_data(*train.meshes[part.name]), train.colours[part.name])
-    for body in train.bodies:
-        add_round_solid(plotter, poly_data(*train.meshes[body.name]), train.colours[body.name])
-    eye, anchors = _best_eye(train, {name: _sampled(*mesh) for name, mesh in train.meshes.items()})
-    frame = Frame.around(eye.seen(np.concatenate([points for points, _ in train.meshes.values()])), width_by_height)
-    labels = [Label(name, train.colours[name], EDGE_COLOUR, point) for name, point in anchors.items()]
-    for name, point in {**train.points, **marks}.items():
-        labels.append(Label(name, CONTACT_COLOUR, "white", point))
-    if train.gravity:
-        direction, begin = train.gravity
-        plotter.add_mesh(arrow(begin, direction, ARROW_SHARE * frame.height), color=GAP_COLOUR, ambient=0.6)
-        labels.append(Label("gravity", GAP_COLOUR, "white", begin + ARROW_SHARE * frame.height * direction))
+    for body in world.bodies:
+        (add_round_solid if body.smooth else add_solid)(plotter, poly_data(*body.mesh), body.colour)
+    eye, anchors = _best_eye(world, width_by_height)
+    frame = _frame(world, eye, width_by_height)
+    labels = [Label(body.name, body.colour, EDGE_COLOUR, anchors[body.name]) for body in world.bodies]
+    labels += [Label(name, CONTACT_COLOUR, "white", point) for name, point in {**world.points, **marks}.items()]
+    for name, shown in world.arrows.items():
+        length = ARROW_SHARE * frame.height
+        plotter.add_mesh(arrow(shown.place, shown.direction, length), color=GAP_COLOUR, ambient=0.6)
+        labels.append(Label(name, GAP_COLOUR, "white", shown.place + length * shown.direction))
     _look(plotter, eye, frame)
-    return TrainPicture(eye, frame, tuple(labels))
+    (_label_beside if plotter.off_screen else _label_in_place)(plotter, Whole(eye, frame, tuple(labels)))
 
 
-def label_in_place(plotter: pv.Plotter, picture: TrainPicture) -> None:
-    """Name the parts where they are, for a window in which the train can be turned."""
+def _label_in_place(plotter: pv.Plotter, picture: Whole) -> None:
+    """Name the parts where they are, for a window in which they can be turned."""
     for label in picture.labels:
         add_label(plotter, label.point, label.text, EDGE_COLOUR if label.ink == EDGE_COLOUR else label.colour)
 
 
-def label_beside(plotter: pv.Plotter, picture: TrainPicture) -> None:
+def _label_beside(plotter: pv.Plotter, picture: Whole) -> None:
     """Name the parts in two columns beside them, with lines to what is named, for a picture."""
     eye, frame = picture.eye, picture.frame
     for side in (-1.0, 1.0):
@@ -143,30 +143,32 @@ def label_beside(plotter: pv.Plotter, picture: TrainPicture) -> None:
 # what is seen -------------------------------------------------------------------------------------
 
 
-def _sampled(vertices: Array, triangles: NDArray[np.int64]) -> Array:
-    """Points spread evenly over a surface, (SAMPLES, 3) [mm]; the same ones each time."""
-    rng = np.random.default_rng(0)
-    corners = vertices[triangles]
-    areas = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1)
-    chosen = np.searchsorted(np.cumsum(areas), rng.random(SAMPLES) * areas.sum())
-    first, second = rng.random((2, SAMPLES, 1))
-    turned = first + second > 1.0
-    first, second = np.where(turned, 1.0 - first, first), np.where(turned, 1.0 - second, second)
-    begin, one, other = (corners[chosen.clip(max=len(corners) - 1), k] for k in range(3))
-    return np.asarray(begin + first * (one - begin) + second * (other - begin))
+def _frame(world: World, eye: Eye, width_by_height: float) -> Frame:
+    return Frame.around(eye.seen(np.concatenate([body.mesh[0] for body in world.bodies])), width_by_height)
 
 
-def _best_eye(train: WholeTrain, samples: Mapping[str, Array]) -> tuple[Eye, Mapping[str, Array]]:
-    """Of the four corners the one from which most is seen of the parts, and a point to be seen of each part."""
-    up = np.array([0.0, 1.0, 0.0]) if train.gravity is None else -train.gravity[0]
-    best = max((_seen_of(eye, samples) for eye in _corners(up)), key=lambda found: found[0])
-    return best[1], best[2]
+def _best_eye(world: World, width_by_height: float) -> tuple[Eye, Mapping[str, Array]]:
+    """Of the four corners the one from which most is seen of the bodies, and a point to be seen of each body."""
+    plotter = pv.Plotter(off_screen=True, window_size=[round(PROBE_HEIGHT * width_by_height), PROBE_HEIGHT])
+    plotter.renderer.set_background("black")
+    plotter.renderer.disable_anti_aliasing()
+    try:
+        for number, body in enumerate(world.bodies, 1):
+            plotter.add_mesh(poly_data(*body.mesh), color=f"#{number:06X}", lighting=False)
+        found = []
+        for eye in _corners(np.array(world.up)):
+            _look(plotter, eye, _frame(world, eye, width_by_height))
+            found.append((eye, *_seen(plotter, world)))
+    finally:
+        plotter.close()
+    best = max(score for _, score, _ in found)
+    return next((eye, anchors) for eye, score, anchors in found if score >= ALIKE * best)
 
 
 def _corners(up: Array) -> Iterator[Eye]:
     axis = np.array([0.0, 0.0, 1.0])
     front = axis - (axis @ up) * up
-    if np.linalg.norm(front) < 1e-6:  # gravity pulls along the first shaft
+    if np.linalg.norm(front) < 1e-6:  # up is along z
         front = np.array([1.0, 0.0, 0.0])
     front = front / np.linalg.norm(front)
     side = np.cross(up, front)
@@ -177,25 +179,40 @@ def _corners(up: Array) -> Iterator[Eye]:
         yield Eye(np.stack([right, np.cross(eye, right), eye]))
 
 
-def _seen_of(eye: Eye, samples: Mapping[str, Array]) -> tuple[float, Eye, Mapping[str, Array]]:
-    """How much is seen, summed over parts so that each one counts, and a point to be seen of each."""
-    seen = {name: eye.seen(points) for name, points in samples.items()}
-    everything = np.concatenate(list(seen.values()))
-    cell = np.ptp(everything[:, :2], axis=0).max() / CELLS
-    nearest: dict[tuple[int, int], float] = {}
-    cells = {name: np.floor(points[:, :2] / cell).astype(int) for name, points in seen.items()}
-    for name, points in seen.items():
-        for place, depth in zip(map(tuple, cells[name].tolist()), points[:, 2].tolist(), strict=True):
-            nearest[place] = max(depth, nearest.get(place, -math.inf))
+def _seen(plotter: pv.Plotter, world: World) -> tuple[float, Mapping[str, Array]]:
+    """How much is seen of the bodies, each counting, and how large; and a point to be seen of each.
+
+    Args:
+        plotter: as it looks at the bodies, each in a colour that is its number in the world, from 1 on.
+        world: its bodies.
+    """
+    pixel = 2 * plotter.camera.parallel_scale / PROBE_HEIGHT  # mm
+    plotter.render()
+    red, green, blue = np.moveaxis(np.asarray(plotter.screenshot(return_img=True), dtype=int), 2, 0)
+    numbers = (65536 * red + 256 * green + blue)[::-1]  # rows from the lower edge up, as VTK counts them
+    picker = vtkWorldPointPicker()
     score, anchors = 0.0, {}
-    for name, points in seen.items():
-        front = np.array([nearest[place] for place in map(tuple, cells[name].tolist())])
-        visible = points[:, 2] > front - cell
-        score += math.sqrt(visible.mean())
-        shown = points[visible] if visible.any() else points
-        middle = np.median(shown, axis=0)
-        anchors[name] = eye.world(shown[np.argmin(np.linalg.norm(shown - middle, axis=1))])
-    return score, eye, anchors
+    for number, body in enumerate(world.bodies, 1):
+        shown = numbers == number
+        if not shown.any():
+            anchors[body.name] = body.mesh[0].mean(axis=0)
+            continue
+        score += math.sqrt(shown.sum() * pixel**2 / poly_data(*body.mesh).area)
+        x, y = _clear_place(shown)
+        picker.Pick(x, y, 0.0, plotter.renderer)
+        anchors[body.name] = np.array(picker.GetPickPosition())
+    return score / pixel**LARGE_COUNTS, anchors
+
+
+def _clear_place(shown: NDArray[np.bool_]) -> tuple[int, int]:
+    """Column and row of a pixel near to the middle of the largest piece that is shown of a body, well inside of it."""
+    pieces, _ = ndimage.label(shown)
+    piece = pieces == 1 + np.argmax(np.bincount(pieces.ravel())[1:])
+    inside = ndimage.distance_transform_edt(np.pad(piece, 1))[1:-1, 1:-1]
+    middle = np.median(np.argwhere(piece), axis=0)
+    places = np.argwhere(inside >= INSIDE_SHARE * inside.max())
+    row, column = places[np.argmin(np.linalg.norm(places - middle, axis=1))].tolist()
+    return column, row
 
 
 # the picture --------------------------------------------------------------------------------------
@@ -209,7 +226,7 @@ def _places(points: Array, edge: float, frame: Frame) -> Array:
     return np.stack([np.full(len(points), edge), heights[chosen]], axis=-1)
 
 
-def _add_line(plotter: pv.Plotter, picture: TrainPicture, label: Label, place: Array) -> None:
+def _add_line(plotter: pv.Plotter, picture: Whole, label: Label, place: Array) -> None:
     """A line from a label to what it names, in front of everything: one looks along parallels."""
     eye, frame = picture.eye, picture.frame
     ends = (place, eye.seen(label.point)[:2])
@@ -240,10 +257,4 @@ def _spread(wanted: Array, frame: Frame) -> Array:
 
 
 def _look(plotter: pv.Plotter, eye: Eye, frame: Frame) -> None:
-    middle = eye.world(frame.middle)
-    plotter.camera.focal_point = tuple(middle)
-    plotter.camera.position = tuple(middle + 4 * frame.height * eye.axes[2])
-    plotter.camera.up = tuple(eye.axes[1])
-    plotter.camera.parallel_projection = True
-    plotter.camera.parallel_scale = frame.height / 2
-    plotter.reset_camera_clipping_range()
+    look(plotter, eye.world(frame.middle), frame.height / 2, eye.axes[2], eye.axes[1])

@@ -1,1 +1,54 @@
-"""How gears in mesh and their trains are shown: chains, tables of stages, parts in one world, gaps."""
+"""How gears in mesh and their trains are shown: chains, tables of stages, parts in one world, contacts and gaps."""
+
+from collections.abc import Mapping, Sequence
+from functools import partial
+from importlib import import_module
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Final
+
+from tol3d.gearing.summary_types import TrainsOfRun
+from tol3d.runs.summary.run import RunSummary
+
+if TYPE_CHECKING:
+    from rich.console import RenderableType
+
+    from tol3d.report.presenter import Display, Draw, Which
+    from tol3d.runs.run import Run
+    from tol3d.simulate import Replay
+
+
+class GearPresenter:
+    """The presenter of gears; see `tol3d.report.presenter.Presenter`."""
+
+    def pictures(self, summary: RunSummary) -> "Mapping[str, Draw]":
+        """The chain of every train: "chain" of the first, "chain-<train>" of the others.
+
+        >>> list(PRESENTER.pictures(TrainsOfRun.model_construct(trains={"shoulder": ..., "wrist": ...})))
+        ['chain', 'chain-wrist']
+        """
+        trains = (summary.trains or {}) if isinstance(summary, TrainsOfRun) else {}
+        return {f"chain-{name}" if k else "chain": partial(_draw_chain, summary, name) for k, name in enumerate(trains)}
+
+    def sections(self, summary: RunSummary) -> "Sequence[RenderableType]":
+        """Tables of every train."""
+        return _lazily("train_tables").train_report(summary)  # type: ignore[no-any-return]
+
+    def display(self, run: "Run", which: "Which", *, magnify: float) -> "Display":
+        """A build with its gears seated again."""
+        return _lazily("gear_display").display(run, which, magnify=magnify)  # type: ignore[no-any-return]
+
+    def replayed(self, replay: "Replay", label: str) -> "Display":
+        """A trial that was replayed, its gears seated again."""
+        return _lazily("gear_display").replayed(replay, label)  # type: ignore[no-any-return]
+
+
+def _draw_chain(summary: RunSummary, train: str, path: Path) -> None:
+    _lazily("chain").draw_chain(summary, train, path)
+
+
+def _lazily(module: str) -> Any:
+    """A module of this folder, imported when it is needed: a table needs no matplotlib, a picture no model."""
+    return import_module(f"{__name__}.{module}")
+
+
+PRESENTER: Final = GearPresenter()

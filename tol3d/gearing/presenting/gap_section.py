@@ -8,7 +8,7 @@ import numpy as np
 import pyvista as pv
 from numpy.typing import NDArray
 
-from tol3d.gearing.display import SeatedMesh
+from tol3d.gearing.placed import SeatedMesh
 from tol3d.gears import BevelPair
 
 Array = NDArray[np.float64]

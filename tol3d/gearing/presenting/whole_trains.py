@@ -12,11 +12,13 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.gearing.display import Assembly, PlacedGear, SeatedMesh, shows_shafts
+from tol3d.gearing.display import SeatedBuild, shows_shafts
 from tol3d.gearing.model import Arm, LostMotion, Model
+from tol3d.gearing.placed import PlacedGear, SeatedMesh
 from tol3d.gearing.presenting.shaft_sizes import ShaftSizes, Span, arm_body
 from tol3d.numerics import frames
-from tol3d.solids import PosedBody, display_mesh
+from tol3d.report.body import Arrow, Body, Surface, World
+from tol3d.solids import PosedBody, PosedGear, display_mesh
 
 Array = NDArray[np.float64]
 
@@ -56,37 +58,59 @@ class WholeTrain:
         return {name: of_shaft[shaft] if shaft else HOUSING_COLOUR for name, shaft in self.shaft_of.items()}
 
     @cached_property
-    def meshes(self) -> Mapping[str, tuple[Array, NDArray[np.int64]]]:
-        """Closed triangle mesh of each part: vertices (n, 3) [mm], triangles (m, 3)."""
-        return {part.name: part.mesh() for part in self.gears} | {body.name: body_mesh(body) for body in self.bodies}
+    def world(self) -> World:
+        """All its parts as they are shown and exported."""
+        gears = [gear_body(part, self.colours[part.name]) for part in self.gears]
+        others = [_plain_body(body, self.colours[body.name]) for body in self.bodies]
+        if self.gravity is None:
+            return World(self.root, (*gears, *others), points=self.points)
+        direction, place = self.gravity
+        x, y, z = (-direction).tolist()
+        return World(
+            self.root, (*gears, *others), points=self.points, arrows={"gravity": Arrow(direction, place)}, up=(x, y, z)
+        )
 
     @property
-    def poses(self) -> Mapping[str, Array]:
-        """World from each part's own frame (4, 4) [mm]."""
-        gears = {part.name: part.world_from_gear for part in self.gears}
-        return gears | {body.name: body.world_from_part for body in self.bodies}
+    def meshes(self) -> Mapping[str, Surface]:
+        """Closed triangle mesh of each part: vertices (n, 3) [mm], triangles (m, 3)."""
+        return {body.name: body.mesh for body in self.world.bodies}
 
 
-def body_mesh(body: PosedBody) -> tuple[Array, NDArray[np.int64]]:
-    """Closed triangle mesh in the world: vertices (n, 3) [mm], triangles (m, 3)."""
-    display = display_mesh(body.shape, BODY_DEFLECTION * body.shape.diameter)
-    rotation, translation = body.world_from_part[:3, :3], body.world_from_part[:3, 3]
-    return display.vertices @ rotation.T + translation, display.triangles
+def gear_body(part: PlacedGear, colour: str) -> Body:
+    """A placed gear as it is shown and exported."""
+    return Body(
+        name=part.name,
+        world_from_part=part.world_from_gear,
+        surface=part.surface,
+        posed=lambda: PosedGear(part.name, part.perturbed, part.world_from_gear),
+        colour=colour,
+        scale=part.scale,
+    )
 
 
-def whole_trains(assembly: Assembly) -> tuple[WholeTrain, ...]:
+def _plain_body(body: PosedBody, colour: str) -> Body:
+    """A shaft, an arm or a housing as it is shown and exported."""
+
+    def surface() -> Surface:
+        display = display_mesh(body.shape, BODY_DEFLECTION * body.shape.diameter)
+        return display.vertices, display.triangles
+
+    return Body(body.name, body.world_from_part, surface, lambda: body, colour, smooth=True)
+
+
+def whole_trains(build: SeatedBuild) -> tuple[WholeTrain, ...]:
     """The trees of a build's shafts; none of a build of single pairs."""
-    if not shows_shafts(assembly.model):
+    if not shows_shafts(build.model):
         return ()
-    return tuple(_train(assembly, root) for root in dict.fromkeys(assembly.model.layout.root_of.values()))
+    return tuple(_train(build, root) for root in dict.fromkeys(build.model.layout.root_of.values()))
 
 
-def _train(assembly: Assembly, root: str) -> WholeTrain:
-    model = assembly.model
+def _train(build: SeatedBuild, root: str) -> WholeTrain:
+    model = build.model
     layout = model.layout
     own = [shaft for shaft, first in layout.root_of.items() if first == root]
-    angles = {shaft: _angle(assembly, shaft) for shaft in own}
-    sizes = ShaftSizes(model, _faces(assembly))
+    angles = {shaft: _angle(build, shaft) for shaft in own}
+    sizes = ShaftSizes(model, _faces(build))
     gears: list[PlacedGear] = []
     bodies: list[PosedBody] = []
     shaft_of: dict[str, str | None] = {}
@@ -94,7 +118,7 @@ def _train(assembly: Assembly, root: str) -> WholeTrain:
     for shaft in own:
         pose = layout.world_from_shaft[shaft] @ _about_z(angles[shaft])
         for gear in (name for name, (carrier, _) in layout.carrying.items() if carrier == shaft):
-            gears.append(_in_world(assembly, gear))
+            gears.append(_in_world(build, gear))
             shaft_of[gear] = shaft
         if shaft in sizes.shafts:
             bodies.append(PosedBody(shaft, sizes.body(shaft), pose))
@@ -145,40 +169,40 @@ def _gravity(model: Model, root: str, angles: Mapping[str, float]) -> tuple[Arra
 # positions ----------------------------------------------------------------------------------------
 
 
-def _seating(assembly: Assembly, gear: str) -> SeatedMesh:
+def _seating(build: SeatedBuild, gear: str) -> SeatedMesh:
     """The mesh in which a gear is shown: the one that drives it, or the first that it drives."""
     return next(
-        (seated for seated in assembly.meshes if seated.mesh.driven == gear),
-        next(seated for seated in assembly.meshes if gear in (seated.mesh.driver, seated.mesh.driven)),
+        (seated for seated in build.meshes if seated.mesh.driven == gear),
+        next(seated for seated in build.meshes if gear in (seated.mesh.driver, seated.mesh.driven)),
     )
 
 
-def _in_world(assembly: Assembly, gear: str) -> PlacedGear:
+def _in_world(build: SeatedBuild, gear: str) -> PlacedGear:
     """A gear as it came to rest, in the world of its tree."""
-    seated = _seating(assembly, gear)
+    seated = _seating(build, gear)
     placed = seated.driven if seated.mesh.driven == gear else seated.driver
-    pose = assembly.model.layout.world_from_mesh[seated.mesh.name] @ placed.world_from_gear
+    pose = build.model.layout.world_from_mesh[seated.mesh.name] @ placed.world_from_gear
     return replace(placed, world_from_gear=pose)
 
 
-def _angle(assembly: Assembly, shaft: str) -> float:
+def _angle(build: SeatedBuild, shaft: str) -> float:
     """Turn of a shaft [rad]: that of its gear, the driven one if there is one; without gears as the first shaft's."""
-    layout = assembly.model.layout
+    layout = build.model.layout
     own = [carried for carrier, carried in layout.carrying.values() if carrier == shaft]
-    driven = [carried for carried in own if _seating(assembly, carried.gear).mesh.driven == carried.gear]
+    driven = [carried for carried in own if _seating(build, carried.gear).mesh.driven == carried.gear]
     for carried in driven or own:
-        seated = _seating(assembly, carried.gear)
+        seated = _seating(build, carried.gear)
         lies = layout.seating(seated.mesh.name)
         azimuth = lies.azimuth + lies.ahead if carried in driven else seated.mesh.azimuth
         at_rest = (seated.driven_angle if carried in driven else seated.driver_angle) + azimuth
         return carried.sense * (at_rest - carried.phase)
-    return layout.shaft_turn[shaft].at(_root_angle(assembly, layout.root_of[shaft]))
+    return layout.shaft_turn[shaft].at(_root_angle(build, layout.root_of[shaft]))
 
 
-def _root_angle(assembly: Assembly, root: str) -> float:
+def _root_angle(build: SeatedBuild, root: str) -> float:
     """Turn of a tree's first shaft [rad], told by its meshes; 0 where there are none."""
-    layout = assembly.model.layout
-    for seated in assembly.meshes:
+    layout = build.model.layout
+    for seated in build.meshes:
         turning = layout.mesh_turn[seated.mesh.name]
         if layout.root_of[layout.carrying[seated.mesh.driver][0]] == root:
             return (seated.driver_angle - turning.offset) / float(turning.rate)
@@ -189,10 +213,10 @@ def _about_z(angle: float) -> Array:
     return frames.transform(frames.about_z(np.array(angle)), np.zeros(3))
 
 
-def _faces(assembly: Assembly) -> Mapping[str, Span]:
+def _faces(build: SeatedBuild) -> Mapping[str, Span]:
     """From where to where each gear reaches along its own z [mm]."""
     spans = {}
-    for seated in assembly.meshes:
+    for seated in build.meshes:
         for part in (seated.driver, seated.driven):
             heights = part.display.vertices[:, 2]
             spans[part.name] = float(heights.min()), float(heights.max())

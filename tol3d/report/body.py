@@ -1,0 +1,73 @@
+"""Parts as they are shown and exported: where they stand, their surfaces, solids and colours."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tol3d.solids import PosedPart
+
+Array = NDArray[np.float64]
+Surface = tuple[Array, NDArray[np.int64]]
+
+
+@dataclass(frozen=True, eq=False)
+class Body:
+    """A part as it is shown and exported.
+
+    Args:
+        name: the part's.
+        world_from_part: its pose (4, 4), rotation and translation [mm].
+        surface: its closed triangle mesh in its own frame: vertices (n, 3) [mm], triangles (m, 3); made when asked for.
+        posed: the same part for STEP, with its deviations and growth in its numbers; raises GeometryError where such
+            a part cannot be made.
+        colour: "#RRGGBB".
+        scale: thermal growth, 1 at the reference temperature; `surface` is without it.
+        smooth: whether its facets stand for one round surface, as a cylinder's do.
+    """
+
+    name: str
+    world_from_part: Array
+    surface: Callable[[], Surface]
+    posed: Callable[[], PosedPart]
+    colour: str
+    scale: float = 1.0
+    smooth: bool = False
+
+    @cached_property
+    def mesh(self) -> Surface:
+        """Its closed triangle mesh in the world: vertices (n, 3) [mm], triangles (m, 3)."""
+        vertices, triangles = self.surface()
+        rotation, translation = self.world_from_part[:3, :3], self.world_from_part[:3, 3]
+        return self.scale * vertices @ rotation.T + translation, triangles
+
+
+@dataclass(frozen=True, eq=False)
+class Arrow:
+    """A direction that pictures show, such as that of gravity: a unit vector (3,), and where it acts (3,) [mm]."""
+
+    direction: Array
+    place: Array
+
+
+@dataclass(frozen=True, eq=False)
+class World:
+    """Bodies that stand in one world.
+
+    Args:
+        name: what files of several worlds are told apart by.
+        bodies: names differ.
+        one_file: whether files of triangles hold all bodies, instead of one body each.
+        points: what pictures name besides the bodies, (3,) [mm].
+        arrows: what pictures show besides the bodies, by name.
+        up: unit vector (3,) to the top of a picture.
+    """
+
+    name: str
+    bodies: tuple[Body, ...]
+    one_file: bool = True
+    points: Mapping[str, Array] = field(default_factory=dict)
+    arrows: Mapping[str, Arrow] = field(default_factory=dict)
+    up: tuple[float, float, float] = (0.0, 1.0, 0.0)

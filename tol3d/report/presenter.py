@@ -1,0 +1,103 @@
+"""What a kind of system shows of itself, besides what is shown of every run."""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from importlib import import_module
+from pathlib import Path
+from typing import TYPE_CHECKING, Final, Protocol, cast
+
+if TYPE_CHECKING:
+    import pyvista as pv
+    from rich.console import RenderableType
+
+    from tol3d.report.body import World
+    from tol3d.runs.run import Run
+    from tol3d.runs.summary.run import RunSummary
+    from tol3d.simulate import Replay
+
+Which = int | str
+"""A trial, or "worst", "nominal", "mean"."""
+Draw = Callable[[Path], None]
+"""Draws a picture and writes it; raises InputError where that is not possible."""
+Panel = Callable[["pv.Plotter", float], None]
+"""Draws one part of the 3D window into the plotter's current renderer, whose width by its height is given."""
+
+PRESENTER: Final = "tol3d.gearing.presenting"
+"""Import path of the presenter of gears, until kinds.py registers it."""
+
+
+@dataclass(frozen=True, eq=False)
+class View:
+    """What the 3D window shows.
+
+    Args:
+        panels: the first one large, at the left, the others below each other at its right; one alone fills the window.
+        notes: what the window does not show.
+    """
+
+    panels: tuple[Panel, ...]
+    notes: tuple[str, ...] = ()
+
+
+class Display(Protocol):
+    """A build as it is shown and exported."""
+
+    @property
+    def label(self) -> str:
+        """What it is, such as "trial-17" or "nominal", good as the start of a file's name."""
+        ...
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """What the user should know, such as the magnification in use."""
+        ...
+
+    @property
+    def worlds(self) -> "tuple[World, ...]":
+        """Its bodies; each world is a file of its own."""
+        ...
+
+    def view(self, close_up: str | None) -> View:
+        """The 3D window with a close-up of that name, None for the first there is.
+
+        Raises:
+            InputError: there is no such close-up.
+        """
+        ...
+
+
+class Presenter(Protocol):
+    """Pictures, tables and bodies of one kind of system. It loads what draws when something is drawn."""
+
+    def pictures(self, summary: "RunSummary") -> Mapping[str, Draw]:
+        """Further pictures of a run by their names, which become file names."""
+        ...
+
+    def sections(self, summary: "RunSummary") -> "Sequence[RenderableType]":
+        """Further tables of a run."""
+        ...
+
+    def display(self, run: "Run", which: Which, *, magnify: float) -> Display:
+        """A build of a run, simulated again.
+
+        Args:
+            which: a trial, or "worst", "nominal", "mean".
+            magnify: scales every deviation; lowered to what the build allows, as a note then says.
+
+        Raises:
+            InputError, RunError: no such build, or one that cannot be shown.
+        """
+        ...
+
+    def replayed(self, replay: "Replay", label: str) -> Display:
+        """A trial that was replayed.
+
+        Raises:
+            RunError: it cannot be shown.
+        """
+        ...
+
+
+def presenter_at(path: str) -> Presenter:
+    """The presenter that a module calls PRESENTER."""
+    return cast(Presenter, import_module(path).PRESENTER)
