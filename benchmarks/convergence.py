@@ -18,11 +18,11 @@ from matplotlib.lines import Line2D
 from matplotlib.ticker import FuncFormatter, NullFormatter
 from numpy.typing import NDArray
 
+from tol3d import load_scene
 from tol3d.gearing.model import Measure, Model, Positions, model_from_scene
 from tol3d.gearing.stack_up import closed_form
 from tol3d.report.canvas import BLACK, BLUE, GREY, ORANGE, new_figure, plain_axes, save_figure
 from tol3d.samplers.replicates import REPLICATES, SamplerKind
-from tol3d.scene import load_scene
 from tol3d.statistics import Moments
 from tol3d.study import draws
 from tol3d.study.block import Block, analytic_values

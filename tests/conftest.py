@@ -8,10 +8,9 @@ import pytest
 from fixtures import Command, EngineOf, strips_of
 from places import SPUR_PAIR
 
-from tol3d import cli
+from tol3d import cli, load_scene
 from tol3d.gearing.engines.fcl import FclEngine
 from tol3d.gearing.model import Model, model_from_scene
-from tol3d.scene import load_scene
 
 # shared machines stall for longer than any deadline and examples are the same;
 # HYPOTHESIS_PROFILE=search tries others

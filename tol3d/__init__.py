@@ -19,11 +19,13 @@ if TYPE_CHECKING:
     from tol3d.errors import Tol3dError
     from tol3d.gears import SpurGear as SpurGear
     from tol3d.gears import SpurPair as SpurPair
+    from tol3d.kinds import load_scene
+    from tol3d.kinds import register as register
     from tol3d.report.notebook import Replay as Replay
     from tol3d.report.notebook import check_scene, compare_runs, export_trial, find_shims, replay, view_trial
     from tol3d.runs.run import Run as Run
     from tol3d.runs.run import open_run
-    from tol3d.scene import Scene, load_scene
+    from tol3d.scene import Scene
     from tol3d.simulate import Overrides, run_scene
 
 _HOMES = {
@@ -32,7 +34,6 @@ _HOMES = {
     "Replay": "tol3d.report.notebook",
     "Run": "tol3d.runs.run",
     "RunError": "tol3d.errors",
-    "Scene": "tol3d.scene",
     "SceneError": "tol3d.errors",
     "SpurGear": "tol3d.gears",
     "SpurPair": "tol3d.gears",
@@ -41,8 +42,9 @@ _HOMES = {
     "compare_runs": "tol3d.report.notebook",
     "export_trial": "tol3d.report.notebook",
     "find_shims": "tol3d.report.notebook",
-    "load_scene": "tol3d.scene",
+    "load_scene": "tol3d.kinds",
     "open_run": "tol3d.runs.run",
+    "register": "tol3d.kinds",
     "replay": "tol3d.report.notebook",
     "run_scene": "tol3d.simulate",
     "view_trial": "tol3d.report.notebook",
@@ -68,6 +70,8 @@ __all__ = [
 def __getattr__(name: str) -> Any:
     if name == "__version__":
         return version("tol3d")
+    if name == "Scene":  # of every kind that is known by now
+        return import_module("tol3d.kinds").all_kinds().scene
     if name in _HOMES:
         return getattr(import_module(_HOMES[name]), name)
     raise AttributeError(f"module 'tol3d' has no attribute {name!r}")

@@ -441,7 +441,9 @@ def test_the_shimmed_robot_is_the_robot_with_two_shims() -> None:
     pair = load_scene(SCENES / "bevel_pair_shimmed.yaml").tolerances
     more = {name: spec for name, spec in shimmed.tolerances.items() if name not in robot.tolerances}
     assert dict(robot.tolerances) == {name: shimmed.tolerances[name] for name in robot.tolerances}
-    assert [(spec.of, of_kind(ShimSpec, spec).side, spec.distribution) for spec in more.values()] == [
+    assert [
+        (of_kind(ShimSpec, spec).of, of_kind(ShimSpec, spec).side, spec.distribution) for spec in more.values()
+    ] == [
         (f"bevel {gear}", of_kind(ShimSpec, pair[f"{gear} shim"]).side, pair[f"{gear} shim"].distribution)
         for gear in ("driver", "driven")
     ]

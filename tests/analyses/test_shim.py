@@ -19,14 +19,13 @@ from hypothesis import strategies as st
 from of_kind import known
 from places import SCENES
 
-from tol3d import Overrides, load_scene, run_scene
+from tol3d import Overrides, Scene, load_scene, run_scene
 from tol3d.analyses import Pieces, ShimPlan, ShimQuestion, Step, Stock, shim_plan, stock_of
 from tol3d.analyses.shim import closing_of, formula_thickness
 from tol3d.analyses.shim_choice import shims_of
 from tol3d.analyses.shimmed import MINIMUM_XTOL
 from tol3d.analyses.stock import nearest
 from tol3d.errors import InputError
-from tol3d.scene import Scene
 from tol3d.scene.edit import with_tolerances, write_scene
 from tol3d.simulate import effective_model
 

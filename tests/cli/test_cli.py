@@ -17,12 +17,11 @@ from fixtures import Command
 from places import SCENES
 from ruamel.yaml import YAML
 
-from tol3d import Overrides, cli, run_scene
+from tol3d import Overrides, cli, load_scene, run_scene
 from tol3d.errors import InputError
 from tol3d.gearing.model import model_from_scene
 from tol3d.report import picture
 from tol3d.runs.run import open_run
-from tol3d.scene import load_scene
 from tol3d.simulate import effective_model, load
 from tol3d.solids.cache import CacheWarning
 from tol3d.study.task import strips_of, workers_for

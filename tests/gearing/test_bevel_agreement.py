@@ -15,6 +15,7 @@ from oracles import bevel_brute_force
 from oracles.bevel_brute_force import BevelMesh, BevelNumbers
 from scipy.spatial.transform import Rotation
 
+from tol3d import Scene
 from tol3d.gearing.build import Build
 from tol3d.gearing.engines import OK, Engine
 from tol3d.gearing.measures import measure_backlash
@@ -22,7 +23,6 @@ from tol3d.gearing.meshing import Meshing
 from tol3d.gearing.model import Backlash, GearPart, Mesh, Model, Reading, Study, model_from_scene
 from tol3d.gears import LEFT, RIGHT, BevelGear, BevelPair, pitch_angles
 from tol3d.gears.flank import Flank
-from tol3d.scene import Scene
 from tol3d.simulate import load
 from tol3d.study.block import Block, simulate_block
 

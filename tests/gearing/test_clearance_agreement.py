@@ -15,9 +15,9 @@ from oracles.involute_gear import InvoluteGear
 from places import SCENES
 from vectors import vector
 
+from tol3d import load_scene
 from tol3d.gearing.model import Model, model_from_scene
 from tol3d.gears.flank import Flank
-from tol3d.scene import load_scene
 from tol3d.simulate import Overrides, run_scene
 from tol3d.study.block import drawn_block, simulate_block
 

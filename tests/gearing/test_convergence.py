@@ -10,6 +10,7 @@ from oracles.involute_gear import InvoluteGear
 from oracles.thickness import thickness_of
 from places import SCENES
 
+from tol3d import load_scene
 from tol3d.gearing.build import build
 from tol3d.gearing.engines.exact import ExactEngine
 from tol3d.gearing.measures import measure_backlash, read_backlash
@@ -17,7 +18,6 @@ from tol3d.gearing.meshing import Meshing
 from tol3d.gearing.model import Backlash, Measure, Model, Positions, Reading, model_from_scene
 from tol3d.gears import LEFT, RIGHT
 from tol3d.gears.flank import Flank
-from tol3d.scene import load_scene
 from tol3d.study.block import Block, drawn_block, geometric_values, seat_block, simulate_block, taken
 
 DENSITIES = (60, 80, 120, 160)

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from oracles.thinned_pairs import ThinnedPair, random_pair
 from places import SCENES
 
-from tol3d import Overrides, run_scene
+from tol3d import Overrides, load_scene, run_scene
 from tol3d.analyses.compensation import compensation
 from tol3d.analyses.shim import ShimQuestion, shim_plan
 from tol3d.errors import SceneError
@@ -21,7 +21,6 @@ from tol3d.gearing.engines.fcl import FclEngine
 from tol3d.gearing.engines.lazy import exact_engine
 from tol3d.gearing.model import Model, Reading, model_from_scene
 from tol3d.gears import LEFT, RIGHT, one_tooth_acts, one_tooth_share
-from tol3d.scene import load_scene
 from tol3d.solids import measuring_strips
 from tol3d.study.block import Block, drawn_block, positions_in_all, simulate_block
 from tol3d.units import ARCMIN

@@ -15,13 +15,13 @@ from oracles import brute_force, poses
 from oracles.involute_gear import InvoluteGear
 from places import SCENES
 
+from tol3d import load_scene
 from tol3d.gearing.build import Build, build
 from tol3d.gearing.engines import OK
 from tol3d.gearing.meshing import Meshing
 from tol3d.gearing.model import Model, Reading, model_from_scene
 from tol3d.gears import LEFT, RIGHT
 from tol3d.gears.flank import Flank
-from tol3d.scene import load_scene
 from tol3d.study import draws
 
 SPUR_PAIR = (SCENES / "spur_pair.yaml").read_text("utf-8")

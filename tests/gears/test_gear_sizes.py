@@ -11,12 +11,12 @@ from fixtures import strips_of
 from oracles import brute_force
 from oracles.involute_gear import InvoluteGear
 
+from tol3d import load_scene
 from tol3d.gearing.build import Build
 from tol3d.gearing.engines.fcl import FclEngine
 from tol3d.gearing.engines.lazy import exact_engine
 from tol3d.gearing.model import GearPart, Mesh, Model, Study, model_from_scene
 from tol3d.gears import LEFT, RIGHT, Flank, SpurGear, SpurPair
-from tol3d.scene import load_scene
 from tol3d.simulate import Overrides, effective_model, run_scene
 from tol3d.study.block import drawn_block, simulate_block
 from tol3d.study.witness import witness_summary, witness_warnings

@@ -12,9 +12,9 @@ from pathlib import Path
 
 import numpy as np
 
+from tol3d import Scene, load_scene
 from tol3d.errors import InputError
 from tol3d.gearing.model import Model, model_from_scene
-from tol3d.scene import Scene, load_scene
 
 MOST_TRIES = 500
 

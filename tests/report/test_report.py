@@ -23,6 +23,7 @@ from places import SCENES
 from rich.console import Console, RenderableType
 from scipy.stats import norm
 
+from tol3d import load_scene
 from tol3d.analyses.compensation import CompensationQuestion, compensation
 from tol3d.errors import InputError
 from tol3d.gearing.display import seated_build
@@ -51,7 +52,6 @@ from tol3d.report.distribution import column_colours, draw_distribution
 from tol3d.report.export import file_words
 from tol3d.report.sheet import Heading, Row, Sheet
 from tol3d.runs.run import Run
-from tol3d.scene import load_scene
 from tol3d.simulate import Overrides, effective_model, model_of, run_scene
 from tol3d.solids import display_mesh
 

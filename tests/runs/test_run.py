@@ -13,12 +13,11 @@ import numpy as np
 import pytest
 from places import SCENES, SPUR_PAIR
 
-from tol3d import InputError, Overrides, Run, RunError, open_run, replay, run_scene
+from tol3d import InputError, Overrides, Run, RunError, load_scene, open_run, replay, run_scene
 from tol3d.execution import folding
 from tol3d.execution.pools import Execution
 from tol3d.runs.run import DamageWarning
 from tol3d.runs.worst import worst_trial
-from tol3d.scene import load_scene
 from tol3d.simulate import Watch
 from tol3d.study import block as block_module
 

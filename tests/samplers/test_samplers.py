@@ -20,7 +20,7 @@ from loose_summaries import typed_run
 from places import ROOT
 from rich.console import Console
 
-from tol3d import SceneError
+from tol3d import Scene, SceneError, load_scene
 from tol3d.errors import InputError
 from tol3d.gearing.model import Model, Positions, model_from_scene
 from tol3d.gearing.stack_up import closed_form
@@ -29,7 +29,6 @@ from tol3d.samplers import LatinHypercube, MonteCarlo, Sampler, Sobol, Stream
 from tol3d.samplers.latin_hypercube import ROUNDS, permuted
 from tol3d.samplers.monte_carlo import random_words
 from tol3d.samplers.sobol import LinearPoints, plain_jumps
-from tol3d.scene import Scene, load_scene
 from tol3d.statistics import Moments
 from tol3d.study.block import Block, analytic_values, simulate_block
 from tol3d.study.draws import deviations, driver_angles

@@ -13,9 +13,9 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from places import SCENES
 
+from tol3d import load_scene
 from tol3d.errors import SceneError
 from tol3d.gearing.model import model_from_scene
-from tol3d.scene import load_scene
 from tol3d.scene.problems import MOST_PROBLEMS
 from tol3d.scene.text import MAX_BYTES, MAX_DEPTH
 
@@ -203,7 +203,7 @@ CHANGES = {
     ),
     "unknown kind of move": (
         ("kind: mesh", "kind: mash"),
-        "moves.gear pair.kind: expected one of mesh, bevel_mesh, reducer, train, got 'mash'; did you mean \"mesh\"?",
+        "moves.gear pair.kind: expected one of bevel_mesh, mesh, reducer, train, got 'mash'; did you mean \"mesh\"?",
     ),
     "missing kind": (
         ("{kind: rayleigh, scale", "{scale"),

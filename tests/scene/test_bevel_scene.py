@@ -5,10 +5,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from tol3d import Overrides, SceneError, run_scene
+from tol3d import Overrides, SceneError, load_scene, run_scene
 from tol3d.gearing.build import build
 from tol3d.gearing.model import Model, model_from_scene
-from tol3d.scene import load_scene
 from tol3d.simulate import effective_model
 
 SCENE = """

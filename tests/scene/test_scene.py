@@ -18,8 +18,8 @@ from places import ROOT
 from pydantic import BaseModel, ValidationError
 from ruamel.yaml import YAML
 
+from tol3d import Scene, load_scene
 from tol3d.errors import SceneError
-from tol3d.scene import Scene, load_scene
 from tol3d.scene.text import core_value
 
 SPUR_PAIR = ROOT / "scenes" / "spur_pair.yaml"
@@ -310,7 +310,8 @@ def test_a_scene_cannot_be_changed() -> None:
 
 
 def test_opening_a_scene_loads_no_heavy_library() -> None:
-    code = "import sys, tol3d.scene; print(*sorted({name.partition('.')[0] for name in sys.modules}))"
+    code = f"import sys, tol3d\ntol3d.load_scene({str(SPUR_PAIR)!r})\n"
+    code += "print(*{name.partition('.')[0] for name in sys.modules})"
     loaded = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, cwd=ROOT).stdout
     heavy = {"pint", "pandas", "cadquery", "trimesh", "fcl", "numba", "pyvista", "matplotlib"}
     assert heavy.isdisjoint(loaded.split())

@@ -8,8 +8,8 @@ from typing import Any
 import pytest
 from places import ROOT
 
+from tol3d import Scene
 from tol3d.gearing.engines import STATUS_TEXT
-from tol3d.scene import Scene
 from tol3d.units import FACTORS
 
 DOCS = (ROOT / "docs" / "scene.md").read_text("utf-8")

@@ -9,10 +9,13 @@ import pytest
 from places import ROOT
 from ruamel.yaml import YAML
 
+from tol3d import Scene, load_scene
 from tol3d.errors import SceneError
-from tol3d.gearing.grammar.parts import gears_on
-from tol3d.scene import Scene, load_scene
-from tol3d.scene.reference import SORT_WORDS, ShaftReference, sorts_text
+from tol3d.gearing.grammar.moves import GearMeshSpec, meshes_of
+from tol3d.gearing.grammar.parts import BearingSpec, GearSpec, ShaftSpec, gears_on
+from tol3d.gearing.grammar.parts.shaft_reference import ShaftReference
+from tol3d.kinds import all_kinds
+from tol3d.scene.reference import any_of
 
 DOCUMENT = (ROOT / "docs" / "scene.md").read_text(encoding="utf-8")
 SHOULDER = re.findall(r"```yaml\n(.*?)```", DOCUMENT, re.DOTALL)[2]
@@ -80,11 +83,8 @@ def test_defaults_of_trains_are_those_of_the_grammar(tmp_path: Path) -> None:
 
 def test_reducers_and_trains_hold_no_gears_of_the_scene(tmp_path: Path) -> None:
     scene = load(tmp_path, SHOULDER)
-    assert {name: move.gears for name, move in scene.moves.items() if not move.gears} == {
-        "planetary reducer": (),
-        "shoulder swing": (),
-    }
-    assert scene.meshes_of("wheel") == ("spur pair",)
+    assert scene.moves.keys() - scene.of(GearMeshSpec) == {"planetary reducer", "shoulder swing"}
+    assert meshes_of("wheel", scene.moves) == ("spur pair",)
 
 
 def test_a_tip_error_is_a_curve_and_other_measures_of_trains_are_values(tmp_path: Path) -> None:
@@ -126,11 +126,13 @@ def test_a_bearing_whose_direction_is_none_of_a_mesh_needs_no_mesh(direction: st
     assert load(tmp_path, text).tolerances["spline bearing clearance"].mesh is None
 
 
-def test_sorts_are_said_in_words() -> None:
-    assert sorts_text(("spur_gear", "bevel_gear", "shaft")) == "a gear or a shaft"
-    assert sorts_text(("spur_gear", "bevel_gear", "bearing")) == "a gear or a bearing"
+def test_kinds_are_said_in_words_that_tell_them_apart() -> None:
+    assert any_of((GearSpec, ShaftSpec)) == "a gear or a shaft"
+    assert any_of((GearSpec, BearingSpec)) == "a gear or a bearing"
+    assert any_of((GearMeshSpec,)) == "a mesh move"
     assert ShaftReference(("shaft",), "a").expected == "a shaft, or of a gear that none carries"
-    assert len(set(SORT_WORDS.values())) == len(SORT_WORDS)
+    kinds = {**all_kinds().kinds("parts"), **all_kinds().kinds("moves")}
+    assert len({spec.words for spec in kinds.values()} - {""}) == len(kinds)
 
 
 # what is wrong ------------------------------------------------------------------------------------

@@ -10,9 +10,9 @@ import numpy as np
 import pytest
 from places import SCENES
 
+from tol3d import load_scene
 from tol3d.gearing.engines.lazy import exact_engine
 from tol3d.gearing.model import Backlash, Model, Reading, ToothThickness, model_from_scene
-from tol3d.scene import load_scene
 from tol3d.study.block import drawn_block, simulate_block
 
 ALPHA = math.radians(20.0)

@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 from places import SPUR_PAIR
 
+from tol3d import load_scene
 from tol3d.gearing.build import build
 from tol3d.gearing.engines.exact.assembly import assembly_of
 from tol3d.gearing.model import Model, model_from_scene
 from tol3d.gears import SpurGear
-from tol3d.scene import load_scene
 from tol3d.simulate import Execution, run_scene
 from tol3d.solids import spur_cad
 from tol3d.solids.spur_cad import sample_flanks

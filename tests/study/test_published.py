@@ -11,10 +11,10 @@ from places import SCENES
 from pydantic import ValidationError
 from rich.console import Console, RenderableType
 
+from tol3d import load_scene
 from tol3d.analyses.compensation import CompensationQuestion, compensation
 from tol3d.report.compensation_table import worst_table
 from tol3d.report.table import run_report
-from tol3d.scene import load_scene
 from tol3d.scene.schema import PublishedMeasure
 from tol3d.simulate import Overrides, run_scene
 

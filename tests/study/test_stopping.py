@@ -10,10 +10,10 @@ import numpy as np
 import pytest
 from places import SCENES
 
+from tol3d import load_scene
 from tol3d.distributions.constant import Constant
 from tol3d.gearing.model import Model, Scalar, Until, model_from_scene
 from tol3d.gearing.stack_up import closed_form
-from tol3d.scene import load_scene
 from tol3d.study.block import Block, simulate_block
 from tol3d.study.draws import deviations, driver_angles
 from tol3d.study.stopping import enough, shortfalls

@@ -37,9 +37,10 @@ def scenes(
     out: Annotated[Path, typer.Option(help="Folder to copy into.")] = Path("."),
 ) -> None:
     """List the scenes that tol3d brings along, or copy one to start your own from."""
+    from tol3d.kinds import all_kinds
     from tol3d.scene.collection import copy_scene, scene_lines
 
-    for line in scene_lines() if copy is None else map(str, copy_scene(copy, out)):
+    for line in scene_lines(all_kinds()) if copy is None else map(str, copy_scene(copy, out, all_kinds())):
         tell(line)
     if copy is None:
         err_console.print("tol3d run NAME runs one; tol3d scenes --copy NAME puts its file here to start your own from")
@@ -59,9 +60,9 @@ def schema(
 
         described = default_kinds().run
     else:
-        from tol3d.scene import Scene
+        from tol3d.kinds import all_kinds
 
-        described = Scene
+        described = all_kinds().scene
     typer.echo(json.dumps(described.model_json_schema(), indent=2, ensure_ascii=False))
 
 

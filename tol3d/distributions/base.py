@@ -1,6 +1,7 @@
 """What every distribution of a deviation offers, and what every spec of one in a scene checks."""
 
 from abc import ABC, abstractmethod
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Self
 
@@ -87,6 +88,10 @@ class DistributionSpec(Strict, ABC):
         """Every dimensioned number that was given, by its field, for the tolerance to check."""
         values = {name: getattr(self, name) for name in type(self).model_fields}
         return {name: value for name, value in values.items() if isinstance(value, Quantity)}
+
+    def file_names(self) -> Iterator[tuple[str, str]]:
+        """Every file that the law reads, with the field that names it; most read none."""
+        return iter(())
 
     @abstractmethod
     def resolve(self, files: Files) -> Distribution:

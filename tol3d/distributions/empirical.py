@@ -105,6 +105,10 @@ class EmpiricalSpec(DistributionSpec):
         """One of the unit, under the field `unit`."""
         return {"unit": Quantity(1.0, self.unit.translate(MICRO_SIGNS))}
 
+    def file_names(self) -> Iterator[tuple[str, str]]:
+        """The CSV file."""
+        yield "file", self.file
+
     def resolve(self, files: Files) -> Empirical:
         """Read the column.
 

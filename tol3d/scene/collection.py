@@ -5,13 +5,14 @@ from pathlib import Path
 from tol3d.errors import InputError, unwritable
 from tol3d.files import FileContent
 from tol3d.scene.bundled import bundled_scenes
-from tol3d.scene.load import load_scene
+from tol3d.scene.grammar import Grammar
+from tol3d.scene.load import read_scene
 from tol3d.scene.nearest import hint
 
 
-def scene_lines() -> tuple[str, ...]:
+def scene_lines(grammar: Grammar) -> tuple[str, ...]:
     """A line for each bundled scene: the name to run it by, its own name, its description."""
-    scenes = {name: load_scene(path) for name, path in bundled_scenes().items()}
+    scenes = {name: read_scene(path, grammar) for name, path in bundled_scenes().items()}
     width = max(map(len, scenes))
     told = {
         name: ": ".join(part for part in (scene.scene, scene.description) if part) for name, scene in scenes.items()
@@ -19,7 +20,7 @@ def scene_lines() -> tuple[str, ...]:
     return tuple(f"{name:<{width}}  {text}" for name, text in told.items())
 
 
-def copy_scene(name: str, folder: Path) -> tuple[Path, ...]:
+def copy_scene(name: str, folder: Path, grammar: Grammar) -> tuple[Path, ...]:
     """Copy a bundled scene and the files that it names into a folder; nothing there is overwritten.
 
     Returns:
@@ -31,7 +32,7 @@ def copy_scene(name: str, folder: Path) -> tuple[Path, ...]:
     scenes = bundled_scenes()
     if name not in scenes:
         raise InputError(f"expected the name of a bundled scene, got {name!r}{hint(name, scenes)}")
-    scene = load_scene(scenes[name])
+    scene = read_scene(scenes[name], grammar)
     text = FileContent(scene.source, scene.source.read_bytes())
     copies = {folder / scenes[name].name: text} | {folder / own: file for own, file in scene.files.items()}
     there = next((path for path in copies if path.exists()), None)

@@ -10,10 +10,10 @@ from ruamel.yaml import YAML
 from ruamel.yaml.comments import CommentedMap
 
 from tol3d.errors import InputError, unwritable
-from tol3d.gearing.grammar.tolerances import ToleranceSpec
-from tol3d.scene.load import load_scene
+from tol3d.scene.load import read_scene
 from tol3d.scene.place import Origin
 from tol3d.scene.schema import Scene
+from tol3d.scene.tolerance import ToleranceSpec
 
 UNBROKEN: Final = 10_000  # characters; no entry is broken into lines where its author did not
 INDENT: Final = 2
@@ -51,7 +51,7 @@ def write_scene(scene: Scene, path: Path) -> None:
         raise InputError(f"{path}: expected the name of a new file, there is one already") from None
     except OSError as error:
         raise unwritable(path, error, "choose another file") from None
-    if load_scene(path, files=scene.files).model_dump() != scene.model_dump():
+    if read_scene(path, scene.grammar, files=scene.files).model_dump() != scene.model_dump():
         path.unlink()
         raise InputError(f"{path}: {scene.source} is written in a way that cannot be edited; paste the lines instead")
 

@@ -8,6 +8,7 @@ from pydantic import ValidationError
 from tol3d.errors import SceneError
 from tol3d.files import Files, read_file
 from tol3d.scene.bundled import scene_path
+from tol3d.scene.grammar import Grammar
 from tol3d.scene.place import Origin
 from tol3d.scene.problems import messages
 from tol3d.scene.references import loose_ends, refuse, unreadable_files
@@ -15,11 +16,12 @@ from tol3d.scene.schema import Scene
 from tol3d.scene.text import read_scene_text
 
 
-def load_scene(path: Path | str, *, trust_parts: bool = False, files: Files | None = None) -> Scene:
+def read_scene(path: Path | str, grammar: Grammar, *, trust_parts: bool = False, files: Files | None = None) -> Scene:
     """Read a scene and the files that it names; this runs none of it and builds no geometry.
 
     Args:
         path: the YAML file, or the name of a scene that tol3d brings along.
+        grammar: the kinds of entry that it may have.
         trust_parts: whether the scene may name files outside its own folder.
         files: the contents of the files that it names, where they are known; none is read then.
 
@@ -28,9 +30,9 @@ def load_scene(path: Path | str, *, trust_parts: bool = False, files: Files | No
     """
     data, origin = read_scene_text(scene_path(path))
     try:
-        scene = Scene.model_validate(data, context=origin)
+        scene = grammar.scene.model_validate(data, context=origin)
     except ValidationError as error:
-        raise SceneError(*messages(error, data, origin)) from None
+        raise SceneError(*messages(error, data, origin, grammar)) from None
     return _with_files(scene, origin, trust_parts, files)
 
 

@@ -1,23 +1,13 @@
 """What every kind of assembly move has in common."""
 
-from abc import ABC, abstractmethod
-from typing import ClassVar
+from abc import abstractmethod
 
-from tol3d.scene.reference import Reference, Sort
-from tol3d.strict import Strict
+from tol3d.scene.entry import Entry
+from tol3d.scene.reference import Reference
 
 
-class MoveSpec(Strict, ABC):
+class MoveSpec(Entry):
     """An assembly step as a scene writes it."""
-
-    sort: ClassVar[Sort]
-
-    kind: str
-
-    @property
-    @abstractmethod
-    def gears(self) -> tuple[str, ...]:
-        """Names of the gears that take part, the driver first."""
 
     @abstractmethod
     def references(self) -> tuple[Reference, ...]:

@@ -2,38 +2,34 @@
 
 import re
 from collections.abc import Callable, Mapping
-from typing import Any, Final, get_args
+from typing import Any, Final
 
 from pydantic import ValidationError
 from pydantic_core import ErrorDetails
 
-from tol3d.gearing.grammar.tolerances import ToleranceSpec, ToleranceUnion
+from tol3d.scene.grammar import Grammar
 from tol3d.scene.nearest import hint, nearest
 from tol3d.scene.place import KeyPath, Origin, key_text
+from tol3d.scene.tolerance import ToleranceSpec
 from tol3d.units import EXAMPLES, FACTORS, Dimension, expectation, shown
 
 MOST_PROBLEMS = 8  # what a screen shows and a person mends in one go
 QUOTED_WORD = re.compile(r"'((?:[^'\\]|\\.)*)'")
 
-TOLERANCE_DIMENSIONS: Final[dict[str, tuple[Dimension, ...]]] = {
-    get_args(spec.model_fields["kind"].annotation)[0]: spec.dimensions
-    for spec in get_args(get_args(ToleranceUnion)[0])
-    if issubclass(spec, ToleranceSpec)
-}
-"""What the quantities of a distribution measure, by the kind of the tolerance that holds it."""
 
-
-def messages(error: ValidationError, data: Mapping[str, Any], origin: Origin) -> list[str]:
+def messages(error: ValidationError, data: Mapping[str, Any], origin: Origin, grammar: Grammar) -> list[str]:
     """One message for each problem, in the order of the file, at most MOST_PROBLEMS of them.
 
     Args:
         error: pydantic's findings.
         data: the plain values that it was given.
         origin: where they stand.
+        grammar: the kinds that they may be of.
     """
     found: dict[str, int] = {}
     for details in error.errors(include_url=False):
-        path, sentence = _path(details["loc"], data), _sentence(details)
+        path = _path(details["loc"], data)
+        sentence = _sentence(details, _dimensions(path, data, grammar))
         context = details.get("ctx", {})
         if details["type"] == "unknown_key":
             path = (*path, context["key"])
@@ -71,15 +67,22 @@ def _path(loc: tuple[int | str, ...], data: Any) -> KeyPath:
     return tuple(path)
 
 
-def _dimensions(loc: tuple[int | str, ...]) -> tuple[Dimension, ...]:
-    """What a quantity of a distribution should measure: the tolerance's kind stands third in its location."""
-    return TOLERANCE_DIMENSIONS.get(str(loc[2]), ()) if len(loc) > 3 and loc[0] == "tolerances" else ()
+def _dimensions(path: KeyPath, data: Mapping[str, Any], grammar: Grammar) -> tuple[Dimension, ...]:
+    """What the quantities of a distribution measure, by the kind of the tolerance that holds it."""
+    if len(path) < 2 or path[0] != "tolerances":
+        return ()
+    tolerance = data["tolerances"][path[1]]
+    kind = tolerance.get("kind") if isinstance(tolerance, dict) else None
+    spec = grammar.kinds("tolerances").get(kind) if isinstance(kind, str) else None
+    return spec.dimensions if spec is not None and issubclass(spec, ToleranceSpec) else ()
 
 
 # sentences ----------------------------------------------------------------------------------------
 
 
-def _sentence(details: ErrorDetails) -> str:
+def _sentence(details: ErrorDetails, dimensions: tuple[Dimension, ...]) -> str:
+    if details["type"] == "quantity":
+        return _quantity(details, dimensions)
     return SENTENCES.get(details["type"], _unexpected)(details)
 
 
@@ -124,9 +127,9 @@ def _word_expected(value: object, known: list[str]) -> str:
     return f"expected {listed}, got {shown(value)}{nearest(value, known) if isinstance(value, str) else ''}"
 
 
-def _quantity(details: ErrorDetails) -> str:
+def _quantity(details: ErrorDetails, of_law: tuple[Dimension, ...]) -> str:
     context = details["ctx"]
-    dimensions = context["expected"] or _dimensions(details["loc"])
+    dimensions = context["expected"] or of_law
     expected = expectation(*dimensions) if dimensions else f'a number with its unit, such as "{EXAMPLES["length"]}"'
     advice = ""
     if "unknown unit" in context["reason"]:
@@ -162,7 +165,6 @@ _whole_number = _got("a whole number")
 
 SENTENCES: Final[dict[str, Callable[[ErrorDetails], str]]] = {
     "unknown_key": _unknown_key,
-    "quantity": _quantity,
     "wrong_dimension": _wrong_dimension,
     "value_refused": _refused,
     "missing": _missing,

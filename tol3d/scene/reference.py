@@ -1,49 +1,32 @@
-"""What one entry of a scene says about another: a name that must exist, and be of the right sort."""
+"""What one entry of a scene says about another: a name that must exist, and be of the right kind."""
 
-from collections.abc import Collection
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass
-from typing import Final, Literal
+from typing import TYPE_CHECKING
 
 from tol3d.scene.place import KeyPath
 
-Sort = Literal[
-    "spur_gear", "bevel_gear", "housing", "shaft", "bearing", "arm", "mesh", "bevel_mesh", "reducer", "train"
-]
-
-SORT_WORDS: Final[dict[Sort, str]] = {
-    "spur_gear": "a spur gear",
-    "bevel_gear": "a bevel gear",
-    "housing": "a housing",
-    "shaft": "a shaft",
-    "bearing": "a bearing",
-    "arm": "an arm",
-    "mesh": "a mesh of spur gears",
-    "bevel_mesh": "a bevel mesh",
-    "reducer": "a reducer",
-    "train": "a train",
-}
-
-SHAFTS: Final[tuple[Sort, ...]] = ("shaft", "spur_gear", "bevel_gear")
+if TYPE_CHECKING:
+    from tol3d.scene.entry import Entry
+    from tol3d.scene.part import PartSpec
 
 
-TOGETHER: Final[dict[frozenset[Sort], str]] = {
-    frozenset(("spur_gear", "bevel_gear")): "a gear",
-    frozenset(("mesh", "bevel_mesh")): "a mesh move",
-}
+def any_of(specs: "Collection[type[Entry]]") -> str:
+    """What may stand there, in words: "a gear or a housing"."""
+    return " or ".join(spec.words for spec in specs)
 
 
-def sorts_text(sorts: Collection[Sort]) -> str:
-    """What may stand there, in words.
+@dataclass(frozen=True)
+class Taken:
+    """Why an entry of the right kind will not do.
 
-    >>> sorts_text(("spur_gear", "bevel_gear", "housing"))
-    'a gear or a housing'
+    Args:
+        why: what follows its name in the message, such as "which 'shaft' carries".
+        instead: the name that would do.
     """
-    left, words = set(sorts), []
-    for several, word in TOGETHER.items():
-        if several <= left:
-            words.append(word)
-            left -= several
-    return " or ".join([*words, *(SORT_WORDS[sort] for sort in sorts if sort in left)])
+
+    why: str
+    instead: str
 
 
 @dataclass(frozen=True)
@@ -53,29 +36,22 @@ class Reference:
     Args:
         path: the field that holds it, from the entry on.
         name: the name.
-        sorts: what it may be the name of.
+        specs: what it may be the name of: kinds, or what several kinds have in common.
     """
 
     path: KeyPath
     name: str
-    sorts: tuple[Sort, ...]
+    specs: "tuple[type[Entry], ...]"
 
     @property
     def expected(self) -> str:
         """What it may be the name of, in words."""
-        return sorts_text(self.sorts)
+        return any_of(self.specs)
 
-
-@dataclass(frozen=True)
-class ShaftReference(Reference):
-    """The name of what turns as one: a shaft, or a gear that is its own because none carries it."""
-
-    sorts: tuple[Sort, ...] = SHAFTS
-
-    @property
-    def expected(self) -> str:
-        """As of any reference."""
-        return "a shaft, or of a gear that none carries"
+    @classmethod
+    def taken(cls, parts: "Mapping[str, PartSpec]") -> Mapping[str, Taken]:
+        """Parts that such a reference may not name though their kind would do."""
+        return {}
 
 
 @dataclass(frozen=True)

@@ -1,22 +1,17 @@
 """Names across a scene: each given once, each use of one existing and of the right sort."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from stat import S_ISREG
-from typing import Final
 
-from tol3d.distributions.empirical import EmpiricalSpec
 from tol3d.errors import SceneError
-from tol3d.gearing.grammar.parts import ShaftSpec
+from tol3d.scene.entry import Entry
 from tol3d.scene.nearest import hint
 from tol3d.scene.place import KeyPath
 from tol3d.scene.problems import first_few
-from tol3d.scene.reference import SORT_WORDS, Contradiction, Reference, ShaftReference
-from tol3d.scene.schema import Scene
+from tol3d.scene.reference import Reference, Taken
+from tol3d.scene.schema import SECTIONS, Scene
 from tol3d.units import expectation, shown
-
-SECTIONS: Final = ("parts", "tolerances", "moves", "measures")
-
 
 Problem = tuple[KeyPath, str]
 
@@ -34,24 +29,26 @@ def refuse(scene: Scene, problems: list[Problem]) -> None:
 
 def loose_ends(scene: Scene) -> list[Problem]:
     """What does not hold together in a scene that is right field by field: names first, then what they mean."""
-    problems = list(_repeated(scene)) or list(_unknown(scene)) or [*_carried_again(scene), *_contradicted(scene)]
+    problems = list(_repeated(scene)) or list(_unknown(scene))
+    if not problems:
+        problems = [*scene.grammar.problems(scene), *_contradicted(scene)]
     return [*problems, *_unpublished(scene), *_unstoppable(scene)]
 
 
 def unreadable_files(scene: Scene, trust_parts: bool) -> list[Problem]:
     """Files of a scene that are not there, or lie outside its folder without being trusted."""
     return [
-        (("tolerances", name, "distribution", "file"), sentence)
-        for name, tolerance in scene.tolerances.items()
-        if isinstance(law := tolerance.distribution, EmpiricalSpec)
-        and (sentence := _file_problem(scene.folder, law.file, trust_parts))
+        ((*path, *field), sentence)
+        for path, entry in scene.entries().items()
+        for field, file in entry.file_names()
+        if (sentence := _file_problem(scene.folder, file, trust_parts))
     ]
 
 
 def _repeated(scene: Scene) -> Iterator[Problem]:
     first: dict[str, KeyPath] = {}
     for section in SECTIONS:
-        for name in getattr(scene, section):
+        for name in scene.section(section):
             here: KeyPath = (section, name)
             if name in first:
                 there = f"{first[name][0]} (line {scene.place(first[name]).line})"
@@ -61,57 +58,42 @@ def _repeated(scene: Scene) -> Iterator[Problem]:
 
 
 def _references(scene: Scene) -> Iterator[tuple[KeyPath, Reference]]:
-    for section in SECTIONS:
-        for name, entry in getattr(scene, section).items():
-            for reference in entry.references():
-                yield (section, name, *reference.path), reference
+    for path, entry in scene.entries().items():
+        for reference in entry.references():
+            yield (*path, *reference.path), reference
 
 
 def _unknown(scene: Scene) -> Iterator[Problem]:
-    sorts = {name: entry.sort for entries in (scene.parts, scene.moves) for name, entry in entries.items()}
-    carriers = {gear: shaft for shaft, gear in _carried(scene)}
+    entries = scene.of(Entry)
+    taken: dict[type[Reference], Mapping[str, Taken]] = {}
     for path, reference in _references(scene):
-        carried = carriers if isinstance(reference, ShaftReference) else {}
-        if sorts.get(reference.name) in reference.sorts and reference.name not in carried:
+        if type(reference) not in taken:
+            taken[type(reference)] = reference.taken(scene.parts)
+        unfit = taken[type(reference)]
+        if isinstance(entries.get(reference.name), reference.specs) and reference.name not in unfit:
             continue
-        fitting = [name for name, sort in sorts.items() if sort in reference.sorts and name not in carried]
-        section = next((s for s in SECTIONS if reference.name in getattr(scene, s)), None)
-        if reference.name in carried:
-            fitting = [carried[reference.name]]
-            got = f"{reference.name!r}, which {fitting[0]!r} carries"
-        elif reference.name in sorts:
-            got = f"{reference.name!r}, which is {SORT_WORDS[sorts[reference.name]]}"
-        elif section is not None:
-            got = f"{reference.name!r}, which stands in {section}"
+        fitting = [name for name, entry in entries.items() if isinstance(entry, reference.specs) and name not in unfit]
+        got = repr(reference.name)
+        if reference.name in unfit:
+            fitting = [unfit[reference.name].instead]
+            got = f"{got}, {unfit[reference.name].why}"
         else:
-            got = f"{reference.name!r}, which is not in the scene"
+            got = f"{got}, which {_found(scene, reference.name)}"
         yield path, f"expected the name of {reference.expected}, got {got}{hint(reference.name, fitting)}"
 
 
-def _carried(scene: Scene) -> Iterator[tuple[str, str]]:
-    """Every shaft with every gear that it carries."""
-    for name, part in scene.parts.items():
-        if isinstance(part, ShaftSpec):
-            yield from ((name, gear) for gear in part.carries)
-
-
-def _carried_again(scene: Scene) -> Iterator[Problem]:
-    """Gears that a shaft above carries too."""
-    first: dict[str, str] = {}
-    for shaft, gear in _carried(scene):
-        if (other := first.setdefault(gear, shaft)) != shaft:
-            path: KeyPath = ("parts", shaft, "carries", gear)
-            yield path, f"expected a gear that no other shaft carries, got {gear!r}, which {other!r} carries"
+def _found(scene: Scene, name: str) -> str:
+    """What there is of a name."""
+    section = next((section for section in SECTIONS if name in scene.section(section)), None)
+    if section is None:
+        return "is not in the scene"
+    words = scene.section(section)[name].words
+    return f"is {words}" if words else f"stands in {section}"
 
 
 def _contradicted(scene: Scene) -> Iterator[Problem]:
-    parts, moves = scene.parts, scene.moves
-    found: list[tuple[str, str, Iterator[Contradiction]]] = [
-        *(("tolerances", name, entry.contradictions(parts, moves)) for name, entry in scene.tolerances.items()),
-        *(("measures", name, entry.contradictions(parts, moves)) for name, entry in scene.measures.items()),
-    ]
-    for section, name, contradictions in found:
-        for it in contradictions:
+    for (section, name), entry in scene.entries().items():
+        for it in entry.contradictions(scene.parts, scene.moves):
             near = hint(it.got.strip("'"), it.known)
             yield (section, name, *it.path), f"expected {it.expected}, got {it.got}{near}"
 
@@ -146,7 +128,7 @@ def _unstoppable(scene: Scene) -> Iterator[Problem]:
         if measure is None:
             yield path, f"expected the name of a measure, got {name!r}{hint(name, scene.measures)}"
             continue
-        if measure.take == "curve":
+        if measure.gives_curve:
             yield path, f"expected a measure of one value a trial, got {name!r}, which takes a curve"
         for field, quantity in errors.quantities().items():
             if quantity.dimension != measure.dimension:

@@ -4,23 +4,28 @@ from collections.abc import Mapping
 from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
-from typing import Annotated, Any, Literal, Self
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Final, Literal, Self, TypeVar
 
 from pydantic import BeforeValidator, Discriminator, Field, PrivateAttr, Tag, model_validator
 
-from tol3d.distributions.empirical import EmpiricalSpec
 from tol3d.errors import SceneError
 from tol3d.files import Files
-from tol3d.gearing.grammar.measures import MeasureUnion
-from tol3d.gearing.grammar.moves import MoveUnion
-from tol3d.gearing.grammar.parts import PartUnion
-from tol3d.gearing.grammar.tolerances import ToleranceUnion
 from tol3d.samplers.replicates import REPLICATES, SamplerKind, uneven
+from tol3d.scene.entry import Entry
+from tol3d.scene.measure import MeasureSpec
+from tol3d.scene.move import MoveSpec
 from tol3d.scene.name import Name, Remark
 from tol3d.scene.nearest import nearest
+from tol3d.scene.part import PartSpec
 from tol3d.scene.place import KeyPath, Origin, Place
+from tol3d.scene.tolerance import ToleranceSpec
 from tol3d.strict import Strict, refused
 from tol3d.units import Positive, Quantity, shown
+
+if TYPE_CHECKING:
+    from tol3d.scene.grammar import Grammar
+
+SECTIONS: Final = ("parts", "tolerances", "moves", "measures")
 
 MOST_TRIALS = 10**10
 MOST_SEED = 2**63 - 1  # a signed 64-bit integer, which every file format keeps
@@ -34,6 +39,8 @@ NO_WITNESS = {
     "fcl": "none for fcl, which is the witness itself; an exact study may have one",
     "analytic": "none for analytic, which has no 3D simulation to check; an exact study may have one",
 }
+
+E = TypeVar("E", bound=Entry)
 
 Percent = Annotated[float, Field(ge=0.0, le=100.0)]
 
@@ -181,16 +188,18 @@ class PublishedMeasure(Strict):
 class Scene(Strict):
     """A scene: parts, their tolerances, how they are assembled, what is measured, and the study.
 
-    `tol3d.scene.load_scene` makes one from a file, and checks the names that entries use of each
-    other. Entries keep the order of the file.
+    `tol3d.load_scene` makes one from a file, and checks the names that entries use of each other. Entries keep the
+    order of the file.
     """
+
+    grammar: ClassVar["Grammar"]  # of the subclass that validates: a grammar makes one that knows its kinds
 
     scene: Name = Field(description="the scene's name")
     description: str = Field(default="", description="the user's own words, shown in reports")
-    parts: Mapping[Name, PartUnion] = Field(min_length=1)
-    tolerances: Mapping[Name, ToleranceUnion] = Field(default_factory=dict)
-    moves: Mapping[Name, MoveUnion] = Field(min_length=1)
-    measures: Mapping[Name, MeasureUnion] = Field(min_length=1)
+    parts: Mapping[Name, PartSpec] = Field(min_length=1)
+    tolerances: Mapping[Name, ToleranceSpec] = Field(default_factory=dict)
+    moves: Mapping[Name, MoveSpec] = Field(min_length=1)
+    measures: Mapping[Name, MeasureSpec] = Field(min_length=1)
     study: Study = Field(default_factory=Study)
     published: Mapping[Name, Mapping[Name, PublishedMeasure]] = Field(
         default_factory=dict, description="columns of others, shown beside ours: column, measure, values"
@@ -230,8 +239,7 @@ class Scene(Strict):
     @property
     def file_names(self) -> tuple[str, ...]:
         """Every file that the scene names, as written there."""
-        laws = (tolerance.distribution for tolerance in self.tolerances.values())
-        return tuple(dict.fromkeys(law.file for law in laws if isinstance(law, EmpiricalSpec)))
+        return tuple(dict.fromkeys(name for entry in self.entries().values() for _, name in entry.file_names()))
 
     @property
     def files(self) -> Files:
@@ -251,10 +259,28 @@ class Scene(Strict):
             copied._origin = replace(self._origin, text="")
         return copied
 
-    def meshes_of(self, gear: str) -> tuple[str, ...]:
-        """Names of the moves in which a gear takes part."""
-        return tuple(name for name, move in self.moves.items() if gear in move.gears)
+    def section(self, name: str) -> Mapping[str, Entry]:
+        """The entries of one of SECTIONS, by their names."""
+        entries: Mapping[str, Entry] = getattr(self, name)
+        return entries
+
+    def entries(self) -> dict[KeyPath, Entry]:
+        """The entries of all sections, by section and name."""
+        return {(section, name): entry for section in SECTIONS for name, entry in self.section(section).items()}
+
+    def of(self, spec: type[E]) -> dict[str, E]:
+        """The entries of a kind, or of several that have a class in common, by their names."""
+        return {str(name): entry for (_, name), entry in self.entries().items() if isinstance(entry, spec)}
 
     def refuse(self, path: KeyPath, sentence: str) -> SceneError:
         """The error to raise with a finished sentence, such as that of a GeometryError."""
         return self._origin.error(path, sentence)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Pickled by its grammar: the class is made anew where it is read."""
+        return _blank, (self.grammar,), self.__getstate__()
+
+
+def _blank(grammar: "Grammar") -> Scene:
+    """A scene without anything in it yet, for pickle."""
+    return grammar.scene.__new__(grammar.scene)

@@ -1,25 +1,23 @@
 """What every kind of tolerance has in common."""
 
-from abc import ABC, abstractmethod
-from collections.abc import Iterator, Mapping
+from abc import abstractmethod
+from collections.abc import Iterator
 from typing import ClassVar, Self
 
 from pydantic import Field, model_validator
 
 from tol3d.distributions import DistributionUnion
-from tol3d.scene.move import MoveSpec
-from tol3d.scene.part import PartSpec
-from tol3d.scene.reference import Contradiction, Reference
-from tol3d.strict import Strict
+from tol3d.scene.entry import Entry
+from tol3d.scene.place import KeyPath
+from tol3d.scene.reference import Reference
 from tol3d.units import Dimension, refuse_dimension
 
 
-class ToleranceSpec(Strict, ABC):
+class ToleranceSpec(Entry):
     """A tolerance (a contributor) as a scene writes it: one deviation and its distribution."""
 
     dimensions: ClassVar[tuple[Dimension, ...]] = ("length",)
 
-    kind: str
     distribution: DistributionUnion = Field(description="the law of the deviation")
     description: str = Field(default="", description="the user's own words, shown in reports")
 
@@ -27,9 +25,9 @@ class ToleranceSpec(Strict, ABC):
     def references(self) -> tuple[Reference, ...]:
         """Every name that the tolerance uses."""
 
-    def contradictions(self, parts: Mapping[str, PartSpec], moves: Mapping[str, MoveSpec]) -> Iterator[Contradiction]:
-        """What does not fit the parts and moves that it names; asked only when every name exists."""
-        return iter(())
+    def file_names(self) -> Iterator[tuple[KeyPath, str]]:
+        """Those that its law reads."""
+        return ((("distribution", field), name) for field, name in self.distribution.file_names())
 
     @model_validator(mode="after")
     def _refuse_other_dimensions(self) -> Self:

@@ -10,7 +10,8 @@ from pydantic import ValidationError
 from tol3d.errors import InputError, SceneError
 from tol3d.gearing.model import Backlash, LostMotion, Measure, Model, model_from_scene
 from tol3d.gearing.model.measure import ParallelStage
-from tol3d.scene import Scene, load_scene, scene_from_python
+from tol3d.kinds import load_scene
+from tol3d.scene import Scene, scene_from_python
 from tol3d.study.block import analytic_backlashes, analytic_play, mean_block, nominal_block
 
 ZERO_BACKLASH = 1e-9  # mm or rad; nominal backlash zero is legal, and closed forms round to 1e-14

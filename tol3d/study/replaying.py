@@ -9,8 +9,8 @@ from typing import Any
 from tol3d.errors import InputError
 from tol3d.gearing.engines.lazy import exact_engine
 from tol3d.gearing.model import Model, Study, Until, model_from_scene
+from tol3d.kinds import load_scene
 from tol3d.runs.run import Run, differences, open_run
-from tol3d.scene import load_scene
 from tol3d.study.block import Block, Seats, drawn_block, seat_block, simulate_block
 from tol3d.study.task import engine_of, installed_versions, strips_for
 

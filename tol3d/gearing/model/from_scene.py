@@ -4,7 +4,7 @@ from collections.abc import Iterator
 from dataclasses import replace
 
 from tol3d.errors import SceneError
-from tol3d.gearing.grammar.moves import GearMeshSpec
+from tol3d.gearing.grammar.moves import GearMeshSpec, meshes_of
 from tol3d.gearing.grammar.parts import GearSpec, HousingSpec
 from tol3d.gearing.model.layout import Layout, layout_of
 from tol3d.gearing.model.links import links_between_shafts, links_of
@@ -131,7 +131,7 @@ def _loaded(scene: Scene, mesh: Mesh, trains: tuple[Train, ...], layout: Layout,
 def _gears(scene: Scene, meshes: dict[str, Mesh]) -> Iterator[GearPart]:
     for name, part in scene.parts.items():
         if isinstance(part, GearSpec):
-            first, *others = scene.meshes_of(name)
+            first, *others = meshes_of(name, scene.moves)
             gear = meshes[first].gear(name)
             for other in others:
                 if meshes[other].gear(name) != gear:

@@ -19,6 +19,7 @@ from tol3d.gearing.effects import (
     ToothThickness,
     TurningOffset,
 )
+from tol3d.gearing.grammar.moves import meshes_of
 from tol3d.gearing.grammar.parts import BearingSpec, ShaftSpec
 from tol3d.gearing.grammar.tolerances import (
     AxesOffsetSpec,
@@ -99,7 +100,7 @@ class Tolerances:
         )
 
     def _mesh_of(self, gear: str, mesh: str | None = None) -> Mesh:
-        return self.meshes[mesh or self.scene.meshes_of(gear)[0]]
+        return self.meshes[mesh or meshes_of(gear, self.scene.moves)[0]]
 
     @singledispatchmethod
     def _effect(self, spec: ToleranceSpec) -> Effect | _Directed:

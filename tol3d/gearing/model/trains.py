@@ -7,7 +7,7 @@ from fractions import Fraction
 import numpy as np
 
 from tol3d.errors import GeometryError, SceneError
-from tol3d.gearing.grammar.moves import GearMeshSpec, ReducerSpec, TrainSpec
+from tol3d.gearing.grammar.moves import GearMeshSpec, ReducerSpec, TrainSpec, meshes_of
 from tol3d.gearing.grammar.parts import ArmSpec, BearingSpec, GearSpec, ShaftSpec
 from tol3d.gearing.grammar.tolerances import ReducerBacklashSpec
 from tol3d.gearing.model.layout import Layout, misfit
@@ -285,7 +285,7 @@ def refuse_midst(scene: Scene, path: KeyPath, layout: Layout, first: str, last: 
 def loose_gears(scene: Scene) -> Iterator[str]:
     """Gears that take part in no mesh."""
     for name, part in scene.parts.items():
-        if isinstance(part, GearSpec) and not scene.meshes_of(name):
+        if isinstance(part, GearSpec) and not meshes_of(name, scene.moves):
             yield name
 
 

@@ -1,9 +1,5 @@
 """Kinds of measure, one file each."""
 
-from typing import Annotated
-
-from pydantic import Field
-
 from tol3d.gearing.grammar.measures.angular_backlash import AngularBacklashSpec
 from tol3d.gearing.grammar.measures.circumferential_backlash import CircumferentialBacklashSpec
 from tol3d.gearing.grammar.measures.flank_measure import FlankMeasureSpec
@@ -16,23 +12,12 @@ from tol3d.gearing.grammar.measures.tip_measure import TipMeasureSpec
 from tol3d.gearing.grammar.measures.train_measure import TrainMeasureSpec
 from tol3d.scene.measure import MeasureSpec
 
-MeasureUnion = Annotated[
-    NormalBacklashSpec
-    | CircumferentialBacklashSpec
-    | AngularBacklashSpec
-    | LostMotionSpec
-    | TipDisplacementSpec
-    | TipErrorSpec,
-    Field(discriminator="kind"),
-]
-
 __all__ = [
     "AngularBacklashSpec",
     "CircumferentialBacklashSpec",
     "FlankMeasureSpec",
     "LostMotionSpec",
     "MeasureSpec",
-    "MeasureUnion",
     "MeshMeasureSpec",
     "NormalBacklashSpec",
     "TipDisplacementSpec",

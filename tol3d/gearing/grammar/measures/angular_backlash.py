@@ -6,10 +6,12 @@ from typing import ClassVar, Literal
 from pydantic import Field
 
 from tol3d.gearing.grammar.measures.mesh_measure import MeshMeasureSpec
-from tol3d.gearing.grammar.moves import MoveSpec
-from tol3d.gearing.grammar.parts import GEARS, PartSpec
+from tol3d.gearing.grammar.moves import GearMeshSpec
+from tol3d.gearing.grammar.parts import GearSpec
 from tol3d.scene.measure import AngleLimit
+from tol3d.scene.move import MoveSpec
 from tol3d.scene.name import Name
+from tol3d.scene.part import PartSpec
 from tol3d.scene.reference import Contradiction, Reference
 from tol3d.units import Dimension
 
@@ -27,10 +29,10 @@ class AngularBacklashSpec(MeshMeasureSpec):
     def references(self) -> tuple[Reference, ...]:
         """The mesh, and the gear if it is given."""
         mesh = super().references()
-        return mesh if self.gear is None else (*mesh, Reference(("gear",), self.gear, GEARS))
+        return mesh if self.gear is None else (*mesh, Reference(("gear",), self.gear, (GearSpec,)))
 
     def contradictions(self, parts: Mapping[str, PartSpec], moves: Mapping[str, MoveSpec]) -> Iterator[Contradiction]:
         """The gear takes part in the mesh."""
-        gears = moves[self.of].gears
-        if self.gear is not None and self.gear not in gears:
-            yield Contradiction(("gear",), f"a gear of the mesh {self.of!r}", repr(self.gear), gears)
+        mesh = moves[self.of]
+        if isinstance(mesh, GearMeshSpec) and self.gear is not None and self.gear not in mesh.gears:
+            yield Contradiction(("gear",), f"a gear of the mesh {self.of!r}", repr(self.gear), mesh.gears)

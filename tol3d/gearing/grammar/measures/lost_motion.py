@@ -5,10 +5,11 @@ from typing import ClassVar, Literal
 from pydantic import Field
 
 from tol3d.gearing.grammar.measures.train_measure import TrainMeasureSpec
+from tol3d.gearing.grammar.parts.shaft_reference import ShaftReference
 from tol3d.scene.direction import RandomOrFixed
 from tol3d.scene.measure import AngleLimit
 from tol3d.scene.name import Name
-from tol3d.scene.reference import Reference, ShaftReference
+from tol3d.scene.reference import Reference
 from tol3d.units import Dimension
 
 

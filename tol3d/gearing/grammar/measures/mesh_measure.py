@@ -5,7 +5,7 @@ from typing import Annotated, Literal, Self
 from pydantic import Discriminator, Field, Tag, model_validator
 
 from tol3d.gearing.grammar.measures.flank_measure import FlankMeasureSpec
-from tol3d.gearing.grammar.moves import MESHES
+from tol3d.gearing.grammar.moves import GearMeshSpec
 from tol3d.scene.direction import At, FixedAngle, known_word, shape
 from tol3d.scene.measure import MOST_POSITIONS, Take
 from tol3d.scene.name import Name
@@ -39,13 +39,18 @@ class MeshMeasureSpec(FlankMeasureSpec):
     )
 
     @property
+    def gives_curve(self) -> bool:
+        """Whether a trial gives a value at every position instead of one."""
+        return self.take == "curve"
+
+    @property
     def several_positions(self) -> bool:
         """Whether a trial is read at several positions."""
         return self.over in ("turn", "long_period")
 
     def references(self) -> tuple[Reference, ...]:
         """The mesh."""
-        return (Reference(("of",), self.of, MESHES),)
+        return (Reference(("of",), self.of, (GearMeshSpec,)),)
 
     @model_validator(mode="after")
     def _refuse_take_without_over(self) -> Self:

@@ -26,7 +26,7 @@ class TipMeasureSpec(TrainMeasureSpec):
 
     def references(self) -> tuple[Reference, ...]:
         """The train and the arm."""
-        return (*super().references(), Reference(("arm",), self.arm, ("arm",)))
+        return (*super().references(), Reference(("arm",), self.arm, (ArmSpec,)))
 
     def contradictions(self, parts: Mapping[str, PartSpec], moves: Mapping[str, MoveSpec]) -> Iterator[Contradiction]:
         """The arm has the point."""

@@ -5,7 +5,7 @@ from typing import Annotated, ClassVar, Literal
 from pydantic import Field
 
 from tol3d.gearing.grammar.moves.gear_mesh import GearMeshSpec
-from tol3d.scene.reference import Sort
+from tol3d.gearing.grammar.parts import BevelGearSpec, GearSpec
 from tol3d.units import Of, Positive, Quantity
 
 
@@ -15,8 +15,8 @@ class BevelMeshSpec(GearMeshSpec):
     Each gear's own z points from the apex to its heel; both see the mesh at azimuth 0.
     """
 
-    sort: ClassVar[Sort] = "bevel_mesh"
-    gear_sort: ClassVar[Sort] = "bevel_gear"
+    words: ClassVar[str] = "a bevel mesh"
+    gear_spec: ClassVar[type[GearSpec]] = BevelGearSpec
 
     kind: Literal["bevel_mesh"]
     shaft_angle: Annotated[Quantity, Of("angle"), Positive()] = Field(

@@ -1,17 +1,16 @@
 """What every mesh of two gears has in common."""
 
-from collections.abc import Iterator
-from typing import Annotated, ClassVar, Final, Literal, Self
+from collections.abc import Iterator, Mapping
+from typing import Annotated, ClassVar, Literal, Self
 
 from pydantic import Field, model_validator
 
+from tol3d.gearing.grammar.parts import GearSpec
 from tol3d.scene.move import MoveSpec
 from tol3d.scene.name import Name
-from tol3d.scene.reference import Reference, Sort
+from tol3d.scene.reference import Reference
 from tol3d.strict import refused
 from tol3d.units import Of, Quantity
-
-MESHES: Final[tuple[Sort, ...]] = ("mesh", "bevel_mesh")
 
 
 class GearMeshSpec(MoveSpec):
@@ -21,7 +20,8 @@ class GearMeshSpec(MoveSpec):
     pushes with its left one.
     """
 
-    gear_sort: ClassVar[Sort]
+    words: ClassVar[str] = "a mesh move"
+    gear_spec: ClassVar[type[GearSpec]]
 
     driver: Name = Field(description="the gear that is held")
     driven: Name = Field(description="the gear that turns into contact")
@@ -54,4 +54,9 @@ class GearMeshSpec(MoveSpec):
 
     def _gears(self) -> Iterator[Reference]:
         for field in ("driver", "driven"):
-            yield Reference((field,), getattr(self, field), (self.gear_sort,))
+            yield Reference((field,), getattr(self, field), (self.gear_spec,))
+
+
+def meshes_of(gear: str, moves: Mapping[str, MoveSpec]) -> tuple[str, ...]:
+    """Names of the meshes in which a gear takes part."""
+    return tuple(name for name, move in moves.items() if isinstance(move, GearMeshSpec) and gear in move.gears)

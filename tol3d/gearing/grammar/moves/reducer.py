@@ -5,9 +5,10 @@ from typing import Annotated, ClassVar, Literal, Self
 from pydantic import AfterValidator, Field, model_validator
 
 from tol3d.gearing.grammar.moves.ratio import Ratio
+from tol3d.gearing.grammar.parts.shaft_reference import ShaftReference
 from tol3d.scene.move import MoveSpec
 from tol3d.scene.name import Name
-from tol3d.scene.reference import Reference, ShaftReference, Sort
+from tol3d.scene.reference import Reference
 from tol3d.scene.vector import Coordinate
 from tol3d.strict import refused
 from tol3d.units import Of, Quantity
@@ -22,7 +23,7 @@ def _not_negative(angle: Quantity) -> Quantity:
 class ReducerSpec(MoveSpec):
     """Two coaxial shafts with a bought reducer between them, of which ratio and backlash are known and nothing else."""
 
-    sort: ClassVar[Sort] = "reducer"
+    words: ClassVar[str] = "a reducer"
 
     kind: Literal["reducer"]
     driver: Name = Field(description="the shaft, or the gear that is its own, towards the motor")
@@ -44,11 +45,6 @@ class ReducerSpec(MoveSpec):
         if self.driver == self.driven:
             raise refused("driven", "another shaft than the driver", repr(self.driven))
         return self
-
-    @property
-    def gears(self) -> tuple[str, ...]:
-        """None: its gears are not in the scene."""
-        return ()
 
     def references(self) -> tuple[Reference, ...]:
         """Two shafts."""

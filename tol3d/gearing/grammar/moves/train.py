@@ -6,9 +6,10 @@ from typing import ClassVar, Literal, Self
 from pydantic import Field, model_validator
 
 from tol3d.gearing.grammar.moves.ratio import Ratio
+from tol3d.gearing.grammar.parts.shaft_reference import ShaftReference
 from tol3d.scene.move import MoveSpec
 from tol3d.scene.name import Name
-from tol3d.scene.reference import Reference, ShaftReference, Sort
+from tol3d.scene.reference import Reference
 from tol3d.scene.vector import Direction
 from tol3d.strict import refused
 
@@ -16,7 +17,7 @@ from tol3d.strict import refused
 class TrainSpec(MoveSpec):
     """A train from the shaft that the motor turns to its output, over the meshes and reducers of the scene."""
 
-    sort: ClassVar[Sort] = "train"
+    words: ClassVar[str] = "a train"
 
     kind: Literal["train"]
     driven: Name = Field(description="the shaft, or the gear that is its own, that the motor turns")
@@ -43,11 +44,6 @@ class TrainSpec(MoveSpec):
         if self.driven == self.output:
             raise refused("output", "another shaft than the driven one", repr(self.output))
         return self
-
-    @property
-    def gears(self) -> tuple[str, ...]:
-        """None: they take part in the meshes that it goes over."""
-        return ()
 
     def references(self) -> tuple[Reference, ...]:
         """Its shafts."""

@@ -5,16 +5,17 @@ from typing import ClassVar, Literal
 
 from pydantic import Field
 
+from tol3d.gearing.grammar.parts.shaft_reference import ShaftReference
 from tol3d.scene.name import Name
 from tol3d.scene.part import Length, PartSpec
-from tol3d.scene.reference import Reference, ShaftReference, Sort
+from tol3d.scene.reference import Reference
 from tol3d.scene.vector import Vector
 
 
 class ArmSpec(PartSpec):
     """An arm: it turns with its shaft, and says where the points are that measures ask for."""
 
-    sort: ClassVar[Sort] = "arm"
+    words: ClassVar[str] = "an arm"
 
     kind: Literal["arm"]
     shaft: Name = Field(description="the shaft, or the gear that is its own")

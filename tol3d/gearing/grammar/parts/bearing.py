@@ -4,9 +4,10 @@ from typing import ClassVar, Literal
 
 from pydantic import Field
 
+from tol3d.gearing.grammar.parts.shaft_reference import ShaftReference
 from tol3d.scene.name import Name
 from tol3d.scene.part import PartSpec
-from tol3d.scene.reference import Reference, ShaftReference, Sort
+from tol3d.scene.reference import Reference
 from tol3d.scene.vector import Coordinate
 from tol3d.units import Quantity
 
@@ -14,7 +15,7 @@ from tol3d.units import Quantity
 class BearingSpec(PartSpec):
     """A bearing: its clearance lets the shaft, with every gear on it, move across its axis."""
 
-    sort: ClassVar[Sort] = "bearing"
+    words: ClassVar[str] = "a bearing"
 
     kind: Literal["bearing"]
     shaft: Name = Field(description="the shaft, or the gear that is its own")

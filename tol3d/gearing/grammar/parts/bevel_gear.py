@@ -5,14 +5,13 @@ from typing import Annotated, ClassVar, Literal
 from pydantic import Field
 
 from tol3d.gearing.grammar.parts.gear import GearSpec
-from tol3d.scene.reference import Sort
 from tol3d.units import Of, Positive, Quantity
 
 
 class BevelGearSpec(GearSpec):
     """A straight bevel gear by the words of ISO 23509; its depth and thickness taper towards the apex."""
 
-    sort: ClassVar[Sort] = "bevel_gear"
+    words: ClassVar[str] = "a bevel gear"
 
     kind: Literal["bevel_gear"]
     pitch_angle: Annotated[Quantity, Of("angle"), Positive()] | None = Field(

@@ -1,20 +1,19 @@
 """What every kind of gear has in common."""
 
-from typing import Annotated, Final
+from typing import Annotated, ClassVar
 
 from pydantic import Field
 
 from tol3d.scene.part import Length, PartSpec
-from tol3d.scene.reference import Sort
 from tol3d.units import Of, Positive, Quantity
 
 MOST_TEETH = 10_000  # far more than anyone hobs; keeps a slip of the finger from building for days
 
-GEARS: Final[tuple[Sort, ...]] = ("spur_gear", "bevel_gear")
-
 
 class GearSpec(PartSpec):
     """A gear by the words of ISO 21771-1; profile_shift, addendum and dedendum count in modules."""
+
+    words: ClassVar[str] = "a gear"
 
     teeth: int = Field(ge=1, le=MOST_TEETH, description="number of teeth z")
     module: Length = Field(description="module m; of a bevel gear at the outer end")

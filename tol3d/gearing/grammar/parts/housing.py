@@ -3,12 +3,11 @@
 from typing import ClassVar, Literal
 
 from tol3d.scene.part import PartSpec
-from tol3d.scene.reference import Sort
 
 
 class HousingSpec(PartSpec):
     """A housing: its expansion changes the centre distance of the meshes that name it."""
 
-    sort: ClassVar[Sort] = "housing"
+    words: ClassVar[str] = "a housing"
 
     kind: Literal["housing"]

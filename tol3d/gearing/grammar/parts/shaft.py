@@ -1,14 +1,14 @@
 """A shaft and the gears on it."""
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from typing import Annotated, ClassVar, Literal, Self
 
 from pydantic import Field, model_validator
 
-from tol3d.gearing.grammar.parts.gear import GEARS
+from tol3d.gearing.grammar.parts.gear import GearSpec
 from tol3d.scene.name import Name
 from tol3d.scene.part import Length, PartSpec
-from tol3d.scene.reference import Reference, Sort
+from tol3d.scene.reference import Reference
 from tol3d.scene.vector import Coordinate
 from tol3d.strict import Strict, refused
 from tol3d.units import Of, Quantity
@@ -36,7 +36,7 @@ class CarriedSpec(Strict):
 class ShaftSpec(PartSpec):
     """What turns as one, with every gear on it; diameter, start and end are for pictures and CAD only."""
 
-    sort: ClassVar[Sort] = "shaft"
+    words: ClassVar[str] = "a shaft"
 
     kind: Literal["shaft"]
     carries: Mapping[Name, CarriedSpec] = Field(
@@ -54,10 +54,17 @@ class ShaftSpec(PartSpec):
 
     def references(self) -> tuple[Reference, ...]:
         """The gears that it carries."""
-        return tuple(Reference(("carries", gear), gear, GEARS) for gear in self.carries)
+        return tuple(Reference(("carries", gear), gear, (GearSpec,)) for gear in self.carries)
 
 
 def gears_on(shaft: str, parts: Mapping[str, PartSpec]) -> tuple[str, ...]:
     """The gears that turn with a shaft: those that it carries, or itself where it is a gear."""
     part = parts[shaft]
     return tuple(part.carries) if isinstance(part, ShaftSpec) else (shaft,)
+
+
+def carried(parts: Mapping[str, PartSpec]) -> Iterator[tuple[str, str]]:
+    """Every shaft with every gear that it carries."""
+    for name, part in parts.items():
+        if isinstance(part, ShaftSpec):
+            yield from ((name, gear) for gear in part.carries)

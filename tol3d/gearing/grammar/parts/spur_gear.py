@@ -6,13 +6,12 @@ from pydantic import Field
 
 from tol3d.gearing.grammar.parts.gear import GearSpec
 from tol3d.scene.part import Length
-from tol3d.scene.reference import Sort
 
 
 class SpurGearSpec(GearSpec):
     """A spur gear; its tooth thickness is an arc at the reference circle."""
 
-    sort: ClassVar[Sort] = "spur_gear"
+    words: ClassVar[str] = "a spur gear"
 
     kind: Literal["spur_gear"]
     root_fillet: Length | None = Field(

@@ -1,9 +1,5 @@
 """Kinds of tolerance, one file each."""
 
-from typing import Annotated
-
-from pydantic import Field
-
 from tol3d.gearing.grammar.tolerances.axes_offset import AxesOffsetSpec
 from tol3d.gearing.grammar.tolerances.axial_shift import AxialShiftSpec
 from tol3d.gearing.grammar.tolerances.axis_in_plane import AxisInPlaneSpec
@@ -21,25 +17,6 @@ from tol3d.gearing.grammar.tolerances.temperature import TemperatureSpec
 from tol3d.gearing.grammar.tolerances.tooth_thickness import ToothThicknessSpec
 from tol3d.scene.tolerance import ToleranceSpec
 
-ToleranceUnion = Annotated[
-    ToothThicknessSpec
-    | EccentricitySpec
-    | RunOutSpec
-    | CentreDistanceSpec
-    | BearingClearanceSpec
-    | ClockingSpec
-    | AxisInPlaneSpec
-    | AxisOutOfPlaneSpec
-    | AxialShiftSpec
-    | AxesOffsetSpec
-    | MountingFaceSpec
-    | ShaftAngleSpec
-    | ShimSpec
-    | TemperatureSpec
-    | ReducerBacklashSpec,
-    Field(discriminator="kind"),
-]
-
 __all__ = [
     "AxesOffsetSpec",
     "AxialShiftSpec",
@@ -56,6 +33,5 @@ __all__ = [
     "ShimSpec",
     "TemperatureSpec",
     "ToleranceSpec",
-    "ToleranceUnion",
     "ToothThicknessSpec",
 ]

@@ -5,12 +5,15 @@ from typing import Annotated, ClassVar, Literal
 
 from pydantic import Discriminator, Field, Tag
 
-from tol3d.gearing.grammar.moves import MESHES, MoveSpec
-from tol3d.gearing.grammar.parts import GEARS, BearingSpec, PartSpec, gears_on
+from tol3d.gearing.grammar.moves import GearMeshSpec, meshes_of
+from tol3d.gearing.grammar.parts import BearingSpec, GearSpec, gears_on
 from tol3d.gearing.grammar.tolerances.gear_tolerance import GearToleranceSpec
 from tol3d.scene.direction import FixedAngle, known_word, shape
+from tol3d.scene.entry import Entry
+from tol3d.scene.move import MoveSpec
 from tol3d.scene.name import Name
-from tol3d.scene.reference import Contradiction, Reference, Sort
+from tol3d.scene.part import PartSpec
+from tol3d.scene.reference import Contradiction, Reference
 
 WORDS = ("apart", "random", "tooth_force")
 
@@ -23,7 +26,7 @@ class BearingClearanceSpec(GearToleranceSpec):
     anywhere. Of a bearing, the first two are those of the gear on its shaft that the mesh is of.
     """
 
-    sorts: ClassVar[tuple[Sort, ...]] = (*GEARS, "bearing")
+    applies_to: ClassVar[tuple[type[Entry], ...]] = (GearSpec, BearingSpec)
 
     kind: Literal["bearing_clearance"]
     of: Name = Field(description="the gear that the bearing carries, or a bearing")
@@ -41,7 +44,7 @@ class BearingClearanceSpec(GearToleranceSpec):
     def references(self) -> tuple[Reference, ...]:
         """The gear or bearing, and the mesh if it is given."""
         carried = super().references()
-        return carried if self.mesh is None else (*carried, Reference(("mesh",), self.mesh, MESHES))
+        return carried if self.mesh is None else (*carried, Reference(("mesh",), self.mesh, (GearMeshSpec,)))
 
     def contradictions(self, parts: Mapping[str, PartSpec], moves: Mapping[str, MoveSpec]) -> Iterator[Contradiction]:
         """The gear takes part in the mesh, or in one mesh only; so does a gear on the bearing's shaft."""
@@ -49,7 +52,7 @@ class BearingClearanceSpec(GearToleranceSpec):
         return self._of_bearing(part, parts, moves) if isinstance(part, BearingSpec) else self._of_gear(moves)
 
     def _of_gear(self, moves: Mapping[str, MoveSpec]) -> Iterator[Contradiction]:
-        meshes = tuple(name for name, move in moves.items() if self.of in move.gears)
+        meshes = meshes_of(self.of, moves)
         if self.mesh is not None and self.mesh not in meshes:
             yield Contradiction(("mesh",), f"a mesh of the gear {self.of!r}", repr(self.mesh), meshes)
         elif self.mesh is None and len(meshes) != 1:
@@ -61,7 +64,8 @@ class BearingClearanceSpec(GearToleranceSpec):
         self, bearing: BearingSpec, parts: Mapping[str, PartSpec], moves: Mapping[str, MoveSpec]
     ) -> Iterator[Contradiction]:
         gears = gears_on(bearing.shaft, parts)
-        meshes = tuple(name for name, move in moves.items() if not set(gears).isdisjoint(move.gears))
+        through = {mesh for gear in gears for mesh in meshes_of(gear, moves)}
+        meshes = tuple(name for name in moves if name in through)
         if self.mesh is not None and self.mesh not in meshes:
             yield Contradiction(("mesh",), f"a mesh of a gear on {bearing.shaft!r}", repr(self.mesh), meshes)
         elif self.mesh is None and self.direction in ("apart", "tooth_force"):

@@ -4,19 +4,20 @@ from typing import ClassVar
 
 from pydantic import Field
 
-from tol3d.gearing.grammar.parts import GEARS
+from tol3d.gearing.grammar.parts import GearSpec
+from tol3d.scene.entry import Entry
 from tol3d.scene.name import Name
-from tol3d.scene.reference import Reference, Sort
+from tol3d.scene.reference import Reference
 from tol3d.scene.tolerance import ToleranceSpec
 
 
 class GearToleranceSpec(ToleranceSpec):
     """A tolerance of one gear, or of what carries it."""
 
-    sorts: ClassVar[tuple[Sort, ...]] = GEARS
+    applies_to: ClassVar[tuple[type[Entry], ...]] = (GearSpec,)
 
     of: Name = Field(description="the gear")
 
     def references(self) -> tuple[Reference, ...]:
         """The gear, or what carries it."""
-        return (Reference(("of",), self.of, self.sorts),)
+        return (Reference(("of",), self.of, self.applies_to),)

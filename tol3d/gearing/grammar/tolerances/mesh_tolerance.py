@@ -4,18 +4,20 @@ from typing import ClassVar
 
 from pydantic import Field
 
+from tol3d.gearing.grammar.moves import MeshSpec
+from tol3d.scene.entry import Entry
 from tol3d.scene.name import Name
-from tol3d.scene.reference import Reference, Sort
+from tol3d.scene.reference import Reference
 from tol3d.scene.tolerance import ToleranceSpec
 
 
 class MeshToleranceSpec(ToleranceSpec):
     """A tolerance of how two axes lie to each other."""
 
-    sorts: ClassVar[tuple[Sort, ...]] = ("mesh",)
+    applies_to: ClassVar[tuple[type[Entry], ...]] = (MeshSpec,)
 
     of: Name = Field(description="the mesh move")
 
     def references(self) -> tuple[Reference, ...]:
         """The mesh."""
-        return (Reference(("of",), self.of, self.sorts),)
+        return (Reference(("of",), self.of, self.applies_to),)

@@ -23,7 +23,7 @@ class ReducerBacklashSpec(ToleranceSpec):
 
     def references(self) -> tuple[Reference, ...]:
         """The reducer."""
-        return (Reference(("of",), self.of, ("reducer",)),)
+        return (Reference(("of",), self.of, (ReducerSpec,)),)
 
     def contradictions(self, parts: Mapping[str, PartSpec], moves: Mapping[str, MoveSpec]) -> Iterator[Contradiction]:
         """The reducer's own backlash would be a second one."""

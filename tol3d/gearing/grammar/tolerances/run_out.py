@@ -4,17 +4,17 @@ from typing import ClassVar, Literal
 
 from pydantic import Field
 
-from tol3d.gearing.grammar.parts import GEARS
+from tol3d.gearing.grammar.parts import GearSpec, ShaftSpec
 from tol3d.gearing.grammar.tolerances.gear_tolerance import GearToleranceSpec
 from tol3d.scene.direction import RandomOrFixed
+from tol3d.scene.entry import Entry
 from tol3d.scene.name import Name
-from tol3d.scene.reference import Sort
 
 
 class RunOutSpec(GearToleranceSpec):
     """S, a length: the shaft displaces the gears that it carries by S (cos phi, sin phi) and turns with them."""
 
-    sorts: ClassVar[tuple[Sort, ...]] = (*GEARS, "shaft")
+    applies_to: ClassVar[tuple[type[Entry], ...]] = (GearSpec, ShaftSpec)
 
     kind: Literal["run_out"]
     of: Name = Field(description="the gear on the shaft, or the shaft with every gear on it")

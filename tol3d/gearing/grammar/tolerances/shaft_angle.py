@@ -4,8 +4,9 @@ from typing import ClassVar, Literal
 
 from pydantic import Field
 
+from tol3d.gearing.grammar.moves import BevelMeshSpec
 from tol3d.gearing.grammar.tolerances.mesh_tolerance import MeshToleranceSpec
-from tol3d.scene.reference import Sort
+from tol3d.scene.entry import Entry
 from tol3d.units import Dimension
 
 
@@ -15,7 +16,7 @@ class ShaftAngleSpec(MeshToleranceSpec):
     One gear's axis turns in the plane of the axes, about the common apex or about the middle of its own face.
     """
 
-    sorts: ClassVar[tuple[Sort, ...]] = ("bevel_mesh",)
+    applies_to: ClassVar[tuple[type[Entry], ...]] = (BevelMeshSpec,)
     dimensions: ClassVar[tuple[Dimension, ...]] = ("length", "angle")
 
     kind: Literal["shaft_angle"]

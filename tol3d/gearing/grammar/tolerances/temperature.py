@@ -6,7 +6,7 @@ from typing import Annotated, Any, ClassVar, Literal
 from pydantic import BeforeValidator, Field, WithJsonSchema
 
 from tol3d.gearing.grammar.moves import MoveSpec
-from tol3d.gearing.grammar.parts import PartSpec
+from tol3d.gearing.grammar.parts import HousingSpec, PartSpec, SpurGearSpec
 from tol3d.scene.name import LONGEST_NAME, Name
 from tol3d.scene.reference import Contradiction, Reference
 from tol3d.scene.tolerance import ToleranceSpec
@@ -43,7 +43,7 @@ class TemperatureSpec(ToleranceSpec):
 
     def references(self) -> tuple[Reference, ...]:
         """Every part."""
-        return tuple(Reference(("of", index), name, ("spur_gear", "housing")) for index, name in enumerate(self.of))
+        return tuple(Reference(("of", index), name, (SpurGearSpec, HousingSpec)) for index, name in enumerate(self.of))
 
     def contradictions(self, parts: Mapping[str, PartSpec], moves: Mapping[str, MoveSpec]) -> Iterator[Contradiction]:
         """A part without a coefficient of expansion would take no notice."""

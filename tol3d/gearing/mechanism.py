@@ -1,0 +1,20 @@
+"""Gears in mesh and the trains that they make, as a mechanism."""
+
+from typing import Final
+
+from tol3d.gearing.grammar import measures, moves, parts, tolerances
+from tol3d.gearing.grammar.checks import carried_again
+from tol3d.scene.grammar import specs_in
+from tol3d.system.mechanism import Mechanism
+
+GEARING: Final = Mechanism(
+    name="gearing",
+    parts=specs_in(parts),
+    tolerances=specs_in(tolerances),
+    moves=specs_in(moves),
+    measures=specs_in(measures),
+    checks=(carried_again,),
+    system="tol3d.gearing.model:model_from_scene",
+    summary="tol3d.gearing.summary_types:SUMMARY_KINDS",
+    requires=("numba", "llvmlite", "python-fcl", "cadquery"),
+)

@@ -1,0 +1,96 @@
+"""The one registration: what scenes may have, and the mechanisms that understand it.
+
+A mechanism that tol3d brings along is a line of SHIPPED. Others come with packages, by an entry point of the group
+`tol3d.mechanisms`, or are registered by the program that uses them:
+
+    tol3d.register(mechanism)
+
+All are named by import paths and loaded when the first scene is opened.
+"""
+
+import warnings
+from functools import cache, lru_cache
+from importlib.metadata import EntryPoint, entry_points
+from pathlib import Path
+from typing import Any, Final
+
+from tol3d.errors import InputError
+from tol3d.files import Files
+from tol3d.scene import Grammar, Scene, read_scene
+from tol3d.system.mechanism import Mechanism, named
+
+SHIPPED: Final = ("tol3d.gearing.mechanism:GEARING",)
+
+GROUP: Final = "tol3d.mechanisms"
+
+_registered: dict[str, Mechanism] = {}
+
+
+class MechanismWarning(UserWarning):
+    """An installed package offers a mechanism that cannot be used; scenes that need none of its kinds are as ever."""
+
+
+def register(mechanism: Mechanism) -> None:
+    """Let scenes have a mechanism's kinds from now on; one that was registered under its name before is replaced.
+
+    Raises:
+        InputError: a kind of it is another mechanism's already.
+    """
+    others = {name: other for name, other in _registered.items() if name != mechanism.name}
+    Grammar((*_brought(), *others.values(), mechanism))
+    _registered[mechanism.name] = mechanism
+
+
+def all_kinds() -> Grammar:
+    """The kinds of every mechanism: shipped, installed and registered."""
+    return _grammar((*_brought(), *_registered.values()))
+
+
+def load_scene(
+    path: Path | str, kinds: Grammar | None = None, *, trust_parts: bool = False, files: Files | None = None
+) -> Scene:
+    """Read a scene and the files that it names; this runs none of it and builds no geometry.
+
+    Args:
+        path: the YAML file, or the name of a scene that tol3d brings along.
+        kinds: what it may have; every mechanism's kinds if not given.
+        trust_parts: whether the scene may name files outside its own folder.
+        files: the contents of the files that it names, where they are known; none is read then.
+
+    Raises:
+        SceneError: one or several messages `file:line: place: what was expected, what came`.
+    """
+    return read_scene(path, all_kinds() if kinds is None else kinds, trust_parts=trust_parts, files=files)
+
+
+@lru_cache
+def _grammar(mechanisms: tuple[Mechanism, ...]) -> Grammar:
+    return Grammar(mechanisms)
+
+
+@cache
+def _brought() -> tuple[Mechanism, ...]:
+    """What tol3d ships, then what installed packages offer."""
+    brought = tuple(_mechanism(named(path), path) for path in SHIPPED)
+    for point in sorted(entry_points(group=GROUP), key=lambda point: (point.name, point.value)):
+        brought = _with_installed(brought, point)
+    return brought
+
+
+def _with_installed(brought: tuple[Mechanism, ...], point: EntryPoint) -> tuple[Mechanism, ...]:
+    """With what an installed package offers, if that can be used."""
+    try:
+        offered = _mechanism(point.load(), point.value)
+        Grammar((*brought, offered))
+    except Exception as error:  # whatever a stranger's module raises: other scenes are none of its business
+        package = "a package" if point.dist is None else f"{point.dist.name} {point.dist.version}"
+        what = f"{package}: its mechanism {point.name} ({point.value}) cannot be used: {error}"
+        warnings.warn(what, MechanismWarning, stacklevel=2)
+        return brought
+    return (*brought, offered)
+
+
+def _mechanism(found: Any, path: str) -> Mechanism:
+    if not isinstance(found, Mechanism):
+        raise InputError(f"{path}: expected a Mechanism, got {type(found).__name__}")
+    return found

@@ -1,0 +1,45 @@
+"""What every entry of a scene's sections has in common: a kind, the names and files that it uses."""
+
+from abc import ABC
+from collections.abc import Iterator, Mapping
+from typing import TYPE_CHECKING, ClassVar, get_args
+
+from tol3d.scene.place import KeyPath
+from tol3d.scene.reference import Contradiction, Reference
+from tol3d.strict import Strict
+
+if TYPE_CHECKING:
+    from tol3d.scene.move import MoveSpec
+    from tol3d.scene.part import PartSpec
+
+
+class Entry(Strict, ABC):
+    """A part, tolerance, move or measure as a scene writes it.
+
+    A class whose `kind` is a literal is a kind, which a vocabulary registers; one without is what several kinds have
+    in common. `words` says in messages what an entry is, and of a common class what its kinds are together.
+    """
+
+    words: ClassVar[str] = ""
+
+    kind: str
+
+    def references(self) -> tuple[Reference, ...]:
+        """Every name that the entry uses; many use none."""
+        return ()
+
+    def file_names(self) -> Iterator[tuple[KeyPath, str]]:
+        """Every file that the entry reads, with the field that names it; most read none."""
+        return iter(())
+
+    def contradictions(
+        self, parts: "Mapping[str, PartSpec]", moves: "Mapping[str, MoveSpec]"
+    ) -> Iterator[Contradiction]:
+        """What does not fit the parts and moves that it names; asked only when every name exists."""
+        return iter(())
+
+
+def kind_of(spec: type[Entry]) -> str | None:
+    """The word of a kind in scenes; None for a class that several kinds have in common."""
+    words = get_args(spec.model_fields["kind"].annotation)
+    return words[0] if words else None

@@ -1,0 +1,164 @@
+"""The kinds of entry that scenes may have, and the class of such scenes."""
+
+import pkgutil
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
+from functools import cached_property, lru_cache
+from importlib import import_module
+from types import ModuleType
+from typing import Annotated, Any, Final, Union
+
+from pydantic import Field, create_model
+
+from tol3d.errors import InputError
+from tol3d.scene.entry import Entry, kind_of
+from tol3d.scene.measure import MeasureSpec
+from tol3d.scene.move import MoveSpec
+from tol3d.scene.name import Name
+from tol3d.scene.part import PartSpec
+from tol3d.scene.place import KeyPath
+from tol3d.scene.schema import SECTIONS, Scene
+from tol3d.scene.tolerance import ToleranceSpec
+
+Check = Callable[[Scene], Iterator[tuple[KeyPath, str]]]
+"""Tells what does not hold together across entries whose names all exist: key path and finished sentence."""
+
+REQUIRED: Final = frozenset(("parts", "moves", "measures"))  # sections that every scene has, with an entry at least
+
+BASES: Final[Mapping[str, type[Entry]]] = {
+    "parts": PartSpec,
+    "tolerances": ToleranceSpec,
+    "moves": MoveSpec,
+    "measures": MeasureSpec,
+}
+
+
+@dataclass(frozen=True)
+class Vocabulary:
+    """Kinds of entry that belong together.
+
+    Args:
+        name: of them all, for messages and for others that build on it.
+        parts, tolerances, moves, measures: the kinds of each section.
+        checks: what must hold across entries.
+        includes: names of vocabularies whose kinds may stand beside these in one scene.
+
+    Raises:
+        InputError: a class stands where it is none of the section's kinds.
+    """
+
+    name: str
+    parts: tuple[type[PartSpec], ...] = ()
+    tolerances: tuple[type[ToleranceSpec], ...] = ()
+    moves: tuple[type[MoveSpec], ...] = ()
+    measures: tuple[type[MeasureSpec], ...] = ()
+    checks: tuple[Check, ...] = ()
+    includes: tuple[str, ...] = ()
+
+    def __post_init__(self) -> None:
+        for section, base in BASES.items():
+            for spec in self.specs(section):
+                if not issubclass(spec, base) or kind_of(spec) is None:
+                    wanted = f"subclasses of {base.__name__} whose kind is a literal"
+                    raise InputError(f"{self.name}.{section}: expected {wanted}, got {spec.__name__}")
+
+    def specs(self, section: str) -> tuple[type[Entry], ...]:
+        """The kinds of a section."""
+        specs: tuple[type[Entry], ...] = getattr(self, section)
+        return specs
+
+
+@dataclass(frozen=True)
+class Grammar:
+    """What scenes may say: the kinds of several vocabularies. Equal where these are; pickles.
+
+    Raises:
+        InputError: a kind stands for two things, or a section has none.
+    """
+
+    vocabularies: tuple[Vocabulary, ...]
+
+    def __post_init__(self) -> None:
+        for section in SECTIONS:
+            self._refuse_ambiguity(section)
+
+    def _refuse_ambiguity(self, section: str) -> None:
+        first: dict[str, str] = {}
+        for vocabulary in self.vocabularies:
+            for spec in vocabulary.specs(section):
+                kind = str(kind_of(spec))
+                if kind in first:
+                    raise InputError(
+                        f"{vocabulary.name}: expected a kind of its own in {section}, got {kind!r}, which "
+                        f"{first[kind]} registers"
+                    )
+                first[kind] = vocabulary.name
+        if not first:
+            raise InputError(f"expected kinds of {section} in one vocabulary at least, found none")
+
+    def kinds(self, section: str) -> Mapping[str, type[Entry]]:
+        """The kinds of a section by their words, in the order of registration."""
+        return {str(kind_of(spec)): spec for each in self.vocabularies for spec in each.specs(section)}
+
+    @property
+    def scene(self) -> type[Scene]:
+        """The class of scenes of these kinds: it validates, and writes their JSON Schema."""
+        return _scene_class(self)
+
+    def problems(self, scene: Scene) -> Iterator[tuple[KeyPath, str]]:
+        """What the vocabularies find wrong across entries."""
+        for vocabulary in self.vocabularies:
+            for check in vocabulary.checks:
+                yield from check(scene)
+
+    def vocabulary_of(self, scene: Scene) -> Vocabulary:
+        """The vocabulary that understands all of a scene: its own kinds, and those that it includes.
+
+        Raises:
+            SceneError: the kinds of the scene are of several, none of which includes the others.
+        """
+        used: dict[str, KeyPath] = {}
+        for section in SECTIONS:
+            for name, entry in scene.section(section).items():
+                used.setdefault(self._owner[type(entry)].name, (section, name))
+        for vocabulary in self.vocabularies:
+            if vocabulary.name in used and used.keys() <= {vocabulary.name, *vocabulary.includes}:
+                return vocabulary
+        *_, (last, path) = used.items()
+        raise scene.refuse(path, f"kinds of {' and '.join(used)} do not go together; take out {last}")
+
+    @cached_property
+    def _owner(self) -> Mapping[type[Entry], Vocabulary]:
+        return {spec: each for each in self.vocabularies for section in SECTIONS for spec in each.specs(section)}
+
+
+@lru_cache
+def _scene_class(grammar: Grammar) -> type[Scene]:
+    sections: dict[str, Any] = {}
+    for section in SECTIONS:
+        union = _union(grammar, section)
+        sections[section] = (Mapping[Name, union], _field(section))  # type: ignore[valid-type]  # made at run time
+    made = create_model("Scene", __base__=Scene, __module__=Scene.__module__, __doc__=Scene.__doc__, **sections)
+    made.grammar = grammar
+    return made
+
+
+def _union(grammar: Grammar, section: str) -> Any:
+    """One of the section's kinds, told apart by the word."""
+    specs = tuple(grammar.kinds(section).values())
+    return specs[0] if len(specs) == 1 else Annotated[Union[specs], Field(discriminator="kind")]  # noqa: UP007
+
+
+def _field(section: str) -> Any:
+    return Field(min_length=1) if section in REQUIRED else Field(default_factory=dict)
+
+
+def specs_in(package: ModuleType) -> tuple[type[Any], ...]:
+    """Every kind that the modules of a package define, in the order of their names: a new file is a new kind."""
+    modules = [import_module(f"{package.__name__}.{found.name}") for found in pkgutil.iter_modules(package.__path__)]
+    defined = ((module.__name__, value) for module in modules for value in vars(module).values())
+    return tuple(
+        value
+        for module, value in defined
+        if isinstance(value, type) and issubclass(value, Entry) and value.__module__ == module and kind_of(value)
+    )

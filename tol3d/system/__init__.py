@@ -1,0 +1,1 @@
+"""The seam between a study and what it studies."""

@@ -1,0 +1,53 @@
+"""A mechanism: kinds of entry that belong together, and the system that they mean."""
+
+from dataclasses import dataclass
+from importlib import import_module
+from typing import Any
+
+from tol3d.errors import InputError
+from tol3d.scene import Scene, Vocabulary
+
+
+@dataclass(frozen=True)
+class Mechanism(Vocabulary):
+    """What tol3d can simulate: its words in scenes, and where its code is.
+
+    Code is named by import paths `package.module:name`, so that opening a scene loads no geometry and no compiler.
+
+    Args:
+        system: path of the function that makes of a scene what is simulated.
+        summary: path of what its measures and sections are in a run's summary.
+        requires: distributions whose versions decide its results beside those that every study needs; they are part
+            of a run's fingerprint.
+    """
+
+    system: str = ""
+    summary: str = ""
+    requires: tuple[str, ...] = ()
+
+    def system_of(self, scene: Scene) -> Any:
+        """What a scene means.
+
+        Raises:
+            SceneError: it means nothing that can be simulated, with the place and what to do.
+        """
+        return named(self.system)(scene)
+
+
+def named(path: str) -> Any:
+    """What an import path `package.module:name` names."""
+    module, _, name = path.partition(":")
+    return getattr(import_module(module), name)
+
+
+def mechanism_of(scene: Scene) -> Mechanism:
+    """The mechanism that a scene is of.
+
+    Raises:
+        SceneError: it has kinds of several that do not know each other.
+        InputError: its kinds are those of a bare vocabulary.
+    """
+    found = scene.grammar.vocabulary_of(scene)
+    if not isinstance(found, Mechanism):
+        raise InputError(f"{found.name}: expected a Mechanism, got a vocabulary, of which nothing can be simulated")
+    return found
