@@ -1,0 +1,111 @@
+"""A mechanism that tol3d has never heard of: springs between gears."""
+
+from collections.abc import Iterator
+from typing import Annotated, ClassVar, Literal
+
+from pydantic import Field
+
+from tol3d.gearing.grammar.parts import GearSpec
+from tol3d.scene import Scene
+from tol3d.scene.measure import LengthLimit, MeasureSpec
+from tol3d.scene.move import MoveSpec
+from tol3d.scene.name import Name
+from tol3d.scene.part import PartSpec
+from tol3d.scene.place import KeyPath
+from tol3d.scene.reference import Reference
+from tol3d.scene.tolerance import ToleranceSpec
+from tol3d.system.mechanism import Mechanism
+from tol3d.units import Dimension, Of, Quantity
+
+
+class SpringSpec(PartSpec):
+    """A spring, its characteristic in a file."""
+
+    words: ClassVar[str] = "a spring"
+
+    kind: Literal["spring"]
+    length: Annotated[Quantity, Of("length")]
+    characteristic: str | None = None
+
+    def file_names(self) -> Iterator[tuple[KeyPath, str]]:
+        if self.characteristic is not None:
+            yield ("characteristic",), self.characteristic
+
+
+class CoilAngleSpec(ToleranceSpec):
+    """A twist of a spring."""
+
+    dimensions: ClassVar[tuple[Dimension, ...]] = ("angle",)
+
+    kind: Literal["coil_angle"]
+    of: Name
+
+    def references(self) -> tuple[Reference, ...]:
+        return (Reference(("of",), self.of, (SpringSpec,)),)
+
+
+class PressSpec(MoveSpec):
+    """A spring between two gears."""
+
+    words: ClassVar[str] = "a press"
+
+    kind: Literal["press"]
+    spring: Name
+    against: Name
+
+    def references(self) -> tuple[Reference, ...]:
+        return Reference(("spring",), self.spring, (SpringSpec,)), Reference(("against",), self.against, (GearSpec,))
+
+
+class LonelyPressSpec(PressSpec):
+    """A press against a spring."""
+
+    kind: Literal["press"]
+
+    def references(self) -> tuple[Reference, ...]:
+        return (Reference(("spring",), self.spring, (SpringSpec,)),)
+
+
+class TravelSpec(MeasureSpec):
+    """How far a spring gives."""
+
+    dimension: ClassVar[Dimension] = "length"
+
+    kind: Literal["travel"]
+    lower_limit: LengthLimit | None = Field(default=None, description="less than this is out of limits")
+    upper_limit: LengthLimit | None = Field(default=None, description="more than this is out of limits")
+
+    @property
+    def gives_curve(self) -> bool:
+        return False
+
+    @property
+    def several_positions(self) -> bool:
+        return False
+
+    def references(self) -> tuple[Reference, ...]:
+        return (Reference(("of",), self.of, (PressSpec,)),)
+
+
+def one_press(scene: Scene) -> Iterator[tuple[KeyPath, str]]:
+    """A check across entries."""
+    _, *more = scene.of(PressSpec) or [""]
+    yield from ((("moves", name), "expected one press, got another") for name in more)
+
+
+def lengths(scene: Scene) -> dict[str, float]:
+    """The system of a scene: the lengths of its springs [mm]."""
+    return {name: spring.length.internal for name, spring in scene.of(SpringSpec).items()}
+
+
+SPRINGS = Mechanism(
+    name="springs",
+    parts=(SpringSpec,),
+    tolerances=(CoilAngleSpec,),
+    moves=(PressSpec,),
+    measures=(TravelSpec,),
+    checks=(one_press,),
+    includes=("gearing",),
+    system="springs:lengths",
+    requires=("numpy",),
+)
