@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.gearing.displacements import Displacement, Growth, Lever, displacements
+from tol3d.gearing.displacements import Displacement, Growth, PivotShift, displacements
 from tol3d.gearing.displacements.slots import CENTRE, FLANK_OFFSET, FLANK_TURN, OFFSET, SLOTS, TURN
 from tol3d.gearing.model import Model
 from tol3d.numerics import frames
@@ -116,12 +116,12 @@ def summed(model: Model, deviations: Array) -> Sums:
     return sums
 
 
-def _add(term: Displacement | Lever | Growth, columns: Array, sums: Sums) -> None:
+def _add(term: Displacement | PivotShift | Growth, columns: Array, sums: Sums) -> None:
     """Add what deviations (trials, components) displace."""
     match term:
         case Displacement():
             sums.seats[:, term.seat, term.slots] += term.change(columns)
-        case Lever():
+        case PivotShift():
             pivot = np.array([0.0, 0.0, term.pivot])
             turned = frames.apply(frames.about_vector(columns * term.turn), pivot)
             sums.seats[:, term.seat, OFFSET : OFFSET + 3] += pivot - turned

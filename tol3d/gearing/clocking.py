@@ -1,4 +1,4 @@
-"""Gears that sit turned on their shafts, the same on both roads: it matters where parallel ways meet."""
+"""Gears that sit turned on their shafts, the same on both roads: it matters where parallel load paths join."""
 
 import numpy as np
 from numpy.typing import NDArray

@@ -20,7 +20,7 @@ Array = NDArray[np.float64]
 def neglected(model: Model, measure: Measure, block: Block) -> Mapping[str, Array]:
     """Largest first-order change of a measure that is left out, in its unit: (trials,) by what is left out.
 
-    Of several positions the one with the largest counts, for a range twice; of parallel ways all are added up.
+    Of several positions the one with the largest counts, for a range twice; of parallel load paths all are added up.
     """
     found: dict[str, Array] = {}
     for factor, backlash in measure.kind.backlashes:

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.gearing.build import Build
-from tol3d.gearing.displacements import Displacement, Growth, Lever, displacements
+from tol3d.gearing.displacements import Displacement, Growth, PivotShift, displacements
 from tol3d.gearing.displacements.slots import CENTRE, FLANK_OFFSET, FLANK_TURN, OFFSET, SLOTS, TURN
 from tol3d.gearing.model import Model
 from tol3d.numerics import frames
@@ -87,17 +87,17 @@ def _summed(model: Model, deviations: Array) -> tuple[Array, dict[str, Array]]:
                 match term:
                     case Displacement():
                         seats[:, term.seat, own, term.slots] += term.rates
-                    case Lever():
-                        seats[:, term.seat, own, OFFSET : OFFSET + 3] += _swung(term, columns)[:, None]
+                    case PivotShift():
+                        seats[:, term.seat, own, OFFSET : OFFSET + 3] += _shift_rate(term, columns)[:, None]
                     case Growth():
                         temperature.setdefault(term.part, np.zeros(model.component_count))[own] += 1.0
     return seats, temperature
 
 
-def _swung(lever: Lever, columns: Array) -> Array:
+def _shift_rate(shift: PivotShift, columns: Array) -> Array:
     """Rate of a seat's origin by a turn about a pivot, (trials, 3); the axis of that turn is fixed."""
-    turned = frames.apply(frames.about_vector(columns * lever.turn), np.array([0.0, 0.0, lever.pivot]))
-    return np.asarray(-np.cross(lever.turn, turned))
+    turned = frames.apply(frames.about_vector(columns * shift.turn), np.array([0.0, 0.0, shift.pivot]))
+    return np.asarray(-np.cross(shift.turn, turned))
 
 
 def left_jacobian(vector: Array) -> Array:

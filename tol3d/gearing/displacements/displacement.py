@@ -46,7 +46,7 @@ class Displacement:
 
 
 @dataclass(frozen=True, eq=False)
-class Lever:
+class PivotShift:
     """Shift of a seat's origin because its axis turns about another point of the axis.
 
     Not linear: the pivot less the turned pivot. The turn itself is a Displacement of its own.
@@ -70,6 +70,6 @@ class Growth:
 
 
 @singledispatch
-def displacements(effect: Effect, model: Model, components: int) -> Iterator[Displacement | Lever | Growth]:
+def displacements(effect: Effect, model: Model, components: int) -> Iterator[Displacement | PivotShift | Growth]:
     """What a deviation of so many components displaces in a model; each file of this folder registers one effect."""
     raise TypeError(f"displacements/ has no file for the effect {type(effect).__name__}")

@@ -10,5 +10,5 @@ from tol3d.gearing.model import Model
 @displacements.register(ReducerBacklash)
 @displacements.register(Clocking)
 def _(effect: ReducerBacklash | Clocking, model: Model, components: int) -> Iterator[Displacement]:
-    """A mesh finds its rest for any turn of its gears: the shafts tell the difference, see clocking.py."""
+    """A mesh finds its rest for any turn of its gears; what the shafts turn by is in clocking.py."""
     return iter(())

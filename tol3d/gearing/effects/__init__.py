@@ -1,4 +1,4 @@
-"""Effects: what one deviation acts on, one a file. Data that both roads read; neither is told here how far it goes."""
+"""Effects: on what one deviation acts, and in which sense. Data for both roads; each has its own formulas for it."""
 
 from tol3d.gearing.effects.axes_offset import AxesOffset
 from tol3d.gearing.effects.axis_offset import AxisOffset

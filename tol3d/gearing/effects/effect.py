@@ -1,4 +1,4 @@
-"""What one deviation does to gears, meshes and reducers, as data; how far it moves them each road says for itself."""
+"""On what one deviation acts: gears, meshes, reducers. Data; each road has its own formulas for what that changes."""
 
 from abc import ABC, abstractmethod
 from dataclasses import dataclass

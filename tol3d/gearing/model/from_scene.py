@@ -11,9 +11,9 @@ from tol3d.gearing.model.links import links_between_shafts, links_of
 from tol3d.gearing.model.measures import measure_of
 from tol3d.gearing.model.mesh import Mesh
 from tol3d.gearing.model.model import GearPart, Housing, Model, Study, Until
+from tol3d.gearing.model.nominal import Nominal
 from tol3d.gearing.model.pairs import internal, pair_of, undercut_warning
 from tol3d.gearing.model.shafts import Arm, Train
-from tol3d.gearing.model.tolerances import Tolerances
 from tol3d.gearing.model.trains import (
     arms_of,
     loaded_flank,
@@ -50,7 +50,7 @@ def model_from_scene(scene: Scene) -> Model:
     refuse_other_ratios(scene, meshes, layout)
     meshes = tuple(_loaded(scene, mesh, trains, layout, arms) for mesh in meshes)
     by_name = {mesh.name: mesh for mesh in meshes}
-    tolerances = Tolerances(scene, by_name, layout)
+    nominal = Nominal(scene, by_name, layout)
     model = Model(
         name=scene.scene,
         gears=tuple(_gears(scene, by_name)),
@@ -59,7 +59,7 @@ def model_from_scene(scene: Scene) -> Model:
             for name, part in scene.parts.items()
             if isinstance(part, HousingSpec)
         ),
-        contributors=tuple(tolerances.contributor(name, spec) for name, spec in scene.tolerances.items()),
+        contributors=tuple(nominal.contributor(name, spec) for name, spec in scene.tolerances.items()),
         meshes=meshes,
         measures=(),
         study=_study(scene.study),

@@ -15,7 +15,7 @@ Array = NDArray[np.float64]
 
 
 def stack_of(model: Model, mesh: Mesh, reading: Reading) -> Stack[GearPair]:
-    """The stack-up of a mesh for a way of reading it."""
+    """The stack-up of a mesh for one of its readings."""
     pair = mesh.pair
     if isinstance(pair, SpurPair):
         return SpurStack(model, mesh, pair, reading)

@@ -50,7 +50,7 @@ class ClosedForm:
 
 
 def closed_form(model: Model, measure: Measure) -> ClosedForm | None:
-    """Closed form of a measure read at one position; None for extremes over a turn and parallel ways."""
+    """Closed form of a measure read at one position; None for extremes over a turn and parallel load paths."""
     if measure.take != "value" or not measure.kind.adds_up:
         return None
     parts = tuple(_parts(model, measure))

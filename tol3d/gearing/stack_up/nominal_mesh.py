@@ -17,7 +17,7 @@ Pair = TypeVar("Pair", bound=GearPair, covariant=True)
 
 
 class NominalMesh(Generic[Pair]):
-    """One mesh of a model, for a way of reading it; `pair` is the mesh's."""
+    """One mesh of a model, for one of its readings; `pair` is the mesh's."""
 
     def __init__(self, model: Model, mesh: Mesh, pair: Pair, reading: Reading) -> None:
         self.model = model
@@ -60,7 +60,7 @@ class NominalMesh(Generic[Pair]):
         The driven gear's teeth go on where its shift takes them back; the driver's take them along.
         """
         towards = self.pair.mesh_azimuths[1]
-        onwards = np.array([-math.sin(towards), math.cos(towards), 0.0])  # way of the driven teeth at the mesh
+        onwards = np.array([-math.sin(towards), math.cos(towards), 0.0])  # motion of the driven teeth at the mesh
         if role == "driven":
             return math.atan2(-onwards[1], -onwards[0])
         x, y, _ = self.pair.world_from_wheel @ onwards

@@ -1,6 +1,6 @@
 """Normal backlash of a pair of gears: the nominal one plus the first-order change by each deviation.
 
-What the effects of contributors do is in terms/; here it is added up. What a kind of pair leaves out has its own file.
+The terms of each effect are in terms/; here they are added up. What is left out has a file for each kind of pair.
 Source: Jiang et al., J. Zhejiang Univ. (Eng. Sci.) 58(8), 2024, 1533-1542, sections 2.1 and 3.1, where
 alpha_w = alpha and delta = 45 deg.
 """
@@ -17,7 +17,7 @@ Array = NDArray[np.float64]
 
 
 class Stack(NominalMesh[Pair]):
-    """The stack-up of one mesh of a model, for a way of reading it."""
+    """The stack-up of one mesh of a model, for one of its readings."""
 
     def __init__(self, model: Model, mesh: Mesh, pair: Pair, reading: Reading) -> None:
         super().__init__(model, mesh, pair, reading)
@@ -74,12 +74,12 @@ class Stack(NominalMesh[Pair]):
         return in_plane, across
 
     def aside(self, deviations: Array, driver_angle: Array) -> Array:
-        """Way [mm], (rows,), by which the middle of the driven gear's play lies aside, along its flanks' normals.
+        """Shift [mm], (rows,), of the middle of the driven gear's play, along the flanks' normals.
 
-        A gear that moves along the teeth's path at the mesh takes its mate with it, or leaves its own teeth behind:
-        cos(alpha_w) of that way. A gear that leans both in the plane of the axes and across it loses more on one flank
-        side, half a face times |a + b|, than on the other, |a - b|. Positive turns the driven gear in the positive
-        sense about its z.
+        A driver that shifts along the teeth's path at the mesh turns its mate, a driven gear that does is turned back:
+        by cos(alpha_w) of the shift. A gear that leans both in the plane of the axes and across it loses more on one
+        flank side, half a face times |a + b|, than on the other, |a - b|. Positive turns the driven gear in the
+        positive sense about its z.
         """
         angles = (driver_angle, self.pair.driven_angle(driver_angle))
         in_plane, across = self._lost_by_tilts(deviations)

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.gearing.build import Build
-from tol3d.gearing.displacements import Displacement, Growth, Lever, displacements
+from tol3d.gearing.displacements import Displacement, Growth, PivotShift, displacements
 from tol3d.gearing.engines.exact.sums import SCALE, SLOTS, assemble
 from tol3d.gearing.model import Model
 
@@ -69,7 +69,7 @@ def assembly_of(model: Model) -> Assembly:
                     case Displacement():
                         start = SLOTS * term.seat
                         totals[:, start + term.slots.start : start + term.slots.stop] += term.rates
-                    case Lever():
+                    case PivotShift():
                         pivots.append((first, term.seat))
                         levers.append((*term.turn, term.pivot))
                     case Growth():

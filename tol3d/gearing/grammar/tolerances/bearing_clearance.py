@@ -1,19 +1,27 @@
 """Radial clearance of a bearing."""
 
+import math
 from collections.abc import Iterator, Mapping
-from typing import Annotated, ClassVar, Literal
+from typing import TYPE_CHECKING, Annotated, ClassVar, Literal
 
 from pydantic import Discriminator, Field, Tag
 
+from tol3d.gearing.effects import NOTHING, AxisOffset
 from tol3d.gearing.grammar.moves import GearMeshSpec, meshes_of
 from tol3d.gearing.grammar.parts import BearingSpec, GearSpec, gears_on
 from tol3d.gearing.grammar.tolerances.gear_tolerance import GearToleranceSpec
-from tol3d.scene.direction import FixedAngle, known_word, shape
+from tol3d.gearing.grammar.tolerances.gearing_tolerance import Meaning, in_direction, together
+from tol3d.gearing.grammar.tolerances.lever import Lever, unit_vector
+from tol3d.scene.direction import At, FixedAngle, known_word, shape
 from tol3d.scene.entry import Entry
 from tol3d.scene.move import MoveSpec
 from tol3d.scene.name import Name
 from tol3d.scene.part import PartSpec
 from tol3d.scene.reference import Contradiction, Reference
+
+if TYPE_CHECKING:
+    from tol3d.gearing.model.mesh import Mesh
+    from tol3d.gearing.model.nominal import Nominal
 
 WORDS = ("apart", "random", "tooth_force")
 
@@ -72,3 +80,51 @@ class BearingClearanceSpec(GearToleranceSpec):
             yield Contradiction(
                 ("mesh",), f"the mesh that a bearing's direction: {self.direction} is of", "none", meshes
             )
+
+    def meaning(self, nominal: "Nominal") -> Meaning:
+        """Half the clearance, away from the mesh, at an azimuth of the frame at rest, or along the tooth force."""
+        bearing = nominal.scene.parts[self.of]
+        if isinstance(bearing, BearingSpec):
+            return self._meaning_of_bearing(bearing, nominal)
+        if self.direction == "random":
+            return in_direction([AxisOffset(self.of, factor=0.5)], self.direction)
+        return Meaning(AxisOffset(self.of, unit_vector(self._azimuth(self.of, nominal)), factor=0.5), least=0.0)
+
+    def _meaning_of_bearing(self, bearing: BearingSpec, nominal: "Nominal") -> Meaning:
+        """The shaft's axis moves at the bearing by half the clearance, at its other bearings not at all.
+
+        With one other bearing it turns about that one; alone a bearing moves the whole shaft.
+        """
+        at = bearing.at.internal
+        parts = (part for part in nominal.scene.parts.values() if isinstance(part, BearingSpec))
+        others = [part.at.internal for part in parts if part.shaft == bearing.shaft and part.at.internal != at]
+        levers = [Lever(own, at, others[0] if others else None) for own in nominal.carried_by(bearing.shaft)]
+        if not levers:
+            return Meaning(NOTHING)
+        if self.direction == "random":
+            return in_direction([effect for lever in levers for effect in lever.anywhere()], self.direction)
+        mesh = nominal.meshes[self.mesh] if self.mesh else None
+        read = (lever.own for lever in levers if mesh and lever.own.gear in (mesh.driver, mesh.driven))
+        gear = next(read, levers[0].own)
+        seen = self._azimuth(gear.gear, nominal)
+        azimuth = -seen if gear.backward and not isinstance(self.direction, At) else seen
+        return Meaning(together([effect for lever in levers for effect in lever.towards(azimuth)]), least=0.0)
+
+    def _azimuth(self, gear: str, nominal: "Nominal") -> float:
+        """Which way the axis of a gear moves [rad], in its frame at rest on its shaft."""
+        if isinstance(self.direction, At):
+            return self.direction.at.internal
+        mesh = nominal.mesh_of(gear, self.mesh)
+        towards = mesh.pair.mesh_azimuths[0 if gear == mesh.driver else 1]
+        towards += mesh.azimuth if gear == mesh.driver else nominal.layout.seating(mesh.name).azimuth
+        return towards + (math.pi if self.direction == "apart" else _force_azimuth(mesh, gear))
+
+
+def _force_azimuth(mesh: "Mesh", gear: str) -> float:
+    """Azimuth off the mesh [rad] of the radial part of the force on a gear by its mate's working flank.
+
+    With the mesh at azimuth 0 the normal force is (-sin(alpha_w) cos(delta), sigma cos(alpha_w)) across the axis,
+    sigma the driver's flank, for both gears: each sees the other push it away and around.
+    """
+    alpha, flank = mesh.pair.working_pressure_angle, float(mesh.working_flank)
+    return math.atan2(flank * math.cos(alpha), -math.sin(alpha) * math.cos(mesh.gear(gear).pitch_angle))

@@ -1,11 +1,16 @@
 """Eccentricity of a gear's teeth."""
 
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
 from pydantic import Field
 
+from tol3d.gearing.effects import TurningOffset
 from tol3d.gearing.grammar.tolerances.gear_tolerance import GearToleranceSpec
+from tol3d.gearing.grammar.tolerances.gearing_tolerance import Meaning, in_direction
 from tol3d.scene.direction import RandomOrFixed
+
+if TYPE_CHECKING:
+    from tol3d.gearing.model.nominal import Nominal
 
 
 class EccentricitySpec(GearToleranceSpec):
@@ -15,3 +20,7 @@ class EccentricitySpec(GearToleranceSpec):
     direction: RandomOrFixed = Field(
         default="random", description="phi, in the gear's frame (x through the middle of tooth 0)"
     )
+
+    def meaning(self, nominal: "Nominal") -> Meaning:
+        """The gear's centre lies off its axis."""
+        return in_direction([TurningOffset(self.of)], self.direction)

@@ -5,13 +5,13 @@ from typing import ClassVar
 from pydantic import Field
 
 from tol3d.gearing.grammar.parts import GearSpec
+from tol3d.gearing.grammar.tolerances.gearing_tolerance import GearingToleranceSpec
 from tol3d.scene.entry import Entry
 from tol3d.scene.name import Name
 from tol3d.scene.reference import Reference
-from tol3d.scene.tolerance import ToleranceSpec
 
 
-class GearToleranceSpec(ToleranceSpec):
+class GearToleranceSpec(GearingToleranceSpec):
     """A tolerance of one gear, or of what carries it."""
 
     applies_to: ClassVar[tuple[type[Entry], ...]] = (GearSpec,)

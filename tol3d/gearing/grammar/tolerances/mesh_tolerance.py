@@ -5,13 +5,13 @@ from typing import ClassVar
 from pydantic import Field
 
 from tol3d.gearing.grammar.moves import MeshSpec
+from tol3d.gearing.grammar.tolerances.gearing_tolerance import GearingToleranceSpec
 from tol3d.scene.entry import Entry
 from tol3d.scene.name import Name
 from tol3d.scene.reference import Reference
-from tol3d.scene.tolerance import ToleranceSpec
 
 
-class MeshToleranceSpec(ToleranceSpec):
+class MeshToleranceSpec(GearingToleranceSpec):
     """A tolerance of how two axes lie to each other."""
 
     applies_to: ClassVar[tuple[type[Entry], ...]] = (MeshSpec,)

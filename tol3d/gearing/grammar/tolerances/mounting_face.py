@@ -1,8 +1,13 @@
 """Surface profile of a face that a gear's place along its axis rests on."""
 
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
+from tol3d.gearing.effects import AxisOffset
 from tol3d.gearing.grammar.tolerances.gear_tolerance import GearToleranceSpec
+from tol3d.gearing.grammar.tolerances.gearing_tolerance import Meaning
+
+if TYPE_CHECKING:
+    from tol3d.gearing.model.nominal import Nominal
 
 
 class MountingFaceSpec(GearToleranceSpec):
@@ -12,3 +17,7 @@ class MountingFaceSpec(GearToleranceSpec):
     """
 
     kind: Literal["mounting_face"]
+
+    def meaning(self, nominal: "Nominal") -> Meaning:
+        """The gear moves along its axis."""
+        return Meaning(AxisOffset(self.of, (0.0, 0.0, 1.0)))

@@ -1,19 +1,24 @@
 """Backlash of a reducer."""
 
 from collections.abc import Iterator, Mapping
-from typing import ClassVar, Literal
+from typing import TYPE_CHECKING, ClassVar, Literal
 
 from pydantic import Field
 
+from tol3d.gearing.effects import ReducerBacklash
 from tol3d.gearing.grammar.moves import MoveSpec, ReducerSpec
 from tol3d.gearing.grammar.parts import PartSpec
+from tol3d.gearing.grammar.tolerances.gearing_tolerance import GearingToleranceSpec, Meaning
 from tol3d.scene.name import Name
 from tol3d.scene.reference import Contradiction, Reference
-from tol3d.scene.tolerance import ToleranceSpec
 from tol3d.units import Dimension
 
+if TYPE_CHECKING:
+    from tol3d.gearing.model.contributor import Unit
+    from tol3d.gearing.model.nominal import Nominal
 
-class ReducerBacklashSpec(ToleranceSpec):
+
+class ReducerBacklashSpec(GearingToleranceSpec):
     """An angle: the free turn of the reducer's driven shaft while its driver is held; draws below 0 are unphysical."""
 
     dimensions: ClassVar[tuple[Dimension, ...]] = ("angle",)
@@ -31,3 +36,12 @@ class ReducerBacklashSpec(ToleranceSpec):
         if isinstance(reducer, ReducerSpec) and reducer.backlash is not None:
             got = f"{self.of!r}, which says backlash: {reducer.backlash}"
             yield Contradiction(("of",), "a reducer without a backlash of its own", got)
+
+    def meaning(self, nominal: "Nominal") -> Meaning:
+        """The shaft that the reducer drives has this play."""
+        return Meaning(ReducerBacklash(self.of), least=0.0)
+
+    @property
+    def unit(self) -> "Unit":
+        """Arc minutes, as data sheets state it."""
+        return "arcmin"

@@ -21,8 +21,8 @@ def _(effect: AxesOffset, mesh: NominalMesh[GearPair], contributor: Contributor)
 def _(effect: AxesOffset, mesh: NominalMesh[BevelPair], contributor: Contributor) -> Contribution:
     """2 sin(alpha) sin(delta) of the driven gear, as the source has it for its "axial distance".
 
-    That is what a shift along the axis does. Of an offset across both axes the geometry sees nothing in the
-    middle of the face, to first order: the 3D simulation tells.
+    That is what a shift along the axis does. An offset across both axes changes nothing in the middle of
+    the face, to first order: the 3D simulation shows it.
     """
     if (role := mesh.role(effect.part, effect.mesh)) is None:
         return NOTHING

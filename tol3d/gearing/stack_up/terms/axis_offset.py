@@ -36,9 +36,7 @@ def _anywhere(effect: AxisOffset, mesh: NominalMesh[GearPair], contributor: Cont
 def _along_direction(
     effect: AxisOffset, mesh: NominalMesh[GearPair], contributor: Contributor, role: Role
 ) -> Contribution:
-    """A shift towards the mesh takes an apex along the pitch line by sin(delta) of it, one along the axis by
-    cos(delta).
-    """
+    """A shift towards the mesh moves the apex along the pitch line by sin(delta), one along the axis by cos(delta)."""
     x, y, z = effect.direction
     away = mesh.on_shaft(mesh.azimuth_away(role), role, effect.mesh)
     onwards = mesh.on_shaft(mesh.azimuth_onwards(role), role, effect.mesh)
@@ -55,5 +53,5 @@ def _along_direction(
 
 
 def _sense(role: Role) -> float:
-    """The way of the driver's apex along the pitch line counts, and against it the driven gear's."""
+    """Sign with which a shift of a gear's apex along the pitch line counts: the driver's less the driven gear's."""
     return 1.0 if role == "driver" else -1.0

@@ -19,8 +19,8 @@ Array = NDArray[np.float64]
 def _(effect: AxisTilt, mesh: NominalMesh[SpurPair], contributor: Contributor) -> Contribution:
     """The tighter end of the face loses b/2 times the tilt on each flank side.
 
-    In plane (about y): b sin(alpha_w); out of plane (about x): b cos(alpha_w); b the smaller face width. Which ends
-    are the tighter ones tells `Stack.lost`; the loss is one-sided and shifts the mean. A flank side that is read in
+    In plane (about y): b sin(alpha_w); out of plane (about x): b cos(alpha_w); b the smaller face width. `Stack.lost`
+    decides which ends are the tighter ones; the loss is one-sided and shifts the mean. A flank side that is read in
     the middle of the face loses nothing, nor do gears that lean alike: a driver's lean counts against its mate's.
     """
     if (role := mesh.role(effect.part, effect.mesh)) is None:

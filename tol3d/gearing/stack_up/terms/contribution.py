@@ -19,14 +19,14 @@ class Contribution:
 
     Args:
         opening: change of the normal backlash [mm].
-        aside: way [mm] by which the middle of the driven gear's play goes aside, along its flanks' normals; positive
-            turns the driven gear in the positive sense about its z.
+        aside: shift [mm] of the middle of the driven gear's play, along the flanks' normals; positive turns the driven
+            gear in the positive sense about its z.
         strains: of parts that grow [1/K], by name.
         by_shifts, by_turns: of the opening, what is alike on the whole face, and what grows with the distance from the
             apex of a cone.
-        aside_by_turns: way aside that `aside` lacks, of a pivot that is not the apex.
-        along_line: way of one apex against the other along the pitch line.
-        claimed: of the opening, what only a source claims.
+        aside_by_turns: a shift of that middle which `aside` lacks, by turns about a pivot that is not the apex.
+        along_line: shift of the driver's apex less the driven gear's, along the pitch line [mm].
+        claimed: of the opening, what a source claims and the geometry does not show.
     """
 
     opening: Term | None = None

@@ -1,0 +1,58 @@
+"""What every tolerance of gears, their shafts and their reducers has in common: it means an effect."""
+
+from abc import abstractmethod
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from tol3d.gearing.effects import Effect, Together
+from tol3d.scene.direction import At
+from tol3d.scene.tolerance import ToleranceSpec
+
+if TYPE_CHECKING:
+    from tol3d.gearing.model.contributor import Unit
+    from tol3d.gearing.model.nominal import Nominal
+
+
+@dataclass(frozen=True)
+class Meaning:
+    """What a deviation does.
+
+    Args:
+        effect: on which parts and how; see effects/.
+        planar: whether the deviation is a length in a direction across an axis.
+        azimuth: that direction [rad]; None for a random one.
+        least: smallest physical deviation [mm, rad or K], such as 0 of a clearance, if there is one.
+    """
+
+    effect: Effect
+    planar: bool = False
+    azimuth: float | None = None
+    least: float | None = None
+
+
+class GearingToleranceSpec(ToleranceSpec):
+    """A tolerance of gears, of what carries them, or of how they lie to each other."""
+
+    @abstractmethod
+    def meaning(self, nominal: "Nominal") -> Meaning:
+        """What a deviation does in a scene whose nominal geometry is known."""
+
+    @property
+    def unit(self) -> "Unit":
+        """Unit of its columns in results, by the dimension of its distribution."""
+        dimensions = {quantity.dimension for quantity in self.distribution.quantities().values()}
+        if dimensions == {"angle"}:
+            return "mrad"
+        return "K" if dimensions == {"temperature"} else "um"
+
+
+def in_direction(effects: Sequence[Effect], direction: object) -> Meaning:
+    """Effects of one deviation with a direction, of the grammar's words: `{at: angle}`, or random."""
+    azimuth = direction.at.internal if isinstance(direction, At) else None
+    return Meaning(together(effects), planar=True, azimuth=azimuth)
+
+
+def together(effects: Sequence[Effect]) -> Effect:
+    """Several effects of one deviation as one."""
+    return effects[0] if len(effects) == 1 else Together(tuple(effects))

@@ -1,0 +1,71 @@
+"""The nominal scene that tolerances deviate from, and how a tolerance becomes a contributor."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from tol3d.gearing.effects import NOTHING
+from tol3d.gearing.grammar.moves import meshes_of
+from tol3d.gearing.grammar.tolerances.gearing_tolerance import GearingToleranceSpec
+from tol3d.gearing.model.contributor import Contributor, Planar, Scalar
+from tol3d.gearing.model.layout import Layout
+from tol3d.gearing.model.mesh import Mesh
+from tol3d.gearing.model.shafts import Carried
+from tol3d.gears import BevelPair
+from tol3d.scene import Scene
+from tol3d.scene.tolerance import ToleranceSpec
+
+
+@dataclass(frozen=True)
+class Nominal:
+    """What a tolerance's meaning depends on: the scene, its meshes, and where its shafts lie."""
+
+    scene: Scene
+    meshes: Mapping[str, Mesh]
+    layout: Layout
+
+    def mesh_of(self, gear: str, mesh: str | None = None) -> Mesh:
+        """The mesh of that name, or the first one of a gear."""
+        return self.meshes[mesh or meshes_of(gear, self.scene.moves)[0]]
+
+    def bevel_pair(self, mesh: str) -> BevelPair:
+        """The pair of a bevel mesh."""
+        pair = self.meshes[mesh].pair
+        if not isinstance(pair, BevelPair):
+            raise TypeError(f"{mesh} has no shaft angle")
+        return pair
+
+    def smaller_face_width(self, mesh: str) -> float:
+        """Of the gears of a mesh [mm]."""
+        pair = self.meshes[mesh].pair
+        return min(pair.pinion.face_width, pair.wheel.face_width)
+
+    def carried_by(self, shaft: str) -> list[Carried]:
+        """The gears on a shaft."""
+        return [own for name, own in self.layout.carrying.values() if name == shaft]
+
+    def contributor(self, name: str, spec: ToleranceSpec) -> Contributor:
+        """A tolerance as the simulation sees it.
+
+        Raises:
+            SceneError: of a shaft, or a bearing of one, on which no gear sits.
+        """
+        if not isinstance(spec, GearingToleranceSpec):
+            raise TypeError(f"{type(spec).__name__} is no tolerance of gears")
+        meaning = spec.meaning(self)
+        if meaning.effect == NOTHING:
+            shaft, *_ = spec.references()
+            raise self.scene.refuse(
+                ("tolerances", name, *shaft.path),
+                f"expected a shaft with a gear on it, or a bearing of one, got {shaft.name!r}: nothing that meshes "
+                "moves with it",
+            )
+        law = spec.distribution.resolve(self.scene.files)
+        return Contributor(
+            name=name,
+            kind=spec.kind,
+            effect=meaning.effect,
+            draw=Planar(law, meaning.azimuth) if meaning.planar else Scalar(law),
+            unit=spec.unit,
+            description=spec.description,
+            least=meaning.least,
+        )
