@@ -20,13 +20,16 @@ from numpy.typing import NDArray
 
 from tol3d import load_scene
 from tol3d.gearing.model import Measure, Model, Positions, model_from_scene
+from tol3d.gearing.roads.analytic import analytic_values
 from tol3d.gearing.stack_up import closed_form
+from tol3d.gearing.system import GearSystem
 from tol3d.report.canvas import BLACK, BLUE, GREY, ORANGE, new_figure, plain_axes, save_figure
 from tol3d.samplers.replicates import REPLICATES, SamplerKind
 from tol3d.statistics import Moments
-from tol3d.study import draws
-from tol3d.study.block import Block, analytic_values
+from tol3d.study.draws import drawn
 from tol3d.study.replicated import Replicated, rows_of_replicates
+from tol3d.study.simulation import Simulation
+from tol3d.study.study import Study
 
 Array = NDArray[np.float64]
 
@@ -63,10 +66,9 @@ class Curve:
 def study(model: Model, measure: Measure, sampler: SamplerKind, size: int, seed: int) -> Array:
     """Mean, sigma and the standard errors that one study states of them [um]."""
     parts = 1 if sampler == "monte_carlo" else REPLICATES
-    own = replace(model.study, trials=size, seed=seed, sampler=sampler, replicates=parts)
-    model = replace(model, study=own)
-    block = Block(draws.deviations(model, seed, 0, size), draws.driver_angles(model, seed, 0, size))
-    values = analytic_values(model, measure, block)[:, 0] * measure.per_internal
+    own = Study(trials=size, seed=seed, sampler=sampler, replicates=parts)
+    trials = drawn(Simulation(GearSystem(model), own), 0, size)
+    values = analytic_values(model, measure, trials)[:, 0] * measure.per_internal
     moments = Moments.of(values)
     rows = rows_of_replicates(own, 0, size)
     errors = Replicated.of(values, rows, None, None) if rows else moments

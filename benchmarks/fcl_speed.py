@@ -22,11 +22,14 @@ os.environ.setdefault("OMP_NUM_THREADS", "1")
 from whole_gears import DEFLECTION, whole_gears_rate
 
 from tol3d import load_scene
-from tol3d.gearing.engines.fcl import FclEngine
 from tol3d.gearing.model import Backlash, Model, Reading
-from tol3d.study.block import drawn_block, simulate_block
-from tol3d.study.overrides import Overrides, effective_model
-from tol3d.study.task import strips_of
+from tol3d.gearing.system import GearSystem, gear_model
+from tol3d.simulate import simulation_of
+from tol3d.study.columns import columns_of
+from tol3d.study.draws import drawn
+from tol3d.study.simulation import Simulation
+from tol3d.study.study import Study
+from tol3d.study.task import materials_of, road_of
 
 SCENES = Path(__file__).resolve().parent.parent / "scenes"
 WARM_UP_TRIALS = 50  # the first use builds the BVHs
@@ -41,10 +44,11 @@ READINGS: Mapping[str, Reading] = {
 
 def strips_rate(model: Model, trials: int) -> float:
     """Trials/s from seed to columns."""
-    engine = FclEngine(model, strips_of(model))
-    simulate_block(model, engine, drawn_block(model, 1, 0, WARM_UP_TRIALS))
+    simulation = Simulation(GearSystem(model), Study(engine="fcl"))
+    system, road = simulation.system, road_of(simulation, materials_of(simulation))
+    columns_of(system, road, drawn(simulation, 0, WARM_UP_TRIALS))
     started = time.perf_counter()
-    simulate_block(model, engine, drawn_block(model, 1, 0, trials))
+    columns_of(system, road, drawn(simulation, 0, trials))
     return trials / (time.perf_counter() - started)
 
 
@@ -65,7 +69,7 @@ def row(what: str, rates: Sequence[float]) -> str:
 
 def print_spur_pair(trials: int, naive_trials: int, rounds: int, deflection: float) -> None:
     """The strips beside whole gears."""
-    model = effective_model(load_scene(SCENES / "spur_pair.yaml"), Overrides())
+    model = gear_model(simulation_of(load_scene(SCENES / "spur_pair.yaml")).system)
     models = {"normal backlash": with_one_measure(model), "every measure": model}
     rates: dict[str, list[float]] = {what: [] for what in models}
     naive: list[float] = []
@@ -76,7 +80,7 @@ def print_spur_pair(trials: int, naive_trials: int, rounds: int, deflection: flo
         rate, triangles = whole_gears_rate(model, naive_trials, deflection)
         naive.append(rate)
     slow = statistics.median(naive)
-    print(f"{model.name}: {model.study.profile_steps} steps a flank, one core, medians of {rounds} rounds")
+    print(f"{model.name}: {model.profile_steps} steps a flank, one core, medians of {rounds} rounds")
     for what, found in rates.items():
         print(f"{row(what, found)}   {statistics.median(found) / slow:7.0f} x naive")
     print(f"  naive, whole gears               {slow:8.2f} trials/s  ({triangles} triangles, {deflection} mm)")
@@ -84,8 +88,8 @@ def print_spur_pair(trials: int, naive_trials: int, rounds: int, deflection: flo
 
 def print_bevel_pair(trials: int, rounds: int) -> None:
     """Each way of reading, and all measures of the scene."""
-    model = effective_model(load_scene(SCENES / "bevel_pair.yaml"), Overrides())
-    print(f"{model.name}: {model.study.profile_steps} steps a flank, one core, medians of {rounds} rounds")
+    model = gear_model(simulation_of(load_scene(SCENES / "bevel_pair.yaml")).system)
+    print(f"{model.name}: {model.profile_steps} steps a flank, one core, medians of {rounds} rounds")
     models = {what: with_one_measure(model, reading) for what, reading in READINGS.items()} | {"every measure": model}
     for what, read in models.items():
         print(row(what, [strips_rate(read, trials) for _ in range(rounds)]))

@@ -26,7 +26,8 @@ from rich.table import Table
 from whole_gears import whole_gears_rate
 
 from tol3d import load_scene
-from tol3d.study.overrides import Overrides, effective_model
+from tol3d.gearing.system import gear_model
+from tol3d.simulate import Overrides, simulation_of
 
 SCENES = Path(__file__).resolve().parent.parent / "scenes"
 HUNDRED_MILLION = 10**8
@@ -163,7 +164,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
     parser.add_argument("--warm", action="store_true", help="without the rows that have an empty cache")
     parser.add_argument("--hundred-million", action="store_true", help="a spur study of 10^8 trials too")
     given = parser.parse_args(arguments)
-    spur = effective_model(load_scene(SCENES / "spur_pair.yaml"), Overrides(engine="fcl", witness=0))
+    spur = gear_model(simulation_of(load_scene(SCENES / "spur_pair.yaml"), Overrides(engine="fcl", witness=0)).system)
     naive = statistics.median(whole_gears_rate(spur, given.naive)[0] for _ in range(given.rounds))
     table = Table(title=f"naive way, spur pair: {naive:.1f} trials/s")
     for name in ("system", "engine", "trials", "workers", "keeps", "trials/s", "range", "× naive", "s", "peak MB"):

@@ -18,8 +18,8 @@ from rich.table import Table
 from studies import SCENES, Study, measured
 
 from tol3d import load_scene
-from tol3d.study.block import positions_in_all
-from tol3d.study.overrides import Overrides, effective_model
+from tol3d.simulate import Overrides, simulation_of
+from tol3d.study.blocks import contacts_of
 
 TARGET = 200_000  # trials/s of the shoulder on two workers
 CONTACTS, QUICK_CONTACTS = 4_000_000, 500_000  # of each worker
@@ -36,7 +36,7 @@ TRAINS: Mapping[str, Path] = {
 def add_rows(table: Table, train: str, contacts: int, rounds: int) -> None:
     """A train on one worker and on two, each with that many contacts."""
     scene = TRAINS[train]
-    of_a_trial = positions_in_all(effective_model(load_scene(scene), Overrides(witness=0)))
+    of_a_trial = contacts_of(simulation_of(load_scene(scene), Overrides(witness=0)))
     for workers in (1, 2):
         study = Study(train, "exact", contacts * workers // of_a_trial, workers)
         found = [measured(study, scene) for _ in range(rounds)]

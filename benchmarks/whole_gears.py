@@ -8,9 +8,12 @@ import numpy as np
 
 from tol3d.gearing.build import Build, build
 from tol3d.gearing.model import Model
+from tol3d.gearing.system import GearSystem
 from tol3d.solids import display_mesh
-from tol3d.study.block import drawn_block, nominal_block
-from tol3d.study.draws import mean_deviations
+from tol3d.study.draws import drawn
+from tol3d.study.simulation import Simulation
+from tol3d.study.study import Study
+from tol3d.system.stated import mean_deviations, nominal_build
 
 DEFLECTION = 0.001  # mm; as fine as whole gears can be tessellated in reasonable time
 GAP_XTOL = 1e-4  # mm; where the secant steps stop: each contact is found with at most this much gap left
@@ -75,16 +78,16 @@ class WholeGears:
 
 def nominal_free_turn(gears: WholeGears, model: Model) -> float:
     """Free turn [rad] of the driven gear without deviations, the driver at 0."""
-    return gears.free_turn(build(model, nominal_block(model).deviations), 0.0)
+    return gears.free_turn(build(model, nominal_build(model).deviations), 0.0)
 
 
 def whole_gears_rate(model: Model, trials: int, deflection: float = DEFLECTION) -> tuple[float, int]:
     """Trials/s of whole gears, and how many triangles they have."""
     model = with_mean_thickness(model)
     gears = WholeGears(model, deflection)
-    block = drawn_block(model, 1, 0, trials)
-    made = build(model, block.deviations)
-    angles = block.random_angle[model.meshes[0].name]
+    own = drawn(Simulation(GearSystem(model), Study()), 0, trials)
+    made = build(model, own.deviations)
+    angles = own.positions[model.meshes[0].name]
     started = time.perf_counter()
     for row in range(trials):
         gears.free_turn(made.rows(np.array([row])), float(angles[row]))

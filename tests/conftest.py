@@ -30,7 +30,7 @@ def engine_of() -> EngineOf:
     """FCL on the measuring strips of a model's gears, `steps` on each flank (the study's own, if not said)."""
 
     def make(model: Model, steps: int | None = None) -> FclEngine:
-        steps = steps or model.study.profile_steps
+        steps = steps or model.profile_steps
         return FclEngine(model, {part.name: strips_of(part.gear, steps) for part in model.gears})
 
     return make

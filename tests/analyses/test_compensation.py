@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from fixtures import Command
+from gear_trials import drawn_trials, gear_columns
 from matplotlib.patches import StepPatch
 from of_kind import known, of_kind
 from places import SCENES
@@ -27,7 +28,6 @@ from tol3d.gears.flank import opposite
 from tol3d.report.compensation_picture import compensation_figure
 from tol3d.report.compensation_table import compensation_report
 from tol3d.report.number import tip_mm
-from tol3d.study.block import drawn_block, simulate_block
 from tol3d.units import ARCMIN
 
 SWING = SCENES / "robot_shoulder_swing.yaml"
@@ -124,7 +124,7 @@ def test_a_roads_correction_is_that_of_the_stage_means_of_a_run(tmp_path: Path) 
 
 def test_uncompensated_robots_are_the_trials_of_the_study() -> None:
     own = of(SHIMMED, 100)
-    columns = simulate_block(own.model, exact_engine(own.model), drawn_block(own.model, 1, 0, 100))
+    columns = gear_columns(own.model, exact_engine(own.model), drawn_trials(own.model, 1, 0, 100))
     for road, remaining in own.remaining.items():
         assert remaining.angles["before"] == pytest.approx(columns[f"{road}:lost motion"], rel=1e-12)
         assert remaining.tips["before"] == pytest.approx(columns[f"{road}:tip displacement"], rel=1e-12)
@@ -132,7 +132,7 @@ def test_uncompensated_robots_are_the_trials_of_the_study() -> None:
 
 def test_a_scenes_own_swing_is_that_of_its_trials() -> None:
     own = of(SWING, 100)
-    columns = simulate_block(own.model, exact_engine(own.model), drawn_block(own.model, 1, 0, 100))
+    columns = gear_columns(own.model, exact_engine(own.model), drawn_trials(own.model, 1, 0, 100))
     assert known(own.swing).output == pytest.approx(np.radians(np.linspace(-60, 60, 25)))
     for road, curves in known(own.swing).curves.items():
         assert curves["before"] == pytest.approx(columns[f"{road}:tip error over the swing"], rel=1e-12)
@@ -324,7 +324,7 @@ def test_a_train_without_an_arm_is_told_in_angles() -> None:
     assert (own.units, own.lever, own.swing) == (("arcmin",), None, None)
     assert not own.remaining["geometric"].tips
     lost = own.remaining["geometric"].angles["before"]
-    columns = simulate_block(own.model, exact_engine(own.model), drawn_block(own.model, 5, 0, 100))
+    columns = gear_columns(own.model, exact_engine(own.model), drawn_trials(own.model, 5, 0, 100))
     assert lost == pytest.approx(columns["geometric:lost motion"], rel=1e-12)
     assert [stage.link for stage in own.compensated] == ["gearbox", "first mesh", "second mesh", "third mesh"]
     assert own.corrections["geometric"].motor == pytest.approx(10.4 * lost.mean(), rel=1e-9)

@@ -14,6 +14,7 @@ from typing import Any
 
 import pytest
 from fixtures import Command
+from gear_trials import model_of_scene
 from hypothesis import given
 from hypothesis import strategies as st
 from of_kind import known
@@ -27,7 +28,6 @@ from tol3d.analyses.shimmed import MINIMUM_XTOL
 from tol3d.analyses.stock import nearest
 from tol3d.errors import InputError
 from tol3d.scene.edit import with_tolerances, write_scene
-from tol3d.simulate import effective_model
 
 BEVEL, SHIMMED, EVERY, SPUR = (
     str(SCENES / f"{name}.yaml") for name in ("bevel_pair", "bevel_pair_shimmed", "every_bevel_field", "spur_pair")
@@ -76,7 +76,7 @@ def low_of(scene: Scene, folder: Path, measure: str = "normal backlash") -> floa
 
 def test_46_um_take_two_shims_of_47_55_um() -> None:
     scene = load_scene(Path(BEVEL))
-    shims = shims_of(scene, effective_model(scene).mesh("bevel pair"), ())
+    shims = shims_of(scene, model_of_scene(scene).mesh("bevel pair"), ())
     assert [(shim.spec.of, shim.spec.side, shim.mean, shim.is_new) for shim in shims] == [
         ("driver", "behind", 0.0, True),
         ("driven", "behind", 0.0, True),
@@ -92,7 +92,7 @@ def test_46_um_take_two_shims_of_47_55_um() -> None:
 
 def test_what_shims_take_that_are_on_is_counted() -> None:
     scene = load_scene(Path(SHIMMED))
-    shims = shims_of(scene, effective_model(scene).mesh("bevel pair"), ())
+    shims = shims_of(scene, model_of_scene(scene).mesh("bevel pair"), ())
     # 48 um are on, and 10 um too much is left
     assert formula_thickness(10 * UM, shims) == pytest.approx(48 * UM + 10 * UM / PAPERS, rel=1e-12)
 
@@ -264,7 +264,7 @@ def with_law(law: str) -> str:
 @pytest.mark.parametrize("law", LAWS)
 def test_a_thickness_moves_its_mean_and_keeps_its_spread(tmp_path: Path, law: str) -> None:
     scene = written(tmp_path, with_law(law))
-    (shim,) = shims_of(scene, effective_model(scene).mesh("pair"), ())
+    (shim,) = shims_of(scene, model_of_scene(scene).mesh("pair"), ())
     edited = with_tolerances(scene, {shim.name: shim.of_thickness(0.035)})
     assert re.sub(" +#", " #", edited.text) == re.sub(" +#", " #", with_law(LAWS[law]))  # comments too
     write_scene(edited, tmp_path / "edited.yaml")
@@ -291,7 +291,7 @@ def test_what_another_entry_is_an_alias_of_stays(tmp_path: Path) -> None:
         "moves:", "  wheel shim: {kind: shim, of: wheel, distribution: *thin}\nmoves:"
     )
     scene = written(tmp_path, text)
-    (pinions,) = shims_of(scene, effective_model(scene).mesh("pair"), ("pinion shim",))
+    (pinions,) = shims_of(scene, model_of_scene(scene).mesh("pair"), ("pinion shim",))
     edited = with_tolerances(scene, {"pinion shim": pinions.of_thickness(0.035)})
     write_scene(edited, tmp_path / "edited.yaml")
     found = load_scene(tmp_path / "edited.yaml").tolerances
@@ -303,7 +303,7 @@ def test_what_another_entry_is_an_alias_of_stays(tmp_path: Path) -> None:
 
 def test_new_shims_take_names_that_are_free(tmp_path: Path) -> None:
     scene = written(tmp_path, with_law("{kind: constant, value: 20 um}"))
-    shims = shims_of(scene, effective_model(scene).mesh("pair"), ("pinion", "wheel"))
+    shims = shims_of(scene, model_of_scene(scene).mesh("pair"), ("pinion", "wheel"))
     assert [shim.name for shim in shims] == ["pinion shim 2", "wheel shim"]
 
 

@@ -20,11 +20,12 @@ from ruamel.yaml import YAML
 from tol3d import Overrides, cli, load_scene, run_scene
 from tol3d.errors import InputError
 from tol3d.gearing.model import model_from_scene
+from tol3d.gearing.system import strips_of
 from tol3d.report import picture
 from tol3d.runs.run import open_run
-from tol3d.simulate import effective_model, load
+from tol3d.simulate import load, simulation_of
 from tol3d.solids.cache import CacheWarning
-from tol3d.study.task import strips_of, workers_for
+from tol3d.study.task import workers_for
 
 SPUR = str(SCENES / "spur_pair.yaml")
 
@@ -93,7 +94,7 @@ def test_a_wrong_option_gets_one_message_and_exit_code_2(tol3d: Command, tmp_pat
     ],
 )
 def test_a_long_study_is_announced_by_its_engines_speed(engine: str, trials: int, said: str) -> None:
-    assert cli.studies.long_study(effective_model(load(SPUR), Overrides(trials=trials, engine=engine))) == said
+    assert cli.studies.long_study(simulation_of(load(SPUR), Overrides(trials=trials, engine=engine))) == said
 
 
 @pytest.mark.parametrize(
@@ -104,7 +105,7 @@ def test_threads_are_as_many_as_blocks_and_processes_are_not_started_for_seconds
     engine: str, trials: int, workers: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(os, "cpu_count", lambda: 8)
-    assert workers_for(effective_model(load(SPUR), Overrides(trials=trials, engine=engine))) == workers
+    assert workers_for(simulation_of(load(SPUR), Overrides(trials=trials, engine=engine))) == workers
 
 
 def test_no_trials_keeps_the_statistics_only(tol3d: Command, tmp_path: Path) -> None:
@@ -317,7 +318,7 @@ def test_a_warning_of_ours_is_one_line_without_its_place_in_the_code(
         warnings.warn("the folder cannot be written", CacheWarning, stacklevel=1)
         raise InputError("and that was all")
 
-    monkeypatch.setattr("tol3d.simulate.effective_model", warns)
+    monkeypatch.setattr("tol3d.simulate.simulation_of", warns)
     assert tol3d("check", SPUR)[2] == "warning: the folder cannot be written\nand that was all\n"
 
 
@@ -351,7 +352,7 @@ def test_no_write_permission_is_refused_before_anything_runs(tol3d: Command, tmp
 
 
 def test_a_fault_of_ours_exits_with_3_and_asks_for_a_report(tol3d: Command, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("tol3d.simulate.effective_model", lambda *_: 1 / 0)
+    monkeypatch.setattr("tol3d.simulate.simulation_of", lambda *_: 1 / 0)
     code, _, err = tol3d("check", SPUR)
     assert code == 3
     assert "a fault in tol3d" in err

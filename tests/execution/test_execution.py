@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from gear_trials import simulated
 from hypothesis import given
 from hypothesis import strategies as st
 from numpy.typing import NDArray
@@ -20,8 +21,9 @@ from tol3d.execution.pools import CALLS_A_SLOT, Execution, InThisProcess, Ready,
 from tol3d.gearing.model import Model
 from tol3d.runs.checkpoint import Checkpoint, CheckpointWarning
 from tol3d.statistics import Moments
-from tol3d.study import block as block_module
-from tol3d.study.task import Task, installed_versions
+from tol3d.study import blocks as block_module
+from tol3d.study.task import Task
+from tol3d.study.versions import installed_versions
 
 BLOCK = 2000
 
@@ -235,6 +237,6 @@ def test_threads_and_processes_give_the_bits_of_one(tmp_path: Path, monkeypatch:
 
 def test_a_worker_with_other_versions_is_refused(paper_model: Model) -> None:
     other = tuple((name, "0.0.1" if name == "numpy" else version) for name, version in installed_versions())
-    task = Task(paper_model, None, {}, "other", True, other)
+    task = Task(simulated(paper_model), None, {}, "other", True, other)
     with pytest.raises(RunError, match=r"a worker has numpy .* instead of 0\.0\.1: results could differ"):
         task.columns(0, 1)

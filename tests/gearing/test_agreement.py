@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 import pytest
 from fixtures import EngineOf
+from gear_trials import drawn_trials, gear_columns
 from oracles import brute_force, exact_eccentric
 from oracles.involute_gear import InvoluteGear
 from oracles.poses import world_from_gears
@@ -25,7 +26,6 @@ from tol3d.gearing.model import (
     Model,
     Reading,
     Scalar,
-    Study,
     Temperature,
     TurningOffset,
 )
@@ -33,7 +33,6 @@ from tol3d.gearing.model.model import Housing
 from tol3d.gearing.stack_up import analytic_backlash, closed_form
 from tol3d.gears import LEFT, RIGHT, SpurGear, SpurPair
 from tol3d.gears.flank import Flank
-from tol3d.study.block import drawn_block, simulate_block
 
 ALPHA = math.radians(20.0)
 STACK_UP_BOUND = 0.15e-3  # mm; 0.05 um of squares in the first order, 0.1 um of the strips
@@ -84,8 +83,8 @@ class Rows:
 def rows(request: pytest.FixtureRequest, paper_model: Model, engine_of: EngineOf) -> Rows:
     model = with_flank(paper_model, request.param)
     mesh = model.meshes[0]
-    block = drawn_block(model, model.study.seed, 0, model.study.trials)
-    angle = block.random_angle[mesh.name]
+    block = drawn_trials(model, 1, 0, 2000)
+    angle = block.positions[mesh.name]
     made, engine = build(model, block.deviations), engine_of(model)
     meshing = Meshing(engine, model, mesh, made, Reading())
     seat = meshing.seat(angle)
@@ -226,7 +225,7 @@ def posed(case: Case, count: int, seed: int, flank: Flank) -> Posed:
     gears = (case.pinion, case.wheel)
     distance = SpurPair(*gears, 10 * sum(g.tip_radius for g in gears)).zero_backlash_centre_distance + case.opened
     mesh = Mesh("mesh", "pinion", "wheel", SpurPair(*gears, distance), flank)
-    model = Model("posed", (GearPart("pinion", gears[0]), GearPart("wheel", gears[1])), (), (), (mesh,), (), Study())
+    model = Model("posed", (GearPart("pinion", gears[0]), GearPart("wheel", gears[1])), (), (), (mesh,), ())
     tilt, about = rng.uniform(0.0, LARGEST_TILT, count), rng.uniform(0.0, 2 * np.pi, count)
     width = min(gear.face_width for gear in gears)
     shafts = np.tile(np.eye(4), (count, 2, 1, 1))
@@ -359,7 +358,6 @@ def warm_model(expansions: tuple[float, float, float]) -> Model:
         (contributor,),
         (Mesh("mesh", "pinion", "wheel", pair, RIGHT, "box"),),
         (),
-        Study(),
     )
 
 
@@ -404,10 +402,10 @@ def assert_same_bits(first: dict[str, np.ndarray], second: dict[str, np.ndarray]
 
 
 def test_a_trial_alone_has_the_bits_of_the_same_trial_among_many(paper_model: Model, engine_of: EngineOf) -> None:
-    together = simulate_block(paper_model, engine_of(paper_model), drawn_block(paper_model, 1, 0, 60))
+    together = gear_columns(paper_model, engine_of(paper_model), drawn_trials(paper_model, 1, 0, 60))
     fresh = engine_of(paper_model)
     for trial in (0, 1, 31, 59):
-        alone = simulate_block(paper_model, fresh, drawn_block(paper_model, 1, trial, 1))
+        alone = gear_columns(paper_model, fresh, drawn_trials(paper_model, 1, trial, 1))
         assert_same_bits(alone, {name: column[trial : trial + 1] for name, column in together.items()})
 
 
@@ -416,9 +414,9 @@ def test_columns_do_not_depend_on_how_trials_are_cut_into_blocks(
     size: int, paper_model: Model, engine_of: EngineOf
 ) -> None:
     engine = engine_of(paper_model)
-    whole = simulate_block(paper_model, engine, drawn_block(paper_model, 3, 0, 60))
+    whole = gear_columns(paper_model, engine, drawn_trials(paper_model, 3, 0, 60))
     parts = [
-        simulate_block(paper_model, engine, drawn_block(paper_model, 3, first, min(size, 60 - first)))
+        gear_columns(paper_model, engine, drawn_trials(paper_model, 3, first, min(size, 60 - first)))
         for first in range(0, 60, size)
     ]
     assert_same_bits(whole, {name: np.concatenate([part[name] for part in parts]) for name in whole})

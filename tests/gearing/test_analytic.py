@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from gear_trials import drawn_trials
 from places import SPUR_PAIR
 
 from tol3d import Overrides, Scene, load_scene, run_scene
@@ -24,9 +25,9 @@ from tol3d.gearing.model import (
     Temperature,
     model_from_scene,
 )
+from tol3d.gearing.roads.analytic import analytic_values
 from tol3d.gearing.stack_up import analytic_backlash, closed_form, stack_of
 from tol3d.gears import SpurPair
-from tol3d.study.block import analytic_values, drawn_block
 
 SIN, COS = math.sin(math.radians(20)), math.cos(math.radians(20))
 
@@ -94,7 +95,7 @@ def test_closed_form_is_what_the_sample_tends_to(
     positions = Positions("random", 55, 1) if over == "random" else Positions("at", 1, 1, 0.7)
     measure = Measure("j", model.measures[0].kind, positions, "value")
     form = closed_form(changed, measure)
-    values = analytic_values(changed, measure, drawn_block(changed, 5, 0, trials))[:, 0]
+    values = analytic_values(changed, measure, drawn_trials(changed, 5, 0, trials))[:, 0]
     assert form is not None
     assert values.mean() == pytest.approx(form.mean, abs=4.5 * form.sigma / math.sqrt(trials))
     # var of a sample's sigma is sigma^2/(2n) for a normal; uniform-like parts only make it smaller

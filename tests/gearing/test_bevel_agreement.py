@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 import pytest
 from fixtures import EngineOf
+from gear_trials import gear_columns
 from oracles import bevel_brute_force
 from oracles.bevel_brute_force import BevelMesh, BevelNumbers
 from scipy.spatial.transform import Rotation
@@ -20,11 +21,11 @@ from tol3d.gearing.build import Build
 from tol3d.gearing.engines import OK, Engine
 from tol3d.gearing.measures import measure_backlash
 from tol3d.gearing.meshing import Meshing
-from tol3d.gearing.model import Backlash, GearPart, Mesh, Model, Reading, Study, model_from_scene
+from tol3d.gearing.model import Backlash, GearPart, Mesh, Model, Reading, model_from_scene
 from tol3d.gears import LEFT, RIGHT, BevelGear, BevelPair, pitch_angles
 from tol3d.gears.flank import Flank
 from tol3d.simulate import load
-from tol3d.study.block import Block, simulate_block
+from tol3d.system.trials import Trials
 
 ALPHA = math.radians(20.0)
 SIN = math.sin(ALPHA)
@@ -75,8 +76,8 @@ def gaps(
     """Normal backlash [um] with the driver at some phases of a pitch."""
     model = paper_pair(tolerances, **measure)
     row = np.array([contributor.distribution.mean for contributor in model.contributors])
-    block = Block(np.tile(row, (len(phases), 1)), {"pair": np.array(phases) * 2 * math.pi / 31})
-    columns = simulate_block(model, engine_of(model, steps), block)
+    block = Trials(np.tile(row, (len(phases), 1)), {"pair": np.array(phases) * 2 * math.pi / 31})
+    columns = gear_columns(model, engine_of(model, steps), block)
     assert set(columns["status"]) == {"ok"}
     return np.asarray(columns["geometric:gap"], dtype=float)
 
@@ -212,7 +213,7 @@ def posed(case: Case, count: int, seed: int, flank: Flank) -> Posed:
     ]
     pair = BevelPair(*gears, math.radians(case.degrees))
     mesh = Mesh("mesh", "pinion", "wheel", pair, flank)
-    model = Model("posed", (GearPart("pinion", gears[0]), GearPart("wheel", gears[1])), (), (), (mesh,), (), Study())
+    model = Model("posed", (GearPart("pinion", gears[0]), GearPart("wheel", gears[1])), (), (), (mesh,), ())
     rest = bevel_brute_force.nominal_shafts(math.radians(case.degrees), count)
     shafts, turn = np.swapaxes(rest, 0, 1).copy(), rng.uniform(-0.4e-3, 0.4e-3, (count, 2, 3))
     for k in range(2):

@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from fixtures import EngineOf
+from gear_trials import drawn_trials, gear_columns
 from oracles import exact_eccentric
 from oracles.involute_gear import InvoluteGear
 from places import SCENES
@@ -19,7 +20,6 @@ from tol3d import load_scene
 from tol3d.gearing.model import Model, model_from_scene
 from tol3d.gears.flank import Flank
 from tol3d.simulate import Overrides, run_scene
-from tol3d.study.block import drawn_block, simulate_block
 
 SPUR_PAIR = (SCENES / "spur_pair.yaml").read_text("utf-8")
 ALPHA = math.radians(20.0)  # the paper's pair stands at its reference distance: the working pressure angle too
@@ -92,7 +92,7 @@ def test_both_roads_take_a_clearance_as_the_text_means_it(
     gear: str, direction: str, flank: str, sigma: Flank, tmp_path: Path, engine_of: EngineOf
 ) -> None:
     model = clearance_scene(tmp_path, gear, direction, flank)
-    columns = simulate_block(model, engine_of(model), drawn_block(model, 1, 0, TRIALS))
+    columns = gear_columns(model, engine_of(model), drawn_trials(model, 1, 0, TRIALS))
     geometric, analytic = (columns[f"{road}:normal backlash"] for road in ("geometric", "analytic"))
     assert (columns["status"] == "ok").all()
     assert np.abs(geometric - analytic).max() <= STACK_UP_BOUND
@@ -107,7 +107,7 @@ def test_a_clearance_apart_opens_by_sin_alpha_a_micrometre_whichever_gear_has_it
     gear: str, tmp_path: Path, engine_of: EngineOf
 ) -> None:
     model = clearance_scene(tmp_path, gear, "apart", "right")
-    columns = simulate_block(model, engine_of(model), drawn_block(model, 1, 0, TRIALS))
+    columns = gear_columns(model, engine_of(model), drawn_trials(model, 1, 0, TRIALS))
     opened = columns["geometric:normal backlash"] - exact_backlash(columns, {}, 1)
     drawn = columns["bearing clearance [um]"]
     # 2 sin(alpha) times half of it; its square and its product with 40 um of the others stay under 0.05 um

@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from fixtures import EngineOf
+from gear_trials import drawn_trials, gear_columns
 from oracles import exact_eccentric
 from oracles.involute_gear import InvoluteGear
 from oracles.thickness import thickness_of
@@ -16,9 +17,11 @@ from tol3d.gearing.engines.exact import ExactEngine
 from tol3d.gearing.measures import measure_backlash, read_backlash
 from tol3d.gearing.meshing import Meshing
 from tol3d.gearing.model import Backlash, Measure, Model, Positions, Reading, model_from_scene
+from tol3d.gearing.seats import geometric_values, seated
 from tol3d.gears import LEFT, RIGHT
 from tol3d.gears.flank import Flank
-from tol3d.study.block import Block, drawn_block, geometric_values, seat_block, simulate_block, taken
+from tol3d.system.taken import taken
+from tol3d.system.trials import Trials
 
 DENSITIES = (60, 80, 120, 160)
 TRIALS = 200  # the mean error of so many has a standard error of 3 %, and the same trials serve every density
@@ -27,7 +30,7 @@ TRIALS = 200  # the mean error of so many has a standard error of 3 %, and the s
 LARGEST_PARABOLA_ERROR = 1.1e-4
 
 
-def exact_of(model: Model, block: Block, angle: np.ndarray) -> np.ndarray:
+def exact_of(model: Model, block: Trials, angle: np.ndarray) -> np.ndarray:
     """Normal backlash [mm] of a block's trials by the closed form, (trials,) at driver angles (trials,)."""
     mesh, made = model.meshes[0], build(model, block.deviations)
     gears = [
@@ -45,8 +48,8 @@ def test_mean_error_of_the_strips_falls_with_the_square_of_the_step(
     flank: Flank, paper_model: Model, engine_of: EngineOf
 ) -> None:
     model = replace(paper_model, meshes=(replace(paper_model.meshes[0], working_flank=flank),))
-    mesh, block = model.meshes[0], drawn_block(model, 5, 0, TRIALS)
-    angle, made = block.random_angle[mesh.name], build(model, block.deviations)
+    mesh, block = model.meshes[0], drawn_trials(model, 5, 0, TRIALS)
+    angle, made = block.positions[mesh.name], build(model, block.deviations)
     exact = exact_of(model, block, angle)
     errors, chords = [], []
     for steps in DENSITIES:
@@ -72,8 +75,8 @@ def errors_of_fcl(scene: str, trials: int, densities: tuple[int, ...], engine_of
     """FCL's normal backlash less the exact engine's [mm], (densities, trials)."""
     model = model_from_scene(load_scene(SCENES / scene))
     mesh, kind = model.meshes[0], next(m.kind for m in model.measures if m.kind.quantity == "normal_backlash")
-    block = drawn_block(model, 6, 0, trials)
-    angle, made = block.random_angle[mesh.name], build(model, block.deviations)
+    block = drawn_trials(model, 6, 0, trials)
+    angle, made = block.positions[mesh.name], build(model, block.deviations)
     exact = read_backlash(kind, mesh, ExactEngine(model).read(made, mesh, kind.reading, angle))
     errors = []
     for steps in densities:
@@ -120,10 +123,10 @@ def test_extremes_of_a_sine_are_off_by_1e_4_at_24_positions_and_by_order_4() -> 
     assert np.log2(worst[1] / worst[2]) == pytest.approx(4.0, abs=0.05)
 
 
-def dense_extremes(model: Model, block: Block, turns: int, count: int) -> tuple[np.ndarray, np.ndarray]:
+def dense_extremes(model: Model, block: Trials, turns: int, count: int) -> tuple[np.ndarray, np.ndarray]:
     """Smallest and largest exact backlash of each trial over so many turns of the driver, from 0, ends included."""
     angles = np.linspace(0.0, 2 * np.pi * turns, count)
-    repeated = Block(np.repeat(block.deviations, count, axis=0), {})
+    repeated = Trials(np.repeat(block.deviations, count, axis=0), {})
     exact = exact_of(model, repeated, np.tile(angles, len(block))).reshape(-1, count)
     return exact.min(axis=1), exact.max(axis=1)
 
@@ -134,9 +137,9 @@ def test_extremes_over_positions_agree_with_a_dense_scan(
 ) -> None:
     measures = tuple(replace(extreme(take, over, 24 * turns, turns), name=take) for take in ("min", "max", "range"))
     model = replace(paper_model, measures=measures)
-    block = drawn_block(model, 9, 0, 12)
+    block = drawn_trials(model, 9, 0, 12)
     lowest, highest = dense_extremes(model, block, turns, scan)
-    columns = simulate_block(model, engine_of(model), block)
+    columns = gear_columns(model, engine_of(model), block)
     # 0.12 um of the strips or 0.05 um of squares in the stack-up; the parabola's 1e-4 is under 0.01 um of 30 um
     for take, expected in (("min", lowest), ("max", highest), ("range", highest - lowest)):
         assert np.abs(columns[f"geometric:{take}"] - 1000 * expected).max() <= 0.13, take
@@ -146,8 +149,8 @@ def test_extremes_over_positions_agree_with_a_dense_scan(
 def test_a_curve_is_the_values_at_its_positions(paper_model: Model, engine_of: EngineOf) -> None:
     curve = extreme("curve", "turn", 8)
     model = replace(paper_model, measures=(curve,))
-    block, engine = drawn_block(model, 2, 0, 3), engine_of(model)
-    values = geometric_values(model, curve, seat_block(model, engine, block))
+    block, engine = drawn_trials(model, 2, 0, 3), engine_of(model)
+    values = geometric_values(curve, seated(model, engine, block))
     assert np.array_equal(taken(curve, values), values)
     for k, angle in enumerate(curve.positions.fixed):
         exact = exact_of(model, block, np.full(3, angle))

@@ -11,17 +11,20 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from gear_trials import drawn_trials, gear_columns
 from oracles.train import at_height, lean, seen_backward, turned
 
 import tol3d
 from tol3d.gearing.engines.lazy import exact_engine
 from tol3d.gearing.model import Measure, Model, Reading, model_from_scene
-from tol3d.gearing.stack_up import ClosedForm, closed_form, stack_of
+from tol3d.gearing.roads.analytic import analytic_values
+from tol3d.gearing.stack_up import closed_form, stack_of
 from tol3d.gearing.stack_up.leaning import leaning_shares
+from tol3d.gearing.system import GearSystem
 from tol3d.report.coefficients import coefficients_of
 from tol3d.statistics.variance_shares import FeatureSums, shares
-from tol3d.study.block import analytic_values, drawn_block, simulate_block
-from tol3d.study.regressors import feature_groups, features
+from tol3d.study.regressors import regressor_groups, regressors
+from tol3d.system.closed_form import ClosedForm
 
 ALPHA = math.radians(20.0)
 HEIGHTS = (-20.0, 90.0)  # mm; of the bearings
@@ -212,7 +215,7 @@ def test_a_large_sample_of_either_road_agrees(case: str, tmp_path: Path) -> None
     between them, of which the net gives each its part. The geometry sees what the stack-up neglects: 2 % of a sigma.
     """
     model = model_of(tmp_path, *CASES[case])
-    columns = simulate_block(model, exact_engine(model), drawn_block(model, 3, 0, TRIALS))
+    columns = gear_columns(model, exact_engine(model), drawn_trials(model, 3, 0, TRIALS))
     for name in ("first backlash", "lost motion"):
         measure, form = measure_of(model, name), form_of(model, name)
         for road, neglected in (("analytic", 0.0), ("geometric", 0.02)):
@@ -222,8 +225,8 @@ def test_a_large_sample_of_either_road_agrees(case: str, tmp_path: Path) -> None
             error = 4 / math.sqrt(TRIALS)
             assert abs(values.mean() - form.mean) < (error + NET + neglected) * form.sigma
             assert abs(values.std() / form.sigma - 1) < error * math.sqrt((kurtosis - 1) / 4) + NET + neglected
-            sums = FeatureSums.of(features(model, measure, columns).T, values)
-            found = shares(sums, feature_groups(model, measure))
+            sums = FeatureSums.of(regressors(GearSystem(model), measure, columns).T, values)
+            found = shares(sums, regressor_groups(GearSystem(model), measure))
             for own in form.shares:
                 least = found.share[own.name] - 4 * found.standard_error[own.name] - NET - neglected
                 most = found.share[own.name] + 4 * found.standard_error[own.name] + NET + neglected
@@ -339,7 +342,7 @@ def test_random_shafts_have_the_closed_form_of_their_samples(tmp_path: Path) -> 
     for seed in range(SHAFTS):
         (tmp_path / "shaft.yaml").write_text(random_shaft(seed), "utf-8")
         model = model_from_scene(tol3d.load_scene(tmp_path / "shaft.yaml"))
-        block = drawn_block(model, seed, 0, MANY)
+        block = drawn_trials(model, seed, 0, MANY)
         for measure in model.measures:
             form, values = form_of(model, measure.name), analytic_values(model, measure, block)[:, 0]
             about = values - values.mean()

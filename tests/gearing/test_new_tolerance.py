@@ -33,7 +33,7 @@ from tol3d.gearing.stack_up.nominal_mesh import NominalMesh
 from tol3d.gearing.stack_up.terms import NOTHING, Contribution, contributes
 from tol3d.gears import GearPair
 from tol3d.scene import Grammar
-from tol3d.study.block import stated_block
+from tol3d.system.stated import stated
 
 # what a new kind of tolerance is: four pieces, each of which would be a file of its own ------------------------------
 
@@ -151,7 +151,7 @@ def test_derivatives_by_a_new_kind_are_minus_two_per_mm(tmp_path: Path) -> None:
     (play,) = model.measures
     engine = ExactEngine(model)
     deviations = np.array([[0.004, -0.01], [0.009, -0.003], [0.0, 0.0]])
-    rates = sensitivities(model, engine, stated_block(model, deviations), play)
+    rates = sensitivities(model, engine, stated(model, deviations), play)
     assert rates[:2, 0] == pytest.approx([-2.0, -2.0], abs=1e-9)
     slopes = {slope.name: slope for slope in mean_slopes(model, engine, play)}
     assert (slopes["plating"].below, slopes["plating"].above) == pytest.approx((-2.0, -2.0), abs=1e-9)
@@ -181,7 +181,7 @@ measures:
 """
     model = model_from_scene(coated(tmp_path, text))
     (play,), engine = model.measures, ExactEngine(model)
-    rates = sensitivities(model, engine, stated_block(model, np.array([[0.006, -0.06]])), play)
+    rates = sensitivities(model, engine, stated(model, np.array([[0.006, -0.06]])), play)
     stack = stack_of(model, model.meshes[0], Reading())
     (plating,) = (term for term in stack.terms if term.contributor.name == "plating")
     assert rates[0, 0] == pytest.approx(plating.coefficient, abs=2e-3)

@@ -14,6 +14,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from gear_trials import drawn_trials, gear_columns
 from oracles import split
 from oracles.split import Gear, Reducer
 from places import SCENES
@@ -26,9 +27,10 @@ from tol3d.gearing.engines.lazy import exact_engine
 from tol3d.gearing.measures import measure_backlash
 from tol3d.gearing.model import Model, model_from_scene
 from tol3d.gearing.play import seat_key
+from tol3d.gearing.seats import seated
 from tol3d.gearing.sensitivity import sensitivities
 from tol3d.gearing.stack_up import analytic_backlash
-from tol3d.study.block import Block, drawn_block, seat_block, simulate_block
+from tol3d.system.trials import Trials
 
 ARCMIN = 10800 / np.pi  # in a radian
 SIN, COS = math.sin(split.ALPHA), math.cos(split.ALPHA)
@@ -95,7 +97,7 @@ class Drawing:
         lines += ["measures:", f"  lost motion: {{kind: lost_motion, of: train, shaft: {shaft}, over: {over}}}"]
         return "\n".join(lines) + "\n"
 
-    def mechanism(self, model: Model, block: Block, degrees: float) -> split.Mechanism:
+    def mechanism(self, model: Model, block: Trials, degrees: float) -> split.Mechanism:
         """The builds of a block with the input at an angle [deg]."""
 
         def drawn(name: str, width: int) -> np.ndarray:
@@ -135,9 +137,9 @@ def model_of(folder: Path, text: str) -> Model:
     return model_from_scene(load_scene(path))
 
 
-def lost_motion(model: Model, block: Block) -> np.ndarray:
+def lost_motion(model: Model, block: Trials) -> np.ndarray:
     """By the exact engine [rad], (n,)."""
-    return simulate_block(model, exact_engine(model), block)["geometric:lost motion"] / ARCMIN
+    return gear_columns(model, exact_engine(model), block)["geometric:lost motion"] / ARCMIN
 
 
 def split_stage(teeth: Sequence[int] = (24, 56, 19, 41), azimuths: Sequence[float] = (0.0, 180.0)) -> Drawing:
@@ -200,26 +202,26 @@ def nested() -> Drawing:
 # thickness and clocking by hand ---------------------------------------------------------------------------------
 
 
-def told(model: Model, block: Block, name: str) -> np.ndarray:
+def told(model: Model, block: Trials, name: str) -> np.ndarray:
     """A contributor of one component [mm or rad], (n,)."""
     return block.deviations[:, model.component_slices[name]][:, 0]
 
 
-def plays(model: Model, block: Block, side: str) -> np.ndarray:
+def plays(model: Model, block: Trials, side: str) -> np.ndarray:
     """Free turn of the bull gear on one way by thicknesses alone [rad]: what both teeth lack, over the driven arm."""
     fast = told(model, block, "sun thickness") + told(model, block, f"{side} wheel thickness")
     slow = told(model, block, "bull thickness") + told(model, block, f"{side} pinion thickness")
     return -fast * COS / ARMS["wheel"] * SLOW - slow * COS / ARMS["bull"]
 
 
-def both_roads(model: Model, block: Block) -> Mapping[str, np.ndarray]:
-    found = simulate_block(model, exact_engine(model), block)
+def both_roads(model: Model, block: Trials) -> Mapping[str, np.ndarray]:
+    found = gear_columns(model, exact_engine(model), block)
     return {road: found[f"{road}:lost motion"] / ARCMIN for road in ("analytic", "geometric")} | found
 
 
 def test_by_thickness_alone_the_tighter_way_decides(tmp_path: Path) -> None:
     model = model_of(tmp_path, split_stage().text(tolerances("thickness", *ALL)))
-    block = drawn_block(model, 1, 0, 500)
+    block = drawn_trials(model, 1, 0, 500)
     left, right = (plays(model, block, side) for side in SIDES[:2])
     assert 0.3 < (left < right).mean() < 0.7
     found = both_roads(model, block)
@@ -232,7 +234,7 @@ def test_clocking_shifts_what_each_way_leaves_free(tmp_path: Path) -> None:
     takes it back by as much. What sun and bull gear do they do to both ways alike."""
     lines = [*tolerances("thickness", *ALL), *tolerances("clocking", *ALL)]
     model = model_of(tmp_path, split_stage().text(lines))
-    block = drawn_block(model, 2, 0, 500)
+    block = drawn_trials(model, 2, 0, 500)
     shifts = {
         side: SLOW * (told(model, block, f"{side} wheel clocking") - told(model, block, f"{side} pinion clocking"))
         for side in SIDES[:2]
@@ -262,7 +264,7 @@ def test_ways_bind_as_often_as_one_pinion_sits_beyond_the_play(tmp_path: Path) -
     trials, sigma = 100_000, FREE / SLOW / 2.2
     clocking = f"  right pinion clocking: {{kind: clocking, of: right pinion, distribution: {{kind: normal, mean: 0 rad, sigma: {sigma!r} rad}}}}"  # noqa: E501
     model = model_of(tmp_path, split_stage().text([*constants(*ALL), clocking]))
-    block = drawn_block(model, 3, 0, trials)
+    block = drawn_trials(model, 3, 0, trials)
     found = both_roads(model, block)
     share = 2 * norm.sf(2.2)
     assert set(found["status"]) == {"ok", "interferes"}
@@ -292,7 +294,7 @@ def against_mechanism(
     each = []
     for degrees in POSITIONS:
         model = model_of(folder, drawing.text(lines, over=f"{{at: {degrees} deg}}"))
-        block = drawn_block(model, seed, 0, 50)
+        block = drawn_trials(model, seed, 0, 50)
         low, high = drawing.mechanism(model, block, degrees).reach("output", as_meshes=as_meshes)
         each.append((lost_motion(model, block), high - low))
     found, wanted = (np.concatenate(own) for own in zip(*each, strict=True))
@@ -353,7 +355,7 @@ def test_it_does_not_matter_which_flanks_work(flanks: tuple[str, ...], tmp_path:
     drawing = replace(split_stage(), flanks=dict(zip(split_stage().links, flanks, strict=True)))
     lines = [*tolerances("thickness", *ALL), *tolerances("clocking", *LAY), *tolerances("axis", *LAY)]
     model = model_of(tmp_path, drawing.text([*lines, *tolerances("eccentricity", "sun"), *OUTPUT]))
-    block = drawn_block(model, 6, 0, 20)
+    block = drawn_trials(model, 6, 0, 20)
     plain = model_of(tmp_path, split_stage().text([*lines, *tolerances("eccentricity", "sun"), *OUTPUT]))
     assert np.abs(lost_motion(model, block) - lost_motion(plain, block)).max() < AGREES
 
@@ -365,7 +367,7 @@ def test_ways_that_are_alike_leave_what_one_of_them_does(tmp_path: Path) -> None
         drawing = split_stage(azimuths=azimuths)
         lay = [name for name, gear in drawing.gears.items() if gear.shaft in SIDES]
         model = model_of(tmp_path, drawing.text([*lines, *constants(*lay)]))
-        found.append(lost_motion(model, drawn_block(model, 7, 0, 200)))
+        found.append(lost_motion(model, drawn_trials(model, 7, 0, 200)))
     assert found[0].std() > 1e-5
     assert np.abs(found[1] - found[0]).max() < SAME_TURN
     assert np.abs(found[2] - found[0]).max() < SAME_TURN
@@ -394,14 +396,14 @@ def test_ways_within_ways_may_bind_though_the_outer_ones_are_free(tmp_path: Path
     drawing = nested()
     lines = nested_lines("lower: 80 arcmin, upper: 90 arcmin", clocking=45.0)
     model = model_of(tmp_path, drawing.text(lines, over="{at: 0 deg}"))
-    block = drawn_block(model, 9, 0, 300)
+    block = drawn_trials(model, 9, 0, 300)
     mechanism = drawing.mechanism(model, block, 0.0)
     before, inner, outer = (
         high - low for low, high in (mechanism.reach(shaft) for shaft in ("first", "second", "output"))
     )
     inner = inner - before  # what is free of the first shaft the second has at least, turn for turn
     assert ((inner < -AGREES) & (outer > AGREES)).sum() > 10
-    status = simulate_block(model, exact_engine(model), block)["status"]
+    status = gear_columns(model, exact_engine(model), block)["status"]
     assert np.array_equal(status == "interferes", (inner < 0) | (outer < 0))
 
 
@@ -409,7 +411,7 @@ def test_the_input_goes_by_the_ratio_further_while_the_output_is_held(tmp_path: 
     lines = [*tolerances("thickness", *ALL), *tolerances("clocking", *LAY), *tolerances("eccentricity", *ALL)]
     down = model_of(tmp_path, split_stage().text(lines))
     up = model_of(tmp_path, split_stage().text(lines, held="output", shaft="input"))
-    block = drawn_block(down, 10, 0, 200)
+    block = drawn_trials(down, 10, 0, 200)
     ratio = split_stage().ratio
     assert lost_motion(up, block) == pytest.approx(ratio * lost_motion(down, block), rel=1e-12)
 
@@ -422,7 +424,7 @@ def test_the_stack_up_is_off_by_squares_only(tmp_path: Path) -> None:
     off its centre by e that turns from flank to flank by g adds e g. Either end of either way may be off by that."""
     lines = [line for kind in ("thickness", "eccentricity", "clocking") for line in tolerances(kind, *ALL)]
     model = model_of(tmp_path, split_stage().text([*lines, *tolerances("axis", *LAY), *OUTPUT]))
-    block = drawn_block(model, 11, 0, 2000)
+    block = drawn_trials(model, 11, 0, 2000)
     found = both_roads(model, block)
 
     def length(name: str) -> np.ndarray:
@@ -482,11 +484,11 @@ def middles(model: Model, moved: Mapping[str, tuple[float, ...]]) -> tuple[np.nd
     row = np.zeros(model.component_count)
     for name, values in {"thickness": (-0.2,), **moved}.items():
         row[model.component_slices[name]] = values
-    block = Block(np.tile(row, (positions, 1)), {own.name: 0.3 + np.arange(positions) * 2 * np.pi / 150})
-    seats, key = seat_block(model, exact_engine(model), block), seat_key(model, measure, measure.kind)
+    block = Trials(np.tile(row, (positions, 1)), {own.name: 0.3 + np.arange(positions) * 2 * np.pi / 150})
+    seats, key = seated(model, exact_engine(model), block), seat_key(model, measure, measure.kind)
     resting = replace(measure.kind, quantity="rest_angle")
     rest, play = (measure_backlash(kind, seats.meshings[key], seats.seats[key]) for kind in (resting, measure.kind))
-    stacked = analytic_backlash(model, resting, block.deviations, block.random_angle[own.name])
+    stacked = analytic_backlash(model, resting, block.deviations, block.positions[own.name])
     arm = own.pair.wheel.section_arm
     return (rest + own.working_flank * play / 2) * arm, stacked * arm
 
@@ -546,9 +548,9 @@ tolerances:
     )  # fmt: skip
     text = PAIR.format(**SPUR, flank="right").replace("tolerances:\n", shafts[1:] + lines)
     model = model_of(tmp_path, text)
-    block = drawn_block(model, 1, 0, 5)
+    block = drawn_trials(model, 1, 0, 5)
     block = replace(block, deviations=np.where(np.abs(block.deviations) < 0.03, 0.0, block.deviations))
-    found = simulate_block(model, exact_engine(model), block)
+    found = gear_columns(model, exact_engine(model), block)
     assert np.abs(found["geometric:play"] - found["analytic:play"]).max() < 0.02  # arcmin; a lean of 20 um takes 0.5
 
 
@@ -565,13 +567,13 @@ def test_derivatives_are_those_of_two_simulations(drawing: str, tmp_path: Path) 
         model = model_of(tmp_path, split_stage().text(lines))
     else:
         model = model_of(tmp_path, nested().text(nested_lines()))
-    (measure,), block, engine = model.measures, drawn_block(model, 12, 0, 6), exact_engine(model)
+    (measure,), block, engine = model.measures, drawn_trials(model, 12, 0, 6), exact_engine(model)
     rates, count = sensitivities(model, engine, block, measure), model.component_count
 
     def taken(sign: float) -> np.ndarray:
         rows = (block.deviations[:, None] + sign * DEVIATION * np.eye(count)).reshape(-1, count)
-        angles = {name: np.repeat(angle, count) for name, angle in block.random_angle.items()}
-        return lost_motion(model, Block(rows, angles)).reshape(len(block), count)
+        angles = {name: np.repeat(angle, count) for name, angle in block.positions.items()}
+        return lost_motion(model, Trials(rows, angles)).reshape(len(block), count)
 
     differences = (taken(1.0) - taken(-1.0)) / (2 * DEVIATION)
     largest = np.abs(differences).max(axis=1, keepdims=True)

@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from fixtures import Command
+from gear_trials import drawn_trials, gear_columns, simulated
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from oracles.thinned_pairs import ThinnedPair, random_pair
@@ -22,7 +23,8 @@ from tol3d.gearing.engines.lazy import exact_engine
 from tol3d.gearing.model import Model, Reading, model_from_scene
 from tol3d.gears import LEFT, RIGHT, one_tooth_acts, one_tooth_share
 from tol3d.solids import measuring_strips
-from tol3d.study.block import Block, drawn_block, positions_in_all, simulate_block
+from tol3d.study.blocks import contacts_of
+from tol3d.system.trials import Trials
 from tol3d.units import ARCMIN
 
 ALPHA = math.radians(20.0)
@@ -45,13 +47,13 @@ UNEQUAL = {
 """Pairs on which one driven tooth read up to 202.5, 106.1, 8.2 and 6.5 um."""
 
 
-def at_positions(model: Model, count: int, seed: int = 0) -> Block:
+def at_positions(model: Model, count: int, seed: int = 0) -> Trials:
     """Trials at the ends and in the middle of a pitch of the driver, and evenly over one somewhere in its turns."""
     pitch = model.meshes[0].pair.pinion.angular_pitch
     even = (np.random.default_rng(seed).integers(0, 1000) + np.arange(count) / count) * pitch
     angles = np.concatenate([[0.0, pitch / 2, pitch], even])
-    block = drawn_block(model, 1, 0, len(angles))
-    return Block(block.deviations, {"pair": angles})
+    block = drawn_trials(model, 1, 0, len(angles))
+    return Trials(block.deviations, {"pair": angles})
 
 
 def read_as(model: Model, teeth: str) -> Model:
@@ -64,9 +66,9 @@ def read_as(model: Model, teeth: str) -> Model:
     )
 
 
-def values_of(model: Model, block: Block) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def values_of(model: Model, block: Trials) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Normal backlash [mm] and turn [rad], in the order of DEFAULTS, and the status."""
-    columns = simulate_block(model, exact_engine(model), block)
+    columns = gear_columns(model, exact_engine(model), block)
     return columns["geometric:play"] / 1000, columns["geometric:turn"] / ARCMIN, columns["status"]
 
 
@@ -130,7 +132,7 @@ def hold_one_tooth(pair: ThinnedPair, owner: str, positions: int, seed: int) -> 
     model = read_as(pair.model(DEFAULTS), owner)
     block = at_positions(model, positions, seed)
     normal, turn, status = values_of(model, block)
-    columns = simulate_block(model, exact_engine(model), block)
+    columns = gear_columns(model, exact_engine(model), block)
     told, turned = (columns[f"status:{name}"] == STATUS_TEXT[OK] for name in ("play", "turn"))
     assert set(status[~told | ~turned]) <= {"out of range"}
     assert np.array_equal(np.isnan(normal), ~told)
@@ -138,7 +140,7 @@ def hold_one_tooth(pair: ThinnedPair, owner: str, positions: int, seed: int) -> 
     assert np.abs(normal[told] - pair.normal_backlash).max(initial=0.0) <= ROUNDING
     arm = model.meshes[0].pair.wheel.base_radius
     assert np.abs(turn[turned] - pair.driven_turn).max(initial=0.0) * arm <= ROUNDING
-    within = within_action(model, block.random_angle["pair"], owner)
+    within = within_action(model, block.positions["pair"], owner)
     # flanks lie at most the backlash from where those without play touch, along the path of contact
     aside = pair.normal_backlash / model.meshes[0].pair.pinion.base_pitch + ROUNDING
     always, never = within > aside, within < -aside
@@ -275,8 +277,8 @@ def test_builds_that_take_the_tooth_out_of_action_are_counted_and_tell_nothing(t
     assert 0 < out <= 0.02 * run.trials
     assert run.summary["status"]["ok"] == run.trials - out
     model = model_from_scene(load_scene(path))
-    block = drawn_block(model, model.study.seed, 0, run.trials)
-    columns = simulate_block(model, exact_engine(model), block)
+    block = drawn_trials(model, run.summary["seed"], 0, run.trials)
+    columns = gear_columns(model, exact_engine(model), block)
     told = columns["status"] == "ok"
     assert np.count_nonzero(~told) == out
     assert np.isnan(columns["geometric:play"][~told]).all()
@@ -296,12 +298,12 @@ def test_fcl_reads_as_the_exact_engine_does(teeth: str) -> None:
     strips = {part.name: measuring_strips(part.gear, 60) for part in model.gears}
     block = at_positions(model, 24)
     engine = FclEngine(model, strips)
-    columns = simulate_block(model, engine, block)
+    columns = gear_columns(model, engine, block)
     told = columns["status"] == STATUS_TEXT[OK]
     if teeth == "all":
         assert told.all()
     else:
-        within = within_action(model, block.random_angle["pair"], teeth)
+        within = within_action(model, block.positions["pair"], teeth)
         assert told[within > 0.03].all()
         assert not told[within < -0.03].any()
         assert 0 < told.sum() < len(told)
@@ -330,8 +332,8 @@ def test_a_train_reads_its_meshes_as_they_are_read_alone(
         "  error: {kind: tip_error, of: shoulder swing, arm: arm, point: tip, start: -60 deg, end: 60 deg, positions: 3"
         f"{how}}}",
     )
-    assert positions_in_all(model) == 2 + 2 * 3  # the train's meshes are not read another time
-    columns = simulate_block(model, exact_engine(model), drawn_block(model, 1, 0, 50))
+    assert contacts_of(simulated(model)) == 2 + 2 * 3  # the train's meshes are not read another time
+    columns = gear_columns(model, exact_engine(model), drawn_trials(model, 1, 0, 50))
     reducer = 28 / 110  # a minute at the spur pinion
     assert (columns["status"] == "ok").all()
     lost = columns["geometric:spur"] + columns["geometric:bevel"] + reducer

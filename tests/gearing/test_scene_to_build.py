@@ -11,6 +11,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from fixtures import EngineOf
+from gear_trials import drawn_trials
 from oracles import brute_force, poses
 from oracles.involute_gear import InvoluteGear
 from places import SCENES
@@ -22,7 +23,6 @@ from tol3d.gearing.meshing import Meshing
 from tol3d.gearing.model import Model, Reading, model_from_scene
 from tol3d.gears import LEFT, RIGHT
 from tol3d.gears.flank import Flank
-from tol3d.study import draws
 
 SPUR_PAIR = (SCENES / "spur_pair.yaml").read_text("utf-8")
 
@@ -46,7 +46,7 @@ def model_of(folder: Path, tolerances: str, *, parts: str = DRIVER + DRIVEN + HO
 
 
 def built(model: Model, count: int = 1) -> Build:
-    return build(model, draws.deviations(model, seed=1, first=0, count=count))
+    return build(model, drawn_trials(model, 1, 0, count).deviations)
 
 
 @dataclass(frozen=True)

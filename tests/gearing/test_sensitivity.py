@@ -26,17 +26,19 @@ from tol3d.gearing.model import (
     Positions,
     Reading,
     Scalar,
-    Study,
     Temperature,
     ToothThickness,
     TurningOffset,
 )
 from tol3d.gearing.model.model import Housing
 from tol3d.gearing.rates import build_rates, left_jacobian
+from tol3d.gearing.seats import geometric_values, seated
 from tol3d.gearing.sensitivity import by_contributor, mean_slopes, peak_weights, sensitivities, taken_rates
 from tol3d.gears import LEFT, RIGHT, BevelGear, BevelPair, SpurGear, SpurPair, pitch_angles
 from tol3d.gears.flank import Flank
-from tol3d.study.block import Block, geometric_values, seat_block, stated_block, taken
+from tol3d.system.stated import stated
+from tol3d.system.taken import taken
+from tol3d.system.trials import Trials
 
 ALPHA = math.radians(20.0)
 SINE = math.sin(ALPHA)
@@ -100,7 +102,7 @@ PAIRS = ("spur", "bevel 17/43", "bevel 31/31")
 def model_of(pair: SpurPair | BevelPair, flank: Flank, acting: tuple[Contributor, ...]) -> Model:
     mesh = Mesh("mesh", "pinion", "wheel", pair, flank, "housing")
     gears = (GearPart("pinion", pair.pinion, 11e-6), GearPart("wheel", pair.wheel, 17e-6))
-    return Model("posed", gears, (Housing("housing", 23e-6),), acting, (mesh,), (), Study())
+    return Model("posed", gears, (Housing("housing", 23e-6),), acting, (mesh,), ())
 
 
 @cache
@@ -109,7 +111,7 @@ def far_model(name: str, flank: Flank) -> tuple[Model, ExactEngine]:
     return model, ExactEngine(model)
 
 
-def far_block(model: Model, count: int, seed: int) -> Block:
+def far_block(model: Model, count: int, seed: int) -> Trials:
     """Everything off at once: tilts of half a mrad, shifts of a dozen um, warm and cold gears, drivers anywhere."""
     rng = np.random.default_rng(seed)
     columns = []
@@ -119,28 +121,28 @@ def far_block(model: Model, count: int, seed: int) -> Block:
             radius = model.meshes[0].gear(contributor.effect.part).section_arm
             low, high = -2.6 / radius, -2.4 / radius  # of 0.02 rad/mm: 50 um of each flank leave room for all the rest
         columns.append(rng.uniform(low, high, (count, len(contributor.draw.components))))
-    return Block(np.concatenate(columns, axis=1), {"mesh": rng.uniform(0.0, 50.0, count)})
+    return Trials(np.concatenate(columns, axis=1), {"mesh": rng.uniform(0.0, 50.0, count)})
 
 
 def of_steps(model: Model, lengths: dict[str, float]) -> np.ndarray:
     return np.array([lengths[c.unit] for c in model.contributors for _ in c.draw.components])
 
 
-def differences(model: Model, engine: ExactEngine, block: Block, measure: Measure, share: float) -> np.ndarray:
+def differences(model: Model, engine: ExactEngine, block: Trials, measure: Measure, share: float) -> np.ndarray:
     """Central differences of a measure over a share of each component's step, for the whole of it; on the last axis."""
     alone = replace(model, measures=(measure,))
 
     def values(component: int, step: float) -> np.ndarray:
         moved = block.deviations.copy()
         moved[:, component] += step
-        seats = seat_block(alone, engine, Block(moved, block.random_angle))
-        return taken(measure, geometric_values(model, measure, seats))
+        seats = seated(alone, engine, Trials(moved, block.positions))
+        return taken(measure, geometric_values(measure, seats))
 
     steps = share * of_steps(model, STEPS)
     return np.stack([(values(k, h) - values(k, -h)) / (2 * share) for k, h in enumerate(steps)], axis=-1)
 
 
-def worst_error(model: Model, engine: ExactEngine, block: Block, measure: Measure, share: float = 1.0) -> float:
+def worst_error(model: Model, engine: ExactEngine, block: Trials, measure: Measure, share: float = 1.0) -> float:
     """Largest error of a derivative, in gap for gap; one tooth may be out of action, which all have to tell."""
     told = sensitivities(model, engine, block, measure) * of_steps(model, STEPS)
     expected = differences(model, engine, block, measure, share)
@@ -278,7 +280,7 @@ def slopes_at(
     deviations = np.zeros((len(angles), model.component_count))
     deviations[:, 0] = -thinner
     measure = Measure("play", kind, AT_RANDOM, "value")
-    return sensitivities(model, ExactEngine(model), Block(deviations, {"mesh": angles}), measure)[:, 1:]
+    return sensitivities(model, ExactEngine(model), Trials(deviations, {"mesh": angles}), measure)[:, 1:]
 
 
 SPUR_ANGLES = np.linspace(0.0, 6.0, 7)
@@ -346,7 +348,7 @@ def test_builds_that_do_not_seat_have_no_derivatives_and_the_others_keep_theirs(
     thick = block.deviations.copy()
     thick[1, 0] = 1.0
     measure = Measure("play", KINDS["normal, face"], AT_RANDOM, "value")
-    told = sensitivities(model, engine, Block(thick, block.random_angle), measure)
+    told = sensitivities(model, engine, Trials(thick, block.positions), measure)
     assert np.isnan(told[1]).all()
     assert np.array_equal(told[[0, 2]], sensitivities(model, engine, block, measure)[[0, 2]])
 
@@ -378,4 +380,4 @@ def test_slopes_at_a_mean_build_take_the_direction_in_which_the_measure_grows_mo
     assert offset.direction == pytest.approx(0.0, abs=1e-4)
     assert offset.above == pytest.approx(math.sin(math.acos(43 * math.cos(ALPHA) / 43.59)), abs=1e-4)
     assert (thickness.direction, thickness.above) == (None, pytest.approx(-1.0, abs=1e-6))
-    assert stated_block(model, np.zeros((1, 3))).random_angle["mesh"].tolist() == [0.0]
+    assert stated(model, np.zeros((1, 3))).positions["mesh"].tolist() == [0.0]

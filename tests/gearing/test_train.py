@@ -10,6 +10,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from gear_trials import drawn_trials, gear_columns
 from oracles import brute_force, train
 from oracles.involute_gear import InvoluteGear
 from oracles.poses import pose
@@ -18,11 +19,11 @@ from places import SCENES
 
 from tol3d import load_scene
 from tol3d.gearing.build import build
-from tol3d.gearing.engines.lazy import exact_engine
+from tol3d.gearing.engines.lazy import exact_engine, fcl_engine
 from tol3d.gearing.model import Model, Reading, model_from_scene
+from tol3d.gearing.system import strips_of
 from tol3d.gears.flank import Flank
-from tol3d.study.block import Block, drawn_block, simulate_block
-from tol3d.study.task import fcl_engine, strips_of
+from tol3d.system.trials import Trials
 
 TRIALS = 200
 ARCMIN = 10800 / np.pi  # in a radian
@@ -48,7 +49,7 @@ def changed(scene: str, folder: Path, *changes: tuple[str, str]) -> Model:
     return model_of(path)
 
 
-def of(model: Model, block: Block, name: str) -> np.ndarray:
+def of(model: Model, block: Trials, name: str) -> np.ndarray:
     """Deviations (n, components) of a contributor [mm or rad]."""
     return block.deviations[:, model.component_slices[name]]
 
@@ -71,14 +72,14 @@ BEVEL |= {
 }
 
 
-def alone(model: Model, pair: Model, block: Block, names: Mapping[str, str], angle: np.ndarray, make: Callable):
+def alone(model: Model, pair: Model, block: Trials, names: Mapping[str, str], angle: np.ndarray, make: Callable):
     """Free turn (n,) [rad] of the driven gear of a pair by itself, its deviations those of the train's contributors."""
-    pair = replace(pair, study=replace(pair.study, profile_steps=model.study.profile_steps))
+    pair = replace(pair, profile_steps=model.profile_steps)
     assert set(names) == {contributor.name for contributor in pair.contributors}
     deviations = np.zeros((len(block), pair.component_count))
     for own, other in names.items():
         deviations[:, pair.component_slices[own]] = of(model, block, other)
-    found = simulate_block(pair, make(pair), Block(deviations, {pair.meshes[0].name: angle}))
+    found = gear_columns(pair, make(pair), Trials(deviations, {pair.meshes[0].name: angle}))
     assert set(found["status"]) == {"ok"}
     return found["geometric:lost motion"] / ARCMIN
 
@@ -86,22 +87,22 @@ def alone(model: Model, pair: Model, block: Block, names: Mapping[str, str], ang
 @pytest.mark.parametrize(("engine", "trials"), [("exact", TRIALS), pytest.param("fcl", 20, marks=pytest.mark.slow)])
 def test_the_robots_lost_motion_is_that_of_its_pairs_run_alone(engine: str, trials: int, tmp_path: Path) -> None:
     robot, make = model_of(SCENES / "robot_shoulder.yaml"), engines()[engine]
-    block = drawn_block(robot, 1, 0, trials)
+    block = drawn_trials(robot, 1, 0, trials)
     words = {1: "right", -1: "left"}
     flank = words[robot.mesh("spur pair").working_flank]
     one_tooth = ("gear: wheel\n", "gear: wheel\n    tooth: driven\n")  # as the robot reads it
     spur = changed("spur_pair", tmp_path, ("flank: right", f"flank: {flank}"), one_tooth)
     bevel = changed("bevel_pair", tmp_path, ("flank: left", f"flank: {words[robot.mesh('bevel pair').working_flank]}"))
-    angle = block.random_angle["spur pair"]
+    angle = block.positions["spur pair"]
     free_spur = alone(robot, spur, block, SPUR, angle, make)
     # the wheel stands at pi + pi/110 - 28/110 of the pinion's turn, the bevel driver looks back; what of the pinion's
     # turn its period of 55 turns leaves out are whole turns of both
     spline = np.pi + np.pi / 110 - angle * 28 / 110
-    bevel_angle = block.random_angle["bevel pair"]
+    bevel_angle = block.positions["bevel pair"]
     assert np.abs(np.exp(1j * bevel_angle) - np.exp(-1j * spline)).max() < 1e-9
     free_bevel = alone(robot, bevel, block, BEVEL, bevel_angle, make)
     wanted = free_bevel + free_spur * 31 / 31 + np.radians(1 / 60) * (28 / 110) * 31 / 31
-    found = simulate_block(robot, make(robot), block)
+    found = gear_columns(robot, make(robot), block)
     assert np.abs(found["geometric:lost motion"] / ARCMIN - wanted).max() < SAME_TURN
     tip = 2 * np.hypot(420, 637) * np.sin(wanted / 2)
     assert np.abs(found["geometric:tip displacement"] - tip).max() < 763 * SAME_TURN
@@ -114,13 +115,13 @@ def test_a_swing_reads_the_train_where_its_output_stands(position: float, tmp_pa
     over = f"{{at: {float(motor)!r} rad}}"
     there = f"measures:\n  there: {{kind: lost_motion, of: shoulder swing, tooth: driven, over: {over}}}"
     robot = changed("robot_shoulder_swing", tmp_path, ("\nmeasures:", f"\n{there}"))
-    found = simulate_block(robot, exact_engine(robot), drawn_block(robot, 1, 0, 20))
+    found = gear_columns(robot, exact_engine(robot), drawn_trials(robot, 1, 0, 20))
     swing = next(measure for measure in robot.measures if measure.take == "curve")
     at = round((position + 60) / 5)
     unsigned = replace(swing.kind, turned=())
     way = 2 * 763 * np.sin(found["geometric:there"] / ARCMIN / 2)
     robot = replace(robot, measures=(replace(swing, kind=unsigned),))
-    whole = simulate_block(robot, exact_engine(robot), drawn_block(robot, 1, 0, 20))
+    whole = gear_columns(robot, exact_engine(robot), drawn_trials(robot, 1, 0, 20))
     assert whole["geometric:tip error over the swing"][:, at] == pytest.approx(way, abs=763 * SAME_TURN)
 
 
@@ -178,7 +179,7 @@ class Pair:
         path.write_text(PAIR.format(**vars(self) | {"flank": {1: "right", -1: "left"}[self.flank]}), encoding="utf-8")
         return model_of(path)
 
-    def block(self, model: Model, angle: np.ndarray) -> Block:
+    def block(self, model: Model, angle: np.ndarray) -> Trials:
         """Axes take half of a clearance; the driven gear leans by what is between the two."""
         values = {
             "driver tooth thickness": self.thickness[:, :1],
@@ -193,7 +194,7 @@ class Pair:
         deviations = np.zeros((len(angle), model.component_count))
         for name, columns in values.items():
             deviations[:, model.component_slices[name]] = columns
-        return Block(deviations, {"pair": angle})
+        return Trials(deviations, {"pair": angle})
 
     def searched(self, row: int) -> brute_force.Mesh:
         """One of them for a search of the surfaces."""
@@ -209,7 +210,7 @@ class Pair:
         return brute_force.Mesh(*gears, *shafts, *(centre[row, None] for centre in self.centres))
 
 
-def table_pairs(model: Model, block: Block) -> dict[str, Pair]:
+def table_pairs(model: Model, block: Trials) -> dict[str, Pair]:
     """The three pairs of the table, its shafts' and the idler's deviations turned into each pair's frame by hand."""
 
     def thickness(*gears: str) -> np.ndarray:
@@ -255,7 +256,7 @@ def table_pairs(model: Model, block: Block) -> dict[str, Pair]:
     }  # fmt: skip
 
 
-def table_stages(block: Block, model: Model, seat_of: Callable[[str], train.Seat]) -> list[train.Mesh | train.Reducer]:
+def table_stages(block: Trials, model: Model, seat_of: Callable[[str], train.Seat]) -> list[train.Mesh | train.Reducer]:
     """The table as its drawing has it; the motor goes clockwise and its gearbox turns that round."""
     flanks = {mesh.name: mesh.working_flank for mesh in model.meshes}
     return [
@@ -276,9 +277,9 @@ AT_ENCODER = {"gearbox": 20 / 60 * 48 / 32, "first mesh": 31 / 60 * 48 / 32, "se
 
 
 @cache
-def table() -> tuple[Model, Block]:
+def table() -> tuple[Model, Trials]:
     model = model_of(SCENES / "three_stage_train.yaml")
-    return model, drawn_block(model, 5, 0, TRIALS)
+    return model, drawn_trials(model, 5, 0, TRIALS)
 
 
 @pytest.mark.parametrize(("engine", "trials"), [("exact", TRIALS), pytest.param("fcl", 20, marks=pytest.mark.slow)])
@@ -287,10 +288,10 @@ def test_the_tables_lost_motion_is_that_of_its_pairs_run_alone(engine: str, tria
     block, free = drawn.part(0, trials), {"gearbox": of(model, drawn, "gearbox play")[:trials, 0]}
     for name, pair in table_pairs(model, block).items():
         single = pair.model(tmp_path)
-        found = simulate_block(single, make(single), pair.block(single, block.random_angle[name]))
+        found = gear_columns(single, make(single), pair.block(single, block.positions[name]))
         assert set(found["status"]) == {"ok"}
         free[name] = found["geometric:lost motion"] / ARCMIN
-    found = simulate_block(model, make(model), block)
+    found = gear_columns(model, make(model), block)
     allowed = TILTED if engine == "exact" else 0.05e-3 / 12  # FCL: its own 0.05 um, at the encoder's 12 mm
     wanted = sum(AT_ENCODER[name] * own for name, own in free.items())
     assert np.abs(found["geometric:lost motion"] / ARCMIN - wanted).max() < allowed
@@ -302,11 +303,11 @@ def test_the_tables_lost_motion_is_that_of_its_pairs_run_alone(engine: str, tria
 def test_the_tables_pairs_are_those_of_a_search_of_the_surfaces() -> None:
     (model, drawn), trials = table(), 4
     block = drawn.part(0, trials)
-    found = simulate_block(model, exact_engine(model), block)
+    found = gear_columns(model, exact_engine(model), block)
     for name, pair in table_pairs(model, block).items():
         seen = found[f"geometric:lost motion:{name} [arcmin]"] / ARCMIN
         for row in range(trials):
-            angle = block.random_angle[name][row, None]
+            angle = block.positions[name][row, None]
             (free,) = brute_force.free_turn(pair.searched(row), angle, pair.flank, turn_driver=False)
             assert abs(seen[row] - free) < SEARCHED
 
@@ -314,7 +315,7 @@ def test_the_tables_pairs_are_those_of_a_search_of_the_surfaces() -> None:
 # the whole mechanism --------------------------------------------------------------------------------------------
 
 
-def seats_of_engine(model: Model, block: Block) -> Callable[[str], train.Seat]:
+def seats_of_engine(model: Model, block: Trials) -> Callable[[str], train.Seat]:
     """Meshes of the model brought to rest by the exact engine, at driver angles that are told."""
     engine, made = exact_engine(model), build(model, block.deviations)
 
@@ -331,7 +332,7 @@ def seats_of_engine(model: Model, block: Block) -> Callable[[str], train.Seat]:
     return seat_of
 
 
-def robot_stages(block: Block, model: Model, seat_of: Callable[[str], train.Seat]) -> list[train.Mesh | train.Reducer]:
+def robot_stages(block: Trials, model: Model, seat_of: Callable[[str], train.Seat]) -> list[train.Mesh | train.Reducer]:
     """The shoulder: what gravity asks of the motor is worked out in test_train_layout.py."""
     flanks = {mesh.name: mesh.working_flank for mesh in model.meshes}
     # a driver that turns counter-clockwise pushes with its left flank, -1
@@ -343,7 +344,7 @@ def robot_stages(block: Block, model: Model, seat_of: Callable[[str], train.Seat
     ]
 
 
-def robot_uneven(block: Block, model: Model) -> dict[str, tuple[np.ndarray, np.ndarray, float]]:
+def robot_uneven(block: Trials, model: Model) -> dict[str, tuple[np.ndarray, np.ndarray, float]]:
     """By mesh: eccentricities (n,) [mm] of driver and driven gear, and the arm [mm] of the driven one."""
 
     def length(*names: str) -> np.ndarray:
@@ -364,7 +365,7 @@ def robot_uneven(block: Block, model: Model) -> dict[str, tuple[np.ndarray, np.n
     }
 
 
-def table_uneven(block: Block, model: Model) -> dict[str, tuple[np.ndarray, np.ndarray, float]]:
+def table_uneven(block: Trials, model: Model) -> dict[str, tuple[np.ndarray, np.ndarray, float]]:
     """The same of the table."""
     return {
         name: (
@@ -409,7 +410,7 @@ def test_the_whole_mechanism_turns_as_far_as_its_stages_add_up_to(
     that times the ratio.
     """
     model = model_of(SCENES / f"{scene}.yaml")
-    drawn = drawn_block(model, 5, 0, TRIALS)
+    drawn = drawn_trials(model, 5, 0, TRIALS)
     held = np.random.default_rng(3).uniform(0.0, 2000 * np.pi, TRIALS)  # a thousand turns of the motor
     nominal = stages_of(drawn, model, nominal_seat)
     nominal[0] = replace(nominal[0], play=np.zeros(TRIALS))
@@ -418,8 +419,8 @@ def test_the_whole_mechanism_turns_as_far_as_its_stages_add_up_to(
     angles = {
         name: stage.driver_angle(shaft) for name, stage, shaft in zip(meshes, nominal[1:], shafts[1:-1], strict=True)
     }
-    block = Block(drawn.deviations, angles)
-    found = simulate_block(model, exact_engine(model), block)["geometric:lost motion"] / ARCMIN
+    block = Trials(drawn.deviations, angles)
+    found = gear_columns(model, exact_engine(model), block)["geometric:lost motion"] / ARCMIN
 
     stages = stages_of(block, model, seats_of_engine(model, block))
     ends = [train.rests(stages, held, side) for side in (1, -1)]
@@ -474,11 +475,11 @@ def robot_of(folder: Path, joints: range) -> Model:
 
 def test_seven_trains_in_a_scene_are_what_each_is_alone(tmp_path: Path) -> None:
     trials, robot = 50, robot_of(tmp_path, range(1, 8))
-    together = simulate_block(robot, exact_engine(robot), drawn_block(robot, 1, 0, trials))
+    together = gear_columns(robot, exact_engine(robot), drawn_trials(robot, 1, 0, trials))
     assert set(together["status"]) == {"ok"}
     for k in range(1, 8):
         alone = robot_of(tmp_path, range(k, k + 1))
-        found = simulate_block(alone, exact_engine(alone), drawn_block(alone, 1, 0, trials))
+        found = gear_columns(alone, exact_engine(alone), drawn_trials(alone, 1, 0, trials))
         # gravity up or down turns an arm that lies to the right, and the pinion holds it from the other side
         assert alone.meshes[0].working_flank == robot.mesh(f"mesh {k}").working_flank == (-1) ** (k + 1)
         for name in (f"geometric:lost motion {k}", f"geometric:tip {k}", f"analytic:lost motion {k}"):

@@ -11,17 +11,22 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from gear_trials import drawn_trials, gear_columns
 from oracles.train import robot_lost_motion, table_lost_motion
 from places import SCENES
 
 from tol3d import load_scene
+from tol3d.gearing.breakdowns import breakdowns_of
 from tol3d.gearing.build import build
 from tol3d.gearing.engines.lazy import exact_engine
 from tol3d.gearing.model import Measure, Model, Reading, model_from_scene
 from tol3d.gearing.sensitivity import sensitivities
-from tol3d.gearing.stack_up import ClosedForm, closed_form, stack_of
-from tol3d.study.block import Block, drawn_block, simulate_block
-from tol3d.study.stages import stage_tallies, train_summaries
+from tol3d.gearing.stack_up import closed_form, stack_of
+from tol3d.gearing.statuses import STATUSES
+from tol3d.gearing.train_sections import train_sections
+from tol3d.study.breakdowns import merged_terms, pooled_terms
+from tol3d.system.closed_form import ClosedForm
+from tol3d.system.trials import Trials
 
 TABLE = (SCENES / "three_stage_train.yaml").read_text(encoding="utf-8")
 MANY = 100_000
@@ -103,8 +108,7 @@ def test_the_robots_closed_form_is_that_of_its_two_pairs() -> None:
 @cache
 def sample_of(text: str, folder: Path) -> tuple[Model, Mapping[str, np.ndarray]]:
     model = model_of(folder, text)
-    model = replace(model, study=replace(model.study, engine="analytic"))
-    return model, simulate_block(model, None, drawn_block(model, 11, 0, MANY))
+    return model, gear_columns(model, None, drawn_trials(model, 11, 0, MANY))
 
 
 def agrees(model: Model, columns: Mapping[str, np.ndarray], name: str) -> None:
@@ -119,8 +123,7 @@ def agrees(model: Model, columns: Mapping[str, np.ndarray], name: str) -> None:
 
 @pytest.mark.parametrize("name", ["first normal backlash", "second normal backlash", "lost motion", "at the table"])
 def test_a_large_sample_agrees_with_the_closed_form(name: str, upright: Model) -> None:
-    model = replace(upright, study=replace(upright.study, engine="analytic"))
-    agrees(model, simulate_block(model, None, drawn_block(model, 11, 0, MANY)), name)
+    agrees(upright, gear_columns(upright, None, drawn_trials(upright, 11, 0, MANY)), name)
 
 
 VARIANTS = {
@@ -279,7 +282,7 @@ def test_a_bearing_that_leans_a_bevel_gear_shifts_its_apex_and_closes_the_shaft_
     rows[:, model.component_slices["p tooth thickness"]] = -0.06
     rows[32:, model.component_slices["clearance"]] = 0.010
     angles = {"corner": np.tile(2 * math.pi / 20 * np.arange(32) / 32, 2)}
-    values = simulate_block(model, exact_engine(model), Block(rows, angles))["geometric:lost motion"] / ARCMIN
+    values = gear_columns(model, exact_engine(model), Trials(rows, angles))["geometric:lost motion"] / ARCMIN
     seen = (values[32:].mean() - values[:32].mean()) / 0.010
     assert seen == pytest.approx(share.coefficient, abs=0.1 * abs(shifted))
 
@@ -289,13 +292,10 @@ def test_a_bearing_that_leans_a_bevel_gear_shifts_its_apex_and_closes_the_shaft_
 
 def test_shares_of_stages_add_up_to_all_of_the_variance_and_are_those_of_the_sample() -> None:
     model = model_from_scene(load_scene(SCENES / "three_stage_train.yaml"))
-    columns = simulate_block(model, exact_engine(model), drawn_block(model, 3, 0, 5000))
+    columns = gear_columns(model, exact_engine(model), drawn_trials(model, 3, 0, 5000))
     half = {name: values[:2000] for name, values in columns.items()}, {name: v[2000:] for name, v in columns.items()}
-    first, second = (stage_tallies(model, part) for part in half)
-    tallies = {
-        name: {road: own.merge(second[name][road]) for road, own in roads.items()} for name, roads in first.items()
-    }
-    own = train_summaries(model, tallies)["indexing"]
+    first, second = (pooled_terms(breakdowns_of(model), STATUSES, part) for part in half)
+    own = train_sections(model, merged_terms(first, second), {})["indexing"]
     factors = {"gearbox": 0.5, "first mesh": 31 / 40, "second mesh": 1.5, "third mesh": 1.0}
     assert {stage["link"]: stage["factor"] for stage in own["stages"]} == pytest.approx(factors)
     for road in ("analytic", "geometric"):
@@ -331,15 +331,15 @@ def test_derivatives_are_those_of_two_simulations(scene: str, measure: str) -> N
     model = model_from_scene(load_scene(SCENES / f"{scene}.yaml"))
     own, trials = measure_of(model, measure), 4
     model = replace(model, measures=(own,))
-    block, engine = drawn_block(model, 2, 0, trials), exact_engine(model)
+    block, engine = drawn_trials(model, 2, 0, trials), exact_engine(model)
     rates = sensitivities(model, engine, block, own)
     count = model.component_count
     steps = STEP * np.eye(count)
 
     def taken(sign: float) -> np.ndarray:
         rows = (block.deviations[:, None] + sign * steps).reshape(-1, count)
-        angles = {mesh: np.repeat(angle, count) for mesh, angle in block.random_angle.items()}
-        values = simulate_block(model, engine, Block(rows, angles))[f"geometric:{own.name}"]
+        angles = {mesh: np.repeat(angle, count) for mesh, angle in block.positions.items()}
+        values = gear_columns(model, engine, Trials(rows, angles))[f"geometric:{own.name}"]
         return values.reshape(trials, count) / own.per_internal
 
     differences = (taken(1.0) - taken(-1.0)) / (2 * STEP)

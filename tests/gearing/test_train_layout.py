@@ -11,6 +11,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from gear_trials import drawn_trials
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
@@ -20,8 +21,7 @@ from tol3d import load_scene
 from tol3d.gearing.build import build
 from tol3d.gearing.model import Model, model_from_scene
 from tol3d.gearing.model.shafts import Carried
-from tol3d.study.block import nominal_block
-from tol3d.study.draws import driver_angles
+from tol3d.system.stated import nominal_build
 
 LEFT, RIGHT = -1, 1
 SAME_PLACE = 1e-9  # mm; some hundred times the rounding of a metre
@@ -201,7 +201,7 @@ def test_a_gear_stands_alike_on_its_shaft_and_in_each_of_its_meshes(train: tuple
 
 
 def stands_alike(model: Model, motor: float) -> None:
-    layout, made = model.layout, build(model, nominal_block(model).deviations)
+    layout, made = model.layout, build(model, nominal_build(model).deviations)
     for mesh in model.meshes:
         angle = layout.mesh_turn[mesh.name].at(motor)
         turns = {mesh.driver: angle, mesh.driven: float(mesh.pair.driven_angle(np.array([angle]))[0])}
@@ -326,7 +326,7 @@ def test_the_long_period_is_the_shortest_after_which_every_mesh_stands_as_before
 @every_train
 def test_all_meshes_of_a_trial_stand_at_one_turn_of_the_motor(train: tuple[str, Model]) -> None:
     _, model = train
-    (drive,), angles = model.layout.drives, driver_angles(model, 7, 0, 50)
+    (drive,), angles = model.layout.drives, drawn_trials(model, 7, 0, 50).positions
     first, *others = model.meshes
     turning = model.layout.mesh_turn[first.name]
     period = first.pair.long_period_turns / abs(turning.rate)  # of the motor
@@ -450,7 +450,7 @@ def axes(
     model: Model, deviations: Mapping[str, list[float]], mesh: str, gear_name: str
 ) -> tuple[np.ndarray, np.ndarray]:
     """Of a gear's axis, in its shaft's frame at rest: how far [mm] it moved in mid-face, and its direction."""
-    row = nominal_block(model).deviations.copy()
+    row = nominal_build(model).deviations.copy()
     rest = build(model, row)
     for name, values in deviations.items():
         row[0, model.component_slices[name]] = values
@@ -529,7 +529,7 @@ def test_meshes_stand_anywhere_although_the_branches_of_a_train_meet_again_after
     model, count = model_of(tmp_path, parts, moves), 20_000
     (drive,) = model.layout.drives
     assert drive.turns > 1e20
-    angles = driver_angles(model, 1, 0, count)
+    angles = drawn_trials(model, 1, 0, count).positions
     shares = [angles[mesh.name] / (2 * math.pi * mesh.pair.long_period_turns) % 1.0 for mesh in model.meshes]
     for share in shares:
         assert kstest(share, "uniform").pvalue > 1e-3

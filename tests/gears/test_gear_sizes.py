@@ -1,5 +1,6 @@
 """Gears from module 0.05 to 20 mm: what FCL reads grows with them, and its chords explain what it reads too much."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
@@ -8,6 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 from fixtures import strips_of
+from gear_trials import drawn_trials, gear_columns, simulated
 from oracles import brute_force
 from oracles.involute_gear import InvoluteGear
 
@@ -15,10 +17,9 @@ from tol3d import load_scene
 from tol3d.gearing.build import Build
 from tol3d.gearing.engines.fcl import FclEngine
 from tol3d.gearing.engines.lazy import exact_engine
-from tol3d.gearing.model import GearPart, Mesh, Model, Study, model_from_scene
+from tol3d.gearing.model import GearPart, Mesh, Model, model_from_scene
 from tol3d.gears import LEFT, RIGHT, Flank, SpurGear, SpurPair
-from tol3d.simulate import Overrides, effective_model, run_scene
-from tol3d.study.block import drawn_block, simulate_block
+from tol3d.simulate import run_scene, simulation_of
 from tol3d.study.witness import witness_summary, witness_warnings
 
 MODULES = (0.05, 0.1, 0.3, 1.0, 2.5, 10.0, 20.0)
@@ -81,14 +82,14 @@ class Both:
     chord_error: float  # modules
 
 
-def both(model: Model, module: float) -> Both:
-    engine = FclEngine(model, {part.name: strips_of(part.gear, model.study.profile_steps) for part in model.gears})
-    block = drawn_block(model, 1, 0, model.study.trials)
-    columns = [simulate_block(model, each, block) for each in (engine, exact_engine(model))]
+def both(model: Model, module: float, trials: int = 40) -> Both:
+    engine = FclEngine(model, {part.name: strips_of(part.gear, model.profile_steps) for part in model.gears})
+    block = drawn_trials(model, 1, 0, trials)
+    columns = [gear_columns(model, each, block) for each in (engine, exact_engine(model))]
     assert all((each["status"] == "ok").all() for each in columns)
     per_um = 1 / (1000 * module)
 
-    def values(each: dict[str, Any]) -> dict[str, np.ndarray]:
+    def values(each: Mapping[str, Any]) -> dict[str, np.ndarray]:
         return {
             measure.name: each[f"geometric:{measure.name}"] * (per_um if measure.unit == "um" else 1.0)
             for measure in model.measures
@@ -153,7 +154,7 @@ def pair_gaps(module: float, flank: Flank) -> tuple[np.ndarray, np.ndarray, floa
     distance = 16 * module
     mesh = Mesh("mesh", "pinion", "wheel", SpurPair(pinion, wheel, distance), RIGHT)
     parts = (GearPart("pinion", pinion), GearPart("wheel", wheel))
-    model = Model("edges", parts, (), (), (mesh,), (), Study())
+    model = Model("edges", parts, (), (), (mesh,), ())
     count, thinner = 50, 0.02 * module
     shafts = np.tile(np.eye(4), (count, 2, 1, 1))
     shafts[:, 1, 0, 3] = distance
@@ -203,8 +204,8 @@ def test_a_witness_of_edges_is_content(tmp_path: Path, tooth: str) -> None:
     """Of a pair so far shifted that tips reach far down their mates' flanks."""
     path = tmp_path / "scene.yaml"
     path.write_text(ONE_TOOTH.format(tooth=tooth, face="face_width: 10 mm"), "utf-8")
-    model = effective_model(load_scene(path), Overrides())
-    witness = witness_summary(model, exact_engine(model), model.study.trials)
+    model = simulation_of(load_scene(path))
+    witness = witness_summary(model, model.system.road("exact", None), model.study.trials)
     own = witness["measures"]["one tooth"]
     assert own["compared"] > 10
     assert own["allowance"] == pytest.approx(1e3 * LEFT_OVER * 3.5)
@@ -216,12 +217,14 @@ def test_a_small_gear_s_witness_warns_of_little(tmp_path: Path) -> None:
     """At module 0.05 chords explain 0.0025 um: 0.1 um further apart, 2 sin 20 deg of it more backlash, is told."""
     model = model_of(tmp_path, SPUR, 0.05, (12, 20), 0.05)
     apart = model_of(tmp_path, SPUR.replace("{a}", "0.8196"), 0.05, (12, 20), 0.05)
-    witness = witness_summary(model, exact_engine(model), 40)
-    assert witness_warnings(model, witness) == []
+    simulation, other_simulation = simulated(model, witness=40), simulated(apart, witness=40)
+    road = simulation.system.road("exact", None)
+    witness = witness_summary(simulation, road, 40)
+    assert witness_warnings(simulation, witness) == []
     own = witness["measures"]["backlash"]
     assert own["expected_at_most"] + own["allowance"] < 0.005
-    other = witness_summary(apart, exact_engine(model), 40)
-    assert witness_warnings(apart, other)
+    other = witness_summary(other_simulation, road, 40)
+    assert witness_warnings(other_simulation, other)
 
 
 def test_each_mesh_of_a_train_has_the_bound_of_its_own_gears(tmp_path: Path) -> None:

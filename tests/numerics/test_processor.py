@@ -12,15 +12,17 @@ from pathlib import Path
 import numpy as np
 import pytest
 from fixtures import Command
+from gear_trials import simulated
 from places import SPUR_PAIR
 
 from tol3d.errors import RunError
 from tol3d.gearing.model import Model
 from tol3d.numerics.processor import processor, unlike
 from tol3d.runs.run import open_run
-from tol3d.simulate import Execution, Overrides, run_scene
-from tol3d.study.replaying import ElsewhereWarning, replay
-from tol3d.study.task import Task, installed_versions, refuse_other_versions
+from tol3d.simulate import Execution, Overrides, replay, run_scene
+from tol3d.study.replaying import ElsewhereWarning
+from tol3d.study.task import Task
+from tol3d.study.versions import installed_versions, refuse_other_versions
 
 ARITHMETIC = re.compile(r"s?sse|avx|fma|xop|f16c|amx")  # features of x86 that floating-point instructions depend on
 STUDY = Overrides(trials=50, engine="analytic", witness=0)
@@ -97,7 +99,7 @@ def test_a_worker_of_another_processor_is_refused(paper_model: Model, request: p
     asked = installed_versions()
     request.getfixturevalue("generic")
     with pytest.raises(RunError, match=r"a worker has processor generic instead of .*last bit"):
-        Task(paper_model, None, {}, "other", True, asked).columns(0, 1)
+        Task(simulated(paper_model), None, {}, "other", True, asked).columns(0, 1)
 
 
 def test_a_trial_of_another_processor_again_is_told_of(tmp_path: Path, request: pytest.FixtureRequest) -> None:

@@ -9,7 +9,7 @@ from oracles.bevel_brute_force import BevelMesh, BevelNumbers
 from oracles.brute_force import Mesh as SearchedSpurs
 from oracles.involute_gear import InvoluteGear
 from tol3d.gearing.build import Build
-from tol3d.gearing.model import GearPart, Mesh, Model, Study
+from tol3d.gearing.model import GearPart, Mesh, Model
 from tol3d.gears import BevelGear, BevelPair, SpurGear, SpurPair
 from tol3d.gears.flank import Flank
 
@@ -56,9 +56,7 @@ class Builds:
 def model_of(pair: SpurPair | BevelPair, flank: Flank) -> Model:
     """A model that is one mesh, nothing deviating."""
     mesh = Mesh("mesh", "pinion", "wheel", pair, flank)
-    return Model(
-        "posed", (GearPart("pinion", pair.pinion), GearPart("wheel", pair.wheel)), (), (), (mesh,), (), Study()
-    )
+    return Model("posed", (GearPart("pinion", pair.pinion), GearPart("wheel", pair.wheel)), (), (), (mesh,), ())
 
 
 def random_builds(

@@ -11,11 +11,10 @@ import pytest
 import structure
 import studies
 import whole_gears
+from gear_trials import model_of_scene
 from places import ROOT
 
-from tol3d import load_scene
 from tol3d.gearing.model import Backlash
-from tol3d.study.overrides import Overrides, effective_model
 
 FOLDER = ROOT / "benchmarks"
 NUMBER = r"([\d,]*\.?\d+)"
@@ -45,7 +44,7 @@ ROWS: Mapping[str, tuple[str, ...]] = {
         rf"strips, whole face, all teeth +{NUMBER} trials/s",
     ),
     "memory": (rf"100 trials, exact: +{NUMBER} MB",),
-    "stages": (rf"draws +│ +{NUMBER} │ +{NUMBER}", rf"statistics, features included +│ +{NUMBER} │ +{NUMBER}"),
+    "stages": (rf"draws +│ +{NUMBER} │ +{NUMBER}", rf"statistics, regressors included +│ +{NUMBER} │ +{NUMBER}"),
     "startup": (
         rf"without both +{NUMBER} s",
         rf"tol3d --help +{NUMBER} s",
@@ -101,7 +100,7 @@ def test_whole_gears_find_the_backlash_of_thinned_teeth() -> None:
     Chords lie inside the flanks and make each contact late by the chord errors of both gears at most; each contact is
     found with a gap of GAP_XTOL at most.
     """
-    model = effective_model(load_scene(studies.SCENES / "spur_pair.yaml"), Overrides())
+    model = model_of_scene(studies.SCENES / "spur_pair.yaml")
     model = whole_gears.with_mean_thickness(model)
     gears = whole_gears.WholeGears(model)
     found = whole_gears.nominal_free_turn(gears, model) * 110 * 2.5 / 2 * 0.9396926207859084  # base radius, cos 20°
@@ -142,7 +141,7 @@ def test_systems_are_read_as_they_say(name: str, tmp_path: Path) -> None:
         "spur pair": ("face", "face", "all"),
     }
     scene = studies.scene_of(studies.SYSTEMS[name], tmp_path)
-    model = effective_model(load_scene(scene), Overrides())
+    model = model_of_scene(scene)
     for measure in model.measures:
         assert isinstance(measure.kind, Backlash)
         reading = measure.kind.reading

@@ -29,6 +29,7 @@ from tol3d.errors import InputError
 from tol3d.gearing.display import seated_build
 from tol3d.gearing.magnified import OPEN_SHARE
 from tol3d.gearing.placed import DISPLAY_DEFLECTION
+from tol3d.gearing.system import gear_model
 from tol3d.gears import LEFT, RIGHT
 from tol3d.report import (
     check_report,
@@ -52,7 +53,7 @@ from tol3d.report.distribution import column_colours, draw_distribution
 from tol3d.report.export import file_words
 from tol3d.report.sheet import Heading, Row, Sheet
 from tol3d.runs.run import Run
-from tol3d.simulate import Overrides, effective_model, model_of, run_scene
+from tol3d.simulate import Overrides, run_scene, simulation_again, simulation_of
 from tol3d.solids import display_mesh
 
 SCENE = """
@@ -141,7 +142,7 @@ NUMBER = re.compile(r"[-+±]?\d[\d.′″]*")
 
 @pytest.mark.parametrize("width", [30, 40, 60])
 def test_no_number_is_cut_in_a_narrow_terminal(run: Run, width: int) -> None:
-    for report in (run_report(run.found), check_report(model_of(run)), comparison_report([run, run])):
+    for report in (run_report(run.found), check_report(simulation_again(run)), comparison_report([run, run])):
         wide, narrow = printed(report, 300), printed(report, width)
         assert max(len(line) for line in narrow.splitlines()) <= width
         assert "…" not in narrow
@@ -266,8 +267,9 @@ AT_EDGE = 0.01  # the warm pinion's pitch is 115 ppm larger: contact begins at a
 
 @pytest.mark.parametrize("width", [80, 120])
 def test_check_report_fits_and_shows_limits_and_coefficients(run: Run, width: int) -> None:
-    model = model_of(run)
-    text = printed(check_report(model), width)
+    simulation = simulation_again(run)
+    model = gear_model(simulation.system)
+    text = printed(check_report(simulation), width)
     assert max(len(line) for line in text.splitlines()) <= width
     laws, lengths, angles = re.split(r"contributors\n|free play, shape: .*\n|turn of \[wheel\]: .*\n", text)[1:]
     assert row_of(laws, "pinion thickness")[:3] == ["normal", "-40", "-20"]
@@ -316,13 +318,13 @@ study: {trials: 10}
 
 def test_check_names_the_measures_whose_shares_no_closed_form_tells(run: Run, tmp_path: Path) -> None:
     (tmp_path / "ways.yaml").write_text(TWO_WAYS, encoding="utf-8")
-    text = one_line(check_report(effective_model(load_scene(tmp_path / "ways.yaml"))))
+    text = one_line(check_report(simulation_of(load_scene(tmp_path / "ways.yaml"))))
     assert "no shares of both: the tighter way counts, which is no sum; run tells the shares of its trials" in text
-    assert "no shares" not in one_line(check_report(model_of(run)))
+    assert "no shares" not in one_line(check_report(simulation_again(run)))
 
 
 def test_check_marks_coefficients_on_which_geometry_and_stack_up_disagree() -> None:
-    text = printed(check_report(effective_model(load_scene(SCENES / "bevel_pair.yaml"))), 80)
+    text = printed(check_report(simulation_of(load_scene(SCENES / "bevel_pair.yaml"))), 80)
     # by an exact solver 0.5311 and 0.4358 where the stack-up has their mean, and nothing for axes that pass each other
     for name, cells in {
         "shaft angle": ["µm/µm", "+0.684", "+0.685", "11.7"],
@@ -336,11 +338,11 @@ def test_check_marks_coefficients_on_which_geometry_and_stack_up_disagree() -> N
 
 def test_coefficients_of_tilts_differ_below_and_above_the_mean(run: Run, tmp_path: Path) -> None:
     tilts = "  {0}: {{kind: {0}, of: gear pair, distribution: {{kind: uniform, lower: -9 um, upper: 9 um}}}}\n"
-    assert "a tilt closes" not in printed(check_report(model_of(run)), 120)
+    assert "a tilt closes" not in printed(check_report(simulation_again(run)), 120)
     scene = tmp_path / "tilted.yaml"
     words = tilts.format("axis_in_plane") + tilts.format("axis_out_of_plane")
     scene.write_text(SCENE.replace("moves:\n", f"{words}moves:\n"), encoding="utf-8")
-    text = printed(check_report(effective_model(load_scene(scene))), 120)
+    text = printed(check_report(simulation_of(load_scene(scene))), 120)
     assert "axis_in_plane, axis_out_of_plane: a tilt closes the gap whichever way it goes" in text
     lost = math.sin(math.acos(43 * math.cos(math.radians(20)) / 43.59))  # half the face on both flanks, per face width
     for cell in row_of(text.split("free play, shape: ")[1], "axis_in_plane")[1:3]:
@@ -573,7 +575,7 @@ def test_exported_trial_is_the_trial_that_ran(run: Run, tmp_path: Path, fmt: str
     pinion, wheel = loaded(export_run(run, TRIAL, fmt, out=tmp_path), fmt)
     assert pinion.is_watertight
     assert wheel.is_watertight
-    model = model_of(run)
+    model = gear_model(simulation_again(run).system)
     shown = sum(display_mesh(part.gear, DISPLAY_DEFLECTION).chord_error for part in model.gears)
     measured = 2 * run.summary["chord_error_um"] / 1000
     axis = tuple(wheel.bounding_box.centroid[:2])
@@ -624,7 +626,7 @@ def test_step_is_not_magnified(run: Run, tmp_path: Path) -> None:
 def test_magnified_gap_grows_along_the_stack_up(run: Run) -> None:
     """j(X) = j(0) + X (j(1) - j(0)), to second order: squares of 20 um times X over the gears' 20 mm, times X^2."""
     factor = 8.0
-    nominal = model_of(run).meshes[0].pair.normal_backlash
+    nominal = gear_model(simulation_again(run).system).meshes[0].pair.normal_backlash
     plain, magnified = (seated_build(run, TRIAL, magnify=x).meshes[0] for x in (1.0, factor))
     expected = nominal + factor * (plain.gap_value - nominal)
     second_order = 4 * (factor * 0.020) ** 2 / 20

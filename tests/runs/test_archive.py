@@ -40,7 +40,7 @@ def test_a_run_keeps_what_ran_though_scene_and_file_are_edited_meanwhile(tmp_pat
         scene.write_text(as_it_was.replace("172.5", "172.6"), "utf-8")
         measured.write_text("n,e\n1,-90\n2,-80\n", "utf-8")
 
-    run = run_scene(scene, overrides=FEW, out=tmp_path / "run", watch=Watch(stage=edit))
+    run = run_scene(scene, overrides=FEW, out=tmp_path / "run", watch=Watch(activity=edit))
     assert run.scene_path.read_text("utf-8") == as_it_was
     assert run.files["measured.csv"].content == MEASURED.encode()
     column = run.columns("analytic:normal backlash")["analytic:normal backlash"]

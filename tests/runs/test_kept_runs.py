@@ -11,7 +11,7 @@ from tol3d.execution.pools import Execution
 from tol3d.runs.block_files import BlockFiles, block_name
 from tol3d.runs.run import DamageWarning
 from tol3d.simulate import Watch
-from tol3d.study import block as block_module
+from tol3d.study import blocks as block_module
 
 BLOCK = 1000
 STUDY = Overrides(trials=8 * BLOCK, engine="analytic")

@@ -21,7 +21,7 @@ from tol3d.runs.checkpoint import Checkpoint, CheckpointWarning
 from tol3d.runs.run import DamageWarning
 from tol3d.runs.worst import worst_trial
 from tol3d.simulate import Watch
-from tol3d.study import block as block_module
+from tol3d.study import blocks as block_module
 from tol3d.study.tally import Tally
 
 BLOCK = 2000
@@ -36,13 +36,13 @@ HANGS = 300  # s; a guard against waiting for ever, no claim
 SMALL_BLOCKS = f"""
 import os, sys, time
 from tol3d import cli
-from tol3d.study import block
+from tol3d.study import blocks
 from tol3d.execution import folding
 from tol3d.study import task
-block.BLOCK_TRIALS = {BLOCK}
+blocks.BLOCK_TRIALS = {BLOCK}
 folding.KEEP_EVERY = 0.0
-made = task.simulate_block
-task.simulate_block = lambda *arguments: (time.sleep(0.02), made(*arguments))[1]
+made = task.columns_of
+task.columns_of = lambda *arguments: (time.sleep(0.02), made(*arguments))[1]
 told, at = (int(word) for word in sys.argv[1:3])
 real, calls = os.replace, iter(range(10**9))
 def replace(*arguments):

@@ -15,7 +15,7 @@ from tol3d.cli.arguments import scene_path
 from tol3d.execution.pools import Execution
 from tol3d.runs.manifest import MANIFEST
 from tol3d.runs.occupant import MovedAsideWarning
-from tol3d.simulate import Watch, effective_model, folder_for, load
+from tol3d.simulate import Watch, folder_for, load, simulation_of
 
 FEW = Overrides(trials=20, engine="analytic", witness=0)
 OTHER_SEED = Overrides(trials=20, engine="analytic", witness=0, seed=5)
@@ -278,7 +278,7 @@ def goes_on(out: Path) -> bool:
 
 def default_folder(scene: Path, overrides: Overrides = FEW, execution: Execution = Execution()) -> Path:  # noqa: B008
     loaded = load(scene)
-    return folder_for(loaded, effective_model(loaded, overrides), execution, Path("runs"))[0]
+    return folder_for(loaded, simulation_of(loaded, overrides), execution, Path("runs"))[0]
 
 
 def test_by_default_each_study_has_a_folder_and_finds_it_again(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -19,7 +19,7 @@ from tol3d.execution.pools import Execution
 from tol3d.runs.run import DamageWarning
 from tol3d.runs.worst import worst_trial
 from tol3d.simulate import Watch
-from tol3d.study import block as block_module
+from tol3d.study import blocks as block_module
 
 
 def assert_same_bits(first: dict[str, np.ndarray], second: dict[str, np.ndarray], rows: slice = slice(None)) -> None:

@@ -30,7 +30,7 @@ from tol3d.runs.run import SUMMARY
 from tol3d.runs.summary.kinds import default_kinds
 from tol3d.runs.summary.text import SchemaWarning, written
 from tol3d.runs.worst import worst_trial
-from tol3d.simulate import model_of
+from tol3d.simulate import simulation_again
 
 TRIALS = 24
 ESCAPE = "\x1b[2J\x1b]0;owned\x07"
@@ -243,7 +243,7 @@ def test_an_edit_with_its_checksum_is_drawn_and_replayed_or_refused(
             opened = open_run(folder)
             draw_comparison([opened], tmp_path / "picture.png")
             drawn += 1
-            model_of(opened)
+            simulation_again(opened)
         except InputError:
             continue
     assert drawn > 4

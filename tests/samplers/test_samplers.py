@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 import pytest
 import scipy
+from gear_trials import drawn_trials, simulated
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from loose_summaries import typed_run
@@ -22,19 +23,25 @@ from rich.console import Console
 
 from tol3d import Scene, SceneError, load_scene
 from tol3d.errors import InputError
-from tol3d.gearing.model import Model, Positions, model_from_scene
+from tol3d.gearing.model import Model, Positions
+from tol3d.gearing.roads.analytic import analytic_values
 from tol3d.gearing.stack_up import closed_form
+from tol3d.gearing.system import gear_model
 from tol3d.report.table import run_report
 from tol3d.samplers import LatinHypercube, MonteCarlo, Sampler, Sobol, Stream
 from tol3d.samplers.latin_hypercube import ROUNDS, permuted
 from tol3d.samplers.monte_carlo import random_words
 from tol3d.samplers.sobol import LinearPoints, plain_jumps
+from tol3d.simulate import simulation_of
 from tol3d.statistics import Moments
-from tol3d.study.block import Block, analytic_values, simulate_block
-from tol3d.study.draws import deviations, driver_angles
+from tol3d.study.columns import columns_of
+from tol3d.study.draws import drawn
 from tol3d.study.replicated import Replicated, rows_of_replicates
+from tol3d.study.simulation import Simulation
 from tol3d.study.summary import study_summary
 from tol3d.study.tally import PILOT_TRIALS, Tally, grids_of
+from tol3d.system.outcome import Columns
+from tol3d.system.trials import Trials
 
 SPUR_PAIR = (ROOT / "scenes" / "spur_pair.yaml").read_text(encoding="utf-8")
 STUDY_LINE = "study: {trials: 2000, seed: 1, sampler: monte_carlo, engine: exact, witness: 20}"
@@ -49,9 +56,8 @@ def scene_of(folder: Path, study: str, text: str = SPUR_PAIR) -> Scene:
     return load_scene(path)
 
 
-def block_of(model: Model, first: int, count: int) -> Block:
-    seed = model.study.seed
-    return Block(deviations(model, seed, first, count), driver_angles(model, seed, first, count))
+def block_of(simulation: Simulation, first: int, count: int) -> Trials:
+    return drawn(simulation, first, count)
 
 
 # Sobol' -----------------------------------------------------------------------------------------------------------
@@ -196,22 +202,22 @@ def test_any_cut_into_blocks_gives_the_same_bits(sampler: Sampler, first: int, c
 
 @pytest.mark.parametrize("sampler", ["monte_carlo", "sobol", "latin_hypercube"])
 def test_a_trial_of_a_model_is_the_same_alone(tmp_path: Path, sampler: str) -> None:
-    model = model_from_scene(scene_of(tmp_path, f"study: {{trials: 1024, sampler: {sampler}, engine: analytic}}"))
+    model = simulation_of(scene_of(tmp_path, f"study: {{trials: 1024, sampler: {sampler}, engine: analytic}}"))
     whole = block_of(model, 0, 1024)
     for trial in (0, 63, 64, 1023):
         alone = block_of(model, trial, 1)
         assert np.array_equal(alone.deviations[0], whole.deviations[trial])
-        assert alone.random_angle["gear pair"][0] == whole.random_angle["gear pair"][trial]
+        assert alone.positions["gear pair"][0] == whole.positions["gear pair"][trial]
 
 
 def test_a_contributor_more_changes_no_other_monte_carlo_draw(paper_model: Model) -> None:
     fewer = replace(paper_model, contributors=paper_model.contributors[1:])
     name = paper_model.contributors[0].name
-    whole = deviations(paper_model, 1, 0, 100)
+    whole = drawn_trials(paper_model, 1, 0, 100).deviations
     kept = np.delete(whole, paper_model.component_slices[name], axis=1)
-    assert np.array_equal(deviations(fewer, 1, 0, 100), kept)
-    for mesh, angle in driver_angles(paper_model, 1, 0, 100).items():
-        assert np.array_equal(driver_angles(fewer, 1, 0, 100)[mesh], angle)
+    assert np.array_equal(drawn_trials(fewer, 1, 0, 100).deviations, kept)
+    for mesh, angle in drawn_trials(paper_model, 1, 0, 100).positions.items():
+        assert np.array_equal(drawn_trials(fewer, 1, 0, 100).positions[mesh], angle)
 
 
 # errors by replicates ---------------------------------------------------------------------------------------------
@@ -223,9 +229,9 @@ def found(model: Model, sampler: Any, trials: int, seed: int) -> np.ndarray:
     """Errors of mean and sigma of one study against the closed form, and the standard errors it states [um]."""
     measure = replace(model.measures[0], positions=FIXED)
     parts = 1 if sampler == "monte_carlo" else 16
-    study = replace(model.study, sampler=sampler, trials=trials, seed=seed, replicates=parts)
-    model = replace(model, study=study)
-    values = 1e3 * analytic_values(model, measure, block_of(model, 0, trials))[:, 0]
+    simulation = simulated(model, sampler=sampler, trials=trials, seed=seed, replicates=parts)
+    study = simulation.study
+    values = 1e3 * analytic_values(model, measure, block_of(simulation, 0, trials))[:, 0]
     moments, form, rows = Moments.of(values), closed_form(model, measure), rows_of_replicates(study, 0, trials)
     assert form is not None
     errors = Replicated.of(values, rows, None, None) if rows else moments
@@ -260,7 +266,7 @@ def test_the_mean_converges_with_order_one_half_by_monte_carlo_and_more_than_nin
 
 
 def test_replicates_that_blocks_cut_are_put_together_again(tmp_path: Path) -> None:
-    study = replace(model_from_scene(scene_of(tmp_path, STUDY_LINE)).study, sampler="sobol", trials=160, replicates=10)
+    study = replace(simulation_of(scene_of(tmp_path, STUDY_LINE)).study, sampler="sobol", trials=160, replicates=10)
     values = np.random.default_rng(1).normal(size=160)
     values[[5, 70]] = math.nan
 
@@ -291,15 +297,18 @@ def test_a_share_beyond_a_limit_has_students_interval_or_none() -> None:
 # in a summary and in print ----------------------------------------------------------------------------------------
 
 
-def summary_of(model: Model) -> dict[str, Any]:
+def summary_of(simulation: Simulation) -> dict[str, Any]:
     """An analytic study in blocks of 300, as a run would fold them."""
-    grids = grids_of(model, simulate_block(model, None, block_of(model, 0, PILOT_TRIALS)))
-    trials = model.study.trials
+    system, trials = simulation.system, simulation.study.trials
+
+    def block(first: int, count: int) -> Columns:
+        return columns_of(system, None, block_of(simulation, first, count))
+
+    grids = grids_of(system, block(0, PILOT_TRIALS))
     parts = [
-        Tally.of(model, grids, simulate_block(model, None, block_of(model, first, min(300, trials - first))), first)
-        for first in range(0, trials, 300)
+        Tally.of(simulation, grids, block(first, min(300, trials - first)), first) for first in range(0, trials, 300)
     ]
-    summary = study_summary(model, None, reduce(Tally.merge, parts))
+    summary = study_summary(simulation, None, reduce(Tally.merge, parts))
     return {**summary, "timing": {"setup_s": 0.0, "simulate_s": 1.0, "trials_per_s": 1.0, "workers": 1}}
 
 
@@ -310,12 +319,13 @@ def printed(summary: dict[str, Any]) -> str:
 
 
 def test_a_summary_says_by_what_its_errors_are_known(tmp_path: Path) -> None:
-    model = model_from_scene(
+    model = simulation_of(
         scene_of(tmp_path, "study: {trials: 1024, seed: 2, sampler: sobol, replicates: 8, engine: analytic}")
     )
     summary = summary_of(model)
     own = summary["measures"]["normal backlash"]["analytic"]
-    values = 1e3 * analytic_values(model, model.measures[0], block_of(model, 0, 1024))[:, 0].reshape(8, 128)
+    gears = gear_model(model.system)
+    values = 1e3 * analytic_values(gears, gears.measures[0], block_of(model, 0, 1024))[:, 0].reshape(8, 128)
     assert own["error_by"] == "replicates"
     assert own["mean_se"] == pytest.approx(values.mean(axis=1).std(ddof=1) / math.sqrt(8), rel=1e-9)
     assert own["sigma_se"] == pytest.approx(values.std(axis=1, ddof=1).std(ddof=1) / math.sqrt(8), rel=1e-9)
@@ -328,7 +338,7 @@ def test_a_summary_says_by_what_its_errors_are_known(tmp_path: Path) -> None:
 
 
 def test_independent_trials_tell_their_errors_themselves(tmp_path: Path) -> None:
-    model = model_from_scene(scene_of(tmp_path, "study: {trials: 500, engine: analytic}"))
+    model = simulation_of(scene_of(tmp_path, "study: {trials: 500, engine: analytic}"))
     summary = summary_of(model)
     own = summary["measures"]["normal backlash"]["analytic"]
     assert own["error_by"] == "sample"
@@ -341,7 +351,7 @@ def test_independent_trials_tell_their_errors_themselves(tmp_path: Path) -> None
 
 def test_samplers_have_sixteen_replicates_if_nothing_is_said(tmp_path: Path) -> None:
     for sampler, parts in (("monte_carlo", 1), ("sobol", 16), ("latin_hypercube", 16)):
-        study = model_from_scene(scene_of(tmp_path, f"study: {{trials: 4096, sampler: {sampler}}}")).study
+        study = simulation_of(scene_of(tmp_path, f"study: {{trials: 4096, sampler: {sampler}}}")).study
         assert (study.sampler, study.replicates, study.replicate_trials) == (sampler, parts, 4096 // parts)
 
 
@@ -392,7 +402,7 @@ def test_a_curve_cannot_be_waited_for(tmp_path: Path) -> None:
 
 
 def test_sobol_points_not_in_powers_of_two_are_warned_of(tmp_path: Path) -> None:
-    model = model_from_scene(scene_of(tmp_path, "study: {trials: 2000, sampler: sobol}"))
+    model = simulation_of(scene_of(tmp_path, "study: {trials: 2000, sampler: sobol}"))
     (warning,) = model.warnings
     assert "take 1024 (16 replicates of 64) or 2048 (16 of 128) trials" in warning
     even = replace(model, study=replace(model.study, trials=2048))
@@ -404,7 +414,7 @@ def test_sobol_points_not_in_powers_of_two_are_warned_of(tmp_path: Path) -> None
 def test_the_documents_studies_can_be_run(tmp_path: Path) -> None:
     document = (ROOT / "docs" / "scene.md").read_text(encoding="utf-8")
     studies = re.findall(r"```text\n(study:.*?)```", document, re.DOTALL)
-    kinds = {model_from_scene(scene_of(tmp_path, study)).study.sampler for study in studies}
+    kinds = {simulation_of(scene_of(tmp_path, study)).study.sampler for study in studies}
     assert kinds == {"sobol", "monte_carlo"}
 
 

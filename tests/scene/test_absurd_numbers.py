@@ -18,7 +18,7 @@ from ruamel.yaml import YAML
 from tol3d import InputError, Overrides, run_scene
 from tol3d.errors import SceneError
 from tol3d.report import check_report, run_report
-from tol3d.simulate import effective_model, load
+from tol3d.simulate import load, simulation_of
 from tol3d.units import FACTORS, LARGEST, LEAST_POSITIVE
 
 NUMBER_UNIT = re.compile(r"\s*[+-]?[0-9.]+(?:[eE][+-]?[0-9]+)?\s+(\S+)\s*")
@@ -82,7 +82,7 @@ def test_an_absurd_number_is_refused_or_checked(name: str, tmp_path: Path) -> No
         scene = tmp_path / "scene.yaml"
         scene.write_text(text, "utf-8")
         try:
-            printed(check_report(effective_model(load(scene))))
+            printed(check_report(simulation_of(load(scene))))
             checked += 1
         except InputError as error:  # anything else would be a fault
             said.append(str(error))

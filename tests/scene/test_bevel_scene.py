@@ -4,11 +4,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from gear_trials import model_of_scene
 
 from tol3d import Overrides, SceneError, load_scene, run_scene
 from tol3d.gearing.build import build
 from tol3d.gearing.model import Model, model_from_scene
-from tol3d.simulate import effective_model
 
 SCENE = """
 scene: bevel
@@ -28,7 +28,7 @@ OTHER = "kind: axial_shift, of: driver, distribution: {kind: constant, value: 0 
 
 def model_of(folder: Path, text: str) -> Model:
     (folder / "scene.yaml").write_text(text, "utf-8")
-    return effective_model(load_scene(folder / "scene.yaml"))
+    return model_of_scene(folder / "scene.yaml")
 
 
 WRONG = {

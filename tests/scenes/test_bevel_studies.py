@@ -8,12 +8,12 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 import pytest
+from gear_trials import drawn_trials, gear_columns
 from places import SCENES
 
 from tol3d import load_scene
 from tol3d.gearing.engines.lazy import exact_engine
 from tol3d.gearing.model import Backlash, Model, Reading, ToothThickness, model_from_scene
-from tol3d.study.block import drawn_block, simulate_block
 
 ALPHA = math.radians(20.0)
 GIVEN = 0.01  # um; the means are told to so much
@@ -75,7 +75,7 @@ def check(name: str, trials: int) -> None:
     """The roads' difference is sampled, and the closed form's mean is known: so few trials tell the mean closely."""
     case = CASES[name]
     model = model_of(case)
-    columns = simulate_block(model, exact_engine(model), drawn_block(model, 1, 0, trials))
+    columns = gear_columns(model, exact_engine(model), drawn_trials(model, 1, 0, trials))
     assert set(columns["status"]) == {"ok"}
     geometric, analytic = (
         np.asarray(columns[f"{road}:{model.measures[0].name}"], dtype=np.float64) for road in ("geometric", "analytic")

@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 import pytest
 from expected import expected
+from gear_trials import drawn_trials
 from oracles import exact_eccentric
 from oracles.involute_gear import InvoluteGear
 from places import SCENES as FOLDER
@@ -25,7 +26,6 @@ from vectors import vector
 from tol3d import Run, load_scene
 from tol3d.gearing.model import model_from_scene
 from tol3d.gears.flank import Flank
-from tol3d.study.block import drawn_block
 
 ELSEWHERE = re.compile("bevel|robot|train")  # test_bevel_scenes.py, test_train_scenes.py, test_compensation.py
 SCENES = sorted(path.stem for path in FOLDER.glob("*.yaml") if not ELSEWHERE.search(path.stem))
@@ -434,7 +434,7 @@ def test_every_trial_is_the_exact_pair_of_its_own_deviations(
 def test_draws_of_a_measured_thickness_follow_the_quantiles_of_its_file() -> None:
     count = 20_000
     model = model_from_scene(load_scene(FOLDER / "every_field.yaml"))
-    (column,) = drawn_block(model, 7, 0, count).deviations[:, model.component_slices["wheel tooth thickness"]].T
+    (column,) = drawn_trials(model, 7, 0, count).deviations[:, model.component_slices["wheel tooth thickness"]].T
     drawn, measured = 1e3 * column, thickness_sample()
     mean, variance = measured_thickness()
     assert abs(drawn.mean() - mean) <= 4 * math.sqrt(variance / count)

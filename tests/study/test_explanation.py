@@ -16,6 +16,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from gear_trials import drawn_trials, gear_columns, simulated
 from loose_summaries import typed_run
 from of_kind import of_kind
 from oracles.random_scenes import random_scenes
@@ -27,13 +28,14 @@ from tol3d.distributions import Constant
 from tol3d.gearing.engines.exact import ExactEngine
 from tol3d.gearing.engines.lazy import exact_engine
 from tol3d.gearing.model import Model, Scalar, model_from_scene
+from tol3d.gearing.roads.geometric import GeometricRoad
 from tol3d.gearing.stack_up.stack import Stack
 from tol3d.gears import BevelGear
 from tol3d.report.table import run_report
 from tol3d.study.agreement.explaining import explanations
 from tol3d.study.agreement.explanation import Explanation, faults
-from tol3d.study.block import Columns, drawn_block, simulate_block
 from tol3d.study.tally import PILOT_TRIALS, Tally, grids_of
+from tol3d.system.outcome import Columns
 
 ALPHA = math.radians(20.0)
 CONTRIBUTORS = (
@@ -53,14 +55,16 @@ def model_of(scene: str) -> Model:
 
 
 def columns_of(model: Model, trials: int) -> Columns:
-    return simulate_block(model, exact_engine(model), drawn_block(model, model.study.seed, 0, trials))
+    return gear_columns(model, exact_engine(model), drawn_trials(model, 1, 0, trials))
 
 
 def explained(model: Model, trials: int = 2000) -> Mapping[str, Explanation]:
     """What explains the differences of a study, without its files."""
     columns = columns_of(model, trials)
     pilot = {name: column[:PILOT_TRIALS] for name, column in columns.items()}
-    return explanations(model, exact_engine(model), Tally.of(model, grids_of(model, pilot), columns))
+    simulation = simulated(model)
+    tally = Tally.of(simulation, grids_of(simulation.system, pilot), columns)
+    return explanations(simulation, GeometricRoad(model, exact_engine(model)), tally)
 
 
 @contextmanager
@@ -239,7 +243,7 @@ def test_one_trial_of_thousands_that_jumps_is_told_by_its_number(monkeypatch: py
         monkeypatch, "centre distance", lambda drawn: drawn + np.where(np.abs(drawn) > beyond, 5e-3, 0.0)
     )
     model = model_of("spur_pair")
-    drawn = drawn_block(model, model.study.seed, 0, 8000).deviations[:, model.component_slices["centre distance"]]
+    drawn = drawn_trials(model, 1, 0, 8000).deviations[:, model.component_slices["centre distance"]]
     assert found.largest_trial in np.flatnonzero(np.abs(drawn[:, 0]) > beyond)
     assert any(fault.startswith(f"trial {found.largest_trial} differs by 3.4") for fault in found.faults)
     assert found.linear == ()

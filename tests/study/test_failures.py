@@ -16,13 +16,14 @@ from vectors import vector
 
 from tol3d import Overrides, Run, run_scene
 from tol3d.gearing.engines import STATUS_TEXT
+from tol3d.gearing.statuses import STATUSES
 from tol3d.report import comparison_report, run_report
 from tol3d.report.difference import difference_of
-from tol3d.runs import outcome
-from tol3d.runs.outcome import JAMMED, SEATED, told
 from tol3d.runs.worst import worst_trial
-from tol3d.study import block
+from tol3d.study import blocks
+from tol3d.system.outcome import SEATED, outcome_of
 
+JAMMED = "interferes"
 ALPHA = math.radians(20.0)
 TRIALS, SEED = 20_000, 1
 CENTRE = 172.442  # mm; takes 2 tan 20 deg (172.5 - 172.442) = 39.6 um of 53.4: at 7.2 um sigma one build in 36 jams
@@ -283,7 +284,7 @@ def test_mean_sigma_quantiles_bars_and_differences_are_of_the_builds_that_seated
 
 
 def test_failed_builds_count_the_same_in_any_blocks(run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(block, "BLOCK_TRIALS", 3000)
+    monkeypatch.setattr(blocks, "BLOCK_TRIALS", 3000)
     cut = run_scene(tight(tmp_path), overrides=Overrides(trials=TRIALS), out=tmp_path / "run")
     for name, measure in run.summary["measures"].items():
         assert cut.summary["measures"][name]["status"] == measure["status"]
@@ -395,10 +396,10 @@ def test_the_witness_compares_builds_that_end_alike(tmp_path: Path) -> None:
 def test_columns_without_a_status_of_their_own_are_read_by_their_gaps() -> None:
     """Runs made before measures had a status left failed trials empty."""
     columns = {"geometric:a": np.array([1.0, math.nan]), "status": np.array(["ok", "interferes"])}
-    found = told(columns, "geometric", "a")
+    found = outcome_of(columns, "geometric", "a", {JAMMED})
     assert np.array_equal(found.values, columns["geometric:a"], equal_nan=True)
-    assert (found.jammed, found.deepest) == (None, math.inf)
+    assert (found.lacking, found.deepest) == (None, math.inf)
 
 
 def test_words_of_outcomes_are_those_of_the_engines() -> None:
-    assert {outcome.SEATED, outcome.JAMMED} == {STATUS_TEXT[0], STATUS_TEXT[1]}
+    assert {SEATED, JAMMED} == {STATUS_TEXT[0], STATUS_TEXT[1]} == {STATUSES.seated, *STATUSES.lacking}

@@ -6,20 +6,23 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from gear_trials import drawn_trials, simulated
 from places import SPUR_PAIR
 
 from tol3d import load_scene
 from tol3d.gearing.build import build
 from tol3d.gearing.engines.exact.assembly import assembly_of
 from tol3d.gearing.model import Model, model_from_scene
+from tol3d.gearing.system import GearSystem
 from tol3d.gears import SpurGear
 from tol3d.simulate import Execution, run_scene
 from tol3d.solids import spur_cad
 from tol3d.solids.spur_cad import sample_flanks
-from tol3d.study.block import block_trials, drawn_block
-from tol3d.study.regressors import MOST_REGRESSED, acting, feature_groups, regressed
+from tol3d.study.blocks import block_trials
+from tol3d.study.regressors import MOST_REGRESSED, regressed, regressor_groups
 from tol3d.study.tally import PILOT_TRIALS, Tally, grids_of
-from tol3d.study.task import Task, installed_versions
+from tol3d.study.task import Task
+from tol3d.study.versions import installed_versions
 
 HEAD = """scene: many
 parts:
@@ -49,23 +52,24 @@ def model_of(folder: Path, tolerances: int) -> Model:
 
 
 def test_a_block_holds_no_more_draws_however_many_a_trial_has(tmp_path: Path, paper_model: Model) -> None:
-    assert block_trials(paper_model) == 65_536  # ordinary scenes keep theirs, and with them their bits
+    assert block_trials(simulated(paper_model)) == 65_536  # ordinary scenes keep theirs, and with them their bits
     for tolerances in (200, 1500):
         model = model_of(tmp_path, tolerances)
-        assert block_trials(model) * model.component_count <= 2**22
-        assert block_trials(model) * model.component_count > 2**20
+        assert block_trials(simulated(model)) * model.component_count <= 2**22
+        assert block_trials(simulated(model)) * model.component_count > 2**20
 
 
 def test_statistics_of_many_tolerances_grow_with_their_number_at_most(tmp_path: Path) -> None:
     sizes = {}
     for tolerances in (300, 1500):
         model = model_of(tmp_path, tolerances)
-        pilot = Task(model, None, {}, str(tolerances), False, installed_versions())
-        grids = grids_of(model, pilot.columns(0, PILOT_TRIALS))
+        simulation = simulated(model)
+        pilot = Task(simulation, None, {}, str(tolerances), False, installed_versions(simulation.requires))
+        grids = grids_of(simulation.system, pilot.columns(0, PILOT_TRIALS))
         columns = pilot.columns(0, 200)
-        Tally.of(model, grids, columns)  # what is found once, and kept
+        Tally.of(simulation, grids, columns)  # what is found once, and kept
         tracemalloc.start()
-        kept = Tally.of(model, grids, columns)
+        kept = Tally.of(simulation, grids, columns)
         sizes[tolerances] = tracemalloc.get_traced_memory()[1]
         tracemalloc.stop()
         assert kept.measures["normal backlash"].geometric_features is not None
@@ -77,9 +81,10 @@ def test_the_largest_contributors_have_shares_and_the_others_are_told_to_have_no
     run = run_scene(scene_of(tmp_path, 400, trials=4000), out=tmp_path / "run", execution=Execution(keep_trials=False))
     model = model_of(tmp_path, 400)
     measure = model.measures[0]
-    assert len(acting(model, measure)) == 401
-    chosen = [contributor.name for contributor in regressed(model, measure)]
-    assert len(chosen) == len(feature_groups(model, measure)) == MOST_REGRESSED
+    system = GearSystem(model)
+    assert len(system.acting(measure)) == 401
+    chosen = [contributor.name for contributor in regressed(system, measure)]
+    assert len(chosen) == len(regressor_groups(system, measure)) == MOST_REGRESSED
     assert {"thick", "t7", "t107", "t207", "t307"} <= set(chosen)
     told = {each["name"]: each for each in run.summary["measures"]["normal backlash"]["contributors"]}
     assert len(told) == 401
@@ -100,12 +105,13 @@ def test_the_largest_contributors_have_shares_and_the_others_are_told_to_have_no
 
 def test_few_contributors_are_all_regressed_on(paper_model: Model) -> None:
     measure = paper_model.measures[0]
-    assert regressed(paper_model, measure) == acting(paper_model, measure)
+    system = GearSystem(paper_model)
+    assert regressed(system, measure) == system.acting(measure)
 
 
 def test_an_assembly_found_one_contributor_at_a_time_builds_as_build_does(tmp_path: Path) -> None:
     for model in (model_of(tmp_path, 20), model_from_scene(load_scene(SPUR_PAIR.with_name("three_stage_train.yaml")))):
-        block = drawn_block(model, 3, 0, 50)
+        block = drawn_trials(model, 3, 0, 50)
         made, expected = assembly_of(model).build(block.deviations), build(model, block.deviations)
         for name, values in vars(expected).items():
             assert np.abs(vars(made)[name] - values).max() < 1e-12, name

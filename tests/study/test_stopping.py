@@ -2,53 +2,55 @@
 
 import json
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
-import numpy as np
 import pytest
+from gear_trials import simulated
 from places import SCENES
 
 from tol3d import load_scene
 from tol3d.distributions.constant import Constant
-from tol3d.gearing.model import Model, Scalar, Until, model_from_scene
+from tol3d.gearing.model import Model, Scalar
 from tol3d.gearing.stack_up import closed_form
-from tol3d.study.block import Block, simulate_block
-from tol3d.study.draws import deviations, driver_angles
+from tol3d.simulate import simulation_of
+from tol3d.study.columns import columns_of as system_columns
+from tol3d.study.draws import drawn
+from tol3d.study.simulation import Simulation
 from tol3d.study.stopping import enough, shortfalls
+from tol3d.study.study import Until
 from tol3d.study.tally import PILOT_TRIALS, Tally, grids_of
+from tol3d.system.outcome import Columns
 
 BLOCK = 2048
 NAME = "normal backlash"
 
-Columns = Mapping[str, np.ndarray]
-ColumnsOf = Callable[[Model, int, int], Columns]
+ColumnsOf = Callable[[Simulation, int, int], Columns]
 
 
-def columns_of(model: Model, first: int, count: int) -> Columns:
-    seed = model.study.seed
-    block = Block(deviations(model, seed, first, count), driver_angles(model, seed, first, count))
-    return simulate_block(model, None, block)
+def columns_of(model: Simulation, first: int, count: int) -> Columns:
+    return system_columns(model.system, None, drawn(model, first, count))
 
 
-def with_twice_the_spread(model: Model, first: int, count: int) -> Columns:
-    """As if there were geometry, and it told twice what the stack-up does."""
+def with_twice_the_spread(model: Simulation, first: int, count: int) -> Columns:
+    """As if there were geometry, and it gave twice what the stack-up does."""
     columns = columns_of(model, first, count)
-    return dict(columns) | {f"geometric:{own.name}": 2 * columns[f"analytic:{own.name}"] for own in model.measures}
+    twice = {f"geometric:{own.name}": 2 * columns[f"analytic:{own.name}"] for own in model.system.measures}
+    return {**columns, **twice}
 
 
-def stopped(model: Model, most: int, columns: ColumnsOf = columns_of) -> Tally:
+def stopped(model: Simulation, most: int, columns: ColumnsOf = columns_of) -> Tally:
     """Blocks merged in their order until it is enough, or `most` trials are there."""
-    grids, asked = grids_of(model, columns(model, 0, PILOT_TRIALS)), enough(model)
+    grids, asked = grids_of(model.system, columns(model, 0, PILOT_TRIALS)), enough(model)
     tally = Tally.of(model, grids, columns(model, 0, BLOCK))
     while not asked(tally) and tally.trials < most:
         tally = tally.merge(Tally.of(model, grids, columns(model, tally.trials, BLOCK), tally.trials))
     return tally
 
 
-def waiting(model: Model, *until: Until) -> Model:
-    return replace(model, study=replace(model.study, until=until))
+def waiting(model: Model, *until: Until, engine: str = "exact") -> Simulation:
+    return simulated(model, until=until, engine=engine)
 
 
 @pytest.fixture(scope="module")
@@ -87,14 +89,13 @@ def test_it_goes_on_until_every_measure_is_known(paper_model: Model, sigma: floa
 
 
 def test_with_geometry_it_waits_for_the_errors_of_that(paper_model: Model, sigma: float) -> None:
-    model = waiting(paper_model, Until(NAME, sigma / 50, None))
-    model = replace(model, study=replace(model.study, engine="fcl"))  # its sums are numpy's
+    model = waiting(paper_model, Until(NAME, sigma / 50, None), engine="fcl")  # its sums are numpy's
     assert_stops_at(100**2, stopped(model, 10**6, with_twice_the_spread).trials)  # 2500 by the stack-up
 
 
 def test_without_a_stated_error_it_is_never_enough(paper_model: Model) -> None:
-    assert stopped(paper_model, 3 * BLOCK).trials == 3 * BLOCK
-    assert list(shortfalls(paper_model, stopped(paper_model, BLOCK))) == []
+    assert stopped(simulated(paper_model), 3 * BLOCK).trials == 3 * BLOCK
+    assert list(shortfalls(simulated(paper_model), stopped(simulated(paper_model), BLOCK))) == []
 
 
 def test_what_was_not_reached_is_said_with_its_numbers(paper_model: Model, sigma: float) -> None:
@@ -117,7 +118,7 @@ def test_an_automatic_study_keeps_what_it_waits_for_in_mm_and_rad_and_as_json(tm
     until = "{normal backlash: {mean: 0.05 um}, lost motion: {mean: 1 arcsec, sigma: 0.1 mrad}}"
     path = tmp_path / "scene.yaml"
     path.write_text(text.replace(old, f"study: {{trials: auto, until: {until}, at_most: 70000}}"), encoding="utf-8")
-    study = model_from_scene(load_scene(path)).study
+    study = simulation_of(load_scene(path)).study
     assert study.trials == 70_000
     backlash, motion = study.until
     assert (backlash[0], *backlash[2:], motion[0]) == ("normal backlash", None, "lost motion")

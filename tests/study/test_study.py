@@ -7,10 +7,9 @@ import numpy as np
 import pytest
 
 from tol3d import Overrides, Run, Scene, SceneError, run_scene
-from tol3d.gearing.model import model_from_scene
 from tol3d.runs.worst import worst_trial
-from tol3d.simulate import load
-from tol3d.study.block import BLOCK_VALUES, block_trials
+from tol3d.simulate import load, simulation_of
+from tol3d.study.blocks import BLOCK_VALUES, block_trials
 
 FEW = Overrides(trials=200, engine="analytic")
 
@@ -80,7 +79,7 @@ def test_a_geometric_spread_that_the_stack_up_does_not_see_has_quantiles_too(tmp
 
 def test_blocks_of_long_curves_hold_fewer_trials() -> None:
     def trials_of(measures: dict[str, Any]) -> int:
-        return block_trials(model_from_scene(load(made({}, measures))))
+        return block_trials(simulation_of(load(made({}, measures))))
 
     assert trials_of({"play": {}}) == 65_536
     assert trials_of({"least": {"over": "long_period", "take": "min", "positions": 1000}}) == 65_536

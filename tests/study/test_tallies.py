@@ -1,14 +1,14 @@
 """Tallies of blocks add up to what numpy counts in all of the columns, wherever the extremes lie."""
 
-from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
 import pytest
+from gear_trials import drawn_trials, gear_columns, simulated
 
 from tol3d.gearing.model import Model
-from tol3d.study.block import Columns, drawn_block, simulate_block
 from tol3d.study.tally import Tally, grids_of
+from tol3d.system.outcome import Columns
 
 NAME = "normal backlash"
 CUTS = (0, 150, 400, 450, 600)  # where blocks begin, and their end
@@ -17,7 +17,7 @@ DEEPEST, LARGEST = -900.0, 700.0  # um; far beyond all other trials
 
 def columns_of(model: Model, deepest_at: int, largest_at: int) -> dict[str, np.ndarray]:
     """The stack-up's columns of 600 trials, and made-up ones of a geometric road of which a part is jammed."""
-    columns = dict(simulate_block(model, None, drawn_block(model, 1, 0, CUTS[-1])))
+    columns = dict(gear_columns(model, None, drawn_trials(model, 1, 0, CUTS[-1])))
     rng = np.random.default_rng(1)
     columns["status"] = rng.choice(["ok", "interferes", "no contact"], CUTS[-1], p=[0.7, 0.2, 0.1])
     columns["status"][[deepest_at, largest_at]] = "interferes", "ok"
@@ -34,13 +34,13 @@ def columns_of(model: Model, deepest_at: int, largest_at: int) -> dict[str, np.n
 
 @pytest.mark.parametrize(("deepest_at", "largest_at"), [(3, 599), (599, 3), (420, 410)])
 def test_blocks_add_up_to_what_is_counted_in_all_columns(paper_model: Model, deepest_at: int, largest_at: int) -> None:
-    model = replace(paper_model, study=replace(paper_model.study, engine="fcl"))  # whose sums are numpy's
-    columns = columns_of(model, deepest_at, largest_at)
+    model = simulated(paper_model, engine="fcl")  # whose sums are numpy's
+    columns = columns_of(paper_model, deepest_at, largest_at)
 
     def block(first: int, end: int) -> Columns:
         return {name: column[first:end] for name, column in columns.items()}
 
-    grids = grids_of(model, block(0, CUTS[1]))
+    grids = grids_of(model.system, block(0, CUTS[1]))
     blocks = [Tally.of(model, grids, block(a, b), a) for a, b in pairwise(CUTS)]
     whole = blocks[0].merge(blocks[1]).merge(blocks[2]).merge(blocks[3])
 

@@ -13,10 +13,10 @@ from places import SCENES, SPUR_PAIR
 
 from tol3d import Overrides, Run, run_scene
 from tol3d.execution.pools import Execution
-from tol3d.gearing.engines.lazy import exact_engine
-from tol3d.gearing.model import Model
-from tol3d.simulate import effective_model, load
+from tol3d.simulate import load, simulation_of
+from tol3d.study.simulation import Simulation
 from tol3d.study.witness import witness_summary, witness_warnings, witnessed_trials
+from tol3d.system.road import Road
 
 EVERY_FIELD = SCENES / "every_field.yaml"
 MEASURES = ("normal backlash", "lost motion")
@@ -24,7 +24,7 @@ WITNESSED = 25
 STUDY: Mapping[str, Any] = {"trials": 300, "seed": 4}
 
 
-Modelling = Callable[[str], Model]
+Modelling = Callable[[str], Simulation]
 
 
 # which trials ---------------------------------------------------------------------------------------------------
@@ -133,7 +133,7 @@ def test_every_kind_of_measure_and_sampler_has_a_witness(tmp_path: Path) -> None
 
 @pytest.mark.parametrize("scene", ["bevel_pair", "bevel_pair_3dcs", "bevel_pair_shimmed"])
 def test_bevel_pairs_have_a_witness_too(scene: str) -> None:
-    model = effective_model(load(SCENES / f"{scene}.yaml"), Overrides(witness=100))
+    model = simulation_of(load(SCENES / f"{scene}.yaml"), Overrides(witness=100))
     witness = summary_of(model)
     assert witness_warnings(model, witness) == []
     for own in witness["measures"].values():
@@ -160,7 +160,7 @@ def test_an_engine_that_sees_other_gears_is_warned_of(model_of: Modelling) -> No
     text = SPUR_PAIR.read_text("utf-8")
     model = model_of(text)
     apart = model_of(text.replace("centre_distance: 172.5 mm", "centre_distance: 172.51 mm"))
-    witness = witness_summary(model, exact_engine(apart), 2000)
+    witness = witness_summary(model, exact_road(apart), 2000)
     # 10 um further apart: 2 sin 20 deg of that more backlash, and FCL sees that much less
     assert witness["measures"]["normal backlash"]["mean_difference"] == pytest.approx(-6.840, abs=0.05)
     warnings = witness_warnings(model, witness)
@@ -180,17 +180,19 @@ def test_gears_that_lie_a_quarter_of_a_micrometre_otherwise_are_warned_of(
     text = SPUR_PAIR.read_text("utf-8")
     model = model_of(text)
     other = model_of(text.replace("centre_distance: 172.5 mm", f"centre_distance: {172.5 + apart / 1000} mm"))
-    witness = witness_summary(model, exact_engine(other), 2000)
+    witness = witness_summary(model, exact_road(other), 2000)
     assert bool(witness_warnings(model, witness)) == told
 
 
 def test_what_chords_and_the_allowance_explain_is_not_warned_of() -> None:
-    model = effective_model(load(SPUR_PAIR))
+    model = simulation_of(load(SPUR_PAIR))
     own = {"expected_at_most": 0.08, "allowance": 0.05, "trial_of_the_largest": 7}
 
     def told(largest: float | None, other: int = 0) -> list[str]:
         measures = {"normal backlash": {**own, "max_abs_difference": largest}}
-        return witness_warnings(model, {"trials": 20, "measures": measures, "status_differences": other})
+        return witness_warnings(
+            model, {"engine": "fcl", "trials": 20, "measures": measures, "status_differences": other}
+        )
 
     assert told(0.129) == told(None) == []
     assert len(told(0.131)) == 1
@@ -206,8 +208,12 @@ def scene_of(text: str, folder: Path) -> Path:
 @pytest.fixture
 def model_of(tmp_path: Path) -> Modelling:
     """Makes the model of a scene's text."""
-    return lambda text: effective_model(load(scene_of(text, tmp_path)))
+    return lambda text: simulation_of(load(scene_of(text, tmp_path)))
 
 
-def summary_of(model: Model) -> dict[str, Any]:
-    return witness_summary(model, exact_engine(model), model.study.trials)
+def exact_road(model: Simulation) -> Road:
+    return model.system.road("exact", None)
+
+
+def summary_of(model: Simulation) -> dict[str, Any]:
+    return witness_summary(model, exact_road(model), model.study.trials)

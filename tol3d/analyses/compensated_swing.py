@@ -9,15 +9,19 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.analyses.robots import Robots, State
-from tol3d.gearing.engines import Engine
 from tol3d.gearing.measures import moved
 from tol3d.gearing.model import LostMotion, Measure, Model, Train
 from tol3d.gearing.model.measures import load_changes, over_swing
 from tol3d.gearing.model.trains import gravity_torque, loaded_flank
 from tol3d.gearing.stack_up import first_order
+from tol3d.gearing.system import gear_model
 from tol3d.gears import Flank
 from tol3d.gears.flank import opposite
-from tol3d.study.block import drawn_block, simulate_block
+from tol3d.study.columns import columns_of
+from tol3d.study.draws import drawn
+from tol3d.study.simulation import Simulation
+from tol3d.system.outcome import value_column
+from tol3d.system.road import Road
 from tol3d.units import ARCMIN
 
 Array = NDArray[np.float64]
@@ -75,32 +79,32 @@ def usual_swing(model: Model, train: Train) -> tuple[Measure, LostMotion] | None
 
 
 def swing_of(
-    model: Model, engine: Engine | None, train: Train, robots: Robots, batch: Mapping[str, float]
+    simulation: Simulation, road: Road | None, train: Train, robots: Robots, batch: Mapping[str, float]
 ) -> Swing | None:
     """The first swing that the scene measures, or the usual one, of the same robots; None where the load stays.
 
     Args:
-        model, engine: the scene's.
+        simulation, road: the scene's; no road for an analytic study.
         train: which.
         robots: with their own means.
         batch: mean of what is compensated, by road [arcmin].
     """
+    model = gear_model(simulation.system)
     found = next(swings_of(model, train), None) or usual_swing(model, train)
     if found is None or not any(found[1].turned):
         return None
     measure, kind = found
     angle = replace(kind, quantity="lost_motion", tip=None, turned=())
     own = replace(measure, name=f"lost motion of {measure.name}", kind=angle)
-    block = drawn_block(model, model.study.seed, 0, robots.count)
-    columns = simulate_block(replace(model, measures=(own,)), engine, block)
-    lost = {road: np.asarray(columns[f"{road}:{own.name}"], dtype=np.float64) for road in batch}
+    columns = columns_of(simulation.system, road, drawn(simulation, 0, robots.count), (own,))
+    lost = {name: np.asarray(columns[value_column(name, own.name)], dtype=np.float64) for name in batch}
     seated = robots.seated & ~np.any([np.isnan(values).any(axis=1) for values in lost.values()], axis=0)
     return Swing(
         measure=measure.name,
         output=np.array(measure.positions.shown),
         turned=np.array(kind.turned),
         jumps=kind.changes,
-        curves={road: _curves(kind, road, lost[road][seated], robots.own[road][seated], batch[road]) for road in batch},
+        curves={name: _curves(kind, name, lost[name][seated], robots.own[name][seated], batch[name]) for name in batch},
         flanks=dict(_flanks(model, train, kind, measure.positions.shown)),
     )
 

@@ -19,18 +19,21 @@ from tol3d.analyses.compensated_swing import Swing, swing_of, swings_of, tip_err
 from tol3d.analyses.correction import Correction, at_shaft, corrections_of
 from tol3d.analyses.robots import Robots, State, left_of_the_mean, simulated_robots
 from tol3d.errors import InputError
+from tol3d.gearing.breakdowns import stages_of
 from tol3d.gearing.model import LostMotion, Measure, Model, Positions, Train
 from tol3d.gearing.model.contributor import Contributor
 from tol3d.gearing.model.measure import AnyStage
 from tol3d.gearing.model.measures import lost_motion
 from tol3d.gearing.model.readings import reader_like, refuse_idle_teeth
-from tol3d.gearing.stack_up import ClosedForm, Share, closed_form
+from tol3d.gearing.stack_up import closed_form
+from tol3d.gearing.system import GearSystem, gear_model
 from tol3d.scene import Scene
 from tol3d.scene.nearest import hint
-from tol3d.simulate import Overrides, effective_model
+from tol3d.simulate import Overrides, simulation_of
 from tol3d.study.overrides import AS_WRITTEN
-from tol3d.study.stages import stages_of
-from tol3d.study.task import engine_of, strips_for
+from tol3d.study.simulation import Simulation
+from tol3d.study.task import materials_of, road_of
+from tol3d.system.closed_form import ClosedForm, Share
 from tol3d.units import ARCMIN
 
 Array = NDArray[np.float64]
@@ -78,7 +81,7 @@ class Compensation:
 
     Args:
         name: of the scene's file.
-        model: the scene's.
+        simulation: the scene's.
         train: whose motor is corrected.
         measure: the lost motion that is compensated, at a random position.
         tip: what it moves; None without an arm.
@@ -92,7 +95,7 @@ class Compensation:
     """
 
     name: str
-    model: Model
+    simulation: Simulation
     train: Train
     measure: Measure
     tip: LostMotion | None
@@ -105,6 +108,11 @@ class Compensation:
     swing: Swing | None
     robots: int
     failed: int
+
+    @property
+    def model(self) -> Model:
+        """Parts, meshes and measures of the scene."""
+        return gear_model(self.simulation.system)
 
     @property
     def road(self) -> str:
@@ -136,7 +144,7 @@ class Compensation:
             if own and isinstance(measure.kind, LostMotion) and measure.kind.quantity == "tip_displacement"
             if measure.kind.train == self.train.name and measure.kind.tip == own
         ]
-        published = self.model.published
+        published = self.simulation.published
         return {column: published[column][name] for column in published for name in alike if name in published[column]}
 
 
@@ -153,19 +161,21 @@ def compensation(
     Raises:
         InputError: no such train, or no link in it.
     """
-    model = _model_of(scene, question, replace(overrides, witness=0))
+    simulation = _simulation_of(scene, question, replace(overrides, witness=0))
+    model = gear_model(simulation.system)
     train = _train_of(scene, model, question.train)
     tip = next((kind for _, kind in swings_of(model, train)), None) or _kind(model, train, "tip_displacement")
     measure = _measure(scene, model, train, tip or _kind(model, train, "lost_motion"))
     stages = stages_of(measure)
     compensated = tuple(stage for stage in stages if stage.backlash or _law_of(model, stage))
-    engine = engine_of(model, strips_for(model))
-    robots = simulated_robots(replace(model, measures=(measure,)), engine, measure, compensated, question.positions)
-    corrections = dict(corrections_of(model, train, measure, compensated, robots))
-    batch = {road: at_shaft(compensated, corrections[road]) for road in robots.lost}
+    alone = replace(simulation, system=GearSystem(replace(model, measures=(measure,))))
+    road = road_of(alone, materials_of(alone))
+    robots = simulated_robots(alone, road, measure, compensated, question.positions)
+    corrections = dict(corrections_of(simulation, train, measure, compensated, robots))
+    batch = {name: at_shaft(compensated, corrections[name]) for name in robots.lost}
     return Compensation(
         name=Path(scene.source).stem,
-        model=model,
+        simulation=simulation,
         train=train,
         measure=measure,
         tip=tip,
@@ -173,9 +183,9 @@ def compensation(
         left_out=tuple(stage for stage in stages if stage not in compensated),
         positions=question.positions,
         corrections=corrections,
-        remaining={road: _remaining(robots, road, tip, batch[road]) for road in batch},
+        remaining={name: _remaining(robots, name, tip, batch[name]) for name in batch},
         form_sigmas=_form_sigmas(model, measure, question.positions),
-        swing=swing_of(model, engine, train, robots, batch),
+        swing=swing_of(simulation, road, train, robots, batch),
         robots=robots.count,
         failed=int(np.sum(~robots.seated)),
     )
@@ -184,14 +194,15 @@ def compensation(
 # what is asked ------------------------------------------------------------------------------------
 
 
-def _model_of(scene: Scene, question: CompensationQuestion, overrides: Overrides) -> Model:
+def _simulation_of(scene: Scene, question: CompensationQuestion, overrides: Overrides) -> Simulation:
     if question.robots is not None:
-        return effective_model(scene, replace(overrides, trials=question.robots))
-    model = effective_model(scene, overrides)
-    if model.study.trials <= MOST_ROBOTS and not model.study.until:
-        return model
-    most = max(model.study.replicates, MOST_ROBOTS - MOST_ROBOTS % model.study.replicates)
-    return effective_model(scene, replace(overrides, trials=min(model.study.trials, most)))
+        return simulation_of(scene, replace(overrides, trials=question.robots))
+    simulation = simulation_of(scene, overrides)
+    study = simulation.study
+    if study.trials <= MOST_ROBOTS and not study.until:
+        return simulation
+    most = max(study.replicates, MOST_ROBOTS - MOST_ROBOTS % study.replicates)
+    return simulation_of(scene, replace(overrides, trials=min(study.trials, most)))
 
 
 def _train_of(scene: Scene, model: Model, name: str | None) -> Train:

@@ -8,10 +8,15 @@ from dataclasses import dataclass, replace
 from typing import Any, Final
 
 from tol3d.analyses.robots import Robots
+from tol3d.gearing.breakdowns import breakdowns_of, stages_of
 from tol3d.gearing.model import Backlash, LostMotion, Measure, Model, Train
 from tol3d.gearing.model.measure import AnyStage, ParallelStage
 from tol3d.gearing.stack_up import closed_form
-from tol3d.study.stages import stage_tallies, stages_of, train_summaries
+from tol3d.gearing.statuses import STATUSES
+from tol3d.gearing.system import gear_model
+from tol3d.gearing.train_sections import train_sections
+from tol3d.study.breakdowns import pooled_terms
+from tol3d.study.simulation import Simulation
 from tol3d.units import ARCMIN
 
 Ends = Mapping[str, Any]
@@ -39,12 +44,15 @@ class Correction:
 
 
 def corrections_of(
-    model: Model, train: Train, measure: Measure, compensated: Sequence[AnyStage], robots: Robots
+    simulation: Simulation, train: Train, measure: Measure, compensated: Sequence[AnyStage], robots: Robots
 ) -> Iterator[tuple[str, Correction]]:
     """By the closed form, by each road, and by everybody who published every mesh of the train."""
+    model = gear_model(simulation.system)
     of_meshes = [own for own in model.measures if isinstance(own.kind, Backlash)]  # what others published of them
-    told = replace(model, measures=(measure, *of_meshes))
-    summary = train_summaries(told, stage_tallies(replace(model, measures=(measure,)), robots.columns))[train.name]
+    known_of = replace(model, measures=(measure, *of_meshes))
+    breakdowns = breakdowns_of(replace(model, measures=(measure,)))
+    pooled = pooled_terms(breakdowns, STATUSES, robots.columns)
+    summary = train_sections(known_of, pooled, simulation.published)[train.name]
     forms = {stage.link: _form(model, measure, stage) for stage in stages_of(measure)}
     if all(forms.values()):
         yield CLOSED_FORM, _correction(model, train, measure, compensated, forms)

@@ -13,14 +13,19 @@ from typing import Final, Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.gearing.engines import Engine
-from tol3d.gearing.model import Measure, Model
+from tol3d.gearing.model import Measure
 from tol3d.gearing.model.layout import Drive
 from tol3d.gearing.model.measure import AnyStage
-from tol3d.runs.outcome import SEATED, status_column
+from tol3d.gearing.system import gear_model
 from tol3d.samplers import MonteCarlo, Stream
-from tol3d.study import draws
-from tol3d.study.block import ROWS_AT_ONCE, Block, Columns, simulate_block, stage_column
+from tol3d.study.columns import columns_of
+from tol3d.study.draws import drawn
+from tol3d.study.simulation import Simulation
+from tol3d.system.breakdown import Breakdown
+from tol3d.system.outcome import ROADS, SEATED, Columns, status_column, value_column
+from tol3d.system.road import Road
+from tol3d.system.taken import ROWS_AT_ONCE
+from tol3d.system.trials import Trials
 
 Array = NDArray[np.float64]
 State = Literal["before", "batch", "robot"]
@@ -35,7 +40,7 @@ class Robots:
 
     Args:
         seated: which of them could be seated at every position, (robots,).
-        columns: at the study's own positions, see simulate_block.
+        columns: at the study's own positions, see columns_of.
         lost: lost motion there by road, (robots,) [arcmin].
         own: each robot's mean of the part of it that is compensated, by road, (robots,) [arcmin].
     """
@@ -57,35 +62,36 @@ class Robots:
 
 
 def simulated_robots(
-    model: Model, engine: Engine | None, measure: Measure, compensated: Sequence[AnyStage], positions: int
+    simulation: Simulation, road: Road | None, measure: Measure, compensated: Sequence[AnyStage], positions: int
 ) -> Robots:
     """As many robots as the study has trials.
 
     Args:
-        model: that measures the lost motion and nothing else.
-        engine: its engine; None for an analytic study.
+        simulation: that measures the lost motion and nothing else.
+        road: of its 3D simulation; None for an analytic study.
         measure: the lost motion, at a random position.
         compensated: the stages that count for a robot's own mean.
         positions: P.
     """
-    at_once = max(1, ROWS_AT_ONCE // (positions + 1))
-    starts = range(0, model.study.trials, at_once)
-    pieces = [_columns(model, engine, first, min(at_once, model.study.trials - first), positions) for first in starts]
+    at_once, trials = max(1, ROWS_AT_ONCE // (positions + 1)), simulation.study.trials
+    starts = range(0, trials, at_once)
+    pieces = [_columns(simulation, road, first, min(at_once, trials - first), positions) for first in starts]
     columns = {name: np.concatenate([piece[name] for piece in pieces]) for name in pieces[0]}
-    roads = [road for road in ("analytic", "geometric") if f"{road}:{measure.name}" in columns]
+    roads = [road for road in ROADS if value_column(road, measure.name) in columns]
+    (breakdown,) = simulation.system.breakdowns
     return Robots(
-        seated=_seated(columns, measure, model.study.trials),
+        seated=_seated(columns, measure, trials),
         columns={name: each[:, -1] for name, each in columns.items()},
-        lost={road: columns[f"{road}:{measure.name}"][:, -1].astype(np.float64) for road in roads},
-        own={road: _own_mean(columns, road, measure, compensated) for road in roads},
+        lost={road: columns[value_column(road, measure.name)][:, -1].astype(np.float64) for road in roads},
+        own={road: _own_mean(columns, road, breakdown, compensated) for road in roads},
     )
 
 
 def _columns(
-    model: Model, engine: Engine | None, first: int, count: int, positions: int
+    simulation: Simulation, road: Road | None, first: int, count: int, positions: int
 ) -> dict[str, NDArray[np.generic]]:
     """Columns (robots, P + 1), the study's own position last."""
-    columns = simulate_block(model, engine, robots_block(model, first, count, positions))
+    columns = columns_of(simulation.system, road, robots_trials(simulation, first, count, positions))
     return {name: values.reshape(count, positions + 1) for name, values in columns.items()}
 
 
@@ -95,9 +101,9 @@ def _seated(columns: Columns, measure: Measure, robots: int) -> NDArray[np.bool_
     return np.ones(robots, bool) if status is None else np.all(status == SEATED, axis=1)
 
 
-def _own_mean(columns: Columns, road: str, measure: Measure, compensated: Sequence[AnyStage]) -> Array:
-    at_shaft = [stage.factor * _mean(columns[stage_column(road, measure, stage.link)][:, :-1]) for stage in compensated]
-    return np.sum(at_shaft, axis=0) if at_shaft else np.zeros(len(columns[f"{road}:{measure.name}"]))
+def _own_mean(columns: Columns, road: str, breakdown: Breakdown, compensated: Sequence[AnyStage]) -> Array:
+    at_shaft = [stage.factor * _mean(columns[breakdown.column(road, stage.link)][:, :-1]) for stage in compensated]
+    return np.sum(at_shaft, axis=0) if at_shaft else np.zeros(len(columns[value_column(road, breakdown.measure)]))
 
 
 def _mean(values: NDArray[np.generic]) -> Array:
@@ -106,19 +112,17 @@ def _mean(values: NDArray[np.generic]) -> Array:
     return np.asarray(first[:, 0] + (values.astype(np.float64) - first).mean(axis=1))
 
 
-def robots_block(model: Model, first: int, count: int, positions: int) -> Block:
+def robots_trials(simulation: Simulation, first: int, count: int, positions: int) -> Trials:
     """Robots first ... first + count - 1, each at P + 1 positions, positions fastest, the study's own last."""
-    seed = model.study.seed
-    own = draws.driver_angles(model, seed, first, count)
+    model, own = gear_model(simulation.system), drawn(simulation, first, count)
     angles: dict[str, Array] = {}
     for drive in model.layout.drives:
-        root = 2 * math.pi * float(drive.turns) * _shares(drive, seed, first, count, positions)
+        root = 2 * math.pi * float(drive.turns) * _shares(drive, simulation.study.seed, first, count, positions)
         for mesh in drive.meshes:
             turning = model.layout.mesh_turn[mesh]
             spread = turning.offset + float(turning.rate) * root
-            angles[mesh] = np.concatenate([spread, own[mesh][:, None]], axis=1).ravel()
-    deviations = draws.deviations(model, seed, first, count)
-    return Block(np.repeat(deviations, positions + 1, axis=0), angles)
+            angles[mesh] = np.concatenate([spread, own.positions[mesh][:, None]], axis=1).ravel()
+    return Trials(np.repeat(own.deviations, positions + 1, axis=0), angles)
 
 
 def _shares(drive: Drive, seed: int, first: int, count: int, positions: int) -> Array:

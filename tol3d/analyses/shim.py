@@ -18,9 +18,11 @@ from tol3d.analyses.stock import NO_SHIM, SAME_THICKNESS, Step, Stock, nearest, 
 from tol3d.errors import InputError, SceneError
 from tol3d.gearing.grammar.tolerances import ToleranceSpec
 from tol3d.gearing.model import Model
+from tol3d.gearing.system import gear_model
 from tol3d.scene import Scene
-from tol3d.simulate import Execution, Overrides, effective_model, run_scene, workers_for
+from tol3d.simulate import Execution, Overrides, run_scene, simulation_of, workers_for
 from tol3d.study.overrides import AS_WRITTEN
+from tol3d.study.simulation import Simulation
 
 Rounding = Literal["down", "nearest"]
 Tell = Callable[[str], None]
@@ -165,9 +167,14 @@ class _Search:
     tell: Tell
 
     @cached_property
-    def model(self) -> Model:
+    def simulation(self) -> Simulation:
         """The scene as it stands."""
-        return effective_model(self.scene, self.overrides)
+        return simulation_of(self.scene, self.overrides)
+
+    @property
+    def model(self) -> Model:
+        """Its parts, meshes and measures."""
+        return gear_model(self.simulation.system)
 
     @cached_property
     def shims(self) -> tuple[Shim, ...]:
@@ -185,7 +192,7 @@ class _Search:
         Raises:
             InputError: either.
         """
-        if self.model.study.engine == "analytic":
+        if not self.simulation.has_geometry:
             raise InputError(
                 "engine: expected exact or fcl, for the thickness is found by the geometry, got analytic; "
                 "say --engine exact"
@@ -258,7 +265,7 @@ class _Search:
             raise InputError(f"with shims of {_text(thickness)}: {error}") from None
 
     def _study(self, scene: Scene, overrides: Overrides, thickness: float | None) -> Shimmed:
-        execution = Execution(workers_for(self.model), keep_trials=False)
+        execution = Execution(workers_for(self.simulation), keep_trials=False)
         with tempfile.TemporaryDirectory(prefix="tol3d-") as folder:
             run = run_scene(scene, overrides=overrides, out=Path(folder) / "run", execution=execution)
         measure, called = run.found.measures[self.measure], self.question.minimum

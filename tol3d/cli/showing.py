@@ -25,9 +25,9 @@ class MeshFormat(StrEnum):
 def check(scene: SceneArgument, trust_parts: TrustParts = False) -> None:
     """Read a scene and show what it means: parts, moves, measures, contributors with their coefficients."""
     from tol3d.report import check_report
-    from tol3d.simulate import effective_model, load
+    from tol3d.simulate import load, simulation_of
 
-    out_console.print(check_report(effective_model(load(scene_path(scene), trust_parts=trust_parts))))
+    out_console.print(check_report(simulation_of(load(scene_path(scene), trust_parts=trust_parts))))
 
 
 def scenes(
@@ -149,5 +149,5 @@ def _which(run: "Run", trial: int | None, *, worst: bool, nominal: bool, mean: b
         return words[0] if trial is None else trial
     found = worst_trial(run)
     unnamed = "" if worst else "no build named: "
-    err_console.print(f"{unnamed}trial {found}, the worst: {worst_words(run.found.measures)}")
+    err_console.print(f"{unnamed}trial {found}, the worst: {worst_words(run.found)}")
     return found

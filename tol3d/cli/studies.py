@@ -25,8 +25,8 @@ from tol3d.cli.console import INTERRUPTED, LIMITS_FAILED, err_console, out_conso
 if TYPE_CHECKING:
     from types import FrameType
 
-    from tol3d.gearing.model import Model
     from tol3d.runs.run import Run
+    from tol3d.study.simulation import Simulation
 
 CONTACTS_PER_MINUTE = {"fcl": 180_000, "exact": 40_000_000, "analytic": 40_000_000}
 """By an engine on one core, draws and statistics included; only for the estimate before what takes a minute or more."""
@@ -95,26 +95,26 @@ def run(
     from tol3d.execution.pools import Execution
     from tol3d.report.table import Detail, run_report
     from tol3d.report.verdict import ACCEPTED_PPM, all_ok
-    from tol3d.simulate import Overrides, Watch, effective_model, folder_for, load, run_scene, workers_for
+    from tol3d.simulate import Overrides, Watch, folder_for, load, run_scene, simulation_of, workers_for
 
     path = scene_path(scene)
     overrides = Overrides(trials, seed, engine.value if engine else None, sampler.value if sampler else None, witness)
     loaded = load(path, trust_parts=trust_parts)
-    model = effective_model(loaded, overrides)
-    for warning in model.warnings:
+    simulation = simulation_of(loaded, overrides)
+    for warning in simulation.warnings:
         warn(warning)
-    if told := long_study(model):
+    if told := long_study(simulation):
         err_console.print(told)
-    execution = Execution(workers or workers_for(model), scheduler, keep_trials=not no_trials, resume=resume)
+    execution = Execution(workers or workers_for(simulation), scheduler, keep_trials=not no_trials, resume=resume)
     folder, taken = out or Path("runs") / path.stem, ""
     if out is None and not force:
-        folder, taken = folder_for(loaded, model, execution, Path("runs"))
+        folder, taken = folder_for(loaded, simulation, execution, Path("runs"))
     if taken:
         err_console.print(f"{taken}: this run goes to {folder} (--force would replace the other)")
     columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn())
     try:
         with _stopped_in_order(), Progress(*columns, console=err_console, transient=True) as progress:
-            bar = progress.add_task("scene", total=model.study.trials)
+            bar = progress.add_task("scene", total=simulation.study.trials)
             finished = run_scene(
                 loaded,
                 overrides=overrides,
@@ -122,7 +122,7 @@ def run(
                 execution=execution,
                 force=force,
                 watch=Watch(
-                    stage=lambda text: progress.update(bar, description=text),
+                    activity=lambda text: progress.update(bar, description=text),
                     progress=lambda done: progress.advance(bar, done),
                     finisher=draw,
                 ),
@@ -183,12 +183,13 @@ def _drawing(*, wanted: bool) -> "Iterator[Callable[[Path, Mapping[str, Any]], N
         yield finish
 
 
-def long_study(model: "Model") -> str:
+def long_study(simulation: "Simulation") -> str:
     """What is said before a study that takes a minute of one core or more; nothing of a shorter one."""
-    from tol3d.study.block import positions_in_all
+    from tol3d.study.blocks import contacts_of
 
-    positions = positions_in_all(model)
-    minutes = model.study.trials * positions / CONTACTS_PER_MINUTE[model.study.engine]
+    positions = contacts_of(simulation)
+    study = simulation.study
+    minutes = study.trials * positions / CONTACTS_PER_MINUTE[study.engine]
     if minutes <= 1.0:
         return ""
     each = "one position" if positions == 1 else f"{positions} positions"

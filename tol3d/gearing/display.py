@@ -14,11 +14,13 @@ from tol3d.gearing.meshing import Meshing, MeshSeat
 from tol3d.gearing.model import Measure, Mesh, Model
 from tol3d.gearing.placed import PlacedGear, SeatedMesh
 from tol3d.gearing.play import SeatKey, seat_keys
+from tol3d.gearing.seats import Seats
+from tol3d.gearing.system import gear_model
 from tol3d.report.presenter import Which
 from tol3d.runs.run import Run
 from tol3d.runs.worst import worst_trial
-from tol3d.simulate import Replay, model_of, replay, replay_block
-from tol3d.study.block import Block, mean_block, nominal_block
+from tol3d.simulate import Replay, replay, replayed, simulation_again
+from tol3d.system.stated import mean_build, nominal_build
 
 Array = NDArray[np.float64]
 
@@ -65,7 +67,7 @@ def seated_build(run: Run, which: Which, *, magnify: float = 1.0) -> SeatedBuild
     used, note = allowed_factor(lambda factor: _seated(_scaled(seen, factor), rows), magnify)
     again = _scaled(seen, used)
     label += f"-x{used:g}" if used != 1.0 else ""
-    return SeatedBuild(seen.model, label, used, _seated(again, rows), again.geometric, (*plain.notes, note))
+    return SeatedBuild(_model(seen), label, used, _seated(again, rows), again.geometric, (*plain.notes, note))
 
 
 def replayed_build(seen: Replay, label: str) -> SeatedBuild:
@@ -79,7 +81,7 @@ def replayed_build(seen: Replay, label: str) -> SeatedBuild:
         if seat.status == NO_CONTACT:
             raise RunError(f"{label}: the working flanks of {seat.mesh.name} found no contact; choose another build")
     failed = () if seen.status == "ok" else (f"{label}: {seen.status}; shown where its working flanks touch",)
-    return SeatedBuild(seen.model, label, 1.0, meshes, seen.geometric, failed)
+    return SeatedBuild(_model(seen), label, 1.0, meshes, seen.geometric, failed)
 
 
 def _replayed(run: Run, which: Which) -> tuple[str, Replay]:
@@ -89,16 +91,27 @@ def _replayed(run: Run, which: Which) -> tuple[str, Replay]:
         return f"trial-{which}", replay(run, which)
     if which not in ("nominal", "mean"):
         raise InputError(f"expected a trial's number, worst, nominal or mean, got {which!r}")
-    model = model_of(run)
-    block = nominal_block(model) if which == "nominal" else mean_block(model, model.measures[0])
-    return which, replay_block(model, block)
+    simulation = simulation_again(run)
+    system = simulation.system
+    build = nominal_build(system) if which == "nominal" else mean_build(system, system.measures[0])
+    return which, replayed(simulation, build)
 
 
 def _scaled(seen: Replay, factor: float) -> Replay:
     """The build with its deviations multiplied by a factor."""
     if factor == 1.0:
         return seen
-    return replay_block(seen.model, Block(factor * seen.block.deviations, seen.block.random_angle))
+    return replayed(seen.simulation, seen.trials.scaled(factor))
+
+
+def _model(seen: Replay) -> Model:
+    return gear_model(seen.simulation.system)
+
+
+def _seats_of(seen: Replay) -> Seats:
+    """Its meshes as they came to rest."""
+    seats: Seats = seen.build
+    return seats
 
 
 # positions ----------------------------------------------------------------------------------------
@@ -121,11 +134,11 @@ def _key(model: Model, measure: Measure, mesh: Mesh) -> SeatKey | None:
 
 def _rows(seen: Replay) -> dict[str, int]:
     """At which position of its first measure each mesh is shown: the extreme that the measure takes, or the first."""
-    if shows_shafts(seen.model):
-        return {mesh.name: 0 for mesh in seen.model.meshes}
+    if shows_shafts(_model(seen)):
+        return {mesh.name: 0 for mesh in _model(seen).meshes}
     rows = {}
-    for mesh in seen.model.meshes:
-        measure = _first_measure(seen.model, mesh)
+    for mesh in _model(seen).meshes:
+        measure = _first_measure(_model(seen), mesh)
         if measure is not None:
             rows[mesh.name] = _extreme(measure, _of_measure(seen, mesh).non_working.smallest())
     return rows
@@ -139,20 +152,20 @@ def _extreme(measure: Measure, gaps: Array) -> int:
 
 def _of_measure(seen: Replay, mesh: Mesh) -> MeshSeat:
     """A mesh at the positions of its first measure."""
-    return seen.seats.seats[_own_key(seen, mesh)]
+    return _seats_of(seen).seats[_own_key(seen, mesh)]
 
 
 def _own_key(seen: Replay, mesh: Mesh) -> SeatKey:
     """Where a mesh is read first; one that is not read counts as the first that is."""
-    measure = _first_measure(seen.model, mesh)
-    key = _key(seen.model, measure, mesh) if measure else None
-    return key or next(iter(seen.seats.seats))
+    measure = _first_measure(_model(seen), mesh)
+    key = _key(_model(seen), measure, mesh) if measure else None
+    return key or next(iter(_seats_of(seen).seats))
 
 
 def _seats(seen: Replay, rows: Mapping[str, int]) -> Mapping[str, MeshSeat]:
-    if shows_shafts(seen.model):
+    if shows_shafts(_model(seen)):
         return _along_shafts(seen)
-    return {mesh.name: _of_measure(seen, mesh) for mesh in seen.model.meshes if mesh.name in rows}
+    return {mesh.name: _of_measure(seen, mesh) for mesh in _model(seen).meshes if mesh.name in rows}
 
 
 def _along_shafts(seen: Replay) -> Mapping[str, MeshSeat]:
@@ -161,8 +174,8 @@ def _along_shafts(seen: Replay) -> Mapping[str, MeshSeat]:
     Where load paths join, the first link decides where the shaft rests; how gears are clocked on their shafts is not
     shown.
     """
-    layout, angles, meshings = seen.model.layout, seen.block.random_angle, seen.seats.meshings
-    meshes = {mesh.name: mesh for mesh in seen.model.meshes}
+    layout, angles, meshings = _model(seen).layout, seen.trials.positions, _seats_of(seen).meshings
+    meshes = {mesh.name: mesh for mesh in _model(seen).meshes}
     ahead: dict[str, float] = {}  # of its nominal angle, by shaft [rad]
     seats = {}
     for link in sorted(layout.links, key=lambda link: len(layout.behind(link.driven))):
@@ -172,7 +185,7 @@ def _along_shafts(seen: Replay) -> Mapping[str, MeshSeat]:
             ahead.setdefault(link.driven, before * float(link.rate))
             continue
         known = meshings[_own_key(seen, mesh)]
-        meshing = Meshing(known.engine, seen.model, mesh, seen.seats.build, known.reading)
+        meshing = Meshing(known.engine, _model(seen), mesh, _seats_of(seen).build, known.reading)
         (_, driver), (_, driven) = layout.carrying[mesh.driver], layout.carrying[mesh.driven]
         seats[mesh.name] = meshing.seat(angles[mesh.name] + driver.sense * before)
         off = seats[mesh.name].driven_angle - mesh.pair.driven_angle(angles[mesh.name])
@@ -183,7 +196,9 @@ def _along_shafts(seen: Replay) -> Mapping[str, MeshSeat]:
 def _seated(seen: Replay, rows: Mapping[str, int]) -> tuple[SeatedMesh, ...]:
     seats = _seats(seen, rows)
     return tuple(
-        _seated_mesh(seen, mesh, seats[mesh.name], rows[mesh.name]) for mesh in seen.model.meshes if mesh.name in seats
+        _seated_mesh(seen, mesh, seats[mesh.name], rows[mesh.name])
+        for mesh in _model(seen).meshes
+        if mesh.name in seats
     )
 
 
@@ -207,7 +222,7 @@ def _seated_mesh(seen: Replay, mesh: Mesh, seat: MeshSeat, row: int) -> SeatedMe
 
 
 def _placed(seen: Replay, mesh: Mesh, name: str, angle: float) -> PlacedGear:
-    seat, build = seen.model.seat_index[mesh.name, name], seen.seats.build
+    seat, build = _model(seen).seat_index[mesh.name, name], _seats_of(seen).build
     gear = mesh.gear(name)
     return PlacedGear(
         name=name,

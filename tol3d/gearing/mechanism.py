@@ -14,7 +14,7 @@ GEARING: Final = Mechanism(
     moves=specs_in(moves),
     measures=specs_in(measures),
     checks=(carried_again,),
-    system="tol3d.gearing.model:model_from_scene",
+    system="tol3d.gearing.system:gear_system",
     summary="tol3d.gearing.summary_types:SUMMARY_KINDS",
-    requires=("numba", "llvmlite", "python-fcl", "cadquery"),
+    requires=("python-fcl", "cadquery"),
 )

@@ -1,23 +1,23 @@
 """What the stack-ups of a measure leave out on purpose, in that measure: bounds, trial by trial."""
 
 from collections.abc import Mapping
-from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.gearing.model import LostMotion, Measure, Model
 from tol3d.gearing.play import seat_key
+from tol3d.gearing.seats import driver_angles
 from tol3d.gearing.stack_up import per_normal_backlash, stack_of
 from tol3d.gearing.stack_up.neglect import Neglect
 from tol3d.gearing.stack_up.stack import Stack
 from tol3d.gears import GearPair
-from tol3d.study.block import Block, driver_angles
+from tol3d.system.trials import Trials
 
 Array = NDArray[np.float64]
 
 
-def neglected(model: Model, measure: Measure, block: Block) -> Mapping[str, Array]:
+def neglected(model: Model, measure: Measure, trials: Trials) -> Mapping[str, Array]:
     """Largest first-order change of a measure that is left out, in its unit: (trials,) by what is left out.
 
     Of several positions the one with the largest counts, for a range twice; of parallel load paths all are added up.
@@ -25,10 +25,10 @@ def neglected(model: Model, measure: Measure, block: Block) -> Mapping[str, Arra
     found: dict[str, Array] = {}
     for factor, backlash in measure.kind.backlashes:
         stack = stack_of(model, model.mesh(backlash.mesh), backlash.reading)
-        angles = driver_angles(seat_key(model, measure, backlash), block)
+        angles = driver_angles(seat_key(model, measure, backlash), trials)
         per = abs(factor) * per_normal_backlash(model, backlash) * in_measure(measure)
         for neglect in stack.neglects:
-            own = per * _furthest(model, stack, neglect, block.deviations, angles)
+            own = per * _furthest(model, stack, neglect, trials.deviations, angles)
             found[neglect.words] = found.get(neglect.words, 0.0) + own
     return found
 
@@ -52,11 +52,3 @@ def of_gaps(model: Model, measure: Measure, gap: float) -> float:
     """What a measure makes of a normal backlash [mm] in each of its meshes, in its unit."""
     free = sum(abs(factor) * gap * per_normal_backlash(model, backlash) for factor, backlash in measure.kind.backlashes)
     return free * in_measure(measure)
-
-
-def alone(model: Model, block: Block, name: str, middle: Array) -> Block:
-    """Trials in which one contributor alone deviates, as far from its mean `middle` (1, components) as in a block's."""
-    own = model.component_slices[name]
-    deviations = np.zeros_like(block.deviations)
-    deviations[:, own] = block.deviations[:, own] - middle[:, own]
-    return replace(block, deviations=deviations)

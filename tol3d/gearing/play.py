@@ -39,11 +39,6 @@ def seat_keys(model: Model, measure: Measure) -> tuple[SeatKey, ...]:
     return tuple(seat_key(model, measure, backlash) for _, backlash in measure.kind.backlashes)
 
 
-def positions_count(measure: Measure) -> int:
-    """At how many positions a measure is read in one trial."""
-    return 1 if measure.positions.fixed is None else len(measure.positions.fixed)
-
-
 @dataclass(frozen=True, eq=False)
 class Play:
     """The backlashes of a measure in some trials.
@@ -84,7 +79,7 @@ class Play:
 
     def bound(self) -> NDArray[np.bool_]:
         """Where parallel ways bind each other, (trials, positions)."""
-        tight = np.zeros((len(self.deviations), positions_count(self.measure)), dtype=bool)
+        tight = np.zeros((len(self.deviations), self.measure.positions.in_a_trial), dtype=bool)
         stages = self.measure.kind.stages if isinstance(self.measure.kind, LostMotion) else ()
         for stage in _parallel(stages):
             tight |= self.of(stage) < -FREE
@@ -105,7 +100,7 @@ class Play:
         stage, what = part
         if stage.backlash is None:
             own = reducer_backlash(self.model, stage.link, self.deviations)
-            return np.broadcast_to(own[:, None], (len(own), positions_count(self.measure)))
+            return np.broadcast_to(own[:, None], (len(own), self.measure.positions.in_a_trial))
         key = seat_key(self.model, self.measure, stage.backlash)
         if what == "play":
             return self.read(stage.backlash, key)

@@ -20,21 +20,15 @@ from tol3d.gearing.measures import moved_rate
 from tol3d.gearing.meshing import Meshing, MeshSeat
 from tol3d.gearing.model import Backlash, Contributor, Measure, Model, Planar
 from tol3d.gearing.model.contributor import Unit
-from tol3d.gearing.play import positions_count, seat_key
+from tol3d.gearing.play import seat_key
 from tol3d.gearing.rates import BuildRates, build_rates
+from tol3d.gearing.seats import Seats, geometric_values, play_of, seated
 from tol3d.gears import Flank
 from tol3d.gears.flank import opposite
 from tol3d.numerics import frames
-from tol3d.study import draws
-from tol3d.study.block import (
-    ROWS_AT_ONCE,
-    Block,
-    Seats,
-    geometric_values,
-    play_of,
-    seat_block,
-    stated_block,
-)
+from tol3d.system.stated import mean_deviations, stated
+from tol3d.system.taken import ROWS_AT_ONCE
+from tol3d.system.trials import Trials
 
 Array = NDArray[np.float64]
 
@@ -42,30 +36,30 @@ Array = NDArray[np.float64]
 STEP_ASIDE: dict[Unit, float] = {"um": 1e-4, "mrad": 1e-5, "arcmin": 1e-5, "K": 0.1}
 
 
-def sensitivities(model: Model, engine: Engine, block: Block, measure: Measure) -> Array:
+def sensitivities(model: Model, engine: Engine, trials: Trials, measure: Measure) -> Array:
     """Derivatives of what a measure takes by each component of the deviations, each trial at its own build.
 
     Args:
         model, engine: what is built, and what tells its gaps.
-        block: deviations and driver positions of the trials.
+        trials: deviations and driver positions of the trials.
         measure: of that model, or one like it.
 
     Returns:
         (trials, components) [mm or rad per mm, rad, K], columns as in `model.component_slices`; for a curve
         (trials, positions, components). nan where a trial did not seat.
     """
-    size = max(1, ROWS_AT_ONCE // positions_count(measure))
-    pieces = (block.part(first, first + size) for first in range(0, len(block), size))
+    size = max(1, ROWS_AT_ONCE // measure.positions.in_a_trial)
+    pieces = (trials.part(first, first + size) for first in range(0, len(trials), size))
     return np.concatenate([_sensitivities(model, engine, piece, measure) for piece in pieces])
 
 
-def _sensitivities(model: Model, engine: Engine, block: Block, measure: Measure) -> Array:
+def _sensitivities(model: Model, engine: Engine, trials: Trials, measure: Measure) -> Array:
     alone = replace(model, measures=(measure,))
-    seats, count = seat_block(alone, engine, block), positions_count(measure)
-    moves = build_rates(model, seats.build, block.deviations).rows(np.repeat(np.arange(len(block)), count))
-    rates = _free_rates(alone, measure, moves, seats).reshape(len(block), count, -1)
-    rates *= moved_rate(measure.kind, play_of(model, measure, seats).free())[..., None]
-    return taken_rates(measure, geometric_values(model, measure, seats), rates)
+    seats, count = seated(alone, engine, trials), measure.positions.in_a_trial
+    moves = build_rates(model, seats.build, trials.deviations).rows(np.repeat(np.arange(len(trials)), count))
+    rates = _free_rates(alone, measure, moves, seats).reshape(len(trials), count, -1)
+    rates *= moved_rate(measure.kind, play_of(measure, seats).free())[..., None]
+    return taken_rates(measure, geometric_values(measure, seats), rates)
 
 
 def _free_rates(model: Model, measure: Measure, moves: BuildRates, seats: Seats) -> Array:
@@ -75,10 +69,10 @@ def _free_rates(model: Model, measure: Measure, moves: BuildRates, seats: Seats)
         key = seat_key(model, measure, kind)
         return _rates(kind, seats.meshings[key], moves, seats.seats[key])
     total = np.zeros((len(moves.scale), model.component_count))
-    play = play_of(model, measure, seats)
+    play = play_of(measure, seats)
     for stage in kind.stages:
         for part, weight in play.form(stage).items():
-            rows = np.broadcast_to(weight, (len(seats.block), positions_count(measure))).reshape(-1, 1)
+            rows = np.broadcast_to(weight, (len(seats.trials), measure.positions.in_a_trial)).reshape(-1, 1)
             total += stage.factor * rows * _part_rates(model, measure, moves, seats, part)
     return total
 
@@ -318,7 +312,7 @@ def mean_slopes(model: Model, engine: Engine, measure: Measure) -> tuple[Slope, 
 
     At a nominal build pairs tie and gaps lie all along a face, so that each slope is taken STEP_ASIDE of it.
     """
-    middle = draws.mean_deviations(model, measure.positions)
+    middle = mean_deviations(model, measure.positions)
     unit_steps = np.eye(model.component_count)
     gradients = _beside(model, engine, measure, middle, unit_steps)
     gradient = np.array([_either(*gradients[:, :, k][:, k]).mean() for k in range(model.component_count)])
@@ -339,7 +333,7 @@ def _beside(model: Model, engine: Engine, measure: Measure, middle: Array, steps
     """Derivatives (2, steps, components) below and above a build (1, components), STEP_ASIDE along each step."""
     lengths = np.array([STEP_ASIDE[c.unit] for c in model.contributors for _ in c.draw.components])
     rows = np.concatenate([middle - lengths * steps, middle + lengths * steps])
-    return sensitivities(model, engine, stated_block(model, rows), measure).reshape(2, len(steps), -1)
+    return sensitivities(model, engine, stated(model, rows), measure).reshape(2, len(steps), -1)
 
 
 def _either(below: float, above: float) -> Array:

@@ -11,31 +11,34 @@ from rich.text import Text
 from tol3d.gearing.model import Backlash, Contributor, Measure, Model, Planar
 from tol3d.gearing.presenting.train_check import train_blocks
 from tol3d.gearing.summary_types import QUANTITY_WORDS, TAKE_WORDS, Reading, readings_words
+from tol3d.gearing.system import gear_model
 from tol3d.gears import RIGHT, BevelGear, BevelPair, Gear, GearPair, SpurGear, SpurPair
 from tol3d.report.coefficients import coefficients_tables
 from tol3d.report.number import NOTHING, UNIT_SIGNS, degrees_text, given_text, unsigned_zero, value_text
 from tol3d.report.sheet import Heading, Row, Sheet, titled
+from tol3d.study.simulation import Simulation
 from tol3d.units import angle_text
 
 UM = 1000.0  # um in a mm
 
 
-def check_report(model: Model) -> Group:
+def check_report(simulation: Simulation) -> Group:
     """Everything that a scene says, with what follows from it; nothing is drawn at random."""
+    model = gear_model(simulation.system)
     blocks: list[RenderableType] = [Text(model.name, style="bold"), gears_table(model)]
     if model.housings:
         blocks.append(housings_line(model))
     blocks += [meshes_table(model), *train_blocks(model), measures_table(model)]
     if model.contributors:
         blocks.append(contributors_table(model))
-    study = model.study
+    study = simulation.study
     blocks.append(
         Text(
             f"\nstudy: {study.trials} trials, seed {study.seed}, {study.sampler}, engine {study.engine}, "
             f"{study.profile_steps} profile steps a flank"
         )
     )
-    blocks += [Text(f"warning: {warning}", style="yellow") for warning in model.warnings]
+    blocks += [Text(f"warning: {warning}", style="yellow") for warning in simulation.warnings]
     return Group(*blocks)
 
 

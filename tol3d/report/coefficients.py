@@ -12,12 +12,13 @@ from tol3d.gearing.engines import Engine
 from tol3d.gearing.engines.exact import ExactEngine
 from tol3d.gearing.model import Backlash, Contributor, Measure, Model, Positions
 from tol3d.gearing.model.measure import at_one_position
+from tol3d.gearing.roads.analytic import analytic_values
 from tol3d.gearing.sensitivity import STEP_ASIDE, Slope, mean_slopes
-from tol3d.gearing.stack_up import Share, reference_form
+from tol3d.gearing.stack_up import reference_form
 from tol3d.report.number import NOTHING, UNIT_SIGNS, degrees_text, percent_text
 from tol3d.report.sheet import Heading, Row, Sheet, titled
-from tol3d.study import draws
-from tol3d.study.block import analytic_values, stated_block
+from tol3d.system.closed_form import Share
+from tol3d.system.stated import mean_deviations, stated
 
 UM = 1000.0  # um in a mm
 ARCSEC = 648000 / math.pi  # arcsec in a rad
@@ -170,7 +171,7 @@ def _road_slopes(model: Model, measure: Measure, along: Sequence[Slope]) -> list
     Where a contributor is no term of a sum: it leans axes, or only the tighter of parallel ways counts. Taken
     STEP_ASIDE of the mean build, where those of the geometry are; the road is straight from kink to kink.
     """
-    mean = draws.mean_deviations(model, measure.positions)
+    mean = mean_deviations(model, measure.positions)
     lengths = np.array([STEP_ASIDE[contributor.unit] for contributor in model.contributors])
     steps = np.zeros((len(along), model.component_count))
     for step, length, contributor, slope in zip(steps, lengths, model.contributors, along, strict=True):
@@ -178,7 +179,7 @@ def _road_slopes(model: Model, measure: Measure, along: Sequence[Slope]) -> list
         step[model.component_slices[contributor.name]] = np.array(towards) * length
     ends = (-1 - BESIDE, -1 + BESIDE, 1 - BESIDE, 1 + BESIDE)
     rows = np.concatenate([mean + end * steps for end in ends])
-    values = analytic_values(model, measure, stated_block(model, rows))[:, 0].reshape(len(ends), -1)
+    values = analytic_values(model, measure, stated(model, rows))[:, 0].reshape(len(ends), -1)
     sides = (values[1::2] - values[::2]) / (2 * BESIDE * lengths)
     return [Slopes(float(below), float(above)) for below, above in sides.T]
 

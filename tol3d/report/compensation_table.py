@@ -81,7 +81,8 @@ def _title(own: Compensation) -> Text:
 def _words(own: Compensation) -> str:
     failed = f", {own.failed} of them not seated and left out" if own.failed else ""
     return (
-        f"{own.robots} robots{failed}, seed {own.model.study.seed}; each robot's own mean at {own.positions} positions "
+        f"{own.robots} robots{failed}, seed {own.simulation.study.seed}; "
+        f"each robot's own mean at {own.positions} positions "
         "of its long period, its error at another one"
     )
 

@@ -7,9 +7,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.report.bars import Bars
-from tol3d.runs.outcome import status_column, told
 from tol3d.runs.run import Run
 from tol3d.runs.summary.measure import MeasureSummary
+from tol3d.system.outcome import ROADS, outcome_of, status_column, value_column
 
 Array = NDArray[np.float64]
 
@@ -89,8 +89,9 @@ def _ends(analytic: Array, geometric: Array) -> tuple[float, float]:
 
 def _blocks(run: Run, measure: str, position: str | None) -> Iterator[tuple[Array, Array, Array | None]]:
     """Analytic and geometric values and positions, one file of trials at a time; nan where a trial did not seat."""
-    wanted = (f"analytic:{measure}", f"geometric:{measure}", status_column(measure))
+    wanted = (*(value_column(road, measure) for road in ROADS), status_column(measure))
     asked = tuple(name for name in wanted if name in run.column_names)
+    lacking = run.found.lacking
     for columns in run.pieces(*asked, *((position,) if position else ())):
-        analytic, geometric = (told(columns, road, measure).values for road in ("analytic", "geometric"))
+        analytic, geometric = (outcome_of(columns, road, measure, lacking).values for road in ROADS)
         yield analytic, geometric, np.asarray(columns[position], dtype=np.float64) if position else None

@@ -4,15 +4,17 @@ from collections.abc import Mapping
 
 from tol3d.report.number import given_text, unit_suffix
 from tol3d.runs.summary.measure import MeasureSummary, Worse
+from tol3d.runs.summary.run import RunSummary
 
 ENDS: Mapping[Worse, str] = {"low": "smallest", "high": "largest"}
 
 
-def worst_words(measures: Mapping[str, MeasureSummary]) -> str:
+def worst_words(run: RunSummary) -> str:
     """What makes a trial the worst, see `worst_trial`: `the nearest to a limit of play, or the furthest beyond it`."""
+    measures = run.measures
     limited = [name for name, measure in measures.items() if measure.has_limits]
     judged = limited or [*measures][:1]
-    if jammed := [name for name in judged if measures[name].jammed]:
+    if jammed := [name for name in judged if measures[name].ended_in(run.lacking)]:
         return f"the deepest jammed by {' or '.join(jammed)}"
     if not limited:
         return f"the {ENDS[measures[judged[0]].worse]} {judged[0]}, for there are no limits"

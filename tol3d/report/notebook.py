@@ -22,12 +22,13 @@ from tol3d.analyses.shim import Rounding
 from tol3d.analyses.shimmed import Minimum
 from tol3d.errors import InputError
 from tol3d.gearing.model import Model
+from tol3d.gearing.system import gear_model
 from tol3d.report.coefficients import Coefficient, coefficients_of
 from tol3d.report.presenter import PRESENTER, Display, Which, presenter_at
 from tol3d.runs.run import Run, open_run
 from tol3d.scene import Scene
 from tol3d.scene.edit import tolerance_lines
-from tol3d.study.overrides import AS_WRITTEN, Overrides, effective_model, load
+from tol3d.study.overrides import AS_WRITTEN, Overrides
 
 if TYPE_CHECKING:
     import trimesh
@@ -140,7 +141,7 @@ class Replay(simulate.Replay):
     trial: int
 
     def __repr__(self) -> str:
-        return f"<Replay of trial {self.trial} of {self.model.name}: {self.status}, {dict(self.geometric)}>"
+        return f"<Replay of trial {self.trial} of {self.simulation.system.name}: {self.status}, {dict(self.geometric)}>"
 
     @cached_property
     def display(self) -> Display:
@@ -181,8 +182,8 @@ def check_scene(scene: Scene | Path | str, *, overrides: Overrides = AS_WRITTEN,
     Raises:
         SceneError: it cannot be read or built.
     """
-    model = effective_model(load(scene, trust_parts=trust_parts), overrides)
-    return Check(report.check_report(model), model)
+    simulation = simulate.simulation_of(simulate.load(scene, trust_parts=trust_parts), overrides)
+    return Check(report.check_report(simulation), gear_model(simulation.system))
 
 
 def compare_runs(runs: Sequence[Run | Path | str], *, out: Path | str | None = None) -> Comparison:
@@ -282,7 +283,7 @@ def find_shims(
     """
     target = length_of("target_min", target_min)
     question = ShimQuestion(target, measure, tuple(shims), minimum, stock_of(stock), rounding)
-    plan = shim_plan(load(scene, trust_parts=trust_parts), question, overrides)
+    plan = shim_plan(simulate.load(scene, trust_parts=trust_parts), question, overrides)
     return Shims(report.shim_report(plan), plan)
 
 

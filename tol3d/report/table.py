@@ -33,10 +33,10 @@ from tol3d.report.number import (
 )
 from tol3d.report.sheet import Heading, Row, Sheet, note
 from tol3d.report.verdict import ACCEPTED_PPM, verdict_report
-from tol3d.runs.outcome import SEATED
 from tol3d.runs.summary.measure import MeasureSummary
 from tol3d.runs.summary.run import RunSummary
 from tol3d.runs.summary.sample import CurveRoads, Sample
+from tol3d.system.outcome import SEATED
 
 ROWS = {
     "low_3sigma": "low (−3 sigma)",

@@ -7,9 +7,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.errors import RunError
-from tol3d.runs.outcome import status_column, told
 from tol3d.runs.summary.measure import MeasureSummary
 from tol3d.runs.summary.run import RunSummary
+from tol3d.system.outcome import outcome_of, status_column, value_column
 
 Array = NDArray[np.float64]
 
@@ -56,8 +56,9 @@ def worst_trial(run: KeptTrials, measure: str | None = None) -> int:
 
 def _margin(run: KeptTrials, road: str, name: str, measure: MeasureSummary) -> Array:
     """How far each trial is inside the limits, in sigmas; infinite where it gave no value, far below all if jammed."""
-    wanted = (f"{road}:{name}", status_column(name))
-    found = told(run.columns(*(column for column in wanted if column in run.column_names)), road, name)
+    wanted = (value_column(road, name), status_column(name))
+    columns = run.columns(*(column for column in wanted if column in run.column_names))
+    found = outcome_of(columns, road, name, run.found.lacking)
     values = found.values.reshape(run.trials, -1)
     lower, upper = measure.limits
     below, above = values.min(axis=1), values.max(axis=1)  # nan where a position of a curve did not seat
@@ -68,13 +69,13 @@ def _margin(run: KeptTrials, road: str, name: str, measure: MeasureSummary) -> A
         margin = np.minimum(margin, upper - above) if upper is not None else margin
     spread = (float(np.nanstd(margin)) if np.isfinite(margin).any() else 1.0) or 1.0
     margin = np.where(np.isnan(margin), np.inf, margin / spread)
-    if found.jammed is not None:
-        margin[found.jammed] = JAMMED_BY + _overlaps(run, road, name)[found.jammed] / spread
+    if found.lacking is not None:
+        margin[found.lacking] = JAMMED_BY + _overlaps(run, road, name)[found.lacking] / spread
     return margin
 
 
 def _overlaps(run: KeptTrials, road: str, name: str) -> Array:
     """The smallest value of each trial (trials,); of one whose overlap is too deep to tell, deeper than any other."""
-    column = f"{road}:{name}"
+    column = value_column(road, name)
     smallest = np.asarray(run.columns(column)[column], dtype=np.float64).reshape(run.trials, -1).min(axis=1)
     return np.where(np.isnan(smallest), JAMMED_BY, smallest)

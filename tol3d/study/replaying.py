@@ -7,12 +7,17 @@ from pathlib import Path
 from typing import Any
 
 from tol3d.errors import InputError
-from tol3d.gearing.engines.lazy import exact_engine
-from tol3d.gearing.model import Model, Study, Until, model_from_scene
-from tol3d.kinds import load_scene
 from tol3d.runs.run import Run, differences, open_run
-from tol3d.study.block import Block, Seats, drawn_block, seat_block, simulate_block
-from tol3d.study.task import engine_of, installed_versions, strips_for
+from tol3d.scene import Grammar, read_scene
+from tol3d.study.columns import columns_of
+from tol3d.study.draws import drawn
+from tol3d.study.overrides import simulation_of
+from tol3d.study.simulation import Simulation
+from tol3d.study.study import Study, Until
+from tol3d.study.task import materials_of, road_of
+from tol3d.study.versions import installed_versions
+from tol3d.system.outcome import ANALYTIC, GEOMETRIC, value_column
+from tol3d.system.trials import Trials
 
 
 class ElsewhereWarning(UserWarning):
@@ -24,35 +29,35 @@ class Replay:
     """One trial again: everything about it.
 
     Args:
-        model: the run's model.
-        block: its deviations and driver positions (one trial).
-        seats: its build and seated meshes.
+        simulation: the run's.
+        trials: its deviations and positions (one trial).
+        build: with its contacts, as the system has it.
         analytic, geometric: values of each measure, in the measure's unit.
         status: "ok", or why it could not be assembled.
     """
 
-    model: Model
-    block: Block
-    seats: Seats
+    simulation: Simulation
+    trials: Trials
+    build: Any
     analytic: Mapping[str, Any]
     geometric: Mapping[str, Any]
     status: str
 
 
-def model_of(run: Run) -> Model:
-    """The model of a run, from the files that it kept, with the study it was run with.
+def simulation_again(run: Run, kinds: Grammar) -> Simulation:
+    """The simulation of a run, from the files that it kept, with the study it was run with.
 
     Raises:
         RunError: a kept file was changed since.
     """
-    model = model_from_scene(load_scene(run.scene_path, files=run.files))
+    again = simulation_of(read_scene(run.scene_path, kinds, files=run.files))
     known = {field.name for field in fields(Study)}
     study = {name: value for name, value in run.summary["study"].items() if name in known}
     until = tuple(Until(*errors) for errors in study.pop("until", ()))
-    return replace(model, study=Study(**study, until=until))
+    return replace(again, study=Study(**study, until=until))
 
 
-def replay(run: Run | Path | str, trial: int) -> Replay:
+def replay(run: Run | Path | str, trial: int, kinds: Grammar) -> Replay:
     """Trial k of a run again: its deviations, build, contacts and values.
 
     Bit for bit with the packages and on the kind of processor that made the run, elsewhere to rounding.
@@ -66,26 +71,28 @@ def replay(run: Run | Path | str, trial: int) -> Replay:
     run = run if isinstance(run, Run) else open_run(Path(run))
     if not 0 <= trial < run.trials:
         raise InputError(f"trial {trial}: expected 0 to {run.trials - 1}")
-    if found := differences(run.fingerprint["versions"], dict(installed_versions())):
+    simulation = simulation_again(run, kinds)
+    here = dict(installed_versions(simulation.requires))
+    if found := differences(run.fingerprint["versions"], here):
         words = f"{run.path}: made elsewhere ({'; '.join(found)}), so its trials again differ by rounding"
         warnings.warn(words, ElsewhereWarning, stacklevel=2)
-    model = model_of(run)
-    return replay_block(model, drawn_block(model, model.study.seed, trial, 1))
+    return replayed(simulation, drawn(simulation, trial, 1))
 
 
-def replay_block(model: Model, block: Block) -> Replay:
-    """One build with all its contacts, for any deviations."""
-    engine = engine_of(model, strips_for(model)) or exact_engine(model)
-    columns = simulate_block(model, engine, block)
+def replayed(simulation: Simulation, trials: Trials) -> Replay:
+    """One build with all its contacts, for any deviations; that of an analytic study by the system's first engine."""
+    system = simulation.system
+    road = road_of(simulation, materials_of(simulation)) or system.road(next(iter(system.roads)), None)
+    columns = columns_of(system, road, trials)
 
     def values(road: str) -> dict[str, Any]:
-        return {measure.name: columns[f"{road}:{measure.name}"][0].tolist() for measure in model.measures}
+        return {measure.name: columns[value_column(road, measure.name)][0].tolist() for measure in system.measures}
 
     return Replay(
-        model=model,
-        block=block,
-        seats=seat_block(model, engine, block),
-        analytic=values("analytic"),
-        geometric=values("geometric"),
+        simulation=simulation,
+        trials=trials,
+        build=system.display(trials, road),
+        analytic=values(ANALYTIC),
+        geometric=values(GEOMETRIC),
         status=str(columns["status"][0]),
     )

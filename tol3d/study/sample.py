@@ -7,10 +7,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.gearing.model import Measure
-from tol3d.runs.outcome import Mask, Told
 from tol3d.statistics import Grid, LimitCounts, Moments, equivalent_ppk, pp, ppk
 from tol3d.study.replicated import Replicated
+from tol3d.system.measure import Measure
+from tol3d.system.outcome import Mask, Outcome
 
 Array = NDArray[np.float64]
 
@@ -22,12 +22,12 @@ def in_unit(measure: Measure, value: float | None) -> float | None:
     return None if value is None else value * measure.per_internal
 
 
-def lacking_of(measure: Measure, told: Told) -> Mask | None:
-    """Trials that lack what is measured, and so are below every lower limit: the jammed ones.
+def lacking_of(measure: Measure, outcome: Outcome) -> Mask | None:
+    """Trials that lack what is measured, and so are below every lower limit.
 
-    But for a range: that of a jammed build says nothing of how far its backlash swings, so it counts as failed only.
+    But for a range: that of a build whose parts overlap says nothing of how far it swings, so it counts as failed only.
     """
-    return None if measure.take == "range" else told.jammed
+    return None if measure.take == "range" else outcome.lacking
 
 
 @dataclass(frozen=True)
@@ -37,7 +37,7 @@ class Sample:
     Args:
         moments, grid: of the trials that seated.
         limits: of all trials.
-        deepest: the largest overlap of a jammed trial, as a value below 0; inf where none is known.
+        deepest: the largest overlap of a trial, as a value below 0; inf where none is known.
         replicated: the sample by replicates where its trials are not independent, and tells its errors then.
     """
 
@@ -48,23 +48,23 @@ class Sample:
     replicated: Replicated | None = None
 
     @classmethod
-    def of(cls, measure: Measure, told: Told, empty: Grid, rows: Mapping[int, slice]) -> "Sample":
+    def of(cls, measure: Measure, outcome: Outcome, empty: Grid, rows: Mapping[int, slice]) -> "Sample":
         """Sample of a block.
 
         Args:
             measure: what was measured.
-            told: of the block's trials, values (trials,).
+            outcome: of the block's trials, values (trials,).
             empty: the measure's grid.
             rows: which of them belong to each replicate; empty for independent trials.
         """
-        values, lacking = told.values, lacking_of(measure, told)
+        values, lacking = outcome.values, lacking_of(measure, outcome)
         good = values[~np.isnan(values)]
         lower, upper = in_unit(measure, measure.lower_limit), in_unit(measure, measure.upper_limit)
         return cls(
             moments=Moments.of(good),
             grid=empty.add(good),
             limits=LimitCounts.of(values, lower, upper, lacking),
-            deepest=told.deepest,
+            deepest=outcome.deepest,
             replicated=Replicated.of(values, rows, lower, upper, lacking) if rows else None,
         )
 

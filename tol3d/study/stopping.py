@@ -3,33 +3,34 @@
 import math
 from collections.abc import Callable, Iterator
 
-from tol3d.gearing.model import Model, Until
 from tol3d.statistics import Moments
+from tol3d.study.simulation import Simulation
+from tol3d.study.study import Until
 from tol3d.study.tally import Tally
 
 Enough = Callable[[Tally], bool]
 
 
-def enough(model: Model) -> Enough:
+def enough(simulation: Simulation) -> Enough:
     """What is asked after each merged block, in block order: whether the study may stop.
 
     A study without `until` never may; it goes through its trials. What is measured are the trials so far on the
     geometric road, or on the analytic one where there is no engine.
     """
-    return lambda tally: bool(model.study.until) and not any(_short(model, tally))
+    return lambda tally: bool(simulation.study.until) and not any(_short(simulation, tally))
 
 
-def shortfalls(model: Model, tally: Tally) -> Iterator[str]:
+def shortfalls(simulation: Simulation, tally: Tally) -> Iterator[str]:
     """A sentence for each standard error that an automatic study asked for and did not reach."""
-    for name, word, wanted, reached, unit in _short(model, tally):
+    for name, word, wanted, reached, unit in _short(simulation, tally):
         known = f"to ±{reached:.3g} {unit}" if math.isfinite(reached) else "not at all"
         yield f"{name}: {word} known {known} after {tally.trials} trials, not to the ±{wanted:.3g} {unit} of until"
 
 
-def _short(model: Model, tally: Tally) -> Iterator[tuple[str, str, float, float, str]]:
+def _short(simulation: Simulation, tally: Tally) -> Iterator[tuple[str, str, float, float, str]]:
     """Measure, statistic, standard error wanted and reached, unit, where it is not reached (or not known)."""
-    measures = {measure.name: measure for measure in model.measures}
-    for until in model.study.until:
+    measures = {measure.name: measure for measure in simulation.system.measures}
+    for until in simulation.study.until:
         measure, moments = measures[until.measure], _moments(tally, until)
         for word, wanted, reached in (
             ("mean", until.mean, moments.mean_se),

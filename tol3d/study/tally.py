@@ -2,55 +2,56 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.gearing.engines import STATUS_TEXT
-from tol3d.gearing.model import Measure, Model
-from tol3d.gearing.stack_up import ClosedForm, closed_form
-from tol3d.runs.outcome import SEATED, Told, status_column, told
-from tol3d.statistics import Agreement, FeatureSums, Grid, LimitCounts, Moments, shares
+from tol3d.statistics import Agreement, FeatureSums, Grid
 from tol3d.statistics.grid import BINS
 from tol3d.statistics.lazy import quick_products
 from tol3d.statistics.variance_shares import Products, plain_products
 from tol3d.study.agreement.disagreement import Disagreement
-from tol3d.study.regressors import acting, feature_groups, feature_key, features
+from tol3d.study.breakdowns import merged_terms, pooled_terms
+from tol3d.study.curve_tally import CurveTally
+from tol3d.study.regressors import regressors
 from tol3d.study.replicated import rows_of_replicates
-from tol3d.study.sample import Sample, finite, in_unit, lacking_of
-from tol3d.study.stages import StageTallies, merged, stage_tallies
+from tol3d.study.sample import Sample
+from tol3d.study.simulation import Simulation
+from tol3d.study.status_counts import added, counted, status_counts
+from tol3d.system.closed_form import ClosedForm
+from tol3d.system.measure import Measure
+from tol3d.system.outcome import ANALYTIC, GEOMETRIC, ROADS, Columns, Outcome, outcome_of, value_column
+from tol3d.system.pooled import PooledTerms
+from tol3d.system.system import System
 
 Array = NDArray[np.float64]
-Columns = Mapping[str, NDArray[np.generic]]
 
 PILOT_TRIALS = 64  # the study's first trials; they tell sigma to 9 %, and a spread that the stack-up does not see
 GRID_SIGMAS = 12.0  # the grid spans the mean +- this many sigma of both roads: bins of 1.8e-4 sigma, 1.3 nm
 LEAST_SPAN = 1e-3  # mm or rad; for a model in which nothing varies
-HISTOGRAM_BINS = 64  # bars kept in summary.json for pictures
-ROADS = ("analytic", "geometric")
 DIFFERENCE = "difference"  # of the two, beside them
 
 
-def grids_of(model: Model, pilot: Columns) -> Mapping[str, Grid]:
-    """The empty grid of each scalar measure: a function of model and seed alone, so that any blocks add up.
+def grids_of(system: System, pilot: Columns) -> Mapping[str, Grid]:
+    """The empty grid of each scalar measure: a function of system and seed alone, so that any blocks add up.
 
     Args:
+        system: what is measured.
         pilot: columns of the study's first PILOT_TRIALS trials, whatever the number of trials.
     """
     return {
-        measure.name: _grid(measure, closed_form(model, measure), pilot)
-        for measure in model.measures
+        measure.name: _grid(system, measure, system.closed_form(measure), pilot)
+        for measure in system.measures
         if measure.take != "curve"
     }
 
 
-def _grid(measure: Measure, form: ClosedForm | None, pilot: Columns) -> Grid:
+def _grid(system: System, measure: Measure, form: ClosedForm | None, pilot: Columns) -> Grid:
     spans = [(form.mean * measure.per_internal, form.sigma * measure.per_internal)] if form else []
-    for road in ("analytic", "geometric"):
-        if f"{road}:{measure.name}" not in pilot:
+    for road in ROADS:
+        if value_column(road, measure.name) not in pilot:
             continue
-        values = told(pilot, road, measure.name).values
+        values = outcome_of(pilot, road, measure.name, system.statuses.lacking).values
         good = values[~np.isnan(values)]
         spans += [(float(good.mean()), float(good.std()))] if len(good) else []
     reach = [max(GRID_SIGMAS * sigma, LEAST_SPAN * measure.per_internal) for _, sigma in spans]
@@ -74,7 +75,7 @@ class MeasureTally:
     def merge(self, other: "MeasureTally") -> "MeasureTally":
         """Both tallies as one."""
         return MeasureTally(
-            _added(self.status, other.status),
+            added(self.status, other.status),
             self.analytic.merge(other.analytic),
             self.geometric.merge(other.geometric) if self.geometric and other.geometric else None,
             self.agreement.merge(other.agreement) if self.agreement and other.agreement else None,
@@ -90,38 +91,43 @@ class MeasureTally:
 class _Block:
     """One block of columns, and which of its rows belong to each replicate."""
 
-    model: Model
+    simulation: Simulation
     columns: Columns
     rows: Mapping[int, slice]
     first: int
 
-    def told(self, measures: Sequence[Measure]) -> dict[tuple[str, str], Told]:
-        """What each road that was gone tells of each measure, by road and name."""
+    def outcomes(self, measures: Sequence[Measure]) -> dict[tuple[str, str], Outcome]:
+        """Outcomes of each measure on each road that was gone, by road and name."""
+        lacking = self.simulation.system.statuses.lacking
         keys = [(road, measure.name) for measure in measures for road in ROADS]
-        return {(r, name): told(self.columns, r, name) for r, name in keys if f"{r}:{name}" in self.columns}
+        return {
+            (road, name): outcome_of(self.columns, road, name, lacking)
+            for road, name in keys
+            if value_column(road, name) in self.columns
+        }
 
     @property
     def _products(self) -> Products:
-        return quick_products() if self.model.study.engine == "exact" else plain_products
+        return quick_products() if self.simulation.road.compiled else plain_products
 
     def tally(self, measures: Sequence[Measure], grids: Mapping[str, Grid]) -> dict[str, MeasureTally]:
         """Tallies of scalar measures."""
-        found = self.told(measures)
+        found, statuses = self.outcomes(measures), self.simulation.system.statuses
         values = {key: own.values for key, own in found.items()}
-        both = [measure.name for measure in measures if ("geometric", measure.name) in values]
-        values |= {(DIFFERENCE, name): values["geometric", name] - values["analytic", name] for name in both}
+        both = [measure.name for measure in measures if (GEOMETRIC, measure.name) in values]
+        values |= {(DIFFERENCE, name): values[GEOMETRIC, name] - values[ANALYTIC, name] for name in both}
         sums = self._sums(measures, values)
         tallies = {}
         for measure in measures:
-            analytic, geometric = found["analytic", measure.name], found.get(("geometric", measure.name))
+            analytic, geometric = found[ANALYTIC, measure.name], found.get((GEOMETRIC, measure.name))
             empty = grids[measure.name]
             tallies[measure.name] = MeasureTally(
-                status_counts(self.columns, measure),
+                status_counts(statuses, self.columns, measure),
                 Sample.of(measure, analytic, empty, self.rows),
                 Sample.of(measure, geometric, empty, self.rows) if geometric else None,
                 Agreement.of(geometric.values, analytic.values) if geometric else None,
-                sums["analytic", measure.name],
-                sums["geometric", measure.name] if geometric else None,
+                sums[ANALYTIC, measure.name],
+                sums[GEOMETRIC, measure.name] if geometric else None,
                 Disagreement.of(self.first, values[DIFFERENCE, measure.name], sums[DIFFERENCE, measure.name])
                 if geometric
                 else None,
@@ -131,11 +137,13 @@ class _Block:
     def _sums(
         self, measures: Sequence[Measure], values: Mapping[tuple[str, str], Array]
     ) -> dict[tuple[str, str], FeatureSums]:
-        """What each road's column of each measure has in common with its features, by road and name."""
+        """What each road's column of each measure has in common with its regressors, by road and name."""
         sums: dict[tuple[str, str], FeatureSums] = {}
-        for key in dict.fromkeys(map(feature_key, measures)):
-            alike = [measure for measure in measures if feature_key(measure) == key]
-            seen = features(self.model, alike[0], self.columns)
+        system = self.simulation.system
+        keys = {measure.name: system.regressor_key(measure) for measure in measures}
+        for key in dict.fromkeys(keys.values()):
+            alike = [measure for measure in measures if keys[measure.name] == key]
+            seen = regressors(system, alike[0], self.columns)
             roads = (*ROADS, DIFFERENCE)
             columns = {(r, m.name): values[r, m.name] for m in alike for r in roads if (r, m.name) in values}
             whole = {name: column for name, column in columns.items() if not np.isnan(np.min(column))}
@@ -154,146 +162,57 @@ class _Block:
 
 
 @dataclass(frozen=True)
-class CurveTally:
-    """A curve measure: moments at each position, for both roads, and the trials with any position out of limits.
-
-    A trial counts at every position, or where one of them did not seat at none.
-    """
-
-    status: Mapping[str, int]
-    analytic: tuple[Moments, ...]
-    geometric: tuple[Moments, ...] | None
-    limits: Mapping[str, LimitCounts]
-    deepest: float
-
-    @classmethod
-    def of(cls, measure: Measure, columns: Columns) -> "CurveTally":
-        """Tally of one block of columns."""
-        curves = {road: told(columns, road, measure.name) for road in ROADS if f"{road}:{measure.name}" in columns}
-        moments = {
-            road: tuple(Moments.of(column[~np.isnan(column)]) for column in own.values.T)
-            for road, own in curves.items()
-        }
-        lower, upper = in_unit(measure, measure.lower_limit), in_unit(measure, measure.upper_limit)
-        limits = {
-            road: LimitCounts.of_spans(
-                own.values.min(axis=1), own.values.max(axis=1), lower, upper, lacking_of(measure, own)
-            )
-            for road, own in curves.items()
-        }
-        return cls(
-            status_counts(columns, measure),
-            moments["analytic"],
-            moments.get("geometric"),
-            limits,
-            min(own.deepest for own in curves.values()),
-        )
-
-    def merge(self, other: "CurveTally") -> "CurveTally":
-        """Both tallies as one."""
-
-        def merged(mine: tuple[Moments, ...], its: tuple[Moments, ...]) -> tuple[Moments, ...]:
-            return tuple(a.merge(b) for a, b in zip(mine, its, strict=True))
-
-        return CurveTally(
-            _added(self.status, other.status),
-            merged(self.analytic, other.analytic),
-            merged(self.geometric, other.geometric) if self.geometric and other.geometric else None,
-            {road: counts.merge(other.limits[road]) for road, counts in self.limits.items()},
-            min(self.deepest, other.deepest),
-        )
-
-
-@dataclass(frozen=True)
 class Tally:
-    """Statistics of a whole run so far; `unphysical` counts draws below what a contributor can be."""
+    """Statistics of a whole run so far.
+
+    Args:
+        trials: how many.
+        status: how many of them ended how, by the worst of their measures.
+        unphysical: how many draws lie below what a contributor can be, by its name.
+        measures, curves: by name.
+        terms: of breakdowns, by measure and road.
+    """
 
     trials: int
     status: Mapping[str, int]
     unphysical: Mapping[str, int]
     measures: Mapping[str, MeasureTally]
     curves: Mapping[str, CurveTally]
-    stages: StageTallies
+    terms: Mapping[str, Mapping[str, PooledTerms]]
 
     @classmethod
-    def of(cls, model: Model, grids: Mapping[str, Grid], columns: Columns, first: int = 0) -> "Tally":
+    def of(cls, simulation: Simulation, grids: Mapping[str, Grid], columns: Columns, first: int = 0) -> "Tally":
         """Tally of one block that begins at trial `first`; `grids` as grids_of gives them."""
         trials = len(next(iter(columns.values())))
-        rows = rows_of_replicates(model.study, first, trials)
-        scalars = [measure for measure in model.measures if measure.take != "curve"]
-        curves = [measure for measure in model.measures if measure.take == "curve"]
+        system, statuses = simulation.system, simulation.system.statuses
+        rows = rows_of_replicates(simulation.study, first, trials)
+        scalars = [measure for measure in system.measures if measure.take != "curve"]
+        curves = [measure for measure in system.measures if measure.take == "curve"]
         return cls(
             trials,
-            _counted(columns.get("status"), trials),
-            _unphysical(model, columns),
-            _Block(model, columns, rows, first).tally(scalars, grids),
-            {measure.name: CurveTally.of(measure, columns) for measure in curves},
-            stage_tallies(model, columns),
+            counted(statuses, columns.get("status"), trials),
+            _unphysical(system, columns),
+            _Block(simulation, columns, rows, first).tally(scalars, grids),
+            {measure.name: CurveTally.of(statuses, measure, columns) for measure in curves},
+            pooled_terms(system.breakdowns, statuses, columns),
         )
 
     def merge(self, other: "Tally") -> "Tally":
         """Both tallies as one; fold blocks in their order."""
         return Tally(
             self.trials + other.trials,
-            _added(self.status, other.status),
-            _added(self.unphysical, other.unphysical),
+            added(self.status, other.status),
+            added(self.unphysical, other.unphysical),
             {name: tally.merge(other.measures[name]) for name, tally in self.measures.items()},
             {name: tally.merge(other.curves[name]) for name, tally in self.curves.items()},
-            merged(self.stages, other.stages),
+            merged_terms(self.terms, other.terms),
         )
 
 
-def status_counts(columns: Columns, measure: Measure) -> dict[str, int]:
-    """How many trials of a block ended how, for one measure; those of the analytic road all seat."""
-    return _counted(columns.get(status_column(measure.name)), len(columns[f"analytic:{measure.name}"]))
-
-
-def _counted(status: NDArray[np.generic] | None, trials: int) -> dict[str, int]:
-    """How many of the trials have each status (trials,)."""
-    seated = trials if status is None else int(np.count_nonzero(status == SEATED))
-    failed = (text for text in STATUS_TEXT.values() if text != SEATED)
-    if seated == trials:
-        return {SEATED: trials, **dict.fromkeys(failed, 0)}
-    return {SEATED: seated, **{text: int(np.count_nonzero(status == text)) for text in failed}}
-
-
-def _added(mine: Mapping[str, int], its: Mapping[str, int]) -> dict[str, int]:
-    return {name: count + its[name] for name, count in mine.items()}
-
-
-def _unphysical(model: Model, columns: Columns) -> dict[str, int]:
+def _unphysical(system: System, columns: Columns) -> dict[str, int]:
     counts = {}
-    for contributor in model.contributors:
+    for contributor in system.contributors:
         if contributor.least is not None:
             drawn = np.asarray(columns[contributor.columns[0]], dtype=np.float64)
             counts[contributor.name] = int(np.count_nonzero(drawn < contributor.least / contributor.per_unit))
     return counts
-
-
-def histograms(tally: MeasureTally) -> dict[str, Any]:
-    """Counts of both roads over the same bars, for pictures; in the measure's unit."""
-    samples = {"analytic": tally.analytic, **({"geometric": tally.geometric} if tally.geometric else {})}
-    filled = [sample.moments for sample in samples.values() if sample.moments.count]
-    if not filled:
-        return {}
-    span = (min(m.minimum for m in filled), max(m.maximum for m in filled))
-    drawn = {road: sample.grid.histogram(HISTOGRAM_BINS, span) for road, sample in samples.items()}
-    edges = drawn["analytic"].edges
-    return {
-        "lower_edge": float(edges[0]),
-        "bin_width": float(edges[1] - edges[0]),
-        "counts": {road: histogram.counts.tolist() for road, histogram in drawn.items()},
-    }
-
-
-def share_percents(
-    model: Model, measure: Measure, sums: FeatureSums | None
-) -> dict[str, tuple[float | None, float | None]]:
-    """Share of the variance [%] of each acting contributor by regression, its standard error; None where unknown."""
-    unknown = dict.fromkeys((contributor.name for contributor in acting(model, measure)), (None, None))
-    if sums is None:
-        return {**unknown}
-    groups = feature_groups(model, measure)
-    found = shares(sums, groups)
-    told = {name: (finite(100 * found.share[name]), finite(100 * found.standard_error[name])) for name in groups}
-    return {**unknown, **told}

@@ -6,6 +6,7 @@ from typing import Any
 
 from tol3d.errors import InputError
 from tol3d.scene import Scene, Vocabulary
+from tol3d.system.system import System
 
 
 @dataclass(frozen=True)
@@ -25,13 +26,14 @@ class Mechanism(Vocabulary):
     summary: str = ""
     requires: tuple[str, ...] = ()
 
-    def system_of(self, scene: Scene) -> Any:
+    def system_of(self, scene: Scene) -> System:
         """What a scene means.
 
         Raises:
             SceneError: it means nothing that can be simulated, with the place and what to do.
         """
-        return named(self.system)(scene)
+        system: System = named(self.system)(scene)
+        return system
 
 
 def named(path: str) -> Any:

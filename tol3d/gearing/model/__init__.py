@@ -12,12 +12,14 @@ from tol3d.gearing.effects import (
     ToothThickness,
     TurningOffset,
 )
-from tol3d.gearing.model.contributor import Contributor, Planar, Scalar
+from tol3d.gearing.model.contributor import Contributor
 from tol3d.gearing.model.layout import Layout
-from tol3d.gearing.model.measure import Backlash, Kind, LostMotion, Measure, Positions, Reading
+from tol3d.gearing.model.measure import Backlash, Kind, LostMotion, Measure, Reading
 from tol3d.gearing.model.mesh import Mesh, Seat
-from tol3d.gearing.model.model import GearPart, Model, Study, Until
+from tol3d.gearing.model.model import GearPart, Model
 from tol3d.gearing.model.shafts import Arm, Reducer, Shaft, Train
+from tol3d.system.draw import Planar, Scalar
+from tol3d.system.positions import Positions
 
 from tol3d.gearing.model.from_scene import model_from_scene  # isort: skip  (needs the names above)
 
@@ -45,12 +47,10 @@ __all__ = [
     "Scalar",
     "Seat",
     "Shaft",
-    "Study",
     "Temperature",
     "Together",
     "ToothThickness",
     "Train",
     "TurningOffset",
-    "Until",
     "model_from_scene",
 ]

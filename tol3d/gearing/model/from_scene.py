@@ -10,7 +10,7 @@ from tol3d.gearing.model.layout import Layout, layout_of
 from tol3d.gearing.model.links import links_between_shafts, links_of
 from tol3d.gearing.model.measures import measure_of
 from tol3d.gearing.model.mesh import Mesh
-from tol3d.gearing.model.model import GearPart, Housing, Model, Study, Until
+from tol3d.gearing.model.model import GearPart, Housing, Model
 from tol3d.gearing.model.nominal import Nominal
 from tol3d.gearing.model.pairs import internal, pair_of, undercut_warning
 from tol3d.gearing.model.shafts import Arm, Train
@@ -28,8 +28,6 @@ from tol3d.gearing.model.trains import (
 )
 from tol3d.gears import LEFT, RIGHT
 from tol3d.scene import Scene
-from tol3d.scene.schema import Study as StudySpec
-from tol3d.units import Quantity
 
 
 def model_from_scene(scene: Scene) -> Model:
@@ -62,35 +60,14 @@ def model_from_scene(scene: Scene) -> Model:
         contributors=tuple(nominal.contributor(name, spec) for name, spec in scene.tolerances.items()),
         meshes=meshes,
         measures=(),
-        study=_study(scene.study),
-        published=_published(scene),
-        gear_warnings=tuple(_warnings(meshes)),
+        profile_steps=scene.study.profile_steps,
+        warnings=tuple(_warnings(meshes)),
         shafts=shafts,
         reducers=reducers,
         arms=arms,
         trains=trains,
     )
     return replace(model, measures=tuple(measure_of(scene, name, model) for name in scene.measures))
-
-
-def _study(spec: StudySpec) -> Study:
-    """The study; an automatic one is its trials at most, and when it may stop before."""
-    return Study(
-        trials=spec.at_most if spec.trials == "auto" else spec.trials,
-        seed=spec.seed,
-        sampler=spec.sampler,
-        replicates=spec.parts,
-        until=tuple(
-            Until(name, _internal(errors.mean), _internal(errors.sigma)) for name, errors in spec.until.items()
-        ),
-        engine=spec.engine,
-        witness=spec.witness,
-        profile_steps=spec.profile_steps,
-    )
-
-
-def _internal(quantity: Quantity | None) -> float | None:
-    return None if quantity is None else quantity.internal
 
 
 def _mesh(scene: Scene, name: str, move: GearMeshSpec) -> Mesh:
@@ -153,17 +130,3 @@ def _warnings(meshes: tuple[Mesh, ...]) -> Iterator[str]:
         for name in (mesh.driver, mesh.driven):
             if warning := undercut_warning(mesh.gear(name)):
                 yield f"{name}: {warning}"
-
-
-def _published(scene: Scene) -> dict[str, dict[str, dict[str, object]]]:
-    return {
-        column: {
-            measure: {
-                **{key: quantity.internal for key, quantity in values.quantities().items()},
-                **({"contributors": dict(values.contributors)} if values.contributors else {}),
-                **({"description": values.description} if values.description else {}),
-            }
-            for measure, values in measures.items()
-        }
-        for column, measures in scene.published.items()
-    }

@@ -1,14 +1,16 @@
 """What is measured, over which positions, and what is taken of it."""
 
-import math
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Literal
 
+from tol3d.system import measure as system_measure
+from tol3d.system.measure import Worse
+from tol3d.system.positions import Positions, Take
 from tol3d.units import ARCMIN
 
 BacklashQuantity = Literal["normal_backlash", "circumferential_backlash", "angular_backlash", "rest_angle"]
 TrainQuantity = Literal["lost_motion", "tip_displacement", "tip_error"]
-Take = Literal["value", "min", "max", "range", "curve"]
 
 
 @dataclass(frozen=True)
@@ -180,45 +182,6 @@ def at_one_position(kind: Kind) -> Kind:
 
 
 @dataclass(frozen=True)
-class Positions:
-    """Positions at which a measure is read: of the driver of a mesh, or of the first shaft of a train.
-
-    Args:
-        over: "random" (uniform over the long period, one a trial), "at" (one angle), "turn" or
-            "long_period" (`count` even steps, the first position at 0), "swing" (`angles`).
-        turns: turns that the positions span.
-        count: steps from position to position in those turns; a turn has its end as one position more.
-        angle: the angle for "at" [rad].
-        angles: of the train's first shaft for "swing" [rad].
-        shown: the output's angles there [rad].
-    """
-
-    over: Literal["random", "at", "turn", "long_period", "swing"]
-    turns: int
-    count: int
-    angle: float = 0.0
-    angles: tuple[float, ...] = ()
-    shown: tuple[float, ...] = ()
-
-    @property
-    def closed(self) -> bool:
-        """Whether the first position follows the last: the wheel is not back where it was after one driver turn."""
-        return self.over == "long_period"
-
-    @property
-    def fixed(self) -> tuple[float, ...] | None:
-        """The angles [rad] that every trial shares; None for random ones."""
-        if self.over == "random":
-            return None
-        if self.over == "at":
-            return (self.angle,)
-        if self.over == "swing":
-            return self.angles
-        positions = self.count if self.closed else self.count + 1
-        return tuple(2 * math.pi * self.turns * k / self.count for k in range(positions))
-
-
-@dataclass(frozen=True)
 class Measure:
     """A measure with its limits [mm or rad]."""
 
@@ -240,3 +203,30 @@ class Measure:
     def per_internal(self) -> float:
         """What one mm or rad is in that unit."""
         return {"arcmin": ARCMIN, "mm": 1.0, "um": 1000.0}[self.unit]
+
+    @property
+    def worse(self) -> Worse:
+        """The smaller backlash, the larger lost motion or error of a tip."""
+        return "high" if isinstance(self.kind, LostMotion) else "low"
+
+    @property
+    def adds_up(self) -> bool:
+        """Whether it is the sum of its backlashes: no load paths are in parallel."""
+        return self.kind.adds_up
+
+    @property
+    def keeps_overlap(self) -> bool:
+        """Whether it is a backlash, which is below 0 where teeth overlap, and smooth through 0."""
+        return isinstance(self.kind, Backlash)
+
+
+def gear_measure(measure: system_measure.Measure) -> Measure:
+    """A measure that a study hands back: one of this model's."""
+    if not isinstance(measure, Measure):
+        raise TypeError(f"{measure.name} is no measure of gears")
+    return measure
+
+
+def gear_measures(measures: Sequence[system_measure.Measure]) -> tuple[Measure, ...]:
+    """The same of several."""
+    return tuple(map(gear_measure, measures))

@@ -23,7 +23,6 @@ from tol3d.gearing.model.measure import (
     LostMotion,
     Measure,
     ParallelStage,
-    Positions,
     Stage,
     Tip,
     TrainQuantity,
@@ -35,6 +34,7 @@ from tol3d.gearing.model.shafts import Arm, Train
 from tol3d.gearing.model.trains import gravity_torque, refuse_midst
 from tol3d.scene import Scene
 from tol3d.scene.direction import At
+from tol3d.system.positions import Positions
 
 BacklashSpec = NormalBacklashSpec | CircumferentialBacklashSpec | AngularBacklashSpec
 

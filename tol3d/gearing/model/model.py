@@ -1,18 +1,23 @@
 """The whole model: frozen, in mm and rad, ready for trials."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, Literal, NamedTuple
 
-from tol3d.errors import InputError
-from tol3d.gearing.model.contributor import Contributor
+import numpy as np
+from numpy.typing import NDArray
+
+from tol3d.gearing.model.contributor import Contributor, gear_contributor
+from tol3d.gearing.model.drives import DRIVER_POSITION, driver_angles
 from tol3d.gearing.model.layout import Layout, layout_of
 from tol3d.gearing.model.measure import Backlash, Measure
 from tol3d.gearing.model.mesh import Mesh, Seat
 from tol3d.gearing.model.shafts import Arm, Reducer, Shaft, Train
 from tol3d.gears import Gear
-from tol3d.samplers.replicates import SamplerKind, balanced_trials, is_power_of_two, uneven
+from tol3d.system import contributor as system_contributor
+from tol3d.system.positions import Positions
+
+Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
@@ -32,61 +37,12 @@ class Housing:
     expansion: float
 
 
-class Until(NamedTuple):
-    """Standard errors [mm or rad] of a measure's mean and sigma at which a study may stop; None is not asked for."""
-
-    measure: str
-    mean: float | None
-    sigma: float | None
-
-
-@dataclass(frozen=True)
-class Study:
-    """How many trials, drawn from which seed and how, by which engine, with how many profile steps a flank.
-
-    With `until` the trials are those at most. `replicates` of a sampler are parts of equal size, each randomised
-    anew.
-    """
-
-    trials: int = 2000
-    seed: int = 1
-    sampler: SamplerKind = "monte_carlo"
-    replicates: int = 1
-    until: tuple[Until, ...] = ()
-    engine: Literal["exact", "fcl", "analytic"] = "exact"
-    witness: int = 0
-    profile_steps: int = 120
-
-    def __post_init__(self) -> None:
-        """Refuse trials that the replicates cannot share evenly: a run's may be other than its scene's.
-
-        Raises:
-            InputError: with the nearest numbers that would do.
-        """
-        if problem := uneven(self.sampler, self.trials, self.replicates):
-            raise InputError(f"trials: expected {problem}, got {self.trials}")
-
-    @property
-    def replicate_trials(self) -> int:
-        """Trials of one replicate."""
-        return self.trials // self.replicates
-
-    @property
-    def warnings(self) -> tuple[str, ...]:
-        """What makes its numbers worse than they need be."""
-        if self.sampler != "sobol" or is_power_of_two(self.replicate_trials):
-            return ()
-        return (
-            f"study: Sobol' points are even in powers of two, not in {self.replicate_trials} a replicate; "
-            f"take {balanced_trials(self.trials, self.replicates)} trials",
-        )
-
-
 @dataclass(frozen=True)
 class Model:
     """Everything that a trial needs. Parts, contributors and measures keep the scene's order.
 
-    `gear_warnings` are what the gears' geometry may spoil. A gear that no shaft carries is a shaft of its own.
+    `profile_steps` are those of the strips that FCL measures; `warnings` are what the gears' geometry may spoil. A
+    gear that no shaft carries is a shaft of its own.
     """
 
     name: str
@@ -95,18 +51,12 @@ class Model:
     contributors: tuple[Contributor, ...]
     meshes: tuple[Mesh, ...]
     measures: tuple[Measure, ...]
-    study: Study
-    published: Mapping[str, Mapping[str, Mapping[str, Any]]] = field(default_factory=dict)
-    gear_warnings: tuple[str, ...] = ()
+    profile_steps: int = 120
+    warnings: tuple[str, ...] = ()
     shafts: tuple[Shaft, ...] = ()
     reducers: tuple[Reducer, ...] = ()
     arms: tuple[Arm, ...] = ()
     trains: tuple[Train, ...] = ()
-
-    @property
-    def warnings(self) -> tuple[str, ...]:
-        """What may spoil the numbers of this study."""
-        return (*self.gear_warnings, *self.study.warnings)
 
     def gear(self, name: str) -> GearPart:
         """The gear of that name."""
@@ -154,6 +104,21 @@ class Model:
         if fixed is None or isinstance(measure.kind, Backlash):
             return fixed
         return tuple(self.layout.mesh_turn[mesh].at(angle) for angle in fixed)
+
+    # its trials -------------------------------------------------------------------------------------
+
+    @property
+    def streams(self) -> tuple[tuple[str, str], ...]:
+        """See System: the position of each tree of shafts."""
+        return tuple((drive.name, DRIVER_POSITION) for drive in self.layout.drives)
+
+    def positions(self, uniforms: Mapping[tuple[str, str], Array]) -> Mapping[str, Array]:
+        """See System: the driver's angle [rad] by mesh."""
+        return driver_angles(self.layout, {mesh.name: mesh for mesh in self.meshes}, uniforms)
+
+    def turns_at_random(self, contributor: system_contributor.Contributor, positions: Positions) -> bool:
+        """See System: of an offset that turns with its gear, read at random positions."""
+        return positions.over == "random" and gear_contributor(contributor).effect.turns_with is not None
 
     @cached_property
     def expansions(self) -> Mapping[str, float]:

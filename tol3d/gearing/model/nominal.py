@@ -6,13 +6,14 @@ from dataclasses import dataclass
 from tol3d.gearing.effects import NOTHING
 from tol3d.gearing.grammar.moves import meshes_of
 from tol3d.gearing.grammar.tolerances.gearing_tolerance import GearingToleranceSpec
-from tol3d.gearing.model.contributor import Contributor, Planar, Scalar
+from tol3d.gearing.model.contributor import Contributor
 from tol3d.gearing.model.layout import Layout
 from tol3d.gearing.model.mesh import Mesh
 from tol3d.gearing.model.shafts import Carried
 from tol3d.gears import BevelPair
 from tol3d.scene import Scene
 from tol3d.scene.tolerance import ToleranceSpec
+from tol3d.system.draw import Planar, Scalar
 
 
 @dataclass(frozen=True)

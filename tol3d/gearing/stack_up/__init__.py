@@ -1,14 +1,11 @@
 """The reference road: nominal values and stack-ups with their sources. It never sees a mesh, a pose or an engine."""
 
 from tol3d.gearing.stack_up.backlash import analytic_backlash, first_order, per_normal_backlash, stack_of
-from tol3d.gearing.stack_up.closed_form import ClosedForm, closed_form, reference_form
-from tol3d.gearing.stack_up.share import Share
+from tol3d.gearing.stack_up.closed_form import closed_form, reference_form
 from tol3d.gearing.stack_up.stack import Stack
 from tol3d.gearing.stack_up.term import Term
 
 __all__ = [
-    "ClosedForm",
-    "Share",
     "Stack",
     "Term",
     "analytic_backlash",

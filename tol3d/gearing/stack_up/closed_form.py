@@ -18,35 +18,12 @@ from tol3d.gearing.model import Contributor, LostMotion, Measure, Model, Planar,
 from tol3d.gearing.model.measure import at_one_position
 from tol3d.gearing.stack_up.backlash import per_normal_backlash, stack_of
 from tol3d.gearing.stack_up.leaning import leaning_groups, leaning_shares
-from tol3d.gearing.stack_up.share import Share
 from tol3d.gearing.stack_up.stack import Stack
 from tol3d.gearing.stack_up.term import Term
 from tol3d.gears import GearPair
+from tol3d.system.closed_form import ClosedForm, Share
 
 TILT_NODES = 2000  # midpoint rule in u, a plane; its error on |x| of a normal is under 1e-6 of sigma
-
-
-@dataclass(frozen=True)
-class ClosedForm:
-    """Moments of a measure by the stack-up [mm or rad].
-
-    Args:
-        nominal, mean, sigma: of the measure.
-        shares: of the contributors that act on it.
-        leaning: names of those that shift axes and lean them: their coefficients are mean slopes.
-    """
-
-    nominal: float
-    mean: float
-    sigma: float
-    shares: tuple[Share, ...]
-    leaning: frozenset[str] = frozenset()
-
-    def percent(self, name: str) -> float:
-        """Share of the variance [%] of a contributor; 0 when nothing varies."""
-        total = sum(share.variance for share in self.shares)
-        own = sum(share.variance for share in self.shares if share.name == name)
-        return 100.0 * own / total if total > 0.0 else 0.0
 
 
 def closed_form(model: Model, measure: Measure) -> ClosedForm | None:

@@ -16,11 +16,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.gearing.model import Contributor
-from tol3d.gearing.stack_up.share import Share
 from tol3d.gearing.stack_up.stack import Stack
 from tol3d.gears import GearPair
 from tol3d.samplers.sobol import Sobol
 from tol3d.samplers.stream import Stream
+from tol3d.system.closed_form import Share
 
 Array = NDArray[np.float64]
 

@@ -1,12 +1,11 @@
 """One measure of a run: what it is, what each road found of it, and what others published."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Literal, Self, get_args
 
 from pydantic import Field, create_model, model_validator
 
-from tol3d.runs.outcome import JAMMED, SEATED
 from tol3d.runs.summary.agreement import Agreement
 from tol3d.runs.summary.sample import CurveRoads, CurveSample, Histogram, Normal, Roads, Sample
 from tol3d.runs.summary.values import (
@@ -23,6 +22,7 @@ from tol3d.runs.summary.values import (
     Unit,
 )
 from tol3d.strict import refused
+from tol3d.system.outcome import SEATED
 
 Worse = Literal["low", "high"]
 
@@ -164,10 +164,9 @@ class MeasureSummary(Section):
         """How many trials seated."""
         return self.status.get(SEATED, self.trials)
 
-    @property
-    def jammed(self) -> int:
-        """How many trials jammed."""
-        return self.status.get(JAMMED, 0)
+    def ended_in(self, statuses: Collection[str]) -> int:
+        """How many trials ended in one of some statuses."""
+        return sum(self.status.get(text, 0) for text in statuses)
 
     @property
     def trials(self) -> int:

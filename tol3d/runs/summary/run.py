@@ -24,6 +24,7 @@ from tol3d.runs.summary.values import (
     Sha256,
 )
 from tol3d.strict import refused
+from tol3d.system.statuses import Meaning
 
 
 class StudySummary(Section):
@@ -69,6 +70,9 @@ class RunSummary(Section):
     engine: EngineName
     study: StudySummary
     status: Mapping[Label, Count] = Field(description="how many trials ended how")
+    statuses: Mapping[Label, Meaning] = Field(
+        description="of each status: values count; less than nothing of what is measured; nothing is known but that"
+    )
     chord_error_um: NotNegative | None
     measures: Annotated[Mapping[Label, MeasureSummary], Field(min_length=1, max_length=MOST_ENTRIES)]
     warnings: list[Sentence]
@@ -82,6 +86,11 @@ class RunSummary(Section):
     def roads(self) -> tuple[Road, ...]:
         """The roads by which it was measured."""
         return ("analytic",) if self.engine == "analytic" else ("analytic", "geometric")
+
+    @property
+    def lacking(self) -> frozenset[str]:
+        """Statuses of trials that lack what is measured, such as parts that overlap."""
+        return frozenset(text for text, meaning in self.statuses.items() if meaning == "lacking")
 
     @property
     def best_road(self) -> Road:

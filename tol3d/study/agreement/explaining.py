@@ -2,7 +2,7 @@
 
 A stack-up is of first order. So the difference (geometric - analytic) may be of second order, which `second_look.py`
 tells; and of first order only where the stack-up says that it leaves something out, and by how much at most
-(`analytic/neglect.py`). Anything else is an error of one of the roads.
+(`System.neglected`). Anything else is an error of one of the roads.
 """
 
 import math
@@ -12,17 +12,22 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.gearing.engines import Engine
-from tol3d.gearing.model import Contributor, Measure, Model, Planar
-from tol3d.gearing.neglected import alone, neglected, of_gaps
 from tol3d.statistics.linear_fit import LEAST_FREEDOM, LinearFit, effect_of, standard_errors
-from tol3d.study import draws
 from tol3d.study.agreement.explanation import Explanation, LinearPart
 from tol3d.study.agreement.road_fits import RoadFits, sigma_of
 from tol3d.study.agreement.second_look import SecondLook, bends, scalars_of, second_look
-from tol3d.study.block import simulate_block, stated_block
-from tol3d.study.regressors import feature_groups
+from tol3d.study.columns import columns_of
+from tol3d.study.regressors import regressor_groups
+from tol3d.study.simulation import Simulation
 from tol3d.study.tally import Tally
+from tol3d.system.contributor import Contributor
+from tol3d.system.measure import Measure
+from tol3d.system.outcome import ANALYTIC, value_column
+from tol3d.system.regressors import has_square
+from tol3d.system.road import Road
+from tol3d.system.stated import component_count, component_slices, mean_deviations, stated
+from tol3d.system.system import System
+from tol3d.system.trials import Trials
 
 Array = NDArray[np.float64]
 
@@ -33,60 +38,62 @@ LEAST_LEFT = 0.01  # of the measure's sigma; what adds 0.005 % to it is not told
 LARGEST_LEFT = 5.0  # times that; the most that one of very many trials may be off by kinks of an extreme over a turn
 FURTHER_LOOKS = 256  # trials looked at again beyond the regressors: what is left of 256 has an rms known to 4 %
 FURTHER_SLOW_LOOKS = 64  # by an engine with chord errors, which takes a millisecond for each of the three builds
-FLANKS_OF_A_BACKLASH = 4  # two at the contact, two at the gap; each may miss the true flank by the chord error
-CHORDS_OF_A_LOOK = 4  # backlashes' chord errors in a second look: 4 D(1/2) - D(1) - 3 D(0), none of them below 0
+CHORDS_OF_A_LOOK = 4  # chord errors in a second look: 4 D(1/2) - D(1) - 3 D(0), none of them below 0
 SECOND_ORDER = "second order, for the means lie off the nominal build"
 NAMED_BENDS = 3  # contributors named for the second order
 NAMED_SHARE = 0.1  # of the largest second difference; smaller ones are not named
 
 
-def explanations(model: Model, engine: Engine | None, tally: Tally) -> dict[str, Explanation]:
+def explanations(simulation: Simulation, road: Road | None, tally: Tally) -> dict[str, Explanation]:
     """What explains the difference of each scalar measure that both roads gave."""
-    measures = [m for m in scalars_of(model) if engine is not None and tally.measures[m.name].disagreement]
-    if engine is None or not measures:
+    system = simulation.system
+    measures = [m for m in scalars_of(system) if road is not None and tally.measures[m.name].disagreement]
+    if road is None or not measures:
         return {}
-    fits = {measure.name: RoadFits.of(model, measure, tally.measures[measure.name]) for measure in measures}
-    undecided = {m.name: Explanation(undecided=_too_few(model, m, tally)) for m in measures if fits[m.name] is None}
+    fits = {measure.name: RoadFits.of(system, measure, tally.measures[measure.name]) for measure in measures}
+    undecided = {m.name: Explanation(undecided=_too_few(system, m, tally)) for m in measures if fits[m.name] is None}
     if len(undecided) == len(measures):
         return undecided
-    widest = max(len(feature_groups(model, measure)) for measure in measures)
-    looked = 2 * widest + (FURTHER_SLOW_LOOKS if engine.chord_error else FURTHER_LOOKS)
+    widest = max(len(regressor_groups(system, measure)) for measure in measures)
+    looked = 2 * widest + (FURTHER_SLOW_LOOKS if road.chord_error else FURTHER_LOOKS)
     worst = [own.trial for m in measures if (own := tally.measures[m.name].disagreement)]
-    look = second_look(model, engine, looked, [max(trial, 0) for trial in worst])
-    bent, by_means = bends(model, engine), _effects_of_means(model)
+    look = second_look(simulation, road, looked, [max(trial, 0) for trial in worst])
+    bent, by_means = bends(simulation, road), _effects_of_means(system)
     return undecided | {
         measure.name: _Case(
-            model, measure, fit, look, looked + k, looked, by_means[measure.name], chords_of(model, measure, engine)
+            system,
+            measure,
+            fit,
+            look,
+            looked + k,
+            looked,
+            by_means[measure.name],
+            system.chord_bound(measure, road.chord_error),
         ).explained(bent[measure.name])
         for k, measure in enumerate(measures)
         if (fit := fits[measure.name]) is not None
     }
 
 
-def chords_of(model: Model, measure: Measure, engine: Engine) -> float:
-    """What of a measure may be chord error, in its unit."""
-    return of_gaps(model, measure, FLANKS_OF_A_BACKLASH * engine.chord_error)
-
-
-def _too_few(model: Model, measure: Measure, tally: Tally) -> str:
+def _too_few(system: System, measure: Measure, tally: Tally) -> str:
     own = tally.measures[measure.name].disagreement
     compared = own.sums.count if own else 0
-    needed = 2 * len(feature_groups(model, measure)) + LEAST_FREEDOM + 1
+    needed = 2 * len(regressor_groups(system, measure)) + LEAST_FREEDOM + 1
     return f"{compared} trials are too few to tell what explains that, {needed} are enough"
 
 
-def _effects_of_means(model: Model) -> Mapping[str, Mapping[str, float]]:
+def _effects_of_means(system: System) -> Mapping[str, Mapping[str, float]]:
     """How far each contributor's mean shifts each measure on the analytic road, in its unit, by measure and name."""
     found = {}
-    for measure in scalars_of(model):
-        middle = draws.mean_deviations(model, measure.positions)
-        rows = np.zeros((len(model.contributors) + 1, model.component_count))
-        for row, contributor in zip(rows[1:], model.contributors, strict=True):
-            own = model.component_slices[contributor.name]
+    slices = component_slices(system)
+    for measure in scalars_of(system):
+        middle = mean_deviations(system, measure.positions)
+        rows = np.zeros((len(slices) + 1, component_count(system)))
+        for row, own in zip(rows[1:], slices.values(), strict=True):
             row[own] = middle[0, own]
-        columns = simulate_block(replace(model, measures=(measure,)), None, stated_block(model, rows))
-        values = np.asarray(columns[f"analytic:{measure.name}"], dtype=np.float64)
-        found[measure.name] = dict(zip(model.component_slices, np.abs(values[1:] - values[0]).tolist(), strict=True))
+        columns = columns_of(system, None, stated(system, rows), (measure,))
+        values = np.asarray(columns[value_column(ANALYTIC, measure.name)], dtype=np.float64)
+        found[measure.name] = dict(zip(slices, np.abs(values[1:] - values[0]).tolist(), strict=True))
     return found
 
 
@@ -95,14 +102,14 @@ class _Case:
     """A measure whose difference is to be explained.
 
     Args:
-        model, measure: what was studied.
+        system, measure: what was studied.
         fits: of all its trials.
-        look: a second look at `looked` trials and others behind them, of which `worst` has the largest difference.
+        look: a second look at `looked` trials and others after them, of which `worst` has the largest difference.
         means: how far each contributor's mean shifts the measure.
         chords: what of a difference may be chord error.
     """
 
-    model: Model
+    system: System
     measure: Measure
     fits: RoadFits
     look: SecondLook
@@ -114,10 +121,10 @@ class _Case:
     def explained(self, bent: Mapping[str, float]) -> Explanation:
         """What explains it; `bent` are the second differences of each contributor."""
         name, first = self.measure.name, slice(0, self.looked)
-        curved = np.where(np.arange(len(self.look.block)) < self.looked, self.look.second_order[name], np.nan)
+        curved = np.where(np.arange(len(self.look.trials)) < self.looked, self.look.second_order[name], np.nan)
         straight = np.where(np.isnan(curved), np.nan, self.look.left(name))
         second, left = (LinearFit.of(self.look.sums(name, target)) for target in (curved, straight))
-        bounds = neglected(self.model, self.measure, self.look.block)
+        bounds = self.system.neglected(self.measure, self.look.trials)
         parts = tuple(self._linear_parts(second))
         mean = self._mean(curved, second, sum((own[first].mean() for own in bounds.values()), 0.0))
         allowed = math.hypot(LEAST_LEFT * self.fits.sigma, _rms(sum(bounds.values(), np.zeros(len(curved)))[first]))
@@ -147,7 +154,7 @@ class _Case:
     def _linear_parts(self, second: LinearFit | None) -> Iterator[LinearPart]:
         """Contributors whose linear part is beyond chance and SHARE, with what explains it."""
         fit = self.fits.difference
-        for name, group in feature_groups(self.model, self.measure).items():
+        for name, group in regressor_groups(self.system, self.measure).items():
             sure = standard_errors(fit.coefficients[group], fit.covariance[group, group])
             size, own = fit.effect(group), self.fits.own[name]
             if sure > SURE and size > SHARE * own:
@@ -175,24 +182,31 @@ class _Case:
     def _left_out_by(self, name: str) -> Mapping[str, Array]:
         """What the stack-up leaves out of a contributor's effect, at most.
 
-        Where positions or parallel ways are compared all that is left out helps to choose one of them, and by that
-        what any contributor does; its part in the difference is no larger than the difference then. Else it is told to
-        scale: the contributor varies in all trials more or less than in those looked at.
+        Where positions or load paths are compared all that is left out helps to choose one of them, and by that what
+        any contributor does; its part in the difference is no larger than the difference then. Else it is scaled: the
+        contributor varies in all trials more or less than in those looked at.
         """
-        block = self.look.block.part(0, self.looked)
-        if self.measure.take != "value" or not self.measure.kind.adds_up:
-            return neglected(self.model, self.measure, block)
-        middle = draws.mean_deviations(self.model, self.measure.positions)
-        found = neglected(self.model, self.measure, alone(self.model, block, name, middle))
-        group = feature_groups(self.model, self.measure)[name]
+        trials = self.look.trials.part(0, self.looked)
+        if self.measure.take != "value" or not self.measure.adds_up:
+            return self.system.neglected(self.measure, trials)
+        found = self.system.neglected(self.measure, self._alone(trials, name))
+        group = regressor_groups(self.system, self.measure)[name]
         seen = self.look.regressors[self.measure.name][group, : self.looked].var(axis=1)
         spread = np.diagonal(self.fits.difference.spread)[group]
-        first = np.s_[:] if isinstance(self._contributor(name).draw, Planar) else np.s_[:1]  # a square is no component
+        first = np.s_[:1] if has_square(self._contributor(name)) else np.s_[:]  # a square is no component
         to_scale = math.sqrt(spread[first].sum() / seen[first].sum()) if seen[first].any() else 1.0
         return {words: to_scale * own for words, own in found.items()}
 
+    def _alone(self, trials: Trials, name: str) -> Trials:
+        """Trials in which one contributor alone deviates, as far from its mean as in these."""
+        own = component_slices(self.system)[name]
+        deviations = np.zeros_like(trials.deviations)
+        middle = mean_deviations(self.system, self.measure.positions)
+        deviations[:, own] = trials.deviations[:, own] - middle[:, own]
+        return replace(trials, deviations=deviations)
+
     def _contributor(self, name: str) -> Contributor:
-        return next(own for own in self.model.contributors if own.name == name)
+        return next(own for own in self.system.contributors if own.name == name)
 
     def _of_first_order(self, group: slice, second: LinearFit | None) -> tuple[float, float]:
         """Linear part of a contributor less that of second order [unit of the measure]; in standard errors of both."""
@@ -220,7 +234,7 @@ class _Case:
         """The largest part of the other contributors that is beyond chance, of its own effect [%]."""
         fit = self.fits.difference
         found = [0.0]
-        for name, own in feature_groups(self.model, self.measure).items():
+        for name, own in regressor_groups(self.system, self.measure).items():
             if name not in besides and standard_errors(fit.coefficients[own], fit.covariance[own, own]) > SURE:
                 found.append(100 * fit.effect(own) / self.fits.own[name])
         return max(found)
@@ -241,7 +255,7 @@ class _Case:
         regressors = self.look.regressors[self.measure.name][:, self.worst]
         allowed = mean.allowed + CHORDS_OF_A_LOOK * self.chords + LARGEST_LEFT * LEAST_LEFT * self.fits.sigma
         allowed += sum(float(own[self.worst]) for own in bounds.values())
-        for name, group in feature_groups(self.model, self.measure).items():
+        for name, group in regressor_groups(self.system, self.measure).items():
             spread = math.sqrt(np.trace(self.fits.difference.spread[group, group]))
             reach = float(np.hypot(*regressors[group])) / spread if spread > 0.0 else 0.0
             allowed += SHARE * self.fits.own[name] * reach
@@ -262,7 +276,7 @@ class _Case:
             known, nominal = np.zeros(1), np.zeros(1)
         error = math.hypot(sigma_of(sums) / math.sqrt(sums.count), float(known.std()) / math.sqrt(len(known)))
         allowed = SURE * error + LEAST_LEFT * self.fits.sigma + left_out + self.chords
-        groups = feature_groups(self.model, self.measure)
+        groups = regressor_groups(self.system, self.measure)
         for name, shift in self.means.items():
             if name in groups:
                 allowed += self._accuracy(name, groups[name], second) * shift

@@ -4,20 +4,20 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from tol3d.gearing.model import Measure, Model
-from tol3d.gearing.stack_up import reference_form
 from tol3d.statistics import FeatureSums
 from tol3d.statistics.linear_fit import LinearFit
 from tol3d.study.agreement.disagreement import Disagreement
-from tol3d.study.regressors import feature_groups
+from tol3d.study.regressors import regressor_groups
 from tol3d.study.tally import MeasureTally
+from tol3d.system.measure import Measure
+from tol3d.system.system import System
 
 LEAST_OWN = 1e-3  # of the measure's sigma; effects below it count as that, or rounding errors would be compared
 
 
 @dataclass(frozen=True, eq=False)
 class RoadFits:
-    """Both roads and their difference on a measure's features, all its trials.
+    """Both roads and their difference on a measure's regressors, all its trials.
 
     Args:
         disagreement: of the roads.
@@ -37,7 +37,7 @@ class RoadFits:
     own: Mapping[str, float]
 
     @classmethod
-    def of(cls, model: Model, measure: Measure, tally: MeasureTally) -> "RoadFits | None":
+    def of(cls, system: System, measure: Measure, tally: MeasureTally) -> "RoadFits | None":
         """None where there are too few trials."""
         if tally.disagreement is None or tally.geometric_features is None:
             return None
@@ -46,18 +46,18 @@ class RoadFits:
         difference, analytic, geometric = fits
         if difference is None or analytic is None or geometric is None:
             return None
-        alone = _effects_at_one_position(model, measure)
+        alone = _effects_at_one_position(system, measure)
         sigma = max(*map(sigma_of, roads), math.hypot(*alone.values()))
         own = {
             name: max(analytic.effect(group), geometric.effect(group), alone.get(name, 0.0), LEAST_OWN * sigma)
-            for name, group in feature_groups(model, measure).items()
+            for name, group in regressor_groups(system, measure).items()
         }
         return cls(tally.disagreement, difference, analytic, geometric, sigma, own)
 
 
-def _effects_at_one_position(model: Model, measure: Measure) -> Mapping[str, float]:
+def _effects_at_one_position(system: System, measure: Measure) -> Mapping[str, float]:
     """Standard deviations by the stack-up, at a random position, of a measure that takes an extreme; else none."""
-    form = reference_form(model, measure) if measure.take != "value" else None
+    form = system.reference_form(measure) if measure.take != "value" else None
     shares = form.shares if form else ()
     return {share.name: math.sqrt(max(share.variance, 0.0)) * measure.per_internal for share in shares}
 

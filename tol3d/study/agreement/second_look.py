@@ -7,18 +7,23 @@ one-sided loss by a tilt, is of first order as any slope.
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.gearing.engines import Engine
-from tol3d.gearing.model import Backlash, Measure, Model, Positions
-from tol3d.runs.outcome import told
 from tol3d.statistics import FeatureSums
-from tol3d.study import draws
-from tol3d.study.block import Block, Columns, drawn_block, simulate_block
-from tol3d.study.regressors import features
+from tol3d.study.columns import columns_of
+from tol3d.study.draws import drawn
+from tol3d.study.regressors import regressors
+from tol3d.study.simulation import Simulation
+from tol3d.system.measure import Measure
+from tol3d.system.outcome import ANALYTIC, GEOMETRIC, Columns, outcome_of, value_column
+from tol3d.system.positions import AT_RANDOM
+from tol3d.system.road import Road
+from tol3d.system.stated import component_count, component_slices, mean_deviations
+from tol3d.system.system import System
+from tol3d.system.trials import Trials, joined
 
 Array = NDArray[np.float64]
 
@@ -33,14 +38,14 @@ class SecondLook:
     """Differences (geometric - analytic) of some trials, by measure and in its unit; nan where a build did not seat.
 
     Args:
-        block: the trials.
+        trials: which.
         whole: of their builds, (trials,).
         nominal: of the nominal build at their positions, (trials,).
         second_order: Q, (trials,).
-        regressors: the features of each measure, (features, trials).
+        regressors: of each measure, (regressors, trials).
     """
 
-    block: Block
+    trials: Trials
     whole: Mapping[str, Array]
     nominal: Mapping[str, Array]
     second_order: Mapping[str, Array]
@@ -51,25 +56,28 @@ class SecondLook:
         return self.whole[measure] - self.nominal[measure] - self.second_order[measure]
 
     def sums(self, measure: str, target: Array) -> FeatureSums:
-        """What a target (trials,) has in common with a measure's features, of the trials that it is known of."""
+        """What a target (trials,) has in common with a measure's regressors, of the trials that it is known of."""
         good = ~np.isnan(target)
         return FeatureSums.of_each(self.regressors[measure][:, good], target[None, good])[0]
 
 
-def scalars_of(model: Model) -> tuple[Measure, ...]:
+def scalars_of(system: System) -> tuple[Measure, ...]:
     """The measures of one value a trial."""
-    return tuple(measure for measure in model.measures if measure.take != "curve")
+    return tuple(measure for measure in system.measures if measure.take != "curve")
 
 
-def second_look(model: Model, engine: Engine, count: int, others: Sequence[int]) -> SecondLook:
-    """Look at a study's first `count` trials again, and behind them at some others."""
-    alike, seed = replace(model, measures=scalars_of(model)), model.study.seed
-    block = joined([drawn_block(model, seed, 0, count), *(drawn_block(model, seed, trial, 1) for trial in others)])
-    near, far = SHORT_STEPS if engine.chord_error == 0.0 else LONG_STEPS
-    columns = simulate_block(alike, engine, block)
-    whole = _differences(alike, columns)
+def second_look(simulation: Simulation, road: Road, count: int, others: Sequence[int]) -> SecondLook:
+    """Look at a study's first `count` trials again, and after them at some others."""
+    system = simulation.system
+    measures = scalars_of(system)
+    trials = joined([drawn(simulation, 0, count), *(drawn(simulation, trial, 1) for trial in others)])
+    near, far = SHORT_STEPS if road.chord_error == 0.0 else LONG_STEPS
+    columns = columns_of(system, road, trials, measures)
+    whole = _differences(system, measures, columns)
     nominal, at_near, at_far = (
-        whole if step == 1.0 else _differences(alike, simulate_block(alike, engine, _shortened(block, step)))
+        whole
+        if step == 1.0
+        else _differences(system, measures, columns_of(system, road, trials.scaled(step), measures))
         for step in (0.0, near, far)
     )
     ratio = far / near  # D(far) - ratio D(near) has no L left
@@ -77,51 +85,44 @@ def second_look(model: Model, engine: Engine, count: int, others: Sequence[int])
         name: ((at_far[name] - nominal[name]) - ratio * (at_near[name] - nominal[name])) / (near * far * (ratio - 1))
         for name in whole
     }
-    regressors = {measure.name: features(model, measure, columns) for measure in alike.measures}
-    return SecondLook(block, whole, nominal, second_order, regressors)
+    rows = {measure.name: regressors(system, measure, columns) for measure in measures}
+    return SecondLook(trials, whole, nominal, second_order, rows)
 
 
-def _shortened(block: Block, step: float) -> Block:
-    return Block(step * block.deviations, block.random_angle)
-
-
-def _differences(model: Model, columns: Columns) -> Mapping[str, Array]:
-    """Of builds that seat; a mesh that is jammed tells its backlash all the same, below 0."""
+def _differences(system: System, measures: Sequence[Measure], columns: Columns) -> Mapping[str, Array]:
+    """Of builds that seat; of a measure that keeps its overlaps, those of builds that overlap too."""
+    lacking = system.statuses.lacking
 
     def geometric(measure: Measure) -> Array:
-        if isinstance(measure.kind, Backlash):
-            return np.asarray(columns[f"geometric:{measure.name}"], dtype=np.float64)
-        return told(columns, "geometric", measure.name).values
+        if measure.keeps_overlap:
+            return np.asarray(columns[value_column(GEOMETRIC, measure.name)], dtype=np.float64)
+        return outcome_of(columns, GEOMETRIC, measure.name, lacking).values
 
-    return {m.name: geometric(m) - told(columns, "analytic", m.name).values for m in model.measures}
+    return {m.name: geometric(m) - outcome_of(columns, ANALYTIC, m.name, lacking).values for m in measures}
 
 
-def bends(model: Model, engine: Engine) -> Mapping[str, Mapping[str, float]]:
+def bends(simulation: Simulation, road: Road) -> Mapping[str, Mapping[str, float]]:
     """Second differences of (geometric - analytic) at +-3 sigma of each contributor alone, by measure and contributor.
 
     Half of f(m + 3 s) - 2 f(m) + f(m - 3 s), averaged over positions, in the measure's unit; a contributor with
     components: their sum. Its ninth is what it shifts the mean by. nan where a build does not seat.
     """
-    alike = replace(model, measures=scalars_of(model))
-    middle = draws.mean_deviations(model, Positions("random", 1, 1))
-    steps = np.diag([BEND_SIGMAS * c.draw.sigma for c in model.contributors for _ in c.draw.components])
+    system = simulation.system
+    measures = scalars_of(system)
+    middle = mean_deviations(system, AT_RANDOM)
+    steps = np.diag([BEND_SIGMAS * c.draw.sigma for c in system.contributors for _ in c.draw.components])
     builds = np.concatenate([middle, middle + steps, middle - steps])
-    drawn = drawn_block(model, model.study.seed, 0, BEND_POSITIONS)
+    first = drawn(simulation, 0, BEND_POSITIONS)
     each = []
     for position in range(BEND_POSITIONS):  # one by one, for builds go with the square of the contributors
-        angles = {mesh: np.full(len(builds), angle[position]) for mesh, angle in drawn.random_angle.items()}
-        each.append(_differences(alike, simulate_block(alike, engine, Block(builds, angles))))
-    return {m.name: _bends(model, np.stack([found[m.name] for found in each])) for m in alike.measures}
+        there = {name: np.full(len(builds), values[position]) for name, values in first.positions.items()}
+        columns = columns_of(system, road, Trials(builds, there), measures)
+        each.append(_differences(system, measures, columns))
+    return {m.name: _bends(system, np.stack([found[m.name] for found in each])) for m in measures}
 
 
-def _bends(model: Model, values: Array) -> Mapping[str, float]:
+def _bends(system: System, values: Array) -> Mapping[str, float]:
     """Of the differences (positions, 1 + 2 components) of the middle, of all steps forth and of all steps back."""
-    count = model.component_count
+    count = component_count(system)
     half = ((values[:, 1 : count + 1] + values[:, count + 1 :]) / 2 - values[:, :1]).mean(axis=0)
-    return {name: float(half[own].sum()) for name, own in model.component_slices.items()}
-
-
-def joined(blocks: Sequence[Block]) -> Block:
-    """Several blocks as one, in their order."""
-    angles = {mesh: np.concatenate([own.random_angle[mesh] for own in blocks]) for mesh in blocks[0].random_angle}
-    return Block(np.concatenate([block.deviations for block in blocks]), angles)
+    return {name: float(half[own].sum()) for name, own in component_slices(system).items()}

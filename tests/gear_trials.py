@@ -1,0 +1,50 @@
+"""Trials and columns of a model of gears, without a scene's study around them."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tol3d import Scene
+from tol3d.gearing.engines import Engine
+from tol3d.gearing.model import Model
+from tol3d.gearing.roads.geometric import GeometricRoad
+from tol3d.gearing.system import GearSystem, gear_model
+from tol3d.simulate import Overrides, load, simulation_of
+from tol3d.study.columns import columns_of
+from tol3d.study.draws import drawn
+from tol3d.study.simulation import Simulation
+from tol3d.study.study import Study
+from tol3d.system.measure import Measure
+from tol3d.system.trials import Trials
+
+
+def simulated(model: Model, **study: Any) -> Simulation:
+    """A model with a study of it."""
+    return Simulation(GearSystem(model), replace(Study(profile_steps=model.profile_steps), **study))
+
+
+def model_of_scene(scene: Scene | Path | str, overrides: Overrides = Overrides()) -> Model:  # noqa: B008
+    """What a run simulates, refused where a run refuses it."""
+    return gear_model(simulation_of(load(scene), overrides).system)
+
+
+def drawn_trials(model: Model, seed: int, first: int, count: int, **study: Any) -> Trials:
+    """Trials first ... first + count - 1 as the seed draws them."""
+    return drawn(simulated(model, seed=seed, **study), first, count)
+
+
+def gear_columns(
+    model: Model, engine: Engine | None, trials: Trials, measures: Sequence[Measure] | None = None
+) -> Mapping[str, NDArray[Any]]:
+    """All columns of some trials, by an engine and the stack-up."""
+    road = None if engine is None else GeometricRoad(model, engine)
+    return columns_of(GearSystem(model), road, trials, measures)
+
+
+def first_shafts_at(model: Model, angle: float, count: int) -> Mapping[str, NDArray[np.float64]]:
+    """Driver angles [rad] (count,) by mesh, of shafts that all stand alike."""
+    return {mesh.name: np.full(count, angle) for mesh in model.meshes}

@@ -1,0 +1,57 @@
+"""How long a run took and how much memory it had."""
+
+import sys
+import time
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+from tol3d.execution.folding import Outcome
+
+try:
+    import resource
+except ImportError:  # Windows has none
+    resource = None  # type: ignore[assignment]
+
+
+@dataclass
+class Clock:
+    """Seconds [s] since a run began, and when its trials began and ended."""
+
+    began: float = field(default_factory=time.perf_counter)
+    trials_began: float = 0.0
+    trials_ended: float = 0.0
+
+    def start_trials(self) -> None:
+        """Setup is over."""
+        self.trials_began = time.perf_counter()
+
+    def end_trials(self) -> None:
+        """All trials are made."""
+        self.trials_ended = time.perf_counter()
+
+    def timing(self, outcome: Outcome[Any], slots: int) -> Mapping[str, float | None]:
+        """As summary.json shows it.
+
+        Args:
+            outcome: of the trials.
+            slots: how many workers there were.
+        """
+        simulate_s = self.trials_ended - self.trials_began
+        return {
+            "setup_s": round(self.trials_began - self.began, 4),
+            "simulate_s": round(simulate_s, 4),
+            "first_block_s": round(outcome.first_block_s, 4),
+            "trials_per_s": round((outcome.trials - outcome.resumed_trials) / simulate_s, 1),
+            "resumed_trials": outcome.resumed_trials,
+            "workers": slots,
+            "peak_memory_mb": peak_memory_mb(),
+        }
+
+
+def peak_memory_mb() -> float | None:
+    """Largest resident size of this process so far [MB]; None where the system does not measure it."""
+    if resource is None:
+        return None
+    per_mb = 1e6 if sys.platform == "darwin" else 1e3  # bytes there, kB elsewhere
+    return round(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / per_mb, 1)

@@ -1,0 +1,29 @@
+"""Callbacks of a run while it goes on."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from tol3d.execution.folding import Progress
+
+Activity = Callable[[str], None]
+Finisher = Callable[[Path, Mapping[str, Any]], None]
+
+
+@dataclass(frozen=True)
+class Watch:
+    """Callbacks.
+
+    Args:
+        activity: gets what goes on now, in words.
+        progress: gets how many trials were finished since it was called last.
+        finisher: adds pictures to the folder before the run is put in its place.
+    """
+
+    activity: Activity = lambda text: None
+    progress: Progress = lambda done: None
+    finisher: Finisher = lambda folder, summary: None
+
+
+UNWATCHED = Watch()

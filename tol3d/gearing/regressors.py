@@ -1,0 +1,112 @@
+"""What a measure of gears sees of each contributor that acts on it: the columns that its variance is regressed on.
+
+A turning offset matters by where it points at the mesh, so it is turned into the world at the trial's
+position; over a whole turn only its length matters. Squares catch one-sided effects such as tilts.
+"""
+
+from collections.abc import Hashable, Mapping, Sequence, Set
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tol3d.gearing.model import Contributor, Effect, Measure, Mesh, Model, Planar
+from tol3d.system.regressors import regress_plainly
+
+Array = NDArray[np.float64]
+Columns = Mapping[str, NDArray[Any]]
+
+
+def acting(model: Model, measure: Measure) -> tuple[Contributor, ...]:
+    """The contributors that act on a measure: on one of its meshes, or one of its reducers."""
+    meshes = [model.mesh(backlash.mesh) for _, backlash in measure.kind.backlashes]
+    reducers = {name for _, name in measure.kind.reducers}
+    clocked = () if measure.kind.adds_up else meshes
+    return tuple(
+        contributor for contributor in model.contributors if _acts(contributor.effect, meshes, reducers, clocked)
+    )
+
+
+def _acts(effect: Effect, meshes: Sequence[Mesh], reducers: Set[str], clocked: Sequence[Mesh]) -> bool:
+    return (
+        any(effect.acts_in(mesh) for mesh in meshes)
+        or any(effect.clocking(mesh) for mesh in clocked)
+        or any(effect.play_of(reducer) for reducer in reducers)
+    )
+
+
+def regressor_key(measure: Measure) -> Hashable:
+    """Measures of one key have the same regressors."""
+    kind = measure.kind
+    read = tuple(replace(backlash, quantity="normal_backlash", gear="") for _, backlash in kind.backlashes)
+    return read, tuple(name for _, name in kind.reducers), measure.positions, measure.take == "value"
+
+
+def regress(
+    model: Model, measure: Measure, contributors: Sequence[Contributor], columns: Columns, rows: Mapping[str, Array]
+) -> None:
+    """Write contributors' rows (2, trials) from the columns of their components, over each one's sigma."""
+    turning = _Turning(_angles(model, measure, columns) if measure.take == "value" else {})
+    for contributor in contributors:
+        values = [np.asarray(columns[name], dtype=np.float64) * contributor.per_unit for name in contributor.columns]
+        _regress(rows[contributor.name], contributor, values, turning)
+
+
+def _angles(model: Model, measure: Measure, columns: Columns) -> Mapping[str, Array]:
+    """Where the gears of a measure's meshes stand, each in the first of them [rad], (trials,)."""
+    angles: dict[str, Array] = {}
+    for _, backlash in measure.kind.backlashes:
+        mesh = model.mesh(backlash.mesh)
+        driver = np.radians(np.asarray(columns[position_column(mesh)], dtype=np.float64))
+        if (fixed := model.driver_angles(measure, mesh.name)) is not None:
+            driver = np.full_like(driver, fixed[0])
+        angles.setdefault(mesh.driver, driver)
+        angles.setdefault(mesh.driven, mesh.pair.driven_angle(driver))
+    return angles
+
+
+def position_column(mesh: Mesh) -> str:
+    """Name of the column with a mesh's random driver position."""
+    return f"position:{mesh.name} [deg]"
+
+
+class _Turning:
+    """Cosines and sines of gears' turns, each worked out once."""
+
+    def __init__(self, angles: Mapping[str, Array]) -> None:
+        self._angles = angles
+        self._known: dict[str, tuple[Array, Array]] = {}
+
+    def __contains__(self, part: str | None) -> bool:
+        return part in self._angles
+
+    def __getitem__(self, part: str) -> tuple[Array, Array]:
+        if part not in self._known:
+            self._known[part] = (np.cos(self._angles[part]), np.sin(self._angles[part]))
+        return self._known[part]
+
+
+def _acting_effect(contributor: Contributor, turning: _Turning) -> Effect:
+    """What a contributor does to the gears that are read; of a shaft to the first of them, for they turn alike."""
+    effects = contributor.effect.singles
+    return next((effect for effect in effects if effect.turns_with in turning), effects[0])
+
+
+def _regress(rows: Array, contributor: Contributor, values: Sequence[Array], turning: _Turning) -> None:
+    """Write a contributor's two rows (2, trials) from the columns of its components."""
+    effect = _acting_effect(contributor, turning)
+    if not isinstance(contributor.draw, Planar) or effect.turns_with is None:
+        regress_plainly(rows, contributor, values)
+        return
+    law = contributor.distribution
+    per_spread = 1.0 / (law.sigma or 1.0)
+    x, y = values
+    if effect.turns_with in turning:
+        cos, sin = turning[effect.turns_with]
+        y = -y if effect.mirrored else y
+        np.multiply(cos * x - sin * y, per_spread, out=rows[0])
+        np.multiply(sin * x + cos * y, per_spread, out=rows[1])
+    else:
+        np.multiply(np.sqrt(x * x + y * y) - law.mean, per_spread, out=rows[0])
+        np.square(rows[0], out=rows[1])

@@ -1,0 +1,82 @@
+"""The analytic road: stack-ups of single meshes, added up and compared as their trains say."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tol3d.gearing.breakdowns import staged_measures
+from tol3d.gearing.model import Backlash, Measure, Model
+from tol3d.gearing.model.measure import gear_measures
+from tol3d.gearing.play import Play, SeatKey, seat_key
+from tol3d.gearing.seats import driver_angles
+from tol3d.gearing.stack_up import analytic_backlash, first_order, per_normal_backlash
+from tol3d.system import measure as system_measure
+from tol3d.system.road import Answers
+from tol3d.system.trials import Trials
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class AnalyticRoad:
+    """The stack-ups of a model's meshes."""
+
+    model: Model
+
+    chord_error = 0.0
+
+    def answers(self, trials: Trials, measures: Sequence[system_measure.Measure]) -> Answers:
+        """See Road."""
+        stacks = _Stacks(self.model, trials)
+        own = gear_measures(measures)
+        plays = {measure.name: Play(self.model, measure, trials.deviations, stacks) for measure in own}
+        values = {measure.name: first_order(measure.kind, plays[measure.name].free()) for measure in own}
+        terms = {
+            (measure.name, link): values[:, 0]
+            for measure in staged_measures(self.model)
+            if measure.name in plays
+            for link, _, values in plays[measure.name].parts()
+        }
+        return Answers(values, terms)
+
+
+def analytic_play(model: Model, measure: Measure, trials: Trials) -> Play:
+    """The backlashes of a measure on the analytic road."""
+    return Play(model, measure, trials.deviations, _Stacks(model, trials))
+
+
+def analytic_values(model: Model, measure: Measure, trials: Trials) -> Array:
+    """Values of a measure on the analytic road [mm or rad], (trials, positions)."""
+    return first_order(measure.kind, analytic_play(model, measure, trials).free())
+
+
+def analytic_backlashes(model: Model, measure: Measure, trials: Trials) -> Iterator[tuple[Backlash, Array]]:
+    """The backlashes that a measure adds up, each with its values on the analytic road [mm or rad]."""
+    stacks = _Stacks(model, trials)
+    for _, backlash in measure.kind.backlashes:
+        yield backlash, stacks(backlash, seat_key(model, measure, backlash))
+
+
+class _Stacks:
+    """Reads backlashes on the analytic road; those that are read alike share one stack-up."""
+
+    def __init__(self, model: Model, trials: Trials) -> None:
+        self._model, self._trials = model, trials
+        self._known: dict[SeatKey, Array] = {}
+
+    def __call__(self, backlash: Backlash, key: SeatKey) -> Array:
+        """See Read."""
+        angles = driver_angles(key, self._trials)
+        if key not in self._known:
+            self._known[key] = self._asked(replace(backlash, quantity="normal_backlash"), angles)
+        if backlash.quantity != "rest_angle":
+            return self._known[key] * per_normal_backlash(self._model, backlash)
+        play = self._known[key] * per_normal_backlash(self._model, backlash)
+        return self._asked(backlash, angles) - self._model.mesh(backlash.mesh).working_flank * play / 2
+
+    def _asked(self, backlash: Backlash, angles: Array) -> Array:
+        rows, positions = self._trials.deviations, angles.shape[1]
+        repeated = rows if positions == 1 else np.repeat(rows, positions, axis=0)
+        return analytic_backlash(self._model, backlash, repeated, angles.ravel()).reshape(angles.shape)

@@ -1,0 +1,143 @@
+"""The geometric road: builds whose meshes an engine brings to contact and reads."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tol3d.gearing.breakdowns import staged_measures
+from tol3d.gearing.engines import INTERFERES, OK, OUT_OF_RANGE, Engine, MeshReading, ReadingEngine
+from tol3d.gearing.measures import measure_backlash, moved, read_backlash, turning_gear
+from tol3d.gearing.model import Backlash, Measure, Mesh, Model
+from tol3d.gearing.model.measure import gear_measures
+from tol3d.gearing.play import Play, Read, SeatKey, seat_key, seat_keys
+from tol3d.gearing.seats import driver_angles, seated
+from tol3d.system import measure as system_measure
+from tol3d.system.road import Answers, Codes, joined_answers
+from tol3d.system.trials import Trials
+
+Array = NDArray[np.float64]
+Details = dict[str, NDArray[np.generic]]
+
+BUILDS_AT_ONCE = 4096  # builds x positions: 2.5 MB of them
+
+
+@dataclass(frozen=True, eq=False)
+class GeometricRoad:
+    """The meshes of a model by an engine."""
+
+    model: Model
+    engine: Engine
+
+    @property
+    def chord_error(self) -> float:
+        """See Road."""
+        return self.engine.chord_error
+
+    def answers(self, trials: Trials, measures: Sequence[system_measure.Measure]) -> Answers:
+        """See Road: by an engine that reads meshes itself so many builds at once that they stay in the cache."""
+        own = gear_measures(measures)
+        if not isinstance(self.engine, ReadingEngine):
+            return self._by_gaps(trials, own)
+        rows = max(1, BUILDS_AT_ONCE // max(measure.positions.in_a_trial for measure in own))
+        pieces = [trials.part(first, first + rows) for first in range(0, len(trials), rows)]
+        return joined_answers([self._by_readings(self.engine, piece, own) for piece in pieces])
+
+    def _by_gaps(self, trials: Trials, measures: Sequence[Measure]) -> Answers:
+        """By seating every mesh on the gaps that the engine finds."""
+        seats = seated(self.model, self.engine, trials, measures)
+        contacts: Details = {}
+        for mesh in self.model.meshes:
+            seat = next((seat for key, seat in seats.seats.items() if key[0] == mesh.name), None)
+            if seat is not None:
+                contacts |= _contact_columns(mesh, *seat.contact, len(trials))
+        known: dict[tuple[Backlash, SeatKey], Array] = {}
+
+        def read(backlash: Backlash, key: SeatKey) -> Array:
+            if (backlash, key) not in known:
+                values = measure_backlash(backlash, seats.meshings[key], seats.seats[key])
+                known[backlash, key] = values.reshape(len(trials), -1)
+            return known[backlash, key]
+
+        status = {key: seat.status for key, seat in seats.seats.items()}
+        return self._answers(trials, measures, read, contacts, status)
+
+    def _by_readings(self, engine: ReadingEngine, trials: Trials, measures: Sequence[Measure]) -> Answers:
+        made = engine.build(trials.deviations)
+        readings: dict[SeatKey, MeshReading] = {}
+        contacts: Details = {}
+        for key, backlashes in self._backlashes_by_key(measures).items():
+            mesh = self.model.mesh(key[0])
+            angles = driver_angles(key, trials)
+            turning = frozenset(gear for backlash in backlashes if (gear := turning_gear(backlash, mesh)))
+            readings[key] = engine.read(made.repeated(angles.shape[1]), mesh, key[2], angles.ravel(), turning)
+            if f"contact:{mesh.name}.tooth" not in contacts:
+                contacts |= _contact_columns(mesh, readings[key].contact, readings[key].tooth, len(trials))
+
+        def read(backlash: Backlash, key: SeatKey) -> Array:
+            mesh = self.model.mesh(backlash.mesh)
+            return read_backlash(backlash, mesh, readings[key]).reshape(len(trials), -1)
+
+        status = {key: reading.status for key, reading in readings.items()}
+        return self._answers(trials, measures, read, contacts, status)
+
+    def _backlashes_by_key(self, measures: Sequence[Measure]) -> dict[SeatKey, list[Backlash]]:
+        """Every way of reading a mesh, with the backlashes that are wanted there."""
+        found: dict[SeatKey, list[Backlash]] = {}
+        for measure in measures:
+            for _, backlash in measure.kind.backlashes:
+                found.setdefault(seat_key(self.model, measure, backlash), []).append(backlash)
+        return found
+
+    def _answers(
+        self,
+        trials: Trials,
+        measures: Sequence[Measure],
+        read: Read,
+        contacts: Details,
+        seated_as: Mapping[SeatKey, Codes],
+    ) -> Answers:
+        """Measures of meshes that are read; `seated_as` are the codes of each, (trials x positions,)."""
+        values: dict[str, Array] = {}
+        terms: dict[tuple[str, str], Array] = {}
+        status: dict[str, Codes] = {}
+        staged = staged_measures(self.model)
+        for measure in measures:
+            play = Play(self.model, measure, trials.deviations, read)
+            codes = _codes(play, seated_as)
+            free = _free_or_overlap(play, codes)
+            codes[np.isnan(free) & (codes == OK)] = OUT_OF_RANGE  # a turn whose end is not known
+            values[measure.name] = moved(measure.kind, free)
+            status[measure.name] = codes.max(axis=1)
+            if measure in staged:
+                terms |= {(measure.name, link): of_link[:, 0] for link, _, of_link in play.parts()}
+        return Answers(values, terms, contacts, status)
+
+
+def _codes(play: Play, seated_as: Mapping[SeatKey, Codes]) -> Codes:
+    """What became of the meshes that a measure reads, the worst of them, (trials, positions)."""
+    shape = (len(play.deviations), play.measure.positions.in_a_trial)
+    codes = np.zeros(shape, dtype=np.int8)
+    for key in seat_keys(play.model, play.measure):
+        codes = np.maximum(codes, seated_as[key].reshape(shape))
+    if not play.measure.kind.adds_up:
+        codes[play.bound() & (codes == OK)] = INTERFERES
+    return codes
+
+
+def _free_or_overlap(play: Play, codes: Codes) -> Array:
+    """What a measure's backlashes leave free; a train that is jammed at one stage is not free by the others' play."""
+    free = play.free()
+    jammed = codes == INTERFERES
+    if isinstance(play.measure.kind, Backlash) or not jammed.any():
+        return free
+    return np.where(jammed, play.overlap(), free)
+
+
+def _contact_columns(mesh: Mesh, point: Array, tooth: NDArray[np.int64], trials_count: int) -> Details:
+    """First contact of a mesh, at the first of its measures' positions."""
+    first = slice(None, None, len(point) // trials_count)
+    columns: Details = {f"contact:{mesh.name}.{axis} [mm]": point[first, k] for k, axis in enumerate("xyz")}
+    columns[f"contact:{mesh.name}.tooth"] = tooth[first] % mesh.pair.pinion.teeth
+    return columns

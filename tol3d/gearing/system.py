@@ -1,0 +1,217 @@
+"""Gears in mesh as a study sees them."""
+
+from collections.abc import Hashable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any, Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tol3d.errors import InputError
+from tol3d.gearing.breakdowns import breakdowns_of
+from tol3d.gearing.descriptions import description
+from tol3d.gearing.engines import Engine
+from tol3d.gearing.engines.lazy import exact_engine, exact_is_compiled, fcl_engine
+from tol3d.gearing.interference import interferences
+from tol3d.gearing.model import Contributor, Measure, Model, model_from_scene
+from tol3d.gearing.model.contributor import gear_contributor
+from tol3d.gearing.model.measure import gear_measure, gear_measures
+from tol3d.gearing.neglected import neglected, of_gaps
+from tol3d.gearing.regressors import acting, position_column, regress, regressor_key
+from tol3d.gearing.roads.analytic import AnalyticRoad
+from tol3d.gearing.roads.geometric import GeometricRoad
+from tol3d.gearing.roads.witness import FLANKS_OF_A_BACKLASH, FclRoad
+from tol3d.gearing.seats import Seats, all_seat_keys, seated
+from tol3d.gearing.stack_up import closed_form, reference_form
+from tol3d.gearing.statuses import STATUSES
+from tol3d.gearing.train_sections import train_sections
+from tol3d.scene import Scene
+from tol3d.solids import FlankStrips, measuring_strips
+from tol3d.system import contributor as system_contributor
+from tol3d.system import measure as system_measure
+from tol3d.system.breakdown import Breakdown
+from tol3d.system.closed_form import ClosedForm
+from tol3d.system.pooled import PooledTerms
+from tol3d.system.positions import Positions
+from tol3d.system.road import ANALYTIC_ROAD, Road, RoadKind
+from tol3d.system.statuses import Statuses
+from tol3d.system.system import Columns, KeyPath, Published, StreamKey, System
+from tol3d.system.trials import Trials
+
+Array = NDArray[np.float64]
+Strips = Mapping[str, FlankStrips]
+
+EXACT: Final = "exact"
+FCL: Final = "fcl"
+ROADS: Final[Mapping[str, RoadKind]] = {
+    EXACT: RoadKind("kernels", compiled=True),
+    FCL: RoadKind("gears: solids and measuring strips", threads=False, witness=True),
+    ANALYTIC_ROAD: RoadKind("model"),
+}
+"""The engines of gears; FCL holds Python's lock and takes half a minute for a block."""
+
+
+@dataclass(frozen=True)
+class GearSystem:
+    """Implements System for a model of gears."""
+
+    model: Model
+
+    roads = ROADS
+    statuses: Statuses = STATUSES
+
+    # what it is -------------------------------------------------------------------------------------
+
+    @property
+    def name(self) -> str:
+        """See System."""
+        return self.model.name
+
+    @property
+    def contributors(self) -> tuple[Contributor, ...]:
+        """See System."""
+        return self.model.contributors
+
+    @property
+    def measures(self) -> tuple[Measure, ...]:
+        """See System."""
+        return self.model.measures
+
+    @cached_property
+    def breakdowns(self) -> tuple[Breakdown, ...]:
+        """See System."""
+        return breakdowns_of(self.model)
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """See System."""
+        return self.model.warnings
+
+    def problems(self) -> Iterator[tuple[KeyPath, str]]:
+        """See System."""
+        return interferences(self.model)
+
+    def describe(self, measure: system_measure.Measure) -> Mapping[str, Any]:
+        """See System."""
+        return description(self.model, gear_measure(measure))
+
+    # its trials -------------------------------------------------------------------------------------
+
+    @property
+    def streams(self) -> tuple[StreamKey, ...]:
+        """See System."""
+        return self.model.streams
+
+    def positions(self, uniforms: Mapping[StreamKey, Array]) -> Mapping[str, Array]:
+        """See System: the driver's angle [rad] by mesh."""
+        return self.model.positions(uniforms)
+
+    def columns(self, trials: Trials) -> Mapping[str, NDArray[np.generic]]:
+        """See System."""
+        return {position_column(mesh): np.degrees(trials.positions[mesh.name]) for mesh in self.model.meshes}
+
+    def turns_at_random(self, contributor: system_contributor.Contributor, positions: Positions) -> bool:
+        """See System."""
+        return self.model.turns_at_random(contributor, positions)
+
+    # its roads --------------------------------------------------------------------------------------
+
+    def is_compiled(self, road: str) -> bool:
+        """See System."""
+        return road != EXACT or exact_is_compiled(self.model)
+
+    def materials(self, road: str) -> Any:
+        """See System: the strips of every gear's solid, for FCL."""
+        return strips_of(self.model) if road == FCL else {}
+
+    def road(self, name: str, materials: Any) -> Road:
+        """See System."""
+        if name == ANALYTIC_ROAD:
+            return AnalyticRoad(self.model)
+        if name == FCL:
+            return FclRoad(self.model, fcl_engine(self.model, materials), materials)
+        return GeometricRoad(self.model, exact_engine(self.model))
+
+    def cost(self, measures: Sequence[system_measure.Measure]) -> int:
+        """See System: positions of every different way of reading a mesh."""
+        return sum(1 if key[1] is None else len(key[1]) for key in all_seat_keys(self.model, gear_measures(measures)))
+
+    def chord_bound(self, measure: system_measure.Measure, chord_error: float) -> float:
+        """See System."""
+        return of_gaps(self.model, gear_measure(measure), FLANKS_OF_A_BACKLASH * chord_error)
+
+    # what acts on a measure -------------------------------------------------------------------------
+
+    def acting(self, measure: system_measure.Measure) -> tuple[Contributor, ...]:
+        """See System."""
+        return acting(self.model, gear_measure(measure))
+
+    def regressor_key(self, measure: system_measure.Measure) -> Hashable:
+        """See System."""
+        return regressor_key(gear_measure(measure))
+
+    def regress(
+        self,
+        measure: system_measure.Measure,
+        contributors: Sequence[system_contributor.Contributor],
+        columns: Columns,
+        rows: Mapping[str, Array],
+    ) -> None:
+        """See System."""
+        own = tuple(map(gear_contributor, contributors))
+        regress(self.model, gear_measure(measure), own, columns, rows)
+
+    def closed_form(self, measure: system_measure.Measure) -> ClosedForm | None:
+        """See System."""
+        return closed_form(self.model, gear_measure(measure))
+
+    def reference_form(self, measure: system_measure.Measure) -> ClosedForm | None:
+        """See System."""
+        return reference_form(self.model, gear_measure(measure))
+
+    def neglected(self, measure: system_measure.Measure, trials: Trials) -> Mapping[str, Array]:
+        """See System."""
+        return neglected(self.model, gear_measure(measure), trials)
+
+    # what it shows ----------------------------------------------------------------------------------
+
+    def sections(self, terms: Mapping[str, Mapping[str, PooledTerms]], published: Published) -> Mapping[str, Any]:
+        """See System: the trains with their stages."""
+        return {"trains": train_sections(self.model, terms, published)}
+
+    def display(self, trials: Trials, road: Road) -> Seats:
+        """See System: builds with their seated meshes."""
+        return seated(self.model, engine_of(road), trials)
+
+
+def engine_of(road: Road) -> Engine:
+    """The engine of a geometric road."""
+    if not isinstance(road, GeometricRoad):
+        raise TypeError(f"{type(road).__name__} has no engine")
+    return road.engine
+
+
+def strips_of(model: Model) -> Strips:
+    """Measuring strips of every gear, from its CAD solid (cached on disk)."""
+    return {part.name: measuring_strips(part.gear, model.profile_steps) for part in model.gears}
+
+
+def gear_model(system: System) -> Model:
+    """The model of a system of gears.
+
+    Raises:
+        InputError: it is another one.
+    """
+    if not isinstance(system, GearSystem):
+        raise InputError(f"{system.name}: this is of gears only, and there are none in the scene's moves")
+    return system.model
+
+
+def gear_system(scene: Scene) -> GearSystem:
+    """What a scene of gears means.
+
+    Raises:
+        SceneError: gears that cannot be made or run together, with their numbers and place.
+    """
+    return GearSystem(model_from_scene(scene))

@@ -1,0 +1,37 @@
+"""How a study's trials are cut into blocks, whose statistics are folded together and that are written as one file."""
+
+import math
+from typing import Final
+
+from tol3d.execution.folding import Plan
+from tol3d.study.simulation import Simulation
+from tol3d.system.stated import component_count
+
+BLOCK_TRIALS: Final = 65_536
+AUTO_BLOCK_TRIALS: Final = 16_384  # of a study that may stop after any block
+AUTO_SLOW_BLOCK_TRIALS: Final = 2048  # the same where a trial is slow: a second of them
+BLOCK_VALUES: Final = 2**22  # values of a curve, or of all draws, in one block: 32 MB
+
+
+def block_trials(simulation: Simulation) -> int:
+    """Trials of a canonical block: fewer where curves keep many positions of each trial, or a trial has many draws."""
+    curves = (measure for measure in simulation.system.measures if measure.take == "curve")
+    kept = max((measure.positions.in_a_trial for measure in curves), default=1)
+    values = max(kept, component_count(simulation.system), 1)
+    return max(min(_most(simulation), 1 << int(math.log2(BLOCK_VALUES / values))), 1)
+
+
+def _most(simulation: Simulation) -> int:
+    if not simulation.study.until:
+        return BLOCK_TRIALS
+    return AUTO_BLOCK_TRIALS if simulation.road.threads else AUTO_SLOW_BLOCK_TRIALS
+
+
+def contacts_of(simulation: Simulation) -> int:
+    """How many contacts one trial takes."""
+    return simulation.system.cost(simulation.system.measures)
+
+
+def plan_of(simulation: Simulation) -> Plan:
+    """How many trials there are at most, and how they are cut."""
+    return Plan(simulation.study.trials, block_trials(simulation), contacts_of(simulation))

@@ -1,0 +1,39 @@
+"""What makes the blocks of an interrupted run this run's own: scene, files, study, versions and blocks."""
+
+import json
+
+from tol3d.execution.pools import Execution
+from tol3d.files import FileContent
+from tol3d.runs.run import Fingerprint
+from tol3d.scene import Scene
+from tol3d.study.blocks import block_trials
+from tol3d.study.simulation import Simulation
+from tol3d.study.versions import installed_versions
+from tol3d.system.outcome import ROADS, value_column
+
+
+def fingerprint_of(scene: Scene, simulation: Simulation, execution: Execution) -> Fingerprint:
+    """The fingerprint of a run, as it reads back from JSON."""
+    fingerprint = {
+        "scene": text_of(scene).sha256,
+        "files": {name: file.sha256 for name, file in scene.files.items()},
+        "study": vars(simulation.study),
+        "versions": dict(installed_versions(simulation.requires)),
+        "blocks": {"trials": block_trials(simulation), "kept": execution.keep_trials},
+    }
+    read_back: Fingerprint = json.loads(json.dumps(fingerprint))
+    return read_back
+
+
+def text_of(scene: Scene) -> FileContent:
+    """The scene's file."""
+    return FileContent(scene.source, scene.text.encode())
+
+
+def column_units(simulation: Simulation) -> dict[str, str]:
+    """Unit of each column of deviations and values, for the files' metadata."""
+    system = simulation.system
+    units: dict[str, str] = {name: c.unit for c in system.contributors for name in c.columns}
+    for measure in system.measures:
+        units |= {value_column(road, measure.name): measure.unit for road in ROADS}
+    return units

@@ -1,0 +1,79 @@
+"""What is simulated: a system, what is asked of it, and what others found of it."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+from tol3d.scene import Scene
+from tol3d.scene.schema import Study as StudySpec
+from tol3d.study.study import Study, Until
+from tol3d.system.road import ANALYTIC_ROAD, RoadKind
+from tol3d.system.system import Published, System
+from tol3d.units import Quantity
+
+
+@dataclass(frozen=True)
+class Simulation:
+    """Everything that a trial and its statistics need; it pickles.
+
+    Args:
+        system: what is built and measured.
+        study: what is asked of it.
+        published: columns of others.
+        requires: packages, besides those of every study, whose versions decide its results.
+    """
+
+    system: System
+    study: Study
+    published: Published = field(default_factory=dict)
+    requires: tuple[str, ...] = ()
+
+    @property
+    def road(self) -> RoadKind:
+        """The road that the study's engine names."""
+        return self.system.roads[self.study.engine]
+
+    @property
+    def has_geometry(self) -> bool:
+        """Whether there is a 3D simulation beside the analytic road."""
+        return self.study.engine != ANALYTIC_ROAD
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """What may spoil the numbers of this study."""
+        return (*self.system.warnings, *self.study.warnings)
+
+
+def study_of(spec: StudySpec) -> Study:
+    """The study of a scene; an automatic one is its trials at most, and when it may stop before."""
+    return Study(
+        trials=spec.at_most if spec.trials == "auto" else spec.trials,
+        seed=spec.seed,
+        sampler=spec.sampler,
+        replicates=spec.parts,
+        until=tuple(
+            Until(name, _internal(errors.mean), _internal(errors.sigma)) for name, errors in spec.until.items()
+        ),
+        engine=spec.engine,
+        witness=spec.witness,
+        profile_steps=spec.profile_steps,
+    )
+
+
+def _internal(quantity: Quantity | None) -> float | None:
+    return None if quantity is None else quantity.internal
+
+
+def published_in(scene: Scene) -> Mapping[str, Mapping[str, Mapping[str, Any]]]:
+    """Columns of others, in mm and rad."""
+    return {
+        column: {
+            measure: {
+                **{key: quantity.internal for key, quantity in values.quantities().items()},
+                **({"contributors": dict(values.contributors)} if values.contributors else {}),
+                **({"description": values.description} if values.description else {}),
+            }
+            for measure, values in measures.items()
+        }
+        for column, measures in scene.published.items()
+    }

@@ -1,0 +1,57 @@
+"""What is asked of a system: how many trials, drawn how, by which engine, and when they may stop."""
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+from tol3d.errors import InputError
+from tol3d.samplers.replicates import SamplerKind, balanced_trials, is_power_of_two, uneven
+
+
+class Until(NamedTuple):
+    """Standard errors [mm or rad] of a measure's mean and sigma at which a study may stop; None is not asked for."""
+
+    measure: str
+    mean: float | None
+    sigma: float | None
+
+
+@dataclass(frozen=True)
+class Study:
+    """How many trials, drawn from which seed and how, by which engine, with how many profile steps a flank.
+
+    With `until` the trials are those at most. `replicates` of a sampler are parts of equal size, each randomised
+    anew.
+    """
+
+    trials: int = 2000
+    seed: int = 1
+    sampler: SamplerKind = "monte_carlo"
+    replicates: int = 1
+    until: tuple[Until, ...] = ()
+    engine: str = "exact"
+    witness: int = 0
+    profile_steps: int = 120
+
+    def __post_init__(self) -> None:
+        """Refuse trials that the replicates cannot share evenly: a run's may be other than its scene's.
+
+        Raises:
+            InputError: with the nearest numbers that would do.
+        """
+        if problem := uneven(self.sampler, self.trials, self.replicates):
+            raise InputError(f"trials: expected {problem}, got {self.trials}")
+
+    @property
+    def replicate_trials(self) -> int:
+        """Trials of one replicate."""
+        return self.trials // self.replicates
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """What makes its numbers worse than they need be."""
+        if self.sampler != "sobol" or is_power_of_two(self.replicate_trials):
+            return ()
+        return (
+            f"study: Sobol' points are even in powers of two, not in {self.replicate_trials} a replicate; "
+            f"take {balanced_trials(self.trials, self.replicates)} trials",
+        )

@@ -1,0 +1,65 @@
+"""A contributor: one toleranced deviation, as every study sees it."""
+
+from collections.abc import Sequence
+from typing import Protocol
+
+from tol3d.distributions import Distribution
+from tol3d.system.draw import Draw
+
+
+class Contributor(Protocol):
+    """A tolerance of a system. What its deviation does is the system's own business."""
+
+    @property
+    def name(self) -> str:
+        """As in the scene."""
+        ...
+
+    @property
+    def kind(self) -> str:
+        """The tolerance's kind, the scene's word."""
+        ...
+
+    @property
+    def draw(self) -> Draw:
+        """How its components come from uniforms."""
+        ...
+
+    @property
+    def unit(self) -> str:
+        """Unit of its columns in results: "um", "mrad", "arcmin" or "K"."""
+        ...
+
+    @property
+    def per_unit(self) -> float:
+        """One of that unit in mm, rad or K."""
+        ...
+
+    @property
+    def description(self) -> str:
+        """The scene's own words."""
+        ...
+
+    @property
+    def least(self) -> float | None:
+        """Smallest physical deviation [mm, rad or K], such as 0 for a clearance; draws below it are counted."""
+        ...
+
+    @property
+    def columns(self) -> tuple[str, ...]:
+        """Its columns in results, one a component."""
+        ...
+
+    @property
+    def distribution(self) -> Distribution:
+        """The law of the deviation, or of its length where it has a direction."""
+        ...
+
+
+def column_names(name: str, components: Sequence[str], unit: str) -> tuple[str, ...]:
+    """Columns of a contributor in results.
+
+    >>> column_names("run-out", ("x", "y"), "um")
+    ('run-out.x [um]', 'run-out.y [um]')
+    """
+    return tuple(f"{name}{'.' + component if component else ''} [{unit}]" for component in components)

@@ -1,0 +1,175 @@
+"""Draws: how the components of a deviation come from uniforms, and where their ends lie."""
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tol3d.distributions import Distribution
+
+Array = NDArray[np.float64]
+Values = Callable[[Array], Array]
+"""A measure (rows,) of the components (rows, components) of one contributor, all others at their means."""
+
+
+class Draw(Protocol):
+    """k uniforms to m components."""
+
+    @property
+    def distribution(self) -> Distribution:
+        """The law of the deviation, or of its length where it has a direction."""
+        ...
+
+    @property
+    def uniforms(self) -> int:
+        """How many uniforms a trial takes."""
+        ...
+
+    @property
+    def components(self) -> tuple[str, ...]:
+        """Names of the components; "" for an only one."""
+        ...
+
+    @property
+    def sigma(self) -> float:
+        """Standard deviation of one component [mm, rad or K]."""
+        ...
+
+    def deviations(self, *uniforms: Array) -> tuple[Array, ...]:
+        """Components (trials,) [mm, rad or K] of arrays of uniforms (trials,) in (0, 1)."""
+        ...
+
+    def mean(self, *, turning: bool) -> tuple[float, ...]:
+        """Mean of each component; `turning` where the direction turns through all angles from trial to trial."""
+        ...
+
+    def ends(self, values: Values, *, turning: bool) -> Array:
+        """Both ends of the deviation (2, components), in the direction in which a measure changes most."""
+        ...
+
+
+@dataclass(frozen=True)
+class Scalar:
+    """One component, drawn straight from the distribution."""
+
+    distribution: Distribution
+
+    uniforms = 1
+    components = ("",)
+
+    @property
+    def sigma(self) -> float:
+        """Standard deviation of the component [mm, rad or K]."""
+        return self.distribution.sigma
+
+    def deviations(self, *uniforms: Array) -> tuple[Array]:
+        """See Draw."""
+        (u,) = uniforms
+        return (self.distribution.ppf(u),)
+
+    def mean(self, *, turning: bool) -> tuple[float]:
+        """See Draw."""
+        return (self.distribution.mean,)
+
+    def ends(self, values: Values, *, turning: bool) -> Array:
+        """See Draw."""
+        return np.array([[self.distribution.low], [self.distribution.high]])
+
+
+@dataclass(frozen=True)
+class Planar:
+    """A length in a direction of a plane: components x, y.
+
+    `direction` None draws it uniform over the circle (a Rayleigh length then makes x and y two
+    independent normals); an angle [rad] fixes it.
+    """
+
+    distribution: Distribution
+    direction: float | None
+
+    components = ("x", "y")
+
+    @property
+    def uniforms(self) -> int:
+        """How many uniforms a trial takes: the length, and the direction unless it is fixed."""
+        return 1 if self.direction is not None else 2
+
+    @property
+    def sigma(self) -> float:
+        """Standard deviation along any one axis [mm] for a random direction; else that of the length."""
+        if self.direction is not None:
+            return self.distribution.sigma
+        return math.sqrt((self.distribution.variance + self.distribution.mean**2) / 2)
+
+    def deviations(self, *uniforms: Array) -> tuple[Array, Array]:
+        """See Draw: x and y (trials,) [mm]."""
+        length = self.distribution.ppf(uniforms[0])
+        if self.direction is not None:
+            return length * math.cos(self.direction), length * math.sin(self.direction)
+        angle = 2 * math.pi * uniforms[1]
+        return length * np.cos(angle), length * np.sin(angle)
+
+    def mean(self, *, turning: bool) -> tuple[float, float]:
+        """See Draw; a random direction averages to zero."""
+        if self.direction is None or turning:
+            return 0.0, 0.0
+        return self.distribution.mean * math.cos(self.direction), self.distribution.mean * math.sin(self.direction)
+
+    def ends(self, values: Values, *, turning: bool) -> Array:
+        """See Draw; of a random direction both ends of the radius along the steepest one."""
+        law = self.distribution
+        if self.direction is not None and not turning:
+            return np.outer([law.low, law.high], [math.cos(self.direction), math.sin(self.direction)])
+        east, west, north, south = values(law.radius * np.array([[1.0, 0.0], [-1.0, 0.0], [0.0, 1.0], [0.0, -1.0]]))
+        steepest = math.atan2(north - south, east - west)
+        along = law.radius * np.array([math.cos(steepest), math.sin(steepest)])
+        return np.stack([along, -along])
+
+
+@dataclass(frozen=True)
+class Each:
+    """As many independent draws of one distribution as there are features: pins, teeth, planets.
+
+    Args:
+        distribution: of each of them.
+        names: of the features.
+    """
+
+    distribution: Distribution
+    names: tuple[str, ...]
+
+    @property
+    def uniforms(self) -> int:
+        """One a feature."""
+        return len(self.names)
+
+    @property
+    def components(self) -> tuple[str, ...]:
+        """The features."""
+        return self.names
+
+    @property
+    def sigma(self) -> float:
+        """Standard deviation of each component."""
+        return self.distribution.sigma
+
+    def deviations(self, *uniforms: Array) -> tuple[Array, ...]:
+        """See Draw."""
+        return tuple(self.distribution.ppf(u) for u in uniforms)
+
+    def mean(self, *, turning: bool) -> tuple[float, ...]:
+        """See Draw."""
+        return (self.distribution.mean,) * len(self.names)
+
+    def ends(self, values: Values, *, turning: bool) -> Array:
+        """See Draw: each feature at the end that lowers the measure, and at the other one."""
+        law, count = self.distribution, len(self.names)
+        alone = np.full((2 * count, count), law.mean)
+        alone[np.arange(count), np.arange(count)] = law.high
+        alone[count + np.arange(count), np.arange(count)] = law.low
+        found = values(alone)
+        falls = found[:count] < found[count:]
+        return np.stack([np.where(falls, law.high, law.low), np.where(falls, law.low, law.high)])

@@ -1,0 +1,61 @@
+"""A measure: one number a trial, or a curve, as every study sees it."""
+
+from typing import Literal, Protocol
+
+from tol3d.system.positions import Positions, Take
+
+Worse = Literal["low", "high"]
+
+
+class Measure(Protocol):
+    """What is read of each trial; values inside are mm or rad, outside in `unit`."""
+
+    @property
+    def name(self) -> str:
+        """As in the scene."""
+        ...
+
+    @property
+    def positions(self) -> Positions:
+        """Where it is read."""
+        ...
+
+    @property
+    def take(self) -> Take:
+        """What is taken of its values at several positions."""
+        ...
+
+    @property
+    def lower_limit(self) -> float | None:
+        """[mm or rad]."""
+        ...
+
+    @property
+    def upper_limit(self) -> float | None:
+        """[mm or rad]."""
+        ...
+
+    @property
+    def unit(self) -> str:
+        """Unit of its columns and of summary.json: "um", "mm" or "arcmin"."""
+        ...
+
+    @property
+    def per_internal(self) -> float:
+        """One mm or rad in that unit."""
+        ...
+
+    @property
+    def worse(self) -> Worse:
+        """Which end is the worse one where there is no limit."""
+        ...
+
+    @property
+    def adds_up(self) -> bool:
+        """Whether it is a sum of effects at each position; False where load paths or contacts are compared."""
+        ...
+
+    @property
+    def keeps_overlap(self) -> bool:
+        """Whether the value of a trial whose parts overlap is by how much, below 0, and smooth through 0."""
+        ...

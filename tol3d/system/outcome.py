@@ -1,0 +1,71 @@
+"""What became of each trial of a measure: which ones seated, which ones lack what is measured and by how much.
+
+Statistics of values are of the trials that seated. What is out of limits is counted of all of them, and a build that
+lacks what is measured (its parts overlap) is below every lower limit.
+"""
+
+import math
+from collections.abc import Collection, Mapping
+from dataclasses import dataclass
+from typing import Any, Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+Mask = NDArray[np.bool_]
+Columns = Mapping[str, NDArray[Any]]
+
+SEATED: Final = "ok"
+ANALYTIC: Final = "analytic"
+GEOMETRIC: Final = "geometric"
+ROADS: Final = (ANALYTIC, GEOMETRIC)
+"""Names of the roads in columns and in summary.json: the stack-up, and the 3D simulation by whatever engine."""
+
+
+def value_column(road: str, measure: str) -> str:
+    """Name of the column with a road's values of a measure."""
+    return f"{road}:{measure}"
+
+
+def status_column(measure: str) -> str:
+    """Name of the column with what became of each trial of a measure."""
+    return f"status:{measure}"
+
+
+@dataclass(frozen=True, eq=False)
+class Outcome:
+    """A road's values of a measure in some trials.
+
+    Args:
+        values: (trials,), or (trials, positions) of a curve, in the measure's unit; nan for trials that did not seat.
+        lacking: (trials,), those whose parts overlap; None where every trial seated.
+        deepest: the largest overlap of those that is known, as a value below 0; inf where none is.
+    """
+
+    values: Array
+    lacking: Mask | None = None
+    deepest: float = math.inf
+
+
+def outcome_of(columns: Columns, road: str, measure: str, lacking: Collection[str]) -> Outcome:
+    """A road's column of a measure; the analytic road seats every trial.
+
+    Args:
+        columns: trial on axis 0.
+        road, measure: whose column.
+        lacking: the statuses of trials that lack what is measured.
+    """
+    column = np.asarray(columns[value_column(road, measure)], dtype=np.float64)
+    status = columns.get(status_column(measure))
+    if road != GEOMETRIC or status is None:
+        return Outcome(column)
+    seated = status == SEATED
+    if seated.all():
+        return Outcome(column)
+    lacks = np.zeros(len(status), dtype=bool)
+    for text in lacking:
+        lacks |= status == text
+    values = column.copy()
+    values[~seated] = np.nan
+    return Outcome(values, lacks, float(np.nanmin(column[lacks], initial=math.inf)))

@@ -1,0 +1,85 @@
+"""A road from deviations to values: what it answers, and what is known of it before it is made."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Final, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tol3d.system.measure import Measure
+from tol3d.system.trials import Trials
+
+Array = NDArray[np.float64]
+Codes = NDArray[np.int8]
+
+ANALYTIC_ROAD: Final = "analytic"
+"""The road that every system has: its theory. A study that names it as its engine has no 3D simulation."""
+
+
+@dataclass(frozen=True)
+class Answers:
+    """What a road answers of some trials.
+
+    Args:
+        values: by measure, (trials, positions) [mm or rad].
+        terms: by measure and term of its sum, (trials,) [mm or rad], see System.breakdowns.
+        details: further columns by their names, (trials,), such as points of contact.
+        status: by measure, codes (trials,) of the system's statuses; empty where every trial seats.
+    """
+
+    values: Mapping[str, Array]
+    terms: Mapping[tuple[str, str], Array] = field(default_factory=dict)
+    details: Mapping[str, NDArray[np.generic]] = field(default_factory=dict)
+    status: Mapping[str, Codes] = field(default_factory=dict)
+
+
+def joined_answers(pieces: Sequence[Answers]) -> Answers:
+    """Answers of several pieces of trials as one, in their order."""
+    if len(pieces) == 1:
+        return pieces[0]
+    first = pieces[0]
+    return Answers(
+        {name: np.concatenate([own.values[name] for own in pieces]) for name in first.values},
+        {key: np.concatenate([own.terms[key] for own in pieces]) for key in first.terms},
+        {name: np.concatenate([own.details[name] for own in pieces]) for name in first.details},
+        {name: np.concatenate([own.status[name] for own in pieces]) for name in first.status},
+    )
+
+
+class Road(Protocol):
+    """Goes from deviations to values. Made in the worker, for what it holds need not pickle."""
+
+    @property
+    def chord_error(self) -> float:
+        """Largest distance [mm] between its surfaces and the mathematical ones; 0 where it has no facets."""
+        ...
+
+    def answers(self, trials: Trials, measures: Sequence[Measure]) -> Answers:
+        """Values of some measures in some trials; a trial's do not depend on the others."""
+        ...
+
+
+class WitnessRoad(Road, Protocol):
+    """A road that checks another one, and knows its own errors."""
+
+    def bounds(self, measure: Measure) -> tuple[float, float]:
+        """How far it may be off in a measure, in its unit: by its facets, and by all else."""
+        ...
+
+
+@dataclass(frozen=True)
+class RoadKind:
+    """What is known of a road before it is made.
+
+    Args:
+        setup: what goes on while it is made ready, for a progress line.
+        threads: whether workers are threads that take whole blocks; else processes that take pieces of blocks.
+        compiled: whether it loads the compiler of kernels anyway, so that draws and sums may use it too.
+        witness: whether it can check another road.
+    """
+
+    setup: str
+    threads: bool = True
+    compiled: bool = False
+    witness: bool = False

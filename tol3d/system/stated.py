@@ -1,0 +1,78 @@
+"""Trials that nobody drew: stated deviations, every contributor at its mean, no deviation at all."""
+
+from collections.abc import Mapping, Sequence
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tol3d.system.contributor import Contributor
+from tol3d.system.measure import Measure
+from tol3d.system.positions import Positions
+from tol3d.system.trials import Trials
+
+Array = NDArray[np.float64]
+
+
+class Varying(Protocol):
+    """A system, or a model of one: what its trials are made of."""
+
+    @property
+    def contributors(self) -> Sequence[Contributor]:
+        """See System."""
+        ...
+
+    @property
+    def streams(self) -> Sequence[tuple[str, str]]:
+        """See System."""
+        ...
+
+    def positions(self, uniforms: Mapping[tuple[str, str], Array]) -> Mapping[str, Array]:
+        """See System."""
+        ...
+
+    def turns_at_random(self, contributor: Contributor, positions: Positions) -> bool:
+        """See System."""
+        ...
+
+
+def component_slices(system: Varying) -> Mapping[str, slice]:
+    """Which columns of the deviations belong to each contributor, by its name."""
+    slices, start = {}, 0
+    for contributor in system.contributors:
+        width = len(contributor.draw.components)
+        slices[contributor.name] = slice(start, start + width)
+        start += width
+    return slices
+
+
+def component_count(system: Varying) -> int:
+    """Columns of the deviations."""
+    return sum(len(contributor.draw.components) for contributor in system.contributors)
+
+
+def stated(system: Varying, deviations: Array) -> Trials:
+    """Trials of the deviations (trials, components) that are stated, at rest."""
+    uniforms = {key: np.zeros(len(deviations)) for key in system.streams}
+    return Trials(deviations, system.positions(uniforms))
+
+
+def mean_deviations(system: Varying, positions: Positions) -> Array:
+    """Every contributor at its mean over some positions, shape (1, components).
+
+    A random direction averages to zero, and so does one that turns with its part at random positions.
+    """
+    row = np.zeros((1, component_count(system)))
+    for contributor, columns in zip(system.contributors, component_slices(system).values(), strict=True):
+        row[:, columns] = contributor.draw.mean(turning=system.turns_at_random(contributor, positions))
+    return row
+
+
+def mean_build(system: Varying, measure: Measure) -> Trials:
+    """One trial with every contributor at its mean over the positions of a measure, at rest."""
+    return stated(system, mean_deviations(system, measure.positions))
+
+
+def nominal_build(system: Varying) -> Trials:
+    """One trial without deviations, at rest."""
+    return stated(system, np.zeros((1, component_count(system))))

@@ -1,0 +1,54 @@
+"""What may become of a trial, in the words of its system."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Final, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+OK: Final = 0
+"""The code of a trial that was assembled and measured, in every system."""
+
+Meaning = Literal["seated", "lacking", "unknown"]
+"""Of a status: values count; the trial has less than nothing of what is measured, and lies below every lower limit; or
+nothing is known of it but that it failed."""
+
+
+@dataclass(frozen=True)
+class Statuses:
+    """The statuses of a system by their codes, from OK on; a larger code is worse, for less is known of the build.
+
+    Args:
+        texts: as columns and summary.json show them; the first is that of OK.
+        lacking: those of builds that lack what is measured, such as parts that overlap.
+        words: what such builds do, for a sentence: "jam".
+    """
+
+    texts: tuple[str, ...]
+    lacking: frozenset[str] = frozenset()
+    words: Mapping[str, str] = field(default_factory=dict)
+
+    @cached_property
+    def by_code(self) -> NDArray[np.str_]:
+        """The texts as an array, indexed by codes."""
+        return np.array(self.texts)
+
+    @property
+    def seated(self) -> str:
+        """The text of OK."""
+        return self.texts[OK]
+
+    @property
+    def failed(self) -> tuple[str, ...]:
+        """The texts of the others."""
+        return self.texts[1:]
+
+    @property
+    def meanings(self) -> dict[str, Meaning]:
+        """What each of them means for statistics."""
+        return {text: self._meaning(text) for text in self.texts}
+
+    def _meaning(self, text: str) -> Meaning:
+        return "seated" if text == self.seated else "lacking" if text in self.lacking else "unknown"

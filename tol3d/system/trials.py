@@ -1,0 +1,44 @@
+"""Consecutive trials as both roads get them: deviations, and the position at which each trial is read."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Self
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Trials:
+    """Trials with their deviations and positions.
+
+    Args:
+        deviations: (trials, components) [mm, rad, K]; the components of the contributors in their order.
+        positions: what a system makes of a trial's uniforms, such as the angle of a shaft [rad]: (trials,) by name.
+    """
+
+    deviations: Array
+    positions: Mapping[str, Array]
+
+    def __len__(self) -> int:
+        return len(self.deviations)
+
+    def part(self, first: int, end: int) -> Self:
+        """Trials first ... end - 1."""
+        positions = {name: values[first:end] for name, values in self.positions.items()}
+        return replace(self, deviations=self.deviations[first:end], positions=positions)
+
+    def scaled(self, factor: float) -> Self:
+        """The same trials with all deviations multiplied by a factor."""
+        return replace(self, deviations=factor * self.deviations)
+
+
+def joined(pieces: Sequence[Trials]) -> Trials:
+    """Several trials as one, in their order."""
+    names = pieces[0].positions
+    return Trials(
+        np.concatenate([piece.deviations for piece in pieces]),
+        {name: np.concatenate([piece.positions[name] for piece in pieces]) for name in names},
+    )
