@@ -2,7 +2,7 @@
 
     python benchmarks/startup.py [--runs 5] [--cold] [--ways NAME …] [--packages NAME …]
 
-What a package costs is the time of its own modules, as `python -X importtime` tells it, in the process of a plain run;
+What a package costs is the time of its own modules, as `python -X importtime` gives it, in the process of a plain run;
 the picture's process is not in it, for it loads beside the study. Below stand packages that have no place on that path,
 each with what it would cost. Measured on two cores with nothing else running (2000 trials, exact, 20 of them measured
 again by FCL, with the picture): 2.2 s warm, 11.7 s cold. Imports, in ms:
