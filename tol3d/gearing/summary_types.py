@@ -192,6 +192,11 @@ class TrainMeasureSummary(MeasureSummary):
         return self.load_changes_deg
 
     @property
+    def jump_words(self) -> str:
+        """What happens there."""
+        return "the load changes sides"
+
+    @property
     def identity(self) -> tuple[str | None, ...]:
         """Kind, point or shaft, and where on the faces it is read."""
         return self.kind, self.point or self.shaft, readings_words(self.readings)

@@ -1,9 +1,9 @@
 """Runs laid over each other: histograms of both roads, the difference of every trial beside."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Final
+from typing import Final
 
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -29,12 +29,13 @@ from tol3d.report.compare import Compared, labelled, measures_of
 from tol3d.report.curve import Stepped, position_label
 from tol3d.report.difference import Difference, difference_of
 from tol3d.report.distribution import density_label, values_label
+from tol3d.report.drawn_sample import FILL_OPACITY, DrawnSample, Line, draw_samples
 from tol3d.report.heading import heading
 from tol3d.report.label import wrapped
 from tol3d.report.number import given_text, unit_suffix
 from tol3d.runs.run import Run
-
-Summary = Any  # typed, read by text
+from tol3d.runs.summary.measure import MeasureSummary
+from tol3d.runs.summary.values import Road
 
 NO_SIMULATION: Final = "no 3D simulation in these runs"
 NO_TRIALS: Final = "these runs kept no trials (--no-trials)"
@@ -122,9 +123,13 @@ def _broken(text: str, column: int) -> str:
 def _draw_roads(axes: Axes, measure: Compared, shown: Sequence[Shown], *, single: bool) -> None:
     name, unit = measure.name, measure.unit
     first = shown[0].run.found.measures[name]
-    curve = first["take"] == "curve"
+    curve = first.take == "curve"
     for each in shown:
-        (_draw_curves if curve else _draw_histograms)(axes, each.run.found.measures[name], each.colours, single)
+        own = each.run.found.measures[name]
+        if curve:
+            _draw_curves(axes, own, each.colours)
+        else:
+            draw_samples(axes, list(_samples(own, each.colours, single=single)))
     _add_marks(axes, name, shown, curve=curve, single=single)
     if curve:
         label_angles(axes.yaxis, unit)
@@ -139,25 +144,19 @@ def _draw_roads(axes: Axes, measure: Compared, shown: Sequence[Shown], *, single
     legend_below(axes, 1)
 
 
-def _draw_histograms(axes: Axes, measure: Summary, colours: Mapping[str, str], single: bool) -> None:
+def _samples(measure: MeasureSummary, colours: Mapping[str, str], *, single: bool) -> Iterator[DrawnSample]:
+    """Both roads' samples of a run: the 3D simulation filled, the stack-up as outline."""
     for road, bars in bars_of(measure).items():
-        filled = road == "geometric"
-        axes.stairs(
-            bars.density,
-            bars.edges,
-            fill=filled,
-            alpha=0.45 if filled else 1.0,
-            linestyle="-" if filled or single else "--",
-            linewidth=0.0 if filled else 1.8,
-            color=colours[road],
-        )
+        beside: Line = "solid" if single else "dashed"
+        yield DrawnSample(None, colours[road], bars, "filled" if road == "geometric" else beside)
 
 
-def _draw_curves(axes: Axes, measure: Summary, colours: Mapping[str, str], single: bool) -> None:
+def _draw_curves(axes: Axes, measure: MeasureSummary, colours: Mapping[str, str]) -> None:
     stepped = Stepped(measure)
-    for road, style in (("geometric", "-"), ("analytic", "--")):
-        if road in measure["curve"]:
-            axes.plot(stepped.x, stepped(measure["curve"][road]["mean"]), style, linewidth=2, color=colours[road])
+    styles: Mapping[Road, str] = {"geometric": "-", "analytic": "--"}
+    for road, style in styles.items():
+        if own := measure.curve_sample(road):
+            axes.plot(stepped.x, stepped(own.mean), style, linewidth=2, color=colours[road])
 
 
 def _add_marks(axes: Axes, name: str, shown: Sequence[Shown], *, curve: bool, single: bool) -> None:
@@ -179,19 +178,19 @@ def _add_marks(axes: Axes, name: str, shown: Sequence[Shown], *, curve: bool, si
 
 def _unseen(colour: str, label: str) -> Rectangle:
     """A patch for the legend alone."""
-    return Rectangle((0, 0), 0, 0, facecolor=colour, alpha=0.45, linewidth=0, label=label)
+    return Rectangle((0, 0), 0, 0, facecolor=colour, alpha=FILL_OPACITY, linewidth=0, label=label)
 
 
 def _mark_limits(axes: Axes, name: str, shown: Sequence[Shown]) -> None:
     """Limits that lie in the picture; those that not all runs share in the colour of theirs."""
     low, high = axes.get_xlim()
-    for key, word in (("lower_limit", "LSL"), ("upper_limit", "USL")):
-        limits = [each.run.found.measures[name].get(key) for each in shown]
+    measures = [each.run.found.measures[name] for each in shown]
+    for word, limits in zip(("LSL", "USL"), zip(*(measure.limits for measure in measures), strict=True), strict=True):
         shared = len(set(limits)) == 1
         for each, limit in list(zip(shown, limits, strict=True))[: 1 if shared else None]:
             if limit is None or not low <= limit <= high:
                 continue
-            unit = each.run.found.measures[name]["unit"]
+            unit = measures[0].unit
             text = f"{word} {given_text(limit, unit)}{unit_suffix(unit)}" + ("" if shared else f" of {each.label}")
             colour = OUTSIDE if shared else each.colours["geometric"]
             axes.axvline(limit, color=colour, linewidth=2, label=_broken(text, 0))
@@ -210,14 +209,8 @@ def _draw_differences(axes: Axes, unit: str, known: Known, *, single: bool) -> N
         return
     for each, found in known:
         text = f"max {factor * found.largest:.3f} {word}, rms {factor * found.rms:.3f} {word}"
-        axes.stairs(
-            found.bars.density / factor,
-            factor * found.bars.edges,
-            fill=True,
-            alpha=0.45,
-            color=each.colours["geometric"],
-            label=text if single else f"{_broken(each.label, 1)}:\n{text}",
-        )
+        label = text if single else f"{_broken(each.label, 1)}:\n{text}"
+        draw_samples(axes, [DrawnSample(label, each.colours["geometric"], found.bars.times(factor))])
     axes.axvline(0, color=BLACK, linewidth=0.8)
     axes.set_xlabel(f"difference of a trial [{word}]", fontsize=10)
     axes.set_ylabel("share of trials", fontsize=10)

@@ -1,6 +1,6 @@
 """The picture of a motor's compensation: what is left at a random position, and the tip over the swing."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Final
 
@@ -13,6 +13,7 @@ from tol3d.analyses.compensated_swing import Swing
 from tol3d.analyses.compensation import Compensation, Unit
 from tol3d.analyses.robots import STATES, State
 from tol3d.analyses.spread import Spread
+from tol3d.report.bars import Bars
 from tol3d.report.canvas import (
     BLACK,
     BLUE,
@@ -27,6 +28,8 @@ from tol3d.report.canvas import (
     say_instead,
 )
 from tol3d.report.compensation_table import COLUMN_WORDS, STATE_WORDS, TOLD_OF_TIPS
+from tol3d.report.drawn_sample import DrawnSample, draw_samples
+from tol3d.report.ends import Ends
 from tol3d.report.label import legible
 from tol3d.report.number import given_text, short_text, tip_mm
 
@@ -40,7 +43,6 @@ BINS: Final = 90  # over what all scenes and states span together
 WIDTH: Final = 14.0  # inch
 ROW: Final = 4.2
 HEAD: Final = 0.7
-OPACITY: Final = 0.55
 BAND: Final = 0.22
 MARGIN: Final = 0.04  # of the span, beside it
 
@@ -83,17 +85,12 @@ def _edges(found: Sequence[Compensation], unit: Unit) -> Array:
 
 def _draw_left(axes: Axes, own: Compensation, unit: Unit, edges: Array) -> None:
     _title(axes, own, f"{own.robots - own.failed} robots at a random position, {COLUMN_WORDS[own.road]}")
-    samples = own.remaining[own.road].in_unit(unit)
-    for state in STATES:
-        values = samples[state]
-        if not len(values):
-            say_instead(axes, "no robot could be seated", VERMILLION)
-            return
-        spread, colour = Spread(values), STATE_COLOURS[state]
-        shares = 100 * np.histogram(values, edges)[0] / len(values)
-        label = f"{STATE_WORDS[state]}: {_ends_text(spread, unit)}"
-        axes.stairs(shares, edges, fill=True, color=colour, alpha=OPACITY, label=label)
-        axes.stairs(shares, edges, color=colour, linewidth=1.2)
+    samples = [*_samples(own, unit, edges)]
+    if not samples:
+        say_instead(axes, "no robot could be seated", VERMILLION)
+        return
+    width = float(edges[1] - edges[0])
+    draw_samples(axes, samples, per=width)
     for label, value, colour in _worst(own, unit):
         text = f"{label}: {short_text(value, unit)}"
         axes.axvline(value, ymax=MARKS_HEIGHT, color=colour, linewidth=1.6, linestyle="--", label=text)
@@ -104,10 +101,25 @@ def _draw_left(axes: Axes, own: Compensation, unit: Unit, edges: Array) -> None:
     axes.axvline(0.0, color=GREY, linewidth=0.8)
     axes.set_xlim(edges[0], edges[-1])
     axes.set_xlabel(_label(own, unit), fontsize=10)
-    axes.set_ylabel(f"% of robots per {short_text(edges[1] - edges[0], unit)}", fontsize=10)
+    axes.set_ylabel(f"% of robots per {short_text(width, unit)}", fontsize=10)
     label_angles(axes.xaxis, unit)
     axes.legend(fontsize=8.5, frameon=True, framealpha=0.85, edgecolor="none", loc="upper right")
     axes.set_ylim(0, 1.02 * axes.get_ylim()[1])
+
+
+def _samples(own: Compensation, unit: Unit, edges: Array) -> Iterator[DrawnSample]:
+    """What is left in each state; nothing where no robot could be seated."""
+    values = own.remaining[own.road].in_unit(unit)
+    for state in STATES:
+        if len(values[state]):
+            spread = Spread(values[state])
+            yield DrawnSample(
+                label=f"{STATE_WORDS[state]}: {_ends_text(spread, unit)}",
+                colour=STATE_COLOURS[state],
+                bars=Bars.of(values[state], edges),
+                mean=spread.moments.mean,
+                ends=Ends(spread.low, spread.high),
+            )
 
 
 def _ends_text(spread: Spread, unit: Unit) -> str:

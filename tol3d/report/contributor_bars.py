@@ -1,7 +1,7 @@
 """Which contributor a measure's variance comes from, as bars: the two roads and every published column."""
 
 from collections.abc import Mapping
-from typing import Any, Final
+from typing import Final
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -10,8 +10,7 @@ from tol3d.report.canvas import BLACK, legend_below, plain_axes
 from tol3d.report.column import Column, ranked_contributors, shares_of
 from tol3d.report.label import wrapped
 from tol3d.report.number import percent_text
-
-Summary = Any  # typed, read by text
+from tol3d.runs.summary.measure import MeasureSummary
 
 MOST_CONTRIBUTORS: Final = 9  # bars; the rest is shown as one
 NAME_WIDTH, NAME_SIZE, NAME_LINES = 2.05, 9.0, 4  # inch, points; the longest names there may be fit
@@ -24,20 +23,20 @@ FEWEST_ROWS: Final = 4  # fewer bars are no thicker than these
 ROAD_WORDS: Final = {"analytic": "analytic", "geometric": "3D simulation"}
 
 
-def shown_names(measure: Summary) -> tuple[list[str], list[str]]:
+def shown_names(measure: MeasureSummary) -> tuple[list[str], list[str]]:
     """The contributors with a bar of their own, and those that share one."""
     names = ranked_contributors(measure)
     return names[:MOST_CONTRIBUTORS], names[MOST_CONTRIBUTORS:]
 
 
-def labels_of(measure: Summary) -> list[str]:
+def labels_of(measure: MeasureSummary) -> list[str]:
     """What stands beside each bar, whole."""
     shown, rest = shown_names(measure)
     others = [f"{len(rest)} other{'s' if len(rest) > 1 else ''}"] if rest else []
     return [wrapped(name, NAME_WIDTH, NAME_SIZE, NAME_LINES) for name in shown] + others
 
 
-def height_of_contributors(measure: Summary) -> float:
+def height_of_contributors(measure: MeasureSummary) -> float:
     """Height that the bars of a measure need with their names and legend [inch]; 0 without shares."""
     columns = shares_of(measure)
     if not columns:
@@ -54,7 +53,7 @@ def legend_text(column: Column) -> str:
     return ROAD_WORDS.get(column.road) or wrapped(column.heading, LEGEND_WIDTH, 8.5, NAME_LINES)
 
 
-def draw_contributors(axes: Axes, measure: Summary, colours: Mapping[str, str]) -> None:
+def draw_contributors(axes: Axes, measure: MeasureSummary, colours: Mapping[str, str]) -> None:
     """Shares of the variance, the largest first."""
     plain_axes(axes).grid(axis="y", visible=False)
     columns, labels = shares_of(measure), labels_of(measure)

@@ -65,7 +65,7 @@ def difference_of(run: Run, measure: str) -> Difference | None:
         values = np.append(values, difference[known][:room])
     count = max(total, 1)
     return Difference(
-        bars=Bars(edges, 100 * counts / (count * (edges[1] - edges[0]))),
+        bars=Bars(edges, counts, count),
         at=at,
         values=values,
         by_position=position is not None or summary.take == "curve",

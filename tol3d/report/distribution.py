@@ -1,9 +1,8 @@
 """How a measure's values are distributed: histograms of both roads, limits, and the range of every column."""
 
-import itertools
 import math
 from collections.abc import Mapping, Sequence
-from typing import Any, Final
+from typing import Final
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -11,25 +10,20 @@ from matplotlib.axes import Axes
 from tol3d.report.bars import Bars, bars_of
 from tol3d.report.canvas import (
     BLACK,
-    GREY,
-    ORANGE,
     OUTSIDE,
     PUBLISHED_COLOURS,
     ROAD_COLOURS,
     say_instead,
 )
-from tol3d.report.column import Column, best_road, columns_of
+from tol3d.report.column import Column, columns_of
+from tol3d.report.drawn_sample import LINE_TOP, DrawnSample, draw_ends, draw_samples, name_ends
 from tol3d.report.ends import Ends, is_bounded
 from tol3d.report.label import legible, wrapped
-from tol3d.report.number import UNIT_SIGNS, given_text, measured_text, share_text, short_text, unit_suffix
-
-Summary = Any  # typed, read by text
+from tol3d.report.number import UNIT_SIGNS, given_text, share_text, unit_suffix
+from tol3d.runs.summary.measure import MeasureSummary
 
 SIGMAS_SHOWN: Final = 3.6  # of the mean; a little more than the +-3 sigma that are marked
 LIMIT_REACH: Final = 0.6  # of the shown span; a limit further off is told at the edge, not drawn to scale
-LINE_TOP: Final = 0.84  # of the axes; above lines stand words
-ROOM_OF_TEXT: Final = 0.115  # of the axes' width, for the words at the mean or at an end of 3 sigma
-LEAST_ROOM: Final = 0.06  # less, and they stand together
 NO_VALUES: Final = "no trial gave a value"
 AXIS_UNITS: Final = {"arcmin": "′, ″ of arc"}  # where an axis has other words than a number
 RANGE_LABEL, RANGE_SIZE = 1.9, 8.5  # inch, points
@@ -46,43 +40,55 @@ def density_label(unit: str) -> str:
     return f"% of trials per {UNIT_SIGNS[unit]}"
 
 
-def draw_distribution(axes: Axes, measure: Summary) -> None:
-    """Both roads' histograms over each other, the closed form's normal curve, limits, mean and ends of the trials."""
-    unit = measure["unit"]
-    bars = bars_of(measure)
+def samples_of(measure: MeasureSummary) -> list[DrawnSample]:
+    """Both roads' samples of a measure: the leading one filled, with its ends and limits, a stack-up's as outline."""
+    bars, leading = bars_of(measure), measure.best_road
     if not bars:
+        return []
+    own = leading_column(measure)
+    filled = DrawnSample(
+        label=None,
+        colour=ROAD_COLOURS[leading],
+        bars=bars[leading],
+        mean=own.value("mean"),
+        ends=Ends.of(own, bounded=is_bounded(measure)),
+        limits=measure.limits,
+    )
+    beside = [DrawnSample(None, ROAD_COLOURS["analytic"], bars["analytic"], line="solid")]
+    return [filled, *(beside if leading != "analytic" else [])]
+
+
+def leading_column(measure: MeasureSummary) -> Column:
+    """The column of the road by which a measure is shown."""
+    return next(column for column in columns_of(measure) if column.road == measure.best_road)
+
+
+def draw_distribution(axes: Axes, measure: MeasureSummary) -> None:
+    """Both roads' histograms over each other, the closed form's normal curve, limits, mean and ends of the trials."""
+    samples = samples_of(measure)
+    if not samples:
         say_instead(axes, NO_VALUES, OUTSIDE)
         return
-    span = shown_span(measure, bars)
-    leading = best_road(measure)
-    draw_bars(axes, bars, measure)
-    form = measure.get("analytic_closed_form")
-    if form and form["sigma"]:
+    span = shown_span(measure, [sample.bars for sample in samples])
+    draw_samples(axes, samples)
+    form = measure.analytic_closed_form
+    if form and form.sigma:
         x = np.linspace(*span, 400)
-        mean, sigma = form["mean"], form["sigma"]
-        normal = 100 * np.exp(-(((x - mean) / sigma) ** 2) / 2) / (sigma * math.sqrt(2 * math.pi))
+        normal = 100 * np.exp(-(((x - form.mean) / form.sigma) ** 2) / 2) / (form.sigma * math.sqrt(2 * math.pi))
         axes.plot(x, normal, color=BLACK, linewidth=1.2, linestyle=(0, (5, 3)))
-    top = max(float(b.density.max()) for b in bars.values())
-    axes.set_ylim(0, 1.25 * top)
+    axes.set_ylim(0, 1.25 * max(float(sample.bars.density.max()) for sample in samples))
     axes.set_xlim(*span)
-    _mark_ends(axes, measure, span)
-    _mark_limits(axes, measure, span, measure[leading])
+    draw_ends(axes, samples[0])
+    name_ends(axes, samples[0], measure.unit, span)
+    _mark_limits(axes, measure, span)
     axes.ticklabel_format(axis="y", style="plain")  # a power of ten would stand in the words above
-    axes.set_ylabel(density_label(unit), fontsize=10)
+    axes.set_ylabel(density_label(measure.unit), fontsize=10)
 
 
-def draw_bars(axes: Axes, bars: Mapping[str, Bars], measure: Summary) -> None:
-    """The leading road's bars filled, those of a stack-up beside it as their outline."""
-    leading = best_road(measure)
-    _fill(axes, bars[leading], measure, leading)
-    if leading != "analytic":
-        axes.stairs(bars["analytic"].density, bars["analytic"].edges, color=ORANGE, linewidth=2.0)
-
-
-def shown_span(measure: Summary, bars: Mapping[str, Bars]) -> tuple[float, float]:
+def shown_span(measure: MeasureSummary, bars: Sequence[Bars]) -> tuple[float, float]:
     """What the axis shows: every bar, the ends of every column, and limits that are not far off."""
-    lows = [float(b.edges[0]) for b in bars.values()]
-    highs = [float(b.edges[-1]) for b in bars.values()]
+    lows = [float(b.edges[0]) for b in bars]
+    highs = [float(b.edges[-1]) for b in bars]
     bounded = is_bounded(measure)
     for column in columns_of(measure):
         found = Ends.of(column, bounded=bounded)
@@ -93,57 +99,14 @@ def shown_span(measure: Summary, bars: Mapping[str, Bars]) -> tuple[float, float
         highs += ends
     low, high = min(lows), max(highs)
     reach = LIMIT_REACH * (high - low)
-    limits = [limit for limit in (measure.get("lower_limit"), measure.get("upper_limit")) if limit is not None]
+    limits = [limit for limit in measure.limits if limit is not None]
     near = [limit for limit in limits if low - reach <= limit <= high + reach]
     low, high = min([low, *near]), max([high, *near])
     margin = 0.03 * (high - low) or max(1e-3 * abs(low), 1e-3)
     return low - margin, high + margin
 
 
-def _fill(axes: Axes, bars: Bars, measure: Summary, road: str) -> None:
-    below = measure["lower_limit"] if measure.get("lower_limit") is not None else -math.inf
-    above = measure["upper_limit"] if measure.get("upper_limit") is not None else math.inf
-    outside = (bars.middles < below) | (bars.middles > above)
-    for chosen, colour in ((~outside, ROAD_COLOURS[road]), (outside, OUTSIDE)):
-        if chosen.any():
-            axes.bar(
-                bars.edges[:-1][chosen],
-                bars.density[chosen],
-                width=np.diff(bars.edges)[chosen],
-                align="edge",
-                color=colour,
-                alpha=0.55 if colour != OUTSIDE else 0.85,
-                edgecolor="white",
-                linewidth=0.5,
-            )
-
-
 # what is marked -----------------------------------------------------------------------------------
-
-
-def _mark_ends(axes: Axes, measure: Summary, span: tuple[float, float]) -> None:
-    """Mean and ends of the leading road, their words side by side; in one where there is no room for that."""
-    unit, leading = measure["unit"], best_road(measure)
-    own = next(column for column in columns_of(measure) if column.road == leading)
-    ends, mean = Ends.of(own, bounded=is_bounded(measure)), own.value("mean")
-    marks = ((ends.words[0], ends.low), ("mean", mean), (ends.words[1], ends.high))
-    known = [(word, value) for word, value in marks if value is not None]
-    for _, value in known:
-        axes.axvline(value, ymax=LINE_TOP, color=GREY, linewidth=1.0, linestyle=":")
-    steps = itertools.pairwise(value for _, value in known)
-    room = min((after - before for before, after in steps), default=math.inf) / (span[1] - span[0])
-    told = short_text if len({short_text(value, unit) for _, value in known}) == len(known) else measured_text
-    texts = [(f"{word}\n{told(value, unit)}", value, "center") for word, value in known]
-    if mean is not None and room < LEAST_ROOM:
-        words, values = (" … ".join(each) for each in zip(*(text.split("\n") for text, _, _ in texts), strict=True))
-        texts = [(f"{words}\n{values}", mean, "center")]
-    elif room < ROOM_OF_TEXT:
-        sides = ("right", *["center"] * (len(texts) - 2), "left")
-        texts = [(text, value, side) for (text, value, _), side in zip(texts, sides, strict=True)]
-    for text, value, side in texts:
-        axes.annotate(
-            text, (value, 1.0), xycoords=("data", "axes fraction"), ha=side, va="top", fontsize=8.5, color=BLACK
-        )
 
 
 def out_text(ppm: float | None, side: str) -> str:
@@ -155,15 +118,14 @@ def out_text(ppm: float | None, side: str) -> str:
     return f"{share_text(ppm) if ppm != 0 else 'none'} {side}"
 
 
-def _mark_limits(axes: Axes, measure: Summary, span: tuple[float, float], sample: Summary) -> None:
-    unit = measure["unit"]
-    for key, word, side in (("lower_limit", "LSL", "below"), ("upper_limit", "USL", "above")):
-        limit = measure.get(key)
+def _mark_limits(axes: Axes, measure: MeasureSummary, span: tuple[float, float]) -> None:
+    unit, shares = measure.unit, measure.shares
+    sides = (("LSL", "below", shares.below_limit_ppm), ("USL", "above", shares.above_limit_ppm))
+    for limit, (word, side, ppm) in zip(measure.limits, sides, strict=True):
         if limit is None:
             continue
-        lower = key == "lower_limit"
-        text = f"{word} {given_text(limit, unit)}{unit_suffix(unit)}\n"
-        text += out_text(sample.get(f"{side}_limit_ppm"), side)
+        lower = side == "below"
+        text = f"{word} {given_text(limit, unit)}{unit_suffix(unit)}\n{out_text(ppm, side)}"
         inside = span[0] <= limit <= span[1]
         if inside:
             axes.axvline(limit, ymax=LINE_TOP, color=OUTSIDE, linewidth=2.0)
@@ -197,14 +159,14 @@ def range_labels(columns: Sequence[Column]) -> list[str]:
     return [wrapped(column.heading, RANGE_LABEL, RANGE_SIZE, 4) for column in columns]
 
 
-def height_of_ranges(measure: Summary) -> float:
+def height_of_ranges(measure: MeasureSummary) -> float:
     """Height that the ranges of a measure need with their headings [inch]."""
     labels = range_labels(columns_of(measure))
     lines = max((label.count("\n") + 1 for label in labels), default=1)
     return max(RANGE_HEIGHT, RANGE_LINE * lines) * len(labels)
 
 
-def draw_ranges(axes: Axes, measure: Summary, colours: Mapping[str, str]) -> None:
+def draw_ranges(axes: Axes, measure: MeasureSummary, colours: Mapping[str, str]) -> None:
     """One line a column below the histogram: from end to end, one known end alone, the mean as a dot."""
     columns, bounded = columns_of(measure), is_bounded(measure)
     for row, column in enumerate(columns):

@@ -2,11 +2,10 @@
 
 import math
 from dataclasses import dataclass
-from typing import Any, Final
+from typing import Final
 
-from tol3d.report.column import Column, best_road
-
-Summary = Any  # typed, read by text
+from tol3d.report.column import Column
+from tol3d.runs.summary.measure import MeasureSummary
 
 SHORT_OF_3_SIGMA: Final = 2.5  # sigma; a quantile nearer to the mean than this is no end of a normal law
 BY_CHANCE: Final = 1e-3  # at most, that so many trials of a normal law would all stay that near to their mean
@@ -33,23 +32,28 @@ class Ends:
         return cls(low, high)
 
 
-def is_bounded(measure: Summary) -> bool:
-    """Whether mean ∓ 3 sigma lies where a measure has no values: a range near 0, a sum of a few uniform laws.
+def is_bounded(measure: MeasureSummary) -> bool:
+    """Whether mean ∓ 3 sigma lies where a measure has no values: a range near 0, a sum of a few uniform laws."""
+    sample = measure.sample(measure.best_road)
+    known = None if sample is None else (sample.mean, sample.sigma, sample.count, sample.p0_135, sample.p99_865)
+    return known is not None and _ends_early(*known)
 
-    One of its outer quantiles lies within SHORT_OF_3_SIGMA of its mean, and trials are enough to tell: n of a normal
-    law all stay within k sigma on one side of their mean with a chance of (1 − Φ(−k))^n.
 
-    >>> uniform = {"mean": 0.0, "sigma": 1.0, "p0.135": -1.73, "p99.865": 1.73}
-    >>> [is_bounded({"analytic": uniform | {"count": count}}) for count in (100, 1000)]
+def _ends_early(
+    mean: float | None, sigma: float | None, count: int | None, low: float | None, high: float | None
+) -> bool:
+    """Whether an outer quantile of a sample lies nearer to its mean than that of a normal law ever would.
+
+    Within SHORT_OF_3_SIGMA of it, and trials are enough to tell: n of a normal law all stay within k sigma on one side
+    of their mean with a chance of (1 − Φ(−k))^n.
+
+    >>> [_ends_early(0.0, 1.0, count, -1.73, 1.73) for count in (100, 1000)]
     [False, True]
     """
-    sample = measure.get(best_road(measure)) or {}
-    known = [sample.get(key) for key in ("mean", "sigma", "count", *QUANTILES)]
-    mean, sigma, count, low, high = known
-    if mean is None or sigma is None or count is None or low is None or high is None:
+    if mean is None or not sigma or count is None or low is None or high is None:
         return False
     nearest = max(0.0, min(mean - low, high - mean))  # a far outlier pulls the mean out of its quantiles
-    if not sigma or nearest > SHORT_OF_3_SIGMA * sigma:
+    if nearest > SHORT_OF_3_SIGMA * sigma:
         return False
     beyond = math.erfc(nearest / sigma / math.sqrt(2)) / 2
     return bool(count * math.log1p(-beyond) < math.log(BY_CHANCE))

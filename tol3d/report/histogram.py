@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any, Final
+from typing import Final
 
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
@@ -11,10 +11,8 @@ from matplotlib.gridspec import SubplotSpec
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
-from tol3d.report.bars import bars_of
 from tol3d.report.canvas import (
     BLACK,
-    GREY,
     OUTSIDE,
     ROAD_COLOURS,
     label_angles,
@@ -23,7 +21,7 @@ from tol3d.report.canvas import (
     save_figure,
     title_axes,
 )
-from tol3d.report.column import best_road, columns_of, seated_text, shares_of
+from tol3d.report.column import columns_of, seated_text, shares_of
 from tol3d.report.contributor_bars import NAME_SIZE, ROAD_WORDS, draw_contributors, height_of_contributors, labels_of
 from tol3d.report.curve import Stepped, draw_curve, position_label
 from tol3d.report.distribution import (
@@ -31,22 +29,23 @@ from tol3d.report.distribution import (
     NO_VALUES,
     RANGE_SIZE,
     column_colours,
-    draw_bars,
     draw_distribution,
     draw_ranges,
     height_of_ranges,
     out_text,
     range_labels,
+    samples_of,
     shown_span,
     values_label,
 )
-from tol3d.report.ends import QUANTILES_MEAN, Ends, is_bounded
+from tol3d.report.drawn_sample import FILL_OPACITY, DrawnSample, draw_ends, draw_samples
+from tol3d.report.ends import QUANTILES_MEAN, is_bounded
 from tol3d.report.heading import heading
 from tol3d.report.label import widest, wrapped
 from tol3d.report.number import UNIT_SIGNS, share_text, short_text
 from tol3d.report.picture import measure_files
-
-Summary = Any  # typed, read by text
+from tol3d.runs.summary.measure import MeasureSummary
+from tol3d.runs.summary.run import RunSummary
 
 WIDTH, CURVE_WORDS = 13.0, 9.5  # inch; of a picture, and of the words above a curve
 HISTOGRAM_SHARE: Final = 2.2  # widths of the contributors' bars
@@ -59,7 +58,7 @@ OVERVIEW_HEIGHT: Final = 2.9  # inch, a row
 OVERVIEW_WORDS: Final = 3.6
 
 
-def draw_histogram(summary: Summary, path: Path) -> None:
+def draw_histogram(summary: RunSummary, path: Path) -> None:
     """Draw the measures of a run, an overview of them where each has a picture of its own (see `measure_files`).
 
     Args:
@@ -73,25 +72,25 @@ def draw_histogram(summary: Summary, path: Path) -> None:
     save_figure(draw(summary), path)
 
 
-def draw_measure(summary: Summary, name: str, path: Path) -> None:
+def draw_measure(summary: RunSummary, name: str, path: Path) -> None:
     """Draw one measure of a run.
 
     Raises:
         InputError: the picture cannot be written there.
     """
-    save_figure(histogram_figure({**summary, "measures": {name: summary["measures"][name]}}), path)
+    save_figure(histogram_figure(summary.model_copy(update={"measures": {name: summary.measures[name]}})), path)
 
 
-def histogram_figure(summary: Summary) -> Figure:
+def histogram_figure(summary: RunSummary) -> Figure:
     """All measures of a summary one below the other, not yet written."""
-    measures = summary["measures"]
+    measures = summary.measures
     heights = [_height(measure) for measure in measures.values()]
     figure = _headed(summary, sum(heights) + 0.5)
-    scalars = [measure for measure in measures.values() if measure["take"] != "curve"]
+    scalars = [measure for measure in measures.values() if measure.take != "curve"]
     colours = column_colours([column for measure in scalars for column in columns_of(measure)])
     rows = figure.add_gridspec(len(measures), 1, height_ratios=heights, hspace=0.08)
     for row, (name, measure) in enumerate(measures.items()):
-        if measure["take"] == "curve":
+        if measure.take == "curve":
             axes = plain_axes(figure.add_subplot(rows[row, 0]))
             title_axes(axes, name, _words(measure), CURVE_WORDS)
             draw_curve(axes, name, measure)
@@ -100,39 +99,40 @@ def histogram_figure(summary: Summary) -> Figure:
     return figure
 
 
-def _headed(summary: Summary, height: float) -> Figure:
+def _headed(summary: RunSummary, height: float) -> Figure:
     figure = new_figure(WIDTH, height)
-    failed = sum(count for status, count in summary["status"].items() if status != "ok")
-    words = f"{summary['scene']}   ·   {summary['trials']} trials, seed {summary['seed']}"
+    failed = sum(count for status, count in summary.status.items() if status != "ok")
+    words = f"{summary.scene}   ·   {summary.trials} trials, seed {summary.seed}"
     words += f", {failed} failed" if failed else ""
     figure.suptitle(wrapped(words, WIDTH - 0.4, HEAD_SIZE, 2), fontsize=HEAD_SIZE, color=BLACK, x=0.01, ha="left")
     return figure
 
 
-def _words(measure: Summary) -> str:
+def _words(measure: MeasureSummary) -> str:
     """What a measure is, and of how many trials its picture is where some of them failed."""
     seated = seated_text(measure)
     if not seated:
         return heading(measure)
-    out = measure["curve"]["geometric"] if measure["take"] == "curve" else measure["geometric"]
-    return f"{heading(measure)}; 3D simulation {seated}, out in all {share_text(out.get('out_ppm'))}"
+    return f"{heading(measure)}; 3D simulation {seated}, out in all {share_text(measure.shares.out_ppm)}"
 
 
-def _height(measure: Summary) -> float:
+def _height(measure: MeasureSummary) -> float:
     """Height of a measure's row [inch]."""
-    if measure["take"] == "curve":
+    if measure.take == "curve":
         return CURVE_HEIGHT
     return max(SCALAR_HEIGHT + height_of_ranges(measure), height_of_contributors(measure))
 
 
-def _words_width(measure: Summary) -> float:
+def _words_width(measure: MeasureSummary) -> float:
     """Width that words above a histogram have [inch]: its own, which long labels of ranges and contributors lessen."""
     ranges = widest(range_labels(columns_of(measure)), RANGE_SIZE)
     names = widest(labels_of(measure), NAME_SIZE)
     return (WIDTH - BESIDE - ranges - names) * HISTOGRAM_SHARE / (HISTOGRAM_SHARE + 1)
 
 
-def _draw_scalar(figure: Figure, place: SubplotSpec, name: str, measure: Summary, colours: Mapping[str, str]) -> None:
+def _draw_scalar(
+    figure: Figure, place: SubplotSpec, name: str, measure: MeasureSummary, colours: Mapping[str, str]
+) -> None:
     shares = shares_of(measure)
     halves = place.subgridspec(1, 2, width_ratios=[HISTOGRAM_SHARE, 1])
     left = halves[0, 0] if shares else place
@@ -145,8 +145,8 @@ def _draw_scalar(figure: Figure, place: SubplotSpec, name: str, measure: Summary
     ranges = figure.add_subplot(parts[1, 0], sharex=axes)
     draw_ranges(ranges, measure, colours)
     axes.tick_params(labelbottom=False)
-    label_angles(ranges.xaxis, measure["unit"])
-    ranges.set_xlabel(values_label(name, measure["unit"]), fontsize=10)
+    label_angles(ranges.xaxis, measure.unit)
+    ranges.set_xlabel(values_label(name, measure.unit), fontsize=10)
     if shares:
         draw_contributors(figure.add_subplot(halves[0, 1]), measure, colours)
 
@@ -154,13 +154,15 @@ def _draw_scalar(figure: Figure, place: SubplotSpec, name: str, measure: Summary
 # overview -----------------------------------------------------------------------------------------
 
 
-def overview_figure(summary: Summary) -> Figure:
+def overview_figure(summary: RunSummary) -> Figure:
     """Every measure of a run small, several in a row, not yet written."""
-    measures = summary["measures"]
+    measures = summary.measures
     rows = -(-len(measures) // OVERVIEW_COLUMNS)
     figure = _headed(summary, OVERVIEW_HEIGHT * rows + 0.5)
-    roads = dict.fromkeys(best_road(measure) for measure in measures.values())
-    marks: list[Artist] = [Patch(facecolor=ROAD_COLOURS[road], alpha=0.55, label=ROAD_WORDS[road]) for road in roads]
+    roads = dict.fromkeys(measure.best_road for measure in measures.values())
+    marks: list[Artist] = [
+        Patch(facecolor=ROAD_COLOURS[road], alpha=FILL_OPACITY, label=ROAD_WORDS[road]) for road in roads
+    ]
     if "geometric" in roads:
         marks.append(Line2D([], [], color=ROAD_COLOURS["analytic"], linewidth=2.0, label=ROAD_WORDS["analytic"]))
     marks.append(Line2D([], [], color=OUTSIDE, linewidth=2.0, label="limits"))
@@ -168,26 +170,22 @@ def overview_figure(summary: Summary) -> Figure:
     grid = figure.add_gridspec(rows, OVERVIEW_COLUMNS)
     for index, (name, measure) in enumerate(measures.items()):
         axes = plain_axes(figure.add_subplot(grid[divmod(index, OVERVIEW_COLUMNS)]))
-        (_small_curve if measure["take"] == "curve" else _small_histogram)(axes, name, measure)
+        (_small_curve if measure.take == "curve" else _small_histogram)(axes, name, measure)
     return figure
 
 
-def _small_histogram(axes: Axes, name: str, measure: Summary) -> None:
-    unit, bars = measure["unit"], bars_of(measure)
+def _small_histogram(axes: Axes, name: str, measure: MeasureSummary) -> None:
+    unit, samples = measure.unit, samples_of(measure)
     axes.set_yticks([])
-    if not bars:
+    if not samples:
         title_axes(axes, name, NO_VALUES, OVERVIEW_WORDS)
         return
-    title_axes(axes, name, _small_words(measure), OVERVIEW_WORDS)
-    draw_bars(axes, bars, measure)
-    axes.set_xlim(*shown_span(measure, bars))
-    own = next(column for column in columns_of(measure) if column.road == best_road(measure))
-    ends = Ends.of(own, bounded=is_bounded(measure))
-    for value in (ends.low, own.value("mean"), ends.high):
-        if value is not None:
-            axes.axvline(value, color=GREY, linewidth=1.0, linestyle=":")
+    title_axes(axes, name, _small_words(measure, samples[0]), OVERVIEW_WORDS)
+    draw_samples(axes, samples)
+    axes.set_xlim(*shown_span(measure, [sample.bars for sample in samples]))
+    draw_ends(axes, samples[0])
     low, high = axes.get_xlim()
-    for limit in (measure.get("lower_limit"), measure.get("upper_limit")):
+    for limit in measure.limits:
         if limit is not None and low <= limit <= high:
             axes.axvline(limit, color=OUTSIDE, linewidth=2.0)
     label_angles(axes.xaxis, unit)
@@ -195,31 +193,25 @@ def _small_histogram(axes: Axes, name: str, measure: Summary) -> None:
     axes.set_xlabel(f"[{AXIS_UNITS.get(unit, UNIT_SIGNS[unit])}]", fontsize=9)
 
 
-def _small_words(measure: Summary) -> str:
+def _small_words(measure: MeasureSummary, leading: DrawnSample) -> str:
     """Mean and ends of the leading road, and what is out of its limits."""
-    unit, road = measure["unit"], best_road(measure)
-    own = next(column for column in columns_of(measure) if column.road == road)
-    ends, mean = Ends.of(own, bounded=is_bounded(measure)), own.value("mean")
-    known = [(ends.words[0], ends.low), ("mean", mean), (ends.words[1], ends.high)]
-    words = ", ".join(f"{word} {short_text(value, unit)}" for word, value in known if value is not None)
-    sides = (("below", "lower_limit"), ("above", "upper_limit"))
-    out = [
-        out_text(measure[road].get(f"{side}_limit_ppm"), side) for side, limit in sides
-        if measure.get(limit) is not None
-    ]  # fmt: skip
+    words = ", ".join(f"{word} {short_text(value, measure.unit)}" for word, value in leading.known_ends)
+    shares = measure.shares
+    sides = zip(("below", "above"), (shares.below_limit_ppm, shares.above_limit_ppm), measure.limits, strict=True)
+    out = [out_text(ppm, side) for side, ppm, limit in sides if limit is not None]
     return "; ".join([words, *out, *([seated] if (seated := seated_text(measure)) else [])])
 
 
-def _small_curve(axes: Axes, name: str, measure: Summary) -> None:
-    road = best_road(measure)
+def _small_curve(axes: Axes, name: str, measure: MeasureSummary) -> None:
+    colour, stepped = ROAD_COLOURS[measure.best_road], Stepped(measure)
     title_axes(axes, name, "mean and ±3 sigma", OVERVIEW_WORDS)
-    stepped = Stepped(measure)
-    mean, sigma = (stepped(measure["curve"][road][key]) for key in ("mean", "sigma"))
-    axes.plot(stepped.x, mean, color=ROAD_COLOURS[road], linewidth=2)
-    axes.fill_between(stepped.x, mean - 3 * sigma, mean + 3 * sigma, color=ROAD_COLOURS[road], alpha=0.28, linewidth=0)
-    for limit in (measure.get("lower_limit"), measure.get("upper_limit")):
+    if own := measure.curve_sample(measure.best_road):
+        mean, sigma = stepped(own.mean), stepped(own.sigma)
+        axes.plot(stepped.x, mean, color=colour, linewidth=2)
+        axes.fill_between(stepped.x, mean - 3 * sigma, mean + 3 * sigma, color=colour, alpha=0.28, linewidth=0)
+    for limit in measure.limits:
         if limit is not None:
             axes.axhline(limit, color=OUTSIDE, linewidth=2.0)
-    label_angles(axes.yaxis, measure["unit"])
+    label_angles(axes.yaxis, measure.unit)
     axes.set_xlabel(position_label(measure), fontsize=9)
-    axes.set_ylabel(f"[{AXIS_UNITS.get(measure['unit'], UNIT_SIGNS[measure['unit']])}]", fontsize=9)
+    axes.set_ylabel(f"[{AXIS_UNITS.get(measure.unit, UNIT_SIGNS[measure.unit])}]", fontsize=9)

@@ -129,6 +129,11 @@ class MeasureSummary(Section):
         return ()
 
     @property
+    def jump_words(self) -> str:
+        """Why it jumps there."""
+        return "jumps"
+
+    @property
     def identity(self) -> tuple[str | None, ...]:
         """What measures of one name must share, beside unit, positions and what is taken, to be compared."""
         return (self.kind,)

@@ -1,0 +1,114 @@
+"""Samples as one histogram, over each other: in pictures of runs, of comparisons, of compensations."""
+
+import itertools
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Final, Literal
+
+import numpy as np
+from matplotlib.axes import Axes
+from numpy.typing import NDArray
+
+from tol3d.report.bars import Bars
+from tol3d.report.canvas import BLACK, GREY, OUTSIDE
+from tol3d.report.ends import Ends
+from tol3d.report.number import measured_text, short_text
+
+Limits = tuple[float | None, float | None]
+Line = Literal["filled", "solid", "dashed"]
+
+UNKNOWN_ENDS: Final = Ends(None, None)
+FILL_OPACITY, OUTSIDE_OPACITY = 0.5, 0.85
+LINE_TOP: Final = 0.84  # of the axes; above lines stand words
+ROOM_OF_TEXT: Final = 0.115  # of the axes' width, for the words at the mean or at an end of 3 sigma
+LEAST_ROOM: Final = 0.06  # less, and they stand together
+
+
+@dataclass(frozen=True, eq=False)
+class DrawnSample:
+    """A sample as a histogram shows it; values in one unit.
+
+    Args:
+        label: in the legend; None where it is named elsewhere.
+        colour: of its role: the road's, the run's, the state's.
+        bars: its values, counted.
+        line: "filled", or as the outline of its bars.
+        mean: of its values.
+        ends: between which most of them lie.
+        limits: lower and upper, None for none; what is beyond is filled in its own colour.
+    """
+
+    label: str | None
+    colour: str
+    bars: Bars
+    line: Line = "filled"
+    mean: float | None = None
+    ends: Ends = UNKNOWN_ENDS
+    limits: Limits = (None, None)
+
+    @property
+    def known_ends(self) -> list[tuple[str, float]]:
+        """Low end, mean and high end by their words, as far as they are known, from left to right."""
+        words = ((self.ends.words[0], self.ends.low), ("mean", self.mean), (self.ends.words[1], self.ends.high))
+        return [(word, value) for word, value in words if value is not None]
+
+    @property
+    def outside(self) -> NDArray[np.bool_]:
+        """Which bars lie beyond a limit."""
+        lower, upper = self.limits
+        below, above = -math.inf if lower is None else lower, math.inf if upper is None else upper
+        return np.asarray((self.bars.middles < below) | (self.bars.middles > above))
+
+
+def draw_samples(axes: Axes, samples: Sequence[DrawnSample], per: float = 1.0) -> None:
+    """Draw samples over each other, the first one lowest.
+
+    Args:
+        axes: where.
+        samples: what.
+        per: heights are % of the trials per so many units.
+    """
+    for sample in samples:
+        edges, heights = sample.bars.edges, per * sample.bars.density
+        if sample.line != "filled":
+            style = "-" if sample.line == "solid" else "--"
+            axes.stairs(heights, edges, color=sample.colour, linestyle=style, linewidth=1.8, label=sample.label)
+            continue
+        inside = np.where(sample.outside, 0.0, heights)
+        axes.stairs(inside, edges, fill=True, color=sample.colour, alpha=FILL_OPACITY, label=sample.label)
+        if sample.outside.any():
+            axes.stairs(heights - inside, edges, fill=True, color=OUTSIDE, alpha=OUTSIDE_OPACITY)
+        axes.stairs(heights, edges, color=sample.colour, linewidth=1.0)
+
+
+def draw_ends(axes: Axes, sample: DrawnSample) -> None:
+    """Lines at the mean and the ends of a sample."""
+    for _, value in sample.known_ends:
+        axes.axvline(value, ymax=LINE_TOP, color=GREY, linewidth=1.0, linestyle=":")
+
+
+def name_ends(axes: Axes, sample: DrawnSample, unit: str, span: tuple[float, float]) -> None:
+    """Words at the lines of `draw_ends`, side by side; in one where there is no room for that.
+
+    Args:
+        axes: where.
+        sample: whose.
+        unit: of its values.
+        span: what the axis shows.
+    """
+    known = sample.known_ends
+    steps = itertools.pairwise(value for _, value in known)
+    room = min((after - before for before, after in steps), default=math.inf) / (span[1] - span[0])
+    text_of = short_text if len({short_text(value, unit) for _, value in known}) == len(known) else measured_text
+    texts = [(f"{word}\n{text_of(value, unit)}", value, "center") for word, value in known]
+    if sample.mean is not None and room < LEAST_ROOM:
+        words, values = (" … ".join(each) for each in zip(*(text.split("\n") for text, _, _ in texts), strict=True))
+        texts = [(f"{words}\n{values}", sample.mean, "center")]
+    elif room < ROOM_OF_TEXT:
+        sides = ("right", *["center"] * (len(texts) - 2), "left")
+        texts = [(text, value, side) for (text, value, _), side in zip(texts, sides, strict=True)]
+    for text, value, side in texts:
+        axes.annotate(
+            text, (value, 1.0), xycoords=("data", "axes fraction"), ha=side, va="top", fontsize=8.5, color=BLACK
+        )
