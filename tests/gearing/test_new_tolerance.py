@@ -27,7 +27,8 @@ from tol3d.gearing.mechanism import GEARING
 from tol3d.gearing.model import Contributor, Mesh, Model, Reading, model_from_scene
 from tol3d.gearing.model.nominal import Nominal
 from tol3d.gearing.rates import build_rates
-from tol3d.gearing.sensitivity import mean_slopes, sensitivities
+from tol3d.gearing.sensitivity import sensitivities
+from tol3d.gearing.slopes import mean_slopes
 from tol3d.gearing.stack_up import Term, closed_form, stack_of
 from tol3d.gearing.stack_up.nominal_mesh import NominalMesh
 from tol3d.gearing.stack_up.terms import NOTHING, Contribution, contributes

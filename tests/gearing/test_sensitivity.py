@@ -33,7 +33,8 @@ from tol3d.gearing.model import (
 from tol3d.gearing.model.model import Housing
 from tol3d.gearing.rates import build_rates, left_jacobian
 from tol3d.gearing.seats import geometric_values, seated
-from tol3d.gearing.sensitivity import by_contributor, mean_slopes, peak_weights, sensitivities, taken_rates
+from tol3d.gearing.sensitivity import by_contributor, peak_weights, sensitivities, taken_rates
+from tol3d.gearing.slopes import mean_slopes
 from tol3d.gears import LEFT, RIGHT, BevelGear, BevelPair, SpurGear, SpurPair, pitch_angles
 from tol3d.gears.flank import Flank
 from tol3d.system.stated import stated

@@ -13,7 +13,7 @@ from tol3d.gearing.engines.exact import ExactEngine
 from tol3d.gearing.model import Backlash, Contributor, Measure, Model, Positions
 from tol3d.gearing.model.measure import at_one_position
 from tol3d.gearing.roads.analytic import analytic_values
-from tol3d.gearing.sensitivity import STEP_ASIDE, Slope, mean_slopes
+from tol3d.gearing.slopes import STEP_ASIDE, Slope, mean_slopes
 from tol3d.gearing.stack_up import reference_form
 from tol3d.report.number import NOTHING, UNIT_SIGNS, degrees_text, percent_text
 from tol3d.report.sheet import Heading, Row, Sheet, titled
