@@ -1,11 +1,13 @@
 """Effects: each is known to both roads, says where it acts, and is built alike by numpy and by the compiled kernel."""
 
 import math
+from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
 
 import numpy as np
 import pytest
+from gear_trials import drawn_trials
 from places import SCENES
 from test_sensitivity import PAIRS, far_block, far_model
 
@@ -30,7 +32,6 @@ from tol3d.gearing.model import Contributor, Mesh, Model, Reading, Scalar, model
 from tol3d.gearing.stack_up import stack_of
 from tol3d.gearing.stack_up.terms import contribution
 from tol3d.gears import RIGHT, SpurGear, SpurPair
-from tol3d.study import draws
 
 SINGLE = [
     value
@@ -140,22 +141,14 @@ def test_compiled_builds_of_every_effect_are_numpy_s(name: str) -> None:
 @pytest.mark.parametrize("scene", sorted(SCENES.glob("*.yaml")), ids=lambda path: path.stem)
 def test_compiled_builds_of_the_shipped_scenes_are_numpy_s(scene: Path) -> None:
     model = model_from_scene(load_scene(scene))
-    assert_built_alike(model, draws.deviations(model, seed=5, first=0, count=40))
+    assert_built_alike(model, drawn_trials(model, seed=5, first=0, count=40).deviations)
 
 
 def test_two_effects_of_one_deviation_on_one_seat_add_up() -> None:
     model, _ = far_model("spur", RIGHT)
     twice = Together((AxisOffset("wheel"), AxisOffset("wheel", (0.0, 1.0, 0.0), 0.5), AxisOffset("wheel")))
     law = model.contributors[0].distribution
-    model = Model(
-        "twice",
-        model.gears,
-        model.housings,
-        (Contributor("c", "", twice, Scalar(law), "um"),),
-        model.meshes,
-        (),
-        model.study,
-    )
+    model = replace(model, contributors=(Contributor("c", "", twice, Scalar(law), "um"),))
     deviations = np.array([[0.01]])
     for made in (build(model, deviations), assembly_of(model).build(deviations)):
         moved = made.world_from_shaft[0, 1, :3, 3] - model.meshes[0].pair.wheel_origin
