@@ -1,0 +1,71 @@
+"""Lost motion of a train at one of its shafts."""
+
+from tol3d.gearing.grammar.measures import LostMotionSpec
+from tol3d.gearing.model.links import Link, Parallel
+from tol3d.gearing.model.measure import (
+    AnyStage,
+    Backlash,
+    LostMotion,
+    Measure,
+    ParallelStage,
+    Stage,
+    Tip,
+    TrainQuantity,
+)
+from tol3d.gearing.model.measures.measured import measured
+from tol3d.gearing.model.model import Model
+from tol3d.gearing.model.readings import Reader, reader_of
+from tol3d.gearing.model.shafts import Train
+from tol3d.gearing.model.trains import refuse_midst
+from tol3d.scene import Scene
+from tol3d.scene.direction import At, RandomOrFixed
+from tol3d.system.positions import Positions
+
+
+@measured.register
+def _(spec: LostMotionSpec, scene: Scene, name: str, model: Model) -> Measure:
+    train = model.train(spec.of)
+    shaft = spec.shaft or train.output
+    if model.layout.root_of.get(shaft) != train.driven:
+        raise scene.refuse(("measures", name, "shaft"), f"expected a shaft that {train.driven!r} turns, got {shaft!r}")
+    refuse_midst(scene, ("measures", name, "shaft"), model.layout, train.driven, shaft)
+    if shaft == train.held:
+        raise scene.refuse(("measures", name), f"expected another shaft than the one that is held, got {shaft!r}")
+    kind = lost_motion(model, train, shaft, "lost_motion", reader_of(spec))
+    return Measure(name, kind, one_position(spec.over), "value")
+
+
+def lost_motion(
+    model: Model,
+    train: Train,
+    shaft: str,
+    quantity: TrainQuantity,
+    read: Reader,
+    tip: Tip | None = None,
+) -> LostMotion:
+    """What a train's links leave free at one of its shafts, its meshes read as `read` says."""
+    stages = tuple(_stage(model, element, shaft, read) for element in model.layout.way(train.held, shaft))
+    return LostMotion(quantity, train.name, shaft, train.held, stages, tip)
+
+
+def _stage(model: Model, element: Link | Parallel, shaft: str, read: Reader) -> AnyStage:
+    """A link or load paths in parallel, read at a shaft."""
+    layout = model.layout
+    if isinstance(element, Parallel):
+        ratio = float(layout.ratio(shaft, element.driven))
+        ways = tuple(tuple(_stage(model, inner, element.driven, read) for inner in way) for way in element.ways)
+        return ParallelStage(element.name, abs(ratio), element.driver, element.driven, ways, 1 if ratio > 0.0 else -1)
+    ratio = float(layout.ratio(shaft, element.driven))
+    mesh = next((mesh for mesh in model.meshes if mesh.name == element.name), None)
+    if mesh is None:
+        return Stage(element.name, abs(ratio), None)
+    _, carried = layout.carrying[mesh.driven]
+    backlash = Backlash("angular_backlash", mesh.name, mesh.driven, read(mesh))
+    return Stage(element.name, abs(ratio), backlash, carried.sense if ratio > 0.0 else -carried.sense)
+
+
+def one_position(over: RandomOrFixed) -> Positions:
+    """The position of the train's driven shaft: random or at an angle."""
+    if isinstance(over, At):
+        return Positions("at", 1, 1, over.at.internal)
+    return Positions("random", 1, 1)
