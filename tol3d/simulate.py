@@ -158,7 +158,7 @@ def _setup(simulation: Simulation) -> str:
 
 def _run(task: Task, plan: Plan, writer: RunWriter, execution: Execution, watch: Watch) -> tuple[Outcome[Tally], int]:
     """All trials, and by how many workers."""
-    with pool_of(execution.workers, execution.scheduler, task.way) as pool:
+    with pool_of(execution.workers, execution.scheduler, task.concurrency) as pool:
         outcome = run_blocks(
             task,
             plan,

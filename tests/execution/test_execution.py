@@ -17,7 +17,7 @@ from places import SPUR_PAIR
 
 from tol3d import Overrides, RunError, run_scene
 from tol3d.execution.folding import Columns, Plan, run_blocks
-from tol3d.execution.pools import CALLS_A_SLOT, Execution, InThisProcess, Ready, Way, in_order, pool_of
+from tol3d.execution.pools import CALLS_A_SLOT, Concurrency, Execution, InThisProcess, Ready, in_order, pool_of
 from tol3d.gearing.model import Model
 from tol3d.runs.checkpoint import Checkpoint, CheckpointWarning
 from tol3d.statistics import Moments
@@ -32,7 +32,7 @@ BLOCK = 2000
 class Draws:
     """Work whose values are a pure function of the trial."""
 
-    way: Way
+    concurrency: Concurrency
 
     def columns(self, first: int, count: int) -> Columns:
         return {"value": np.sin(np.arange(first, first + count) * 1.7)}
@@ -82,37 +82,43 @@ class Checkpoints:
 
 
 PLAN = Plan(trials=5321, block_trials=700, positions=2)
-POOLS = {"alone": (1, Way.THREADS), "three threads": (3, Way.THREADS), "two processes": (2, Way.PROCESSES)}
+POOLS = {
+    "alone": (1, Concurrency.THREADS),
+    "three threads": (3, Concurrency.THREADS),
+    "two processes": (2, Concurrency.PROCESSES),
+}
 
 
 def known_to(mean_se: float) -> Callable[[Moments], bool]:
     return lambda moments: moments.mean_se <= mean_se
 
 
-@pytest.mark.parametrize("way", Way)
+@pytest.mark.parametrize("concurrency", Concurrency)
 @pytest.mark.parametrize("pool", POOLS)
-def test_a_study_gives_the_same_bits_and_stops_at_the_same_block_whoever_works(pool: str, way: Way) -> None:
-    blocks = [Draws(way).block(block.first, block.count)[1] for block in PLAN.blocks()]
+def test_a_study_gives_the_same_bits_and_stops_at_the_same_block_whoever_works(
+    pool: str, concurrency: Concurrency
+) -> None:
+    blocks = [Draws(concurrency).block(block.first, block.count)[1] for block in PLAN.blocks()]
     folded = [blocks[0]]
     for moments in blocks[1:]:
         folded.append(folded[-1].merge(moments))
     for enough, end in ((0.0, 8), (folded[3].mean_se, 4)):
         shelf, checkpoints = Shelf(), Checkpoints()
         with pool_of(POOLS[pool][0], None, POOLS[pool][1]) as workers:
-            outcome = run_blocks(Draws(way), PLAN, workers, shelf, checkpoints, enough=known_to(enough))
+            outcome = run_blocks(Draws(concurrency), PLAN, workers, shelf, checkpoints, enough=known_to(enough))
         assert outcome.statistics == folded[end - 1]
         assert outcome.trials == min(700 * end, 5321)
         values = np.concatenate([shelf.blocks[index]["value"] for index in range(end)])
         assert np.array_equal(values, np.sin(np.arange(len(values)) * 1.7))
 
 
-@pytest.mark.parametrize("way", Way)
-def test_a_study_that_had_enough_when_it_was_stopped_runs_no_further(way: Way) -> None:
+@pytest.mark.parametrize("concurrency", Concurrency)
+def test_a_study_that_had_enough_when_it_was_stopped_runs_no_further(concurrency: Concurrency) -> None:
     shelf, checkpoints = Shelf(), Checkpoints()
-    run_blocks(Draws(way), replace(PLAN, trials=1400), InThisProcess(), shelf, checkpoints)
-    two = Draws(way).block(0, 700)[1].merge(Draws(way).block(700, 700)[1])
+    run_blocks(Draws(concurrency), replace(PLAN, trials=1400), InThisProcess(), shelf, checkpoints)
+    two = Draws(concurrency).block(0, 700)[1].merge(Draws(concurrency).block(700, 700)[1])
     checkpoints.write(2, two)
-    outcome = run_blocks(Draws(way), PLAN, InThisProcess(), shelf, checkpoints, enough=known_to(two.mean_se))
+    outcome = run_blocks(Draws(concurrency), PLAN, InThisProcess(), shelf, checkpoints, enough=known_to(two.mean_se))
     assert (outcome.statistics, outcome.trials, outcome.resumed_trials) == (two, 1400, 1400)
     assert sorted(shelf.blocks) == [0, 1]
 
@@ -144,7 +150,7 @@ def test_a_call_that_fails_is_told_and_the_others_are_given_up() -> None:
         failed.wait(5)
         return k
 
-    with pytest.raises(ValueError, match="the first"), pool_of(2, None, Way.THREADS) as pool:
+    with pytest.raises(ValueError, match="the first"), pool_of(2, None, Concurrency.THREADS) as pool:
         for _ in in_order(pool, ((k, pool.submit(work, k)) for k in range(1000))):
             pass
     assert max(ran) < 2 * CALLS_A_SLOT

@@ -22,7 +22,7 @@ from tol3d.gearing.stack_up import closed_form, stack_of
 from tol3d.gearing.stack_up.leaning import leaning_shares
 from tol3d.gearing.system import GearSystem
 from tol3d.report.coefficients import coefficients_of
-from tol3d.statistics.variance_shares import FeatureSums, shares
+from tol3d.statistics.variance_shares import RegressorSums, shares
 from tol3d.study.regressors import regressor_groups, regressors
 from tol3d.system.closed_form import ClosedForm
 
@@ -225,7 +225,7 @@ def test_a_large_sample_of_either_road_agrees(case: str, tmp_path: Path) -> None
             error = 4 / math.sqrt(TRIALS)
             assert abs(values.mean() - form.mean) < (error + NET + neglected) * form.sigma
             assert abs(values.std() / form.sigma - 1) < error * math.sqrt((kurtosis - 1) / 4) + NET + neglected
-            sums = FeatureSums.of(regressors(GearSystem(model), measure, columns).T, values)
+            sums = RegressorSums.of(regressors(GearSystem(model), measure, columns).T, values)
             found = shares(sums, regressor_groups(GearSystem(model), measure))
             for own in form.shares:
                 least = found.share[own.name] - 4 * found.standard_error[own.name] - NET - neglected

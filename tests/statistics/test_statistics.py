@@ -13,11 +13,11 @@ from scipy import stats
 
 from tol3d.statistics import (
     Agreement,
-    FeatureSums,
     Grid,
     LimitCounts,
     Moments,
     Proportion,
+    RegressorSums,
     equivalent_ppk,
     pp,
     ppk,
@@ -82,7 +82,7 @@ def test_a_nan_is_not_hidden() -> None:
 def test_bits_of_a_block_do_not_depend_on_its_memory_layout() -> None:
     table = np.random.default_rng(2).normal(size=(4097, 5))
     assert Moments.of(table[:, 3]) == Moments.of(table[:, 3].copy())
-    by_row, by_column = (FeatureSums.of(t[:, :4], t[:, 4]) for t in (table, np.asfortranarray(table)))
+    by_row, by_column = (RegressorSums.of(t[:, :4], t[:, 4]) for t in (table, np.asfortranarray(table)))
     np.testing.assert_array_equal(by_row.comoments, by_column.comoments)
     np.testing.assert_array_equal(by_row.means, by_column.means)
 
@@ -298,7 +298,7 @@ def test_performance_indices() -> None:
 
 @given(nps.arrays(np.float64, st.tuples(st.integers(1, 30), st.just(3)), elements=st.floats(-10, 10)), cuts_of)
 def test_feature_sums_of_blocks_merge_to_those_of_the_whole(rows: Array, cuts: list[int]) -> None:
-    merged = reduce(FeatureSums.merge, (FeatureSums.of(block[:, :2], block[:, 2]) for block in blocks(rows, cuts)))
+    merged = reduce(RegressorSums.merge, (RegressorSums.of(block[:, :2], block[:, 2]) for block in blocks(rows, cuts)))
     deviations = rows - rows.mean(axis=0)
     assert merged.count == len(rows)
     np.testing.assert_allclose(merged.means, rows.mean(axis=0), rtol=0, atol=1e-13)
@@ -307,7 +307,7 @@ def test_feature_sums_of_blocks_merge_to_those_of_the_whole(rows: Array, cuts: l
 
 def test_another_feature_leaves_the_sums_of_the_others_as_they_were() -> None:
     x, y = np.random.default_rng(9).normal(size=(5000, 6)), np.random.default_rng(10).normal(size=5000)
-    seen, without = FeatureSums.of(x, y).comoments, FeatureSums.of(x[:, :4], y).comoments
+    seen, without = RegressorSums.of(x, y).comoments, RegressorSums.of(x[:, :4], y).comoments
     np.testing.assert_array_equal(seen[np.ix_([0, 1, 2, 3, -1], [0, 1, 2, 3, -1])], without)
 
 
@@ -318,7 +318,7 @@ def test_shares_are_those_of_least_squares_on_the_whole_sample() -> None:
     features = np.column_stack([x[:, 0], x[:, 1], x[:, 2], x[:, 2] ** 2, x[:, 3]])
     parts = zip(np.array_split(features, 5), np.array_split(y, 5), strict=True)
     groups = {"a": slice(0, 1), "b": slice(1, 2), "c": slice(2, 4), "d": slice(4, 5)}
-    result = shares(reduce(FeatureSums.merge, (FeatureSums.of(*part) for part in parts)), groups)
+    result = shares(reduce(RegressorSums.merge, (RegressorSums.of(*part) for part in parts)), groups)
     fit = np.linalg.lstsq(np.column_stack([np.ones(n), features]), y, rcond=None)[0][1:]
     for name, group in groups.items():
         part = features[:, group] @ fit[group]
@@ -330,7 +330,7 @@ def test_shares_are_those_of_least_squares_on_the_whole_sample() -> None:
 def test_shares_of_a_quadratic_law_tend_to_its_closed_form() -> None:
     random, n = np.random.default_rng(11), 50_000
     x, z = random.normal(size=(2, n))
-    sums = FeatureSums.of(np.column_stack([x, x**2, z]), 2 * x + x**2 + z)
+    sums = RegressorSums.of(np.column_stack([x, x**2, z]), 2 * x + x**2 + z)
     result = shares(sums, {"x": slice(0, 2), "z": slice(2, 3)})
     # var(2x) = 4, var(x^2) = 2, var(z) = 1; 4 errors of a share, tails of x^2 doubling them
     assert result.share["x"] == pytest.approx(6 / 7, abs=8 * math.sqrt(6 / 49 / n))
@@ -346,7 +346,7 @@ def test_share_error_is_the_spread_of_shares_over_repeated_samples(noise: float)
     results = []
     for _ in range(repeats):
         x = random.normal(size=(n, 3))
-        results.append(shares(FeatureSums.of(x, x @ coefficients + noise * random.normal(size=n)), groups))
+        results.append(shares(RegressorSums.of(x, x @ coefficients + noise * random.normal(size=n)), groups))
     for name in groups:
         spread = np.std([result.share[name] for result in results])
         stated = np.mean([result.standard_error[name] for result in results])
@@ -358,7 +358,7 @@ def test_share_error_of_one_contributor_is_that_of_a_squared_correlation() -> No
     random, n = np.random.default_rng(13), 2000
     x = random.normal(size=n)
     y = x + random.normal(size=n)
-    result = shares(FeatureSums.of(x[:, None], y), {"x": slice(0, 1)})
+    result = shares(RegressorSums.of(x[:, None], y), {"x": slice(0, 1)})
     r = np.corrcoef(x, y)[0, 1]
     assert result.share["x"] == pytest.approx(r**2, rel=1e-12)
     assert result.standard_error["x"] == pytest.approx(2 * r * (1 - r**2) / math.sqrt(n), rel=1e-12)
@@ -368,7 +368,7 @@ def test_constant_features_have_no_share() -> None:
     random = np.random.default_rng(14)
     x = random.normal(size=1000)
     noise_of_rounding = 172.5 + np.spacing(172.5) * random.integers(0, 2, 1000)
-    sums = FeatureSums.of(np.column_stack([x, np.full(1000, 0.1), noise_of_rounding]), 2 * x)
+    sums = RegressorSums.of(np.column_stack([x, np.full(1000, 0.1), noise_of_rounding]), 2 * x)
     result = shares(sums, {"x": slice(0, 1), "constant": slice(1, 2), "rounding": slice(2, 3)})
     assert result.share["x"] == pytest.approx(1, abs=1e-12)
     assert (result.share["constant"], result.share["rounding"]) == (0.0, 0.0)
@@ -378,7 +378,7 @@ def test_constant_features_have_no_share() -> None:
 
 def test_features_that_say_the_same_share_alike() -> None:
     x, z = np.random.default_rng(15).normal(size=(2, 1000))
-    sums = FeatureSums.of(np.column_stack([x, 3 * x - 7, z]), x + z)
+    sums = RegressorSums.of(np.column_stack([x, 3 * x - 7, z]), x + z)
     twice = shares(sums, {"x": slice(0, 1), "same": slice(1, 2), "z": slice(2, 3)}).share
     once = shares(sums, {"x": slice(0, 1), "z": slice(2, 3)}).share
     assert twice["x"] == pytest.approx(once["x"] / 2, abs=1e-10)
@@ -388,13 +388,13 @@ def test_features_that_say_the_same_share_alike() -> None:
 
 def test_a_constant_target_and_too_few_trials_are_said() -> None:
     x, groups = np.random.default_rng(16).normal(size=(100, 1)), {"x": slice(0, 1)}
-    still = shares(FeatureSums.of(x, np.full(100, 5.0)), groups)
+    still = shares(RegressorSums.of(x, np.full(100, 5.0)), groups)
     assert (still.share["x"], still.standard_error["x"], still.unexplained) == (0.0, 0.0, 0.0)
     for trials in (0, 1, 2):
-        few = shares(FeatureSums.of(x[:trials], x[:trials, 0]), groups)
+        few = shares(RegressorSums.of(x[:trials], x[:trials, 0]), groups)
         assert math.isnan(few.share["x"])
         assert math.isnan(few.unexplained)
-    enough = shares(FeatureSums.of(x[:3], x[:3, 0]), groups)
+    enough = shares(RegressorSums.of(x[:3], x[:3, 0]), groups)
     assert enough.share["x"] == pytest.approx(1.0, rel=1e-12)
 
 
@@ -403,8 +403,8 @@ def test_shares_do_not_depend_on_units(scale: float, target_scale: float, shift:
     x, z = np.random.default_rng(17).normal(size=(2, 200))
     groups, y = {"x": slice(0, 1), "z": slice(1, 2)}, x + 2 * z
     assume(abs(shift) < 1e6 * scale)  # a shift of more leaves too few digits of x
-    plain = shares(FeatureSums.of(np.column_stack([x, z]), y), groups)
-    scaled = shares(FeatureSums.of(np.column_stack([scale * x + shift, z]), target_scale * y), groups)
+    plain = shares(RegressorSums.of(np.column_stack([x, z]), y), groups)
+    scaled = shares(RegressorSums.of(np.column_stack([scale * x + shift, z]), target_scale * y), groups)
     assert scaled.share["x"] == pytest.approx(plain.share["x"], abs=1e-8)
 
 

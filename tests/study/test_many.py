@@ -72,7 +72,7 @@ def test_statistics_of_many_tolerances_grow_with_their_number_at_most(tmp_path: 
         kept = Tally.of(simulation, grids, columns)
         sizes[tolerances] = tracemalloc.get_traced_memory()[1]
         tracemalloc.stop()
-        assert kept.measures["normal backlash"].geometric_features is not None
+        assert kept.measures["normal backlash"].geometric_regressors is not None
     # products of all pairs of 3000 features are 72 MB a road, against 2.9 MB of 600
     assert sizes[1500] < 2 * sizes[300]
 

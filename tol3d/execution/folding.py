@@ -14,7 +14,7 @@ from typing import Any, Generic, Protocol, Self, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.execution.pools import Pending, Pool, Ready, Way, in_order
+from tol3d.execution.pools import Concurrency, Pending, Pool, Ready, in_order
 
 Columns = dict[str, NDArray[np.generic]]
 Progress = Callable[[int], None]
@@ -39,7 +39,7 @@ class Work(Protocol[S_co]):
     """Trials as pure functions of their numbers; pickles."""
 
     @property
-    def way(self) -> Way:
+    def concurrency(self) -> Concurrency:
         """How its trials are handed out."""
         ...
 
@@ -132,7 +132,7 @@ class Block:
 
     @property
     def end(self) -> int:
-        """The trial behind its last."""
+        """The trial after its last."""
         return self.first + self.count
 
 
@@ -179,19 +179,19 @@ def run_blocks(
         plan: how many trials, and how they are cut.
         pool: who runs it.
         store: blocks found there are read, not run again; new ones are written before they count. Where `enough`
-            ended the run, it may hold blocks behind the last one.
+            ended the run, it may hold blocks after the last one.
         kept: statistics of an interrupted run's first blocks; written every KEEP_EVERY seconds and when interrupted.
-        on_progress: told how many trials were finished since it was told last.
-        enough: asked after each block, in their order, with the statistics so far; the run ends where it says yes.
+        on_progress: called with how many trials were finished since it was called last.
+        enough: called after each block, in their order, with the statistics so far; True ends the run.
     """
     started = kept_at = time.monotonic()
     counted, folded = kept.read() or (0, None)
     if folded is not None and enough(folded):
         plan = replace(plan, trials=min(counted * plan.block_trials, plan.trials))
     written, trials, resumed, first_block_s = counted, 0, 0, 0.0
-    ways = {Way.THREADS: _whole_blocks, Way.PROCESSES: _in_pieces}
+    handed_out = {Concurrency.THREADS: _whole_blocks, Concurrency.PROCESSES: _in_pieces}
     try:
-        with closing(ways[work.way](_Parts(work, plan, pool, store, counted, on_progress))) as blocks:
+        with closing(handed_out[work.concurrency](_Parts(work, plan, pool, store, counted, on_progress))) as blocks:
             for found in blocks:
                 first_block_s = first_block_s or time.monotonic() - started
                 trials, resumed = found.block.end, resumed + found.resumed
@@ -216,7 +216,7 @@ def run_blocks(
 
 @dataclass(frozen=True)
 class _Parts(Generic[S]):
-    """What both ways of handing out need; the statistics of the first `counted` blocks are known."""
+    """What handing out blocks or pieces needs; the statistics of the first `counted` blocks are known."""
 
     work: Work[S]
     plan: Plan

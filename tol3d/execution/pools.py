@@ -46,7 +46,7 @@ class Execution:
 ONE_WORKER = Execution()
 
 
-class Way(Enum):
+class Concurrency(Enum):
     """How an engine's trials are handed out on one machine.
 
     THREADS: whole blocks, for an engine that lets other threads run and makes a block in a second.
@@ -156,13 +156,13 @@ class OnCluster:
 
 
 @contextmanager
-def pool_of(workers: int, scheduler: str | None, way: Way) -> Iterator[Pool]:
+def pool_of(workers: int, scheduler: str | None, concurrency: Concurrency) -> Iterator[Pool]:
     """Workers as they are asked for; within it, losing them raises a RunError.
 
     Args:
         workers: threads or processes on this machine; 1 stays in this thread.
         scheduler: address of a Dask scheduler, whose workers run the calls instead.
-        way: threads or processes.
+        concurrency: threads or processes.
     """
     try:
         if scheduler is not None:
@@ -170,7 +170,7 @@ def pool_of(workers: int, scheduler: str | None, way: Way) -> Iterator[Pool]:
                 yield pool
         elif workers == 1:
             yield InThisProcess()
-        elif way is Way.THREADS:
+        elif concurrency is Concurrency.THREADS:
             with _threads(workers) as pool:
                 yield pool
         else:
@@ -260,6 +260,6 @@ def in_order(pool: Pool, calls: Iterable[tuple[Tag, Pending[T]]]) -> Iterator[tu
             pending.cancel()
 
 
-def suggested_workers(contacts: int, way: Way = Way.PROCESSES) -> int:
+def suggested_workers(contacts: int, concurrency: Concurrency = Concurrency.PROCESSES) -> int:
     """One for what takes seconds, as starting processes does; every core beyond, and for threads at once."""
-    return 1 if way is Way.PROCESSES and contacts <= SHORT_STUDY else os.cpu_count() or 1
+    return 1 if concurrency is Concurrency.PROCESSES and contacts <= SHORT_STUDY else os.cpu_count() or 1

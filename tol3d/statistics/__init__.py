@@ -4,16 +4,16 @@ from tol3d.statistics.agreement import Agreement
 from tol3d.statistics.grid import Grid, Histogram
 from tol3d.statistics.limits import LimitCounts, Proportion, equivalent_ppk, pp, ppk
 from tol3d.statistics.moments import Moments
-from tol3d.statistics.variance_shares import FeatureSums, Shares, shares
+from tol3d.statistics.variance_shares import RegressorSums, Shares, shares
 
 __all__ = [
     "Agreement",
-    "FeatureSums",
     "Grid",
     "Histogram",
     "LimitCounts",
     "Moments",
     "Proportion",
+    "RegressorSums",
     "Shares",
     "equivalent_ppk",
     "pp",

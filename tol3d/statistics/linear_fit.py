@@ -7,7 +7,7 @@ from typing import Self
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.statistics.variance_shares import RANK_RTOL, FeatureSums, column_sigmas
+from tol3d.statistics.variance_shares import RANK_RTOL, RegressorSums, column_sigmas
 
 Array = NDArray[np.float64]
 
@@ -35,7 +35,7 @@ class LinearFit:
     residual: float
 
     @classmethod
-    def of(cls, sums: FeatureSums) -> Self | None:
+    def of(cls, sums: RegressorSums) -> Self | None:
         """The fit of the sums' target; None where there are too few rows to tell coefficients from chance."""
         width, sigma = len(sums.means) - 1, column_sigmas(sums)
         used = np.flatnonzero(sigma[:-1] > 0.0)

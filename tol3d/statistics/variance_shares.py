@@ -29,7 +29,7 @@ def plain_products(rows: Array) -> Array:
 
 
 @dataclass(frozen=True, eq=False)
-class FeatureSums:
+class RegressorSums:
     """Count, means and co-moments of feature columns and of the target they explain, gathered block by block.
 
     A feature is a component of a contributor or a power of it; the target is a measure.
@@ -101,7 +101,7 @@ class Shares:
     unexplained: float
 
 
-def shares(sums: FeatureSums, groups: Mapping[str, slice]) -> Shares:
+def shares(sums: RegressorSums, groups: Mapping[str, slice]) -> Shares:
     """Split the target's variance among groups of feature columns.
 
     One least-squares fit on all features; the share of a group is cov(its part of the fit, y) /
@@ -129,13 +129,13 @@ def shares(sums: FeatureSums, groups: Mapping[str, slice]) -> Shares:
     return Shares(share, errors, unexplained)
 
 
-def column_sigmas(sums: FeatureSums) -> Array:
+def column_sigmas(sums: RegressorSums) -> Array:
     """Standard deviation of each column, exactly 0 for one that holds rounding errors only."""
     sigma: Array = np.sqrt(np.diagonal(sums.comoments) / sums.count)
     return np.where(sigma > CONSTANT_RTOL * np.abs(sums.means), sigma, 0.0)
 
 
-def _explained(sums: FeatureSums, sigma: Array, used: list[int]) -> Array:
+def _explained(sums: RegressorSums, sigma: Array, used: list[int]) -> Array:
     """The fraction of the target's variance that each feature explains in the joint fit on `used`, (features,).
 
     In standardised columns the fit solves R b = r, R the correlations among the features and r

@@ -1,4 +1,4 @@
-"""A sample whose trials are not independent, by its replicates, which are: their spread tells the errors."""
+"""A sample whose trials are not independent, by its replicates, which are: their spread gives the errors."""
 
 import math
 from collections.abc import Callable, Mapping

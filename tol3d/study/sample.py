@@ -38,7 +38,7 @@ class Sample:
         moments, grid: of the trials that seated.
         limits: of all trials.
         deepest: the largest overlap of a trial, as a value below 0; inf where none is known.
-        replicated: the sample by replicates where its trials are not independent, and tells its errors then.
+        replicated: the sample by replicates where its trials are not independent, and its errors are theirs then.
     """
 
     moments: Moments
@@ -152,7 +152,7 @@ def _quantile(sample: Sample, p: float) -> float | None:
 
 
 def finite(value: Any) -> Any:
-    """JSON has no nan: what cannot be told (a sigma of one trial) is null."""
+    """JSON has no nan: what is unknown (a sigma of one trial) is null."""
     return None if isinstance(value, float) and not np.isfinite(value) else value
 
 

@@ -12,7 +12,7 @@ Enough = Callable[[Tally], bool]
 
 
 def enough(simulation: Simulation) -> Enough:
-    """What is asked after each merged block, in block order: whether the study may stop.
+    """Called after each merged block, in block order: whether the study may stop.
 
     A study without `until` never may; it goes through its trials. What is measured are the trials so far on the
     geometric road, or on the analytic one where there is no engine.

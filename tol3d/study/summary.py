@@ -23,7 +23,7 @@ from tol3d.system.road import Road
 from tol3d.system.stated import mean_build, nominal_build, stated
 from tol3d.system.trials import Trials
 
-FAILURES_TOLD = 1e-3  # of the trials; a third of the 0.27 % that ±3 sigma leave out, told in the table all the same
+FAILURES_NAMED = 1e-3  # of the trials; a third of the 0.27 % that ±3 sigma leave out, in the table all the same
 
 
 def study_summary(simulation: Simulation, road: Road | None, tally: Tally) -> dict[str, Any]:
@@ -56,7 +56,7 @@ def failures(simulation: Simulation, tally: Tally) -> Iterator[str]:
     alike: dict[tuple[tuple[str, int], ...], list[str]] = {}
     for measure in simulation.system.measures:
         status = _status(measure, tally)
-        if tally.trials - status[simulation.system.statuses.seated] > FAILURES_TOLD * tally.trials:
+        if tally.trials - status[simulation.system.statuses.seated] > FAILURES_NAMED * tally.trials:
             alike.setdefault(tuple(status.items()), []).append(measure.name)
     words = simulation.system.statuses.words
     for ends, names in alike.items():
@@ -75,7 +75,7 @@ def _status(measure: Measure, tally: Tally) -> Mapping[str, int]:
 
 
 def _too_many(simulation: Simulation) -> Iterator[str]:
-    """A sentence for measures of more contributors than shares are told of."""
+    """A sentence for measures of more contributors than have shares."""
     alike: dict[int, list[str]] = {}
     for measure in simulation.system.measures:
         if (count := len(simulation.system.acting(measure))) > MOST_REGRESSED:
@@ -158,8 +158,8 @@ def _statistics(
             "explanation": explanation.summary() if explanation else None,
         }
     independent = own.analytic.replicated is None  # what the error of a share by regression is worked out for
-    by_sample = share_percents(simulation.system, measure, own.analytic_features)
-    geometric = share_percents(simulation.system, measure, own.geometric_features)
+    by_sample = share_percents(simulation.system, measure, own.analytic_regressors)
+    geometric = share_percents(simulation.system, measure, own.geometric_regressors)
     alone = _high_low_mean(simulation, road, measure)
     summary["contributors"] = [
         {

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.statistics import Agreement, FeatureSums, Grid
+from tol3d.statistics import Agreement, Grid, RegressorSums
 from tol3d.statistics.grid import BINS
 from tol3d.statistics.lazy import quick_products
 from tol3d.statistics.variance_shares import Products, plain_products
@@ -26,7 +26,7 @@ from tol3d.system.system import System
 
 Array = NDArray[np.float64]
 
-PILOT_TRIALS = 64  # the study's first trials; they tell sigma to 9 %, and a spread that the stack-up does not see
+PILOT_TRIALS = 64  # the study's first trials; they give sigma to 9 %, and a spread that the stack-up does not see
 GRID_SIGMAS = 12.0  # the grid spans the mean +- this many sigma of both roads: bins of 1.8e-4 sigma, 1.3 nm
 LEAST_SPAN = 1e-3  # mm or rad; for a model in which nothing varies
 DIFFERENCE = "difference"  # of the two, beside them
@@ -68,8 +68,8 @@ class MeasureTally:
     analytic: Sample
     geometric: Sample | None
     agreement: Agreement | None
-    analytic_features: FeatureSums
-    geometric_features: FeatureSums | None
+    analytic_regressors: RegressorSums
+    geometric_regressors: RegressorSums | None
     disagreement: Disagreement | None
 
     def merge(self, other: "MeasureTally") -> "MeasureTally":
@@ -79,9 +79,9 @@ class MeasureTally:
             self.analytic.merge(other.analytic),
             self.geometric.merge(other.geometric) if self.geometric and other.geometric else None,
             self.agreement.merge(other.agreement) if self.agreement and other.agreement else None,
-            self.analytic_features.merge(other.analytic_features),
-            self.geometric_features.merge(other.geometric_features)
-            if self.geometric_features and other.geometric_features
+            self.analytic_regressors.merge(other.analytic_regressors),
+            self.geometric_regressors.merge(other.geometric_regressors)
+            if self.geometric_regressors and other.geometric_regressors
             else None,
             self.disagreement.merge(other.disagreement) if self.disagreement and other.disagreement else None,
         )
@@ -136,9 +136,9 @@ class _Block:
 
     def _sums(
         self, measures: Sequence[Measure], values: Mapping[tuple[str, str], Array]
-    ) -> dict[tuple[str, str], FeatureSums]:
+    ) -> dict[tuple[str, str], RegressorSums]:
         """What each road's column of each measure has in common with its regressors, by road and name."""
-        sums: dict[tuple[str, str], FeatureSums] = {}
+        sums: dict[tuple[str, str], RegressorSums] = {}
         system = self.simulation.system
         keys = {measure.name: system.regressor_key(measure) for measure in measures}
         for key in dict.fromkeys(keys.values()):
@@ -148,7 +148,7 @@ class _Block:
             columns = {(r, m.name): values[r, m.name] for m in alike for r in roads if (r, m.name) in values}
             whole = {name: column for name, column in columns.items() if not np.isnan(np.min(column))}
             if whole:
-                each = FeatureSums.of_each(seen, np.stack(list(whole.values())), self._products)
+                each = RegressorSums.of_each(seen, np.stack(list(whole.values())), self._products)
                 sums |= dict(zip(whole, each, strict=True))
             for measure in alike:  # what failed is the same trials on every road of a measure that lacks some
                 lacking = [(r, measure.name) for r in roads if (r, measure.name) in columns.keys() - whole.keys()]
@@ -156,7 +156,7 @@ class _Block:
                     rows = np.stack([columns[name] for name in lacking])
                     good = ~np.isnan(rows).any(axis=0)
                     sums |= dict(
-                        zip(lacking, FeatureSums.of_each(seen[:, good], rows[:, good], self._products), strict=True)
+                        zip(lacking, RegressorSums.of_each(seen[:, good], rows[:, good], self._products), strict=True)
                     )
         return sums
 

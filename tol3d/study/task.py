@@ -8,7 +8,7 @@ from typing import Any
 
 from numpy.typing import NDArray
 
-from tol3d.execution.pools import Way, suggested_workers
+from tol3d.execution.pools import Concurrency, suggested_workers
 from tol3d.statistics import Grid
 from tol3d.study.blocks import block_trials, contacts_of
 from tol3d.study.columns import columns_of
@@ -31,16 +31,16 @@ def road_of(simulation: Simulation, materials: Any) -> Road | None:
     return simulation.system.road(simulation.study.engine, materials) if simulation.has_geometry else None
 
 
-def way_of(simulation: Simulation) -> Way:
+def concurrency_of(simulation: Simulation) -> Concurrency:
     """How its trials are handed out."""
-    return Way.THREADS if simulation.road.threads else Way.PROCESSES
+    return Concurrency.THREADS if simulation.road.threads else Concurrency.PROCESSES
 
 
 def workers_for(simulation: Simulation) -> int:
     """How many workers a study is worth where nobody says: no more threads than it has blocks."""
     trials = simulation.study.trials
-    suggested = suggested_workers(trials * contacts_of(simulation), way_of(simulation))
-    if way_of(simulation) is Way.PROCESSES:
+    suggested = suggested_workers(trials * contacts_of(simulation), concurrency_of(simulation))
+    if concurrency_of(simulation) is Concurrency.PROCESSES:
         return suggested
     return min(suggested, -(-trials // block_trials(simulation)))
 
@@ -73,9 +73,9 @@ class Task:
     versions: Versions
 
     @property
-    def way(self) -> Way:
+    def concurrency(self) -> Concurrency:
         """See folding.Work."""
-        return way_of(self.simulation)
+        return concurrency_of(self.simulation)
 
     @property
     def requires(self) -> tuple[str, ...]:
@@ -90,7 +90,7 @@ class Task:
     def columns(self, first: int, count: int) -> Columns:
         """See folding.Work."""
         refuse_other_versions(self.versions, self.requires)
-        if self.way is Way.THREADS:
+        if self.concurrency is Concurrency.THREADS:
             return self._columns(first, count)
         with _ONE_AT_A_TIME:  # a road of processes may have state, and a Dask worker has several threads
             return self._columns(first, count)

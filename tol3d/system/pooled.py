@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.statistics import FeatureSums, Moments
+from tol3d.statistics import Moments, RegressorSums
 from tol3d.system.breakdown import Breakdown
 from tol3d.system.outcome import Outcome
 
@@ -25,7 +25,7 @@ class PooledTerms:
     """
 
     moments: tuple[Moments, ...]
-    sums: FeatureSums
+    sums: RegressorSums
 
     @classmethod
     def of(cls, breakdown: Breakdown, road: str, columns: Columns, whole: Outcome) -> "PooledTerms | None":
@@ -41,7 +41,7 @@ class PooledTerms:
             return None
         rows = np.stack([np.asarray(columns[name], dtype=np.float64) for name in names])
         rows = rows[:, ~np.isnan(rows.sum(axis=0) + np.asarray(whole.values, dtype=np.float64))]
-        return cls(tuple(Moments.of(row) for row in rows), FeatureSums.of_each(rows[:-1], rows[-1:])[0])
+        return cls(tuple(Moments.of(row) for row in rows), RegressorSums.of_each(rows[:-1], rows[-1:])[0])
 
     def merge(self, other: "PooledTerms") -> "PooledTerms":
         """Both blocks as one."""

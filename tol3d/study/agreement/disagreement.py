@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.statistics import FeatureSums
+from tol3d.statistics import RegressorSums
 
 Array = NDArray[np.float64]
 
@@ -20,12 +20,12 @@ class Disagreement:
         trial: the first trial that has it; -1 without trials.
     """
 
-    sums: FeatureSums
+    sums: RegressorSums
     largest: float
     trial: int
 
     @classmethod
-    def of(cls, first: int, difference: Array, sums: FeatureSums) -> "Disagreement":
+    def of(cls, first: int, difference: Array, sums: RegressorSums) -> "Disagreement":
         """Of a block that begins at trial `first`; difference (trials,), nan where a road has no value."""
         size = np.where(np.isnan(difference), -1.0, np.abs(difference))
         at = int(np.argmax(size))

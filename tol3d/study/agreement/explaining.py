@@ -1,7 +1,7 @@
 """What explains the difference of the two roads: decided contributor by contributor and trial by trial, or warned of.
 
 A stack-up is of first order. So the difference (geometric - analytic) may be of second order, which `second_look.py`
-tells; and of first order only where the stack-up says that it leaves something out, and by how much at most
+measures; and of first order only where the stack-up leaves something out on purpose, and by how much at most
 (`System.neglected`). Anything else is an error of one of the roads.
 """
 
@@ -32,9 +32,9 @@ from tol3d.system.trials import Trials
 Array = NDArray[np.float64]
 
 SURE = 5.0  # standard errors; by chance once in two million
-SUREST = 1e6  # standard errors that are told; without any chance there are infinitely many
+SUREST = 1e6  # standard errors, at most, in a summary; without any chance there are infinitely many
 SHARE = 0.02  # of a contributor's own effect; a wrong coefficient of 3 % and half a pitch of 110 teeth are beyond it
-LEAST_LEFT = 0.01  # of the measure's sigma; what adds 0.005 % to it is not told from 0 by 10^8 trials
+LEAST_LEFT = 0.01  # of the measure's sigma; what adds 0.005 % to it cannot be distinguished from 0 by 10^8 trials
 LARGEST_LEFT = 5.0  # times that; the most that one of very many trials may be off by kinks of an extreme over a turn
 FURTHER_LOOKS = 256  # trials looked at again beyond the regressors: what is left of 256 has an rms known to 4 %
 FURTHER_SLOW_LOOKS = 64  # by an engine with chord errors, which takes a millisecond for each of the three builds

@@ -1,4 +1,4 @@
-"""What explains the difference of the two roads, as it is kept and told."""
+"""What explains the difference of the two roads, as it is kept and shown."""
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
@@ -27,7 +27,7 @@ class Explanation:
     """What explains a measure's difference, in its unit.
 
     Args:
-        undecided: why that cannot be told, "" where it is.
+        undecided: why that is not known, "" where it is.
         faults: what is not explained, a sentence each.
         linear: contributors whose linear part is beyond chance and 2 % of their own effect.
         largest_percent: the largest linear part of the other contributors, of their own effect [%].

@@ -4,7 +4,7 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from tol3d.statistics import FeatureSums
+from tol3d.statistics import RegressorSums
 from tol3d.statistics.linear_fit import LinearFit
 from tol3d.study.agreement.disagreement import Disagreement
 from tol3d.study.regressors import regressor_groups
@@ -39,9 +39,9 @@ class RoadFits:
     @classmethod
     def of(cls, system: System, measure: Measure, tally: MeasureTally) -> "RoadFits | None":
         """None where there are too few trials."""
-        if tally.disagreement is None or tally.geometric_features is None:
+        if tally.disagreement is None or tally.geometric_regressors is None:
             return None
-        roads = (tally.analytic_features, tally.geometric_features)
+        roads = (tally.analytic_regressors, tally.geometric_regressors)
         fits = [LinearFit.of(sums) for sums in (tally.disagreement.sums, *roads)]
         difference, analytic, geometric = fits
         if difference is None or analytic is None or geometric is None:
@@ -62,5 +62,5 @@ def _effects_at_one_position(system: System, measure: Measure) -> Mapping[str, f
     return {share.name: math.sqrt(max(share.variance, 0.0)) * measure.per_internal for share in shares}
 
 
-def sigma_of(sums: FeatureSums) -> float:
+def sigma_of(sums: RegressorSums) -> float:
     return math.sqrt(sums.comoments[-1, -1] / sums.count)

@@ -1,7 +1,7 @@
-"""Some trials again with a part of their deviations: how the roads' difference grows tells of what order it is.
+"""Some trials again with a part of their deviations: how the roads' difference grows shows of what order it is.
 
 A first-order stack-up is right if its difference to the geometry goes as the square of the deviations. Along the ray
-from the nominal build to a trial's the difference is D(t) = D(0) + t L + t^2 Q + ...: two short steps tell Q, which a
+from the nominal build to a trial's the difference is D(t) = D(0) + t L + t^2 Q + ...: two short steps give Q, which a
 stack-up neglects, and what is left of D(1) is of first order, or jumps. A kink that the stack-up has too, such as the
 one-sided loss by a tilt, is of first order as any slope.
 """
@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.statistics import FeatureSums
+from tol3d.statistics import RegressorSums
 from tol3d.study.columns import columns_of
 from tol3d.study.draws import drawn
 from tol3d.study.regressors import regressors
@@ -27,7 +27,7 @@ from tol3d.system.trials import Trials, joined
 
 Array = NDArray[np.float64]
 
-SHORT_STEPS = (0.25, 0.5)  # of the deviations; of what is of third order three quarters are told as second
+SHORT_STEPS = (0.25, 0.5)  # of the deviations; of what is of third order three quarters count as second
 LONG_STEPS = (0.5, 1.0)  # for an engine with chord errors, which short steps would magnify
 BEND_SIGMAS = 3.0  # where a contributor's second difference is taken
 BEND_POSITIONS = 4  # drawn ones, over which it is averaged: what turns acts at each by another component
@@ -55,10 +55,10 @@ class SecondLook:
         """What is neither there at the nominal build nor of second order, (trials,)."""
         return self.whole[measure] - self.nominal[measure] - self.second_order[measure]
 
-    def sums(self, measure: str, target: Array) -> FeatureSums:
+    def sums(self, measure: str, target: Array) -> RegressorSums:
         """What a target (trials,) has in common with a measure's regressors, of the trials that it is known of."""
         good = ~np.isnan(target)
-        return FeatureSums.of_each(self.regressors[measure][:, good], target[None, good])[0]
+        return RegressorSums.of_each(self.regressors[measure][:, good], target[None, good])[0]
 
 
 def scalars_of(system: System) -> tuple[Measure, ...]:
