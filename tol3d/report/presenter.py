@@ -32,10 +32,11 @@ class View:
 
     Args:
         panels: the first one large, at the left, the others below each other at its right; one alone fills the window.
+            Without any the window shows the first world, its bodies named.
         notes: what the window does not show.
     """
 
-    panels: tuple[Panel, ...]
+    panels: tuple[Panel, ...] = ()
     notes: tuple[str, ...] = ()
 
 

@@ -4,16 +4,20 @@ import ctypes.util
 import os
 import sys
 from collections.abc import Sequence
+from functools import partial
 from pathlib import Path
 from typing import Final
 
 import pyvista as pv
 
 from tol3d.errors import InputError, unwritable
-from tol3d.report.presenter import PRESENTER, Panel, Which, presenter_at
+from tol3d.report.drawn_solids import add_title
+from tol3d.report.presenter import PRESENTER, Display, Panel, Which, presenter_at
+from tol3d.report.whole import draw_whole
 from tol3d.runs.run import Run
 
 WINDOW_SIZE: Final = (1800, 1050)  # pixels
+TITLE_SIZE: Final = 13
 LEFT_SHARE: Final = 0.66  # of the window's width, the larger picture
 PICTURES: Final = (".png", ".jpg", ".jpeg", ".tif", ".tiff", ".bmp")
 
@@ -48,7 +52,7 @@ def view_run(
     display = presenter_at(presenter).display(run, which, magnify=magnify)
     view = display.view(mesh)
     choose_window(needs_display=screenshot is None)
-    plotter = plot(view.panels, off_screen=screenshot is not None)
+    plotter = plot(view.panels or (partial(_first_world, display),), off_screen=screenshot is not None)
     try:
         if screenshot is None:
             plotter.show(title=f"tol3d · {display.label}")
@@ -59,6 +63,11 @@ def view_run(
     finally:
         plotter.close()
     return (*display.notes, *view.notes)
+
+
+def _first_world(display: Display, plotter: pv.Plotter, width_by_height: float) -> None:
+    draw_whole(plotter, display.worlds[0], width_by_height)
+    add_title(plotter, display.label, TITLE_SIZE)
 
 
 def choose_window(*, needs_display: bool) -> None:

@@ -30,6 +30,7 @@ Array = NDArray[np.float64]
 
 ISOMETRIC: Final = math.asin(1 / math.sqrt(3))  # rad above the horizon: three edges of a cube look alike
 PARTS_WIDE, PARTS_HIGH = 0.56, 0.84  # of the picture; the labels stand on either side
+NO_MARKS: Final[Mapping[str, Array]] = {}
 LABEL_ROW: Final = 1 / 26  # of the picture's height, from label to label at least
 LABEL_GAP: Final = 0.02  # of the picture's width, between parts and labels
 LABEL_SIZE: Final = 11
@@ -96,7 +97,9 @@ class Whole:
     labels: tuple[Label, ...]
 
 
-def draw_whole(plotter: pv.Plotter, world: World, width_by_height: float, marks: Mapping[str, Array]) -> None:
+def draw_whole(
+    plotter: pv.Plotter, world: World, width_by_height: float, marks: Mapping[str, Array] = NO_MARKS
+) -> None:
     """Draw all bodies of a world with their names: beside them in a picture, at them in a window.
 
     Args:

@@ -1,0 +1,88 @@
+"""A system that is no gear is shown and exported by its presenter alone: boxes whose sizes and places are known."""
+
+import ctypes.util
+import os
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+import trimesh
+from matplotlib.image import imread
+from report.box_presenter import COLOURS, GROWTH, PLACES, PRESENTER, SIDES
+
+from tol3d import Overrides, Run, run_scene
+from tol3d.errors import InputError
+from tol3d.report import export_run, part_meshes, picture, view_run
+
+BOXES = "report.box_presenter"
+CUBES = {"small": (GROWTH * SIDES["small"]) ** 3, "large": SIDES["large"] ** 3}  # mm^3
+
+
+@pytest.fixture(scope="module")
+def run(tmp_path_factory: pytest.TempPathFactory) -> Run:
+    """Any run: what is shown of it is its presenter's choice."""
+    overrides = Overrides(trials=4, engine="exact", witness=0)
+    return run_scene("spur_pair", overrides=overrides, out=tmp_path_factory.mktemp("boxes") / "run")
+
+
+def test_bodies_stand_where_their_poses_put_them_and_are_as_large_as_they_grew(run: Run) -> None:
+    meshes = part_meshes(PRESENTER.display(run, 3, magnify=1.0))
+    for name, mesh in meshes.items():
+        assert mesh.volume == pytest.approx(CUBES[name])
+        assert mesh.bounds.mean(axis=0) == pytest.approx(PLACES[name])
+
+
+@pytest.mark.parametrize("fmt", ["stl", "ply", "glb"])
+def test_a_world_is_one_file_of_all_its_bodies(run: Run, tmp_path: Path, fmt: str) -> None:
+    exported = export_run(run, 3, fmt, out=tmp_path, presenter=BOXES)
+    assert exported.notes == ("a note",)
+    assert [path.name for path in exported.files] == [f"trial-3.{fmt}"]
+    if fmt == "glb":
+        scene = trimesh.load_scene(exported.files[0])
+        held = {name: scene.geometry[name].copy().apply_transform(scene.graph[name][0]) for name in SIDES}
+        for name, mesh in held.items():
+            assert mesh.volume * 1e9 == pytest.approx(CUBES[name], rel=1e-5)  # metres, in single precision
+            assert mesh.bounds.mean(axis=0) * 1e3 == pytest.approx(PLACES[name], abs=1e-4)
+    else:
+        assert trimesh.load_mesh(exported.files[0]).volume == pytest.approx(sum(CUBES.values()), rel=1e-5)
+
+
+def test_worlds_of_single_bodies_are_told_apart_by_their_names(run: Run, tmp_path: Path) -> None:
+    names = {fmt: [p.name for p in export_run(run, "mean", fmt, out=tmp_path, presenter=BOXES).files] for fmt in
+             ("stl", "glb", "step")}  # fmt: skip
+    assert names["stl"] == ["mean-small.stl", "mean-large.stl"]
+    assert names["glb"] == ["mean-small.glb", "mean-large.glb"]
+    assert names["step"] == ["mean-small.step", "mean-large.step"]
+
+
+def test_further_pictures_are_drawn_beside_the_histogram(
+    run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("PYTHONPATH", os.pathsep.join(sys.path))  # the process that draws imports the presenter
+    with picture.drawing(BOXES) as draw:
+        draw(run.summary, tmp_path / "histogram.png")
+    assert {path.name for path in tmp_path.iterdir()} == {"histogram.png", "boxes_ all.png"}
+    assert imread(tmp_path / "boxes_ all.png").shape[1] == 2 * 4  # two inches, as many pixels an inch as trials
+
+
+renders = pytest.mark.skipif(
+    sys.platform == "linux"
+    and not os.environ.get("DISPLAY")
+    and not (ctypes.util.find_library("EGL") or ctypes.util.find_library("OSMesa")),
+    reason="no display, no libEGL, no libOSMesa",
+)
+
+
+@renders
+def test_the_window_of_a_system_without_panels_shows_its_bodies_named(run: Run, tmp_path: Path) -> None:
+    assert view_run(run, 3, screenshot=tmp_path / "boxes.png", presenter=BOXES) == ("a note", "all is shown")
+    pixels = np.round(255 * imread(tmp_path / "boxes.png")[..., :3])
+    for colour in COLOURS.values():  # labels are flat, each in its body's colour
+        wanted = np.array([*bytes.fromhex(colour[1:])])
+        assert (np.abs(pixels - wanted).max(axis=2) < 3).sum() > 500
+
+
+def test_a_close_up_that_is_not_there_is_refused_by_the_presenter(run: Run, tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="no teeth"):
+        view_run(run, 3, screenshot=tmp_path / "none.png", mesh="teeth", presenter=BOXES)
