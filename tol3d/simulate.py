@@ -43,7 +43,9 @@ trial is a pure function of (system, seed, trial index): `replay` makes any of t
 import platform
 import tempfile
 import warnings
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -107,80 +109,110 @@ def run_scene(
     clock = Clock()
     scene = load(scene, trust_parts=trust_parts, kinds=kinds)
     simulation = simulation_of(scene, overrides)
-    fingerprint = fingerprint_of(scene, simulation, execution)
-    folder = Path(out) if out is not None else _temporary(scene)
-    if execution.resume and (whole := whole_run(folder, fingerprint)):
+    order = _order(scene, simulation, execution, out, clock)
+    if whole := order.whole_run():
         return whole
-    writer = _writer(folder, fingerprint, simulation, execution, force=force)
-    plan = plan_of(simulation)
-    with refusals_explained(writer, lambda: _kept(writer, plan)):
-        watch.activity(_setup(simulation))
-        task = task_of(simulation, str(fingerprint), keep_trials=execution.keep_trials)
-        clock.start_trials()
-        outcome, slots = _run(task, plan, writer, execution, watch)
-        clock.end_trials()
+    with order.writing(force=force) as writer:
+        task = order.task(watch)
+        outcome = order.run(task, writer, watch)
+        found = findings(simulation, task.road, outcome.statistics, watch.activity)
+        return order.finished(writer, found, outcome, watch)
+
+
+@dataclass(frozen=True)
+class _Order:
+    """A run that was asked for.
+
+    Args:
+        scene, simulation: what is simulated.
+        execution: who runs it and what is kept.
+        folder: where it goes.
+        fingerprint: what makes an interrupted run its own.
+        plan: how its trials are cut.
+        clock: since it was asked for.
+    """
+
+    scene: Scene
+    simulation: Simulation
+    execution: Execution
+    folder: Path
+    fingerprint: Fingerprint
+    plan: Plan
+    clock: Clock
+
+    def whole_run(self) -> Run | None:
+        """The run that is there already, if it was asked to go on and has nothing left to do."""
+        return whole_run(self.folder, self.fingerprint) if self.execution.resume else None
+
+    @contextmanager
+    def writing(self, *, force: bool) -> Iterator[RunWriter]:
+        """Its writer; within it, a disk that refuses is explained."""
+        writer = RunWriter(
+            self.folder,
+            self.fingerprint,
+            column_units(self.simulation),
+            keep_trials=self.execution.keep_trials,
+            resume=self.execution.resume,
+            force=force,
+        )
+        with refusals_explained(writer, lambda: self._kept(writer)):
+            yield writer
+
+    def _kept(self, writer: RunWriter) -> str:
+        kept = min(writer.kept_blocks(Tally) * self.plan.block_trials, self.plan.trials)
+        return f"{kept} of {self.plan.trials} trials are"
+
+    def task(self, watch: Watch) -> Task:
+        """What workers run; kernels that this machine has not compiled yet take ten seconds."""
+        compiled = self.simulation.system.is_compiled(self.simulation.study.engine)
+        watch.activity(self.simulation.road.setup if compiled else COMPILING)
+        return task_of(self.simulation, str(self.fingerprint), keep_trials=self.execution.keep_trials)
+
+    def run(self, task: Task, writer: RunWriter, watch: Watch) -> Outcome[Tally]:
+        """All trials, until it is enough."""
+        self.clock.start_trials()
+        watch.activity("trials")
+        with pool_of(self.execution.workers, self.execution.scheduler, task.concurrency) as pool:
+            outcome = run_blocks(
+                task,
+                self.plan,
+                pool,
+                writer,
+                writer.checkpoint(Tally),
+                on_progress=watch.progress,
+                enough=enough(self.simulation),
+            )
+        writer.drop_from(self.plan.block_count(outcome.trials))
+        self.clock.end_trials(pool.slots)
+        return outcome
+
+    def finished(self, writer: RunWriter, found: Mapping[str, Any], outcome: Outcome[Tally], watch: Watch) -> Run:
+        """The run on disk, with its pictures."""
+        versions = dict(installed_versions(self.simulation.requires))
         summary = {
-            **findings(simulation, task.road, outcome.statistics, watch.activity),
-            "blocks": fingerprint["blocks"],
-            "files": writer.keep(text_of(scene), scene.files),
-            "timing": clock.timing(outcome, slots),
-            "versions": {"python": platform.python_version(), **dict(installed_versions(task.requires))},
+            **found,
+            "blocks": self.fingerprint["blocks"],
+            "files": writer.keep(text_of(self.scene), self.scene.files),
+            "timing": self.clock.timing(outcome),
+            "versions": {"python": platform.python_version(), **versions},
         }
-        return _finished(writer, summary, watch)
+        with writer.pictures() as place:
+            watch.finisher(place, summary)
+        return writer.finish(summary)
+
+
+def _order(scene: Scene, simulation: Simulation, execution: Execution, out: Path | str | None, clock: Clock) -> _Order:
+    folder = Path(out) if out is not None else _temporary(scene)
+    fingerprint = fingerprint_of(scene, simulation, execution)
+    return _Order(scene, simulation, execution, folder, fingerprint, plan_of(simulation), clock)
 
 
 def _temporary(scene: Scene) -> Path:
     """A run's folder in the system's temporary one, warned of before the run, so that a stopped one is found too."""
     folder = Path(tempfile.mkdtemp(prefix="tol3d-")) / scene.source.stem
     words = f"no out was given: the run is written to {folder}, and stays there until you delete it"
-    warnings.warn(words, TemporaryRunWarning, stacklevel=3)
+    warnings.warn(words, TemporaryRunWarning, stacklevel=4)
     return folder
-
-
-def _writer(
-    folder: Path, fingerprint: Fingerprint, simulation: Simulation, execution: Execution, *, force: bool
-) -> RunWriter:
-    return RunWriter(
-        folder,
-        fingerprint,
-        column_units(simulation),
-        keep_trials=execution.keep_trials,
-        resume=execution.resume,
-        force=force,
-    )
-
-
-def _setup(simulation: Simulation) -> str:
-    """What goes on before the trials; kernels that this machine has not compiled yet take ten seconds."""
-    compiled = simulation.system.is_compiled(simulation.study.engine)
-    return simulation.road.setup if compiled else COMPILING
-
-
-def _run(task: Task, plan: Plan, writer: RunWriter, execution: Execution, watch: Watch) -> tuple[Outcome[Tally], int]:
-    """All trials, and by how many workers."""
-    with pool_of(execution.workers, execution.scheduler, task.concurrency) as pool:
-        outcome = run_blocks(
-            task,
-            plan,
-            pool,
-            writer,
-            writer.checkpoint(Tally),
-            on_progress=watch.progress,
-            enough=enough(task.simulation),
-        )
-    writer.drop_from(plan.block_count(outcome.trials))
-    return outcome, pool.slots
-
-
-def _kept(writer: RunWriter, plan: Plan) -> str:
-    kept = min(writer.kept_blocks(Tally) * plan.block_trials, plan.trials)
-    return f"{kept} of {plan.trials} trials are"
-
-
-def _finished(writer: RunWriter, summary: Mapping[str, Any], watch: Watch) -> Run:
-    with writer.pictures() as place:
-        watch.finisher(place, summary)
-    return writer.finish(summary)
 
 
 def load(scene: Scene | Path | str, *, trust_parts: bool = False, kinds: Grammar | None = None) -> Scene:

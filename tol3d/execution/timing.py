@@ -21,21 +21,21 @@ class Clock:
     began: float = field(default_factory=time.perf_counter)
     trials_began: float = 0.0
     trials_ended: float = 0.0
+    slots: int = 1
 
     def start_trials(self) -> None:
         """Setup is over."""
         self.trials_began = time.perf_counter()
 
-    def end_trials(self) -> None:
-        """All trials are made."""
-        self.trials_ended = time.perf_counter()
+    def end_trials(self, slots: int) -> None:
+        """All trials are made, by so many workers."""
+        self.trials_ended, self.slots = time.perf_counter(), slots
 
-    def timing(self, outcome: Outcome[Any], slots: int) -> Mapping[str, float | None]:
+    def timing(self, outcome: Outcome[Any]) -> Mapping[str, float | None]:
         """As summary.json shows it.
 
         Args:
             outcome: of the trials.
-            slots: how many workers there were.
         """
         simulate_s = self.trials_ended - self.trials_began
         return {
@@ -44,7 +44,7 @@ class Clock:
             "first_block_s": round(outcome.first_block_s, 4),
             "trials_per_s": round((outcome.trials - outcome.resumed_trials) / simulate_s, 1),
             "resumed_trials": outcome.resumed_trials,
-            "workers": slots,
+            "workers": self.slots,
             "peak_memory_mb": peak_memory_mb(),
         }
 
