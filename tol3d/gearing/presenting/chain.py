@@ -9,20 +9,24 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Circle, FancyBboxPatch, Patch, Polygon
 
-from tol3d.gearing.presenting.chain_bars import bar_scale, draw_bars
+from tol3d.gearing.presenting.chain_bars import draw_bars, draw_shares, highest_bar
 from tol3d.gearing.presenting.chain_grid import (
     ARM,
+    BARS,
     CHAIN,
     EDGE,
     HEAD,
     LIGHT,
+    LINES,
     NAMES,
-    ROW,
+    SHARES,
+    SKETCH,
     STRONG,
     TEXT,
     WIDTH,
     ChainRow,
     draw_caption,
+    plain_part,
     published_colours,
     rows_of,
 )
@@ -37,11 +41,12 @@ from tol3d.report.number import NOTHING, given_text, value_text
 Summary = Any  # typed, read by text
 
 SHAFT_HEIGHT: Final = 0.68  # inch
+MIDDLE: Final = LINES + CHAIN / 2  # inch, of the shafts, from the foot of their part of the picture
 LINE: Final = 0.19  # inch, from line to line of text
 SENSE_ABOVE: Final = 0.14  # inch, of the shaft's box
 TIP_REACH: Final = 0.42  # inch, of the arrow at the tip
 LINE_CAPTIONS: Final = ("ratio", "working flank", "own lost motion", "low … high (±3σ)")
-OF_ITS_LAW: Final = ", its law's"  # behind ends that are nearer than 3 sigma
+OF_ITS_LAW: Final = ", its law's"  # after ends that are nearer than 3 sigma
 NO_LINKS: Final = "there is no link between the shaft that is held and the one that is read"
 
 
@@ -59,32 +64,33 @@ def chain_figure(summary: Summary, train_name: str) -> Figure:
     train = summary["trains"][train_name]
     stages = stages_of(train)
     lines = sum_lines(train, summary)
-    rows = rows_of(stages, train["held"], ARM if train["lever_mm"] is not None else 0.0, 0.0) if stages else []
-    height = HEAD + ROW * len(rows) + height_of_sums(lines)
-    figure = new_figure(WIDTH, height)
+    rows = rows_of(stages, train["held"], ARM if train["lever_mm"] is not None else 0.0) if stages else []
+    heights = [HEAD, *(part for _ in rows for part in (SKETCH, BARS, SHARES)), height_of_sums(lines)]
+    figure = new_figure(WIDTH, sum(heights))
     figure.set_layout_engine("none")
-    axes = figure.add_axes((0.0, 0.0, 1.0, 1.0))
-    axes.set(xlim=(0, WIDTH), ylim=(HEAD - height, HEAD))
-    axes.set_axis_off()
-    _draw_head(axes, train_name, train, summary)
+    grid = figure.add_gridspec(
+        len(heights), 1, height_ratios=heights, left=0.0, right=1.0, bottom=0.0, top=1.0, hspace=0.0
+    )
+    _draw_head(plain_part(figure, grid[0, 0], HEAD), train_name, train, summary)
     if not rows:
-        say_instead(axes, NO_LINKS, GREY)
+        say_instead(plain_part(figure, grid[1, 0], heights[1]), NO_LINKS, GREY)
         return figure
-    scale = bar_scale(stages)
-    for row in rows:
-        _draw_row(axes, row)
-        draw_bars(axes, train, row, scale)
-    _draw_arm(axes, train, rows[-1])
-    draw_sums(figure, train, stages, lines)
+    highest = highest_bar(stages)
+    for index, row in enumerate(rows):
+        sketch, bars, shares = (grid[1 + 3 * index + part, 0] for part in range(3))
+        _draw_row(plain_part(figure, sketch, SKETCH), train, row)
+        draw_bars(figure, bars, train, row, highest)
+        draw_shares(figure, shares, row)
+    draw_sums(figure, grid[len(heights) - 1, 0], train, stages, lines)
     return figure
 
 
 def _draw_head(axes: Axes, name: str, train: Summary, summary: Summary) -> None:
     axes.text(EDGE, HEAD - 0.3, legible(name, 60), fontsize=16, fontweight="bold", color=BLACK, va="center")
     ratio = "" if train["ratio"] is None else f",  i = {whole_ratio_text(train['ratio'])}"
-    ways = f"{legible(train['driven'], 40)} → {legible(train['output'], 40)}{ratio}"
-    words = f"{ways}   ·   {legible(train['held'], 40)} held   ·   {summary['trials']} trials, seed {summary['seed']}"
-    seated = seated_text(summary["measures"].get(train["measure"], {}))
+    ends = f"{legible(train['driven'], 40)} → {legible(train['output'], 40)}{ratio}"
+    words = f"{ends}   ·   {legible(train['held'], 40)} held   ·   {summary['trials']} trials, seed {summary['seed']}"
+    seated = seated_text(summary["measures"][train["measure"]]) if train["measure"] in summary["measures"] else ""
     words += f"   ·   {seated}" if seated else ""
     axes.text(EDGE, HEAD - 0.63, words, fontsize=STRONG, color=GREY, va="center")
     marks: list[Patch | Line2D] = [
@@ -107,21 +113,28 @@ def _draw_head(axes: Axes, name: str, train: Summary, summary: Summary) -> None:
     )
 
 
-def _draw_row(axes: Axes, row: ChainRow) -> None:
+def _draw_row(axes: Axes, train: Summary, row: ChainRow) -> None:
     for column, stage in enumerate(row.stages):
         x = row.link_at(column)
         name = wrapped(f"{stage.number}  {stage.link}", row.pitch - 0.12, STRONG, 2, "bold")
-        at = row.top - NAMES / 2
-        axes.text(x, at, name, ha="center", va="center", fontsize=STRONG, fontweight="bold", color=BLACK)
-        draw_link(axes, stage, row.link_ends(column), row.middle)
+        axes.text(
+            x, SKETCH - NAMES / 2, name, ha="center", va="center", fontsize=STRONG, fontweight="bold", color=BLACK
+        )
+        draw_link(axes, stage, row.link_ends(column), MIDDLE)
         for line, (text, weight) in enumerate(_link_lines(stage)):
-            at = row.line_at(line, LINE)
-            axes.text(x, at, text, ha="center", va="center", fontsize=TEXT, fontweight=weight, color=BLACK)
+            axes.text(x, _line_at(line), text, ha="center", va="center", fontsize=TEXT, fontweight=weight, color=BLACK)
     for column in range(len(row.shafts)):
         _draw_shaft(axes, row, column)
     for line, caption in enumerate(LINE_CAPTIONS):
-        draw_caption(axes, row.line_at(line, LINE), caption)
-    draw_caption(axes, row.middle + SHAFT_HEIGHT / 2 + SENSE_ABOVE, "sense of rotation")
+        draw_caption(axes, _line_at(line) / SKETCH, caption)
+    draw_caption(axes, (MIDDLE + SHAFT_HEIGHT / 2 + SENSE_ABOVE) / SKETCH, "sense of rotation")
+    if row.last and train["lever_mm"] is not None:
+        _draw_arm(axes, train, row)
+
+
+def _line_at(line: int) -> float:
+    """Height of a line of text below the shafts."""
+    return LINES - (line + 0.5) * LINE
 
 
 def _link_lines(stage: Stage) -> Iterator[tuple[str, str]]:
@@ -135,7 +148,7 @@ def _link_lines(stage: Stage) -> Iterator[tuple[str, str]]:
 
 def _draw_shaft(axes: Axes, row: ChainRow, column: int) -> None:
     """A box with round ends; dashed where the same shaft has stood at the end of the row before."""
-    x, y = row.shaft_at(column), row.middle
+    x, y = row.shaft_at(column), MIDDLE
     corner = (x - row.shaft / 2, y - SHAFT_HEIGHT / 2)
     ends = f"round,pad=0,rounding_size={0.45 * SHAFT_HEIGHT}"
     box = FancyBboxPatch(corner, row.shaft, SHAFT_HEIGHT, boxstyle=ends)
@@ -150,10 +163,8 @@ def _draw_shaft(axes: Axes, row: ChainRow, column: int) -> None:
 
 
 def _draw_arm(axes: Axes, train: Summary, row: ChainRow) -> None:
-    """An arm that grows thinner to its tip, behind the last shaft."""
-    if train["lever_mm"] is None:
-        return
-    start, y = row.shaft_at(len(row.stages)) + row.shaft / 2, row.middle
+    """An arm that grows thinner to its tip, at the right of the last shaft."""
+    start, y = row.shaft_at(len(row.stages)) + row.shaft / 2, MIDDLE
     end = start + ARM - 0.25
     beam = Polygon([(start - 0.1, y - 0.13), (start - 0.1, y + 0.13), (end, y + 0.05), (end, y - 0.05)])
     beam.set(facecolor="#D9D9D9", edgecolor=GREY, linewidth=1.3, zorder=1)
@@ -163,5 +174,4 @@ def _draw_arm(axes: Axes, train: Summary, row: ChainRow) -> None:
     axes.annotate("", (end, y + TIP_REACH), (end, y - TIP_REACH), arrowprops=arrow)
     name = wrapped(train["point"] or "tip", ARM, TEXT, 2)
     text = f"{name}\nlever {given_text(train['lever_mm'], 'mm')} mm"
-    below = y - CHAIN / 2
-    axes.text(start + ARM / 2, below, text, ha="center", va="top", fontsize=TEXT, color=BLACK, linespacing=1.25)
+    axes.text(start + ARM / 2, LINES, text, ha="center", va="top", fontsize=TEXT, color=BLACK, linespacing=1.25)

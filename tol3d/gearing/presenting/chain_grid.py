@@ -1,4 +1,4 @@
-"""Where things stand in the picture of a train; all lengths in inches of the picture, sizes of text in points."""
+"""Where things stand in the picture of a train: its parts below each other, its columns; lengths in inches."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -6,6 +6,8 @@ from itertools import accumulate
 from typing import Any, Final
 
 from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.gridspec import SubplotSpec
 
 from tol3d.gearing.presenting.stage import Stage, shafts_along
 from tol3d.report.canvas import GREY, PUBLISHED_COLOURS
@@ -22,12 +24,10 @@ NARROW_SHAFT: Final = 0.92
 LINK_ROOM: Final = 1.4  # between two shafts, which grow narrower for it
 MOST_IN_A_ROW: Final = 6
 MOST_PITCH: Final = 3.4
-NAMES: Final = 0.5  # heights of a row's parts, from its top
-CHAIN: Final = 1.3
-LINES: Final = 0.8
-BARS: Final = 1.6
+NAMES, CHAIN, LINES = 0.5, 1.3, 0.8  # heights of what is drawn of a row, from its top: names, shafts, lines of text
+SKETCH: Final = NAMES + CHAIN + LINES
+BARS: Final = 1.6  # heights of the bars below, and of the shares below those
 SHARES: Final = 0.75
-ROW: Final = NAMES + CHAIN + LINES + BARS + SHARES
 
 TEXT, SMALL, STRONG = 9.5, 9.0, 10.5
 LIGHT: Final = 0.4  # opacity of highs
@@ -42,7 +42,6 @@ class ChainRow:
         shafts: names of its shafts, one more than links.
         senses: 1 for a shaft that turns as the first one of the train does, else -1.
         first, pitch, shaft: middle of the first shaft, from shaft to shaft, a shaft's width [inch].
-        top: its upper end, from the foot of the picture [inch].
         last: whether the train ends here.
     """
 
@@ -52,27 +51,12 @@ class ChainRow:
     first: float
     pitch: float
     shaft: float
-    top: float
     last: bool
 
     @property
     def goes_on(self) -> bool:
         """Whether its first shaft stood at the end of the row before."""
         return self.stages[0].number > 1
-
-    @property
-    def middle(self) -> float:
-        """Height of the shafts."""
-        return self.top - NAMES - CHAIN / 2
-
-    @property
-    def floor(self) -> float:
-        """Height on which the bars stand."""
-        return self.top - NAMES - CHAIN - LINES - BARS
-
-    def line_at(self, line: int, height: float) -> float:
-        """Height of a line of text below the chain."""
-        return self.top - NAMES - CHAIN - (line + 0.5) * height
 
     def shaft_at(self, column: int) -> float:
         """Middle of a shaft."""
@@ -87,14 +71,13 @@ class ChainRow:
         return self.shaft_at(column) + self.shaft / 2, self.shaft_at(column + 1) - self.shaft / 2
 
 
-def rows_of(stages: Sequence[Stage], held: str, arm: float, top: float) -> list[ChainRow]:
+def rows_of(stages: Sequence[Stage], held: str, arm: float) -> list[ChainRow]:
     """The chain in as few rows as it needs, about as many links in each.
 
     Args:
         stages: of the train, one at least.
         held: the shaft that it begins with.
-        arm: room behind the last shaft [inch].
-        top: upper end of the first row [inch].
+        arm: room at the right of the last shaft [inch].
     """
     count = -(-len(stages) // MOST_IN_A_ROW)
     columns = -(-len(stages) // count)
@@ -111,16 +94,24 @@ def rows_of(stages: Sequence[Stage], held: str, arm: float, top: float) -> list[
             first=CAPTIONS + EDGE + shaft / 2,
             pitch=min((room - shaft) / columns, MOST_PITCH),
             shaft=shaft,
-            top=top - index * ROW,
             last=start == starts[-1],
         )
-        for index, start in enumerate(starts)
+        for start in starts
     ]
 
 
-def draw_caption(axes: Axes, y: float, text: str) -> None:
-    """A caption at the left of what stands at height `y`."""
-    axes.text(CAPTIONS, y, text, ha="right", va="center", fontsize=SMALL, color=GREY)
+def plain_part(figure: Figure, place: SubplotSpec, height: float) -> Axes:
+    """A part of the picture without axes, in which one unit is an inch, its lower left corner at 0."""
+    axes = figure.add_subplot(place)
+    axes.set(xlim=(0, WIDTH), ylim=(0, height))
+    axes.set_axis_off()
+    return axes
+
+
+def draw_caption(axes: Axes, share: float, text: str) -> None:
+    """A caption at the left of what stands at a share of the height of axes."""
+    at = CAPTIONS / WIDTH
+    axes.text(at, share, text, ha="right", va="center", fontsize=SMALL, color=GREY, transform=axes.transAxes)
 
 
 def published_colours(train: Summary) -> dict[str, str]:

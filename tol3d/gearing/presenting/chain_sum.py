@@ -6,6 +6,7 @@ from typing import Any, Final
 
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.gridspec import SubplotSpec
 
 from tol3d.gearing.presenting.chain_grid import LIGHT, SMALL, TEXT, WIDTH, published_colours
 from tol3d.gearing.presenting.link_symbol import LINK_COLOURS
@@ -32,7 +33,7 @@ class SumLine:
         label, text: what stands left and right of it.
         values: ends and mean.
         colour: of its bar.
-        stacked: the stages' highs one behind the other, instead of one bar from low to high.
+        stacked: the stages' highs end to end, instead of one bar from low to high.
     """
 
     label: str
@@ -73,11 +74,14 @@ def height_of_sums(lines: Sequence[SumLine]) -> float:
     return ABOVE + LINE * len(lines) + FOOT
 
 
-def draw_sums(figure: Figure, train: Summary, stages: Sequence[Stage], lines: Sequence[SumLine]) -> None:
+def draw_sums(
+    figure: Figure, place: SubplotSpec, train: Summary, stages: Sequence[Stage], lines: Sequence[SumLine]
+) -> None:
     """All lines on one axis, and the worst case as a mark across them."""
-    height, width = figure.get_figheight(), WIDTH - LABELS - VALUES
-    place = (LABELS / WIDTH, FOOT / height, width / WIDTH, LINE * len(lines) / height)
-    axes = plain_axes(figure.add_axes(place))
+    width = WIDTH - LABELS - VALUES
+    heights, widths = [ABOVE, LINE * len(lines), FOOT], [LABELS, width, VALUES]
+    parts = place.subgridspec(3, 3, height_ratios=heights, width_ratios=widths, wspace=0.0, hspace=0.0)
+    axes = plain_axes(figure.add_subplot(parts[1, 1]))
     axes.grid(axis="y", visible=False)
     most = max((end for line in lines for end in (line.values.mean, line.values.high) if end is not None), default=0.0)
     axes.set_xlim(0, 1.02 * most if most > 0 else 1.0)
