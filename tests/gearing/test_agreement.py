@@ -1,14 +1,16 @@
 """FCL on the solids' flanks against the stack-up, the exact closed form and a brute-force search of the surfaces."""
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
 import pytest
 from fixtures import EngineOf
 from gear_trials import drawn_trials, gear_columns
+from of_kind import of_kind
 from oracles import brute_force, exact_eccentric
-from oracles.involute_gear import InvoluteGear
+from oracles.plain import plain_spur
 from oracles.poses import world_from_gears
 from oracles.thickness import thickness_of
 from scipy.spatial.transform import Rotation
@@ -16,6 +18,7 @@ from scipy.spatial.transform import Rotation
 from tol3d.distributions import Uniform
 from tol3d.gearing.build import Build, build
 from tol3d.gearing.engines import INTERFERES, OK
+from tol3d.gearing.engines.gaps import Gaps
 from tol3d.gearing.measures import measure_backlash
 from tol3d.gearing.meshing import Meshing
 from tol3d.gearing.model import (
@@ -42,14 +45,6 @@ FREE_OF_CHORDS = 0.005e-3  # mm; FCL's own rounding and the oracle's zooms: on f
 PAPER_MEAN, PAPER_SIGMA = 53.397e-3, 7.216e-3  # mm; closed form of the stack-up on the paper's Tables 1 and 2
 
 
-def oracle_gear(gear: SpurGear, thickness: object = 0.0, growth: float = 1.0) -> InvoluteGear:
-    """The plain numbers of a gear, with thickness deviations (n,) or none."""
-    deviation = np.reshape(thickness, (-1, 1, 1, 1)) if np.ndim(thickness) else thickness
-    return InvoluteGear(
-        gear.teeth, gear.module, gear.pressure_angle, gear.face_width, gear.profile_shift, gear.addendum, deviation
-    ).grown(growth)
-
-
 def with_flank(model: Model, flank: Flank) -> Model:
     return replace(model, meshes=tuple(replace(mesh, working_flank=flank) for mesh in model.meshes))
 
@@ -70,7 +65,7 @@ class Rows:
 
     @property
     def kind(self) -> Backlash:
-        return self.model.measures[0].kind
+        return of_kind(Backlash, self.model.measures[0].kind)
 
     def analytic(self, deviations: np.ndarray | None = None, driver_angle: np.ndarray | None = None) -> np.ndarray:
         deviations = self.deviations if deviations is None else deviations
@@ -88,7 +83,7 @@ def rows(request: pytest.FixtureRequest, paper_model: Model, engine_of: EngineOf
     made, engine = build(model, block.deviations), engine_of(model)
     meshing = Meshing(engine, model, mesh, made, Reading())
     seat = meshing.seat(angle)
-    values = measure_backlash(model.measures[0].kind, meshing, seat)
+    values = measure_backlash(of_kind(Backlash, model.measures[0].kind), meshing, seat)
     return Rows(model, block.deviations, angle, made, values, seat.status)
 
 
@@ -108,8 +103,8 @@ def test_every_row_agrees_with_the_exact_eccentric_pair_to_0_12_um(rows: Rows) -
 def exact_rows(rows: Rows) -> np.ndarray:
     mesh, made = rows.model.meshes[0], rows.made
     return exact_eccentric.normal_backlash(
-        oracle_gear(mesh.pair.pinion),
-        oracle_gear(mesh.pair.wheel),
+        plain_spur(mesh.pair.pinion),
+        plain_spur(mesh.pair.wheel),
         thickness_of(rows.model, made).sum(axis=1),
         made.world_from_shaft[:, 1, :2, 3] - made.world_from_shaft[:, 0, :2, 3],
         (made.centre[:, 0], made.centre[:, 1]),
@@ -121,7 +116,7 @@ def exact_rows(rows: Rows) -> np.ndarray:
 def test_the_exact_eccentric_pair_agrees_with_brute_force_to_1e_8_mm(rows: Rows) -> None:
     few, mesh = slice(0, 10), rows.model.meshes[0]
     gears = (mesh.pair.pinion, mesh.pair.wheel)
-    pinion, wheel = (oracle_gear(gear, thickness_of(rows.model, rows.made)[few, k]) for k, gear in enumerate(gears))
+    pinion, wheel = (plain_spur(gear, thickness_of(rows.model, rows.made)[few, k]) for k, gear in enumerate(gears))
     shafts, centres = rows.made.world_from_shaft[few], rows.made.centre[few]
     searched = brute_force.Mesh(pinion, wheel, shafts[:, 0], shafts[:, 1], centres[:, 0], centres[:, 1])
     found = brute_force.normal_backlash(searched, rows.driver_angle[few], mesh.working_flank)
@@ -237,8 +232,8 @@ def posed(case: Case, count: int, seed: int, flank: Flank) -> Posed:
     still = np.zeros((count, 2, 3))  # the start of the turn does not know the tilts, nor need it
     made = Build(shafts, centre, still, half_turns, np.zeros((count, 2)), np.tile(case.growth, (count, 1)))
     driver_angle = rng.uniform(0.0, 2 * np.pi * mesh.pair.long_period_turns, count)
-    plain = [oracle_gear(gear, thickness[:, k], case.growth[k]) for k, gear in enumerate(gears)]
-    searched = brute_force.Mesh(*plain, shafts[:, 0], shafts[:, 1], centre[:, 0], centre[:, 1])
+    pinion, wheel = (plain_spur(gear, thickness[:, k], case.growth[k]) for k, gear in enumerate(gears))
+    searched = brute_force.Mesh(pinion, wheel, shafts[:, 0], shafts[:, 1], centre[:, 0], centre[:, 1])
     return Posed(model, made, driver_angle, searched)
 
 
@@ -320,7 +315,7 @@ def test_first_contact_lies_on_the_flank_of_a_tooth_that_the_search_finds_touchi
 @pytest.mark.parametrize("side", [RIGHT, LEFT], ids=["right", "left"])
 @pytest.mark.parametrize("of_driver", [True, False], ids=["driver turns", "driven turns"])
 def test_a_gap_s_derivative_by_a_turn_is_its_difference_quotient(
-    of_driver: bool, side: int, engine_of: EngineOf
+    of_driver: bool, side: Flank, engine_of: EngineOf
 ) -> None:
     poses = posed(CASES["paper"], 6, 31, RIGHT)
     mesh, engine = poses.mesh, engine_of(poses.model)
@@ -329,7 +324,7 @@ def test_a_gap_s_derivative_by_a_turn_is_its_difference_quotient(
     teeth, wanted = mesh.pair.candidate_teeth(poses.driver_angle, side)
     step = np.array([1e-6, 0.0] if of_driver else [0.0, 1e-6])  # rad; 0.1 um, over which a gap bends by 1e-9 mm
 
-    def gaps(sign: int):
+    def gaps(sign: int) -> Gaps:
         at = (angles[0] + sign * step[0], angles[1] + sign * step[1])
         return engine.gaps(poses.made, mesh, side, at, teeth, wanted)
 
@@ -373,7 +368,7 @@ def test_gears_of_one_material_in_a_housing_of_another_are_a_scaled_pair(kelvin:
     measured = measure_backlash(Backlash("normal_backlash", "mesh", "wheel"), meshing, seat)
     grown, opened = 1 + steel * kelvin, 1 + aluminium * kelvin
     # in lengths measured with the gears' own steel the axes stand at a (1 + housing)/(1 + gears)
-    exact = grown * SpurPair(mesh.pair.pinion, mesh.pair.wheel, 172.6 * opened / grown).normal_backlash
+    exact = grown * replace(of_kind(SpurPair, mesh.pair), centre_distance=172.6 * opened / grown).normal_backlash
     assert np.abs(measured - exact).max() <= BRUTE_FORCE_BOUND
     stack = analytic_backlash(model, Backlash("normal_backlash", "mesh", "wheel"), np.full((1, 1), kelvin), angle[:1])
     # first order: at 60 K the axes part by 0.12 mm, the square of which is worth da^2/(a tan alpha_w) = 0.24 um
@@ -395,7 +390,7 @@ def test_a_warm_pinion_in_a_cold_house_closes_until_it_interferes(engine_of: Eng
 # the same bits ------------------------------------------------------------------------------------------------
 
 
-def assert_same_bits(first: dict[str, np.ndarray], second: dict[str, np.ndarray]) -> None:
+def assert_same_bits(first: Mapping[str, np.ndarray], second: Mapping[str, np.ndarray]) -> None:
     assert first.keys() == second.keys()
     for name in first:
         assert np.ascontiguousarray(first[name]).tobytes() == np.ascontiguousarray(second[name]).tobytes(), name

@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from gear_trials import drawn_trials
+from of_kind import of_kind
 from places import SPUR_PAIR
 
 from tol3d import Overrides, Scene, load_scene, run_scene
@@ -27,7 +28,7 @@ from tol3d.gearing.model import (
 )
 from tol3d.gearing.roads.analytic import analytic_values
 from tol3d.gearing.stack_up import analytic_backlash, closed_form, stack_of
-from tol3d.gears import SpurPair
+from tol3d.gears import SpurGear, SpurPair
 
 SIN, COS = math.sin(math.radians(20)), math.cos(math.radians(20))
 
@@ -79,7 +80,8 @@ def test_closed_form_is_what_the_sample_tends_to(
 ) -> None:
     """Mean and sigma of 40 000 drawn rows within 4.5 standard errors of the closed form."""
     trials = 40_000
-    pair = SpurPair(model.gears[0].gear, replace(model.gears[1].gear, teeth=wheel_teeth), 35.0 + 1.25 * wheel_teeth)
+    pinion, wheel = (of_kind(SpurGear, part.gear) for part in model.gears)
+    pair = SpurPair(pinion, replace(wheel, teeth=wheel_teeth), 35.0 + 1.25 * wheel_teeth)
     model = replace(model, meshes=(replace(model.meshes[0], pair=pair),))
     contributors = [
         replace(c, draw=Planar(c.distribution, direction)) if isinstance(c.draw, Planar) else c
@@ -116,11 +118,11 @@ def test_tilt_loss_is_half_normal(model: Model) -> None:
 @pytest.mark.parametrize("centre_distance", [172.3, 172.5, 173.1])
 def test_linear_coefficients_are_the_derivatives_of_the_exact_backlash(model: Model, centre_distance: float) -> None:
     """Central differences of the exact pair, with the working pressure angle of its centre distance."""
-    mesh = replace(model.meshes[0], pair=replace(model.meshes[0].pair, centre_distance=centre_distance))
+    pair = replace(of_kind(SpurPair, model.meshes[0].pair), centre_distance=centre_distance)
+    mesh = replace(model.meshes[0], pair=pair)
     shifted = replace(model, meshes=(mesh,))
     stack = stack_of(shifted, mesh, Reading())
     step = 1e-4
-    pair = mesh.pair
 
     def backlash(*, distance: float = 0.0, thickness: float = 0.0) -> float:
         wheel = replace(pair.wheel, tooth_thickness_deviation=thickness)
@@ -144,7 +146,7 @@ def test_one_material_only_scales(model: Model) -> None:
     housing = type("H", (), {"name": "housing", "expansion": steel})()
     warm = Contributor("t", "", Temperature(("pinion", "wheel", "housing")), Scalar(Uniform(0.0, 100.0)), "K")
     changed = replace(model, gears=gears, housings=(housing,), meshes=(mesh,), contributors=(warm,))
-    value = analytic_backlash(changed, model.measures[0].kind, np.array([[100.0]]), np.zeros(1))[0]
+    value = analytic_backlash(changed, of_kind(Backlash, model.measures[0].kind), np.array([[100.0]]), np.zeros(1))[0]
     assert abs(value - mesh.pair.normal_backlash) < 1e-12
 
 
@@ -155,19 +157,19 @@ def test_aluminium_housing_opens_steel_gears(model: Model) -> None:
     housing = type("H", (), {"name": "housing", "expansion": 23.0e-6})()
     warm = Contributor("t", "", Temperature(("pinion", "wheel", "housing")), Scalar(Uniform(0.0, 20.0)), "K")
     changed = replace(model, gears=gears, housings=(housing,), meshes=(mesh,), contributors=(warm,))
-    value = analytic_backlash(changed, model.measures[0].kind, np.array([[20.0]]), np.zeros(1))[0]
+    value = analytic_backlash(changed, of_kind(Backlash, model.measures[0].kind), np.array([[20.0]]), np.zeros(1))[0]
     assert value == pytest.approx(2 * SIN * 172.5 * 11.5e-6 * 20, rel=1e-9)
 
 
 def test_backlash_kinds_are_one_number_in_three_units(model: Model) -> None:
     row, angle = np.zeros((1, model.component_count)) - 0.01, np.array([0.3])
     normal, arc, turn, driver_turn = (
-        analytic_backlash(model, Backlash(quantity, "gear pair", gear), row, angle)[0]
-        for quantity, gear in (
-            ("normal_backlash", "wheel"),
-            ("circumferential_backlash", "wheel"),
-            ("angular_backlash", "wheel"),
-            ("angular_backlash", "pinion"),
+        analytic_backlash(model, kind, row, angle)[0]
+        for kind in (
+            Backlash("normal_backlash", "gear pair", "wheel"),
+            Backlash("circumferential_backlash", "gear pair", "wheel"),
+            Backlash("angular_backlash", "gear pair", "wheel"),
+            Backlash("angular_backlash", "gear pair", "pinion"),
         )
     )
     assert arc == pytest.approx(normal / COS, rel=1e-12)

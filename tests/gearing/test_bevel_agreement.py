@@ -5,6 +5,7 @@ with an exact solver that shares no code with this program.
 """
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
@@ -12,8 +13,10 @@ import numpy as np
 import pytest
 from fixtures import EngineOf
 from gear_trials import gear_columns
+from of_kind import of_kind
 from oracles import bevel_brute_force
-from oracles.bevel_brute_force import BevelMesh, BevelNumbers
+from oracles.bevel_brute_force import BevelMesh
+from oracles.plain import plain_bevel
 from scipy.spatial.transform import Rotation
 
 from tol3d import Scene
@@ -116,13 +119,13 @@ def test_ten_um_of_shaft_angle_at_the_mean_cone_distance(
 def test_two_shims_behind_the_gears_take_46_33_um(engine_of: EngineOf) -> None:
     shims = {f"{gear} shim": constant("shim", gear, "0.048 mm") for gear in ("driver", "driven")}
     thin = thinned("-42.5 um", along_face="constant")
-    at = {"phases": (0.0,), "tooth": "all", "steps": FINE}
+    at: dict[str, Any] = {"phases": (0.0,), "tooth": "all", "steps": FINE}
     (taken,) = gaps(engine_of, thin | shims, **at) - gaps(engine_of, thin, **at)
     assert taken == pytest.approx(-46.33, abs=0.01)
 
 
 # first-order change of the gap, um/um, of one tooth of the driven gear in its space, the driver's
-COEFFICIENTS = {
+COEFFICIENTS: dict[str, tuple[Callable[[str], dict[str, Tolerance]], float]] = {
     "driver moves along its axis": (lambda um: {"t": constant("axial_shift", "driver", um)}, 0.4358),
     "driven moves along its axis": (lambda um: {"t": constant("axial_shift", "driven", um)}, 0.5311),
     "both move along their axes": (
@@ -190,28 +193,15 @@ class Posed:
     searched: list[BevelMesh]
 
 
-def numbers_of(gear: BevelGear, turned: float, offset: float) -> BevelNumbers:
-    return BevelNumbers(
-        gear.teeth,
-        gear.module,
-        gear.pressure_angle,
-        gear.pitch_angle,
-        (gear.inner_cone_distance, gear.outer_cone_distance),
-        gear.profile_shift,
-        turned=turned,
-        offset=offset,
-    )
-
-
 def posed(case: Case, count: int, seed: int, flank: Flank) -> Posed:
     """Both gears anywhere within 20 um and 0.4 mrad of their place, eccentric, their teeth thinner both ways."""
     rng = np.random.default_rng(seed)
     angles = pitch_angles(*case.teeth, math.radians(case.degrees))
-    gears = [
+    pinion, wheel = gears = [
         BevelGear(z, case.module, ALPHA, face, delta, profile_shift=x)
         for z, face, delta, x in zip(case.teeth, case.faces, angles, (case.shifts, -case.shifts), strict=True)
     ]
-    pair = BevelPair(*gears, math.radians(case.degrees))
+    pair = BevelPair(pinion, wheel, math.radians(case.degrees))
     mesh = Mesh("mesh", "pinion", "wheel", pair, flank)
     model = Model("posed", (GearPart("pinion", gears[0]), GearPart("wheel", gears[1])), (), (), (mesh,), ())
     rest = bevel_brute_force.nominal_shafts(math.radians(case.degrees), count)
@@ -226,7 +216,8 @@ def posed(case: Case, count: int, seed: int, flank: Flank) -> Posed:
     made = Build(shafts, centre, turn, turned, offset, np.ones((count, 2)))
     searched = [
         BevelMesh(
-            *(numbers_of(gear, turned[row, k], offset[row, k]) for k, gear in enumerate(gears)),
+            plain_bevel(pinion, turned[row, 0], offset[row, 0]),
+            plain_bevel(wheel, turned[row, 1], offset[row, 1]),
             shafts[row : row + 1, 0],
             shafts[row : row + 1, 1],
             centre[row : row + 1, 0],
@@ -247,11 +238,12 @@ def measured(poses: Posed, engine: Engine, reading: Reading) -> np.ndarray:
 
 def found_by_search(poses: Posed, read_at: str) -> np.ndarray:
     """The same by brute force."""
-    pair, flank = poses.model.meshes[0].pair, poses.model.meshes[0].working_flank
+    mesh = poses.model.meshes[0]
+    pair, flank = of_kind(BevelPair, mesh.pair), mesh.working_flank
     middle = (pair.mean_cone_distance, pair.mean_cone_distance)
     found = []
-    for mesh, angle in zip(poses.searched, poses.driver_angle, strict=True):
-        own = mesh.between(*middle) if read_at == "mean_section" else mesh
+    for each, angle in zip(poses.searched, poses.driver_angle, strict=True):
+        own = each.between(*middle) if read_at == "mean_section" else each
         gap_at = middle if read_at == "face_contact" else None
         found.append(bevel_brute_force.normal_backlash(own, np.array([angle]), flank, gap_at)[0])
     return np.array(found)

@@ -5,6 +5,7 @@ is worked out here again, so that a direction that both roads misread alike is f
 """
 
 import math
+from collections.abc import Mapping
 from pathlib import Path
 
 import numpy as np
@@ -58,14 +59,14 @@ def clearance_scene(folder: Path, gear: str, direction: str, flank: str) -> Mode
     return model_from_scene(load_scene(path))
 
 
-def shift_of_the_axis(columns: dict[str, np.ndarray], gear: str, direction: str, sigma: Flank) -> np.ndarray:
+def shift_of_the_axis(columns: Mapping[str, np.ndarray], gear: str, direction: str, sigma: Flank) -> np.ndarray:
     """Half the drawn clearance in the direction that the text means, (n, 2) [um]."""
     if direction == "random":
         return np.stack([columns[f"bearing clearance.{axis} [um]"] / 2 for axis in "xy"], axis=1)
     return columns["bearing clearance [um]"][:, None] / 2 * np.array(direction_of(gear, direction, sigma))
 
 
-def exact_backlash(columns: dict[str, np.ndarray], shifts: dict[str, np.ndarray], sigma: Flank) -> np.ndarray:
+def exact_backlash(columns: Mapping[str, np.ndarray], shifts: dict[str, np.ndarray], sigma: Flank) -> np.ndarray:
     """Normal backlash [um] of the paper's pair by the closed form, from the drawn columns, (n,)."""
 
     thickness = columns["pinion tooth thickness [um]"] + columns["wheel tooth thickness [um]"]

@@ -1,11 +1,13 @@
 """What is approximated, and how fast the error falls: strips with their steps, extremes with their positions."""
 
 from dataclasses import replace
+from typing import Literal
 
 import numpy as np
 import pytest
 from fixtures import EngineOf
 from gear_trials import drawn_trials, gear_columns
+from of_kind import known, of_kind
 from oracles import exact_eccentric
 from oracles.involute_gear import InvoluteGear
 from oracles.thickness import thickness_of
@@ -20,8 +22,11 @@ from tol3d.gearing.model import Backlash, Measure, Model, Positions, Reading, mo
 from tol3d.gearing.seats import geometric_values, seated
 from tol3d.gears import LEFT, RIGHT
 from tol3d.gears.flank import Flank
+from tol3d.system.positions import Take
 from tol3d.system.taken import taken
 from tol3d.system.trials import Trials
+
+Over = Literal["random", "at", "turn", "long_period", "swing"]
 
 DENSITIES = (60, 80, 120, 160)
 TRIALS = 200  # the mean error of so many has a standard error of 3 %, and the same trials serve every density
@@ -33,14 +38,14 @@ LARGEST_PARABOLA_ERROR = 1.1e-4
 def exact_of(model: Model, block: Trials, angle: np.ndarray) -> np.ndarray:
     """Normal backlash [mm] of a block's trials by the closed form, (trials,) at driver angles (trials,)."""
     mesh, made = model.meshes[0], build(model, block.deviations)
-    gears = [
+    pinion, wheel = (
         InvoluteGear(gear.teeth, gear.module, gear.pressure_angle, gear.face_width)
         for gear in (mesh.pair.pinion, mesh.pair.wheel)
-    ]
+    )
     axis = made.world_from_shaft[:, 1, :2, 3] - made.world_from_shaft[:, 0, :2, 3]
     centres = (made.centre[:, 0], made.centre[:, 1])
     thickness = thickness_of(model, made).sum(axis=1)
-    return exact_eccentric.normal_backlash(*gears, thickness, axis, centres, angle, mesh.working_flank)
+    return exact_eccentric.normal_backlash(pinion, wheel, thickness, axis, centres, angle, mesh.working_flank)
 
 
 @pytest.mark.parametrize("flank", [RIGHT, LEFT], ids=["right", "left"])
@@ -55,7 +60,7 @@ def test_mean_error_of_the_strips_falls_with_the_square_of_the_step(
     for steps in DENSITIES:
         engine = engine_of(model, steps)
         meshing = Meshing(engine, model, mesh, made, Reading())
-        values = measure_backlash(model.measures[0].kind, meshing, meshing.seat(angle))
+        values = measure_backlash(of_kind(Backlash, model.measures[0].kind), meshing, meshing.seat(angle))
         errors.append(np.mean(values - exact))
         chords.append(engine.chord_error)
     order = -np.polyfit(np.log(DENSITIES), np.log(errors), 1)[0]
@@ -101,7 +106,7 @@ def test_fcl_converges_to_the_exact_engine_with_the_square_of_the_step(scene: st
 # extremes over positions ------------------------------------------------------------------------------------
 
 
-def extreme(take: str, over: str, count: int, turns: int = 1) -> Measure:
+def extreme(take: Take, over: Over, count: int, turns: int = 1) -> Measure:
     kind = Backlash("normal_backlash", "gear pair", "wheel")
     return Measure("extreme", kind, Positions(over, turns, count), take)
 
@@ -133,9 +138,10 @@ def dense_extremes(model: Model, block: Trials, turns: int, count: int) -> tuple
 
 @pytest.mark.parametrize(("over", "turns", "scan"), [("turn", 1, 721), ("long_period", 55, 4000)])
 def test_extremes_over_positions_agree_with_a_dense_scan(
-    over: str, turns: int, scan: int, paper_model: Model, engine_of: EngineOf
+    over: Over, turns: int, scan: int, paper_model: Model, engine_of: EngineOf
 ) -> None:
-    measures = tuple(replace(extreme(take, over, 24 * turns, turns), name=take) for take in ("min", "max", "range"))
+    takes: tuple[Take, ...] = ("min", "max", "range")
+    measures = tuple(replace(extreme(take, over, 24 * turns, turns), name=take) for take in takes)
     model = replace(paper_model, measures=measures)
     block = drawn_trials(model, 9, 0, 12)
     lowest, highest = dense_extremes(model, block, turns, scan)
@@ -152,6 +158,6 @@ def test_a_curve_is_the_values_at_its_positions(paper_model: Model, engine_of: E
     block, engine = drawn_trials(model, 2, 0, 3), engine_of(model)
     values = geometric_values(curve, seated(model, engine, block))
     assert np.array_equal(taken(curve, values), values)
-    for k, angle in enumerate(curve.positions.fixed):
+    for k, angle in enumerate(known(curve.positions.fixed)):
         exact = exact_of(model, block, np.full(3, angle))
         assert np.abs(values[:, k] - exact).max() < 0.12e-3

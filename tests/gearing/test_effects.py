@@ -8,8 +8,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 from gear_trials import drawn_trials
+from oracles.far_builds import PAIRS, far_block, far_model
 from places import SCENES
-from test_sensitivity import PAIRS, far_block, far_model
 
 from tol3d import load_scene
 from tol3d.gearing import effects

@@ -8,17 +8,21 @@ import math
 import os
 import subprocess
 import sys
+from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import fields, replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from numba import njit
+from of_kind import of_kind
 from oracles import brute_force, exact_eccentric, search
 from oracles.involute_gear import InvoluteGear
+from oracles.plain import plain_spur
 from oracles.poses import world_from_gears
 from oracles.random_builds import Builds, Spread, random_builds, searched_spurs
 from places import TESTS
@@ -29,6 +33,7 @@ from tol3d.gearing.build import Build
 from tol3d.gearing.engines import INTERFERES, NO_CONTACT, OK, OUT_OF_RANGE, MeshReading
 from tol3d.gearing.engines import exact as engines_exact
 from tol3d.gearing.engines.exact import ExactEngine
+from tol3d.gearing.engines.gaps import Gaps
 from tol3d.gearing.measures import measure_backlash, read_backlash
 from tol3d.gearing.meshing import Meshing
 from tol3d.gearing.model import Backlash, Reading
@@ -43,8 +48,8 @@ SEARCH_BOUND = 5e-6  # mm, as promised; seen: 3e-9 at a seat, 4e-7 of gaps, whic
 ROADS_BOUND = 5e-8  # mm; seen 3e-8, once in 60 000 free turns of eccentric gears, else 1e-9; see ACROSS_FACES
 ACROSS_FACES = 1e-6  # mm; beyond the end of the mate's face 0.4 mm are read along its normal: 0.4 (2 mrad)^2/2
 CANDIDATE_READINGS = [
-    Reading(contact, gap, teeth)
-    for contact, gap in (("face", "face"), ("face", "section"), ("section", "section"))
+    replace(reading, teeth=teeth)
+    for reading in (Reading("face", "face"), Reading("face", "section"), Reading("section", "section"))
     for teeth in ("all", "driver", "driven")
 ]
 
@@ -88,7 +93,7 @@ def spur_pairs(draw: st.DrawFn, smallest_module: float = 0.5, room: float = 0.0)
         shift = draw(st.floats(least, least + 0.6))
         gears.append(_gear(teeth, module, alpha, draw(st.floats(5.0, 100.0)), shift))
     try:
-        pair = pair_of(*gears, opened=draw(st.floats(0.0, 0.05)) * module)
+        pair = pair_of(gears[0], gears[1], opened=draw(st.floats(0.0, 0.05)) * module)
     except GeometryError:
         assume(False)
         raise
@@ -139,13 +144,11 @@ PARALLEL = Spread(tilt=0.0, shift=0.05, centre=0.03, turned=0.02, offset=0.0)
 def closed_form(builds: Builds) -> np.ndarray:
     """Normal backlash of parallel axes, gears eccentric [mm]."""
     made, pair = builds.made, builds.mesh.pair
-    gears = [
-        InvoluteGear(g.teeth, g.module, g.pressure_angle, g.face_width, g.profile_shift, g.addendum)
-        for g in (pair.pinion, pair.wheel)
-    ]
-    thickness = sum(2 * g.reference_radius * made.flank_turn[:, k] for k, g in enumerate((pair.pinion, pair.wheel)))
+    first, second = (of_kind(SpurGear, gear) for gear in (pair.pinion, pair.wheel))
+    thickness = 2 * (first.reference_radius * made.flank_turn[:, 0] + second.reference_radius * made.flank_turn[:, 1])
     return exact_eccentric.normal_backlash(
-        *gears,
+        plain_spur(first),
+        plain_spur(second),
         thickness,
         made.world_from_shaft[:, 1, :2, 3] - made.world_from_shaft[:, 0, :2, 3],
         (made.centre[:, 0], made.centre[:, 1]),
@@ -306,11 +309,11 @@ def test_the_search_s_own_zooms_have_converged_to_1e_9_mm() -> None:
     assert np.abs(usual - finest).max() < 1e-9
 
 
-def section_by(lowest):
+def section_by(lowest: search.Lowest) -> Callable[[Any, float], float]:
     """The lowest point over the string in one section."""
 
     @njit
-    def at(fixed, z):
+    def at(fixed: Any, z: float) -> float:
         return lowest((fixed, z), 0.0, fixed[0][3])[0]
 
     return at
@@ -415,7 +418,8 @@ def off_flank(gear: InvoluteGear, points: np.ndarray, teeth: np.ndarray, flank: 
     numbers = np.array(search._spur_numbers(gear, np.zeros(len(points))))
     azimuths = gear.pitch * teeth
     found = [
-        search.spur_distance(tuple(n), *p, a, float(flank)) for n, p, a in zip(numbers, points, azimuths, strict=True)
+        search.spur_distance(tuple(n), p[0], p[1], p[2], a, float(flank))
+        for n, p, a in zip(numbers, points, azimuths, strict=True)
     ]
     return np.array(found)
 
@@ -443,7 +447,7 @@ def test_a_gap_s_derivative_by_a_turn_is_its_central_difference(flank: Flank, of
     angles = (builds.driver_angle, read(builds).driven_angle)
     teeth, near = pair.candidate_teeth(angles[0], flank)
 
-    def gaps(sign: int):
+    def gaps(sign: int) -> Gaps:
         turn = sign * step * np.array([of_driver, not of_driver])
         return engine.gaps(builds.made, builds.mesh, flank, (angles[0] + turn[0], angles[1] + turn[1]), teeth, near)
 

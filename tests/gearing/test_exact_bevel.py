@@ -1,23 +1,30 @@
 """The exact engine on bevel gears: against a search of the surfaces, against closed forms, against itself."""
 
 import math
+from collections.abc import Iterable, Iterator
 from dataclasses import replace
+from typing import Literal
 
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from of_kind import of_kind
 from oracles import bevel_brute_force, search
+from oracles.bevel_brute_force import BevelMesh
 from oracles.poses import world_from_gears
 from oracles.random_builds import Builds, Spread, random_builds, searched_bevels
 
 from tol3d.gearing.engines import OK, OUT_OF_RANGE, MeshReading
 from tol3d.gearing.engines.exact import ExactEngine
+from tol3d.gearing.engines.gaps import Gaps
 from tol3d.gearing.measures import measure_backlash, read_backlash
 from tol3d.gearing.meshing import Meshing
 from tol3d.gearing.model import Backlash, Reading
 from tol3d.gears import LEFT, RIGHT, BevelGear, BevelPair, driver_teeth_at_one_tooth, pitch_angles
-from tol3d.gears.flank import Flank
+from tol3d.gears.flank import Flank, opposite
+
+Teeth = Literal["all", "driver", "driven"]
 
 ALPHA = math.radians(20.0)
 SEARCH_BOUND = 5e-6  # mm, as promised; seen: 6e-7 at seats, 1.3e-6 of gaps, which is GAP_SLANT
@@ -34,13 +41,15 @@ FLANKS = pytest.mark.parametrize("flank", [RIGHT, LEFT], ids=["right", "left"])
 BOTH_GEARS = frozenset(("pinion", "wheel"))
 
 
-def pair_of(teeth: tuple[int, int], module: float, degrees: float, faces: tuple[float, float], shift: float = 0.0):
+def pair_of(
+    teeth: tuple[int, int], module: float, degrees: float, faces: tuple[float, float], shift: float = 0.0
+) -> BevelPair:
     angles = pitch_angles(*teeth, math.radians(degrees))
-    gears = (
+    pinion, wheel = (
         BevelGear(z, module, ALPHA, face, delta, profile_shift=x)
         for z, face, delta, x in zip(teeth, faces, angles, (shift, -shift), strict=True)
     )
-    pair = BevelPair(*gears, math.radians(degrees))
+    pair = BevelPair(pinion, wheel, math.radians(degrees))
     pair.refuse_interference()
     return pair
 
@@ -71,15 +80,17 @@ def in_range(builds: Builds, reading: Reading) -> Builds:
     return replace(builds, made=builds.made.rows(rows), driver_angle=builds.driver_angle[rows])
 
 
-def one_build(builds: Builds, reading: Reading, place: str):
+def one_build(builds: Builds, reading: Reading, place: str) -> Iterator[BevelMesh]:
     """Each build as the search sees it: whole, or its driver cut down to the middle section."""
-    middle = builds.mesh.pair.mean_cone_distance
+    middle = of_kind(BevelPair, builds.mesh.pair).mean_cone_distance
     for row, mesh in enumerate(searched_bevels(builds)):
         at = middle * builds.made.scale[row, 0]
         yield mesh.between(at, at) if getattr(reading, place) == "section" else mesh
 
 
-def smallest(meshes, builds: Builds, reading: Reading, driver: np.ndarray, driven: np.ndarray, flank: Flank):
+def smallest(
+    meshes: Iterable[BevelMesh], builds: Builds, reading: Reading, driver: np.ndarray, driven: np.ndarray, flank: Flank
+) -> np.ndarray:
     """Smallest distances of one side by the search [mm], of those teeth that the reading looks at."""
     found, pitch = [], builds.mesh.pair.pinion.angular_pitch
     for row, mesh in enumerate(meshes):
@@ -96,9 +107,9 @@ def smallest(meshes, builds: Builds, reading: Reading, driver: np.ndarray, drive
 def check_against_search(builds: Builds, reading: Reading) -> None:
     builds = in_range(builds, reading)
     seen, flank = read(builds, reading), builds.mesh.working_flank
-    driver, driven, other = builds.driver_angle, seen.driven_angle, -builds.mesh.working_flank
+    driver, driven, other = builds.driver_angle, seen.driven_angle, opposite(builds.mesh.working_flank)
 
-    def distances(place: str, first: np.ndarray, second: np.ndarray, side: int) -> np.ndarray:
+    def distances(place: str, first: np.ndarray, second: np.ndarray, side: Flank) -> np.ndarray:
         return smallest(one_build(builds, reading, place), builds, reading, first, second, side)
 
     assert np.abs(distances("contact", driver, driven, flank)).max(initial=0.0) <= SEARCH_BOUND
@@ -126,7 +137,7 @@ def test_seats_gaps_and_free_turns_agree_with_a_search_of_the_surfaces(name: str
 @pytest.mark.parametrize("name", PAIRS)
 @FLANKS
 def test_a_thousand_poses_agree_with_a_search_of_the_surfaces(
-    name: str, reading: str, teeth: str, flank: Flank
+    name: str, reading: str, teeth: Teeth, flank: Flank
 ) -> None:
     own = replace(READINGS[reading], teeth=teeth)
     for spread in SPREADS.values():
@@ -192,7 +203,7 @@ def test_thinner_cones_leave_a_gap_proportional_to_the_cone_distance(name: str, 
 )
 @settings(max_examples=60)
 def test_reading_at_once_equals_reading_by_gaps(
-    name: str, flank: Flank, seed: int, reading: str, teeth: str, spread: str
+    name: str, flank: Flank, seed: int, reading: str, teeth: Teeth, spread: str
 ) -> None:
     pair, own = PAIRS[name], replace(READINGS[reading], teeth=teeth)
     builds = random_builds(pair, flank, 100, seed, spread=SPREADS[spread], thinner=THINNER)
@@ -250,7 +261,7 @@ def test_a_gap_s_derivative_by_a_turn_is_its_central_difference(flank: Flank, of
     angles = (builds.driver_angle, read(builds, READINGS["face"]).driven_angle)
     teeth, near = pair.candidate_teeth(angles[0], flank)
 
-    def gaps(sign: int):
+    def gaps(sign: int) -> Gaps:
         turn = sign * step * np.array([of_driver, not of_driver])
         return engine.gaps(builds.made, builds.mesh, flank, (angles[0] + turn[0], angles[1] + turn[1]), teeth, near)
 
@@ -314,7 +325,7 @@ def test_every_candidate_pair_s_gap_is_that_of_the_search(name: str, flank: Flan
     teeth, near = pair.candidate_teeth(builds.driver_angle, flank)
     gaps = ExactEngine(builds.model).gaps(builds.made, builds.mesh, flank, angles, teeth, near).value
     for row, mesh in enumerate(searched_bevels(builds)):
-        numbers, distance, _ = search.bevel_distances(mesh, *(a[row : row + 1] for a in angles), flank)
+        numbers, distance, _ = search.bevel_distances(mesh, angles[0][row : row + 1], angles[1][row : row + 1], flank)
         for k in np.flatnonzero(near[row]):
             found = distance[0, numbers[0] == teeth[row, k]][0]
             # a pair whose flanks both end short of each other is told by a bound; a tip edge's overlap by its depth

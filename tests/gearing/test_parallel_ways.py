@@ -15,6 +15,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from gear_trials import drawn_trials, gear_columns
+from of_kind import of_kind
 from oracles import split
 from oracles.split import Gear, Reducer
 from places import SCENES
@@ -25,7 +26,7 @@ from tol3d.cli import main
 from tol3d.errors import SceneError
 from tol3d.gearing.engines.lazy import exact_engine
 from tol3d.gearing.measures import measure_backlash
-from tol3d.gearing.model import Model, model_from_scene
+from tol3d.gearing.model import Backlash, Model, model_from_scene
 from tol3d.gearing.play import seat_key
 from tol3d.gearing.seats import seated
 from tol3d.gearing.sensitivity import sensitivities
@@ -187,7 +188,7 @@ def nested() -> Drawing:
         "nl": Gear("second", 25, 1.6, sense=-1), "nm": Gear("second", 20), "nn": Gear("second", 40),
         "o": Gear("output", 20),
     }  # fmt: skip
-    links = {
+    links: dict[str, split.Mesh | split.Reducer] = {
         "beside": Reducer("input", "output", 1.0, np.zeros(1)),
         "begin": mesh("i", "k", 30, 60.0),
         "l in": mesh("kk", "l", 90, 40.0),
@@ -216,7 +217,7 @@ def plays(model: Model, block: Trials, side: str) -> np.ndarray:
 
 def both_roads(model: Model, block: Trials) -> Mapping[str, np.ndarray]:
     found = gear_columns(model, exact_engine(model), block)
-    return {road: found[f"{road}:lost motion"] / ARCMIN for road in ("analytic", "geometric")} | found
+    return {road: found[f"{road}:lost motion"] / ARCMIN for road in ("analytic", "geometric")} | dict(found)
 
 
 def test_by_thickness_alone_the_tighter_way_decides(tmp_path: Path) -> None:
@@ -485,9 +486,10 @@ def middles(model: Model, moved: Mapping[str, tuple[float, ...]]) -> tuple[np.nd
     for name, values in {"thickness": (-0.2,), **moved}.items():
         row[model.component_slices[name]] = values
     block = Trials(np.tile(row, (positions, 1)), {own.name: 0.3 + np.arange(positions) * 2 * np.pi / 150})
-    seats, key = seated(model, exact_engine(model), block), seat_key(model, measure, measure.kind)
-    resting = replace(measure.kind, quantity="rest_angle")
-    rest, play = (measure_backlash(kind, seats.meshings[key], seats.seats[key]) for kind in (resting, measure.kind))
+    kind = of_kind(Backlash, measure.kind)
+    seats, key = seated(model, exact_engine(model), block), seat_key(model, measure, kind)
+    resting = replace(kind, quantity="rest_angle")
+    rest, play = (measure_backlash(each, seats.meshings[key], seats.seats[key]) for each in (resting, kind))
     stacked = analytic_backlash(model, resting, block.deviations, block.positions[own.name])
     arm = own.pair.wheel.section_arm
     return (rest + own.working_flank * play / 2) * arm, stacked * arm

@@ -55,7 +55,9 @@ def shaft_poses(deviations: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 @pytest.mark.parametrize("gear", [0, 1], ids=["pinion", "wheel"])
-def test_world_from_gear_is_shaft_then_turn_then_offset_of_the_centre(gear: int, posed) -> None:
+def test_world_from_gear_is_shaft_then_turn_then_offset_of_the_centre(
+    gear: int, posed: tuple[Model, np.ndarray, Build]
+) -> None:
     _, deviations, made = posed
     angle = np.random.default_rng(1).uniform(-400.0, 400.0, len(deviations))
     expected = poses.world_from_gears(shaft_poses(deviations)[gear], angle, deviations[:, 2 * gear : 2 * gear + 2])
@@ -64,7 +66,7 @@ def test_world_from_gear_is_shaft_then_turn_then_offset_of_the_centre(gear: int,
 
 
 @pytest.mark.parametrize("gear", [0, 1], ids=["pinion", "wheel"])
-def test_teeth_are_the_gear_turned_about_its_own_centre(gear: int, posed) -> None:
+def test_teeth_are_the_gear_turned_about_its_own_centre(gear: int, posed: tuple[Model, np.ndarray, Build]) -> None:
     _, deviations, made = posed
     rng = np.random.default_rng(2)
     angle, turn = rng.uniform(-50.0, 50.0, len(deviations)), rng.uniform(-3.0, 3.0, (len(deviations), 4))
@@ -77,7 +79,7 @@ def test_teeth_are_the_gear_turned_about_its_own_centre(gear: int, posed) -> Non
             assert np.abs(origin[row] - expected[:3, 3]).max() <= POSE_BOUND
 
 
-def test_an_axis_is_where_the_gear_s_turns_leave_it(posed) -> None:
+def test_an_axis_is_where_the_gear_s_turns_leave_it(posed: tuple[Model, np.ndarray, Build]) -> None:
     _, deviations, made = posed
     for gear, shafts in enumerate(shaft_poses(deviations)):
         point, direction = made.axis(gear)
@@ -128,7 +130,7 @@ def test_products_have_the_same_bits_for_one_row_and_for_many(seed: int) -> None
         assert np.array_equal(frames.apply(left[row, 2, :3, :3], vector[row, 2]), applied[row, 2])
 
 
-def test_builds_have_the_same_bits_alone_and_among_many(posed) -> None:
+def test_builds_have_the_same_bits_alone_and_among_many(posed: tuple[Model, np.ndarray, Build]) -> None:
     model, deviations, made = posed
     angle = np.linspace(-7.0, 7.0, len(deviations))
     for row in (0, 13, 24):

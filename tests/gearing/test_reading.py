@@ -3,6 +3,7 @@
 import math
 from dataclasses import replace
 from pathlib import Path
+from typing import Literal
 
 import numpy as np
 import pytest
@@ -10,6 +11,7 @@ from fixtures import Command
 from gear_trials import drawn_trials, gear_columns, simulated
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from of_kind import of_kind
 from oracles.thinned_pairs import ThinnedPair, random_pair
 from places import SCENES
 
@@ -20,18 +22,21 @@ from tol3d.errors import SceneError
 from tol3d.gearing.engines import OK, STATUS_TEXT
 from tol3d.gearing.engines.fcl import FclEngine
 from tol3d.gearing.engines.lazy import exact_engine
-from tol3d.gearing.model import Model, Reading, model_from_scene
-from tol3d.gears import LEFT, RIGHT, one_tooth_acts, one_tooth_share
+from tol3d.gearing.model import Backlash, Model, Reading, model_from_scene
+from tol3d.gears import LEFT, RIGHT, SpurPair, one_tooth_acts, one_tooth_share
+from tol3d.gears.one_tooth import Owner
 from tol3d.solids import measuring_strips
 from tol3d.study.blocks import contacts_of
 from tol3d.system.trials import Trials
 from tol3d.units import ARCMIN
 
+Teeth = Literal["all", "driver", "driven"]
+
 ALPHA = math.radians(20.0)
 ROUNDING = 1e-8  # mm; of the exact engine in the middle of the face; seen: 5e-13 at module 3.5
 PLAY = "  play: {kind: normal_backlash, of: pair}"
 DEFAULTS = PLAY + "\n  turn: {kind: angular_backlash, of: pair}"
-OWNERS = ("driver", "driven")
+OWNERS: tuple[Owner, ...] = ("driver", "driven")
 
 
 def unequal(teeth: tuple[int, int], shift: float, thinner: float, degrees: float = 90.0) -> ThinnedPair:
@@ -56,12 +61,14 @@ def at_positions(model: Model, count: int, seed: int = 0) -> Trials:
     return Trials(block.deviations, {"pair": angles})
 
 
-def read_as(model: Model, teeth: str) -> Model:
+def read_as(model: Model, teeth: Teeth) -> Model:
     """The model, its measures read at other teeth, whether or not these are in action."""
     return replace(
         model,
         measures=tuple(
-            replace(m, kind=replace(m.kind, reading=replace(m.kind.reading, teeth=teeth))) for m in model.measures
+            replace(m, kind=replace(kind, reading=replace(kind.reading, teeth=teeth)))
+            for m in model.measures
+            for kind in (of_kind(Backlash, m.kind),)
         ),
     )
 
@@ -113,7 +120,7 @@ def test_defaults_hold_on_many_random_pairs(kind: str) -> None:
 # one tooth ----------------------------------------------------------------------------------------
 
 
-def within_action(model: Model, angles: np.ndarray, owner: str) -> np.ndarray:
+def within_action(model: Model, angles: np.ndarray, owner: Owner) -> np.ndarray:
     """By how many pitches both flanks of one tooth are within the nominal path of contact, (rows,).
 
     The driver's tooth next to the line of centres is up to half a pitch off it; a driven one stands in a space whose
@@ -127,7 +134,7 @@ def within_action(model: Model, angles: np.ndarray, owner: str) -> np.ndarray:
     return np.min([right - lowest, highest - right, left - lowest, highest - left], axis=0)
 
 
-def hold_one_tooth(pair: ThinnedPair, owner: str, positions: int, seed: int) -> None:
+def hold_one_tooth(pair: ThinnedPair, owner: Owner, positions: int, seed: int) -> None:
     """What is told of one tooth is the closed form; told it is where its flanks are in action, and only there."""
     model = read_as(pair.model(DEFAULTS), owner)
     block = at_positions(model, positions, seed)
@@ -152,21 +159,21 @@ def hold_one_tooth(pair: ThinnedPair, owner: str, positions: int, seed: int) -> 
 
 @given(kind=st.sampled_from(["bevel", "spur"]), seed=st.integers(0, 2**32), owner=st.sampled_from(OWNERS))
 @settings(max_examples=60)
-def test_one_tooth_is_told_where_it_is_in_action_and_then_right(kind: str, seed: int, owner: str) -> None:
+def test_one_tooth_is_told_where_it_is_in_action_and_then_right(kind: str, seed: int, owner: Owner) -> None:
     hold_one_tooth(random_pair(kind, seed), owner, 96, seed)
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("owner", OWNERS)
 @pytest.mark.parametrize("kind", ["bevel", "spur"])
-def test_one_tooth_of_many_random_pairs(kind: str, owner: str) -> None:
+def test_one_tooth_of_many_random_pairs(kind: str, owner: Owner) -> None:
     for seed in range(500):
         hold_one_tooth(random_pair(kind, seed), owner, 400, seed)
 
 
 @given(kind=st.sampled_from(["bevel", "spur"]), seed=st.integers(0, 2**32), owner=st.sampled_from(OWNERS))
 @settings(max_examples=40)
-def test_the_share_in_action_is_that_of_even_positions(kind: str, seed: int, owner: str) -> None:
+def test_the_share_in_action_is_that_of_even_positions(kind: str, seed: int, owner: Owner) -> None:
     pair = random_pair(kind, seed).model(PLAY).meshes[0].pair
     count = 2000
     even = (np.arange(count) + 0.5) / count * pair.pinion.angular_pitch
@@ -183,6 +190,7 @@ def test_the_active_flank_of_a_spur_tooth_ends_on_the_tip_circles() -> None:
     pair = (
         ThinnedPair((14, 33), (0.4, -0.1), (20.0, 20.0), (0.0, 0.0), 2.0, ALPHA, None, 47.6).model(PLAY).meshes[0].pair
     )
+    assert isinstance(pair, SpurPair)
     alpha, radii = pair.working_pressure_angle, pair.working_radii
     working_thickness = (
         2
@@ -288,7 +296,7 @@ def test_builds_that_take_the_tooth_out_of_action_are_counted_and_tell_nothing(t
 
 
 @pytest.mark.parametrize("teeth", ["all", "driven"])
-def test_fcl_reads_as_the_exact_engine_does(teeth: str) -> None:
+def test_fcl_reads_as_the_exact_engine_does(teeth: Teeth) -> None:
     """12 to 20 teeth: the same values to the chords, and no value of a tooth out of action.
 
     FCL's nearest points are its vertices, up to half a step of a flank off: one in 60 of its length, 0.02 pitches.

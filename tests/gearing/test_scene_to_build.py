@@ -196,7 +196,14 @@ def test_a_housing_that_no_mesh_names_moves_nothing(tmp_path: Path) -> None:
 
 
 def test_tolerances_of_one_gear_add_up(tmp_path: Path) -> None:
-    names = ("wide", "driven apart", "driven at 270 deg", "driven shifted", "warm housing", "eccentric driven")
+    names: tuple[str, ...] = (
+        "wide",
+        "driven apart",
+        "driven at 270 deg",
+        "driven shifted",
+        "warm housing",
+        "eccentric driven",
+    )
     names += ("driven's shaft runs out", "in plane, a length", "warm driven", "thick driven")
     text = "".join(CASES[name].text.replace("  it:", f"  {name.replace(',', '')}:") for name in names)
     made = built(model_of(tmp_path, text, mesh=f"{MESH}, housing: housing"))

@@ -2,13 +2,15 @@
 
 import math
 from dataclasses import replace
-from functools import cache
+from typing import Literal
 
 import numpy as np
 import pytest
+from of_kind import known, of_kind
+from oracles.far_builds import PAIRS, Acting, contributors, far_block, far_model, model_of, pair_of
 from scipy.spatial.transform import Rotation
 
-from tol3d.distributions import Constant, Uniform
+from tol3d.distributions import Constant
 from tol3d.gearing.build import build
 from tol3d.gearing.engines.exact import ExactEngine
 from tol3d.gearing.model import (
@@ -16,113 +18,33 @@ from tol3d.gearing.model import (
     AxisOffset,
     AxisTilt,
     Backlash,
-    Contributor,
     Effect,
-    GearPart,
     Measure,
-    Mesh,
     Model,
-    Planar,
     Positions,
     Reading,
-    Scalar,
-    Temperature,
     ToothThickness,
     TurningOffset,
 )
-from tol3d.gearing.model.model import Housing
 from tol3d.gearing.rates import build_rates, left_jacobian
 from tol3d.gearing.seats import geometric_values, seated
 from tol3d.gearing.sensitivity import by_contributor, peak_weights, sensitivities, taken_rates
 from tol3d.gearing.slopes import mean_slopes
-from tol3d.gears import LEFT, RIGHT, BevelGear, BevelPair, SpurGear, SpurPair, pitch_angles
+from tol3d.gears import LEFT, RIGHT
 from tol3d.gears.flank import Flank
+from tol3d.system.positions import Take
 from tol3d.system.stated import stated
 from tol3d.system.taken import taken
 from tol3d.system.trials import Trials
 
+Over = Literal["random", "at", "turn", "long_period", "swing"]
+
 ALPHA = math.radians(20.0)
 SINE = math.sin(ALPHA)
-LAW = Uniform(-1.0, 1.0)  # deviations are stated below, none is drawn
 STEPS = {"um": 1e-4, "mrad": 1e-5, "K": 0.1}  # mm, rad, K of a central difference
 # mm of the gap by one step of a difference; relative to that gap changes are compared, one scale for all units
 GAP_OF_STEP = {"um": 1e-4, "mrad": 1e-5 * 20.0, "K": 0.1 * 2e-4}
 AT_RANDOM = Positions("random", 1, 1)
-SPREAD = {"um": 0.012, "mrad": 0.5e-3, "K": 20.0}  # mm, rad, K of the builds far from nominal
-
-
-def effect_of_every_kind() -> list[tuple[Effect, str, bool]]:
-    """Effects of both gears with their unit, and whether the deviation is planar."""
-    effects: list[tuple[Effect, str, bool]] = []
-    for gear in ("pinion", "wheel"):
-        effects += [
-            (ToothThickness(gear, turn=0.02), "um", False),
-            (ToothThickness(gear, turn=0.0, offset=0.47), "um", False),
-            (TurningOffset(gear), "um", True),
-            (AxisOffset(gear, factor=0.5), "um", True),
-            (AxisOffset(gear, (0.6, 0.0, 0.8), 1.3), "um", False),
-            (AxisTilt(gear, (1.0, 0.0, 0.0)), "mrad", False),
-            (AxisTilt(gear, (0.0, -1.0, 0.0), 1 / 20, 17.0), "um", False),
-            (AxisTilt(gear, (0.6, 0.8, 0.0), 1.0, -9.0), "mrad", False),
-        ]
-    one_by_one: list[tuple[Effect, str, bool]] = [
-        (AxesOffset("wheel", "mesh"), "um", False),
-        (Temperature(("pinion",)), "K", False),
-        (Temperature(("wheel", "housing")), "K", False),
-        (Temperature(("pinion", "housing", "wheel")), "K", False),
-    ]
-    return effects + one_by_one
-
-
-def contributors(effects: list[tuple[Effect, str, bool]], law=LAW) -> tuple[Contributor, ...]:
-    return tuple(
-        Contributor(f"c{k}", "test", effect, Planar(law, None) if planar else Scalar(law), unit)
-        for k, (effect, unit, planar) in enumerate(effects)
-    )
-
-
-def pair_of(name: str) -> SpurPair | BevelPair:
-    if name == "spur":
-        pinion = SpurGear(18, 2.0, ALPHA, 10.0, profile_shift=0.2)
-        return SpurPair(pinion, SpurGear(25, 2.0, ALPHA, 8.0, profile_shift=0.1), 43.59)
-    teeth, module, faces, shift = {
-        "bevel 17/43": ((17, 43), 2.0, (12.0, 11.0), 0.3),
-        "bevel 31/31": ((31, 31), 3.5, (9.0, 9.0), 0.0),
-    }[name]
-    angles = pitch_angles(*teeth, math.pi / 2)
-    gears = [
-        BevelGear(z, module, ALPHA, face, angle, profile_shift=x)
-        for z, face, angle, x in zip(teeth, faces, angles, (shift, -shift), strict=True)
-    ]
-    return BevelPair(*gears, math.pi / 2)
-
-
-PAIRS = ("spur", "bevel 17/43", "bevel 31/31")
-
-
-def model_of(pair: SpurPair | BevelPair, flank: Flank, acting: tuple[Contributor, ...]) -> Model:
-    mesh = Mesh("mesh", "pinion", "wheel", pair, flank, "housing")
-    gears = (GearPart("pinion", pair.pinion, 11e-6), GearPart("wheel", pair.wheel, 17e-6))
-    return Model("posed", gears, (Housing("housing", 23e-6),), acting, (mesh,), ())
-
-
-@cache
-def far_model(name: str, flank: Flank) -> tuple[Model, ExactEngine]:
-    model = model_of(pair_of(name), flank, contributors(effect_of_every_kind()))
-    return model, ExactEngine(model)
-
-
-def far_block(model: Model, count: int, seed: int) -> Trials:
-    """Everything off at once: tilts of half a mrad, shifts of a dozen um, warm and cold gears, drivers anywhere."""
-    rng = np.random.default_rng(seed)
-    columns = []
-    for contributor in model.contributors:
-        low, high = -SPREAD[contributor.unit], SPREAD[contributor.unit]
-        if isinstance(contributor.effect, ToothThickness) and contributor.effect.turn:
-            radius = model.meshes[0].gear(contributor.effect.part).section_arm
-            low, high = -2.6 / radius, -2.4 / radius  # of 0.02 rad/mm: 50 um of each flank leave room for all the rest
-        columns.append(rng.uniform(low, high, (count, len(contributor.draw.components))))
-    return Trials(np.concatenate(columns, axis=1), {"mesh": rng.uniform(0.0, 50.0, count)})
 
 
 def of_steps(model: Model, lengths: dict[str, float]) -> np.ndarray:
@@ -150,7 +72,7 @@ def worst_error(model: Model, engine: ExactEngine, block: Trials, measure: Measu
     assert told.shape == expected.shape
     acts = np.isfinite(expected).all(axis=-1)
     assert np.array_equal(np.isfinite(told).all(axis=-1), acts)
-    assert acts.all() or (measure.kind.reading.teeth != "all" and acts.any())
+    assert acts.all() or (of_kind(Backlash, measure.kind).reading.teeth != "all" and acts.any())
     lever = 1 / 10.0 if measure.kind.is_angle else 1.0  # rad by a gap of 1 mm on base circles of 15 mm and more
     return float((np.abs(told - expected)[acts] / (lever * of_steps(model, GAP_OF_STEP))).max())
 
@@ -178,7 +100,7 @@ SMOOTH = 9
 def test_derivatives_far_from_nominal_are_those_of_central_differences(name: str, kind: str, flank: Flank) -> None:
     model, engine = far_model(name, flank)
     measure = Measure("play", KINDS[kind], AT_RANDOM, "value")
-    bound = DIFFERENCES_BOUND if "face" not in vars(measure.kind.reading).values() else FACE_BOUND
+    bound = DIFFERENCES_BOUND if "face" not in vars(KINDS[kind].reading).values() else FACE_BOUND
     assert worst_error(model, engine, far_block(model, 5, SMOOTH), measure) <= bound
 
 
@@ -195,7 +117,9 @@ def test_derivatives_of_any_builds_keep_within_the_bound_of_faces(name: str, kin
 @pytest.mark.parametrize("over", ["turn", "long_period"])
 @pytest.mark.parametrize("take", ["curve", "min", "max", "range"])
 @pytest.mark.parametrize("name", ["spur", "bevel 17/43"])
-def test_what_is_taken_over_a_turn_has_the_derivatives_of_central_differences(name: str, take: str, over: str) -> None:
+def test_what_is_taken_over_a_turn_has_the_derivatives_of_central_differences(
+    name: str, take: Take, over: Over
+) -> None:
     model, engine = far_model(name, LEFT)
     measure = Measure("play", KINDS["normal, mean section"], Positions(over, 1, 9), take)
     # a parabola's place moves by steps over its bend of some 10 um: 1e-4 of a step of 0.1 um, and by its square less
@@ -258,7 +182,7 @@ def test_the_weights_of_a_peak_give_the_peak(positions: int, closed: bool) -> No
 
 @pytest.mark.parametrize("over", [Positions("long_period", 1, 9), Positions("turn", 1, 8)], ids=["closed", "open"])
 @pytest.mark.parametrize("take", ["min", "max", "range"])
-def test_an_extreme_changes_as_its_parabola_does(take: str, over: Positions) -> None:
+def test_an_extreme_changes_as_its_parabola_does(take: Take, over: Positions) -> None:
     measure = Measure("extreme", KINDS["normal, face"], over, take)
     values = curves(200, 9)[50:]  # extremes of straight lines are kinks
     rates = np.random.default_rng(8).normal(size=(*values.shape, 2))
@@ -272,11 +196,9 @@ def test_an_extreme_changes_as_its_parabola_does(take: str, over: Positions) -> 
 # closed forms -----------------------------------------------------------------------------------------------------
 
 
-def slopes_at(
-    name: str, effects: list[tuple[Effect, str, bool]], thinner: float, angles: np.ndarray, kind: Backlash
-) -> np.ndarray:
+def slopes_at(name: str, effects: list[Acting], thinner: float, angles: np.ndarray, kind: Backlash) -> np.ndarray:
     """Derivatives by some effects, (angles, components), all at 0 but for teeth thinned by an offset [mm]."""
-    thin = [(ToothThickness("pinion", turn=0.0, offset=1.0), "um", False)]
+    thin: list[Acting] = [(ToothThickness("pinion", turn=0.0, offset=1.0), "um", False)]
     model = model_of(pair_of(name), LEFT, contributors(thin + effects))
     deviations = np.zeros((len(angles), model.component_count))
     deviations[:, 0] = -thinner
@@ -291,7 +213,11 @@ def test_a_spur_pair_opens_by_2_sin_alpha_w_per_centre_distance_and_closes_by_co
     pair = pair_of("spur")
     wheel = pair.wheel
     thickness = ToothThickness("wheel", turn=0.5 / wheel.thickness_radius)
-    effects = [(AxisOffset("wheel"), "um", False), (thickness, "um", False), (AxisOffset("wheel"), "um", True)]
+    effects: list[Acting] = [
+        (AxisOffset("wheel"), "um", False),
+        (thickness, "um", False),
+        (AxisOffset("wheel"), "um", True),
+    ]
     told = slopes_at("spur", effects, 0.02, SPUR_ANGLES, KINDS["normal, mean section"])
     opening = 2 * math.sin(math.acos(43 * math.cos(ALPHA) / 43.59))  # of the working pressure angle
     expected = [opening, -math.cos(ALPHA), opening, 0.0]
@@ -299,7 +225,7 @@ def test_a_spur_pair_opens_by_2_sin_alpha_w_per_centre_distance_and_closes_by_co
 
 
 def test_an_angle_changes_by_the_gap_over_the_base_radius() -> None:
-    effects = [(AxisOffset("wheel"), "um", False)]
+    effects: list[Acting] = [(AxisOffset("wheel"), "um", False)]
     pair = pair_of("spur")
     opening = 2 * math.sin(math.acos(43 * math.cos(ALPHA) / 43.59))
     for gear, kind in ((pair.wheel, "angular of the driven"), (pair.pinion, "angular of the driver")):
@@ -334,12 +260,12 @@ def test_one_tooth_of_a_bevel_pair_opens_as_an_exact_solver_found(effect: Effect
 
 
 def test_an_eccentricity_opens_most_where_it_points_away_from_the_mesh() -> None:
-    effects = [(TurningOffset("pinion"), "um", True)]
+    effects: list[Acting] = [(TurningOffset("pinion"), "um", True)]
     model = model_of(pair_of("spur"), LEFT, contributors(effects))
     told = slopes_at("spur", effects, 0.02, SPUR_ANGLES, KINDS["normal, mean section"])
     (own,) = by_contributor(model, told)
     assert own.value == pytest.approx(2 * math.sin(math.acos(43 * math.cos(ALPHA) / 43.59)), abs=1e-9)
-    assert np.cos(own.direction - (math.pi - SPUR_ANGLES)) == pytest.approx(1.0, abs=1e-12)
+    assert np.cos(known(own.direction) - (math.pi - SPUR_ANGLES)) == pytest.approx(1.0, abs=1e-12)
     assert own.along(0.3) == pytest.approx(told @ [math.cos(0.3), math.sin(0.3)], abs=1e-12)
 
 
@@ -355,7 +281,7 @@ def test_builds_that_do_not_seat_have_no_derivatives_and_the_others_keep_theirs(
 
 
 def test_a_tilt_closes_the_gap_of_a_face_on_both_sides_and_an_offset_has_one_slope() -> None:
-    effects = [
+    effects: list[Acting] = [
         (AxisTilt("wheel", (0.0, 1.0, 0.0)), "mrad", False),
         (AxisTilt("wheel", (1.0, 0.0, 0.0)), "mrad", False),
         (AxisOffset("wheel"), "um", False),
@@ -363,8 +289,9 @@ def test_a_tilt_closes_the_gap_of_a_face_on_both_sides_and_an_offset_has_one_slo
     pair = pair_of("spur")
     angle = math.acos(43 * math.cos(ALPHA) / 43.59)
     model = model_of(pair, LEFT, contributors(effects, Constant(0.0)))
-    for gap, contact, sides in (("face", "face", 2), ("section", "face", 1), ("section", "section", 0)):
-        backlash = Backlash("normal_backlash", "mesh", "wheel", Reading(contact, gap, "all"))
+    readings = (Reading("face", "face"), 2), (Reading("face", "section"), 1), (Reading("section", "section"), 0)
+    for reading, sides in readings:
+        backlash = Backlash("normal_backlash", "mesh", "wheel", replace(reading, teeth="all"))
         measure = Measure("play", backlash, AT_RANDOM, "value")
         in_plane, across, apart = mean_slopes(model, ExactEngine(model), measure)
         for slope, lever in ((in_plane, math.sin(angle)), (across, math.cos(angle))):
@@ -374,11 +301,15 @@ def test_a_tilt_closes_the_gap_of_a_face_on_both_sides_and_an_offset_has_one_slo
 
 
 def test_slopes_at_a_mean_build_take_the_direction_in_which_the_measure_grows_most() -> None:
-    effects = [(AxisOffset("wheel", factor=0.5), "um", True), (ToothThickness("wheel", 0.0, 0.5), "um", False)]
+    effects: list[Acting] = [
+        (AxisOffset("wheel", factor=0.5), "um", True),
+        (ToothThickness("wheel", 0.0, 0.5), "um", False),
+    ]
     model = model_of(pair_of("spur"), LEFT, contributors(effects, Constant(0.0)))
     measure = Measure("play", KINDS["normal, mean section"], AT_RANDOM, "value")
     offset, thickness = mean_slopes(model, ExactEngine(model), measure)
     assert offset.direction == pytest.approx(0.0, abs=1e-4)
     assert offset.above == pytest.approx(math.sin(math.acos(43 * math.cos(ALPHA) / 43.59)), abs=1e-4)
-    assert (thickness.direction, thickness.above) == (None, pytest.approx(-1.0, abs=1e-6))
+    assert thickness.direction is None
+    assert thickness.above == pytest.approx(-1.0, abs=1e-6)
     assert stated(model, np.zeros((1, 3))).positions["mesh"].tolist() == [0.0]

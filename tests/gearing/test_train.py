@@ -7,10 +7,12 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from functools import cache
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 from gear_trials import drawn_trials, gear_columns
+from of_kind import of_kind
 from oracles import brute_force, train
 from oracles.involute_gear import InvoluteGear
 from oracles.poses import pose
@@ -19,8 +21,9 @@ from places import SCENES
 
 from tol3d import load_scene
 from tol3d.gearing.build import build
+from tol3d.gearing.engines import Engine
 from tol3d.gearing.engines.lazy import exact_engine, fcl_engine
-from tol3d.gearing.model import Model, Reading, model_from_scene
+from tol3d.gearing.model import LostMotion, Model, Reading, model_from_scene
 from tol3d.gearing.system import strips_of
 from tol3d.gears.flank import Flank
 from tol3d.system.trials import Trials
@@ -54,7 +57,7 @@ def of(model: Model, block: Trials, name: str) -> np.ndarray:
     return block.deviations[:, model.component_slices[name]]
 
 
-def engines() -> Mapping[str, Callable]:
+def engines() -> Mapping[str, Callable[[Model], Engine]]:
     return {"exact": exact_engine, "fcl": lambda model: fcl_engine(model, strips_of(model))}
 
 
@@ -72,7 +75,14 @@ BEVEL |= {
 }
 
 
-def alone(model: Model, pair: Model, block: Trials, names: Mapping[str, str], angle: np.ndarray, make: Callable):
+def alone(
+    model: Model,
+    pair: Model,
+    block: Trials,
+    names: Mapping[str, str],
+    angle: np.ndarray,
+    make: Callable[[Model], Engine],
+) -> np.ndarray:
     """Free turn (n,) [rad] of the driven gear of a pair by itself, its deviations those of the train's contributors."""
     pair = replace(pair, profile_steps=model.profile_steps)
     assert set(names) == {contributor.name for contributor in pair.contributors}
@@ -118,7 +128,7 @@ def test_a_swing_reads_the_train_where_its_output_stands(position: float, tmp_pa
     found = gear_columns(robot, exact_engine(robot), drawn_trials(robot, 1, 0, 20))
     swing = next(measure for measure in robot.measures if measure.take == "curve")
     at = round((position + 60) / 5)
-    unsigned = replace(swing.kind, turned=())
+    unsigned = replace(of_kind(LostMotion, swing.kind), turned=())
     way = 2 * 763 * np.sin(found["geometric:there"] / ARCMIN / 2)
     robot = replace(robot, measures=(replace(swing, kind=unsigned),))
     whole = gear_columns(robot, exact_engine(robot), drawn_trials(robot, 1, 0, 20))
@@ -199,15 +209,16 @@ class Pair:
     def searched(self, row: int) -> brute_force.Mesh:
         """One of them for a search of the surfaces."""
         each = zip(self.teeth, self.widths, (self.shift, 0.0), self.thickness[row], strict=True)
-        gears = [
+        pinion, wheel = (
             InvoluteGear(z, self.module, np.radians(20), b, profile_shift=x, thickness_deviation=s)
             for z, b, x, s in each
-        ]
-        shafts = [
+        )
+        first, second = (
             pose([*leans[row], 0.0], [along + axes[row, 0], axes[row, 1], 0.0])[None]
             for leans, axes, along in zip(self.leans, self.axes, (0.0, self.apart), strict=True)
-        ]
-        return brute_force.Mesh(*gears, *shafts, *(centre[row, None] for centre in self.centres))
+        )
+        centres = [centre[row, None] for centre in self.centres]
+        return brute_force.Mesh(pinion, wheel, first, second, centres[0], centres[1])
 
 
 def table_pairs(model: Model, block: Trials) -> dict[str, Pair]:
@@ -348,7 +359,7 @@ def robot_uneven(block: Trials, model: Model) -> dict[str, tuple[np.ndarray, np.
     """By mesh: eccentricities (n,) [mm] of driver and driven gear, and the arm [mm] of the driven one."""
 
     def length(*names: str) -> np.ndarray:
-        return np.hypot(*sum(of(model, block, name) for name in names).T)
+        return np.hypot(*np.sum([of(model, block, name) for name in names], axis=0).T)
 
     # the middle of the bevel teeth: 31 teeth of 3.5 mm at 45 deg are 108.5 mm wide, 9 mm of face reach 6.36 mm inwards
     return {
@@ -401,7 +412,7 @@ def nominal_seat(name: str) -> train.Seat:
     ],
 )
 def test_the_whole_mechanism_turns_as_far_as_its_stages_add_up_to(
-    scene: str, stages_of: Callable, uneven: Callable, behind: Mapping[str, float], most: float
+    scene: str, stages_of: Callable[..., Any], uneven: Callable[..., Any], behind: Mapping[str, float], most: float
 ) -> None:
     """The sum supposes that each driver stands where nominal gears put it.
 

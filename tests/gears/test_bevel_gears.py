@@ -12,8 +12,9 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from oracles import bevel_brute_force as brute_force
 from oracles import rolling_plane
-from oracles.bevel_brute_force import BevelMesh, BevelNumbers, nominal_shafts
+from oracles.bevel_brute_force import BevelMesh, nominal_shafts
 from oracles.brute_force import zoomed_minimum
+from oracles.plain import plain_bevel
 from oracles.poses import pose
 from scipy.integrate import quad
 from scipy.optimize import brentq, minimize
@@ -53,24 +54,10 @@ PAPER = BevelPair(PAPER_GEAR, PAPER_GEAR, RIGHT_ANGLE)
 """Jiang et al. 2024, Table 5: z 31/31, m 3.5, alpha 20 deg, shaft angle 90 deg, face width 9."""
 
 
-def plain(gear: BevelGear) -> BevelNumbers:
-    """The plain numbers of a gear for the oracles."""
-    return BevelNumbers(
-        gear.teeth,
-        gear.module,
-        gear.pressure_angle,
-        gear.pitch_angle,
-        (gear.inner_cone_distance, gear.outer_cone_distance),
-        gear.profile_shift,
-        gear.addendum,
-        gear.dedendum,
-    )
-
-
 def mesh_of(pair: BevelPair, count: int, *, turned: float = 0.0) -> BevelMesh:
     """The pair at rest for that many rows, the flanks of both gears turned by as much [rad]."""
     shafts, centred = nominal_shafts(pair.shaft_angle, count), np.zeros((count, 2))
-    driver, driven = (replace(plain(gear), turned=turned) for gear in (pair.pinion, pair.wheel))
+    driver, driven = (replace(plain_bevel(gear), turned=turned) for gear in (pair.pinion, pair.wheel))
     return BevelMesh(driver, driven, shafts[0], shafts[1], centred, centred)
 
 
@@ -308,7 +295,7 @@ def test_teeth_take_their_share_of_the_pitch_cone(flank: Flank, gear: BevelGear)
 @FLANKS
 @given(gears())
 def test_flanks_reach_from_the_root_or_base_cone_to_the_tip_cone(flank: Flank, gear: BevelGear) -> None:
-    oracle = plain(gear)
+    oracle = plain_bevel(gear)
     directions = gear.flank_directions(np.array([gear.form_q, gear.tip_q]), flank)
     points = oracle.flank_points(np.array(1.0), np.array(oracle.rolls), 0, flank)
     assert np.abs(directions - points).max() * gear.outer_cone_distance < EXACT
@@ -333,7 +320,7 @@ def test_flanks_are_what_a_crown_gear_leaves(gear: BevelGear) -> None:
 
 @given(gears())
 def test_pointed_angle_is_where_the_teeth_end(gear: BevelGear) -> None:
-    base, start = gear.base_angle, plain(gear).start
+    base, start = gear.base_angle, plain_bevel(gear).start
 
     def azimuth(roll: np.ndarray | float) -> np.ndarray:
         direction = brute_force.line(base, np.asarray(roll), start, LEFT).direction
@@ -777,7 +764,7 @@ def test_gears_that_cannot_be_made_are_refused_with_their_numbers(changed: dict[
 
 def test_pointed_teeth_are_refused_with_the_cone_where_flanks_meet() -> None:
     text = refusal(teeth=10, profile_shift=1.4)
-    gear = replace(plain(PAPER_GEAR), teeth=10, profile_shift=1.4)
+    gear = replace(plain_bevel(PAPER_GEAR), teeth=10, profile_shift=1.4)
     x, y, _ = brute_force.line(gear.base_angle, gear.rolls[1], gear.start, LEFT).direction
     assert "pointed teeth" in text
     radius = 3.5 * (5 + 2.4 * math.cos(45 * DEG))

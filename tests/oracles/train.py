@@ -11,7 +11,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-Seat = Callable[[np.ndarray, int], np.ndarray]
+from tol3d.gears.flank import Flank, opposite
+
+Seat = Callable[[np.ndarray, Flank], np.ndarray]
 """Driver's angles [rad] and its flank (1 right, -1 left) to the driven gear's at rest, all in the mesh's frame."""
 
 
@@ -43,7 +45,7 @@ class Mesh:
     """
 
     seat: Seat
-    working: int
+    working: Flank
     driver: OnShaft = OnShaft()
     driven: OnShaft = OnShaft()
     azimuth: float = 0.0
@@ -52,9 +54,10 @@ class Mesh:
         """Turn of the driver from its line of centres."""
         return self.driver.gear_angle(shaft) - self.azimuth
 
-    def at_rest(self, shaft: np.ndarray, side: int) -> np.ndarray:
+    def at_rest(self, shaft: np.ndarray, side: Flank) -> np.ndarray:
         """The driven shaft's angle, the driver's given; side 1: on the working flanks, -1: on the others."""
-        return self.driven.shaft_angle(self.seat(self.driver_angle(shaft), side * self.working))
+        flank = self.working if side == 1 else opposite(self.working)
+        return self.driven.shaft_angle(self.seat(self.driver_angle(shaft), flank))
 
 
 @dataclass(frozen=True)
@@ -71,12 +74,12 @@ class Reducer:
     play: np.ndarray
     drives: int
 
-    def at_rest(self, shaft: np.ndarray, side: int) -> np.ndarray:
+    def at_rest(self, shaft: np.ndarray, side: Flank) -> np.ndarray:
         """The load holds it back by half the play; the other way it is ahead by as much."""
         return shaft / self.ratio - side * self.drives * self.play / 2
 
 
-def rests(stages: Sequence[Mesh | Reducer], held: np.ndarray, side: int) -> list[np.ndarray]:
+def rests(stages: Sequence[Mesh | Reducer], held: np.ndarray, side: Flank) -> list[np.ndarray]:
     """Angles (n,) of all shafts behind the held one, each seated with that of the one before."""
     angles = [held]
     for stage in stages:

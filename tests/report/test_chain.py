@@ -1,10 +1,11 @@
 """Trains in tables and pictures, against the figures that the paper prints of the robot's shoulder (section 4)."""
 
-import io
 import itertools
 import math
 import re
+from collections.abc import Sequence
 from pathlib import Path
+from typing import Any
 
 import pytest
 from hypothesis import given
@@ -15,12 +16,12 @@ from matplotlib.figure import Figure
 from matplotlib.image import imread
 from matplotlib.patches import FancyBboxPatch, Polygon
 from matplotlib.text import Text
-from rich.console import Console, RenderableType
+from of_kind import known
+from printing import printed, row_of
 
 from tol3d.gearing.presenting.chain import chain_figure
 from tol3d.gearing.presenting.stage import shafts_along, stages_of, sums_of
 from tol3d.gearing.presenting.train_tables import train_report
-from tol3d.gears.flank import Flank
 from tol3d.report import picture
 from tol3d.report.canvas import new_figure, plain_axes
 from tol3d.report.compare import Compared
@@ -60,7 +61,18 @@ def road(own: dict[str, float], share: float) -> dict[str, float]:
     }
 
 
-def stage(link, kind, driver, driven, teeth, ratio, flank: Flank, factor, own, share):
+def stage(
+    link: str,
+    kind: str,
+    driver: str,
+    driven: str,
+    teeth: list[int] | None,
+    ratio: float,
+    flank: str | None,
+    factor: float,
+    own: dict[str, float],
+    share: float,
+) -> dict[str, Any]:
     return {
         "link": link,
         "kind": kind,
@@ -82,7 +94,7 @@ def shares() -> list[float]:
     return [100 * variance / sum(variances) for variance in variances]
 
 
-def sums_at_output(own=OWN, factors=FACTORS) -> dict[str, float]:
+def sums_at_output(own: Sequence[dict[str, float]] = OWN, factors: Sequence[float] = FACTORS) -> dict[str, float]:
     return {key: sum(each[key] * abs(f) for each, f in zip(own, factors, strict=True)) for key in KEYS}
 
 
@@ -93,8 +105,8 @@ def distribution() -> dict[str, float]:
     return {"mean": mean, "sigma": reach / 3, "low_3sigma": mean - reach, "high_3sigma": mean + reach}
 
 
-def measure(kind: str, per: float, **fields: object) -> dict:
-    values = {key: value * per for key, value in distribution().items()} | {"count": 2000}
+def measure(kind: str, per: float, **fields: object) -> dict[str, Any]:
+    values: dict[str, Any] = {key: value * per for key, value in distribution().items()} | {"count": 2000}
     values |= {"below_limit_ppm": None, "above_limit_ppm": None, "sample_min": None, "sample_max": None}
     counts = {"analytic": [3, 9, 3], "geometric": [4, 8, 3]}
     edges = {"lower_edge": values["low_3sigma"], "bin_width": (values["high_3sigma"] - values["low_3sigma"]) / 3}
@@ -127,7 +139,9 @@ MEASURES = {
 }
 
 
-def summary_of(stages: list[dict], measures=MEASURES, lever: float | None = LEVER) -> dict:
+def summary_of(
+    stages: list[dict[str, Any]], measures: dict[str, Any] = MEASURES, lever: float | None = LEVER
+) -> dict[str, Any]:
     own = [each["roads"]["geometric"] for each in stages]
     sums = sums_at_output(own, [each["factor"] for each in stages])
     return {
@@ -158,7 +172,7 @@ def summary_of(stages: list[dict], measures=MEASURES, lever: float | None = LEVE
     }
 
 
-def shoulder(**fields: object) -> dict:
+def shoulder(**fields: Any) -> dict[str, Any]:
     """The robot's shoulder: motor, planetary reducer, spur pair, bevel pair, arm."""
     links = (
         ("planetary reducer", "reducer", None, None),
@@ -167,14 +181,14 @@ def shoulder(**fields: object) -> dict:
     )
     return summary_of(
         [
-            stage(name, kind, *SHAFTS[k : k + 2], teeth, RATIOS[k], flank, FACTORS[k], OWN[k], shares()[k])
+            stage(name, kind, SHAFTS[k], SHAFTS[k + 1], teeth, RATIOS[k], flank, FACTORS[k], OWN[k], shares()[k])
             for k, (name, kind, teeth, flank) in enumerate(links)
         ],
         **fields,
     )
 
 
-def long_train(count: int, lever: float | None = LEVER) -> dict:
+def long_train(count: int, lever: float | None = LEVER) -> dict[str, Any]:
     """A train of spur and bevel pairs behind a reducer, with names as long as users give them."""
     stages = []
     for k in range(count):
@@ -184,22 +198,14 @@ def long_train(count: int, lever: float | None = LEVER) -> dict:
         ratio = 20.0 if teeth is None else -teeth[1] / teeth[0]
         name = f"the {kind.replace('_', ' ')} number {k + 1} behind the wall"
         stages.append(
-            stage(name, kind, *names, teeth, ratio, teeth and "left", 0.9 ** (count - k), OWN[k % 3], 100 / count)
+            stage(
+                name, kind, *names, teeth, ratio, "left" if teeth else None, 0.9 ** (count - k), OWN[k % 3], 100 / count
+            )
         )
     return summary_of(stages, lever=lever)
 
 
-def printed(renderable: RenderableType, width: int = 140) -> str:
-    console = Console(file=io.StringIO(), width=width)
-    console.print(renderable)
-    return console.file.getvalue()
-
-
-def row_of(text: str, label: str) -> list[str]:
-    return next(line for line in text.splitlines() if line.startswith(label)).removeprefix(label).split()
-
-
-def all_printed(summary: dict, width: int = 140) -> str:
+def all_printed(summary: dict[str, Any], width: int = 140) -> str:
     return "".join(printed(block, width) for block in train_report(typed_run(summary)))
 
 
@@ -271,7 +277,7 @@ def test_measures_of_a_train_have_the_sums_of_its_stages_below() -> None:
         {"kind": "tip_displacement", "arm": "arm", "point": "elbow"},
     ],
 )
-def test_a_measure_at_another_shaft_or_point_has_no_sums_of_these_stages(other) -> None:
+def test_a_measure_at_another_shaft_or_point_has_no_sums_of_these_stages(other: dict[str, Any]) -> None:
     summary = shoulder()
     assert sums_of(typed_measure(summary["measures"]["lost motion"]), typed_run(summary))
     assert sums_of(typed_measure(summary["measures"]["lost motion"] | other), typed_run(summary)) == {}
@@ -342,11 +348,16 @@ def test_limits_differences_and_labels_of_a_tip_are_in_mm() -> None:
     )
 
 
-def tip_error() -> dict:
+def tip_error() -> dict[str, Any]:
     """An error that jumps by the displacement where the arm passes the vertical."""
     positions = [-60.0 + 5 * k for k in range(25)]
     mean = [0.0 if position < 0 else 1.81 for position in positions]
-    values = {"mean": mean, "sigma": [0.1] * 25, "min": [m - 0.2 for m in mean], "max": [m + 0.2 for m in mean]}
+    values: dict[str, Any] = {
+        "mean": mean,
+        "sigma": [0.1] * 25,
+        "min": [m - 0.2 for m in mean],
+        "max": [m + 0.2 for m in mean],
+    }
     values |= {"below_limit_ppm": 0.0, "above_limit_ppm": 12.0}
     fields = {"unit": "mm", "arm": "arm", "point": "tip", "over": "swing", "take": "curve", "upper_limit": 2.21}
     curve = {"position_deg": positions, "curve": {"analytic": values, "geometric": values}}
@@ -366,7 +377,7 @@ def test_a_tip_s_error_is_told_over_the_output_s_angle_in_mm() -> None:
     assert axes.get_ylabel() == "tip error [mm]"
     assert axes.get_xlim() == (-60.0, 60.0)
     assert axes.lines[0].get_marker() == "."
-    legend = [text.get_text() for text in axes.get_legend().get_texts()]
+    legend = [text.get_text() for text in known(axes.get_legend()).get_texts()]
     assert "USL 2.21 mm" in legend
     assert "anywhere above 2.21 mm, of all trials: analytic 12 ppm, 3D 12 ppm" in printed(
         run_report(typed_run(shoulder() | {"measures": {"tip error": tip_error()}}))
@@ -443,7 +454,7 @@ def test_no_two_labels_overlap_and_none_leaves_the_picture(count: int, lever: fl
 @pytest.mark.parametrize("teeth", [(31, 31), (20, 40), (40, 20)])
 @pytest.mark.parametrize("lever", [LEVER, None])
 @pytest.mark.parametrize("count", [1, 3, 4, 5, 6, 8])
-def test_no_cone_reaches_under_a_shaft(count: int, lever: float, teeth) -> None:
+def test_no_cone_reaches_under_a_shaft(count: int, lever: float | None, teeth: tuple[int, int]) -> None:
     summary = long_train(count, lever)
     for each in summary["trains"]["shoulder swing"]["stages"]:
         each |= {"kind": "bevel_mesh", "teeth": list(teeth)}

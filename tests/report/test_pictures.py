@@ -11,7 +11,9 @@ from loose_summaries import typed_measure, typed_run, valid
 from matplotlib.collections import PolyCollection
 from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
+from matplotlib.patches import Patch
 from matplotlib.text import Text
+from of_kind import known, of_kind
 
 from tol3d.report import picture
 from tol3d.report.bars import bars_of
@@ -84,10 +86,10 @@ def texts_of(figure: Figure) -> list[str]:
 def boxes_of(figure: Figure) -> list[tuple[str, Any]]:
     """Every title, word, legend and label of a row or a contributor, with its place [pixels]."""
     figure.canvas.draw()
-    told = [text for axes in figure.axes for text in (axes.title, axes._left_title, *axes.texts)]
+    told = [text for axes in figure.axes for text in (axes.title, vars(axes)["_left_title"], *axes.texts)]
     told += [text for axes in figure.axes if (legend := axes.get_legend()) for text in legend.get_texts()]
     told += [label for axes in figure.axes for label in axes.get_yticklabels() if not _is_number(label.get_text())]
-    told += [figure._suptitle] if figure._suptitle else []
+    told += [title] if (title := vars(figure)["_suptitle"]) else []
     return [(text.get_text(), text.get_window_extent()) for text in told if text.get_text().strip()]
 
 
@@ -118,7 +120,12 @@ def axes_of(draw: Any, *arguments: Any) -> Any:
 def curve(spread: float) -> dict[str, Any]:
     """A curve of sigma 2 whose trials reach `spread` to both sides."""
     mean = [50.0, 51.0, 52.0]
-    own = {"mean": mean, "sigma": [2.0] * 3, "min": [m - spread for m in mean], "max": [m + spread for m in mean]}
+    own: dict[str, Any] = {
+        "mean": mean,
+        "sigma": [2.0] * 3,
+        "min": [m - spread for m in mean],
+        "max": [m + spread for m in mean],
+    }
     own |= {"below_limit_ppm": 0.0, "above_limit_ppm": 0.0, "failed_ppm": 0.0}
     measure = BACKLASH | {"unit": "um", "over": "turn", "take": "curve", "lower_limit": None, "upper_limit": None}
     return measure | {"position_deg": [0.0, 120.0, 240.0], "curve": {"analytic": own, "geometric": own}}
@@ -129,7 +136,7 @@ def test_three_sigma_is_the_one_band_of_a_curve_whether_its_trials_reach_further
     """With sigma 2 the band goes from -6 to +6, whatever the trials reach, which lines tell."""
     axes = axes_of(draw_curve, "play", typed_measure(curve(spread)))
     (band,) = (each for each in axes.collections if isinstance(each, PolyCollection))
-    heights = band.get_paths()[0].vertices[:, 1]
+    heights = np.asarray(band.get_paths()[0].vertices)[:, 1]
     assert (heights.min(), heights.max()) == pytest.approx((44.0, 58.0))
     assert band.get_label() == "3D simulation, ±3 sigma"
     reached = {tuple(line.get_ydata()) for line in axes.lines if line.get_linestyle() != "-"}
@@ -297,7 +304,7 @@ def run_of(path: str, measures: dict[str, Any]) -> Any:
 
 def test_a_comparison_names_every_run_in_each_of_its_rows_in_one_colour() -> None:
     """The second run reads another section of the same name: a row of its own, which says where it is read."""
-    section = {"reading": READING | {"teeth": "driver"}, "lower_limit": 45.0}
+    section: dict[str, Any] = {"reading": READING | {"teeth": "driver"}, "lower_limit": 45.0}
     runs = [
         run_of("/runs/a/pair", {"play": measure_of(normals(500))}),
         run_of("/runs/b/pair", {"play": measure_of(normals(500, 1), **section)}),
@@ -305,7 +312,7 @@ def test_a_comparison_names_every_run_in_each_of_its_rows_in_one_colour() -> Non
     ]
     figure = comparison_figure(runs)
     rows = figure.axes[::3]
-    named = [[whole(text.get_text()) for text in axes.get_legend().get_texts()] for axes in rows]
+    named = [[whole(text.get_text()) for text in known(axes.get_legend()).get_texts()] for axes in rows]
     third = whole(long_name("third"))
     assert [[name for name in row if name in ("a/pair", "b/pair", third)] for row in named] == [
         ["a/pair", third],
@@ -316,7 +323,7 @@ def test_a_comparison_names_every_run_in_each_of_its_rows_in_one_colour() -> Non
     for axes in rows:
         for handle, label in zip(*axes.get_legend_handles_labels(), strict=True):
             if whole(label) in ("a/pair", "b/pair", third):
-                colours.setdefault(whole(label), set()).add(to_hex(handle.get_facecolor()))
+                colours.setdefault(whole(label), set()).add(to_hex(of_kind(Patch, handle).get_facecolor()))
     assert [len(own) for own in colours.values()] == [1, 1, 1]
     assert len(set.union(*colours.values())) == 3
     texts = texts_of(figure)

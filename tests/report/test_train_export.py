@@ -12,15 +12,18 @@ import numpy as np
 import pytest
 import trimesh
 from matplotlib.image import imread
+from of_kind import known, of_kind
 
 from tol3d import Run
 from tol3d.errors import InputError
 from tol3d.gearing.display import seated_build
 from tol3d.gearing.placed import DISPLAY_DEFLECTION
 from tol3d.gearing.presenting.whole_trains import HOUSING_COLOUR, WholeTrain, whole_trains
+from tol3d.gears import SpurGear
 from tol3d.report import export_run, view_run
 from tol3d.report.whole import Frame, _places
 from tol3d.simulate import run_scene
+from tol3d.solids.bodies import ShaftBody
 
 TRIAL = 2
 DEG = math.pi / 180
@@ -65,14 +68,14 @@ BODIES = {"motor", "input", "output", "flange", "arm", "gearbox"}
 
 
 @pytest.fixture(scope="module")
-def run(tmp_path_factory: pytest.TempPathFactory):
+def run(tmp_path_factory: pytest.TempPathFactory) -> Run:
     folder = tmp_path_factory.mktemp("train")
     (folder / "train.yaml").write_text(SCENE, encoding="utf-8")
     return run_scene(folder / "train.yaml", out=folder / "run")
 
 
 @pytest.fixture(scope="module")
-def train(run) -> WholeTrain:
+def train(run: Run) -> WholeTrain:
     (train,) = whole_trains(seated_build(run, TRIAL))
     return train
 
@@ -144,7 +147,7 @@ def test_the_tip_is_where_the_arm_ends(train: WholeTrain) -> None:
     radius = next(body.shape.diameter for body in train.bodies if body.name == "arm") * 0.6
     reach = np.linalg.norm(vertices - tip, axis=1)
     assert reach.min() == pytest.approx(radius, rel=1e-2)  # the ball at the tip
-    direction, place = train.gravity
+    direction, place = known(train.gravity)
     assert direction.tolist() == [0.0, -1.0, 0.0]
     assert place == pytest.approx(tip, abs=1e-9)  # no centre of mass is told
 
@@ -157,7 +160,9 @@ def hierarchy(mesh: trimesh.Trimesh) -> fcl.BVHModel:
     return model
 
 
-def free_distance(first: trimesh.Trimesh, second: trimesh.Trimesh, centre: np.ndarray, axis: np.ndarray, by: float):
+def free_distance(
+    first: trimesh.Trimesh, second: trimesh.Trimesh, centre: np.ndarray, axis: np.ndarray, by: float
+) -> float:
     """Distance [mm] of two meshes after the second is turned about an axis; at most 0 where they overlap."""
     motion = trimesh.transformations.rotation_matrix(by, axis, centre)
     pair = (
@@ -169,7 +174,7 @@ def free_distance(first: trimesh.Trimesh, second: trimesh.Trimesh, centre: np.nd
     return float(fcl.distance(*pair, fcl.DistanceRequest(), fcl.DistanceResult()))
 
 
-def exported(run, folder: Path) -> dict[str, trimesh.Trimesh]:
+def exported(run: Run, folder: Path) -> dict[str, trimesh.Trimesh]:
     """Parts of a GLB file, in mm."""
     (path,) = export_run(run, TRIAL, "glb", out=folder).files
     scene = trimesh.load_scene(path)
@@ -222,7 +227,7 @@ def test_a_step_file_holds_every_part_once(run: Run, train: WholeTrain, tmp_path
         off = np.cross(centre - part.world_from_gear[:3, 3], part.world_from_gear[:3, 2])
         assert np.linalg.norm(off) < 1e-3
     for name in ("pinion", "idler", "wheel"):
-        gear = next(part.perturbed for part in train.gears if part.name == name)
+        gear = of_kind(SpurGear, next(part.perturbed for part in train.gears if part.name == name))
         exact = (gear.transverse_area - math.pi * gear.bore**2 / 4) * gear.face_width
         assert parts[name].obj.Volume() == pytest.approx(exact, rel=1e-6)
 
@@ -266,8 +271,10 @@ def test_shafts_reach_over_their_gears_and_fill_their_bores(train: WholeTrain) -
     assert bodies["input"].diameter == 6.0  # as stated
     assert bodies["output"].diameter == 12.0  # the wheel's bore
     # the input: the pinion's faces at 5 -+ 3 mm, and one diameter more
-    assert (bodies["input"].start, bodies["input"].end) == pytest.approx((2 - 6, 8 + 6))
-    assert bodies["output"].start == pytest.approx(7 - 2.5 - 12)
+    assert (of_kind(ShaftBody, bodies["input"]).start, of_kind(ShaftBody, bodies["input"]).end) == pytest.approx(
+        (2 - 6, 8 + 6)
+    )
+    assert of_kind(ShaftBody, bodies["output"]).start == pytest.approx(7 - 2.5 - 12)
     # the flange: three tenths of a pitch diameter; its bevel gear begins nearer to the apex than its pitch cone ends
     middle = bodies["flange"].diameter / 0.3 / 2
     assert 20 - 6 < middle < 20  # mm; half of the face nearer to the apex than the heel's 20 mm
@@ -291,7 +298,7 @@ def test_wide_bores_are_filled_by_collars(tmp_path: Path) -> None:
         encoding="utf-8",
     )  # fmt: skip
     (train,) = whole_trains(seated_build(run_scene(scene, out=tmp_path / "run"), "nominal"))
-    shape = next(body.shape for body in train.bodies if body.name == "input")
+    shape = of_kind(ShaftBody, next(body.shape for body in train.bodies if body.name == "input"))
     assert (shape.diameter, shape.start) == (6.0, -8.0)
     assert shape.collars == ((9.0, 2.0, 8.0),)
 
@@ -308,7 +315,7 @@ renders = pytest.mark.skipif(
 
 @renders
 def test_the_picture_shows_every_shaft_in_its_colour_beside_the_close_ups(
-    run: Run, train, tmp_path: Path, capfd: pytest.CaptureFixture[str]
+    run: Run, train: WholeTrain, tmp_path: Path, capfd: pytest.CaptureFixture[str]
 ) -> None:
     picture = tmp_path / "train.png"
     notes = view_run(run, TRIAL, screenshot=picture)

@@ -1,14 +1,15 @@
 """The verdict at the terminal: a row a measure, by a rule that can be checked, and how much is printed beside it."""
 
-import io
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 from fixtures import Command
 from loose_summaries import typed_measure
 from places import SCENES, SPUR_PAIR
-from rich.console import Console, RenderableType
+from printing import printed
+from rich.console import RenderableType
 from scipy import stats
 
 from tol3d import Overrides, Run, run_scene
@@ -16,10 +17,8 @@ from tol3d.report.table import MOST_TABLES, Detail, run_report
 from tol3d.report.verdict import ACCEPTED_PPM, Judged, all_ok, verdict_table
 
 
-def printed(renderable: RenderableType, width: int = 200) -> list[str]:
-    console = Console(file=io.StringIO(), width=width)
-    console.print(renderable)
-    return console.file.getvalue().splitlines()
+def lines_of(shown: RenderableType, width: int = 200) -> list[str]:
+    return printed(shown, width).splitlines()
 
 
 def spur(folder: Path, limits: str, trials: int = 4000, centre: float = 172.5) -> Run:
@@ -37,7 +36,7 @@ def spur(folder: Path, limits: str, trials: int = 4000, centre: float = 172.5) -
     return run_scene(folder / "scene.yaml", overrides=Overrides(trials=trials), out=folder / "run")
 
 
-def stated(below: int, trials: int, limit: float | None = 15.0) -> dict:
+def stated(below: int, trials: int, limit: float | None = 15.0) -> dict[str, Any]:
     ci = stats.binomtest(below, trials).proportion_ci(0.95, "exact")
     sample = {"out_ppm": 1e6 * below / trials, "out_ppm_95": [1e6 * ci.low, 1e6 * ci.high]}
     return {"take": "value", "geometric": sample, "lower_limit": limit, "upper_limit": None}
@@ -84,7 +83,7 @@ def test_a_row_has_what_is_counted_of_the_trials(tmp_path: Path) -> None:
     values = run.columns("geometric:normal backlash")["geometric:normal backlash"]
     out = int(((values < 45) | (values > 70)).sum())
     ci = stats.binomtest(out, 4000).proportion_ci(0.95, "exact")
-    (row,) = [line for line in printed(verdict_table(run.found)) if line.startswith("normal backlash")]
+    (row,) = [line for line in lines_of(verdict_table(run.found)) if line.startswith("normal backlash")]
     mean, sigma = values.mean(), values.std(ddof=1)
     ends = "  ".join(f"{value:.1f} µm" for value in (mean, mean - 3 * sigma, mean + 3 * sigma))
     shares = [f"{100 * share:.4g} %" for share in (out / 4000, ci.low, ci.high)]
@@ -92,7 +91,7 @@ def test_a_row_has_what_is_counted_of_the_trials(tmp_path: Path) -> None:
     assert row.split("  ", 1)[1].strip() == (
         f"NOT OK   {ends}  45 to 70 µm  {shares[0]} ({shares[1]} to {shares[2]})  {ppk:.2f}"
     )
-    (other,) = [line for line in printed(verdict_table(run.found)) if line.startswith("lost motion")]
+    (other,) = [line for line in lines_of(verdict_table(run.found)) if line.startswith("lost motion")]
     assert other.split()[2] == "–"  # no limits, no verdict
 
 
@@ -101,7 +100,7 @@ def test_failed_builds_are_out_of_a_measure_that_has_no_limits(tmp_path: Path) -
     status = run.summary["measures"]["lost motion"]["status"]
     share = 100 * status["interferes"] / 4000
     assert share > 2
-    (row,) = [line for line in printed(verdict_table(run.found)) if line.startswith("lost motion")]
+    (row,) = [line for line in lines_of(verdict_table(run.found)) if line.startswith("lost motion")]
     assert "NOT OK" in row
     assert f"{share:.4g} %" in row
     assert not all_ok(run.found, ACCEPTED_PPM)
@@ -116,12 +115,12 @@ def test_a_curve_and_a_bounded_measure_say_what_their_ends_are(tmp_path: Path) -
     (tmp_path / "scene.yaml").write_text(text, "utf-8")
     run = run_scene(tmp_path / "scene.yaml", overrides=Overrides(trials=500, witness=0), out=tmp_path / "run")
     curve = run.columns("geometric:curve")["geometric:curve"]
-    (row,) = [line for line in printed(verdict_table(run.found)) if line.startswith("curve")]
+    (row,) = [line for line in lines_of(verdict_table(run.found)) if line.startswith("curve")]
     low = (curve.mean(axis=0) - 3 * curve.std(axis=0, ddof=1)).min()
     high = (curve.mean(axis=0) + 3 * curve.std(axis=0, ddof=1)).max()
     assert f"–  {low:.1f} µm  {high:.1f} µm" in row
     assert f"{100 * (curve < 40).any(axis=1).mean():.4g} %" in row
-    assert "of a curve over its positions" in " ".join(printed(run_report(run.found, Detail.VERDICT)))
+    assert "of a curve over its positions" in " ".join(lines_of(run_report(run.found, Detail.VERDICT)))
 
 
 # how much is printed --------------------------------------------------------------------------------------------------
@@ -132,7 +131,7 @@ def test_many_measures_are_a_row_each_and_their_tables_come_when_asked(tmp_path:
     run = run_scene(SCENES / "robot_shoulder.yaml", overrides=study, out=tmp_path / "run")
     assert len(run.summary["measures"]) > MOST_TABLES
     assert Detail.fitting(run.found) is Detail.TRAINS
-    short, whole = (printed(run_report(run.found, each), 120) for each in (Detail.TRAINS, Detail.MEASURES))
+    short, whole = (lines_of(run_report(run.found, each), 120) for each in (Detail.TRAINS, Detail.MEASURES))
     assert len(short) < 60 < 200 < len(whole)
     for name in run.summary["measures"]:
         assert any(line.startswith(name) for line in short), name

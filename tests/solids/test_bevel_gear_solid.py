@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 from OCP.BRepAdaptor import BRepAdaptor_Surface
 from of_kind import of_kind
 from oracles import bevel_brute_force, rolling_plane
-from oracles.bevel_brute_force import BevelNumbers
+from oracles.plain import plain_bevel
 from scipy.integrate import quad
 
 from tol3d.errors import GeometryError
@@ -52,20 +52,6 @@ GEARS = {
     "hardly any room round the bore": BevelGear(31, 3.5, ALPHA, 9.0, 45 * DEG, bore=90.0),
 }
 each_gear = pytest.mark.parametrize("gear", GEARS.values(), ids=GEARS.keys())
-
-
-def plain(gear: BevelGear) -> BevelNumbers:
-    """The plain numbers of a gear for the oracle."""
-    return BevelNumbers(
-        gear.teeth,
-        gear.module,
-        gear.pressure_angle,
-        gear.pitch_angle,
-        (gear.inner_cone_distance, gear.outer_cone_distance),
-        gear.profile_shift,
-        gear.addendum,
-        gear.dedendum,
-    )
 
 
 def cone_angles(gear: BevelGear) -> tuple[float, float, float]:
@@ -107,7 +93,7 @@ def teeth_volume(gear: BevelGear) -> float:
     lines of its rolled planes stand apart.
     """
     tip, root, base = cone_angles(gear)
-    start = plain(gear).start
+    start = plain_bevel(gear).start
 
     def width(polar: float) -> float:
         if polar <= base:
@@ -138,7 +124,7 @@ def expected_faces(gear: BevelGear) -> set[str]:
 def flank_deviation(gear: BevelGear, faces: Mapping[str, cq.Face], tooth: int, flank: Flank, samples: int) -> float:
     """Largest distance [mm] of a flank's face from the lines of the rolled plane, at toe and heel."""
     surface = BRepAdaptor_Surface(faces[flank_name(tooth, flank)].wrapped)
-    numbers, worst = plain(gear), 0.0
+    numbers, worst = plain_bevel(gear), 0.0
     begin, end = numbers.rolls
     rolls = np.linspace(begin, end, samples)
     for reach in numbers.face:
@@ -260,7 +246,7 @@ def test_parameters_of_a_flank_are_in_plane_angle_and_cone_distance() -> None:
 
 @each_gear
 def test_sampled_rays_and_normals_are_those_of_the_rolled_plane(gear: BevelGear) -> None:
-    numbers, part = plain(gear), build(gear)
+    numbers, part = plain_bevel(gear), build(gear)
     rolls = np.linspace(*numbers.rolls, 129)
     for tooth, flank in ((0, RIGHT), (0, LEFT), (2, LEFT)):
         sample = sample_flank(

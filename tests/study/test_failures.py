@@ -10,7 +10,7 @@ from fixtures import Command
 from oracles import exact_eccentric
 from oracles.involute_gear import InvoluteGear
 from places import SPUR_PAIR
-from rich.console import Console
+from printing import printed
 from scipy import stats
 from vectors import vector
 
@@ -338,13 +338,6 @@ def test_failures_are_said_aloud_from_one_in_a_thousand_on(tmp_path: Path, centr
 
 
 WORDS = ("seated", "jammed")
-
-
-def printed(report: object) -> str:
-    console = Console(width=200)
-    with console.capture() as capture:
-        console.print(report)
-    return capture.get()
 
 
 def test_tables_say_of_how_many_builds_they_are(run: Run, truth: np.ndarray) -> None:

@@ -1,6 +1,5 @@
 """What the paper printed stands beside ours in words that its own numbers bear out."""
 
-import io
 import math
 import re
 from pathlib import Path
@@ -8,8 +7,8 @@ from typing import Any
 
 import pytest
 from places import SCENES
+from printing import printed
 from pydantic import ValidationError
-from rich.console import Console, RenderableType
 
 from tol3d import load_scene
 from tol3d.analyses.compensation import CompensationQuestion, compensation
@@ -21,14 +20,6 @@ from tol3d.simulate import Overrides, run_scene
 COS, SIN = math.cos(math.radians(20)), math.sin(math.radians(20))
 JUST_RUN = Overrides(trials=20, engine="analytic")
 SHOWN = ("spur_pair", "bevel_pair", "bevel_pair_3dcs", "robot_shoulder", "robot_shoulder_shimmed", "every_field")
-
-
-def printed(shown: RenderableType, width: int) -> str:
-    console = Console(file=io.StringIO(), width=width)
-    console.print(shown)
-    assert isinstance(console.file, io.StringIO)
-    text = console.file.getvalue()
-    return text
 
 
 def published(scene: str, column: str, measure: str) -> Any:

@@ -115,7 +115,7 @@ def _glb(world: World) -> object:
     to_metres = np.diag([METRES_PER_MM, METRES_PER_MM, METRES_PER_MM, 1.0])
     for body in world.bodies:
         scene.add_geometry(triangle_mesh(body), node_name=body.name, geom_name=body.name, transform=to_metres)
-    return scene.export(file_type="glb")  # type: ignore[no-untyped-call]  # trimesh annotates it in part only
+    return scene.export(file_type="glb")
 
 
 def file_words(names: Iterable[str]) -> dict[str, str]:
