@@ -61,7 +61,7 @@ def said_of(folder: Path, grammar: Grammar, *change: str) -> str:
     """What is said of the scene with one thing changed."""
     assert TEXT.count(change[0]) == 1
     with pytest.raises(SceneError) as caught:
-        read_scene(written(folder, TEXT.replace(*change)), grammar)
+        read_scene(written(folder, TEXT.replace(change[0], change[1])), grammar)
     (problem,) = caught.value.problems
     return problem.removeprefix(f"{folder / 'springs.yaml'}:")
 

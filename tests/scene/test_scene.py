@@ -14,12 +14,19 @@ import pytest
 import yaml
 from hypothesis import given
 from hypothesis import strategies as st
+from of_kind import known, of_kind
 from places import ROOT
 from pydantic import BaseModel, ValidationError
 from ruamel.yaml import YAML
 
 from tol3d import Scene, load_scene
+from tol3d.distributions import Rayleigh
 from tol3d.errors import SceneError
+from tol3d.gearing.grammar.measures.normal_backlash import NormalBacklashSpec
+from tol3d.gearing.grammar.moves.mesh import MeshSpec
+from tol3d.gearing.grammar.parts.gear import GearSpec
+from tol3d.gearing.grammar.parts.spur_gear import SpurGearSpec
+from tol3d.gearing.grammar.tolerances.temperature import TemperatureSpec
 from tol3d.scene.text import core_value
 
 SPUR_PAIR = ROOT / "scenes" / "spur_pair.yaml"
@@ -53,10 +60,12 @@ def load(folder: Path, text: str) -> Scene:
 
 def test_the_spur_pair_is_that_of_the_papers_tables() -> None:
     scene = load_scene(SPUR_PAIR)
-    gears = {name: (part.teeth, part.module.internal, part.pressure_angle.number) for name, part in scene.parts.items()}
+    parts = {name: of_kind(GearSpec, part) for name, part in scene.parts.items()}
+    gears = {name: (part.teeth, part.module.internal, part.pressure_angle.number) for name, part in parts.items()}
     assert gears == {"pinion": (28, 2.5, 20.0), "wheel": (110, 2.5, 20.0)}
-    assert scene.moves["gear pair"].centre_distance.internal == 172.5 == 2.5 * (28 + 110) / 2
-    assert scene.measures["normal backlash"].lower_limit.internal == 0.015
+    move = of_kind(MeshSpec, scene.moves["gear pair"])
+    assert move.centre_distance.internal == 172.5 == 2.5 * (28 + 110) / 2
+    assert known(scene.measures["normal backlash"].lower_limit).internal == 0.015
     laws = {name: tolerance.distribution.resolve(scene.files) for name, tolerance in scene.tolerances.items()}
     mean_and_sigma_um = {name: (1e3 * law.mean, 1e3 * law.sigma) for name, law in laws.items()}
     assert mean_and_sigma_um["pinion tooth thickness"] == pytest.approx(((-19 - 30) / 2, 11 / 6))
@@ -64,7 +73,7 @@ def test_the_spur_pair_is_that_of_the_papers_tables() -> None:
     assert mean_and_sigma_um["centre distance"] == pytest.approx((0.0, 20 / 3))
     assert mean_and_sigma_um["bearing clearance"] == pytest.approx((16.0, 28 / 6))
     limits_um = {"wheel eccentricity": 31, "pinion eccentricity": 27, "reducer run-out": 8}
-    assert {name: 6e3 * laws[name].scale for name in limits_um} == pytest.approx(limits_um)
+    assert {name: 6e3 * of_kind(Rayleigh, laws[name]).scale for name in limits_um} == pytest.approx(limits_um)
     assert len(laws) == 7
 
 
@@ -250,7 +259,7 @@ def test_names_that_look_alike_are_equal(tmp_path: Path) -> None:
     composed, decomposed = "roue dentée", "roue dente\u0301e"
     text = SMALL.replace("  a: {", f"  {decomposed}: {{").replace("driver: a", f"driver: {composed}")
     scene = load(tmp_path, text)
-    assert scene.moves["ab"].gears == (composed, "b")
+    assert of_kind(MeshSpec, scene.moves["ab"]).gears == (composed, "b")
     assert scene.text == text  # kept as written, for the copy in a run
 
 
@@ -266,7 +275,8 @@ def test_windows_line_ends_and_byte_order_marks_are_read(tmp_path: Path, encode:
 
 def test_defaults_are_those_of_the_grammar(tmp_path: Path) -> None:
     scene = load(tmp_path, SMALL)
-    gear, move, measure = scene.parts["a"], scene.moves["ab"], scene.measures["play"]
+    gear, move = of_kind(SpurGearSpec, scene.parts["a"]), of_kind(MeshSpec, scene.moves["ab"])
+    measure = of_kind(NormalBacklashSpec, scene.measures["play"])
     assert (gear.pressure_angle.number, gear.profile_shift, gear.addendum, gear.dedendum) == (20.0, 0.0, 1.0, 1.25)
     assert (gear.root_fillet, gear.bore, gear.expansion) == (None, None, None)
     assert (move.working_flank, move.housing) == ("right", None)
@@ -294,7 +304,7 @@ def test_only_an_exact_study_has_a_witness(engine: str, words: str, tmp_path: Pa
 def test_a_temperature_takes_one_part_or_several(tmp_path: Path, of: str, names: tuple[str, ...]) -> None:
     text = SMALL.replace("moves:", "  h: {kind: housing, expansion: 23e-6 1/K}\nmoves:")
     text += f"tolerances:\n  t: {{kind: temperature, of: {of}, distribution: {{kind: constant, value: 20 K}}}}\n"
-    assert load(tmp_path, text).tolerances["t"].of == names
+    assert of_kind(TemperatureSpec, load(tmp_path, text).tolerances["t"]).of == names
 
 
 def test_files_that_a_scene_names_are_listed(tmp_path: Path) -> None:

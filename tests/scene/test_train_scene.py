@@ -6,14 +6,21 @@ from pathlib import Path
 
 import jsonschema
 import pytest
+from of_kind import of_kind
 from places import ROOT
 from ruamel.yaml import YAML
 
 from tol3d import Scene, load_scene
 from tol3d.errors import SceneError
+from tol3d.gearing.grammar.measures.lost_motion import LostMotionSpec
+from tol3d.gearing.grammar.measures.mesh_measure import MeshMeasureSpec
+from tol3d.gearing.grammar.measures.train_measure import TrainMeasureSpec
 from tol3d.gearing.grammar.moves import GearMeshSpec, meshes_of
+from tol3d.gearing.grammar.moves.train import TrainSpec
 from tol3d.gearing.grammar.parts import BearingSpec, GearSpec, ShaftSpec, gears_on
+from tol3d.gearing.grammar.parts.arm import ArmSpec
 from tol3d.gearing.grammar.parts.shaft_reference import ShaftReference
+from tol3d.gearing.grammar.tolerances.bearing_clearance import BearingClearanceSpec
 from tol3d.kinds import all_kinds
 from tol3d.scene.reference import any_of
 
@@ -51,14 +58,15 @@ def said_of(folder: Path, text: str) -> list[str]:
 
 def test_the_documents_shoulder_is_that_of_the_paper(tmp_path: Path) -> None:
     scene = load(tmp_path, SHOULDER)
-    _, spur, bevel, train = scene.moves.values()
-    teeth = [scene.parts[gear].teeth for gear in (*spur.gears, *bevel.gears)]
+    spur, bevel = scene.of(GearMeshSpec).values()
+    (train,) = scene.of(TrainSpec).values()
+    teeth = [of_kind(GearSpec, scene.parts[gear]).teeth for gear in (*spur.gears, *bevel.gears)]
     assert teeth == [28, 110, 31, 31]
     assert (spur.ratio, bevel.ratio) == pytest.approx((110 / 28, 1.0), rel=1e-4)
     assert train.ratio == pytest.approx(152 * 110 / 28, rel=1e-6)
-    x, y, _ = (length.internal for length in scene.parts["arm"].points["tip"])
+    x, y, _ = (length.internal for length in of_kind(ArmSpec, scene.parts["arm"]).points["tip"])
     assert x**2 + y**2 == 763**2  # the paper's lever [mm]
-    assert scene.moves["shoulder swing"].gravity == (-1.0, 0.0, 0.0)
+    assert of_kind(TrainSpec, scene.moves["shoulder swing"]).gravity == (-1.0, 0.0, 0.0)
 
 
 def test_the_documents_shoulder_satisfies_the_json_schema() -> None:
@@ -73,12 +81,12 @@ def test_the_documents_shoulder_survives_being_written_and_read(tmp_path: Path) 
 
 def test_defaults_of_trains_are_those_of_the_grammar(tmp_path: Path) -> None:
     scene = load(tmp_path, SHOULDER)
-    carried = scene.parts["reducer output"].carries["pinion"]
+    carried = of_kind(ShaftSpec, scene.parts["reducer output"]).carries["pinion"]
     assert (carried.at.internal, carried.facing, carried.phase.internal) == (0.0, "forward", 0.0)
-    assert scene.parts["motor"].carries == {}
-    spur, motor = scene.moves["spur pair"], scene.parts["motor"]
+    spur, motor = of_kind(GearMeshSpec, scene.moves["spur pair"]), of_kind(ShaftSpec, scene.parts["motor"])
+    assert motor.carries == {}
     assert (spur.azimuth.internal, motor.diameter, motor.start, motor.end) == (0.0, None, None, None)
-    assert scene.measures["lost motion"].shaft is None
+    assert of_kind(LostMotionSpec, scene.measures["lost motion"]).shaft is None
 
 
 def test_reducers_and_trains_hold_no_gears_of_the_scene(tmp_path: Path) -> None:
@@ -89,7 +97,10 @@ def test_reducers_and_trains_hold_no_gears_of_the_scene(tmp_path: Path) -> None:
 
 def test_a_tip_error_is_a_curve_and_other_measures_of_trains_are_values(tmp_path: Path) -> None:
     measures = load(tmp_path, SHOULDER).measures
-    taken = {name: (measure.take, measure.several_positions, measure.dimension) for name, measure in measures.items()}
+    taken = {}
+    for name, measure in measures.items():
+        assert isinstance(measure, MeshMeasureSpec | TrainMeasureSpec)
+        taken[name] = (measure.take, measure.several_positions, measure.dimension)
     assert taken == {
         "spur backlash": ("value", False, "length"),
         "lost motion": ("value", False, "angle"),
@@ -117,13 +128,13 @@ def test_a_bearing_may_carry_a_gear_that_is_its_own_shaft(tmp_path: Path) -> Non
         ("    shaft: spline shaft           # a shaft", "    shaft: wheel # a shaft"),
         ("    carries:                      # a gear", "    carries:  # a gear"),
     )
-    assert load(tmp_path, free).parts["spline bearing"].shaft == "wheel"
+    assert of_kind(BearingSpec, load(tmp_path, free).parts["spline bearing"]).shaft == "wheel"
 
 
 @pytest.mark.parametrize("direction", ["random", "{at: 30 deg}"])
 def test_a_bearing_whose_direction_is_none_of_a_mesh_needs_no_mesh(direction: str, tmp_path: Path) -> None:
     text = re.sub(r"    mesh: spur pair .*\n    direction: apart\n", f"    direction: {direction}\n", SHOULDER)
-    assert load(tmp_path, text).tolerances["spline bearing clearance"].mesh is None
+    assert of_kind(BearingClearanceSpec, load(tmp_path, text).tolerances["spline bearing clearance"]).mesh is None
 
 
 def test_kinds_are_said_in_words_that_tell_them_apart() -> None:
