@@ -84,7 +84,8 @@ def test_its_mechanism_is_the_one_that_includes_all_kinds_and_makes_the_system(
 ) -> None:
     scene = read_scene(written(tmp_path), grammar)
     assert mechanism_of(scene) == SPRINGS
-    assert mechanism_of(scene).system_of(scene) == {"spring": 12.0}
+    system: object = mechanism_of(scene).system_of(scene)
+    assert system == {"spring": 12.0}
     assert mechanism_of(read_scene(SPUR_PAIR, grammar)).name == "gearing"
 
 
