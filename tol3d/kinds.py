@@ -9,15 +9,19 @@ All are named by import paths and loaded when the first scene is opened.
 """
 
 import warnings
-from functools import cache, lru_cache
+from functools import cache, lru_cache, reduce
 from importlib.metadata import EntryPoint, entry_points
+from operator import or_
 from pathlib import Path
-from typing import Any, Final
+from typing import TYPE_CHECKING, Any, Final
 
 from tol3d.errors import InputError
 from tol3d.files import Files
 from tol3d.scene import Grammar, Scene, read_scene
 from tol3d.system.mechanism import Mechanism, named
+
+if TYPE_CHECKING:
+    from tol3d.runs.summary.kinds import SummaryKinds
 
 SHIPPED: Final = ("tol3d.gearing.mechanism:GEARING",)
 
@@ -46,6 +50,11 @@ def all_kinds() -> Grammar:
     return _grammar((*_brought(), *_registered.values()))
 
 
+def summary_kinds() -> "SummaryKinds":
+    """What summaries of runs hold of every mechanism, besides what every one holds."""
+    return _summary_kinds(all_kinds())
+
+
 def load_scene(
     path: Path | str, kinds: Grammar | None = None, *, trust_parts: bool = False, files: Files | None = None
 ) -> Scene:
@@ -66,6 +75,13 @@ def load_scene(
 @lru_cache
 def _grammar(mechanisms: tuple[Mechanism, ...]) -> Grammar:
     return Grammar(mechanisms)
+
+
+@lru_cache
+def _summary_kinds(grammar: Grammar) -> "SummaryKinds":
+    paths = (each.summary for each in grammar.vocabularies if isinstance(each, Mechanism) and each.summary)
+    found: SummaryKinds = reduce(or_, map(named, paths))
+    return found
 
 
 @cache

@@ -13,7 +13,7 @@ from tol3d.system.measure import Measure
 from tol3d.system.outcome import ANALYTIC, GEOMETRIC, status_column, value_column
 from tol3d.system.road import ANALYTIC_ROAD, Answers, Codes, Road
 from tol3d.system.stated import component_slices
-from tol3d.system.statuses import Statuses
+from tol3d.system.statuses import OK, Statuses
 from tol3d.system.system import System
 from tol3d.system.taken import ROWS_AT_ONCE, taken
 from tol3d.system.trials import Trials
@@ -59,7 +59,9 @@ def _columns(system: System, road: Road | None, trials: Trials, measures: Sequen
     geometric = road.answers(trials, measures)
     columns |= _values(GEOMETRIC, geometric, measures)
     columns |= {**geometric.details, **_terms(system, GEOMETRIC, geometric)}
-    return columns | _status_columns(system.statuses, geometric.status)
+    seated = np.full(len(trials), OK, dtype=np.int8)
+    status = {measure.name: geometric.status.get(measure.name, seated) for measure in measures}
+    return columns | _status_columns(system.statuses, status)
 
 
 def _values(road: str, answers: Answers, measures: Sequence[Measure]) -> Columns:

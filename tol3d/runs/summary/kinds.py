@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from functools import cache, cached_property, reduce
+from functools import cached_property, reduce
 from importlib import import_module
 from operator import or_
 from typing import Annotated, Any, get_args
@@ -13,7 +13,7 @@ from tol3d.runs.summary.measure import MeasureSummary
 from tol3d.runs.summary.run import RunSummary
 from tol3d.runs.summary.values import MOST_ENTRIES, Label
 
-HOME = ("tol3d.gearing.summary_types", "SUMMARY_KINDS")  # of what summaries hold where nobody says otherwise
+HOME = ("tol3d.kinds", "summary_kinds")  # of what summaries hold where nobody says otherwise
 
 
 @dataclass(frozen=True)
@@ -52,9 +52,8 @@ class SummaryKinds:
         return frozenset(kind for each in kinds for kind in each) if len(self.measures) > 1 else frozenset()
 
 
-@cache
 def default_kinds() -> SummaryKinds:
-    """What the mechanisms of this package add; loaded when it is first asked for, since runs/ imports no mechanism."""
+    """What all mechanisms add; loaded when it is first asked for, since runs/ imports no mechanism."""
     module, name = HOME
-    found: SummaryKinds = getattr(import_module(module), name)
+    found: SummaryKinds = getattr(import_module(module), name)()
     return found

@@ -257,7 +257,7 @@ class _Case:
         allowed += sum(float(own[self.worst]) for own in bounds.values())
         for name, group in regressor_groups(self.system, self.measure).items():
             spread = math.sqrt(np.trace(self.fits.difference.spread[group, group]))
-            reach = float(np.hypot(*regressors[group])) / spread if spread > 0.0 else 0.0
+            reach = float(np.hypot.reduce(regressors[group])) / spread if spread > 0.0 else 0.0
             allowed += SHARE * self.fits.own[name] * reach
         if left > allowed:  # not where it is nan
             yield (

@@ -1,0 +1,134 @@
+"""docs/add_a_mechanism.md as it stands: a mechanism from outside, in under a hundred lines, against its oracles."""
+
+import math
+import re
+import sys
+import tomllib
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import scipy.integrate
+import scipy.stats
+from places import ROOT
+
+import tol3d
+from tol3d import kinds
+from tol3d.runs.run import Run
+
+PAGE = (ROOT / "docs" / "add_a_mechanism.md").read_text("utf-8")
+PINS, NOMINAL, SIGMA, SCALE = 6, 20.0, 3.0, 2.0  # um, as the page's scene has them
+TRIALS = 2000
+
+
+def fence(language: str, holding: str) -> str:
+    """The one fenced block of a language that holds a text."""
+    (block,) = (
+        block for block in re.findall(rf"^```{language}\n(.*?)^```", PAGE, re.MULTILINE | re.DOTALL) if holding in block
+    )
+    return str(block)
+
+
+@pytest.fixture(scope="module")
+def names(tmp_path_factory: pytest.TempPathFactory) -> Iterator[dict[str, Any]]:
+    """What the page's program has when it has run, in a folder with its two files."""
+    folder = tmp_path_factory.mktemp("page")
+    (folder / "pin_gauge.py").write_text(fence("python", "PIN_GAUGES = Mechanism("), "utf-8")
+    (folder / "pin_gauge.yaml").write_text(fence("yaml", "kind: pin_gauge"), "utf-8")
+    with pytest.MonkeyPatch.context() as patch:
+        patch.chdir(folder)
+        patch.syspath_prepend(folder)
+        patch.setattr(kinds, "_registered", {})
+        found: dict[str, Any] = {"folder": folder}
+        exec(fence("python", "tol3d.register"), found)
+        yield found
+    sys.modules.pop("pin_gauge", None)
+
+
+@pytest.fixture(scope="module")
+def run(names: dict[str, Any]) -> Run:
+    found: Run = names["run"]
+    return found
+
+
+def test_the_example_is_under_a_hundred_lines() -> None:
+    assert len(fence("python", "PIN_GAUGES = Mechanism(").splitlines()) < 100
+
+
+def test_its_scene_is_the_oracles() -> None:
+    scene = fence("yaml", "kind: pin_gauge")
+    assert f"pins: {PINS}," in scene
+    assert f"scale: {SCALE:g} um" in scene
+    assert f"lower: -{3 * SIGMA:g} um, upper: {3 * SIGMA:g} um" in scene
+    assert f"trials: {TRIALS}" in scene
+    diameters = [float(number) for number in re.findall(r"diameter: ([\d.]+) mm", scene)]
+    assert (diameters[0] - sum(diameters[1:])) / 2 * 1000 == pytest.approx(NOMINAL)
+
+
+def test_both_roads_are_what_the_columns_say_trial_by_trial(run: Run) -> None:
+    """By hand, from the deviations in the run's columns: pins k at 60° k, the peg at (x, y)."""
+    frame = run.frame()
+    x, y = frame["peg offset.x [um]"].to_numpy(), frame["peg offset.y [um]"].to_numpy()
+    first, placed = [], []
+    for k in range(PINS):
+        pin = frame[f"pin position.pin {k + 1} [um]"].to_numpy()
+        cos, sin = math.cos(math.radians(60 * k)), math.sin(math.radians(60 * k))
+        first.append(NOMINAL + pin - cos * x - sin * y)
+        away = 15_000 + pin
+        placed.append(np.hypot(away * cos - x, away * sin - y) - 15_000 + NOMINAL)
+    assert frame["analytic:smallest gap"].to_numpy() == pytest.approx(np.min(first, axis=0), abs=1e-8)
+    assert frame["geometric:smallest gap"].to_numpy() == pytest.approx(np.min(placed, axis=0), abs=1e-8)
+
+
+def test_the_roads_differ_by_the_square_of_the_offset_and_no_more(run: Run) -> None:
+    """|R u - e| is R - e·u + (e × u)² / 2 R to second order: never less, at most e² / 2 R more."""
+    frame = run.frame()
+    difference = (frame["geometric:smallest gap"] - frame["analytic:smallest gap"]).to_numpy()
+    most = (frame["peg offset.x [um]"] ** 2 + frame["peg offset.y [um]"] ** 2).to_numpy() / (2 * 14_900)
+    assert np.all(difference > -1e-8)
+    assert np.all(difference < most + 1e-8)
+    assert difference.max() > 1e-4
+    told = run.summary["measures"]["smallest gap"]["agreement"]["explanation"]
+    assert told["second_order_of"] == ["peg offset"]
+    assert told["faults"] == []
+
+
+def smallest_of_normals(count: int) -> tuple[float, float]:
+    """Mean and sigma of the smallest of as many independent standard normals, by an integral."""
+    law = scipy.stats.norm
+
+    def moment(power: int) -> float:
+        found, _ = scipy.integrate.quad(lambda z: z**power * count * law.pdf(z) * law.sf(z) ** (count - 1), -10, 10)
+        return float(found)
+
+    return moment(1), math.sqrt(moment(2) - moment(1) ** 2)
+
+
+def test_the_smallest_of_six_pins_has_the_mean_and_sigma_of_that_order_statistic(
+    names: dict[str, Any], tmp_path: Path
+) -> None:
+    """Without the peg's offset; four standard errors."""
+    text = fence("yaml", "kind: pin_gauge")
+    law = f"{{kind: rayleigh, scale: {SCALE:g} um}}"
+    assert text.count(law) == 1
+    path = tmp_path / "centred.yaml"
+    path.write_text(text.replace(law, "{kind: constant, value: 0 um}"), "utf-8")
+    found = tol3d.run_scene(path, out=tmp_path / "run").summary["measures"]["smallest gap"]
+    mean, sigma = (SIGMA * moment for moment in smallest_of_normals(PINS))
+    for road in ("analytic", "geometric"):
+        assert found[road]["mean"] == pytest.approx(NOMINAL + mean, abs=4 * sigma / math.sqrt(TRIALS))
+        assert found[road]["sigma"] == pytest.approx(sigma, rel=4 / math.sqrt(TRIALS))
+
+
+def test_its_run_opens_again_and_any_trial_is_replayed(run: Run) -> None:
+    again = tol3d.open_run(run.path)
+    worst = again.worst("smallest gap")
+    column = "geometric:smallest gap"
+    assert worst == np.argmin(again.columns(column)[column])
+
+
+def test_its_entry_point_is_in_the_group_that_is_asked_for() -> None:
+    (points,) = tomllib.loads(fence("toml", "pin_gauge:PIN_GAUGES"))["project"]["entry-points"].items()
+    assert points == (kinds.GROUP, {"pin_gauges": "pin_gauge:PIN_GAUGES"})

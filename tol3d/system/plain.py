@@ -1,0 +1,279 @@
+"""A system whose trials are made of deviations alone: what is the same for most mechanisms, to be overridden.
+
+A mechanism of its own gives its kinds of part, tolerance, move and measure, and a PlainSystem with two functions from
+deviations to values: the analytic one, and that of the placed parts. docs/add_a_mechanism.md shows one whole.
+"""
+
+import math
+from collections.abc import Callable, Hashable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import Field
+
+from tol3d.distributions import Distribution
+from tol3d.scene import Scene
+from tol3d.scene.measure import LengthLimit, MeasureSpec
+from tol3d.scene.tolerance import ToleranceSpec
+from tol3d.system.breakdown import Breakdown
+from tol3d.system.closed_form import ClosedForm
+from tol3d.system.contributor import Contributor, column_names
+from tol3d.system.draw import Draw, Scalar
+from tol3d.system.measure import Measure, Worse
+from tol3d.system.pooled import PooledTerms
+from tol3d.system.positions import AT_RANDOM, Positions, Take
+from tol3d.system.regressors import regress_plainly
+from tol3d.system.road import ANALYTIC_ROAD, Answers, Road, RoadKind
+from tol3d.system.stated import component_slices
+from tol3d.system.statuses import OK, Statuses
+from tol3d.system.system import Columns, KeyPath, Published, StreamKey
+from tol3d.system.trials import Trials
+from tol3d.units import Dimension
+
+Array = NDArray[np.float64]
+Drawn = Callable[[Distribution], Draw]
+
+UNITS: Mapping[Dimension, tuple[str, float]] = {
+    "length": ("um", 1e-3),
+    "angle": ("arcmin", math.radians(1 / 60)),
+    "temperature": ("K", 1.0),
+}
+"""Units of columns, and one of each in mm, rad or K."""
+
+
+@dataclass(frozen=True)
+class PlainContributor:
+    """A deviation; see Contributor.
+
+    Args:
+        name, kind, description: of the tolerance, as in the scene.
+        draw: how its components come from uniforms.
+        unit: of its columns in results.
+        per_unit: one of that unit in mm, rad or K.
+        least: smallest physical deviation [mm, rad or K].
+    """
+
+    name: str
+    kind: str
+    draw: Draw
+    unit: str = "um"
+    per_unit: float = 1e-3
+    description: str = ""
+    least: float | None = None
+
+    @property
+    def columns(self) -> tuple[str, ...]:
+        """Its columns in results, one a component."""
+        return column_names(self.name, self.draw.components, self.unit)
+
+    @property
+    def distribution(self) -> Distribution:
+        """The law of the deviation."""
+        return self.draw.distribution
+
+
+@dataclass(frozen=True)
+class PlainMeasure:
+    """One number a trial; see Measure.
+
+    Args:
+        name: as in the scene.
+        kind: the measure's kind, the scene's word.
+        lower_limit, upper_limit: [mm or rad].
+        unit: of its columns and of summary.json.
+        per_internal: one mm or rad in that unit.
+        worse: which end is the worse one where there is no limit.
+        adds_up: whether it is a sum of effects; False where load paths or contacts are compared.
+    """
+
+    name: str
+    kind: str
+    lower_limit: float | None = None
+    upper_limit: float | None = None
+    unit: str = "um"
+    per_internal: float = 1e3
+    worse: Worse = "low"
+    adds_up: bool = True
+    keeps_overlap: bool = False
+
+    positions: ClassVar[Positions] = AT_RANDOM
+    take: ClassVar[Take] = "value"
+
+
+def contributors_of(scene: Scene, draws: Mapping[type[ToleranceSpec], Drawn]) -> tuple[PlainContributor, ...]:
+    """The tolerances of a scene as contributors.
+
+    Args:
+        scene: the scene.
+        draws: by kind of tolerance, how its components are drawn; one component from its law if not given.
+
+    Raises:
+        SceneError: a file of measured values that a law reads makes no sense.
+    """
+    return tuple(
+        PlainContributor(
+            name,
+            spec.kind,
+            draws.get(type(spec), Scalar)(spec.distribution.resolve(scene.files)),
+            *UNITS[spec.dimensions[0]],
+            spec.description,
+        )
+        for name, spec in scene.tolerances.items()
+    )
+
+
+def measures_of(scene: Scene, *, worse: Worse = "low", adds_up: bool = True) -> tuple[PlainMeasure, ...]:
+    """The measures of a scene, each one number a trial; for the arguments see PlainMeasure."""
+    found = []
+    for name, spec in scene.measures.items():
+        lower, upper = (None if limit is None else limit.internal for limit in (spec.lower_limit, spec.upper_limit))
+        unit, per_unit = UNITS[spec.dimension]
+        found.append(PlainMeasure(name, spec.kind, lower, upper, unit, 1.0 / per_unit, worse, adds_up))
+    return tuple(found)
+
+
+class LengthSpec(MeasureSpec):
+    """A measure of one length a trial as a scene writes it; a kind adds its word and what it is of."""
+
+    dimension: ClassVar[Dimension] = "length"
+    gives_curve: ClassVar[bool] = False
+    several_positions: ClassVar[bool] = False
+
+    lower_limit: LengthLimit | None = Field(default=None, description="less than this is out of limits")
+    upper_limit: LengthLimit | None = Field(default=None, description="more than this is out of limits")
+
+
+@dataclass(frozen=True)
+class PlainRoad:
+    """A road that is a function; every trial seats.
+
+    Args:
+        values: of some trials and a measure, (trials,) [mm or rad].
+    """
+
+    values: Callable[[Trials, Measure], Array]
+
+    chord_error: ClassVar[float] = 0.0
+
+    def answers(self, trials: Trials, measures: Sequence[Measure]) -> Answers:
+        """See Road."""
+        return Answers(
+            {measure.name: self.values(trials, measure)[:, None] for measure in measures},
+            status={measure.name: np.full(len(trials), OK, dtype=np.int8) for measure in measures},
+        )
+
+
+@dataclass(frozen=True)
+class PlainSystem:
+    """A system read at one position, at rest, without sums or sections of its own; see System.
+
+    A subclass adds `analytic` and `exact`, its roads as functions, and overrides what it knows better, such as
+    `closed_form`, `acting` or `problems`.
+
+    Args:
+        name: of the scene.
+        contributors: all tolerances, in the scene's order.
+        measures: all measures, in the scene's order.
+    """
+
+    name: str
+    contributors: tuple[PlainContributor, ...]
+    measures: tuple[PlainMeasure, ...]
+
+    roads: ClassVar[Mapping[str, RoadKind]] = {ANALYTIC_ROAD: RoadKind("model"), "exact": RoadKind("model")}
+    statuses: ClassVar[Statuses] = Statuses(("ok",))
+    breakdowns: ClassVar[Sequence[Breakdown]] = ()
+    warnings: ClassVar[Sequence[str]] = ()
+    streams: ClassVar[Sequence[StreamKey]] = ()
+
+    def analytic(self, trials: Trials, measure: Measure) -> Array:
+        """Values (trials,) [mm or rad] by theory."""
+        raise NotImplementedError
+
+    def exact(self, trials: Trials, measure: Measure) -> Array:
+        """Values (trials,) [mm or rad] of the parts as they are placed."""
+        raise NotImplementedError
+
+    def road(self, name: str, materials: Any) -> Road:
+        """One of the two functions."""
+        return PlainRoad(self.analytic if name == ANALYTIC_ROAD else self.exact)
+
+    def problems(self) -> Iterator[tuple[KeyPath, str]]:
+        """None."""
+        return iter(())
+
+    def describe(self, measure: Measure) -> Mapping[str, Any]:
+        """Its kind."""
+        return {"kind": next(own.kind for own in self.measures if own.name == measure.name)}
+
+    def positions(self, uniforms: Mapping[StreamKey, Array]) -> Mapping[str, Array]:
+        """None."""
+        return {}
+
+    def columns(self, trials: Trials) -> Mapping[str, NDArray[np.generic]]:
+        """None."""
+        return {}
+
+    def turns_at_random(self, contributor: Contributor, positions: Positions) -> bool:
+        """Nothing turns."""
+        return False
+
+    def is_compiled(self, road: str) -> bool:
+        """Nothing is to be compiled."""
+        return True
+
+    def materials(self, road: str) -> Any:
+        """None."""
+        return None
+
+    def cost(self, measures: Sequence[Measure]) -> int:
+        """As a contact for each measure."""
+        return len(measures)
+
+    def chord_bound(self, measure: Measure, chord_error: float) -> float:
+        """No road has facets."""
+        return 0.0
+
+    def acting(self, measure: Measure) -> Sequence[Contributor]:
+        """All of them."""
+        return self.contributors
+
+    def regressor_key(self, measure: Measure) -> Hashable:
+        """The contributors that act decide."""
+        return tuple(contributor.name for contributor in self.acting(measure))
+
+    def regress(
+        self, measure: Measure, contributors: Sequence[Contributor], columns: Columns, rows: Mapping[str, Array]
+    ) -> None:
+        """Each component of a contributor."""
+        for own in contributors:
+            values = [np.asarray(columns[name], dtype=np.float64) * own.per_unit for name in own.columns]
+            regress_plainly(rows[own.name], own, values)
+
+    def closed_form(self, measure: Measure) -> ClosedForm | None:
+        """None."""
+        return None
+
+    def reference_form(self, measure: Measure) -> ClosedForm | None:
+        """The closed form: there is one position."""
+        return self.closed_form(measure)
+
+    def neglected(self, measure: Measure, trials: Trials) -> Mapping[str, Array]:
+        """Nothing of first order."""
+        return {}
+
+    def sections(self, terms: Mapping[str, Mapping[str, PooledTerms]], published: Published) -> Mapping[str, Any]:
+        """None."""
+        return {}
+
+    def display(self, trials: Trials, road: Road) -> Any:
+        """Nothing to draw."""
+        return None
+
+    def deviations(self, trials: Trials, kind: str) -> Array:
+        """Components (trials, components) [mm, rad, K] of a kind's contributors, added up; 0 where there is none."""
+        slices = component_slices(self)
+        own = [trials.deviations[:, slices[each.name]] for each in self.contributors if each.kind == kind]
+        return np.asarray(sum(own, np.zeros((len(trials), 1))))
