@@ -589,7 +589,7 @@ def test_derivatives_are_those_of_two_simulations(drawing: str, tmp_path: Path) 
 # what does not fit -------------------------------------------------------------------------------------------------
 
 STAGE = (SCENES / "split_train.yaml").read_text(encoding="utf-8")
-MIDST = "'left': a shaft in the midst of the parallel ways left fast + left slow ∥ right fast + right slow"
+MIDST = "'left': a shaft inside the parallel load paths left fast + left slow ∥ right fast + right slow"
 SKEW = "driver: right pinion, driven: bull, centre_distance: 60 mm, azimuth: 170"
 BAD = {
     "ways of other ratios": (
@@ -599,13 +599,14 @@ BAD = {
         },
         "  right slow:",
         "moves.right slow: a loop of shafts that locks: 'output' turns 0.191758 times with 'input' here and 0.198606 "
-        "times by 'left slow'; give both ways one ratio, or take out one",
+        "times by 'left slow'; give both load paths one ratio, or take out one",
     ),
     "a way that ends elsewhere": (
         {"driver: right pinion, driven: bull, centre_distance: 60 mm, azimuth: 180": SKEW},
         "  right slow:",
-        f"moves.right slow: the ways to 'output' do not fit: here it lies {120 * math.sin(math.radians(5)):.3f} mm and "
-        "0.000 deg from where 'left slow' puts it; look at azimuths, centre distances and places on the shafts",
+        f"moves.right slow: the load paths to 'output' do not fit: here it lies "
+        f"{120 * math.sin(math.radians(5)):.3f} mm and 0.000 deg from where "
+        "'left slow' puts it; look at azimuths, centre distances and places on the shafts",
     ),
     "two motors": (
         {
@@ -624,17 +625,17 @@ BAD = {
     "read in the midst": (
         {"of: stage, upper_limit": "of: stage, shaft: left, upper_limit"},
         "  lost motion:",
-        f"measures.lost motion.shaft: expected a shaft before or behind all parallel ways, got {MIDST}",
+        f"measures.lost motion.shaft: expected a shaft before or after all parallel load paths, got {MIDST}",
     ),
     "held in the midst": (
         {"output: output, ratio: 5.0351": "output: output, held: left"},
         "  stage:",
-        f"moves.stage.held: expected a shaft before or behind all parallel ways, got {MIDST}",
+        f"moves.stage.held: expected a shaft before or after all parallel load paths, got {MIDST}",
     ),
     "an output in the midst": (
         {"output: output, ratio: 5.0351": "output: left"},
         "  stage:",
-        f"moves.stage.output: expected a shaft before or behind all parallel ways, got {MIDST}",
+        f"moves.stage.output: expected a shaft before or after all parallel load paths, got {MIDST}",
     ),
 }
 

@@ -104,7 +104,7 @@ def test_trials_in_which_ways_bind_are_left_out_of_the_stages_too(tmp_path: Path
 
 
 def test_ways_that_bind_in_the_mean_build_are_refused(tmp_path: Path) -> None:
-    with pytest.raises(SceneError, match=r"moves\.stage: the parallel ways .* bind each other at the mean build"):
+    with pytest.raises(SceneError, match=r"moves\.stage: the parallel load paths .* bind each other at the mean build"):
         run_scene(clocked(tmp_path, 70.0, 90.0), out=tmp_path / "run")
 
 

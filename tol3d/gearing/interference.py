@@ -46,7 +46,7 @@ def _binding(model: Model, measure: Measure, kind: LostMotion, builds: tuple[Tri
     mean, nominal = (float(analytic_play(model, angle, build).free().min()) * angle.per_internal for build in builds)
     return (
         ("moves", kind.train),
-        f"the parallel ways {ways} bind each other at the mean build: the lost motion of {kind.shaft} is {mean:.3f} "
-        f"{angle.unit} there (nominal {nominal:.3f} {angle.unit}); thin the teeth, or set the gears otherwise on their "
-        "shafts",
+        f"the parallel load paths {ways} bind each other at the mean build: the lost motion of {kind.shaft} is "
+        f"{mean:.3f} {angle.unit} there (nominal {nominal:.3f} {angle.unit}); thin the teeth, or "
+        "set the gears otherwise on their shafts",
     )

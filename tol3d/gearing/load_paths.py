@@ -1,8 +1,8 @@
-"""What is free at the shaft where parallel ways meet: what all of them leave free, the intersection of their plays.
+"""Play where parallel load paths join: the intersection of their plays.
 
-The free turn of a shaft on one way is an interval: from where its driven gear rests on the working flank to where the
-other flank touches, links one behind the other added up. All is linear in what each mesh tells, its play and the angle
-at which it rests, once it is known which way ends first on either side; so derivatives go the same way as values.
+The free turn of a shaft on one load path is an interval: from where its driven gear rests on the working flank to where
+the other flank touches, links in series added up. All is linear in the play of each mesh and the angle at which it
+rests, once it is known which path ends first on either side; so derivatives are computed as values are.
 """
 
 from collections.abc import Callable, Mapping
@@ -32,14 +32,14 @@ def value(form: Form, told: Told) -> Array:
 
 
 def free_form(stage: ParallelStage, flank: Flank, told: Told) -> Form:
-    """What is free at the shaft where ways meet; below 0 they bind each other."""
+    """Play of the shaft where load paths join; below 0 they bind each other."""
     low, high = _meeting(stage, flank, told)
     return _sum(high, {part: -weight for part, weight in low.items()})
 
 
 def _meeting(stage: ParallelStage, flank: Flank, told: Told) -> tuple[Form, Form]:
-    """Both ends of what is free on all ways."""
-    each = [_ends_of_way(way, flank, told) for way in stage.ways]
+    """Both ends of what is free on all load paths."""
+    each = [_ends_of_path(path, flank, told) for path in stage.paths]
     lows, highs = [low for low, _ in each], [high for _, high in each]
     return (
         _chosen(lows, np.argmax([value(form, told) for form in lows], axis=0)),
@@ -47,17 +47,17 @@ def _meeting(stage: ParallelStage, flank: Flank, told: Told) -> tuple[Form, Form
     )
 
 
-def _ends_of_way(way: tuple[AnyStage, ...], flank: Flank, told: Told) -> tuple[Form, Form]:
+def _ends_of_path(path: tuple[AnyStage, ...], flank: Flank, told: Told) -> tuple[Form, Form]:
     low: Form = {}
     high: Form = {}
-    for stage in way:
+    for stage in path:
         ends = _ends(stage, flank, told)
         low, high = _sum(low, ends[0]), _sum(high, ends[1])
     return low, high
 
 
 def _ends(stage: AnyStage, flank: Flank, told: Told) -> tuple[Form, Form]:
-    """Both ends of what a stage leaves free, at the shaft where its ways meet."""
+    """Both ends of what a stage leaves free, at the shaft where its load paths join."""
     factor = np.array(stage.sense * stage.factor)
     if isinstance(stage, ParallelStage):
         both = tuple({part: factor * weight for part, weight in form.items()} for form in _meeting(stage, flank, told))

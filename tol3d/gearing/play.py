@@ -1,4 +1,4 @@
-"""What a measure's backlashes leave free, together: added up along a train, compared where parallel ways meet.
+"""What a measure's backlashes leave free, together: added up along a train, compared where parallel load paths join.
 
 Both roads go through here; what a single backlash is, each of them reads for itself.
 """
@@ -17,7 +17,7 @@ from tol3d.gearing.reducer import reducer_backlash
 
 Array = NDArray[np.float64]
 
-FREE = 1e-9  # rad; ways that overlap by rounding errors do not bind each other
+FREE = 1e-9  # rad; load paths that overlap by rounding errors do not bind each other
 
 Angles = tuple[float, ...] | None
 """Driver angles [rad] that every trial shares; None for those of the trial."""
@@ -59,7 +59,7 @@ class Play:
         return np.asarray(sum(factor * values for _, factor, values in self.parts()))
 
     def parts(self) -> Iterator[tuple[str, float, Array]]:
-        """What is added up: the name of each mesh, reducer or set of parallel ways, its factor, and what it leaves."""
+        """What is added up: the name of each mesh, reducer or group of parallel load paths, its factor, its play."""
         kind = self.measure.kind
         if isinstance(kind, Backlash):
             yield kind.mesh, 1.0, self.read(kind, seat_key(self.model, self.measure, kind))
@@ -68,7 +68,7 @@ class Play:
             yield stage.link, stage.factor, self.of(stage)
 
     def overlap(self) -> Array:
-        """What meshes and parallel ways lack together where they bind [mm or rad], (trials, positions), 0 or less.
+        """What meshes and parallel load paths lack where they bind [mm or rad], (trials, positions), 0 or less.
 
         That of a train which is jammed somewhere: the play of its other stages does not free it.
         """
@@ -78,7 +78,7 @@ class Play:
         return np.asarray(sum(stage.factor * np.minimum(self.of(stage), 0.0) for stage in stages))
 
     def bound(self) -> NDArray[np.bool_]:
-        """Where parallel ways bind each other, (trials, positions)."""
+        """Where parallel load paths bind each other, (trials, positions)."""
         tight = np.zeros((len(self.deviations), self.measure.positions.in_a_trial), dtype=bool)
         stages = self.measure.kind.stages if isinstance(self.measure.kind, LostMotion) else ()
         for stage in _parallel(stages):
@@ -116,8 +116,8 @@ def _is_reducer(stage: AnyStage) -> bool:
 
 
 def _parallel(stages: Iterable[AnyStage]) -> Iterator[ParallelStage]:
-    """All parallel ways among some stages, those on a way of others too."""
+    """All parallel load paths among some stages, those inside others too."""
     for stage in stages:
         if isinstance(stage, ParallelStage):
             yield stage
-            yield from (inner for way in stage.ways for inner in _parallel(way))
+            yield from (inner for path in stage.paths for inner in _parallel(path))

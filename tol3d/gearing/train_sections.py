@@ -78,7 +78,7 @@ def _link(model: Model, stage: AnyStage) -> dict[str, Any]:
     if isinstance(stage, ParallelStage):
         ratio = float(model.layout.ratio(stage.first, stage.last))
         whole = {"link": stage.link, "kind": "parallel", "driver": stage.first, "driven": stage.last, "ratio": ratio}
-        return whole | {"gears": None, "teeth": None, "working_flank": None, "ways": len(stage.ways)}
+        return whole | {"gears": None, "teeth": None, "working_flank": None, "ways": len(stage.paths)}
     link = next(link for link in model.layout.links if link.name == stage.link)
     own: dict[str, Any] = {"link": link.name, "kind": "reducer", "driver": link.driver, "driven": link.driven}
     own |= {"gears": None, "teeth": None, "ratio": float(1 / link.rate), "working_flank": None}

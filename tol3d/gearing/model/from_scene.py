@@ -89,7 +89,7 @@ def _loaded(scene: Scene, mesh: Mesh, trains: tuple[Train, ...], layout: Layout,
         return mesh
     root = layout.root_of[layout.carrying[mesh.driver][0]]
     own = [train for train in trains if train.driven == root]
-    through = [t for t in own if mesh.name in {link.name for link in links_of(layout.way(t.driven, t.output))}]
+    through = [t for t in own if mesh.name in {link.name for link in links_of(layout.load_path(t.driven, t.output))}]
     loading = through or [replace(train, gravity=None) for train in own]  # gravity does not load a branch
     flanks = {loaded_flank(mesh, train, layout, arms): train.name for train in loading}
     if len(flanks) == 2:

@@ -1,9 +1,9 @@
 """Where the shafts of a model lie, how they turn with each other, and which of them drive: found from its links.
 
 Shafts make trees; the first shaft of a tree is its root, which lies in the world's origin, its axis z. Where several
-links drive one shaft, the first of them places it and the others close parallel ways: a gear of each is turned on its
-shaft until the teeth fit, the driven one, or the driver where the driven one is in other meshes too. A mesh has a world
-of its own, with its driver's axis at rest as z and the mate at +x.
+links drive one shaft, the first of them places it and the others close parallel load paths: a gear of each is turned
+on its shaft until the teeth fit, the driven one, or the driver where the driven one is in other meshes too. A mesh has
+a world of its own, with its driver's axis at rest as z and the mate at +x.
 """
 
 import math
@@ -15,7 +15,15 @@ from fractions import Fraction
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.gearing.model.links import Link, Way, back_to_root, carriers, links_between_shafts, onwards, way_between
+from tol3d.gearing.model.links import (
+    Link,
+    LoadPath,
+    back_to_root,
+    carriers,
+    links_between_shafts,
+    load_path_between,
+    onwards,
+)
 from tol3d.gearing.model.mesh import Mesh
 from tol3d.gearing.model.shafts import Carried, Reducer, Shaft
 
@@ -53,7 +61,7 @@ class Drive:
 
 @dataclass(frozen=True)
 class Closing:
-    """How the driven gear of a mesh that closes parallel ways lies in it, for another link places its shaft.
+    """How the driven gear of a mesh that closes parallel load paths lies in it, for another link places its shaft.
 
     Args:
         azimuth: of its frame at rest in the mesh, in the frame of its axis at rest on its shaft [rad].
@@ -84,7 +92,7 @@ class Layout:
         world_from_mesh: (4, 4).
         shaft_from_gear: (4, 4), a gear's axis at rest on its shaft.
         carrying: the shaft that carries each gear, and where.
-        closed: meshes that close parallel ways.
+        closed: meshes that close parallel load paths.
         drives: the trees.
     """
 
@@ -110,16 +118,16 @@ class Layout:
         return next(drive for drive in self.drives if mesh in drive.meshes)
 
     def behind(self, shaft: str) -> tuple[Link, ...]:
-        """The links from a shaft back to its root; the first of parallel ways."""
+        """The links from a shaft back to its root; the first of parallel load paths."""
         return back_to_root(self.driving, shaft)
 
-    def way(self, first: str, last: str) -> Way:
-        """What lies between two shafts of a tree, in the order of the way.
+    def load_path(self, first: str, last: str) -> LoadPath:
+        """What lies between two shafts of a tree, in the order of the load path.
 
         Raises:
-            GeometryError: one of them lies in the midst of parallel ways, or these are not apart.
+            GeometryError: one of them lies inside parallel load paths, or these are not apart.
         """
-        return way_between(self.links, first, last)
+        return load_path_between(self.links, first, last)
 
     def ratio(self, first: str, last: str) -> Fraction:
         """Turns of the first shaft per turn of the last, signed."""
@@ -235,7 +243,7 @@ def _clocked(
     azimuth: float,
     busy: Mapping[str, int],
 ) -> tuple[Carried, Carried, Closing]:
-    """Driver and driven gear of a mesh that closes parallel ways, turned on their shafts until the teeth fit.
+    """Driver and driven gear of a mesh that closes parallel load paths, turned on their shafts until the teeth fit.
 
     Args:
         mesh: that mesh.

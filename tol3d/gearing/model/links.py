@@ -1,4 +1,4 @@
-"""Links: what makes shafts turn with each other, and the ways that they make."""
+"""Links: what makes shafts turn with each other, and the load paths that they make."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -24,25 +24,25 @@ class Link:
 
 @dataclass(frozen=True)
 class Parallel:
-    """Ways that part at one shaft and meet at another.
+    """Load paths that part at one shaft and join at another.
 
     Args:
         driver, driven: the shafts.
-        ways: the links of each, one behind the other; there may be parallel ones among them.
+        paths: the links of each in series; some of them may be in parallel again.
     """
 
     driver: str
     driven: str
-    ways: tuple["Way", ...]
+    paths: tuple["LoadPath", ...]
 
     @property
     def name(self) -> str:
         """Its links' names."""
-        return " ∥ ".join(" + ".join(element.name for element in way) for way in self.ways)
+        return " ∥ ".join(" + ".join(element.name for element in path) for path in self.paths)
 
 
-Way = tuple[Link | Parallel, ...]
-"""Links one behind the other."""
+LoadPath = tuple[Link | Parallel, ...]
+"""Links in series."""
 
 
 def links_between_shafts(
@@ -69,12 +69,12 @@ def _link(mesh: Mesh, carrying: Mapping[str, tuple[str, Carried]]) -> Link:
     return Link(mesh.name, driver, driven, mesh.rate * first.sense * second.sense)
 
 
-def links_of(way: Way) -> tuple[Link, ...]:
-    """Every link of a way, those of parallel ones too."""
+def links_of(path: LoadPath) -> tuple[Link, ...]:
+    """Every link of a load path, those in parallel too."""
     found: list[Link] = []
-    for element in way:
+    for element in path:
         found += (
-            [element] if isinstance(element, Link) else [link for inner in element.ways for link in links_of(inner)]
+            [element] if isinstance(element, Link) else [link for inner in element.paths for link in links_of(inner)]
         )
     return tuple(found)
 
@@ -83,16 +83,16 @@ def loop_of(links: Sequence[Link]) -> tuple[str, ...]:
     """Shafts that drive each other in a ring, the first of them again at the end; empty where there are none."""
     driver = {link.driven: link.driver for link in links}
     for start in driver:
-        way = [start]
-        while way[-1] in driver and len(way) <= len(driver):
-            way.append(driver[way[-1]])
-            if way[-1] == start:
-                return tuple(reversed(way))
+        path = [start]
+        while path[-1] in driver and len(path) <= len(driver):
+            path.append(driver[path[-1]])
+            if path[-1] == start:
+                return tuple(reversed(path))
     return ()
 
 
 def onwards(root: str, links: Sequence[Link]) -> Iterator[Link]:
-    """The links of a root's tree, each behind the one that drives it."""
+    """The links of a root's tree, each after the one that drives it."""
     waiting = [root]
     while waiting:
         shaft = waiting.pop(0)
@@ -103,7 +103,7 @@ def onwards(root: str, links: Sequence[Link]) -> Iterator[Link]:
 
 
 def back_to_root(driving: Mapping[str, Link], shaft: str) -> tuple[Link, ...]:
-    """The links from a shaft back to its root; the first of parallel ways."""
+    """The links from a shaft back to its root; by the first of parallel load paths."""
     links = []
     while shaft in driving:
         links.append(driving[shaft])
@@ -111,48 +111,48 @@ def back_to_root(driving: Mapping[str, Link], shaft: str) -> tuple[Link, ...]:
     return tuple(links)
 
 
-def way_between(links: Sequence[Link], first: str, last: str) -> Way:
-    """What lies between two shafts of a tree, in the order of the way.
+def load_path_between(links: Sequence[Link], first: str, last: str) -> LoadPath:
+    """What lies between two shafts of a tree, in the order of the load path.
 
     Raises:
-        GeometryError: one of them lies in the midst of parallel ways, or these are not apart.
+        GeometryError: one of them lies inside parallel load paths, or these are not apart.
     """
-    up, down = way_from_root(links, first), way_from_root(links, last)
+    up, down = load_path_from_root(links, first), load_path_from_root(links, last)
     common = _alike([up, down])
     _refuse_midst(links, (*up[common:], *down[common:]))
     return (*reversed(up[common:]), *down[common:])
 
 
-def way_from_root(links: Sequence[Link], shaft: str) -> Way:
-    """The way from a tree's root to a shaft."""
+def load_path_from_root(links: Sequence[Link], shaft: str) -> LoadPath:
+    """The load path from a tree's root to a shaft."""
     driving = [link for link in links if link.driven == shaft]
     if not driving:
         return ()
-    each = [way_from_root(links, link.driver) for link in driving]
+    each = [load_path_from_root(links, link.driver) for link in driving]
     if len(driving) == 1:
         return (*each[0], driving[0])
     common = _alike(each)
-    ways = tuple((*way[common:], link) for way, link in zip(each, driving, strict=True))
-    inner = [link.name for way in ways for link in links_of(way)]
+    paths = tuple((*path[common:], link) for path, link in zip(each, driving, strict=True))
+    inner = [link.name for path in paths for link in links_of(path)]
     if len(set(inner)) < len(inner):
-        raise GeometryError(f"the ways to {shaft!r} share some of their links but not at their beginning")
-    return (*each[0][:common], Parallel(links_of(ways[0])[0].driver, shaft, ways))
+        raise GeometryError(f"the load paths to {shaft!r} share some of their links but not at their beginning")
+    return (*each[0][:common], Parallel(links_of(paths[0])[0].driver, shaft, paths))
 
 
-def _alike(ways: Sequence[Way]) -> int:
-    """With how many elements all ways begin alike."""
+def _alike(paths: Sequence[LoadPath]) -> int:
+    """With how many elements all load paths begin alike."""
     count = 0
-    while all(len(way) > count for way in ways) and len({way[count] for way in ways}) == 1:
+    while all(len(path) > count for path in paths) and len({path[count] for path in paths}) == 1:
         count += 1
     return count
 
 
-def _refuse_midst(links: Sequence[Link], way: Way) -> None:
-    """A shaft in the midst of parallel ways is held by the others too, which a way from the root does not show."""
-    used = {link.name for link in links_of(way)}
+def _refuse_midst(links: Sequence[Link], path: LoadPath) -> None:
+    """A shaft inside parallel load paths is held by the others too, which one load path from the root does not show."""
+    used = {link.name for link in links_of(path)}
     for shaft in dict.fromkeys(link.driven for link in links):
-        *_, element = (None, *way_from_root(links, shaft))
+        *_, element = (None, *load_path_from_root(links, shaft))
         if isinstance(element, Parallel):
             names = {link.name for link in links_of((element,))}
             if names & used and not names <= used:
-                raise GeometryError(f"a shaft in the midst of the parallel ways {element.name}")
+                raise GeometryError(f"a shaft inside the parallel load paths {element.name}")

@@ -87,7 +87,7 @@ class ParallelStage:
         link: its links' names.
         factor: turn of the shaft that is read per turn of the shaft where they meet.
         first, last: the shafts where they part and meet.
-        ways: the stages of each; their factors and senses are those of the shaft where the ways meet.
+        paths: the stages of each load path; their factors and senses are those of the shaft where the paths join.
         sense: of the turn of the shaft that is read for a turn of the shaft where they meet, 1 or -1.
     """
 
@@ -95,7 +95,7 @@ class ParallelStage:
     factor: float
     first: str
     last: str
-    ways: tuple[tuple["Stage | ParallelStage", ...], ...]
+    paths: tuple[tuple["Stage | ParallelStage", ...], ...]
     sense: int = 1
     backlash: None = None
 
@@ -103,7 +103,7 @@ class ParallelStage:
     def singles(self) -> tuple[Stage, ...]:
         """All stages in it, with their factors at the shaft that is read."""
         found: list[Stage] = []
-        for stage in (stage for way in self.ways for stage in way):
+        for stage in (stage for path in self.paths for stage in path):
             inner = stage.singles if isinstance(stage, ParallelStage) else (stage,)
             found += [replace(single, factor=self.factor * single.factor) for single in inner]
         return tuple(found)
@@ -151,13 +151,13 @@ class LostMotion:
 
     @property
     def singles(self) -> tuple[Stage, ...]:
-        """All meshes and reducers on the way, those of parallel ways too."""
+        """All meshes and reducers on the load path, those in parallel too."""
         each = (stage.singles if isinstance(stage, ParallelStage) else (stage,) for stage in self.stages)
         return tuple(single for singles in each for single in singles)
 
     @property
     def adds_up(self) -> bool:
-        """Whether it is the sum of its backlashes: no ways are parallel."""
+        """Whether it is the sum of its backlashes: no load paths are in parallel."""
         return not any(isinstance(stage, ParallelStage) for stage in self.stages)
 
     @property

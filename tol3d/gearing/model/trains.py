@@ -21,7 +21,7 @@ from tol3d.scene.place import KeyPath
 from tol3d.units import Quantity
 
 RATIO_AS_WRITTEN = 5e-4  # relative; four digits are enough to check a drawing's ratio
-PLACE_AS_WRITTEN = 0.05  # mm; azimuths are written with few decimals, and parallel ways need not close better
+PLACE_AS_WRITTEN = 0.05  # mm; azimuths are written with few decimals, and parallel load paths need not close better
 AXES_AS_WRITTEN = 1e-3  # rad
 MOST_RATIO = 1e6  # of a reducer; beyond it somebody's finger slipped
 NO_TORQUE = 1e-6  # of the lever of the arm's weight; less is none
@@ -113,7 +113,7 @@ def _reducer(scene: Scene, name: str, move: ReducerSpec) -> Reducer:
 
 
 def refuse_no_trees(scene: Scene, links: Sequence[Link]) -> None:
-    """Refuse shafts that do not make trees, or ways that meet and would lock each other.
+    """Refuse shafts that do not make trees, or load paths that join and would lock each other.
 
     Several links may drive a shaft only where they come from one first shaft and ask for one ratio.
 
@@ -134,33 +134,34 @@ def refuse_no_trees(scene: Scene, links: Sequence[Link]) -> None:
 
 
 def _refuse_second(scene: Scene, first: Mapping[str, Link], link: Link) -> None:
-    """Refuse a second link to a shaft unless it closes parallel ways."""
+    """Refuse a second link to a shaft unless it closes parallel load paths."""
     here, before = ("moves", link.name), first[link.driven]
-    ways = [_way_from_root(first, shaft) for shaft in (link.driver, link.driven)]
-    if link.driven in [shaft for shaft, _ in ways[0]]:
-        ring = [shaft for shaft, _ in ways[0]]
+    paths = [_path_from_root(first, shaft) for shaft in (link.driver, link.driven)]
+    if link.driven in [shaft for shaft, _ in paths[0]]:
+        ring = [shaft for shaft, _ in paths[0]]
         raise _loop(scene, link.name, (*ring[ring.index(link.driven) :], link.driven))
-    if ways[0][0][0] != ways[1][0][0]:
+    if paths[0][0][0] != paths[1][0][0]:
         raise scene.refuse(
             here,
             f"two drivers: {link.driven!r} is driven by {link.driver!r} here and by {before.driver!r} in "
             f"{before.name!r}, and these are not driven together; turn driver and driven round, or take out one",
         )
-    rates = ways[0][-1][1] * link.rate, ways[1][-1][1]
+    rates = paths[0][-1][1] * link.rate, paths[1][-1][1]
     if rates[0] != rates[1]:
         raise scene.refuse(
             here,
-            f"a loop of shafts that locks: {link.driven!r} turns {_ratio_text(rates[0])} times with {ways[0][0][0]!r} "
-            f"here and {_ratio_text(rates[1])} times by {before.name!r}; give both ways one ratio, or take out one",
+            f"a loop of shafts that locks: {link.driven!r} turns {_ratio_text(rates[0])} times with {paths[0][0][0]!r} "
+            f"here and {_ratio_text(rates[1])} times by {before.name!r}; give both load paths one ratio, or take out "
+            "one",
         )
 
 
-def _way_from_root(first: Mapping[str, Link], shaft: str) -> list[tuple[str, Fraction]]:
+def _path_from_root(first: Mapping[str, Link], shaft: str) -> list[tuple[str, Fraction]]:
     """The shafts from a root to a shaft, with their turns per turn of the root."""
     if shaft not in first:
         return [(shaft, Fraction(1))]
     link = first[shaft]
-    before = _way_from_root(first, link.driver)
+    before = _path_from_root(first, link.driver)
     return [*before, (shaft, before[-1][1] * link.rate)]
 
 
@@ -170,7 +171,7 @@ def _loop(scene: Scene, link: str, shafts: Sequence[str]) -> SceneError:
 
 
 def refuse_misfits(scene: Scene, meshes: Sequence[Mesh], layout: Layout) -> None:
-    """Refuse parallel ways that would put the shaft where they meet in two places, or whose teeth would not fit.
+    """Refuse parallel load paths that would put the shaft where they join in two places, or whose teeth would not fit.
 
     Raises:
         SceneError: at the mesh that closes them.
@@ -182,8 +183,9 @@ def refuse_misfits(scene: Scene, meshes: Sequence[Mesh], layout: Layout) -> None
                 shaft = layout.carrying[mesh.driven][0]
                 raise scene.refuse(
                     ("moves", mesh.name),
-                    f"the ways to {shaft!r} do not fit: here it lies {apart:.3f} mm and {math.degrees(askew):.3f} deg "
-                    f"from where {layout.driving[shaft].name!r} puts it; look at azimuths, centre distances and places "
+                    f"the load paths to {shaft!r} do not fit: here it lies {apart:.3f} mm and "
+                    f"{math.degrees(askew):.3f} deg from where {layout.driving[shaft].name!r} "
+                    "puts it; look at azimuths, centre distances and places "
                     "on the shafts",
                 )
             if layout.seating(mesh.name).gap > PLACE_AS_WRITTEN:
@@ -269,16 +271,16 @@ def _train(scene: Scene, name: str, move: TrainSpec, layout: Layout) -> Train:
 
 
 def refuse_midst(scene: Scene, path: KeyPath, layout: Layout, first: str, last: str) -> None:
-    """Refuse a shaft in the midst of parallel ways, which the other ones hold too.
+    """Refuse a shaft inside parallel load paths, which the other ones hold too.
 
     Raises:
         SceneError: at the path.
     """
     try:
-        layout.way(first, last)
+        layout.load_path(first, last)
     except GeometryError as error:
         raise scene.refuse(
-            path, f"expected a shaft before or behind all parallel ways, got {last!r}: {error}"
+            path, f"expected a shaft before or after all parallel load paths, got {last!r}: {error}"
         ) from None
 
 

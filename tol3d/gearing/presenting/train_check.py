@@ -8,7 +8,7 @@ from rich.console import RenderableType
 from rich.text import Text
 
 from tol3d.gearing.model import Model, Train
-from tol3d.gearing.model.links import Parallel, Way, links_of
+from tol3d.gearing.model.links import LoadPath, Parallel, links_of
 from tol3d.gearing.model.trains import gravity_torque
 from tol3d.gears import LEFT
 from tol3d.report.number import NOTHING
@@ -46,16 +46,16 @@ def _shaft_rows(model: Model) -> Iterator[Row]:
 
 def _train_line(model: Model, train: Train) -> Text:
     layout = model.layout
-    way = layout.way(train.driven, train.output)
+    path = layout.load_path(train.driven, train.output)
     ratio = layout.ratio(train.driven, train.output)
     sense = "opposite" if ratio < 0 else "alike"
-    line = Text(f"\n{train.name}: ", style="bold").append(" → ".join(_way(train.driven, way)), "not bold")
+    line = Text(f"\n{train.name}: ", style="bold").append(" → ".join(_path(train.driven, path)), "not bold")
     line.append(f" · i = {abs(float(ratio)):.6g}, they turn {sense} · {train.held} held", "not bold")
-    on_the_way = {link.name for link in links_of(way)}
-    meshes = [mesh for mesh in model.meshes if mesh.name in on_the_way]
+    on_the_path = {link.name for link in links_of(path)}
+    meshes = [mesh for mesh in model.meshes if mesh.name in on_the_path]
     flanks = ", ".join(f"{mesh.name} {'left' if mesh.working_flank == LEFT else 'right'}" for mesh in meshes)
     line.append(f"\n working flanks of the drivers{_load(model, train)}: {flanks or NOTHING}", "dim not bold")
-    for reducer in (r for r in model.reducers if r.backlash and r.name in on_the_way):
+    for reducer in (r for r in model.reducers if r.backlash and r.name in on_the_path):
         line.append(f"\n {reducer.name}: {angle_text(reducer.backlash)} of play in every trial", "dim not bold")
     return line
 
@@ -65,10 +65,10 @@ def _load(model: Model, train: Train) -> str:
     return " at 0° of the output under gravity" if torque else ""
 
 
-def _way(first: str, way: Way) -> Iterator[str]:
+def _path(first: str, path: LoadPath) -> Iterator[str]:
     yield first
     at = first
-    for element in way:
+    for element in path:
         if isinstance(element, Parallel):
             yield f"({element.name})"
         at = element.driven if at == element.driver else element.driver

@@ -44,7 +44,7 @@ def lost_motion(
     tip: Tip | None = None,
 ) -> LostMotion:
     """What a train's links leave free at one of its shafts, its meshes read as `read` says."""
-    stages = tuple(_stage(model, element, shaft, read) for element in model.layout.way(train.held, shaft))
+    stages = tuple(_stage(model, element, shaft, read) for element in model.layout.load_path(train.held, shaft))
     return LostMotion(quantity, train.name, shaft, train.held, stages, tip)
 
 
@@ -53,8 +53,8 @@ def _stage(model: Model, element: Link | Parallel, shaft: str, read: Reader) -> 
     layout = model.layout
     if isinstance(element, Parallel):
         ratio = float(layout.ratio(shaft, element.driven))
-        ways = tuple(tuple(_stage(model, inner, element.driven, read) for inner in way) for way in element.ways)
-        return ParallelStage(element.name, abs(ratio), element.driver, element.driven, ways, 1 if ratio > 0.0 else -1)
+        paths = tuple(tuple(_stage(model, inner, element.driven, read) for inner in path) for path in element.paths)
+        return ParallelStage(element.name, abs(ratio), element.driver, element.driven, paths, 1 if ratio > 0.0 else -1)
     ratio = float(layout.ratio(shaft, element.driven))
     mesh = next((mesh for mesh in model.meshes if mesh.name == element.name), None)
     if mesh is None:
