@@ -12,7 +12,7 @@ from places import ROOT
 PACKAGE_FOLDERS = {"tol3d": ROOT / "tol3d", "tol3d.parts": ROOT / "parts", "tol3d.scenes": ROOT / "scenes"}
 
 DOORS = {
-    "fcl": ("tol3d/gearing/engines/fcl.py",),
+    "fcl": ("tol3d/solids/distance.py",),
     "cadquery": ("tol3d/solids/", "parts/"),
     "OCP": ("tol3d/solids/", "parts/"),
     "trimesh": ("tol3d/solids/", "parts/", "tol3d/report/"),

@@ -130,6 +130,40 @@ class Planar:
 
 
 @dataclass(frozen=True)
+class Ball:
+    """A length in a random direction of space, such as of a point's position: components x, y, z."""
+
+    distribution: Distribution
+
+    uniforms = 3
+    components = ("x", "y", "z")
+
+    @property
+    def sigma(self) -> float:
+        """Standard deviation along any one axis [mm]."""
+        return math.sqrt((self.distribution.variance + self.distribution.mean**2) / 3)
+
+    def deviations(self, *uniforms: Array) -> tuple[Array, Array, Array]:
+        """See Draw: of length, azimuth and height, for heights on a ball are uniform (Archimedes)."""
+        length, azimuth, height = self.distribution.ppf(uniforms[0]), 2 * math.pi * uniforms[1], 2 * uniforms[2] - 1
+        across = length * np.sqrt(1 - height * height)
+        return across * np.cos(azimuth), across * np.sin(azimuth), length * height
+
+    def mean(self, *, turning: bool) -> tuple[float, float, float]:
+        """See Draw; a random direction averages to zero."""
+        return 0.0, 0.0, 0.0
+
+    def ends(self, values: Values, *, turning: bool) -> Array:
+        """See Draw: both ends of the radius along the steepest direction."""
+        radius = self.distribution.radius
+        found = values(radius * np.concatenate([np.eye(3), -np.eye(3)]))
+        slope = found[:3] - found[3:]
+        size = float(np.sqrt((slope * slope).sum()))
+        along = radius * (slope / size if size > 0.0 else np.array([1.0, 0.0, 0.0]))
+        return np.stack([along, -along])
+
+
+@dataclass(frozen=True)
 class Each:
     """As many independent draws of one distribution as there are features: pins, teeth, planets.
 

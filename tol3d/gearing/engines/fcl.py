@@ -15,7 +15,6 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import lru_cache
 
-import fcl
 import numpy as np
 from numpy.typing import NDArray
 
@@ -25,6 +24,7 @@ from tol3d.gearing.model import Mesh, Model
 from tol3d.gears import Flank
 from tol3d.numerics import frames
 from tol3d.solids import WHOLE_FACE, FlankStrips, PulledStrip, Span
+from tol3d.solids.distance import NearestPoints, Surface, mesh_surface, put
 
 SLACK = 0.012  # modules a flank; deep enough for any start of the turn, small against the curvature radius
 MESHES_KEPT = 64  # grown strips kept for reuse; a constant temperature needs one a flank
@@ -46,7 +46,7 @@ class FclEngine:
     def __init__(self, model: Model, strips: Mapping[str, FlankStrips]) -> None:
         self._model = model
         self._strips = strips
-        self._request = fcl.DistanceRequest(enable_nearest_points=True)
+        self._nearest = NearestPoints()
         # apart: a gear between two others is held in one mesh and moved in the other, and an object keeps its place
         self._held = lru_cache(maxsize=MESHES_KEPT)(self._make_object)
         self._moved = lru_cache(maxsize=MESHES_KEPT)(self._make_object)
@@ -64,13 +64,8 @@ class FclEngine:
         """Largest sagitta [mm] of a strip's steps; a pair's gap is at most the sum of two too large."""
         return max(strips.chord_error for strips in self._strips.values())
 
-    def _make_object(self, gear: str, flank: Flank, scale: float, span: Span) -> fcl.CollisionObject:
-        vertices, triangles = self._strip(gear, flank, span).mesh(scale)
-        hierarchy = fcl.BVHModel()
-        hierarchy.beginModel(len(vertices), len(triangles))
-        hierarchy.addSubModel(vertices, triangles)
-        hierarchy.endModel()
-        return fcl.CollisionObject(hierarchy, fcl.Transform())
+    def _make_object(self, gear: str, flank: Flank, scale: float, span: Span) -> Surface:
+        return mesh_surface(*self._strip(gear, flank, span).mesh(scale))
 
     def _strip(self, gear: str, flank: Flank, span: Span) -> PulledStrip:
         return PulledStrip(self._strips[gear], flank, SLACK * self._model.gear(gear).gear.module, span)
@@ -98,17 +93,14 @@ class FclEngine:
         distance = np.full(wanted.shape, np.nan)
         points = np.full((*wanted.shape, 2, 3), np.nan)
         triangles = np.zeros((*wanted.shape, 2), dtype=np.int64)
-        request = self._request
+        nearest = self._nearest.of
         scales = build.scale
         span = self._section(mesh) if section else WHOLE_FACE
         for row, pair in zip(*np.nonzero(wanted), strict=True):
             fixed = self._held(mesh.driver, flank, scales[row, driver], span)
             moved = self._moved(mesh.driven, flank, scales[row, driven], WHOLE_FACE)
-            moved.setTransform(fcl.Transform(rotation[row, pair], translation[row, pair]))
-            result = fcl.DistanceResult()
-            distance[row, pair] = fcl.distance(fixed, moved, request, result)
-            points[row, pair] = result.nearest_points
-            triangles[row, pair] = result.b1, result.b2
+            put(moved, rotation[row, pair], translation[row, pair])
+            distance[row, pair], points[row, pair], triangles[row, pair] = nearest(fixed, moved)
         at = np.nonzero(wanted)
         back, curvature = np.full(points.shape, np.nan), np.full((*wanted.shape, 2), np.nan)
         at_end = np.zeros(wanted.shape, dtype=bool)
