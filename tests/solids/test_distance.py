@@ -5,7 +5,7 @@ import pytest
 from numpy.typing import NDArray
 
 from tol3d.numerics import frames
-from tol3d.solids.distance import Nearest, NearestPoints, cylinder, mesh_surface, put, sphere
+from tol3d.solids.distance import Nearest, NearestPoints, Surface, cylinder, mesh_surface, put, sphere
 
 Array = NDArray[np.float64]
 
@@ -13,7 +13,7 @@ FOUND = 1e-6  # mm; what FCL's own iterations end at between bodies without tria
 AS_IS = np.eye(3)
 
 
-def nearest(first: object, second: object) -> Nearest:
+def nearest(first: Surface, second: Surface) -> Nearest:
     return NearestPoints().of(first, second)
 
 

@@ -4,7 +4,7 @@ Its distance is never negative: 0 where two bodies overlap, without a depth. Its
 the worker.
 """
 
-from typing import NamedTuple
+from typing import NamedTuple, TypeAlias
 
 import fcl
 import numpy as np
@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
-Surface = fcl.CollisionObject
+Surface: TypeAlias = fcl.CollisionObject
 """A surface or body with a pose of its own, from its frame to the world."""
 
 
