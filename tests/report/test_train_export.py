@@ -400,11 +400,11 @@ def test_trees_of_shafts_that_nothing_connects_are_files_of_their_own(tmp_path: 
     assert held == [set(CENTRES) | BODIES, {"lone", "mate"}]
     assert view_run(run, 0, screenshot=tmp_path / "two.png") == (
         "close up is first, not lone pair, second, bevels (choose with --mesh)",
-        "shown are the shafts behind motor, not those behind lone",
+        "shown are the shafts downstream of motor, not those of lone",
     )
     assert view_run(run, 0, screenshot=tmp_path / "lone.png", mesh="lone pair") == (
         "close up is lone pair, not first, second, bevels (choose with --mesh)",
-        "shown are the shafts behind lone, not those behind motor",
+        "shown are the shafts downstream of lone, not those of motor",
     )
 
 

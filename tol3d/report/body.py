@@ -57,7 +57,7 @@ class World:
     """Bodies that stand in one world.
 
     Args:
-        name: what files of several worlds are told apart by.
+        name: it distinguishes the files of several worlds.
         bodies: names differ.
         one_file: whether files of triangles hold all bodies, instead of one body each.
         points: what pictures name besides the bodies, (3,) [mm].

@@ -1,4 +1,4 @@
-"""Figures without a window: colours that colour-blind readers can tell apart, and how a picture is saved."""
+"""Figures without a window: colours that colour-blind readers can distinguish, and how a picture is saved."""
 
 import warnings
 from pathlib import Path
@@ -70,7 +70,7 @@ def title_axes(axes: Axes, name: str, words: str, width: float) -> None:
     lines = below.count("\n") + 1
     lift = 2.5 * TITLE_LIFT + lines * LINE_SPACING * WORDS_SIZE
     axes.set_title(above, loc="left", fontsize=NAME_SIZE, fontweight="bold", pad=lift)
-    told = axes.annotate(
+    words_below = axes.annotate(
         below,
         (0, 1),
         xycoords="axes fraction",
@@ -81,7 +81,7 @@ def title_axes(axes: Axes, name: str, words: str, width: float) -> None:
         fontsize=WORDS_SIZE,
         color=GREY,
     )
-    told.set_in_layout(False)  # lines are broken already, and the name above them keeps their room
+    words_below.set_in_layout(False)  # lines are broken already, and the name above them keeps their room
 
 
 def legend_below(axes: Axes, columns: int) -> None:

@@ -160,7 +160,7 @@ def _draw_curves(axes: Axes, measure: MeasureSummary, colours: Mapping[str, str]
 
 
 def _add_marks(axes: Axes, name: str, shown: Sequence[Shown], *, curve: bool, single: bool) -> None:
-    """What the legend tells: the colour of each run, of how many trials it is if some failed, how roads are drawn."""
+    """The legend: the colour of each run, of how many trials it is if some failed, and how roads are drawn."""
     seated = [f", {text}" if (text := seated_text(each.run.found.measures[name])) else "" for each in shown]
     word = ", mean" if curve else ""
     if not single:

@@ -84,6 +84,6 @@ def draw_contributors(axes: Axes, measure: MeasureSummary, colours: Mapping[str,
 
 
 def _percents(column: Column, shown: list[str], rest: list[str]) -> list[float | None]:
-    """A column's share of each bar [%]; None where it tells none."""
+    """A column's share of each bar [%]; None where it has none."""
     others = [share for name in rest if (share := column.percents.get(name)) is not None]
     return [column.percents.get(name) for name in shown] + ([sum(others) if others else None] if rest else [])

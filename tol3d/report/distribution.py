@@ -23,7 +23,7 @@ from tol3d.report.number import UNIT_SIGNS, given_text, share_text, unit_suffix
 from tol3d.runs.summary.measure import MeasureSummary
 
 SIGMAS_SHOWN: Final = 3.6  # of the mean; a little more than the +-3 sigma that are marked
-LIMIT_REACH: Final = 0.6  # of the shown span; a limit further off is told at the edge, not drawn to scale
+LIMIT_REACH: Final = 0.6  # of the shown span; a limit further off is named at the edge, not drawn to scale
 NO_VALUES: Final = "no trial gave a value"
 AXIS_UNITS: Final = {"arcmin": "′, ″ of arc"}  # where an axis has other words than a number
 RANGE_LABEL, RANGE_SIZE = 1.9, 8.5  # inch, points

@@ -44,7 +44,7 @@ def _ends_early(
 ) -> bool:
     """Whether an outer quantile of a sample lies nearer to its mean than that of a normal law ever would.
 
-    Within SHORT_OF_3_SIGMA of it, and trials are enough to tell: n of a normal law all stay within k sigma on one side
+    Within SHORT_OF_3_SIGMA of it, with trials enough to be sure: n of a normal law all stay within k sigma on one side
     of their mean with a chance of (1 − Φ(−k))^n.
 
     >>> [_ends_early(0.0, 1.0, count, -1.73, 1.73) for count in (100, 1000)]

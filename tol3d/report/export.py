@@ -86,7 +86,7 @@ def triangle_mesh(body: Body) -> trimesh.Trimesh:
 
 
 def _files(display: Display, fmt: str, out: Path) -> Iterator[Path]:
-    """Write a file a world, or a part; tell which."""
+    """Write a file a world, or a part; the paths as they are written."""
     worlds = display.worlds
     parts = file_words(body.name for world in worlds for body in world.bodies)
     names = file_words(world.name for world in worlds)

@@ -57,14 +57,14 @@ def drawing(presenter: str = PRESENTER) -> Iterator[DrawRun]:
 
 def _draw(process: "subprocess.Popen[bytes]", presenter: str, summary: Mapping[str, Any], picture: Path) -> None:
     order = json.dumps({"picture": str(picture), "presenter": presenter, "summary": summary})
-    refused, told = process.communicate(order.encode())
+    refused, errors = process.communicate(order.encode())
     for name, reason in json.loads(refused or "{}").items():
         words = f"{name} could not be drawn ({reason}); the run is whole without it"
         warnings.warn(words, PictureWarning, stacklevel=2)
     if process.returncode == 0:
         return
     picture.unlink(missing_ok=True)
-    last = told.decode(errors="replace").strip().splitlines()[-1:]
+    last = errors.decode(errors="replace").strip().splitlines()[-1:]
     raise PictureError(*(last or [f"its process ended with {process.returncode}"]))
 
 

@@ -54,7 +54,7 @@ class Eye:
         return np.asarray(points @ self.axes.T)
 
     def world(self, seen: Array) -> Array:
-        """The way back."""
+        """Points in the world, from those in the axes of the picture."""
         return np.asarray(seen @ self.axes)
 
 

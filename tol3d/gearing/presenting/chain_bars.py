@@ -44,7 +44,7 @@ def highest_bar(stages: Sequence[Stage]) -> float:
 
 def _published_highs(stage: Stage) -> dict[str, float]:
     """Others' highs at the shaft that is read [arcmin]."""
-    highs = {name: told.times(stage.factor).high for name, told in stage.published.items()}
+    highs = {name: ends.times(stage.factor).high for name, ends in stage.published.items()}
     return {name: high for name, high in highs.items() if high is not None}
 
 

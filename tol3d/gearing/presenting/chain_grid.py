@@ -116,6 +116,6 @@ def draw_caption(axes: Axes, share: float, text: str) -> None:
 
 def published_colours(train: Summary) -> dict[str, str]:
     """A colour for everybody who published something of a train."""
-    told = [stage.get("published", {}) for stage in train["stages"]] + [train["sums"].get("published", {})]
-    names = dict.fromkeys(name for each in told for name in each)
+    published = [stage.get("published", {}) for stage in train["stages"]] + [train["sums"].get("published", {})]
+    names = dict.fromkeys(name for each in published for name in each)
     return {name: PUBLISHED_COLOURS[(k + 1) % len(PUBLISHED_COLOURS)] for k, name in enumerate(names)}

@@ -58,8 +58,8 @@ def _lines(train: Summary, summary: Summary) -> Iterator[SumLine]:
     worst = Range.of(train["sums"].get(leading_road(train), {}))
     yield SumLine("sum of the stages' highs", f"{_with_tip(worst.high, lever)}, worst case", worst, OUTSIDE, True)
     colours = published_colours(train)
-    for name, told in train["sums"].get("published", {}).items():
-        values = Range.of(told)
+    for name, ends in train["sums"].get("published", {}).items():
+        values = Range.of(ends)
         label = f"{legible(name, 18)}: sum of lows … highs"
         yield SumLine(label, f"high {_with_tip(values.high, lever)}", values, colours[name])
 

@@ -51,7 +51,7 @@ class GearDisplay:
         """The teeth of one mesh, the whole pair, a close-up of the gap; of a train, the train before the teeth.
 
         Args:
-            close_up: the mesh that is shown close up, and with it the train behind the same first shaft; None: the
+            close_up: the mesh that is shown close up, and with it the train of the same first shaft; None: the
                 first.
         """
         asked = self._asked(close_up)
@@ -87,7 +87,7 @@ class GearDisplay:
             yield f"{what} is {close.mesh.name}, not {', '.join(others)} (choose with --mesh)"
         if len(trains) > 1:
             others = [train.root for train in trains[1:]]
-            yield f"shown are the shafts behind {trains[0].root}, not those behind {', '.join(others)}"
+            yield f"shown are the shafts downstream of {trains[0].root}, not those of {', '.join(others)}"
 
 
 def display(run: Run, which: Which, *, magnify: float) -> GearDisplay:

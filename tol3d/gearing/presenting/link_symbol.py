@@ -18,15 +18,15 @@ LINK_COLOURS: Final[Mapping[LinkKind, str]] = {
     "parallel": PURPLE,
 }
 SHAFT_LINE: Final = 3.5  # points
-TOOTH_PITCH: Final = 0.15  # inch; as many teeth as the eye can tell, not as many as there are
+TOOTH_PITCH: Final = 0.15  # inch; as many teeth as the eye distinguishes, not as many as there are
 TOOTH_HEIGHT: Final = 0.055
 LEAST_SHARE, MOST_SHARE = 0.4, 0.6  # of the two gears' width; the smaller one has room for its number
 MOST_WIDTH: Final = 1.3
 SMALL: Final = 9.0  # points
 PLANETS: Final = 3
 CONES_HALF: Final = 0.42  # inch; half the side of the square that the cones of a pair of equal gears fill
-LEAST_LINE: Final = 0.06  # inch; of a shaft's line before the cones, and between them and the line behind
-LINE_BEHIND: Final = 0.12  # inch; from the line that comes down from the driven cone's top to its shaft
+LEAST_LINE: Final = 0.06  # inch; of a shaft's line before the cones, and between them and the line to the driven shaft
+LINE_AFTER: Final = 0.12  # inch; from the line that comes down from the driven cone's top to its shaft
 
 
 def draw_link(axes: Axes, stage: Stage, ends: tuple[float, float], y: float) -> None:
@@ -82,14 +82,14 @@ def _cones(axes: Axes, stage: Stage, x: float, y: float, width: float, ends: tup
     """Two frusta with one apex: the driver's lies on the axis of its shaft, the driven stands on it."""
     driver, driven = stage.teeth or (1, 1)
     angle = min(max(math.atan2(driver, driven), 0.5), math.pi / 2 - 0.5)  # pitch angle of the driver
-    room = (ends[1] - ends[0] - LINE_BEHIND) / 2 - LEAST_LINE
+    room = (ends[1] - ends[0] - LINE_AFTER) / 2 - LEAST_LINE
     long = min(CONES_HALF * math.cos(angle) * math.sqrt(2), room)
     tall = long * math.tan(angle)
-    apex = x - LINE_BEHIND / 2
+    apex = x - LINE_AFTER / 2
     cut = 0.42  # of the cones is left out near the apex
     lying = [(-long, -tall), (-long, tall), (-cut * long, cut * tall), (-cut * long, -cut * tall)]
     standing = [(-long, tall), (long, tall), (cut * long, cut * tall), (-cut * long, cut * tall)]
-    top, bend = y + tall + 0.1, ends[1] - LINE_BEHIND
+    top, bend = y + tall + 0.1, ends[1] - LINE_AFTER
     _line(axes, (ends[0], y), (apex - long, y))
     _line(axes, (apex, y + tall), (apex, top), (bend, top), (bend, y), (ends[1], y))
     for corners in (lying, standing):
@@ -116,8 +116,8 @@ def _reducer(axes: Axes, stage: Stage, x: float, y: float, width: float, ends: t
         axes.add_patch(circle)
 
 
-def _ways(axes: Axes, stage: Stage, x: float, y: float, width: float, ends: tuple[float, float]) -> None:
-    """Two ways that part and meet, a gear pair on each."""
+def _parallel(axes: Axes, stage: Stage, x: float, y: float, width: float, ends: tuple[float, float]) -> None:
+    """Two load paths in parallel, a gear pair on each."""
     half, rise = 0.42 * width, 0.26
     for side in (-1.0, 1.0):
         across = y + side * rise
@@ -132,5 +132,5 @@ SYMBOLS: Final[Mapping[LinkKind, Symbol]] = {
     "reducer": _reducer,
     "mesh": _gears,
     "bevel_mesh": _cones,
-    "parallel": _ways,
+    "parallel": _parallel,
 }

@@ -98,8 +98,8 @@ class CloseUp:
         contact = self._in_front(seated.contact)
         plotter.add_mesh(pv.Sphere(radius=1.4 * mark, center=contact), color=CONTACT_COLOUR)
         plotter.add_mesh(arrow(contact, seated.normal, 0.85 * module), color=CONTACT_COLOUR)
-        behind = contact - module * (0.35 * seated.normal + np.array([0.5, 0.0, 0.0]))
-        add_label(plotter, behind, "contact", CONTACT_COLOUR)
+        beside_contact = contact - module * (0.35 * seated.normal + np.array([0.5, 0.0, 0.0]))
+        add_label(plotter, beside_contact, "contact", CONTACT_COLOUR)
         middle = contact
         if np.isfinite(seated.gap).all():
             ends = [self._in_front(point) for point in seated.gap]

@@ -1,4 +1,4 @@
-"""The stages of a train as a run's summary tells them, and what each brings to the lost motion at a shaft."""
+"""The stages of a train as they stand in a run's summary, and what each brings to the lost motion at a shaft."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -31,7 +31,7 @@ class Range:
         return cls(*(values.get(key) for key in SUM_KEYS))
 
     def times(self, factor: float) -> "Range":
-        """The range behind a ratio."""
+        """The range downstream of a ratio."""
         return Range(*(None if v is None else v * factor for v in (self.low, self.mean, self.high)))
 
     @property
@@ -88,7 +88,7 @@ class Stage:
 
 
 def leading_road(train: Summary) -> str:
-    """The road that a train is told by: the 3D simulation where there is one."""
+    """The road by which a train is shown: the 3D simulation where there is one."""
     return "geometric" if all("geometric" in stage["roads"] for stage in train["stages"]) else "analytic"
 
 
@@ -113,7 +113,7 @@ def _stage(number: int, stage: Summary, values: Any) -> Stage:
         own=own,
         at_shaft=own.times(factor),
         share=values.get("share_percent"),
-        published={name: Range.of(told) for name, told in stage.get("published", {}).items()},
+        published={name: Range.of(ends) for name, ends in stage.get("published", {}).items()},
         within_its_law=stage["kind"] == "reducer" and _nearer_than_3_sigma(own, values.get("sigma")),
     )
 
@@ -160,7 +160,7 @@ def sums_of(measure: Summary, summary: Summary) -> Sums:
 
 
 def _lever_of(measure: Summary, train: Summary) -> float | None:
-    """The lever of a measure's point [mm]: its own, or the train's where that is told of the same point."""
+    """The lever of a measure's point [mm]: its own, or the train's where that is of the same point."""
     lever: float | None = measure.get("lever_mm")
     if lever is None and f"{measure['point']} of {measure['arm']}" == train["point"]:
         lever = train["lever_mm"]
@@ -170,7 +170,7 @@ def _lever_of(measure: Summary, train: Summary) -> float | None:
 def distributions_of(train: Summary, summary: Summary) -> dict[str, Any]:
     """The lost motion that the train's stages add up to, by road and by who published it: ends and mean [arcmin].
 
-    Of a train whose stages are told by a tip's displacement it is the turn that displaces the tip so far.
+    Of a train whose stages are those of a tip's displacement it is the turn that displaces the tip so far.
     """
     measure = summary["measures"].get(train["measure"])
     if measure is None:

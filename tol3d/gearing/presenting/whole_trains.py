@@ -40,7 +40,7 @@ class WholeTrain:
         bodies: shafts, arms and housings of reducers.
         shaft_of: the shaft that each gear and body turns with, by the part's name; None for a housing.
         points: points of the arms that are named in pictures, (3,) [mm].
-        gravity: its direction and where it pulls, both (3,); None where the scene does not tell.
+        gravity: its direction and where it pulls, both (3,); None where the scene does not say.
     """
 
     root: str
@@ -144,7 +144,7 @@ def _arm_pose(model: Model, arm: Arm, angles: Mapping[str, float]) -> Array:
 
 
 def _named_points(model: Model, arm: Arm) -> set[str]:
-    """Points of an arm whose way is measured, and its last."""
+    """Points of an arm whose displacement is measured, and its last."""
     kinds = [measure.kind for measure in model.measures]
     tips = [kind.tip for kind in kinds if isinstance(kind, LostMotion) and kind.tip]
     return {tip.point for tip in tips if tip.arm == arm.name} | {arm.points[-1][0]}
@@ -200,7 +200,7 @@ def _angle(build: SeatedBuild, shaft: str) -> float:
 
 
 def _root_angle(build: SeatedBuild, root: str) -> float:
-    """Turn of a tree's first shaft [rad], told by its meshes; 0 where there are none."""
+    """Turn of a tree's first shaft [rad], from its meshes; 0 where there are none."""
     layout = build.model.layout
     for seated in build.meshes:
         turning = layout.mesh_turn[seated.mesh.name]
