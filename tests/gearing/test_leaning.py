@@ -16,13 +16,13 @@ from of_kind import known
 from oracles.train import at_height, lean, seen_backward, turned
 
 import tol3d
+from tol3d.gearing.coefficients import coefficients_of
 from tol3d.gearing.engines.lazy import exact_engine
 from tol3d.gearing.model import Measure, Model, Reading, model_from_scene
 from tol3d.gearing.roads.analytic import analytic_values
 from tol3d.gearing.stack_up import closed_form, stack_of
 from tol3d.gearing.stack_up.leaning import leaning_shares
 from tol3d.gearing.system import GearSystem
-from tol3d.report.coefficients import coefficients_of
 from tol3d.statistics.variance_shares import RegressorSums, shares
 from tol3d.study.regressors import regressor_groups, regressors
 from tol3d.system.closed_form import ClosedForm

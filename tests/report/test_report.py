@@ -53,7 +53,7 @@ from tol3d.report.curve import draw_curve
 from tol3d.report.difference import difference_of
 from tol3d.report.distribution import column_colours, draw_distribution
 from tol3d.report.export import Exported, file_words
-from tol3d.report.sheet import Heading, Row, Sheet
+from tol3d.report.page import Heading, Row, Table
 from tol3d.runs.run import Run
 from tol3d.simulate import Overrides, run_scene, simulation_again, simulation_of
 from tol3d.solids import display_mesh
@@ -146,7 +146,7 @@ def test_no_number_is_cut_in_a_narrow_terminal(run: Run, width: int) -> None:
     st.integers(25, 80),
 )
 def test_a_sheet_shows_every_cell_once_within_its_width(rows: list[list[str]], width: int) -> None:
-    sheet = Sheet("of", [Heading(f"heading {k}") for k in range(3)], [Row("a label", cells) for cells in rows])
+    sheet = Table("of", [Heading(f"heading {k}") for k in range(3)], [Row("a label", cells) for cells in rows])
     lines = printed(sheet, width).splitlines()
     assert max(map(len, lines)) <= width
     assert sorted(re.findall(r"\d+", "\n".join(lines))) == sorted([*"012", *(cell for row in rows for cell in row)])
@@ -314,7 +314,7 @@ study: {trials: 10}
 def test_check_names_the_measures_whose_shares_no_closed_form_tells(run: Run, tmp_path: Path) -> None:
     (tmp_path / "ways.yaml").write_text(TWO_WAYS, encoding="utf-8")
     text = one_line(check_report(simulation_of(load_scene(tmp_path / "ways.yaml"))))
-    assert "no shares of both: the tighter way counts, which is no sum; run tells the shares of its trials" in text
+    assert "no shares of both: the tighter load path counts, which is no sum; run tells the shares of its" in text
     assert "no shares" not in one_line(check_report(simulation_again(run)))
 
 

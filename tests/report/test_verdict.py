@@ -130,8 +130,8 @@ def test_many_measures_are_a_row_each_and_their_tables_come_when_asked(tmp_path:
     study = Overrides(trials=200, witness=0)
     run = run_scene(SCENES / "robot_shoulder.yaml", overrides=study, out=tmp_path / "run")
     assert len(run.summary["measures"]) > MOST_TABLES
-    assert Detail.fitting(run.found) is Detail.TRAINS
-    short, whole = (lines_of(run_report(run.found, each), 120) for each in (Detail.TRAINS, Detail.MEASURES))
+    assert Detail.fitting(run.found) is Detail.SECTIONS
+    short, whole = (lines_of(run_report(run.found, each), 120) for each in (Detail.SECTIONS, Detail.MEASURES))
     assert len(short) < 60 < 200 < len(whole)
     for name in run.summary["measures"]:
         assert any(line.startswith(name) for line in short), name

@@ -24,6 +24,8 @@ from tol3d.units import shown
 
 Over = Literal["random", "at", "turn", "long_period", "swing"]
 
+PRESENTER: Final = "tol3d.gearing.presenting"
+
 QUANTITY_WORDS: Final[Mapping[str, str]] = {
     "normal_backlash": "normal backlash",
     "circumferential_backlash": "circumferential backlash",
@@ -106,6 +108,8 @@ class FreeTurn(Section):
 class BacklashSummary(MeasureSummary):
     """The backlash of a mesh; every value is in `unit`."""
 
+    presenter = PRESENTER
+
     kind: Literal["normal_backlash", "circumferential_backlash", "angular_backlash"]
     of: Label = Field(description="the mesh")
     gear: Label | None
@@ -150,6 +154,8 @@ class BacklashSummary(MeasureSummary):
 
 class TrainMeasureSummary(MeasureSummary):
     """The lost motion of a train, or what it does to the tip of an arm; every value is in `unit`."""
+
+    presenter = PRESENTER
 
     kind: Literal["lost_motion", "tip_displacement", "tip_error"]
     of: Label = Field(description="the train")

@@ -5,15 +5,13 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from rich.console import Group, RenderableType
-from rich.text import Text
 
 from tol3d.errors import InputError
 from tol3d.report.column import seated_text
 from tol3d.report.difference import difference_of
 from tol3d.report.ends import is_bounded
-from tol3d.report.number import NOTHING, UNIT_SIGNS, difference_text, share_text, value_text
-from tol3d.report.sheet import Heading, Row, Sheet, note
+from tol3d.report.number import NOTHING, UNIT_SIGNS, difference_text, share_text, value_cell
+from tol3d.report.page import BLANK, Block, Heading, Page, Row, Shown, Table, line, note, page, title
 from tol3d.runs.run import Run
 from tol3d.runs.summary.measure import MeasureSummary
 from tol3d.runs.summary.values import Road
@@ -63,14 +61,14 @@ def measures_of(runs: Sequence[Run]) -> list[Compared]:
     return list(dict.fromkeys(found))
 
 
-def comparison_report(runs: Sequence[Run]) -> Group:
+def comparison_report(runs: Sequence[Run]) -> Page:
     """Tables of every measure: mean, sigma and range of each run and road, and how far the roads differ."""
-    blocks: list[RenderableType] = []
+    blocks: list[Block] = []
     for measure in measures_of(runs):
         own = measure.found_in(runs)
-        blocks += [Text("\n").append(measure.name, style="bold cyan")]
-        blocks += [Text(own[0][1].found.measures[measure.name].words, style="dim")]
-        blocks += [note(NO_ONE_MEAN)] if measure.jumps else ["", _table(measure.name, measure.unit, own)]
+        blocks += [title(measure.name)]
+        blocks += [line(own[0][1].found.measures[measure.name].words, "dim")]
+        blocks += [note(NO_ONE_MEAN)] if measure.jumps else [BLANK, _table(measure.name, measure.unit, own)]
         blocks += [note(SHOWN_APART)] if len(own) < _named_alike(measure.name, runs) else []
         bounded = any(is_bounded(run.found.measures[measure.name]) for _, run in own)
         blocks += [note(ENDS_BEFORE)] if bounded else []
@@ -79,8 +77,7 @@ def comparison_report(runs: Sequence[Run]) -> Group:
         "; means and sigmas are of the trials that seated, out of limits is of all of them" if _any_failed(runs) else ""
     )
     words += "; shift: of the mean against the first run" if len(runs) > 1 else ""
-    blocks.append(Text(f"\n{words}", style="dim"))
-    return Group(*blocks)
+    return page(*blocks, line(f"\n{words}", "dim"))
 
 
 def _named_alike(name: str, runs: Sequence[Run]) -> int:
@@ -129,7 +126,7 @@ class _Found:
         return f"{self.count} of {self.trials}" if self.trials != self.count else str(self.count)
 
 
-def _table(name: str, unit: str, runs: Sequence[tuple[str, Run]]) -> Sheet:
+def _table(name: str, unit: str, runs: Sequence[tuple[str, Run]]) -> Table:
     shift = ("shift",) if len(runs) > 1 else ()
     out = ("out of limits",) if any(_judged(run.found.measures[name]) for _, run in runs) else ()
     numbers = ("trials", "mean", "sigma", "low", "high", *out, "max", "rms", *shift)
@@ -138,14 +135,14 @@ def _table(name: str, unit: str, runs: Sequence[tuple[str, Run]]) -> Sheet:
     for label, run in runs:
         for index, (road, found) in enumerate(_found(run.found.measures[name])):
             values = (found.mean, found.sigma, found.low, found.high)
-            cells = [SHORT[road], found.trials_text, *(value_text(value, unit) for value in values)]
+            cells = [SHORT[road], found.trials_text, *(value_cell(value, unit) for value in values)]
             cells += [share_text(found.out_ppm)] if out else []
             cells += _differences(run, name, unit) if road == "geometric" else [NOTHING, NOTHING]
             if shift:
                 shifted = None if found.mean is None else found.mean - first.setdefault(road, found.mean)
                 cells.append(_bare(shifted, unit))
-            rows.append(Row(label if index == 0 else "", cells))
-    return Sheet("run" if unit == "arcmin" else f"run [{UNIT_SIGNS[unit]}]", headings, rows, repeated=1)
+            rows.append(Row(label if index == 0 else "", cells, unit=unit))
+    return Table("run" if unit == "arcmin" else f"run [{UNIT_SIGNS[unit]}]", headings, rows, repeated=1)
 
 
 def _judged(measure: MeasureSummary) -> bool:
@@ -172,7 +169,7 @@ def _average(values: Sequence[float | None]) -> float | None:
     return float(np.mean(known)) if known else None
 
 
-def _differences(run: Run, name: str, unit: str) -> list[str]:
+def _differences(run: Run, name: str, unit: str) -> list[Shown]:
     found: tuple[float | None, float | None] = (None, None)
     if agreement := run.found.measures[name].agreement:
         found = (agreement.max_abs_difference, agreement.rms_difference)
@@ -181,6 +178,6 @@ def _differences(run: Run, name: str, unit: str) -> list[str]:
     return [_bare(value, unit) for value in found]
 
 
-def _bare(difference: float | None, unit: str) -> str:
+def _bare(difference: float | None, unit: str) -> Shown:
     """A difference in a table whose corner has the unit."""
-    return difference_text(difference, unit).removesuffix(f" {UNIT_SIGNS[unit]}")
+    return Shown(difference_text(difference, unit).removesuffix(f" {UNIT_SIGNS[unit]}"), difference)

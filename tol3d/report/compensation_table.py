@@ -4,9 +4,6 @@ import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Final
 
-from rich.console import Group, RenderableType
-from rich.text import Text
-
 from tol3d.analyses.compensated_swing import Swing
 from tol3d.analyses.compensation import Compensation, Unit
 from tol3d.analyses.correction import CLOSED_FORM, Correction
@@ -14,7 +11,7 @@ from tol3d.analyses.robots import STATES, State
 from tol3d.analyses.spread import Spread
 from tol3d.gears import LEFT, Flank
 from tol3d.report.number import NOTHING, given_text, tip_mm, value_text
-from tol3d.report.sheet import Heading, Row, Sheet, note
+from tol3d.report.page import BLANK, Block, Heading, Line, Page, Row, Table, line, note, page
 
 COLUMN_WORDS: Final[Mapping[str, str]] = {"analytic": "analytic, same trials", "geometric": "3D simulation"}
 STATE_WORDS: Final[Mapping[State, str]] = {
@@ -50,11 +47,11 @@ SWING_MEANS: Final = "mean error at the first position behind it; a flank of the
 ARCMIN_PER_DEG: Final = 60.0
 
 
-def compensation_report(found: Sequence[Compensation]) -> Group:
+def compensation_report(found: Sequence[Compensation]) -> Page:
     """All of it, a column a scene."""
-    blocks: list[RenderableType] = []
+    blocks: list[Block] = []
     for own in found:
-        blocks += [_title(own), Text(_words(own), style="dim")]
+        blocks += [_title(own), line(_words(own), "dim")]
     blocks += [*_section("Δφ_c, the turn of the motor that makes good for the lost motion"), corrections_table(found)]
     blocks += [note(text) for text in _correction_notes(found)]
     for unit, words in UNIT_WORDS.items():
@@ -70,12 +67,12 @@ def compensation_report(found: Sequence[Compensation]) -> Group:
     swings = [own for own in found if own.swing]
     if swings:
         blocks += [*_section("where the load changes side over the swing"), swing_table(swings), note(SWING_MEANS)]
-    return Group(*blocks)
+    return page(*blocks)
 
 
-def _title(own: Compensation) -> Text:
+def _title(own: Compensation) -> Line:
     text = f" · {own.train.name}: the motor's compensation when the load changes side"
-    return Text(own.name, style="bold").append(text, "not bold")
+    return Line(((own.name, "bold"), (text, "")))
 
 
 def _words(own: Compensation) -> str:
@@ -87,8 +84,8 @@ def _words(own: Compensation) -> str:
     )
 
 
-def _section(text: str) -> tuple[str, Text]:
-    return "", Text(text, style="bold cyan")
+def _section(text: str) -> tuple[Line, Line]:
+    return BLANK, line(text, "bold cyan")
 
 
 def _roads(found: Sequence[Compensation]) -> str:
@@ -109,7 +106,7 @@ def _headings(found: Sequence[Compensation]) -> list[Heading]:
 # the motor's correction ---------------------------------------------------------------------------
 
 
-def corrections_table(found: Sequence[Compensation]) -> Sheet:
+def corrections_table(found: Sequence[Compensation]) -> Table:
     """A block of rows for each road and publisher: the motor's turn, and from which means."""
     rows = []
     for column in _columns(found):
@@ -117,7 +114,7 @@ def corrections_table(found: Sequence[Compensation]) -> Sheet:
         rows.append(Row(COLUMN_WORDS.get(column, column), [_degrees(own) for own in known], "bold"))
         for link in dict.fromkeys(link for own in known if own for link in own.means):
             rows.append(Row(f"  from {link}", [_angle(own.means.get(link) if own else None) for own in known]))
-    return Sheet("Δφ_c", _headings(found), rows)
+    return Table("Δφ_c", _headings(found), rows)
 
 
 def _degrees(own: Correction | None) -> str:
@@ -141,7 +138,7 @@ def _correction_notes(found: Sequence[Compensation]) -> Iterator[str]:
 # what is left -------------------------------------------------------------------------------------
 
 
-def left_table(found: Sequence[Compensation], unit: Unit) -> Sheet:
+def left_table(found: Sequence[Compensation], unit: Unit) -> Table:
     """A block of rows each: without the correction, less the batch's mean, less the robot's own."""
     rows = []
     for state in STATES:
@@ -150,7 +147,7 @@ def left_table(found: Sequence[Compensation], unit: Unit) -> Sheet:
         for label, (value, error) in TAKEN.items():
             rows.append(Row(f"  {label}", [_with_error(value(own), error(own), unit) for own in spreads]))
         rows.append(Row("  sigma, closed form", [value_text(_form_sigma(own, state, unit), unit) for own in found]))
-    return Sheet("[mm]" if unit == "mm" else "[′, ″ of arc]", _headings(found), rows)
+    return Table("[mm]" if unit == "mm" else "[′, ″ of arc]", _headings(found), rows)
 
 
 def _with_error(value: float, error: float | None, unit: Unit) -> str:
@@ -166,7 +163,7 @@ def _form_sigma(own: Compensation, state: State, unit: Unit) -> float | None:
 # the worst case -----------------------------------------------------------------------------------
 
 
-def worst_table(found: Sequence[Compensation]) -> Sheet:
+def worst_table(found: Sequence[Compensation]) -> Table:
     """A block of rows for each road and publisher: sums of the stages' highs, before and after."""
     rows = []
     for column in _columns(found):
@@ -182,7 +179,7 @@ def worst_table(found: Sequence[Compensation]) -> Sheet:
             left = [own.left_of.get(link) if own else None for own in known]
             rows.append(Row(f"  – of {link}, at its driven shaft", [_angle(value) for value in left]))
     rows += _published_rows(found)
-    return Sheet("sum at the output", _headings(found), rows)
+    return Table("sum at the output", _headings(found), rows)
 
 
 def _published_rows(found: Sequence[Compensation]) -> Iterator[Row]:
@@ -205,7 +202,7 @@ def _worst_notes(found: Sequence[Compensation]) -> Iterator[str]:
 # the swing ----------------------------------------------------------------------------------------
 
 
-def swing_table(found: Sequence[Compensation]) -> Sheet:
+def swing_table(found: Sequence[Compensation]) -> Table:
     """Where the load changes side, the flanks that work before and behind, and how far the tip jumps there."""
     rows = [Row("at the output's angle", [_jumps(own.swing) for own in found if own.swing])]
     for link in dict.fromkeys(link for own in found if own.swing for link in own.swing.flanks):
@@ -214,7 +211,7 @@ def swing_table(found: Sequence[Compensation]) -> Sheet:
     for state in STATES:
         jumps = [_jump(own.swing, own.road, state) for own in found if own.swing]
         rows.append(Row(f"jump, {STATE_WORDS[state]} [mm]", [value_text(jump, "mm") for jump in jumps]))
-    return Sheet("", _headings(found), rows)
+    return Table("", _headings(found), rows)
 
 
 def _which_change(found: Sequence[Compensation]) -> str:

@@ -20,10 +20,11 @@ from tol3d import report, simulate
 from tol3d.analyses import ShimPlan, ShimQuestion, length_of, shim_plan, stock_of
 from tol3d.analyses.shim import Rounding
 from tol3d.analyses.shimmed import Minimum
-from tol3d.errors import InputError
+from tol3d.errors import InputError, unwritable
+from tol3d.gearing.coefficients import Coefficient, coefficients_of
 from tol3d.gearing.model import Model
 from tol3d.gearing.system import gear_model
-from tol3d.report.coefficients import Coefficient, coefficients_of
+from tol3d.report.page import Page
 from tol3d.report.presenter import PRESENTER, Display, Which, presenter_at
 from tol3d.runs.run import Run, open_run
 from tol3d.scene import Scene
@@ -45,22 +46,36 @@ class Report:
     """Tables as a command shows them; `str()` is their text.
 
     Args:
-        tables: for rich's console, in colours.
+        page: its lines and tables, as plain data.
     """
 
-    tables: RenderableType
+    page: Page
 
     def __str__(self) -> str:
         console = Console(file=StringIO(), width=TEXT_WIDTH, highlight=False, markup=False, color_system=None)
         with console.capture() as captured:
-            console.print(self.tables)
+            console.print(self.page)
         return captured.get()
 
     def __repr__(self) -> str:
         return str(self)
 
+    def to_csv(self, path: Path | str | None = None) -> str | None:
+        """Its tables as comma-separated values, written to a file, or returned where none is named.
+
+        Raises:
+            InputError: the file cannot be written.
+        """
+        if path is None:
+            return self.page.csv()
+        try:
+            Path(path).write_text(self.page.csv(), encoding="utf-8")
+        except OSError as error:
+            raise unwritable(Path(path), error, "choose another file") from None
+        return None
+
     def __rich__(self) -> RenderableType:
-        return self.tables
+        return self.page
 
 
 @dataclass(frozen=True, repr=False)

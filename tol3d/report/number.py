@@ -3,6 +3,7 @@
 import math
 from typing import Final
 
+from tol3d.report.page import Shown
 from tol3d.units import RAD_PER_ARCMIN, angle_text
 
 NOTHING: Final = "–"
@@ -26,6 +27,22 @@ def value_text(value: float | None, unit: str) -> str:
     if unit == "mm":
         return unsigned_zero(f"{value:.4f}")
     return unsigned_zero(f"{value:.3f}" if abs(value) < MANY_UM else f"{value:.1f}")
+
+
+def value_cell(value: float | None, unit: str) -> Shown:
+    """A value of a measure as a cell, in its unit."""
+    return Shown(value_text(value, unit), value)
+
+
+def share_cell(ppm: float | None) -> Shown:
+    """A share of all trials as a cell [ppm]."""
+    return Shown(share_text(ppm), ppm)
+
+
+def percent_cell(value: float | None, error: float | None = None) -> Shown:
+    """A share in percent as a cell, with its standard error where that is known."""
+    text = percent_text(value)
+    return Shown(text if error is None else f"{text} ±{error:.1f}", value)
 
 
 def measured_text(value: float | None, unit: str) -> str:

@@ -6,14 +6,18 @@ from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Final, Protocol, cast
 
+from tol3d.errors import InputError
+from tol3d.report.page import Block
+from tol3d.runs.summary.measure import MeasureSummary
+
 if TYPE_CHECKING:
     import pyvista as pv
-    from rich.console import RenderableType
 
     from tol3d.report.body import World
     from tol3d.runs.run import Run
     from tol3d.runs.summary.run import RunSummary
     from tol3d.simulate import Replay
+    from tol3d.system.system import System
 
 Which = int | str
 """A trial, or "worst", "nominal", "mean"."""
@@ -23,7 +27,7 @@ Panel = Callable[["pv.Plotter", float], None]
 """Draws one part of the 3D window into the plotter's current renderer, whose width by its height is given."""
 
 PRESENTER: Final = "tol3d.gearing.presenting"
-"""Import path of the presenter of gears, until kinds.py registers it."""
+"""Import path of the presenter of gears, where nobody names another one."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,6 +42,19 @@ class View:
 
     panels: tuple[Panel, ...] = ()
     notes: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class FurtherRow:
+    """A row below a measure's statistics.
+
+    Args:
+        label: what it is.
+        values: in the measure's unit, by road ("analytic", "geometric") and by who published one.
+    """
+
+    label: str
+    values: Mapping[str, float | None]
 
 
 class Display(Protocol):
@@ -74,8 +91,20 @@ class Presenter(Protocol):
         """Further pictures of a run by their names, which become file names."""
         ...
 
-    def sections(self, summary: "RunSummary") -> "Sequence[RenderableType]":
+    def sections(self, summary: "RunSummary") -> Sequence[Block]:
         """Further tables of a run."""
+        ...
+
+    def measure_rows(self, measure: MeasureSummary, summary: "RunSummary") -> Sequence[FurtherRow]:
+        """Further rows below a measure's statistics."""
+        ...
+
+    def check(self, system: "System") -> Sequence[Block]:
+        """What a scene means, before any trial.
+
+        Args:
+            system: of the presenter's own kind.
+        """
         ...
 
     def display(self, run: "Run", which: Which, *, magnify: float) -> Display:
@@ -102,3 +131,31 @@ class Presenter(Protocol):
 def presenter_at(path: str) -> Presenter:
     """The presenter that a module calls PRESENTER."""
     return cast(Presenter, import_module(path).PRESENTER)
+
+
+def presenter_of(run: "RunSummary") -> Presenter:
+    """The presenter of a run's measures."""
+    named = (measure.presenter for measure in run.measures.values() if measure.presenter)
+    return presenter_at(path) if (path := next(named, None)) else _Nothing()
+
+
+class _Nothing:
+    """Shows nothing more of a system."""
+
+    def pictures(self, summary: "RunSummary") -> Mapping[str, Draw]:
+        return {}
+
+    def sections(self, summary: "RunSummary") -> Sequence[Block]:
+        return ()
+
+    def measure_rows(self, measure: MeasureSummary, summary: "RunSummary") -> Sequence[FurtherRow]:
+        return ()
+
+    def check(self, system: "System") -> Sequence[Block]:
+        return ()
+
+    def display(self, run: "Run", which: Which, *, magnify: float) -> Display:
+        raise InputError(f"{run.path}: builds of this system cannot be shown: it has no presenter")
+
+    def replayed(self, replay: "Replay", label: str) -> Display:
+        raise InputError(f"{label}: builds of this system cannot be shown: it has no presenter")

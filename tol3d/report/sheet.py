@@ -1,61 +1,40 @@
-"""Tables for the terminal in which no number is ever cut: columns that find no room go on in a table below."""
+"""Pages for the terminal in which no number is ever cut: columns that find no room go on in a table below."""
 
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from rich import box
 from rich.cells import cell_len
-from rich.console import Console, ConsoleOptions, Group, RenderResult
+from rich.console import Console, ConsoleOptions, Group, RenderableType, RenderResult
 from rich.padding import Padding
-from rich.table import Table
+from rich.table import Table as RichTable
 from rich.text import Text
+
+from tol3d.report.page import Block, Heading, Page, Table
 
 GAP = 2  # blanks between two columns
 TIGHT_LABELS = 14  # characters; what labels keep before they wrap, where that saves a table below
 LABELS_SHARE = 3  # else they keep a third of the width
 
 
-@dataclass(frozen=True)
-class Heading:
-    """Head of a column; words stand left and wrap, numbers right and whole; an optional one goes where room lacks."""
-
-    text: str
-    style: str = ""
-    words: bool = False
-    optional: bool = False
-
-
-@dataclass(frozen=True)
-class Row:
-    """A line of a sheet: its label and a cell for each heading."""
-
-    label: str
-    cells: Sequence[str]
-    style: str = ""
-
-
-def note(text: str) -> Padding:
-    """A line below a table."""
-    return Padding(Text(text, style="dim"), (0, 0, 0, 1))
-
-
-def titled(title: str, sheet: "Sheet") -> Group:
-    """A table under its title."""
-    return Group(Text(f"\n{title}", style="bold cyan"), sheet)
+def rendered(shown: Page | Block) -> RenderableType:
+    """What is shown, for rich's console."""
+    if isinstance(shown, Page):
+        return Group(*map(rendered, shown.blocks))
+    if isinstance(shown, Table):
+        return Sheet(shown)
+    text = Text.assemble(*shown.pieces)
+    return Padding(text, (0, 0, 0, 1)) if shown.note else text
 
 
 @dataclass(frozen=True)
 class Sheet:
-    """A table: a column of labels and one for each heading.
+    """A table as it fits a terminal.
 
-    In a narrow terminal labels, headings and words wrap; where that is not enough, optional columns are left out, and
-    then the columns that are left stand in a table below, beside the labels and the first `repeated` columns.
+    In a narrow one labels, headings and words wrap; where that is not enough, optional columns are left out, and then
+    the columns that are left stand in a table below, beside the labels and the first `repeated` columns.
     """
 
-    corner: str
-    headings: Sequence[Heading]
-    rows: Sequence[Row]
-    repeated: int = 0
+    table: Table
 
     def __rich_console__(self, console: Console, options: ConsoleOptions) -> RenderResult:
         width = options.max_width
@@ -63,19 +42,20 @@ class Sheet:
         for number, widths in enumerate(sheet._tables(width)):
             if number:
                 yield Text()
-            yield sheet._table(widths)
+            yield sheet._part(widths)
 
     def _needed(self) -> "Sheet":
         """It without its optional columns."""
-        kept = [index for index, heading in enumerate(self.headings) if not heading.optional]
-        rows = [replace(row, cells=[row.cells[index] for index in kept]) for row in self.rows]
-        return replace(self, headings=[self.headings[index] for index in kept], rows=rows)
+        table = self.table
+        kept = [index for index, heading in enumerate(table.headings) if not heading.optional]
+        rows = [replace(row, cells=[row.cells[index] for index in kept]) for row in table.rows]
+        return Sheet(replace(table, headings=[table.headings[index] for index in kept], rows=rows))
 
     def _column(self, index: int) -> list[str]:
         """Everything in a column, its head first; column 0 is that of the labels."""
         if index == 0:
-            return [self.corner, *(row.label for row in self.rows)]
-        return [self.headings[index - 1].text, *(row.cells[index - 1] for row in self.rows)]
+            return [self.table.corner, *(row.label for row in self.table.rows)]
+        return [self.table.headings[index - 1].text, *(row.cells[index - 1] for row in self.table.rows)]
 
     def _whole(self, index: int) -> int:
         """How wide a column is that wraps nothing."""
@@ -84,7 +64,7 @@ class Sheet:
     def _least(self, index: int, most: int) -> int:
         """The narrowest that a column but the labels' may be; over `most` even words and numbers are folded."""
         head, *cells = self._column(index)
-        needed = _longest_word if self.headings[index - 1].words else cell_len
+        needed = _longest_word if self.table.headings[index - 1].words else cell_len
         return min(most, max([_longest_word(head), *map(needed, cells)]))
 
     def _tables(self, width: int) -> list[dict[int, int]]:
@@ -98,10 +78,10 @@ class Sheet:
 
     def _grouped(self, labels: int, width: int) -> list[dict[int, int]]:
         """Least widths of the columns that stand together, as many as there is room for beside labels that wide."""
-        least = {index + 1: self._least(index + 1, width - labels - GAP) for index in range(len(self.headings))}
-        first = {0: labels, **{index: least[index] for index in range(1, self.repeated + 1)}}
+        least = {index + 1: self._least(index + 1, width - labels - GAP) for index in range(len(self.table.headings))}
+        first = {0: labels, **{index: least[index] for index in range(1, self.table.repeated + 1)}}
         groups = [dict(first)]
-        for index in range(self.repeated + 1, len(self.headings) + 1):
+        for index in range(self.table.repeated + 1, len(self.table.headings) + 1):
             taken = sum(groups[-1].values()) + GAP * len(groups[-1])
             if taken + least[index] > width and len(groups[-1]) > len(first):
                 groups.append(dict(first))
@@ -116,11 +96,11 @@ class Sheet:
             widths[neediest] += self._whole(neediest) > widths[neediest]
         return widths
 
-    def _table(self, widths: dict[int, int]) -> Table:
-        table = Table(box=box.SIMPLE_HEAD, show_edge=False, pad_edge=False, padding=(0, 1), header_style="bold")
+    def _part(self, widths: dict[int, int]) -> RichTable:
+        table = RichTable(box=box.SIMPLE_HEAD, show_edge=False, pad_edge=False, padding=(0, 1), header_style="bold")
         table.collapse_padding = True
         for index, width in widths.items():
-            heading = self.headings[index - 1] if index else Heading(self.corner, words=True)
+            heading = self.table.headings[index - 1] if index else Heading(self.table.corner, words=True)
             table.add_column(
                 Text(heading.text),
                 justify="left" if heading.words else "right",
@@ -128,7 +108,7 @@ class Sheet:
                 width=width,
                 overflow="fold",
             )
-        for row in self.rows:
+        for row in self.table.rows:
             cells = [row.cells[index - 1] if index else row.label for index in widths]
             table.add_row(*map(Text, cells), style=row.style)
         return table

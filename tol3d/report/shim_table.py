@@ -3,15 +3,12 @@
 from collections.abc import Iterator, Mapping
 from typing import Final
 
-from rich.console import Group, RenderableType
-from rich.text import Text
-
 from tol3d.analyses.shim import ShimPlan, closing_of
 from tol3d.analyses.shim_choice import Shim
 from tol3d.analyses.shimmed import MINIMUM_WORDS, UM, Shimmed
 from tol3d.analyses.stock import thickness_text
 from tol3d.report.number import NOTHING, value_text
-from tol3d.report.sheet import Heading, Row, Sheet, note
+from tol3d.report.page import BLANK, Block, Heading, Line, Page, Row, Table, line, note, page, warning
 from tol3d.report.table import CONVERTED_ROWS
 
 ROWS: Final[Mapping[str, str]] = {
@@ -27,23 +24,23 @@ SIDES: Final[Mapping[str, str]] = {
 }
 
 
-def shim_report(plan: ShimPlan) -> Group:
+def shim_report(plan: ShimPlan) -> Page:
     """Where the shims go, how thick they are, what they do to the backlash."""
-    blocks: list[RenderableType] = [_title(plan), _words(plan), ""]
-    blocks += [Text(f"  {shim.name}: {_place(shim)}") for shim in plan.shims]
-    blocks += ["", _table(plan), *map(note, _notes(plan))]
-    blocks += [Text(f"warning: {warning}", style="yellow") for warning in _warnings(plan)]
-    return Group(*blocks)
+    blocks: list[Block] = [_title(plan), _words(plan), BLANK]
+    blocks += [line(f"  {shim.name}: {_place(shim)}") for shim in plan.shims]
+    blocks += [BLANK, _table(plan), *map(note, _notes(plan))]
+    blocks += [*map(warning, _warnings(plan))]
+    return page(*blocks)
 
 
-def _title(plan: ShimPlan) -> Text:
+def _title(plan: ShimPlan) -> Line:
     text = f" · shims for a minimum of {value_text(UM * plan.question.target, 'um')} µm"
-    return Text(plan.scene.scene, style="bold").append(text, "not bold")
+    return Line(((plan.scene.scene, "bold"), (text, "")))
 
 
-def _words(plan: ShimPlan) -> Text:
+def _words(plan: ShimPlan) -> Line:
     called = MINIMUM_WORDS[plan.question.minimum]
-    return Text(f"{plan.measure}: {plan.before.measure.words}; minimum: {called}", style="dim")
+    return line(f"{plan.measure}: {plan.before.measure.words}; minimum: {called}", "dim")
 
 
 def _place(shim: Shim) -> str:
@@ -51,7 +48,7 @@ def _place(shim: Shim) -> str:
     return f"{SIDES[shim.spec.side].format(shim.spec.of)} ({state})"
 
 
-def _table(plan: ShimPlan) -> Sheet:
+def _table(plan: ShimPlan) -> Table:
     columns = {"as it stands": plan.before, "by the formula": plan.by_formula, "by the geometry": plan.by_geometry}
     columns["chosen"] = plan.chosen
     if plan.other is not None:
@@ -64,7 +61,7 @@ def _table(plan: ShimPlan) -> Sheet:
     for key, label in CONVERTED_ROWS.items():
         rows.append(Row(f"lost motion, {label}", [_lost_motion(own, key) for own in shown]))
     headings = [Heading(text, "bold" if text == "chosen" else "") for text in columns]
-    return Sheet("[µm], [′, ″ of arc]", headings, rows)
+    return Table("[µm], [′, ″ of arc]", headings, rows)
 
 
 def _other_words(chosen: Shimmed, other: Shimmed) -> str:

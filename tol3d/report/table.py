@@ -5,11 +5,6 @@ from collections.abc import Iterator, Mapping, Sequence, Set
 from dataclasses import replace
 from enum import Enum
 
-from rich.console import Group, RenderableType
-from rich.text import Text
-
-from tol3d.gearing.presenting.stage import SUM_KEYS, Sums, sums_of
-from tol3d.gearing.presenting.train_tables import train_report
 from tol3d.report.agreement import agreement_lines, unexplained_lines
 from tol3d.report.column import (
     Column,
@@ -25,13 +20,16 @@ from tol3d.report.number import (
     NOTHING,
     difference_text,
     given_text,
-    percent_text,
+    percent_cell,
+    share_cell,
     share_text,
     unit_suffix,
     unsigned_zero,
+    value_cell,
     value_text,
 )
-from tol3d.report.sheet import Heading, Row, Sheet, note
+from tol3d.report.page import BLANK, Block, Heading, Line, Page, Row, Shown, Table, line, note, page, title, warning
+from tol3d.report.presenter import FurtherRow, Presenter, presenter_at, presenter_of
 from tol3d.report.verdict import ACCEPTED_PPM, verdict_report
 from tol3d.runs.summary.measure import MeasureSummary
 from tol3d.runs.summary.run import RunSummary
@@ -78,53 +76,65 @@ TOO_FEW_TO_BOUND = "too few trials on one side of the limit in each replicate to
 
 
 class Detail(Enum):
-    """How much of a run is shown: one row a measure, that and its trains, or tables of every measure too."""
+    """How much of a run is shown: one row a measure, that and its system's sections, or tables of every measure too."""
 
     VERDICT = 0
-    TRAINS = 1
+    SECTIONS = 1
     MEASURES = 2
 
     @classmethod
     def fitting(cls, run: RunSummary) -> "Detail":
         """What fits a screen or two: tables of every measure unless there are many."""
-        return cls.MEASURES if len(run.measures) <= MOST_TABLES else cls.TRAINS
+        return cls.MEASURES if len(run.measures) <= MOST_TABLES else cls.SECTIONS
 
 
-def run_report(run: RunSummary, detail: Detail = Detail.MEASURES, accepted_ppm: float = ACCEPTED_PPM) -> Group:
-    """A run as tables: measures, contributors, trains, how the roads agree, what failed, the verdict, warnings."""
-    warnings = [Text(f"warning: {warning}", style="yellow") for warning in run.warnings]
+def run_report(
+    run: RunSummary,
+    detail: Detail = Detail.MEASURES,
+    accepted_ppm: float = ACCEPTED_PPM,
+    presenter: str | None = None,
+) -> Page:
+    """A run as tables: measures, contributors, how the roads agree, what failed, the verdict, warnings.
+
+    Args:
+        run: what it found.
+        detail: how much of it is shown.
+        accepted_ppm: share of trials that may be out of a measure's limits.
+        presenter: import path of what shows more of the system; by default that of the run's measures.
+    """
+    own = presenter_of(run) if presenter is None else presenter_at(presenter)
+    warnings = [*map(warning, run.warnings)]
     verdict = verdict_report(run, accepted_ppm, blame=detail is not Detail.MEASURES)
     if detail is Detail.VERDICT:
-        return Group(*verdict, *warnings)
-    blocks: list[RenderableType] = [_run_line(run)]
+        return page(*verdict, *warnings)
+    blocks: list[Block] = [_run_line(run)]
     if detail is Detail.MEASURES:
         for name, measure in run.measures.items():
-            blocks += _measure_blocks(name, measure, run)
-    blocks += train_report(run)
+            blocks += _measure_blocks(name, measure, run, own)
+    blocks += own.sections(run)
     if detail is Detail.MEASURES and (meanings := list(_meanings(run))):
-        blocks += [Text("\nnotes", style="bold cyan"), *map(note, meanings)]
+        blocks += [title("notes"), *map(note, meanings)]
     blocks += verdict
     blocks += [] if detail is Detail.MEASURES else [note(MORE_TABLES)]
-    return Group(*blocks, _status_line(run), _time_line(run), *warnings)
+    return page(*blocks, _status_line(run), _time_line(run), *warnings)
 
 
-def _run_line(run: RunSummary) -> Text:
+def _run_line(run: RunSummary) -> Line:
     trials = f"{run.trials} trial{'' if run.trials == 1 else 's'}"
-    return Text(run.scene, style="bold").append(f" · {trials} · seed {run.seed} · engine {run.engine}", "dim")
+    return Line(((run.scene, "bold"), (f" · {trials} · seed {run.seed} · engine {run.engine}", "bold dim")))
 
 
-def _measure_blocks(name: str, measure: MeasureSummary, run: RunSummary) -> list[RenderableType]:
-    title = Text("\n").append(name, style="bold cyan")
-    words = Text(f"{measure.words} · {limits_text(measure)}", style="dim")
+def _measure_blocks(name: str, measure: MeasureSummary, run: RunSummary, presenter: Presenter) -> list[Block]:
+    head = [title(name), line(f"{measure.words} · {limits_text(measure)}", "dim"), BLANK]
     if measure.curve is not None and measure.take == "curve":
         notes = [*_curve_notes(measure, measure.curve), *_witness_notes(name, measure, run), *_published_notes(measure)]
-        return [title, words, "", curve_table(measure, measure.curve), *map(note, notes)]
+        return [*head, curve_table(measure, measure.curve), *map(note, notes)]
     notes = [*_notes(name, measure, run)]
-    sums = sums_of(measure, run)
-    blocks: list[RenderableType] = [title, words, "", measure_table(measure, sums), *map(note, notes)]
-    blocks += [Text(f" {line}", style="bold red") for line in unexplained_lines(measure.agreement)]
+    further = presenter.measure_rows(measure, run)
+    blocks: list[Block] = [*head, measure_table(measure, further), *map(note, notes)]
+    blocks += [line(f" {text}", "bold red") for text in unexplained_lines(measure.agreement)]
     if measure.contributors:
-        blocks += ["", contributors_table(measure)]
+        blocks += [BLANK, contributors_table(measure)]
     return blocks
 
 
@@ -148,35 +158,35 @@ def _headings(columns: Sequence[Column]) -> list[Heading]:
     return [Heading(column.heading, styles.get(column.road, "")) for column in columns]
 
 
-def measure_table(measure: MeasureSummary, sums: Sums) -> Sheet:
-    """Statistics of one scalar measure, one column a road, the published ones last; below, sums of a train's stages."""
+def measure_table(measure: MeasureSummary, further: Sequence[FurtherRow] = ()) -> Table:
+    """Statistics of one scalar measure, one column a road, the published ones last; `further` rows below."""
     columns, unit = columns_of(measure), measure.unit
     rows = [*_failure_rows(measure, columns)]
-    rows += [Row(label, [_cell(column, key, unit) for column in columns]) for key, label in ROWS.items()]
+    rows += [Row(label, [_cell(column, key, unit) for column in columns], unit=unit) for key, label in ROWS.items()]
     rows += [
-        Row(label, [share_text(_ppm(column, key, measure)) for column in columns])
+        Row(label, [share_cell(_ppm(column, key, measure)) for column in columns], unit="ppm")
         for key, label in _limit_rows(measure).items()
     ]
     rows += [
-        Row(label, [_index_text(column.value(key)) for column in columns])
+        Row(label, [_index_cell(column.value(key)) for column in columns])
         for key, label in INDICES.items()
         if any(column.value(key) is not None for column in columns)
     ]
     rows += [
-        Row(label, [value_text(build.value(column.road), unit) for column in columns])
+        Row(label, [value_cell(build.value(column.road), unit) for column in columns], unit=unit)
         for label, build in (("build at all means", measure.mean_build), ("nominal build", measure.nominal))
     ]
-    rows += [*_converted_rows(measure, columns), *_sum_rows(sums, columns, unit)]
-    return Sheet(UNIT_HEADINGS[unit], _headings(columns), rows)
+    rows += [*_converted_rows(measure, columns), *_further_rows(further, columns, unit)]
+    return Table(UNIT_HEADINGS[unit], _headings(columns), rows)
 
 
-def _cell(column: Column, key: str, unit: str) -> str:
+def _cell(column: Column, key: str, unit: str) -> Shown:
     text = given_text if column.road == "published" else value_text
-    return text(column.value(key), unit)
+    return Shown(text(column.value(key), unit), column.value(key))
 
 
-def _index_text(value: float | None) -> str:
-    return NOTHING if value is None else unsigned_zero(f"{value:.3f}")
+def _index_cell(value: float | None) -> Shown:
+    return Shown(NOTHING if value is None else unsigned_zero(f"{value:.3f}"), value)
 
 
 def _failure_rows(measure: MeasureSummary, columns: Sequence[Column]) -> Iterator[Row]:
@@ -220,17 +230,15 @@ def _converted_rows(measure: MeasureSummary, columns: Sequence[Column]) -> Itera
     for other in measure.conversions:
         for key, word in CONVERTED_ROWS.items():
             values = [column.value(key) for column in columns]
-            cells = [value_text(None if value is None else value * other.per_unit, other.unit) for value in values]
-            yield Row(f"{other.words}, {word}", cells)
+            cells = [value_cell(None if value is None else value * other.per_unit, other.unit) for value in values]
+            yield Row(f"{other.words}, {word}", cells, unit=other.unit)
 
 
-def _sum_rows(sums: Sums, columns: Sequence[Column], unit: str) -> Iterator[Row]:
-    """Sums of the stages' ends, where a measure is the sum of a train's stages."""
-    if not sums:
-        return
-    own = [sums.get(column.heading if column.road == "published" else column.road, {}) for column in columns]
-    for key, word in SUM_KEYS.items():
-        yield Row(f"sum of the stages' {word}", [value_text(values.get(key), unit) for values in own])
+def _further_rows(further: Sequence[FurtherRow], columns: Sequence[Column], unit: str) -> Iterator[Row]:
+    """What the system's presenter adds."""
+    for own in further:
+        values = [own.values.get(column.heading if column.road == "published" else column.road) for column in columns]
+        yield Row(own.label, [value_cell(value, unit) for value in values], unit=unit)
 
 
 def _notes(name: str, measure: MeasureSummary, run: RunSummary) -> Iterator[str]:
@@ -292,7 +300,7 @@ def _witness_notes(name: str, measure: MeasureSummary, run: RunSummary) -> Itera
     yield f"{again}: at most {largest} more or less (up to {chords} of that is the chord error of its strips)"
 
 
-def contributors_table(measure: MeasureSummary) -> Sheet:
+def contributors_table(measure: MeasureSummary) -> Table:
     """Shares of the variance, the largest first; those of the 3D simulation with their standard error."""
     shares = [
         replace(column, heading=SHARE_HEADINGS.get(column.road, column.heading))
@@ -300,17 +308,17 @@ def contributors_table(measure: MeasureSummary) -> Sheet:
     ]
     errors = {share.name: share.geometric_percent_se for share in measure.contributors}
     rows = [
-        Row(name, [_share(column, name, errors[name]) for column in shares]) for name in ranked_contributors(measure)
+        Row(name, [_share(column, name, errors[name]) for column in shares], unit="%")
+        for name in ranked_contributors(measure)
     ]
     left = _not_attributed(measure)
     if left:
-        rows.append(Row(NOT_ATTRIBUTED, [percent_text(rest) for rest in left], "dim"))
-    return Sheet("share [%]", _headings(shares), rows)
+        rows.append(Row(NOT_ATTRIBUTED, [percent_cell(rest) for rest in left], "dim", unit="%"))
+    return Table("share [%]", _headings(shares), rows)
 
 
-def _share(column: Column, name: str, error: float | None) -> str:
-    text = percent_text(column.percents.get(name))
-    return f"{text} ±{error:.1f}" if column.road == "geometric" and error is not None else text
+def _share(column: Column, name: str, error: float | None) -> Shown:
+    return percent_cell(column.percents.get(name), error if column.road == "geometric" else None)
 
 
 def _not_attributed(measure: MeasureSummary) -> list[float | None]:
@@ -322,7 +330,7 @@ def _not_attributed(measure: MeasureSummary) -> list[float | None]:
     return left if any(abs(rest or 0.0) > UNEXPLAINED_SHOWN for rest in left) else []
 
 
-def curve_table(measure: MeasureSummary, curve: CurveRoads) -> Sheet:
+def curve_table(measure: MeasureSummary, curve: CurveRoads) -> Table:
     """A curve measure at some of its positions."""
     words = {"analytic": "analytic", "geometric": "3D"}
     columns = [
@@ -336,10 +344,14 @@ def curve_table(measure: MeasureSummary, curve: CurveRoads) -> Sheet:
     positions = [unsigned_zero(f"{position:.1f}") for position in measure.position_deg or ()]
     longest = max(map(len, positions), default=0)
     rows = [
-        Row(positions[index].rjust(longest), [value_text(values[index], measure.unit) for _, _, values in columns])
+        Row(
+            positions[index].rjust(longest),
+            [value_cell(values[index], measure.unit) for _, _, values in columns],
+            unit=measure.unit,
+        )
         for index in _shown_positions(measure)
     ]
-    return Sheet(f"{measure.position_word} at [°]".lstrip(), headings, rows)
+    return Table(f"{measure.position_word} at [°]".lstrip(), headings, rows)
 
 
 def _shown_positions(measure: MeasureSummary) -> range:
@@ -363,18 +375,19 @@ def _curve_notes(measure: MeasureSummary, curve: CurveRoads) -> Iterator[str]:
             )
 
 
-def _status_line(run: RunSummary) -> Text:
+def _status_line(run: RunSummary) -> Line:
     failed = {text: count for text, count in run.status.items() if text != SEATED and count}
-    line = Text("\ntrials: ").append(f"{run.status.get(SEATED, 0)} seated")
+    pieces = [(f"\ntrials: {run.status.get(SEATED, 0)} seated", "")]
     for status, count in failed.items():
-        line.append(f", {count} {STATUS_WORDS.get(status, status)} ({share_text(1e6 * count / run.trials)})", "red")
-    return line if failed else line.append(", none failed")
+        share = share_text(1e6 * count / run.trials)
+        pieces.append((f", {count} {STATUS_WORDS.get(status, status)} ({share})", "red"))
+    return Line((*pieces, *(() if failed else ((", none failed", ""),))))
 
 
-def _time_line(run: RunSummary) -> Text:
+def _time_line(run: RunSummary) -> Line:
     timing = run.timing
     workers = f" by {timing.workers} workers" if timing.workers != 1 else ""
-    return Text(
+    return line(
         f"time: {timing.setup_s:.1f} s to set up, {timing.simulate_s:.1f} s for the trials{workers}, "
         f"{timing.trials_per_s:.0f} trials/s"
     )

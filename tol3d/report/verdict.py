@@ -4,13 +4,10 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Final, Literal
 
-from rich.console import RenderableType
-from rich.text import Text
-
 from tol3d.report.column import columns_of, ranked_contributors, seated_text, shares_of
 from tol3d.report.ends import Ends, is_bounded
 from tol3d.report.number import NOTHING, given_text, share_text, short_text, unit_suffix, unsigned_zero
-from tol3d.report.sheet import Heading, Row, Sheet, note
+from tol3d.report.page import BLANK, Block, Heading, Row, Table, note, title
 from tol3d.runs.summary.measure import MeasureSummary
 from tol3d.runs.summary.run import RunSummary
 
@@ -60,7 +57,7 @@ def all_ok(run: RunSummary, accepted_ppm: float) -> bool:
     return all(Judged.of(own, accepted_ppm).verdict in ("OK", "no limits") for own in run.measures.values())
 
 
-def verdict_report(run: RunSummary, accepted_ppm: float = ACCEPTED_PPM, *, blame: bool = False) -> list[RenderableType]:
+def verdict_report(run: RunSummary, accepted_ppm: float = ACCEPTED_PPM, *, blame: bool = False) -> list[Block]:
     """The verdict of every measure, what it rests on, and how it is reached.
 
     Args:
@@ -68,18 +65,17 @@ def verdict_report(run: RunSummary, accepted_ppm: float = ACCEPTED_PPM, *, blame
         accepted_ppm: share of trials that may be out of a measure's limits.
         blame: name the contributor that most of each measure's variance comes from.
     """
-    title = Text("\n").append("verdict", style="bold cyan")
-    title.append(f" · accepted: {share_text(accepted_ppm)} out of limits", "dim")
-    return [title, "", verdict_table(run, accepted_ppm, blame=blame), *map(note, _notes(run))]
+    head = title("verdict", f" · accepted: {share_text(accepted_ppm)} out of limits")
+    return [head, BLANK, verdict_table(run, accepted_ppm, blame=blame), *map(note, _notes(run))]
 
 
-def verdict_table(run: RunSummary, accepted_ppm: float = ACCEPTED_PPM, *, blame: bool = False) -> Sheet:
+def verdict_table(run: RunSummary, accepted_ppm: float = ACCEPTED_PPM, *, blame: bool = False) -> Table:
     """A row a measure, by the 3D simulation where there is one."""
     headings = [Heading("verdict", words=True), *(Heading(word) for word in ("mean", "low", "high"))]
     headings += [Heading("limits"), Heading("out of limits (95 %)", words=True), Heading("Ppk")]
     headings += [Heading("mostly from", words=True, optional=True)] if blame else []
     rows = [_row(name, measure, accepted_ppm, blame=blame) for name, measure in run.measures.items()]
-    return Sheet("measure", headings, rows, repeated=1)
+    return Table("measure", headings, rows, repeated=1)
 
 
 def _row(name: str, measure: MeasureSummary, accepted_ppm: float, *, blame: bool) -> Row:

@@ -7,14 +7,15 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 from tol3d.gearing.summary_types import TrainsOfRun
+from tol3d.runs.summary.measure import MeasureSummary
 from tol3d.runs.summary.run import RunSummary
 
 if TYPE_CHECKING:
-    from rich.console import RenderableType
-
-    from tol3d.report.presenter import Display, Draw, Which
+    from tol3d.report.page import Block
+    from tol3d.report.presenter import Display, Draw, FurtherRow, Which
     from tol3d.runs.run import Run
     from tol3d.simulate import Replay
+    from tol3d.system.system import System
 
 
 class GearPresenter:
@@ -29,9 +30,17 @@ class GearPresenter:
         trains = (summary.trains or {}) if isinstance(summary, TrainsOfRun) else {}
         return {f"chain-{name}" if k else "chain": partial(_draw_chain, summary, name) for k, name in enumerate(trains)}
 
-    def sections(self, summary: RunSummary) -> "Sequence[RenderableType]":
+    def sections(self, summary: RunSummary) -> "Sequence[Block]":
         """Tables of every train."""
         return _lazily("train_tables").train_report(summary)  # type: ignore[no-any-return]
+
+    def measure_rows(self, measure: MeasureSummary, summary: RunSummary) -> "Sequence[FurtherRow]":
+        """Sums of the stages' ends, where a measure is the sum of a train's stages."""
+        return _lazily("train_tables").sum_rows(measure, summary)  # type: ignore[no-any-return]
+
+    def check(self, system: "System") -> "Sequence[Block]":
+        """Gears, meshes, trains, measures, and contributors with their coefficients."""
+        return _lazily("scene_check").check_blocks(system)  # type: ignore[no-any-return]
 
     def display(self, run: "Run", which: "Which", *, magnify: float) -> "Display":
         """A build with its gears seated again."""

@@ -4,28 +4,26 @@ from collections.abc import Iterator
 
 import numpy as np
 from numpy.typing import NDArray
-from rich.console import RenderableType
-from rich.text import Text
 
 from tol3d.gearing.model import Model, Train
 from tol3d.gearing.model.links import LoadPath, Parallel, links_of
 from tol3d.gearing.model.trains import gravity_torque
 from tol3d.gears import LEFT
 from tol3d.report.number import NOTHING
-from tol3d.report.sheet import Heading, Row, Sheet
+from tol3d.report.page import Block, Heading, Line, Row, Table, line, title
 from tol3d.units import angle_text
 
 Array = NDArray[np.float64]
 
 
-def train_blocks(model: Model) -> list[RenderableType]:
+def train_blocks(model: Model) -> list[Block]:
     """What a scene says of shafts, where any of them carries or drives more than one gear; else nothing."""
     if len(model.layout.links) == len(model.layout.drives) and not model.trains:
         return []
     words = [Heading(word, words=True) for word in ("driven by", "carries", "axis through [mm]", "along")]
-    sheet = Sheet("", [*words, Heading("turns")], list(_shaft_rows(model)))
-    note = Text(" turns per turn of the first shaft; below 0: they turn opposite, each about its own axis", style="dim")
-    return [Text("\nshafts", style="bold cyan"), sheet, note, *(_train_line(model, train) for train in model.trains)]
+    table = Table("", [*words, Heading("turns")], list(_shaft_rows(model)))
+    note = line(" turns per turn of the first shaft; below 0: they turn opposite, each about its own axis", "dim")
+    return [title("shafts"), table, note, *(_train_line(model, train) for train in model.trains)]
 
 
 def _shaft_rows(model: Model) -> Iterator[Row]:
@@ -44,20 +42,20 @@ def _shaft_rows(model: Model) -> Iterator[Row]:
         yield Row(shaft, cells)
 
 
-def _train_line(model: Model, train: Train) -> Text:
+def _train_line(model: Model, train: Train) -> Line:
     layout = model.layout
     path = layout.load_path(train.driven, train.output)
     ratio = layout.ratio(train.driven, train.output)
     sense = "opposite" if ratio < 0 else "alike"
-    line = Text(f"\n{train.name}: ", style="bold").append(" → ".join(_path(train.driven, path)), "not bold")
-    line.append(f" · i = {abs(float(ratio)):.6g}, they turn {sense} · {train.held} held", "not bold")
+    pieces = [(f"\n{train.name}: ", "bold"), (" → ".join(_path(train.driven, path)), "")]
+    pieces.append((f" · i = {abs(float(ratio)):.6g}, they turn {sense} · {train.held} held", ""))
     on_the_path = {link.name for link in links_of(path)}
     meshes = [mesh for mesh in model.meshes if mesh.name in on_the_path]
     flanks = ", ".join(f"{mesh.name} {'left' if mesh.working_flank == LEFT else 'right'}" for mesh in meshes)
-    line.append(f"\n working flanks of the drivers{_load(model, train)}: {flanks or NOTHING}", "dim not bold")
+    pieces.append((f"\n working flanks of the drivers{_load(model, train)}: {flanks or NOTHING}", "dim"))
     for reducer in (r for r in model.reducers if r.backlash and r.name in on_the_path):
-        line.append(f"\n {reducer.name}: {angle_text(reducer.backlash)} of play in every trial", "dim not bold")
-    return line
+        pieces.append((f"\n {reducer.name}: {angle_text(reducer.backlash)} of play in every trial", "dim"))
+    return Line(tuple(pieces))
 
 
 def _load(model: Model, train: Train) -> str:

@@ -3,9 +3,6 @@
 from collections.abc import Iterator
 from typing import Any
 
-from rich.console import RenderableType
-from rich.text import Text
-
 from tol3d.gearing.presenting.stage import (
     SUM_KEYS,
     Stage,
@@ -14,10 +11,15 @@ from tol3d.gearing.presenting.stage import (
     sense_text,
     shafts_along,
     stages_of,
+    sums_of,
     whole_ratio_text,
 )
+from tol3d.gearing.summary_types import TrainMeasureSummary
 from tol3d.report.number import percent_text, tip_mm, value_text
-from tol3d.report.sheet import Heading, Row, Sheet, note
+from tol3d.report.page import BLANK, Block, Heading, Row, Table, line, note, title
+from tol3d.report.presenter import FurtherRow
+from tol3d.runs.summary.measure import MeasureSummary
+from tol3d.runs.summary.run import RunSummary
 
 Summary = Any  # typed, read by text
 
@@ -27,22 +29,32 @@ STAGES_MEAN = "low, mean, high: a stage's own angular backlash at its driven sha
 OF_LAWS = "; of a data sheet's law its ends, where they are nearer than 3 sigma"
 
 
-def train_report(summary: Summary) -> list[RenderableType]:
+def train_report(summary: Summary) -> list[Block]:
     """Tables of every train of a run: its stages, then sums of their ends beside the distribution of the sum."""
     return [block for name in summary.get("trains", {}) for block in _train_blocks(name, summary)]
 
 
-def _train_blocks(name: str, summary: Summary) -> Iterator[RenderableType]:
+def _train_blocks(name: str, summary: Summary) -> Iterator[Block]:
     train = summary["trains"][name]
     stages = stages_of(train)
-    yield Text("\n").append(f"train {name}", style="bold cyan")
-    yield Text(train_words(train), style="dim")
+    yield title(f"train {name}")
+    yield line(train_words(train), "dim")
     if not stages:
         return
-    yield from ("", stages_table(train, stages))
+    yield from (BLANK, stages_table(train, stages))
     road = "3D simulation" if leading_road(train) == "geometric" else "analytic road"
     yield note(STAGES_MEAN.format(road=road) + (OF_LAWS if any(stage.within_its_law for stage in stages) else ""))
-    yield from ("", sums_table(train, summary), note(WORST_CASE_MEANS))
+    yield from (BLANK, sums_table(train, summary), note(WORST_CASE_MEANS))
+
+
+def sum_rows(measure: MeasureSummary, summary: RunSummary) -> list[FurtherRow]:
+    """Sums of the stages' ends, where a measure is the sum of a train's stages."""
+    sums = sums_of(measure, summary) if isinstance(measure, TrainMeasureSummary) else {}
+    return [
+        FurtherRow(f"sum of the stages' {word}", {who: values.get(key) for who, values in sums.items()})
+        for key, word in SUM_KEYS.items()
+        if sums
+    ]
 
 
 def train_words(train: Summary) -> str:
@@ -54,7 +66,7 @@ def train_words(train: Summary) -> str:
     return f"{' → '.join(shafts)} · {train['held']} held{turns}"
 
 
-def stages_table(train: Summary, stages: list[Stage]) -> Sheet:
+def stages_table(train: Summary, stages: list[Stage]) -> Table:
     """A row a stage, and the whole train below; angles in minutes and seconds of arc."""
     published = list(dict.fromkeys(name for stage in stages for name in stage.published))
     headings = [
@@ -63,7 +75,7 @@ def stages_table(train: Summary, stages: list[Stage]) -> Sheet:
         Heading("share of variance [%]"),
         *(Heading(f"{name}: high", "green") for name in published),
     ]
-    return Sheet("stage", headings, [Row(stage.link, _cells(stage, published)) for stage in stages])
+    return Table("stage", headings, [Row(stage.link, _cells(stage, published)) for stage in stages])
 
 
 def _cells(stage: Stage, published: list[str]) -> list[str]:
@@ -81,7 +93,7 @@ def _angle(arcmin: float | None) -> str:
     return value_text(arcmin, "arcmin")
 
 
-def sums_table(train: Summary, summary: Summary) -> Sheet:
+def sums_table(train: Summary, summary: Summary) -> Table:
     """Sums of the stages' ends against the distribution of the sum, a column a road and who published."""
     distributions = distributions_of(train, summary)
     own = {road: train["sums"][road] for road in ROAD_WORDS if road in train["sums"]}
@@ -100,4 +112,4 @@ def sums_table(train: Summary, summary: Summary) -> Sheet:
         rows.append(Row(f"{train['point']}, mean + 3 sigma [mm]", tips))
     styles = {"geometric": "bold", "analytic": ""}
     headings = [Heading(ROAD_WORDS.get(road, road), styles.get(road, "green")) for road, _ in columns]
-    return Sheet(f"at {train['shaft']}", headings, rows)
+    return Table(f"at {train['shaft']}", headings, rows)

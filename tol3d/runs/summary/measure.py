@@ -2,7 +2,7 @@
 
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Literal, Self, get_args
+from typing import TYPE_CHECKING, Any, ClassVar, Literal, Self, get_args
 
 from pydantic import Field, create_model, model_validator
 
@@ -80,6 +80,9 @@ class Conversion:
 
 class MeasureSummary(Section):
     """One measure; every value is in `unit`. Mechanisms declare classes of it, with keys of their own."""
+
+    presenter: ClassVar[str] = ""
+    """Import path of what shows more of its system, see `tol3d.report.presenter`."""
 
     kind: Label
     over: Label

@@ -5,18 +5,15 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from rich.console import RenderableType
-from rich.text import Text
 
 from tol3d.gearing.engines import Engine
 from tol3d.gearing.engines.exact import ExactEngine
-from tol3d.gearing.model import Backlash, Contributor, Measure, Model, Positions
+from tol3d.gearing.model import Contributor, Measure, Model, Positions
 from tol3d.gearing.model.measure import at_one_position
 from tol3d.gearing.roads.analytic import analytic_values
 from tol3d.gearing.slopes import STEP_ASIDE, Slope, mean_slopes
 from tol3d.gearing.stack_up import reference_form
-from tol3d.report.number import NOTHING, UNIT_SIGNS, degrees_text, percent_text
-from tol3d.report.sheet import Heading, Row, Sheet, titled
+from tol3d.report.number import NOTHING, UNIT_SIGNS
 from tol3d.system.closed_form import Share
 from tol3d.system.stated import mean_deviations, stated
 
@@ -27,8 +24,6 @@ LEAST_SLOPE = 5e-4  # um or arcsec per unit; what rounds to 0.000 is nothing
 DISAGREES = 0.05  # of the largest slope; beyond that a coefficient of the geometry is marked
 BESIDE = 0.01  # of a step aside; what a slope is taken over there
 KINK = 0.01  # of the larger slope; two sides that differ by less are one
-OTHER = "≠"
-NO_SUM = "the tighter way counts, which is no sum; run tells the shares of its trials"
 
 
 @dataclass(frozen=True)
@@ -64,7 +59,7 @@ class Coefficient:
         name: the contributor's.
         unit: of the slopes, "µm/µm" or "″/K".
         stack_up, geometry: by either road.
-        percent: its share of the variance by the stack-up; None where ways are parallel, or only the geometry sees it.
+        percent: its share of the variance by the stack-up; None with parallel load paths, or if only 3D sees it.
     """
 
     name: str
@@ -79,60 +74,26 @@ class Coefficient:
         return self.geometry.differs(self.stack_up, DISAGREES)
 
 
-Coefficients = Mapping[Measure, Sequence[Coefficient]]
-
-
 def coefficients_of(model: Model) -> Mapping[str, Sequence[Coefficient]]:
     """For each measure the coefficients of the contributors that act on it, see `Coefficient`.
 
     Of a measure that takes an extreme or a curve those of its value at a random position, the driver at 0.
     """
-    known = _coefficients(model)
-    return {measure.name: known[_of_one_value(measure)] for measure in model.measures}
+    known = coefficients_by_value(model)
+    return {measure.name: known[of_one_value(measure)] for measure in model.measures}
 
 
-def coefficients_tables(model: Model) -> list[RenderableType]:
-    """The same as tables, one for all measures that have the same."""
-    names: dict[Measure, list[str]] = {}
-    for measure in model.measures:
-        names.setdefault(_of_one_value(measure), []).append(measure.name)
-    headings = [Heading(word) for word in ("unit", "stack-up", "3D", "share [%]")]
-    tables = [
-        titled(
-            f"{', '.join(names[measure])}: change by each deviation, {_where(model, measure)}",
-            Sheet("", headings, [_row(own) for own in rows]),
-        )
-        for measure, rows in _coefficients(model).items()
-        if rows
-    ]
-    formless = [name for measure, of in names.items() if not measure.kind.adds_up for name in of]
-    return [*tables, *(Text(f" {note}", style="dim") for note in _notes(model, formless))]
-
-
-def _row(own: Coefficient) -> Row:
-    geometry = f"{OTHER} {own.geometry}" if own.disagrees else str(own.geometry)
-    percent = NOTHING if own.percent is None else percent_text(own.percent)
-    return Row(own.name, (own.unit, str(own.stack_up), geometry, percent))
-
-
-def _where(model: Model, measure: Measure) -> str:
-    """At which position coefficients are told."""
-    of_driver = measure.positions.over == "at" and isinstance(measure.kind, Backlash)
-    alone = len(model.layout.links) == len(model.layout.drives)
-    what = "driver" if of_driver or alone else "first shaft"
-    return f"{what} at {degrees_text(measure.positions.angle)}°"
-
-
-def _of_one_value(measure: Measure) -> Measure:
-    """What coefficients are told of: measures that are equal here have the same."""
+def of_one_value(measure: Measure) -> Measure:
+    """The measure of one value that coefficients are of: measures that are equal here have the same."""
     at = measure.take == "value" and measure.positions.over == "at"
     positions = measure.positions if at else Positions("random", 1, 1)
     return Measure("", at_one_position(measure.kind), positions, "value")
 
 
-def _coefficients(model: Model) -> Coefficients:
+def coefficients_by_value(model: Model) -> Mapping[Measure, Sequence[Coefficient]]:
+    """The coefficients of each measure of one value, see `of_one_value`."""
     engine = ExactEngine(model)
-    measures = dict.fromkeys(_of_one_value(measure) for measure in model.measures)
+    measures = dict.fromkeys(of_one_value(measure) for measure in model.measures)
     return {measure: tuple(_of_measure(model, engine, measure)) for measure in measures}
 
 
@@ -168,7 +129,7 @@ def _linear(contributor: Contributor, share: Share) -> Slopes:
 def _road_slopes(model: Model, measure: Measure, along: Sequence[Slope]) -> list[Slopes]:
     """Slopes of the analytic road's values beside the mean build [internal units], in the directions that are stated.
 
-    Where a contributor is no term of a sum: it leans axes, or only the tighter of parallel ways counts. Taken
+    Where a contributor is no term of a sum: it leans axes, or only the tighter of parallel load paths counts. Taken
     STEP_ASIDE of the mean build, where those of the geometry are; the road is straight from kink to kink.
     """
     mean = mean_deviations(model, measure.positions)
@@ -189,18 +150,3 @@ def _slope_text(slope: float) -> str:
     if abs(slope) < LEAST_SLOPE:
         return "0.000"
     return f"{slope:+.3f}" if abs(slope) < 1 else f"{slope:+#.3g}".rstrip(".")
-
-
-def _notes(model: Model, formless: Sequence[str]) -> list[str]:
-    notes = [
-        "stack-up and 3D: at the mean build, per unit of the deviation; of one with a direction per length in its "
-        "worst direction; a/b: below and above the mean, where they differ; "
-        f"{OTHER}: the geometry disagrees by more than {100 * DISAGREES:g} %"
-    ]
-    tilts = [c.name for c in model.contributors if c.kind in ONE_SIDED]
-    if tilts:
-        more = "; of two that cross only the larger counts" if len(tilts) > 1 else ""
-        notes.append(f"{', '.join(tilts)}: a tilt closes the gap whichever way it goes{more}")
-    if formless:
-        notes.append(f"no shares of {', '.join(formless)}: {NO_SUM}")
-    return notes

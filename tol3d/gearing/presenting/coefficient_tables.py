@@ -1,0 +1,58 @@
+"""Coefficients of a scene's contributors in its measures as tables, one for all measures that have the same."""
+
+from collections.abc import Sequence
+
+from tol3d.gearing.coefficients import DISAGREES, ONE_SIDED, Coefficient, coefficients_by_value, of_one_value
+from tol3d.gearing.model import Backlash, Measure, Model
+from tol3d.report.number import degrees_text, percent_cell
+from tol3d.report.page import Block, Heading, Row, Table, line, titled
+
+OTHER = "≠"
+NO_SUM = "the tighter load path counts, which is no sum; run tells the shares of its trials"
+
+
+def coefficients_tables(model: Model) -> list[Block]:
+    """A table for all measures that have the same coefficients, and what its signs mean."""
+    names: dict[Measure, list[str]] = {}
+    for measure in model.measures:
+        names.setdefault(of_one_value(measure), []).append(measure.name)
+    headings = [Heading(word) for word in ("unit", "stack-up", "3D", "share [%]")]
+    tables = [
+        block
+        for measure, rows in coefficients_by_value(model).items()
+        if rows
+        for block in titled(
+            f"{', '.join(names[measure])}: change by each deviation, {_where(model, measure)}",
+            Table("", headings, [_row(own) for own in rows]),
+        )
+    ]
+    formless = [name for measure, of in names.items() if not measure.kind.adds_up for name in of]
+    return [*tables, *(line(f" {note}", "dim") for note in _notes(model, formless))]
+
+
+def _row(own: Coefficient) -> Row:
+    geometry = f"{OTHER} {own.geometry}" if own.disagrees else str(own.geometry)
+    return Row(own.name, (own.unit, str(own.stack_up), geometry, percent_cell(own.percent)))
+
+
+def _where(model: Model, measure: Measure) -> str:
+    """The position to which coefficients belong."""
+    of_driver = measure.positions.over == "at" and isinstance(measure.kind, Backlash)
+    alone = len(model.layout.links) == len(model.layout.drives)
+    what = "driver" if of_driver or alone else "first shaft"
+    return f"{what} at {degrees_text(measure.positions.angle)}°"
+
+
+def _notes(model: Model, formless: Sequence[str]) -> list[str]:
+    notes = [
+        "stack-up and 3D: at the mean build, per unit of the deviation; of one with a direction per length in its "
+        "worst direction; a/b: below and above the mean, where they differ; "
+        f"{OTHER}: the geometry disagrees by more than {100 * DISAGREES:g} %"
+    ]
+    tilts = [c.name for c in model.contributors if c.kind in ONE_SIDED]
+    if tilts:
+        more = "; of two that cross only the larger counts" if len(tilts) > 1 else ""
+        notes.append(f"{', '.join(tilts)}: a tilt closes the gap whichever way it goes{more}")
+    if formless:
+        notes.append(f"no shares of {', '.join(formless)}: {NO_SUM}")
+    return notes

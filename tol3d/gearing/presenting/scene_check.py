@@ -1,0 +1,220 @@
+"""What a scene of gears means, as tables: gears, meshes, measures, contributors and their coefficients."""
+
+import math
+import re
+from collections.abc import Mapping, Sequence
+from functools import singledispatch
+
+from tol3d.gearing.model import Backlash, Contributor, Measure, Model, Planar
+from tol3d.gearing.presenting.coefficient_tables import coefficients_tables
+from tol3d.gearing.presenting.train_check import train_blocks
+from tol3d.gearing.summary_types import QUANTITY_WORDS, TAKE_WORDS, Reading, readings_words
+from tol3d.gearing.system import gear_model
+from tol3d.gears import RIGHT, BevelGear, BevelPair, Gear, GearPair, SpurGear, SpurPair
+from tol3d.report.number import NOTHING, UNIT_SIGNS, degrees_text, given_text, unsigned_zero, value_text
+from tol3d.report.page import Block, Heading, Line, Row, Table, line, titled
+from tol3d.system.system import System
+from tol3d.units import angle_text
+
+UM = 1000.0  # um in a mm
+
+
+def check_blocks(system: System) -> list[Block]:
+    """Gears, meshes, trains, measures and contributors of a scene, with what follows from them."""
+    model = gear_model(system)
+    housings = [housings_line(model)] if model.housings else []
+    blocks = [*gears_table(model), *housings, *meshes_table(model), *train_blocks(model), *measures_table(model)]
+    return [*blocks, *(contributors_table(model) if model.contributors else ())]
+
+
+def _side_by_side(title: str, names: Sequence[str], rows: Mapping[str, Sequence[str]]) -> list[Block]:
+    """A column for each name."""
+    headings = [Heading(name) for name in names]
+    return titled(title, Table("", headings, [Row(label, cells) for label, cells in rows.items()]))
+
+
+def gears_table(model: Model) -> list[Block]:
+    """The gears side by side, lengths in mm."""
+    rows = [gear_rows(part.gear) for part in model.gears]
+    expansions = [f"{1e6 * part.expansion:g}" if part.expansion else NOTHING for part in model.gears]
+    return _side_by_side(
+        "parts", [part.name for part in model.gears], _merged(rows) | {"expansion [10⁻⁶/K]": expansions}
+    )
+
+
+def _merged(columns: Sequence[Mapping[str, str]]) -> dict[str, list[str]]:
+    """Rows that some column has, in the columns' order; what another kind does not have is NOTHING."""
+    labels = dict.fromkeys(label for column in columns for label in column)
+    return {label: [column.get(label, NOTHING) for column in columns] for label in labels}
+
+
+@singledispatch
+def gear_rows(gear: Gear) -> dict[str, str]:
+    """What a gear is, by label; each kind of gear registers its own."""
+    raise TypeError(f"there are no rows of {type(gear).__name__}")
+
+
+@gear_rows.register
+def _(gear: SpurGear) -> dict[str, str]:
+    return {
+        "teeth z": str(gear.teeth),
+        "module m [mm]": f"{gear.module:g}",
+        "pressure angle α [°]": degrees_text(gear.pressure_angle),
+        "face width b [mm]": f"{gear.face_width:g}",
+        "profile shift x": f"{gear.profile_shift:g}",
+        "addendum, dedendum [m]": f"{gear.addendum:g}, {gear.dedendum:g}",
+        "reference diameter d [mm]": f"{gear.reference_diameter:.4f}",
+        "tip diameter d_a [mm]": f"{gear.tip_diameter:.4f}",
+        "base diameter d_b [mm]": f"{gear.base_diameter:.4f}",
+        "root diameter d_f [mm]": f"{gear.root_diameter:.4f}",
+        "involute from diameter [mm]": f"{2 * gear.form_radius:.4f}",
+        "root fillet [mm]": f"{gear.fillet_radius:.4f}",
+        "tooth thickness s [mm]": f"{gear.tooth_thickness:.4f}",
+        "thickness at the tip s_a [mm]": f"{gear.tip_thickness:.4f}",
+        "bore [mm]": f"{gear.bore:g}" if gear.bore else NOTHING,
+    }
+
+
+@gear_rows.register
+def _(gear: BevelGear) -> dict[str, str]:
+    cones = {"pitch": gear.pitch_angle, "tip": gear.tip_angle, "base": gear.base_angle, "root": gear.root_angle}
+    distances = (gear.outer_cone_distance, gear.mean_cone_distance, gear.inner_cone_distance)
+    return {
+        "teeth z": str(gear.teeth),
+        "module m [mm]": f"{gear.module:g}",
+        "pressure angle α [°]": degrees_text(gear.pressure_angle),
+        "face width b [mm]": f"{gear.face_width:g}",
+        "profile shift x": f"{gear.profile_shift:g}",
+        "addendum, dedendum [m]": f"{gear.addendum:g}, {gear.dedendum:g}",
+        **{f"{name} angle [°]": f"{math.degrees(angle):.4f}" for name, angle in cones.items()},
+        "cone distance, outer, mean, inner [mm]": ", ".join(f"{distance:.4f}" for distance in distances),
+        "reference diameter, outer d_e [mm]": f"{gear.reference_diameter:.4f}",
+        "reference diameter, mean d_m [mm]": f"{2 * gear.mean_radius:.4f}",
+        "tip diameter, outer d_ae [mm]": f"{gear.tip_diameter:.4f}",
+        "tooth thickness, outer s [mm]": f"{gear.tooth_thickness:.4f}",
+        "tooth thickness, mean s_m [mm]": f"{gear.mean_tooth_thickness:.4f}",
+        "thickness at the tip, outer [mm]": f"{gear.tip_thickness:.4f}",
+        "bore [mm]": f"{gear.bore:g}" if gear.bore else NOTHING,
+    }
+
+
+def housings_line(model: Model) -> Line:
+    """Housings and their expansion."""
+    words = [f"{part.name} ({1e6 * part.expansion:g}·10⁻⁶/K)" for part in model.housings]
+    return line(f"housing: {', '.join(words)}")
+
+
+def meshes_table(model: Model) -> list[Block]:
+    """The moves, with what the nominal pair gives."""
+    rows: Mapping[str, list[str]] = {
+        "driver → driven": [f"{mesh.driver} → {mesh.driven}" for mesh in model.meshes],
+        "driver's working flank": ["right" if mesh.working_flank == RIGHT else "left" for mesh in model.meshes],
+        "housing": [mesh.housing or NOTHING for mesh in model.meshes],
+    }
+    pairs = _merged([pair_rows(mesh.pair) for mesh in model.meshes])
+    return _side_by_side("moves", [mesh.name for mesh in model.meshes], {**rows, **pairs})
+
+
+@singledispatch
+def pair_rows(pair: GearPair) -> dict[str, str]:
+    """What a nominal pair gives, by label; each kind of pair registers its own."""
+    raise TypeError(f"there are no rows of {type(pair).__name__}")
+
+
+@pair_rows.register
+def _(pair: SpurPair) -> dict[str, str]:
+    driver, driven = pair.angular_backlash
+    return {
+        "centre distance a [mm]": f"{pair.centre_distance:.4f}",
+        "without backlash at [mm]": f"{pair.zero_backlash_centre_distance:.4f}",
+        "working pressure angle α_w [°]": degrees_text(pair.working_pressure_angle),
+        "contact ratio ε_α": f"{pair.contact_ratio:.4f}",
+        "same teeth meet after [turns]": str(pair.long_period_turns),
+        "nominal normal backlash [µm]": value_text(pair.normal_backlash * UM, "um"),
+        "nominal circumferential [µm]": value_text(pair.circumferential_backlash * UM, "um"),
+        "nominal radial [µm]": value_text(pair.radial_backlash * UM, "um"),
+        "nominal angular, driver / driven": f"{angle_text(driver)} / {angle_text(driven)}",
+    }
+
+
+@pair_rows.register
+def _(pair: BevelPair) -> dict[str, str]:
+    return {
+        "shaft angle Σ [°]": degrees_text(pair.shaft_angle),
+        "mean cone distance R_m [mm]": f"{pair.mean_cone_distance:.4f}",
+        "contact ratio ε_α": f"{pair.contact_ratio:.4f}",
+        "same teeth meet after [turns]": str(pair.long_period_turns),
+        "nominal normal backlash [µm]": value_text(pair.normal_backlash * UM, "um"),
+    }
+
+
+def measures_table(model: Model) -> list[Block]:
+    """The measures with limits and positions."""
+    rows = []
+    for measure in model.measures:
+        rows.append(Row(measure.name, (_what(measure), _positions(measure), _limits(measure))))
+    return titled("measures", Table("", [Heading(word, words=True) for word in ("what", "positions", "limits")], rows))
+
+
+def _what(measure: Measure) -> str:
+    kind = measure.kind
+    if not isinstance(kind, Backlash):
+        stages = " + ".join(stage.link for stage in kind.stages)
+        moves = f"{kind.tip.point} of {kind.tip.arm} ({kind.tip.lever:g} mm from the axis) by the " if kind.tip else ""
+        read = {backlash.mesh: _reading(backlash) for _, backlash in kind.backlashes}
+        return f"{moves}lost motion of {kind.shaft}, {kind.held} held: {stages}{readings_words(read)}"
+    gear = f" of {kind.gear}" if kind.is_angle else ""
+    curve = " (curve)" if measure.take == "curve" else ""
+    what = f"{TAKE_WORDS[measure.take]}{QUANTITY_WORDS[kind.quantity]}{gear}, {kind.mesh}"
+    return what + curve + _reading(kind).words
+
+
+def _reading(backlash: Backlash) -> Reading:
+    return Reading.model_validate(vars(backlash.reading))
+
+
+def _positions(measure: Measure) -> str:
+    positions = measure.positions
+    if positions.over == "swing":
+        first, last = (degrees_text(angle) for angle in (positions.shown[0], positions.shown[-1]))
+        return f"{positions.count} from {first}° to {last}° of the output"
+    if positions.over == "at" and not isinstance(measure.kind, Backlash):
+        return f"first shaft at {degrees_text(positions.angle)}°"
+    if positions.over == "at":
+        return f"driver at {degrees_text(positions.angle)}°"
+    if positions.over == "random":
+        return "random"
+    turns = f"{positions.turns} turn{'' if positions.turns == 1 else 's'}"
+    return f"{positions.count} in {turns} of the driver"
+
+
+def _limits(measure: Measure) -> str:
+    limits = ((sign, limit) for sign, limit in (("≥", measure.lower_limit), ("≤", measure.upper_limit)))
+    per, unit = measure.per_internal, measure.unit
+    sign_of_unit = "" if measure.kind.is_angle else f" {UNIT_SIGNS[unit]}"
+    given = [f"{sign} {given_text(limit * per, unit)}{sign_of_unit}" for sign, limit in limits if limit is not None]
+    return ", ".join(given) or NOTHING
+
+
+def contributors_table(model: Model) -> list[Block]:
+    """The contributors: law and limits, and what each measure makes of them.
+
+    Low and high of one with a direction are lengths, its sigma is that along any one axis.
+    """
+    rows = []
+    for contributor in model.contributors:
+        law, per = contributor.distribution, contributor.per_unit
+        numbers = (f"{law.low / per:.4g}", f"{law.high / per:.4g}", f"{contributor.draw.sigma / per:.3g}")
+        cells = (*map(unsigned_zero, numbers), UNIT_SIGNS[contributor.unit])
+        rows.append(Row(contributor.name, (distribution_words(contributor), *cells)))
+    table = Table("", [Heading("law", words=True), *map(Heading, ("low", "high", "sigma", "unit"))], rows)
+    return [*titled("contributors", table), *coefficients_tables(model)]
+
+
+def distribution_words(contributor: Contributor) -> str:
+    """The law of a contributor and the direction of its deviation."""
+    law = re.sub(r"(?<=[a-z])(?=[A-Z])", " ", type(contributor.distribution).__name__).lower()
+    if not isinstance(contributor.draw, Planar):
+        return law
+    direction = contributor.draw.direction
+    return f"{law}, random direction" if direction is None else f"{law}, at {degrees_text(direction)}°"

@@ -1,0 +1,164 @@
+"""What a command shows, as plain data: lines of text and tables. `sheet.py` lays it out for a terminal."""
+
+import csv
+import io
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from importlib import import_module
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from rich.console import RenderableType
+
+Style = str
+"""Of a terminal: "bold", "dim", "red" ..., "" for none."""
+
+
+class Shown(str):
+    """The text of a cell that shows a number, and that number in the unit of its row."""
+
+    value: float | None
+
+    def __new__(cls, text: str, value: float | None) -> "Shown":
+        shown = super().__new__(cls, text)
+        shown.value = value
+        return shown
+
+
+@dataclass(frozen=True)
+class Heading:
+    """Head of a column; words stand left and wrap, numbers right and whole; an optional one goes where room lacks."""
+
+    text: str
+    style: Style = ""
+    words: bool = False
+    optional: bool = False
+
+
+@dataclass(frozen=True)
+class Row:
+    """A line of a table: its label, a cell for each heading, and the unit of the numbers that cells show."""
+
+    label: str
+    cells: Sequence[str]
+    style: Style = ""
+    unit: str = ""
+
+
+@dataclass(frozen=True)
+class Table:
+    """A column of labels and one for each heading.
+
+    Args:
+        corner: head of the labels.
+        headings, rows: as they are.
+        repeated: so many columns stand beside the labels in every part of a table that finds no room.
+    """
+
+    corner: str
+    headings: Sequence[Heading]
+    rows: Sequence[Row]
+    repeated: int = 0
+
+    def csv(self) -> str:
+        """Comma-separated values: texts as they are shown, numbers with all their digits; nothing for one not known."""
+        stream = io.StringIO()
+        writer = csv.writer(stream, lineterminator="\n")
+        units = [[row.unit] for row in self.rows] if any(row.unit for row in self.rows) else [[]] * len(self.rows)
+        writer.writerow([self.corner, *(["unit"] if any(units) else []), *(heading.text for heading in self.headings)])
+        for row, unit in zip(self.rows, units, strict=True):
+            writer.writerow([row.label.strip(), *unit, *map(_csv_cell, row.cells)])
+        return stream.getvalue()
+
+    def __rich__(self) -> "RenderableType":
+        return _rendered(self)
+
+
+@dataclass(frozen=True)
+class Line:
+    """Text in pieces, each with its style; `note` sets it in by a blank, wrapped lines too."""
+
+    pieces: tuple[tuple[str, Style], ...]
+    note: bool = False
+
+    def __str__(self) -> str:
+        return "".join(text for text, _ in self.pieces)
+
+    def __rich__(self) -> "RenderableType":
+        return _rendered(self)
+
+
+Block = Line | Table
+
+
+@dataclass(frozen=True)
+class Page:
+    """Lines and tables below each other."""
+
+    blocks: tuple[Block, ...]
+
+    @property
+    def tables(self) -> tuple[Table, ...]:
+        """Its tables."""
+        return tuple(block for block in self.blocks if isinstance(block, Table))
+
+    def csv(self) -> str:
+        """Its tables as comma-separated values, each below its title, with an empty line between them."""
+        return "\n".join(f"{title}\n{table.csv()}" if title else table.csv() for title, table in self._titled())
+
+    def _titled(self) -> Iterator[tuple[str, Table]]:
+        title = ""
+        for block in self.blocks:
+            if isinstance(block, Table):
+                yield title, block
+                title = ""
+            elif any("bold" in style for _, style in block.pieces):
+                title = str(block).strip()
+
+    def __rich__(self) -> "RenderableType":
+        return _rendered(self)
+
+
+def page(*blocks: Block) -> Page:
+    """Blocks as a page."""
+    return Page(blocks)
+
+
+def line(text: str, style: Style = "") -> Line:
+    """A line in one style."""
+    return Line(((text, style),))
+
+
+BLANK = line("")
+
+
+def title(text: str, more: str = "") -> Line:
+    """The title of a section, and words beside it; a blank line stands above it."""
+    return Line((("\n", ""), (text, "bold cyan"), (more, "dim")) if more else (("\n", ""), (text, "bold cyan")))
+
+
+def note(text: str) -> Line:
+    """A line below a table."""
+    return Line(((text, "dim"),), note=True)
+
+
+def warning(text: str) -> Line:
+    """What may spoil a result."""
+    return line(f"warning: {text}", "yellow")
+
+
+def titled(text: str, table: Table) -> list[Block]:
+    """A table below its title."""
+    return [title(text), table]
+
+
+def _rendered(shown: Page | Block) -> "RenderableType":
+    """For rich's console; what is never printed there loads no rich."""
+    rendered: RenderableType = import_module("tol3d.report.sheet").rendered(shown)
+    return rendered
+
+
+def _csv_cell(cell: str) -> str | float:
+    if not isinstance(cell, Shown):
+        return cell.strip()
+    return "" if cell.value is None else cell.value
