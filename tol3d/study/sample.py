@@ -11,6 +11,7 @@ from tol3d.statistics import Grid, LimitCounts, Moments, equivalent_ppk, pp, ppk
 from tol3d.study.replicated import Replicated
 from tol3d.system.measure import Measure
 from tol3d.system.outcome import Mask, Outcome
+from tol3d.system.pooled_statistic import Pool
 
 Array = NDArray[np.float64]
 
@@ -114,7 +115,14 @@ def sample_summary(measure: Measure, sample: Sample) -> dict[str, Any]:
         "ppk": equivalent_ppk(limits.out_of_limits) if by_share else ppk(lower, upper, moments.mean, moments.sigma),
         "ppk_by": "share out of limits" if by_share else "mean and sigma",
     }
-    return {key: finite(value) for key, value in summary.items()}
+    found = {key: finite(value) for key, value in summary.items()}
+    pooled = {statistic.name: statistic.of(_pool(sample)) for statistic in measure.pooled_statistics}
+    return {**found, "pooled": {name: finite(value) for name, value in pooled.items()}} if pooled else found
+
+
+def _pool(sample: Sample) -> Pool:
+    moments = sample.moments
+    return Pool(moments.mean, moments.sigma, moments.minimum, moments.maximum, lambda p: _quantile(sample, p))
 
 
 @dataclass(frozen=True)

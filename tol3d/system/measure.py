@@ -1,7 +1,9 @@
 """A measure: one number a trial, or a curve, as every study sees it."""
 
+from collections.abc import Sequence
 from typing import Literal, Protocol
 
+from tol3d.system.pooled_statistic import PooledStatistic
 from tol3d.system.positions import Positions, Take
 
 Worse = Literal["low", "high"]
@@ -53,6 +55,11 @@ class Measure(Protocol):
     @property
     def adds_up(self) -> bool:
         """Whether it is a sum of effects at each position; False where load paths or contacts are compared."""
+        ...
+
+    @property
+    def pooled_statistics(self) -> Sequence[PooledStatistic]:
+        """Statistics of all trials together, besides those that every sample has."""
         ...
 
     @property

@@ -23,6 +23,7 @@ from tol3d.system.contributor import Contributor, column_names
 from tol3d.system.draw import Draw, Scalar
 from tol3d.system.measure import Measure, Worse
 from tol3d.system.pooled import PooledTerms
+from tol3d.system.pooled_statistic import PooledStatistic
 from tol3d.system.positions import AT_RANDOM, Positions, Take
 from tol3d.system.regressors import regress_plainly
 from tol3d.system.road import ANALYTIC_ROAD, Answers, Road, RoadKind
@@ -86,6 +87,7 @@ class PlainMeasure:
         per_internal: one mm or rad in that unit.
         worse: which end is the worse one where there is no limit.
         adds_up: whether it is a sum of effects; False where load paths or contacts are compared.
+        pooled_statistics: of all trials together, besides those that every sample has.
     """
 
     name: str
@@ -97,6 +99,7 @@ class PlainMeasure:
     worse: Worse = "low"
     adds_up: bool = True
     keeps_overlap: bool = False
+    pooled_statistics: tuple[PooledStatistic, ...] = ()
 
     positions: ClassVar[Positions] = AT_RANDOM
     take: ClassVar[Take] = "value"

@@ -6,6 +6,7 @@ from typing import Literal
 
 from tol3d.system import measure as system_measure
 from tol3d.system.measure import Worse
+from tol3d.system.pooled_statistic import PooledStatistic
 from tol3d.system.positions import Positions, Take
 from tol3d.units import ARCMIN
 
@@ -213,6 +214,11 @@ class Measure:
     def adds_up(self) -> bool:
         """Whether it is the sum of its backlashes: no load paths are in parallel."""
         return self.kind.adds_up
+
+    @property
+    def pooled_statistics(self) -> tuple[PooledStatistic, ...]:
+        """None: every sample has those of backlashes."""
+        return ()
 
     @property
     def keeps_overlap(self) -> bool:

@@ -10,6 +10,7 @@ from tol3d.runs.summary.values import (
     Count,
     Known,
     KnownNumbers,
+    Label,
     Maybe,
     NotNegative,
     Number,
@@ -64,6 +65,9 @@ class Sample(LimitShares):
     pp: Known
     ppk: Known
     ppk_by: Literal["share out of limits", "mean and sigma"]
+    pooled: Maybe[Mapping[Label, Known]] = Field(
+        default=LEFT_OUT, description="statistics that the measure names besides, in its unit"
+    )
 
 
 class Normal(Section):
