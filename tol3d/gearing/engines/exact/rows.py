@@ -1,7 +1,7 @@
 """Rows of builds through the contact: the loops that every kind of pair has in common; kernels.py compiles them."""
 
 import math
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,6 +12,8 @@ from tol3d.gearing.engines.exact.numbers import PairNumbers, Pose
 from tol3d.gearing.engines.exact.seating import (
     Build,
     Look,
+    Side,
+    Turn,
     closed,
     driven_on,
     driver_turn,
@@ -109,6 +111,63 @@ def within_reach(build: Build, driver_scale: float, driven_scale: float) -> bool
     return moved <= pair.reach
 
 
+class Looks(NamedTuple):
+    """How the sides of a mesh are looked at.
+
+    Args:
+        working, gap: at the working flanks until they touch, at the gap of the others.
+        closing: at those others until they touch.
+        gap_closes: whether what the gap's look shows is as good for that.
+        of_driver: for the turn of the driver until they touch.
+    """
+
+    working: Look
+    gap: Look
+    closing: Look
+    gap_closes: bool
+    of_driver: Look
+
+
+@part
+def looks_of(pair: PairNumbers, which: Integers) -> Looks:
+    """How sides are looked at; `which` as in `read_rows`."""
+    sigma, contact, tapers = float(which[2]), which[4] != 0, pair.along > 0.0
+    return Looks(
+        Look(sigma, which[3], contact, 1.0),
+        Look(-sigma, which[3], which[5] != 0, 0.0),
+        Look(-sigma, which[3], contact, 1.0),
+        which[5] == which[4] and (which[4] != 0 or not tapers),
+        Look(-sigma, which[3], contact, 0.0),
+    )
+
+
+@part
+def free_turn(build: Build, at: Turn, other: Side, angle: float, looks: Looks) -> float:
+    """Turn of the driven gear [rad] until the non-working flanks touch; nan where it cannot be known."""
+    sigma, near_at, near = looks.working.sigma, at, other
+    if not looks.gap_closes:  # the smallest gap shows nearly by how much
+        near_at = driven_on(at, sigma * other.turn)
+        near = seen(build, near_at, angle, looks.closing)
+    end, last = closed(near, build, near_at, looks.closing)
+    return sigma * (end.driven - at.driven) if last.known and last.acts and last.gap < math.inf else math.nan
+
+
+@part
+def fault_of(side: Side) -> int:
+    """OK where a side is seen, else why it is not."""
+    if side.gap == math.inf and side.acts:
+        return NO_CONTACT
+    return OUT_OF_RANGE if side.gap == math.inf or not side.known or not side.acts else OK
+
+
+@part
+def write_contact(readings: Array, row: int, side: Side, shaft: Array, out: float) -> None:
+    """Write the contact in the world, on the driver's flank, which its offset [mm] brings `out` of its tooth."""
+    x, y, z = side.x - out * side.nx, side.y - out * side.ny, side.z - out * side.nz
+    for k in range(3):
+        readings[row, CONTACT + k] = shaft[k, 0] * x + shaft[k, 1] * y + shaft[k, 2] * z + shaft[k, 3]
+
+
 def read_rows(
     pinion: Any,
     wheel: Any,
@@ -141,53 +200,34 @@ def read_rows(
         teeth: (rows,), written: the driver's tooth that touches.
         status: (rows,), written.
     """
-    gears = (which[0], which[1])
-    sigma = float(which[2])
-    working = Look(sigma, which[3], which[4] != 0, 1.0)
-    gap = Look(-sigma, which[3], which[5] != 0, 0.0)
-    closing = Look(-sigma, which[3], which[4] != 0, 1.0)
-    tapers = pair.along > 0.0
-    gap_closes = which[5] == which[4] and (which[4] != 0 or not tapers)
+    gears, looks = (which[0], which[1]), looks_of(pair, which)
+    sigma = looks.working.sigma
     for row in range(len(driver_angles)):
         build = build_of(pinion, wheel, pair, nominal, gears, shafts, centre, flank_turn, flank_offset, scale, row)
         angle = driver_angles[row]
         readings[row, :] = np.nan
-        teeth[row] = 0
-        status[row] = OUT_OF_RANGE
+        teeth[row], status[row] = 0, OUT_OF_RANGE
         if not within_reach(build, scale[row, gears[0]], scale[row, gears[1]]):
             continue
         opened = build.driver_turn / pair.ratio + build.driven_turn
         start = standing(build, angle, pair.driven_start - angle / pair.ratio + sigma * opened)
-        at, side = closed(seen(build, start, angle, working), build, start, working)
-        if side.gap == math.inf and side.acts:
-            status[row] = NO_CONTACT
-        if side.gap == math.inf or not side.known or not side.acts:
+        at, side = closed(seen(build, start, angle, looks.working), build, start, looks.working)
+        status[row] = fault_of(side)
+        if status[row] != OK:
             continue
-        other = seen(build, at, angle, gap)
-        if other.gap == math.inf and other.acts:
-            status[row] = NO_CONTACT
-        if other.gap == math.inf or not other.known or not other.acts:
+        other = seen(build, at, angle, looks.gap)
+        status[row] = fault_of(other)
+        if status[row] != OK:
             continue
         status[row] = INTERFERES if other.gap < -FREE else OK
         readings[row, DRIVEN_ANGLE] = at.driven
         readings[row, GAP] = other.gap
-        out = flank_offset[row, gears[0]]
-        x, y, z = side.x - out * side.nx, side.y - out * side.ny, side.z - out * side.nz
-        shaft = shafts[row, gears[1]]
-        for k in range(3):
-            readings[row, CONTACT + k] = shaft[k, 0] * x + shaft[k, 1] * y + shaft[k, 2] * z + shaft[k, 3]
+        write_contact(readings, row, side, shafts[row, gears[1]], flank_offset[row, gears[0]])
         teeth[row] = side.tooth
         if which[6]:
-            near_at, near = at, other
-            if not gap_closes:  # the smallest gap tells nearly by how much
-                near_at = driven_on(at, sigma * other.turn)
-                near = seen(build, near_at, angle, closing)
-            end, last = closed(near, build, near_at, closing)
-            if last.known and last.acts and last.gap < math.inf:
-                readings[row, DRIVEN_TURN] = sigma * (end.driven - at.driven)
+            readings[row, DRIVEN_TURN] = free_turn(build, at, other, angle, looks)
         if which[7]:
-            turn = driver_turn(build, at, Look(-sigma, which[3], which[4] != 0, 0.0))
-            readings[row, DRIVER_TURN] = sigma * turn
+            readings[row, DRIVER_TURN] = sigma * driver_turn(build, at, looks.of_driver)
 
 
 def gap_rows(
