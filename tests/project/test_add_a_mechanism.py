@@ -1,10 +1,12 @@
 """docs/add_a_mechanism.md as it stands: a mechanism from outside, in under a hundred lines, against its oracles."""
 
 import math
+import os
 import re
+import subprocess
 import sys
 import tomllib
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -127,6 +129,45 @@ def test_its_run_opens_again_and_any_trial_is_replayed(run: Run) -> None:
     worst = again.worst("smallest gap")
     column = "geometric:smallest gap"
     assert worst == np.argmin(again.columns(column)[column])
+
+
+@pytest.fixture(scope="module")
+def command(names: dict[str, Any]) -> Callable[..., str]:
+    """`tol3d ARGUMENTS` in a process that finds the mechanism as an installed package's; what it prints."""
+    info = names["folder"] / "pin_gauge-1.0.dist-info"
+    info.mkdir()
+    (info / "METADATA").write_text("Metadata-Version: 2.1\nName: pin_gauge\nVersion: 1.0\n", "utf-8")
+    points = tomllib.loads(fence("toml", "pin_gauge:PIN_GAUGES"))["project"]["entry-points"]
+    lines = [
+        f"[{group}]\n" + "\n".join(f"{name} = {path}" for name, path in own.items()) for group, own in points.items()
+    ]
+    (info / "entry_points.txt").write_text("\n".join(lines), "utf-8")
+
+    def printed(*arguments: str) -> str:
+        done = subprocess.run(
+            [sys.executable, "-m", "tol3d.cli", *arguments],
+            cwd=names["folder"],
+            env=os.environ | {"PYTHONPATH": str(names["folder"]), "COLUMNS": "120", "PYTHONUTF8": "1"},
+            capture_output=True,
+            encoding="utf-8",
+            timeout=300,  # s; a guard against hanging, not a claim
+        )
+        assert done.returncode == 0, done.stdout + done.stderr
+        assert "Warning" not in done.stderr
+        return done.stdout
+
+    return printed
+
+
+def test_the_command_runs_shows_and_compares_it(names: dict[str, Any], command: Callable[..., str]) -> None:
+    """Installed, it is as any other: the tables hold what the run from Python found."""
+    printed = command("run", "pin_gauge.yaml", "--out", "runs/again", "--workers", "2")
+    sample = names["run"].summary["measures"]["smallest gap"]["geometric"]
+    row = next(line for line in printed.splitlines() if line.startswith("mean "))
+    assert float(row.split()[-1]) == round(sample["mean"], 3)
+    assert re.search(r"^smallest gap .*OK ", printed, re.MULTILINE)
+    assert (names["folder"] / "runs" / "again" / "histogram.png").stat().st_size > 0
+    assert f"{sample['sigma']:.3f}" in command("compare", "runs/again", "runs/pin_gauge", "--out", "compared.png")
 
 
 def test_its_entry_point_is_in_the_group_that_is_asked_for() -> None:
