@@ -13,7 +13,9 @@ from report.box_presenter import COLOURS, GROWTH, PLACES, PRESENTER, SIDES
 
 from tol3d import Overrides, Run, run_scene
 from tol3d.errors import InputError
+from tol3d.gearing.presenting import PRESENTER as GEARS
 from tol3d.report import export_run, part_meshes, picture, view_run
+from tol3d.report.presenter import presenter_of
 
 BOXES = "report.box_presenter"
 CUBES = {"small": (GROWTH * SIDES["small"]) ** 3, "large": SIDES["large"] ** 3}  # mm^3
@@ -86,3 +88,14 @@ def test_the_window_of_a_system_without_panels_shows_its_bodies_named(run: Run, 
 def test_a_close_up_that_is_not_there_is_refused_by_the_presenter(run: Run, tmp_path: Path) -> None:
     with pytest.raises(InputError, match="no teeth"):
         view_run(run, 3, screenshot=tmp_path / "none.png", mesh="teeth", presenter=BOXES)
+
+
+def test_a_run_whose_measures_name_no_presenter_has_no_further_pictures_and_says_why_nothing_is_shown(
+    run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    assert presenter_of(run.found) is GEARS
+    for measure in run.found.measures.values():
+        monkeypatch.setattr(type(measure), "presenter", "")
+    assert picture.system_files(run.found) == {}
+    with pytest.raises(InputError, match=r"cannot be shown: it has no presenter$"):
+        export_run(run, 0, "stl", out=tmp_path)

@@ -16,5 +16,6 @@ GEARING: Final = Mechanism(
     checks=(carried_again,),
     system="tol3d.gearing.system:gear_system",
     summary="tol3d.gearing.summary_types:SUMMARY_KINDS",
+    presenter="tol3d.gearing.presenting",
     requires=("python-fcl", "cadquery"),
 )

@@ -1,21 +1,16 @@
 """What a scene means, before any trial: what its system shows of it, its study, and what should be known of it."""
 
 from tol3d.report.page import Page, line, page, warning
-from tol3d.report.presenter import PRESENTER, presenter_at
+from tol3d.report.presenter import presenter_at
 from tol3d.study.simulation import Simulation
 
 
-def check_report(simulation: Simulation, presenter: str = PRESENTER) -> Page:
-    """Everything that a scene says, with what follows from it; nothing is drawn at random.
-
-    Args:
-        simulation: that the scene means.
-        presenter: import path of what shows its system.
-    """
+def check_report(simulation: Simulation) -> Page:
+    """Everything that a scene says, with what follows from it; nothing is drawn at random."""
     study = simulation.study
     return page(
         line(simulation.system.name, "bold"),
-        *presenter_at(presenter).check(simulation.system),
+        *presenter_at(simulation.presenter).check(simulation.system),
         line(
             f"\nstudy: {study.trials} trials, seed {study.seed}, {study.sampler}, engine {study.engine}, "
             f"{study.profile_steps} profile steps a flank"

@@ -13,7 +13,7 @@ import trimesh
 
 from tol3d.errors import InputError, unwritable
 from tol3d.report.body import Body, World
-from tol3d.report.presenter import PRESENTER, Display, Which, presenter_at
+from tol3d.report.presenter import Display, Which, presenter_of
 from tol3d.runs.atomic_write import named_in_errors
 from tol3d.runs.run import Run
 from tol3d.solids import export_step
@@ -42,7 +42,7 @@ def export_run(
     *,
     magnify: float = 1.0,
     out: Path = Path("."),
-    presenter: str = PRESENTER,
+    presenter: str | None = None,
 ) -> Exported:
     """Write the perturbed parts of one build where they ended up.
 
@@ -53,7 +53,7 @@ def export_run(
             with the real perturbed solids. A world that is shown as one, such as a train, is one file in any format.
         magnify: scales the deviations and simulates again.
         out: the folder; made if missing.
-        presenter: import path of the system's presenter.
+        presenter: import path of what shows the system; by default that of the run's measures.
 
     Raises:
         InputError: an unknown format or build, a STEP file magnified, or a folder that cannot be written.
@@ -62,7 +62,7 @@ def export_run(
         raise InputError(f"format: expected one of {', '.join(FORMATS)}, got {fmt!r}")
     if fmt == "step" and magnify != 1.0:
         raise InputError("a STEP file holds the real parts: leave out --magnify, or choose stl, ply or glb")
-    display = presenter_at(presenter).display(run, which, magnify=magnify)
+    display = presenter_of(run.found, presenter).display(run, which, magnify=magnify)
     try:
         out.mkdir(parents=True, exist_ok=True)
         files = list(_files(display, fmt, out))

@@ -19,7 +19,7 @@ from pathlib import Path
 
 from tol3d.report.histogram import draw_histogram, draw_measure
 from tol3d.report.picture import measure_files, named_files
-from tol3d.report.presenter import Draw, presenter_at
+from tol3d.report.presenter import Draw, presenter_of
 from tol3d.runs.summary.run import RunSummary
 from tol3d.runs.summary.text import typed
 
@@ -40,9 +40,9 @@ def main() -> None:
         sys.exit(_reason(error))
 
 
-def _further(summary: RunSummary, presenter: str) -> Iterator[tuple[str, Draw]]:
+def _further(summary: RunSummary, presenter: str | None) -> Iterator[tuple[str, Draw]]:
     """Files besides the histogram, and what draws them."""
-    pictures = presenter_at(presenter).pictures(summary)
+    pictures = presenter_of(summary, presenter).pictures(summary)
     yield from ((file, pictures[name]) for name, file in named_files(pictures).items())
     yield from ((file, partial(draw_measure, summary, name)) for name, file in measure_files(summary).items())
 

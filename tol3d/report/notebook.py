@@ -25,7 +25,7 @@ from tol3d.gearing.coefficients import Coefficient, coefficients_of
 from tol3d.gearing.model import Model
 from tol3d.gearing.system import gear_model
 from tol3d.report.page import Page
-from tol3d.report.presenter import PRESENTER, Display, Which, presenter_at
+from tol3d.report.presenter import Display, Which, presenter_at
 from tol3d.runs.run import Run, open_run
 from tol3d.scene import Scene
 from tol3d.scene.edit import tolerance_lines
@@ -165,7 +165,7 @@ class Replay(simulate.Replay):
         Raises:
             RunError: it cannot be shown.
         """
-        return presenter_at(PRESENTER).replayed(self, f"trial-{self.trial}")
+        return presenter_at(self.simulation.presenter).replayed(self, f"trial-{self.trial}")
 
     @cached_property
     def poses(self) -> Mapping[str, Array]:

@@ -11,7 +11,7 @@ from itertools import count
 from pathlib import Path
 from typing import Any
 
-from tol3d.report.presenter import PRESENTER, presenter_at
+from tol3d.report.presenter import presenter_of
 from tol3d.runs.summary.run import RunSummary
 
 MOST_TOGETHER = 4  # measures in one picture; of more, each has one of its own
@@ -31,14 +31,14 @@ class PictureWarning(UserWarning):
 
 
 @contextmanager
-def drawing(presenter: str = PRESENTER) -> Iterator[DrawRun]:
+def drawing(presenter: str | None = None) -> Iterator[DrawRun]:
     """Within it a process that can draw gets ready, and draws one run: its summary, and where its histogram goes.
 
     What the system's presenter draws, and where there are many measures a picture of each, go beside the histogram;
     one that cannot be drawn is a PictureWarning.
 
     Args:
-        presenter: import path of the system's presenter.
+        presenter: import path of what shows the system; by default that of the run's measures.
 
     Raises:
         PictureError: by the drawing, which leaves no half of a picture.
@@ -55,7 +55,7 @@ def drawing(presenter: str = PRESENTER) -> Iterator[DrawRun]:
             process.kill()
 
 
-def _draw(process: "subprocess.Popen[bytes]", presenter: str, summary: Mapping[str, Any], picture: Path) -> None:
+def _draw(process: "subprocess.Popen[bytes]", presenter: str | None, summary: Mapping[str, Any], picture: Path) -> None:
     order = json.dumps({"picture": str(picture), "presenter": presenter, "summary": summary})
     refused, errors = process.communicate(order.encode())
     for name, reason in json.loads(refused or "{}").items():
@@ -84,9 +84,9 @@ def measure_files(summary: Any) -> dict[str, str]:
     return _files([(name, f"histogram-{_words(name)}") for name in names]) if len(names) > MOST_TOGETHER else {}
 
 
-def system_files(summary: RunSummary, presenter: str = PRESENTER) -> dict[str, str]:
+def system_files(summary: RunSummary, presenter: str | None = None) -> dict[str, str]:
     """Names of the further pictures that a system's presenter draws of a run, by its own names; each another one."""
-    return named_files(presenter_at(presenter).pictures(summary))
+    return named_files(presenter_of(summary, presenter).pictures(summary))
 
 
 def named_files(names: Iterable[str]) -> dict[str, str]:

@@ -4,7 +4,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from importlib import import_module
 from pathlib import Path
-from typing import TYPE_CHECKING, Final, Protocol, cast
+from typing import TYPE_CHECKING, Protocol, cast
 
 from tol3d.errors import InputError
 from tol3d.report.page import Block
@@ -25,9 +25,6 @@ Draw = Callable[[Path], None]
 """Draws a picture and writes it; raises InputError where that is not possible."""
 Panel = Callable[["pv.Plotter", float], None]
 """Draws one part of the 3D window into the plotter's current renderer, whose width by its height is given."""
-
-PRESENTER: Final = "tol3d.gearing.presenting"
-"""Import path of the presenter of gears, where nobody names another one."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -129,14 +126,14 @@ class Presenter(Protocol):
 
 
 def presenter_at(path: str) -> Presenter:
-    """The presenter that a module calls PRESENTER."""
-    return cast(Presenter, import_module(path).PRESENTER)
+    """The presenter that a module calls PRESENTER; one that shows nothing where no module is named."""
+    return cast(Presenter, import_module(path).PRESENTER) if path else _Nothing()
 
 
-def presenter_of(run: "RunSummary") -> Presenter:
-    """The presenter of a run's measures."""
+def presenter_of(run: "RunSummary", path: str | None = None) -> Presenter:
+    """The presenter at an import path; without one that of the run's measures."""
     named = (measure.presenter for measure in run.measures.values() if measure.presenter)
-    return presenter_at(path) if (path := next(named, None)) else _Nothing()
+    return presenter_at(next(named, "") if path is None else path)
 
 
 class _Nothing:

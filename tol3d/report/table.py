@@ -29,7 +29,7 @@ from tol3d.report.number import (
     value_text,
 )
 from tol3d.report.page import BLANK, Block, Heading, Line, Page, Row, Shown, Table, line, note, page, title, warning
-from tol3d.report.presenter import FurtherRow, Presenter, presenter_at, presenter_of
+from tol3d.report.presenter import FurtherRow, Presenter, presenter_of
 from tol3d.report.verdict import ACCEPTED_PPM, verdict_report
 from tol3d.runs.summary.measure import MeasureSummary
 from tol3d.runs.summary.run import RunSummary
@@ -102,7 +102,7 @@ def run_report(
         accepted_ppm: share of trials that may be out of a measure's limits.
         presenter: import path of what shows more of the system; by default that of the run's measures.
     """
-    own = presenter_of(run) if presenter is None else presenter_at(presenter)
+    own = presenter_of(run, presenter)
     warnings = [*map(warning, run.warnings)]
     verdict = verdict_report(run, accepted_ppm, blame=detail is not Detail.MEASURES)
     if detail is Detail.VERDICT:

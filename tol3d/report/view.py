@@ -12,7 +12,7 @@ import pyvista as pv
 
 from tol3d.errors import InputError, unwritable
 from tol3d.report.drawn_solids import add_title
-from tol3d.report.presenter import PRESENTER, Display, Panel, Which, presenter_at
+from tol3d.report.presenter import Display, Panel, Which, presenter_of
 from tol3d.report.whole import draw_whole
 from tol3d.runs.run import Run
 
@@ -29,7 +29,7 @@ def view_run(
     screenshot: Path | None = None,
     magnify: float = 1.0,
     mesh: str | None = None,
-    presenter: str = PRESENTER,
+    presenter: str | None = None,
 ) -> tuple[str, ...]:
     """Show a build of a run in a window, or write a picture of it.
 
@@ -39,7 +39,7 @@ def view_run(
         screenshot: the picture to write; needs no display.
         magnify: scales the deviations and simulates again.
         mesh: what is shown close up; None: the first there is.
-        presenter: import path of the system's presenter.
+        presenter: import path of what shows the system; by default that of the run's measures.
 
     Returns:
         what the user should know, such as the magnification in use.
@@ -49,7 +49,7 @@ def view_run(
     """
     if screenshot is not None and screenshot.suffix.lower() not in PICTURES:
         raise InputError(f"{screenshot}: expected a picture ending in {', '.join(PICTURES)}")
-    display = presenter_at(presenter).display(run, which, magnify=magnify)
+    display = presenter_of(run.found, presenter).display(run, which, magnify=magnify)
     view = display.view(mesh)
     choose_window(needs_display=screenshot is None)
     plotter = plot(view.panels or (partial(_first_world, display),), off_screen=screenshot is not None)

@@ -21,12 +21,14 @@ class Simulation:
         study: what is asked of it.
         published: columns of others.
         requires: packages, besides those of every study, whose versions decide its results.
+        presenter: import path of what shows the system, see `tol3d.report.presenter`; "" for nothing.
     """
 
     system: System
     study: Study
     published: Published = field(default_factory=dict)
     requires: tuple[str, ...] = ()
+    presenter: str = ""
 
     @property
     def road(self) -> RoadKind:

@@ -18,12 +18,14 @@ class Mechanism(Vocabulary):
     Args:
         system: path of the function that makes of a scene what is simulated.
         summary: path of what its measures and sections are in a run's summary.
+        presenter: import path of the module whose PRESENTER shows it, see `tol3d.report.presenter`; "" for none.
         requires: distributions whose versions decide its results beside those that every study needs; they are part
             of a run's fingerprint.
     """
 
     system: str = ""
     summary: str = ""
+    presenter: str = ""
     requires: tuple[str, ...] = ()
 
     def system_of(self, scene: Scene) -> System:
