@@ -21,8 +21,8 @@ if TYPE_CHECKING:
     from tol3d.gears import SpurPair as SpurPair
     from tol3d.kinds import load_scene
     from tol3d.kinds import register as register
-    from tol3d.report.notebook import Replay as Replay
-    from tol3d.report.notebook import check_scene, compare_runs, export_trial, find_shims, replay, view_trial
+    from tol3d.notebook import Replay as Replay
+    from tol3d.notebook import check_scene, compare_runs, export_trial, find_shims, replay, view_trial
     from tol3d.runs.run import Run as Run
     from tol3d.runs.run import open_run
     from tol3d.scene import Scene
@@ -31,23 +31,23 @@ if TYPE_CHECKING:
 _HOMES = {
     "InputError": "tol3d.errors",
     "Overrides": "tol3d.simulate",
-    "Replay": "tol3d.report.notebook",
+    "Replay": "tol3d.notebook",
     "Run": "tol3d.runs.run",
     "RunError": "tol3d.errors",
     "SceneError": "tol3d.errors",
     "SpurGear": "tol3d.gears",
     "SpurPair": "tol3d.gears",
     "Tol3dError": "tol3d.errors",
-    "check_scene": "tol3d.report.notebook",
-    "compare_runs": "tol3d.report.notebook",
-    "export_trial": "tol3d.report.notebook",
-    "find_shims": "tol3d.report.notebook",
+    "check_scene": "tol3d.notebook",
+    "compare_runs": "tol3d.notebook",
+    "export_trial": "tol3d.notebook",
+    "find_shims": "tol3d.notebook",
     "load_scene": "tol3d.kinds",
     "open_run": "tol3d.runs.run",
     "register": "tol3d.kinds",
-    "replay": "tol3d.report.notebook",
+    "replay": "tol3d.notebook",
     "run_scene": "tol3d.simulate",
-    "view_trial": "tol3d.report.notebook",
+    "view_trial": "tol3d.notebook",
 }
 """Where each name lives; what functions return and raise, and gears, are here for annotations and `except`."""
 

@@ -18,6 +18,8 @@ from rich.console import Console
 from tol3d import Overrides, load_scene, run_scene
 from tol3d.analyses import robots as robots_module
 from tol3d.analyses.compensation import Compensation, CompensationQuestion, compensation
+from tol3d.analyses.compensation_picture import compensation_figure
+from tol3d.analyses.compensation_table import compensation_report
 from tol3d.analyses.correction import CLOSED_FORM
 from tol3d.analyses.robots import STATES, left_of_the_mean
 from tol3d.analyses.spread import Spread
@@ -25,8 +27,6 @@ from tol3d.errors import InputError
 from tol3d.gearing.engines.lazy import exact_engine
 from tol3d.gearing.grammar.tolerances.shim import ShimSpec
 from tol3d.gears.flank import opposite
-from tol3d.report.compensation_picture import compensation_figure
-from tol3d.report.compensation_table import compensation_report
 from tol3d.report.number import tip_mm
 from tol3d.units import ARCMIN
 

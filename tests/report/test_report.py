@@ -27,6 +27,7 @@ from scipy.stats import norm
 
 from tol3d import load_scene
 from tol3d.analyses.compensation import CompensationQuestion, compensation
+from tol3d.analyses.compensation_table import swing_table
 from tol3d.errors import InputError
 from tol3d.gearing.display import seated_build
 from tol3d.gearing.magnified import OPEN_SHARE
@@ -47,7 +48,6 @@ from tol3d.report.canvas import VERMILLION, new_figure, plain_axes
 from tol3d.report.column import shares_of
 from tol3d.report.compare import measures_of
 from tol3d.report.comparison_picture import comparison_figure
-from tol3d.report.compensation_table import swing_table
 from tol3d.report.contributor_bars import draw_contributors
 from tol3d.report.curve import draw_curve
 from tol3d.report.difference import difference_of

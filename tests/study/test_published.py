@@ -12,7 +12,7 @@ from pydantic import ValidationError
 
 from tol3d import load_scene
 from tol3d.analyses.compensation import CompensationQuestion, compensation
-from tol3d.report.compensation_table import worst_table
+from tol3d.analyses.compensation_table import worst_table
 from tol3d.report.table import run_report
 from tol3d.scene.schema import PublishedMeasure
 from tol3d.simulate import Overrides, run_scene

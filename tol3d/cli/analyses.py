@@ -50,7 +50,7 @@ def shim(
 ) -> None:
     """Find the thickness of shims with which a bevel pair has a wanted minimum of backlash."""
     from tol3d.analyses import ShimQuestion, length_of, shim_plan, stock_of
-    from tol3d.report.shim_table import shim_report
+    from tol3d.analyses.shim_table import shim_report
     from tol3d.scene.edit import tolerance_lines, write_scene
     from tol3d.simulate import Overrides, load
 
@@ -82,8 +82,8 @@ def compensate(
 ) -> None:
     """Find the motor's correction for a load that changes side, and what it leaves of the lost motion."""
     from tol3d.analyses.compensation import CompensationQuestion, compensation
-    from tol3d.report.compensation_picture import draw_compensation
-    from tol3d.report.compensation_table import compensation_report
+    from tol3d.analyses.compensation_picture import draw_compensation
+    from tol3d.analyses.compensation_table import compensation_report
     from tol3d.simulate import load
 
     question = CompensationQuestion(train, positions, trials)

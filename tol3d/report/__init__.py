@@ -13,7 +13,6 @@ if TYPE_CHECKING:
     from tol3d.report.comparison_picture import draw_comparison
     from tol3d.report.export import export_run, part_meshes
     from tol3d.report.histogram import draw_histogram
-    from tol3d.report.shim_table import shim_report
     from tol3d.report.table import run_report
     from tol3d.report.view import view_run
 
@@ -25,7 +24,6 @@ _HOMES = {
     "export_run": "tol3d.report.export",
     "part_meshes": "tol3d.report.export",
     "run_report": "tol3d.report.table",
-    "shim_report": "tol3d.report.shim_table",
     "view_run": "tol3d.report.view",
 }
 
@@ -37,7 +35,6 @@ __all__ = [
     "export_run",
     "part_meshes",
     "run_report",
-    "shim_report",
     "view_run",
 ]
 

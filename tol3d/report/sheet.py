@@ -1,6 +1,7 @@
 """Pages for the terminal in which no number is ever cut: columns that find no room go on in a table below."""
 
 from dataclasses import dataclass, replace
+from io import StringIO
 
 from rich import box
 from rich.cells import cell_len
@@ -24,6 +25,14 @@ def rendered(shown: Page | Block) -> RenderableType:
         return Sheet(shown)
     text = Text.assemble(*shown.pieces)
     return Padding(text, (0, 0, 0, 1)) if shown.note else text
+
+
+def as_text(shown: Page | Block, width: int) -> str:
+    """What is shown, in so many columns, without colours."""
+    console = Console(file=StringIO(), width=width, highlight=False, markup=False, color_system=None)
+    with console.capture() as captured:
+        console.print(rendered(shown))
+    return captured.get()
 
 
 @dataclass(frozen=True)

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from tol3d.analyses.compensated_swing import Swing
 from tol3d.analyses.compensation import Compensation, Unit
+from tol3d.analyses.compensation_table import COLUMN_WORDS, STATE_WORDS, TOLD_OF_TIPS
 from tol3d.analyses.robots import STATES, State
 from tol3d.analyses.spread import Spread
 from tol3d.report.bars import Bars
@@ -27,7 +28,6 @@ from tol3d.report.canvas import (
     save_figure,
     say_instead,
 )
-from tol3d.report.compensation_table import COLUMN_WORDS, STATE_WORDS, TOLD_OF_TIPS
 from tol3d.report.drawn_sample import DrawnSample, draw_samples
 from tol3d.report.ends import Ends
 from tol3d.report.label import legible

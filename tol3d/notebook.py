@@ -8,17 +8,16 @@ import operator
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from io import StringIO
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
 from numpy.typing import NDArray
-from rich.console import Console, RenderableType
 
 from tol3d import report, simulate
 from tol3d.analyses import ShimPlan, ShimQuestion, length_of, shim_plan, stock_of
 from tol3d.analyses.shim import Rounding
+from tol3d.analyses.shim_table import shim_report
 from tol3d.analyses.shimmed import Minimum
 from tol3d.errors import InputError, unwritable
 from tol3d.gearing.coefficients import Coefficient, coefficients_of
@@ -26,6 +25,7 @@ from tol3d.gearing.model import Model
 from tol3d.gearing.system import gear_model
 from tol3d.report.page import Page
 from tol3d.report.presenter import Display, Which, presenter_at
+from tol3d.report.sheet import as_text
 from tol3d.runs.run import Run, open_run
 from tol3d.scene import Scene
 from tol3d.scene.edit import tolerance_lines
@@ -52,10 +52,7 @@ class Report:
     page: Page
 
     def __str__(self) -> str:
-        console = Console(file=StringIO(), width=TEXT_WIDTH, highlight=False, markup=False, color_system=None)
-        with console.capture() as captured:
-            console.print(self.page)
-        return captured.get()
+        return as_text(self.page, TEXT_WIDTH)
 
     def __repr__(self) -> str:
         return str(self)
@@ -74,7 +71,7 @@ class Report:
             raise unwritable(Path(path), error, "choose another file") from None
         return None
 
-    def __rich__(self) -> RenderableType:
+    def __rich__(self) -> Page:
         return self.page
 
 
@@ -299,7 +296,7 @@ def find_shims(
     target = length_of("target_min", target_min)
     question = ShimQuestion(target, measure, tuple(shims), minimum, stock_of(stock), rounding)
     plan = shim_plan(simulate.load(scene, trust_parts=trust_parts), question, overrides)
-    return Shims(report.shim_report(plan), plan)
+    return Shims(shim_report(plan), plan)
 
 
 def replay(run: Run | Path | str, trial: int) -> Replay:
