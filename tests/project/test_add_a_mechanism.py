@@ -18,6 +18,8 @@ from places import ROOT
 
 import tol3d
 from tol3d import kinds
+from tol3d.errors import InputError
+from tol3d.report import picture
 from tol3d.runs.run import Run
 
 PAGE = (ROOT / "docs" / "add_a_mechanism.md").read_text("utf-8")
@@ -168,6 +170,14 @@ def test_the_command_runs_shows_and_compares_it(names: dict[str, Any], command: 
     assert re.search(r"^smallest gap .*OK ", printed, re.MULTILINE)
     assert (names["folder"] / "runs" / "again" / "histogram.png").stat().st_size > 0
     assert f"{sample['sigma']:.3f}" in command("compare", "runs/again", "runs/pin_gauge", "--out", "compared.png")
+
+
+def test_a_run_without_a_presenter_has_no_further_pictures_and_no_builds_to_show(run: Run, tmp_path: Path) -> None:
+    """What is its own is named by its mechanism, and no other presenter takes its place."""
+    assert picture.system_files(run.found) == {}
+    with pytest.raises(InputError, match="cannot be shown: it has no presenter"):
+        tol3d.export_trial(run, 0, out=tmp_path)
+    assert list(tmp_path.iterdir()) == []
 
 
 def test_its_entry_point_is_in_the_group_that_is_asked_for() -> None:
