@@ -151,7 +151,7 @@ def options() -> Mapping[str, set[str]]:
 
 def quoted_commands(page: str) -> Iterator[tuple[str, set[str]]]:
     """Commands of tol3d between backticks, in fences and in blocks: the command, the options that stand with it."""
-    code = [*re.findall(r"`(tol3d [^`]*)`", prose(page)), *re.findall(r"bin/(tol3d [^\n&]*)", text(page))]
+    code = [*re.findall(r"`(tol3d\s[^`]*)`", prose(page)), *re.findall(r"bin/(tol3d [^\n&]*)", text(page))]
     for quoted in code:
         words = re.sub(r'"[^"]*"', "", quoted).replace("\\|", " ").split()
         if words[1].islower():
