@@ -1,5 +1,6 @@
 """docs/add_a_mechanism.md as it stands: a mechanism from outside, in under a hundred lines, against its oracles."""
 
+import json
 import math
 import os
 import re
@@ -169,6 +170,9 @@ def test_the_command_runs_shows_and_compares_it(names: dict[str, Any], command: 
     assert float(row.split()[-1]) == round(sample["mean"], 3)
     assert re.search(r"^smallest gap .*OK ", printed, re.MULTILINE)
     assert (names["folder"] / "runs" / "again" / "histogram.png").stat().st_size > 0
+    assert "peg among pins" in command("check", "pin_gauge.yaml")
+    schema = json.loads(command("schema", "--summary"))
+    assert "smallest_gap" in json.dumps(schema)
     assert f"{sample['sigma']:.3f}" in command("compare", "runs/again", "runs/pin_gauge", "--out", "compared.png")
 
 
