@@ -171,6 +171,7 @@ class Follower:
         self.called_by_run_scene: list[str] = []
 
     def __call__(self, frame: FrameType, event: str, argument: object) -> None:
+        """Note a call."""
         if event != "call" or (room := self.room(frame)) is None:
             return
         if not self.rooms or self.rooms[-1] != room:
@@ -184,7 +185,7 @@ class Follower:
         file = frame.f_code.co_filename
         if not file.startswith(self.package):
             return None
-        top = file.removeprefix(self.package).split(os.sep)[0].removesuffix(".py")
+        top = Path(file.removeprefix(self.package)).parts[0].removesuffix(".py")
         return None if top == "__init__" else top
 
 

@@ -62,6 +62,7 @@ class FlankSplines:
 
 
 def flank_splines(gear: BevelGear, flank: Flank) -> FlankSplines:
+    """The splines of one flank of tooth 0."""
     q = np.linspace(gear.form_q, gear.tip_q, flank_intervals(gear) + 1)
     direction = gear.flank_directions(q, flank)
     # dg/dq = sin q (e_r - sin(beta) t)/sin(beta): up the flank, in the tangent's meridian

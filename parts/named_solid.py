@@ -87,7 +87,7 @@ def to_step(part: NamedSolid, path: Path) -> None:
     try:
         part.solid.exportStep(str(unfinished))
         refuse_cut_step(unfinished)
-        os.replace(unfinished, path)
+        unfinished.replace(path)
     except OSError as error:
         raise unwritable(path, error, "choose another file") from error
     finally:

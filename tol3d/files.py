@@ -93,7 +93,7 @@ def read_contained(path: Path, folder: Path, largest: int) -> bytes:
         if not path.resolve(strict=True).is_relative_to(folder.resolve()):
             raise UnreadableFileError(f"a link that leads out of {folder}")
         descriptor = os.open(path, os.O_RDONLY | NO_WAIT)  # of a pipe nothing is waited for
-        with open(descriptor, "rb") as stream:
+        with os.fdopen(descriptor, "rb") as stream:
             state = os.fstat(descriptor)
             if not stat.S_ISREG(state.st_mode):
                 raise UnreadableFileError("expected a plain file, got a folder, a pipe or a device")

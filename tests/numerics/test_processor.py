@@ -82,7 +82,7 @@ def test_a_run_of_another_processor_is_not_gone_on_with(
     tmp_path: Path, request: pytest.FixtureRequest, tol3d: Command
 ) -> None:
     run = run_scene(SPUR_PAIR, overrides=STUDY, out=tmp_path / "run")
-    os.replace(run.path, tmp_path / "run.partial")  # as if its end had been cut off
+    run.path.replace(tmp_path / "run.partial")  # as if its end had been cut off
     here = processor()["processor"]
     fingerprint = run.fingerprint
     assert fingerprint["versions"]["processor"] == here

@@ -19,7 +19,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from loose_summaries import typed_run
 from places import ROOT
-from rich.console import Console
+from printing import printed as of_rich
 
 from tol3d import Scene, SceneError, load_scene
 from tol3d.errors import InputError
@@ -313,9 +313,7 @@ def summary_of(simulation: Simulation) -> dict[str, Any]:
 
 
 def printed(summary: dict[str, Any]) -> str:
-    console = Console(width=400, record=True, file=open("/dev/null", "w"))  # noqa: SIM115
-    console.print(run_report(typed_run(summary)))
-    return console.export_text()
+    return of_rich(run_report(typed_run(summary)), 400)
 
 
 def test_a_summary_says_by_what_its_errors_are_known(tmp_path: Path) -> None:

@@ -416,8 +416,8 @@ def test_a_warm_run_loads_no_cad(own_cache: Path) -> None:
 def test_the_folder_is_the_users_cache_unless_stated(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.delenv("TOL3D_CACHE")
     assert cache_folder().name == "tol3d"
-    monkeypatch.setenv("TOL3D_CACHE", os.path.join("some", "where"))
-    assert str(cache_folder()) == os.path.join("some", "where")
+    monkeypatch.setenv("TOL3D_CACHE", str(Path("some", "where")))
+    assert cache_folder() == Path("some", "where")
 
 
 @pytest.mark.slow

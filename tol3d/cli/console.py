@@ -72,9 +72,9 @@ def write_plainly() -> None:
 
 
 def shown_controls(text: str) -> str:
-    """A text whose control characters are shown as pictures, one sign each; line breaks stay.
+    r"""A text whose control characters are shown as pictures, one sign each; line breaks stay.
 
-    >>> shown_controls("a\\x1b[2Jb")
+    >>> shown_controls("a\x1b[2Jb")
     'a␛[2Jb'
     """
     if text.isprintable():

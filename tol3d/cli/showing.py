@@ -34,7 +34,7 @@ def scenes(
     copy: Annotated[
         str | None, typer.Option(metavar="NAME", help="Copy that scene, with its files, to edit it.")
     ] = None,
-    out: Annotated[Path, typer.Option(help="Folder to copy into.")] = Path("."),
+    out: Annotated[Path, typer.Option(help="Folder to copy into.")] = Path(),
 ) -> None:
     """List the scenes that tol3d brings along, or copy one to start your own from."""
     from tol3d.kinds import all_kinds
@@ -97,7 +97,7 @@ def export(
         MeshFormat, typer.Option(help="stl and ply: a file a part; glb, step and any of a train: one.")
     ] = MeshFormat.GLB,
     magnify: MagnifyOption = 1.0,
-    out: Annotated[Path, typer.Option(help="Folder to write into.")] = Path("."),
+    out: Annotated[Path, typer.Option(help="Folder to write into.")] = Path(),
 ) -> None:
     """Write the perturbed parts of a trial where they ended up."""
     from tol3d.report import export_run

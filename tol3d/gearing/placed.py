@@ -47,6 +47,7 @@ class PlacedGear:
 
     @property
     def display(self) -> DisplayMesh:
+        """Its mesh in its own frame [mm], nominal."""
         return display_mesh(self.gear, CONE_DEFLECTION if self.gear.pitch_angle else DISPLAY_DEFLECTION)
 
     @property

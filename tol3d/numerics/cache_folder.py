@@ -88,8 +88,8 @@ def write_entry(name: str, payload: bytes) -> None:
     try:
         with os.fdopen(handle, "wb") as file:
             file.write(payload + hashlib.sha256(payload).digest())
-        os.replace(unfinished, folder / name)
+        Path(unfinished).replace(folder / name)
     except OSError:
         with contextlib.suppress(OSError):
-            os.unlink(unfinished)
+            Path(unfinished).unlink()
         raise

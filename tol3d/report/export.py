@@ -41,7 +41,7 @@ def export_run(
     fmt: str,
     *,
     magnify: float = 1.0,
-    out: Path = Path("."),
+    out: Path = Path(),
     presenter: str | None = None,
 ) -> Exported:
     """Write the perturbed parts of one build where they ended up.
@@ -139,7 +139,7 @@ def _written(path: Path, content: object) -> Path:
     try:
         with named_in_errors(path):
             beside.write_bytes(content if isinstance(content, bytes) else str(content).encode())
-            os.replace(beside, path)
+            beside.replace(path)
     finally:
         beside.unlink(missing_ok=True)
     return path

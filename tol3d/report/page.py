@@ -20,6 +20,7 @@ class Shown(str):
     value: float | None
 
     def __new__(cls, text: str, value: float | None) -> "Shown":
+        """A text with the number that it shows."""
         shown = super().__new__(cls, text)
         shown.value = value
         return shown

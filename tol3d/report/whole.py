@@ -71,6 +71,7 @@ class Frame:
 
     @classmethod
     def around(cls, seen: Array, width_by_height: float) -> "Frame":
+        """The frame about points (n, 3) [mm] in the camera's own directions."""
         low, high = seen.min(axis=0), seen.max(axis=0)
         wide, tall = (high - low)[:2]
         height = max(tall / PARTS_HIGH, wide / PARTS_WIDE / width_by_height)

@@ -23,7 +23,7 @@ def write_whole(path: Path, content: bytes | memoryview) -> None:
                 stream.write(content)
                 stream.flush()
                 os.fsync(stream.fileno())
-            os.replace(beside, path)
+            beside.replace(path)
     except OSError:
         beside.unlink(missing_ok=True)
         raise

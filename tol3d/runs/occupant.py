@@ -74,8 +74,10 @@ def occupant_of(path: Path, fingerprint: Fingerprint, kinds: SummaryKinds | None
 def free_folder(
     wanted: Path, fingerprint: Fingerprint, *, resume: bool = False, kinds: SummaryKinds | None = None
 ) -> tuple[Path, str]:
-    """Where a run goes by default: the wanted folder, or the first of `<name>-2`, `<name>-3` ... that another study
-    has not taken. A study finds its own folder again.
+    """Where a run goes by default.
+
+    The wanted folder, or the first of `<name>-2`, `<name>-3` ... that another study has not taken. A study finds its
+    own folder again.
 
     Args:
         wanted: the folder.

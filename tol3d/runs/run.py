@@ -353,6 +353,7 @@ def whole_file(files: BlockFiles, name: str) -> bool:
 
 
 def warn_of_damage(error: RunError) -> None:
+    """Warn that a damaged block is made again."""
     warnings.warn(str(error).removesuffix(f"; {MENDED}") + "; it is made again", DamageWarning, stacklevel=2)
 
 

@@ -20,14 +20,28 @@ class KeptTrials(Protocol):
     """What is read of a run: its summary, and columns as numpy arrays with the trial on axis 0."""
 
     @property
-    def path(self) -> Path: ...
+    def path(self) -> Path:
+        """Its folder."""
+        ...
+
     @property
-    def found(self) -> RunSummary: ...
+    def found(self) -> RunSummary:
+        """Its summary, typed."""
+        ...
+
     @property
-    def trials(self) -> int: ...
+    def trials(self) -> int:
+        """How many trials were run."""
+        ...
+
     @property
-    def column_names(self) -> tuple[str, ...]: ...
-    def columns(self, *names: str) -> dict[str, NDArray[Any]]: ...
+    def column_names(self) -> tuple[str, ...]:
+        """Names of the columns of its trials."""
+        ...
+
+    def columns(self, *names: str) -> dict[str, NDArray[Any]]:
+        """Columns as numpy arrays, trial on axis 0."""
+        ...
 
 
 def worst_trial(run: KeptTrials, measure: str | None = None) -> int:

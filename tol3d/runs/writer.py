@@ -114,7 +114,7 @@ class RunWriter:
         if changed := [name for name in run.manifest.foreign() if name in run.manifest.sums and name not in made_again]:
             raise RunError(f"{self.path / changed[0]}: was changed since the run was made; move it away first")
         write_whole(self.path / FINGERPRINT, self._mark)
-        os.replace(self.path, self.partial)
+        self.path.replace(self.partial)
 
     def _refuse_another(self, there: Fingerprint, words: str) -> None:
         if found := differences(there, self._fingerprint):
@@ -214,7 +214,7 @@ class RunWriter:
             unfinished.unlink()
         yield drawn
         for picture in sorted(drawn.iterdir()):
-            os.replace(picture, self.partial / picture.name)
+            picture.replace(self.partial / picture.name)
             self._pictures.append(picture.name)
         drawn.rmdir()
 
@@ -242,7 +242,7 @@ class RunWriter:
     def _put_in_place(self) -> None:
         """Rename the folder; what lies there is deleted where it may be replaced, else moved aside."""
         old = self._moved_away() if self.path.exists() else None
-        os.replace(self.partial, self.path)
+        self.partial.replace(self.path)
         tidy(self.path)
         if old is not None and not Manifest.read(old).remove():  # something came into it since
             self._move_aside(old, "more than the run")
@@ -258,12 +258,12 @@ class RunWriter:
             self._move_aside(self.path, occupant.reason.removeprefix("holds "))
             return None
         old = self.path.with_name(f"{self.path.name}.replaced-{os.getpid()}-{secrets.token_hex(4)}")
-        os.rename(self.path, old)
+        self.path.rename(old)
         return old
 
     def _move_aside(self, folder: Path, what: str) -> None:
         aside = free_aside(self.path)
-        os.rename(folder, aside)
+        folder.rename(aside)
         warnings.warn(f"{self.path}: held {what}, and was moved aside to {aside}", MovedAsideWarning, stacklevel=2)
 
 

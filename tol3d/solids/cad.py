@@ -77,7 +77,7 @@ def write_step(parts: Sequence[PosedPart], path: Path, colours: Sequence[str]) -
     try:
         assembly.export(str(unfinished), exportType="STEP")
         refuse_cut_step(unfinished)
-        os.replace(unfinished, path)
+        unfinished.replace(path)
     except OSError as error:
         raise unwritable(path, error, "choose another file") from error
     finally:

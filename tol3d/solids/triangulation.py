@@ -37,6 +37,7 @@ def largest_sagitta(curve: Curve, parameters: Array) -> float:
 
 
 def mesh_of(face: cq.Face) -> tuple[Poly_Triangulation, TopLoc_Location]:
+    """A face's triangulation and where it lies; the solid must be triangulated."""
     place = TopLoc_Location()
     mesh = BRep_Tool.Triangulation_s(face.wrapped, place)
     if mesh is None:
@@ -45,11 +46,13 @@ def mesh_of(face: cq.Face) -> tuple[Poly_Triangulation, TopLoc_Location]:
 
 
 def nodes_of(mesh: Poly_Triangulation) -> Array:
+    """Its nodes (n, 3) [mm], in its own frame."""
     points = (mesh.Node(index) for index in range(1, mesh.NbNodes() + 1))
     return np.array([(point.X(), point.Y(), point.Z()) for point in points])
 
 
 def corners_of(mesh: Poly_Triangulation) -> NDArray[np.int64]:
+    """Indices (triangles, 3) of the nodes of each triangle."""
     return np.array([mesh.Triangle(index).Get() for index in range(1, mesh.NbTriangles() + 1)]) - 1
 
 

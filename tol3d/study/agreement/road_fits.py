@@ -63,4 +63,5 @@ def _effects_at_one_position(system: System, measure: Measure) -> Mapping[str, f
 
 
 def sigma_of(sums: RegressorSums) -> float:
+    """Standard deviation of the last column, the fitted measure."""
     return math.sqrt(sums.comoments[-1, -1] / sums.count)

@@ -1,5 +1,6 @@
-"""Axes beside their place: across the axis 2 sin(alpha_w) cos(delta) away from the mesh, along it 2 sin(alpha_w)
-sin(delta) away from the apex.
+"""Axes beside their place.
+
+Across the axis 2 sin(alpha_w) cos(delta) away from the mesh, along it 2 sin(alpha_w) sin(delta) away from the apex.
 """
 
 import math
