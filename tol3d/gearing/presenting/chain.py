@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Any, Final
+from typing import Final
 
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -33,12 +33,12 @@ from tol3d.gearing.presenting.chain_grid import (
 from tol3d.gearing.presenting.chain_sum import draw_sums, height_of_sums, sum_lines
 from tol3d.gearing.presenting.link_symbol import draw_link
 from tol3d.gearing.presenting.stage import Stage, stages_of, whole_ratio_text
+from tol3d.gearing.summary_types import TrainSummary
 from tol3d.report.canvas import BLACK, GREY, OUTSIDE, new_figure, save_figure, say_instead
 from tol3d.report.column import seated_text
 from tol3d.report.label import legible, wrapped
 from tol3d.report.number import NOTHING, given_text, value_text
-
-Summary = Any  # typed, read by text
+from tol3d.runs.summary.run import RunSummary
 
 SHAFT_HEIGHT: Final = 0.68  # inch
 MIDDLE: Final = LINES + CHAIN / 2  # inch, of the shafts, from the foot of their part of the picture
@@ -50,7 +50,7 @@ OF_ITS_LAW: Final = ", its law's"  # after ends that are nearer than 3 sigma
 NO_LINKS: Final = "there is no link between the shaft that is held and the one that is read"
 
 
-def draw_chain(summary: Summary, train_name: str, path: Path) -> None:
+def draw_chain(summary: RunSummary, train_name: str, path: Path) -> None:
     """Draw a train of a run: `path` ends in .png, .svg or .pdf.
 
     Raises:
@@ -59,12 +59,12 @@ def draw_chain(summary: Summary, train_name: str, path: Path) -> None:
     save_figure(chain_figure(summary, train_name), path)
 
 
-def chain_figure(summary: Summary, train_name: str) -> Figure:
+def chain_figure(summary: RunSummary, train_name: str) -> Figure:
     """The picture of a train, not yet written: up to six links in a row, bars below each, the sum at the foot."""
     train = summary["trains"][train_name]
     stages = stages_of(train)
     lines = sum_lines(train, summary)
-    rows = rows_of(stages, train["held"], ARM if train["lever_mm"] is not None else 0.0) if stages else []
+    rows = rows_of(stages, train.held, ARM if train.lever_mm is not None else 0.0) if stages else []
     heights = [HEAD, *(part for _ in rows for part in (SKETCH, BARS, SHARES)), height_of_sums(lines)]
     figure = new_figure(WIDTH, sum(heights))
     figure.set_layout_engine("none")
@@ -85,12 +85,11 @@ def chain_figure(summary: Summary, train_name: str) -> Figure:
     return figure
 
 
-def _draw_head(axes: Axes, name: str, train: Summary, summary: Summary) -> None:
+def _draw_head(axes: Axes, name: str, train: TrainSummary, summary: RunSummary) -> None:
     axes.text(EDGE, HEAD - 0.3, legible(name, 60), fontsize=16, fontweight="bold", color=BLACK, va="center")
-    ratio = "" if train["ratio"] is None else f",  i = {whole_ratio_text(train['ratio'])}"
-    ends = f"{legible(train['driven'], 40)} → {legible(train['output'], 40)}{ratio}"
-    words = f"{ends}   ·   {legible(train['held'], 40)} held   ·   {summary['trials']} trials, seed {summary['seed']}"
-    seated = seated_text(summary["measures"][train["measure"]]) if train["measure"] in summary["measures"] else ""
+    ends = f"{legible(train.driven, 40)} → {legible(train.output, 40)},  i = {whole_ratio_text(train.ratio)}"
+    words = f"{ends}   ·   {legible(train.held, 40)} held   ·   {summary.trials} trials, seed {summary.seed}"
+    seated = seated_text(summary.measures[train.measure]) if train.measure in summary.measures else ""
     words += f"   ·   {seated}" if seated else ""
     axes.text(EDGE, HEAD - 0.63, words, fontsize=STRONG, color=GREY, va="center")
     marks: list[Patch | Line2D] = [
@@ -113,7 +112,7 @@ def _draw_head(axes: Axes, name: str, train: Summary, summary: Summary) -> None:
     )
 
 
-def _draw_row(axes: Axes, train: Summary, row: ChainRow) -> None:
+def _draw_row(axes: Axes, train: TrainSummary, row: ChainRow) -> None:
     for column, stage in enumerate(row.stages):
         x = row.link_at(column)
         name = wrapped(f"{stage.number}  {stage.link}", row.pitch - 0.12, STRONG, 2, "bold")
@@ -128,7 +127,7 @@ def _draw_row(axes: Axes, train: Summary, row: ChainRow) -> None:
     for line, caption in enumerate(LINE_CAPTIONS):
         draw_caption(axes, _line_at(line) / SKETCH, caption)
     draw_caption(axes, (MIDDLE + SHAFT_HEIGHT / 2 + SENSE_ABOVE) / SKETCH, "sense of rotation")
-    if row.last and train["lever_mm"] is not None:
+    if row.last and train.lever_mm is not None:
         _draw_arm(axes, train, row)
 
 
@@ -162,7 +161,7 @@ def _draw_shaft(axes: Axes, row: ChainRow, column: int) -> None:
     axes.text(x, above, sense, ha="center", va="center", fontsize=15, color=BLACK)
 
 
-def _draw_arm(axes: Axes, train: Summary, row: ChainRow) -> None:
+def _draw_arm(axes: Axes, train: TrainSummary, row: ChainRow) -> None:
     """An arm that grows thinner to its tip, at the right of the last shaft."""
     start, y = row.shaft_at(len(row.stages)) + row.shaft / 2, MIDDLE
     end = start + ARM - 0.25
@@ -172,6 +171,6 @@ def _draw_arm(axes: Axes, train: Summary, row: ChainRow) -> None:
     axes.add_patch(Circle((end, y), 0.09, facecolor=OUTSIDE, edgecolor="white", linewidth=1.2, zorder=4))
     arrow = {"arrowstyle": "<->", "color": OUTSIDE, "linewidth": 1.4, "shrinkA": 0, "shrinkB": 0}
     axes.annotate("", (end, y + TIP_REACH), (end, y - TIP_REACH), arrowprops=arrow)
-    name = wrapped(train["point"] or "tip", ARM, TEXT, 2)
-    text = f"{name}\nlever {given_text(train['lever_mm'], 'mm')} mm"
+    name = wrapped(train.point or "tip", ARM, TEXT, 2)
+    text = f"{name}\nlever {given_text(train.lever_mm, 'mm')} mm"
     axes.text(start + ARM / 2, LINES, text, ha="center", va="top", fontsize=TEXT, color=BLACK, linespacing=1.25)

@@ -1,7 +1,7 @@
 """Bars below the chain of a train: what each link brings at the shaft that is read, and its share of the variance."""
 
 from collections.abc import Sequence
-from typing import Any, Final
+from typing import Final
 
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -22,11 +22,10 @@ from tol3d.gearing.presenting.chain_grid import (
 )
 from tol3d.gearing.presenting.link_symbol import LINK_COLOURS
 from tol3d.gearing.presenting.stage import Stage, share_text
+from tol3d.gearing.summary_types import TrainSummary
 from tol3d.report.canvas import BLACK
 from tol3d.report.label import wrapped
 from tol3d.report.number import NOTHING, tip_mm
-
-Summary = Any  # typed, read by text
 
 BAR_LABEL: Final = 0.46  # inch, of two lines of text
 LABEL_LIFT: Final = 3.6  # points, from a bar to its label
@@ -48,7 +47,7 @@ def _published_highs(stage: Stage) -> dict[str, float]:
     return {name: high for name, high in highs.items() if high is not None}
 
 
-def draw_bars(figure: Figure, place: SubplotSpec, train: Summary, row: ChainRow, highest: float) -> None:
+def draw_bars(figure: Figure, place: SubplotSpec, train: TrainSummary, row: ChainRow, highest: float) -> None:
     """Mean and high of each link of a row, and others' highs as marks.
 
     Args:
@@ -70,7 +69,7 @@ def draw_bars(figure: Figure, place: SubplotSpec, train: Summary, row: ChainRow,
             top = max(value or 0.0, 0.0)
             axes.bar(at, top, 0.62 * apart, color=LINK_COLOURS[stage.kind], alpha=opacity, linewidth=0)
             axes.annotate(
-                _bar_text(value, train["lever_mm"]),
+                _bar_text(value, train.lever_mm),
                 (at, max(top, least)),
                 (0, LABEL_LIFT),
                 textcoords="offset points",
@@ -80,10 +79,10 @@ def draw_bars(figure: Figure, place: SubplotSpec, train: Summary, row: ChainRow,
                 color=BLACK,
                 linespacing=1.1,
             )
-    draw_caption(axes, (BARS - BAR_LABEL) / 2 / BARS, wrapped(f"at {train['shaft']}", CAPTIONS - EDGE, SMALL, 3))
+    draw_caption(axes, (BARS - BAR_LABEL) / 2 / BARS, wrapped(f"at {train.shaft}", CAPTIONS - EDGE, SMALL, 3))
 
 
-def _draw_published(axes: Axes, train: Summary, stage: Stage, x: float, width: float) -> float:
+def _draw_published(axes: Axes, train: TrainSummary, stage: Stage, x: float, width: float) -> float:
     """Marks of others' highs side by side over the bar of ours; returns the highest [arcmin]."""
     colours, highs = published_colours(train), _published_highs(stage)
     for k, (name, high) in enumerate(highs.items()):

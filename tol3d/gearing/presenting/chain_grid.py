@@ -3,16 +3,15 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import accumulate
-from typing import Any, Final
+from typing import Final
 
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.gridspec import SubplotSpec
 
 from tol3d.gearing.presenting.stage import Stage, shafts_along
+from tol3d.gearing.summary_types import TrainSummary
 from tol3d.report.canvas import GREY, PUBLISHED_COLOURS
-
-Summary = Any  # typed, read by text
 
 WIDTH: Final = 15.0
 HEAD: Final = 0.95
@@ -114,8 +113,8 @@ def draw_caption(axes: Axes, share: float, text: str) -> None:
     axes.text(at, share, text, ha="right", va="center", fontsize=SMALL, color=GREY, transform=axes.transAxes)
 
 
-def published_colours(train: Summary) -> dict[str, str]:
+def published_colours(train: TrainSummary) -> dict[str, str]:
     """A colour for everybody who published something of a train."""
-    published = [stage.get("published", {}) for stage in train["stages"]] + [train["sums"].get("published", {})]
+    published = [stage.published for stage in train.stages] + [train.sums.published]
     names = dict.fromkeys(name for each in published for name in each)
     return {name: PUBLISHED_COLOURS[(k + 1) % len(PUBLISHED_COLOURS)] for k, name in enumerate(names)}

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from typing import Any, Final
+from typing import Final
 
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -11,11 +11,11 @@ from matplotlib.gridspec import SubplotSpec
 from tol3d.gearing.presenting.chain_grid import LIGHT, SMALL, TEXT, WIDTH, published_colours
 from tol3d.gearing.presenting.link_symbol import LINK_COLOURS
 from tol3d.gearing.presenting.stage import Range, Stage, distributions_of, leading_road
+from tol3d.gearing.summary_types import TrainSummary
 from tol3d.report.canvas import BLACK, OUTSIDE, ROAD_COLOURS, label_angles, plain_axes
 from tol3d.report.label import legible
 from tol3d.report.number import short_text, tip_mm, value_text
-
-Summary = Any  # typed, read by text
+from tol3d.runs.summary.run import RunSummary
 
 LINE: Final = 0.34  # inch; heights and widths of the foot's parts
 ABOVE: Final = 0.15
@@ -43,22 +43,22 @@ class SumLine:
     stacked: bool = False
 
 
-def sum_lines(train: Summary, summary: Summary) -> list[SumLine]:
+def sum_lines(train: TrainSummary, summary: RunSummary) -> list[SumLine]:
     """The distribution of the sum by each road, the worst case of the leading one, and others' sums."""
     return list(_lines(train, summary))
 
 
-def _lines(train: Summary, summary: Summary) -> Iterator[SumLine]:
-    lever, distributions = train["lever_mm"], distributions_of(train, summary)
+def _lines(train: TrainSummary, summary: RunSummary) -> Iterator[SumLine]:
+    lever, distributions = train.lever_mm, distributions_of(train, summary)
     for road, words in (("geometric", "3D simulation"), ("analytic", "analytic")):
         values = Range.of(distributions.get(road, {}))
         if values.known:
             text = f"mean {value_text(values.mean, 'arcmin')}, high {_with_tip(values.high, lever)}"
             yield SumLine(f"{words}: mean ± 3 sigma", text, values, ROAD_COLOURS[road])
-    worst = Range.of(train["sums"].get(leading_road(train), {}))
+    worst = Range.of(train.sums.get(leading_road(train), {}))
     yield SumLine("sum of the stages' highs", f"{_with_tip(worst.high, lever)}, worst case", worst, OUTSIDE, True)
     colours = published_colours(train)
-    for name, ends in train["sums"].get("published", {}).items():
+    for name, ends in train.sums.published.items():
         values = Range.of(ends)
         label = f"{legible(name, 18)}: sum of lows … highs"
         yield SumLine(label, f"high {_with_tip(values.high, lever)}", values, colours[name])
@@ -75,7 +75,7 @@ def height_of_sums(lines: Sequence[SumLine]) -> float:
 
 
 def draw_sums(
-    figure: Figure, place: SubplotSpec, train: Summary, stages: Sequence[Stage], lines: Sequence[SumLine]
+    figure: Figure, place: SubplotSpec, train: TrainSummary, stages: Sequence[Stage], lines: Sequence[SumLine]
 ) -> None:
     """All lines on one axis, and the worst case as a mark across them."""
     width = WIDTH - LABELS - VALUES
@@ -98,8 +98,8 @@ def draw_sums(
     axes.set_yticks(range(len(lines)), [line.label for line in lines], fontsize=TEXT)
     axes.tick_params(axis="y", length=0)
     axes.spines["left"].set_visible(False)
-    label_angles(axes.xaxis, train["unit"])
-    axes.set_xlabel(f"lost motion of {legible(train['shaft'], 50)} [′, ″ of arc]", fontsize=10)
+    label_angles(axes.xaxis, train.unit)
+    axes.set_xlabel(f"lost motion of {legible(train.shaft, 50)} [′, ″ of arc]", fontsize=10)
 
 
 def _stack_highs(axes: Axes, stages: Sequence[Stage], y: float, per_inch: float) -> None:
