@@ -17,7 +17,8 @@ from typing import TYPE_CHECKING, Any, Final
 
 from tol3d.errors import InputError
 from tol3d.files import Files
-from tol3d.scene import Grammar, Scene, read_scene
+from tol3d.scene import Grammar, Scene, Vocabulary, read_scene
+from tol3d.scene.entry import kind_of
 from tol3d.system.mechanism import Mechanism, named
 
 if TYPE_CHECKING:
@@ -79,9 +80,17 @@ def _grammar(mechanisms: tuple[Mechanism, ...]) -> Grammar:
 
 @lru_cache
 def _summary_kinds(grammar: Grammar) -> "SummaryKinds":
-    paths = (each.summary for each in grammar.vocabularies if isinstance(each, Mechanism) and each.summary)
-    found: SummaryKinds = reduce(or_, map(named, paths))
+    found: SummaryKinds = reduce(or_, map(_added, grammar.vocabularies))
     return found
+
+
+def _added(vocabulary: Vocabulary) -> "SummaryKinds":
+    if isinstance(vocabulary, Mechanism) and vocabulary.summary:
+        found: SummaryKinds = named(vocabulary.summary)
+        return found
+    plain = tuple(str(kind_of(spec)) for spec in vocabulary.measures)
+    made: SummaryKinds = named("tol3d.runs.summary.kinds:SummaryKinds")(plain=plain)
+    return made
 
 
 @cache

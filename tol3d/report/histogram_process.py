@@ -1,16 +1,17 @@
 """Draws a run's histogram, those of its many measures and what its system's presenter draws, in a process of its own.
 
 matplotlib takes as long to load as a whole study of 2000 trials takes to run: so it loads beside the study, and what
-is drawn comes at the end, on its standard input:
-
-    python -m tol3d.report.histogram_process < {"picture": "histogram.png", "presenter": "a.module", "summary": {...}}
+is drawn comes at the end, on its standard input, pickled: where modules are found, then the picture's path, the
+presenter's module, the kinds of summaries and the summary.
 
 The presenter's pictures are drawn beside the histogram, a measure of many as histogram-<measure>.png. It ends quietly
 where nothing comes. What goes wrong with the histogram is the one line on its standard error; what goes wrong with
 another picture is said on its standard output, {"chain.png": "why"}.
 """
 
+import io
 import json
+import pickle
 import signal
 import sys
 from collections.abc import Iterable, Iterator
@@ -27,13 +28,13 @@ from tol3d.runs.summary.text import typed
 def main() -> None:
     """Wait for what is drawn, and draw it."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # a terminal interrupts both processes; the study says what is done
-    order = sys.stdin.buffer.read()
-    if not order:
+    order = io.BytesIO(sys.stdin.buffer.read())
+    if not order.getbuffer():
         return
-    asked = json.loads(order)
-    picture = Path(asked["picture"])
-    summary = typed(asked["summary"], lambda place, words: ValueError(f"{place}: {words}"))
-    print(json.dumps(dict(_refused(_further(summary, asked["presenter"]), picture.parent))), flush=True)
+    sys.path += [path for path in pickle.load(order) if path and path not in sys.path]  # mechanisms may lie anywhere
+    picture, presenter, kinds, found = pickle.load(order)
+    summary = typed(found, lambda place, words: ValueError(f"{place}: {words}"), kinds)
+    print(json.dumps(dict(_refused(_further(summary, presenter), picture.parent))), flush=True)
     try:
         draw_histogram(summary, picture)
     except Exception as error:

@@ -1,6 +1,7 @@
 """The pictures of a run, drawn beside it by a process of its own: see histogram_process."""
 
 import json
+import pickle
 import subprocess
 import sys
 import warnings
@@ -12,6 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from tol3d.report.presenter import presenter_of
+from tol3d.runs.summary.kinds import default_kinds
 from tol3d.runs.summary.run import RunSummary
 
 MOST_TOGETHER = 4  # measures in one picture; of more, each has one of its own
@@ -56,8 +58,8 @@ def drawing(presenter: str | None = None) -> Iterator[DrawRun]:
 
 
 def _draw(process: "subprocess.Popen[bytes]", presenter: str | None, summary: Mapping[str, Any], picture: Path) -> None:
-    order = json.dumps({"picture": str(picture), "presenter": presenter, "summary": summary})
-    refused, errors = process.communicate(order.encode())
+    order = pickle.dumps(sys.path) + pickle.dumps((picture, presenter, default_kinds(), dict(summary)))
+    refused, errors = process.communicate(order)
     for name, reason in json.loads(refused or "{}").items():
         words = f"{name} could not be drawn ({reason}); the run is whole without it"
         warnings.warn(words, PictureWarning, stacklevel=2)

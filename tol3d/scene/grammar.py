@@ -11,13 +11,14 @@ from typing import Annotated, Any, Final, Union
 from pydantic import Field, create_model
 
 from tol3d.errors import InputError
+from tol3d.scene.engines import Engines
 from tol3d.scene.entry import Entry, kind_of
 from tol3d.scene.measure import MeasureSpec
 from tol3d.scene.move import MoveSpec
 from tol3d.scene.name import Name
 from tol3d.scene.part import PartSpec
 from tol3d.scene.place import KeyPath
-from tol3d.scene.schema import SECTIONS, Scene
+from tol3d.scene.schema import SECTIONS, Scene, study_class
 from tol3d.scene.tolerance import ToleranceSpec
 
 Check = Callable[[Scene], Iterator[tuple[KeyPath, str]]]
@@ -42,6 +43,8 @@ class Vocabulary:
         parts, tolerances, moves, measures: the kinds of each section.
         checks: what must hold across entries.
         includes: names of vocabularies whose kinds may stand beside these in one scene.
+        engines: words of study.engine, besides "analytic"; the first is taken where nothing is said.
+        witness: the one of them that can check the others, if there is one.
 
     Raises:
         InputError: a class stands where it is none of the section's kinds.
@@ -54,6 +57,8 @@ class Vocabulary:
     measures: tuple[type[MeasureSpec], ...] = ()
     checks: tuple[Check, ...] = ()
     includes: tuple[str, ...] = ()
+    engines: tuple[str, ...] = ("exact",)
+    witness: str = ""
 
     def __post_init__(self) -> None:
         for section, base in BASES.items():
@@ -101,6 +106,12 @@ class Grammar:
         return {str(kind_of(spec)): spec for each in self.vocabularies for spec in each.specs(section)}
 
     @property
+    def engines(self) -> Engines:
+        """What scenes of these kinds may be measured with."""
+        names = dict.fromkeys(engine for each in self.vocabularies for engine in each.engines)
+        return Engines(tuple(names), tuple(each.witness for each in self.vocabularies if each.witness))
+
+    @property
     def scene(self) -> type[Scene]:
         """The class of scenes of these kinds: it validates, and writes their JSON Schema."""
         return _scene_class(self)
@@ -138,6 +149,8 @@ def _scene_class(grammar: Grammar) -> type[Scene]:
     for section in SECTIONS:
         union = _union(grammar, section)
         sections[section] = (Mapping[Name, union], _field(section))  # type: ignore[valid-type]  # made at run time
+    study = study_class(grammar.engines)
+    sections["study"] = (study, Field(default_factory=study))
     made = create_model("Scene", __base__=Scene, __module__=Scene.__module__, __doc__=Scene.__doc__, **sections)
     made.grammar = grammar
     return made

@@ -2,15 +2,17 @@
 
 from collections.abc import Mapping
 from dataclasses import replace
+from functools import lru_cache
 from itertools import pairwise
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Final, Literal, Self, TypeVar
 
-from pydantic import BeforeValidator, Discriminator, Field, PrivateAttr, Tag, model_validator
+from pydantic import BeforeValidator, Discriminator, Field, PrivateAttr, Tag, create_model, model_validator
 
 from tol3d.errors import SceneError
 from tol3d.files import Files
 from tol3d.samplers.replicates import REPLICATES, SamplerKind, uneven
+from tol3d.scene.engines import THEORY, Engines
 from tol3d.scene.entry import Entry
 from tol3d.scene.measure import MeasureSpec
 from tol3d.scene.move import MoveSpec
@@ -34,11 +36,6 @@ MOST_PROFILE_STEPS = 2000
 FEWEST_REPLICATES = 2  # that have a spread at all
 MOST_REPLICATES = 1000
 MOST_WITNESSED = 1_000_000  # trials; minutes of FCL, and all of them are held at once
-
-NO_WITNESS = {
-    "fcl": "none for fcl, which is the witness itself; an exact study may have one",
-    "analytic": "none for analytic, which has no 3D simulation to check; an exact study may have one",
-}
 
 E = TypeVar("E", bound=Entry)
 
@@ -100,20 +97,18 @@ class Study(Strict):
         description="parts of equal size, each randomised anew, whose spread tells the errors of sobol and "
         f"latin_hypercube; {REPLICATES} if not given",
     )
-    engine: Literal["exact", "fcl", "analytic"] = Field(
-        default="exact",
-        description="what the 3D simulation measures with: the mathematical flanks, or by FCL strips of the CAD "
-        "solids; analytic: no 3D simulation",
-    )
+    engine: str = Field(default="exact", description="what the 3D simulation measures with; analytic: none of it")
     witness: int = Field(
-        default=0, ge=0, le=MOST_WITNESSED, description="trials of an exact study, at random, that FCL measures again"
+        default=0, ge=0, le=MOST_WITNESSED, description="trials, at random, that another engine measures again"
     )
     profile_steps: int = Field(
         default=120,
         ge=FEWEST_PROFILE_STEPS,
         le=MOST_PROFILE_STEPS,
-        description="flat strips along a flank that FCL measures",
+        description="flat facets along a curved profile, for engines that measure facets",
     )
+
+    engines: ClassVar[Engines]  # of the subclass that validates: a grammar makes one that knows them
 
     @property
     def parts(self) -> int:
@@ -128,8 +123,8 @@ class Study(Strict):
             raise refused(
                 "replicates", "none for monte_carlo, whose trials tell their error themselves", self.replicates
             )
-        if self.witness and self.engine != "exact":
-            raise refused("witness", NO_WITNESS[self.engine], self.witness)
+        if self.witness and (why := self.engines.without_witness(self.engine)):
+            raise refused("witness", why, self.witness)
         if self.trials == "auto":
             self._refuse_endless()
         elif self.until:
@@ -153,6 +148,27 @@ class Study(Strict):
                 'the standard errors to stop at where trials are auto, such as "until: {backlash: {mean: 0.05 um}}"',
                 "none",
             )
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Pickled by its engines: the class is made anew where it is read."""
+        return _blank_study, (self.engines,), self.__getstate__()
+
+
+@lru_cache
+def study_class(engines: Engines) -> type[Study]:
+    """The class of studies by some engines."""
+    field = Study.model_fields["engine"]
+    words = Literal[(*engines.names, THEORY)]  # type: ignore[valid-type]  # made at run time
+    engine = (words, Field(default=engines.names[0], description=field.description))
+    made = create_model("Study", __base__=Study, __module__=Study.__module__, __doc__=Study.__doc__, engine=engine)
+    made.engines = engines
+    return made
+
+
+def _blank_study(engines: Engines) -> Study:
+    """A study without anything in it yet, for pickle."""
+    made = study_class(engines)
+    return made.__new__(made)
 
 
 class PublishedMeasure(Strict):

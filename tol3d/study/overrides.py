@@ -8,6 +8,7 @@ from pydantic import ValidationError
 
 from tol3d.errors import InputError
 from tol3d.scene import Scene
+from tol3d.scene.engines import Engines
 from tol3d.study.simulation import Simulation, published_in, study_of
 from tol3d.system.mechanism import mechanism_of
 
@@ -49,7 +50,8 @@ def simulation_of(scene: Scene, overrides: Overrides = AS_WRITTEN) -> Simulation
 def _overridden(scene: Scene, overrides: Overrides) -> Scene:
     """The scene with another study, as if it had been written so."""
     given = {key: value for key, value in vars(overrides).items() if value is not None}
-    said = {name: getattr(scene.study, name) for name in scene.study.model_fields_set - _unsaid_by(given)}
+    kept = scene.study.model_fields_set - _unsaid_by(given, scene.study.engines)
+    said = {name: getattr(scene.study, name) for name in kept}
     try:
         study = type(scene.study).model_validate(said | given)
     except ValidationError as error:
@@ -60,8 +62,8 @@ def _overridden(scene: Scene, overrides: Overrides) -> Scene:
     return scene.model_copy(update={"study": study})
 
 
-def _unsaid_by(given: Mapping[str, Any]) -> set[str]:
+def _unsaid_by(given: Mapping[str, Any], engines: Engines) -> set[str]:
     """What the scene's study says for other trials, another sampler or another engine only."""
     unsaid = {"until", "at_most"} if given.get("trials", "auto") != "auto" else set()
     unsaid |= {"replicates"} if given.get("sampler") == "monte_carlo" else set()
-    return unsaid | ({"witness"} if given.get("engine", "exact") != "exact" else set())
+    return unsaid | ({"witness"} if given.get("engine") in engines.unwitnessed else set())

@@ -1,7 +1,6 @@
 """How far the roads of a measure differ and what explains it, and what the witness found; in the measure's unit."""
 
 from collections.abc import Mapping
-from typing import Literal
 
 from pydantic import Field
 
@@ -55,7 +54,7 @@ class Agreement(Section):
 
 
 class Witnessed(Section):
-    """FCL - engine of one measure, in its unit."""
+    """Witness - engine of one measure, in its unit."""
 
     max_abs_difference: Known
     mean_difference: Known
@@ -63,13 +62,13 @@ class Witnessed(Section):
     trial_of_the_largest: Count | None
     compared: Count
     expected_at_most: NotNegative = Field(description="what chord errors explain")
-    allowance: NotNegative = Field(description="what else FCL may be off")
+    allowance: NotNegative = Field(description="what else the witness may be off")
 
 
 class WitnessSummary(Section):
-    """What FCL found of some trials."""
+    """What the witness found of some trials."""
 
-    engine: Literal["fcl"]
+    engine: Label
     trials: Count
     chord_error_um: NotNegative
     profile_steps: int = Field(ge=8, le=2000)

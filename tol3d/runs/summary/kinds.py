@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from functools import cached_property, reduce
 from importlib import import_module
 from operator import or_
-from typing import Annotated, Any, get_args
+from typing import Annotated, Any, Literal, get_args
 
 from pydantic import Field, create_model
 
@@ -23,20 +23,35 @@ class SummaryKinds:
     Args:
         measures: classes of measures; `kind` of each is a Literal of the kinds that it is for.
         runs: classes that add sections to the whole, as keys that may be missing.
+        plain: kinds of measures of which there is nothing more to tell.
     """
 
     measures: tuple[type[MeasureSummary], ...] = ()
     runs: tuple[type[RunSummary], ...] = ()
+    plain: tuple[str, ...] = ()
 
     def __or__(self, other: "SummaryKinds") -> "SummaryKinds":
         """Both together."""
-        return SummaryKinds((*self.measures, *other.measures), (*self.runs, *other.runs))
+        own = (*self.measures, *other.measures), (*self.runs, *other.runs)
+        return SummaryKinds(*own, (*self.plain, *other.plain))
+
+    @cached_property
+    def every_measure(self) -> tuple[type[MeasureSummary], ...]:
+        """The classes of measures, that of plain ones last."""
+        if not self.plain:
+            return self.measures
+        kind: Any = (Literal[self.plain], ...)
+        return *self.measures, create_model("PlainMeasure", __base__=MeasureSummary, __doc__="A measure.", kind=kind)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Pickled by what it is made of: classes made of it are made anew."""
+        return SummaryKinds, (self.measures, self.runs, self.plain)
 
     @cached_property
     def run(self) -> type[RunSummary]:
         """The class of a whole summary."""
-        measure: Any = reduce(or_, self.measures) if self.measures else MeasureSummary
-        if len(self.measures) > 1:
+        measure: Any = reduce(or_, self.every_measure) if self.every_measure else MeasureSummary
+        if len(self.every_measure) > 1:
             measure = Annotated[measure, Field(discriminator="kind")]
         measures = Annotated[Mapping[Label, measure], Field(min_length=1, max_length=MOST_ENTRIES)]
         base: Any = self.runs or RunSummary
@@ -48,8 +63,8 @@ class SummaryKinds:
     @cached_property
     def tags(self) -> frozenset[str]:
         """Kinds of measures that pydantic names in the places of errors, where the file has no such key."""
-        kinds = (get_args(measure.model_fields["kind"].annotation) for measure in self.measures)
-        return frozenset(kind for each in kinds for kind in each) if len(self.measures) > 1 else frozenset()
+        kinds = (get_args(measure.model_fields["kind"].annotation) for measure in self.every_measure)
+        return frozenset(kind for each in kinds for kind in each) if len(self.every_measure) > 1 else frozenset()
 
 
 def default_kinds() -> SummaryKinds:

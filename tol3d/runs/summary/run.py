@@ -12,7 +12,6 @@ from tol3d.runs.summary.values import (
     MOST_ENTRIES,
     MOST_SEED,
     Count,
-    EngineName,
     Known,
     Label,
     Maybe,
@@ -37,7 +36,7 @@ class StudySummary(Section):
     until: list[Annotated[list[Label | Known], Field(min_length=3, max_length=3)]] = Field(
         description="measure, and standard errors of mean and sigma [mm or rad] at which automatic trials stop"
     )
-    engine: EngineName
+    engine: Label
     witness: int = Field(ge=0, le=1_000_000)
     profile_steps: int = Field(ge=8, le=2000)
 
@@ -67,7 +66,7 @@ class RunSummary(Section):
     scene: Label
     seed: int = Field(ge=0, le=MOST_SEED)
     trials: Positive
-    engine: EngineName
+    engine: Label
     study: StudySummary
     status: Mapping[Label, Count] = Field(description="how many trials ended how")
     statuses: Mapping[Label, Meaning] = Field(

@@ -36,7 +36,6 @@ Ppm = Annotated[float, Field(ge=0.0, le=1e6 * (1 + 1e-9))]
 PpmRange = Annotated[list[Ppm], Field(min_length=2, max_length=2)]
 Numbers = Annotated[list[Number], Field(max_length=MOST_ENTRIES)]
 KnownNumbers = Annotated[list[Known], Field(max_length=MOST_ENTRIES)]
-EngineName = Literal["exact", "fcl", "analytic"]
 Unit = Literal["um", "mm", "arcmin"]
 Road = Literal["analytic", "geometric"]
 
