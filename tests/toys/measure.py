@@ -1,0 +1,25 @@
+"""A measure of a toy: a length in um."""
+
+from dataclasses import dataclass
+
+from tol3d.system.measure import Worse
+from tol3d.system.positions import Positions, Take
+
+
+@dataclass(frozen=True)
+class ToyMeasure:
+    """Implements Measure."""
+
+    name: str
+    kind: str
+    of: str
+    positions: Positions
+    take: Take = "value"
+    lower_limit: float | None = None
+    upper_limit: float | None = None
+    worse: Worse = "low"
+    adds_up: bool = True
+    keeps_overlap: bool = False
+
+    unit = "um"
+    per_internal = 1e3

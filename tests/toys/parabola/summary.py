@@ -1,0 +1,53 @@
+"""What a summary holds of springs besides what every one holds."""
+
+from collections.abc import Mapping
+from typing import Final, Literal
+
+from tol3d.runs.summary.kinds import SummaryKinds
+from tol3d.runs.summary.measure import MeasureSummary
+from tol3d.runs.summary.run import RunSummary
+from tol3d.runs.summary.values import LEFT_OUT, Known, Label, Maybe, Number, Section
+
+
+class HeightSummary(MeasureSummary):
+    """How far a spring lifts."""
+
+    kind: Literal["height"]
+    of: Label
+
+    @property
+    def words(self) -> str:
+        return f"{self.take} of the height of {self.of}"
+
+    @property
+    def position_word(self) -> str:
+        return "spring"
+
+    @property
+    def position_column(self) -> str | None:
+        return "position:spring [deg]" if self.over == "random" else None
+
+
+class RoomSummary(MeasureSummary):
+    """What is left of a room."""
+
+    kind: Literal["room"]
+    of: Label
+    room_um: Number
+
+
+class Term(Section):
+    """What a term adds to a measure, in its unit."""
+
+    mean: Known
+    sigma: Known
+    share_percent: Known
+
+
+class TermsOfRun(RunSummary):
+    """The terms of heights."""
+
+    terms: Maybe[Mapping[Label, Mapping[Label, Mapping[Label, Term]]]] = LEFT_OUT
+
+
+SUMMARY_KINDS: Final = SummaryKinds((HeightSummary, RoomSummary), (TermsOfRun,))
