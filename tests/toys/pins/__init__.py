@@ -1,0 +1,22 @@
+"""A disc between pins: several parts that are solved together. What is free between them is a minimum over contacts,
+and where the disc may slide is what two load paths leave, which is a linear programme.
+
+    grammar     what scenes say
+    system      all that a study asks, both roads
+    programme   the slow reference: each trial by scipy's linprog
+"""
+
+from typing import Final
+
+from toys.pins import grammar
+
+from tol3d.system.mechanism import Mechanism
+
+PINS: Final = Mechanism(
+    name="pins",
+    parts=(grammar.DiscSpec, grammar.PlateSpec),
+    tolerances=(grammar.RoomSpec, grammar.PinSpec, grammar.OffCentreSpec),
+    moves=(grammar.DiscInPinsSpec,),
+    measures=(grammar.LeastGapSpec, grammar.SlideSpec),
+    system="toys.pins.system:pins_system",
+)
