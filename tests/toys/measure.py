@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 
 from tol3d.system.measure import Worse
+from tol3d.system.pooled_statistic import PooledStatistic
 from tol3d.system.positions import Positions, Take
 
 
@@ -20,6 +21,7 @@ class ToyMeasure:
     worse: Worse = "low"
     adds_up: bool = True
     keeps_overlap: bool = False
+    pooled_statistics: tuple[PooledStatistic, ...] = ()
 
     unit = "um"
     per_internal = 1e3

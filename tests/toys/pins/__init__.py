@@ -8,9 +8,8 @@ and where the disc may slide is what two load paths leave, which is a linear pro
 
 from typing import Final
 
-from toys.pins import grammar
-
 from tol3d.system.mechanism import Mechanism
+from toys.pins import grammar
 
 PINS: Final = Mechanism(
     name="pins",

@@ -6,7 +6,6 @@ from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
-from toys.pins.grammar import DiscSpec, OffCentreSpec, PinSpec, PlateSpec
 
 from tol3d.distributions import Distribution
 from tol3d.scene import Scene
@@ -19,6 +18,7 @@ from tol3d.system.road import Answers, Road
 from tol3d.system.statuses import Statuses
 from tol3d.system.system import Columns
 from tol3d.system.trials import Trials
+from toys.pins.grammar import DiscSpec, OffCentreSpec, PinSpec, PlateSpec
 
 Array = NDArray[np.float64]
 
