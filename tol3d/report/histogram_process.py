@@ -2,7 +2,7 @@
 
 matplotlib takes as long to load as a whole study of 2000 trials takes to run: so it loads beside the study, and what
 is drawn comes at the end, on its standard input, pickled: where modules are found, then the picture's path, the
-presenter's module, the kinds of summaries and the summary.
+presenter's module, the kinds of summaries and the summary as JSON.
 
 The presenter's pictures are drawn beside the histogram, a measure of many as histogram-<measure>.png. It ends quietly
 where nothing comes. What goes wrong with the histogram is the one line on its standard error; what goes wrong with
@@ -33,7 +33,7 @@ def main() -> None:
         return
     sys.path += [path for path in pickle.load(order) if path and path not in sys.path]  # mechanisms may lie anywhere
     picture, presenter, kinds, found = pickle.load(order)
-    summary = typed(found, lambda place, words: ValueError(f"{place}: {words}"), kinds)
+    summary = typed(json.loads(found), lambda place, words: ValueError(f"{place}: {words}"), kinds)
     print(json.dumps(dict(_refused(_further(summary, presenter), picture.parent))), flush=True)
     try:
         draw_histogram(summary, picture)

@@ -58,7 +58,7 @@ def drawing(presenter: str | None = None) -> Iterator[DrawRun]:
 
 
 def _draw(process: "subprocess.Popen[bytes]", presenter: str | None, summary: Mapping[str, Any], picture: Path) -> None:
-    order = pickle.dumps(sys.path) + pickle.dumps((picture, presenter, default_kinds(), dict(summary)))
+    order = pickle.dumps(sys.path) + pickle.dumps((picture, presenter, default_kinds(), json.dumps(summary)))
     refused, errors = process.communicate(order)
     for name, reason in json.loads(refused or "{}").items():
         words = f"{name} could not be drawn ({reason}); the run is whole without it"
