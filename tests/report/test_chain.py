@@ -29,8 +29,9 @@ from tol3d.report.curve import draw_curve
 from tol3d.report.distribution import density_label, values_label
 from tol3d.report.heading import heading, limits_text
 from tol3d.report.label import wrapped
+from tol3d.report.measure_table import curve_table
 from tol3d.report.number import difference_text
-from tol3d.report.table import curve_table, run_report
+from tol3d.report.table import run_report
 
 LEVER = 763.0  # mm, of the robot's arm
 DEGREES_PER_UM = 0.12195  # times j_n [um] over the gear's diameter [mm]: the paper's lost motion of a pair

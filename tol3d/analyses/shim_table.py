@@ -7,9 +7,9 @@ from tol3d.analyses.shim import ShimPlan, closing_of
 from tol3d.analyses.shim_choice import Shim
 from tol3d.analyses.shimmed import MINIMUM_WORDS, UM, Shimmed
 from tol3d.analyses.stock import thickness_text
+from tol3d.report.measure_table import CONVERTED_ROWS
 from tol3d.report.number import NOTHING, value_text
 from tol3d.report.page import BLANK, Block, Heading, Line, Page, Row, Table, line, note, page, warning
-from tol3d.report.table import CONVERTED_ROWS
 
 ROWS: Final[Mapping[str, str]] = {
     "low_3sigma": "low (−3 sigma)",

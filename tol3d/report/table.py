@@ -1,58 +1,39 @@
 """A run's results as tables for the terminal, from its summary alone."""
 
-import math
-from collections.abc import Iterator, Mapping, Sequence, Set
-from dataclasses import replace
+from collections.abc import Iterator
 from enum import Enum
 
 from tol3d.report.agreement import agreement_lines, unexplained_lines
 from tol3d.report.column import (
-    Column,
-    Road,
-    columns_of,
-    contributor_columns,
-    ranked_contributors,
     seated_text,
 )
 from tol3d.report.ends import is_bounded
 from tol3d.report.heading import limits_text
+from tol3d.report.measure_table import (
+    NOT_ATTRIBUTED,
+    SIDES,
+    STATUS_WORDS,
+    contributors_table,
+    curve_table,
+    limit_rows,
+    measure_table,
+    not_attributed,
+    shown_positions,
+)
 from tol3d.report.number import (
-    NOTHING,
     difference_text,
     given_text,
-    percent_cell,
-    share_cell,
     share_text,
     unit_suffix,
-    unsigned_zero,
-    value_cell,
-    value_text,
 )
-from tol3d.report.page import BLANK, Block, Heading, Line, Page, Row, Shown, Table, line, note, page, title, warning
-from tol3d.report.presenter import FurtherRow, Presenter, presenter_of
+from tol3d.report.page import BLANK, Block, Line, Page, line, note, page, title, warning
+from tol3d.report.presenter import Presenter, presenter_of
 from tol3d.report.verdict import ACCEPTED_PPM, verdict_report
 from tol3d.runs.summary.measure import MeasureSummary
 from tol3d.runs.summary.run import RunSummary
 from tol3d.runs.summary.sample import CurveRoads, Sample
 from tol3d.system.outcome import SEATED
 
-ROWS = {
-    "low_3sigma": "low (−3 sigma)",
-    "mean": "mean",
-    "high_3sigma": "high (+3 sigma)",
-    "sigma": "sigma",
-    "p0.135": "0.135 % quantile",
-    "p50": "50 % quantile",
-    "p99.865": "99.865 % quantile",
-    "sample_min": "smallest",
-    "sample_max": "largest",
-}
-CONVERTED_ROWS = {"low_3sigma": "low", "mean": "mean", "high_3sigma": "high"}
-UNIT_HEADINGS = {"um": "[µm]", "mm": "[mm]", "arcmin": "[′, ″ of arc]"}
-SIDES = ("below", "above")
-INDICES = {"pp": "Pp", "ppk": "Ppk"}
-UNEXPLAINED_SHOWN = 0.05  # %; less is 0.0 in print
-NOT_ATTRIBUTED = "not attributed"
 NOT_ATTRIBUTED_MEANS = (
     f"{NOT_ATTRIBUTED}: the share of the variance that the regression on the contributors leaves unexplained: "
     "interactions and what is not linear"
@@ -65,12 +46,8 @@ SHARES_MEAN = (
     "shares of the variance; high–low–mean: squares of the ranges that each contributor alone gives between its ends, "
     "the others at their means"
 )
-ATTRIBUTING: Set[Road] = frozenset(("analytic", "geometric"))
 MOST_TABLES = 4  # measures whose tables are shown unasked; of 6 they took 288 lines
 MORE_TABLES = "tables of every measure: -v"
-CURVE_ROWS = 12  # positions of a curve that are printed; the picture and the columns have them all
-SHARE_HEADINGS: Mapping[Road, str] = {"analytic": "analytic", "geometric": "3D simulation"}
-STATUS_WORDS = {"ok": "seated", "interferes": "jammed", "no contact": "without contact"}
 SAMPLER_WORDS = {"sobol": "scrambled Sobol' points", "latin_hypercube": "Latin hypercubes"}
 TOO_FEW_TO_BOUND = "too few trials on one side of the limit in each replicate to bound the true share"
 
@@ -143,102 +120,14 @@ def _meanings(run: RunSummary) -> Iterator[str]:
     scalars = [measure for measure in run.measures.values() if measure.take != "curve"]
     if any(measure.contributors for measure in scalars):
         yield SHARES_MEAN
-    if any(map(_not_attributed, scalars)):
+    if any(map(not_attributed, scalars)):
         yield NOT_ATTRIBUTED_MEANS
-    limited = [measure for measure in scalars if _limit_rows(measure)]
+    limited = [measure for measure in scalars if limit_rows(measure)]
     if any(map(seated_text, limited)):
         yield FAILURES_COUNT
     if any(measure.analytic_closed_form for measure in limited):
         yield "out of limits by the closed form: as if the measure were normal"
     yield from dict.fromkeys(other.meaning for measure in scalars for other in measure.conversions)
-
-
-def _headings(columns: Sequence[Column]) -> list[Heading]:
-    styles = {"geometric": "bold", "published": "green"}
-    return [Heading(column.heading, styles.get(column.road, "")) for column in columns]
-
-
-def measure_table(measure: MeasureSummary, further: Sequence[FurtherRow] = ()) -> Table:
-    """Statistics of one scalar measure, one column a road, the published ones last; `further` rows below."""
-    columns, unit = columns_of(measure), measure.unit
-    rows = [*_failure_rows(measure, columns)]
-    rows += [Row(label, [_cell(column, key, unit) for column in columns], unit=unit) for key, label in ROWS.items()]
-    rows += [
-        Row(label, [share_cell(_ppm(column, key, measure)) for column in columns], unit="ppm")
-        for key, label in _limit_rows(measure).items()
-    ]
-    rows += [
-        Row(label, [_index_cell(column.value(key)) for column in columns])
-        for key, label in INDICES.items()
-        if any(column.value(key) is not None for column in columns)
-    ]
-    rows += [
-        Row(label, [value_cell(build.value(column.road), unit) for column in columns], unit=unit)
-        for label, build in (("build at all means", measure.mean_build), ("nominal build", measure.nominal))
-    ]
-    rows += [*_converted_rows(measure, columns), *_further_rows(further, columns, unit)]
-    return Table(UNIT_HEADINGS[unit], _headings(columns), rows)
-
-
-def _cell(column: Column, key: str, unit: str) -> Shown:
-    text = given_text if column.road == "published" else value_text
-    return Shown(text(column.value(key), unit), column.value(key))
-
-
-def _index_cell(value: float | None) -> Shown:
-    return Shown(NOTHING if value is None else unsigned_zero(f"{value:.3f}"), value)
-
-
-def _failure_rows(measure: MeasureSummary, columns: Sequence[Column]) -> Iterator[Row]:
-    """How many trials seated, and how the others failed; nothing where all of them seated."""
-    if not seated_text(measure):
-        return
-    own = {"geometric": measure.status, "analytic": {SEATED: measure.trials}}
-    for status, count in measure.status.items():
-        if count or status == SEATED:
-            cells = [str(own[c.road].get(status, 0)) if c.road in own else NOTHING for c in columns]
-            yield Row(f"trials {STATUS_WORDS.get(status, status)}", cells)
-
-
-def _limit_rows(measure: MeasureSummary) -> dict[str, str]:
-    unit = measure.unit
-    sides = {
-        f"{side}_limit_ppm": f"{side} {given_text(limit, unit)}{unit_suffix(unit)}"
-        for side, limit in zip(SIDES, measure.limits, strict=True)
-        if limit is not None
-    }
-    in_all = len(sides) > 1 or (sides and seated_text(measure))
-    return {**sides, "out_ppm": "out in all"} if in_all else sides
-
-
-def _ppm(column: Column, key: str, measure: MeasureSummary) -> float | None:
-    """Counted, or for the closed form that of a normal measure."""
-    form = measure.analytic_closed_form
-    if column.road != "closed form" or form is None:
-        return column.value(key)
-    mean, sigma, lower, upper = form.mean, form.sigma, *measure.limits
-    if not sigma:
-        return None
-    margins = {"below_limit_ppm": None if lower is None else mean - lower}
-    margins["above_limit_ppm"] = None if upper is None else upper - mean
-    asked = margins.values() if key == "out_ppm" else [margins[key]]
-    return sum(1e6 * math.erfc(margin / sigma / math.sqrt(2)) / 2 for margin in asked if margin is not None)
-
-
-def _converted_rows(measure: MeasureSummary, columns: Sequence[Column]) -> Iterator[Row]:
-    """Low, mean and high in the other words that a measure has for them."""
-    for other in measure.conversions:
-        for key, word in CONVERTED_ROWS.items():
-            values = [column.value(key) for column in columns]
-            cells = [value_cell(None if value is None else value * other.per_unit, other.unit) for value in values]
-            yield Row(f"{other.words}, {word}", cells, unit=other.unit)
-
-
-def _further_rows(further: Sequence[FurtherRow], columns: Sequence[Column], unit: str) -> Iterator[Row]:
-    """What the system's presenter adds."""
-    for own in further:
-        values = [own.values.get(column.heading if column.road == "published" else column.road) for column in columns]
-        yield Row(own.label, [value_cell(value, unit) for value in values], unit=unit)
 
 
 def _notes(name: str, measure: MeasureSummary, run: RunSummary) -> Iterator[str]:
@@ -263,7 +152,7 @@ def _sampling_notes(measure: MeasureSummary, own: Sample, run: RunSummary) -> It
         )
     if is_bounded(measure):
         yield "trials end before mean ∓ 3 sigma here: the quantiles tell more than low and high"
-    for key, label in _limit_rows(measure).items():
+    for key, label in limit_rows(measure).items():
         low_high = getattr(own, f"{key}_95")
         if low_high:
             low, high = map(share_text, low_high)
@@ -300,68 +189,9 @@ def _witness_notes(name: str, measure: MeasureSummary, run: RunSummary) -> Itera
     yield f"{again}: at most {largest} more or less (up to {chords} of that is the chord error of its strips)"
 
 
-def contributors_table(measure: MeasureSummary) -> Table:
-    """Shares of the variance, the largest first; those of the 3D simulation with their standard error."""
-    shares = [
-        replace(column, heading=SHARE_HEADINGS.get(column.road, column.heading))
-        for column in contributor_columns(measure)
-    ]
-    errors = {share.name: share.geometric_percent_se for share in measure.contributors}
-    rows = [
-        Row(name, [_share(column, name, errors[name]) for column in shares], unit="%")
-        for name in ranked_contributors(measure)
-    ]
-    left = _not_attributed(measure)
-    if left:
-        rows.append(Row(NOT_ATTRIBUTED, [percent_cell(rest) for rest in left], "dim", unit="%"))
-    return Table("share [%]", _headings(shares), rows)
-
-
-def _share(column: Column, name: str, error: float | None) -> Shown:
-    return percent_cell(column.percents.get(name), error if column.road == "geometric" else None)
-
-
-def _not_attributed(measure: MeasureSummary) -> list[float | None]:
-    """What each road leaves to no contributor [%], None for other columns; empty where that is nothing in print."""
-    left = [
-        100 - sum(share or 0.0 for share in column.percents.values()) if column.road in ATTRIBUTING else None
-        for column in contributor_columns(measure)
-    ]
-    return left if any(abs(rest or 0.0) > UNEXPLAINED_SHOWN for rest in left) else []
-
-
-def curve_table(measure: MeasureSummary, curve: CurveRoads) -> Table:
-    """A curve measure at some of its positions."""
-    words = {"analytic": "analytic", "geometric": "3D"}
-    columns = [
-        (f"{words[road]} {key}", road, getattr(own, key))
-        for road, own in curve.by_road.items()
-        for key in ("mean", "sigma")
-    ]
-    leading, own = [*curve.by_road.items()][-1]
-    columns += [(f"{words[leading]} smallest", leading, own.min), (f"{words[leading]} largest", leading, own.max)]
-    headings = [Heading(text, "bold" if road == "geometric" else "") for text, road, _ in columns]
-    positions = [unsigned_zero(f"{position:.1f}") for position in measure.position_deg or ()]
-    longest = max(map(len, positions), default=0)
-    rows = [
-        Row(
-            positions[index].rjust(longest),
-            [value_cell(values[index], measure.unit) for _, _, values in columns],
-            unit=measure.unit,
-        )
-        for index in _shown_positions(measure)
-    ]
-    return Table(f"{measure.position_word} at [°]".lstrip(), headings, rows)
-
-
-def _shown_positions(measure: MeasureSummary) -> range:
-    count = len(measure.position_deg or ())
-    return range(0, count, max(1, -(-count // CURVE_ROWS)))
-
-
 def _curve_notes(measure: MeasureSummary, curve: CurveRoads) -> Iterator[str]:
     """How many positions are left out, and the share of the trials that is out of a limit anywhere on its curve."""
-    shown, count = len(_shown_positions(measure)), len(measure.position_deg or ())
+    shown, count = len(shown_positions(measure)), len(measure.position_deg or ())
     if shown < count:
         yield f"{shown} of {count} positions shown; all in summary.json"
     if seated := seated_text(measure):

@@ -1,0 +1,193 @@
+"""Tables of one measure: statistics of its columns, shares of its contributors, a curve at its positions."""
+
+import math
+from collections.abc import Iterator, Mapping, Sequence, Set
+from dataclasses import replace
+
+from tol3d.report.column import Column, Road, columns_of, contributor_columns, ranked_contributors, seated_text
+from tol3d.report.number import (
+    NOTHING,
+    given_text,
+    percent_cell,
+    share_cell,
+    unit_suffix,
+    unsigned_zero,
+    value_cell,
+    value_text,
+)
+from tol3d.report.page import Heading, Row, Shown, Table
+from tol3d.report.presenter import FurtherRow
+from tol3d.runs.summary.measure import MeasureSummary
+from tol3d.runs.summary.sample import CurveRoads
+from tol3d.system.outcome import SEATED
+
+ROWS = {
+    "low_3sigma": "low (−3 sigma)",
+    "mean": "mean",
+    "high_3sigma": "high (+3 sigma)",
+    "sigma": "sigma",
+    "p0.135": "0.135 % quantile",
+    "p50": "50 % quantile",
+    "p99.865": "99.865 % quantile",
+    "sample_min": "smallest",
+    "sample_max": "largest",
+}
+CONVERTED_ROWS = {"low_3sigma": "low", "mean": "mean", "high_3sigma": "high"}
+UNIT_HEADINGS = {"um": "[µm]", "mm": "[mm]", "arcmin": "[′, ″ of arc]"}
+SIDES = ("below", "above")
+INDICES = {"pp": "Pp", "ppk": "Ppk"}
+UNEXPLAINED_SHOWN = 0.05  # %; less is 0.0 in print
+NOT_ATTRIBUTED = "not attributed"
+ATTRIBUTING: Set[Road] = frozenset(("analytic", "geometric"))
+CURVE_ROWS = 12  # positions of a curve that are printed; the picture and the columns have them all
+SHARE_HEADINGS: Mapping[Road, str] = {"analytic": "analytic", "geometric": "3D simulation"}
+STATUS_WORDS = {"ok": "seated", "interferes": "jammed", "no contact": "without contact"}
+
+
+def _headings(columns: Sequence[Column]) -> list[Heading]:
+    styles = {"geometric": "bold", "published": "green"}
+    return [Heading(column.heading, styles.get(column.road, "")) for column in columns]
+
+
+def measure_table(measure: MeasureSummary, further: Sequence[FurtherRow] = ()) -> Table:
+    """Statistics of one scalar measure, one column a road, the published ones last; `further` rows below."""
+    columns, unit = columns_of(measure), measure.unit
+    rows = [*_failure_rows(measure, columns)]
+    rows += [Row(label, [_cell(column, key, unit) for column in columns], unit=unit) for key, label in ROWS.items()]
+    rows += [
+        Row(label, [share_cell(_ppm(column, key, measure)) for column in columns], unit="ppm")
+        for key, label in limit_rows(measure).items()
+    ]
+    rows += [
+        Row(label, [_index_cell(column.value(key)) for column in columns])
+        for key, label in INDICES.items()
+        if any(column.value(key) is not None for column in columns)
+    ]
+    rows += [
+        Row(label, [value_cell(build.value(column.road), unit) for column in columns], unit=unit)
+        for label, build in (("build at all means", measure.mean_build), ("nominal build", measure.nominal))
+    ]
+    rows += [*_converted_rows(measure, columns), *_further_rows(further, columns, unit)]
+    return Table(UNIT_HEADINGS[unit], _headings(columns), rows)
+
+
+def _cell(column: Column, key: str, unit: str) -> Shown:
+    text = given_text if column.road == "published" else value_text
+    return Shown(text(column.value(key), unit), column.value(key))
+
+
+def _index_cell(value: float | None) -> Shown:
+    return Shown(NOTHING if value is None else unsigned_zero(f"{value:.3f}"), value)
+
+
+def _failure_rows(measure: MeasureSummary, columns: Sequence[Column]) -> Iterator[Row]:
+    """How many trials seated, and how the others failed; nothing where all of them seated."""
+    if not seated_text(measure):
+        return
+    own = {"geometric": measure.status, "analytic": {SEATED: measure.trials}}
+    for status, count in measure.status.items():
+        if count or status == SEATED:
+            cells = [str(own[c.road].get(status, 0)) if c.road in own else NOTHING for c in columns]
+            yield Row(f"trials {STATUS_WORDS.get(status, status)}", cells)
+
+
+def limit_rows(measure: MeasureSummary) -> dict[str, str]:
+    """Labels of the rows of shares out of limits, by their keys."""
+    unit = measure.unit
+    sides = {
+        f"{side}_limit_ppm": f"{side} {given_text(limit, unit)}{unit_suffix(unit)}"
+        for side, limit in zip(SIDES, measure.limits, strict=True)
+        if limit is not None
+    }
+    in_all = len(sides) > 1 or (sides and seated_text(measure))
+    return {**sides, "out_ppm": "out in all"} if in_all else sides
+
+
+def _ppm(column: Column, key: str, measure: MeasureSummary) -> float | None:
+    """Counted, or for the closed form that of a normal measure."""
+    form = measure.analytic_closed_form
+    if column.road != "closed form" or form is None:
+        return column.value(key)
+    mean, sigma, lower, upper = form.mean, form.sigma, *measure.limits
+    if not sigma:
+        return None
+    margins = {"below_limit_ppm": None if lower is None else mean - lower}
+    margins["above_limit_ppm"] = None if upper is None else upper - mean
+    asked = margins.values() if key == "out_ppm" else [margins[key]]
+    return sum(1e6 * math.erfc(margin / sigma / math.sqrt(2)) / 2 for margin in asked if margin is not None)
+
+
+def _converted_rows(measure: MeasureSummary, columns: Sequence[Column]) -> Iterator[Row]:
+    """Low, mean and high in the other words that a measure has for them."""
+    for other in measure.conversions:
+        for key, word in CONVERTED_ROWS.items():
+            values = [column.value(key) for column in columns]
+            cells = [value_cell(None if value is None else value * other.per_unit, other.unit) for value in values]
+            yield Row(f"{other.words}, {word}", cells, unit=other.unit)
+
+
+def _further_rows(further: Sequence[FurtherRow], columns: Sequence[Column], unit: str) -> Iterator[Row]:
+    """What the system's presenter adds."""
+    for own in further:
+        values = [own.values.get(column.heading if column.road == "published" else column.road) for column in columns]
+        yield Row(own.label, [value_cell(value, unit) for value in values], unit=unit)
+
+
+def contributors_table(measure: MeasureSummary) -> Table:
+    """Shares of the variance, the largest first; those of the 3D simulation with their standard error."""
+    shares = [
+        replace(column, heading=SHARE_HEADINGS.get(column.road, column.heading))
+        for column in contributor_columns(measure)
+    ]
+    errors = {share.name: share.geometric_percent_se for share in measure.contributors}
+    rows = [
+        Row(name, [_share(column, name, errors[name]) for column in shares], unit="%")
+        for name in ranked_contributors(measure)
+    ]
+    left = not_attributed(measure)
+    if left:
+        rows.append(Row(NOT_ATTRIBUTED, [percent_cell(rest) for rest in left], "dim", unit="%"))
+    return Table("share [%]", _headings(shares), rows)
+
+
+def _share(column: Column, name: str, error: float | None) -> Shown:
+    return percent_cell(column.percents.get(name), error if column.road == "geometric" else None)
+
+
+def not_attributed(measure: MeasureSummary) -> list[float | None]:
+    """What each road leaves to no contributor [%], None for other columns; empty where that is nothing in print."""
+    left = [
+        100 - sum(share or 0.0 for share in column.percents.values()) if column.road in ATTRIBUTING else None
+        for column in contributor_columns(measure)
+    ]
+    return left if any(abs(rest or 0.0) > UNEXPLAINED_SHOWN for rest in left) else []
+
+
+def curve_table(measure: MeasureSummary, curve: CurveRoads) -> Table:
+    """A curve measure at some of its positions."""
+    words = {"analytic": "analytic", "geometric": "3D"}
+    columns = [
+        (f"{words[road]} {key}", road, getattr(own, key))
+        for road, own in curve.by_road.items()
+        for key in ("mean", "sigma")
+    ]
+    leading, own = [*curve.by_road.items()][-1]
+    columns += [(f"{words[leading]} smallest", leading, own.min), (f"{words[leading]} largest", leading, own.max)]
+    headings = [Heading(text, "bold" if road == "geometric" else "") for text, road, _ in columns]
+    positions = [unsigned_zero(f"{position:.1f}") for position in measure.position_deg or ()]
+    longest = max(map(len, positions), default=0)
+    rows = [
+        Row(
+            positions[index].rjust(longest),
+            [value_cell(values[index], measure.unit) for _, _, values in columns],
+            unit=measure.unit,
+        )
+        for index in shown_positions(measure)
+    ]
+    return Table(f"{measure.position_word} at [°]".lstrip(), headings, rows)
+
+
+def shown_positions(measure: MeasureSummary) -> range:
+    """Which positions of a curve are printed."""
+    count = len(measure.position_deg or ())
+    return range(0, count, max(1, -(-count // CURVE_ROWS)))
