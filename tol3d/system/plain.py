@@ -28,7 +28,7 @@ from tol3d.system.positions import AT_RANDOM, Positions, Take
 from tol3d.system.regressors import regress_plainly
 from tol3d.system.road import ANALYTIC_ROAD, Answers, Road, RoadKind
 from tol3d.system.stated import component_slices
-from tol3d.system.statuses import OK, Statuses
+from tol3d.system.statuses import Statuses
 from tol3d.system.system import Columns, KeyPath, Published, StreamKey
 from tol3d.system.trials import Trials
 from tol3d.units import Dimension
@@ -162,10 +162,7 @@ class PlainRoad:
 
     def answers(self, trials: Trials, measures: Sequence[Measure]) -> Answers:
         """See Road."""
-        return Answers(
-            {measure.name: self.values(trials, measure)[:, None] for measure in measures},
-            status={measure.name: np.full(len(trials), OK, dtype=np.int8) for measure in measures},
-        )
+        return Answers({measure.name: self.values(trials, measure)[:, None] for measure in measures})
 
 
 @dataclass(frozen=True)
