@@ -22,15 +22,13 @@ from tol3d.gears.spherical_involute import (
     flank_normals,
     in_plane_angle,
     inverse_spherical_involute,
-    involute_azimuth,
     spherical_involute,
 )
+from tol3d.gears.undercut import RACK_ADDENDUM, crown_rack_undercut_angle
 
 Array = NDArray[np.float64]
 
-RACK_ADDENDUM = 1.0  # of the module; the straight part of the generating rack ends there
 LONGEST_FACE = 0.9  # of the outer cone distance; common practice stops at a third
-UNDERCUT_XTOL = 1e-12  # rad; over 100 mm a ten-thousandth of a micrometre
 
 
 @dataclass(frozen=True)
@@ -325,53 +323,14 @@ class BevelGear:
     def undercut_angle(self) -> float:
         """Polar angle [rad] below which a crown rack of addendum 1 would cut the involute away.
 
-        The base angle where there is no undercut. Otherwise the corner at the end of the crown gear's flank, eta
-        below its pitch plane, sweeps through the flank that the crown gear has made. Turned by xi from the pitch
-        line it stands, seen from the gear, at the polar angle theta with
-        cos(theta) = cos(eta) cos(xi) cos(delta) + sin(eta) sin(delta), and the gear has turned by the crown
-        gear's turn over sin(delta). They cross once between base and tip cone.
+        The base angle where there is no undercut.
         """
         if self.profile_shift >= self.undercut_limit_shift:
             return self.base_angle
         eta = math.atan(self.module * (RACK_ADDENDUM - self.profile_shift) / self.outer_cone_distance)
-        sin, cos = math.sin(self.pitch_angle), math.cos(self.pitch_angle)
-        crown_base = math.pi / 2 - self.pressure_angle
-        below = math.asin(min(1.0, math.sin(eta) / math.sin(self.pressure_angle)))
-        first, last = (float(involute_azimuth(math.pi / 2 + q, crown_base)) for q in (0.0, below))
 
-        def corner_inside_tooth(polar: float) -> bool:
-            cos_xi = min(1.0, (math.cos(polar) - math.sin(eta) * sin) / (math.cos(eta) * cos))
-            xi = math.acos(cos_xi)
-            outwards = math.cos(eta) * cos_xi * sin - math.sin(eta) * cos
-            azimuth = math.atan2(math.cos(eta) * math.sin(xi), outwards) - (xi + last - first) / sin
-            return azimuth > self.pitch_half_angle - self.half_angle_at(polar)
+        def flank_at(polar: float) -> float:
+            return self.pitch_half_angle - self.half_angle_at(polar)
 
-        low, high = self.base_angle, self.tip_angle
-        while high - low > UNDERCUT_XTOL:
-            middle = (low + high) / 2
-            low, high = (middle, high) if corner_inside_tooth(middle) else (low, middle)
-        return low
-
-
-def pitch_angles(pinion_teeth: int, wheel_teeth: int, shaft_angle: float) -> tuple[float, float]:
-    """Pitch angles [rad] of pinion and wheel: tan(delta_1) = sin(Sigma)/(z_2/z_1 + cos(Sigma)).
-
-    Raises:
-        GeometryError: the shaft angle [rad] is not between 0 and 180 deg, or a pitch cone would be flat or hollow.
-
-    >>> [round(math.degrees(angle), 4) for angle in pitch_angles(17, 43, math.radians(90))]
-    [21.5713, 68.4287]
-    """
-    degrees = math.degrees(shaft_angle)
-    if not 0.0 < shaft_angle < math.pi:
-        raise GeometryError(f"shaft_angle: expected more than 0 and less than 180 deg, got {degrees:g} deg")
-    sin, cos = math.sin(shaft_angle), math.cos(shaft_angle)
-    pinion = math.atan2(sin, wheel_teeth / pinion_teeth + cos)
-    wheel = math.atan2(sin, pinion_teeth / wheel_teeth + cos)
-    for name, angle in (("driver", pinion), ("driven", wheel)):
-        if angle >= math.pi / 2:
-            raise GeometryError(
-                f"shaft_angle {degrees:g} deg: with {pinion_teeth} and {wheel_teeth} teeth the {name} gear's pitch "
-                f"angle would be {math.degrees(angle):.4f} deg, expected less than 90 deg"
-            )
-    return pinion, wheel
+        ends = (self.base_angle, self.tip_angle)
+        return crown_rack_undercut_angle(self.pressure_angle, self.pitch_angle, eta, ends, flank_at)

@@ -11,12 +11,12 @@ from numpy.typing import NDArray
 from tol3d.errors import GeometryError
 from tol3d.gears.flank import Flank
 from tol3d.gears.involute import involute
+from tol3d.gears.root_fillet import fillet_azimuth
+from tol3d.gears.undercut import RACK_ADDENDUM, rack_undercut_radius
 
 Array = NDArray[np.float64]
 
 ISO53_ROOT_FILLET = 0.38  # of the module; fillet of the standard basic rack, ISO 53:1998, profile A
-RACK_ADDENDUM = 1.0  # of the module; the straight part of the generating rack ends there
-UNDERCUT_XTOL = 1e-9  # mm; a millionth of a micrometre
 FULL_ROUND_MARGIN = 1e-9  # mm; two fillets of a space may touch, not overlap
 
 
@@ -281,19 +281,8 @@ class SpurGear:
         return min(ISO53_ROOT_FILLET * self.module, self.full_round_fillet)
 
     def _fillet_azimuth(self, radius: float) -> float:
-        """Azimuth [rad] of the fillet's centre off the tooth's middle, for an arc of that radius.
-
-        An offset of an involute is the same involute turned, so the centre of an arc that touches
-        flank and root circle is in closed form: on the involute of roll t + radius/r_b. Where the
-        arc would touch below the base circle it touches the radial line instead.
-        """
-        centre = self.root_radius + radius
-        beyond = centre**2 - self.base_radius**2
-        if beyond > radius**2:
-            along = math.sqrt(beyond)
-            roll = (along - radius) / self.base_radius
-            return self.base_half_angle - roll + math.atan2(along, self.base_radius)
-        return self.base_half_angle + math.asin(radius / centre)
+        """Azimuth [rad] of the fillet's centre off the tooth's middle, for an arc of that radius."""
+        return fillet_azimuth(radius, self.root_radius, self.base_radius, self.base_half_angle)
 
     def fillet_centre(self, flank: Flank) -> tuple[float, float]:
         """Centre (x, y) [mm] of the fillet arc below a flank of tooth 0."""
@@ -350,27 +339,9 @@ class SpurGear:
 
     @cached_property
     def undercut_radius(self) -> float:
-        """Radius [mm] below which a rack of addendum 1 would cut the involute away.
-
-        The base circle where there is no undercut. Otherwise the corner at the end of the rack's
-        straight flank, at depth h below the pitch line, sweeps through the flank that the rack has
-        made; in the gear's frame it runs along radius R at the azimuth
-        atan2(v, r - h) - (v + h tan alpha)/r, v = sqrt(R^2 - (r - h)^2), while the flank lies at
-        inv alpha_R - inv alpha. They cross once between base and tip circle.
-        """
+        """Radius [mm] below which a rack of addendum 1 would cut the involute away; the base circle if none."""
         if self.profile_shift >= self.undercut_limit_shift:
             return self.base_radius
         depth = self.module * (RACK_ADDENDUM - self.profile_shift)
-        from_axis = self.reference_radius - depth
-
-        def corner_inside_tooth(radius: float) -> bool:
-            along = math.sqrt(max(radius**2 - from_axis**2, 0.0))
-            roll = (along + depth * math.tan(self.pressure_angle)) / self.reference_radius
-            flank = involute(self.pressure_angle_at(radius)) - involute(self.pressure_angle)
-            return math.atan2(along, from_axis) - roll > flank
-
-        low, high = self.base_radius, self.tip_radius
-        while high - low > UNDERCUT_XTOL:
-            middle = (low + high) / 2
-            low, high = (middle, high) if corner_inside_tooth(middle) else (low, middle)
-        return low
+        ends = (self.base_radius, self.tip_radius)
+        return rack_undercut_radius(self.pressure_angle, self.reference_radius, depth, ends, self.pressure_angle_at)
