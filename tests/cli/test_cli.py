@@ -276,7 +276,8 @@ def test_a_process_that_cannot_be_started_costs_a_warning_too(
 
 
 def test_a_half_drawn_picture_is_taken_away(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    half = "import json, sys; open(json.load(sys.stdin)['picture'], 'wb').write(b'half'); sys.exit('disk')"
+    half = "import pickle, sys; pickle.load(sys.stdin.buffer); path, *_ = pickle.load(sys.stdin.buffer); "
+    half += "path.write_bytes(b'half'); sys.exit('disk')"
     monkeypatch.setattr(picture, "COMMAND", (sys.executable, "-c", half))
     with picture.drawing() as draw, pytest.raises(picture.PictureError, match=r"^disk$"):
         draw({}, tmp_path / "histogram.png")
