@@ -246,7 +246,7 @@ def test_version_is_that_of_the_package(tol3d: Command) -> None:
 
 FAILING_PAINTERS = {
     "no such colour": "sys.stdin.buffer.read(); print('a note', file=sys.stderr); sys.exit('no such colour')",
-    "its process ended with 7": "sys.stdin.read(); sys.exit(7)",
+    "its process ended with 7": "sys.stdin.buffer.read(); sys.exit(7)",
     "its process ended with -9": "import os; os.kill(os.getpid(), 9)",
 }
 

@@ -6,7 +6,7 @@ from typing import Annotated, Any
 
 import typer
 
-from tol3d.cli.arguments import EngineName, SceneArgument, TrustParts, scene_path, trials_or_auto
+from tol3d.cli.arguments import EngineOption, SceneArgument, TrustParts, scene_path, trials_or_auto
 from tol3d.cli.console import err_console, out_console, tell
 
 
@@ -44,7 +44,7 @@ def shim(
     trials: Annotated[
         Any, typer.Option(parser=trials_or_auto, metavar="N|auto", help="Number of trials instead of the scene's.")
     ] = None,
-    engine: Annotated[EngineName | None, typer.Option(help="Engine instead of the scene's.")] = None,
+    engine: EngineOption = None,
     out: Annotated[Path | None, typer.Option(help="Write the scene with the chosen shims to this new file.")] = None,
     trust_parts: TrustParts = False,
 ) -> None:
@@ -57,7 +57,7 @@ def shim(
     names = tuple(name.strip() for name in shims.split(",") if name.strip())
     target = length_of("--target-min", target_min)
     question = ShimQuestion(target, measure, names, minimum.value, stock_of(stock), rounding.value)
-    overrides = Overrides(trials=trials, engine=engine.value if engine else None)
+    overrides = Overrides(trials=trials, engine=engine)
     loaded = load(scene_path(scene), trust_parts=trust_parts)
     with err_console.status("studies") as status:
         plan = shim_plan(loaded, question, overrides, tell=status.update)

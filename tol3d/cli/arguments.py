@@ -23,18 +23,13 @@ app = typer.Typer(
 SceneArgument = Annotated[
     str, typer.Argument(metavar="SCENE", help="A scene file, or the name of one that tol3d brings along (spur_pair).")
 ]
+EngineOption = Annotated[
+    str | None, typer.Option(metavar="NAME", help="Engine instead of the scene's: exact, analytic, fcl of gears.")
+]
 RunArgument = Annotated[Path, typer.Argument(metavar="RUN", help="The folder of a finished run.")]
 TrustParts = Annotated[
     bool, typer.Option("--trust-parts", help="Allow the scene to read files outside its own folder.")
 ]
-
-
-class EngineName(StrEnum):
-    """Engines that a run may choose."""
-
-    EXACT = "exact"
-    FCL = "fcl"
-    ANALYTIC = "analytic"
 
 
 class SamplerName(StrEnum):

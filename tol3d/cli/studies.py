@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from tol3d.cli.arguments import (
-    EngineName,
+    EngineOption,
     SamplerName,
     SceneArgument,
     TrustParts,
@@ -28,9 +28,6 @@ if TYPE_CHECKING:
     from tol3d.runs.run import Run
     from tol3d.study.simulation import Simulation
 
-CONTACTS_PER_MINUTE = {"fcl": 180_000, "exact": 40_000_000, "analytic": 40_000_000}
-"""By an engine on one core, draws and statistics included; only for the estimate before what takes a minute or more."""
-
 PICTURE = "histogram.png"
 PATIENCE = 5.0  # s; worker processes that will not end may hold up an interrupted command no longer
 
@@ -42,10 +39,10 @@ def run(
         Any, typer.Option(parser=trials_or_auto, metavar="N|auto", help="Number of trials instead of the scene's.")
     ] = None,
     seed: Annotated[int | None, typer.Option(min=0, help="Seed instead of the scene's.")] = None,
-    engine: Annotated[EngineName | None, typer.Option(help="Engine instead of the scene's.")] = None,
+    engine: EngineOption = None,
     sampler: Annotated[SamplerName | None, typer.Option(help="Sampler instead of the scene's.")] = None,
     witness: Annotated[
-        int | None, typer.Option(min=0, help="Trials of an exact study that FCL measures again.")
+        int | None, typer.Option(min=0, help="Trials that another engine measures again, of gears FCL.")
     ] = None,
     out: Annotated[
         Path | None, typer.Option(help="The run's folder; by default runs/<scene>, or -2, -3 … of another study.")
@@ -98,7 +95,7 @@ def run(
     from tol3d.simulate import Overrides, Watch, folder_for, load, run_scene, simulation_of, workers_for
 
     path = scene_path(scene)
-    overrides = Overrides(trials, seed, engine.value if engine else None, sampler.value if sampler else None, witness)
+    overrides = Overrides(trials, seed, engine, sampler.value if sampler else None, witness)
     loaded = load(path, trust_parts=trust_parts)
     simulation = simulation_of(loaded, overrides)
     for warning in simulation.warnings:
@@ -189,7 +186,7 @@ def long_study(simulation: "Simulation") -> str:
 
     positions = contacts_of(simulation)
     study = simulation.study
-    minutes = study.trials * positions / CONTACTS_PER_MINUTE[study.engine]
+    minutes = study.trials * positions / simulation.road.contacts_per_minute
     if minutes <= 1.0:
         return ""
     each = "one position" if positions == 1 else f"{positions} positions"

@@ -176,11 +176,11 @@ def _by_replicates(sample: Sample, run: RunSummary) -> str:
 
 
 def _witness_notes(name: str, measure: MeasureSummary, run: RunSummary) -> Iterator[str]:
-    """What FCL found of the trials that it measured again."""
+    """What the witness found of the trials that it measured again."""
     found = run.witness.measures.get(name) if run.witness else None
     if run.witness is None or found is None:
         return
-    again = f"witness: FCL measured {run.witness.trials} of these trials again"
+    again = f"witness: {run.witness.engine.upper()} measured {run.witness.trials} of these trials again"
     if not found.compared:
         yield f"{again}: none of them has a value on both sides"
         return

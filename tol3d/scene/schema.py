@@ -35,7 +35,7 @@ FEWEST_PROFILE_STEPS = 8
 MOST_PROFILE_STEPS = 2000
 FEWEST_REPLICATES = 2  # that have a spread at all
 MOST_REPLICATES = 1000
-MOST_WITNESSED = 1_000_000  # trials; minutes of FCL, and all of them are held at once
+MOST_WITNESSED = 1_000_000  # trials; minutes of a slow engine, and all of them are held at once
 
 E = TypeVar("E", bound=Entry)
 

@@ -77,9 +77,11 @@ class RoadKind:
         threads: whether workers are threads that take whole blocks; else processes that take pieces of blocks.
         compiled: whether it loads the compiler of kernels anyway, so that draws and sums may use it too.
         witness: whether it can check another road.
+        contacts_per_minute: of one core, draws and statistics included; only for the estimate before what takes long.
     """
 
     setup: str
     threads: bool = True
     compiled: bool = False
     witness: bool = False
+    contacts_per_minute: int = 40_000_000
