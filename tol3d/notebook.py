@@ -261,7 +261,7 @@ def view_trial(
         InputError: no such build or mesh, no display, or the picture cannot be written.
     """
     picture = None if out is None else Path(out)
-    notes = report.view_run(opened_run(run), _which(trial), screenshot=picture, magnify=magnify, mesh=mesh)
+    notes = report.view_run(opened_run(run), _which(trial), screenshot=picture, magnify=magnify, close_up=mesh)
     return Picture(picture, notes)
 
 

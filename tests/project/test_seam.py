@@ -13,10 +13,13 @@ PACKAGE: Final = ROOT / "tol3d"
 GENERIC: Final = ("study", "runs", "execution", "statistics", "system", "samplers", "distributions", "scene", "report")
 MECHANISMS: Final = ("gearing", "gears", "toys")
 
-OF_GEARS: Final = re.compile(
-    r"(?<![a-z])(gear(s|ing)?|mesh(es|ed|ing)?|tooth|teeth|trains?|backlash(es)?|bevel|spur|pinions?|flanks?)(?![a-z])",
-    re.IGNORECASE,
+WORDS: Final = (
+    "gear|gears|gearing|mesh|meshes|meshed|meshing|tooth|teeth|train|trains|"
+    "backlash|backlashes|bevel|spur|pinion|pinions|flank|flanks"
 )
+CAPITAL: Final = "|".join(word.capitalize() for word in WORDS.split("|"))
+OF_GEARS: Final = re.compile(rf"(?<![A-Za-z])(?:(?i:{WORDS}))(?![a-z])|(?<=[a-z])(?:{CAPITAL})(?![a-z])")
+"""As words, and as parts of names: gear_model, MeshSpec, PosedGear."""
 TRIANGLES: Final = "a mesh of triangles, of whatever surface: the word of trimesh and VTK"
 EXCUSED: Final[Mapping[str, tuple[str, str]]] = {
     "report/body.py": ("mesh", TRIANGLES),
@@ -42,8 +45,10 @@ def words_of_gears(text: str, excused: str = "") -> Iterator[tuple[int, str]]:
 
 
 def test_the_words_are_found_wherever_they_stand() -> None:
-    text = "gear_model = 1\nMeshSpec\n# of a train\n'''Backlash'''\ntrimesh, strain, trained, ingear, spurious, message"
-    assert [word for _, word in words_of_gears(text)] == ["gear", "train", "Backlash"]
+    text = (
+        "gear_model = 1\nMeshSpec, PosedGear\n# of a train\n'''Backlash'''\ntrimesh, strain, trained, spurious, message"
+    )
+    assert [word for _, word in words_of_gears(text)] == ["gear", "Mesh", "Gear", "train", "Backlash"]
     assert [*words_of_gears("a mesh of gears", "mesh")] == [(1, "gears")]
 
 

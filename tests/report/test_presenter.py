@@ -87,7 +87,7 @@ def test_the_window_of_a_system_without_panels_shows_its_bodies_named(run: Run, 
 
 def test_a_close_up_that_is_not_there_is_refused_by_the_presenter(run: Run, tmp_path: Path) -> None:
     with pytest.raises(InputError, match="no teeth"):
-        view_run(run, 3, screenshot=tmp_path / "none.png", mesh="teeth", presenter=BOXES)
+        view_run(run, 3, screenshot=tmp_path / "none.png", close_up="teeth", presenter=BOXES)
 
 
 def test_a_run_whose_measures_name_no_presenter_has_no_further_pictures_and_says_why_nothing_is_shown(

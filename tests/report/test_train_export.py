@@ -333,7 +333,7 @@ def test_the_close_ups_are_those_of_the_mesh_that_was_chosen(run: Run, tmp_path:
     """In the nominal build its gap is nothing but rounding: that is drawn as a point."""
     pictures = {}
     for name in (None, "first", "bevels"):
-        notes = view_run(run, "nominal", screenshot=tmp_path / "chosen.png", mesh=name)
+        notes = view_run(run, "nominal", screenshot=tmp_path / "chosen.png", close_up=name)
         shown = name or "first"
         others = ", ".join(mesh for mesh in MESHES if mesh != shown)
         assert notes[-1] == f"close up is {shown}, not {others} (choose with --mesh)"
@@ -344,7 +344,7 @@ def test_the_close_ups_are_those_of_the_mesh_that_was_chosen(run: Run, tmp_path:
 
 def test_a_mesh_that_is_not_there_is_refused_with_the_nearest(run: Run, tmp_path: Path) -> None:
     with pytest.raises(InputError, match=r"^--mesh: no mesh 'bevel' is shown of this run; did you mean \"bevels\"\?$"):
-        view_run(run, TRIAL, screenshot=tmp_path / "none.png", mesh="bevel")
+        view_run(run, TRIAL, screenshot=tmp_path / "none.png", close_up="bevel")
 
 
 REDUCERS = """
@@ -402,7 +402,7 @@ def test_trees_of_shafts_that_nothing_connects_are_files_of_their_own(tmp_path: 
         "close up is first, not lone pair, second, bevels (choose with --mesh)",
         "shown are the shafts downstream of motor, not those of lone",
     )
-    assert view_run(run, 0, screenshot=tmp_path / "lone.png", mesh="lone pair") == (
+    assert view_run(run, 0, screenshot=tmp_path / "lone.png", close_up="lone pair") == (
         "close up is lone pair, not first, second, bevels (choose with --mesh)",
         "shown are the shafts downstream of lone, not those of motor",
     )

@@ -130,7 +130,7 @@ def view(
 
     finished = open_run(run)
     which = _which(finished, trial, worst=worst, nominal=nominal, mean=mean)
-    for note in view_run(finished, which, screenshot=screenshot, magnify=magnify, mesh=mesh):
+    for note in view_run(finished, which, screenshot=screenshot, magnify=magnify, close_up=mesh):
         err_console.print(note, style="yellow")
     if screenshot:
         tell(str(screenshot))

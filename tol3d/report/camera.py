@@ -10,7 +10,7 @@ Array = NDArray[np.float64]
 
 FRONT: Final = np.array([0.0, 0.0, 1.0])
 UP: Final = np.array([0.0, 1.0, 0.0])
-VIEW_ANGLE: Final = 12.0  # deg; enough perspective to show flanks, little enough to look through a gap
+VIEW_ANGLE: Final = 12.0  # deg; enough perspective to show depth, little enough to look through a gap
 FAR: Final = 4.0  # diagonals of all that is drawn, from what is seen to the eye; along parallels any distance does
 
 

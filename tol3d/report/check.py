@@ -13,7 +13,7 @@ def check_report(simulation: Simulation) -> Page:
         *presenter_at(simulation.presenter).check(simulation.system),
         line(
             f"\nstudy: {study.trials} trials, seed {study.seed}, {study.sampler}, engine {study.engine}, "
-            f"{study.profile_steps} profile steps a flank"
+            f"{study.profile_steps} profile steps"
         ),
         *map(warning, simulation.warnings),
     )

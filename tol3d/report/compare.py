@@ -17,7 +17,7 @@ from tol3d.runs.summary.measure import MeasureSummary
 from tol3d.runs.summary.values import Road
 
 NO_ONE_MEAN = "no row: it is 0 with the load on one side and jumps where the load changes side; the picture shows it"
-SHOWN_APART = "not all of these runs read it alike, at the same positions and teeth: shown apart"
+SHOWN_APART = "not all of these runs read it alike, at the same positions and contacts: shown apart"
 ENDS_BEFORE = "trials end before mean ∓ 3 sigma here: low and high are no ends of theirs"
 SHORT: Mapping[Road, str] = {"analytic": "analytic", "geometric": "3D"}
 
@@ -98,8 +98,8 @@ def labelled(runs: Sequence[Run]) -> list[tuple[str, Run]]:
 def _end_of(path: Path, others: Sequence[Path]) -> str:
     """The shortest end of a path that no other path ends with.
 
-    >>> _end_of(Path("/runs/a/spur"), [Path("/runs/b/spur")]), _end_of(Path("/runs/a/spur"), [Path("/runs/a/bevel")])
-    ('a/spur', 'spur')
+    >>> _end_of(Path("/runs/a/arm"), [Path("/runs/b/arm")]), _end_of(Path("/runs/a/arm"), [Path("/runs/a/leg")])
+    ('a/arm', 'arm')
     """
     ends = (path.parts[-count:] for count in range(1, len(path.parts) + 1))
     shortest = next((end for end in ends if all(other.parts[-len(end) :] != end for other in others)), path.parts)

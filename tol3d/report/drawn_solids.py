@@ -11,7 +11,7 @@ Array = NDArray[np.float64]
 
 EDGE_COLOUR: Final = "#30373F"
 CONTACT_COLOUR, GAP_COLOUR = "#00714F", "#C03A00"  # green and vermillion: Okabe and Ito, darkened
-EDGE_ANGLE: Final = 25.0  # deg; sharper edges are drawn as lines: tips, ends, not the facets of a flank
+EDGE_ANGLE: Final = 25.0  # deg; sharper edges are drawn as lines: tips, ends, not the facets of a curved face
 
 
 def poly_data(vertices: Array, triangles: NDArray[np.int64]) -> pv.PolyData:

@@ -50,7 +50,7 @@ def export_run(
         run: a finished run.
         which: a trial, or "worst", "nominal", "mean".
         fmt: "stl" and "ply" write a file a part [mm], "glb" one scene a world [m], "step" one assembly a world [mm]
-            with the real perturbed solids. A world that is shown as one, such as a train, is one file in any format.
+            with the real perturbed solids. A world that is shown as one, such as a robot, is one file in any format.
         magnify: scales the deviations and simulates again.
         out: the folder; made if missing.
         presenter: import path of what shows the system; by default that of the run's measures.
@@ -121,8 +121,8 @@ def _glb(world: World) -> object:
 def file_words(names: Iterable[str]) -> dict[str, str]:
     """Users' names as parts of file names: letters, digits, dots and dashes; all differ, even if case does not count.
 
-    >>> file_words(["gear 1", "gear_1", "Gear-2"])
-    {'gear 1': 'gear_1', 'gear_1': 'gear_1_2', 'Gear-2': 'Gear-2'}
+    >>> file_words(["pin 1", "pin_1", "Pin-2"])
+    {'pin 1': 'pin_1', 'pin_1': 'pin_1_2', 'Pin-2': 'Pin-2'}
     """
     words: dict[str, str] = {}
     for name in dict.fromkeys(names):

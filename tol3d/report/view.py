@@ -28,7 +28,7 @@ def view_run(
     *,
     screenshot: Path | None = None,
     magnify: float = 1.0,
-    mesh: str | None = None,
+    close_up: str | None = None,
     presenter: str | None = None,
 ) -> tuple[str, ...]:
     """Show a build of a run in a window, or write a picture of it.
@@ -38,7 +38,7 @@ def view_run(
         which: a trial, or "worst", "nominal", "mean".
         screenshot: the picture to write; needs no display.
         magnify: scales the deviations and simulates again.
-        mesh: what is shown close up; None: the first there is.
+        close_up: what is shown close up; None: the first there is.
         presenter: import path of what shows the system; by default that of the run's measures.
 
     Returns:
@@ -50,7 +50,7 @@ def view_run(
     if screenshot is not None and screenshot.suffix.lower() not in PICTURES:
         raise InputError(f"{screenshot}: expected a picture ending in {', '.join(PICTURES)}")
     display = presenter_of(run.found, presenter).display(run, which, magnify=magnify)
-    view = display.view(mesh)
+    view = display.view(close_up)
     choose_window(needs_display=screenshot is None)
     plotter = plot(view.panels or (partial(_first_world, display),), off_screen=screenshot is not None)
     try:

@@ -73,7 +73,7 @@ class Run:
 
     @cached_property
     def found(self) -> RunSummary:
-        """The summary as an object: `run.found.measures["normal backlash"].geometric.sigma`.
+        """The summary as an object: `run.found.measures["play"].geometric.sigma`.
 
         Raises:
             RunError: it is not a summary as this version writes them.

@@ -11,10 +11,10 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Stream:
-    """One uniform of every trial: a component of a contributor, or the position of a mesh's driver.
+    """One uniform of every trial: a component of a contributor, or a position of the system.
 
     Args:
-        name: of the contributor or the mesh.
+        name: of the contributor, or of what has the position.
         component: which of its uniforms.
         dimension: its place among all streams of the model, from 0.
     """

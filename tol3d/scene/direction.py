@@ -38,4 +38,4 @@ def known_word(*words: str) -> BeforeValidator:
 RandomOrFixed = Annotated[
     Annotated[Literal["random"], Tag("word")] | FixedAngle, Discriminator(shape), known_word("random")
 ]
-"""Uniform over the circle, or at an angle: where an offset points that turns with its gear, or where a shaft stands."""
+"""Uniform over the circle, or at an angle: where an offset points that turns with its part, or where a shaft stands."""

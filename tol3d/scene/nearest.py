@@ -12,8 +12,8 @@ LISTED_WORDS = 12  # so many known words are listed where none is near
 def nearest(word: str, known: Iterable[str]) -> str:
     """The nearest known word, to end a message; empty if none is near.
 
-    >>> nearest("tooth_thicknes", ["eccentricity", "tooth_thickness"])
-    '; did you mean "tooth_thickness"?'
+    >>> nearest("wall_thicknes", ["eccentricity", "wall_thickness"])
+    '; did you mean "wall_thickness"?'
     """
     by_folded = {known_word.casefold(): known_word for known_word in islice(known, MOST_WORDS)}
     near = difflib.get_close_matches(word[:LONGEST_WORD].casefold(), by_folded, n=1)
@@ -23,8 +23,8 @@ def nearest(word: str, known: Iterable[str]) -> str:
 def hint(word: str, known: Collection[str]) -> str:
     """The nearest known word, or else the first few of them; empty if nothing is known.
 
-    >>> hint("colour", ["teeth", "module"])
-    '; known here: teeth, module'
+    >>> hint("colour", ["length", "width"])
+    '; known here: length, width'
     """
     more = ", …" if len(known) > LISTED_WORDS else ""
     listed = f"; known here: {', '.join(islice(known, LISTED_WORDS))}{more}" if known else ""

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 
 def any_of(specs: "Collection[type[Entry]]") -> str:
-    """What may stand there, in words: "a gear or a housing"."""
+    """What may stand there, in words: "a shaft or a housing"."""
     return " or ".join(spec.words for spec in specs)
 
 

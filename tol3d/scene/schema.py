@@ -145,7 +145,7 @@ class Study(Strict):
         if not self.until:
             raise refused(
                 "until",
-                'the standard errors to stop at where trials are auto, such as "until: {backlash: {mean: 0.05 um}}"',
+                'the standard errors to stop at where trials are auto, such as "until: {gap: {mean: 0.05 um}}"',
                 "none",
             )
 

@@ -23,7 +23,7 @@ def streams_of(system: System) -> Mapping[StreamKey, Stream]:
     """Every stream by name and component: those of positions, then of contributors and their uniforms, in their order.
 
     Positions come first, where Sobol' points are most even: they act together with all that turns, in waves of
-    as many turns as the long period has (of the spur pair 55: its mean is three times as exact at 16 384 trials).
+    as many turns as the long period has (of 55 turns, a mean is three times as exact at 16 384 trials).
     """
     keys = [*system.streams]
     keys += [(c.name, str(k)) for c in system.contributors for k in range(c.draw.uniforms)]

@@ -17,7 +17,7 @@ class Until(NamedTuple):
 
 @dataclass(frozen=True)
 class Study:
-    """How many trials, drawn from which seed and how, by which engine, with how many profile steps a flank.
+    """How many trials, drawn from which seed and how, by which engine, with how many facets a profile.
 
     With `until` the trials are those at most. `replicates` of a sampler are parts of equal size, each randomised
     anew.

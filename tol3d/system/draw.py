@@ -165,7 +165,7 @@ class Ball:
 
 @dataclass(frozen=True)
 class Each:
-    """As many independent draws of one distribution as there are features: pins, teeth, planets.
+    """As many independent draws of one distribution as there are features: pins, lobes, planets.
 
     Args:
         distribution: of each of them.

@@ -10,7 +10,7 @@ Take = Literal["value", "min", "max", "range", "curve"]
 
 @dataclass(frozen=True)
 class Positions:
-    """Positions at which a measure is read, such as angles of a driver or of the first shaft of a train.
+    """Positions at which a measure is read, such as angles of a driving shaft.
 
     Args:
         over: "random" (uniform over the long period, one a trial), "at" (one angle), "turn" or

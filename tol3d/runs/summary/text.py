@@ -72,7 +72,7 @@ def typed(
 
 
 def _without_tag(loc: tuple[int | str, ...], kinds: SummaryKinds) -> tuple[int | str, ...]:
-    """A place in the file: `measures.play.normal_backlash.unit` of pydantic is measures.play.unit there."""
+    """A place in the file: `measures.play.its_kind.unit` of pydantic is measures.play.unit there."""
     return (*loc[:2], *loc[3:]) if loc[:1] == ("measures",) and len(loc) > 2 and loc[2] in kinds.tags else loc
 
 

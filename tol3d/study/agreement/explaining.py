@@ -33,7 +33,7 @@ Array = NDArray[np.float64]
 
 SURE = 5.0  # standard errors; by chance once in two million
 SUREST = 1e6  # standard errors, at most, in a summary; without any chance there are infinitely many
-SHARE = 0.02  # of a contributor's own effect; a wrong coefficient of 3 % and half a pitch of 110 teeth are beyond it
+SHARE = 0.02  # of a contributor's own effect; a wrong coefficient of 3 % and half a step of 110 a turn are beyond it
 LEAST_LEFT = 0.01  # of the measure's sigma; what adds 0.005 % to it cannot be distinguished from 0 by 10^8 trials
 LARGEST_LEFT = 5.0  # times that; the most that one of very many trials may be off by kinks of an extreme over a turn
 FURTHER_LOOKS = 256  # trials looked at again beyond the regressors: what is left of 256 has an rms known to 4 %
