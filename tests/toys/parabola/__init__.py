@@ -24,5 +24,6 @@ PARABOLA: Final = Mechanism(
     witness="chords",
     system="toys.parabola.system:parabola_system",
     summary="toys.parabola.summary:SUMMARY_KINDS",
+    presenter="toys.parabola.showing",
     requires=("jsonschema",),
 )

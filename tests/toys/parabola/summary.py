@@ -8,9 +8,13 @@ from tol3d.runs.summary.measure import MeasureSummary
 from tol3d.runs.summary.run import RunSummary
 from tol3d.runs.summary.values import LEFT_OUT, Known, Label, Maybe, Number, Section
 
+PRESENTER: Final = "toys.parabola.showing"
+
 
 class HeightSummary(MeasureSummary):
     """How far a spring lifts."""
+
+    presenter = PRESENTER
 
     kind: Literal["height"]
     of: Label
@@ -30,6 +34,8 @@ class HeightSummary(MeasureSummary):
 
 class RoomSummary(MeasureSummary):
     """What is left of a room."""
+
+    presenter = PRESENTER
 
     kind: Literal["room"]
     of: Label

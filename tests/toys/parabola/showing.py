@@ -1,0 +1,118 @@
+"""Springs as they are shown: bars that lift, a picture and a table of their terms."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from tol3d.errors import InputError
+from tol3d.report.body import Body, Surface, World
+from tol3d.report.page import Block, Heading, Row, Table, line
+from tol3d.report.presenter import Draw, FurtherRow, View, Which
+from tol3d.runs.summary.measure import MeasureSummary
+from tol3d.runs.worst import worst_trial
+from tol3d.simulate import Replay, replay, replayed, simulation_again
+from tol3d.solids import PosedBody, ShaftBody
+from tol3d.system.stated import mean_build, nominal_build
+from toys.parabola.springs import Springs
+from toys.parabola.summary import TermsOfRun
+from toys.parabola.system import Lifted, ParabolaSystem
+
+if TYPE_CHECKING:
+    from tol3d.runs.run import Run
+    from tol3d.runs.summary.run import RunSummary
+    from tol3d.system.system import System
+
+SIDE = 5.0  # mm
+TRIANGLES = np.array(
+    [[0, 2, 3], [0, 3, 1], [4, 5, 7], [4, 7, 6], [0, 1, 5], [0, 5, 4]]
+    + [[2, 6, 7], [2, 7, 3], [0, 4, 6], [0, 6, 2], [1, 3, 7], [1, 7, 5]]
+)
+
+
+def bar(springs: Springs, height: float) -> Body:
+    """A bar as long as the spring, lifted by a height [mm]."""
+    length, pose = springs.spring.length, np.eye(4)
+    pose[2, 3] = height
+    corners = np.array([[x, y, z] for z in (0.0, length) for y in (0.0, SIDE) for x in (0.0, SIDE)])
+
+    def surface() -> Surface:
+        return corners, TRIANGLES
+
+    solid = PosedBody(springs.spring.name, ShaftBody(SIDE, 0.0, length), pose)
+    return Body(springs.spring.name, pose, surface, lambda: solid, "#4682B4")
+
+
+@dataclass(frozen=True)
+class LiftedDisplay:
+    """A spring of one trial."""
+
+    label: str
+    lifted: Lifted
+    notes: tuple[str, ...] = ()
+
+    @property
+    def worlds(self) -> tuple[World, ...]:
+        return (World("lift", (bar(self.lifted.springs, self.lifted.height),)),)
+
+    def view(self, close_up: str | None) -> View:
+        if close_up is not None:
+            raise InputError(f"nothing of a spring is shown close up, not {close_up}")
+        return View()
+
+
+class SpringPresenter:
+    """Implements Presenter."""
+
+    def pictures(self, summary: "RunSummary") -> Mapping[str, Draw]:
+        return {"terms": partial(_draw, summary)} if isinstance(summary, TermsOfRun) else {}
+
+    def sections(self, summary: "RunSummary") -> Sequence[Block]:
+        if not isinstance(summary, TermsOfRun) or summary.terms is None:
+            return ()
+        roads = summary.terms["height"]
+        names = list(roads["analytic"])
+        rows = [Row(name, [f"{own[name].sigma:.3f}" for own in roads.values()]) for name in names]
+        return (Table("term: sigma [µm]", [Heading(road) for road in roads], rows),)
+
+    def measure_rows(self, measure: MeasureSummary, summary: "RunSummary") -> Sequence[FurtherRow]:
+        if not isinstance(summary, TermsOfRun) or summary.terms is None or measure.kind != "height":
+            return ()
+        return (FurtherRow("mean of the bow", {r: t["bow"].mean for r, t in summary.terms["height"].items()}),)
+
+    def check(self, system: "System") -> Sequence[Block]:
+        assert isinstance(system, ParabolaSystem)
+        spring = system.springs.spring
+        return (line(f"spring {spring.name}: a {spring.a:g}, b {spring.b:g}, q {spring.q:g}"),)
+
+    def display(self, run: "Run", which: Which, *, magnify: float) -> LiftedDisplay:
+        trial = worst_trial(run) if which == "worst" else which
+        if isinstance(trial, int):
+            seen = replay(run, trial)
+        else:
+            simulation = simulation_again(run)
+            system = simulation.system
+            build = nominal_build(system) if trial == "nominal" else mean_build(system, system.measures[0])
+            seen = replayed(simulation, build)
+        if magnify != 1.0:
+            seen = replayed(seen.simulation, seen.trials.scaled(magnify))
+        return self.replayed(seen, f"trial-{trial}" if isinstance(trial, int) else trial)
+
+    def replayed(self, replay: Replay, label: str) -> LiftedDisplay:
+        lifted: Lifted = replay.build
+        return LiftedDisplay(label, lifted)
+
+
+def _draw(summary: TermsOfRun, path: Path) -> None:
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(3, 2), dpi=50)
+    terms = (summary.terms or {})["height"]["geometric"]
+    figure.add_subplot().bar(list(terms), [term.sigma or 0.0 for term in terms.values()])
+    figure.savefig(path)
+
+
+PRESENTER = SpringPresenter()
