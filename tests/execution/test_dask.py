@@ -14,6 +14,8 @@ import numpy as np
 import pytest
 from of_kind import of_kind
 from places import SPUR_PAIR
+from toys.parabola import PARABOLA
+from toys.registered import TOYS, known
 
 from tol3d import InputError, Overrides, Run, run_scene
 from tol3d.execution import pools as execution_module
@@ -112,6 +114,24 @@ def test_two_dask_workers_give_the_bits_of_one_process(cluster: Cluster, tmp_pat
     bare = Execution(scheduler=address, keep_trials=False)
     statistics = run_scene(SPUR_PAIR, overrides=study, out=tmp_path / "bare", execution=bare)
     assert statistics.summary["measures"] == alone.summary["measures"]
+
+
+@pytest.fixture
+def springs() -> Iterator[None]:
+    """A mechanism from outside, before any worker starts."""
+    with known(PARABOLA):
+        yield
+
+
+@pytest.mark.parametrize("engine", ["exact", "chords"])
+def test_dask_workers_run_a_mechanism_from_outside(
+    engine: str, springs: None, cluster: Cluster, tmp_path: Path
+) -> None:
+    address, _ = cluster
+    scene, study = TOYS / "parabola" / "spring.yaml", Overrides(trials=6 * BLOCK + 77, engine=engine)
+    alone = run_scene(scene, overrides=study, out=tmp_path / "alone")
+    spread = run_scene(scene, overrides=study, out=tmp_path / "dask", execution=Execution(scheduler=address))
+    assert_same_run(alone, spread)
 
 
 @pytest.mark.slow

@@ -2,6 +2,10 @@
 
 import math
 import os
+import pickle
+import signal
+import subprocess
+import sys
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from pathlib import Path
@@ -11,12 +15,14 @@ import jsonschema
 import numpy as np
 import pytest
 from numpy.typing import NDArray
+from places import TESTS
+from runs.test_kill import HANGS, SMALL_BLOCKS
 from scipy import integrate, stats
 from toys.parabola import PARABOLA, roads
 from toys.parabola.cumulants import Cumulants, parabola, uniform
 from toys.parabola.springs import LOST_LEVER, coil_weights
 from toys.parabola.system import KNOTS_TO, ParabolaSystem
-from toys.registered import TOYS, known
+from toys.registered import TOYS, known, offered
 
 from tol3d import Overrides, Run, SceneError, load_scene, open_run, run_scene
 from tol3d.execution.pools import Execution
@@ -341,6 +347,26 @@ def test_bits_are_those_of_any_blocks_workers_and_resume(tmp_path: Path, monkeyp
         assert np.array_equal(column, other.columns(name)[name], equal_nan=column.dtype.kind == "f"), name
 
 
+def test_a_process_that_is_killed_is_gone_on_with_by_another(tmp_path: Path) -> None:
+    """The command knows the mechanism by the package that offers it."""
+    offering = offered(tmp_path / "site", springs="toys.parabola:PARABOLA")
+    paths = os.pathsep.join(map(str, (offering, TESTS)))
+
+    def ended(out: Path, killed_at: int) -> int:
+        words = ("run", str(SPRING), "--trials", "9000", "--no-picture", "--out", str(out))
+        code = (sys.executable, "-c", SMALL_BLOCKS, str(int(signal.SIGKILL)), str(killed_at), *words)
+        environment = {**os.environ, "PYTHONPATH": paths}
+        return subprocess.run(code, env=environment, capture_output=True, timeout=HANGS).returncode
+
+    assert ended(tmp_path / "whole", -1) == 0
+    assert ended(tmp_path / "killed", 9) == -signal.SIGKILL
+    assert not (tmp_path / "killed").exists()
+    assert ended(tmp_path / "killed", -1) == 0
+    resumed = open_run(tmp_path / "killed")
+    assert 0 < resumed.summary["timing"]["resumed_trials"] < 9000
+    assert_bits(open_run(tmp_path / "whole"), resumed)
+
+
 def test_what_it_requires_and_the_files_that_it_reads_are_in_the_fingerprint(run: Run, tmp_path: Path) -> None:
     assert "jsonschema" in run.fingerprint["versions"]
     assert "python-fcl" not in run.fingerprint["versions"]
@@ -426,8 +452,6 @@ def test_a_file_that_makes_no_sense_and_a_system_that_cannot_be_studied_are_refu
 
 
 def test_road_tasks_pickle_without_the_registry(run: Run) -> None:
-    import pickle
-
     simulation = simulation_of(load_scene(SPRING))
     task = task_module.task_of(simulation, "x", keep_trials=True)
     again = pickle.loads(pickle.dumps(task))
