@@ -13,10 +13,11 @@ from toys.pins.programme import gaps_of, slide_of
 from toys.pins.system import STEEPEST
 from toys.registered import TOYS, known
 
-from tol3d import Overrides, Run, replay, run_scene
+from tol3d import InputError, Overrides, Run, SceneError, replay, run_scene
 from tol3d.execution.pools import Execution
 from tol3d.runs.worst import worst_trial
 from tol3d.study import blocks
+from tol3d.system.statuses import Statuses
 
 SCENE = TOYS / "pins" / "pins.yaml"
 TRIALS = 40_000
@@ -120,3 +121,24 @@ def test_a_mechanism_without_a_class_of_summaries_is_read_back_as_it_is(run: Run
     own = run.found.measures["least gap"]
     assert (own.kind, own.words) == ("least_gap", "least gap")
     assert [share.name for share in own.contributors] == ["room", "pins", "off centre"]
+
+
+def test_a_witness_where_there_is_none_is_refused(tmp_path: Path) -> None:
+    scene = tmp_path / "pins.yaml"
+    scene.write_text(SCENE.read_text("utf-8").replace("trials: 20000", "trials: 20000, witness: 5"), "utf-8")
+    with pytest.raises(SceneError, match=r"study.witness: expected none, for this scene has no witness, got 5"):
+        run_scene(scene, out=tmp_path / "run")
+
+
+@pytest.mark.parametrize(
+    ("texts", "lacking", "said"),
+    [
+        (("fits", "lost"), (), "expected 'ok' first"),
+        (("ok", "lost"), ("too long",), "expected some of ok, lost, got too long"),
+    ],
+)
+def test_statuses_that_no_run_could_keep_are_refused(
+    texts: tuple[str, ...], lacking: tuple[str, ...], said: str
+) -> None:
+    with pytest.raises(InputError, match=said):
+        Statuses(texts, frozenset(lacking))

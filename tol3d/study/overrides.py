@@ -42,6 +42,10 @@ def simulation_of(scene: Scene, overrides: Overrides = AS_WRITTEN) -> Simulation
         raise asked.refuse(
             ("study", "engine"), f"expected one of {expected} for this scene, got {asked.study.engine!r}"
         )
+    if asked.study.witness and not any(kind.witness for kind in system.roads.values()):
+        raise asked.refuse(
+            ("study", "witness"), f"expected none, for this scene has no witness, got {asked.study.witness}"
+        )
     for place, sentence in system.problems():
         raise scene.refuse(place, sentence)
     return Simulation(system, study_of(asked.study), published_in(asked), mechanism.requires, mechanism.presenter)

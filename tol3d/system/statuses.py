@@ -8,6 +8,9 @@ from typing import Final, Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from tol3d.errors import InputError
+from tol3d.system.outcome import SEATED
+
 OK: Final = 0
 """The code of a trial that was assembled and measured, in every system."""
 
@@ -21,14 +24,23 @@ class Statuses:
     """The statuses of a system by their codes, from OK on; a larger code is worse, for less is known of the build.
 
     Args:
-        texts: as columns and summary.json show them; the first is that of OK.
+        texts: as columns and summary.json show them; the first is that of OK, "ok".
         lacking: those of builds that lack what is measured, such as parts that overlap.
         words: what such builds do, for a sentence: "jam".
+
+    Raises:
+        InputError: another first text, or one that is not among them.
     """
 
     texts: tuple[str, ...]
     lacking: frozenset[str] = frozenset()
     words: Mapping[str, str] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        if self.texts[:1] != (SEATED,):
+            raise InputError(f"statuses: expected {SEATED!r} first, which files of runs have for it, got {self.texts}")
+        if unknown := sorted((self.lacking | self.words.keys()) - set(self.texts)):
+            raise InputError(f"statuses: expected some of {', '.join(self.texts)}, got {', '.join(unknown)}")
 
     @cached_property
     def by_code(self) -> NDArray[np.str_]:
