@@ -30,6 +30,7 @@ from tol3d.runs.run import Run, open_run
 from tol3d.scene import Scene
 from tol3d.scene.edit import tolerance_lines
 from tol3d.study.overrides import AS_WRITTEN, Overrides
+from tol3d.system.system import System
 
 if TYPE_CHECKING:
     import trimesh
@@ -100,14 +101,27 @@ class Check(Report):
     """What a scene means.
 
     Args:
-        model: the parts, moves, measures and contributors, in mm and rad.
+        system: what is built and measured.
     """
 
-    model: Model
+    system: System
+
+    @property
+    def model(self) -> Model:
+        """Of gears: the parts, moves, measures and contributors, in mm and rad.
+
+        Raises:
+            InputError: it is a system of something else.
+        """
+        return gear_model(self.system)
 
     @cached_property
     def coefficients(self) -> Mapping[str, Sequence[Coefficient]]:
-        """What each contributor does to each measure by its name, by either road, with its share of the variance."""
+        """What each contributor does to each measure of gears by its name, by either road, with its share.
+
+        Raises:
+            InputError: it is a system of something else.
+        """
         return coefficients_of(self.model)
 
 
@@ -195,7 +209,7 @@ def check_scene(scene: Scene | Path | str, *, overrides: Overrides = AS_WRITTEN,
         SceneError: it cannot be read or built.
     """
     simulation = simulate.simulation_of(simulate.load(scene, trust_parts=trust_parts), overrides)
-    return Check(report.check_report(simulation), gear_model(simulation.system))
+    return Check(report.check_report(simulation), simulation.system)
 
 
 def compare_runs(runs: Sequence[Run | Path | str], *, out: Path | str | None = None) -> Comparison:

@@ -17,7 +17,7 @@ from toys.parabola import PARABOLA
 from toys.parabola.showing import SIDE
 from toys.registered import TOYS, known
 
-from tol3d import InputError, Run, open_run
+from tol3d import InputError, Run, check_scene, compare_runs, open_run, replay
 from tol3d.report import export_run, view_run
 
 SPRING = TOYS / "parabola" / "spring.yaml"
@@ -127,3 +127,15 @@ def test_a_trial_is_shown(run: Run, tol3d: Command, tmp_path: Path) -> None:
     assert imread(picture).std() > 0.02  # something is drawn
     with pytest.raises(InputError, match="nothing of a spring is shown close up"):
         view_run(run, 5, screenshot=picture, close_up="coil")
+
+
+def test_in_python_all_of_it_is_there_too(run: Run) -> None:
+    told = check_scene(SPRING)
+    assert "spring spring: a 0.5, b 2, q 3" in str(told)
+    with pytest.raises(InputError, match="this is of gears only"):
+        _ = told.model
+    again = replay(run, 5)
+    assert again.poses["spring"][2, 3] == pytest.approx(1e-3 * run.columns(HEIGHT)[HEIGHT][5])
+    assert again.meshes["spring"].is_watertight
+    assert "room" in str(compare_runs([run]))
+    assert len(run.frame()) == 3000
