@@ -9,7 +9,7 @@ files include imports for type checkers.
 
 One scene is followed through run_scene, once kernels are compiled and modules loaded: a move is a call of a function of
 another room than that of the call before, a return is a move to a room that was left before. `--route` prints the
-rooms that run_scene itself calls, in order.
+rooms that run_scene calls, in order, itself or by other functions of its file.
 """
 
 import argparse
@@ -64,7 +64,7 @@ class Walk:
         moves: calls of another room's function than the call before.
         kinds_of_moves: distinct pairs of rooms among them.
         returns: moves to a room that was left before.
-        route: rooms that run_scene itself calls, in order, neighbours merged.
+        route: rooms that run_scene and other functions of its file call, in order, neighbours merged.
     """
 
     entered: int
@@ -177,7 +177,7 @@ class Follower:
         if not self.rooms or self.rooms[-1] != room:
             self.rooms.append(room)
         caller = frame.f_back
-        if caller is not None and caller.f_code.co_name == "run_scene" and self.room(caller) == "simulate":
+        if room != "simulate" and caller is not None and self.room(caller) == "simulate":
             self.called_by_run_scene.append(room)
 
     def room(self, frame: FrameType) -> str | None:
@@ -273,8 +273,8 @@ def rows(found: Structure) -> dict[str, str]:
         "run_scene: moves between rooms": str(found.walk.moves),
         "run_scene: distinct moves": str(found.walk.kinds_of_moves),
         "run_scene: returns to a room left before": str(found.walk.returns),
-        "run_scene's own calls: rooms": str(len(set(found.walk.route))),
-        "run_scene's own calls: returns": str(found.walk.route_returns),
+        "calls of run_scene's file: rooms": str(len(set(found.walk.route))),
+        "calls of run_scene's file: returns": str(found.walk.route_returns),
     }
 
 
