@@ -2,15 +2,11 @@
 
 from abc import ABC
 from collections.abc import Iterator, Mapping
-from typing import TYPE_CHECKING, ClassVar, get_args
+from typing import Any, ClassVar, get_args
 
 from tol3d.scene.place import KeyPath
 from tol3d.scene.reference import Contradiction, Reference
 from tol3d.strict import Strict
-
-if TYPE_CHECKING:
-    from tol3d.scene.move import MoveSpec
-    from tol3d.scene.part import PartSpec
 
 
 class Entry(Strict, ABC):
@@ -32,10 +28,8 @@ class Entry(Strict, ABC):
         """Every file that the entry reads, with the field that names it; most read none."""
         return iter(())
 
-    def contradictions(
-        self, parts: "Mapping[str, PartSpec]", moves: "Mapping[str, MoveSpec]"
-    ) -> Iterator[Contradiction]:
-        """What does not fit the parts and moves that it names; asked only when every name exists."""
+    def contradictions(self, parts: Mapping[str, Any], moves: Mapping[str, Any]) -> Iterator[Contradiction]:
+        """What does not fit the PartSpecs and MoveSpecs that it names; called only when every name exists."""
         return iter(())
 
 

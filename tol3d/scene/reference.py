@@ -2,16 +2,15 @@
 
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import Any
 
 from tol3d.scene.place import KeyPath
 
-if TYPE_CHECKING:
-    from tol3d.scene.entry import Entry
-    from tol3d.scene.part import PartSpec
+Spec = type[Any]
+"""A class of Entry, which has words."""
 
 
-def any_of(specs: "Collection[type[Entry]]") -> str:
+def any_of(specs: Collection[Spec]) -> str:
     """What may stand there, in words: "a shaft or a housing"."""
     return " or ".join(spec.words for spec in specs)
 
@@ -41,7 +40,7 @@ class Reference:
 
     path: KeyPath
     name: str
-    specs: "tuple[type[Entry], ...]"
+    specs: tuple[Spec, ...]
 
     @property
     def expected(self) -> str:
@@ -49,8 +48,8 @@ class Reference:
         return any_of(self.specs)
 
     @classmethod
-    def taken(cls, parts: "Mapping[str, PartSpec]") -> Mapping[str, Taken]:
-        """Parts that such a reference may not name though their kind would do."""
+    def taken(cls, parts: Mapping[str, Any]) -> Mapping[str, Taken]:
+        """PartSpecs that such a reference may not name though their kind would do."""
         return {}
 
 

@@ -5,7 +5,7 @@ from dataclasses import replace
 from functools import lru_cache
 from itertools import pairwise
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Final, Literal, Self, TypeVar
+from typing import Annotated, Any, ClassVar, Final, Literal, Self, TypeVar
 
 from pydantic import BeforeValidator, Discriminator, Field, PrivateAttr, Tag, create_model, model_validator
 
@@ -23,9 +23,6 @@ from tol3d.scene.place import KeyPath, Origin, Place
 from tol3d.scene.tolerance import ToleranceSpec
 from tol3d.strict import Strict, refused
 from tol3d.units import Positive, Quantity, shown
-
-if TYPE_CHECKING:
-    from tol3d.scene.grammar import Grammar
 
 SECTIONS: Final = ("parts", "tolerances", "moves", "measures")
 
@@ -208,7 +205,7 @@ class Scene(Strict):
     order of the file.
     """
 
-    grammar: ClassVar["Grammar"]  # of the subclass that validates: a grammar makes one that knows its kinds
+    grammar: ClassVar[Any]  # the Grammar of the subclass that validates: a grammar makes one that knows its kinds
 
     scene: Name = Field(description="the scene's name")
     description: str = Field(default="", description="the user's own words, shown in reports")
@@ -297,6 +294,7 @@ class Scene(Strict):
         return _blank, (self.grammar,), self.__getstate__()
 
 
-def _blank(grammar: "Grammar") -> Scene:
+def _blank(grammar: Any) -> Scene:
     """A scene without anything in it yet, for pickle."""
-    return grammar.scene.__new__(grammar.scene)
+    made: Scene = grammar.scene.__new__(grammar.scene)
+    return made

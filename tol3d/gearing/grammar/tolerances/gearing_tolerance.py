@@ -3,7 +3,7 @@
 from abc import abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from tol3d.gearing.effects import Effect, Together
 from tol3d.scene.direction import At
@@ -11,7 +11,6 @@ from tol3d.scene.tolerance import ToleranceSpec
 
 if TYPE_CHECKING:
     from tol3d.gearing.model.contributor import Unit
-    from tol3d.gearing.model.nominal import Nominal
 
 
 @dataclass(frozen=True)
@@ -35,8 +34,8 @@ class GearingToleranceSpec(ToleranceSpec):
     """A tolerance of gears, of what carries them, or of how they lie to each other."""
 
     @abstractmethod
-    def meaning(self, nominal: "Nominal") -> Meaning:
-        """What a deviation does in a scene whose nominal geometry is known."""
+    def meaning(self, nominal: Any) -> Meaning:
+        """What a deviation does in a scene whose Nominal geometry is known."""
 
     @property
     def unit(self) -> "Unit":
