@@ -54,9 +54,10 @@ from tol3d.execution.pools import ONE_WORKER, Execution, pool_of
 from tol3d.execution.timing import Clock
 from tol3d.execution.watch import UNWATCHED, Watch
 from tol3d.kinds import all_kinds, load_scene
+from tol3d.runs.fingerprint import Fingerprint
 from tol3d.runs.full_disk import refusals_explained
 from tol3d.runs.occupant import free_folder
-from tol3d.runs.run import Fingerprint, Run, whole_run
+from tol3d.runs.run import Run, whole_run
 from tol3d.runs.writer import RunWriter
 from tol3d.scene import Grammar, Scene, scene_from_python
 from tol3d.study import replaying

@@ -10,7 +10,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from tol3d.errors import RunError
-from tol3d.runs.run import Fingerprint, Run, another_study, interrupted, partial_of, read_run, tidy_after_kill
+from tol3d.runs.fingerprint import Fingerprint, another_study, interrupted
+from tol3d.runs.run import Run, partial_of, read_run, tidy_after_kill
 from tol3d.runs.summary.kinds import SummaryKinds
 
 SHOWN = 3  # foreign files in a message

@@ -3,7 +3,6 @@
 `writer.py` writes it into `<name>.partial` and renames that at the end, so a folder of that name is always whole.
 """
 
-import json
 import warnings
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
@@ -16,9 +15,9 @@ from numpy.typing import NDArray
 
 from tol3d.errors import RunError
 from tol3d.files import LARGEST_FILE, FileContent, Files, UnreadableFileError, kept_name, read_contained
-from tol3d.numerics.processor import unlike
 from tol3d.runs.atomic_write import UNFINISHED
 from tol3d.runs.block_files import CHECKSUMS, MENDED, BlockFiles, block_name
+from tol3d.runs.fingerprint import FINGERPRINT, STUDY, Fingerprint, differences, interrupted
 from tol3d.runs.frame import Curves, frame_of
 from tol3d.runs.manifest import TRIALS, Manifest
 from tol3d.runs.parquet import Shape
@@ -36,15 +35,10 @@ SUMMARY = "summary.json"
 SCENE = "scene.yaml"
 PIECES = "pieces"
 CHECKPOINT = "checkpoint"
-FINGERPRINT = "fingerprint.json"
 FILES = "files"
 STATUS = "status"  # columns of words begin so; all others are numbers
-STUDY = ("scene", "files", "study")  # of a fingerprint; the rest decides the last bits only
-LARGEST_FINGERPRINT = 10_000_000  # bytes; it names every file of the scene and every `until`
 LOCK = "lock"
 LARGEST_SUMMARY = 50_000_000  # bytes; a thousand curves of a thousand positions
-
-Fingerprint = Mapping[str, Any]
 
 
 class DamageWarning(UserWarning):
@@ -278,40 +272,6 @@ def read_run(path: Path, kinds: SummaryKinds | None = None) -> Run:
     run = Run(path, parsed(content, path / SUMMARY), kinds)
     _ = run.found  # refused here, if at all
     return run
-
-
-def differences(there: Fingerprint, asked: Fingerprint) -> list[str]:
-    """In what a run that is there differs from the one that is asked for, in words."""
-    found = []
-    for key in {**there, **asked}:
-        old, new = there.get(key), asked.get(key)
-        if isinstance(old, Mapping) and isinstance(new, Mapping):
-            found += [f"{key}: {words}" for words in differences(old, new)]
-        elif old != new:
-            there_only, now_only = unlike(old, new)
-            found.append("the scene's text" if key == "scene" else f"{key} {there_only} there, {now_only} now")
-    return found
-
-
-def another_study(there: Fingerprint, asked: Fingerprint) -> list[str]:
-    """In what a run that is there is of another study than the one that is asked for, in words."""
-    found = differences(*({key: print_.get(key) for key in STUDY} for print_ in (there, asked)))
-    if _keeps(there) and not _keeps(asked):
-        found.append("it holds the trials, too, and this would keep statistics only")
-    return found
-
-
-def _keeps(fingerprint: Fingerprint) -> bool:
-    return bool((fingerprint.get("blocks") or {}).get("kept"))
-
-
-def interrupted(partial: Path) -> Fingerprint | None:
-    """The fingerprint of the interrupted run in a folder; None where there is none, {} where it was being cleared."""
-    try:
-        read: Any = json.loads(read_contained(partial / FINGERPRINT, partial, LARGEST_FINGERPRINT))
-    except (UnreadableFileError, ValueError, RecursionError):
-        return None
-    return read if isinstance(read, Mapping) and (not read or "scene" in read) else None
 
 
 def partial_of(path: Path) -> Path:

@@ -16,22 +16,18 @@ from tol3d.files import FileContent, Files, kept_name
 from tol3d.runs.atomic_write import write_whole
 from tol3d.runs.block_files import CHECKSUMS, BlockFiles, block_name
 from tol3d.runs.checkpoint import Checkpoint
+from tol3d.runs.fingerprint import FINGERPRINT, Fingerprint, another_study, differences, interrupted
 from tol3d.runs.manifest import TRIALS, Manifest, own_paths_of_trials
 from tol3d.runs.occupant import MovedAsideWarning, free_aside, occupant_of
 from tol3d.runs.run import (
     CHECKPOINT,
     FILES,
-    FINGERPRINT,
     LOCK,
     PIECES,
     SCENE,
     SUMMARY,
     Columns,
-    Fingerprint,
     Run,
-    another_study,
-    differences,
-    interrupted,
     partial_of,
     read_run,
     tidy,

@@ -4,7 +4,7 @@ import json
 
 from tol3d.execution.pools import Execution
 from tol3d.files import FileContent
-from tol3d.runs.run import Fingerprint
+from tol3d.runs.fingerprint import Fingerprint
 from tol3d.scene import Scene
 from tol3d.study.blocks import block_trials
 from tol3d.study.simulation import Simulation

@@ -7,7 +7,8 @@ from pathlib import Path
 from typing import Any
 
 from tol3d.errors import InputError
-from tol3d.runs.run import Run, differences, open_run
+from tol3d.runs.fingerprint import differences
+from tol3d.runs.run import Run, open_run
 from tol3d.scene import Grammar, read_scene
 from tol3d.study.columns import columns_of
 from tol3d.study.draws import drawn
