@@ -7,92 +7,77 @@ import threading
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Any
 
 import typer
 
 from tol3d.cli.arguments import (
     EngineOption,
-    SamplerName,
     SceneArgument,
     TrustParts,
-    accepted_ppm,
     scene_path,
-    trials_or_auto,
 )
 from tol3d.cli.console import INTERRUPTED, LIMITS_FAILED, err_console, out_console, tell, warn
+from tol3d.cli.run_options import (
+    PICTURE,
+    AcceptOption,
+    FailOnLimits,
+    ForceOption,
+    NoPicture,
+    NoTrials,
+    OutOption,
+    QuietOption,
+    ResumeOption,
+    SamplerOption,
+    SchedulerOption,
+    SeedOption,
+    TrialsOption,
+    VerboseOption,
+    WitnessOption,
+    WorkersOption,
+)
 
 if TYPE_CHECKING:
     from types import FrameType
 
+    from tol3d.execution.watch import Finisher, Watch
     from tol3d.runs.run import Run
     from tol3d.study.simulation import Simulation
 
-PICTURE = "histogram.png"
 PATIENCE = 5.0  # s; worker processes that will not end may hold up an interrupted command no longer
 
 
 def run(
     context: typer.Context,
     scene: SceneArgument,
-    trials: Annotated[
-        Any, typer.Option(parser=trials_or_auto, metavar="N|auto", help="Number of trials instead of the scene's.")
-    ] = None,
-    seed: Annotated[int | None, typer.Option(min=0, help="Seed instead of the scene's.")] = None,
+    trials: TrialsOption = None,
+    seed: SeedOption = None,
     engine: EngineOption = None,
-    sampler: Annotated[SamplerName | None, typer.Option(help="Sampler instead of the scene's.")] = None,
-    witness: Annotated[
-        int | None, typer.Option(min=0, help="Trials that another engine measures again, of gears FCL.")
-    ] = None,
-    out: Annotated[
-        Path | None, typer.Option(help="The run's folder; by default runs/<scene>, or -2, -3 … of another study.")
-    ] = None,
-    force: Annotated[
-        bool, typer.Option("--force", help="Replace a run of another study; what else lies there is moved aside.")
-    ] = False,
-    workers: Annotated[
-        int | None, typer.Option(min=1, help="Threads or processes; by default one, or all cores for a long study.")
-    ] = None,
-    scheduler: Annotated[
-        str | None, typer.Option(metavar="ADDRESS", help="Run on the workers of this Dask scheduler.")
-    ] = None,
-    no_trials: Annotated[bool, typer.Option("--no-trials", help="Keep statistics only, no rows of trials.")] = False,
-    resume: Annotated[
-        bool, typer.Option("--resume", help="Go on with an interrupted run, or mend a damaged one; never start anew.")
-    ] = False,
-    no_picture: Annotated[bool, typer.Option("--no-picture", help=f"Draw no {PICTURE}.")] = False,
-    accept: Annotated[
-        Any,
-        typer.Option(parser=accepted_ppm, metavar="SHARE", help="Share of trials that may be out of limits; 0.27 %."),
-    ] = None,
-    fail_on_limits: Annotated[
-        bool,
-        typer.Option(
-            "--fail-on-limits",
-            help="Exit with 1 when a trial is out of limits or failed; with --accept, when a verdict is not OK.",
-        ),
-    ] = False,
-    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Print the verdict and warnings only.")] = False,
-    verbose: Annotated[
-        bool, typer.Option("--verbose", "-v", help="Print the tables of every measure, however many there are.")
-    ] = False,
+    sampler: SamplerOption = None,
+    witness: WitnessOption = None,
+    out: OutOption = None,
+    force: ForceOption = False,
+    workers: WorkersOption = None,
+    scheduler: SchedulerOption = None,
+    no_trials: NoTrials = False,
+    resume: ResumeOption = False,
+    no_picture: NoPicture = False,
+    accept: AcceptOption = None,
+    fail_on_limits: FailOnLimits = False,
+    quiet: QuietOption = False,
+    verbose: VerboseOption = False,
     trust_parts: TrustParts = False,
 ) -> None:
     """Simulate a scene: analytic model and 3D simulation side by side."""
-    if force and resume:
-        raise typer.BadParameter("--resume goes on with what --force would replace; leave out one of them")
-    if workers is not None and scheduler is not None:
-        raise typer.BadParameter("--scheduler has its own workers; leave out --workers")
-    if quiet and verbose:
-        raise typer.BadParameter("--quiet says less and --verbose more; leave out one of them")
+    _refuse(force and resume, "--resume goes on with what --force would replace; leave out one of them")
+    _refuse(workers is not None and scheduler is not None, "--scheduler has its own workers; leave out --workers")
+    _refuse(quiet and verbose, "--quiet says less and --verbose more; leave out one of them")
     draw = context.with_resource(_drawing(wanted=not no_picture))  # it loads what it draws with beside all that follows
-
-    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
 
     from tol3d.execution.pools import Execution
     from tol3d.report.table import Detail, run_report
     from tol3d.report.verdict import ACCEPTED_PPM, all_ok
-    from tol3d.simulate import Overrides, Watch, folder_for, load, run_scene, simulation_of, workers_for
+    from tol3d.simulate import Overrides, folder_for, load, run_scene, simulation_of, workers_for
 
     path = scene_path(scene)
     overrides = Overrides(trials, seed, engine, sampler.value if sampler else None, witness)
@@ -100,33 +85,16 @@ def run(
     simulation = simulation_of(loaded, overrides)
     for warning in simulation.warnings:
         warn(warning)
-    if told := long_study(simulation):
-        err_console.print(told)
+    if notice := long_study(simulation):
+        err_console.print(notice)
     execution = Execution(workers or workers_for(simulation), scheduler, keep_trials=not no_trials, resume=resume)
     folder, taken = out or Path("runs") / path.stem, ""
     if out is None and not force:
         folder, taken = folder_for(loaded, simulation, execution, Path("runs"))
     if taken:
         err_console.print(f"{taken}: this run goes to {folder} (--force would replace the other)")
-    columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn())
-    try:
-        with _stopped_in_order(), Progress(*columns, console=err_console, transient=True) as progress:
-            bar = progress.add_task("scene", total=simulation.study.trials)
-            finished = run_scene(
-                loaded,
-                overrides=overrides,
-                out=folder,
-                execution=execution,
-                force=force,
-                watch=Watch(
-                    activity=lambda text: progress.update(bar, description=text),
-                    progress=lambda done: progress.advance(bar, done),
-                    finisher=draw,
-                ),
-            )
-    except KeyboardInterrupt:
-        err_console.print(_how_to_resume(folder))
-        raise typer.Exit(INTERRUPTED) from None
+    with _watched(simulation, folder, draw) as watch:
+        finished = run_scene(loaded, overrides=overrides, out=folder, execution=execution, force=force, watch=watch)
     shown = Detail.VERDICT if quiet else Detail.MEASURES if verbose else Detail.fitting(finished.found)
     out_console.print(run_report(finished.found, shown, ACCEPTED_PPM if accept is None else accept))
     if not quiet:
@@ -135,6 +103,32 @@ def run(
     if fail_on_limits and failed:
         err_console.print("limits failed", style="red")
         raise typer.Exit(LIMITS_FAILED)
+
+
+def _refuse(contradiction: bool, words: str) -> None:
+    if contradiction:
+        raise typer.BadParameter(words)
+
+
+@contextmanager
+def _watched(simulation: "Simulation", folder: Path, draw: "Finisher") -> Iterator["Watch"]:
+    """Within it a bar shows how far a run is; Ctrl-C ends it in order and says how it goes on."""
+    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
+
+    from tol3d.simulate import Watch
+
+    columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn())
+    try:
+        with _stopped_in_order(), Progress(*columns, console=err_console, transient=True) as progress:
+            bar = progress.add_task("scene", total=simulation.study.trials)
+            yield Watch(
+                activity=lambda text: progress.update(bar, description=text),
+                progress=lambda done: progress.advance(bar, done),
+                finisher=draw,
+            )
+    except KeyboardInterrupt:
+        err_console.print(_how_to_resume(folder))
+        raise typer.Exit(INTERRUPTED) from None
 
 
 def _pictures_text(run: "Run") -> str:
