@@ -57,7 +57,7 @@ def read_file(path: Path) -> FileContent:
 
 
 def kept_name(name: str, sha256: str) -> str:
-    """The name under which a run keeps a file: told by its content, so that it stays inside the run's folder.
+    """The name under which a run keeps a file: made of its content, so that it stays inside the run's folder.
 
     >>> kept_name("../measured/wheel thickness.csv", 64 * "0")
     '000000000000-wheel_thickness.csv'

@@ -136,7 +136,7 @@ class Compensation:
 
     @property
     def published_tips(self) -> Mapping[str, Mapping[str, Any]]:
-        """What others tell of the tip's displacement without compensation [mm]."""
+        """What others published of the tip's displacement without compensation [mm]."""
         own = self.tip and self.tip.tip
         alike = [
             measure.name

@@ -93,10 +93,10 @@ def _roads(found: Sequence[Compensation]) -> str:
 
 
 def _columns(found: Sequence[Compensation]) -> list[str]:
-    """Everybody who tells a correction: closed form, roads, and who published."""
+    """Every source of a correction: closed form, roads, and who published."""
     first = [CLOSED_FORM, *COLUMN_WORDS]
-    told = dict.fromkeys(column for own in found for column in own.corrections)
-    return [*(column for column in first if column in told), *(column for column in told if column not in first)]
+    known = dict.fromkeys(column for own in found for column in own.corrections)
+    return [*(column for column in first if column in known), *(column for column in known if column not in first)]
 
 
 def _headings(found: Sequence[Compensation]) -> list[Heading]:
@@ -215,7 +215,7 @@ def swing_table(found: Sequence[Compensation]) -> Table:
 
 
 def _which_change(found: Sequence[Compensation]) -> str:
-    """At which change of side the flanks are told, where a swing has several."""
+    """At which change of side the flanks are listed, where a swing has several."""
     counts = {len(own.swing.jumps) for own in found if own.swing}
     if max(counts) == 1:
         return ""

@@ -93,7 +93,7 @@ def shim_plan(
         scene: as `load` gives it.
         question: what is wanted.
         overrides: what is said otherwise than in the scene's study.
-        tell: told what goes on.
+        tell: callback that gets what goes on, in words.
 
     Raises:
         InputError: no such measure or shims, or no thickness that gives that minimum.

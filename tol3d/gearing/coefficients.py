@@ -112,10 +112,10 @@ def _of_measure(model: Model, engine: Engine, measure: Measure) -> Iterator[Coef
             expected = on_road
         else:
             expected = _linear(contributor, share) if share else UNKNOWN
-        told = Slopes(expected.below * per, expected.above * per)
-        if share or found.differs(LEVEL, 0.0) or told.differs(LEVEL, 0.0):
+        by_stack = Slopes(expected.below * per, expected.above * per)
+        if share or found.differs(LEVEL, 0.0) or by_stack.differs(LEVEL, 0.0):
             percent = form.percent(contributor.name) if form and share else None
-            yield Coefficient(contributor.name, unit, told, found, percent)
+            yield Coefficient(contributor.name, unit, by_stack, found, percent)
 
 
 def _linear(contributor: Contributor, share: Share) -> Slopes:

@@ -16,51 +16,51 @@ from tol3d.gearing.model.measure import AnyStage, ParallelStage, Stage
 Array = NDArray[np.float64]
 
 Part = tuple[Stage, Literal["play", "rest"]]
-Told = Callable[[Part], Array]
+Reading = Callable[[Part], Array]
 """A stage's own play [rad], or the angle at which its driven gear rests [rad]; (trials, positions)."""
 
 Form = Mapping[Part, Array]
-"""Weights of what the stages tell, each (trials, positions) or a scalar."""
+"""Weights of the stages' plays and rests, each (trials, positions) or a scalar."""
 
 Flank = Callable[[Stage], int | None]
 """The driver's flank that works in a stage; None for a reducer, whose play lies to both sides alike."""
 
 
-def value(form: Form, told: Told) -> Array:
+def value(form: Form, read: Reading) -> Array:
     """What a form adds up to [rad], (trials, positions)."""
-    return np.asarray(sum(weight * told(part) for part, weight in form.items()))
+    return np.asarray(sum(weight * read(part) for part, weight in form.items()))
 
 
-def free_form(stage: ParallelStage, flank: Flank, told: Told) -> Form:
+def free_form(stage: ParallelStage, flank: Flank, read: Reading) -> Form:
     """Play of the shaft where load paths join; below 0 they bind each other."""
-    low, high = _meeting(stage, flank, told)
+    low, high = _meeting(stage, flank, read)
     return _sum(high, {part: -weight for part, weight in low.items()})
 
 
-def _meeting(stage: ParallelStage, flank: Flank, told: Told) -> tuple[Form, Form]:
+def _meeting(stage: ParallelStage, flank: Flank, read: Reading) -> tuple[Form, Form]:
     """Both ends of what is free on all load paths."""
-    each = [_ends_of_path(path, flank, told) for path in stage.paths]
+    each = [_ends_of_path(path, flank, read) for path in stage.paths]
     lows, highs = [low for low, _ in each], [high for _, high in each]
     return (
-        _chosen(lows, np.argmax([value(form, told) for form in lows], axis=0)),
-        _chosen(highs, np.argmin([value(form, told) for form in highs], axis=0)),
+        _chosen(lows, np.argmax([value(form, read) for form in lows], axis=0)),
+        _chosen(highs, np.argmin([value(form, read) for form in highs], axis=0)),
     )
 
 
-def _ends_of_path(path: tuple[AnyStage, ...], flank: Flank, told: Told) -> tuple[Form, Form]:
+def _ends_of_path(path: tuple[AnyStage, ...], flank: Flank, read: Reading) -> tuple[Form, Form]:
     low: Form = {}
     high: Form = {}
     for stage in path:
-        ends = _ends(stage, flank, told)
+        ends = _ends(stage, flank, read)
         low, high = _sum(low, ends[0]), _sum(high, ends[1])
     return low, high
 
 
-def _ends(stage: AnyStage, flank: Flank, told: Told) -> tuple[Form, Form]:
+def _ends(stage: AnyStage, flank: Flank, read: Reading) -> tuple[Form, Form]:
     """Both ends of what a stage leaves free, at the shaft where its load paths join."""
     factor = np.array(stage.sense * stage.factor)
     if isinstance(stage, ParallelStage):
-        both = tuple({part: factor * weight for part, weight in form.items()} for form in _meeting(stage, flank, told))
+        both = tuple({part: factor * weight for part, weight in form.items()} for form in _meeting(stage, flank, read))
         return (both[0], both[1]) if stage.sense > 0 else (both[1], both[0])
     side = flank(stage)
     if side is None:

@@ -46,7 +46,7 @@ class Play:
     Args:
         model, measure: what is read.
         deviations: (trials, components) [mm, rad, K].
-        read: tells each backlash.
+        read: gives the values of each backlash.
     """
 
     model: Model
@@ -87,15 +87,15 @@ class Play:
 
     def of(self, stage: AnyStage) -> Array:
         """What a stage leaves free at the shaft that it drives [rad], (trials, positions)."""
-        return value(self.form(stage), self.told)
+        return value(self.form(stage), self.reading)
 
     def form(self, stage: AnyStage) -> Form:
-        """That as a weighted sum of what its meshes and reducers tell."""
+        """That as a weighted sum of the readings of its meshes and reducers."""
         if isinstance(stage, Stage):
             return {(stage, "play"): np.array(1.0)}
-        return free_form(stage, self._flank, self.told)
+        return free_form(stage, self._flank, self.reading)
 
-    def told(self, part: Part) -> Array:
+    def reading(self, part: Part) -> Array:
         """A stage's own play, or the angle at which its driven gear rests on its shaft [rad], (trials, positions)."""
         stage, what = part
         if stage.backlash is None:

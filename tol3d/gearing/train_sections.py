@@ -134,7 +134,7 @@ def _within(ends: Ends, law: Distribution) -> Ends:
 def _published(
     model: Model, kind: LostMotion, ours: Mapping[str, Ends], others: Published
 ) -> dict[str, dict[str, Ends]]:
-    """Columns of others that tell every mesh of a train, by link [arcmin]; what is no single mesh is as we have it."""
+    """Columns of others that have every mesh of a train, by link [arcmin]; what is no single mesh is as we have it."""
     found: dict[str, dict[str, Ends]] = {}
     if not any(stage.backlash for stage in kind.stages):
         return found

@@ -1,7 +1,7 @@
 """One tooth in its space: both of its flanks are looked at, and no other tooth's.
 
 A flank is in action between the start and the end of the path of contact, where the mate's tip and its own end it (ISO
-21771, active flank). Beyond, a neighbour carries, and the tip edge that is nearest there tells no backlash.
+21771, active flank). Beyond, a neighbour carries, and the tip edge that is nearest there gives no backlash.
 """
 
 from typing import Literal

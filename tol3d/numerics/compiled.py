@@ -1,4 +1,4 @@
-"""The door to numba: functions become machine code, at their first use and once a machine.
+"""The only module that imports numba: functions become machine code, at their first use and once a machine.
 
 What was compiled is kept in the user's cache, under a name made of all that it is made of: the sources of the kernel's
 module and of all that they import (a kernel freezes the constants it finds there), the compiler, and the processor it
@@ -105,13 +105,13 @@ class Kernel:
 
     @cached_property
     def name(self) -> str | None:
-        """Of its entry in the cache: changes with all that it is made of. None where that cannot be told."""
+        """Of its entry in the cache: changes with all that it is made of. None where that is unknown."""
         try:
             made_of = _made_of(self._function, self._tuples)
         except OSError:
             return None
-        told = json.dumps([made_of, self._arrays, self._settings], sort_keys=True, default=sorted)  # sets have no order
-        return f"kernel-{self._function.__name__}-{hashlib.sha256(told.encode()).hexdigest()[:32]}.zip"
+        made = json.dumps([made_of, self._arrays, self._settings], sort_keys=True, default=sorted)  # sets have no order
+        return f"kernel-{self._function.__name__}-{hashlib.sha256(made.encode()).hexdigest()[:32]}.zip"
 
     @cached_property
     def _compiled(self) -> Callable[..., None]:

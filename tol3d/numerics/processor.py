@@ -60,7 +60,7 @@ def _instructions() -> list[str]:
 
 
 def _features() -> str:
-    """What the compiler is told that the processor has (+) and has not (-)."""
+    """What the processor has (+) and has not (-), as the compiler gets it."""
     generic = os.environ.get("NUMBA_CPU_NAME", "").lower() == "generic"
     stated = os.environ.get("NUMBA_CPU_FEATURES", "" if generic else None)
     return str(llvmlite.binding.get_host_cpu_features().flatten()) if stated is None else stated

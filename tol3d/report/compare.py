@@ -89,7 +89,7 @@ def _any_failed(runs: Sequence[Run]) -> bool:
 
 
 def labelled(runs: Sequence[Run]) -> list[tuple[str, Run]]:
-    """Each run with as much of its folder's path, from the end, as tells it from the others."""
+    """Each run with as much of its folder's path, from the end, as distinguishes it from the others."""
     paths = [run.path.resolve() for run in runs]
     labels = [_end_of(path, [other for other in paths if other != path]) for path in paths]
     return list(zip(labels, runs, strict=True))

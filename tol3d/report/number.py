@@ -10,7 +10,7 @@ NOTHING: Final = "–"
 UNIT_SIGNS: Final = {"um": "µm", "mm": "mm", "arcmin": "′", "mrad": "mrad", "K": "K"}
 MANY_UM: Final = 1000.0  # um; from there on a nanometre says nothing
 UM_PER_MM: Final = 1000.0
-LEAST_PERCENT: Final = 1000.0  # ppm; smaller shares are told in ppm, as quality people do
+LEAST_PERCENT: Final = 1000.0  # ppm; smaller shares are given in ppm, as quality people do
 ALMOST_ALL: Final = 999_999.0  # ppm
 
 

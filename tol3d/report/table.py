@@ -141,7 +141,7 @@ def _notes(name: str, measure: MeasureSummary, run: RunSummary) -> Iterator[str]
 
 
 def _sampling_notes(measure: MeasureSummary, own: Sample, run: RunSummary) -> Iterator[str]:
-    """How well the trials tell mean, sigma, ends and shares."""
+    """How well mean, sigma, ends and shares are known from the trials."""
     unit = measure.unit
     seated = " that seated" if seated_text(measure) else ""
     if own.mean_se is not None and own.sigma_se is not None:

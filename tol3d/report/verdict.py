@@ -23,7 +23,7 @@ class Judged:
 
     Args:
         out_ppm: share of all trials that is out of its limits or failed; None where it is not known.
-        interval: that holds the true share with 95 % confidence [ppm]; None where trials cannot tell.
+        interval: that holds the true share with 95 % confidence [ppm]; None where trials are too few.
         verdict: whether that is within the accepted share.
     """
 

@@ -1,4 +1,4 @@
-"""One build in a 3D window, or as a picture of it. The door to VTK's windows."""
+"""One build in a 3D window, or as a picture of it. The only module that opens VTK's windows."""
 
 import ctypes.util
 import os

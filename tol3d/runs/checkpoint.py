@@ -51,7 +51,7 @@ class Checkpoint(Generic[T]):
         write_whole(self.path, hashlib.sha256(content).digest() + content)
 
     def read(self) -> tuple[int, T] | None:
-        """How many blocks, and their statistics; None where there is none. A damaged one is told of and not used."""
+        """How many blocks, and their statistics; None where there is none. A damaged one is warned of and not used."""
         try:
             content = self.path.read_bytes()
         except FileNotFoundError:

@@ -1,4 +1,4 @@
-"""Trials as a table of pandas, where it is installed. The door to pandas, which nothing else needs."""
+"""Trials as a table of pandas, where it is installed. The only module that imports pandas."""
 
 import importlib
 from collections.abc import Iterator, Mapping

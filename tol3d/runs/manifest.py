@@ -1,6 +1,6 @@
 """Which files are a run's own: SHA256SUMS in its folder, which `sha256sum --check` reads.
 
-It tells that nothing was changed since it was written (integrity), not who wrote it (authenticity): whoever changes a
+It shows that nothing was changed since it was written (integrity), not who wrote it (authenticity): whoever changes a
 file can write a new list. The files of the trials have a list of their own beside them; here stands the sum of that.
 """
 
@@ -110,7 +110,7 @@ class Manifest:
         for name in _below(self.folder):
             if PurePosixPath(name).name in OF_FILE_MANAGERS:
                 (self.folder / name).unlink()
-        (self.folder / MANIFEST).unlink()  # last, for it tells what is ours
+        (self.folder / MANIFEST).unlink()  # last, for it shows what is ours
         try:
             for name in sorted(folders, reverse=True):
                 (self.folder / name).rmdir()

@@ -62,7 +62,7 @@ def columns_of(content: bytes, names: Sequence[str] | None = None, shape: Shape 
     Args:
         content: of the file, which a stranger may have made.
         names: of the columns that are wanted.
-        shape: of the block, where it is known; nothing is unpacked of a file that tells another.
+        shape: of the block, where it is known; nothing is unpacked of a file that states another.
 
     Raises:
         ParquetError: it is damaged, has another shape, lacks a column, or holds what no column of a run is.
@@ -79,11 +79,11 @@ def columns_of(content: bytes, names: Sequence[str] | None = None, shape: Shape 
 
 def _refuse_surprises(file: pq.ParquetFile, wanted: Sequence[str], shape: Shape | None) -> None:
     """Refuse what is not a block of trials before any of it is unpacked: a few MB may hold as many GB of zeros."""
-    told = file.metadata.num_rows
-    if shape is not None and told != shape.rows:
-        raise ParquetError(f"{told} trials where there should be {shape.rows}")
-    if told > MOST_ROWS:
-        raise ParquetError(f"{told} trials, expected at most {MOST_ROWS} in one file")
+    stated = file.metadata.num_rows
+    if shape is not None and stated != shape.rows:
+        raise ParquetError(f"{stated} trials where there should be {shape.rows}")
+    if stated > MOST_ROWS:
+        raise ParquetError(f"{stated} trials, expected at most {MOST_ROWS} in one file")
     schema = file.schema_arrow
     if len(set(schema.names)) != len(schema.names):
         raise ParquetError("two columns of one name")
@@ -99,7 +99,7 @@ def _refuse_surprises(file: pq.ParquetFile, wanted: Sequence[str], shape: Shape 
     groups = [file.metadata.row_group(index) for index in range(file.metadata.num_row_groups)]
     chunks = [group.column(index) for group in groups for index in range(group.num_columns)]
     values, size = sum(chunk.num_values for chunk in chunks), sum(chunk.total_uncompressed_size for chunk in chunks)
-    if sum(group.num_rows for group in groups) != told or values > told * widths:
+    if sum(group.num_rows for group in groups) != stated or values > stated * widths:
         raise ParquetError("more values than its trials have")
     if size > BYTES_A_VALUE * values + BYTES_A_COLUMN * max(1, len(chunks)):
         raise ParquetError(f"{size} bytes for {values} values")

@@ -329,4 +329,4 @@ def tidy(folder: Path) -> None:
     for name in (LOCK, CHECKPOINT, CHECKPOINT + UNFINISHED):
         (folder / name).unlink(missing_ok=True)
     BlockFiles(folder / PIECES).clear()
-    (folder / FINGERPRINT).unlink(missing_ok=True)  # last, for it tells that the others are ours
+    (folder / FINGERPRINT).unlink(missing_ok=True)  # last, for it shows that the others are ours

@@ -89,7 +89,7 @@ def _margin(run: KeptTrials, road: str, name: str, measure: MeasureSummary) -> A
 
 
 def _overlaps(run: KeptTrials, road: str, name: str) -> Array:
-    """The smallest value of each trial (trials,); of one whose overlap is too deep to tell, deeper than any other."""
+    """The smallest value of each trial (trials,); below all where an overlap is too deep to measure."""
     column = value_column(road, name)
     smallest = np.asarray(run.columns(column)[column], dtype=np.float64).reshape(run.trials, -1).min(axis=1)
     return np.where(np.isnan(smallest), JAMMED_BY, smallest)

@@ -1,4 +1,4 @@
-"""Replicates: a sample cut into parts of equal size, each randomised anew, so that their spread tells the error."""
+"""Replicates: a sample cut into parts of equal size, each randomised anew, so that their spread gives the error."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -6,7 +6,7 @@ from typing import Final, Literal
 
 SamplerKind = Literal["monte_carlo", "sobol", "latin_hypercube"]
 
-REPLICATES: Final = 16  # if not said: they tell a standard error to 1 / sqrt(2 (16 - 1)), 18 %
+REPLICATES: Final = 16  # if not stated: they give a standard error to 1 / sqrt(2 (16 - 1)), 18 %
 MOST_SOBOL_POINTS: Final = 2**31  # of a replicate; scipy's points begin anew at 2^32
 
 

@@ -1,4 +1,4 @@
-"""The scenes that tol3d brings along, told in a line each, and copied for their user to edit."""
+"""The scenes that tol3d brings along, a line each, and copied for their user to edit."""
 
 from pathlib import Path
 
@@ -14,10 +14,10 @@ def scene_lines(grammar: Grammar) -> tuple[str, ...]:
     """A line for each bundled scene: the name to run it by, its own name, its description."""
     scenes = {name: read_scene(path, grammar) for name, path in bundled_scenes().items()}
     width = max(map(len, scenes))
-    told = {
+    lines = {
         name: ": ".join(part for part in (scene.scene, scene.description) if part) for name, scene in scenes.items()
     }
-    return tuple(f"{name:<{width}}  {text}" for name, text in told.items())
+    return tuple(f"{name:<{width}}  {text}" for name, text in lines.items())
 
 
 def copy_scene(name: str, folder: Path, grammar: Grammar) -> tuple[Path, ...]:

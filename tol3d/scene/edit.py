@@ -28,7 +28,7 @@ def tolerance_lines(tolerances: Tolerances) -> str:
 
 
 def with_tolerances(scene: Scene, changed: Tolerances) -> Scene:
-    """A scene with some tolerances changed or added, in its text too: results are kept and told apart by that."""
+    """A scene with some tolerances changed or added, in its text too: results are kept by that."""
     text = _edited(scene.text, changed)
     own = scene.model_copy(update={"tolerances": {**scene.tolerances, **changed}})
     return own.read_from(Origin(scene.source, text, scene.places, scene.files))

@@ -157,7 +157,7 @@ def _scene_class(grammar: Grammar) -> type[Scene]:
 
 
 def _union(grammar: Grammar, section: str) -> Any:
-    """One of the section's kinds, told apart by the word."""
+    """One of the section's kinds, discriminated by the word."""
     specs = tuple(grammar.kinds(section).values())
     return specs[0] if len(specs) == 1 else Annotated[Union[specs], Field(discriminator="kind")]  # noqa: UP007
 

@@ -121,7 +121,7 @@ def _unpublished(scene: Scene) -> Iterator[Problem]:
 
 
 def _unstoppable(scene: Scene) -> Iterator[Problem]:
-    """What an automatic study waits for that no measure of the scene will tell."""
+    """What an automatic study waits for that no measure of the scene will reach."""
     for name, errors in scene.study.until.items():
         path: KeyPath = ("study", "until", name)
         measure = scene.measures.get(name)

@@ -1,4 +1,4 @@
-"""From a file to plain values with their places: the only door to YAML.
+"""From a file to plain values with their places: the only module that imports a YAML library.
 
 Grammar: YAML 1.2 by ruamel.yaml's parser, whose events are turned into values here in one pass, so
 that no input costs more than the limits below, and every key keeps its line. Plain scalars follow

@@ -48,7 +48,7 @@ def cached(kind: str, shape: Gear | Body, settings: Mapping[str, float], build: 
 
 
 def _key(kind: str, shape: Gear | Body, settings: Mapping[str, float]) -> str:
-    told = {
+    made_of = {
         "kind": kind,
         "shape": repr(shape),
         "settings": dict(settings),
@@ -56,7 +56,7 @@ def _key(kind: str, shape: Gear | Body, settings: Mapping[str, float]) -> str:
         "sources": sources_of(CAD),
     }
     # repr and json write the shortest text that gives back the same double, so no two shapes share a key
-    return hashlib.sha256(json.dumps(told, sort_keys=True).encode()).hexdigest()
+    return hashlib.sha256(json.dumps(made_of, sort_keys=True).encode()).hexdigest()
 
 
 def _version(package: str) -> str:

@@ -1,4 +1,4 @@
-"""The one door to CadQuery: importing it costs seconds, so it is opened only when a solid must be built."""
+"""Lazy import of CadQuery: it costs seconds, so it is loaded only when a solid must be built."""
 
 import importlib
 from collections.abc import Sequence

@@ -51,7 +51,7 @@ class Grid:
         """A grid without values.
 
         Raises:
-            ValueError: the bins have no width, or too little for floats to tell their edges apart.
+            ValueError: the bins have no width, or too little for floats to distinguish their edges.
         """
         upper = lower + bins * width
         if not (math.isfinite(upper) and lower + width > lower and upper - width < upper):

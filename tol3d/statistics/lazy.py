@@ -1,4 +1,4 @@
-"""The one door to compiled statistics: numba, which they need, is loaded only by who has it compile trials too."""
+"""Lazy import of compiled statistics: numba, which they need, is loaded only where it compiles trials too."""
 
 import importlib
 

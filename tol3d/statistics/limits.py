@@ -12,7 +12,7 @@ Mask = NDArray[np.bool_]
 
 CONFIDENCE = 0.95  # of the interval beside a ppm; what engineers expect when nothing is said
 
-HALF_A_TRIAL = 0.5  # trials; what is less than one of all that were run cannot be told from none
+HALF_A_TRIAL = 0.5  # trials; what is less than one of all that were run cannot be distinguished from none
 
 
 @dataclass(frozen=True)
@@ -150,7 +150,7 @@ def ppk(lower: float | None, upper: float | None, mean: float, sigma: float) -> 
 def equivalent_ppk(out: Proportion) -> float | None:
     """The Ppk of a normal measure with one limit that has this share out: PHI^-1(1 - p)/3. None of no trials.
 
-    For measures of which a part failed, whose mean and sigma are those of the others only. No share is told nearer to 0
+    For measures of which a part failed, whose mean and sigma are those of the others only. No share is nearer to 0
     or 1 than half a trial, so that it stays finite.
 
     >>> round(equivalent_ppk(Proportion(1350, 1_000_000)), 3), round(equivalent_ppk(Proportion(1, 2)), 3)

@@ -36,7 +36,7 @@ class LinearFit:
 
     @classmethod
     def of(cls, sums: RegressorSums) -> Self | None:
-        """The fit of the sums' target; None where there are too few rows to tell coefficients from chance."""
+        """The fit of the sums' target; None where there are too few rows to distinguish coefficients from chance."""
         width, sigma = len(sums.means) - 1, column_sigmas(sums)
         used = np.flatnonzero(sigma[:-1] > 0.0)
         freedom = sums.count - len(used) - 1

@@ -1,6 +1,6 @@
 """The witness: distances between measuring strips of the CAD flanks, by the Flexible Collision Library.
 
-One BVH a tooth flank, as full-width strips. FCL tells no depth of overlap, so the strips are pulled inward by a slack
+One BVH a tooth flank, as full-width strips. FCL gives no depth of overlap, so the strips are pulled inward by a slack
 along their normals, and both nearest points are put back afterwards, each by what it was pulled: the gap is their
 distance along the line on which FCL found them. The flanks may overlap by up to the slack of both and the distance
 stays away from zero. Between flanks that line is the normal of both, and what is put back is the slack. An edge that
@@ -139,7 +139,7 @@ class _Found:
         points: (trials, pairs, 2, 3) [mm], the nearest ones.
         back: (trials, pairs, 2, 3) [mm], what puts each of them back onto its flank.
         curvature: (trials, pairs, 2), of the flanks there [1/mm].
-        deep: (trials, pairs), whether the distance tells nothing.
+        deep: (trials, pairs), whether the distance means nothing.
         at_end: (trials, pairs), whether either point is where its flank ends.
     """
 

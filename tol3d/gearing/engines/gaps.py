@@ -20,7 +20,7 @@ class Gaps:
 
     Args:
         value: (trials, pairs) [mm], shortest distance, negative where the flanks overlap;
-            nan where the pair was not asked for or overlaps deeper than the engine can tell.
+            nan where the pair was not asked for or overlaps deeper than the engine can measure.
         deep: (trials, pairs), True in that last case.
         at_end: (trials, pairs), whether either flank ends at its nearest point: at its tip edge, or where it begins.
         driver_point, driven_point: (trials, pairs, 3) [mm], the nearest points on the flanks, world.
@@ -61,13 +61,13 @@ class Gaps:
         return -rate if of_driver else rate
 
     def smallest(self) -> Array:
-        """Smallest gap of each trial [mm], (trials,); nan where any pair is too deep to tell."""
+        """Smallest gap of each trial [mm], (trials,); nan where any pair is too deep to measure."""
         least = np.min(np.where(np.isnan(self.value), np.inf, self.value), axis=1)
         return np.where(self.deep.any(axis=1) | np.isinf(least), np.nan, least)
 
 
 class Engine(Protocol):
-    """Anything that can tell gaps."""
+    """Anything that measures gaps."""
 
     def depth(self, mesh: Mesh) -> float:
         """How deep an overlap [mm] of a mesh's flanks the engine can still measure."""

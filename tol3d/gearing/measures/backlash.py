@@ -20,7 +20,7 @@ def measure_backlash(kind: Backlash, meshing: Meshing, seat: MeshSeat) -> Array:
     rest: the driven gear's turn at rest, less that with its space in the middle of the driver's tooth.
 
     Where the non-working flanks overlap it is negative: by how much they do, or the turn back until they touch. nan
-    where the mesh found no contact, and where the overlap is deeper than the engine can tell.
+    where the mesh found no contact, and where the overlap is deeper than the engine can measure.
     """
     known = seat.status <= INTERFERES
     if kind.quantity == "normal_backlash":

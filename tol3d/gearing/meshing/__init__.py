@@ -1,4 +1,4 @@
-"""Moves place parts: solvers on the gaps an engine tells."""
+"""Moves place parts: solvers on the gaps that an engine measures."""
 
 from tol3d.gearing.meshing.mesh import Meshing, MeshSeat
 

@@ -53,7 +53,7 @@ class Meshing:
     """The builds of a mesh, asked by an engine for gaps: what stays while gears turn.
 
     Args:
-        engine: tells gaps.
+        engine: measures gaps.
         model, mesh, build: what is built; one row for each position.
         reading: where on the face, and at which teeth, flanks are looked at.
     """

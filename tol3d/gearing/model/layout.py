@@ -252,9 +252,9 @@ def _clocked(
         busy: in how many meshes each gear is; one that is in several fits the others already.
     """
     (first, turning), (last, turned) = driver, driven
-    told = _of_driver(mesh, first, turning).offset
+    stated = _of_driver(mesh, first, turning).offset
     stands = last.sense * turned.offset + last.phase - azimuth
-    ahead = stands - float(mesh.pair.driven_angle(np.array([told]))[0])
+    ahead = stands - float(mesh.pair.driven_angle(np.array([stated]))[0])
     if busy[mesh.driven] == 1:
         return first, replace(last, phase=last.phase - ahead), Closing(azimuth)
     pitch = mesh.pair.wheel.angular_pitch

@@ -90,7 +90,7 @@ def reducers_of(scene: Scene) -> tuple[Reducer, ...]:
     """The scene's reducers.
 
     Raises:
-        SceneError: two tolerances tell the play of one, a ratio that nobody builds.
+        SceneError: two tolerances give the play of one, a ratio that nobody builds.
     """
     drawn: dict[str, str] = {}
     for name, spec in scene.tolerances.items():

@@ -23,7 +23,7 @@ class SummaryKinds:
     Args:
         measures: classes of measures; `kind` of each is a Literal of the kinds that it is for.
         runs: classes that add sections to the whole, as keys that may be missing.
-        plain: kinds of measures of which there is nothing more to tell.
+        plain: kinds of measures that add no key.
     """
 
     measures: tuple[type[MeasureSummary], ...] = ()

@@ -60,7 +60,7 @@ class ExactEngine:
         return all(pair.read.kept for pair in self._pairs.values())
 
     def depth(self, mesh: Mesh) -> float:
-        """1 mm: any overlap can be told."""
+        """1 mm: any overlap can be measured."""
         return DEPTH
 
     def last_step(self, mesh: Mesh) -> float:

@@ -1,4 +1,4 @@
-"""What a kind of gear has to tell the kernels: the foot of a point of one flank on the other, and how gears grow.
+"""What kernels need of a kind of gear: the foot of a point of one flank on the other, and how gears grow.
 
 The bodies here are never run: as a kernel is compiled for a kind of teeth, each call becomes that kind's variant.
 """

@@ -1,6 +1,6 @@
 """Where two flanks are nearest: Newton on the gap over profile and face, ends of both flanks included.
 
-`foot` tells the gap of a point of one flank from the other's endless flank, with its derivatives: of a kind of gears
+`foot` gives the gap of a point of one flank from the other's endless flank, with its derivatives: of a kind of gears
 it is all that has to be known.
 """
 

@@ -313,7 +313,7 @@ def closed(side: Side, build: Build, at: Turn, look: Look) -> tuple[Turn, Side]:
 
 @part
 def driver_turn(build: Build, at: Turn, look: Look) -> float:
-    """The turn of the driver [rad], the driven gear held, until a side touches; nan where it cannot be told."""
+    """The turn of the driver [rad], the driven gear held, until a side touches; nan where it is unknown."""
     angle, p = at.driver, build.pose
     for _ in range(LOOKS):
         now = standing(build, angle, at.driven)
