@@ -75,7 +75,7 @@ def test_the_documents_shoulder_satisfies_the_json_schema() -> None:
 
 def test_the_documents_shoulder_survives_being_written_and_read(tmp_path: Path) -> None:
     scene = load(tmp_path, SHOULDER)
-    again = Scene.model_validate(json.loads(scene.model_dump_json(exclude_unset=True)))
+    again = Scene.model_validate(json.loads(scene.model_dump_json(exclude_unset=True, by_alias=True)))
     assert again.model_dump() == scene.model_dump()
 
 

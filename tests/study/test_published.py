@@ -14,7 +14,8 @@ from tol3d import load_scene
 from tol3d.analyses.compensation import CompensationQuestion, compensation
 from tol3d.analyses.compensation_table import worst_table
 from tol3d.report.table import run_report
-from tol3d.scene.schema import PublishedMeasure
+from tol3d.runs.summary.measure import PublishedColumn
+from tol3d.scene.published import PublishedMeasure
 from tol3d.simulate import Overrides, run_scene
 
 COS, SIN = math.cos(math.radians(20)), math.sin(math.radians(20))
@@ -102,3 +103,41 @@ def test_a_description_is_one_line_that_moves_no_cursor(said: str, told: str) ->
             PublishedMeasure.model_validate({"description": said})
     else:
         assert PublishedMeasure.model_validate({"description": said}).description == told
+
+
+def test_any_number_of_a_sample_may_be_published_and_stands_in_its_row(tmp_path: Path) -> None:
+    given = "p0.135: 30 um, p50: 53 um, p99.865: 76 um, ppk: 1.5, below_limit_ppm: 12, skewness: 0.1"
+    text = (SCENES / "spur_pair.yaml").read_text("utf-8")
+    column = f"published:\n  shop floor:\n    normal backlash: {{{given}}}\n"
+    scene = tmp_path / "scene.yaml"
+    scene.write_text(text[: text.index("published:")] + column, "utf-8")
+    run = run_scene(scene, overrides=Overrides(trials=50, witness=0), out=tmp_path / "run")
+    published = run.summary["measures"]["normal backlash"]["published"]["shop floor"]
+    assert published == pytest.approx(
+        {"p0.135": 30.0, "p50": 53.0, "p99.865": 76.0, "ppk": 1.5, "below_limit_ppm": 12.0, "skewness": 0.1}
+    )
+    rows = [line.split() for line in printed(run_report(run.found), 120).splitlines()]
+    assert next(row for row in rows if row[:3] == ["50", "%", "quantile"])[-1] == "53"
+    assert next(row for row in rows if row[:1] == ["Ppk"])[-1].startswith("1.5")
+
+
+def test_published_numbers_are_numbers_of_samples() -> None:
+    """But for those that say nothing without the run: counts, what a grid resolves, the deepest overlap."""
+    ours = {"count", "trials", "quantile_error", "outside_grid", "deepest_overlap"}
+    keys = {field.alias or name for name, field in PublishedMeasure.model_fields.items()}
+    numbers = {field.alias or name for name, field in PublishedColumn.model_fields.items()}
+    assert keys == numbers - ours
+
+
+@pytest.mark.parametrize(
+    ("given", "words"),
+    [
+        ({"p50": "53 um", "p99.865": "50 um"}, "at most p99.865"),
+        ({"sample_min": "9 um", "p0.135": "8 um"}, "at most p0.135"),
+        ({"sigma_se": "0 um"}, "more than 0"),
+        ({"out_ppm": -1.0}, "greater than or equal to 0"),
+    ],
+)
+def test_published_numbers_that_cannot_be_are_refused(given: dict[str, object], words: str) -> None:
+    with pytest.raises(ValidationError, match=words):
+        PublishedMeasure.model_validate(given)

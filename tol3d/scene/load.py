@@ -42,7 +42,7 @@ def scene_from_python(scene: Scene, *, trust_parts: bool = False) -> Scene:
     Raises:
         SceneError: names or files that cannot be found; relative ones start at the working folder.
     """
-    text = scene.model_dump_json(indent=1, exclude_unset=True) + "\n"
+    text = scene.model_dump_json(indent=1, exclude_unset=True, by_alias=True) + "\n"
     source = scene.source if scene.source != Origin().source else Path("scene.yaml")
     return _with_files(scene, Origin(source, text), trust_parts, None)
 

@@ -3,7 +3,6 @@
 from collections.abc import Mapping
 from dataclasses import replace
 from functools import lru_cache
-from itertools import pairwise
 from pathlib import Path
 from typing import Annotated, Any, ClassVar, Final, Literal, Self, TypeVar
 
@@ -16,10 +15,11 @@ from tol3d.scene.engines import THEORY, Engines
 from tol3d.scene.entry import Entry
 from tol3d.scene.measure import MeasureSpec
 from tol3d.scene.move import MoveSpec
-from tol3d.scene.name import Name, Remark
+from tol3d.scene.name import Name
 from tol3d.scene.nearest import nearest
 from tol3d.scene.part import PartSpec
 from tol3d.scene.place import KeyPath, Origin, Place
+from tol3d.scene.published import PublishedMeasure
 from tol3d.scene.tolerance import ToleranceSpec
 from tol3d.strict import Strict, refused
 from tol3d.units import Positive, Quantity, shown
@@ -35,8 +35,6 @@ MOST_REPLICATES = 1000
 MOST_WITNESSED = 1_000_000  # trials; minutes of a slow engine, and all of them are held at once
 
 E = TypeVar("E", bound=Entry)
-
-Percent = Annotated[float, Field(ge=0.0, le=100.0)]
 
 
 class StandardErrors(Strict):
@@ -166,36 +164,6 @@ def _blank_study(engines: Engines) -> Study:
     """A study without anything in it yet, for pickle."""
     made = study_class(engines)
     return made.__new__(made)
-
-
-class PublishedMeasure(Strict):
-    """What somebody else found for a measure, in its dimension; contributors in percent of the variance."""
-
-    low_3sigma: Quantity | None = Field(default=None, description="mean - 3 sigma, or the lower end at 99.7 %")
-    mean: Quantity | None = None
-    high_3sigma: Quantity | None = Field(default=None, description="mean + 3 sigma, or the upper end at 99.7 %")
-    sigma: Quantity | None = Field(default=None, description="standard deviation")
-    contributors: Mapping[Name, Percent] = Field(
-        default_factory=dict, description="share of each tolerance [% of the variance]"
-    )
-    description: Remark = Field(default="", description="what must be known of these numbers, shown below the table")
-
-    def quantities(self) -> dict[str, Quantity]:
-        """Every dimensioned number that was given, by its field."""
-        values = {name: getattr(self, name) for name in ("low_3sigma", "mean", "high_3sigma", "sigma")}
-        return {name: value for name, value in values.items() if value is not None}
-
-    @model_validator(mode="after")
-    def _refuse_disorder(self) -> Self:
-        given = self.quantities()
-        sigma = given.pop("sigma", None)
-        if sigma is not None and not sigma.internal > 0.0:
-            raise refused("sigma", "more than 0", sigma)
-        ordered = list(given.items())
-        for (low, below), (high, above) in pairwise(ordered):
-            if below.dimension == above.dimension and not below.internal <= above.internal:
-                raise refused(low, f"at most {high} ({above})", below)
-        return self
 
 
 class Scene(Strict):

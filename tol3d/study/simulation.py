@@ -72,6 +72,7 @@ def published_in(scene: Scene) -> Mapping[str, Mapping[str, Mapping[str, Any]]]:
         column: {
             measure: {
                 **{key: quantity.internal for key, quantity in values.quantities().items()},
+                **({"numbers": values.numbers()} if values.numbers() else {}),
                 **({"contributors": dict(values.contributors)} if values.contributors else {}),
                 **({"description": values.description} if values.description else {}),
             }

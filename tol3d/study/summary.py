@@ -214,8 +214,12 @@ def _published(simulation: Simulation, measure: Measure) -> dict[str, Any]:
     """Other people's columns for this measure, in its unit."""
     return {
         column: {
-            key: value * measure.per_internal if isinstance(value, float) else value
-            for key, value in measures[measure.name].items()
+            **{
+                key: value * measure.per_internal if isinstance(value, float) else value
+                for key, value in measures[measure.name].items()
+                if key != "numbers"
+            },
+            **measures[measure.name].get("numbers", {}),
         }
         for column, measures in simulation.published.items()
         if measure.name in measures

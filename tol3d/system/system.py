@@ -19,7 +19,8 @@ from tol3d.system.trials import Trials
 Array = NDArray[np.float64]
 Columns = Mapping[str, NDArray[Any]]
 Published = Mapping[str, Mapping[str, Mapping[str, Any]]]
-"""Columns of others by column, measure and key: numbers [mm or rad], shares [%], words."""
+"""Columns of others by column, measure and key: numbers [mm or rad], shares [%], words; without a dimension in
+`numbers`."""
 
 KeyPath = tuple[str | int, ...]
 StreamKey = tuple[str, str]
