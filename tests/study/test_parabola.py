@@ -138,7 +138,7 @@ def test_high_low_mean_is_of_each_ones_ends(run: Run) -> None:
     def lifted(x: float, offset: float, ripple: float) -> float:
         return A * x + B * x**2 + (1 + LOST_LEVER) * offset + ripple + Q * ripple**2
 
-    reach = 3 * RIPPLE * float(np.sum(np.abs(coil_weights(40))))
+    reach = 3 * RIPPLE * float(np.sqrt(np.sum(coil_weights(40) ** 2)))  # along the steepest direction
     three = 3 * X
     states = {
         "x": [lifted(s * three, 0, 0) for s in (-1, 0, 1)],

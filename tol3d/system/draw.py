@@ -199,11 +199,18 @@ class Each:
         return (self.distribution.mean,) * len(self.names)
 
     def ends(self, values: Values, *, turning: bool) -> Array:
-        """See Draw: each feature at the end that lowers the measure, and at the other one."""
+        """See Draw: as far along the steepest direction as the law reaches, by all features together.
+
+        All of them at their worst ends at once would be far rarer than the end of one deviation: sqrt(features) times
+        as many sigma of what they do together.
+        """
         law, count = self.distribution, len(self.names)
         alone = np.full((2 * count, count), law.mean)
         alone[np.arange(count), np.arange(count)] = law.high
         alone[count + np.arange(count), np.arange(count)] = law.low
         found = values(alone)
-        falls = found[:count] < found[count:]
-        return np.stack([np.where(falls, law.high, law.low), np.where(falls, law.low, law.high)])
+        slope = found[:count] - found[count:]
+        size = float(np.sqrt((slope * slope).sum()))
+        along = slope / size if size > 0.0 else np.zeros(count)
+        reach = np.stack([np.where(along > 0.0, law.high, law.low), np.where(along > 0.0, law.low, law.high)])
+        return np.asarray(law.mean + np.abs(along) * (reach - law.mean))
