@@ -44,7 +44,7 @@ import platform
 import tempfile
 import warnings
 from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
+from contextlib import closing, contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -156,7 +156,7 @@ class _Order:
             resume=self.execution.resume,
             force=force,
         )
-        with refusals_explained(writer, lambda: self._kept(writer)):
+        with closing(writer), refusals_explained(writer, lambda: self._kept(writer)):
             yield writer
 
     def _kept(self, writer: RunWriter) -> str:

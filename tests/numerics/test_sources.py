@@ -144,7 +144,6 @@ def test_imports_are_followed_however_they_are_written(tmp_path: Path, monkeypat
 STATUSES = """
 import sys
 from tol3d.simulate import Overrides, run_scene
-from places import ROOT
 run = run_scene(sys.argv[1], overrides=Overrides(trials=200, witness=0))
 print(sorted(set(run.columns("status")["status"].tolist())))
 """
@@ -166,7 +165,7 @@ def test_kernels_have_the_codes_of_today(tmp_path: Path) -> None:
     before = statuses()
     assert "out of range" in before
     assert "no contact" not in before
-    codes = tmp_path / "tol3d" / "engines" / "status.py"
+    codes = tmp_path / "tol3d" / "gearing" / "engines" / "status.py"
     text = codes.read_text()
     codes.write_text(
         text.replace("NO_CONTACT: Final = 2", "NO_CONTACT: Final = 3").replace("RANGE: Final = 3", "RANGE: Final = 2")

@@ -5,10 +5,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 from of_kind import known
+from places import SCENES
 
 from tol3d import Overrides, RunError, Scene, SceneError, open_run, replay, run_scene
 from tol3d.runs.writer import RunWriter
-from tol3d.simulate import Watch
+from tol3d.simulate import Execution, Watch
 
 MEASURED = "n,e\n1,-30\n2,-25\n3,-21\n4,-35\n"
 SCENE = """
@@ -106,8 +107,20 @@ def test_two_runs_into_one_folder_at_once_are_refused(tmp_path: Path) -> None:
         RunWriter(tmp_path / "run", {"scene": "1"}, {})
     with pytest.raises(RunError, match="another run is being written there"):
         RunWriter(tmp_path / "run", {"scene": "2"}, {})
-    del first
+    first.close()
     RunWriter(tmp_path / "run", {"scene": "2"}, {}, force=True)
+
+
+def test_a_run_that_failed_lets_go_of_its_folder_while_its_error_is_held(tmp_path: Path) -> None:
+    def stop(trials: int) -> None:
+        raise InterruptedError("in mid run")
+
+    few = Overrides(trials=2 * 65_536, engine="analytic", witness=0)
+    with pytest.raises(InterruptedError, match="in mid run") as held:
+        run_scene(SCENES / "spur_pair.yaml", overrides=few, out=tmp_path / "run", watch=Watch(progress=stop))
+    again = run_scene(SCENES / "spur_pair.yaml", overrides=few, out=tmp_path / "run", execution=Execution(resume=True))
+    assert again.summary["trials"] == 2 * 65_536
+    assert held.value.__traceback__ is not None
 
 
 def test_blocks_of_another_study_are_thrown_away_by_force_only(tmp_path: Path) -> None:

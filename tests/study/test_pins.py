@@ -142,3 +142,11 @@ def test_statuses_that_no_run_could_keep_are_refused(
 ) -> None:
     with pytest.raises(InputError, match=said):
         Statuses(texts, frozenset(lacking))
+
+
+def test_an_analytic_run_is_replayed_by_the_first_engine_with_its_own_materials(run: Run, tmp_path: Path) -> None:
+    analytic = run_scene(SCENE, overrides=Overrides(trials=50, engine="analytic"), out=tmp_path / "run")
+    values = run.columns("geometric:least gap")["geometric:least gap"]
+    for trial in (0, 49):
+        again = replay(analytic, trial)
+        assert again.geometric["least gap"] == pytest.approx(values[trial])

@@ -224,7 +224,7 @@ class RunWriter:
         write_whole(self.partial / SUMMARY, text.encode())
         lists = own_paths_of_trials(self._keep_trials)
         Manifest.of(self.partial, {SUMMARY, *self._kept, *self._pictures, *lists, *self._older()}).write()
-        self._lock.release()
+        self.close()
         self._put_in_place()
         return Run(self.path, json.loads(text), self._kinds)
 
@@ -234,6 +234,10 @@ class RunWriter:
             older = Manifest.read(self.partial)
             changed = older.foreign()
             yield from (name for name in older.sums if name not in changed and (self.partial / name).is_file())
+
+    def close(self) -> None:
+        """Let go of the folder, finished or not: another run may be written there."""
+        self._lock.release()
 
     def _put_in_place(self) -> None:
         """Rename the folder; what lies there is deleted where it may be replaced, else moved aside."""

@@ -18,6 +18,7 @@ from tol3d.study.study import Study, Until
 from tol3d.study.task import materials_of, road_of
 from tol3d.study.versions import installed_versions
 from tol3d.system.outcome import ANALYTIC, GEOMETRIC, value_column
+from tol3d.system.road import ANALYTIC_ROAD
 from tol3d.system.trials import Trials
 
 
@@ -83,7 +84,12 @@ def replay(run: Run | Path | str, trial: int, kinds: Grammar) -> Replay:
 def replayed(simulation: Simulation, trials: Trials) -> Replay:
     """One build with all its contacts, for any deviations; that of an analytic study by the system's first engine."""
     system = simulation.system
-    road = road_of(simulation, materials_of(simulation)) or system.road(next(iter(system.roads)), None)
+    if not simulation.has_geometry:
+        engine = next(name for name in system.roads if name != ANALYTIC_ROAD)
+        simulation = replace(simulation, study=replace(simulation.study, engine=engine, witness=0))
+    road = road_of(simulation, materials_of(simulation))
+    if road is None:
+        raise ValueError(f"{system.name} has no engine")
     columns = columns_of(system, road, trials)
 
     def values(road: str) -> dict[str, Any]:

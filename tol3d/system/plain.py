@@ -25,9 +25,9 @@ from tol3d.system.measure import Measure, Worse
 from tol3d.system.pooled import PooledTerms
 from tol3d.system.pooled_statistic import PooledStatistic
 from tol3d.system.positions import AT_RANDOM, Positions, Take
-from tol3d.system.regressors import regress_plainly
+from tol3d.system.regressors import is_group, regress_plainly, regress_term
 from tol3d.system.road import ANALYTIC_ROAD, Answers, Road, RoadKind
-from tol3d.system.stated import component_slices
+from tol3d.system.stated import component_slices, mean_deviations, stated
 from tol3d.system.statuses import Statuses
 from tol3d.system.system import Columns, KeyPath, Published, StreamKey
 from tol3d.system.trials import Trials
@@ -241,16 +241,34 @@ class PlainSystem:
         return self.contributors
 
     def regressor_key(self, measure: Measure) -> Hashable:
-        """The contributors that act decide."""
-        return tuple(contributor.name for contributor in self.acting(measure))
+        """The contributors that act decide; of a large group also what each of its components does to the measure."""
+        acting = self.acting(measure)
+        grouped = any(is_group(contributor) for contributor in acting)
+        return tuple(contributor.name for contributor in acting), measure.name if grouped else ""
 
     def regress(
         self, measure: Measure, contributors: Sequence[Contributor], columns: Columns, rows: Mapping[str, Array]
     ) -> None:
-        """Each component of a contributor."""
+        """Each component of a contributor; of a large group its first-order term."""
         for own in contributors:
             values = [np.asarray(columns[name], dtype=np.float64) * own.per_unit for name in own.columns]
-            regress_plainly(rows[own.name], own, values)
+            if is_group(own):
+                slopes = self._slopes(measure, own)
+                off = (slope * (value - own.distribution.mean) for slope, value in zip(slopes, values, strict=True))
+                sigma = own.draw.sigma * float(np.sqrt((slopes * slopes).sum()))
+                regress_term(rows[own.name], sum(off, np.zeros(1)), sigma)
+            else:
+                regress_plainly(rows[own.name], own, values)
+
+    def _slopes(self, measure: Measure, contributor: Contributor) -> Array:
+        """Change of a measure by each component of a contributor, over two sigma about the means, by theory."""
+        own, step = component_slices(self)[contributor.name], contributor.draw.sigma
+        count = own.stop - own.start
+        builds = np.repeat(mean_deviations(self, measure.positions), 2 * count, axis=0)
+        builds[:, own] += step * np.concatenate([np.eye(count), -np.eye(count)])
+        theory = self.road(ANALYTIC_ROAD, self.materials(ANALYTIC_ROAD))
+        values = theory.answers(stated(self, builds), (measure,)).values[measure.name][:, 0]
+        return np.asarray((values[:count] - values[count:]) / (2 * step or 1.0))
 
     def closed_form(self, measure: Measure) -> ClosedForm | None:
         """None."""

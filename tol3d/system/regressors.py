@@ -15,6 +15,11 @@ MOST_COMPONENTS: Final = 8
 square."""
 
 
+def is_group(contributor: Contributor) -> bool:
+    """Whether it has more components than have a row each."""
+    return len(contributor.draw.components) > MOST_COMPONENTS
+
+
 def has_square(contributor: Contributor) -> bool:
     """Whether the second of its two rows is the square of the first: of one component, and of a group."""
     return not 1 < len(contributor.draw.components) <= MOST_COMPONENTS

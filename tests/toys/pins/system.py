@@ -1,6 +1,6 @@
 """All that a study asks of a disc between pins."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, ClassVar
 
@@ -9,14 +9,11 @@ from numpy.typing import NDArray
 
 from tol3d.distributions import Distribution
 from tol3d.scene import Scene
-from tol3d.system.contributor import Contributor
 from tol3d.system.draw import Each, Planar
 from tol3d.system.measure import Measure
 from tol3d.system.plain import PlainSystem, contributors_of, measures_of
-from tol3d.system.regressors import regress_plainly, regress_term
 from tol3d.system.road import Answers, Road
 from tol3d.system.statuses import Statuses
-from tol3d.system.system import Columns
 from tol3d.system.trials import Trials
 from toys.pins.grammar import DiscSpec, OffCentreSpec, PinSpec, PlateSpec
 
@@ -93,18 +90,6 @@ class PinsSystem(PlainSystem):
     def cost(self, measures: Sequence[Measure]) -> int:
         """As many contacts as pins."""
         return self.pins * len(measures)
-
-    def regress(
-        self, measure: Measure, contributors: Sequence[Contributor], columns: Columns, rows: Mapping[str, Array]
-    ) -> None:
-        """Of a group its mean, and the square of that."""
-        for own in contributors:
-            values = [np.asarray(columns[name], dtype=np.float64) * own.per_unit for name in own.columns]
-            if own.kind == "pin":
-                term = sum(values, np.zeros(1)) / len(values)
-                regress_term(rows[own.name], term, own.draw.sigma / len(values) ** 0.5)
-            else:
-                regress_plainly(rows[own.name], own, values)
 
 
 def pins_system(scene: Scene) -> PinsSystem:
