@@ -1,0 +1,1 @@
+"""General assemblies: features of parts, datum frames, tolerance zones, moves and measures, in one world."""

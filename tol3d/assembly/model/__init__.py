@@ -1,0 +1,35 @@
+"""What an assembly is, nominally and by its drawings: what both roads read, and neither computes here.
+
+Part frames, feature frames and poses are 4x4, lengths mm. Nominal poses of parts are in the world.
+"""
+
+from tol3d.assembly.model.assembly import Assembly, Part
+from tol3d.assembly.model.datum_frame import Datum, DatumFrame
+from tol3d.assembly.model.feature import Contribution, Feature
+from tol3d.assembly.model.measures import Measured
+from tol3d.assembly.model.moves import BestFit, Fit, Fix, Locate, Mate, Move, Pair, Relation, Weld
+from tol3d.assembly.model.shape import Axis, Plane, Point, RoundPlane, Shape
+
+__all__ = [
+    "Assembly",
+    "Axis",
+    "BestFit",
+    "Contribution",
+    "Datum",
+    "DatumFrame",
+    "Feature",
+    "Fit",
+    "Fix",
+    "Locate",
+    "Mate",
+    "Measured",
+    "Move",
+    "Pair",
+    "Part",
+    "Plane",
+    "Point",
+    "Relation",
+    "RoundPlane",
+    "Shape",
+    "Weld",
+]

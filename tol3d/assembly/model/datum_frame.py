@@ -1,0 +1,47 @@
+"""Datum frames: made of a part's own features, in order."""
+
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+Simulator = Literal["contact", "fitted", "targets"]
+"""How a later plane lies on what holds it in the orientation left to it: its outermost corner out of the material
+touches, its centre lies on it, or its stated points do."""
+
+
+@dataclass(frozen=True, eq=False)
+class Datum:
+    """A datum: a feature, or two as a common datum A-B.
+
+    Args:
+        features: names; of two the line through both centres counts.
+        simulator: how it lies on what holds it.
+        targets: (points, 3) in the frame of the feature [mm], for "targets".
+    """
+
+    features: tuple[str, ...]
+    simulator: Simulator = "contact"
+    targets: Array | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class DatumFrame:
+    """Datums in order: each takes only the freedoms that earlier ones left; those that none takes stay the part's.
+
+    Its pose in a trial is the displacement, from the nominal datums to those of the trial, with the least rotation,
+    and about the part's origin where nothing decides: T_datum_frame(trial) T_datum_frame(nominal)^-1, in the part's
+    frame; nominally it is the part's frame itself.
+
+    Args:
+        name: "part|A|B|C" of its features.
+        part: whose.
+        datums: primary, secondary, tertiary.
+    """
+
+    name: str
+    part: str
+    datums: tuple[Datum, ...]

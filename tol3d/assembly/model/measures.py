@@ -1,0 +1,50 @@
+"""What is measured of an assembly: features, a direction, when."""
+
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+MeasureKind = Literal["distance", "gap", "point_plane", "angle", "size", "position", "orientation", "flatness"]
+"""What is read, of features' origins and z directions as they are in the trial (p, z), in the world:
+
+- distance: |p_to - p_from|; with a direction along it only, see gap.
+- gap (and flush, where `to` stands proud): (p_to - p_from) . n, n the direction as it is fixed in the part of `from`,
+  or in a datum frame of it.
+- point_plane: (p_point - p_plane) . z_plane; features: the point, the plane.
+- angle: from z_from to z_to [rad], 0 to pi; with a direction n, fixed as for gap, signed about it: atan2(n . (z_from x
+  z_to), z_from . z_to).
+- size: nominal size and its deviation.
+- position: twice the largest distance of the feature's ends from where `frame` has them nominally: of an axis across
+  the nominal axis, of a plane along the nominal normal, of a point in space; across the direction if there is one,
+  which is fixed in that frame.
+- orientation: width of the zone that holds the feature and is oriented nominally in `frame`: of a plane the range of
+  its ends' heights along the nominal normal, of an axis how far its ends lie apart across the nominal axis.
+- flatness: smallest distance of two parallel planes with all the points between them, of points of one part that lie
+  nominally on a plane with normal `direction`, in the part's frame.
+"""
+
+
+@dataclass(frozen=True, eq=False)
+class Measured:
+    """What a measure reads; see each kind.
+
+    Args:
+        kind: which formula.
+        features: names, in the order of the kind: from, to.
+        direction: (3,), of unit length, nominally in the frame of the first feature's part.
+        frame: name of a datum frame of that part in which the direction is fixed, or to which a position or an
+            orientation is inspected; "" for the part's frame.
+        after: index of the move after which it is read; -1 for the end.
+        minus: a second one that is subtracted in the same trial.
+    """
+
+    kind: MeasureKind
+    features: tuple[str, ...]
+    direction: Array | None = None
+    frame: str = ""
+    after: int = -1
+    minus: "Measured | None" = None

@@ -1,0 +1,132 @@
+"""Moves: each places one body, a part and what is welded to it, against placed ones."""
+
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tol3d.assembly.model.feature import Contribution
+
+Array = NDArray[np.float64]
+
+PointsOn = Literal["part", "fixture"]
+"""Whether points ride on the part that is placed and planes stay with the target, or the reverse."""
+
+
+@dataclass(frozen=True, eq=False)
+class Pair:
+    """A feature of the part that is placed, and the one of placed parts against which it lies.
+
+    Args:
+        moving, target: names of the features.
+        normal: nominal direction (3,), of unit length, in the frame of the part on which the plane stays: the target's
+            for points on the part, else that of the part that is placed, where it points INTO that part's material
+            side, so that a positive deviation lifts the part in either case.
+        locator: contributions of the locator itself (1, components) along the normal; positive lifts the part.
+    """
+
+    moving: str
+    target: str
+    normal: Array
+    locator: tuple[Contribution, ...] = ()
+
+
+@dataclass(frozen=True)
+class Fix:
+    """The part stays at its nominal pose."""
+
+    name: str
+    part: str
+
+
+@dataclass(frozen=True, eq=False)
+class Locate:
+    """Six contacts of points on planes: three_two_one with normals made orthogonal in order, or six_plane.
+
+    Args:
+        name, part: of the move, and what it places.
+        pairs: six; rank 6.
+        points_on: which side the points ride on.
+    """
+
+    name: str
+    part: str
+    pairs: tuple[Pair, ...]
+    points_on: PointsOn = "part"
+
+
+@dataclass(frozen=True, eq=False)
+class Fit:
+    """A pair of points that a best fit brings together.
+
+    Args:
+        moving, target: names of the features; their origins count.
+        weight: of its square.
+        directions: (directions, 3) orthonormal, in the target part's nominal frame, in which the residual counts.
+    """
+
+    moving: str
+    target: str
+    weight: float
+    directions: Array
+
+
+@dataclass(frozen=True)
+class BestFit:
+    """The pose of least weighted squares of residuals, or of the least largest residual; finite, no scale.
+
+    Args:
+        name, part: of the move, and what it places.
+        fits: which points.
+        criterion: "squares" or "minimax" (largest length of a fit's residual vector).
+    """
+
+    name: str
+    part: str
+    fits: tuple[Fit, ...]
+    criterion: Literal["squares", "minimax"] = "squares"
+
+
+@dataclass(frozen=True)
+class Relation:
+    """What a mate asks of two features; it takes the freedoms that earlier ones left.
+
+    Args:
+        kind: "coincident" (plane on plane with normals opposed, point on point, point on plane, point on axis),
+            "coaxial" (axis on axis), "tangent" (cylinder on plane, by the radius of the trial), "distance".
+        moving, target: names of the features.
+        distance: for "distance": of plane from plane or of point from plane, along the target's normal [mm].
+    """
+
+    kind: Literal["coincident", "coaxial", "tangent", "distance"]
+    moving: str
+    target: str
+    distance: float = 0.0
+
+
+@dataclass(frozen=True)
+class Mate:
+    """Relations in order; freedoms that none takes stay as nominal (least rotation, about the part's origin)."""
+
+    name: str
+    part: str
+    relations: tuple[Relation, ...]
+
+
+@dataclass(frozen=True)
+class Weld:
+    """Parts that are placed already become one body, which may be moved again.
+
+    Args:
+        name: of the move.
+        part: by whose name the body is moved again.
+        others: what is welded to it.
+    """
+
+    name: str
+    part: str
+    others: tuple[str, ...]
+
+
+Move = Fix | Locate | BestFit | Mate | Weld

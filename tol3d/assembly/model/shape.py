@@ -1,0 +1,95 @@
+"""Shapes of features: what may deviate on each, as lengths at its ends.
+
+A feature's frame has its origin in the middle of its extent, z along its axis or along its normal out of the material.
+A tilt is a slope over the extent, so that nothing leaves a zone by rounding.
+"""
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import ClassVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Point:
+    """A point; z of its frame is the direction in which it touches, if it has one."""
+
+    components: ClassVar[tuple[str, ...]] = ("x", "y", "z")
+
+    @cached_property
+    def ends(self) -> Array:
+        """Where its position is judged (1, 3), in its frame [mm]."""
+        return np.zeros((1, 3))
+
+
+@dataclass(frozen=True)
+class Plane:
+    """A flat rectangle.
+
+    Args:
+        extent: along x and along y of its frame [mm].
+    """
+
+    extent: tuple[float, float]
+
+    components: ClassVar[tuple[str, ...]] = ("offset", "rise x", "rise y")
+    """Height at the middle along z; heights at the ends of +x and of +y less that at the middle [mm]."""
+
+    @property
+    def reach(self) -> tuple[float, float]:
+        """From the middle to where the rises are, along x and y [mm]."""
+        return self.extent[0] / 2, self.extent[1] / 2
+
+    @cached_property
+    def ends(self) -> Array:
+        """Its corners (4, 3), in its frame [mm]."""
+        a, b = self.reach
+        return np.array([[a, b, 0.0], [-a, b, 0.0], [-a, -b, 0.0], [a, -b, 0.0]])
+
+
+@dataclass(frozen=True)
+class RoundPlane:
+    """A flat disc.
+
+    Args:
+        radius: [mm].
+    """
+
+    radius: float
+
+    components: ClassVar[tuple[str, ...]] = Plane.components
+
+    @property
+    def reach(self) -> tuple[float, float]:
+        """From the middle to where the rises are, along x and y [mm]."""
+        return self.radius, self.radius
+
+
+@dataclass(frozen=True)
+class Axis:
+    """The axis of a cylinder, or of a pattern.
+
+    Args:
+        length: from end to end along z [mm].
+        diameter: nominal size [mm]; None for an axis without one.
+        inner: whether it is a hole.
+    """
+
+    length: float
+    diameter: float | None = None
+    inner: bool = False
+
+    components: ClassVar[tuple[str, ...]] = ("start x", "start y", "end x", "end y")
+    """How far its ends at z = -length/2 and at z = +length/2 lie aside [mm]; the axis passes through both."""
+
+    @cached_property
+    def ends(self) -> Array:
+        """Its ends (2, 3), in its frame [mm]."""
+        return np.array([[0.0, 0.0, -self.length / 2], [0.0, 0.0, self.length / 2]])
+
+
+Shape = Point | Plane | RoundPlane | Axis

@@ -1,0 +1,17 @@
+"""What may become of an assembly, measure by measure."""
+
+from typing import Final
+
+from tol3d.system.statuses import Statuses
+
+STATUSES: Final = Statuses(
+    ("ok", "not unique", "no contact", "no build", "singular"), words={"no build": "do not build"}
+)
+"""By their codes: built; the pose is not unique and the measure varies with it; parts that should touch do not reach
+each other; the parts do not go together; the pose was not found, for the contacts have lost their rank."""
+
+OK: Final = 0
+NOT_UNIQUE: Final = 1
+NO_CONTACT: Final = 2
+NO_BUILD: Final = 3
+SINGULAR: Final = 4

@@ -1,0 +1,1 @@
+"""The analytic road: small displacements, propagated by linear algebra from the nominal geometry."""
