@@ -11,7 +11,7 @@ from loose_summaries import typed_measure, typed_run, valid
 from matplotlib.collections import PolyCollection
 from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
-from matplotlib.patches import Patch
+from matplotlib.patches import Patch, Rectangle, StepPatch
 from matplotlib.text import Text
 from of_kind import known, of_kind
 
@@ -257,6 +257,40 @@ def test_a_measure_that_cannot_be_drawn_costs_a_warning_and_no_other_picture(tmp
         draw(valid(summary_of(measures)), tmp_path / "histogram.png")
     assert not (tmp_path / "histogram-play 3.png").exists()
     assert len(list(tmp_path.iterdir())) == 5
+
+
+def test_lines_of_an_overview_cross_their_whole_histogram_and_those_below_words_end_there() -> None:
+    """The overview has no words at its lines: they go through the highest bar, which at the mean is above 84 %."""
+    measure = measure_of(normals(5000), ("one",))
+    overview = overview_figure(typed_summary_of({f"play {k}": measure for k in range(5)}))
+    assert len(overview.axes) == 5
+    for axes in overview.axes:
+        assert [line.get_ydata() for line in axes.lines if line.get_linestyle() == ":"] == [[0, 1]] * 3
+    alone = axes_of(draw_distribution, typed_measure(measure))
+    alone.figure.canvas.draw()
+    lowest = min(text.get_window_extent().y0 for text in alone.texts)
+    lines = [line for line in alone.lines if line.get_linestyle() == ":"]
+    assert len(lines) == 3
+    assert all(line.get_window_extent().y1 < lowest for line in lines)
+
+
+def test_bars_of_one_sample_are_told_apart_and_several_samples_each_have_their_outline() -> None:
+    """Bars in white edges, as many as counted; of two runs each is one outline in its own colour, and no bar."""
+    measure = measure_of(normals(2000), lower_limit=48.0)
+    axes = axes_of(draw_distribution, typed_measure(measure))
+    bars = [patch for patch in axes.patches if isinstance(patch, Rectangle)]
+    drawn = bars_of(typed_measure(measure))["geometric"]
+    assert sorted((bar.get_x(), bar.get_height()) for bar in bars) == [
+        pytest.approx(pair) for pair in zip(drawn.edges[:-1], drawn.density, strict=True)
+    ]
+    assert {to_hex(bar.get_edgecolor()) for bar in bars} == {"#ffffff"}
+    beyond = [bar for bar in bars if to_hex(bar.get_facecolor()) == OUTSIDE.lower()]
+    assert len(beyond) == int((drawn.middles < 48.0).sum())
+    runs = [run_of(f"/{name}", {"play": measure_of(normals(500, seed))}) for seed, name in enumerate("ab")]
+    both = comparison_figure(runs).axes[0]
+    outlines = [step for step in both.patches if isinstance(step, StepPatch) and not step.get_fill()]
+    assert len({to_hex(step.get_edgecolor()) for step in outlines if step.get_linestyle() == "solid"}) == 2
+    assert not [patch for patch in both.patches if isinstance(patch, Rectangle) and patch.get_width() > 0]
 
 
 # failed trials ------------------------------------------------------------------------------------

@@ -84,17 +84,12 @@ def title_axes(axes: Axes, name: str, words: str, width: float) -> None:
     words_below.set_in_layout(False)  # lines are broken already, and the name above them keeps their room
 
 
-def legend_below(axes: Axes, columns: int) -> None:
-    """A legend below the axis and its label, where it hides nothing; row by row in so many columns."""
+def legend_below(axes: Axes) -> None:
+    """A legend below the axis and its label, where it hides nothing."""
     figure = axes.get_figure(root=True)
-    handles, labels = axes.get_legend_handles_labels()
-    if figure is None or not labels:
+    if figure is None or not axes.get_legend_handles_labels()[1]:
         return
-    rows_first = [index for column in range(columns) for index in range(column, len(labels), columns)]
-    axes.legend(  # matplotlib fills column by column
-        [handles[index] for index in rows_first],
-        [labels[index] for index in rows_first],
-        ncols=columns,
+    axes.legend(
         loc="upper left",
         bbox_to_anchor=(0.0, 0.0),
         bbox_transform=axes.transAxes + ScaledTranslation(0.0, -LEGEND_BELOW, figure.dpi_scale_trans),

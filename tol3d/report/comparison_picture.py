@@ -124,12 +124,12 @@ def _draw_roads(axes: Axes, measure: Compared, shown: Sequence[Shown], *, single
     name, unit = measure.name, measure.unit
     first = shown[0].run.found.measures[name]
     curve = first.take == "curve"
-    for each in shown:
-        own = each.run.found.measures[name]
-        if curve:
-            _draw_curves(axes, own, each.colours)
-        else:
-            draw_samples(axes, list(_samples(own, each.colours, single=single)))
+    measures = [(each.run.found.measures[name], each.colours) for each in shown]
+    if curve:
+        for own, colours in measures:
+            _draw_curves(axes, own, colours)
+    else:
+        draw_samples(axes, [each for own, colours in measures for each in _samples(own, colours, single=single)])
     _add_marks(axes, name, shown, curve=curve, single=single)
     if curve:
         label_angles(axes.yaxis, unit)
@@ -141,7 +141,7 @@ def _draw_roads(axes: Axes, measure: Compared, shown: Sequence[Shown], *, single
         axes.set_xlabel(values_label(name, unit), fontsize=10)
         axes.set_ylabel(density_label(unit), fontsize=10)
     title_axes(axes, name, heading(first), WORDS[0])
-    legend_below(axes, 1)
+    legend_below(axes)
 
 
 def _samples(measure: MeasureSummary, colours: Mapping[str, str], *, single: bool) -> Iterator[DrawnSample]:
@@ -207,17 +207,19 @@ def _draw_differences(axes: Axes, unit: str, known: Known, *, single: bool) -> N
     title_axes(axes, "3D simulation − analytic", "of every trial", WORDS[1])
     if not known:
         return
+    samples = []
     for each, found in known:
         text = f"max {factor * found.largest:.3f} {word}, rms {factor * found.rms:.3f} {word}"
         label = text if single else f"{_broken(each.label, 1)}:\n{text}"
-        draw_samples(axes, [DrawnSample(label, each.colours["geometric"], found.bars.times(factor))])
+        samples.append(DrawnSample(label, each.colours["geometric"], found.bars.times(factor)))
+    draw_samples(axes, samples)
     axes.axvline(0, color=BLACK, linewidth=0.8)
     axes.set_xlabel(f"difference of a trial [{word}]", fontsize=10)
     axes.set_ylabel("share of trials", fontsize=10)
     axes.set_yticks([])
     axes.locator_params(axis="x", nbins=6)
     axes.set_ylim(bottom=0)
-    legend_below(axes, 1)
+    legend_below(axes)
 
 
 def _draw_by_position(axes: Axes, measure: Compared, known: Known) -> None:

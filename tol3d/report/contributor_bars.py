@@ -80,7 +80,7 @@ def draw_contributors(axes: Axes, measure: MeasureSummary, colours: Mapping[str,
     axes.set_xlim(left=0)
     axes.set_xlabel("share of the variance [%]", fontsize=10)
     axes.set_title("contributors", loc="left", fontsize=11, fontweight="bold")
-    legend_below(axes, 1)
+    legend_below(axes)
 
 
 def _percents(column: Column, shown: list[str], rest: list[str]) -> list[float | None]:

@@ -78,7 +78,7 @@ def draw_distribution(axes: Axes, measure: MeasureSummary) -> None:
         axes.plot(x, normal, color=BLACK, linewidth=1.2, linestyle=(0, (5, 3)))
     axes.set_ylim(0, 1.25 * max(float(sample.bars.density.max()) for sample in samples))
     axes.set_xlim(*span)
-    draw_ends(axes, samples[0])
+    draw_ends(axes, samples[0], LINE_TOP)
     name_ends(axes, samples[0], measure.unit, span)
     _mark_limits(axes, measure, span)
     axes.ticklabel_format(axis="y", style="plain")  # a power of ten would stand in the words above

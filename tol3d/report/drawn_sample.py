@@ -15,12 +15,14 @@ from tol3d.report.canvas import BLACK, GREY, OUTSIDE
 from tol3d.report.ends import Ends
 from tol3d.report.number import measured_text, short_text
 
+Array = NDArray[np.float64]
 Limits = tuple[float | None, float | None]
 Line = Literal["filled", "solid", "dashed"]
 
 UNKNOWN_ENDS: Final = Ends(None, None)
-FILL_OPACITY, OUTSIDE_OPACITY = 0.5, 0.85
-LINE_TOP: Final = 0.84  # of the axes; above lines stand words
+FILL_OPACITY, OUTSIDE_OPACITY = 0.55, 0.85
+BAR_EDGE: Final = 0.5  # points; the white between two bars
+LINE_TOP: Final = 0.84  # of the axes' height, where words stand above the lines
 ROOM_OF_TEXT: Final = 0.115  # of the axes' width, for the words at the mean or at an end of 3 sigma
 LEAST_ROOM: Final = 0.06  # less, and they stand together
 
@@ -64,28 +66,54 @@ class DrawnSample:
 def draw_samples(axes: Axes, samples: Sequence[DrawnSample], per: float = 1.0) -> None:
     """Draw samples over each other, the first one lowest.
 
+    Bars of a single filled sample are told apart by white edges; several filled ones have an outline each, so that the
+    shape of each is seen through the others.
+
     Args:
         axes: where.
         samples: what.
         per: heights are % of the trials per so many units.
     """
+    alone = sum(sample.line == "filled" for sample in samples) == 1
     for sample in samples:
         edges, heights = sample.bars.edges, per * sample.bars.density
         if sample.line != "filled":
             style = "-" if sample.line == "solid" else "--"
             axes.stairs(heights, edges, color=sample.colour, linestyle=style, linewidth=1.8, label=sample.label)
-            continue
-        inside = np.where(sample.outside, 0.0, heights)
-        axes.stairs(inside, edges, fill=True, color=sample.colour, alpha=FILL_OPACITY, label=sample.label)
-        if sample.outside.any():
-            axes.stairs(heights - inside, edges, fill=True, color=OUTSIDE, alpha=OUTSIDE_OPACITY)
-        axes.stairs(heights, edges, color=sample.colour, linewidth=1.0)
+        elif alone:
+            _draw_bars(axes, sample, heights)
+        else:
+            _draw_area(axes, sample, heights)
 
 
-def draw_ends(axes: Axes, sample: DrawnSample) -> None:
-    """Lines at the mean and the ends of a sample."""
+def _draw_bars(axes: Axes, sample: DrawnSample, heights: Array) -> None:
+    beyond, lefts, widths = sample.outside, sample.bars.edges[:-1], np.diff(sample.bars.edges)
+    for chosen, colour, opacity in ((~beyond, sample.colour, FILL_OPACITY), (beyond, OUTSIDE, OUTSIDE_OPACITY)):
+        axes.bar(
+            lefts[chosen],
+            heights[chosen],
+            widths[chosen],
+            align="edge",
+            color=colour,
+            alpha=opacity,
+            edgecolor="white",
+            linewidth=BAR_EDGE,
+            label=None if colour == OUTSIDE else sample.label,
+        )
+
+
+def _draw_area(axes: Axes, sample: DrawnSample, heights: Array) -> None:
+    edges, beyond = sample.bars.edges, np.where(sample.outside, heights, 0.0)
+    axes.stairs(heights - beyond, edges, fill=True, color=sample.colour, alpha=FILL_OPACITY, label=sample.label)
+    if sample.outside.any():
+        axes.stairs(beyond, edges, fill=True, color=OUTSIDE, alpha=OUTSIDE_OPACITY)
+    axes.stairs(heights, edges, color=sample.colour, linewidth=1.0)
+
+
+def draw_ends(axes: Axes, sample: DrawnSample, top: float = 1.0) -> None:
+    """Lines at the mean and the ends of a sample, up to `top` of the axes' height."""
     for _, value in sample.known_ends:
-        axes.axvline(value, ymax=LINE_TOP, color=GREY, linewidth=1.0, linestyle=":")
+        axes.axvline(value, ymax=top, color=GREY, linewidth=1.0, linestyle=":")
 
 
 def name_ends(axes: Axes, sample: DrawnSample, unit: str, span: tuple[float, float]) -> None:

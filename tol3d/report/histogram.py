@@ -55,7 +55,7 @@ CURVE_HEIGHT: Final = 3.7  # inch
 SCALAR_HEIGHT: Final = 4.3
 OVERVIEW_COLUMNS: Final = 3
 OVERVIEW_HEIGHT: Final = 2.9  # inch, a row
-OVERVIEW_WORDS: Final = 3.6
+OVERVIEW_WORDS: Final = 3.9
 
 
 def draw_histogram(summary: RunSummary, path: Path) -> None:
