@@ -43,6 +43,15 @@ def part(function: Function) -> Function:
     return compiled
 
 
+def inlined(function: Function) -> Function:
+    """A part whose lines take the place of the call: the same machine code, and bits, as if they were written there.
+
+    Calls of other parts are inlined later, by LLVM, which may then fuse other products with their sums.
+    """
+    compiled: Function = numba.njit(inline="always", **SETTINGS)(function)
+    return compiled
+
+
 _VARIANTS_IN: dict[type, set[str]] = {}  # modules of the variants for a kind
 
 

@@ -11,7 +11,7 @@ from typing import NamedTuple
 from tol3d.gearing.engines.exact.foot import PER_TURN, TURN, foot, grown, line_of_action, section, turn_to
 from tol3d.gearing.engines.exact.numbers import NOWHERE, Foot, Nearest, Pose
 from tol3d.gearing.engines.exact.small_angles import arcsine, sine
-from tol3d.numerics.compiled import variant
+from tol3d.numerics.compiled import inlined, variant
 
 LEAST_RISE = 1e-9  # mm; a point within the base cone has no such plane
 
@@ -56,6 +56,16 @@ def bevel_section(tooth: BevelTooth, share: float) -> BevelTooth:
     )
 
 
+@inlined
+def in_mate(pose: Pose, x: float, y: float, z: float) -> tuple[float, float, float]:
+    """A vector of own frame in the mate's."""
+    return (
+        pose.xx * x + pose.xy * y + pose.xz * z,
+        pose.yx * x + pose.yy * y + pose.yz * z,
+        pose.zx * x + pose.zy * y + pose.zz * z,
+    )
+
+
 @variant(foot, BevelTooth)
 def bevel_foot(
     own: BevelTooth,
@@ -76,9 +86,7 @@ def bevel_foot(
     dx = cos_q * own.base * cos + sigma * sin_q * sin
     dy = cos_q * own.base * sin - sigma * sin_q * cos
     dz = cos_q * own.cosine
-    ex = pose.xx * dx + pose.xy * dy + pose.xz * dz
-    ey = pose.yx * dx + pose.yy * dy + pose.yz * dz
-    ez = pose.zx * dx + pose.zy * dy + pose.zz * dz
+    ex, ey, ez = in_mate(pose, dx, dy, dz)
     x, y, z = radius * ex + pose.x, radius * ey + pose.y, radius * ez + pose.z
     square = x * x + y * y
     high, low = math.sqrt(square) * mate.cosine, z * mate.base
@@ -106,9 +114,7 @@ def bevel_foot(
     # dP/dq = R sin q cot(beta) a, and a turns along sigma e cot(beta)
     cot = own.cosine * own.per_base
     bx, by, bz = own.cosine * cos, own.cosine * sin, -own.base
-    vx = pose.xx * bx + pose.xy * by + pose.xz * bz
-    vy = pose.yx * bx + pose.yy * by + pose.yz * bz
-    vz = pose.zx * bx + pose.zy * by + pose.zz * bz
+    vx, vy, vz = in_mate(pose, bx, by, bz)
     wx, wy, wz = pose.xy * cos - pose.xx * sin, pose.yy * cos - pose.yx * sin, pose.zy * cos - pose.zx * sin
     towards = nx * vx + ny * vy + nz * vz
     turning = nx * wx + ny * wy + nz * wz
@@ -116,24 +122,11 @@ def bevel_foot(
     across = speed * (ax * vx + ay * vy + az * vz)
     sideways = ax * ex + ay * ey + az * ez
     curvature = z / rise * nearness
-    return Foot(
-        distance * sin_beyond - offset,
-        foot_q,
-        distance * cos_beyond,
-        at - offset * nearness,
-        x,
-        y,
-        z,
-        nx,
-        ny,
-        nz,
-        speed * towards,
-        nx * ex + ny * ey + nz * ez,
-        radius * cot * (cos_q * towards + sin_q * cot * sigma * turning) + across * across * curvature,
-        sin_q * cot * towards + across * sideways * curvature,
-        sideways * sideways * curvature,
-        nearness,
-    )
+    gap, face, touching = distance * sin_beyond - offset, distance * cos_beyond, at - offset * nearness
+    by_profile, by_face = speed * towards, nx * ex + ny * ey + nz * ez
+    bend = radius * cot * (cos_q * towards + sin_q * cot * sigma * turning) + across * across * curvature
+    twist, bow = sin_q * cot * towards + across * sideways * curvature, sideways * sideways * curvature
+    return Foot(gap, foot_q, face, touching, x, y, z, nx, ny, nz, by_profile, by_face, bend, twist, bow, nearness)
 
 
 @variant(turn_to, BevelTooth)
