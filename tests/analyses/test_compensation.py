@@ -438,8 +438,8 @@ def test_the_shimmed_robot_is_the_robot_with_two_shims() -> None:
         shimmed.measures,
         shimmed.study,
     )
-    pair = load_scene(SCENES / "bevel_pair_shimmed.yaml").tolerances
-    more = {name: spec for name, spec in shimmed.tolerances.items() if name not in robot.tolerances}
+    pair = load_scene(SCENES / "bevel_pair_shimmed.yaml").distributed
+    more = {name: spec for name, spec in shimmed.distributed.items() if name not in robot.tolerances}
     assert dict(robot.tolerances) == {name: shimmed.tolerances[name] for name in robot.tolerances}
     assert [
         (of_kind(ShimSpec, spec).of, of_kind(ShimSpec, spec).side, spec.distribution) for spec in more.values()

@@ -279,7 +279,7 @@ def test_a_thickness_of_another_law_is_refused(tmp_path: Path) -> None:
 def test_a_scene_without_tolerances_gets_some(tmp_path: Path) -> None:
     bare = CONES[: CONES.index("tolerances:")] + CONES[CONES.index("moves:") :]
     scene = written(tmp_path, with_law("{kind: constant, value: 20 um}"))
-    spec = scene.tolerances["pinion shim"]
+    spec = scene.distributed["pinion shim"]
     edited = with_tolerances(written(tmp_path, bare), {"pinion shim": spec})
     write_scene(edited, tmp_path / "edited.yaml")
     assert list(load_scene(tmp_path / "edited.yaml").tolerances) == ["pinion shim"]
@@ -294,7 +294,7 @@ def test_what_another_entry_is_an_alias_of_stays(tmp_path: Path) -> None:
     (pinions,) = shims_of(scene, model_of_scene(scene).mesh("pair"), ("pinion shim",))
     edited = with_tolerances(scene, {"pinion shim": pinions.of_thickness(0.035)})
     write_scene(edited, tmp_path / "edited.yaml")
-    found = load_scene(tmp_path / "edited.yaml").tolerances
+    found = load_scene(tmp_path / "edited.yaml").distributed
     assert [str(found[name].distribution.quantities()["value"]) for name in ("pinion shim", "wheel shim")] == [
         "35 um",
         "20 um",
@@ -392,7 +392,7 @@ def test_a_file_is_never_written_over(shim_command: Command, tmp_path: Path) -> 
 
 def test_shims_that_undo_each_other_are_refused() -> None:
     scene = load_scene(Path(SHIMMED))
-    front = scene.tolerances["driven shim"].model_copy(update={"side": "in_front"})
+    front = scene.distributed["driven shim"].model_copy(update={"side": "in_front"})
     with pytest.raises(InputError, match="which cancel"):
         shim_plan(with_tolerances(scene, {"driven shim": front}), ShimQuestion(24 * UM))
 

@@ -793,7 +793,7 @@ def test_an_alias_bomb_is_refused_and_a_few_aliases_are_not(tmp_path: Path) -> N
     assert re.match(r"\d+: .*expected at most 20000 values \(aliases count written out\), got more", said)
     text = SPUR_PAIR.replace("{kind: rayleigh, scale: 4.5 um}", "&law {kind: rayleigh, scale: 4.5 um}")
     (tmp_path / "scene.yaml").write_text(text.replace("{kind: rayleigh, scale: 1.3333333333333333 um}", "*law"))
-    law = load_scene(tmp_path / "scene.yaml").tolerances["reducer run-out"].distribution
+    law = load_scene(tmp_path / "scene.yaml").distributed["reducer run-out"].distribution
     assert of_kind(Quantity, vars(law)["scale"]).number == 4.5
 
 

@@ -66,7 +66,7 @@ def test_the_spur_pair_is_that_of_the_papers_tables() -> None:
     move = of_kind(MeshSpec, scene.moves["gear pair"])
     assert move.centre_distance.internal == 172.5 == 2.5 * (28 + 110) / 2
     assert known(scene.measures["normal backlash"].lower_limit).internal == 0.015
-    laws = {name: tolerance.distribution.resolve(scene.files) for name, tolerance in scene.tolerances.items()}
+    laws = {name: tolerance.distribution.resolve(scene.files) for name, tolerance in scene.distributed.items()}
     mean_and_sigma_um = {name: (1e3 * law.mean, 1e3 * law.sigma) for name, law in laws.items()}
     assert mean_and_sigma_um["pinion tooth thickness"] == pytest.approx(((-19 - 30) / 2, 11 / 6))
     assert mean_and_sigma_um["wheel tooth thickness"] == pytest.approx(((-21 - 32) / 2, 11 / 6))

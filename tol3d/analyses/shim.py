@@ -81,7 +81,7 @@ class ShimPlan:
     @property
     def tolerances(self) -> Mapping[str, ToleranceSpec]:
         """Of the shims, with the chosen thickness."""
-        return {shim.name: self.scene.tolerances[shim.name] for shim in self.shims}
+        return {shim.name: self.scene.distributed[shim.name] for shim in self.shims}
 
 
 def shim_plan(

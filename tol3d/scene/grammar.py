@@ -19,7 +19,7 @@ from tol3d.scene.name import Name
 from tol3d.scene.part import PartSpec
 from tol3d.scene.place import KeyPath
 from tol3d.scene.schema import SECTIONS, Scene, study_class
-from tol3d.scene.tolerance import ToleranceSpec
+from tol3d.scene.tolerance import ToleranceEntry
 
 Check = Callable[[Scene], Iterator[tuple[KeyPath, str]]]
 """Tells what does not hold together across entries whose names all exist: key path and finished sentence."""
@@ -28,7 +28,7 @@ REQUIRED: Final = frozenset(("parts", "moves", "measures"))  # sections that eve
 
 BASES: Final[Mapping[str, type[Entry]]] = {
     "parts": PartSpec,
-    "tolerances": ToleranceSpec,
+    "tolerances": ToleranceEntry,
     "moves": MoveSpec,
     "measures": MeasureSpec,
 }
@@ -52,7 +52,7 @@ class Vocabulary:
 
     name: str
     parts: tuple[type[PartSpec], ...] = ()
-    tolerances: tuple[type[ToleranceSpec], ...] = ()
+    tolerances: tuple[type[ToleranceEntry], ...] = ()
     moves: tuple[type[MoveSpec], ...] = ()
     measures: tuple[type[MeasureSpec], ...] = ()
     checks: tuple[Check, ...] = ()

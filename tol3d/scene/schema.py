@@ -20,7 +20,7 @@ from tol3d.scene.nearest import nearest
 from tol3d.scene.part import PartSpec
 from tol3d.scene.place import KeyPath, Origin, Place
 from tol3d.scene.published import PublishedMeasure
-from tol3d.scene.tolerance import ToleranceSpec
+from tol3d.scene.tolerance import ToleranceEntry, ToleranceSpec
 from tol3d.strict import Strict, refused
 from tol3d.units import Positive, Quantity, shown
 
@@ -178,7 +178,7 @@ class Scene(Strict):
     scene: Name = Field(description="the scene's name")
     description: str = Field(default="", description="the user's own words, shown in reports")
     parts: Mapping[Name, PartSpec] = Field(min_length=1)
-    tolerances: Mapping[Name, ToleranceSpec] = Field(default_factory=dict)
+    tolerances: Mapping[Name, ToleranceEntry] = Field(default_factory=dict)
     moves: Mapping[Name, MoveSpec] = Field(min_length=1)
     measures: Mapping[Name, MeasureSpec] = Field(min_length=1)
     study: Study = Field(default_factory=Study)
@@ -252,6 +252,11 @@ class Scene(Strict):
     def of(self, spec: type[E]) -> dict[str, E]:
         """The entries of a kind, or of several that have a class in common, by their names."""
         return {str(name): entry for (_, name), entry in self.entries().items() if isinstance(entry, spec)}
+
+    @property
+    def distributed(self) -> dict[str, ToleranceSpec]:
+        """The tolerances that are one deviation with its distribution, by their names."""
+        return {str(name): entry for name, entry in self.tolerances.items() if isinstance(entry, ToleranceSpec)}
 
     def refuse(self, path: KeyPath, sentence: str) -> SceneError:
         """The error to raise with a finished sentence, such as that of a GeometryError."""

@@ -13,17 +13,22 @@ from tol3d.scene.reference import Reference
 from tol3d.units import Dimension, refuse_dimension
 
 
-class ToleranceSpec(Entry):
-    """A tolerance (a contributor) as a scene writes it: one deviation and its distribution."""
+class ToleranceEntry(Entry):
+    """A tolerance as a scene writes it: a contributor, or what limits one, such as a tighter zone for orientation."""
 
-    dimensions: ClassVar[tuple[Dimension, ...]] = ("length",)
-
-    distribution: DistributionUnion = Field(description="the law of the deviation")
     description: str = Field(default="", description="the user's own words, shown in reports")
 
     @abstractmethod
     def references(self) -> tuple[Reference, ...]:
         """Every name that the tolerance uses."""
+
+
+class ToleranceSpec(ToleranceEntry):
+    """A tolerance that is a contributor: one deviation and its distribution."""
+
+    dimensions: ClassVar[tuple[Dimension, ...]] = ("length",)
+
+    distribution: DistributionUnion = Field(description="the law of the deviation")
 
     def file_names(self) -> Iterator[tuple[KeyPath, str]]:
         """Those that its law reads."""

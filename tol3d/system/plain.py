@@ -123,7 +123,7 @@ def contributors_of(scene: Scene, draws: Mapping[type[ToleranceSpec], Drawn]) ->
             *UNITS[spec.dimensions[0]],
             spec.description,
         )
-        for name, spec in scene.tolerances.items()
+        for name, spec in scene.distributed.items()
     )
 
 

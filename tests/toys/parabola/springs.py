@@ -74,7 +74,7 @@ def springs_of(scene: Scene) -> Springs:
     return Springs(
         scene.scene,
         Spring(name, spec.length.internal, *_characteristic(scene, name, spec)),
-        tuple(_contributor(name, spec, scene.files) for name, spec in scene.tolerances.items()),
+        tuple(_contributor(name, spec, scene.files) for name, spec in scene.distributed.items()),
         tuple(_measure(name, spec) for name, spec in measures.items()),
         tuple((name, Room(own.room.internal, own.lost_beyond.internal)) for name, own in scene.of(RoomSpec).items()),
         scene.study.profile_steps,
