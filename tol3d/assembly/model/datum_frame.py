@@ -32,6 +32,11 @@ class Datum:
 class DatumFrame:
     """Datums in order: each takes only the freedoms that earlier ones left; those that none takes stay the part's.
 
+    What each asks, in this order: a plane, its normal, then its height (with targets, the heights of its points one by
+    one); an axis or a common datum, its centre across it, then its direction; a point, its position. What is asked but
+    held already is met as nearly as the freedoms left allow: least squares over its two or three components. So a
+    second hole turns the frame until its centre lies in the right direction from the first, whatever their distance.
+
     Its pose in a trial is the displacement, from the nominal datums to those of the trial, with the least rotation,
     and about the part's origin where nothing decides: T_datum_frame(trial) T_datum_frame(nominal)^-1, in the part's
     frame; nominally it is the part's frame itself.

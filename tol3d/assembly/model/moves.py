@@ -18,6 +18,9 @@ PointsOn = Literal["part", "fixture"]
 class Pair:
     """A feature of the part that is placed, and the one of placed parts against which it lies.
 
+    Origins count: normal . (origin of moving - origin of target) = locator. The normal turns with the part, not with
+    the tilt of a single feature.
+
     Args:
         moving, target: names of the features.
         normal: nominal direction (3,), of unit length, in the frame of the part on which the plane stays: the target's
@@ -91,6 +94,10 @@ class BestFit:
 @dataclass(frozen=True)
 class Relation:
     """What a mate asks of two features; it takes the freedoms that earlier ones left.
+
+    Directions come first, then heights: those of the origin of `moving` over the target's plane as it tilts in the
+    trial. Coaxial asks the origin of `moving` across the target's axis, then the direction. What is held already is met
+    as nearly as the freedoms left allow (least squares over its components).
 
     Args:
         kind: "coincident" (plane on plane with normals opposed, point on point, point on plane, point on axis),
