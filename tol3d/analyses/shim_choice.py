@@ -14,12 +14,13 @@ from tol3d.distributions.triangular import TriangularSpec
 from tol3d.distributions.truncated_normal import TruncatedNormalSpec
 from tol3d.distributions.uniform import UniformSpec
 from tol3d.errors import InputError
-from tol3d.gearing.grammar.measures import MeasureSpec, NormalBacklashSpec
+from tol3d.gearing.grammar.measures import NormalBacklashSpec
 from tol3d.gearing.grammar.moves import BevelMeshSpec
 from tol3d.gearing.grammar.tolerances import ShimSpec
 from tol3d.gearing.model import Mesh
 from tol3d.scene import Scene
 from tol3d.scene.edit import with_tolerances
+from tol3d.scene.measure import MeasureEntry
 from tol3d.scene.nearest import hint
 from tol3d.units import FACTORS, Quantity
 
@@ -89,7 +90,7 @@ def measure_of(scene: Scene, name: str | None) -> str:
     return name
 
 
-def _unfit(scene: Scene, spec: MeasureSpec) -> str:
+def _unfit(scene: Scene, spec: MeasureEntry) -> str:
     """Why shims cannot be chosen for a measure, or nothing."""
     if not isinstance(spec, NormalBacklashSpec):
         return f"of the kind {spec.kind}"

@@ -13,7 +13,7 @@ from pydantic import Field, create_model
 from tol3d.errors import InputError
 from tol3d.scene.engines import Engines
 from tol3d.scene.entry import Entry, kind_of
-from tol3d.scene.measure import MeasureSpec
+from tol3d.scene.measure import MeasureEntry
 from tol3d.scene.move import MoveSpec
 from tol3d.scene.name import Name
 from tol3d.scene.part import PartSpec
@@ -30,7 +30,7 @@ BASES: Final[Mapping[str, type[Entry]]] = {
     "parts": PartSpec,
     "tolerances": ToleranceEntry,
     "moves": MoveSpec,
-    "measures": MeasureSpec,
+    "measures": MeasureEntry,
 }
 
 
@@ -54,7 +54,7 @@ class Vocabulary:
     parts: tuple[type[PartSpec], ...] = ()
     tolerances: tuple[type[ToleranceEntry], ...] = ()
     moves: tuple[type[MoveSpec], ...] = ()
-    measures: tuple[type[MeasureSpec], ...] = ()
+    measures: tuple[type[MeasureEntry], ...] = ()
     checks: tuple[Check, ...] = ()
     includes: tuple[str, ...] = ()
     engines: tuple[str, ...] = ("exact",)

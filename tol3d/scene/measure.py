@@ -18,14 +18,13 @@ LengthLimit = Annotated[Quantity, Of("length")]
 AngleLimit = Annotated[Quantity, Of("angle")]
 
 
-class MeasureSpec(Entry):
+class MeasureEntry(Entry):
     """A measure as a scene writes it: a number a trial, or a curve."""
 
     dimension: ClassVar[Dimension]
 
     lower_limit: Quantity | None
     upper_limit: Quantity | None
-    of: Name = Field(description="the move that it is read on")
     description: str = Field(default="", description="the user's own words, shown in reports")
 
     @property
@@ -48,3 +47,9 @@ class MeasureSpec(Entry):
         if lower is not None and upper is not None and not lower.internal < upper.internal:
             raise refused("lower_limit", f"less than the upper_limit ({upper})", lower)
         return self
+
+
+class MeasureSpec(MeasureEntry):
+    """A measure that is read on a move."""
+
+    of: Name = Field(description="the move that it is read on")

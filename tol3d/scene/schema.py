@@ -13,7 +13,7 @@ from tol3d.files import Files
 from tol3d.samplers.replicates import REPLICATES, SamplerKind, uneven
 from tol3d.scene.engines import THEORY, Engines
 from tol3d.scene.entry import Entry
-from tol3d.scene.measure import MeasureSpec
+from tol3d.scene.measure import MeasureEntry
 from tol3d.scene.move import MoveSpec
 from tol3d.scene.name import Name
 from tol3d.scene.nearest import nearest
@@ -180,7 +180,7 @@ class Scene(Strict):
     parts: Mapping[Name, PartSpec] = Field(min_length=1)
     tolerances: Mapping[Name, ToleranceEntry] = Field(default_factory=dict)
     moves: Mapping[Name, MoveSpec] = Field(min_length=1)
-    measures: Mapping[Name, MeasureSpec] = Field(min_length=1)
+    measures: Mapping[Name, MeasureEntry] = Field(min_length=1)
     study: Study = Field(default_factory=Study)
     published: Mapping[Name, Mapping[Name, PublishedMeasure]] = Field(
         default_factory=dict, description="columns of others, shown beside ours: column, measure, values"

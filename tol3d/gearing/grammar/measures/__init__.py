@@ -10,14 +10,12 @@ from tol3d.gearing.grammar.measures.tip_displacement import TipDisplacementSpec
 from tol3d.gearing.grammar.measures.tip_error import TipErrorSpec
 from tol3d.gearing.grammar.measures.tip_measure import TipMeasureSpec
 from tol3d.gearing.grammar.measures.train_measure import TrainMeasureSpec
-from tol3d.scene.measure import MeasureSpec
 
 __all__ = [
     "AngularBacklashSpec",
     "CircumferentialBacklashSpec",
     "FlankMeasureSpec",
     "LostMotionSpec",
-    "MeasureSpec",
     "MeshMeasureSpec",
     "NormalBacklashSpec",
     "TipDisplacementSpec",

@@ -7,7 +7,7 @@ from tol3d.gearing.model.measure import Measure
 from tol3d.gearing.model.model import Model
 from tol3d.gearing.model.readings import refuse_idle_teeth
 from tol3d.scene import Scene
-from tol3d.scene.measure import MeasureSpec
+from tol3d.scene.measure import MeasureEntry
 
 
 def measure_of(scene: Scene, name: str, model: Model) -> Measure:
@@ -27,7 +27,7 @@ def measure_of(scene: Scene, name: str, model: Model) -> Measure:
 
 
 @singledispatch
-def measured(spec: MeasureSpec, scene: Scene, name: str, model: Model) -> Measure:
+def measured(spec: MeasureEntry, scene: Scene, name: str, model: Model) -> Measure:
     """A measure without its limits; each kind registers how it is made.
 
     Args:
