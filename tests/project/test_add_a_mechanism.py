@@ -169,7 +169,12 @@ def test_the_command_runs_shows_and_compares_it(names: dict[str, Any], command: 
     assert float(row.split()[-1]) == round(sample["mean"], 3)
     assert re.search(r"^smallest gap .*OK ", printed, re.MULTILINE)
     assert (names["folder"] / "runs" / "again" / "histogram.png").stat().st_size > 0
-    assert "peg among pins" in command("check", "pin_gauge.yaml")
+    checked = [" ".join(line.split()) for line in command("check", "pin_gauge.yaml").splitlines()]
+    assert checked[0] == "peg among pins"
+    assert f"pin position pin_position normal, each of {PINS} 0 {SIGMA:g} µm –" in checked
+    assert "smallest gap smallest_gap ≥ 5 µm 20.000 20.000 20.000 20.000 µm" in checked
+    slope = math.sqrt(PINS) / 2  # inwards each pin is the smallest gap, outwards it is not: a half on the average
+    assert f"pin position µm/µm {slope:.4g} {slope:.4g}" in checked
     schema = json.loads(command("schema", "--summary"))
     assert "smallest_gap" in json.dumps(schema)
     assert f"{sample['sigma']:.3f}" in command("compare", "runs/again", "runs/pin_gauge", "--out", "compared.png")

@@ -8,12 +8,12 @@ from tol3d.study.simulation import Simulation
 def check_report(simulation: Simulation) -> Page:
     """Everything that a scene says, with what follows from it; nothing is drawn at random."""
     study = simulation.study
+    words = [f"{study.trials} trials", f"seed {study.seed}", study.sampler, f"engine {study.engine}"]
+    if any(kind.witness for kind in simulation.system.roads.values()):
+        words.append(f"{study.profile_steps} profile steps")
     return page(
         line(simulation.system.name, "bold"),
-        *presenter_at(simulation.presenter).check(simulation.system),
-        line(
-            f"\nstudy: {study.trials} trials, seed {study.seed}, {study.sampler}, engine {study.engine}, "
-            f"{study.profile_steps} profile steps"
-        ),
+        *presenter_at(simulation.presenter).check(simulation),
+        line(f"\nstudy: {', '.join(words)}"),
         *map(warning, simulation.warnings),
     )

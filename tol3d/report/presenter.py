@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Protocol, cast
 
 from tol3d.errors import InputError
 from tol3d.report.page import Block
+from tol3d.report.system_check import system_blocks
 from tol3d.runs.summary.measure import MeasureSummary
 
 if TYPE_CHECKING:
@@ -17,7 +18,7 @@ if TYPE_CHECKING:
     from tol3d.runs.run import Run
     from tol3d.runs.summary.run import RunSummary
     from tol3d.simulate import Replay
-    from tol3d.system.system import System
+    from tol3d.study.simulation import Simulation
 
 Which = int | str
 """A trial, or "worst", "nominal", "mean"."""
@@ -96,11 +97,11 @@ class Presenter(Protocol):
         """Further rows below a measure's statistics."""
         ...
 
-    def check(self, system: "System") -> Sequence[Block]:
-        """What a scene means, before any trial.
+    def check(self, simulation: "Simulation") -> Sequence[Block]:
+        """What a scene means, before any trial: `tol3d.report.system_check.system_blocks`, or more than that.
 
         Args:
-            system: of the presenter's own kind.
+            simulation: whose system is of the presenter's own kind.
         """
         ...
 
@@ -148,8 +149,8 @@ class _Nothing:
     def measure_rows(self, measure: MeasureSummary, summary: "RunSummary") -> Sequence[FurtherRow]:
         return ()
 
-    def check(self, system: "System") -> Sequence[Block]:
-        return ()
+    def check(self, simulation: "Simulation") -> Sequence[Block]:
+        return system_blocks(simulation)
 
     def display(self, run: "Run", which: Which, *, magnify: float) -> Display:
         raise InputError(f"{run.path}: builds of this system cannot be shown: it has no presenter")

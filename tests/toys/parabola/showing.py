@@ -12,6 +12,7 @@ from tol3d.errors import InputError
 from tol3d.report.body import Body, Surface, World
 from tol3d.report.page import Block, Heading, Row, Table, line
 from tol3d.report.presenter import Draw, FurtherRow, View, Which
+from tol3d.report.system_check import system_blocks
 from tol3d.runs.summary.measure import MeasureSummary
 from tol3d.runs.worst import worst_trial
 from tol3d.simulate import Replay, replay, replayed, simulation_again
@@ -24,7 +25,7 @@ from toys.parabola.system import Lifted, ParabolaSystem
 if TYPE_CHECKING:
     from tol3d.runs.run import Run
     from tol3d.runs.summary.run import RunSummary
-    from tol3d.system.system import System
+    from tol3d.study.simulation import Simulation
 
 SIDE = 5.0  # mm
 SIDES = ((0, 2, 3, 1), (4, 5, 7, 6), (0, 1, 5, 4), (2, 6, 7, 3), (0, 4, 6, 2), (1, 3, 7, 5))
@@ -81,10 +82,11 @@ class SpringPresenter:
             return ()
         return (FurtherRow("mean of the bow", {r: t["bow"].mean for r, t in summary.terms["height"].items()}),)
 
-    def check(self, system: "System") -> Sequence[Block]:
-        assert isinstance(system, ParabolaSystem)
-        spring = system.springs.spring
-        return (line(f"spring {spring.name}: a {spring.a:g}, b {spring.b:g}, q {spring.q:g}"),)
+    def check(self, simulation: "Simulation") -> Sequence[Block]:
+        assert isinstance(simulation.system, ParabolaSystem)
+        spring = simulation.system.springs.spring
+        own = line(f"spring {spring.name}: a {spring.a:g}, b {spring.b:g}, q {spring.q:g}")
+        return (own, *system_blocks(simulation))
 
     def display(self, run: "Run", which: Which, *, magnify: float) -> LiftedDisplay:
         trial = worst_trial(run) if which == "worst" else which

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from tol3d.report.presenter import Display, Draw, FurtherRow, Which
     from tol3d.runs.run import Run
     from tol3d.simulate import Replay
-    from tol3d.system.system import System
+    from tol3d.study.simulation import Simulation
 
 
 class GearPresenter:
@@ -38,9 +38,9 @@ class GearPresenter:
         """Sums of the stages' ends, where a measure is the sum of a train's stages."""
         return _lazily("train_tables").sum_rows(measure, summary)  # type: ignore[no-any-return]
 
-    def check(self, system: "System") -> "Sequence[Block]":
+    def check(self, simulation: "Simulation") -> "Sequence[Block]":
         """Gears, meshes, trains, measures, and contributors with their coefficients."""
-        return _lazily("scene_check").check_blocks(system)  # type: ignore[no-any-return]
+        return _lazily("scene_check").check_blocks(simulation.system)  # type: ignore[no-any-return]
 
     def display(self, run: "Run", which: "Which", *, magnify: float) -> "Display":
         """A build with its gears seated again."""

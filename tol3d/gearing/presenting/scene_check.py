@@ -1,7 +1,6 @@
 """What a scene of gears means, as tables: gears, meshes, measures, contributors and their coefficients."""
 
 import math
-import re
 from collections.abc import Mapping, Sequence
 from functools import singledispatch
 
@@ -13,6 +12,7 @@ from tol3d.gearing.system import gear_model
 from tol3d.gears import RIGHT, BevelGear, BevelPair, Gear, GearPair, SpurGear, SpurPair
 from tol3d.report.number import NOTHING, UNIT_SIGNS, degrees_text, given_text, unsigned_zero, value_text
 from tol3d.report.page import Block, Heading, Line, Row, Table, line, titled
+from tol3d.report.system_check import law_name
 from tol3d.system.system import System
 from tol3d.units import angle_text
 
@@ -213,7 +213,7 @@ def contributors_table(model: Model) -> list[Block]:
 
 def distribution_words(contributor: Contributor) -> str:
     """The law of a contributor and the direction of its deviation."""
-    law = re.sub(r"(?<=[a-z])(?=[A-Z])", " ", type(contributor.distribution).__name__).lower()
+    law = law_name(contributor.distribution)
     if not isinstance(contributor.draw, Planar):
         return law
     direction = contributor.draw.direction

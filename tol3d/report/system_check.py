@@ -1,0 +1,127 @@
+"""What any scene means, as tables: contributors, measures, and what each contributor does to each measure."""
+
+import math
+import re
+from collections.abc import Mapping, Sequence
+
+from tol3d.distributions import Distribution
+from tol3d.report.number import NOTHING, UNIT_SIGNS, given_text, measured_text, unit_suffix, unsigned_zero, value_text
+from tol3d.report.page import Block, Heading, Row, Shown, Table, note, titled
+from tol3d.study.first_order import FirstOrder, first_orders
+from tol3d.study.simulation import Simulation
+from tol3d.study.task import materials_of, road_of
+from tol3d.system.contributor import Contributor
+from tol3d.system.measure import Measure
+
+SLOPES = (
+    "slope: change of the measure per unit of the deviation at the mean build, by differences over one sigma to both "
+    "sides; of several components the size of their gradient"
+)
+SHARES = "RSS: share of the variance by root sum of squares; worst: share of the sum of all reaches from end to end"
+NO_SUM = "no sum of effects, so no RSS and no worst case: its slopes are means over two sigma; run draws its trials"
+
+
+def system_blocks(simulation: Simulation) -> list[Block]:
+    """Contributors, measures and first-order coefficients by both roads, of any kind of system."""
+    system, study = simulation.system, simulation.study
+    road = road_of(simulation, materials_of(simulation))
+    headings = {"analytic": "analytic"} | ({"geometric": study.engine} if road else {})
+    found = {
+        measure.name: {} if measure.take == "curve" else first_orders(simulation, road, measure)
+        for measure in system.measures
+    }
+    kinds = {measure.name: str(system.describe(measure).get("kind", NOTHING)) for measure in system.measures}
+    tables = [
+        block
+        for measure in system.measures
+        if found[measure.name] and system.acting(measure)
+        for block in _coefficients(measure, found[measure.name], headings)
+    ]
+    sums = any(measure.adds_up and found[measure.name] for measure in system.measures)
+    notes = [note(text) for text in (SLOPES, *([SHARES] if sums else []))] if tables else []
+    return [*_contributors(system.contributors), *_measures(system.measures, kinds, found, headings), *tables, *notes]
+
+
+def law_name(law: Distribution) -> str:
+    """A distribution in words, such as "truncated normal"."""
+    return re.sub(r"(?<=[a-z])(?=[A-Z])", " ", type(law).__name__).lower()
+
+
+def law_words(contributor: Contributor) -> str:
+    """The law of a contributor and what is drawn by it: "rayleigh, random direction", "normal, each of 6"."""
+    draw = contributor.draw
+    law, count = law_name(draw.distribution), len(draw.components)
+    if count == 1:
+        return law
+    if draw.uniforms == count and draw.components[:1] != ("x",):
+        return f"{law}, each of {count}"
+    return f"{law}, random direction" if draw.uniforms > 1 else f"{law}, fixed direction"
+
+
+def _contributors(contributors: Sequence[Contributor]) -> list[Block]:
+    rows = []
+    for own in contributors:
+        numbers = [f"{own.distribution.mean / own.per_unit:.4g}", f"{own.draw.sigma / own.per_unit:.3g}"]
+        least = NOTHING if own.least is None else f"{own.least / own.per_unit:g}"
+        cells = (own.kind, law_words(own), *map(unsigned_zero, numbers), UNIT_SIGNS[own.unit], unsigned_zero(least))
+        rows.append(Row(own.name, cells))
+    words = [Heading("kind", words=True), Heading("law", words=True)]
+    table = Table("", [*words, *map(Heading, ("mean", "sigma", "unit", "least"))], rows)
+    return titled("contributors", table) if rows else []
+
+
+def _measures(
+    measures: Sequence[Measure],
+    kinds: Mapping[str, str],
+    found: Mapping[str, Mapping[str, FirstOrder]],
+    headings: Mapping[str, str],
+) -> list[Block]:
+    rows = []
+    for measure in measures:
+        values = [_value(getattr(found[measure.name].get(road), build, None), measure.unit)
+                  for build in ("nominal", "mean") for road in headings]  # fmt: skip
+        unit = "′, ″" if measure.unit == "arcmin" else UNIT_SIGNS[measure.unit]
+        rows.append(Row(measure.name, (kinds[measure.name], _limits(measure), *values, unit)))
+    words = [Heading(word, words=True) for word in ("kind", "limits")]
+    numbers = [Heading(f"{build}, {name}") for build in ("nominal", "mean build") for name in headings.values()]
+    return titled("measures", Table("", [*words, *numbers, Heading("unit")], rows))
+
+
+def _value(value: float | None, unit: str) -> Shown:
+    known = None if value is None or math.isnan(value) else value
+    return Shown(value_text(known, unit), known)
+
+
+def _limits(measure: Measure) -> str:
+    limits = (("≥", measure.lower_limit), ("≤", measure.upper_limit))
+    per, unit = measure.per_internal, measure.unit
+    given = ((sign, limit * per) for sign, limit in limits if limit is not None)
+    return ", ".join(f"{sign} {given_text(limit, unit)}{unit_suffix(unit)}" for sign, limit in given) or NOTHING
+
+
+def _coefficients(measure: Measure, found: Mapping[str, FirstOrder], headings: Mapping[str, str]) -> list[Block]:
+    rows = []
+    for effects in zip(*(own.effects for own in found.values()), strict=True):
+        roads = list(zip(found.values(), effects, strict=True))
+        cells = [_number(own.slope, ".4g") for own in effects]
+        if measure.adds_up:
+            cells += [_number(road.variance_percent(own), ".1f") for road, own in roads]
+            cells += [_number(road.reach_percent(own), ".1f") for road, own in roads]
+        rows.append(Row(effects[0].name, (f"{UNIT_SIGNS[measure.unit]}/{UNIT_SIGNS[effects[0].unit]}", *cells)))
+    words = ("slope", "RSS [%]", "worst [%]") if measure.adds_up else ("slope",)
+    columns = [Heading(f"{word}, {name}") for word in words for name in headings.values()]
+    table = Table("", [Heading("unit"), *columns], rows)
+    below = [_sums(measure, headings[road], own) for road, own in found.items()] if measure.adds_up else [NO_SUM]
+    return [*titled(f"{measure.name}: change by each deviation", table), *map(note, below)]
+
+
+def _number(value: float, form: str) -> Shown:
+    known = None if math.isnan(value) else value
+    return Shown(NOTHING if known is None else unsigned_zero(f"{known:{form}}"), known)
+
+
+def _sums(measure: Measure, heading: str, found: FirstOrder) -> str:
+    sigma, low, high = (
+        measured_text(None if math.isnan(value) else value, measure.unit) for value in (found.sigma, *found.ends)
+    )
+    return f"{heading}: sigma {sigma} by RSS; with all contributors at their ends {low} … {high}"

@@ -1,0 +1,162 @@
+"""First order by differences: what each deviation does to a measure, on either road.
+
+No theory is needed, so any system has it; both roads stand beside each other before a trial is drawn.
+"""
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tol3d.study.columns import columns_of
+from tol3d.study.simulation import Simulation
+from tol3d.system.contributor import Contributor
+from tol3d.system.draw import Each
+from tol3d.system.measure import Measure
+from tol3d.system.outcome import ANALYTIC, GEOMETRIC, outcome_of
+from tol3d.system.road import Road
+from tol3d.system.stated import component_count, component_slices, mean_deviations, stated
+from tol3d.system.system import System
+
+Array = NDArray[np.float64]
+Values = Callable[[Array], Array]
+"""A measure (rows,) of deviations (rows, components); nan where a build does not seat."""
+
+NOISE = 1e-9  # of the values; smaller differences are rounding, and have no sign
+
+
+@dataclass(frozen=True)
+class Effect:
+    """What a contributor does to a measure, of first order at the mean build.
+
+    Args:
+        name, unit: of the contributor.
+        slope: change of the measure [its unit] per unit of the deviation; of several components the size of their
+            gradient; nan where a build does not seat.
+        variance: its part of the measure's variance [the measure's unit, squared].
+        reach: how far it moves the measure between its low and high ends [the measure's unit].
+    """
+
+    name: str
+    unit: str
+    slope: float
+    variance: float
+    reach: float
+
+
+@dataclass(frozen=True)
+class FirstOrder:
+    """A measure by one road before any trial, in its unit; nan where a build does not seat.
+
+    Args:
+        nominal: without deviations.
+        mean: with every contributor at its mean.
+        effects: of the contributors that act on it.
+        ends: with every contributor at the end that lowers it, and at the one that raises it, by sign of its slopes:
+            the worst case of a measure that is a sum of effects.
+    """
+
+    nominal: float
+    mean: float
+    effects: tuple[Effect, ...]
+    ends: tuple[float, float]
+
+    @property
+    def sigma(self) -> float:
+        """Standard deviation by the root sum of squares (RSS)."""
+        return math.sqrt(sum(own.variance for own in self.effects))
+
+    def variance_percent(self, effect: Effect) -> float:
+        """Share of the variance [%]; 0 where nothing varies."""
+        return _percent(effect.variance, sum(own.variance for own in self.effects))
+
+    def reach_percent(self, effect: Effect) -> float:
+        """Share of the worst case [%]: of the sum of all reaches; 0 where nothing varies."""
+        return _percent(effect.reach, sum(own.reach for own in self.effects))
+
+
+def first_orders(simulation: Simulation, road: Road | None, measure: Measure) -> dict[str, FirstOrder]:
+    """A measure of one number a trial by each road: "analytic", and "geometric" where there is an engine.
+
+    Args:
+        simulation: what is studied.
+        road: of its engine; None without one.
+        measure: one of its system's, no curve.
+    """
+    system = simulation.system
+
+    def values_by(shown: str) -> Values:
+        def values(deviations: Array) -> Array:
+            columns = columns_of(system, road, stated(system, deviations), (measure,))
+            return outcome_of(columns, shown, measure.name, system.statuses.lacking).values
+
+        return values
+
+    roads = (ANALYTIC, GEOMETRIC) if road else (ANALYTIC,)
+    return {shown: first_order(system, measure, values_by(shown)) for shown in roads}
+
+
+def first_order(system: System, measure: Measure, values: Values) -> FirstOrder:
+    """A measure of first order about the mean build, by central differences over one sigma to both sides.
+
+    Args:
+        system, measure: what is built, and what is read of it.
+        values: by one road, in the unit of the measure.
+    """
+    nominal = np.zeros((1, component_count(system)))
+    mean = mean_deviations(system, measure.positions)
+    slices = component_slices(system)
+    effects, low, high = [], mean.copy(), mean.copy()
+    for contributor in system.acting(measure):
+        own = slices[contributor.name]
+        turning = system.turns_at_random(contributor, measure.positions)
+        slopes = _slopes(mean, own, contributor.draw.sigma or contributor.per_unit, values)
+        ends = _ends(contributor, slopes, turning=turning)
+        low[:, own], high[:, own] = ends
+        effects.append(_effect(contributor, slopes, ends, turning=turning))
+    found = values(np.concatenate([nominal, mean, low, high]))
+    return FirstOrder(float(found[0]), float(found[1]), tuple(effects), (float(found[2]), float(found[3])))
+
+
+def _slopes(mean: Array, own: slice, step: float, values: Values) -> Array:
+    """Change of a measure per mm, rad or K of each component (components,)."""
+    count = own.stop - own.start
+    rows = np.repeat(mean, 2 * count, axis=0)
+    rows[:, own] += step * np.concatenate([np.eye(count), -np.eye(count)])
+    found = values(rows)
+    change = found[:count] - found[count:]
+    change[np.abs(change) <= NOISE * np.abs(found).max()] = 0.0
+    return np.asarray(change / (2 * step))
+
+
+def _ends(contributor: Contributor, slopes: Array, *, turning: bool) -> Array:
+    """The ends (2, components) that lower and that raise what has these slopes.
+
+    Features that are drawn each for itself are all at their own worst ends.
+    """
+    law = contributor.distribution
+    if isinstance(contributor.draw, Each):
+        return np.stack([np.where(slopes > 0.0, law.low, law.high), np.where(slopes > 0.0, law.high, law.low)])
+    ends = contributor.draw.ends(lambda rows: rows @ slopes, turning=turning)
+    return ends if float(ends[0] @ slopes) <= float(ends[1] @ slopes) else ends[::-1]
+
+
+def _effect(contributor: Contributor, slopes: Array, ends: Array, *, turning: bool) -> Effect:
+    law, sigma = contributor.distribution, contributor.draw.sigma
+    size = float(slopes[0]) if len(slopes) == 1 else float(np.sqrt((slopes * slopes).sum()))
+    variance = size**2 * sigma**2
+    if contributor.draw.uniforms == 1 and len(slopes) > 1:  # a length in one direction
+        if turning:
+            variance = size**2 * (law.variance + law.mean**2) / 2
+        else:
+            along = ends[1] - ends[0]
+            size = float(slopes @ along) / (float(np.sqrt((along * along).sum())) or 1.0)
+            variance = size**2 * sigma**2
+    reach = float((ends[1] - ends[0]) @ slopes)
+    return Effect(contributor.name, contributor.unit, size * contributor.per_unit, variance, reach)
+
+
+def _percent(part: float, whole: float) -> float:
+    return 100.0 * part / whole if whole != 0.0 else 0.0
