@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, Protocol, cast
 
 from tol3d.errors import InputError
 from tol3d.report.page import Block
-from tol3d.report.system_check import system_blocks
 from tol3d.runs.summary.measure import MeasureSummary
 
 if TYPE_CHECKING:
@@ -19,6 +18,8 @@ if TYPE_CHECKING:
     from tol3d.runs.summary.run import RunSummary
     from tol3d.simulate import Replay
     from tol3d.study.simulation import Simulation
+
+SYSTEM_CHECK = "tol3d.report.system_check"  # loads distributions, and so scipy, which pictures do without
 
 Which = int | str
 """A trial, or "worst", "nominal", "mean"."""
@@ -150,7 +151,8 @@ class _Nothing:
         return ()
 
     def check(self, simulation: "Simulation") -> Sequence[Block]:
-        return system_blocks(simulation)
+        blocks: Sequence[Block] = import_module(SYSTEM_CHECK).system_blocks(simulation)
+        return blocks
 
     def display(self, run: "Run", which: Which, *, magnify: float) -> Display:
         raise InputError(f"{run.path}: builds of this system cannot be shown: it has no presenter")
