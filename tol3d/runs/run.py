@@ -23,7 +23,7 @@ from tol3d.runs.manifest import TRIALS, Manifest
 from tol3d.runs.parquet import Shape
 from tol3d.runs.summary.kinds import SummaryKinds
 from tol3d.runs.summary.run import RunSummary
-from tol3d.runs.summary.text import parsed, typed
+from tol3d.runs.summary.text import missing_mechanism, parsed, typed
 from tol3d.runs.worst import worst_trial
 
 if TYPE_CHECKING:
@@ -70,8 +70,10 @@ class Run:
         """The summary as an object: `run.found.measures["play"].geometric.sigma`.
 
         Raises:
-            RunError: it is not a summary as this version writes them.
+            RunError: it is not a summary as this version writes them, or of a mechanism that is not installed.
         """
+        if missing := missing_mechanism(self.summary, self.kinds):
+            raise RunError(f"{self.path / SUMMARY}: {missing}")
 
         def fault(place: str, words: str) -> RunError:
             return RunError(f"{self.path / SUMMARY}: {place}: {words}; it is damaged, or of another tol3d")

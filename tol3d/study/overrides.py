@@ -48,7 +48,14 @@ def simulation_of(scene: Scene, overrides: Overrides = AS_WRITTEN) -> Simulation
         )
     for place, sentence in system.problems():
         raise scene.refuse(place, sentence)
-    return Simulation(system, study_of(asked.study), published_in(asked), mechanism.requires, mechanism.presenter)
+    return Simulation(
+        system,
+        study_of(asked.study),
+        published_in(asked),
+        mechanism.requires,
+        mechanism.presenter,
+        {"name": mechanism.name, "module": mechanism.module},
+    )
 
 
 def _overridden(scene: Scene, overrides: Overrides) -> Scene:

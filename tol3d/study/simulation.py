@@ -22,6 +22,7 @@ class Simulation:
         published: columns of others.
         requires: packages, besides those of every study, whose versions decide its results.
         presenter: import path of what shows the system, see `tol3d.report.presenter`; "" for nothing.
+        mechanism: name and module of the mechanism that understood the scene; None of a system made otherwise.
     """
 
     system: System
@@ -29,6 +30,7 @@ class Simulation:
     published: Published = field(default_factory=dict)
     requires: tuple[str, ...] = ()
     presenter: str = ""
+    mechanism: Mapping[str, str] | None = None
 
     @property
     def road(self) -> RoadKind:

@@ -31,6 +31,7 @@ def study_summary(simulation: Simulation, road: Road | None, tally: Tally) -> di
     explained = explanations(simulation, road, tally)
     return {
         "scene": simulation.system.name,
+        **({"mechanism": dict(simulation.mechanism)} if simulation.mechanism else {}),
         "seed": simulation.study.seed,
         "trials": tally.trials,
         "engine": simulation.study.engine,

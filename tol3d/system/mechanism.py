@@ -28,6 +28,11 @@ class Mechanism(Vocabulary):
     presenter: str = ""
     requires: tuple[str, ...] = ()
 
+    @property
+    def module(self) -> str:
+        """The module that has the function of its system."""
+        return self.system.partition(":")[0]
+
     def system_of(self, scene: Scene) -> System:
         """What a scene means.
 

@@ -61,10 +61,22 @@ class SummaryKinds:
         return found
 
     @cached_property
+    def words(self) -> frozenset[str]:
+        """The kinds of measures."""
+        kinds = (get_args(measure.model_fields["kind"].annotation) for measure in self.every_measure)
+        return frozenset(kind for each in kinds for kind in each)
+
+    @cached_property
     def tags(self) -> frozenset[str]:
         """Kinds of measures that pydantic names in the places of errors, where the file has no such key."""
-        kinds = (get_args(measure.model_fields["kind"].annotation) for measure in self.every_measure)
-        return frozenset(kind for each in kinds for kind in each) if len(self.every_measure) > 1 else frozenset()
+        return self.words if len(self.every_measure) > 1 else frozenset()
+
+    def unknown_in(self, summary: Mapping[str, Any]) -> tuple[str, ...]:
+        """Kinds of a summary's measures that are none of these, in its order."""
+        measures = summary.get("measures")
+        entries = measures.values() if isinstance(measures, Mapping) else ()
+        words = (entry.get("kind") for entry in entries if isinstance(entry, Mapping))
+        return tuple(dict.fromkeys(word for word in words if isinstance(word, str) and word not in self.words))
 
 
 def default_kinds() -> SummaryKinds:

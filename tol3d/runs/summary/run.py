@@ -26,6 +26,13 @@ from tol3d.strict import refused
 from tol3d.system.statuses import Meaning
 
 
+class MechanismSummary(Section):
+    """The mechanism that made a run: without it the run cannot be opened."""
+
+    name: Label
+    module: Label = Field(description="the Python module of its system")
+
+
 class StudySummary(Section):
     """The study that was run: the scene's, or what was said instead of it."""
 
@@ -64,6 +71,7 @@ class RunSummary(Section):
     """summary.json: what a run of a scene found. Lengths um, of a tip mm; angles arcmin; shares ppm or %."""
 
     scene: Label
+    mechanism: Maybe[MechanismSummary] = LEFT_OUT
     seed: int = Field(ge=0, le=MOST_SEED)
     trials: Positive
     engine: Label

@@ -17,6 +17,8 @@ from tol3d.units import shown
 
 SUMMARY_FILE = "summary.json"
 LONGEST_MESSAGE = 400  # characters
+MOST_NAMED = 3  # unknown kinds
+OWN_PACKAGE = "tol3d"
 WHERE = "its keys are written down in tol3d/runs/summary/ and by mechanisms, one line each in the class of their place"
 
 
@@ -69,6 +71,21 @@ def typed(
     place = ".".join(map(str, (*_without_tag(first["loc"], kinds), *([extra] if extra else []))))
     got = "" if first["type"] == "value_refused" else f", got {shown(first['input'])}"
     raise fault(_printable(place or "the whole"), _printable(f"{first['msg']}{got}"))
+
+
+def missing_mechanism(summary: Mapping[str, Any], kinds: SummaryKinds | None = None) -> str:
+    """The message for a summary with kinds of measures that no mechanism here has; "" where it has none such."""
+    unknown = (kinds or default_kinds()).unknown_in(summary)
+    maker = summary.get("mechanism")
+    name, module = (maker.get("name"), maker.get("module")) if isinstance(maker, Mapping) else (None, None)
+    if not unknown or str(module).partition(".")[0] == OWN_PACKAGE:  # its own are always there: damaged, or another's
+        return ""
+    its = f"mechanism {name!r} (Python module {module!r})" if name and module else "mechanism"
+    listed = ", ".join(map(repr, unknown[:MOST_NAMED])) + (", …" if len(unknown) > MOST_NAMED else "")
+    return _printable(
+        f"expected the {its} that made this run, for its measures of kind {listed}: install the package that "
+        "brings it, or register it in your program first (tol3d.register)"
+    )
 
 
 def _without_tag(loc: tuple[int | str, ...], kinds: SummaryKinds) -> tuple[int | str, ...]:
