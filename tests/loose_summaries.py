@@ -51,7 +51,7 @@ def filled(kind: Any, stated: Any) -> Any:
     """JSON of a kind with every required key that is not stated: null where it may be, else nothing much."""
     kind = _bare(kind, stated)
     if isinstance(kind, type) and issubclass(kind, Section) and isinstance(stated, Mapping):
-        keys = {field.alias or name: field for name, field in kind.model_fields.items()}
+        keys = {str(field.validation_alias or name): field for name, field in kind.model_fields.items()}
         lacking = {key: _nothing(field.annotation) for key, field in keys.items() if field.is_required()}
         whole = {**lacking, **stated}
         return {key: filled(keys[key].annotation, value) if key in keys else value for key, value in whole.items()}
@@ -65,7 +65,7 @@ def filled(kind: Any, stated: Any) -> Any:
 def _typed(kind: Any, stated: Any) -> Any:
     kind = _bare(kind, stated)
     if isinstance(kind, type) and issubclass(kind, Section) and isinstance(stated, Mapping):
-        keys = {field.alias or name: (name, field) for name, field in kind.model_fields.items()}
+        keys = {str(field.validation_alias or name): (name, field) for name, field in kind.model_fields.items()}
         values = {keys[key][0]: _typed(keys[key][1].annotation, value) for key, value in stated.items() if key in keys}
         said = set(values)
         for name, field in kind.model_fields.items():
@@ -80,7 +80,7 @@ def _typed(kind: Any, stated: Any) -> Any:
 
 
 def _by_alias(kind: type[Section], values: Json) -> dict[str, Any]:
-    return {kind.model_fields[name].alias or name: value for name, value in values.items()}
+    return {str(kind.model_fields[name].validation_alias or name): value for name, value in values.items()}
 
 
 def _bare(kind: Any, stated: Any) -> Any:

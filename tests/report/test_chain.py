@@ -20,8 +20,9 @@ from of_kind import known
 from printing import printed, row_of
 
 from tol3d.gearing.presenting.chain import chain_figure
-from tol3d.gearing.presenting.stage import shafts_along, stages_of, sums_of
+from tol3d.gearing.presenting.stage import shafts_along, stages_of, sums_of, trains_of
 from tol3d.gearing.presenting.train_tables import train_report
+from tol3d.gearing.summary_types import TrainSummary
 from tol3d.report import picture
 from tol3d.report.canvas import new_figure, plain_axes
 from tol3d.report.compare import Compared
@@ -210,6 +211,10 @@ def all_printed(summary: dict[str, Any], width: int = 140) -> str:
     return "".join(printed(block, width) for block in train_report(typed_run(summary)))
 
 
+def train_of(summary: dict[str, Any]) -> TrainSummary:
+    return trains_of(typed_run(summary))["shoulder swing"]
+
+
 # tables -------------------------------------------------------------------------------------------
 
 
@@ -287,7 +292,7 @@ def test_a_measure_at_another_shaft_or_point_has_no_sums_of_these_stages(other: 
 def test_another_point_of_the_arm_moves_by_its_own_lever() -> None:
     summary = shoulder()
     elbow = summary["measures"]["tip displacement"] | {"point": "elbow", "lever_mm": LEVER / 2}
-    highs = sums_of(typed_measure(elbow), typed_run(summary))["geometric"]["high_3sigma"]
+    highs = sums_of(typed_measure(elbow), typed_run(summary))["geometric"].high
     assert highs == pytest.approx(2.2172 / 2, abs=0.5e-4)
 
 
@@ -327,9 +332,9 @@ def test_a_chain_is_followed_through_a_link_from_its_driven_side() -> None:
     summary = shoulder()
     stages = summary["trains"]["shoulder swing"]["stages"]
     stages[0] |= {"driver": "reducer output", "driven": "brake"}
-    assert shafts_along(stages_of(summary["trains"]["shoulder swing"]), "brake") == ["brake", *SHAFTS[1:]]
+    assert shafts_along(stages_of(train_of(summary)), "brake") == ["brake", *SHAFTS[1:]]
     stages[:] = stages[:1]
-    assert shafts_along(stages_of(summary["trains"]["shoulder swing"]), "brake") == ["brake", "reducer output"]
+    assert shafts_along(stages_of(train_of(summary)), "brake") == ["brake", "reducer output"]
 
 
 # words and units ----------------------------------------------------------------------------------

@@ -229,7 +229,7 @@ def test_words_at_mean_and_ends_stand_apart_however_narrow_the_trials_are(sigma:
 def test_each_of_many_measures_has_a_file_and_a_place_in_the_overview() -> None:
     kinds = [measure_of(normals(500, seed), ("one",), lower_limit=45.0, over="turn", take="min") for seed in range(19)]
     measures = {long_name(f"no. {k}"): kind for k, kind in enumerate(kinds)} | {"over a turn": curve(5.0)}
-    files = measure_files(typed_summary_of(measures))
+    files = measure_files(typed_summary_of(measures).measures)
     assert list(files) == list(measures)
     assert len({file.casefold() for file in files.values()}) == 20
     figure = overview_figure(typed_summary_of(measures))

@@ -124,8 +124,8 @@ def test_any_number_of_a_sample_may_be_published_and_stands_in_its_row(tmp_path:
 def test_published_numbers_are_numbers_of_samples() -> None:
     """But for those that say nothing without the run: counts, what a grid resolves, the deepest overlap."""
     ours = {"count", "trials", "quantile_error", "outside_grid", "deepest_overlap"}
-    keys = {field.alias or name for name, field in PublishedMeasure.model_fields.items()}
-    numbers = {field.alias or name for name, field in PublishedColumn.model_fields.items()}
+    keys = {str(field.validation_alias or name) for name, field in PublishedMeasure.model_fields.items()}
+    numbers = {str(field.validation_alias or name) for name, field in PublishedColumn.model_fields.items()}
     assert keys == numbers - ours
 
 

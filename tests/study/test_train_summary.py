@@ -13,7 +13,7 @@ from tol3d import load_scene
 from tol3d.analyses.compensation import CompensationQuestion, compensation
 from tol3d.errors import SceneError
 from tol3d.gearing.model import LostMotion, model_from_scene
-from tol3d.gearing.presenting.stage import distributions_of, sums_of
+from tol3d.gearing.presenting.stage import distributions_of, sums_of, trains_of
 from tol3d.gearing.presenting.train_tables import sums_table
 from tol3d.runs.worst import worst_trial
 from tol3d.simulate import Overrides, run_scene
@@ -59,12 +59,12 @@ def test_the_distribution_of_a_train_told_by_its_tip_is_the_turn_that_moves_the_
         summary_of(tmp_path / "a", TIP),
         summary_of(tmp_path / "b", LOST),
     )
-    trains = by_tip["trains"]["t"], by_turn["trains"]["t"]
+    train = trains_of(typed_run(by_tip))["t"]
     for road in ("analytic", "geometric"):
-        found = distributions_of(trains[0], typed_run(by_tip))[road]["high_3sigma"]
+        found = distributions_of(train, typed_run(by_tip))[road].high
         # a chord is shorter than its arc by the turn squared over 24: 4e-7 of it at 10 minutes of arc
         assert found == pytest.approx(by_turn["measures"]["lost"][road]["high_3sigma"], rel=1e-6)
-    shown = {row.label: row.cells for row in sums_table(trains[0], typed_run(by_tip)).rows}
+    shown = {row.label: row.cells for row in sums_table(train, typed_run(by_tip)).rows}
     assert float(shown["tip of arm, mean + 3 sigma [mm]"][1]) == pytest.approx(
         by_tip["measures"]["tip"]["geometric"]["high_3sigma"], abs=5.1e-5
     )

@@ -9,10 +9,12 @@ from typing import Any
 
 import numpy as np
 import pytest
+from loose_summaries import typed_run
 from places import SCENES, SPUR_PAIR
 
 from tol3d import Overrides, Run, run_scene
 from tol3d.execution.pools import Execution
+from tol3d.runs.summary.agreement import WitnessSummary
 from tol3d.simulate import load, simulation_of
 from tol3d.study.simulation import Simulation
 from tol3d.study.witness import witness_summary, witness_warnings, witnessed_trials
@@ -190,9 +192,10 @@ def test_what_chords_and_the_allowance_explain_is_not_warned_of() -> None:
 
     def told(largest: float | None, other: int = 0) -> list[str]:
         measures = {"normal backlash": {**own, "max_abs_difference": largest}}
-        return witness_warnings(
-            model, {"engine": "fcl", "trials": 20, "measures": measures, "status_differences": other}
-        )
+        stated = {"engine": "fcl", "trials": 20, "measures": measures, "status_differences": other}
+        found = typed_run({"trials": 20, "seed": 1, "witness": stated}).witness
+        assert found is not None
+        return witness_warnings(model, found)
 
     assert told(0.129) == told(None) == []
     assert len(told(0.131)) == 1
@@ -215,5 +218,5 @@ def exact_road(model: Simulation) -> Road:
     return model.system.road("exact", None)
 
 
-def summary_of(model: Simulation) -> dict[str, Any]:
+def summary_of(model: Simulation) -> WitnessSummary:
     return witness_summary(model, exact_road(model), model.study.trials)

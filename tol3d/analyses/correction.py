@@ -5,7 +5,7 @@ Angles are in minutes of arc, as in columns and in summary.json.
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Any, Final
+from typing import Final
 
 from tol3d.analyses.robots import Robots
 from tol3d.gearing.breakdowns import breakdowns_of, stages_of
@@ -13,13 +13,13 @@ from tol3d.gearing.model import Backlash, LostMotion, Measure, Model, Train
 from tol3d.gearing.model.measure import AnyStage, ParallelStage
 from tol3d.gearing.stack_up import closed_form
 from tol3d.gearing.statuses import STATUSES
+from tol3d.gearing.summary_types import Ends
 from tol3d.gearing.system import gear_model
 from tol3d.gearing.train_sections import train_sections
+from tol3d.runs.summary.values import made
 from tol3d.study.breakdowns import pooled_terms
 from tol3d.study.simulation import Simulation
 from tol3d.units import ARCMIN
-
-Ends = Mapping[str, Any]
 
 CLOSED_FORM: Final = "closed form"
 
@@ -54,24 +54,23 @@ def corrections_of(
     pooled = pooled_terms(breakdowns, STATUSES, robots.columns)
     summary = train_sections(known_of, pooled, simulation.published)[train.name]
     forms = {stage.link: _form(model, measure, stage) for stage in stages_of(measure)}
-    if all(forms.values()):
-        yield CLOSED_FORM, _correction(model, train, measure, compensated, forms)
+    known_forms = {link: form for link, form in forms.items() if form is not None}
+    if len(known_forms) == len(forms):
+        yield CLOSED_FORM, _correction(model, train, measure, compensated, known_forms)
     for road in robots.lost:
-        own = {stage["link"]: stage["roads"][road] for stage in summary["stages"]}
+        own = {stage.link: stage.roads.by(road) for stage in summary.stages}
         yield road, _correction(model, train, measure, compensated, own)
-    for column in summary["sums"]["published"]:
-        known = {
-            stage["link"]: stage["published"].get(column, stage["roads"]["analytic"]) for stage in summary["stages"]
-        }
+    for column in summary.sums.published:
+        known = {stage.link: stage.published.get(column, stage.roads.analytic) for stage in summary.stages}
         yield column, _correction(model, train, measure, compensated, known)
 
 
-def _form(model: Model, measure: Measure, stage: AnyStage) -> Ends:
-    """A stage's own lost motion by the closed form [arcmin]; empty where it has none."""
+def _form(model: Model, measure: Measure, stage: AnyStage) -> Ends | None:
+    """A stage's own lost motion by the closed form [arcmin]; None where it has none."""
     form = closed_form(model, _alone(measure, stage))
     if form is None:
-        return {}
-    return {"mean": form.mean * ARCMIN, "high_3sigma": (form.mean + 3 * form.sigma) * ARCMIN}
+        return None
+    return made(Ends, mean=form.mean * ARCMIN, high_3sigma=(form.mean + 3 * form.sigma) * ARCMIN)
 
 
 def _alone(measure: Measure, stage: AnyStage) -> Measure:
@@ -83,9 +82,9 @@ def _alone(measure: Measure, stage: AnyStage) -> Measure:
 def _correction(
     model: Model, train: Train, measure: Measure, compensated: Sequence[AnyStage], ends: Mapping[str, Ends]
 ) -> Correction:
-    means = {stage.link: ends[stage.link].get("mean") for stage in compensated}
+    means = {stage.link: ends[stage.link].mean for stage in compensated}
     turns = {stage.link: abs(float(model.layout.ratio(train.driven, _driven(model, stage)))) for stage in compensated}
-    highs = [(stage.factor, ends[stage.link].get("high_3sigma")) for stage in stages_of(measure)]
+    highs = [(stage.factor, ends[stage.link].high_3sigma) for stage in stages_of(measure)]
     kept = [(stage.factor, 0.0 if stage not in compensated else means[stage.link]) for stage in stages_of(measure)]
     before, known = _total(highs), _total(kept)
     return Correction(
@@ -93,7 +92,7 @@ def _correction(
         motor=_total([(turns[link], mean) for link, mean in means.items()]),
         before=before,
         left=None if before is None or known is None else before - known,
-        left_of={link: _total([(1.0, ends[link].get("high_3sigma")), (-1.0, mean)]) for link, mean in means.items()},
+        left_of={link: _total([(1.0, ends[link].high_3sigma), (-1.0, mean)]) for link, mean in means.items()},
     )
 
 

@@ -137,7 +137,7 @@ def _pictures_text(run: "Run") -> str:
 
     pictures = [run.path / name for name in (PICTURE, *system_files(run.found).values())]
     drawn = [str(picture) for picture in pictures if picture.exists()]
-    if any((run.path / name).exists() for name in measure_files(run.found).values()):
+    if any((run.path / name).exists() for name in measure_files(run.found.measures).values()):
         drawn.append(str(run.path / "histogram-*.png"))
     return f"    picture{'s' if len(drawn) > 1 else ''}: {', '.join(drawn)}" if drawn else ""
 

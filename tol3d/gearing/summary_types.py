@@ -105,17 +105,23 @@ class FreeTurn(Section):
     arcmin_per_um: Number
 
 
-class BacklashSummary(MeasureSummary):
-    """The backlash of a mesh; every value is in `unit`."""
-
-    presenter = PRESENTER
+class BacklashWords(Section):
+    """What the backlash of a mesh is."""
 
     kind: Literal["normal_backlash", "circumferential_backlash", "angular_backlash"]
     of: Label = Field(description="the mesh")
     gear: Label | None
     reading: Reading
-    over: Over
     lost_motion: Maybe[FreeTurn] = LEFT_OUT
+
+
+class BacklashSummary(BacklashWords, MeasureSummary):
+    """The backlash of a mesh; every value is in `unit`."""
+
+    presenter = PRESENTER
+
+    kind: Literal["normal_backlash", "circumferential_backlash", "angular_backlash"]
+    over: Over
 
     @property
     def words(self) -> str:
@@ -152,10 +158,8 @@ class BacklashSummary(MeasureSummary):
         return _chord_words(chord_error_um, "")
 
 
-class TrainMeasureSummary(MeasureSummary):
-    """The lost motion of a train, or what it does to the tip of an arm; every value is in `unit`."""
-
-    presenter = PRESENTER
+class TrainMeasureWords(Section):
+    """What the lost motion of a train is, or what it does to the tip of an arm."""
 
     kind: Literal["lost_motion", "tip_displacement", "tip_error"]
     of: Label = Field(description="the train")
@@ -168,6 +172,14 @@ class TrainMeasureSummary(MeasureSummary):
     point: Label | None
     lever_mm: Known
     load_changes_deg: Numbers
+
+
+class TrainMeasureSummary(TrainMeasureWords, MeasureSummary):
+    """The lost motion of a train, or what it does to the tip of an arm; every value is in `unit`."""
+
+    presenter = PRESENTER
+
+    kind: Literal["lost_motion", "tip_displacement", "tip_error"]
     over: Over
 
     @property
@@ -240,6 +252,10 @@ class StageRoads(Section):
 
     analytic: Ends
     geometric: Maybe[Ends] = LEFT_OUT
+
+    def by(self, road: str) -> Ends:
+        """What a road found; the analytic one where there is no 3D simulation."""
+        return self.geometric if road == "geometric" and self.geometric is not None else self.analytic
 
 
 class StageSummary(Section):

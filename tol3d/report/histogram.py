@@ -68,7 +68,7 @@ def draw_histogram(summary: RunSummary, path: Path) -> None:
     Raises:
         InputError: the picture cannot be written there.
     """
-    draw = overview_figure if measure_files(summary) else histogram_figure
+    draw = overview_figure if measure_files(summary.measures) else histogram_figure
     save_figure(draw(summary), path)
 
 

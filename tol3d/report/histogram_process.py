@@ -45,7 +45,7 @@ def _further(summary: RunSummary, presenter: str | None) -> Iterator[tuple[str, 
     """Files besides the histogram, and what draws them."""
     pictures = presenter_of(summary, presenter).pictures(summary)
     yield from ((file, pictures[name]) for name, file in named_files(pictures).items())
-    yield from ((file, partial(draw_measure, summary, name)) for name, file in measure_files(summary).items())
+    yield from ((file, partial(draw_measure, summary, name)) for name, file in measure_files(summary.measures).items())
 
 
 def _refused(further: Iterable[tuple[str, Draw]], folder: Path) -> Iterator[tuple[str, str]]:

@@ -74,15 +74,15 @@ def _refuse(reason: str, summary: Mapping[str, Any], picture: Path) -> None:
     raise PictureError(reason)
 
 
-def measure_files(summary: Any) -> dict[str, str]:
+def measure_files(measures: Iterable[str]) -> dict[str, str]:
     """Names of the pictures of a run's measures, where there are too many for one; each another one.
 
-    >>> measure_files({"measures": {"play": {}, "turn": {}}})
+    >>> measure_files(["play", "turn"])
     {}
-    >>> list(measure_files({"measures": dict.fromkeys(["a/b", "a:b", "c", "d", "e"])}).values())
+    >>> list(measure_files(["a/b", "a:b", "c", "d", "e"]).values())
     ['histogram-a_b.png', 'histogram-a_b 2.png', 'histogram-c.png', 'histogram-d.png', 'histogram-e.png']
     """
-    names = list(summary.get("measures") or ())
+    names = list(measures)
     return _files([(name, f"histogram-{_words(name)}") for name in names]) if len(names) > MOST_TOGETHER else {}
 
 

@@ -3,6 +3,8 @@
 from typing import Any
 
 from tol3d.execution.watch import Activity
+from tol3d.runs.summary.run import Findings
+from tol3d.runs.summary.values import as_json
 from tol3d.study.simulation import Simulation
 from tol3d.study.summary import study_summary
 from tol3d.study.tally import Tally
@@ -21,8 +23,20 @@ def findings(simulation: Simulation, road: Road | None, tally: Tally, activity: 
     """
     found = study_summary(simulation, road, tally)
     wanted, witness = simulation.study.witness, witness_of(simulation.system)
-    if road is None or not wanted or witness is None:
-        return found
-    activity(f"witness: {witness.upper()} measures {min(wanted, tally.trials)} trials again")
-    own = witness_summary(simulation, road, tally.trials)
-    return found | {"witness": own, "warnings": [*found["warnings"], *witness_warnings(simulation, own)]}
+    if road is not None and wanted and witness is not None:
+        activity(f"witness: {witness.upper()} measures {min(wanted, tally.trials)} trials again")
+        own = witness_summary(simulation, road, tally.trials)
+        warnings = [*found.warnings, *witness_warnings(simulation, own)]
+        found = found.model_copy(update={"witness": own, "warnings": warnings})
+    summary: dict[str, Any] = as_json(described(simulation, tally, found))
+    return summary
+
+
+def described(simulation: Simulation, tally: Tally, found: Findings) -> dict[str, Any]:
+    """Findings with what their system adds: what each measure is, and sections of its own behind the measures."""
+    system = simulation.system
+    measures = {own.name: {**system.describe(own), **dict(found.measures[own.name].items())} for own in system.measures}
+    further = {"measures": measures, **system.sections(tally.terms, simulation.published)}
+    keys = list(found.keys())
+    last = keys.index("measures") + 1
+    return {**{key: found[key] for key in keys[:last]}, **further, **{key: found[key] for key in keys[last:]}}

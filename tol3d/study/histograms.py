@@ -1,23 +1,27 @@
 """Histograms of both roads over the same bars."""
 
-from typing import Any
-
+from tol3d.runs.summary.sample import Histogram
+from tol3d.runs.summary.values import Road, made
+from tol3d.study.sample import Sample
 from tol3d.study.tally import MeasureTally
 
 HISTOGRAM_BINS = 64  # bars kept in summary.json for pictures
 
 
-def histograms(tally: MeasureTally) -> dict[str, Any]:
+def histograms(tally: MeasureTally) -> Histogram:
     """Counts of both roads over the same bars, for pictures; in the measure's unit."""
-    samples = {"analytic": tally.analytic, **({"geometric": tally.geometric} if tally.geometric else {})}
+    samples: dict[Road, Sample] = {"analytic": tally.analytic}
+    if tally.geometric:
+        samples["geometric"] = tally.geometric
     filled = [sample.moments for sample in samples.values() if sample.moments.count]
     if not filled:
-        return {}
+        return made(Histogram)
     span = (min(m.minimum for m in filled), max(m.maximum for m in filled))
     drawn = {road: sample.grid.histogram(HISTOGRAM_BINS, span) for road, sample in samples.items()}
     edges = drawn["analytic"].edges
-    return {
-        "lower_edge": float(edges[0]),
-        "bin_width": float(edges[1] - edges[0]),
-        "counts": {road: histogram.counts.tolist() for road, histogram in drawn.items()},
-    }
+    return made(
+        Histogram,
+        lower_edge=float(edges[0]),
+        bin_width=float(edges[1] - edges[0]),
+        counts={road: histogram.counts.tolist() for road, histogram in drawn.items()},
+    )

@@ -1,12 +1,14 @@
 """One road's sample of one measure: gathered block by block, shown in summary.json."""
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from tol3d.runs.summary import sample as summary
+from tol3d.runs.summary.values import made
 from tol3d.statistics import Grid, LimitCounts, Moments, equivalent_ppk, pp, ppk
 from tol3d.study.replicated import Replicated
 from tol3d.system.measure import Measure
@@ -15,7 +17,7 @@ from tol3d.system.pooled_statistic import Pool
 
 Array = NDArray[np.float64]
 
-QUANTILES = {"p0.135": 0.00135, "p50": 0.5, "p99.865": 0.99865}
+QUANTILES = (0.00135, 0.5, 0.99865)
 
 
 def in_unit(measure: Measure, value: float | None) -> float | None:
@@ -80,44 +82,48 @@ class Sample:
         )
 
 
-def sample_summary(measure: Measure, sample: Sample) -> dict[str, Any]:
+def sample_summary(measure: Measure, sample: Sample) -> summary.Sample:
     """A sample as summary.json shows it, in the measure's unit."""
     moments, limits = sample.moments, sample.limits
     lower, upper = in_unit(measure, measure.lower_limit), in_unit(measure, measure.upper_limit)
     errors = sample.replicated or _Independent(moments, limits)
     by_share = limits.failed > 0 and (lower, upper) != (None, None)
-    summary: dict[str, Any] = {
-        "count": moments.count,
-        "trials": limits.total,
-        "mean": moments.mean if moments.count else None,
-        "sigma": moments.sigma,
-        "low_3sigma": moments.mean - 3 * moments.sigma,
-        "high_3sigma": moments.mean + 3 * moments.sigma,
-        "sample_min": moments.minimum,
-        "sample_max": moments.maximum,
-        **{name: _quantile(sample, p) for name, p in QUANTILES.items()},
-        "quantile_error": sample.grid.width,
-        "outside_grid": sample.grid.underflow + sample.grid.overflow,
-        "below_limit_ppm": limits.below_limit.ppm,
-        "below_limit_ppm_95": errors.below_interval_ppm,
-        "above_limit_ppm": limits.above_limit.ppm,
-        "above_limit_ppm_95": errors.above_interval_ppm,
-        "failed_ppm": limits.failures.ppm,
-        "out_ppm": limits.out_of_limits.ppm,
-        "out_ppm_95": errors.out_interval_ppm,
-        "deepest_overlap": sample.deepest,
-        "mean_se": errors.mean_se,
-        "sigma_se": errors.sigma_se,
-        "error_by": "sample" if sample.replicated is None else "replicates",
-        "skewness": moments.skewness,
-        "kurtosis": moments.excess_kurtosis,
-        "pp": pp(lower, upper, moments.sigma),
-        "ppk": equivalent_ppk(limits.out_of_limits) if by_share else ppk(lower, upper, moments.mean, moments.sigma),
-        "ppk_by": "share out of limits" if by_share else "mean and sigma",
-    }
-    found = {key: finite(value) for key, value in summary.items()}
-    pooled = {statistic.name: statistic.of(_pool(sample)) for statistic in measure.pooled_statistics}
-    return {**found, "pooled": {name: finite(value) for name, value in pooled.items()}} if pooled else found
+    ppk_found = equivalent_ppk(limits.out_of_limits) if by_share else ppk(lower, upper, moments.mean, moments.sigma)
+    pooled = {statistic.name: finite(statistic.of(_pool(sample))) for statistic in measure.pooled_statistics}
+    low, middle, high = (finite(_quantile(sample, p)) for p in QUANTILES)
+    return made(
+        summary.Sample,
+        count=moments.count,
+        trials=limits.total,
+        mean=finite(moments.mean) if moments.count else None,
+        sigma=finite(moments.sigma),
+        low_3sigma=finite(moments.mean - 3 * moments.sigma),
+        high_3sigma=finite(moments.mean + 3 * moments.sigma),
+        sample_min=finite(moments.minimum),
+        sample_max=finite(moments.maximum),
+        p0_135=low,
+        p50=middle,
+        p99_865=high,
+        quantile_error=sample.grid.width,
+        outside_grid=sample.grid.underflow + sample.grid.overflow,
+        below_limit_ppm=finite(limits.below_limit.ppm),
+        below_limit_ppm_95=listed(errors.below_interval_ppm),
+        above_limit_ppm=finite(limits.above_limit.ppm),
+        above_limit_ppm_95=listed(errors.above_interval_ppm),
+        failed_ppm=finite(limits.failures.ppm),
+        out_ppm=finite(limits.out_of_limits.ppm),
+        out_ppm_95=listed(errors.out_interval_ppm),
+        deepest_overlap=finite(sample.deepest),
+        mean_se=finite(errors.mean_se),
+        sigma_se=finite(errors.sigma_se),
+        error_by="sample" if sample.replicated is None else "replicates",
+        skewness=finite(moments.skewness),
+        kurtosis=finite(moments.excess_kurtosis),
+        pp=finite(pp(lower, upper, moments.sigma)),
+        ppk=finite(ppk_found),
+        ppk_by="share out of limits" if by_share else "mean and sigma",
+        pooled=pooled or None,
+    )
 
 
 def _pool(sample: Sample) -> Pool:
@@ -159,18 +165,11 @@ def _quantile(sample: Sample, p: float) -> float | None:
     return None if value is None else min(max(value, sample.moments.minimum), sample.moments.maximum)
 
 
-def finite(value: Any) -> Any:
+def finite(value: float | None) -> float | None:
     """JSON has no nan: what is unknown (a sigma of one trial) is null."""
-    return None if isinstance(value, float) and not np.isfinite(value) else value
+    return None if value is None or not math.isfinite(value) else value
 
 
-def curve_limits(limits: LimitCounts, *, independent: bool) -> dict[str, Any]:
-    """What is out of the limits anywhere on a curve, as summary.json shows it; intervals for independent trials."""
-    return {
-        "trials": limits.total,
-        "below_limit_ppm": limits.below_limit.ppm,
-        "above_limit_ppm": limits.above_limit.ppm,
-        "failed_ppm": limits.failures.ppm,
-        "out_ppm": limits.out_of_limits.ppm,
-        "out_ppm_95": limits.out_of_limits.interval_ppm() if independent and limits.total else None,
-    }
+def listed(interval: tuple[float, float] | None) -> list[float] | None:
+    """Both ends, as JSON has them."""
+    return None if interval is None else list(interval)

@@ -1,24 +1,34 @@
 """A run's summary: what summary.json holds, in the measures' units."""
 
-from collections.abc import Iterator, Mapping
-from typing import Any
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any, cast
 
 import numpy as np
 from numpy.typing import NDArray
 
+from tol3d.runs.summary.agreement import Agreement
+from tol3d.runs.summary.measure import ContributorShare, MeasureSummary, PublishedColumn
+from tol3d.runs.summary.run import Findings, MechanismSummary, StudySummary
+from tol3d.runs.summary.sample import CurveRoads, CurveSample, Normal, Roads
+from tol3d.runs.summary.values import Unit, made
+from tol3d.statistics import Agreement as Comparison
+from tol3d.statistics import LimitCounts, Moments
 from tol3d.study.agreement.explaining import explanations
 from tol3d.study.agreement.explanation import Explanation, faults
 from tol3d.study.columns import columns_of
+from tol3d.study.curve_tally import CurveTally
 from tol3d.study.high_low_mean import high_low_mean_percents
 from tol3d.study.histograms import histograms
 from tol3d.study.regressors import MOST_REGRESSED
-from tol3d.study.sample import curve_limits, in_unit, sample_summary
+from tol3d.study.sample import in_unit, listed, sample_summary
 from tol3d.study.shares import share_percents
 from tol3d.study.simulation import Simulation
 from tol3d.study.stopping import shortfalls
-from tol3d.study.tally import Tally
+from tol3d.study.study import Study
+from tol3d.study.tally import MeasureTally, Tally
+from tol3d.system.closed_form import ClosedForm
 from tol3d.system.measure import Measure
-from tol3d.system.outcome import ANALYTIC, GEOMETRIC, ROADS, outcome_of, value_column
+from tol3d.system.outcome import ANALYTIC, GEOMETRIC, outcome_of, value_column
 from tol3d.system.road import Road
 from tol3d.system.stated import mean_build, nominal_build, stated
 from tol3d.system.trials import Trials
@@ -26,22 +36,26 @@ from tol3d.system.trials import Trials
 FAILURES_NAMED = 1e-3  # of the trials; a third of the 0.27 % that ±3 sigma leave out, in the table all the same
 
 
-def study_summary(simulation: Simulation, road: Road | None, tally: Tally) -> dict[str, Any]:
-    """What a study found: everything of summary.json but files, timing and versions."""
+def study_summary(simulation: Simulation, road: Road | None, tally: Tally) -> Findings:
+    """What a study found, but what its system adds to the whole and to each measure."""
     explained = explanations(simulation, road, tally)
-    return {
-        "scene": simulation.system.name,
-        **({"mechanism": dict(simulation.mechanism)} if simulation.mechanism else {}),
-        "seed": simulation.study.seed,
-        "trials": tally.trials,
-        "engine": simulation.study.engine,
-        "study": vars(simulation.study),
-        "status": dict(tally.status),
-        "statuses": simulation.system.statuses.meanings,
-        "chord_error_um": road.chord_error * 1000 if road else None,
-        "measures": measure_summaries(simulation, road, tally, explained),
-        **simulation.system.sections(tally.terms, simulation.published),
-        "warnings": [
+    study, mechanism = simulation.study, simulation.mechanism
+    return made(
+        Findings,
+        scene=simulation.system.name,
+        mechanism=made(MechanismSummary, name=mechanism["name"], module=mechanism["module"]) if mechanism else None,
+        seed=study.seed,
+        trials=tally.trials,
+        engine=study.engine,
+        study=_asked(study),
+        status=tally.status,
+        statuses=simulation.system.statuses.meanings,
+        chord_error_um=road.chord_error * 1000 if road else None,
+        measures={
+            measure.name: _measure(simulation, road, measure, tally, explained.get(measure.name))
+            for measure in simulation.system.measures
+        },
+        warnings=[
             *failures(simulation, tally),
             *_too_many(simulation),
             *faults(explained),
@@ -49,7 +63,21 @@ def study_summary(simulation: Simulation, road: Road | None, tally: Tally) -> di
             *_unphysical_draws(tally),
             *shortfalls(simulation, tally),
         ],
-    }
+    )
+
+
+def _asked(study: Study) -> StudySummary:
+    return made(
+        StudySummary,
+        trials=study.trials,
+        seed=study.seed,
+        sampler=study.sampler,
+        replicates=study.replicates,
+        until=[list(until) for until in study.until],
+        engine=study.engine,
+        witness=study.witness,
+        profile_steps=study.profile_steps,
+    )
 
 
 def failures(simulation: Simulation, tally: Tally) -> Iterator[str]:
@@ -95,30 +123,38 @@ def _unphysical_draws(tally: Tally) -> Iterator[str]:
             yield f"{name}: {count} of {tally.trials} draws are below zero, which no clearance is; kept as drawn"
 
 
-def measure_summaries(
-    simulation: Simulation, road: Road | None, tally: Tally, explained: Mapping[str, Explanation]
-) -> dict[str, Any]:
-    """The measures as summary.json shows them: statistics of both roads, contributors, published columns."""
-    return {
-        measure.name: {
-            **simulation.system.describe(measure),
-            "over": measure.positions.over,
-            "take": measure.take,
-            "unit": measure.unit,
-            "worse": measure.worse,
-            "lower_limit": in_unit(measure, measure.lower_limit),
-            "upper_limit": in_unit(measure, measure.upper_limit),
-            "status": dict(_status(measure, tally)),
-            "nominal": _single(simulation, road, measure, nominal_build(simulation.system)),
-            "mean_build": _single(simulation, road, measure, mean_build(simulation.system, measure)),
-            **_statistics(simulation, road, measure, tally, explained.get(measure.name)),
-            "published": _published(simulation, measure),
-        }
-        for measure in simulation.system.measures
-    }
+def _measure(
+    simulation: Simulation, road: Road | None, measure: Measure, tally: Tally, explanation: Explanation | None
+) -> MeasureSummary:
+    """A measure: statistics of both roads, contributors, published columns; its kind and no more of its system's."""
+    system, curve = simulation.system, measure.take == "curve"
+    own = None if curve else tally.measures[measure.name]
+    found = own if own is not None and own.geometric is not None and own.agreement is not None else None
+    return made(
+        MeasureSummary,
+        kind=system.describe(measure)["kind"],
+        over=measure.positions.over,
+        take=measure.take,
+        unit=cast(Unit, measure.unit),
+        worse=measure.worse,
+        lower_limit=in_unit(measure, measure.lower_limit),
+        upper_limit=in_unit(measure, measure.upper_limit),
+        status=_status(measure, tally),
+        nominal=_single(simulation, road, measure, nominal_build(system)),
+        mean_build=_single(simulation, road, measure, mean_build(system, measure)),
+        analytic=sample_summary(measure, own.analytic) if own else None,
+        analytic_closed_form=None if curve else _closed_form(measure, system.closed_form(measure)),
+        histogram=histograms(own) if own else None,
+        geometric=sample_summary(measure, found.geometric) if found and found.geometric else None,
+        agreement=_agreement(found.agreement, explanation) if found and found.agreement else None,
+        position_deg=np.degrees(measure.positions.shown or measure.positions.fixed or ()).tolist() if curve else None,
+        curve=_curve(simulation, tally.curves[measure.name]) if curve else None,
+        contributors=_shares(simulation, road, measure, own) if own else [],
+        published=_published(simulation, measure),
+    )
 
 
-def _single(simulation: Simulation, road: Road | None, measure: Measure, build: Trials) -> dict[str, Any]:
+def _single(simulation: Simulation, road: Road | None, measure: Measure, build: Trials) -> Roads:
     """Both roads' values of one build, None where it does not seat."""
     columns = columns_of(simulation.system, road, build, (measure,))
 
@@ -128,51 +164,45 @@ def _single(simulation: Simulation, road: Road | None, measure: Measure, build: 
             return None
         return column[0].tolist()
 
-    return {name: value(name) for name in ROADS}
+    return made(Roads, analytic=value(ANALYTIC), geometric=value(GEOMETRIC))
 
 
-def _statistics(
-    simulation: Simulation, road: Road | None, measure: Measure, tally: Tally, explanation: Explanation | None
-) -> dict[str, Any]:
-    if measure.take == "curve":
-        return _curve(simulation, measure, tally)
-    own = tally.measures[measure.name]
-    summary: dict[str, Any] = {"analytic": sample_summary(measure, own.analytic)}
-    form = simulation.system.closed_form(measure)
-    if form is not None:
-        mean, sigma = form.mean * measure.per_internal, form.sigma * measure.per_internal
-        summary["analytic_closed_form"] = {
-            "mean": mean,
-            "sigma": sigma,
-            "low_3sigma": mean - 3 * sigma,
-            "high_3sigma": mean + 3 * sigma,
-        }
-    summary["histogram"] = histograms(own)
-    if own.geometric is not None and own.agreement is not None:
-        summary["geometric"] = sample_summary(measure, own.geometric)
-        seen = own.agreement.count > 0
-        summary["agreement"] = {
-            "max_abs_difference": own.agreement.max_abs if seen else None,
-            "rms_difference": own.agreement.rms if seen else None,
-            "mean_difference": own.agreement.mean if seen else None,
-            "compared": own.agreement.count,
-            "explanation": explanation.summary() if explanation else None,
-        }
+def _closed_form(measure: Measure, form: ClosedForm | None) -> Normal | None:
+    if form is None:
+        return None
+    mean, sigma = form.mean * measure.per_internal, form.sigma * measure.per_internal
+    return made(Normal, mean=mean, sigma=sigma, low_3sigma=mean - 3 * sigma, high_3sigma=mean + 3 * sigma)
+
+
+def _agreement(compared: Comparison, explanation: Explanation | None) -> Agreement:
+    seen = compared.count > 0
+    return made(
+        Agreement,
+        max_abs_difference=compared.max_abs if seen else None,
+        rms_difference=compared.rms if seen else None,
+        mean_difference=compared.mean if seen else None,
+        compared=compared.count,
+        explanation=explanation.summary() if explanation else None,
+    )
+
+
+def _shares(simulation: Simulation, road: Road | None, measure: Measure, own: MeasureTally) -> list[ContributorShare]:
     independent = own.analytic.replicated is None  # what the error of a share by regression is worked out for
+    form = simulation.system.closed_form(measure)
     by_sample = share_percents(simulation.system, measure, own.analytic_regressors)
     geometric = share_percents(simulation.system, measure, own.geometric_regressors)
     alone = _high_low_mean(simulation, road, measure)
-    summary["contributors"] = [
-        {
-            "name": contributor.name,
-            "analytic_percent": form.percent(contributor.name) if form else by_sample[contributor.name][0],
-            "geometric_percent": geometric[contributor.name][0],
-            "geometric_percent_se": geometric[contributor.name][1] if independent else None,
-            "high_low_mean_percent": alone[contributor.name],
-        }
+    return [
+        made(
+            ContributorShare,
+            name=contributor.name,
+            analytic_percent=form.percent(contributor.name) if form else by_sample[contributor.name][0],
+            geometric_percent=geometric[contributor.name][0],
+            geometric_percent_se=geometric[contributor.name][1] if independent else None,
+            high_low_mean_percent=alone[contributor.name],
+        )
         for contributor in simulation.system.acting(measure)
     ]
-    return summary
 
 
 def _high_low_mean(simulation: Simulation, road: Road | None, measure: Measure) -> Mapping[str, float | None]:
@@ -192,36 +222,44 @@ def _high_low_mean(simulation: Simulation, road: Road | None, measure: Measure) 
     return high_low_mean_percents(system, measure, values)
 
 
-def _curve(simulation: Simulation, measure: Measure, tally: Tally) -> dict[str, Any]:
-    own = tally.curves[measure.name]
-    roads = {"analytic": own.analytic, **({"geometric": own.geometric} if own.geometric else {})}
-    return {
-        "position_deg": np.degrees(measure.positions.shown or measure.positions.fixed or ()).tolist(),
-        "curve": {
-            road: {
-                "mean": [m.mean if m.count else None for m in moments],
-                "sigma": [m.sigma if m.count > 1 else None for m in moments],
-                "min": [m.minimum if m.count else None for m in moments],
-                "max": [m.maximum if m.count else None for m in moments],
-                **curve_limits(own.limits[road], independent=simulation.study.sampler == "monte_carlo"),
-            }
-            for road, moments in roads.items()
-        },
-        "contributors": [],
-    }
+def _curve(simulation: Simulation, own: CurveTally) -> CurveRoads:
+    def sample(moments: Sequence[Moments], limits: LimitCounts) -> CurveSample:
+        independent = simulation.study.sampler == "monte_carlo"
+        return made(
+            CurveSample,
+            mean=[m.mean if m.count else None for m in moments],
+            sigma=[m.sigma if m.count > 1 else None for m in moments],
+            min=[m.minimum if m.count else None for m in moments],
+            max=[m.maximum if m.count else None for m in moments],
+            trials=limits.total,
+            below_limit_ppm=limits.below_limit.ppm,
+            above_limit_ppm=limits.above_limit.ppm,
+            failed_ppm=limits.failures.ppm,
+            out_ppm=limits.out_of_limits.ppm,
+            out_ppm_95=listed(limits.out_of_limits.interval_ppm()) if independent and limits.total else None,
+        )
+
+    return made(
+        CurveRoads,
+        analytic=sample(own.analytic, own.limits[ANALYTIC]),
+        geometric=sample(own.geometric, own.limits[GEOMETRIC]) if own.geometric else None,
+    )
 
 
-def _published(simulation: Simulation, measure: Measure) -> dict[str, Any]:
+def _published(simulation: Simulation, measure: Measure) -> dict[str, PublishedColumn]:
     """Other people's columns for this measure, in its unit."""
-    return {
-        column: {
-            **{
-                key: value * measure.per_internal if isinstance(value, float) else value
-                for key, value in measures[measure.name].items()
-                if key != "numbers"
-            },
-            **measures[measure.name].get("numbers", {}),
+
+    def column(values: Mapping[str, Any]) -> PublishedColumn:
+        lengths = {
+            key: value * measure.per_internal if isinstance(value, float) else value
+            for key, value in values.items()
+            if key != "numbers"
         }
-        for column, measures in simulation.published.items()
+        keys = {**lengths, **values.get("numbers", {})}
+        return made(PublishedColumn, **{key.replace(".", "_"): value for key, value in keys.items()})
+
+    return {
+        name: column(measures[measure.name])
+        for name, measures in simulation.published.items()
         if measure.name in measures
     }

@@ -3,12 +3,13 @@
 The trials are drawn by a stream of their own, so they are the same whoever ran the study and whatever it kept.
 """
 
-from collections.abc import Mapping
-from typing import Any, cast
+from typing import cast
 
 import numpy as np
 from numpy.typing import NDArray
 
+from tol3d.runs.summary.agreement import Witnessed, WitnessSummary
+from tol3d.runs.summary.values import made
 from tol3d.samplers.monte_carlo import uniforms
 from tol3d.study.columns import columns_of
 from tol3d.study.draws import drawn
@@ -22,13 +23,6 @@ from tol3d.system.trials import joined
 Array = NDArray[np.float64]
 
 STREAM = ("witness", "trial")
-NOTHING_COMPARED = {
-    "max_abs_difference": None,
-    "mean_difference": None,
-    "rms_difference": None,
-    "trial_of_the_largest": None,
-    "compared": 0,
-}
 
 
 def witness_of(system: System) -> str | None:
@@ -36,7 +30,7 @@ def witness_of(system: System) -> str | None:
     return next((name for name, kind in system.roads.items() if kind.witness), None)
 
 
-def witness_summary(simulation: Simulation, road: Road, trials: int) -> dict[str, Any]:
+def witness_summary(simulation: Simulation, road: Road, trials: int) -> WitnessSummary:
     """What the witness finds of `study.witness` trials of a run, as summary.json shows it.
 
     Args:
@@ -55,35 +49,33 @@ def witness_summary(simulation: Simulation, road: Road, trials: int) -> dict[str
     again = joined([drawn(simulation, trial, 1) for trial in chosen.tolist()])
     witness = cast(WitnessRoad, system.road(name, system.materials(name)))
     seen, given = columns_of(system, witness, again), columns_of(system, road, again)
-    return {
-        "engine": name,
-        "trials": len(chosen),
-        "chord_error_um": 1000 * witness.chord_error,
-        "profile_steps": study.profile_steps,
-        "measures": {
-            measure.name: {
-                **_differences(_difference(seen, given, measure), chosen),
-                **dict(zip(("expected_at_most", "allowance"), witness.bounds(measure), strict=True)),
-            }
+    return made(
+        WitnessSummary,
+        engine=name,
+        trials=len(chosen),
+        chord_error_um=1000 * witness.chord_error,
+        profile_steps=study.profile_steps,
+        measures={
+            measure.name: _witnessed(_difference(seen, given, measure), chosen, witness.bounds(measure))
             for measure in system.measures
         },
-        "status_differences": int(np.count_nonzero(seen["status"] != given["status"])),
-    }
+        status_differences=int(np.count_nonzero(seen["status"] != given["status"])),
+    )
 
 
-def witness_warnings(simulation: Simulation, witness: Mapping[str, Any]) -> list[str]:
+def witness_warnings(simulation: Simulation, witness: WitnessSummary) -> list[str]:
     """A sentence for each measure that differs by more than is explained, and one for trials of another status."""
     units = {measure.name: measure.unit for measure in simulation.system.measures}
-    engine = witness["engine"].upper()
+    engine = witness.engine.upper()
     found = [
-        f"witness: {engine} finds {own['max_abs_difference']:.3g} {units[name]} more or less {name} of trial "
-        f"{own['trial_of_the_largest']}; its chords explain {own['expected_at_most']:.3g} {units[name]}, its other "
-        f"errors {own['allowance']:.3g} {units[name]}"
-        for name, own in witness["measures"].items()
-        if (own["max_abs_difference"] or 0.0) > own["expected_at_most"] + own["allowance"]
+        f"witness: {engine} finds {own.max_abs_difference:.3g} {units[name]} more or less {name} of trial "
+        f"{own.trial_of_the_largest}; its chords explain {own.expected_at_most:.3g} {units[name]}, its other "
+        f"errors {own.allowance:.3g} {units[name]}"
+        for name, own in witness.measures.items()
+        if (own.max_abs_difference or 0.0) > own.expected_at_most + own.allowance
     ]
-    if other := witness["status_differences"]:
-        found.append(f"witness: by {engine} {other} of {witness['trials']} trials end with another status")
+    if other := witness.status_differences:
+        found.append(f"witness: by {engine} {other} of {witness.trials} trials end with another status")
     return found
 
 
@@ -115,18 +107,20 @@ def _difference(seen: Columns, given: Columns, measure: Measure) -> Array:
     return difference
 
 
-def _differences(difference: Array, chosen: NDArray[np.int64]) -> dict[str, float | int | None]:
-    """Differences of some trials, (trials,) or of a curve (trials, positions); nan where either has no value."""
+def _witnessed(difference: Array, chosen: NDArray[np.int64], bounds: tuple[float, float]) -> Witnessed:
+    """Differences of some trials, (trials,) or of a curve (trials, positions), nan where either has no value."""
     each = difference.reshape(len(chosen), -1)
     known = ~np.isnan(each)
     compared = int(np.count_nonzero(known.any(axis=1)))
-    if not compared:
-        return dict(NOTHING_COMPARED)
     size = np.where(known, np.abs(each), -1.0)
-    return {
-        "max_abs_difference": float(size.max()),
-        "mean_difference": float(each[known].mean()),
-        "rms_difference": float(np.sqrt((each[known] ** 2).mean())),
-        "trial_of_the_largest": int(chosen[size.max(axis=1).argmax()]),
-        "compared": compared,
-    }
+    values = each[known]
+    return made(
+        Witnessed,
+        max_abs_difference=float(size.max()) if compared else None,
+        mean_difference=float(values.mean()) if compared else None,
+        rms_difference=float(np.sqrt((values**2).mean())) if compared else None,
+        trial_of_the_largest=int(chosen[size.max(axis=1).argmax()]) if compared else None,
+        compared=compared,
+        expected_at_most=bounds[0],
+        allowance=bounds[1],
+    )

@@ -32,7 +32,7 @@ from tol3d.gearing.presenting.chain_grid import (
 )
 from tol3d.gearing.presenting.chain_sum import draw_sums, height_of_sums, sum_lines
 from tol3d.gearing.presenting.link_symbol import draw_link
-from tol3d.gearing.presenting.stage import Stage, stages_of, whole_ratio_text
+from tol3d.gearing.presenting.stage import Stage, stages_of, trains_of, whole_ratio_text
 from tol3d.gearing.summary_types import TrainSummary
 from tol3d.report.canvas import BLACK, GREY, OUTSIDE, new_figure, save_figure, say_instead
 from tol3d.report.column import seated_text
@@ -61,7 +61,7 @@ def draw_chain(summary: RunSummary, train_name: str, path: Path) -> None:
 
 def chain_figure(summary: RunSummary, train_name: str) -> Figure:
     """The picture of a train, not yet written: up to six links in a row, bars below each, the sum at the foot."""
-    train = summary["trains"][train_name]
+    train = trains_of(summary)[train_name]
     stages = stages_of(train)
     lines = sum_lines(train, summary)
     rows = rows_of(stages, train.held, ARM if train.lever_mm is not None else 0.0) if stages else []

@@ -10,7 +10,7 @@ from matplotlib.gridspec import SubplotSpec
 
 from tol3d.gearing.presenting.chain_grid import LIGHT, SMALL, TEXT, WIDTH, published_colours
 from tol3d.gearing.presenting.link_symbol import LINK_COLOURS
-from tol3d.gearing.presenting.stage import Range, Stage, distributions_of, leading_road
+from tol3d.gearing.presenting.stage import Range, Stage, distributions_of, leading_sums
 from tol3d.gearing.summary_types import TrainSummary
 from tol3d.report.canvas import BLACK, OUTSIDE, ROAD_COLOURS, label_angles, plain_axes
 from tol3d.report.label import legible
@@ -51,11 +51,11 @@ def sum_lines(train: TrainSummary, summary: RunSummary) -> list[SumLine]:
 def _lines(train: TrainSummary, summary: RunSummary) -> Iterator[SumLine]:
     lever, distributions = train.lever_mm, distributions_of(train, summary)
     for road, words in (("geometric", "3D simulation"), ("analytic", "analytic")):
-        values = Range.of(distributions.get(road, {}))
+        values = distributions.get(road, Range(None, None, None))
         if values.known:
             text = f"mean {value_text(values.mean, 'arcmin')}, high {_with_tip(values.high, lever)}"
             yield SumLine(f"{words}: mean ± 3 sigma", text, values, ROAD_COLOURS[road])
-    worst = Range.of(train.sums.get(leading_road(train), {}))
+    worst = leading_sums(train)
     yield SumLine("sum of the stages' highs", f"{_with_tip(worst.high, lever)}, worst case", worst, OUTSIDE, True)
     colours = published_colours(train)
     for name, ends in train.sums.published.items():

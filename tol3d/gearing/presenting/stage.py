@@ -1,17 +1,18 @@
 """The stages of a train as they stand in a run's summary, and what each brings to the lost motion at a shaft."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, Literal
+from typing import Literal, Self
 
+from tol3d.gearing.summary_types import Ends, StageSummary, TrainMeasureSummary, TrainsOfRun, TrainSummary
 from tol3d.report.column import columns_of
 from tol3d.report.number import NOTHING, tip_arcmin, tip_mm
+from tol3d.runs.summary.measure import MeasureSummary
+from tol3d.runs.summary.run import RunSummary
+from tol3d.runs.summary.values import Road, Section
 
-Summary = Any  # typed, read by text
 LinkKind = Literal["reducer", "mesh", "bevel_mesh", "parallel"]
-Sums = Mapping[str, Mapping[str, float | None]]
 
-SUM_KEYS: Mapping[str, str] = {"low_3sigma": "lows", "mean": "means", "high_3sigma": "highs"}
 MANY_TURNS = 1e6  # no decimals from there on
 ROUNDING = 1e-6  # sigma
 SUMMED_KINDS = frozenset(("lost_motion", "tip_displacement"))
@@ -26,13 +27,24 @@ class Range:
     high: float | None
 
     @classmethod
-    def of(cls, values: Any) -> "Range":
+    def of(cls, values: Section | None) -> Self:
         """From a summary's low_3sigma, mean and high_3sigma."""
-        return cls(*(values.get(key) for key in SUM_KEYS))
+        if values is None:
+            return cls(None, None, None)
+        return cls(values.value("low_3sigma"), values.value("mean"), values.value("high_3sigma"))
 
     def times(self, factor: float) -> "Range":
         """The range downstream of a ratio."""
-        return Range(*(None if v is None else v * factor for v in (self.low, self.mean, self.high)))
+        return self.each(lambda value: value * factor)
+
+    def each(self, of: Callable[[float], float | None]) -> "Range":
+        """The range of another quantity, value by value."""
+        return Range(*(None if v is None else of(v) for v in (self.low, self.mean, self.high)))
+
+    @property
+    def by_word(self) -> Mapping[str, float | None]:
+        """What is summed over stages, in the plural."""
+        return {"lows": self.low, "means": self.mean, "highs": self.high}
 
     @property
     def known(self) -> bool:
@@ -87,34 +99,44 @@ class Stage:
         return f"{self.teeth[1]}/{self.teeth[0]} = {value}" if self.teeth else f"i = {value}"
 
 
-def leading_road(train: Summary) -> str:
+def trains_of(summary: RunSummary) -> Mapping[str, TrainSummary]:
+    """The trains of a run by name; older runs have none."""
+    return (summary.trains or {}) if isinstance(summary, TrainsOfRun) else {}
+
+
+def leading_road(train: TrainSummary) -> Road:
     """The road by which a train is shown: the 3D simulation where there is one."""
-    return "geometric" if all("geometric" in stage["roads"] for stage in train["stages"]) else "analytic"
+    return "geometric" if all(stage.roads.geometric is not None for stage in train.stages) else "analytic"
 
 
-def stages_of(train: Summary) -> list[Stage]:
+def leading_sums(train: TrainSummary) -> Range:
+    """Sums of the stages' ends by that road."""
+    return Range.of(train.sums.geometric if leading_road(train) == "geometric" else train.sums.analytic)
+
+
+def stages_of(train: TrainSummary) -> list[Stage]:
     """The stages of a train's summary, from the held shaft on, by the leading road."""
     road = leading_road(train)
-    return [_stage(number, stage, stage["roads"].get(road) or {}) for number, stage in enumerate(train["stages"], 1)]
+    return [_stage(number, stage, stage.roads.by(road)) for number, stage in enumerate(train.stages, 1)]
 
 
-def _stage(number: int, stage: Summary, values: Any) -> Stage:
-    own, factor = Range.of(values), abs(stage["factor"])
+def _stage(number: int, stage: StageSummary, values: Ends) -> Stage:
+    own, factor = Range.of(values), abs(stage.factor)
     return Stage(
         number=number,
-        link=stage["link"],
-        kind=stage["kind"],
-        driver=stage["driver"],
-        driven=stage["driven"],
-        teeth=tuple(stage["teeth"]) if stage["teeth"] else None,
-        ratio=stage["ratio"],
-        working_flank=stage["working_flank"],
+        link=stage.link,
+        kind=stage.kind,
+        driver=stage.driver,
+        driven=stage.driven,
+        teeth=(stage.teeth[0], stage.teeth[1]) if stage.teeth else None,
+        ratio=stage.ratio,
+        working_flank=stage.working_flank,
         factor=factor,
         own=own,
         at_shaft=own.times(factor),
-        share=values.get("share_percent"),
-        published={name: Range.of(ends) for name, ends in stage.get("published", {}).items()},
-        within_its_law=stage["kind"] == "reducer" and _nearer_than_3_sigma(own, values.get("sigma")),
+        share=values.share_percent,
+        published={name: Range.of(ends) for name, ends in stage.published.items()},
+        within_its_law=stage.kind == "reducer" and _nearer_than_3_sigma(own, values.sigma),
     )
 
 
@@ -137,51 +159,56 @@ def shafts_along(stages: Sequence[Stage], held: str) -> list[str]:
     return shafts
 
 
-def sums_of(measure: Summary, summary: Summary) -> Sums:
+def sums_of(measure: MeasureSummary, summary: RunSummary) -> Mapping[str, Range]:
     """Sums of the stages' lows, means and highs in the unit of a measure, by road and by who published them.
 
     Empty for a measure that is no such sum, or is read at another shaft, point or position than the train's stages are.
     """
-    train = summary.get("trains", {}).get(measure["of"])
-    if train is None or measure["kind"] not in SUMMED_KINDS or measure["take"] == "curve":
+    if not isinstance(measure, TrainMeasureSummary) or measure.kind not in SUMMED_KINDS or measure.take == "curve":
         return {}
-    if measure.get("over", "random") != "random" or any(
-        measure.get(key, train[key]) != train[key] for key in ("shaft", "held")
-    ):
+    train = trains_of(summary).get(measure.of)
+    if train is None or measure.over != "random" or (measure.shaft, measure.held) != (train.shaft, train.held):
         return {}
-    own = train["sums"]
-    roads = {road: values for road, values in own.items() if road != "published"} | dict(own.get("published", {}))
-    if measure["kind"] == "lost_motion":
-        return roads
+    sums = {name: Range.of(ends) for name, ends in ends_by_column(train).items()}
+    if measure.kind == "lost_motion":
+        return sums
     lever = _lever_of(measure, train)
     if lever is None:
         return {}
-    return {road: {key: tip_mm(values.get(key), lever) for key in SUM_KEYS} for road, values in roads.items()}
+    return {name: own.each(lambda value: tip_mm(value, lever)) for name, own in sums.items()}
 
 
-def _lever_of(measure: Summary, train: Summary) -> float | None:
+def ends_by_column(train: TrainSummary) -> dict[str, Ends]:
+    """Sums of the stages' ends by road, and by who published them."""
+    own: dict[str, Ends] = {"analytic": train.sums.analytic}
+    if train.sums.geometric is not None:
+        own["geometric"] = train.sums.geometric
+    return own | dict(train.sums.published)
+
+
+def _lever_of(measure: TrainMeasureSummary, train: TrainSummary) -> float | None:
     """The lever of a measure's point [mm]: its own, or the train's where that is of the same point."""
-    lever: float | None = measure.get("lever_mm")
-    if lever is None and f"{measure['point']} of {measure['arm']}" == train["point"]:
-        lever = train["lever_mm"]
-    return lever
+    if measure.lever_mm is None and f"{measure.point} of {measure.arm}" == train.point:
+        return train.lever_mm
+    return measure.lever_mm
 
 
-def distributions_of(train: Summary, summary: Summary) -> dict[str, Any]:
+def distributions_of(train: TrainSummary, summary: RunSummary) -> dict[str, Range]:
     """The lost motion that the train's stages add up to, by road and by who published it: ends and mean [arcmin].
 
     Of a train whose stages are those of a tip's displacement it is the turn that displaces the tip so far.
     """
-    measure = summary["measures"].get(train["measure"])
-    if measure is None:
+    measure = summary.measures.get(train.measure)
+    if not isinstance(measure, TrainMeasureSummary):
         return {}
-    columns: dict[str, Any] = {
-        column.heading if column.road == "published" else column.road: column.values for column in columns_of(measure)
+    columns = {
+        column.heading if column.road == "published" else column.road: Range.of(column.values)
+        for column in columns_of(measure)
     }
-    if measure["unit"] == "arcmin":
+    if measure.unit == "arcmin":
         return columns
     lever = _lever_of(measure, train)
-    return {name: {key: tip_arcmin(values.get(key), lever) for key in SUM_KEYS} for name, values in columns.items()}
+    return {name: own.each(lambda value: tip_arcmin(value, lever)) for name, own in columns.items()}
 
 
 def whole_ratio_text(ratio: float) -> str:

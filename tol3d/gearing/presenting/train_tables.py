@@ -1,27 +1,26 @@
 """The trains of a run as tables: what each stage brings to the lost motion, and the worst case beside the sum."""
 
 from collections.abc import Iterator
-from typing import Any
 
 from tol3d.gearing.presenting.stage import (
-    SUM_KEYS,
+    Range,
     Stage,
     distributions_of,
+    ends_by_column,
     leading_road,
     sense_text,
     shafts_along,
     stages_of,
     sums_of,
+    trains_of,
     whole_ratio_text,
 )
-from tol3d.gearing.summary_types import TrainMeasureSummary
+from tol3d.gearing.summary_types import TrainSummary
 from tol3d.report.number import percent_text, tip_mm, value_text
 from tol3d.report.page import BLANK, Block, Heading, Row, Table, line, note, title
 from tol3d.report.presenter import FurtherRow
 from tol3d.runs.summary.measure import MeasureSummary
 from tol3d.runs.summary.run import RunSummary
-
-Summary = Any  # typed, read by text
 
 ROAD_WORDS = {"analytic": "analytic (same trials)", "geometric": "3D simulation"}
 WORST_CASE_MEANS = "a sum of the stages' highs is a worst case; mean + 3 sigma of the sum is of its distribution"
@@ -29,13 +28,13 @@ STAGES_MEAN = "low, mean, high: a stage's own angular backlash at its driven sha
 OF_LAWS = "; of a data sheet's law its ends, where they are nearer than 3 sigma"
 
 
-def train_report(summary: Summary) -> list[Block]:
+def train_report(summary: RunSummary) -> list[Block]:
     """Tables of every train of a run: its stages, then sums of their ends beside the distribution of the sum."""
-    return [block for name in summary.get("trains", {}) for block in _train_blocks(name, summary)]
+    return [block for name in trains_of(summary) for block in _train_blocks(name, summary)]
 
 
-def _train_blocks(name: str, summary: Summary) -> Iterator[Block]:
-    train = summary["trains"][name]
+def _train_blocks(name: str, summary: RunSummary) -> Iterator[Block]:
+    train = trains_of(summary)[name]
     stages = stages_of(train)
     yield title(f"train {name}")
     yield line(train_words(train), "dim")
@@ -49,29 +48,25 @@ def _train_blocks(name: str, summary: Summary) -> Iterator[Block]:
 
 def sum_rows(measure: MeasureSummary, summary: RunSummary) -> list[FurtherRow]:
     """Sums of the stages' ends, where a measure is the sum of a train's stages."""
-    sums = sums_of(measure, summary) if isinstance(measure, TrainMeasureSummary) else {}
-    return [
-        FurtherRow(f"sum of the stages' {word}", {who: values.get(key) for who, values in sums.items()})
-        for key, word in SUM_KEYS.items()
-        if sums
-    ]
+    sums = {who: own.by_word for who, own in sums_of(measure, summary).items()}
+    words = next(iter(sums.values()), {})
+    return [FurtherRow(f"sum of the stages' {word}", {who: own[word] for who, own in sums.items()}) for word in words]
 
 
-def train_words(train: Summary) -> str:
+def train_words(train: TrainSummary) -> str:
     """The shafts from the held one to the one that is read, and the ratio of the whole train."""
-    shafts = shafts_along(stages_of(train), train["held"])
-    ratio = train["ratio"]
-    turns = "" if ratio is None else f" · i = {whole_ratio_text(ratio)}, {train['driven']} and {train['output']} turn "
-    turns += "" if ratio is None else ("opposite" if ratio < 0 else "the same way")
-    return f"{' → '.join(shafts)} · {train['held']} held{turns}"
+    shafts = shafts_along(stages_of(train), train.held)
+    turns = f" · i = {whole_ratio_text(train.ratio)}, {train.driven} and {train.output} turn "
+    turns += "opposite" if train.ratio < 0 else "the same way"
+    return f"{' → '.join(shafts)} · {train.held} held{turns}"
 
 
-def stages_table(train: Summary, stages: list[Stage]) -> Table:
+def stages_table(train: TrainSummary, stages: list[Stage]) -> Table:
     """A row a stage, and the whole train below; angles in minutes and seconds of arc."""
     published = list(dict.fromkeys(name for stage in stages for name in stage.published))
     headings = [
         *(Heading(word) for word in ("ratio", "sense", "low", "mean", "high")),
-        Heading(f"mean at {train['shaft']}", "bold"),
+        Heading(f"mean at {train.shaft}", "bold"),
         Heading("share of variance [%]"),
         *(Heading(f"{name}: high", "green") for name in published),
     ]
@@ -93,23 +88,23 @@ def _angle(arcmin: float | None) -> str:
     return value_text(arcmin, "arcmin")
 
 
-def sums_table(train: Summary, summary: Summary) -> Table:
+def sums_table(train: TrainSummary, summary: RunSummary) -> Table:
     """Sums of the stages' ends against the distribution of the sum, a column a road and who published."""
     distributions = distributions_of(train, summary)
-    own = {road: train["sums"][road] for road in ROAD_WORDS if road in train["sums"]}
-    columns = [*own.items(), *train["sums"].get("published", {}).items()]
+    columns = {name: Range.of(ends) for name, ends in ends_by_column(train).items()}
+    columns = {name: columns[name] for name in (*ROAD_WORDS, *columns) if name in columns}
     rows = [
-        Row(f"sum of the stages' {word}", [_angle(values.get(key)) for _, values in columns])
-        for key, word in SUM_KEYS.items()
+        Row(f"sum of the stages' {word}", [_angle(own.by_word[word]) for own in columns.values()])
+        for word in Range(None, None, None).by_word
     ]
-    highs = [distributions.get(road, {}).get("high_3sigma") if road in own else None for road, _ in columns]
+    highs = [distributions[name].high if name in ROAD_WORDS and name in distributions else None for name in columns]
     rows.append(Row("mean + 3 sigma of the sum", [_angle(high) for high in highs]))
-    lever = train["lever_mm"]
+    lever = train.lever_mm
     if lever is not None:
-        worst = [tip_mm(values.get("high_3sigma"), lever) for _, values in columns]
-        rows.append(Row(f"{train['point']}, sum of highs [mm]", [value_text(value, "mm") for value in worst]))
+        worst = [tip_mm(own.high, lever) for own in columns.values()]
+        rows.append(Row(f"{train.point}, sum of highs [mm]", [value_text(value, "mm") for value in worst]))
         tips = [value_text(tip_mm(high, lever), "mm") for high in highs]
-        rows.append(Row(f"{train['point']}, mean + 3 sigma [mm]", tips))
+        rows.append(Row(f"{train.point}, mean + 3 sigma [mm]", tips))
     styles = {"geometric": "bold", "analytic": ""}
-    headings = [Heading(ROAD_WORDS.get(road, road), styles.get(road, "green")) for road, _ in columns]
-    return Table(f"at {train['shaft']}", headings, rows)
+    headings = [Heading(ROAD_WORDS.get(name, name), styles.get(name, "green")) for name in columns]
+    return Table(f"at {train.shaft}", headings, rows)

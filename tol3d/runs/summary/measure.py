@@ -53,7 +53,7 @@ def _bare(annotation: Any) -> Any:
 
 
 PUBLISHED_NUMBERS = {
-    name: (Number, Field(default=LEFT_OUT, alias=field.alias))
+    name: (Number, Field(default=LEFT_OUT, validation_alias=field.validation_alias))
     for name, field in Sample.model_fields.items()
     if _is_number(field.annotation)
 }

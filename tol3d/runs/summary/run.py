@@ -67,8 +67,8 @@ class Timing(Section):
     peak_memory_mb: NotNegative | None
 
 
-class RunSummary(Section):
-    """summary.json: what a run of a scene found. Lengths um, of a tip mm; angles arcmin; shares ppm or %."""
+class Findings(Section):
+    """What a study found, whoever ran it."""
 
     scene: Label
     mechanism: Maybe[MechanismSummary] = LEFT_OUT
@@ -84,6 +84,11 @@ class RunSummary(Section):
     measures: Annotated[Mapping[Label, MeasureSummary], Field(min_length=1, max_length=MOST_ENTRIES)]
     warnings: list[Sentence]
     witness: Maybe[WitnessSummary] = LEFT_OUT
+
+
+class RunSummary(Findings):
+    """summary.json: what a run of a scene found. Lengths um, of a tip mm; angles arcmin; shares ppm or %."""
+
     blocks: Blocks
     files: Mapping[Label, Sha256] = Field(description="SHA-256 of the scene and of every file that it names")
     timing: Timing

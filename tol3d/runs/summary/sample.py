@@ -49,9 +49,9 @@ class Sample(LimitShares):
     high_3sigma: Known
     sample_min: Known
     sample_max: Known
-    p0_135: Known = Field(alias="p0.135", description="0.135 % quantile")
+    p0_135: Known = Field(validation_alias="p0.135", description="0.135 % quantile")
     p50: Known
-    p99_865: Known = Field(alias="p99.865")
+    p99_865: Known = Field(validation_alias="p99.865")
     quantile_error: NotNegative = Field(description="width of a bin of the grid that quantiles are read from")
     outside_grid: Count
     below_limit_ppm_95: PpmRange | None = Field(description="bounds of the true share, 95 % confidence")

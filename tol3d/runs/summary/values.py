@@ -1,7 +1,10 @@
 """Numbers, names and sentences as a summary may hold them, and the base of its classes."""
 
 import unicodedata
-from typing import TYPE_CHECKING, Annotated, Any, Literal, Optional, TypeVar
+from collections.abc import Callable, Mapping
+from functools import cache
+from types import NoneType
+from typing import TYPE_CHECKING, Annotated, Any, Literal, Optional, ParamSpec, TypeVar, get_args
 
 from pydantic import AfterValidator, Field
 
@@ -40,6 +43,7 @@ Unit = Literal["um", "mm", "arcmin"]
 Road = Literal["analytic", "geometric"]
 
 T = TypeVar("T")
+Keys = ParamSpec("Keys")
 
 if TYPE_CHECKING:
     Maybe = Optional[T]  # noqa: UP045 - a generic alias
@@ -80,9 +84,42 @@ class Section(Strict):
 
     def keys(self) -> list[str]:
         """The keys that it has."""
-        fields = type(self).model_fields
-        return [field.alias or name for name, field in fields.items() if name in self.model_fields_set]
+        return [key_of(type(self), name) for name in vars(self) if name in self.model_fields_set]
 
     def items(self) -> list[tuple[str, Any]]:
         """Keys and values."""
         return [(key, self[key]) for key in self.keys()]
+
+
+def key_of(kind: type[Section], name: str) -> str:
+    """The file's key of an attribute."""
+    return str(kind.model_fields[name].validation_alias or name)
+
+
+# writing ------------------------------------------------------------------------------------------
+
+
+def made(section: Callable[Keys, T], /, *none: Keys.args, **keys: Keys.kwargs) -> T:
+    """A section of a new summary, its keys in the order in which they are given.
+
+    mypy holds keys and types; bounds are held once the whole is written, where a fault is warned of and no run is lost.
+    None for a key that may be missing, and not be null, leaves it out.
+    """
+    kind: Any = section
+    given = {name: value for name, value in keys.items() if value is not None or name not in _missing_not_null(kind)}
+    found: T = kind.model_construct(set(given), **given)
+    object.__setattr__(found, "__dict__", {name: vars(found)[name] for name in given} | vars(found))
+    return found
+
+
+@cache
+def _missing_not_null(kind: type[Section]) -> frozenset[str]:
+    fields = kind.model_fields.items()
+    return frozenset(n for n, field in fields if not field.is_required() and NoneType not in get_args(field.annotation))
+
+
+def as_json(value: Any) -> Any:
+    """What is made of sections, as it is written: by the file's keys."""
+    if isinstance(value, Section | Mapping):
+        return {key: as_json(own) for key, own in value.items()}
+    return [as_json(own) for own in value] if isinstance(value, list | tuple) else value

@@ -2,7 +2,9 @@
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
-from typing import Any
+
+from tol3d.runs.summary import agreement
+from tol3d.runs.summary.values import made
 
 
 @dataclass(frozen=True)
@@ -53,9 +55,33 @@ class Explanation:
     mean_allowed: float | None = None
     largest_trial: int | None = None
 
-    def summary(self) -> dict[str, Any]:
+    def summary(self) -> agreement.Explanation:
         """As summary.json shows it."""
-        return {**vars(self), "neglected": dict(self.neglected), "linear": [vars(part) for part in self.linear]}
+        linear = [
+            made(
+                agreement.LinearPart,
+                contributor=part.contributor,
+                percent=part.percent,
+                standard_errors=part.standard_errors,
+                by=part.by,
+            )
+            for part in self.linear
+        ]
+        return made(
+            agreement.Explanation,
+            undecided=self.undecided,
+            faults=list(self.faults),
+            linear=linear,
+            largest_percent=self.largest_percent,
+            neglected=self.neglected,
+            second_order_rms=self.second_order_rms,
+            second_order_mean=self.second_order_mean,
+            second_order_of=list(self.second_order_of),
+            left_rms=self.left_rms,
+            mean_left=self.mean_left,
+            mean_allowed=self.mean_allowed,
+            largest_trial=self.largest_trial,
+        )
 
 
 def faults(explained: Mapping[str, Explanation]) -> Iterator[str]:
