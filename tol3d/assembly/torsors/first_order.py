@@ -1,0 +1,121 @@
+"""An assembly to first order: each measure a row over deviations, a constant, and terms that are not linear."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tol3d.assembly.model import Assembly, BestFit, Measured
+from tol3d.assembly.torsors.columns import Columns, without_rounding
+from tol3d.assembly.torsors.measures import reading
+from tol3d.assembly.torsors.moves import after
+from tol3d.assembly.torsors.ordered import ordered_product
+from tol3d.assembly.torsors.slopes import STEP, Bend, Slopes
+from tol3d.assembly.torsors.terms import Largest, Term
+from tol3d.assembly.torsors.world import World
+
+Array = NDArray[np.float64]
+
+TOGETHER = 4096
+"""Trials that are evaluated at once: their columns stay in the cache."""
+
+
+@dataclass(frozen=True, eq=False)
+class FirstOrder:
+    """The measures of an assembly to first order. It pickles, and holds no model.
+
+    Args:
+        width: columns of the deviations.
+        terms: each with the first of its columns, in an order in which each reads only those before.
+        rows: of each measure (columns,) [mm or rad]: the deviations', the constant's, the terms'.
+    """
+
+    width: int
+    terms: tuple[tuple[int, Term], ...]
+    rows: Mapping[str, Array]
+
+    def values(self, deviations: Array, names: Sequence[str]) -> dict[str, Array]:
+        """Values (trials,) of some measures [mm or rad] from deviations (trials, columns) [mm, rad]."""
+        rows = np.array([self.rows[name] for name in names]).reshape(len(names), -1)
+        terms = self._read_by(rows)
+        found = np.empty((len(names), len(deviations)))
+        for first in range(0, len(deviations), TOGETHER):
+            piece = deviations[first : first + TOGETHER]
+            found[:, first : first + TOGETHER] = ordered_product(rows, self._columns(piece, terms, rows.shape[1]))
+        return dict(zip(names, found, strict=True))
+
+    def slopes(self, name: str, means: Array, sigmas: Array) -> Slopes:
+        """How a measure changes with each column, at the means of the deviations.
+
+        Args:
+            name: of the measure.
+            means, sigmas: of each column (columns,) [mm, rad].
+        """
+        row = self.rows[name]
+        terms = self._read_by(row[None])
+        bends = tuple(self._bend(row, start, term) for start, term in terms)
+        coefficients = row[: self.width].copy()
+        bent = np.array(sorted({column for bend in bends for column in bend.columns}), dtype=int)
+        steps = np.zeros((len(bent), self.width))
+        steps[np.arange(len(bent)), bent] = np.where(sigmas[bent] > 0.0, sigmas[bent], STEP)
+        sides = [self.values(means + sign * steps, [name])[name] for sign in (1.0, -1.0)]
+        coefficients[bent] = (sides[0] - sides[1]) / (2.0 * steps.sum(axis=1))
+        ends = self.values(np.array([np.zeros(self.width), means]), [name])[name]
+        return Slopes(float(ends[0]), float(ends[1]), coefficients, bends)
+
+    def _columns(self, deviations: Array, terms: Sequence[tuple[int, Term]], count: int) -> Array:
+        columns = np.zeros((count, len(deviations)))
+        columns[: self.width] = deviations.T
+        columns[self.width] = 1.0
+        for start, term in terms:
+            columns[start : start + term.count] = term.values(ordered_product(term.forms, columns))
+        return columns
+
+    def _read_by(self, rows: Array) -> list[tuple[int, Term]]:
+        """The terms that rows read, and what those read, in their order."""
+        wanted, found = _reads(rows), list[tuple[int, Term]]()
+        for start, term in reversed(self.terms):
+            if wanted[start : start + term.count].any():
+                wanted = wanted | _reads(term.forms)
+                found.append((start, term))
+        return found[::-1]
+
+    def _bend(self, row: Array, start: int, term: Term) -> Bend:
+        earlier = self._read_by(term.forms)
+        read = _reads(np.concatenate([term.forms, *(each.forms for _, each in earlier)]))
+        columns = tuple(np.flatnonzero(read[: self.width]).tolist())
+        vectors = None
+        if isinstance(term, Largest) and not earlier:
+            vectors = term.forms[:, : self.width + 1].reshape(-1, term.size, self.width + 1)
+        return Bend(term.form, columns, row[start : start + term.count], vectors)
+
+
+def first_order(assembly: Assembly) -> FirstOrder:
+    """An assembly to first order, from its nominal geometry.
+
+    Raises:
+        InputError: a move leaves a freedom that it should hold or asks twice for the same; a measure that has no sense.
+    """
+    columns = Columns(assembly.width, _room(assembly))
+    worlds = [World(assembly, columns)]
+    for move in assembly.moves:
+        worlds.append(after(move, worlds[-1]))
+    rows = {name: without_rounding(reading(measured, worlds)) for name, measured in assembly.measures.items()}
+    return FirstOrder(assembly.width, tuple(columns.terms), rows)
+
+
+def _reads(rows: Array) -> NDArray[np.bool_]:
+    """Which columns some of the rows read (columns,)."""
+    return np.asarray(rows.any(axis=0))
+
+
+def _room(assembly: Assembly) -> int:
+    """How many columns terms may make: of each datum one, of a minimax fit six, of what a measure reads two."""
+    datums = sum(len(frame.datums) for frame in assembly.datum_frames.values())
+    fits = sum(isinstance(move, BestFit) and move.criterion == "minimax" for move in assembly.moves)
+    return datums + 6 * fits + 2 * sum(map(_readings, assembly.measures.values()))
+
+
+def _readings(measured: Measured) -> int:
+    return 1 + (0 if measured.minus is None else _readings(measured.minus))

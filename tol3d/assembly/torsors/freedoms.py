@@ -1,0 +1,105 @@
+"""The freedoms of a rigid body, as groups of equations take them one after the other."""
+
+from collections.abc import Iterable
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tol3d.assembly.torsors.torsor import cross_matrix, shift_at, turn_about
+
+Array = NDArray[np.float64]
+
+INDEPENDENT = 1e-8
+"""Least part of an equation that must act on the freedoms left; a turn counts by the length it moves."""
+
+
+class Freedoms:
+    """A torsor that is found by equations in groups, the first leading.
+
+    A group is met as nearly as the freedoms left allow: least squares over its equations, which are all lengths or all
+    turns. What earlier groups hold stays.
+
+    Args:
+        origin: about which nothing turns that no equation asks for (3,) [mm].
+        points: what the equations are about (points, 3) [mm]: their distance from there weighs a turn.
+        columns: of the torsor.
+    """
+
+    def __init__(self, origin: Array, points: Iterable[Array], columns: int) -> None:
+        self._origin = origin
+        self._length = max([1.0, *(float(np.linalg.norm(point - origin)) for point in points)])
+        self._left = np.eye(6)
+        self._found = np.zeros((6, columns))
+
+    @property
+    def scale(self) -> Array:
+        """(6, 6): shift at `origin` and turn as a length [mm] -> the torsor."""
+        scale = np.eye(6)
+        scale[:3, 3:] = cross_matrix(self._origin) / self._length
+        scale[3:, 3:] /= self._length
+        return scale
+
+    @property
+    def torsor(self) -> Array:
+        """What is found so far (6, columns); what no equation decides yet is any."""
+        return self.scale @ self._found
+
+    @property
+    def left(self) -> Array:
+        """The torsors (6, freedoms) that no equation holds."""
+        return self.scale @ self._left
+
+    def take(self, equations: Array, values: Array) -> int:
+        """Find what a group decides.
+
+        Args:
+            equations: (equations, 6), applied to the torsor.
+            values: what they shall give (equations, columns).
+
+        Returns:
+            How many freedoms it takes.
+        """
+        asked = equations @ self.scale
+        left, strengths, right = np.linalg.svd(asked @ self._left, full_matrices=True)
+        count = int(np.sum(strengths > INDEPENDENT * np.linalg.norm(asked, axis=1).max(initial=0.0)))
+        missing = values - asked @ self._found
+        step = (left[:, :count].T @ missing) / strengths[:count, None]
+        self._found = self._found + self._left @ right[:count].T @ step
+        self._left = self._left @ right[count:].T
+        return count
+
+    def holds(self, equations: Array) -> bool:
+        """Whether earlier groups leave nothing for this one to take."""
+        asked = equations @ self.scale
+        return bool(np.abs(asked @ self._left).max(initial=0.0) <= INDEPENDENT * np.linalg.norm(asked))
+
+    def rest(self) -> Array:
+        """The torsor, nothing turning or shifting that no equation asks for: the least turn, then about `origin`."""
+        nothing = np.zeros((3, self._found.shape[1]))
+        self.take(turn_about(np.eye(3)), nothing)
+        self.take(shift_at(self._origin), nothing)
+        return self.torsor
+
+
+def freedom_in_words(torsors: Array) -> str:
+    """The simplest of some freedoms (6, freedoms), such as "shift along x" or "turn about z through (0, 40, 0)"."""
+    turns = torsors[3:]
+    _, strengths, right = np.linalg.svd(turns)
+    size = np.abs(torsors).max()
+    if np.sum(strengths > INDEPENDENT * size) < torsors.shape[1]:
+        return f"shift along {_direction(torsors[:3] @ right[-1])}"
+    torsor = torsors[:, 0] / np.linalg.norm(turns[:, 0])
+    point = np.cross(torsor[3:], torsor[:3])
+    return f"turn about {_direction(torsor[3:])} through {_numbers(point)}"
+
+
+def _direction(vector: Array) -> str:
+    vector = vector / np.linalg.norm(vector)
+    largest = np.argmax(np.abs(vector))
+    if abs(vector[largest]) > 1.0 - INDEPENDENT:
+        return "xyz"[largest]
+    return _numbers(vector * np.sign(vector[largest]))
+
+
+def _numbers(vector: Array) -> str:
+    return "(" + ", ".join(f"{value:.4g}" for value in vector.round(9) + 0.0) + ")"

@@ -1,0 +1,126 @@
+"""Mates: relations of two features, in order, each taking what earlier ones left."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tol3d.assembly.model import Axis, Mate, Plane, Point, Relation, RoundPlane
+from tol3d.assembly.model.shape import Shape
+from tol3d.assembly.torsors.freedoms import Freedoms
+from tol3d.assembly.torsors.torsor import height_at, perpendicular, shift_at, turn_about
+from tol3d.assembly.torsors.world import World
+from tol3d.errors import InputError
+
+Array = NDArray[np.float64]
+
+
+def mated(move: Mate, world: World) -> Array:
+    """The torsor (6, columns) of a part by its relations.
+
+    Raises:
+        InputError: a relation takes nothing, or is not one of its two features.
+    """
+    part = world.assembly.part[move.part]
+    points = [world.origin(name) for each in move.relations for name in (each.moving, each.target)]
+    freedoms = Freedoms(part.pose[:3, 3], points, world.columns.count)
+    for relation in move.relations:
+        if not _take(freedoms, relation, move, world):
+            raise InputError(
+                f"{move.name}: {relation.kind} of {relation.moving} and {relation.target} takes no freedom: "
+                "earlier relations hold all that it asks; leave it out"
+            )
+    return freedoms.rest()
+
+
+def _take(freedoms: Freedoms, relation: Relation, move: Mate, world: World) -> int:
+    """How many freedoms a relation takes."""
+    pairing = _Pairing(freedoms, relation, move, world)
+    shapes = [world.assembly.features[name].shape for name in (relation.moving, relation.target)]
+    match relation.kind, *map(_word, shapes):
+        case "coincident" | "distance", "plane", "plane":
+            return pairing.parallel() + pairing.height(relation.distance)
+        case "coincident" | "distance", "point", "plane":
+            return pairing.height(relation.distance)
+        case "coincident", "point", "point":
+            return pairing.position(np.eye(3))
+        case "coincident", "point", "axis":
+            return pairing.position(perpendicular(pairing.target_axis))
+        case "coaxial", "axis", "axis":
+            return pairing.position(perpendicular(pairing.target_axis)) + pairing.parallel()
+        case "tangent", "axis", "plane":
+            return pairing.lying() + pairing.height(*pairing.radius(relation.moving))
+        case "tangent", "plane", "axis":
+            return pairing.lying() + pairing.height_of_target(*pairing.radius(relation.target))
+    raise InputError(
+        f"{move.name}: {relation.kind} of {relation.moving} and {relation.target}: "
+        f"not of a {_word(shapes[0])} and a {_word(shapes[1])}"
+    )
+
+
+def _word(shape: Shape) -> str:
+    match shape:
+        case Point():
+            return "point"
+        case Axis():
+            return "axis"
+        case Plane() | RoundPlane():
+            return "plane"
+
+
+class _Pairing:
+    """The two features of a relation, and the equations that it may be made of."""
+
+    def __init__(self, freedoms: Freedoms, relation: Relation, move: Mate, world: World) -> None:
+        self._freedoms = freedoms
+        self._relation = relation
+        self._move = move
+        self._world = world
+        self._from = world.origin(relation.target)
+        self._point = world.origin(relation.moving)
+        self._axis = world.axis(relation.moving)
+        self.target_axis = world.axis(relation.target)
+        self._own = world.on_body(relation.moving, move.part)
+        self._target = world.placed(relation.target)
+
+    def _take(self, equations: Array, missing: Array) -> int:
+        """Equations (equations, 6) of the moving feature less the target, `missing` nominally (equations,)."""
+        values = equations @ (self._target - self._own) + self._world.columns.constants(missing)
+        return self._freedoms.take(equations, values)
+
+    def parallel(self) -> int:
+        """Both z in one line, whichever way each points."""
+        nominal = self._axis * np.sign(self._axis @ self.target_axis)
+        across = perpendicular(self.target_axis)
+        return self._take(turn_about(across), across @ np.cross(nominal, self.target_axis))
+
+    def lying(self) -> int:
+        """The one's z perpendicular to the other's."""
+        hinge = np.cross(self._axis, self.target_axis)
+        return self._take(turn_about(hinge[None]), np.array([-self._axis @ self.target_axis]))
+
+    def position(self, directions: Array) -> int:
+        """The moving origin where the target is, along directions (directions, 3)."""
+        return self._take(directions @ shift_at(self._point), directions @ (self._from - self._point))
+
+    def height(self, nominal: float, varying: Array | None = None) -> int:
+        """The moving origin at a height over the target's plane, as it tilts."""
+        row = height_at(self._point, self.target_axis)
+        missing = nominal - float(self.target_axis @ (self._point - self._from))
+        return self._take_height(row, missing, varying)
+
+    def height_of_target(self, nominal: float, varying: Array | None = None) -> int:
+        """The target's origin at a height over the moving plane, as it tilts."""
+        row = height_at(self._from, self._axis)
+        missing = float(self._axis @ (self._from - self._point)) - nominal
+        return self._take_height(row, missing, None if varying is None else -varying)
+
+    def _take_height(self, row: Array, missing: float, varying: Array | None) -> int:
+        values = row @ (self._target - self._own) + self._world.columns.constants(np.array([missing]))
+        return self._freedoms.take(row, values if varying is None else values + varying)
+
+    def radius(self, name: str) -> tuple[float, Array]:
+        """Radius of a cylinder, nominally [mm] and as it varies (columns,)."""
+        shape = self._world.assembly.features[name].shape
+        assert isinstance(shape, Axis)
+        if shape.diameter is None:
+            raise InputError(f"{self._move.name}: {name} has no diameter; expected one, for it is tangent")
+        return shape.diameter / 2.0, self._world.size(name) / 2.0

@@ -1,0 +1,209 @@
+"""Measures to first order: one row each over the columns; what clips is a term of its own."""
+
+import math
+from itertools import combinations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tol3d.assembly.model import Axis, Measured, Plane, Point, RoundPlane
+from tol3d.assembly.torsors.columns import without_rounding
+from tol3d.assembly.torsors.flatness import balances
+from tol3d.assembly.torsors.terms import Width
+from tol3d.assembly.torsors.torsor import cross_matrix, height_at, perpendicular, shift_at
+from tol3d.assembly.torsors.world import World
+
+Array = NDArray[np.float64]
+
+NEAR = 1.0
+"""Points nominally nearer than this [mm]: their distance is the length of its first-order vector, else linear."""
+SLANT = 1e-3
+"""Directions whose sine is nominally less are in line: their angle is the length of its first-order vector."""
+
+
+def reading(measured: Measured, worlds: list[World]) -> Array:
+    """A measure as a row over the columns (columns,) [mm or rad].
+
+    Args:
+        measured: what.
+        worlds: before the first move, and as each leaves it.
+    """
+    world = worlds[-1] if measured.after < 0 else worlds[measured.after + 1]
+    row = _READINGS[measured.kind](measured, world)
+    return row if measured.minus is None else row - reading(measured.minus, worlds)
+
+
+def _constant(world: World, value: float) -> Array:
+    row = np.zeros(world.columns.count)
+    row[world.columns.constant] = value
+    return row
+
+
+def _apart(measured: Measured, world: World) -> tuple[Array, Array]:
+    """From the first feature's origin to the second's: nominally (3,), and how it varies (3, columns) [mm]."""
+    start, end = measured.features
+    from_point, to_point = world.origin(start), world.origin(end)
+    varying = shift_at(to_point) @ world.placed(end) - shift_at(from_point) @ world.placed(start)
+    return to_point - from_point, varying
+
+
+def _fixed_in(measured: Measured, world: World) -> tuple[Array, Array]:
+    """A measure's direction in the world: nominally (3,), and how it varies (3, columns)."""
+    part = world.part_of(measured.features[0])
+    if measured.direction is None:
+        raise ValueError(f"{measured.kind} of {', '.join(measured.features)} has no direction")
+    nominal = world.turned(measured.direction, part)
+    return nominal, _turned(nominal, world.parts[part] + world.frame_on_part(measured.frame, part))
+
+
+def _turned(direction: Array, torsor: Array) -> Array:
+    """How a direction that turns with a torsor varies (3, columns)."""
+    return np.asarray(-cross_matrix(direction) @ torsor[3:])
+
+
+def _length(nominal: Array, varying: Array, world: World) -> Array:
+    """The length of a short vector (columns,), from its parts (parts, columns)."""
+    return world.columns.largest((varying + world.columns.constants(nominal))[None])
+
+
+def _distance(measured: Measured, world: World) -> Array:
+    nominal, varying = _apart(measured, world)
+    if measured.direction is not None:
+        return _gap(measured, world)
+    length = float(np.linalg.norm(nominal))
+    if length < NEAR:
+        return _length(nominal, varying, world)
+    return _constant(world, length) + nominal / length @ varying
+
+
+def _gap(measured: Measured, world: World) -> Array:
+    apart, varying = _apart(measured, world)
+    normal, turning = _fixed_in(measured, world)
+    return _constant(world, float(normal @ apart)) + normal @ varying + apart @ turning
+
+
+def _point_plane(measured: Measured, world: World) -> Array:
+    point, plane = measured.features
+    at, normal = world.origin(point), world.axis(plane)
+    height = height_at(at, normal) @ (world.placed(point) - world.placed(plane))
+    row: Array = _constant(world, float(normal @ (at - world.origin(plane)))) + height[0]
+    return row
+
+
+def _angle(measured: Measured, world: World) -> Array:
+    axes = [world.axis(name) for name in measured.features]
+    turning = [_turned(axis, world.placed(name)) for axis, name in zip(axes, measured.features, strict=True)]
+    (start, end), (start_varies, end_varies) = axes, turning
+    across, along = np.cross(start, end), float(start @ end)
+    across_varies = cross_matrix(start) @ end_varies - cross_matrix(end) @ start_varies
+    if measured.direction is not None:
+        normal, normal_varies = _fixed_in(measured, world)
+        sine = float(normal @ across)
+        sine_varies = normal @ across_varies + across @ normal_varies
+        along_varies = start @ end_varies + end @ start_varies
+        row = (along * sine_varies - sine * along_varies) / (sine**2 + along**2)
+        return _constant(world, math.atan2(sine, along)) + row
+    sine = float(np.linalg.norm(across))
+    if sine >= SLANT:
+        return (
+            _constant(world, math.atan2(sine, along))
+            + across / sine @ (world.placed(measured.features[1]) - world.placed(measured.features[0]))[3:]
+        )
+    sides = perpendicular(start)
+    length = _length(sides @ across, sides @ across_varies, world)
+    return length if along > 0.0 else _constant(world, math.pi) - length
+
+
+def _size(measured: Measured, world: World) -> Array:
+    (name,) = measured.features
+    shape = world.assembly.features[name].shape
+    nominal = shape.diameter if isinstance(shape, Axis) and shape.diameter is not None else 0.0
+    return _constant(world, nominal) + world.size(name)
+
+
+def _from_frame(measured: Measured, world: World) -> Array:
+    """The torsor (6, columns) of a feature relative to the datum frame, in the part's frame."""
+    (name,) = measured.features
+    own = world.own[world.part_of(name)]
+    return own.feature(name) - own.datum_frame(measured.frame)
+
+
+def _at_ends(measured: Measured, world: World, directions: Array) -> Array:
+    """How far a feature's ends are displaced in its datum frame, along directions: (ends, directions, columns) [mm]."""
+    (name,) = measured.features
+    feature = world.assembly.features[name]
+    assert not isinstance(feature.shape, RoundPlane)
+    torsor = _from_frame(measured, world)
+    ends = feature.shape.ends @ feature.frame[:3, :3].T + feature.frame[:3, 3]
+    return np.array([directions @ shift_at(end) @ torsor for end in ends])
+
+
+def _disc(measured: Measured, world: World, radius: float) -> tuple[Array, Array]:
+    """Of a round face in its datum frame: height of its middle (columns,), and of its rim over it at most [mm]."""
+    (name,) = measured.features
+    frame = world.assembly.features[name].frame
+    torsor = _from_frame(measured, world)
+    middle = height_at(frame[:3, 3], frame[:3, 2]) @ torsor
+    rim = world.columns.largest(radius * (frame[:3, :2].T @ torsor[3:])[None])
+    return world.columns.largest(middle[None]), rim
+
+
+def _position(measured: Measured, world: World) -> Array:
+    feature = world.assembly.features[measured.features[0]]
+    rotation = feature.frame[:3, :3]
+    match feature.shape:
+        case _ if measured.direction is not None:
+            directions = perpendicular(measured.direction)
+        case RoundPlane():
+            middle, rim = _disc(measured, world, feature.shape.radius)
+            return 2.0 * (middle + rim)
+        case Point():
+            directions = np.eye(3)
+        case Axis():
+            directions = rotation[:, :2].T
+        case Plane():
+            directions = rotation[:, 2:].T
+    return 2.0 * world.columns.largest(_at_ends(measured, world, directions))
+
+
+def _orientation(measured: Measured, world: World) -> Array:
+    feature = world.assembly.features[measured.features[0]]
+    rotation = feature.frame[:3, :3]
+    match feature.shape:
+        case RoundPlane():
+            return 2.0 * _disc(measured, world, feature.shape.radius)[1]
+        case Axis():
+            directions = rotation[:, :2].T
+        case _:
+            directions = rotation[:, 2:].T
+    ends = _at_ends(measured, world, directions)
+    return world.columns.largest(np.array([one - other for one, other in combinations(ends, 2)]))
+
+
+def _flatness(measured: Measured, world: World) -> Array:
+    assert measured.direction is not None
+    own = world.own[world.part_of(measured.features[0])]
+    points = np.array([world.assembly.features[name].frame[:3, 3] for name in measured.features])
+    heights = np.concatenate(
+        [
+            height_at(point, measured.direction) @ own.feature(name)
+            for point, name in zip(points, measured.features, strict=True)
+        ]
+    )
+    heights += world.columns.constants((points - points[0]) @ measured.direction)
+    heights = without_rounding(heights)
+    weights = balances(points @ perpendicular(measured.direction).T)
+    row: Array = world.columns.made_by(Width(heights, weights))[0]
+    return row
+
+
+_READINGS = {
+    "distance": _distance,
+    "gap": _gap,
+    "point_plane": _point_plane,
+    "angle": _angle,
+    "size": _size,
+    "position": _position,
+    "orientation": _orientation,
+    "flatness": _flatness,
+}

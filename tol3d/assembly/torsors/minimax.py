@@ -1,0 +1,119 @@
+"""The least largest residual: a convex programme with a few unknowns, trial by trial."""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tol3d.assembly.torsors.ordered import ordered_product, ordered_sum, squared_lengths
+from tol3d.assembly.torsors.terms import Form
+
+Array = NDArray[np.float64]
+
+GAP = 1e-14
+"""Where it ends: the square of the largest residual is found to this part of itself."""
+MOST_STEPS = 60
+"""In practice about 20."""
+
+
+@dataclass(frozen=True, eq=False)
+class Minimax:
+    """The unknowns z that make the longest of the residuals B z - b as short as can be.
+
+    Minimise tau subject to |B_k z - b_k|^2 <= tau: primal-dual interior points, from least squares. Where the longest
+    residuals leave something open, it is what keeps the others far from them (the analytic centre).
+
+    Args:
+        forms: b, (residuals * 3, columns).
+        matrix: B, (residuals, 3, unknowns), of full rank over all of them.
+    """
+
+    forms: Array
+    matrix: Array
+    form: Form = "least largest residual"
+
+    @property
+    def count(self) -> int:
+        """Unknowns."""
+        return int(self.matrix.shape[2])
+
+    @cached_property
+    def _squares(self) -> Array:
+        return np.asarray(np.linalg.pinv(self.matrix.reshape(-1, self.count)), dtype=np.float64)
+
+    def values(self, read: Array) -> Array:
+        """z (unknowns, trials) from b (residuals * 3, trials)."""
+        start = ordered_product(self._squares, read)
+        left = ordered_product(self.matrix.reshape(-1, self.count), start) - read
+        size = np.sqrt(squared_lengths(left.reshape(len(self.matrix), 3, -1)).max(axis=0))
+        amount = ordered_sum(read**2) ** 0.5
+        varies = size > 1e-12 * amount  # else all residuals are nil already
+        found = start.copy()
+        scaled = left[:, varies] / size[varies]
+        found[:, varies] += size[varies] * self._centred(scaled.reshape(len(self.matrix), 3, -1))
+        return found
+
+    def _centred(self, left: Array) -> Array:
+        """The change of z (unknowns, trials) from residuals (residuals, 3, trials), the longest of which is 1."""
+        trials = left.shape[2]
+        z = np.zeros((self.count, trials))
+        bound = np.full(trials, 1.5)
+        multipliers = np.full((len(left), trials), 1.0 / len(left))
+        going = np.arange(trials)
+        for _ in range(MOST_STEPS):
+            if not len(going):
+                break
+            state = z[:, going], bound[going], multipliers[:, going]
+            z[:, going], bound[going], multipliers[:, going], gap = self._step(left[:, :, going], *state)
+            going = going[gap > GAP]
+        return z
+
+    def _step(self, left: Array, z: Array, bound: Array, multipliers: Array) -> tuple[Array, Array, Array, Array]:
+        """One Newton step on the conditions of the optimum, a tenth of the gap left; and the gap after it."""
+        count = len(left)
+        residuals = left + self._moved(z)
+        slack = bound - squared_lengths(residuals)
+        target = 0.1 * ordered_sum(slack * multipliers) / count
+        gradients = 2.0 * np.array(
+            [[ordered_sum(self.matrix[k, :, i, None] * residuals[k]) for i in range(self.count)] for k in range(count)]
+        )
+        stiffness = multipliers / slack
+        pushes = target / slack
+        system = np.empty((z.shape[1], self.count + 1, self.count + 1))
+        right = np.empty((z.shape[1], self.count + 1, 1))
+        for i in range(self.count):
+            for j in range(i + 1):
+                curved = ordered_sum(self._curvature[k, i, j] * multipliers[k] for k in range(count))
+                system[:, i, j] = system[:, j, i] = curved + ordered_sum(stiffness * gradients[:, i] * gradients[:, j])
+            system[:, i, -1] = system[:, -1, i] = -ordered_sum(stiffness * gradients[:, i])
+            right[:, i, 0] = -ordered_sum(pushes * gradients[:, i])
+        system[:, -1, -1] = ordered_sum(stiffness)
+        right[:, -1, 0] = ordered_sum(pushes) - 1.0
+        step = np.asarray(np.linalg.solve(system, right)[:, :, 0].T, dtype=np.float64)
+        along = ordered_sum(gradients[:, i] * step[i] for i in range(self.count))
+        widening = step[-1] - along
+        change = pushes - multipliers - stiffness * widening
+        share = 0.99 * np.minimum(
+            _until_nil(multipliers, change, np.zeros(1)),
+            _until_nil(slack, widening, squared_lengths(self._moved(step[:-1]))),
+        )
+        share = np.minimum(1.0, share)
+        z, bound, multipliers = z + share * step[:-1], bound + share * step[-1], multipliers + share * change
+        slack = bound - squared_lengths(left + self._moved(z))
+        return z, bound, multipliers, ordered_sum(slack * multipliers)
+
+    @cached_property
+    def _curvature(self) -> Array:
+        """(residuals, unknowns, unknowns): second derivatives of the squared lengths."""
+        return 2.0 * self.matrix.transpose(0, 2, 1) @ self.matrix
+
+    def _moved(self, z: Array) -> Array:
+        """B z (residuals, 3, trials)."""
+        return ordered_product(self.matrix.reshape(-1, self.count), z).reshape(len(self.matrix), 3, -1)
+
+
+def _until_nil(values: Array, slopes: Array, falls: Array) -> Array:
+    """The least share s at which one of values + s slopes - s^2 falls is nil (trials,); values > 0, falls >= 0."""
+    below = np.sqrt(slopes**2 + 4.0 * falls * values) - slopes
+    return np.asarray((2.0 * values / np.maximum(below, 1e-300)).min(axis=0))

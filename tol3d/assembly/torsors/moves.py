@@ -1,0 +1,31 @@
+"""Moves: the torsor of the part that each places."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tol3d.assembly.model import BestFit, Fix, Locate, Mate, Move, Weld
+from tol3d.assembly.torsors.best_fit import fitted
+from tol3d.assembly.torsors.locators import located
+from tol3d.assembly.torsors.mating import mated
+from tol3d.assembly.torsors.world import World
+
+Array = NDArray[np.float64]
+
+
+def after(move: Move, world: World) -> World:
+    """The world after a move.
+
+    Raises:
+        InputError: it leaves a freedom that it should hold, or asks twice for the same.
+    """
+    match move:
+        case Fix():
+            return world.with_part_at(move.part, world.columns.zeros(6))
+        case Locate():
+            return world.with_part_at(move.part, located(move, world))
+        case Mate():
+            return world.with_part_at(move.part, mated(move, world))
+        case BestFit():
+            return world.with_part_at(move.part, fitted(move, world))
+        case Weld():
+            return world.with_welded((move.part, *move.others))

@@ -1,0 +1,45 @@
+"""The analytic road of assemblies: values of measures, and their slopes, from the nominal geometry alone."""
+
+from collections.abc import Sequence
+from weakref import WeakKeyDictionary
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tol3d.assembly.model import Assembly
+from tol3d.assembly.torsors.first_order import FirstOrder, first_order
+from tol3d.assembly.torsors.slopes import Slopes
+
+Array = NDArray[np.float64]
+
+_FOUND: WeakKeyDictionary[Assembly, FirstOrder] = WeakKeyDictionary()
+"""Of each assembly in this process; another process finds its own, a matter of milliseconds."""
+
+
+def values(assembly: Assembly, deviations: Array, names: Sequence[str]) -> dict[str, Array]:
+    """Values of some measures, to first order [mm or rad].
+
+    Args:
+        assembly: the model.
+        deviations: (trials, columns) [mm, rad].
+        names: of the measures.
+
+    Returns:
+        (trials,) by name; a trial's do not depend on the others.
+
+    Raises:
+        InputError: as `first_order`.
+    """
+    return _first_order(assembly).values(deviations, names)
+
+
+def slopes(assembly: Assembly, name: str, means: Array, sigmas: Array) -> Slopes:
+    """How a measure changes with each column of the deviations, at their means; see FirstOrder.slopes."""
+    return _first_order(assembly).slopes(name, means, sigmas)
+
+
+def _first_order(assembly: Assembly) -> FirstOrder:
+    found = _FOUND.get(assembly)
+    if found is None:
+        found = _FOUND[assembly] = first_order(assembly)
+    return found

@@ -1,0 +1,52 @@
+"""Torsors: small displacements of a rigid body, six numbers (shift at the origin of a frame [mm], turn [rad]).
+
+A point p of the body is displaced by shift + turn x p. In this room a torsor is a matrix (6, columns): linear in what
+varies from trial to trial (see columns.py). Torsors in one frame add up.
+"""
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+
+def cross_matrix(vector: Array) -> Array:
+    """(3, 3): applied to another vector, the cross product of this one with it."""
+    x, y, z = vector
+    return np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+
+
+def shift_at(point: Array) -> Array:
+    """(3, 6): applied to a torsor, the displacement of a point [mm]."""
+    return np.hstack([np.eye(3), -cross_matrix(point)])
+
+
+def height_at(point: Array, normal: Array) -> Array:
+    """(1, 6): applied to a torsor, how far a point is displaced along a direction [mm]; (n, p x n)."""
+    return np.concatenate([normal, np.cross(point, normal)])[None]
+
+
+def turn_about(directions: Array) -> Array:
+    """(directions, 6): applied to a torsor, its turn about each of them (directions, 3) [rad]."""
+    return np.hstack([np.zeros_like(directions), directions])
+
+
+def seen_from(pose: Array) -> Array:
+    """(6, 6): a torsor in a frame -> the same one in that in which the frame has this pose (4, 4)."""
+    rotation = pose[:3, :3]
+    change = np.zeros((6, 6))
+    change[:3, :3] = change[3:, 3:] = rotation
+    change[:3, 3:] = cross_matrix(pose[:3, 3]) @ rotation
+    return change
+
+
+def torsor_of(point: Array, shift: Array, turn: Array) -> Array:
+    """The torsor (6, columns) by which a point is displaced by a shift (3, columns), with a turn (3, columns)."""
+    return np.vstack([shift + cross_matrix(point) @ turn, turn])
+
+
+def perpendicular(direction: Array) -> Array:
+    """Two directions (2, 3) of unit length, perpendicular to one and to each other."""
+    first = np.cross(direction, np.eye(3)[np.argmin(np.abs(direction))])
+    first /= np.linalg.norm(first)
+    return np.array([first, np.cross(direction, first)])

@@ -1,0 +1,86 @@
+"""Parts in the world as moves leave them: a torsor each, seen at the world's origin."""
+
+from collections.abc import Mapping
+from copy import copy
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tol3d.assembly.model import Assembly
+from tol3d.assembly.torsors.columns import Columns
+from tol3d.assembly.torsors.features import PartTorsors
+from tol3d.assembly.torsors.torsor import seen_from
+
+Array = NDArray[np.float64]
+
+
+class World:
+    """Where parts are after a move; before the first each is at its nominal pose.
+
+    Args:
+        assembly: the model.
+        columns: its columns, to which datum frames and moves add theirs.
+    """
+
+    def __init__(self, assembly: Assembly, columns: Columns) -> None:
+        self.assembly = assembly
+        self.columns = columns
+        self.own = {part.name: PartTorsors(part, columns) for part in assembly.parts}
+        self.parts: Mapping[str, Array] = {part.name: columns.zeros(6) for part in assembly.parts}
+        self._bodies = {part.name: frozenset([part.name]) for part in assembly.parts}
+
+    def part_of(self, feature: str) -> str:
+        """The part to which a feature belongs."""
+        return self.assembly.features[feature].part
+
+    def frame(self, feature: str) -> Array:
+        """A feature's frame, nominally in the world (4, 4)."""
+        return self.assembly.part[self.part_of(feature)].pose @ self.assembly.features[feature].frame
+
+    def origin(self, feature: str) -> Array:
+        """The origin of a feature's frame, nominally in the world (3,) [mm]."""
+        return self.frame(feature)[:3, 3]
+
+    def axis(self, feature: str) -> Array:
+        """The z of a feature's frame, nominally in the world (3,)."""
+        return self.frame(feature)[:3, 2]
+
+    def turned(self, direction: Array, part: str) -> Array:
+        """A direction in a part's frame (3,) or directions (directions, 3), in the world."""
+        return direction @ self.assembly.part[part].pose[:3, :3].T
+
+    def on_part(self, feature: str) -> Array:
+        """The torsor (6, columns) of a feature on its part, in the world."""
+        part = self.part_of(feature)
+        return seen_from(self.assembly.part[part].pose) @ self.own[part].feature(feature)
+
+    def frame_on_part(self, frame: str, part: str) -> Array:
+        """The torsor (6, columns) of a datum frame on its part, in the world; 0 for "", the part's frame."""
+        return seen_from(self.assembly.part[part].pose) @ self.own[part].datum_frame(frame)
+
+    def placed(self, feature: str) -> Array:
+        """The torsor (6, columns) of a feature, in the world."""
+        return self.parts[self.part_of(feature)] + self.on_part(feature)
+
+    def on_body(self, feature: str, part: str) -> Array:
+        """The torsor (6, columns) of a feature relative to a part of the same body, in the world."""
+        return self.placed(feature) - self.parts[part]
+
+    def with_part_at(self, part: str, torsor: Array) -> "World":
+        """The world in which a part has a torsor; what is welded to it goes along."""
+        moved = torsor - self.parts[part]
+        body = self._bodies[part]
+        changed = copy(self)
+        changed.parts = {name: own + moved if name in body else own for name, own in self.parts.items()}
+        return changed
+
+    def with_welded(self, parts: tuple[str, ...]) -> "World":
+        """The world in which parts and what is welded to them are one body."""
+        body = frozenset().union(*(self._bodies[part] for part in parts))
+        changed = copy(self)
+        changed._bodies = self._bodies | dict.fromkeys(body, body)
+        return changed
+
+    def size(self, feature: str) -> Array:
+        """How much larger a feature is (columns,) [mm]."""
+        return self.own[self.part_of(feature)].size(feature)
