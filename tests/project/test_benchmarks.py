@@ -28,6 +28,7 @@ FEW: Mapping[str, tuple[str, ...]] = {
     "studies": ("--naive", "1", "--rounds", "1", "--most", "100", "--warm", "--systems", "spur pair"),
     "structure": ("--trials", "16", "--route"),
     "trains": ("--rounds", "1", "--contacts", "400", "--trains", "split torque"),
+    "zones": ("--trials", "1024", "--rounds", "1"),
 }
 """Arguments with which each benchmark takes seconds."""
 
@@ -69,6 +70,9 @@ ROWS: Mapping[str, tuple[str, ...]] = {
         "run_scene calls .*runs > .*execution",
     ),
     "trains": (rf"split torque │ +100 │ +1 │ +{NUMBER}", rf"split torque │ +200 │ +2 │ +{NUMBER}"),
+    "zones": tuple(
+        rf"{zone} +│ +{NUMBER} │ +{NUMBER} │ +{NUMBER} │ +{NUMBER}" for zone in ("rectangle", "axis, refined")
+    ),
 }
 """What each prints then: a split train has four meshes, so 400 contacts are 100 trials."""
 

@@ -1,0 +1,222 @@
+"""Balls: domains whose limit is one norm of the coordinates, in one, two or three dimensions."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.special import ndtri
+
+from tol3d.assembly.zones.cross_section import SIGMAS, CrossSection
+from tol3d.assembly.zones.domain import Array, Domain, Ratio, UnitLaw
+from tol3d.assembly.zones.inverse import NODES, WEIGHTS, inverse
+
+
+@dataclass(frozen=True)
+class Line(Domain):
+    """|x| <= 1: a point between two planes, an axis between two lines that keeps its direction."""
+
+    coordinates = 1
+
+    @property
+    def uniform(self) -> UnitLaw:
+        """See Domain."""
+        return UniformLine()
+
+    @property
+    def normal(self) -> UnitLaw:
+        """See Domain."""
+        return NormalLine()
+
+    def furthest(self, gradient: Array, half: float, orientation_half: float) -> Array:
+        """See Domain."""
+        return np.copysign(half, gradient)
+
+    def excess(self, coordinates: Array, half: Ratio, orientation_half: Ratio) -> Array:
+        """See Domain."""
+        return np.asarray(np.abs(coordinates[:, 0]) - half)
+
+
+class UniformLine(UnitLaw):
+    """Uniform within ±1."""
+
+    uniforms = 1
+
+    def coordinates(self, ratio: Ratio, *uniforms: Array) -> tuple[Array, ...]:
+        """See UnitLaw."""
+        return (2.0 * uniforms[0] - 1.0,)
+
+    def covariance(self, ratio: float) -> Array:
+        """See UnitLaw."""
+        return np.array([[1.0 / 3.0]])
+
+    def density(self, ratio: float, first: Array) -> Array:
+        """See UnitLaw."""
+        return np.ones_like(first)
+
+
+class NormalLine(UnitLaw):
+    """Normal of sigma 1/3, truncated at ±1."""
+
+    uniforms = 1
+
+    def coordinates(self, ratio: Ratio, *uniforms: Array) -> tuple[Array, ...]:
+        """See UnitLaw."""
+        value = ndtri(0.5 + (uniforms[0] - 0.5) * math.erf(SIGMAS * math.sqrt(0.5))) / SIGMAS
+        return (np.clip(value, -1.0, 1.0),)
+
+    def covariance(self, ratio: float) -> Array:
+        """See UnitLaw: (1 - 6 phi(3) / (2 Phi(3) - 1)) / 9."""
+        at_end = math.sqrt(2.0 / math.pi) * SIGMAS * math.exp(-0.5 * SIGMAS**2)
+        return np.array([[(1.0 - at_end / math.erf(SIGMAS * math.sqrt(0.5))) / SIGMAS**2]])
+
+    def density(self, ratio: float, first: Array) -> Array:
+        """See UnitLaw."""
+        return np.exp(-0.5 * (SIGMAS * first) ** 2)
+
+
+@dataclass(frozen=True)
+class Flat(Domain):
+    """A cross-section of radius 1: rises alone, or a point or an axis in a disc."""
+
+    section: CrossSection
+
+    coordinates = 2
+
+    @property
+    def uniform(self) -> UnitLaw:
+        """See Domain."""
+        return UniformFlat(self.section)
+
+    @property
+    def normal(self) -> UnitLaw:
+        """See Domain."""
+        return NormalFlat(self.section)
+
+    def furthest(self, gradient: Array, half: float, orientation_half: float) -> Array:
+        """See Domain."""
+        return half * self.section.furthest(gradient)
+
+    def excess(self, coordinates: Array, half: Ratio, orientation_half: Ratio) -> Array:
+        """See Domain."""
+        return self.section.length(coordinates) - half
+
+
+@dataclass(frozen=True)
+class UniformFlat(UnitLaw):
+    """Uniform in a cross-section."""
+
+    section: CrossSection
+
+    uniforms = 2
+
+    def coordinates(self, ratio: Ratio, *uniforms: Array) -> tuple[Array, ...]:
+        """See UnitLaw."""
+        return self.section.uniform(_ONE, *uniforms)
+
+    def covariance(self, ratio: float) -> Array:
+        """See UnitLaw."""
+        return self.section.uniform_variance * np.eye(2)
+
+    def density(self, ratio: float, first: Array) -> Array:
+        """See UnitLaw."""
+        return self.section.densities(first)[0]
+
+
+@dataclass(frozen=True)
+class NormalFlat(UnitLaw):
+    """Normal of sigma 1/3, conditioned on a cross-section."""
+
+    section: CrossSection
+
+    uniforms = 2
+
+    def coordinates(self, ratio: Ratio, *uniforms: Array) -> tuple[Array, ...]:
+        """See UnitLaw."""
+        return self.section.normal(_ONE, *uniforms)
+
+    def covariance(self, ratio: float) -> Array:
+        """See UnitLaw."""
+        return float(self.section.normal_variance(_ONE)) * np.eye(2)
+
+    def density(self, ratio: float, first: Array) -> Array:
+        """See UnitLaw."""
+        return self.section.densities(first)[1]
+
+
+@dataclass(frozen=True)
+class Sphere(Domain):
+    """A point in a sphere."""
+
+    coordinates = 3
+
+    @property
+    def uniform(self) -> UnitLaw:
+        """See Domain."""
+        return UniformSphere()
+
+    @property
+    def normal(self) -> UnitLaw:
+        """See Domain."""
+        return NormalSphere()
+
+    def furthest(self, gradient: Array, half: float, orientation_half: float) -> Array:
+        """See Domain."""
+        size = math.hypot(*gradient)
+        return half * (gradient / size if size > 0.0 else np.array([1.0, 0.0, 0.0]))
+
+    def excess(self, coordinates: Array, half: Ratio, orientation_half: Ratio) -> Array:
+        """See Domain."""
+        return np.asarray(np.sqrt((coordinates * coordinates).sum(axis=1)) - half)
+
+
+class UniformSphere(UnitLaw):
+    """Uniform in a sphere: the cube of the radius is uniform."""
+
+    uniforms = 3
+
+    def coordinates(self, ratio: Ratio, *uniforms: Array) -> tuple[Array, ...]:
+        """See UnitLaw."""
+        return _in_space(np.cbrt(uniforms[0]), *uniforms[1:])
+
+    def covariance(self, ratio: float) -> Array:
+        """See UnitLaw."""
+        return np.eye(3) / 5.0
+
+    def density(self, ratio: float, first: Array) -> Array:
+        """See UnitLaw."""
+        return 1.0 - first * first
+
+
+class NormalSphere(UnitLaw):
+    """Normal of sigma 1/3, conditioned on the sphere: the radius is a truncated Maxwell, by a table."""
+
+    uniforms = 3
+
+    def coordinates(self, ratio: Ratio, *uniforms: Array) -> tuple[Array, ...]:
+        """See UnitLaw."""
+        return _in_space(inverse(maxwell, 3, 1.0)(np.cbrt(uniforms[0])), *uniforms[1:])
+
+    def covariance(self, ratio: float) -> Array:
+        """See UnitLaw: a third of the radius' second moment, by Gauss-Legendre."""
+        mass = WEIGHTS * maxwell(NODES, _ONE)
+        return float(mass @ NODES**2 / mass.sum() / 3.0) * np.eye(3)
+
+    def density(self, ratio: float, first: Array) -> Array:
+        """See UnitLaw."""
+        square = 0.5 * (SIGMAS * first) ** 2
+        return np.asarray(-np.exp(-square) * np.expm1(square - 0.5 * SIGMAS**2))
+
+
+def maxwell(radius: Array, unused: Array) -> Array:
+    """Density of the length of three normals of sigma 1/3, up to a factor."""
+    return radius * radius * np.exp(-0.5 * (SIGMAS * radius) ** 2)
+
+
+def _in_space(length: Array, azimuth: Array, height: Array) -> tuple[Array, Array, Array]:
+    """Of lengths in uniform directions: heights on a sphere are uniform (Archimedes)."""
+    angle, z = 2.0 * math.pi * azimuth, 2.0 * height - 1.0
+    across = length * np.sqrt(1.0 - z * z)
+    return across * np.cos(angle), across * np.sin(angle), length * z
+
+
+_ONE = np.asarray(1.0)

@@ -1,0 +1,111 @@
+"""The zones that a drawing may state, by feature: what each holds, and the components that are drawn [mm].
+
+A plane has the offset of its centre along the outward normal and its rises from there to the edges at +a/2 along x and
+at +b/2 along y (at the radius, of a round one); an axis has the lateral displacements of its two ends; a point has
+three coordinates. `Zone.matrix` embeds what is drawn in these: all of them, or the few that the zone limits.
+"""
+
+import math
+
+from tol3d.assembly.zones.balls import Flat, Line, Sphere
+from tol3d.assembly.zones.cross_section import CrossSection, Diamond, Disc
+from tol3d.assembly.zones.ends import Ends
+from tol3d.assembly.zones.face import Face
+from tol3d.assembly.zones.flat_ends import FlatEnds
+from tol3d.assembly.zones.zone import Shape, Zone
+from tol3d.errors import InputError
+
+PLANE = ("offset", "rise x", "rise y")
+AXIS = ("start x", "start y", "end x", "end y")
+POINT = ("x", "y", "z")
+THREE = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
+FOUR = ((1.0, 0.0, 0.0, 0.0), (0.0, 1.0, 0.0, 0.0), (0.0, 0.0, 1.0, 0.0), (0.0, 0.0, 0.0, 1.0))
+
+
+def rectangle(width: float, orientation: float | None = None, outward: float | None = None, form: float = 0.0) -> Zone:
+    """Of a rectangular plane: |offset| + |rise x| + |rise y| <= t/2, |rise x| + |rise y| <= t_o/2."""
+    return Zone(Shape(Face(Diamond()), PLANE, THREE), width, orientation, outward, form)
+
+
+def round_face(width: float, orientation: float | None = None, outward: float | None = None, form: float = 0.0) -> Zone:
+    """Of a round plane: |offset| + hypot(rise x, rise y) <= t/2, hypot(rise x, rise y) <= t_o/2."""
+    return Zone(Shape(Face(Disc()), PLANE, THREE), width, orientation, outward, form)
+
+
+def rectangle_orientation(width: float) -> Zone:
+    """Of the orientation of a rectangular plane, without location: |rise x| + |rise y| <= t/2."""
+    return _rises(Diamond(), width)
+
+
+def round_face_orientation(width: float) -> Zone:
+    """Of the orientation of a round plane, without location: hypot(rise x, rise y) <= t/2; axial run-out too."""
+    return _rises(Disc(), width)
+
+
+def axis(width: float, orientation: float | None = None, form: float = 0.0) -> Zone:
+    """Of an axis in a cylinder of diameter t: both ends in discs of t/2, half their difference within t_o/2."""
+    return Zone(Shape(Ends(), AXIS, FOUR), width, orientation, form=form)
+
+
+def axis_orientation(width: float) -> Zone:
+    """Of an axis' orientation in a cylinder of diameter t, without location: ends opposite, in discs of t/2."""
+    opposite = ((-1.0, 0.0), (0.0, -1.0), (1.0, 0.0), (0.0, 1.0))
+    return Zone(Shape(Flat(Disc()), ("end x", "end y"), opposite), width)
+
+
+def axis_section(width: float) -> Zone:
+    """Of an axis at one section, in a disc of diameter t: both ends equal; circular run-out."""
+    equal = ((1.0, 0.0), (0.0, 1.0), (1.0, 0.0), (0.0, 1.0))
+    return Zone(Shape(Flat(Disc()), ("x", "y"), equal), width)
+
+
+def flat_axis(width: float, along: tuple[float, float], orientation: float | None = None, form: float = 0.0) -> Zone:
+    """Of an axis between planes t apart whose normal points `along` (x, y): both ends within ±t/2 along it."""
+    x, y = _unit(along)
+    ends = ((x, 0.0), (y, 0.0), (0.0, x), (0.0, y))
+    return Zone(Shape(FlatEnds(), ("start", "end"), ends), width, orientation, form=form)
+
+
+def flat_axis_orientation(width: float, along: tuple[float, float]) -> Zone:
+    """Of an axis' orientation between planes t apart whose normal points `along` (x, y), without location."""
+    x, y = _unit(along)
+    return Zone(Shape(Line(), ("end",), ((-x,), (-y,), (x,), (y,))), width)
+
+
+def flat_axis_section(width: float, along: tuple[float, float]) -> Zone:
+    """Of an axis at one section, between planes t apart whose normal points `along` (x, y): both ends equal."""
+    x, y = _unit(along)
+    return Zone(Shape(Line(), ("along",), ((x,), (y,), (x,), (y,))), width)
+
+
+def point_in_sphere(width: float) -> Zone:
+    """Of a point in a sphere of diameter t."""
+    return Zone(Shape(Sphere(), POINT, THREE), width)
+
+
+def point_in_disc(width: float) -> Zone:
+    """Of a point in a disc of diameter t in its x-y plane."""
+    return Zone(Shape(Flat(Disc()), ("x", "y"), ((1.0, 0.0), (0.0, 1.0), (0.0, 0.0))), width)
+
+
+def point_between_planes(
+    width: float, along: tuple[float, float, float] = (0.0, 0.0, 1.0), outward: float | None = None
+) -> Zone:
+    """Of a point between planes t apart whose normal points `along`: of a surface at a point, its profile."""
+    return Zone(Shape(Line(), ("along",), tuple((own,) for own in _unit(along))), width, outward=outward)
+
+
+def contact_height(width: float) -> Zone:
+    """Of the height of a surface where it is touched at a point, within ±f/2 of its form."""
+    return Zone(Shape(Line(), ("",), ((1.0,),)), width)
+
+
+def _rises(section: CrossSection, width: float) -> Zone:
+    return Zone(Shape(Flat(section), PLANE[1:], ((0.0, 0.0), (1.0, 0.0), (0.0, 1.0))), width)
+
+
+def _unit(direction: tuple[float, ...]) -> tuple[float, ...]:
+    size = math.hypot(*direction)
+    if not 0.0 < size < math.inf:
+        raise InputError(f"zone: expected a direction other than 0, got {direction}")
+    return tuple(own / size for own in direction)

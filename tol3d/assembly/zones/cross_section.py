@@ -1,0 +1,155 @@
+"""Cross-sections of a plane's domain at one height: a diamond of both rises for a rectangle, else a disc."""
+
+import math
+from abc import ABC, abstractmethod
+
+import numpy as np
+from scipy.special import erf, ndtri
+
+from tol3d.assembly.zones.domain import Array
+
+SIGMAS = 3.0  # of a normal coordinate within its largest value
+
+
+class CrossSection(ABC):
+    """The set of both rises, of a radius r: its largest rise.
+
+    The normal law has sigma 1/3 where the largest radius is 1, and is conditioned on the section.
+    """
+
+    @abstractmethod
+    def uniform(self, radius: Array, u: Array, v: Array) -> tuple[Array, Array]:
+        """Both rises (trials,), uniform in sections of radii (trials,)."""
+
+    @abstractmethod
+    def normal(self, radius: Array, u: Array, v: Array) -> tuple[Array, Array]:
+        """Both rises (trials,), normal and within sections of radii (trials,) up to 1."""
+
+    @staticmethod
+    @abstractmethod
+    def kept(radius: Array) -> Array:
+        """The share of the normal that lies within a section."""
+
+    @property
+    @abstractmethod
+    def uniform_variance(self) -> float:
+        """Variance of each rise, uniform in the section of radius 1."""
+
+    @abstractmethod
+    def normal_variance(self, radius: Array) -> Array:
+        """Variance of each rise, normal and within the section."""
+
+    @abstractmethod
+    def length(self, rises: Array) -> Array:
+        """The smallest radius that holds rises (..., 2): a norm."""
+
+    @abstractmethod
+    def furthest(self, gradient: Array) -> Array:
+        """The point (2,) of the section of radius 1 that lies furthest along a gradient (2,)."""
+
+    @abstractmethod
+    def densities(self, rise: Array) -> tuple[Array, Array]:
+        """Densities of one rise at radius 1, uniform and normal, up to factors."""
+
+
+class Diamond(CrossSection):
+    """|x| + |y| <= r: (x + y, x - y) lie each within ±r and are independent under both laws."""
+
+    def uniform(self, radius: Array, u: Array, v: Array) -> tuple[Array, Array]:
+        """See CrossSection."""
+        return radius * (u + v - 1.0), radius * (u - v)
+
+    def normal(self, radius: Array, u: Array, v: Array) -> tuple[Array, Array]:
+        """See CrossSection: both diagonals are truncated normals of the rises' own sigma."""
+        kept = erf((0.5 * SIGMAS) * radius)
+        limit = math.sqrt(0.5) * radius
+        first, second = (_cut(ndtri(0.5 + (own - 0.5) * kept) / SIGMAS, limit) for own in (u, v))
+        return math.sqrt(0.5) * (first + second), math.sqrt(0.5) * (first - second)
+
+    @staticmethod
+    def kept(radius: Array) -> Array:
+        """See CrossSection: 2 Phi(3 r / sqrt 2) - 1 of each diagonal."""
+        share: Array = erf((0.5 * SIGMAS) * radius)
+        return share * share
+
+    @property
+    def uniform_variance(self) -> float:
+        """See CrossSection."""
+        return 1.0 / 6.0
+
+    def normal_variance(self, radius: Array) -> Array:
+        """See CrossSection: that of a truncated normal."""
+        limit = np.maximum(math.sqrt(0.5) * SIGMAS * radius, np.finfo(float).tiny)
+        cut = limit * math.sqrt(2.0 / math.pi) * np.exp(-0.5 * limit * limit) / erf(math.sqrt(0.5) * limit)
+        return np.asarray((1.0 - cut) / SIGMAS**2)
+
+    def length(self, rises: Array) -> Array:
+        """See CrossSection."""
+        return np.asarray(np.abs(rises).sum(axis=-1))
+
+    def furthest(self, gradient: Array) -> Array:
+        """See CrossSection: a corner."""
+        x, y = gradient
+        return np.array([_sign(x), 0.0]) if abs(x) >= abs(y) else np.array([0.0, _sign(y)])
+
+    def densities(self, rise: Array) -> tuple[Array, Array]:
+        """See CrossSection."""
+        room = 1.0 - np.abs(rise)
+        return room, np.exp(-0.5 * (SIGMAS * rise) ** 2) * erf(math.sqrt(0.5) * SIGMAS * room)
+
+
+class Disc(CrossSection):
+    """hypot(x, y) <= r: by radius and angle."""
+
+    def uniform(self, radius: Array, u: Array, v: Array) -> tuple[Array, Array]:
+        """See CrossSection: the square of the radius is uniform."""
+        return _turned(radius * np.sqrt(u), v)
+
+    def normal(self, radius: Array, u: Array, v: Array) -> tuple[Array, Array]:
+        """See CrossSection: the radius is a truncated Rayleigh."""
+        length = np.sqrt(-2.0 * np.log1p(-u * self.kept(radius))) / SIGMAS
+        return _turned(np.minimum(length, radius), v)
+
+    @staticmethod
+    def kept(radius: Array) -> Array:
+        """See CrossSection."""
+        return np.asarray(-np.expm1(-0.5 * (SIGMAS * radius) ** 2))
+
+    @property
+    def uniform_variance(self) -> float:
+        """See CrossSection."""
+        return 0.25
+
+    def normal_variance(self, radius: Array) -> Array:
+        """See CrossSection: half that of the radius' square, a truncated exponential."""
+        square = np.maximum(0.5 * (SIGMAS * radius) ** 2, np.finfo(float).tiny)
+        return np.asarray((1.0 - square / np.expm1(square)) / SIGMAS**2)
+
+    def length(self, rises: Array) -> Array:
+        """See CrossSection."""
+        return np.asarray(np.hypot(rises[..., 0], rises[..., 1]))
+
+    def furthest(self, gradient: Array) -> Array:
+        """See CrossSection."""
+        size = math.hypot(*gradient)
+        return gradient / size if size > 0.0 else np.array([1.0, 0.0])
+
+    def densities(self, rise: Array) -> tuple[Array, Array]:
+        """See CrossSection."""
+        chord = np.sqrt(np.maximum(1.0 - rise * rise, 0.0))
+        return chord, np.exp(-0.5 * (SIGMAS * rise) ** 2) * erf(math.sqrt(0.5) * SIGMAS * chord)
+
+
+def _cut(value: Array, limit: Array) -> Array:
+    """Within ±limit; rounding alone left it."""
+    return np.minimum(np.maximum(value, -limit), limit)
+
+
+def _turned(length: Array, v: Array) -> tuple[Array, Array]:
+    """Of a length at an angle of 2 pi v."""
+    angle = 2.0 * math.pi * v
+    return length * np.cos(angle), length * np.sin(angle)
+
+
+def _sign(value: float) -> float:
+    return -1.0 if value < 0.0 else 1.0

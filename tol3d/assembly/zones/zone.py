@@ -1,0 +1,142 @@
+"""A tolerance zone as a drawing states it: which displacements it allows, and how far they reach."""
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tol3d.assembly.zones.domain import Array, Domain, Ratio
+from tol3d.errors import InputError
+
+INSIDE_XTOL = 1e-12  # mm; a thousand times the rounding of a drawn point, far under any width
+LEAST_RATIO = 1e-9  # an orientation zone narrower than that is none
+
+
+@dataclass(frozen=True)
+class Shape:
+    """What a zone holds: coordinates of a deviation domain, and what they do to the feature.
+
+    Args:
+        domain: of the coordinates.
+        names: of the coordinates, which are the components that are drawn.
+        embedding: components of the feature = embedding (components of the feature, coordinates) @ coordinates.
+    """
+
+    domain: Domain
+    names: tuple[str, ...]
+    embedding: tuple[tuple[float, ...], ...]
+
+
+@dataclass(frozen=True)
+class Zone:
+    """A zone of a width t and, within it, the orientation refined to t_o; lengths in mm.
+
+    Args:
+        shape: what it holds.
+        width: t, diameter of a round one; 0 where all of it is bonus.
+        orientation: t_o, in (0, t]; None where the zone alone limits the orientation.
+        outward: how much of an unequal profile lies outside the material; None for an equal one. It moves the first
+            component by outward - t / 2.
+        form: f, in [0, t): what the form of the surface takes of the width; t - f is left for where it lies.
+    """
+
+    shape: Shape
+    width: float
+    orientation: float | None = None
+    outward: float | None = None
+    form: float = 0.0
+
+    def __post_init__(self) -> None:
+        if not 0.0 <= self.width < math.inf:
+            raise InputError(f"zone: expected a width of 0 mm or more, got {self.width:g} mm")
+        if self.orientation is not None and not 0.0 < self.orientation <= self.width:
+            expected = f"an orientation above 0 mm, within the width of the zone ({self.width:g} mm)"
+            raise InputError(f"zone: expected {expected}, got {self.orientation:g} mm; state the wider one alone")
+        if self.outward is not None and not math.isfinite(self.outward):
+            raise InputError(f"zone: expected a finite length outward, got {self.outward} mm")
+        if not (self.form == 0.0 or 0.0 < self.form < self.width):
+            expected = f"a form of 0 mm or more, within the width of the zone ({self.width:g} mm)"
+            raise InputError(f"zone: expected {expected}, got {self.form:g} mm")
+
+    @property
+    def components(self) -> tuple[str, ...]:
+        """Names of what is drawn."""
+        return self.shape.names
+
+    @cached_property
+    def matrix(self) -> Array:
+        """Components of the feature = matrix (components of the feature, components) @ components; without unit."""
+        return np.array(self.shape.embedding)
+
+    @cached_property
+    def half(self) -> float:
+        """Half of what is left of the width, (t - f) / 2 [mm]."""
+        return 0.5 * (self.width - self.form)
+
+    @cached_property
+    def ratio(self) -> float:
+        """t_o / (t - f), at most 1; exactly 1.0 where the orientation is not refined."""
+        return 1.0 if self.orientation is None else min(max(0.5 * self.orientation / self.half, LEAST_RATIO), 1.0)
+
+    @property
+    def centre(self) -> float:
+        """Where the middle of the zone lies along the first component [mm]."""
+        return 0.0 if self.outward is None else self.outward - 0.5 * self.width
+
+    def halves(self, width: Ratio | None = None, orientation: Ratio | None = None) -> tuple[Ratio, Ratio]:
+        """As `half` and `ratio`, of widths that may be other ones in each trial (trials,) [mm].
+
+        Args:
+            width: t; the zone's own, if None. Where the form takes all of it, the half width is 0.
+            orientation: t_o; the zone's own, if None, and none where it states none.
+        """
+        if width is None and orientation is None:
+            return self.half, self.ratio
+        half = 0.5 * np.maximum(np.asarray(self.width if width is None else width, dtype=np.float64) - self.form, 0.0)
+        if orientation is None:
+            if self.orientation is None:
+                return half, 1.0
+            orientation = self.orientation
+        half, own = np.broadcast_arrays(half, 0.5 * np.asarray(orientation, dtype=np.float64))
+        ratio = np.divide(own, half, out=np.ones_like(half), where=half > 0.0)
+        return half, np.clip(ratio, LEAST_RATIO, 1.0)
+
+    def furthest(self, gradient: Array, width: float | None = None, orientation: float | None = None) -> Array:
+        """The point (components,) [mm] of the zone that lies furthest along a gradient (components,)."""
+        half, ratio = (float(value) for value in self.halves(width, orientation))
+        point = self.shape.domain.furthest(gradient, half, half * ratio) if half > 0.0 else np.zeros(len(gradient))
+        point[0] += self.centre
+        return point
+
+    def support(self, gradient: Array, width: float | None = None, orientation: float | None = None) -> float:
+        """The largest value of gradient · components in the zone: the worst case of a linear measure.
+
+        Args:
+            gradient: (components,), change of the measure per mm.
+            width: t [mm]; the zone's own, if None.
+            orientation: t_o likewise.
+        """
+        return float((gradient * self.furthest(gradient, width, orientation)).sum())
+
+    def excess(self, components: Array, width: Ratio | None = None, orientation: Ratio | None = None) -> Array:
+        """How far displacements (trials, components) lie outside [mm], (trials,), by the limit exceeded most.
+
+        It is <= 0 inside.
+
+        Args:
+            components: as drawn.
+            width: t, of all or of each trial (trials,) [mm]; the zone's own, if None.
+            orientation: t_o likewise.
+        """
+        half, ratio = self.halves(width, orientation)
+        coordinates = np.array(components, dtype=np.float64)
+        coordinates[:, 0] -= self.centre
+        return self.shape.domain.excess(coordinates, half, half * ratio)
+
+    def inside(
+        self, components: Array, width: Ratio | None = None, orientation: Ratio | None = None
+    ) -> NDArray[np.bool_]:
+        """Which displacements (trials, components) satisfy the drawing, (trials,); see `excess`."""
+        return np.asarray(self.excess(components, width, orientation) <= INSIDE_XTOL)

@@ -1,0 +1,232 @@
+"""Draws of a toleranced feature's displacement: from uniforms to its components, by zone and named law."""
+
+import math
+from abc import ABC, abstractmethod
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from tol3d.assembly.zones.domain import Array, Ratio, UnitLaw
+from tol3d.assembly.zones.marginal import Marginal
+from tol3d.assembly.zones.zone import Zone
+from tol3d.distributions import Distribution
+from tol3d.errors import InputError
+from tol3d.system.draw import Values
+
+LEAST_STEP = 1e-9  # mm; of a gradient, where a zone of width 0 has no sigma
+
+
+@dataclass(frozen=True)
+class ZoneDraw(ABC):
+    """A Draw of the components of a displacement [mm] that a zone limits or judges."""
+
+    zone: Zone
+
+    @property
+    @abstractmethod
+    def distribution(self) -> Distribution:
+        """The law of the first component: offset, start x, x, or what is stated along a direction."""
+
+    @property
+    @abstractmethod
+    def uniforms(self) -> int:
+        """How many uniforms a trial takes."""
+
+    @property
+    @abstractmethod
+    def mean_vector(self) -> Array:
+        """Mean of each component (components,) [mm]."""
+
+    @property
+    @abstractmethod
+    def covariance(self) -> Array:
+        """Covariance (components, components) [mm^2]."""
+
+    @abstractmethod
+    def deviations(self, *uniforms: Array) -> tuple[Array, ...]:
+        """See Draw: in the zone of the drawing's width."""
+
+    @abstractmethod
+    def deviations_in(self, width: Ratio, orientation: Ratio | None, *uniforms: Array) -> tuple[Array, ...]:
+        """As `deviations`, in zones of each trial's own width, such as a bonus makes them.
+
+        Args:
+            width: t (trials,) [mm].
+            orientation: t_o (trials,); None where it stays as stated, or the zone alone limits the orientation.
+            uniforms: (trials,) each.
+        """
+
+    @abstractmethod
+    def furthest(self, gradient: Array) -> Array:
+        """The point (components,) [mm] where a draw reaches furthest along a gradient (components,)."""
+
+    @abstractmethod
+    def support(self, gradient: Array) -> float:
+        """The largest value of gradient · components: the worst case of a linear measure.
+
+        Args:
+            gradient: (components,), change of the measure per mm.
+        """
+
+    @property
+    def components(self) -> tuple[str, ...]:
+        """Names of the components."""
+        return self.zone.components
+
+    @property
+    def matrix(self) -> Array:
+        """Components of the feature = matrix (components of the feature, components) @ components."""
+        return self.zone.matrix
+
+    @property
+    def sigmas(self) -> Array:
+        """Standard deviation of each component (components,) [mm]."""
+        return np.sqrt(np.diagonal(self.covariance))
+
+    @property
+    def sigma(self) -> float:
+        """Standard deviation of the first component [mm]."""
+        return float(self.sigmas[0])
+
+    def mean(self, *, turning: bool) -> tuple[float, ...]:
+        """See Draw; directions are those of the feature, which does not turn."""
+        return tuple(float(value) for value in self.mean_vector)
+
+    def ends(self, values: Values, *, turning: bool) -> Array:
+        """See Draw: as far as the components reach along the measure's gradient, and against it."""
+        steps = np.maximum(self.sigmas, LEAST_STEP)
+        found = values(self.mean_vector + np.concatenate([np.diag(steps), -np.diag(steps)]))
+        gradient = (found[: len(steps)] - found[len(steps) :]) / (2.0 * steps)
+        return np.stack([self.furthest(gradient), self.furthest(-gradient)])
+
+
+@dataclass(frozen=True)
+class Confined(ZoneDraw):
+    """Of a law within the zone."""
+
+    law: UnitLaw
+
+    @cached_property
+    def distribution(self) -> Distribution:
+        """See ZoneDraw."""
+        return Marginal(self.law, self.zone.ratio, self.zone.half, self.zone.centre)
+
+    @property
+    def uniforms(self) -> int:
+        """See ZoneDraw."""
+        return self.law.uniforms
+
+    @cached_property
+    def mean_vector(self) -> Array:
+        """See ZoneDraw."""
+        mean = np.zeros(len(self.components))
+        mean[0] = self.zone.centre
+        return mean
+
+    @cached_property
+    def covariance(self) -> Array:
+        """See ZoneDraw."""
+        return self.law.covariance(self.zone.ratio) * self.zone.half**2
+
+    def covariance_in(self, width: float, orientation: float | None = None) -> Array:
+        """As `covariance`, of a zone of another width t [mm]; see `deviations_in`."""
+        half, ratio = (float(value) for value in self.zone.halves(width, orientation))
+        return self.law.covariance(ratio) * half**2
+
+    def deviations(self, *uniforms: Array) -> tuple[Array, ...]:
+        """See ZoneDraw."""
+        return self._drawn(self.zone.half, self.zone.ratio, uniforms)
+
+    def deviations_in(self, width: Ratio, orientation: Ratio | None, *uniforms: Array) -> tuple[Array, ...]:
+        """See ZoneDraw."""
+        return self._drawn(*self.zone.halves(width, orientation), uniforms)
+
+    def _drawn(self, half: Ratio, ratio: Ratio, uniforms: tuple[Array, ...]) -> tuple[Array, ...]:
+        first, *others = (half * own for own in self.law.coordinates(ratio, *uniforms))
+        return (first if self.zone.centre == 0.0 else first + self.zone.centre, *others)
+
+    def furthest(self, gradient: Array) -> Array:
+        """See ZoneDraw."""
+        return self.zone.furthest(gradient)
+
+    def support(self, gradient: Array) -> float:
+        """See ZoneDraw."""
+        return self.zone.support(gradient)
+
+
+@dataclass(frozen=True)
+class Process(ZoneDraw):
+    """Of a stated law for each component, independent of each other; the zone only judges, see `Zone.inside`.
+
+    Args:
+        zone: that of the drawing; neither its width nor its bonus changes a draw.
+        laws: one a component.
+    """
+
+    laws: tuple[Distribution, ...]
+
+    def __post_init__(self) -> None:
+        if len(self.laws) != len(self.components):
+            expected = f"one distribution for each of {', '.join(self.components)}"
+            raise InputError(f"process: expected {expected}, got {len(self.laws)}")
+
+    @property
+    def distribution(self) -> Distribution:
+        """See ZoneDraw."""
+        return self.laws[0]
+
+    @property
+    def uniforms(self) -> int:
+        """See ZoneDraw."""
+        return len(self.laws)
+
+    @cached_property
+    def mean_vector(self) -> Array:
+        """See ZoneDraw."""
+        return np.array([law.mean for law in self.laws])
+
+    @cached_property
+    def covariance(self) -> Array:
+        """See ZoneDraw."""
+        return np.diag([law.variance for law in self.laws])
+
+    def deviations(self, *uniforms: Array) -> tuple[Array, ...]:
+        """See ZoneDraw: whatever the zone is."""
+        return tuple(law.ppf(u) for law, u in zip(self.laws, uniforms, strict=True))
+
+    def deviations_in(self, width: Ratio, orientation: Ratio | None, *uniforms: Array) -> tuple[Array, ...]:
+        """See ZoneDraw: a process does not know the drawing."""
+        return self.deviations(*uniforms)
+
+    def furthest(self, gradient: Array) -> Array:
+        """As far along the direction of the steepest change as each law reaches.
+
+        All components at their worst ends at once would be far rarer than the end of one.
+        """
+        spread = gradient * self.sigmas
+        size = math.hypot(*spread)
+        along = spread / size if size > 0.0 else np.zeros_like(spread)
+        return np.asarray(self.mean_vector + np.abs(along) * (self._worst(along) - self.mean_vector))
+
+    def support(self, gradient: Array) -> float:
+        """See ZoneDraw: every law at its own worst end, its limit or 3 sigma where it has none."""
+        return float((gradient * self._worst(gradient)).sum())
+
+    def _worst(self, gradient: Array) -> Array:
+        return np.array([law.high if own > 0.0 else law.low for law, own in zip(self.laws, gradient, strict=True)])
+
+
+def uniform_in(zone: Zone) -> Confined:
+    """The law `uniform`: every displacement that the zone allows is as likely as any other."""
+    return Confined(zone, zone.shape.domain.uniform)
+
+
+def normal_in(zone: Zone) -> Confined:
+    """The law `normal`: independent normals, 3 sigma = the largest value of each component, given the zone holds."""
+    return Confined(zone, zone.shape.domain.normal)
+
+
+def process_in(zone: Zone, law: Distribution) -> Process:
+    """The law `process` with one stated distribution [mm] of every component."""
+    return Process(zone, (law,) * len(zone.components))
