@@ -1,0 +1,159 @@
+"""Features as they are in a trial, in the frame of their part."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tol3d.assembly.model.feature import Contribution, Feature
+from tol3d.assembly.model.shape import Axis, Plane, RoundPlane
+from tol3d.assembly.placing.poses import Pose, dot, least_rotation, product, rotated, unit
+
+Array = NDArray[np.float64]
+
+_Z = np.array([[0.0], [0.0], [1.0]])
+
+
+def total(contributions: Sequence[Contribution], components: int, columns: Array) -> list[Array]:
+    """What contributions add up to, component by component, (n,) or (1,) where nothing varies.
+
+    Args:
+        contributions: that are added up, in their order.
+        components: how many.
+        columns: the deviations, (width, n) [mm].
+    """
+    totals = [np.zeros(1) for _ in range(components)]
+    for contribution in contributions:
+        drawn = columns[contribution.columns]
+        for row, weights in enumerate(contribution.matrix):
+            for weight, values in zip(weights, drawn, strict=True):
+                if weight:
+                    totals[row] = totals[row] + weight * values
+    return totals
+
+
+@dataclass(frozen=True, eq=False)
+class ActualFeature:
+    """A feature in its trials, in the frame in which `base` has its nominal frame.
+
+    Args:
+        feature: which.
+        base: of its nominal frame as its datum frame carries it.
+        centre: where its origin lies in that frame, (3, n) [mm].
+        span: from its origin to its ends in that frame, each (3, n) [mm]: of an axis to its end, of a plane to where
+            its reaches along x and y end, at the heights that it has there.
+    """
+
+    feature: Feature
+    base: Pose
+    centre: Array
+    span: tuple[Array, ...]
+
+    @cached_property
+    def origin(self) -> Array:
+        """Its origin (3, n) [mm]."""
+        return self.base.point(self.centre)
+
+    @cached_property
+    def _tilted(self) -> Array:
+        shape = self.feature.shape
+        if isinstance(shape, Axis):
+            return unit(self.span[0])
+        if isinstance(shape, (Plane, RoundPlane)):
+            (a, b), (along_x, along_y) = shape.reach, self.span
+            return unit(np.stack(np.broadcast_arrays(-_slope(along_x[2], a), -_slope(along_y[2], b), np.ones(1))))
+        return _Z
+
+    @cached_property
+    def direction(self) -> Array:
+        """z of its frame (3, n), of unit length."""
+        return rotated(self.base.turn, self._tilted)
+
+    @cached_property
+    def spans(self) -> tuple[Array, ...]:
+        """As `span`, turned with the frame (3, n) [mm]."""
+        return tuple(rotated(self.base.turn, span) for span in self.span)
+
+    @cached_property
+    def pose(self) -> Pose:
+        """Its frame, with the least rotation from its nominal z."""
+        if not self.span:
+            return Pose(self.base.turn, self.origin)
+        return Pose(product(self.base.turn, least_rotation(_Z, self._tilted)), self.origin)
+
+    @property
+    def ends(self) -> list[Array]:
+        """Where its position is judged, each (3, n) [mm]; of a disc, the ends of its reaches."""
+        if not self.spans:
+            return [self.origin]
+        if len(self.spans) == 1:
+            return [self.origin - self.spans[0], self.origin + self.spans[0]]
+        x, y = self.spans
+        if isinstance(self.feature.shape, RoundPlane):
+            return [self.origin + x, self.origin + y, self.origin - x, self.origin - y]
+        return [self.origin + x + y, self.origin - x + y, self.origin - x - y, self.origin + x - y]
+
+    def moved(self, pose: Pose) -> "ActualFeature":
+        """It in another frame, to which the pose takes its own."""
+        return replace(self, base=pose @ self.base)
+
+    def rise(self, direction: Array) -> Array:
+        """How far it reaches over its origin along a direction (3, n), in the frame of `base` [mm]."""
+        heights = [np.abs(dot(direction, span)) for span in self.spans]
+        if not heights:
+            return np.zeros(1)
+        if isinstance(self.feature.shape, RoundPlane):
+            return np.asarray(np.sqrt(heights[0] * heights[0] + heights[1] * heights[1]))
+        return sum(heights[1:], start=heights[0])
+
+    def at(self, target: Array) -> Array:
+        """A point of a plane, stated in its frame (3,), at the height that the plane has there (3, n) [mm]."""
+        shape = self.feature.shape
+        if not isinstance(shape, (Plane, RoundPlane)):
+            return self.base.point(self.centre + np.reshape(target, (3, 1)))
+        (a, b), (along_x, along_y) = shape.reach, self.spans
+        lifted = self.origin + _slope(1.0, a) * target[0] * along_x + _slope(1.0, b) * target[1] * along_y
+        return np.asarray(lifted + target[2] * self.direction)
+
+
+def _slope(rise: Array | float, reach: float) -> Array:
+    """A rise over its reach, 0 where there is no reach."""
+    return np.asarray(rise) / reach if reach else np.zeros(1)
+
+
+def actual(feature: Feature, base: Pose, columns: Array) -> ActualFeature:
+    """A feature in its trials.
+
+    Args:
+        feature: which.
+        base: of its nominal frame in the part's, as its datum frame carries it in the trials.
+        columns: the deviations, (width, n) [mm].
+    """
+    shape = feature.shape
+    moved = total(feature.moved_by, len(shape.components), columns)
+    if isinstance(shape, Axis):
+        start_x, start_y, end_x, end_y = moved
+        middle = _vector((start_x + end_x) / 2, (start_y + end_y) / 2, 0.0)
+        return ActualFeature(
+            feature, base, middle, (_vector((end_x - start_x) / 2, (end_y - start_y) / 2, shape.length / 2),)
+        )
+    if isinstance(shape, (Plane, RoundPlane)):
+        offset, rise_x, rise_y = moved
+        a, b = shape.reach
+        return ActualFeature(
+            feature, base, _vector(0.0, 0.0, offset), (_vector(a, 0.0, rise_x), _vector(0.0, b, rise_y))
+        )
+    return ActualFeature(feature, base, _vector(*moved), ())
+
+
+def actual_size(feature: Feature, columns: Array) -> Array:
+    """Its diameter in its trials (n,) or (1,) [mm]; of an axis that has one."""
+    shape = feature.shape
+    nominal = shape.diameter if isinstance(shape, Axis) and shape.diameter is not None else 0.0
+    return nominal + total(feature.size_by, 1, columns)[0]
+
+
+def _vector(x: Array | float, y: Array | float, z: Array | float) -> Array:
+    return np.stack(np.broadcast_arrays(np.atleast_1d(x), np.atleast_1d(y), np.atleast_1d(z)))

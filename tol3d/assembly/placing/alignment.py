@@ -1,0 +1,242 @@
+"""Sequential alignment: features laid on their targets in order, each by the freedoms that those before it left.
+
+Which freedoms those are is analysed once, on the nominal geometry (`freedoms.aligned`); the steps that come of it are
+vectorised over trials (`Alignment.poses`). Rotations follow from directions first; heights are met by shifts, solved in
+order along what is free of the earlier ones, so that earlier ones stay met. What none takes stays: least rotation,
+about the origin of the frame that is moved, and no shift.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tol3d.assembly.model.statuses import NO_CONTACT, OK, SINGULAR
+from tol3d.assembly.placing.actual_feature import ActualFeature
+from tol3d.assembly.placing.poses import (
+    Codes,
+    Pose,
+    about,
+    column,
+    cross,
+    dot,
+    least_rotation,
+    product,
+    rotated,
+    rotated_back,
+    unit,
+)
+
+Array = NDArray[np.float64]
+
+Held = Literal["along", "across", "all"]
+"""Of a point what is held: its height along the target's direction, its place across it, or its place."""
+
+Turning = Literal["none", "direction", "level"]
+"""Whether a direction becomes the target's, or only square to it."""
+
+ROUNDS = 6
+"""How often a turn and the shifts that follow it are repeated where targets are tilted: each time leaves their slope
+times as much, 1e-3 or less."""
+
+_LOST = 1e-6  # sine: a freedom that is left by less is held
+
+
+@dataclass(frozen=True)
+class Tie:
+    """What one feature asks.
+
+    Args:
+        name: for messages.
+        held: of its point.
+        turning: of its direction.
+    """
+
+    name: str
+    held: Held
+    turning: Turning = "none"
+
+
+@dataclass(frozen=True, eq=False)
+class Seat:
+    """A tie in its trials.
+
+    Args:
+        point: in the frame that is moved (3, n) [mm].
+        target: the point over, around or at which it is to lie (3, n) [mm].
+        direction: of the feature, in the frame that is moved (3, n), of unit length; None without a direction.
+        toward: the target's direction (3, n), of unit length; None of a point.
+        height: over the target, along its direction (n,) [mm].
+        outermost: a feature whose outermost point along the direction counts instead of `point`.
+    """
+
+    point: Array
+    target: Array
+    direction: Array | None = None
+    toward: Array | None = None
+    height: Array | float = 0.0
+    outermost: ActualFeature | None = None
+
+    @property
+    def its_direction(self) -> Array:
+        """The feature's direction, where there is one."""
+        assert self.direction is not None
+        return self.direction
+
+    @property
+    def its_toward(self) -> Array:
+        """The target's direction, where there is one."""
+        assert self.toward is not None
+        return self.toward
+
+
+@dataclass(frozen=True)
+class Step:
+    """A rotation that a tie takes.
+
+    Args:
+        kind: aim: its direction becomes the target's by the least rotation; azimuth: as far as a rotation about the
+            held direction goes; level: its direction becomes square to the target's by such a rotation; aim at: the
+            line from the pivot to its point goes to the target; turn to: by a rotation about the held direction, as
+            far as that goes; swing: its height is met by such a rotation.
+        tie: whose.
+        pivot: the tie whose point stays.
+    """
+
+    kind: Literal["aim", "azimuth", "level", "aim at", "turn to", "swing"]
+    tie: int
+    pivot: int = -1
+
+
+@dataclass(frozen=True, eq=False)
+class Shift:
+    """A shift that a tie takes, along a nominal direction (3, 1); along that of the target where it is None."""
+
+    tie: int
+    along: Array | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class Alignment:
+    """The steps of a sequential alignment.
+
+    Args:
+        ties: in order.
+        turns: rotations in order, each with the number of shifts that come before it.
+        shifts: in order.
+        rounds: how often a turn about a pivot is repeated.
+        idle: ties that take no freedom, for those before them hold all that they could take.
+    """
+
+    ties: tuple[Tie, ...]
+    turns: tuple[tuple[Step, int], ...]
+    shifts: tuple[Shift, ...]
+    rounds: int = ROUNDS
+    idle: tuple[int, ...] = ()
+
+    def poses(self, seats: Sequence[Seat], start: Pose) -> tuple[Pose, Codes]:
+        """Poses that lay features on their targets, and what became of them (n,).
+
+        Args:
+            seats: one of each tie.
+            start: the pose before anything is aligned.
+        """
+        turn, held = start.turn, column(np.zeros(3))
+        codes: Codes = np.full(1, OK, dtype=np.int8)
+        for number, (step, shifts_before) in enumerate(self.turns):
+            shifts = len(self.shifts) if number == len(self.turns) - 1 else shifts_before
+            for _ in range(self.rounds if step.pivot >= 0 else 1):
+                seat = seats[step.tie]
+                if step.kind == "aim":
+                    turned, held = least_rotation(rotated(turn, seat.its_direction), seat.its_toward), seat.its_toward
+                elif step.kind == "azimuth":
+                    turned = _same_azimuth(held, rotated(turn, seat.its_direction), seat.its_toward)
+                elif step.kind == "level":
+                    across = rotated(turn, seat.its_direction)
+                    turned, reached = _met(held, across, seat.its_toward, np.zeros(1))
+                    codes = np.maximum(codes, reached)
+                else:
+                    shift, _ = self._shifted(turn, start.shift, seats, shifts)
+                    pivot = rotated(turn, seats[step.pivot].point) + shift
+                    arm = rotated(turn, seat.point) + shift - pivot
+                    line = self._target(step.tie, seat, arm + pivot) - pivot
+                    if step.kind == "aim at":
+                        held = unit(line)
+                        turned = least_rotation(unit(arm), held)
+                    elif step.kind == "turn to":
+                        turned = _same_azimuth(held, arm, line)
+                    else:
+                        normal = self._normal(step.tie, seat, cross(held, arm))
+                        turned, reached = _met(held, arm, normal, dot(normal, line) + seat.height)
+                        codes = np.maximum(codes, reached)
+                turn = product(turned, turn)
+        shift, found = self._shifted(turn, start.shift, seats, len(self.shifts))
+        return Pose(turn, shift), np.maximum(codes, found)
+
+    def _target(self, tie: int, seat: Seat, point: Array) -> Array:
+        """Where a point is to lie; of an axis abreast of where it lies."""
+        if self.ties[tie].held != "across":
+            return seat.target
+        return seat.target + dot(point - seat.target, seat.its_toward) * seat.its_toward
+
+    def _normal(self, tie: int, seat: Seat, motion: Array) -> Array:
+        """Along which a swing meets a height; of an axis as the point moves across it."""
+        if self.ties[tie].held == "along":
+            return seat.its_toward
+        return unit(motion - dot(motion, seat.its_toward) * seat.its_toward)
+
+    def _shifted(self, turn: Array, start: Array, seats: Sequence[Seat], number: int) -> tuple[Array, Codes]:
+        """The shift (3, n) that meets the first ones of the heights, and whether they are met."""
+        shift, free = start, list[Array]()
+        codes: Codes = np.full(1, OK, dtype=np.int8)
+        for part in self.shifts[:number]:
+            seat, held = seats[part.tie], self.ties[part.tie].held
+            normal = seat.its_toward if part.along is None else part.along
+            if held == "across":
+                normal = normal - dot(normal, seat.its_toward) * seat.its_toward
+            along = normal
+            for taken in free:
+                along = along - dot(along, taken) * taken
+            lengths = dot(along, along)
+            codes = np.maximum(codes, np.where(lengths > _LOST**2 / 4, OK, SINGULAR).astype(np.int8))
+            along = unit(along)
+            if held == "all":
+                normal = along
+            height = dot(normal, rotated(turn, seat.point) + shift - seat.target)
+            if seat.outermost is not None:
+                height = height + seat.outermost.rise(rotated_back(turn, normal))
+            steepness = dot(normal, along)
+            missing = (seat.height - height) / np.where(np.abs(steepness) > _LOST**2, steepness, 1.0)
+            shift = shift + missing * along
+            free.append(along)
+        return shift, codes
+
+
+def _same_azimuth(axis: Array, start: Array, end: Array) -> Array:
+    """Rotations about an axis (3, n) that bring a vector to the azimuth of another."""
+    start = start - dot(start, axis) * axis
+    end = end - dot(end, axis) * axis
+    cos, sin = dot(start, end), dot(axis, cross(start, end))
+    length = cos * cos + sin * sin
+    some = length > 0
+    length = np.sqrt(np.where(some, length, 1.0))
+    return about(axis, np.where(some, cos / length, 1.0), np.where(some, sin / length, 0.0))
+
+
+def _met(axis: Array, arm: Array, normal: Array, height: Array) -> tuple[Array, Codes]:
+    """Rotations about an axis after which normal . arm = height, the one nearer to none; code `no contact` without.
+
+    a cos + b sin = k, a and b the arm's parts along the normal before and after a quarter turn, k what the axis leaves.
+    """
+    lasting = dot(axis, normal) * dot(axis, arm)
+    a, b, k = dot(normal, arm) - lasting, dot(normal, cross(axis, arm)), height - lasting
+    square = a * a + b * b
+    rest = square - k * k
+    reached = (rest >= 0) & (square > 0)
+    root = np.copysign(np.sqrt(np.where(reached, rest, 0.0)), b)
+    safe = np.where(reached, square, 1.0)
+    cos = np.where(reached, (a * k + b * root) / safe, 1.0)
+    sin = np.where(reached, (b * k - a * root) / safe, 0.0)
+    return about(axis, cos, sin), np.where(reached, OK, NO_CONTACT).astype(np.int8)

@@ -1,0 +1,103 @@
+"""What may fail on the way to a measure: datum frames and moves, as each needs others before it."""
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+
+from tol3d.assembly.model import Assembly, BestFit, Locate, Mate, Measured, Move, Weld
+from tol3d.errors import InputError
+
+Cause = str | int
+"""Name of a datum frame, or index of a move."""
+
+
+@dataclass(frozen=True, eq=False)
+class Causes:
+    """Before the first move or after one: on what the poses of parts hang.
+
+    Args:
+        assembly: the model.
+        placed: of each part that is placed, what may have failed.
+        bodies: of each part, what it is welded to, itself among them.
+    """
+
+    assembly: Assembly
+    placed: Mapping[str, frozenset[Cause]]
+    bodies: Mapping[str, frozenset[str]]
+
+    def of_frame(self, name: str) -> frozenset[Cause]:
+        """Of a datum frame: itself and those of its features; none of ""."""
+        if not name:
+            return frozenset()
+        features = (feature for datum in self.assembly.datum_frames[name].datums for feature in datum.features)
+        return frozenset([name]).union(*(self.of_feature(feature) for feature in features))
+
+    def of_feature(self, name: str) -> frozenset[Cause]:
+        """Of a feature in its part."""
+        return self.of_frame(self.assembly.features[name].parent)
+
+    def of_part(self, name: str, reader: str) -> frozenset[Cause]:
+        """Of a part in the world.
+
+        Raises:
+            InputError: no move has placed it.
+        """
+        if name not in self.placed:
+            raise InputError(f"{reader}: {name} is not placed: expected a move before that places it")
+        return self.placed[name]
+
+    def after(self, index: int, move: Move) -> "Causes":
+        """After a move."""
+        if isinstance(move, Weld):
+            for part in (move.part, *move.others):
+                self.of_part(part, f"moves.{move.name}")
+            body = frozenset[str]().union(*(self.bodies[part] for part in (move.part, *move.others)))
+            return Causes(self.assembly, self.placed, {**self.bodies, **dict.fromkeys(body, body)})
+        causes = frozenset([index]).union(*self._of_move(move))
+        held = self.placed.get(move.part, frozenset())
+        placed = {part: causes | held | self.placed[part] for part in self.bodies[move.part] - {move.part}}
+        return Causes(self.assembly, {**self.placed, **placed, move.part: causes}, self.bodies)
+
+    def _of_move(self, move: Move) -> Iterable[frozenset[Cause]]:
+        if isinstance(move, Locate):
+            pairs = [(pair.moving, pair.target) for pair in move.pairs]
+        elif isinstance(move, BestFit):
+            pairs = [(fit.moving, fit.target) for fit in move.fits]
+        elif isinstance(move, Mate):
+            pairs = [(relation.moving, relation.target) for relation in move.relations]
+        else:
+            return
+        for moving, target in pairs:
+            yield self.of_feature(moving) | self.of_feature(target)
+            yield self.of_part(self.assembly.features[target].part, f"moves.{move.name}")
+            own = self.assembly.features[moving].part
+            if own != move.part:
+                yield self.of_part(own, f"moves.{move.name}") | self.of_part(move.part, f"moves.{move.name}")
+
+
+def causes_of(measured: Measured, name: str, moments: tuple[Causes, ...]) -> tuple[Cause, ...]:
+    """What may fail before a measure is read, in its order: datum frames, then moves.
+
+    Args:
+        measured: what.
+        name: of the measure.
+        moments: before the first move, and after each.
+    """
+    return ordered(_causes(measured, name, moments))
+
+
+def ordered(causes: Iterable[Cause]) -> tuple[Cause, ...]:
+    """Datum frames, then moves."""
+    return tuple(sorted(causes, key=lambda cause: (isinstance(cause, int), cause)))
+
+
+def _causes(measured: Measured, name: str, moments: tuple[Causes, ...]) -> frozenset[Cause]:
+    causes = moments[-1] if measured.after < 0 else moments[measured.after + 1]
+    found = causes.of_frame(measured.frame).union(*(causes.of_feature(feature) for feature in measured.features))
+    if measured.kind not in ON_PART:
+        parts = {causes.assembly.features[feature].part for feature in measured.features}
+        found = found.union(*(causes.of_part(part, f"measures.{name}") for part in parts))
+    return found | (_causes(measured.minus, name, moments) if measured.minus is not None else frozenset())
+
+
+ON_PART = frozenset(["size", "position", "orientation", "flatness"])
+"""Kinds of measures of a part alone, wherever it is."""

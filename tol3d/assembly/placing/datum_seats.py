@@ -1,0 +1,102 @@
+"""What datums of a frame lay on their simulators: the part's features on where these are nominally."""
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tol3d.assembly.model import Axis, Datum, DatumFrame, Feature, Part, Plane, RoundPlane
+from tol3d.assembly.placing.actual_feature import ActualFeature, actual
+from tol3d.assembly.placing.alignment import Alignment, Held, Seat, Tie, Turning
+from tol3d.assembly.placing.freedoms import aligned
+from tol3d.assembly.placing.poses import IDENTITY, Pose, unit
+from tol3d.errors import InputError
+
+Array = NDArray[np.float64]
+
+Actual = Callable[[str], ActualFeature]
+Asks = tuple[Held, Turning]
+
+
+@dataclass(frozen=True, eq=False)
+class DatumSeats:
+    """How a datum frame is found: its part's features are aligned with its simulators, and it is the inverse of that.
+
+    Args:
+        frame: which.
+        alignment: of the ties, in order.
+        nominal: the features of its datums as they are nominally.
+    """
+
+    frame: DatumFrame
+    alignment: Alignment
+    nominal: Mapping[str, ActualFeature]
+
+    def of(self, features: Actual) -> list[Seat]:
+        """The seats of its ties in their trials."""
+        return [seat for _, _, seat in _asked(self.frame, features, self.nominal)]
+
+
+def datum_seats(part: Part) -> dict[str, DatumSeats]:
+    """Of all datum frames of a part, by their names.
+
+    Raises:
+        InputError: a datum takes no freedom, or cannot be met in its order.
+    """
+    nominal = {feature.name: _nominal(feature) for feature in part.features}
+    return {frame.name: _of(frame, nominal) for frame in part.datum_frames}
+
+
+def _of(frame: DatumFrame, nominal: Mapping[str, ActualFeature]) -> DatumSeats:
+    datums, ties, seats = zip(*_asked(frame, nominal.__getitem__, nominal), strict=True)
+    alignment = aligned(ties, seats, IDENTITY)
+    taking = {datums[tie] for tie in range(len(ties)) if tie not in alignment.idle}
+    for k, datum in enumerate(frame.datums):
+        if k not in taking:
+            raise InputError(
+                f"datum frame {frame.name}: {'-'.join(datum.features)} takes no freedom: datums before it hold all "
+                "that it could take; leave it out"
+            )
+    return DatumSeats(frame, alignment, nominal)
+
+
+def _nominal(feature: Feature) -> ActualFeature:
+    bare = Feature(feature.name, feature.part, feature.shape, feature.frame)
+    return actual(bare, Pose.of(feature.frame), np.zeros((0, 1)))
+
+
+def _asked(
+    frame: DatumFrame, features: Actual, nominal: Mapping[str, ActualFeature]
+) -> Iterator[tuple[int, Tie, Seat]]:
+    """Number of the datum, what it asks, and where."""
+    for k, datum in enumerate(frame.datums):
+        own = [features(name) for name in datum.features]
+        simulators = [nominal[name] for name in datum.features]
+        for tie, seat in _line(own, simulators) if len(own) > 1 else _single(datum, k, own[0], simulators[0]):
+            yield k, Tie(f"datum frame {frame.name}: {'-'.join(datum.features)}", *tie), seat
+
+
+def _line(own: Sequence[ActualFeature], simulators: Sequence[ActualFeature]) -> Iterator[tuple[Asks, Seat]]:
+    """The line through the centres of two features."""
+    (start, end), (its_start, its_end) = own, simulators
+    direction, toward = unit(end.origin - start.origin), unit(its_end.origin - its_start.origin)
+    middle, target = (start.origin + end.origin) / 2, (its_start.origin + its_end.origin) / 2
+    yield ("across", "direction"), Seat(middle, target, direction, toward)
+
+
+def _single(datum: Datum, k: int, own: ActualFeature, simulator: ActualFeature) -> Iterator[tuple[Asks, Seat]]:
+    shape = own.feature.shape
+    if isinstance(shape, Axis):
+        yield ("across", "direction"), Seat(own.origin, simulator.origin, own.direction, simulator.direction)
+    elif not isinstance(shape, (Plane, RoundPlane)):
+        yield ("all", "none"), Seat(own.origin, simulator.origin)
+    elif datum.simulator == "targets" and datum.targets is not None and k > 0:
+        for target in datum.targets:
+            yield ("along", "none"), Seat(own.at(target), simulator.at(target), None, simulator.direction)
+    else:
+        outermost = own if datum.simulator == "contact" and k > 0 else None
+        yield (
+            ("along", "direction"),
+            Seat(own.origin, simulator.origin, own.direction, simulator.direction, outermost=outermost),
+        )

@@ -1,0 +1,50 @@
+"""Motions that contacts leave free, in words."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+FREE = 1e-9
+"""Largest change of a contact, as a share of how far a motion moves what the contacts are about, that is none."""
+
+
+def free_motions(rows: Array, points: Array) -> Array:
+    """Motions (motions, 6) that change none of some contacts; shift of the world's origin [mm], then turn [rad].
+
+    Args:
+        rows: of each contact how it changes with the shift at the points' middle and the turn (contacts, 6).
+        points: what the contacts are about (points, 3), in the world [mm].
+    """
+    middle = points.mean(axis=0)
+    reach = max(float(np.linalg.norm(points - middle, axis=1).max()), 1.0)
+    scale = np.array([1.0, 1.0, 1.0, 1 / reach, 1 / reach, 1 / reach])
+    _, sizes, right = np.linalg.svd(rows * scale)
+    sizes = np.concatenate([sizes, np.zeros(6 - len(sizes))])
+    motions = right[sizes <= FREE * max(float(sizes[0]), 1.0)] * scale
+    motions[:, :3] -= np.cross(motions[:, 3:], middle)
+    return np.asarray(motions)
+
+
+def in_words(motions: Array) -> str:
+    """The simplest of some motions, such as "it shifts along x" or "it turns about z through (0, 40, 0)"."""
+    length = max(float(np.abs(motions).max()), 1.0)
+    left, sizes, _ = np.linalg.svd(motions[:, 3:] * length)
+    if len(motions) > np.sum(sizes > FREE * length):
+        shift = left[:, -1] @ motions[:, :3]
+        return f"it shifts along {_direction(shift)}"
+    shift, turn = np.split(motions[0] / np.linalg.norm(motions[0, 3:]), 2)
+    words = f"it turns about {_direction(turn)} through {_numbers(np.cross(turn, shift))}"
+    return words if abs(turn @ shift) < FREE * length else f"{words} and shifts along it"
+
+
+def _direction(vector: Array) -> str:
+    vector = vector / np.linalg.norm(vector)
+    largest = int(np.argmax(np.abs(vector)))
+    if abs(vector[largest]) > 1.0 - FREE:
+        return "xyz"[largest]
+    return _numbers(vector * np.sign(vector[largest]))
+
+
+def _numbers(vector: Array) -> str:
+    return "(" + ", ".join(f"{value:.6g}" for value in vector.round(6) + 0.0) + ")"

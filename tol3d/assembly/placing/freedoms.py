@@ -1,0 +1,174 @@
+"""Which freedoms each feature takes of those that earlier ones left: the nominal analysis of a sequential alignment."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tol3d.assembly.placing.alignment import Alignment, Seat, Shift, Step, Tie
+from tol3d.assembly.placing.poses import Pose
+from tol3d.errors import InputError
+
+Array = NDArray[np.float64]
+
+HELD = 1e-6
+"""Sine of an angle, or lever [mm], under which a freedom counts as held."""
+
+
+def aligned(ties: Sequence[Tie], seats: Sequence[Seat], start: Pose) -> Alignment:
+    """The steps by which features are laid on their targets.
+
+    Args:
+        ties: in order.
+        seats: nominally.
+        start: the nominal pose before anything is aligned.
+
+    Raises:
+        InputError: a tie that turns by more than 90 deg, or that cannot be met in order.
+    """
+    freedoms = _Freedoms(tuple(ties), tuple(seats), start)
+    idle = tuple(tie for tie in range(len(ties)) if not freedoms.take(tie))
+    return replace(freedoms.alignment, idle=idle)
+
+
+class _Freedoms:
+    """The freedoms left, tie by tie."""
+
+    def __init__(self, ties: tuple[Tie, ...], seats: tuple[Seat, ...], start: Pose) -> None:
+        self.ties, self.seats, self.start = ties, seats, start
+        self.turns: list[tuple[Step, int]] = []
+        self.shifts: list[Shift] = []
+        self.taken = np.zeros((0, 3))  # directions of shifts, orthonormal
+        self.turning: Array | str = "all"  # or the direction about which a turn is left, or "none"
+        self.pivot = -1
+
+    @property
+    def alignment(self) -> Alignment:
+        return Alignment(self.ties, tuple(self.turns), tuple(self.shifts))
+
+    def take(self, index: int) -> bool:
+        """Whether a tie takes anything of what is left, and what."""
+        tie, before = self.ties[index], (len(self.turns), len(self.shifts))
+        if tie.held == "along":
+            self._turn_by_direction(index)
+            if not self._shift(index):
+                self._turn_by_point(index, taken_before=len(self.turns) > before[0])
+        else:
+            pivot, placed = self.pivot, self._shift(index)
+            if pivot >= 0 and not (placed and isinstance(self.turning, str)):
+                self._turn_by_point(index, taken_before=False)
+            self._turn_by_direction(index)
+        if self.pivot < 0 and tie.held != "along" and self._centred:
+            self.pivot = index
+        return (len(self.turns), len(self.shifts)) != before
+
+    @property
+    def _centred(self) -> bool:
+        """Whether all shifts across what turns are taken."""
+        if isinstance(self.turning, str):
+            return len(self.taken) == 3
+        across = np.eye(3) - np.outer(self.turning, self.turning)
+        return bool(np.linalg.norm(self._free @ across) < HELD)
+
+    @property
+    def _free(self) -> Array:
+        return np.asarray(np.eye(3) - self.taken.T @ self.taken)
+
+    def _pose(self) -> Pose:
+        return self.alignment.poses(self.seats, self.start)[0]
+
+    def _turn_by_direction(self, index: int) -> None:
+        tie, seat = self.ties[index], self.seats[index]
+        if tie.turning == "none" or (isinstance(self.turning, str) and self.turning == "none"):
+            return
+        start = self._pose().turn[:, :, 0] @ seat.its_direction[:, 0]
+        end = seat.its_toward[:, 0]
+        if isinstance(self.turning, str):
+            if tie.turning == "level":
+                raise InputError(
+                    f"{tie.name} turns about two directions: expected a relation before it that holds a direction"
+                )
+            if start @ end < HELD:
+                raise InputError(
+                    f"{tie.name} lies {np.degrees(np.arccos(np.clip(start @ end, -1, 1))):.0f} deg from its target: "
+                    "expected less than 90 deg; turn the nominal pose"
+                )
+            self.turns.append((Step("aim", index), len(self.shifts)))
+            self.turning = end
+            return
+        across = start if tie.turning == "level" else end
+        if np.linalg.norm(np.cross(across, self.turning)) < HELD:
+            return
+        if tie.turning == "level" and abs(np.cross(self.turning, start) @ end) < HELD:
+            return
+        self.turns.append((Step("level" if tie.turning == "level" else "azimuth", index), len(self.shifts)))
+        self.turning = "none"
+
+    def _shift(self, index: int) -> bool:
+        """Shifts that a tie takes, as free of earlier ones as can be; whether there are any."""
+        tie, seat = self.ties[index], self.seats[index]
+        if tie.held == "all":
+            asked = np.eye(3)
+        elif tie.held == "along":
+            asked = seat.its_toward.T
+        else:
+            asked = np.linalg.svd(seat.its_toward.T)[2][1:]
+        left, sizes, _ = np.linalg.svd(asked @ self._free)
+        directions = [left[:, k] @ asked for k, size in enumerate(sizes) if size > HELD]
+        for direction in directions:
+            self.shifts.append(Shift(index, None if tie.held == "along" else direction.reshape(3, 1)))
+            free = self._free @ direction
+            self.taken = np.vstack([self.taken, free / np.linalg.norm(free)])
+        return bool(directions)
+
+    def _turn_by_point(self, index: int, taken_before: bool) -> None:
+        """A turn about a pivot that brings a point where its tie asks."""
+        tie, seat = self.ties[index], self.seats[index]
+        if isinstance(self.turning, str) and self.turning == "none":
+            return
+        pivot = self.pivot if self.pivot >= 0 else self._abreast(index)
+        if taken_before or pivot < 0:
+            return
+        pose = self._pose()
+        arm = (pose.turn[:, :, 0] @ (seat.point - self.seats[pivot].point))[:, 0]
+        if isinstance(self.turning, str):
+            self._aim_at(index, pivot, arm)
+            return
+        swung = np.cross(self.turning, arm)
+        if tie.held == "all" or (tie.held == "across" and abs(self.turning @ seat.its_toward[:, 0]) > 1 - HELD**2):
+            step = Step("turn to", index, pivot)
+        else:
+            toward = seat.its_toward[:, 0]
+            swung = swung @ toward if tie.held == "along" else swung - swung @ toward * toward
+            step = Step("swing", index, pivot)
+        if np.linalg.norm(swung) > HELD:
+            self.turns.append((step, len(self.shifts)))
+            self.turning = "none"
+
+    def _abreast(self, index: int) -> int:
+        """An earlier tie that holds another point along the same direction, while a turn about another is left."""
+        if isinstance(self.turning, str) or self.ties[index].held != "along":
+            return -1
+        toward = self.seats[index].its_toward[:, 0]
+        for earlier in range(index):
+            if self.ties[earlier].held == "along":
+                other = self.seats[earlier].its_toward[:, 0]
+                if np.linalg.norm(np.cross(other, toward)) < HELD:
+                    return earlier
+        return -1
+
+    def _aim_at(self, index: int, pivot: int, arm: Array) -> None:
+        """The line from a point that is held to another point takes two of three turns."""
+        tie, seat, length = self.ties[index], self.seats[index], np.linalg.norm(arm)
+        if length < HELD:
+            return
+        if tie.held == "along" or (
+            tie.held == "across" and np.linalg.norm(np.cross(arm / length, seat.its_toward[:, 0])) > HELD
+        ):
+            raise InputError(
+                f"{tie.name} lies beside the point that is held: expected it through that point, or a plane or another "
+                "point before it"
+            )
+        self.turns.append((Step("aim at", index, pivot), len(self.shifts)))
+        self.turning = arm / length

@@ -1,0 +1,135 @@
+"""Measures of features as they lie in their trials."""
+
+from collections.abc import Callable, Mapping, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tol3d.assembly.model import Axis, Measured, Plane, RoundPlane
+from tol3d.assembly.model.measures import MeasureKind
+from tol3d.assembly.placing.actual_feature import ActualFeature, actual_size
+from tol3d.assembly.placing.flatness import widths
+from tol3d.assembly.placing.poses import column, cross, dot, rotated
+from tol3d.assembly.placing.world import World
+
+Array = NDArray[np.float64]
+
+
+def reading(measured: Measured, worlds: Sequence[World]) -> Array:
+    """Values of a measure (n,) or (1,) [mm or rad].
+
+    Args:
+        measured: what.
+        worlds: before the first move, and after each.
+    """
+    values = READINGS[measured.kind](measured, worlds[-1] if measured.after < 0 else worlds[measured.after + 1])
+    return values if measured.minus is None else values - reading(measured.minus, worlds)
+
+
+def _length(vector: Array) -> Array:
+    return np.asarray(np.sqrt(dot(vector, vector)))
+
+
+def _direction(measured: Measured, world: World) -> Array:
+    """The measure's direction in the world (3, n), as its part or its datum frame carries it."""
+    part = world.part_of(measured.features[0])
+    return rotated(world.poses[part].turn, _on_part(measured, world))
+
+
+def _on_part(measured: Measured, world: World) -> Array:
+    assert measured.direction is not None
+    part = world.part_of(measured.features[0])
+    return rotated(world.own[part].displacement(measured.frame).turn, column(measured.direction))
+
+
+def _apart(measured: Measured, world: World) -> Array:
+    start, end = (world.placed(name) for name in measured.features)
+    return end.origin - start.origin
+
+
+def _distance(measured: Measured, world: World) -> Array:
+    return _length(_apart(measured, world)) if measured.direction is None else _gap(measured, world)
+
+
+def _gap(measured: Measured, world: World) -> Array:
+    return dot(_apart(measured, world), _direction(measured, world))
+
+
+def _point_plane(measured: Measured, world: World) -> Array:
+    point, plane = (world.placed(name) for name in measured.features)
+    return dot(point.origin - plane.origin, plane.direction)
+
+
+def _angle(measured: Measured, world: World) -> Array:
+    start, end = (world.placed(name).direction for name in measured.features)
+    across, along = cross(start, end), dot(start, end)
+    if measured.direction is None:
+        return np.asarray(np.arctan2(_length(across), along))
+    return np.asarray(np.arctan2(dot(_direction(measured, world), across), along))
+
+
+def _size(measured: Measured, world: World) -> Array:
+    return actual_size(world.assembly.features[measured.features[0]], world.columns)
+
+
+def _inspected(measured: Measured, world: World) -> tuple[ActualFeature, Array]:
+    """A feature as its datum frame sees it, and its nominal frame (4, 4)."""
+    (name,) = measured.features
+    displacement = world.own[world.part_of(name)].displacement(measured.frame)
+    return world.on_part(name).moved(displacement.inverse), world.assembly.features[name].frame
+
+
+def _position(measured: Measured, world: World) -> Array:
+    actual, frame = _inspected(measured, world)
+    shape, z = actual.feature.shape, column(frame[:3, 2])
+    if isinstance(shape, RoundPlane) and measured.direction is None:
+        return 2.0 * (np.abs(dot(z, actual.origin - column(frame[:3, 3]))) + actual.rise(z))
+    nominal = [column(frame[:3, :3] @ end + frame[:3, 3]) for end in _ends(shape)]
+    largest = np.zeros(1)
+    for end, its_nominal in zip(actual.ends, nominal, strict=True):
+        aside = end - its_nominal
+        if measured.direction is not None:
+            aside = _across(aside, column(measured.direction))
+        elif isinstance(shape, Axis):
+            aside = _across(aside, z)
+        elif isinstance(shape, (Plane, RoundPlane)):
+            aside = dot(aside, z) * z
+        largest = np.maximum(largest, _length(aside))
+    return 2.0 * largest
+
+
+def _ends(shape: object) -> Array:
+    """Where a shape's position is judged, in its frame, in the order of `ActualFeature.ends`."""
+    if isinstance(shape, RoundPlane):
+        a = shape.radius
+        return np.array([[a, 0.0, 0.0], [0.0, a, 0.0], [-a, 0.0, 0.0], [0.0, -a, 0.0]])
+    ends: Array = shape.ends  # type: ignore[attr-defined]
+    return ends
+
+
+def _across(vector: Array, direction: Array) -> Array:
+    return vector - dot(vector, direction) * direction
+
+
+def _orientation(measured: Measured, world: World) -> Array:
+    actual, frame = _inspected(measured, world)
+    z = column(frame[:3, 2])
+    if isinstance(actual.feature.shape, (Plane, RoundPlane)):
+        return 2.0 * actual.rise(z)
+    return 2.0 * _length(_across(actual.spans[0], z)) if actual.spans else np.zeros(1)
+
+
+def _flatness(measured: Measured, world: World) -> Array:
+    return widths([world.on_part(name).origin for name in measured.features])
+
+
+READINGS: Mapping[MeasureKind, Callable[[Measured, World], Array]] = {
+    "distance": _distance,
+    "gap": _gap,
+    "point_plane": _point_plane,
+    "angle": _angle,
+    "size": _size,
+    "position": _position,
+    "orientation": _orientation,
+    "flatness": _flatness,
+}

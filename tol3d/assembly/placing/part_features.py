@@ -1,0 +1,53 @@
+"""Features and datum frames of a part in its trials, each found once."""
+
+from collections.abc import Mapping
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tol3d.assembly.model import Part
+from tol3d.assembly.placing.actual_feature import ActualFeature, actual
+from tol3d.assembly.placing.datum_seats import DatumSeats
+from tol3d.assembly.placing.poses import IDENTITY, Codes, Pose
+
+Array = NDArray[np.float64]
+
+
+class PartFeatures:
+    """Of one part, in its frame.
+
+    Args:
+        part: which.
+        datum_seats: of its datum frames, by their names.
+        columns: the deviations, (width, n) [mm].
+    """
+
+    def __init__(self, part: Part, datum_seats: Mapping[str, DatumSeats], columns: Array) -> None:
+        self._features = {feature.name: feature for feature in part.features}
+        self._datum_seats = datum_seats
+        self._columns = columns
+        self._actual: dict[str, ActualFeature] = {}
+        self._frames: dict[str, tuple[Pose, Codes]] = {}
+
+    def feature(self, name: str) -> ActualFeature:
+        """A feature."""
+        if name not in self._actual:
+            feature = self._features[name]
+            base = self.displacement(feature.parent) @ Pose.of(feature.frame)
+            self._actual[name] = actual(feature, base, self._columns)
+        return self._actual[name]
+
+    def displacement(self, frame: str) -> Pose:
+        """From where a datum frame is nominally to where it is; none of "", the part's frame."""
+        return self._found(frame)[0] if frame else IDENTITY
+
+    def codes(self, frame: str) -> Codes:
+        """What became of a datum frame itself (n,) or (1,)."""
+        return self._found(frame)[1]
+
+    def _found(self, name: str) -> tuple[Pose, Codes]:
+        if name not in self._frames:
+            seats = self._datum_seats[name]
+            aligned, codes = seats.alignment.poses(seats.of(self.feature), IDENTITY)
+            self._frames[name] = aligned.inverse, codes
+        return self._frames[name]

@@ -1,0 +1,161 @@
+"""Poses of many trials, component by component: what is one and the same in all trials is computed once.
+
+Arrays have the trial on the LAST axis: vectors (3, n), rotations (3, 3, n), with n = 1 for what does not vary, so that
+each product is a few long loops; `numerics.frames` has the trial first. No BLAS and no function of angles: a trial has
+the same bits alone and among thousands.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+Codes = NDArray[np.int8]
+
+NO_LENGTH = 1e-150  # under it a squared length is 0 and has no direction
+
+
+def dot(left: Array, right: Array) -> Array:
+    """Scalar products of vectors (3, ...)."""
+    return np.asarray(left[0] * right[0] + left[1] * right[1] + left[2] * right[2])
+
+
+def cross(left: Array, right: Array) -> Array:
+    """Vector products of vectors (3, ...)."""
+    return np.stack(
+        [
+            left[1] * right[2] - left[2] * right[1],
+            left[2] * right[0] - left[0] * right[2],
+            left[0] * right[1] - left[1] * right[0],
+        ]
+    )
+
+
+def unit(vector: Array) -> Array:
+    """Vectors of length 1; 0 stays 0."""
+    square = dot(vector, vector)
+    return vector / np.sqrt(np.where(square > NO_LENGTH, square, 1.0))
+
+
+def rotated(turn: Array, vector: Array) -> Array:
+    """Rotations (3, 3, n) times vectors (3, n)."""
+    return np.asarray(turn[:, 0] * vector[0] + turn[:, 1] * vector[1] + turn[:, 2] * vector[2])
+
+
+def rotated_back(turn: Array, vector: Array) -> Array:
+    """The inverse of rotations (3, 3, n) times vectors (3, n)."""
+    return np.asarray(turn[0] * vector[0] + turn[1] * vector[1] + turn[2] * vector[2])
+
+
+def product(left: Array, right: Array) -> Array:
+    """Rotations (3, 3, n) one after the other, the right one first."""
+    return np.asarray(
+        left[:, 0, None] * right[None, 0] + left[:, 1, None] * right[None, 1] + left[:, 2, None] * right[None, 2]
+    )
+
+
+def column(vector: Array) -> Array:
+    """A vector (3,) of all trials (3, 1)."""
+    return np.asarray(vector, dtype=np.float64).reshape(3, 1)
+
+
+def least_rotation(start: Array, end: Array) -> Array:
+    """Rotations of least angle from one direction to another (3, n), of unit length and not opposed.
+
+    R = c 1 + [v]x + v v^T / (1 + c), v = start x end, c = start . end: Rodrigues' formula without its angle.
+    """
+    vector, cos = cross(start, end), dot(start, end)
+    spread = 1.0 + cos
+    return _rotation(vector, cos, 1.0 / np.where(spread > NO_LENGTH, spread, 1.0))
+
+
+def about(direction: Array, cos: Array, sin: Array) -> Array:
+    """Rotations about directions of unit length (3, n), by the cosine and the sine of their angles (n,)."""
+    return _rotation(direction * sin, cos, 1.0, (1.0 - cos)[None] * direction, direction)
+
+
+def _rotation(
+    sine: Array, cos: Array, share: Array | float, left: Array | None = None, right: Array | None = None
+) -> Array:
+    """Rotations cos 1 + [sine]x + share left right^T; left and right are `sine` where they are not given."""
+    left = sine if left is None else left
+    right = sine if right is None else right
+    x, y, z = sine
+    a, b, c = left * share
+    u, v, w = right
+    return np.stack(
+        [
+            np.stack([cos + a * u, a * v - z, a * w + y]),
+            np.stack([b * u + z, cos + b * v, b * w - x]),
+            np.stack([c * u - y, c * v + x, cos + c * w]),
+        ]
+    )
+
+
+def from_gibbs(vector: Array) -> Array:
+    """Rotations by Gibbs' vectors (3, n), direction times tan of half the angle: orthonormal to the last bits.
+
+    R = 1 + 2 ([g]x + [g]x^2) / (1 + g . g).
+    """
+    x, y, z = vector
+    share = 2.0 / (1.0 + (x * x + y * y + z * z))
+    sx, sy, sz = share * x, share * y, share * z
+    xy, xz, yz = sx * y, sx * z, sy * z
+    return np.stack(
+        [
+            np.stack([1.0 - (sy * y + sz * z), xy - sz, xz + sy]),
+            np.stack([xy + sz, 1.0 - (sx * x + sz * z), yz - sx]),
+            np.stack([xz - sy, yz + sx, 1.0 - (sx * x + sy * y)]),
+        ]
+    )
+
+
+@dataclass(frozen=True, eq=False)
+class Pose:
+    """From one frame to another: x = turn p + shift.
+
+    Args:
+        turn: rotations (3, 3, n).
+        shift: (3, n) [mm].
+    """
+
+    turn: Array
+    shift: Array
+
+    @classmethod
+    def of(cls, matrix: Array) -> "Pose":
+        """A pose (4, 4) of all trials."""
+        matrix = np.asarray(matrix, dtype=np.float64)
+        return cls(matrix[:3, :3, None].copy(), matrix[:3, 3, None].copy())
+
+    def point(self, point: Array) -> Array:
+        """Points (3, n) taken along."""
+        return rotated(self.turn, point) + self.shift
+
+    def __matmul__(self, other: "Pose") -> "Pose":
+        """This pose after the other."""
+        return Pose(product(self.turn, other.turn), self.point(other.shift))
+
+    @property
+    def inverse(self) -> "Pose":
+        """From the end to the start."""
+        return Pose(np.swapaxes(self.turn, 0, 1), -rotated_back(self.turn, self.shift))
+
+    def where(self, good: NDArray[np.bool_], other: "Pose") -> "Pose":
+        """This pose in the trials that are good (n,), the other elsewhere."""
+        if good.all():
+            return self
+        return Pose(np.where(good, self.turn, other.turn), np.where(good, self.shift, other.shift))
+
+    def matrices(self, trials: int) -> Array:
+        """4x4 poses (trials, 4, 4)."""
+        poses = np.zeros((trials, 4, 4))
+        poses[:, :3, :3] = np.moveaxis(self.turn, -1, 0)
+        poses[:, :3, 3] = self.shift.T
+        poses[:, 3, 3] = 1.0
+        return poses
+
+
+IDENTITY = Pose.of(np.eye(4))
+"""Nothing is moved."""

@@ -1,0 +1,68 @@
+"""Parts of consecutive trials in the world, as moves leave them."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tol3d.assembly.model import Assembly
+from tol3d.assembly.placing.actual_feature import ActualFeature
+from tol3d.assembly.placing.part_features import PartFeatures
+from tol3d.assembly.placing.poses import Pose
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class World:
+    """Where parts are after a move.
+
+    Args:
+        assembly: the model.
+        columns: the deviations, (width, n) [mm].
+        own: features and datum frames of each part, by its name.
+        poses: of parts that are placed, in the world.
+        bodies: of each part, what it is welded to, itself among them.
+    """
+
+    assembly: Assembly
+    columns: Array
+    own: Mapping[str, PartFeatures]
+    poses: Mapping[str, Pose]
+    bodies: Mapping[str, frozenset[str]]
+
+    @property
+    def trials(self) -> int:
+        """How many."""
+        return int(self.columns.shape[1])
+
+    def part_of(self, feature: str) -> str:
+        """The part to which a feature belongs."""
+        return self.assembly.features[feature].part
+
+    def on_part(self, feature: str) -> ActualFeature:
+        """A feature in its part's frame."""
+        return self.own[self.part_of(feature)].feature(feature)
+
+    def on_body(self, feature: str, part: str) -> ActualFeature:
+        """A feature in the frame of a part of the same body."""
+        own = self.part_of(feature)
+        actual = self.on_part(feature)
+        return actual if own == part else actual.moved(self.poses[part].inverse @ self.poses[own])
+
+    def placed(self, feature: str) -> ActualFeature:
+        """A feature in the world."""
+        return self.on_part(feature).moved(self.poses[self.part_of(feature)])
+
+    def with_part_at(self, part: str, pose: Pose) -> "World":
+        """The world in which a part has a pose; what is welded to it goes along."""
+        moved = {part: pose}
+        for other in self.bodies[part] - {part}:
+            moved[other] = pose @ (self.poses[part].inverse @ self.poses[other])
+        return replace(self, poses={**self.poses, **moved})
+
+    def with_welded(self, parts: tuple[str, ...]) -> "World":
+        """The world in which parts, and what is welded to them, are one body."""
+        body = frozenset[str]().union(*(self.bodies[part] for part in parts))
+        return replace(self, bodies={**self.bodies, **dict.fromkeys(body, body)})
