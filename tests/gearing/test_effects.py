@@ -21,7 +21,7 @@ from tol3d.gearing.effects import (
     AxisTilt,
     Clocking,
     Effect,
-    ReducerBacklash,
+    LinkDeviation,
     Temperature,
     Together,
     ToothThickness,
@@ -46,7 +46,7 @@ ALL: tuple[Effect, ...] = (
     AxisTilt("pinion", (0.0, 1.0, 0.0), pivot=3.0),
     AxesOffset("wheel", "mesh"),
     Temperature(("pinion", "wheel")),
-    ReducerBacklash("reducer"),
+    LinkDeviation("reducer"),
     Clocking("wheel"),
 )
 
@@ -88,7 +88,7 @@ def test_both_roads_know_every_effect_of_every_kind_of_pair(effect: Effect, pair
         (AxesOffset("b", "first"), True, False),
         (Temperature(("box",)), False, True),
         (Temperature(("a", "box")), True, True),
-        (ReducerBacklash("r"), False, False),
+        (LinkDeviation("r"), False, False),
         (Clocking("b"), False, False),
         (Together((ToothThickness("a", 0.02), AxisOffset("c"))), True, True),
     ],
@@ -113,9 +113,9 @@ def test_clocking_turns_the_driven_shaft_by_the_ratio_for_the_driver_and_back_fo
 
 
 def test_play_is_of_the_reducer_that_it_names() -> None:
-    assert ReducerBacklash("r").play_of("r") == 1.0
-    assert ReducerBacklash("r").play_of("other") == 0.0
-    assert Clocking("r").play_of("r") == 0.0
+    assert LinkDeviation("r").acts_on("r")
+    assert not LinkDeviation("r").acts_on("other")
+    assert not Clocking("r").acts_on("r")
 
 
 # numpy's builds and the compiled ones -------------------------------------------------------------------------------

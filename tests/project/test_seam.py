@@ -101,6 +101,6 @@ def test_toys_are_new_files_and_one_registration() -> None:
         for path in folder.rglob("*.*"):
             if path.suffix in (".py", ".yaml"):
                 assert not known.search(path.read_text("utf-8")), path
-    assert not [
-        path for path in (TESTS / "toys").rglob("*.py") for module in imported(path) if module.startswith("tol3d.gear")
-    ]
+    whole = [path for path in (TESTS / "toys").rglob("*.py") if path.parent.name != "drives"]  # these extend gears
+    assert len(whole) >= 10
+    assert not [path for path in whole for module in imported(path) if module.startswith("tol3d.gear")]

@@ -238,7 +238,7 @@ def _measure(scene: Scene, model: Model, train: Train, like: LostMotion | None) 
 
 def _law_of(model: Model, stage: AnyStage) -> Contributor | None:
     """The contributor that draws a reducer's backlash; without one only its maximum is known."""
-    return next((own for own in model.contributors if own.effect.play_of(stage.link)), None)
+    return next((own for own in model.contributors if own.effect.acts_on(stage.link)), None)
 
 
 # what is left -------------------------------------------------------------------------------------

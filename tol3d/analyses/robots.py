@@ -118,7 +118,7 @@ def robots_trials(simulation: Simulation, first: int, count: int, positions: int
     angles: dict[str, Array] = {}
     for drive in model.layout.drives:
         root = 2 * math.pi * float(drive.turns) * _shares(drive, simulation.study.seed, first, count, positions)
-        for mesh in drive.meshes:
+        for mesh in drive.moves:
             turning = model.layout.mesh_turn[mesh]
             spread = turning.offset + float(turning.rate) * root
             angles[mesh] = np.concatenate([spread, own.positions[mesh][:, None]], axis=1).ravel()

@@ -119,8 +119,8 @@ def _seats_of(seen: Replay) -> Seats:
 
 def shows_shafts(model: Model) -> bool:
     """Whether its parts make more than single pairs: they are shown in one world then, at the trial's position."""
-    plain = all(len(drive.meshes) == 1 for drive in model.layout.drives)
-    return bool(model.shafts or model.arms or model.reducers) or not plain
+    plain = all(len(drive.moves) == 1 for drive in model.layout.drives)
+    return bool(model.shafts or model.arms or model.links) or not plain
 
 
 def _first_measure(model: Model, mesh: Mesh) -> Measure | None:
@@ -178,11 +178,12 @@ def _along_shafts(seen: Replay) -> Mapping[str, MeshSeat]:
     meshes = {mesh.name: mesh for mesh in _model(seen).meshes}
     ahead: dict[str, float] = {}  # of its nominal angle, by shaft [rad]
     seats = {}
-    for link in sorted(layout.links, key=lambda link: len(layout.behind(link.driven))):
+    for link in sorted(layout.links, key=lambda link: len(layout.upstream(link.driven))):
         before = ahead.get(link.driver, 0.0)
         mesh = meshes.get(link.name)
         if mesh is None:
-            ahead.setdefault(link.driven, before * float(link.rate))
+            about = ahead.get(link.carrier or "", 0.0)
+            ahead.setdefault(link.driven, about + (before - about) * float(link.rate))
             continue
         known = meshings[_own_key(seen, mesh)]
         meshing = Meshing(known.engine, _model(seen), mesh, _seats_of(seen).build, known.reading)

@@ -17,13 +17,16 @@ Array = NDArray[np.float64]
 
 Part = tuple[Stage, Literal["play", "rest"]]
 Reading = Callable[[Part], Array]
-"""A stage's own play [rad], or the angle at which its driven gear rests [rad]; (trials, positions)."""
+"""A stage's own play [rad], or the angle at which its driven gear rests [rad]; (trials, positions).
+
+Of a link that is no mesh the middle of its free turn stands for that angle.
+"""
 
 Form = Mapping[Part, Array]
 """Weights of the stages' plays and rests, each (trials, positions) or a scalar."""
 
 Flank = Callable[[Stage], int | None]
-"""The driver's flank that works in a stage; None for a reducer, whose play lies to both sides alike."""
+"""The driver's flank that works in a stage; None for a link that is no mesh."""
 
 
 def value(form: Form, read: Reading) -> Array:
@@ -65,7 +68,8 @@ def _ends(stage: AnyStage, flank: Flank, read: Reading) -> tuple[Form, Form]:
     side = flank(stage)
     if side is None:
         half = np.array(stage.factor / 2)
-        return {(stage, "play"): -half}, {(stage, "play"): half}
+        middle: Form = {(stage, "rest"): factor} if stage.has_middle else {}
+        return {**middle, (stage, "play"): -half}, {**middle, (stage, "play"): half}
     # a right flank (1) is left by a turn in the positive sense
     resting: Form = {(stage, "rest"): factor}
     turned: Form = {(stage, "rest"): factor, (stage, "play"): factor * side}

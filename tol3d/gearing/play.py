@@ -10,10 +10,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.gearing.clocking import clocking
+from tol3d.gearing.linked import LinkLaw, link_trials
+from tol3d.gearing.links.stated_link import middle_of
 from tol3d.gearing.load_paths import Form, Part, free_form, value
 from tol3d.gearing.model import Backlash, LostMotion, Measure, Model, Reading
 from tol3d.gearing.model.measure import AnyStage, ParallelStage, Stage
-from tol3d.gearing.reducer import reducer_backlash
+from tol3d.system.trials import Trials
 
 Array = NDArray[np.float64]
 
@@ -45,21 +47,23 @@ class Play:
 
     Args:
         model, measure: what is read.
-        deviations: (trials, components) [mm, rad, K].
+        trials: deviations and positions.
         read: gives the values of each backlash.
+        law: gives the free turns of links that are no meshes.
     """
 
     model: Model
     measure: Measure
-    deviations: Array
+    trials: Trials
     read: Read
+    law: LinkLaw
 
     def free(self) -> Array:
         """What they leave free together [mm or rad], (trials, positions)."""
         return np.asarray(sum(factor * values for _, factor, values in self.parts()))
 
     def parts(self) -> Iterator[tuple[str, float, Array]]:
-        """What is added up: the name of each mesh, reducer or group of parallel load paths, its factor, its play."""
+        """What is added up: the name of each link or group of parallel load paths, its factor, its play."""
         kind = self.measure.kind
         if isinstance(kind, Backlash):
             yield kind.mesh, 1.0, self.read(kind, seat_key(self.model, self.measure, kind))
@@ -74,12 +78,12 @@ class Play:
         """
         if isinstance(self.measure.kind, Backlash):
             return np.minimum(self.free(), 0.0)
-        stages = (stage for stage in self.measure.kind.stages if not _is_reducer(stage))
+        stages = (stage for stage in self.measure.kind.stages if not _is_stated(stage))
         return np.asarray(sum(stage.factor * np.minimum(self.of(stage), 0.0) for stage in stages))
 
     def bound(self) -> NDArray[np.bool_]:
         """Where parallel load paths bind each other, (trials, positions)."""
-        tight = np.zeros((len(self.deviations), self.measure.positions.in_a_trial), dtype=bool)
+        tight = np.zeros(self._shape, dtype=bool)
         stages = self.measure.kind.stages if isinstance(self.measure.kind, LostMotion) else ()
         for stage in _parallel(stages):
             tight |= self.of(stage) < -FREE
@@ -90,28 +94,36 @@ class Play:
         return value(self.form(stage), self.reading)
 
     def form(self, stage: AnyStage) -> Form:
-        """That as a weighted sum of the readings of its meshes and reducers."""
+        """That as a weighted sum of the readings of its links."""
         if isinstance(stage, Stage):
             return {(stage, "play"): np.array(1.0)}
         return free_form(stage, self._flank, self.reading)
 
     def reading(self, part: Part) -> Array:
-        """A stage's own play, or the angle at which its driven gear rests on its shaft [rad], (trials, positions)."""
+        """A stage's own play, or the angle at which its driven gear rests on its shaft [rad], (trials, positions).
+
+        Of a link that is no mesh the middle of its free turn stands for that angle.
+        """
         stage, what = part
         if stage.backlash is None:
-            own = reducer_backlash(self.model, stage.link, self.deviations)
-            return np.broadcast_to(own[:, None], (len(own), self.measure.positions.in_a_trial))
+            link = self.model.link(stage.link)
+            turn = self.law(link, link_trials(self.model, self.measure, link, self.trials))
+            return np.broadcast_to(turn.play if what == "play" else middle_of(turn), self._shape)
         key = seat_key(self.model, self.measure, stage.backlash)
         if what == "play":
             return self.read(stage.backlash, key)
-        sits = clocking(self.model, self.model.mesh(stage.backlash.mesh), self.deviations)
+        sits = clocking(self.model, self.model.mesh(stage.backlash.mesh), self.trials.deviations)
         return self.read(replace(stage.backlash, quantity="rest_angle"), key) + sits[:, None]
+
+    @property
+    def _shape(self) -> tuple[int, int]:
+        return len(self.trials), self.measure.positions.in_a_trial
 
     def _flank(self, stage: Stage) -> int | None:
         return None if stage.backlash is None else self.model.mesh(stage.backlash.mesh).working_flank
 
 
-def _is_reducer(stage: AnyStage) -> bool:
+def _is_stated(stage: AnyStage) -> bool:
     return isinstance(stage, Stage) and stage.backlash is None
 
 

@@ -19,20 +19,18 @@ Columns = Mapping[str, NDArray[Any]]
 
 
 def acting(model: Model, measure: Measure) -> tuple[Contributor, ...]:
-    """The contributors that act on a measure: on one of its meshes, or one of its reducers."""
+    """The contributors that act on a measure: on one of its meshes, or one of its other links."""
     meshes = [model.mesh(backlash.mesh) for _, backlash in measure.kind.backlashes]
-    reducers = {name for _, name in measure.kind.reducers}
+    links = {name for _, name in measure.kind.links}
     clocked = () if measure.kind.adds_up else meshes
-    return tuple(
-        contributor for contributor in model.contributors if _acts(contributor.effect, meshes, reducers, clocked)
-    )
+    return tuple(contributor for contributor in model.contributors if _acts(contributor.effect, meshes, links, clocked))
 
 
-def _acts(effect: Effect, meshes: Sequence[Mesh], reducers: Set[str], clocked: Sequence[Mesh]) -> bool:
+def _acts(effect: Effect, meshes: Sequence[Mesh], links: Set[str], clocked: Sequence[Mesh]) -> bool:
     return (
         any(effect.acts_in(mesh) for mesh in meshes)
         or any(effect.clocking(mesh) for mesh in clocked)
-        or any(effect.play_of(reducer) for reducer in reducers)
+        or any(effect.acts_on(link) for link in links)
     )
 
 
@@ -40,7 +38,7 @@ def regressor_key(measure: Measure) -> Hashable:
     """Measures of one key have the same regressors."""
     kind = measure.kind
     read = tuple(replace(backlash, quantity="normal_backlash", gear="") for _, backlash in kind.backlashes)
-    return read, tuple(name for _, name in kind.reducers), measure.positions, measure.take == "value"
+    return read, tuple(name for _, name in kind.links), measure.positions, measure.take == "value"
 
 
 def regress(
@@ -58,7 +56,7 @@ def _angles(model: Model, measure: Measure, columns: Columns) -> Mapping[str, Ar
     angles: dict[str, Array] = {}
     for _, backlash in measure.kind.backlashes:
         mesh = model.mesh(backlash.mesh)
-        driver = np.radians(np.asarray(columns[position_column(mesh)], dtype=np.float64))
+        driver = np.radians(np.asarray(columns[position_column(mesh.name)], dtype=np.float64))
         if (fixed := model.driver_angles(measure, mesh.name)) is not None:
             driver = np.full_like(driver, fixed[0])
         angles.setdefault(mesh.driver, driver)
@@ -66,9 +64,9 @@ def _angles(model: Model, measure: Measure, columns: Columns) -> Mapping[str, Ar
     return angles
 
 
-def position_column(mesh: Mesh) -> str:
-    """Name of the column with a mesh's random driver position."""
-    return f"position:{mesh.name} [deg]"
+def position_column(mesh: str) -> str:
+    """Name of the column with the random driver position of a mesh, or another link."""
+    return f"position:{mesh} [deg]"
 
 
 class _Turning:

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from tol3d.gearing.build import Build, build
 from tol3d.gearing.engines import Engine
+from tol3d.gearing.linked import as_built
 from tol3d.gearing.measures import measure_backlash, moved
 from tol3d.gearing.meshing import Meshing, MeshSeat
 from tol3d.gearing.model import Backlash, Measure, Model
@@ -68,7 +69,7 @@ def play_of(measure: Measure, seats: Seats) -> Play:
         values = measure_backlash(backlash, seats.meshings[key], seats.seats[key])
         return values.reshape(len(seats.trials), -1)
 
-    return Play(seats.model, measure, seats.trials.deviations, read)
+    return Play(seats.model, measure, seats.trials, read, as_built)
 
 
 def geometric_values(measure: Measure, seats: Seats) -> Array:

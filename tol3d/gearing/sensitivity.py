@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.gearing.engines import OK, Engine, Gaps
+from tol3d.gearing.linked import link_trials
 from tol3d.gearing.load_paths import Part
 from tol3d.gearing.measures import moved_rate
 from tol3d.gearing.meshing import Meshing, MeshSeat
@@ -77,8 +78,9 @@ def _part_rates(model: Model, measure: Measure, moves: BuildRates, seats: Seats,
     stage, what = part
     rates = np.zeros((len(moves.scale), model.component_count))
     if stage.backlash is None:
-        for contributor in model.contributors:
-            rates[:, model.component_slices[contributor.name]] = contributor.effect.play_of(stage.link)
+        link = model.link(stage.link)
+        for name, own in link.rates(link_trials(model, measure, link, seats.trials), what).items():
+            rates[:, model.component_slices[name]] = own.reshape(len(rates), -1)
         return rates
     key = seat_key(model, measure, stage.backlash)
     if what == "play":

@@ -262,7 +262,7 @@ class StageSummary(Section):
     """A link of a train."""
 
     link: Label
-    kind: Literal["mesh", "bevel_mesh", "reducer", "parallel"]
+    kind: Label = Field(description="mesh, bevel_mesh, parallel, or the kind of another link, such as reducer")
     driver: Label
     driven: Label
     gears: Annotated[list[Label], Field(min_length=2, max_length=2)] | None

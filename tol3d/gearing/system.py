@@ -109,7 +109,9 @@ class GearSystem:
 
     def columns(self, trials: Trials) -> Mapping[str, NDArray[np.generic]]:
         """See System."""
-        return {position_column(mesh): np.degrees(trials.positions[mesh.name]) for mesh in self.model.meshes}
+        names = [mesh.name for mesh in self.model.meshes]
+        names += [link.name for link in self.model.links if link.name in trials.positions]
+        return {position_column(name): np.degrees(trials.positions[name]) for name in names}
 
     def turns_at_random(self, contributor: system_contributor.Contributor, positions: Positions) -> bool:
         """See System."""

@@ -1,12 +1,12 @@
 """Trains as summary.json shows them: their stages, and the sums of the stages' ends."""
 
 from collections.abc import Mapping, Sequence
-from typing import Any, Literal
+from typing import Any
 
 import numpy as np
 
-from tol3d.distributions import Distribution
 from tol3d.gearing.breakdowns import staged_measures
+from tol3d.gearing.linked import link_contributors
 from tol3d.gearing.model import Backlash, LostMotion, Measure, Model
 from tol3d.gearing.model.measure import AnyStage, ParallelStage, Tip
 from tol3d.gearing.model.mesh import Mesh
@@ -92,7 +92,7 @@ def _stage(model: Model, stage: AnyStage, roads: Mapping[str, ByLink], published
     return made(
         StageSummary,
         link=stage.link,
-        kind=_kind(stage, mesh),
+        kind=_kind(model, stage, mesh),
         driver=driver,
         driven=driven,
         gears=[mesh.driver, mesh.driven] if mesh else None,
@@ -110,11 +110,11 @@ def _stage(model: Model, stage: AnyStage, roads: Mapping[str, ByLink], published
     )
 
 
-def _kind(stage: AnyStage, mesh: Mesh | None) -> Literal["mesh", "bevel_mesh", "reducer", "parallel"]:
+def _kind(model: Model, stage: AnyStage, mesh: Mesh | None) -> str:
     if isinstance(stage, ParallelStage):
         return "parallel"
     if mesh is None:
-        return "reducer"
+        return model.link(stage.link).kind
     return "bevel_mesh" if mesh.pair.arm_spread else "mesh"
 
 
@@ -139,22 +139,16 @@ def _of_road(stages: Sequence[AnyStage], tallied: PooledTerms) -> ByLink:
 
 
 def _within_sheets(model: Model, ends: ByLink) -> ByLink:
-    """Ends of a reducer's play no further than its law goes, which 3 sigma may."""
-    laws = {
-        link: contributor.distribution
-        for link in ends
-        for contributor in model.contributors
-        if contributor.effect.play_of(link)
-    }
-    return {link: _within(own, laws[link]) if link in laws else own for link, own in ends.items()}
+    """Ends of a link's play no further than its laws go, which 3 sigma may."""
+    known = {link.name: link.ends(link_contributors(model, link.name)) for link in model.links}
+    return {link: _within(own, known.get(link)) for link, own in ends.items()}
 
 
-def _within(ends: Ends, law: Distribution) -> Ends:
+def _within(ends: Ends, law: tuple[float, float] | None) -> Ends:
     low, high = ends.low_3sigma, ends.high_3sigma
-    if low is None or high is None:
+    if law is None or low is None or high is None:
         return ends
-    nearer = {"low_3sigma": max(low, law.low * ARCMIN), "high_3sigma": min(high, law.high * ARCMIN)}
-    return ends.model_copy(update=nearer)
+    return ends.model_copy(update={"low_3sigma": max(low, law[0] * ARCMIN), "high_3sigma": min(high, law[1] * ARCMIN)})
 
 
 def _published(model: Model, kind: LostMotion, ours: ByLink, others: Published) -> dict[str, ByLink]:

@@ -42,7 +42,8 @@ class Vocabulary:
         name: of them all, for messages and for others that build on it.
         parts, tolerances, moves, measures: the kinds of each section.
         checks: what must hold across entries.
-        includes: names of vocabularies whose kinds may stand beside these in one scene.
+        includes: names of vocabularies whose kinds may stand beside these in one scene, which is then this one's.
+        extends: names of vocabularies in whose scenes these kinds may stand; the scene stays theirs.
         engines: words of study.engine, besides "analytic"; the first is taken where nothing is said.
         witness: the one of them that can check the others, if there is one.
 
@@ -57,6 +58,7 @@ class Vocabulary:
     measures: tuple[type[MeasureEntry], ...] = ()
     checks: tuple[Check, ...] = ()
     includes: tuple[str, ...] = ()
+    extends: tuple[str, ...] = ()
     engines: tuple[str, ...] = ("exact",)
     witness: str = ""
 
@@ -123,20 +125,34 @@ class Grammar:
                 yield from check(scene)
 
     def vocabulary_of(self, scene: Scene) -> Vocabulary:
-        """The vocabulary that understands all of a scene: its own kinds, and those that it includes.
+        """The vocabulary that understands all of a scene: its own kinds, those that it includes or that extend it.
 
         Raises:
-            SceneError: the kinds of the scene are of several, none of which includes the others.
+            SceneError: the kinds of the scene are of several, none of which understands the others.
         """
+        used = self._used(scene)
+        for vocabulary in self.vocabularies:
+            if vocabulary.name in used and used.keys() <= self._understood(vocabulary):
+                return vocabulary
+        *_, (last, path) = used.items()
+        raise scene.refuse(path, f"kinds of {' and '.join(used)} do not go together; take out {last}")
+
+    def vocabularies_of(self, scene: Scene) -> tuple[Vocabulary, ...]:
+        """The vocabularies whose kinds a scene has, in the order of registration."""
+        used = self._used(scene)
+        return tuple(vocabulary for vocabulary in self.vocabularies if vocabulary.name in used)
+
+    def _used(self, scene: Scene) -> Mapping[str, KeyPath]:
+        """The vocabularies whose kinds a scene has, each with its first entry."""
         used: dict[str, KeyPath] = {}
         for section in SECTIONS:
             for name, entry in scene.section(section).items():
                 used.setdefault(self._owner[type(entry)].name, (section, name))
-        for vocabulary in self.vocabularies:
-            if vocabulary.name in used and used.keys() <= {vocabulary.name, *vocabulary.includes}:
-                return vocabulary
-        *_, (last, path) = used.items()
-        raise scene.refuse(path, f"kinds of {' and '.join(used)} do not go together; take out {last}")
+        return used
+
+    def _understood(self, vocabulary: Vocabulary) -> set[str]:
+        extending = (each.name for each in self.vocabularies if vocabulary.name in each.extends)
+        return {vocabulary.name, *vocabulary.includes, *extending}
 
     @cached_property
     def _owner(self) -> Mapping[type[Entry], Vocabulary]:

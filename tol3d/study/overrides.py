@@ -10,7 +10,7 @@ from tol3d.errors import InputError
 from tol3d.scene import Scene
 from tol3d.scene.engines import Engines
 from tol3d.study.simulation import Simulation, published_in, study_of
-from tol3d.system.mechanism import mechanism_of
+from tol3d.system.mechanism import mechanism_of, requires_of
 
 
 @dataclass(frozen=True)
@@ -52,7 +52,7 @@ def simulation_of(scene: Scene, overrides: Overrides = AS_WRITTEN) -> Simulation
         system,
         study_of(asked.study),
         published_in(asked),
-        mechanism.requires,
+        requires_of(asked),
         mechanism.presenter,
         {"name": mechanism.name, "module": mechanism.module},
     )

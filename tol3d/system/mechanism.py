@@ -16,7 +16,8 @@ class Mechanism(Vocabulary):
     Code is named by import paths `package.module:name`, so that opening a scene loads no geometry and no compiler.
 
     Args:
-        system: path of the function that makes of a scene what is simulated.
+        system: path of the function that makes of a scene what is simulated; "" where it only adds kinds to the scenes
+            of the mechanisms that it `extends`.
         summary: path of what its measures and sections are in a run's summary.
         presenter: import path of the module whose PRESENTER shows it, see `tol3d.report.presenter`; "" for none.
         requires: distributions whose versions decide its results beside those that every study needs; they are part
@@ -59,4 +60,15 @@ def mechanism_of(scene: Scene) -> Mechanism:
     found = scene.grammar.vocabulary_of(scene)
     if not isinstance(found, Mechanism):
         raise InputError(f"{found.name}: expected a Mechanism, got a vocabulary, of which nothing can be simulated")
+    if not found.system:
+        others = " or ".join(found.extends) or "another mechanism"
+        raise InputError(f"{scene.scene}: kinds of {found.name} stand beside those of {others}, and there are none")
     return found
+
+
+def requires_of(scene: Scene) -> tuple[str, ...]:
+    """The distributions whose versions decide a scene's results: of its mechanism, and of those that extend it."""
+    own = mechanism_of(scene)
+    used = (each for each in scene.grammar.vocabularies_of(scene) if own.name in each.extends)
+    extending = (each.requires for each in used if isinstance(each, Mechanism))
+    return tuple(dict.fromkeys(name for names in (own.requires, *extending) for name in names))

@@ -5,8 +5,8 @@ from tol3d.gearing.effects.axis_offset import AxisOffset
 from tol3d.gearing.effects.axis_tilt import AxisTilt
 from tol3d.gearing.effects.clocking import Clocking
 from tol3d.gearing.effects.effect import NOTHING, Effect, Together
+from tol3d.gearing.effects.link_deviation import LinkDeviation
 from tol3d.gearing.effects.plane import AS_COUNTED, Plane
-from tol3d.gearing.effects.reducer_backlash import ReducerBacklash
 from tol3d.gearing.effects.temperature import Temperature
 from tol3d.gearing.effects.tooth_thickness import ToothThickness
 from tol3d.gearing.effects.turning_offset import TurningOffset
@@ -19,8 +19,8 @@ __all__ = [
     "AxisTilt",
     "Clocking",
     "Effect",
+    "LinkDeviation",
     "Plane",
-    "ReducerBacklash",
     "Temperature",
     "Together",
     "ToothThickness",

@@ -1,4 +1,4 @@
-"""On what one deviation acts: gears, meshes, reducers. Data; each road has its own formulas for what that changes."""
+"""On what one deviation acts: gears, meshes, links. Data; each road has its own formulas for what that changes."""
 
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
@@ -28,9 +28,9 @@ class Effect(ABC):
         """Turn of the shaft that a mesh drives, about the driven gear's z, with the teeth in contact [rad per unit]."""
         return 0.0
 
-    def play_of(self, reducer: str) -> float:
-        """Angular backlash of a reducer at the shaft that it drives [rad per unit]."""
-        return 0.0
+    def acts_on(self, link: str) -> bool:
+        """Whether it is a deviation of a link that is no gear mesh."""
+        return False
 
     @property
     def turns_with(self) -> str | None:
@@ -62,9 +62,9 @@ class Together(Effect):
         """See Effect."""
         return sum(effect.clocking(mesh) for effect in self.effects)
 
-    def play_of(self, reducer: str) -> float:
+    def acts_on(self, link: str) -> bool:
         """See Effect."""
-        return sum(effect.play_of(reducer) for effect in self.effects)
+        return any(effect.acts_on(link) for effect in self.effects)
 
     @property
     def turns_with(self) -> str | None:

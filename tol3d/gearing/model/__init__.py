@@ -6,18 +6,19 @@ from tol3d.gearing.effects import (
     AxisTilt,
     Clocking,
     Effect,
-    ReducerBacklash,
+    LinkDeviation,
     Temperature,
     Together,
     ToothThickness,
     TurningOffset,
 )
+from tol3d.gearing.links import Reducer, StatedLink
 from tol3d.gearing.model.contributor import Contributor
 from tol3d.gearing.model.layout import Layout
 from tol3d.gearing.model.measure import Backlash, Kind, LostMotion, Measure, Reading
 from tol3d.gearing.model.mesh import Mesh, Seat
 from tol3d.gearing.model.model import GearPart, Model
-from tol3d.gearing.model.shafts import Arm, Reducer, Shaft, Train
+from tol3d.gearing.model.shafts import Arm, Shaft, Train
 from tol3d.system.draw import Planar, Scalar
 from tol3d.system.positions import Positions
 
@@ -35,6 +36,7 @@ __all__ = [
     "GearPart",
     "Kind",
     "Layout",
+    "LinkDeviation",
     "LostMotion",
     "Measure",
     "Mesh",
@@ -43,10 +45,10 @@ __all__ = [
     "Positions",
     "Reading",
     "Reducer",
-    "ReducerBacklash",
     "Scalar",
     "Seat",
     "Shaft",
+    "StatedLink",
     "Temperature",
     "Together",
     "ToothThickness",

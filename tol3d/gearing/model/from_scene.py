@@ -13,17 +13,18 @@ from tol3d.gearing.model.mesh import Mesh
 from tol3d.gearing.model.model import GearPart, Housing, Model
 from tol3d.gearing.model.nominal import Nominal
 from tol3d.gearing.model.pairs import internal, pair_of, undercut_warning
+from tol3d.gearing.model.shaft_trees import refuse_no_trees, refuse_revolving
 from tol3d.gearing.model.shafts import Arm, Train
 from tol3d.gearing.model.trains import (
     arms_of,
     loaded_flank,
     loose_gears,
-    reducers_of,
     refuse_bearings,
     refuse_misfits,
-    refuse_no_trees,
     refuse_other_ratios,
+    refuse_second_laws,
     shafts_of,
+    stated_links_of,
     trains_of,
 )
 from tol3d.gears import LEFT, RIGHT
@@ -39,10 +40,12 @@ def model_from_scene(scene: Scene) -> Model:
     for gear in loose_gears(scene):
         raise scene.refuse(("parts", gear), f"{gear!r} takes part in no move; put it into a mesh or take it out")
     refuse_bearings(scene)
-    shafts, reducers, arms = shafts_of(scene), reducers_of(scene), arms_of(scene)
+    refuse_second_laws(scene)
+    shafts, stated, arms = shafts_of(scene), stated_links_of(scene), arms_of(scene)
     meshes = tuple(_mesh(scene, name, move) for name, move in scene.moves.items() if isinstance(move, GearMeshSpec))
-    refuse_no_trees(scene, links_between_shafts(meshes, shafts, reducers))
-    layout = layout_of(meshes, shafts, reducers)
+    refuse_no_trees(scene, links_between_shafts(meshes, shafts, stated))
+    layout = layout_of(meshes, shafts, stated)
+    refuse_revolving(scene, layout, arms)
     refuse_misfits(scene, meshes, layout)
     trains = trains_of(scene, layout)
     refuse_other_ratios(scene, meshes, layout)
@@ -63,7 +66,7 @@ def model_from_scene(scene: Scene) -> Model:
         profile_steps=scene.study.profile_steps,
         warnings=tuple(_warnings(meshes)),
         shafts=shafts,
-        reducers=reducers,
+        links=stated,
         arms=arms,
         trains=trains,
     )

@@ -15,17 +15,22 @@ from fractions import Fraction
 import numpy as np
 from numpy.typing import NDArray
 
+from tol3d.gearing.links import StatedLink
 from tol3d.gearing.model.links import (
     Link,
     LoadPath,
     back_to_root,
     carriers,
+    first_drivers,
+    freed_turn,
     links_between_shafts,
     load_path_between,
     onwards,
+    turned_by,
+    upstream,
 )
 from tol3d.gearing.model.mesh import Mesh
-from tol3d.gearing.model.shafts import Carried, Reducer, Shaft
+from tol3d.gearing.model.shafts import Carried, Shaft
 
 Array = NDArray[np.float64]
 
@@ -42,6 +47,9 @@ class Turning:
         return self.offset + float(self.rate) * root
 
 
+RESTS = Turning(0.0, Fraction(0))
+
+
 @dataclass(frozen=True)
 class Drive:
     """A tree of shafts.
@@ -50,13 +58,13 @@ class Drive:
         root: its first shaft.
         name: of the stream that draws its positions.
         turns: of the root, until all teeth meet again in the same places; a fraction.
-        meshes: its meshes' names.
+        moves: its meshes' names, then those of its other links whose play depends on the position.
     """
 
     root: str
     name: str
     turns: Fraction
-    meshes: tuple[str, ...]
+    moves: tuple[str, ...]
 
 
 @dataclass(frozen=True)
@@ -87,7 +95,8 @@ class Layout:
         closing: the others of several.
         root_of: the root of each shaft's tree.
         shaft_turn: how each shaft turns with its root.
-        mesh_turn: how the driver of each mesh turns with its root, in the frame of the mesh.
+        mesh_turn: how the driver of each mesh turns with its root, in the frame of the mesh; of other links whose play
+            depends on the position, against the carrier.
         world_from_shaft: (4, 4), shafts at 0.
         world_from_mesh: (4, 4).
         shaft_from_gear: (4, 4), a gear's axis at rest on its shaft.
@@ -115,11 +124,15 @@ class Layout:
 
     def drive_of(self, mesh: str) -> Drive:
         """The tree that a mesh belongs to."""
-        return next(drive for drive in self.drives if mesh in drive.meshes)
+        return next(drive for drive in self.drives if mesh in drive.moves)
 
     def behind(self, shaft: str) -> tuple[Link, ...]:
         """The links from a shaft back to its root; the first of parallel load paths."""
         return back_to_root(self.driving, shaft)
+
+    def upstream(self, shaft: str) -> tuple[Link, ...]:
+        """The links that a shaft's turn depends on; by the first of parallel load paths."""
+        return upstream(self.driving, shaft)
 
     def load_path(self, first: str, last: str) -> LoadPath:
         """What lies between two shafts of a tree, in the order of the load path.
@@ -133,15 +146,23 @@ class Layout:
         """Turns of the first shaft per turn of the last, signed."""
         return self.shaft_turn[first].rate / self.shaft_turn[last].rate
 
+    def turn_by(self, freed: str, read: str) -> Fraction:
+        """Turn of a shaft that is read per turn of another one, the first shaft at rest; 0 where it does not matter."""
+        return turned_by(self.links, freed, read)
 
-def layout_of(meshes: Sequence[Mesh], shafts: Sequence[Shaft], reducers: Sequence[Reducer]) -> Layout:
+    def freed_turn(self, freed: str, read: str, held: str) -> Fraction:
+        """Turn of a shaft that is read per turn that the play of another one's driver frees, a third one held."""
+        if any(link.carrier for link in self.links):
+            return freed_turn(self.links, freed, read, held)
+        return self.ratio(read, freed)
+
+
+def layout_of(meshes: Sequence[Mesh], shafts: Sequence[Shaft], stated: Sequence[StatedLink]) -> Layout:
     """The layout of a model whose shafts make trees, which model/trains.py sees to."""
-    links = links_between_shafts(meshes, shafts, reducers)
-    driving: dict[str, Link] = {}
-    for link in links:
-        driving.setdefault(link.driven, link)
+    links = links_between_shafts(meshes, shafts, stated)
+    driving = first_drivers(links)
     placing = _Placing(carriers(meshes, shafts))
-    causes: dict[str, Mesh | Reducer] = {mesh.name: mesh for mesh in meshes} | {r.name: r for r in reducers}
+    causes: dict[str, Mesh | StatedLink] = {mesh.name: mesh for mesh in meshes} | {own.name: own for own in stated}
     names = dict.fromkeys([*(link.driver for link in links), *(shaft.name for shaft in shafts)])
     for root in (name for name in names if name not in driving):
         placing.begin(root)
@@ -163,7 +184,7 @@ def layout_of(meshes: Sequence[Mesh], shafts: Sequence[Shaft], reducers: Sequenc
         shaft_from_gear=placing.frames,
         carrying=placing.carrying,
         closed=placing.closed,
-        drives=tuple(_drives(meshes, links, placing.root_of, placing.mesh_turn)),
+        drives=tuple(_drives(links, placing.root_of, _periods(meshes, stated, placing.mesh_turn))),
     )
 
 
@@ -184,13 +205,14 @@ class _Placing:
         """A root lies in the origin."""
         self.root_of[root], self.turn[root], self.world[root] = root, Turning(), np.eye(4)
 
-    def go_on(self, link: Link, cause: Mesh | Reducer) -> None:
+    def go_on(self, link: Link, cause: Mesh | StatedLink) -> None:
         """A link places the shaft that it drives."""
         self.root_of[link.driven] = self.root_of[link.driver]
-        if isinstance(cause, Reducer):
-            before = self.turn[link.driver]
-            self.turn[link.driven] = Turning(before.offset * float(link.rate), before.rate * link.rate)
-            self.world[link.driven] = self.world[link.driver] @ _along_z(cause.offset)
+        if isinstance(cause, StatedLink):
+            before, about = self._against_carrier(link, cause)
+            turned = Turning(before.offset * float(link.rate), before.rate * link.rate)
+            self.turn[link.driven] = Turning(about.offset + turned.offset, about.rate + turned.rate)
+            self.world[link.driven] = self.world[link.driver] @ cause.driver_from_driven
             return
         (_, driver), (_, driven) = self.carrying[cause.driver], self.carrying[cause.driven]
         self.mesh_turn[cause.name] = _of_driver(cause, driver, self.turn[link.driver])
@@ -198,9 +220,19 @@ class _Placing:
         pose = self._place_mesh(link, cause)
         self.world[link.driven] = pose @ _wheel_in_mesh(cause) @ np.linalg.inv(self.frames[cause.driven])
 
-    def close(self, link: Link, cause: Mesh | Reducer, busy: Mapping[str, int]) -> None:
+    def _against_carrier(self, link: Link, cause: StatedLink) -> tuple[Turning, Turning]:
+        """How the driver of a link turns against its carrier, and how that turns."""
+        about = RESTS if link.carrier is None else self.turn[link.carrier]
+        driver = self.turn[link.driver]
+        before = Turning(driver.offset - about.offset, driver.rate - about.rate)
+        if cause.turns is not None:
+            self.mesh_turn[cause.name] = before
+        return before, about
+
+    def close(self, link: Link, cause: Mesh | StatedLink, busy: Mapping[str, int]) -> None:
         """A link finds the shaft that it drives in its place, and has the teeth fit there; see _clocked."""
-        if isinstance(cause, Reducer):
+        if isinstance(cause, StatedLink):
+            self._against_carrier(link, cause)
             return
         pose = self._place_mesh(link, cause)
         azimuth = _turn_between(self.world[link.driven] @ self.frames[cause.driven], pose @ _wheel_in_mesh(cause))
@@ -271,16 +303,25 @@ def _turn_between(first: Array, second: Array) -> float:
     return math.atan2(turn[1, 0], turn[0, 0])
 
 
-def _drives(
-    meshes: Sequence[Mesh], links: Sequence[Link], root_of: Mapping[str, str], mesh_turn: Mapping[str, Turning]
-) -> Iterator[Drive]:
+def _periods(
+    meshes: Sequence[Mesh], stated: Sequence[StatedLink], mesh_turn: Mapping[str, Turning]
+) -> Mapping[str, Fraction]:
+    """Turns of the root after which each mesh, and each other link with positions, stands as before."""
+    periods = {mesh.name: mesh.pair.long_period_turns / abs(mesh_turn[mesh.name].rate) for mesh in meshes}
+    for own in stated:
+        if own.turns is not None and mesh_turn[own.name].rate:
+            periods[own.name] = own.turns / abs(mesh_turn[own.name].rate)
+    return periods
+
+
+def _drives(links: Sequence[Link], root_of: Mapping[str, str], periods: Mapping[str, Fraction]) -> Iterator[Drive]:
     for root in dict.fromkeys(root_of.values()):
         own_links = [link for link in links if root_of[link.driver] == root]
-        own = [mesh for mesh in meshes if any(link.name == mesh.name for link in own_links)]
+        names = {link.name for link in own_links}
+        own = {name: period for name, period in periods.items() if name in names}
         if own:
-            periods = [mesh.pair.long_period_turns / abs(mesh_turn[mesh.name].rate) for mesh in own]
             name = own_links[0].name if len(own_links) == 1 else root
-            yield Drive(root, name, _least_common(periods), tuple(mesh.name for mesh in own))
+            yield Drive(root, name, _least_common(list(own.values())), tuple(own))
 
 
 def _least_common(periods: Sequence[Fraction]) -> Fraction:

@@ -5,21 +5,32 @@ from dataclasses import dataclass
 from fractions import Fraction
 
 from tol3d.errors import GeometryError
+from tol3d.gearing.links import StatedLink
 from tol3d.gearing.model.mesh import Mesh
-from tol3d.gearing.model.shafts import Carried, Reducer, Shaft
+from tol3d.gearing.model.shafts import Carried, Shaft
 
 
 @dataclass(frozen=True)
 class Link:
-    """What makes one shaft turn with another: a mesh or a reducer.
+    """What makes one shaft turn with another: a mesh, or a StatedLink.
 
-    `rate` is turns of the driven shaft per turn of the driver's, signed.
+    Args:
+        name: the move's.
+        driver, driven: shafts.
+        rate: turns of the driven per turn of the driver, signed; both against the carrier where there is one.
+        carrier: the shaft that carries the link round.
     """
 
     name: str
     driver: str
     driven: str
     rate: Fraction
+    carrier: str | None = None
+
+    @property
+    def shafts(self) -> tuple[str, str]:
+        """Driver and driven."""
+        return self.driver, self.driven
 
 
 @dataclass(frozen=True)
@@ -46,12 +57,12 @@ LoadPath = tuple[Link | Parallel, ...]
 
 
 def links_between_shafts(
-    meshes: Sequence[Mesh], shafts: Sequence[Shaft], reducers: Sequence[Reducer]
+    meshes: Sequence[Mesh], shafts: Sequence[Shaft], stated: Sequence[StatedLink]
 ) -> tuple[Link, ...]:
-    """The reducers and meshes of a model as links of its shafts."""
+    """The meshes and stated links of a model as links of its shafts."""
     carrying = carriers(meshes, shafts)
     return (
-        *(Link(r.name, r.driver, r.driven, 1 / r.ratio) for r in reducers),
+        *(Link(own.name, own.driver, own.driven, own.rate, own.carrier) for own in stated),
         *(_link(mesh, carrying) for mesh in meshes),
     )
 
@@ -91,14 +102,31 @@ def loop_of(links: Sequence[Link]) -> tuple[str, ...]:
     return ()
 
 
+def upstream(driving: Mapping[str, Link], shaft: str) -> tuple[Link, ...]:
+    """The links that a shaft's turn depends on, by the first of parallel load paths, those of carriers too.
+
+    A ring of carriers ends where it comes back.
+    """
+    found: dict[str, Link] = {}
+    waiting = [shaft]
+    while waiting:
+        link = driving.get(waiting.pop())
+        if link is not None and link.name not in found:
+            found[link.name] = link
+            waiting += [link.driver] if link.carrier is None else [link.driver, link.carrier]
+    return tuple(found.values())
+
+
 def onwards(root: str, links: Sequence[Link]) -> Iterator[Link]:
-    """The links of a root's tree, each after the one that drives it."""
-    waiting = [root]
+    """The links of a root's tree, each after those that turn its driver and its carrier."""
+    waiting, reached = [root], {root}
     while waiting:
         shaft = waiting.pop(0)
         for link in links:
-            if link.driver == shaft:
+            needed = {link.driver} if link.carrier is None else {link.driver, link.carrier}
+            if shaft in needed and needed <= reached and link.driven not in reached:
                 yield link
+                reached.add(link.driven)
                 waiting.append(link.driven)
 
 
@@ -118,25 +146,87 @@ def load_path_between(links: Sequence[Link], first: str, last: str) -> LoadPath:
         GeometryError: one of them lies inside parallel load paths, or these are not apart.
     """
     up, down = load_path_from_root(links, first), load_path_from_root(links, last)
+    if any(link.carrier for link in links_of((*up, *down))):
+        return _about_carriers(links, (up, down), (first, last))
     common = _alike([up, down])
     _refuse_midst(links, (*up[common:], *down[common:]))
     return (*reversed(up[common:]), *down[common:])
 
 
+def _about_carriers(links: Sequence[Link], paths: tuple[LoadPath, LoadPath], ends: tuple[str, str]) -> LoadPath:
+    """The load path between two shafts where carriers turn: what turns the last shaft while the first one is held."""
+    (up, down), (first, last) = paths, ends
+    elements = (*(element for element in reversed(up) if element not in down), *down)
+    path = tuple(element for element in elements if freed_turn(links, element.driven, last, first))
+    _refuse_midst(links, path)
+    return path
+
+
 def load_path_from_root(links: Sequence[Link], shaft: str) -> LoadPath:
-    """The load path from a tree's root to a shaft."""
+    """The load path from a tree's root to a shaft, with what turns the carriers on it."""
     driving = [link for link in links if link.driven == shaft]
     if not driving:
         return ()
     each = [load_path_from_root(links, link.driver) for link in driving]
     if len(driving) == 1:
-        return (*each[0], driving[0])
+        (path,), (link,) = each, driving
+        carriers = () if link.carrier is None else load_path_from_root(links, link.carrier)
+        return (*path, *(element for element in carriers if element not in path), link)
     common = _alike(each)
     paths = tuple((*path[common:], link) for path, link in zip(each, driving, strict=True))
     inner = [link.name for path in paths for link in links_of(path)]
     if len(set(inner)) < len(inner):
         raise GeometryError(f"the load paths to {shaft!r} share some of their links but not at their beginning")
     return (*each[0][:common], Parallel(links_of(paths[0])[0].driver, shaft, paths))
+
+
+def turns_of(links: Sequence[Link]) -> dict[str, Fraction]:
+    """Turns of each shaft per turn of the first of its tree, signed; by the first of parallel load paths."""
+    driving = first_drivers(links)
+    turns: dict[str, Fraction] = {}
+    for root in dict.fromkeys(link.driver for link in links if link.driver not in driving):
+        turns[root] = Fraction(1)
+        for link in onwards(root, list(driving.values())):
+            turns[link.driven] = driven_turn(link, turns)
+    return turns
+
+
+def first_drivers(links: Sequence[Link]) -> dict[str, Link]:
+    """The link that drives each shaft, the first of several."""
+    driving: dict[str, Link] = {}
+    for link in links:
+        driving.setdefault(link.driven, link)
+    return driving
+
+
+def driven_turn(link: Link, turns: Mapping[str, Fraction]) -> Fraction:
+    """Turns of a link's driven shaft, those of its driver and its carrier known.
+
+    Willis: against the carrier both turn as if it rested. Source: VDI 2157:2012, 4.1.
+    """
+    about = Fraction(0) if link.carrier is None else turns[link.carrier]
+    return about + link.rate * (turns[link.driver] - about)
+
+
+def freed_turn(links: Sequence[Link], freed: str, read: str, held: str) -> Fraction:
+    """Turn of a shaft that is read per turn that a freed shaft has from its driver's play, another shaft held, signed.
+
+    All shafts of one tree turn; what is held makes its first shaft turn back.
+    """
+    turns = turns_of(links)
+    of_read, of_held = (turned_by(links, freed, shaft) for shaft in (read, held))
+    return of_read - of_held * turns[read] / turns[held]
+
+
+def turned_by(links: Sequence[Link], freed: str, shaft: str) -> Fraction:
+    """Turn of a shaft per turn of a freed shaft, the first shaft of their tree at rest."""
+    if shaft == freed:
+        return Fraction(1)
+    link = first_drivers(links).get(shaft)
+    if link is None:
+        return Fraction(0)
+    needed = (link.driver,) if link.carrier is None else (link.driver, link.carrier)
+    return driven_turn(link, {own: turned_by(links, freed, own) for own in needed})
 
 
 def _alike(paths: Sequence[LoadPath]) -> int:

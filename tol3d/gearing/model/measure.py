@@ -58,8 +58,8 @@ class Backlash:
         return ((1.0, self),)
 
     @property
-    def reducers(self) -> tuple[tuple[float, str], ...]:
-        """The reducers whose backlash it adds up, with their factors: none."""
+    def links(self) -> tuple[tuple[float, str], ...]:
+        """The links that are no meshes whose play it adds up, with their factors: none."""
         return ()
 
 
@@ -68,16 +68,19 @@ class Stage:
     """A link between the held shaft and the one that is read.
 
     Args:
-        link: a mesh or a reducer.
+        link: a mesh, or another link.
         factor: turn of the shaft that is read per turn of the link's driven shaft.
-        backlash: angular backlash of the mesh's driven gear; None for a reducer.
-        sense: of the turn of the shaft that is read for a turn of the driven gear about its own z, 1 or -1.
+        backlash: angular backlash of the mesh's driven gear; None for a link that is no mesh.
+        sense: of the turn of the shaft that is read for a turn of the driven gear about its own z, 1 or -1; without a
+            gear, of the driven shaft.
+        has_middle: whether a link that is no mesh says where the middle of its free turn lies.
     """
 
     link: str
     factor: float
     backlash: Backlash | None
     sense: int = 1
+    has_middle: bool = False
 
 
 @dataclass(frozen=True)
@@ -152,7 +155,7 @@ class LostMotion:
 
     @property
     def singles(self) -> tuple[Stage, ...]:
-        """All meshes and reducers on the load path, those in parallel too."""
+        """All meshes and other links on the load path, those in parallel too."""
         each = (stage.singles if isinstance(stage, ParallelStage) else (stage,) for stage in self.stages)
         return tuple(single for singles in each for single in singles)
 
@@ -167,8 +170,8 @@ class LostMotion:
         return tuple((stage.factor, stage.backlash) for stage in self.singles if stage.backlash)
 
     @property
-    def reducers(self) -> tuple[tuple[float, str], ...]:
-        """The reducers whose backlash it adds up or compares, with their factors."""
+    def links(self) -> tuple[tuple[float, str], ...]:
+        """The links that are no meshes whose play it adds up or compares, with their factors."""
         return tuple((stage.factor, stage.link) for stage in self.singles if stage.backlash is None)
 
 

@@ -2,17 +2,19 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from fractions import Fraction
 from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
+from tol3d.gearing.links import StatedLink
 from tol3d.gearing.model.contributor import Contributor, gear_contributor
 from tol3d.gearing.model.drives import DRIVER_POSITION, driver_angles
 from tol3d.gearing.model.layout import Layout, layout_of
 from tol3d.gearing.model.measure import Backlash, Measure
 from tol3d.gearing.model.mesh import Mesh, Seat
-from tol3d.gearing.model.shafts import Arm, Reducer, Shaft, Train
+from tol3d.gearing.model.shafts import Arm, Shaft, Train
 from tol3d.gears import Gear
 from tol3d.system import contributor as system_contributor
 from tol3d.system.positions import Positions
@@ -54,7 +56,7 @@ class Model:
     profile_steps: int = 120
     warnings: tuple[str, ...] = ()
     shafts: tuple[Shaft, ...] = ()
-    reducers: tuple[Reducer, ...] = ()
+    links: tuple[StatedLink, ...] = ()
     arms: tuple[Arm, ...] = ()
     trains: tuple[Train, ...] = ()
 
@@ -66,6 +68,10 @@ class Model:
         """The mesh of that name."""
         return next(mesh for mesh in self.meshes if mesh.name == name)
 
+    def link(self, name: str) -> StatedLink:
+        """The link of that name, which is no mesh."""
+        return next(link for link in self.links if link.name == name)
+
     def train(self, name: str) -> Train:
         """The train of that name."""
         return next(train for train in self.trains if train.name == name)
@@ -73,7 +79,7 @@ class Model:
     @cached_property
     def layout(self) -> Layout:
         """Where its shafts lie and how they turn with each other."""
-        return layout_of(self.meshes, self.shafts, self.reducers)
+        return layout_of(self.meshes, self.shafts, self.links)
 
     @cached_property
     def seats(self) -> tuple[Seat, ...]:
@@ -98,7 +104,8 @@ class Model:
     def driver_angles(self, measure: Measure, mesh: str) -> tuple[float, ...] | None:
         """Angles of a mesh's driver [rad] at which a measure is read in every trial; None for the trial's own.
 
-        A mesh's own positions are its driver's; those of a train are its first shaft's.
+        A mesh's own positions are its driver's; those of a train are its first shaft's. Of another link whose play
+        depends on the position likewise.
         """
         fixed = measure.positions.fixed
         if fixed is None or isinstance(measure.kind, Backlash):
@@ -113,8 +120,10 @@ class Model:
         return tuple((drive.name, DRIVER_POSITION) for drive in self.layout.drives)
 
     def positions(self, uniforms: Mapping[tuple[str, str], Array]) -> Mapping[str, Array]:
-        """See System: the driver's angle [rad] by mesh."""
-        return driver_angles(self.layout, {mesh.name: mesh for mesh in self.meshes}, uniforms)
+        """See System: the driver's angle [rad] by mesh, and by other link whose play depends on it."""
+        periods = {mesh.name: Fraction(mesh.pair.long_period_turns) for mesh in self.meshes}
+        periods |= {link.name: link.turns for link in self.links if link.turns is not None}
+        return driver_angles(self.layout, periods, uniforms)
 
     def turns_at_random(self, contributor: system_contributor.Contributor, positions: Positions) -> bool:
         """See System: of an offset that turns with its gear, read at random positions."""

@@ -1,8 +1,7 @@
-"""Shafts and what hangs on them: gears, data-sheet reducers, arms, and the trains that they make."""
+"""Shafts and what hangs on them: gears, arms, and the trains that they make."""
 
 import math
 from dataclasses import dataclass
-from fractions import Fraction
 
 Vector = tuple[float, float, float]
 
@@ -38,26 +37,6 @@ class Shaft:
     diameter: float | None = None
     start: float | None = None
     end: float | None = None
-
-
-@dataclass(frozen=True)
-class Reducer:
-    """A reducer known by its data sheet.
-
-    Args:
-        name: the move's.
-        driver, driven: shafts, on one axis.
-        ratio: turns of the driver per turn of the driven, negative where they turn opposite.
-        backlash: angular backlash of the driven shaft [rad], taken in every trial; 0 where a contributor draws it.
-        offset: of the driven shaft's origin along the axis [mm].
-    """
-
-    name: str
-    driver: str
-    driven: str
-    ratio: Fraction
-    backlash: float = 0.0
-    offset: float = 0.0
 
 
 @dataclass(frozen=True)

@@ -1,20 +1,20 @@
 """Shafts, reducers, arms and trains of a scene, or why they do not make trains."""
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from fractions import Fraction
 
 import numpy as np
 
-from tol3d.errors import GeometryError, SceneError
-from tol3d.gearing.grammar.moves import GearMeshSpec, ReducerSpec, TrainSpec, meshes_of
+from tol3d.errors import GeometryError
+from tol3d.gearing.grammar.moves import GearMeshSpec, LinkSpec, TrainSpec, meshes_of
 from tol3d.gearing.grammar.parts import ArmSpec, BearingSpec, GearSpec, ShaftSpec
 from tol3d.gearing.grammar.tolerances import ReducerBacklashSpec
+from tol3d.gearing.links import StatedLink
 from tol3d.gearing.model.layout import Layout, misfit
-from tol3d.gearing.model.links import Link, loop_of
 from tol3d.gearing.model.mesh import Mesh
-from tol3d.gearing.model.pairs import internal
-from tol3d.gearing.model.shafts import Arm, Carried, Reducer, Shaft, Train, Vector
+from tol3d.gearing.model.shaft_trees import ratio_text
+from tol3d.gearing.model.shafts import Arm, Carried, Shaft, Train, Vector
 from tol3d.gears import LEFT, RIGHT, Flank
 from tol3d.scene import Scene
 from tol3d.scene.place import KeyPath
@@ -23,7 +23,6 @@ from tol3d.units import Quantity
 RATIO_AS_WRITTEN = 5e-4  # relative; four digits are enough to check a drawing's ratio
 PLACE_AS_WRITTEN = 0.05  # mm; azimuths are written with few decimals, and parallel load paths need not close better
 AXES_AS_WRITTEN = 1e-3  # rad
-MOST_RATIO = 1e6  # of a reducer; beyond it somebody's finger slipped
 NO_TORQUE = 1e-6  # of the lever of the arm's weight; less is none
 
 
@@ -86,11 +85,11 @@ def _vector(lengths: Sequence[Quantity]) -> Vector:
     return x, y, z
 
 
-def reducers_of(scene: Scene) -> tuple[Reducer, ...]:
-    """The scene's reducers.
+def refuse_second_laws(scene: Scene) -> None:
+    """Refuse a second distribution of one reducer's play.
 
     Raises:
-        SceneError: two tolerances give the play of one, a ratio that nobody builds.
+        SceneError: at the second of them.
     """
     drawn: dict[str, str] = {}
     for name, spec in scene.tolerances.items():
@@ -99,75 +98,20 @@ def reducers_of(scene: Scene) -> tuple[Reducer, ...]:
             raise scene.refuse(("tolerances", name, "of"), sentence)
         if isinstance(spec, ReducerBacklashSpec):
             drawn[spec.of] = name
-    return tuple(_reducer(scene, name, move) for name, move in scene.moves.items() if isinstance(move, ReducerSpec))
 
 
-def _reducer(scene: Scene, name: str, move: ReducerSpec) -> Reducer:
-    if not 1 / MOST_RATIO <= abs(move.ratio) <= MOST_RATIO:
-        raise scene.refuse(
-            ("moves", name, "ratio"),
-            f"expected a ratio of 1/{MOST_RATIO:g} to {MOST_RATIO:g}, either sign, got {move.ratio:g}",
-        )
-    ratio = Fraction(str(move.ratio))
-    return Reducer(name, move.driver, move.driven, ratio, internal(move.backlash), internal(move.offset))
-
-
-def refuse_no_trees(scene: Scene, links: Sequence[Link]) -> None:
-    """Refuse shafts that do not make trees, or load paths that join and would lock each other.
-
-    Several links may drive a shaft only where they come from one first shaft and ask for one ratio.
+def stated_links_of(scene: Scene) -> tuple[StatedLink, ...]:
+    """The scene's links that are no meshes, of whatever mechanism.
 
     Raises:
-        SceneError: at the link that is too many.
+        SceneError: what nobody builds, such as a shaft that another one does not turn.
     """
-    first: dict[str, Link] = {}
-    for link in links:
-        if link.driver == link.driven:
-            sentence = f"driver and driven sit on the same shaft, {link.driver!r}: it would lock itself"
+    found = tuple(move.link(name, scene) for name, move in scene.moves.items() if isinstance(move, LinkSpec))
+    for link in found:
+        if not link.rate:
+            sentence = f"expected a link that turns {link.driven!r}, got one that leaves it at rest"
             raise scene.refuse(("moves", link.name), sentence)
-        first.setdefault(link.driven, link)
-    if loop := loop_of(list(first.values())):
-        raise _loop(scene, first[loop[-1]].name, loop)
-    for link in links:
-        if first[link.driven] is not link:
-            _refuse_second(scene, first, link)
-
-
-def _refuse_second(scene: Scene, first: Mapping[str, Link], link: Link) -> None:
-    """Refuse a second link to a shaft unless it closes parallel load paths."""
-    here, before = ("moves", link.name), first[link.driven]
-    paths = [_path_from_root(first, shaft) for shaft in (link.driver, link.driven)]
-    if link.driven in [shaft for shaft, _ in paths[0]]:
-        ring = [shaft for shaft, _ in paths[0]]
-        raise _loop(scene, link.name, (*ring[ring.index(link.driven) :], link.driven))
-    if paths[0][0][0] != paths[1][0][0]:
-        raise scene.refuse(
-            here,
-            f"two drivers: {link.driven!r} is driven by {link.driver!r} here and by {before.driver!r} in "
-            f"{before.name!r}, and these are not driven together; turn driver and driven round, or take out one",
-        )
-    rates = paths[0][-1][1] * link.rate, paths[1][-1][1]
-    if rates[0] != rates[1]:
-        raise scene.refuse(
-            here,
-            f"a loop of shafts that locks: {link.driven!r} turns {_ratio_text(rates[0])} times with {paths[0][0][0]!r} "
-            f"here and {_ratio_text(rates[1])} times by {before.name!r}; give both load paths one ratio, or take out "
-            "one",
-        )
-
-
-def _path_from_root(first: Mapping[str, Link], shaft: str) -> list[tuple[str, Fraction]]:
-    """The shafts from a root to a shaft, with their turns per turn of the root."""
-    if shaft not in first:
-        return [(shaft, Fraction(1))]
-    link = first[shaft]
-    before = _path_from_root(first, link.driver)
-    return [*before, (shaft, before[-1][1] * link.rate)]
-
-
-def _loop(scene: Scene, link: str, shafts: Sequence[str]) -> SceneError:
-    text = " → ".join(map(repr, shafts))
-    return scene.refuse(("moves", link), f"a loop of shafts: {text}; no motor can turn them: take out a link")
+    return found
 
 
 def refuse_misfits(scene: Scene, meshes: Sequence[Mesh], layout: Layout) -> None:
@@ -210,9 +154,17 @@ def refuse_other_ratios(scene: Scene, meshes: Sequence[Mesh], layout: Layout) ->
             _refuse_ratio(scene, mesh.name, move.ratio, abs(1 / mesh.rate), why)
     for name, move in scene.moves.items():
         if isinstance(move, TrainSpec) and move.ratio is not None:
-            links = reversed(layout.behind(move.output))
-            each = " · ".join(f"{_ratio_text(1 / link.rate)} ({link.name})" for link in links) or "the same shaft"
-            _refuse_ratio(scene, name, move.ratio, layout.ratio(move.driven, move.output), each)
+            _refuse_ratio(scene, name, move.ratio, layout.ratio(move.driven, move.output), _ratio_of(layout, move))
+
+
+def _ratio_of(layout: Layout, move: TrainSpec) -> str:
+    """Of which ratios that of a train is made."""
+    carried = [link for link in layout.upstream(move.output) if link.carrier is not None]
+    if carried:
+        each = ", ".join(f"{ratio_text(1 / link.rate)} ({link.name}, on {link.carrier!r})" for link in carried)
+        return f"that of a train with carriers: {each}"
+    links = reversed(layout.behind(move.output))
+    return " · ".join(f"{ratio_text(1 / link.rate)} ({link.name})" for link in links) or "the same shaft"
 
 
 def _refuse_ratio(scene: Scene, move: str, stated: float, real: Fraction, why: str) -> None:
@@ -220,12 +172,8 @@ def _refuse_ratio(scene: Scene, move: str, stated: float, real: Fraction, why: s
     wanted = real if stated < 0.0 else abs(real)
     if abs(stated - float(wanted)) > RATIO_AS_WRITTEN * abs(float(real)):
         loosely = " (its sign may be left out)" if real < 0 else ""
-        sentence = f"expected {_ratio_text(real)}{loosely} = {why}, got {stated:g}"
+        sentence = f"expected {ratio_text(real)}{loosely} = {why}, got {stated:g}"
         raise scene.refuse(("moves", move, "ratio"), sentence)
-
-
-def _ratio_text(ratio: Fraction) -> str:
-    return f"{float(ratio):.6g}"
 
 
 def trains_of(scene: Scene, layout: Layout) -> tuple[Train, ...]:
@@ -302,8 +250,10 @@ def loaded_flank(mesh: Mesh, train: Train, layout: Layout, arms: Sequence[Arm], 
     """
     torque = gravity_torque(train, layout, arms, angle)
     shaft, carried = layout.carrying[mesh.driver]
-    sense = train.sense if not torque else -math.copysign(1.0, torque) * layout.shaft_turn[train.output].rate
-    return LEFT if carried.sense * sense * layout.shaft_turn[shaft].rate > 0.0 else RIGHT
+    output = layout.shaft_turn[train.output].rate
+    pushed = train.sense * output if not torque else -math.copysign(1.0, torque)  # the way that the driver pushes it
+    through = layout.turn_by(shaft, train.output) or layout.shaft_turn[shaft].rate / output  # none: of a branch
+    return LEFT if carried.sense * pushed * through > 0.0 else RIGHT
 
 
 def gravity_torque(train: Train, layout: Layout, arms: Sequence[Arm], angle: float) -> float | None:

@@ -20,7 +20,7 @@ from tol3d.gearing.presenting.chain_grid import (
     plain_part,
     published_colours,
 )
-from tol3d.gearing.presenting.link_symbol import LINK_COLOURS
+from tol3d.gearing.presenting.link_symbol import link_colour
 from tol3d.gearing.presenting.stage import Stage, share_text
 from tol3d.gearing.summary_types import TrainSummary
 from tol3d.report.canvas import BLACK
@@ -67,7 +67,7 @@ def draw_bars(figure: Figure, place: SubplotSpec, train: TrainSummary, row: Chai
             (stage.at_shaft.high, x + apart / 2, LIGHT, marked),
         ):
             top = max(value or 0.0, 0.0)
-            axes.bar(at, top, 0.62 * apart, color=LINK_COLOURS[stage.kind], alpha=opacity, linewidth=0)
+            axes.bar(at, top, 0.62 * apart, color=link_colour(stage.kind), alpha=opacity, linewidth=0)
             axes.annotate(
                 _bar_text(value, train.lever_mm),
                 (at, max(top, least)),
@@ -96,7 +96,7 @@ def draw_shares(figure: Figure, place: SubplotSpec, row: ChainRow) -> None:
     axes = plain_part(figure, place, SHARES)
     for column, stage in enumerate(row.stages):
         x, y = row.link_at(column), SHARES - TRACK_BELOW
-        for share, colour in ((100.0, "#E6E6E6"), (stage.share or 0.0, LINK_COLOURS[stage.kind])):
+        for share, colour in ((100.0, "#E6E6E6"), (stage.share or 0.0, link_colour(stage.kind))):
             length = TRACK_LENGTH * min(max(share, 0.0), 100.0) / 100
             axes.barh(y, length, TRACK_THICKNESS, left=x - TRACK_LENGTH / 2, color=colour, linewidth=0)
         text = share_text(stage.share)

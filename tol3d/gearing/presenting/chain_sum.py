@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 from matplotlib.gridspec import SubplotSpec
 
 from tol3d.gearing.presenting.chain_grid import LIGHT, SMALL, TEXT, WIDTH, published_colours
-from tol3d.gearing.presenting.link_symbol import LINK_COLOURS
+from tol3d.gearing.presenting.link_symbol import link_colour
 from tol3d.gearing.presenting.stage import Range, Stage, distributions_of, leading_sums
 from tol3d.gearing.summary_types import TrainSummary
 from tol3d.report.canvas import BLACK, OUTSIDE, ROAD_COLOURS, label_angles, plain_axes
@@ -106,7 +106,7 @@ def _stack_highs(axes: Axes, stages: Sequence[Stage], y: float, per_inch: float)
     start = 0.0
     for stage in stages:
         high = max(stage.at_shaft.high or 0.0, 0.0)
-        axes.barh(y, high, left=start, height=0.62, color=LINK_COLOURS[stage.kind], alpha=LIGHT, edgecolor="white")
+        axes.barh(y, high, left=start, height=0.62, color=link_colour(stage.kind), alpha=LIGHT, edgecolor="white")
         if high / per_inch >= LEAST_SEGMENT:
             axes.text(start + high / 2, y, str(stage.number), ha="center", va="center", fontsize=SMALL, color=BLACK)
         start += high

@@ -8,10 +8,12 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.patches import Circle, FancyBboxPatch, Patch, Polygon
 
-from tol3d.gearing.presenting.stage import LinkKind, Stage
-from tol3d.report.canvas import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE
+from tol3d.gearing.presenting.stage import Stage
+from tol3d.report.canvas import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, SKY
+from tol3d.report.label import wrapped
 
-LINK_COLOURS: Final[Mapping[LinkKind, str]] = {
+OTHER_COLOUR: Final = SKY
+LINK_COLOURS: Final[Mapping[str, str]] = {
     "reducer": ORANGE,
     "mesh": BLUE,
     "bevel_mesh": GREEN,
@@ -29,11 +31,16 @@ LEAST_LINE: Final = 0.06  # inch; of a shaft's line before the cones, and betwee
 LINE_AFTER: Final = 0.12  # inch; from the line that comes down from the driven cone's top to its shaft
 
 
+def link_colour(kind: str) -> str:
+    """The colour of a kind of link."""
+    return LINK_COLOURS.get(kind, OTHER_COLOUR)
+
+
 def draw_link(axes: Axes, stage: Stage, ends: tuple[float, float], y: float) -> None:
     """Draw a link between the ends of its two shafts at height `y`."""
     left, right = ends
     middle, width = (left + right) / 2, min(right - left - 0.08, MOST_WIDTH)
-    SYMBOLS[stage.kind](axes, stage, middle, y, width, ends)
+    SYMBOLS.get(stage.kind, _other)(axes, stage, middle, y, width, ends)
 
 
 def _line(axes: Axes, *points: tuple[float, float]) -> None:
@@ -61,7 +68,7 @@ def _gears(axes: Axes, stage: Stage, x: float, y: float, width: float, ends: tup
     _line(axes, (ends[0], y), (centres[0], y))
     _line(axes, (centres[1], y), (ends[1], y))
     for k, (radius, centre, teeth) in enumerate(zip(radii, centres, (driver, driven), strict=True)):
-        _fill(axes, Polygon(_gear_outline(centre, y, radius, meshing=k)), LINK_COLOURS[stage.kind])
+        _fill(axes, Polygon(_gear_outline(centre, y, radius, meshing=k)), link_colour(stage.kind))
         _number(axes, centre, y, teeth)
 
 
@@ -93,7 +100,7 @@ def _cones(axes: Axes, stage: Stage, x: float, y: float, width: float, ends: tup
     _line(axes, (ends[0], y), (apex - long, y))
     _line(axes, (apex, y + tall), (apex, top), (bend, top), (bend, y), (ends[1], y))
     for corners in (lying, standing):
-        _fill(axes, Polygon([(apex + u, y + v) for u, v in corners]), LINK_COLOURS[stage.kind])
+        _fill(axes, Polygon([(apex + u, y + v) for u, v in corners]), link_colour(stage.kind))
     _number(axes, apex - 0.72 * long, y, driver)
     _number(axes, apex, y + 0.72 * tall, driven)
 
@@ -103,7 +110,7 @@ def _reducer(axes: Axes, stage: Stage, x: float, y: float, width: float, ends: t
     half = min(width / 2, 0.44)
     _line(axes, (ends[0], y), (x - half, y))
     _line(axes, (x + half, y), (ends[1], y))
-    colour = LINK_COLOURS[stage.kind]
+    colour = link_colour(stage.kind)
     rounded = f"round,pad=0,rounding_size={0.2 * half}"
     _fill(axes, FancyBboxPatch((x - half, y - half), 2 * half, 2 * half, boxstyle=rounded), colour)
     ring = 0.82 * half
@@ -116,6 +123,18 @@ def _reducer(axes: Axes, stage: Stage, x: float, y: float, width: float, ends: t
         axes.add_patch(circle)
 
 
+def _other(axes: Axes, stage: Stage, x: float, y: float, width: float, ends: tuple[float, float]) -> None:
+    """A box with the word of the kind."""
+    half, height = min(width / 2, 0.5), 0.2
+    _line(axes, (ends[0], y), (x - half, y))
+    _line(axes, (x + half, y), (ends[1], y))
+    rounded = f"round,pad=0,rounding_size={0.2 * height}"
+    box = FancyBboxPatch((x - half, y - height), 2 * half, 2 * height, boxstyle=rounded)
+    _fill(axes, box, link_colour(stage.kind))
+    words = wrapped(stage.kind.replace("_", " "), 2 * half - 0.1, SMALL, 2)
+    axes.text(x, y, words, fontsize=SMALL, ha="center", va="center", color=BLACK, zorder=4)
+
+
 def _parallel(axes: Axes, stage: Stage, x: float, y: float, width: float, ends: tuple[float, float]) -> None:
     """Two load paths in parallel, a gear pair on each."""
     half, rise = 0.42 * width, 0.26
@@ -124,11 +143,11 @@ def _parallel(axes: Axes, stage: Stage, x: float, y: float, width: float, ends: 
         _line(axes, (ends[0], y), (x - half, y), (x - half, across), (x + half, across), (x + half, y), (ends[1], y))
         for centre, radius in ((x - 0.15 * width, 0.11), (x + 0.13 * width, 0.17)):
             outline = _gear_outline(centre, across, radius, meshing=int(centre > x))
-            _fill(axes, Polygon(outline), LINK_COLOURS[stage.kind])
+            _fill(axes, Polygon(outline), link_colour(stage.kind))
 
 
 Symbol = Callable[[Axes, Stage, float, float, float, tuple[float, float]], None]
-SYMBOLS: Final[Mapping[LinkKind, Symbol]] = {
+SYMBOLS: Final[Mapping[str, Symbol]] = {
     "reducer": _reducer,
     "mesh": _gears,
     "bevel_mesh": _cones,

@@ -1,4 +1,4 @@
-"""How large shafts, arms and reducers are drawn where the scene leaves it open: so that the picture reads.
+"""How large shafts, arms and housings of links are drawn where the scene leaves it open: so that the picture reads.
 
 Nothing is measured on them.
 """
@@ -8,7 +8,7 @@ from collections.abc import Iterator, Mapping
 from functools import cache
 from typing import Final
 
-from tol3d.gearing.model import Arm, Model, Reducer, Shaft
+from tol3d.gearing.model import Arm, Model, Shaft, StatedLink
 from tol3d.solids import ArmBody, Collar, ShaftBody
 
 PITCH_SHARE: Final = 0.3  # of the smallest pitch diameter on a shaft, where none of its gears has a bore
@@ -38,7 +38,7 @@ def arm_body(arm: Arm) -> ArmBody:
 
 
 class ShaftSizes:
-    """Diameters and ends of shafts: as stated, or as what they carry needs, or as their reducers do."""
+    """Diameters and ends of shafts: as stated, or as what they carry needs, or as the reducers between them do."""
 
     def __init__(self, model: Model, faces: Mapping[str, Span]) -> None:
         self._model = model
@@ -49,12 +49,12 @@ class ShaftSizes:
     def _body(self, name: str) -> ShaftBody:
         """A shaft's cylinder, in its own frame."""
         shaft = self._shaft(name)
-        after = next((reducer for reducer in self._model.reducers if reducer.driver == name), None)
+        after = next((link for link in self._model.links if link.coaxial and link.driver == name), None)
         diameter = shaft.diameter or self._needed_diameter(shaft, after)
         start, end = self._span(shaft, diameter, after)
         return ShaftBody(diameter, start, end, tuple(self._collars(shaft, diameter, (start, end))))
 
-    def _span(self, shaft: Shaft, diameter: float, after: Reducer | None) -> Span:
+    def _span(self, shaft: Shaft, diameter: float, after: StatedLink | None) -> Span:
         if shaft.start is not None and shaft.end is not None:
             return min(shaft.start, shaft.end), max(shaft.start, shaft.end)
         start, end = self._needed_span(shaft, diameter, after)
@@ -82,7 +82,7 @@ class ShaftSizes:
             return self.shafts[name]
         return Shaft(name, (self._model.layout.carrying[name][1],))
 
-    def _needed_diameter(self, shaft: Shaft, after: Reducer | None) -> float:
+    def _needed_diameter(self, shaft: Shaft, after: StatedLink | None) -> float:
         gears = [self._model.gear(carried.gear).gear for carried in shaft.carries]
         bores = [bore for carried in shaft.carries if (bore := self._bore(carried.gear)) > 0.0]
         if bores:
@@ -97,7 +97,7 @@ class ShaftSizes:
             return (MOTOR_DIAMETER if motor else STUB_SHARE) * self.body(after.driven).diameter
         return BARE_DIAMETER
 
-    def _needed_span(self, shaft: Shaft, diameter: float, after: Reducer | None) -> Span:
+    def _needed_span(self, shaft: Shaft, diameter: float, after: StatedLink | None) -> Span:
         spans = [*self._gear_spans(shaft, diameter), *self._hub_spans(shaft)]
         if spans:
             return min(low for low, _ in spans), max(high for _, high in spans)
@@ -129,17 +129,17 @@ class ShaftSizes:
     def _arms(self, shaft: Shaft) -> list[Arm]:
         return [arm for arm in self._model.arms if arm.on == shaft.name]
 
-    def housing(self, reducer: Reducer) -> ShaftBody:
-        """A reducer's housing, a disc between its shafts, in the frame of the driven one."""
-        driven = self.body(reducer.driven)
+    def housing(self, link: StatedLink) -> ShaftBody:
+        """A link's housing, a disc between its shafts, in the frame of the driven one."""
+        driven = self.body(link.driven)
         thickness = DISC_LENGTH * driven.diameter
-        before = self._shaft(reducer.driver)
+        before = self._shaft(link.driver)
         stated = before.carries or self._arms(before) or None not in (before.start, before.end)
-        towards = -1.0 if reducer.offset >= 0.0 else 1.0
+        towards = -1.0 if link.offset >= 0.0 else 1.0
         place = driven.start if towards < 0.0 else driven.end
         if stated:
-            driver = self.body(reducer.driver)
-            facing = (driver.end if towards < 0.0 else driver.start) - reducer.offset
+            driver = self.body(link.driver)
+            facing = (driver.end if towards < 0.0 else driver.start) - link.offset
             gap = towards * (facing - place)
             thickness = gap if gap > LEAST_GAP * driven.diameter else thickness
         ends = sorted((place, place + towards * thickness))

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Literal, Self
+from typing import Self
 
 from tol3d.gearing.summary_types import Ends, StageSummary, TrainMeasureSummary, TrainsOfRun, TrainSummary
 from tol3d.report.column import columns_of
@@ -10,8 +10,6 @@ from tol3d.report.number import NOTHING, tip_arcmin, tip_mm
 from tol3d.runs.summary.measure import MeasureSummary
 from tol3d.runs.summary.run import RunSummary
 from tol3d.runs.summary.values import Road, Section
-
-LinkKind = Literal["reducer", "mesh", "bevel_mesh", "parallel"]
 
 MANY_TURNS = 1e6  # no decimals from there on
 ROUNDING = 1e-6  # sigma
@@ -61,9 +59,9 @@ class Stage:
         link: the move's name.
         kind: what it is.
         driver, driven: its shafts.
-        teeth: of the driver and the driven; None for a reducer.
+        teeth: of the driver and the driven; None where it is no mesh.
         ratio: turns of the driver per turn of the driven, negative where they turn opposite.
-        working_flank: "left" or "right"; None for a reducer.
+        working_flank: "left" or "right"; None where it is no mesh.
         factor: turn of the shaft that is read per turn of the driven shaft, without its sign.
         own: angular backlash at the driven shaft.
         at_shaft: what it brings to the lost motion of the shaft that is read.
@@ -74,7 +72,7 @@ class Stage:
 
     number: int
     link: str
-    kind: LinkKind
+    kind: str
     driver: str
     driven: str
     teeth: tuple[int, int] | None
@@ -136,7 +134,7 @@ def _stage(number: int, stage: StageSummary, values: Ends) -> Stage:
         at_shaft=own.times(factor),
         share=values.share_percent,
         published={name: Range.of(ends) for name, ends in stage.published.items()},
-        within_its_law=stage.kind == "reducer" and _nearer_than_3_sigma(own, values.sigma),
+        within_its_law=stage.gears is None and stage.ways is None and _nearer_than_3_sigma(own, values.sigma),
     )
 
 

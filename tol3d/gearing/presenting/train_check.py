@@ -1,4 +1,4 @@
-"""Shafts, reducers and trains of a scene as tables: how they turn with each other and where they lie."""
+"""Shafts and trains of a scene as tables: how they turn with each other and where they lie."""
 
 from collections.abc import Iterator
 
@@ -11,7 +11,6 @@ from tol3d.gearing.model.trains import gravity_torque
 from tol3d.gears import LEFT
 from tol3d.report.number import NOTHING
 from tol3d.report.page import Block, Heading, Line, Row, Table, line, title
-from tol3d.units import angle_text
 
 Array = NDArray[np.float64]
 
@@ -47,14 +46,14 @@ def _train_line(model: Model, train: Train) -> Line:
     path = layout.load_path(train.driven, train.output)
     ratio = layout.ratio(train.driven, train.output)
     sense = "opposite" if ratio < 0 else "alike"
-    pieces = [(f"\n{train.name}: ", "bold"), (" → ".join(_path(train.driven, path)), "")]
+    pieces = [(f"\n{train.name}: ", "bold"), (" → ".join(dict.fromkeys(_path(train.driven, path))), "")]
     pieces.append((f" · i = {abs(float(ratio)):.6g}, they turn {sense} · {train.held} held", ""))
     on_the_path = {link.name for link in links_of(path)}
     meshes = [mesh for mesh in model.meshes if mesh.name in on_the_path]
     flanks = ", ".join(f"{mesh.name} {'left' if mesh.working_flank == LEFT else 'right'}" for mesh in meshes)
     pieces.append((f"\n working flanks of the drivers{_load(model, train)}: {flanks or NOTHING}", "dim"))
-    for reducer in (r for r in model.reducers if r.backlash and r.name in on_the_path):
-        pieces.append((f"\n {reducer.name}: {angle_text(reducer.backlash)} of play in every trial", "dim"))
+    for link in (link for link in model.links if link.remark and link.name in on_the_path):
+        pieces.append((f"\n {link.name}: {link.remark}", "dim"))
     return Line(tuple(pieces))
 
 
@@ -69,6 +68,9 @@ def _path(first: str, path: LoadPath) -> Iterator[str]:
     for element in path:
         if isinstance(element, Parallel):
             yield f"({element.name})"
+        if at not in (element.driver, element.driven):  # a carrier: its path has ended, that of what it carries begins
+            at = element.driver
+            yield at
         at = element.driven if at == element.driver else element.driver
         yield at
 

@@ -1,4 +1,4 @@
-"""A build's parts in one world: every gear once, in the mesh that drives it, with shafts, arms and reducers.
+"""A build's parts in one world: every gear once, in the mesh that drives it, with shafts, arms and other links.
 
 Gears stand where they came to rest; shafts and arms on their nominal axes, turned with their gears.
 """
@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from tol3d.gearing.display import SeatedBuild, shows_shafts
 from tol3d.gearing.model import Arm, LostMotion, Model
+from tol3d.gearing.model.layout import Layout
 from tol3d.gearing.placed import PlacedGear, SeatedMesh
 from tol3d.gearing.presenting.shaft_sizes import ShaftSizes, Span, arm_body
 from tol3d.numerics import frames
@@ -37,7 +38,7 @@ class WholeTrain:
     Args:
         root: its first shaft.
         gears: as they came to rest.
-        bodies: shafts, arms and housings of reducers.
+        bodies: shafts, arms and housings of links.
         shaft_of: the shaft that each gear and body turns with, by the part's name; None for a housing.
         points: points of the arms that are named in pictures, (3,) [mm].
         gravity: its direction and where it pulls, both (3,); None where the scene does not say.
@@ -116,7 +117,7 @@ def _train(build: SeatedBuild, root: str) -> WholeTrain:
     shaft_of: dict[str, str | None] = {}
     points: dict[str, Array] = {}
     for shaft in own:
-        pose = layout.world_from_shaft[shaft] @ _about_z(angles[shaft])
+        pose = _shaft_pose(layout, shaft, angles)
         for gear in (name for name, (carrier, _) in layout.carrying.items() if carrier == shaft):
             gears.append(_in_world(build, gear))
             shaft_of[gear] = shaft
@@ -129,11 +130,21 @@ def _train(build: SeatedBuild, root: str) -> WholeTrain:
             shaft_of[arm.name] = shaft
             shown = {name: place for name, place in arm.points if name in _named_points(model, arm)}
             points |= {f"{name} of {arm.name}": hung[:3, :3] @ place + hung[:3, 3] for name, place in shown.items()}
-    for reducer in (reducer for reducer in model.reducers if reducer.driven in own):
-        name = _free_name(reducer.name, {*shaft_of, *sizes.shafts, *(arm.name for arm in model.arms)})
-        bodies.append(PosedBody(name, sizes.housing(reducer), layout.world_from_shaft[reducer.driven]))
+    for link in (link for link in model.links if link.coaxial and link.driven in own):
+        name = _free_name(link.name, {*shaft_of, *sizes.shafts, *(arm.name for arm in model.arms)})
+        bodies.append(PosedBody(name, sizes.housing(link), layout.world_from_shaft[link.driven]))
         shaft_of[name] = None
     return WholeTrain(root, tuple(gears), tuple(bodies), shaft_of, points, _gravity(model, root, angles))
+
+
+def _shaft_pose(layout: Layout, shaft: str, angles: Mapping[str, float]) -> Array:
+    """Where a shaft stands; one on a carrier has gone round with it, and turns against it about its own axis."""
+    at_0 = layout.world_from_shaft[shaft]
+    link = layout.driving.get(shaft)
+    if link is None or link.carrier is None:
+        return np.asarray(at_0 @ _about_z(angles[shaft]))
+    carrier = _shaft_pose(layout, link.carrier, angles) @ np.linalg.inv(layout.world_from_shaft[link.carrier])
+    return np.asarray(carrier @ at_0 @ _about_z(angles[shaft] - angles[link.carrier]))
 
 
 def _arm_pose(model: Model, arm: Arm, angles: Mapping[str, float]) -> Array:

@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.gearing.breakdowns import staged_measures
+from tol3d.gearing.linked import by_theory
 from tol3d.gearing.model import Backlash, Measure, Model
 from tol3d.gearing.model.measure import gear_measures
 from tol3d.gearing.play import Play, SeatKey, seat_key
@@ -31,7 +32,7 @@ class AnalyticRoad:
         """See Road."""
         stacks = _Stacks(self.model, trials)
         own = gear_measures(measures)
-        plays = {measure.name: Play(self.model, measure, trials.deviations, stacks) for measure in own}
+        plays = {measure.name: Play(self.model, measure, trials, stacks, by_theory) for measure in own}
         values = {measure.name: first_order(measure.kind, plays[measure.name].free()) for measure in own}
         terms = {
             (measure.name, link): values[:, 0]
@@ -44,7 +45,7 @@ class AnalyticRoad:
 
 def analytic_play(model: Model, measure: Measure, trials: Trials) -> Play:
     """The backlashes of a measure on the analytic road."""
-    return Play(model, measure, trials.deviations, _Stacks(model, trials))
+    return Play(model, measure, trials, _Stacks(model, trials), by_theory)
 
 
 def analytic_values(model: Model, measure: Measure, trials: Trials) -> Array:

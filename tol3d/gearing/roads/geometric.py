@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from tol3d.gearing.breakdowns import staged_measures
 from tol3d.gearing.engines import INTERFERES, OK, OUT_OF_RANGE, Engine, MeshReading, ReadingEngine
+from tol3d.gearing.linked import as_built
 from tol3d.gearing.measures import measure_backlash, moved, read_backlash, turning_gear
 from tol3d.gearing.model import Backlash, Measure, Mesh, Model
 from tol3d.gearing.model.measure import gear_measures
@@ -104,7 +105,7 @@ class GeometricRoad:
         status: dict[str, Codes] = {}
         staged = staged_measures(self.model)
         for measure in measures:
-            play = Play(self.model, measure, trials.deviations, read)
+            play = Play(self.model, measure, trials, read, as_built)
             codes = _codes(play, seated_as)
             free = _free_or_overlap(play, codes)
             codes[np.isnan(free) & (codes == OK)] = OUT_OF_RANGE  # a turn whose end is not known
@@ -117,7 +118,7 @@ class GeometricRoad:
 
 def _codes(play: Play, seated_as: Mapping[SeatKey, Codes]) -> Codes:
     """What became of the meshes that a measure reads, the worst of them, (trials, positions)."""
-    shape = (len(play.deviations), play.measure.positions.in_a_trial)
+    shape = (len(play.trials), play.measure.positions.in_a_trial)
     codes = np.zeros(shape, dtype=np.int8)
     for key in seat_keys(play.model, play.measure):
         codes = np.maximum(codes, seated_as[key].reshape(shape))

@@ -14,6 +14,7 @@ from fractions import Fraction
 
 import numpy as np
 
+from tol3d.gearing.links import LinkSum
 from tol3d.gearing.model import Contributor, LostMotion, Measure, Model, Planar, Positions
 from tol3d.gearing.model.measure import at_one_position
 from tol3d.gearing.stack_up.backlash import per_normal_backlash, stack_of
@@ -27,8 +28,12 @@ TILT_NODES = 2000  # midpoint rule in u, a plane; its error on |x| of a normal i
 
 
 def closed_form(model: Model, measure: Measure) -> ClosedForm | None:
-    """Closed form of a measure read at one position; None for extremes over a turn and parallel load paths."""
-    if measure.take != "value" or not measure.kind.adds_up:
+    """Closed form of a measure read at one position.
+
+    None for extremes over a turn, parallel load paths, and links whose theory is no sum.
+    """
+    sums = _link_sums(model, measure)
+    if measure.take != "value" or not measure.kind.adds_up or sums is None:
         return None
     parts = tuple(_parts(model, measure))
     terms = [term for part in parts for term in part.terms]
@@ -38,14 +43,14 @@ def closed_form(model: Model, measure: Measure) -> ClosedForm | None:
     leaning = [group for group in groups if group not in plain]
     names = frozenset(contributor.name for group in leaning for contributor in group)
     linear = [term for term in terms if term.term.tilts is None and term.term.contributor.name not in names]
-    own = [own for contributor in model.contributors if (own := _linear(model, measure, contributor, linear))]
+    own = [own for contributor in model.contributors if (own := _linear(contributor, linear, sums))]
     shares = _with_covariances(own) if measure.positions.over == "random" else [each.share for each in own]
     shares += [share for tilts in plain.values() for share in tilts]
     shares += [Share(term.term.contributor.name, 0.0, 0.0, 0.0) for term in terms if _plane(term) == "none"]
     stacks = [(part.factor, part.stack) for part in parts]
     for group in leaning:
         shares += leaning_shares(stacks, group)
-    nominal = _nominal(model, measure)
+    nominal = _nominal(model, measure, sums)
     together = tuple(_merged(model, shares))
     return ClosedForm(
         nominal=nominal,
@@ -129,10 +134,27 @@ def _parts(model: Model, measure: Measure) -> Iterator[_Part]:
         yield _Part(model, measure, stack, _lever(measure) * factor * per_normal_backlash(model, backlash))
 
 
-def _nominal(model: Model, measure: Measure) -> float:
-    reducers = {reducer.name: reducer.backlash for reducer in model.reducers}
-    data_sheets = sum(_lever(measure) * factor * reducers[name] for factor, name in measure.kind.reducers)
-    return data_sheets + sum(part.factor * part.stack.nominal for part in _parts(model, measure))
+Wave = tuple[float, float, Fraction]
+"""Amplitude per length, phase [rad] and turns per turn of the first shaft; 0 of what rests."""
+
+_Sums = Sequence[tuple[float, LinkSum]]
+"""The links of a measure that are no meshes, with what the measure makes of their play."""
+
+
+def _link_sums(model: Model, measure: Measure) -> _Sums | None:
+    """None where one of them has none."""
+    found = []
+    for factor, name in measure.kind.links:
+        own = model.link(name).sum_of([each for each in model.contributors if each.effect.acts_on(name)])
+        if own is None:
+            return None
+        found.append((_lever(measure) * factor, own))
+    return found
+
+
+def _nominal(model: Model, measure: Measure, sums: _Sums) -> float:
+    of_links = sum(factor * own.nominal for factor, own in sums)
+    return of_links + sum(part.factor * part.stack.nominal for part in _parts(model, measure))
 
 
 @dataclass(frozen=True)
@@ -143,27 +165,31 @@ class _Linear:
     """
 
     share: Share
-    waves: tuple[tuple[float, float, Fraction], ...] = ()
+    waves: tuple[Wave, ...] = ()
 
 
-def _linear(model: Model, measure: Measure, contributor: Contributor, terms: Sequence[_ReadTerm]) -> _Linear | None:
-    own = [term for term in terms if term.term.contributor is contributor]
-    by_reducers = sum(
-        _lever(measure) * factor * rate
-        for factor, reducer in measure.kind.reducers
-        if (rate := contributor.effect.play_of(reducer))
-    )
-    if not own and not by_reducers:
+def _of_link(factor: float, rates: Sequence[float]) -> Wave:
+    """What a deviation does through a link whose play is the same at every position."""
+    if len(rates) == 1:
+        return factor * rates[0], 0.0, Fraction(0)
+    x, y = rates
+    return factor * math.hypot(x, y), math.atan2(y, x), Fraction(0)
+
+
+def _linear(contributor: Contributor, terms: Sequence[_ReadTerm], sums: _Sums) -> _Linear | None:
+    own = [(term.amplitude, term.phase, term.rate) for term in terms if term.term.contributor is contributor]
+    own += [_of_link(factor, one.rates[contributor.name]) for factor, one in sums if contributor.name in one.rates]
+    if not own:
         return None
     law, draw = contributor.distribution, contributor.draw
     if not isinstance(draw, Planar):
-        coefficient = sum(term.amplitude for term in own) + by_reducers
+        coefficient = sum(amplitude for amplitude, _, _ in own)
         return _Linear(Share(contributor.name, coefficient, coefficient * law.mean, coefficient**2 * law.variance))
     square = law.variance + law.mean**2
     if draw.direction is None:
-        worst = _root(sum(a.amplitude * b.amplitude * _alike(a, b) for a in own for b in own))
+        worst = _root(sum(a[0] * b[0] * _alike(a, b) for a in own for b in own))
         return _Linear(Share(contributor.name, worst, 0.0, worst**2 * square / 2))
-    waves = tuple((term.amplitude, term.phase - draw.direction, term.rate) for term in own)
+    waves = tuple((amplitude, phase - draw.direction, rate) for amplitude, phase, rate in own)
     resting = sum(amplitude * math.cos(phase) for amplitude, phase, rate in waves if not rate)
     turning = tuple(wave for wave in waves if wave[2])
     squares = sum(a * b * _product(p, q, v, w) for a, p, v in turning for b, q, w in turning)
@@ -178,9 +204,9 @@ def _root(square: float) -> float:
     return math.sqrt(max(square, 0.0))
 
 
-def _alike(first: _ReadTerm, second: _ReadTerm) -> float:
+def _alike(first: Wave, second: Wave) -> float:
     """Mean over the positions of the cosine between the worst directions of two terms."""
-    return math.cos(first.phase - second.phase) if first.rate == second.rate else 0.0
+    return math.cos(first[1] - second[1]) if first[2] == second[2] else 0.0
 
 
 def _product(first: float, second: float, first_rate: Fraction, second_rate: Fraction) -> float:

@@ -1,17 +1,19 @@
 """A reducer from a data sheet."""
 
-from typing import Annotated, ClassVar, Literal, Self
+from fractions import Fraction
+from typing import Annotated, ClassVar, Final, Literal
 
-from pydantic import AfterValidator, Field, model_validator
+from pydantic import AfterValidator, Field
 
+from tol3d.gearing.grammar.moves.link import LinkSpec
 from tol3d.gearing.grammar.moves.ratio import Ratio
-from tol3d.gearing.grammar.parts.shaft_reference import ShaftReference
-from tol3d.scene.move import MoveSpec
-from tol3d.scene.name import Name
-from tol3d.scene.reference import Reference
+from tol3d.gearing.links import Reducer
+from tol3d.scene import Scene
 from tol3d.scene.vector import Coordinate
 from tol3d.strict import refused
 from tol3d.units import Of, Quantity
+
+MOST_RATIO: Final = 1e6  # beyond it somebody's finger slipped
 
 
 def _not_negative(angle: Quantity) -> Quantity:
@@ -20,14 +22,12 @@ def _not_negative(angle: Quantity) -> Quantity:
     return angle
 
 
-class ReducerSpec(MoveSpec):
+class ReducerSpec(LinkSpec):
     """Two coaxial shafts with a bought reducer between them, of which ratio and backlash are known and nothing else."""
 
     words: ClassVar[str] = "a reducer"
 
     kind: Literal["reducer"]
-    driver: Name = Field(description="the shaft, or the gear that is its own, towards the motor")
-    driven: Name = Field(description="the shaft, or the gear that is its own, behind it")
     ratio: Ratio = Field(description="turns of the driver per turn of the driven; negative: they turn opposite ways")
     backlash: Annotated[Quantity, Of("angle"), AfterValidator(_not_negative)] | None = Field(
         default=None,
@@ -40,12 +40,22 @@ class ReducerSpec(MoveSpec):
         json_schema_extra={"default": "0 mm"},
     )
 
-    @model_validator(mode="after")
-    def _refuse_one_shaft(self) -> Self:
-        if self.driver == self.driven:
-            raise refused("driven", "another shaft than the driver", repr(self.driven))
-        return self
+    def link(self, name: str, scene: Scene) -> Reducer:
+        """What the data sheet says.
 
-    def references(self) -> tuple[Reference, ...]:
-        """Two shafts."""
-        return ShaftReference(("driver",), self.driver), ShaftReference(("driven",), self.driven)
+        Raises:
+            SceneError: a ratio that nobody builds.
+        """
+        if not 1 / MOST_RATIO <= abs(self.ratio) <= MOST_RATIO:
+            raise scene.refuse(
+                ("moves", name, "ratio"),
+                f"expected a ratio of 1/{MOST_RATIO:g} to {MOST_RATIO:g}, either sign, got {self.ratio:g}",
+            )
+        return Reducer(
+            name=name,
+            driver=self.driver,
+            driven=self.driven,
+            rate=1 / Fraction(str(self.ratio)),
+            offset=self.offset.internal,
+            backlash=0.0 if self.backlash is None else self.backlash.internal,
+        )

@@ -15,7 +15,7 @@ from tol3d.strict import refused
 
 
 class TrainSpec(MoveSpec):
-    """A train from the shaft that the motor turns to its output, over the meshes and reducers of the scene."""
+    """A train from the shaft that the motor turns to its output, over the meshes and other links of the scene."""
 
     words: ClassVar[str] = "a train"
 

@@ -1,16 +1,17 @@
 """Backlash of a reducer."""
 
 from collections.abc import Iterator, Mapping
-from typing import TYPE_CHECKING, ClassVar, Literal
+from typing import TYPE_CHECKING, Any, ClassVar, Literal
 
 from pydantic import Field
 
-from tol3d.gearing.effects import ReducerBacklash
+from tol3d.gearing.effects import LinkDeviation
 from tol3d.gearing.grammar.moves import MoveSpec, ReducerSpec
 from tol3d.gearing.grammar.parts import PartSpec
-from tol3d.gearing.grammar.tolerances.gearing_tolerance import GearingToleranceSpec, Meaning
+from tol3d.gearing.grammar.tolerances.gearing_tolerance import Meaning
+from tol3d.gearing.grammar.tolerances.link_tolerance import LinkToleranceSpec
 from tol3d.scene.name import Name
-from tol3d.scene.reference import Contradiction, Reference
+from tol3d.scene.reference import Contradiction
 from tol3d.units import Dimension
 
 if TYPE_CHECKING:
@@ -18,17 +19,14 @@ if TYPE_CHECKING:
     from tol3d.gearing.model.nominal import Nominal
 
 
-class ReducerBacklashSpec(GearingToleranceSpec):
+class ReducerBacklashSpec(LinkToleranceSpec):
     """An angle: the free turn of the reducer's driven shaft while its driver is held; draws below 0 are unphysical."""
 
     dimensions: ClassVar[tuple[Dimension, ...]] = ("angle",)
+    link_spec: ClassVar[type[Any]] = ReducerSpec
 
     kind: Literal["reducer_backlash"]
     of: Name = Field(description="the reducer")
-
-    def references(self) -> tuple[Reference, ...]:
-        """The reducer."""
-        return (Reference(("of",), self.of, (ReducerSpec,)),)
 
     def contradictions(self, parts: Mapping[str, PartSpec], moves: Mapping[str, MoveSpec]) -> Iterator[Contradiction]:
         """The reducer's own backlash would be a second one."""
@@ -39,7 +37,7 @@ class ReducerBacklashSpec(GearingToleranceSpec):
 
     def meaning(self, nominal: "Nominal") -> Meaning:
         """The shaft that the reducer drives has this play."""
-        return Meaning(ReducerBacklash(self.of), least=0.0)
+        return Meaning(LinkDeviation(self.of), least=0.0)
 
     @property
     def unit(self) -> "Unit":

@@ -44,21 +44,22 @@ def lost_motion(
     tip: Tip | None = None,
 ) -> LostMotion:
     """What a train's links leave free at one of its shafts, its meshes read as `read` says."""
-    stages = tuple(_stage(model, element, shaft, read) for element in model.layout.load_path(train.held, shaft))
+    path = model.layout.load_path(train.held, shaft)
+    stages = tuple(_stage(model, element, (shaft, train.held), read) for element in path)
     return LostMotion(quantity, train.name, shaft, train.held, stages, tip)
 
 
-def _stage(model: Model, element: Link | Parallel, shaft: str, read: Reader) -> AnyStage:
-    """A link or load paths in parallel, read at a shaft."""
+def _stage(model: Model, element: Link | Parallel, ends: tuple[str, str], read: Reader) -> AnyStage:
+    """A link or load paths in parallel, read at a shaft while another one is held."""
     layout = model.layout
+    ratio = float(layout.freed_turn(element.driven, *ends))
     if isinstance(element, Parallel):
-        ratio = float(layout.ratio(shaft, element.driven))
-        paths = tuple(tuple(_stage(model, inner, element.driven, read) for inner in path) for path in element.paths)
+        within = (element.driven, element.driver)
+        paths = tuple(tuple(_stage(model, inner, within, read) for inner in path) for path in element.paths)
         return ParallelStage(element.name, abs(ratio), element.driver, element.driven, paths, 1 if ratio > 0.0 else -1)
-    ratio = float(layout.ratio(shaft, element.driven))
     mesh = next((mesh for mesh in model.meshes if mesh.name == element.name), None)
     if mesh is None:
-        return Stage(element.name, abs(ratio), None)
+        return Stage(element.name, abs(ratio), None, 1 if ratio > 0.0 else -1, model.link(element.name).has_middle)
     _, carried = layout.carrying[mesh.driven]
     backlash = Backlash("angular_backlash", mesh.name, mesh.driven, read(mesh))
     return Stage(element.name, abs(ratio), backlash, carried.sense if ratio > 0.0 else -carried.sense)

@@ -1,0 +1,47 @@
+"""What links that are no gear meshes leave free in some trials, by either road's law."""
+
+from collections.abc import Callable
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tol3d.gearing.links import FreeTurn, LinkTrials, StatedLink
+from tol3d.gearing.model import Measure, Model
+from tol3d.gearing.model.contributor import Contributor
+from tol3d.system.trials import Trials
+
+Array = NDArray[np.float64]
+
+LinkLaw = Callable[[StatedLink, LinkTrials], FreeTurn]
+"""The free turn of a link's driven shaft."""
+
+
+def as_built(link: StatedLink, seen: LinkTrials) -> FreeTurn:
+    """That of the geometric road."""
+    return link.exact(seen)
+
+
+def by_theory(link: StatedLink, seen: LinkTrials) -> FreeTurn:
+    """That of the analytic road."""
+    return link.analytic(seen)
+
+
+def link_contributors(model: Model, link: str) -> tuple[Contributor, ...]:
+    """The contributors whose deviations are a link's."""
+    return tuple(contributor for contributor in model.contributors if contributor.effect.acts_on(link))
+
+
+def link_trials(model: Model, measure: Measure, link: StatedLink, trials: Trials) -> LinkTrials:
+    """What a link sees of some trials where a measure is read."""
+    own = link_contributors(model, link.name)
+    deviations = {each.name: trials.deviations[:, model.component_slices[each.name]] for each in own}
+    return LinkTrials(own, deviations, _angles(model, measure, link, trials))
+
+
+def _angles(model: Model, measure: Measure, link: StatedLink, trials: Trials) -> Array:
+    if link.turns is None or not model.layout.mesh_turn[link.name].rate:
+        return np.zeros((len(trials), measure.positions.in_a_trial))
+    fixed = model.driver_angles(measure, link.name)
+    if fixed is None:
+        return trials.positions[link.name][:, None]
+    return np.broadcast_to(np.array(fixed), (len(trials), len(fixed)))

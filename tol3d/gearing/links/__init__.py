@@ -1,0 +1,7 @@
+"""Links of shafts that are no gear meshes: what a train asks of one, and the kinds that tol3d brings along."""
+
+from tol3d.gearing.links.link_trials import LinkTrials
+from tol3d.gearing.links.reducer import Reducer
+from tol3d.gearing.links.stated_link import FreeTurn, LinkSum, StatedLink
+
+__all__ = ["FreeTurn", "LinkSum", "LinkTrials", "Reducer", "StatedLink"]

@@ -1,0 +1,163 @@
+"""A link of two shafts that is no gear mesh: its rate and its play are its own, and trains add up or compare the play.
+
+A kind of link from elsewhere is a subclass here, and a kind of move whose `link` makes one; see LinkSpec.
+"""
+
+from abc import ABC, abstractmethod
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import ClassVar, Final, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tol3d.gearing.links.link_trials import LinkTrials
+from tol3d.system.contributor import Contributor
+
+Array = NDArray[np.float64]
+
+STEP: Final = 1e-5  # mm, rad, K; differences over it lose 1e-11 of a play of 1 mrad to rounding
+SAME_AXIS: Final = 1e-6  # mm, and rad
+
+
+@dataclass(frozen=True)
+class FreeTurn:
+    """How far a driven shaft turns freely while its driver, and its carrier if there is one, are held.
+
+    Args:
+        play: from end to end [rad], (trials, positions) or (trials, 1); below 0 the link binds.
+        middle: of that turn about the shaft's z [rad], against its nominal angle, the same shape; None for 0. It
+            matters only where load paths are parallel.
+    """
+
+    play: Array
+    middle: Array | None = None
+
+
+@dataclass(frozen=True)
+class LinkSum:
+    """The theory of a play that is a sum: it is the same at every position.
+
+    Args:
+        nominal: without deviations [rad].
+        rates: by contributor, of each of its components [rad per mm, rad or K].
+    """
+
+    nominal: float
+    rates: Mapping[str, tuple[float, ...]]
+
+
+@dataclass(frozen=True, kw_only=True)
+class StatedLink(ABC):
+    """A link of shafts that a move of a scene stands for. Frozen; it pickles.
+
+    Args:
+        name: the move's.
+        driver, driven: shafts.
+        rate: turns of the driven per turn of the driver, signed; both against the carrier where there is one.
+        carrier: the shaft that carries the link round, as the arm of an epicyclic gear does; None if it rests in the
+            world.
+        offset: of the driven shaft's origin along the driver's axis [mm].
+    """
+
+    kind: ClassVar[str]
+    """What it is, one word in summaries and tables."""
+
+    adds_up: ClassVar[bool] = False
+    """Whether its theory is a linear sum of its deviations, the same at every position: then it has a closed form."""
+
+    has_middle: ClassVar[bool] = False
+    """Whether its free turns have a middle of their own."""
+
+    name: str
+    driver: str
+    driven: str
+    rate: Fraction
+    carrier: str | None = None
+    offset: float = 0.0
+
+    @property
+    def turns(self) -> Fraction | None:
+        """Turns of the driver against the carrier after which its play repeats; None: it depends on no position."""
+        return None
+
+    @property
+    def remark(self) -> str:
+        """What the check of a scene says of its play, if anything."""
+        return ""
+
+    @property
+    def driver_from_driven(self) -> Array:
+        """Pose of the driven shaft in the frame of its driver, both at 0, (4, 4) [mm]: along its axis if not said."""
+        pose = np.eye(4)
+        pose[2, 3] = self.offset
+        return pose
+
+    @property
+    def coaxial(self) -> bool:
+        """Whether both shafts lie on one axis."""
+        pose = self.driver_from_driven
+        return bool(np.abs(pose[:2, 3]).max() < SAME_AXIS and np.abs(pose[:2, 2]).max() < SAME_AXIS)
+
+    @abstractmethod
+    def exact(self, seen: LinkTrials) -> FreeTurn:
+        """The free turn of the 3D simulation, trial by trial."""
+
+    def analytic(self, seen: LinkTrials) -> FreeTurn:
+        """The free turn by theory; that of the 3D simulation where nothing better is known."""
+        return self.exact(seen)
+
+    def ends(self, contributors: Sequence[Contributor]) -> tuple[float, float] | None:
+        """Between which ends the play lies by the laws of its contributors [rad]; None where that is not known."""
+        return None
+
+    def sum_of(self, contributors: Sequence[Contributor]) -> LinkSum | None:
+        """The theory as a sum; None where it is none."""
+        if not self.adds_up:
+            return None
+        widths = [len(each.draw.components) for each in contributors]
+        rows = np.concatenate([np.zeros((1, sum(widths))), np.eye(sum(widths))])
+        plays = self.analytic(_seen(contributors, rows, np.zeros((len(rows), 1)))).play[:, 0]
+        rates = np.split(plays[1:] - plays[0], np.cumsum(widths)[:-1])
+        named = zip(contributors, rates, strict=True) if contributors else ()
+        return LinkSum(float(plays[0]), {each.name: tuple(own.tolist()) for each, own in named})
+
+    def rates(self, seen: LinkTrials, what: Literal["play", "rest"]) -> Mapping[str, Array]:
+        """Derivatives of the play, or of its middle, on the 3D road.
+
+        By contributor, (trials, positions, components) [rad per mm, rad or K].
+        """
+        one_law = type(self).analytic is StatedLink.analytic
+        if what == "play" and one_law and (whole := self.sum_of(seen.contributors)):
+            shape = seen.angles.shape
+            return {name: np.broadcast_to(np.array(own), (*shape, len(own))) for name, own in whole.rates.items()}
+        return {each.name: self._differences(seen, each.name, what) for each in seen.contributors}
+
+    def _differences(self, seen: LinkTrials, name: str, what: str) -> Array:
+        own = seen.deviations[name]
+        rates = np.empty((*seen.angles.shape, own.shape[1]))
+        for k, step in enumerate(STEP * np.eye(own.shape[1])):
+            both = [self.exact(_moved(seen, name, sign * step)) for sign in (1.0, -1.0)]
+            above, below = (turn.play if what == "play" else middle_of(turn) for turn in both)
+            rates[..., k] = (above - below) / (2 * STEP)
+        return rates
+
+
+def middle_of(turn: FreeTurn) -> Array:
+    """The middle of a free turn [rad], in the shape of its play."""
+    return np.zeros_like(turn.play) if turn.middle is None else turn.middle
+
+
+def _moved(seen: LinkTrials, name: str, step: Array) -> LinkTrials:
+    return LinkTrials(seen.contributors, {**seen.deviations, name: seen.deviations[name] + step}, seen.angles)
+
+
+def _seen(contributors: Sequence[Contributor], rows: Array, angles: Array) -> LinkTrials:
+    """Deviations (trials, components of all) at angles."""
+    found, start = {}, 0
+    for each in contributors:
+        width = len(each.draw.components)
+        found[each.name] = rows[:, start : start + width]
+        start += width
+    return LinkTrials(contributors, found, angles)
