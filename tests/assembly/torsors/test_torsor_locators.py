@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 from drafts import Draft, Vector, displacement, frame, moved_as_a_whole, turned
 from numpy.typing import NDArray
-from scipy.spatial.transform import Rotation
+from rigid_parts import RigidParts, directional
 
-from tol3d.assembly.model import Assembly, Fix, Locate, Measured, Pair, Weld
+from tol3d.assembly.model import Assembly, Fix, Locate, Measured, Move, Pair, Weld
 from tol3d.assembly.torsors.road import slopes, values
 from tol3d.errors import InputError
 
@@ -107,67 +107,15 @@ def test_locators_that_leave_a_freedom_are_refused_by_its_name() -> None:
 # poses found by Newton -------------------------------------------------------------------------------
 
 
-@dataclass
-class Chain:
+def chain(seed: int, points_on: Side) -> Assembly:
     """Two parts on six planes each, the second on the first; all poses and directions are random."""
-
-    assembly: Assembly
-
-    def measured(self, deviations: Array) -> Array:
-        """Where the last part's target lies in the first part's frame, by poses that Newton finds."""
-        poses: dict[str, Array] = {}
-        for move in self.assembly.moves:
-            if isinstance(move, Fix):
-                poses[move.part] = self.assembly.part[move.part].pose
-            if isinstance(move, Locate):
-                poses[move.part] = self._located(move, poses, deviations)
-        start, end = self._point("a.zero", poses, deviations), self._point("c.target", poses, deviations)
-        return (end - start) @ poses["a"][:3, :3]
-
-    def _own(self, name: str, deviations: Array) -> Array:
-        feature = self.assembly.features[name]
-        moved = sum((each.matrix @ deviations[each.columns] for each in feature.moved_by), start=np.zeros(3))
-        return feature.frame[:3, :3] @ moved + feature.frame[:3, 3]
-
-    def _point(self, name: str, poses: dict[str, Array], deviations: Array) -> Array:
-        pose = poses[self.assembly.features[name].part]
-        return pose[:3, :3] @ self._own(name, deviations) + pose[:3, 3]
-
-    def _located(self, move: Locate, poses: dict[str, Array], deviations: Array) -> Array:
-        start = self.assembly.part[move.part].pose
-
-        def pose(unknowns: Array) -> Array:
-            own = np.eye(4)
-            own[:3, :3] = Rotation.from_rotvec(unknowns[3:] / 100.0).as_matrix() @ start[:3, :3]
-            own[:3, 3] = start[:3, 3] + unknowns[:3]
-            return own
-
-        def missing(unknowns: Array) -> Array:
-            placed = poses | {move.part: pose(unknowns)}
-            found = []
-            for pair in move.pairs:
-                side = self.assembly.features[pair.target].part if move.points_on == "part" else move.part
-                normal = placed[side][:3, :3] @ pair.normal
-                apart = self._point(pair.moving, placed, deviations) - self._point(pair.target, placed, deviations)
-                found.append(normal @ apart - sum(deviations[each.columns].sum() for each in pair.locator))
-            return np.array(found)
-
-        unknowns = np.zeros(6)
-        rates = np.array([missing(unknowns + h) - missing(unknowns - h) for h in 0.01 * np.eye(6)]).T / 0.02
-        for _ in range(5):  # each leaves some 1e-4 of the error before it: slopes change so over 0.01 mm
-            unknowns = unknowns - np.linalg.solve(rates, missing(unknowns))
-        assert np.abs(missing(unknowns)).max() < 1e-12
-        return pose(unknowns)
-
-
-def chain(seed: int, points_on: Side) -> Chain:
     rng = np.random.default_rng(seed)
     draft = Draft()
     for name in "abc":
         draft.part(name, turned(rng.normal(size=3), rng.normal(size=3) * 100.0))
     draft.feature("a.zero", (0, 0, 0), deviates=False)
     draft.feature("c.target", frame(rng.normal(size=3) * 50.0, rng.normal(size=3)))
-    moves: list[Fix | Locate | Weld] = [Fix("fix", "a")]
+    moves: list[Move] = [Fix("fix", "a")]
     for target, moving in ("ab", "bc"):
         pairs = []
         for k, (beside, along) in enumerate(NEST):  # in the world, somewhat beside those of a nest
@@ -190,7 +138,7 @@ def chain(seed: int, points_on: Side) -> Chain:
             )
         moves.append(Locate(f"place {moving}", moving, tuple(pairs), points_on))
     measures = dict(zip("xyz", [displacement("c.target", axis, "a.zero") for axis in np.eye(3)], strict=True))
-    return Chain(draft.assembly(moves, measures))
+    return draft.assembly(moves, measures)
 
 
 @pytest.mark.parametrize("points_on", ["part", "fixture"])
@@ -198,16 +146,21 @@ def test_slopes_of_six_planes_are_those_of_poses_that_newton_finds(points_on: Si
     """Central differences of the solved poses; features, locators and turns of what lies below all act."""
     for seed in range(2):
         own = chain(seed, points_on)
-        found = np.array([coefficients(own.assembly, name) for name in "xyz"])
-        rng = np.random.default_rng(seed)
-        for direction in rng.normal(size=(12, own.assembly.width)):
-            step = 1e-3 * direction  # mm: an error of (1e-3 / 100)^2 or so by the third order, 1e-12 / 1e-3 by Newton
-            expected = (own.measured(step) - own.measured(-step)) / 2e-3
+
+        def measured(deviations: Array, own: Assembly = own) -> Array:
+            parts = RigidParts(own, deviations, {})
+            poses = parts.poses()
+            return (parts.origin("c.target", poses) - parts.origin("a.zero", poses)) @ poses["a"][:3, :3]
+
+        found = np.array([coefficients(own, name) for name in "xyz"])
+        for direction in np.random.default_rng(seed).normal(size=(12, own.width)):
+            # an error of (1e-3 / 100)^2 or so by the third order, of 1e-12 / 1e-3 by Newton
+            expected = directional(measured, direction)
             np.testing.assert_allclose(found @ direction, expected, atol=1e-8 * np.abs(found).sum())
 
 
 def test_values_are_linear_in_the_deviations_and_do_not_see_where_the_assembly_stands() -> None:
-    own = chain(7, "part").assembly
+    own = chain(7, "part")
     rng = np.random.default_rng(0)
     deviations = rng.normal(size=(5, own.width)) * 0.1
     nominal = values(own, np.zeros((1, own.width)), ["x"])["x"]
@@ -221,7 +174,7 @@ def test_values_are_linear_in_the_deviations_and_do_not_see_where_the_assembly_s
 
 
 def test_a_trial_has_the_same_bits_alone_as_among_many() -> None:
-    own = chain(3, "part").assembly
+    own = chain(3, "part")
     deviations = np.random.default_rng(1).normal(size=(9000, own.width)) * 0.1
     together = values(own, deviations, ["x", "z"])
     for trial in (0, 4095, 4096, 8999):

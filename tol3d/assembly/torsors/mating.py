@@ -52,8 +52,11 @@ def _take(freedoms: Freedoms, relation: Relation, move: Mate, world: World) -> i
             return pairing.lying() + pairing.height_of_target(*pairing.radius(relation.target))
     raise InputError(
         f"{move.name}: {relation.kind} of {relation.moving} and {relation.target}: "
-        f"not of a {_word(shapes[0])} and a {_word(shapes[1])}"
+        f"not of {_ARTICLES[_word(shapes[0])]} and {_ARTICLES[_word(shapes[1])]}"
     )
+
+
+_ARTICLES = {"point": "a point", "axis": "an axis", "plane": "a plane"}
 
 
 def _word(shape: Shape) -> str:
