@@ -15,7 +15,7 @@ MECHANISMS: Final = ("gearing", "gears", "toys")
 
 WORDS: Final = (
     "gear|gears|gearing|mesh|meshes|meshed|meshing|tooth|teeth|train|trains|"
-    "backlash|backlashes|bevel|spur|pinion|pinions|flank|flanks"
+    "backlash|backlashes|bevel|spur|pinion|pinions|flank|flanks|jam|jams|jammed|interferes"
 )
 CAPITAL: Final = "|".join(word.capitalize() for word in WORDS.split("|"))
 OF_GEARS: Final = re.compile(rf"(?<![A-Za-z])(?:(?i:{WORDS}))(?![a-z])|(?<=[a-z])(?:{CAPITAL})(?![a-z])")

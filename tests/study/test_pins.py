@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from numpy.typing import NDArray
+from printing import printed, row_of
 from scipy import integrate, stats
 from toys.pins import PINS
 from toys.pins.programme import gaps_of, slide_of
@@ -15,6 +16,8 @@ from toys.registered import TOYS, known
 
 from tol3d import InputError, Overrides, Run, SceneError, replay, run_scene
 from tol3d.execution.pools import Execution
+from tol3d.report.heading import worst_words
+from tol3d.report.table import run_report
 from tol3d.runs.worst import worst_trial
 from tol3d.study import blocks
 from tol3d.system.statuses import Statuses
@@ -105,6 +108,16 @@ def test_a_clash_is_a_failure_with_its_depth(run: Run, tmp_path: Path) -> None:
     assert counted["geometric"]["deepest_overlap"] == values.min()
     assert counted["geometric"]["out_ppm"] == pytest.approx(1e6 * np.mean(values < 5.0))
     assert worst_trial(run) == int(values.argmin())
+
+
+def test_tables_call_failures_by_the_mechanism_s_own_words(run: Run) -> None:
+    counted = run.summary["measures"]["least gap"]["status"]
+    assert run.summary["status_words"] == {"clashes": "clashing"}
+    text = printed(run_report(run.found), 160)
+    assert row_of(text, "trials clashing")[-1] == str(counted["clashes"])
+    assert f"{counted['ok']} seated, {counted['clashes']} clashing (" in text
+    assert "a build that is clashing is below every lower limit" in " ".join(text.split())
+    assert worst_words(run.found) == "clashing, the deepest by least gap or slide"
 
 
 def test_a_trial_is_replayed_and_bits_do_not_depend_on_workers_or_blocks(

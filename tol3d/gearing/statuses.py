@@ -9,4 +9,5 @@ STATUSES: Final = Statuses(
     texts=tuple(STATUS_TEXT[code] for code in range(len(STATUS_TEXT))),
     lacking=frozenset((STATUS_TEXT[INTERFERES],)),
     words={"interferes": "jam", "no contact": "find no contact", "out of range": "are out of range"},
+    states={"interferes": "jammed", "no contact": "without contact"},
 )

@@ -14,8 +14,9 @@ def worst_words(run: RunSummary) -> str:
     measures = run.measures
     limited = [name for name, measure in measures.items() if measure.has_limits]
     judged = limited or [*measures][:1]
-    if jammed := [name for name in judged if measures[name].ended_in(run.lacking)]:
-        return f"the deepest jammed by {' or '.join(jammed)}"
+    if lacking := [name for name in judged if measures[name].ended_in(run.lacking)]:
+        ended = [run.state(text) for text in run.statuses if text in run.lacking and run.status.get(text)]
+        return f"{' or '.join(ended)}, the deepest by {' or '.join(lacking)}"
     if not limited:
         return f"the {ENDS[measures[judged[0]].worse]} {judged[0]}, for there are no limits"
     return f"the nearest to a limit of {' or '.join(limited)}, or the furthest beyond it"

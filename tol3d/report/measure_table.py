@@ -18,6 +18,7 @@ from tol3d.report.number import (
 from tol3d.report.page import Heading, Row, Shown, Table
 from tol3d.report.presenter import FurtherRow
 from tol3d.runs.summary.measure import MeasureSummary
+from tol3d.runs.summary.run import RunSummary
 from tol3d.runs.summary.sample import CurveRoads
 from tol3d.system.outcome import SEATED
 
@@ -41,7 +42,6 @@ NOT_ATTRIBUTED = "not attributed"
 ATTRIBUTING: Set[Road] = frozenset(("analytic", "geometric"))
 CURVE_ROWS = 12  # positions of a curve that are printed; the picture and the columns have them all
 SHARE_HEADINGS: Mapping[Road, str] = {"analytic": "analytic", "geometric": "3D simulation"}
-STATUS_WORDS = {"ok": "seated", "interferes": "jammed", "no contact": "without contact"}
 
 
 def _headings(columns: Sequence[Column]) -> list[Heading]:
@@ -49,10 +49,10 @@ def _headings(columns: Sequence[Column]) -> list[Heading]:
     return [Heading(column.heading, styles.get(column.road, "")) for column in columns]
 
 
-def measure_table(measure: MeasureSummary, further: Sequence[FurtherRow] = ()) -> Table:
+def measure_table(run: RunSummary, measure: MeasureSummary, further: Sequence[FurtherRow] = ()) -> Table:
     """Statistics of one scalar measure, one column a road, the published ones last; `further` rows below."""
     columns, unit = columns_of(measure), measure.unit
-    rows = [*_failure_rows(measure, columns)]
+    rows = [*_failure_rows(run, measure, columns)]
     rows += [Row(label, [_cell(column, key, unit) for column in columns], unit=unit) for key, label in ROWS.items()]
     rows += [
         Row(label, [share_cell(_ppm(column, key, measure)) for column in columns], unit="ppm")
@@ -80,7 +80,7 @@ def _index_cell(value: float | None) -> Shown:
     return Shown(NOTHING if value is None else unsigned_zero(f"{value:.3f}"), value)
 
 
-def _failure_rows(measure: MeasureSummary, columns: Sequence[Column]) -> Iterator[Row]:
+def _failure_rows(run: RunSummary, measure: MeasureSummary, columns: Sequence[Column]) -> Iterator[Row]:
     """How many trials seated, and how the others failed; nothing where all of them seated."""
     if not seated_text(measure):
         return
@@ -88,7 +88,7 @@ def _failure_rows(measure: MeasureSummary, columns: Sequence[Column]) -> Iterato
     for status, count in measure.status.items():
         if count or status == SEATED:
             cells = [str(own[c.road].get(status, 0)) if c.road in own else NOTHING for c in columns]
-            yield Row(f"trials {STATUS_WORDS.get(status, status)}", cells)
+            yield Row(f"trials {run.state(status)}", cells)
 
 
 def limit_rows(measure: MeasureSummary) -> dict[str, str]:

@@ -12,7 +12,6 @@ from tol3d.report.heading import limits_text
 from tol3d.report.measure_table import (
     NOT_ATTRIBUTED,
     SIDES,
-    STATUS_WORDS,
     contributors_table,
     curve_table,
     limit_rows,
@@ -37,10 +36,6 @@ from tol3d.system.outcome import SEATED
 NOT_ATTRIBUTED_MEANS = (
     f"{NOT_ATTRIBUTED}: the share of the variance that the regression on the contributors leaves unexplained: "
     "interactions and what is not linear"
-)
-FAILURES_COUNT = (
-    "out of limits is a share of all trials: a jammed build is below every lower limit, one that failed otherwise is "
-    "out in all; Ppk of such a column is Φ⁻¹(1 − share out)/3; its other numbers are of the trials that seated"
 )
 SHARES_MEAN = (
     "shares of the variance; high–low–mean: squares of the ranges that each contributor alone gives between its ends, "
@@ -108,7 +103,7 @@ def _measure_blocks(name: str, measure: MeasureSummary, run: RunSummary, present
         return [*head, curve_table(measure, measure.curve), *map(note, notes)]
     notes = [*_notes(name, measure, run)]
     further = presenter.measure_rows(measure, run)
-    blocks: list[Block] = [*head, measure_table(measure, further), *map(note, notes)]
+    blocks: list[Block] = [*head, measure_table(run, measure, further), *map(note, notes)]
     blocks += [line(f" {text}", "bold red") for text in unexplained_lines(measure.agreement)]
     if measure.contributors:
         blocks += [BLANK, contributors_table(measure)]
@@ -124,10 +119,20 @@ def _meanings(run: RunSummary) -> Iterator[str]:
         yield NOT_ATTRIBUTED_MEANS
     limited = [measure for measure in scalars if limit_rows(measure)]
     if any(map(seated_text, limited)):
-        yield FAILURES_COUNT
+        yield _failures_count(run)
     if any(measure.analytic_closed_form for measure in limited):
         yield "out of limits by the closed form: as if the measure were normal"
     yield from dict.fromkeys(other.meaning for measure in scalars for other in measure.conversions)
+
+
+def _failures_count(run: RunSummary) -> str:
+    """How builds that failed count among those out of limits."""
+    lacking = " or ".join(run.state(status) for status in run.statuses if status in run.lacking)
+    below = f"a build that is {lacking} is below every lower limit, one that failed otherwise" if lacking else ""
+    return (
+        f"out of limits is a share of all trials: {below or 'a build that failed'} is out in all; Ppk of such a column "
+        "is Φ⁻¹(1 − share out)/3; its other numbers are of the trials that seated"
+    )
 
 
 def _notes(name: str, measure: MeasureSummary, run: RunSummary) -> Iterator[str]:
@@ -210,7 +215,7 @@ def _status_line(run: RunSummary) -> Line:
     pieces = [(f"\ntrials: {run.status.get(SEATED, 0)} seated", "")]
     for status, count in failed.items():
         share = share_text(1e6 * count / run.trials)
-        pieces.append((f", {count} {STATUS_WORDS.get(status, status)} ({share})", "red"))
+        pieces.append((f", {count} {run.state(status)} ({share})", "red"))
     return Line((*pieces, *(() if failed else ((", none failed", ""),))))
 
 

@@ -13,7 +13,7 @@ from tol3d.system.outcome import outcome_of, status_column, value_column
 
 Array = NDArray[np.float64]
 
-JAMMED_BY = -1e9  # sigmas; no build that seats is so far beyond a limit
+LACKS_BY = -1e9  # sigmas; no build that seats is so far beyond a limit
 
 
 class KeptTrials(Protocol):
@@ -47,10 +47,10 @@ class KeptTrials(Protocol):
 def worst_trial(run: KeptTrials, measure: str | None = None) -> int:
     """Index of the worst trial of a run.
 
-    Where any trial is jammed it is the one that is jammed deepest; else, among those that seated, the one nearest to a
-    limit, or furthest beyond it. Nearness and depth are counted in standard deviations of each measure; a curve counts
-    by its extremes. Without any limit it is the trial at the worse end of the first measure. A trial without
-    contact or out of range cannot be shown, and is never the worst.
+    Where any trial lacks what is measured it is the one that lacks most; else, among those that seated, the one nearest
+    to a limit, or furthest beyond it. Nearness and depth are counted in standard deviations of each measure; a curve
+    counts by its extremes. Without any limit it is the trial at the worse end of the first measure. A trial of which
+    nothing is known cannot be shown, and is never the worst.
 
     Args:
         run: one that kept its trials.
@@ -69,7 +69,7 @@ def worst_trial(run: KeptTrials, measure: str | None = None) -> int:
 
 
 def _margin(run: KeptTrials, road: str, name: str, measure: MeasureSummary) -> Array:
-    """How far each trial is inside the limits, in sigmas; infinite where it gave no value, far below all if jammed."""
+    """How far each trial is inside the limits, in sigmas; infinite where it gave no value, far below all if lacking."""
     wanted = (value_column(road, name), status_column(name))
     columns = run.columns(*(column for column in wanted if column in run.column_names))
     found = outcome_of(columns, road, name, run.found.lacking)
@@ -84,7 +84,7 @@ def _margin(run: KeptTrials, road: str, name: str, measure: MeasureSummary) -> A
     spread = (float(np.nanstd(margin)) if np.isfinite(margin).any() else 1.0) or 1.0
     margin = np.where(np.isnan(margin), np.inf, margin / spread)
     if found.lacking is not None:
-        margin[found.lacking] = JAMMED_BY + _overlaps(run, road, name)[found.lacking] / spread
+        margin[found.lacking] = LACKS_BY + _overlaps(run, road, name)[found.lacking] / spread
     return margin
 
 
@@ -92,4 +92,4 @@ def _overlaps(run: KeptTrials, road: str, name: str) -> Array:
     """The smallest value of each trial (trials,); below all where an overlap is too deep to measure."""
     column = value_column(road, name)
     smallest = np.asarray(run.columns(column)[column], dtype=np.float64).reshape(run.trials, -1).min(axis=1)
-    return np.where(np.isnan(smallest), JAMMED_BY, smallest)
+    return np.where(np.isnan(smallest), LACKS_BY, smallest)

@@ -50,6 +50,7 @@ def study_summary(simulation: Simulation, road: Road | None, tally: Tally) -> Fi
         study=_asked(study),
         status=tally.status,
         statuses=simulation.system.statuses.meanings,
+        status_words=simulation.system.statuses.states or None,
         chord_error_um=road.chord_error * 1000 if road else None,
         measures={
             measure.name: _measure(simulation, road, measure, tally, explained.get(measure.name))

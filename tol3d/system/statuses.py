@@ -26,7 +26,8 @@ class Statuses:
     Args:
         texts: as columns and summary.json show them; the first is that of OK, "ok".
         lacking: those of builds that lack what is measured, such as parts that overlap.
-        words: what such builds do, for a sentence: "jam".
+        words: what such builds do, for a sentence: "do not fit".
+        states: what such builds are, for a row or a count: "too long"; the text itself where there is none.
 
     Raises:
         InputError: another first text, or one that is not among them.
@@ -35,11 +36,12 @@ class Statuses:
     texts: tuple[str, ...]
     lacking: frozenset[str] = frozenset()
     words: Mapping[str, str] = field(default_factory=dict)
+    states: Mapping[str, str] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         if self.texts[:1] != (SEATED,):
             raise InputError(f"statuses: expected {SEATED!r} first, which files of runs have for it, got {self.texts}")
-        if unknown := sorted((self.lacking | self.words.keys()) - set(self.texts)):
+        if unknown := sorted((self.lacking | self.words.keys() | self.states.keys()) - set(self.texts)):
             raise InputError(f"statuses: expected some of {', '.join(self.texts)}, got {', '.join(unknown)}")
 
     @cached_property

@@ -67,7 +67,9 @@ class PinsSystem(PlainSystem):
     radius: float = 0.0
     pins: int = 0
 
-    statuses: ClassVar[Statuses] = Statuses(("ok", "clashes"), frozenset(("clashes",)), {"clashes": "clash"})
+    statuses: ClassVar[Statuses] = Statuses(
+        ("ok", "clashes"), frozenset(("clashes",)), {"clashes": "clash"}, {"clashes": "clashing"}
+    )
 
     def road(self, name: str, materials: Any) -> Road:
         return PinsRoad(self, self.first_order if name == "analytic" else self.placed)

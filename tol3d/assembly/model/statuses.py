@@ -5,7 +5,9 @@ from typing import Final
 from tol3d.system.statuses import Statuses
 
 STATUSES: Final = Statuses(
-    ("ok", "not unique", "no contact", "no build", "singular"), words={"no build": "do not build"}
+    ("ok", "not unique", "no contact", "no build", "singular"),
+    words={"no build": "do not build"},
+    states={"no contact": "without contact", "no build": "not built"},
 )
 """By their codes: built; the pose is not unique and the measure varies with it; parts that should touch do not reach
 each other; the parts do not go together; the pose was not found, for the contacts have lost their rank."""

@@ -23,6 +23,7 @@ from tol3d.runs.summary.values import (
     Sha256,
 )
 from tol3d.strict import refused
+from tol3d.system.outcome import SEATED
 from tol3d.system.statuses import Meaning
 
 
@@ -80,6 +81,9 @@ class Findings(Section):
     statuses: Mapping[Label, Meaning] = Field(
         description="of each status: values count; less than nothing of what is measured; nothing is known but that"
     )
+    status_words: Maybe[Mapping[Label, Label]] = Field(
+        default=LEFT_OUT, description="what trials of a status are, where its own text is no word for them"
+    )
     chord_error_um: NotNegative | None
     measures: Annotated[Mapping[Label, MeasureSummary], Field(min_length=1, max_length=MOST_ENTRIES)]
     warnings: list[Sentence]
@@ -103,6 +107,10 @@ class RunSummary(Findings):
     def lacking(self) -> frozenset[str]:
         """Statuses of trials that lack what is measured, such as parts that overlap."""
         return frozenset(text for text, meaning in self.statuses.items() if meaning == "lacking")
+
+    def state(self, status: str) -> str:
+        """What trials of a status are, in words: `seated`, and of others what their system calls them."""
+        return "seated" if status == SEATED else (self.status_words or {}).get(status, status)
 
     @property
     def best_road(self) -> Road:
