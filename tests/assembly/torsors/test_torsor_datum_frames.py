@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from tol3d.assembly.model import Assembly, Axis, Datum, Measured, Plane, RoundPlane
 from tol3d.assembly.model.datum_frame import Simulator
 from tol3d.assembly.torsors.road import slopes, values
+from tol3d.errors import InputError
 
 Array = NDArray[np.float64]
 
@@ -151,3 +152,14 @@ def test_a_second_hole_turns_the_frame_whatever_its_distance() -> None:
     expected = 2.0 * math.hypot(turn * 100.0, -0.01)  # the slot stays, the frame turns by this about hole 0 and shifts
     assert values(assembly, draft.trial(given), ["slot"])["slot"][0] == pytest.approx(expected, abs=1e-12)
     assert not coefficients(assembly, "slot").any()  # central: a largest length that is nil at the mean
+
+
+def test_a_datum_that_takes_nothing_is_refused() -> None:
+    draft = Draft()
+    draft.part("plate")
+    for name, height in (("a", 0), ("b", 20)):
+        draft.feature(f"plate.{name}", frame((0, 0, height)), Plane((40, 30)))
+    draft.datum_frame("plate", Datum(("plate.a",)), Datum(("plate.b",)))
+    measured = Measured("position", ("plate.a",), frame="plate|a|b")
+    with pytest.raises(InputError, match=r"datum frame plate\|a\|b: plate\.b takes no freedom"):
+        values(draft.assembly((), {"position": measured}), np.zeros((1, 6)), ["position"])

@@ -9,6 +9,7 @@ from tol3d.assembly.model import Axis, Datum, DatumFrame, Feature, Plane, Point,
 from tol3d.assembly.torsors.columns import Columns
 from tol3d.assembly.torsors.freedoms import Freedoms
 from tol3d.assembly.torsors.torsor import height_at, perpendicular, shift_at, torsor_of, turn_about
+from tol3d.errors import InputError
 
 Array = NDArray[np.float64]
 
@@ -23,23 +24,36 @@ def displacement_of(frame: DatumFrame, datums: Sequence[Sequence[Displaced]], co
         frame: which.
         datums: the features of each of its datums.
         columns: of the assembly; contact adds its own.
+
+    Raises:
+        InputError: a datum takes no freedom.
     """
     centres = [feature.frame[:3, 3] for features in datums for feature, _ in features]
     freedoms = Freedoms(np.zeros(3), centres, columns.count)
     for datum, features in zip(frame.datums, datums, strict=True):
-        (feature, torsor), *others = features
-        if others:
-            _take_line(freedoms, (feature, torsor), others[0])
-            continue
-        match feature.shape:
-            case Plane() | RoundPlane():
-                _take_plane(freedoms, datum, feature, torsor, columns)
-            case Axis():
-                _take_axis(freedoms, feature.frame[:3, 3], feature.frame[:3, :2].T, torsor)
-            case Point():
-                position = shift_at(feature.frame[:3, 3])
-                freedoms.take(position, position @ torsor)
+        before = freedoms.count
+        _take(freedoms, datum, features, columns)
+        if freedoms.count == before:
+            raise InputError(
+                f"datum frame {frame.name}: {'-'.join(datum.features)} takes no freedom: datums before it hold all "
+                "that it asks; leave it out"
+            )
     return freedoms.rest()
+
+
+def _take(freedoms: Freedoms, datum: Datum, features: Sequence[Displaced], columns: Columns) -> None:
+    (feature, torsor), *others = features
+    if others:
+        _take_line(freedoms, (feature, torsor), others[0])
+        return
+    match feature.shape:
+        case Plane() | RoundPlane():
+            _take_plane(freedoms, datum, feature, torsor, columns)
+        case Axis():
+            _take_axis(freedoms, feature.frame[:3, 3], feature.frame[:3, :2].T, torsor)
+        case Point():
+            position = shift_at(feature.frame[:3, 3])
+            freedoms.take(position, position @ torsor)
 
 
 def _take_plane(freedoms: Freedoms, datum: Datum, feature: Feature, torsor: Array, columns: Columns) -> None:

@@ -45,6 +45,11 @@ class Freedoms:
         return self.scale @ self._found
 
     @property
+    def count(self) -> int:
+        """How many freedoms no equation holds."""
+        return int(self._left.shape[1])
+
+    @property
     def left(self) -> Array:
         """The torsors (6, freedoms) that no equation holds."""
         return self.scale @ self._left

@@ -25,7 +25,7 @@ def located(move: Locate, world: World) -> Array:
     freedoms = Freedoms(world.assembly.part[move.part].pose[:3, 3], points, world.columns.count)
     if freedoms.take(rows, values) < 6:
         raise InputError(
-            f"{move.name}: its contacts leave {move.part} free: {freedom_in_words(freedoms.left)}; "
+            f"moves.{move.name}: its contacts leave {move.part} free: {freedom_in_words(freedoms.left)}; "
             "expected six that hold all six freedoms"
         )
     return freedoms.torsor

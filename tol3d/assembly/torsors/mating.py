@@ -25,7 +25,7 @@ def mated(move: Mate, world: World) -> Array:
     for relation in move.relations:
         if not _take(freedoms, relation, move, world):
             raise InputError(
-                f"{move.name}: {relation.kind} of {relation.moving} and {relation.target} takes no freedom: "
+                f"moves.{move.name}: {relation.kind} of {relation.moving} and {relation.target} takes no freedom: "
                 "earlier relations hold all that it asks; leave it out"
             )
     return freedoms.rest()
@@ -51,7 +51,7 @@ def _take(freedoms: Freedoms, relation: Relation, move: Mate, world: World) -> i
         case "tangent", "plane", "axis":
             return pairing.lying() + pairing.height_of_target(*pairing.radius(relation.target))
     raise InputError(
-        f"{move.name}: {relation.kind} of {relation.moving} and {relation.target}: "
+        f"moves.{move.name}: {relation.kind} of {relation.moving} and {relation.target}: "
         f"not of {_ARTICLES[_word(shapes[0])]} and {_ARTICLES[_word(shapes[1])]}"
     )
 
@@ -125,5 +125,5 @@ class _Pairing:
         shape = self._world.assembly.features[name].shape
         assert isinstance(shape, Axis)
         if shape.diameter is None:
-            raise InputError(f"{self._move.name}: {name} has no diameter; expected one, for it is tangent")
+            raise InputError(f"moves.{self._move.name}: {name} has no diameter; expected one, for it is tangent")
         return shape.diameter / 2.0, self._world.size(name) / 2.0
