@@ -160,6 +160,47 @@ def test_points_swing_a_part_onto_planes(seed: int) -> None:
     np.testing.assert_allclose(placed(made, row[None])["part"][0], solved_pose(lacking, NOMINAL), atol=1e-10)
 
 
+@pytest.mark.parametrize("seed", range(4))
+def test_three_points_on_three_walls(seed: int) -> None:
+    """Flush on the floor, then a point on each of three walls, the last one oblique: nothing lies abreast."""
+    points = frame((0, 20, 15)), frame((45, 0, 10)), frame((80, 60, 5))
+    walls = WALL, STOP, frame((80, 60, 20), (-0.8, -0.6, 0))
+    names = "abc"
+    made, slices = mated(
+        [
+            ("coincident", ("part.under", FACE, UNDER), ("base.floor", FACE, FLOOR)),
+            *(
+                ("coincident", (f"part.{name}", Point(), point), (f"base.wall {name}", FACE, wall))
+                for name, point, wall in zip(names, points, walls, strict=True)
+            ),
+        ]
+    )
+    row = np.random.default_rng(seed).normal(0, 0.2, made.width)
+    from_world = np.linalg.inv(NOMINAL)
+    under, floor = plane(from_world @ UNDER, row[slices[0]], REACH), plane(FLOOR, row[slices[1]], REACH)
+    riding = [from_world @ at for at in points]
+    own = [at[:3, :3] @ row[slices[2 * k]] + at[:3, 3] for k, at in enumerate(riding, start=1)]
+    target = [plane(at, row[slices[2 * k + 1]], REACH) for k, at in enumerate(walls, start=1)]
+    aside = np.linalg.svd(floor[1][None])[2][1:]
+
+    def lacking(turn: Array, shift: Array) -> Array:
+        heights = [n @ (turn @ p + shift - q) for p, (q, n) in zip([under[0], *own], [floor, *target], strict=True)]
+        return np.array([*heights, *(100 * aside @ turn @ under[1])])
+
+    np.testing.assert_allclose(placed(made, row[None])["part"][0], solved_pose(lacking, NOMINAL), atol=1e-10)
+
+
+def test_points_alone_are_sent_to_contacts() -> None:
+    made, _ = mated(
+        [
+            ("coincident", (f"part.{k}", Point(), frame((20.0 * k, 30.0 * k * k, 0))), (f"base.floor {k}", FACE, FLOOR))
+            for k in range(3)
+        ]
+    )
+    with pytest.raises(InputError, match="three_two_one or six_plane"):
+        placed(made, np.zeros((1, made.width)))
+
+
 def test_a_cylinder_lies_on_a_plane_by_the_radius_of_its_trial() -> None:
     """On the floor it is square to the wall's normal after the floor: axis parallel to the floor, one radius up."""
     columns = Columns()

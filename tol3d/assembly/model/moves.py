@@ -79,6 +79,8 @@ class Fit:
 class BestFit:
     """The pose of least weighted squares of residuals, or of the least largest residual; finite, no scale.
 
+    Freedoms that no residual sees stay as nominal: least rotation, about the part's origin.
+
     Args:
         name, part: of the move, and what it places.
         fits: which points.

@@ -8,6 +8,7 @@ about the origin of the frame that is moved, and no shift.
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Literal
 
 import numpy as np
@@ -41,6 +42,7 @@ ROUNDS = 6
 """How often a turn and the shifts that follow it are repeated where targets are tilted: each time leaves their slope
 times as much, 1e-3 or less."""
 
+_MET: Codes = np.full(1, OK, dtype=np.int8)
 _LOST = 1e-6  # sine: a freedom that is left by less is held
 
 
@@ -102,12 +104,17 @@ class Step:
             line from the pivot to its point goes to the target; turn to: by a rotation about the held direction, as
             far as that goes; swing: its height is met by such a rotation.
         tie: whose.
-        pivot: the tie whose point stays.
+        pivot: the tie whose point stays; -1 where shifts decide in each trial about what it swings.
     """
 
     kind: Literal["aim", "azimuth", "level", "aim at", "turn to", "swing"]
     tie: int
     pivot: int = -1
+
+    @property
+    def repeated(self) -> bool:
+        """Whether points take part, which shifts move."""
+        return self.kind in ("aim at", "turn to", "swing")
 
 
 @dataclass(frozen=True, eq=False)
@@ -116,6 +123,26 @@ class Shift:
 
     tie: int
     along: Array | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class Way:
+    """How a shift goes in the trials.
+
+    Args:
+        tie: whose height it meets.
+        normal: along which that counts (3, n).
+        along: the way it goes, free of earlier ones (3, n), of unit length.
+    """
+
+    tie: int
+    normal: Array
+    along: Array
+
+    @cached_property
+    def steepness(self) -> Array:
+        """Height a way (n,)."""
+        return dot(self.normal, self.along)
 
 
 @dataclass(frozen=True, eq=False)
@@ -143,12 +170,11 @@ class Alignment:
             seats: one of each tie.
             start: the pose before anything is aligned.
         """
+        ways, codes = self.ways(seats)
         turn, held = start.turn, column(np.zeros(3))
-        codes: Codes = np.full(1, OK, dtype=np.int8)
         for number, (step, shifts_before) in enumerate(self.turns):
-            shifts = len(self.shifts) if number == len(self.turns) - 1 else shifts_before
-            for _ in range(self.rounds if step.pivot >= 0 else 1):
-                seat = seats[step.tie]
+            seat, known = seats[step.tie], ways if number == len(self.turns) - 1 else ways[:shifts_before]
+            for _ in range(self.rounds if step.repeated else 1):
                 if step.kind == "aim":
                     turned, held = least_rotation(rotated(turn, seat.its_direction), seat.its_toward), seat.its_toward
                 elif step.kind == "azimuth":
@@ -158,22 +184,45 @@ class Alignment:
                     turned, reached = _met(held, across, seat.its_toward, np.zeros(1))
                     codes = np.maximum(codes, reached)
                 else:
-                    shift, _ = self._shifted(turn, start.shift, seats, shifts)
-                    pivot = rotated(turn, seats[step.pivot].point) + shift
-                    arm = rotated(turn, seat.point) + shift - pivot
-                    line = self._target(step.tie, seat, arm + pivot) - pivot
-                    if step.kind == "aim at":
-                        held = unit(line)
-                        turned = least_rotation(unit(arm), held)
-                    elif step.kind == "turn to":
-                        turned = _same_azimuth(held, arm, line)
-                    else:
-                        normal = self._normal(step.tie, seat, cross(held, arm))
-                        turned, reached = _met(held, arm, normal, dot(normal, line) + seat.height)
-                        codes = np.maximum(codes, reached)
+                    turned, held, reached = self._by_point(step, seats, known, Pose(turn, start.shift), held)
+                    codes = np.maximum(codes, reached)
                 turn = product(turned, turn)
-        shift, found = self._shifted(turn, start.shift, seats, len(self.shifts))
-        return Pose(turn, shift), np.maximum(codes, found)
+        return Pose(turn, _shifted(turn, start.shift, seats, ways)), codes
+
+    def _by_point(
+        self, step: Step, seats: Sequence[Seat], ways: Sequence[Way], start: Pose, held: Array
+    ) -> tuple[Array, Array, Codes]:
+        """A rotation by a point, the direction that is held after it, and what became of it."""
+        turn, seat = start.turn, seats[step.tie]
+        pose = Pose(turn, _shifted(turn, start.shift, seats, ways))
+        stays = step.pivot >= 0
+        pivot = pose.point(seats[step.pivot].point) if stays else cross(held, drift(pose, seats, ways, held))
+        point = pose.point(seat.point)
+        arm, line = point - pivot, self._target(step.tie, seat, point) - pivot
+        if step.kind == "aim at":
+            held = unit(line)
+            return least_rotation(unit(arm), held), held, _MET
+        if step.kind == "turn to":
+            return _same_azimuth(held, arm, line), held, _MET
+        normal = self._normal(step.tie, seat, cross(held, arm))
+        turned, reached = _met(held, arm, normal, dot(normal, line) + seat.height)
+        return turned, held, reached
+
+    def ways(self, seats: Sequence[Seat]) -> tuple[list[Way], Codes]:
+        """How shifts go in the trials, and whether they still can (n,)."""
+        ways, codes = list[Way](), _MET
+        for shift in self.shifts:
+            seat, held = seats[shift.tie], self.ties[shift.tie].held
+            normal = seat.its_toward if shift.along is None else shift.along
+            if held == "across":
+                normal = normal - dot(normal, seat.its_toward) * seat.its_toward
+            along = normal
+            for taken in ways:
+                along = along - dot(along, taken.along) * taken.along
+            codes = np.maximum(codes, np.where(dot(along, along) > _LOST**2 / 4, OK, SINGULAR).astype(np.int8))
+            along = unit(along)
+            ways.append(Way(shift.tie, along if held == "all" else normal, along))
+        return ways, codes
 
     def _target(self, tie: int, seat: Seat, point: Array) -> Array:
         """Where a point is to lie; of an axis abreast of where it lies."""
@@ -182,36 +231,43 @@ class Alignment:
         return seat.target + dot(point - seat.target, seat.its_toward) * seat.its_toward
 
     def _normal(self, tie: int, seat: Seat, motion: Array) -> Array:
-        """Along which a swing meets a height; of an axis as the point moves across it."""
+        """Along which a swing meets a height; elsewhere as the point moves."""
         if self.ties[tie].held == "along":
             return seat.its_toward
+        if self.ties[tie].held == "all":
+            return unit(motion)
         return unit(motion - dot(motion, seat.its_toward) * seat.its_toward)
 
-    def _shifted(self, turn: Array, start: Array, seats: Sequence[Seat], number: int) -> tuple[Array, Codes]:
-        """The shift (3, n) that meets the first ones of the heights, and whether they are met."""
-        shift, free = start, list[Array]()
-        codes: Codes = np.full(1, OK, dtype=np.int8)
-        for part in self.shifts[:number]:
-            seat, held = seats[part.tie], self.ties[part.tie].held
-            normal = seat.its_toward if part.along is None else part.along
-            if held == "across":
-                normal = normal - dot(normal, seat.its_toward) * seat.its_toward
-            along = normal
-            for taken in free:
-                along = along - dot(along, taken) * taken
-            lengths = dot(along, along)
-            codes = np.maximum(codes, np.where(lengths > _LOST**2 / 4, OK, SINGULAR).astype(np.int8))
-            along = unit(along)
-            if held == "all":
-                normal = along
-            height = dot(normal, rotated(turn, seat.point) + shift - seat.target)
-            if seat.outermost is not None:
-                height = height + seat.outermost.rise(rotated_back(turn, normal))
-            steepness = dot(normal, along)
-            missing = (seat.height - height) / np.where(np.abs(steepness) > _LOST**2, steepness, 1.0)
-            shift = shift + missing * along
-            free.append(along)
-        return shift, codes
+
+def drift(pose: Pose, seats: Sequence[Seat], ways: Sequence[Way], axis: Array) -> Array:
+    """How the world's origin shifts with a turn about an axis through it, the shifts keeping what they hold.
+
+    Args:
+        pose: from which it turns.
+        seats: one of each tie.
+        ways: of the shifts.
+        axis: about which it turns (3, n), of unit length.
+
+    Returns:
+        Per turn (3, n) [mm / rad].
+    """
+    moved = column(np.zeros(3))
+    for way in ways:
+        rate = dot(way.normal, moved + cross(axis, pose.point(seats[way.tie].point)))
+        moved = moved - rate / way.steepness * way.along
+    return moved
+
+
+def _shifted(turn: Array, start: Array, seats: Sequence[Seat], ways: Sequence[Way]) -> Array:
+    """The shift (3, n) that meets heights one after the other."""
+    shift = start
+    for way in ways:
+        seat = seats[way.tie]
+        height = dot(way.normal, rotated(turn, seat.point) + shift - seat.target)
+        if seat.outermost is not None:
+            height = height + seat.outermost.rise(rotated_back(turn, way.normal))
+        shift = shift + (seat.height - height) / way.steepness * way.along
+    return shift
 
 
 def _same_azimuth(axis: Array, start: Array, end: Array) -> Array:

@@ -1,24 +1,118 @@
-"""Parts that are fitted to points."""
+"""Parts that are fitted to points: what their residuals ask, trial by trial."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
+import numpy as np
+from numpy.typing import NDArray
+
 from tol3d.assembly.model import BestFit
-from tol3d.assembly.placing.poses import Codes
+from tol3d.assembly.model.statuses import OK, SINGULAR
+from tol3d.assembly.placing.fits import least_largest, least_squares
+from tol3d.assembly.placing.free_motion import free_motions
+from tol3d.assembly.placing.poses import Codes, Pose, column, rotated
 from tol3d.assembly.placing.world import World
 from tol3d.errors import InputError
+
+Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
 class BestFitting:
-    """A best fit."""
+    """A best fit, as its points are nominally; solved in the world, with the part's nominal origin at 0.
+
+    Args:
+        move: which.
+        weights: of the squares (fits,).
+        reach: of the points about the part's origin [mm].
+        basis: steps that residuals see, turn times reach and shift (6, steps).
+        start: the nominal pose there (3, 4).
+        origin: of the part, nominally in the world (3, 1) [mm].
+    """
 
     move: BestFit
+    weights: Array
+    reach: float
+    basis: Array
+    start: Array
+    origin: Array
 
     def placed(self, world: World) -> tuple[World, Codes]:
         """The world after the move, and what became of it (n,)."""
-        raise InputError(f"moves.{self.move.name}: a best fit is not placed exactly yet")
+        points, targets, directions = _asked(self.move, world)
+        turn, shift = np.empty((3, 3, world.trials)), np.empty((3, world.trials))
+        met = np.empty(world.trials, dtype=bool)
+        fitted = least_squares if self.move.criterion == "squares" else least_largest
+        targets = np.ascontiguousarray(targets - self.origin)
+        fitted(points, targets, directions, self.weights, self.basis, self.start, self.reach, turn, shift, met)
+        pose = Pose(turn, shift + self.origin)
+        return world.with_part_at(self.move.part, pose), np.where(met, OK, SINGULAR).astype(np.int8)
 
 
 def best_fitting(move: BestFit, nominal: World) -> BestFitting:
-    """A best fit."""
-    return BestFitting(move)
+    """A best fit.
+
+    Args:
+        move: which.
+        nominal: the world before it without deviations, the part at its nominal pose.
+
+    Raises:
+        InputError: a weight is not positive; nothing is seen of the part.
+    """
+    pose = nominal.poses[move.part]
+    turn, origin = pose.turn[:, :, 0], pose.shift[:, 0]
+    points, _, directions = _asked(move, nominal)
+    arms = points[:, :, 0] @ turn.T
+    reach = max(float(np.linalg.norm(arms, axis=1).max()), 1.0)
+    for fit in move.fits:
+        if not fit.weight > 0:
+            raise InputError(f"moves.{move.name}: expected a positive weight of {fit.moving}, got {fit.weight}")
+    # of a residual by shift of the origin and turn: D v + D (w x arm)
+    rows = np.concatenate(
+        [np.hstack([ways, np.cross(arm, ways)]) for ways, arm in zip(directions[:, :, :, 0], arms, strict=True)]
+    )
+    basis = _seen(free_motions(rows, np.zeros(3), reach), reach)
+    if not basis.shape[1]:
+        raise InputError(f"moves.{move.name}: no residual sees {move.part}: expected directions in which they count")
+    weights = np.array([fit.weight for fit in move.fits])
+    return BestFitting(
+        move,
+        weights / weights.max(),
+        reach,
+        basis,
+        np.ascontiguousarray(np.column_stack([turn, np.zeros(3)])),
+        column(origin),
+    )
+
+
+def _seen(free: Array, reach: float) -> Array:
+    """Steps (6, steps), turn times reach and shift, without free motions: least turn, then least shift of the origin.
+
+    Args:
+        free: motions (motions, 6) that nothing sees, shift of the origin [mm] and turn [rad].
+        reach: [mm].
+    """
+    turns, sizes, _ = np.linalg.svd(free[:, 3:] * reach, full_matrices=True)
+    rank = int(np.sum(sizes > 1e-9))
+    not_asked = [np.concatenate([row[3:] * reach, np.zeros(3)]) for row in turns.T[:rank] @ free]
+    not_asked += [np.concatenate([np.zeros(3), row[:3]]) for row in turns.T[rank:] @ free]
+    _, _, right = np.linalg.svd(np.array([*not_asked, np.zeros(6)]))
+    return np.ascontiguousarray(right[len(not_asked) :].T)
+
+
+def _asked(move: BestFit, world: World) -> tuple[Array, Array, Array]:
+    """Points of the part in its frame, their targets (fits, 3, n), and directions (fits, 3, 3, n) in the world."""
+    points = [world.on_body(fit.moving, move.part).origin for fit in move.fits]
+    targets = [world.placed(fit.target).origin for fit in move.fits]
+    directions = []
+    for fit in move.fits:
+        turn = world.poses[world.part_of(fit.target)].turn
+        ways = [rotated(turn, column(way)) for way in fit.directions]
+        ways += [column(np.zeros(3))] * (3 - len(ways))
+        directions.append(np.stack(np.broadcast_arrays(*ways)))
+    return _stacked(points), _stacked(targets), _stacked(directions)
+
+
+def _stacked(arrays: Sequence[Array]) -> Array:
+    """Of all fits, (fits, ..., n) or (fits, ..., 1)."""
+    return np.stack(np.broadcast_arrays(*arrays))

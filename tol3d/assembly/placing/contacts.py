@@ -9,6 +9,7 @@ from typing import Any, Final
 
 import numpy as np
 
+from tol3d.assembly.placing.pose_steps import solved, stepped
 from tol3d.numerics.compiled import kernel, part
 
 CHORDS: Final = 14
@@ -16,51 +17,6 @@ CHORDS: Final = 14
 NEWTONS: Final = 60
 MET: Final = 1e-13
 """Step [rad, and mm a mm of the points' reach] after which a trial is done: the next one were shorter yet."""
-NO_PIVOT: Final = 1e-12
-"""Pivot of equations in lengths of 1, under which the contacts have lost their rank."""
-
-
-@part
-def turned_by(pose: Any, a: float, b: float, c: float) -> None:
-    """Turn the rotation of a pose (3, 4) further, about (a, b, c) by 2 atan(|(a, b, c)| / 2): Cayley's formula."""
-    a, b, c = a / 2, b / 2, c / 2
-    share = 2.0 / (1.0 + a * a + b * b + c * c)
-    for k in range(3):
-        x, y, z = pose[0, k], pose[1, k], pose[2, k]
-        u, v, w = b * z - c * y, c * x - a * z, a * y - b * x
-        pose[0, k] = x + share * (u + b * w - c * v)
-        pose[1, k] = y + share * (v + c * u - a * w)
-        pose[2, k] = z + share * (w + a * v - b * u)
-
-
-@part
-def solved(matrix: Any, right: Any, count: int) -> Any:
-    """Solve count equations in place by elimination with pivots; the least pivot."""
-    least = np.inf
-    for k in range(count):
-        best = k
-        for i in range(k + 1, count):
-            if abs(matrix[i, k]) > abs(matrix[best, k]):
-                best = i
-        if best != k:
-            for j in range(k, count):
-                matrix[k, j], matrix[best, j] = matrix[best, j], matrix[k, j]
-            right[k], right[best] = right[best], right[k]
-        pivot = matrix[k, k]
-        least = min(least, abs(pivot))
-        if not abs(pivot) > NO_PIVOT:
-            return 0.0
-        for i in range(k + 1, count):
-            factor = matrix[i, k] / pivot
-            for j in range(k + 1, count):
-                matrix[i, j] -= factor * matrix[k, j]
-            right[i] -= factor * right[k]
-    for k in range(count - 1, -1, -1):
-        total = right[k]
-        for j in range(k + 1, count):
-            total -= matrix[k, j] * right[j]
-        right[k] = total / matrix[k, k]
-    return least
 
 
 @part
@@ -77,17 +33,6 @@ def missing(pose: Any, contacts: Any, i: int, arms: Any, right: Any) -> None:
             + normals[k, 1, q] * (arms[k, 1] + pose[1, 3])
             + normals[k, 2, q] * (arms[k, 2] + pose[2, 3])
         )
-
-
-@part
-def stepped(pose: Any, step: Any, reach: float) -> Any:
-    """Move a pose by a step: turn [1 / reach] and shift; its length [reach]."""
-    turned_by(pose, step[0] / reach, step[1] / reach, step[2] / reach)
-    length = 0.0
-    for r in range(3):
-        pose[r, 3] += step[3 + r]
-        length = max(length, abs(step[r]) / reach, abs(step[3 + r]) / reach)
-    return length
 
 
 @part
@@ -128,7 +73,7 @@ def by_newton(pose: Any, contacts: Any, i: int, reach: float, rooms: Any) -> boo
                 (x * b - y * a) / reach,
             )
             matrix[k, 3], matrix[k, 4], matrix[k, 5] = a, b, c
-        if not solved(matrix, right, 6) > 0.0:
+        if not solved(matrix, right, 6):
             return False
         length = stepped(pose, right, reach)
         if length <= MET:

@@ -9,15 +9,14 @@ FREE = 1e-9
 """Largest change of a contact, as a share of how far a motion moves what the contacts are about, that is none."""
 
 
-def free_motions(rows: Array, points: Array) -> Array:
+def free_motions(rows: Array, middle: Array, reach: float) -> Array:
     """Motions (motions, 6) that change none of some contacts; shift of the world's origin [mm], then turn [rad].
 
     Args:
-        rows: of each contact how it changes with the shift at the points' middle and the turn (contacts, 6).
-        points: what the contacts are about (points, 3), in the world [mm].
+        rows: of each contact how it changes with the shift at a middle and the turn (contacts, 6).
+        middle: of what the contacts are about (3,), in the world [mm].
+        reach: of that about it [mm].
     """
-    middle = points.mean(axis=0)
-    reach = max(float(np.linalg.norm(points - middle, axis=1).max()), 1.0)
     scale = np.array([1.0, 1.0, 1.0, 1 / reach, 1 / reach, 1 / reach])
     _, sizes, right = np.linalg.svd(rows * scale)
     sizes = np.concatenate([sizes, np.zeros(6 - len(sizes))])

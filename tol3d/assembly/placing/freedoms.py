@@ -6,8 +6,8 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.assembly.placing.alignment import Alignment, Seat, Shift, Step, Tie
-from tol3d.assembly.placing.poses import Pose
+from tol3d.assembly.placing.alignment import Alignment, Seat, Shift, Step, Tie, drift
+from tol3d.assembly.placing.poses import Pose, column, cross
 from tol3d.errors import InputError
 
 Array = NDArray[np.float64]
@@ -127,40 +127,34 @@ class _Freedoms:
         tie, seat = self.ties[index], self.seats[index]
         if isinstance(self.turning, str) and self.turning == "none":
             return
-        pivot = self.pivot if self.pivot >= 0 else self._abreast(index)
-        if taken_before or pivot < 0:
+        if taken_before:
             return
-        pose = self._pose()
-        arm = (pose.turn[:, :, 0] @ (seat.point - self.seats[pivot].point))[:, 0]
         if isinstance(self.turning, str):
-            self._aim_at(index, pivot, arm)
+            self._aim_at(index)
             return
-        swung = np.cross(self.turning, arm)
-        if tie.held == "all" or (tie.held == "across" and abs(self.turning @ seat.its_toward[:, 0]) > 1 - HELD**2):
-            step = Step("turn to", index, pivot)
-        else:
+        pose, axis = self._pose(), column(self.turning)
+        ways, _ = self.alignment.ways(self.seats)
+        swung = (drift(pose, self.seats, ways, axis) + cross(axis, pose.point(seat.point)))[:, 0]
+        around = tie.held == "across" and abs(self.turning @ seat.its_toward[:, 0]) > 1 - HELD**2
+        if tie.held != "all":
             toward = seat.its_toward[:, 0]
             swung = swung @ toward if tie.held == "along" else swung - swung @ toward * toward
-            step = Step("swing", index, pivot)
         if np.linalg.norm(swung) > HELD:
+            turning = self.pivot >= 0 and (around or tie.held == "all")
+            step = Step("turn to", index, self.pivot) if turning else Step("swing", index)
             self.turns.append((step, len(self.shifts)))
             self.turning = "none"
 
-    def _abreast(self, index: int) -> int:
-        """An earlier tie that holds another point along the same direction, while a turn about another is left."""
-        if isinstance(self.turning, str) or self.ties[index].held != "along":
-            return -1
-        toward = self.seats[index].its_toward[:, 0]
-        for earlier in range(index):
-            if self.ties[earlier].held == "along":
-                other = self.seats[earlier].its_toward[:, 0]
-                if np.linalg.norm(np.cross(other, toward)) < HELD:
-                    return earlier
-        return -1
-
-    def _aim_at(self, index: int, pivot: int, arm: Array) -> None:
+    def _aim_at(self, index: int) -> None:
         """The line from a point that is held to another point takes two of three turns."""
-        tie, seat, length = self.ties[index], self.seats[index], np.linalg.norm(arm)
+        tie, seat = self.ties[index], self.seats[index]
+        if self.pivot < 0:
+            raise InputError(
+                f"{tie.name} would turn what no plane, axis or point holds: expected one of these before it; points on "
+                "planes alone are contacts of three_two_one or six_plane"
+            )
+        arm = (self._pose().turn[:, :, 0] @ (seat.point - self.seats[self.pivot].point))[:, 0]
+        length = np.linalg.norm(arm)
         if length < HELD:
             return
         if tie.held == "along" or (
@@ -170,5 +164,5 @@ class _Freedoms:
                 f"{tie.name} lies beside the point that is held: expected it through that point, or a plane or another "
                 "point before it"
             )
-        self.turns.append((Step("aim at", index, pivot), len(self.shifts)))
+        self.turns.append((Step("aim at", index, self.pivot), len(self.shifts)))
         self.turning = arm / length

@@ -92,10 +92,11 @@ def locating(move: Locate, nominal: World) -> Locating:
 
 def _refuse_free(move: Locate, nominal: World, reference: str, normals: Array, middle: Array, arms: Array) -> None:
     """Refuse contacts that leave a freedom, said in the world."""
+    reach = max(float(np.linalg.norm(arms, axis=1).max()), 1.0)
     frame = nominal.poses[reference if move.points_on == "part" else move.part]
     turn, shift = frame.turn[:, :, 0], frame.shift[:, 0]
     arms, normals = arms @ turn.T, normals @ turn.T
-    motions = free_motions(np.hstack([normals, np.cross(arms, normals)]), turn @ middle + shift + arms)
+    motions = free_motions(np.hstack([normals, np.cross(arms, normals)]), turn @ middle + shift, reach)
     if len(motions):
         raise InputError(
             f"moves.{move.name}: its six contacts leave {move.part} free: {in_words(motions)}; "
