@@ -46,12 +46,13 @@ def values(assembly: Assembly, deviations: Array, names: Sequence[str]) -> dict[
     """
     plan = planned(assembly)
     deviations = np.asarray(deviations, dtype=np.float64)
+    causes = {name: plan.of_measures[name] for name in names}
     found = {name: (np.empty(len(deviations)), np.empty(len(deviations), dtype=np.int8)) for name in names}
     for start in range(0, len(deviations), BLOCK):
         rows = slice(start, start + BLOCK)
         block = _placed(plan, deviations[rows])
         for name, (numbers, codes) in found.items():
-            numbers[rows], codes[rows] = _read(plan, block, name)
+            numbers[rows], codes[rows] = _read(plan, block, name, causes[name])
     return found
 
 
@@ -186,10 +187,10 @@ def _after(move: Placing, world: World) -> tuple[World, Codes]:
             return move.placed(world)
 
 
-def _read(plan: Plan, block: _Block, name: str) -> tuple[Array, Codes]:
+def _read(plan: Plan, block: _Block, name: str, causes: Sequence[Cause]) -> tuple[Array, Codes]:
     """A measure's values and codes (n,)."""
     with np.errstate(all="ignore"):
         numbers = reading(plan.assembly.measures[name], block.worlds)
-        first = block.first_of(plan.of_measures[name])
+        first = block.first_of(causes)
     first = np.where((first == OK) & ~np.isfinite(numbers), np.int8(SINGULAR), first)
     return np.where(first == OK, numbers, np.nan), first
