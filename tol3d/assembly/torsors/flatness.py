@@ -11,6 +11,10 @@ Array = NDArray[np.float64]
 
 MOST_POINTS = 20
 """4845 sets of four."""
+IN_LINE = 1e-6
+"""Points that are so near to a line, over their extent, are in line."""
+IDLE = 1e-8
+"""Points with less weight are none of the set; less than of a fourth point beside three that are not in line."""
 
 
 def balances(points: Array) -> Array:
@@ -34,7 +38,7 @@ def balances(points: Array) -> Array:
         for chosen in combinations(range(len(points)), count):
             _, strengths, right = np.linalg.svd(sums[:, chosen])
             weights = right[-1]
-            if np.sum(strengths > 1e-9) == count - 1 and np.abs(weights).min() > 1e-9:
+            if np.sum(strengths > IN_LINE) == count - 1 and np.abs(weights).min() > IDLE:
                 row = np.zeros(len(points))
                 row[list(chosen)] = 2.0 * weights / np.abs(weights).sum()
                 found.append(row)

@@ -9,8 +9,9 @@ from tol3d.assembly.torsors.torsor import cross_matrix, shift_at, turn_about
 
 Array = NDArray[np.float64]
 
-INDEPENDENT = 1e-8
-"""Least part of an equation that must act on the freedoms left; a turn counts by the length it moves."""
+INDEPENDENT = 1e-6
+"""Least part of an equation that must act on the freedoms left, else it is rounding of directions stated by six or more
+digits; a turn counts by the length it moves."""
 
 
 class Freedoms:
@@ -101,7 +102,7 @@ def freedom_in_words(torsors: Array) -> str:
 def _direction(vector: Array) -> str:
     vector = vector / np.linalg.norm(vector)
     largest = np.argmax(np.abs(vector))
-    if abs(vector[largest]) > 1.0 - INDEPENDENT:
+    if abs(vector[largest]) > 1.0 - 1e-8:
         return "xyz"[largest]
     return _numbers(vector * np.sign(vector[largest]))
 
