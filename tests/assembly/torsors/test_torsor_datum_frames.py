@@ -39,6 +39,30 @@ def test_a_hole_inspected_on_varying_datums_moves_against_them() -> None:
     dy = ey - 0.1875 * b1 - 0.8125 * b2
     found = values(assembly, draft.trial(given), ["position"])["position"][0]
     assert found == pytest.approx(2.0 * math.hypot(dx, dy), abs=1e-12)
+    # P(position > 0.30): of two normals with this covariance, by quadrature over the angle
+    variance_x = 0.04**2 + 0.02**2 + 2 * (10 / 160 * 0.03) ** 2
+    variance_y = 0.04**2 + (0.1875**2 + 0.8125**2) * 0.03**2
+    covariance = 10 / 160 * (0.1875 - 0.8125) * 0.03**2
+    across = np.linalg.inv([[variance_x, covariance], [covariance, variance_y]])
+    angles = np.linspace(0.0, 2.0 * np.pi, 400, endpoint=False)
+    along = np.array([np.cos(angles), np.sin(angles)])
+    forms = np.einsum("ik,ij,jk->k", along, across, along)
+    expected = float(np.mean(np.exp(-0.5 * 0.15**2 * forms) / forms) * math.sqrt(np.linalg.det(across)))
+    assert expected == pytest.approx(0.0049780, abs=1e-7)  # as the paper prints it
+    count, rng = 400_000, np.random.default_rng(15)
+    targets, deviations = rng.normal(0.0, 0.03, (count, 2)), np.zeros((count, assembly.width))
+    for column, drawn in (
+        ("plate.side offset", -targets.mean(axis=1)),
+        ("plate.side rise x", -(targets[:, 1] - targets[:, 0]) / 2),
+        ("plate.end offset", rng.normal(0.0, 0.02, count)),
+    ):
+        deviations[:, draft.columns.index(column)] = drawn
+    for axis in "xy":
+        drawn = rng.normal(0.0, 0.04, count)
+        for end in ("start", "end"):
+            deviations[:, draft.columns.index(f"plate.hole {end} {axis}")] = drawn
+    outside = values(assembly, deviations, ["position"])["position"] > 0.30
+    assert outside.mean() == pytest.approx(expected, abs=4 * math.sqrt(expected * (1 - expected) / count))
 
 
 def bracket(simulator: Simulator) -> tuple[Draft, Assembly]:

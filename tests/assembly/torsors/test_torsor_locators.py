@@ -1,7 +1,8 @@
 """Six contacts on the analytic road, against lever arms and against poses that Newton finds."""
 
+import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
@@ -93,6 +94,33 @@ def test_a_door_on_its_hinges_has_the_coefficients_of_its_levers() -> None:
         found = nest("part", at, contacts)
         for name, row in rows.items():
             np.testing.assert_allclose(coefficients(found.assembly, name)[found.locators], row, atol=1e-12)
+
+
+def test_the_taper_of_a_door_is_no_root_sum_square_of_its_gaps() -> None:
+    """Problem 12: both gaps share the hinges and vary with the body at the measured point; taper in one trial."""
+    hinge_1, hinge_2, striker = (0, 0, 700), (0, 0, 300), (950, 0, 500)
+    contacts = [(hinge_1, X), (hinge_1, Y), (hinge_1, Z), (hinge_2, X), (hinge_2, Y), (striker, Y)]
+    found = nest("part", (1000, 0, 800), contacts)
+    draft = found.draft
+    for name, at in (("upper", (1000, 0, 800)), ("lower", (1000, 0, 200))):
+        draft.feature(f"block.{name}", at, deviates=False)
+        draft.feature(f"nest.{name}", at)
+    gaps = [Measured("gap", (f"nest.{name}", f"block.{name}"), X) for name in ("upper", "lower")]
+    measures = {"gap": gaps[0], "taper": replace(gaps[0], minus=gaps[1])}
+    assembly = draft.assembly(found.assembly.moves, measures)
+    sigmas = np.zeros(assembly.width)
+    sigmas[found.locators] = 0.25, 0.20, 0.30, 0.25, 0.20, 0.15
+    for name in ("upper", "lower"):
+        sigmas[draft.columns.index(f"nest.{name} x")] = 0.30
+    gap, taper = (float(np.linalg.norm(coefficients(assembly, name) * sigmas)) for name in ("gap", "taper"))
+    assert gap == pytest.approx(math.sqrt((1.25**2 + 0.25**2) * 0.25**2 + 0.30**2), abs=1e-12)
+    assert taper == pytest.approx(math.sqrt(2 * (1.5 * 0.25) ** 2 + 2 * 0.30**2), abs=1e-12)
+    count = 100_000
+    deviations = np.random.default_rng(12).normal(size=(count, assembly.width)) * sigmas
+    beyond = np.abs(values(assembly, deviations, ["taper"])["taper"]) > 1.0
+    share = math.erfc(1.0 / taper / math.sqrt(2.0))
+    assert share == pytest.approx(0.140907, abs=1e-6)  # as the paper prints it
+    assert beyond.mean() == pytest.approx(share, abs=4 * math.sqrt(share * (1 - share) / count))
 
 
 def test_locators_that_leave_a_freedom_are_refused_by_its_name() -> None:
