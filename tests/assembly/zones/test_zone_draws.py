@@ -1,6 +1,7 @@
 """Draws from tolerance zones against rejection: laws, moments, what lies inside, and the bits of a trial."""
 
 import math
+import pickle
 from collections.abc import Callable
 from functools import cache
 
@@ -123,18 +124,27 @@ def test_all_that_is_drawn_lies_inside_even_from_the_ends_of_uniforms(
 @pytest.mark.parametrize(("name", "law", "orientation"), CASES)
 def test_a_trial_has_its_bits_whatever_block_it_is_drawn_in(name: str, law: str, orientation: float | None) -> None:
     draw = LAWS[law](zone_of(name, orientation))
-    uniforms = np.random.default_rng(6).random((draw.uniforms, 999))
+    uniforms = np.random.default_rng(6).random((draw.uniforms, 299))
     whole = np.stack(draw.deviations(*uniforms))
-    widths = np.random.default_rng(7).uniform(WIDTH, 2 * WIDTH, 999)
+    widths = np.random.default_rng(7).uniform(WIDTH, 2 * WIDTH, 299)
     varied = np.stack(draw.deviations_in(widths, None, *uniforms))
-    for size in (1, 7, 64, 500):
-        parts = [uniforms[:, first : first + size] for first in range(0, 999, size)]
+    for size in (1, 7, 64, 200):
+        parts = [uniforms[:, first : first + size] for first in range(0, 299, size)]
         assert np.hstack([np.stack(draw.deviations(*own)) for own in parts]).tobytes() == whole.tobytes()
         blocks = [
             np.stack(draw.deviations_in(widths[first : first + size], None, *own))
-            for first, own in zip(range(0, 999, size), parts, strict=True)
+            for first, own in zip(range(0, 299, size), parts, strict=True)
         ]
         assert np.hstack(blocks).tobytes() == varied.tobytes()
+
+
+@pytest.mark.parametrize("name", ZONES)
+@pytest.mark.parametrize("law", LAWS)
+def test_a_draw_is_the_same_in_another_process(name: str, law: str) -> None:
+    draw = LAWS[law](zone_of(name, None))
+    other = pickle.loads(pickle.dumps(draw))
+    assert other == draw
+    assert drawn(other, 100).tobytes() == drawn(draw, 100).tobytes()
 
 
 @pytest.mark.parametrize(("name", "law"), [(name, law) for name in REFINED for law in LAWS])

@@ -36,6 +36,7 @@ class Line(Domain):
         return np.asarray(np.abs(coordinates[:, 0]) - half)
 
 
+@dataclass(frozen=True)
 class UniformLine(UnitLaw):
     """Uniform within ±1."""
 
@@ -54,6 +55,7 @@ class UniformLine(UnitLaw):
         return np.ones_like(first)
 
 
+@dataclass(frozen=True)
 class NormalLine(UnitLaw):
     """Normal of sigma 1/3, truncated at ±1."""
 
@@ -169,6 +171,7 @@ class Sphere(Domain):
         return np.asarray(np.sqrt((coordinates * coordinates).sum(axis=1)) - half)
 
 
+@dataclass(frozen=True)
 class UniformSphere(UnitLaw):
     """Uniform in a sphere: the cube of the radius is uniform."""
 
@@ -187,6 +190,7 @@ class UniformSphere(UnitLaw):
         return 1.0 - first * first
 
 
+@dataclass(frozen=True)
 class NormalSphere(UnitLaw):
     """Normal of sigma 1/3, conditioned on the sphere: the radius is a truncated Maxwell, by a table."""
 

@@ -2,6 +2,7 @@
 
 import math
 from abc import ABC, abstractmethod
+from dataclasses import dataclass
 
 import numpy as np
 from scipy.special import erf, ndtri
@@ -52,6 +53,7 @@ class CrossSection(ABC):
         """Densities of one rise at radius 1, uniform and normal, up to factors."""
 
 
+@dataclass(frozen=True)
 class Diamond(CrossSection):
     """|x| + |y| <= r: (x + y, x - y) lie each within ±r and are independent under both laws."""
 
@@ -98,6 +100,7 @@ class Diamond(CrossSection):
         return room, np.exp(-0.5 * (SIGMAS * rise) ** 2) * erf(math.sqrt(0.5) * SIGMAS * room)
 
 
+@dataclass(frozen=True)
 class Disc(CrossSection):
     """hypot(x, y) <= r: by radius and angle."""
 

@@ -68,6 +68,7 @@ class Ends(Domain):
         return np.maximum(np.maximum(lengths[0], lengths[1]) - half, lengths[2] - orientation_half)
 
 
+@dataclass(frozen=True)
 class UniformEnds(UnitLaw):
     """Uniform: two independent discs, or half the difference by its marginal and the middle uniform in the lens."""
 
@@ -95,6 +96,7 @@ class UniformEnds(UnitLaw):
         return start_density(uniform_end, ratio, first)
 
 
+@dataclass(frozen=True)
 class NormalEnds(UnitLaw):
     """Normal: ends of sigma 1/3, so that middle and half the difference are independent but for the limits."""
 

@@ -44,6 +44,7 @@ class FlatEnds(Domain):
         return np.asarray(np.maximum(outside, 0.5 * np.abs(end - start) - orientation_half))
 
 
+@dataclass(frozen=True)
 class UniformFlatEnds(UnitLaw):
     """Uniform: |d| by its marginal, proportional to 1 - |d|, then the middle."""
 
@@ -71,6 +72,7 @@ class UniformFlatEnds(UnitLaw):
         return np.minimum(first + 2.0 * ratio, 1.0) - np.maximum(first - 2.0 * ratio, -1.0)
 
 
+@dataclass(frozen=True)
 class NormalFlatEnds(UnitLaw):
     """Normal: ends of sigma 1/3, so that middle and half the difference are independent but for the limits."""
 
