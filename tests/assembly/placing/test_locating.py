@@ -102,7 +102,7 @@ def random_move(seed: int) -> tuple[Assembly, Array, Array]:
         points, normals = random.uniform(-60, 60, (6, 3)), random.normal(size=(6, 3))
         normals /= np.linalg.norm(normals, axis=1)[:, None]
         rows = np.hstack([np.cross(points, normals) / 60, normals])
-        if np.linalg.cond(rows) < 40:
+        if np.linalg.cond(rows) < 20:  # worse ones have builds that no pose meets
             break
     columns = Columns()
     poses = {name: posed(random.normal(size=3), random.uniform(-200, 200, 3)) for name in ("one", "two", "loose")}
@@ -120,7 +120,7 @@ def random_move(seed: int) -> tuple[Assembly, Array, Array]:
         seen.append(holder)
     moves: list[Move] = [Fix("one", "one"), Fix("two", "two"), Locate("loose", "loose", tuple(pairs))]
     made = assembly(columns, [part(name, features[name], pose=poses[name]) for name in poses], moves)
-    deviations = random.normal(0, 0.3, columns.width)
+    deviations = random.normal(0, 0.2, columns.width)
 
     feet, normals_there, riding, up = [], [], [], []
     used = dict.fromkeys(poses, 0)
@@ -139,12 +139,14 @@ def random_move(seed: int) -> tuple[Assembly, Array, Array]:
         reached = np.array(riding) @ turn.T + shift - np.array(feet)
         return np.asarray(np.sum(reached * np.array(normals_there), axis=1) - up)
 
-    return made, deviations, solved_pose(lacking, poses["loose"])
+    expected = solved_pose(lacking, poses["loose"])
+    np.testing.assert_allclose(lacking(expected[:3, :3], expected[:3, 3]), 0, atol=1e-11)
+    return made, deviations, expected
 
 
 def agrees_with_scipy(seed: int) -> None:
     made, deviations, expected = random_move(seed)
-    # condition 40 times rounding of scipy's 200 mm: 2e-12; a tenth of a nanometre is asked for
+    # condition 20 times rounding of scipy's 300 mm: 1e-12; a tenth of a picometre is asked for
     np.testing.assert_allclose(placed(made, deviations[None])["loose"][0], expected, atol=1e-10, rtol=0)
 
 
@@ -167,10 +169,10 @@ def test_where_an_assembly_lies_changes_no_measure() -> None:
 
 
 def test_a_trial_has_the_same_bits_alone_and_among_thousands() -> None:
-    deviations = np.random.default_rng(4).normal(0, 0.5, (5000, 6))
+    deviations = np.random.default_rng(4).normal(0, 0.5, (9000, 6))
     for points_on in ("part", "fixture"):
         together = placed(nest(points_on), deviations)["box"]
-        for row in (0, 1, 2047, 2048, 4999):
+        for row in (0, 1, 8191, 8192, 8999):  # of two blocks
             alone = placed(nest(points_on), deviations[row : row + 1])["box"][0]
             np.testing.assert_array_equal(alone, together[row])
 

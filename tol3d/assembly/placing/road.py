@@ -21,7 +21,7 @@ from tol3d.assembly.placing.world import World
 
 Array = NDArray[np.float64]
 
-BLOCK = 2048
+BLOCK = 8192
 """Trials at a time: their arrays stay in a core's cache."""
 
 _MOVED: Codes = np.full(1, OK, dtype=np.int8)
