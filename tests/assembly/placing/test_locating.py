@@ -120,7 +120,7 @@ def random_move(seed: int) -> tuple[Assembly, Array, Array]:
         seen.append(holder)
     moves: list[Move] = [Fix("one", "one"), Fix("two", "two"), Locate("loose", "loose", tuple(pairs))]
     made = assembly(columns, [part(name, features[name], pose=poses[name]) for name in poses], moves)
-    deviations = random.normal(0, 0.2, columns.width)
+    deviations = random.normal(0, 0.1, columns.width)
 
     feet, normals_there, riding, up = [], [], [], []
     used = dict.fromkeys(poses, 0)
