@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from tol3d.study.columns import columns_of
 from tol3d.study.simulation import Simulation
 from tol3d.system.contributor import Contributor
-from tol3d.system.draw import Each
+from tol3d.system.draw import Each, Joint
 from tol3d.system.measure import Measure
 from tol3d.system.outcome import ANALYTIC, GEOMETRIC, outcome_of
 from tol3d.system.road import Road
@@ -144,10 +144,10 @@ def _ends(contributor: Contributor, slopes: Array, *, turning: bool) -> Array:
 
 
 def _effect(contributor: Contributor, slopes: Array, ends: Array, *, turning: bool) -> Effect:
-    law, sigma = contributor.distribution, contributor.draw.sigma
+    law, sigma, draw = contributor.distribution, contributor.draw.sigma, contributor.draw
     size = float(slopes[0]) if len(slopes) == 1 else float(np.sqrt((slopes * slopes).sum()))
-    variance = size**2 * sigma**2
-    if contributor.draw.uniforms == 1 and len(slopes) > 1:  # a length in one direction
+    variance = float(slopes @ draw.covariance @ slopes) if isinstance(draw, Joint) else size**2 * sigma**2
+    if draw.uniforms == 1 and len(slopes) > 1:  # a length in one direction
         if turning:
             variance = size**2 * (law.variance + law.mean**2) / 2
         else:

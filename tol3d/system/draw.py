@@ -3,7 +3,7 @@
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Protocol
+from typing import Protocol, runtime_checkable
 
 import numpy as np
 from numpy.typing import NDArray
@@ -48,6 +48,21 @@ class Draw(Protocol):
 
     def ends(self, values: Values, *, turning: bool) -> Array:
         """Both ends of the deviation (2, components), in the direction in which a measure changes most."""
+        ...
+
+
+@runtime_checkable
+class Joint(Protocol):
+    """A Draw whose components spread differently or together."""
+
+    @property
+    def covariance(self) -> Array:
+        """Covariance of the components (components, components) [mm^2, rad^2 or K^2]."""
+        ...
+
+    @property
+    def words(self) -> str:
+        """Its law in words, such as "uniform in its zone"."""
         ...
 
 

@@ -30,6 +30,11 @@ class ZoneDraw(ABC):
 
     @property
     @abstractmethod
+    def words(self) -> str:
+        """See Joint: its law in words."""
+
+    @property
+    @abstractmethod
     def uniforms(self) -> int:
         """How many uniforms a trial takes."""
 
@@ -103,9 +108,21 @@ class ZoneDraw(ABC):
 
 @dataclass(frozen=True)
 class Confined(ZoneDraw):
-    """Of a law within the zone."""
+    """Of a law within the zone.
+
+    Args:
+        zone: which.
+        law: in half widths.
+        name: of the law, as scenes have it.
+    """
 
     law: UnitLaw
+    name: str
+
+    @property
+    def words(self) -> str:
+        """See ZoneDraw."""
+        return f"{self.name} in its zone"
 
     @cached_property
     def distribution(self) -> Distribution:
@@ -172,6 +189,11 @@ class Process(ZoneDraw):
             raise InputError(f"process: expected {expected}, got {len(self.laws)}")
 
     @property
+    def words(self) -> str:
+        """See ZoneDraw."""
+        return "its own process"
+
+    @property
     def distribution(self) -> Distribution:
         """See ZoneDraw."""
         return self.laws[0]
@@ -219,12 +241,12 @@ class Process(ZoneDraw):
 
 def uniform_in(zone: Zone) -> Confined:
     """The law `uniform`: every displacement that the zone allows is as likely as any other."""
-    return Confined(zone, zone.shape.domain.uniform)
+    return Confined(zone, zone.shape.domain.uniform, "uniform")
 
 
 def normal_in(zone: Zone) -> Confined:
     """The law `normal`: independent normals, 3 sigma = the largest value of each component, given the zone holds."""
-    return Confined(zone, zone.shape.domain.normal)
+    return Confined(zone, zone.shape.domain.normal, "normal")
 
 
 def process_in(zone: Zone, law: Distribution) -> Process:
