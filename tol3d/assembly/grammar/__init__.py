@@ -1,0 +1,1 @@
+"""What scenes say of assemblies."""

@@ -1,0 +1,45 @@
+"""Datums as tolerances name them: features of the toleranced part, in order."""
+
+from typing import Annotated, Any, ClassVar
+
+from pydantic import BeforeValidator, Field
+
+from tol3d.assembly.grammar.feature_name import OwnName
+from tol3d.assembly.model.datum_frame import Simulator
+from tol3d.scene.listed import listed
+from tol3d.scene.vector import Vector
+from tol3d.strict import Strict, refused
+from tol3d.units import shown
+
+
+class DatumSpec(Strict):
+    """A datum: a feature of the part, or two as a common datum, and how it lies on what holds it."""
+
+    words: ClassVar[str] = "a datum"
+
+    features: Annotated[tuple[OwnName, ...], listed("features", 1, 2)]
+    simulator: Simulator = Field(default="contact", description="how a later plane lies in the orientation left to it")
+    targets: Annotated[tuple[Vector, ...], listed("points", 1, 3)] = Field(
+        default=(), description="points of the part that touch, for simulator: targets"
+    )
+
+
+def _datum(value: Any) -> Any:
+    """`floor`, `bore 1-bore 2` or {feature: floor, simulator: fitted} as a DatumSpec's fields."""
+    if isinstance(value, str):
+        return {"features": tuple(name.strip() for name in value.split("-"))}
+    if isinstance(value, dict) and isinstance(value.get("feature"), str):
+        return {
+            "features": tuple(name.strip() for name in value["feature"].split("-")),
+            **{key: own for key, own in value.items() if key != "feature"},
+        }
+    if isinstance(value, DatumSpec | dict):
+        return value
+    raise refused("", "a feature such as floor, a common datum such as bore 1-bore 2, or {feature: ..}", shown(value))
+
+
+Datums = Annotated[
+    tuple[Annotated[DatumSpec, BeforeValidator(_datum)], ...],
+    listed("datums", 1, 3),
+    Field(description="primary, secondary, tertiary; features of the same part"),
+]

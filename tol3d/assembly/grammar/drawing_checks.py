@@ -1,0 +1,156 @@
+"""What must hold across the tolerances of each feature."""
+
+from collections.abc import Iterator
+
+from tol3d.assembly.grammar.drawing import Drawing, Stated
+from tol3d.assembly.grammar.feature_name import part_of
+from tol3d.assembly.grammar.tolerances import (
+    CircularRunOutSpec,
+    CoaxialitySpec,
+    FeatureTolerance,
+    LocationSpec,
+    OrientationSpec,
+    PlusMinusSpec,
+    SizeSpec,
+    SymmetrySpec,
+    TotalRunOutSpec,
+)
+from tol3d.assembly.grammar.tolerances.form import FormSpec
+from tol3d.scene import Scene
+from tol3d.scene.place import KeyPath
+
+Problem = tuple[KeyPath, str]
+
+ROUNDING = 1e-9  # mm; of a sum of widths
+
+
+def contradicting_tolerances(scene: Scene) -> Iterator[Problem]:
+    """Tolerances of a feature that would count twice, or leave no room for each other."""
+    drawing = Drawing(scene)
+    for feature in drawing.names:
+        yield from _twice(drawing, feature)
+        yield from _apart(drawing, feature)
+        yield from _zones(drawing, feature)
+    yield from _names(drawing)
+    yield from cyclic_datums(drawing)
+
+
+def _twice(drawing: Drawing, feature: str) -> Iterator[Problem]:
+    located, dimensions = drawing.of(feature, LocationSpec), drawing.of(feature, PlusMinusSpec)
+    for several, what in (
+        ((*located, *dimensions) if located else (), "where it lies"),
+        (drawing.of(feature, OrientationSpec), "how it is turned"),
+        (drawing.of(feature, SizeSpec), "its size"),
+        (drawing.of(feature, FormSpec), "its form"),
+    ):
+        if len(several) > 1 and _is_own(several[1]):
+            first, second = several[0].entry, several[1].entry
+            words = f"expected one tolerance of {feature!r} for {what}, got {first!r} too, which would count twice"
+            yield ("tolerances", second), words
+
+
+def _apart(drawing: Drawing, feature: str) -> Iterator[Problem]:
+    dimensions = drawing.of(feature, PlusMinusSpec)
+    for other in dimensions[1:]:
+        if _is_own(other) and other.spec.named_datums != dimensions[0].spec.named_datums:
+            first = dimensions[0].entry
+            yield ("tolerances", other.entry), f"expected the datums of {first!r}, which is of {feature!r} too"
+
+
+def _zones(drawing: Drawing, feature: str) -> Iterator[Problem]:
+    for own in filter(_is_own, drawing.of(feature, FeatureTolerance)):
+        here: KeyPath = ("tolerances", own.entry)
+        spec = own.spec
+        if isinstance(spec, LocationSpec | OrientationSpec):
+            yield from _shape_problems(here, spec, drawing.kind(feature).kind)
+        if isinstance(spec, LocationSpec):
+            yield from _room_problems(here, spec, drawing, feature)
+        elif isinstance(spec, OrientationSpec):
+            located = drawing.of(feature, LocationSpec)
+            if located and spec.law is not None:
+                yield (*here, "law"), f"expected none, for that of {located[0].entry!r} counts; leave it out"
+            if not located and spec.law is None:
+                words = "expected a law, such as {kind: uniform}: no other zone says where the feature lies"
+                yield here, words
+        elif isinstance(spec, PlusMinusSpec):
+            yield from _direction_problems(here, spec, drawing, feature)
+
+
+def _shape_problems(here: KeyPath, spec: LocationSpec | OrientationSpec, kind: str) -> Iterator[Problem]:
+    zone, place = spec.zone, (*here, "zone")
+    if kind == "plane":
+        if zone.diameter is not None:
+            yield (*place, "diameter"), "expected a width, for a plane lies between two planes"
+        if zone.along is not None:
+            yield (*place, "along"), "expected none, for a plane deviates along its normal"
+    elif isinstance(spec, CircularRunOutSpec | TotalRunOutSpec):
+        if zone.diameter is not None or zone.along is not None:
+            yield place, "expected a width alone: the run-out that is allowed"
+    elif isinstance(spec, CoaxialitySpec) and zone.diameter is None:
+        yield place, "expected a diameter, for the axis lies in a cylinder about the datum's"
+    elif isinstance(spec, SymmetrySpec) and zone.width is None:
+        yield place, "expected a width, about the datum's middle"
+    elif zone.width is not None and zone.along is None and not (kind == "point" and spec.kind == "profile"):
+        yield place, "expected the direction `along` in which the width limits, or a diameter"
+    elif kind == "point" and spec.kind == "profile" and (zone.diameter is not None or zone.along is not None):
+        yield place, "expected a width alone, which limits along the point's normal"
+    if zone.outward is not None and spec.kind != "profile":
+        yield (*place, "outward"), f"expected it of a profile tolerance, got a {spec.kind}"
+
+
+def _room_problems(here: KeyPath, spec: LocationSpec, drawing: Drawing, feature: str) -> Iterator[Problem]:
+    width = spec.zone.size
+    for other in (*drawing.of(feature, OrientationSpec), *drawing.of(feature, FormSpec)):
+        assert isinstance(other.spec, OrientationSpec | FormSpec)
+        own = other.spec.zone.size
+        if own > width or (own == width and isinstance(other.spec, FormSpec)):
+            got = f"got {width * 1e3:g} um"
+            yield (
+                (*here, "zone"),
+                f"expected more than the {own * 1e3:g} um of {other.entry!r}, which refines it, {got}",
+            )
+
+
+def _direction_problems(here: KeyPath, spec: PlusMinusSpec, drawing: Drawing, feature: str) -> Iterator[Problem]:
+    own = drawing.kind(feature)
+    z = own.frame[:3, 2]
+    if spec.along is None:
+        if own.kind in ("axis", "cylinder"):
+            yield here, "expected a direction across the axis as `along`, got none"
+        return
+    length = float(sum(number**2 for number in spec.along)) ** 0.5
+    share = float(z @ spec.along) / length
+    if own.kind == "plane" and abs(share) < ROUNDING:
+        yield (*here, "along"), "expected a direction that is not in the plane, which would not move it"
+    if own.kind in ("axis", "cylinder") and 1.0 - abs(share) < ROUNDING:
+        yield (*here, "along"), "expected a direction across the axis, along which it does not deviate"
+
+
+def _names(drawing: Drawing) -> Iterator[Problem]:
+    taken = set(drawing.scene.tolerances)
+    for own in drawing.stated:
+        if isinstance(own, Stated) and own.name != own.entry and own.name in taken:
+            yield ("tolerances", own.name), f"expected another name: {own.entry!r} has it for {part_of(own.feature)!r}"
+
+
+def _is_own(stated: Stated) -> bool:
+    """Whether it is of the feature that the scene names, not of a part that is like its."""
+    return stated.name == stated.entry
+
+
+def cyclic_datums(drawing: Drawing) -> Iterator[Problem]:
+    """Features that are toleranced to what is toleranced to them."""
+    after = {
+        name: {f"{part_of(name)}.{own}" for datum in datums for own in datum.features}
+        for name, datums in drawing.parents()
+    }
+    waiting = dict(after)
+    while ready := [name for name, needed in waiting.items() if not needed & waiting.keys()]:
+        waiting = {name: needed for name, needed in waiting.items() if name not in ready}
+    for name in waiting:
+        own = [stated for stated in drawing.of(name, FeatureTolerance) if stated.spec.named_datums and _is_own(stated)]
+        if own:
+            ring = " and ".join(repr(other) for other in waiting)
+            words = f"expected datums that do not depend on {name!r} themselves, got a ring of {ring}"
+            yield ("tolerances", own[0].entry, "datums"), words
+            return

@@ -1,0 +1,13 @@
+"""Kinds of feature, by numbers, one file each."""
+
+from typing import Annotated
+
+from pydantic import Field
+
+from tol3d.assembly.grammar.features.axis import AxisSpec, CylinderSpec
+from tol3d.assembly.grammar.features.plane import PlaneSpec
+from tol3d.assembly.grammar.features.point import PointSpec
+
+FeatureUnion = Annotated[PointSpec | PlaneSpec | CylinderSpec | AxisSpec, Field(discriminator="kind")]
+
+__all__ = ["AxisSpec", "CylinderSpec", "FeatureUnion", "PlaneSpec", "PointSpec"]

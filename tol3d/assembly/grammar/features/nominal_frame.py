@@ -1,0 +1,34 @@
+"""Nominal frames from what a scene says of them: a place, an axis or normal, which way x points."""
+
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+Triple = tuple[float, float, float]
+
+ALONG: Final = 1e-6  # sine; less than that off z, a direction cannot say where x points
+
+
+def unit(direction: Triple) -> Array:
+    """A direction with length 1."""
+    vector = np.array(direction, dtype=np.float64)
+    scaled = vector / np.abs(vector).max()
+    return np.asarray(scaled / np.sqrt((scaled * scaled).sum()))
+
+
+def is_across(x: Triple, z: Triple) -> bool:
+    """Whether a direction says where x points: it is not along z."""
+    return bool(np.linalg.norm(np.cross(unit(x), unit(z))) > ALONG)
+
+
+def frame(at: Array, z: Triple, x: Triple | None = None) -> Array:
+    """A frame (4, 4) at a place with a z axis; x as near to `x` as it can be, or to the world's x (y where z is x)."""
+    axis = unit(z)
+    wish = unit(x) if x is not None else np.eye(3)[0] if abs(axis[0]) < 0.9 else np.eye(3)[1]
+    first = wish - axis * (wish @ axis)
+    first /= np.linalg.norm(first)
+    made = np.eye(4)
+    made[:3, 0], made[:3, 1], made[:3, 2], made[:3, 3] = first, np.cross(axis, first), axis, at
+    return made

@@ -1,0 +1,26 @@
+"""Kinds of measure, one file each."""
+
+from tol3d.assembly.grammar.measures.angle import AngleSpec
+from tol3d.assembly.grammar.measures.assembly_measure import AssemblyMeasureSpec
+from tol3d.assembly.grammar.measures.difference import DifferenceSpec
+from tol3d.assembly.grammar.measures.gap import DistanceSpec, FlushSpec, GapSpec, PointPlaneSpec
+from tol3d.assembly.grammar.measures.inspected import (
+    InspectedFlatnessSpec,
+    InspectedOrientationSpec,
+    InspectedPositionSpec,
+)
+from tol3d.assembly.grammar.measures.inspected_size import InspectedSizeSpec
+
+__all__ = [
+    "AngleSpec",
+    "AssemblyMeasureSpec",
+    "DifferenceSpec",
+    "DistanceSpec",
+    "FlushSpec",
+    "GapSpec",
+    "InspectedFlatnessSpec",
+    "InspectedOrientationSpec",
+    "InspectedPositionSpec",
+    "InspectedSizeSpec",
+    "PointPlaneSpec",
+]

@@ -1,0 +1,87 @@
+"""What every measure of an assembly has in common."""
+
+from collections.abc import Iterator, Sequence
+from typing import ClassVar
+
+from pydantic import Field
+
+from tol3d.assembly.grammar.datums import Datums, DatumSpec
+from tol3d.assembly.grammar.feature_name import FeatureName, Use, part_of
+from tol3d.assembly.grammar.moves.placing_move import PlacingSpec
+from tol3d.assembly.grammar.moves.weld import WeldSpec
+from tol3d.assembly.grammar.parts import SolidSpec
+from tol3d.assembly.model.measures import MeasureKind
+from tol3d.scene.measure import AngleLimit, LengthLimit, MeasureEntry
+from tol3d.scene.name import Name
+from tol3d.scene.place import KeyPath
+from tol3d.scene.reference import Reference
+from tol3d.scene.vector import Direction
+from tol3d.units import Dimension
+
+
+class AssemblyMeasureSpec(MeasureEntry):
+    """A measure of an assembly: one number a trial, of features as they lie in it."""
+
+    words: ClassVar[str] = "a measure of an assembly"
+    dimension: ClassVar[Dimension] = "length"
+    gives_curve: ClassVar[bool] = False
+    several_positions: ClassVar[bool] = False
+
+    lower_limit: LengthLimit | AngleLimit | None = Field(default=None, description="less than this is out of limits")
+    upper_limit: LengthLimit | AngleLimit | None = Field(default=None, description="more than this is out of limits")
+
+
+class FeatureMeasureSpec(AssemblyMeasureSpec):
+    """A measure of features."""
+
+    reads: ClassVar[MeasureKind]
+
+    after: Name | None = Field(default=None, description="the move after which it is read; the end if not given")
+
+    @property
+    def along(self) -> Direction | None:
+        """The direction in which it is read, in the frame of the first feature's part; None where there is none."""
+        return None
+
+    @property
+    def named_datums(self) -> tuple[DatumSpec, ...]:
+        """Datums of the first feature's part to which it is read."""
+        return ()
+
+    def named(self) -> Sequence[tuple[KeyPath, FeatureName, tuple[str, ...]]]:
+        """Its features with their fields, and the kinds that they may be; from, to."""
+        raise NotImplementedError
+
+    def references(self) -> tuple[Reference, ...]:
+        """Parts, and the move after which it is read."""
+        parts = tuple(Reference(path, part_of(name), (SolidSpec,)) for path, name, _ in self.named())
+        move = () if self.after is None else (Reference(("after",), self.after, (PlacingSpec, WeldSpec)),)
+        return (*parts, *move)
+
+    def uses(self) -> Iterator[Use]:
+        """The features, and the datums."""
+        for path, name, kinds in self.named():
+            yield Use(path, name, kinds)
+        for k, datum in enumerate(self.named_datums):
+            for name in datum.features:
+                yield Use(("datums", k), f"{part_of(self.named()[0][1])}.{name}")
+
+
+class BetweenSpec(FeatureMeasureSpec):
+    """A measure from one feature to another."""
+
+    from_: FeatureName = Field(alias="from", description="the feature where it starts")
+    to: FeatureName = Field(description="the feature where it ends")
+    datums: Datums | None = Field(
+        default=None,
+        description="of the part of `from`, in whose frame the direction is fixed; the part's if not given",
+    )
+
+    @property
+    def named_datums(self) -> tuple[DatumSpec, ...]:
+        """See FeatureMeasureSpec."""
+        return self.datums or ()
+
+    def named(self) -> Sequence[tuple[KeyPath, FeatureName, tuple[str, ...]]]:
+        """See FeatureMeasureSpec."""
+        return ((("from",), self.from_, ()), (("to",), self.to, ()))

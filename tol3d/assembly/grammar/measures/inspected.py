@@ -1,0 +1,75 @@
+"""What a measuring machine says of a feature, in the datum frame of the same trial."""
+
+from collections.abc import Sequence
+from typing import Annotated, ClassVar, Literal
+
+from pydantic import Field
+
+from tol3d.assembly.grammar.datums import Datums, DatumSpec
+from tol3d.assembly.grammar.feature_name import FeatureName
+from tol3d.assembly.grammar.measures.assembly_measure import FeatureMeasureSpec
+from tol3d.assembly.model.measures import MeasureKind
+from tol3d.scene.listed import listed
+from tol3d.scene.place import KeyPath
+from tol3d.scene.vector import Direction
+
+
+class InspectedSpec(FeatureMeasureSpec):
+    """A measure of one feature in a datum frame."""
+
+    of: FeatureName = Field(description="the feature")
+    datums: Datums | None = Field(default=None, description="the part's frame if not given")
+
+    @property
+    def named_datums(self) -> tuple[DatumSpec, ...]:
+        """See FeatureMeasureSpec."""
+        return self.datums or ()
+
+    def named(self) -> Sequence[tuple[KeyPath, FeatureName, tuple[str, ...]]]:
+        """See FeatureMeasureSpec."""
+        return ((("of",), self.of, ()),)
+
+
+class InspectedPositionSpec(InspectedSpec):
+    """Twice the largest distance of its ends from where they are nominally; of an axis across it."""
+
+    reads: ClassVar[MeasureKind] = "position"
+
+    kind: Literal["inspected_position"]
+    across: Direction | None = Field(default=None, description="of a point: the direction that does not count")
+
+    @property
+    def along(self) -> Direction | None:
+        """See FeatureMeasureSpec."""
+        return self.across
+
+
+class InspectedOrientationSpec(InspectedSpec):
+    """Width of the zone, oriented nominally, that holds it: perpendicularity, parallelism, angularity."""
+
+    reads: ClassVar[MeasureKind] = "orientation"
+
+    kind: Literal["inspected_orientation"]
+
+    def named(self) -> Sequence[tuple[KeyPath, FeatureName, tuple[str, ...]]]:
+        """See FeatureMeasureSpec."""
+        return ((("of",), self.of, ("plane", "cylinder", "axis")),)
+
+
+class InspectedFlatnessSpec(FeatureMeasureSpec):
+    """Smallest distance of two parallel planes with all the points between them."""
+
+    reads: ClassVar[MeasureKind] = "flatness"
+
+    kind: Literal["inspected_flatness"]
+    points: Annotated[tuple[FeatureName, ...], listed("points", 4)] = Field(description="of one part")
+    normal: Direction = Field(description="of the nominal plane, in that part's frame")
+
+    @property
+    def along(self) -> Direction | None:
+        """See FeatureMeasureSpec."""
+        return self.normal
+
+    def named(self) -> Sequence[tuple[KeyPath, FeatureName, tuple[str, ...]]]:
+        """See FeatureMeasureSpec."""
+        return tuple((("points", k), name, ("point",)) for k, name in enumerate(self.points))

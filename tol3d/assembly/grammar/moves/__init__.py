@@ -1,0 +1,19 @@
+"""Kinds of move, one file each."""
+
+from tol3d.assembly.grammar.moves.best_fit import BestFitSpec
+from tol3d.assembly.grammar.moves.fix import FixSpec
+from tol3d.assembly.grammar.moves.locating import LocatingSpec, SixPlaneSpec, ThreeTwoOneSpec
+from tol3d.assembly.grammar.moves.mate import MateSpec
+from tol3d.assembly.grammar.moves.placing_move import PlacingSpec
+from tol3d.assembly.grammar.moves.weld import WeldSpec
+
+__all__ = [
+    "BestFitSpec",
+    "FixSpec",
+    "LocatingSpec",
+    "MateSpec",
+    "PlacingSpec",
+    "SixPlaneSpec",
+    "ThreeTwoOneSpec",
+    "WeldSpec",
+]

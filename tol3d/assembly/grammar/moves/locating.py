@@ -1,0 +1,75 @@
+"""Six contacts of points on planes: 3-2-1, and six planes at once."""
+
+from abc import abstractmethod
+from collections.abc import Iterator, Mapping
+from typing import Annotated, ClassVar, Literal
+
+from pydantic import Field
+
+from tol3d.assembly.grammar.moves.placing_move import PairSpec, PlacingSpec
+from tol3d.assembly.model.moves import PointsOn
+from tol3d.scene.listed import listed
+from tol3d.scene.place import KeyPath
+from tol3d.scene.vector import Direction
+
+
+class ContactSpec(PairSpec):
+    """A point on a plane."""
+
+    along: Direction | None = Field(
+        default=None,
+        description="normal of the plane, in the frame of the part that the plane stays with; that feature's own "
+        "normal if not given",
+    )
+
+
+class LocatingSpec(PlacingSpec):
+    """Six contacts."""
+
+    points_on: PointsOn = Field(
+        default="part",
+        description="part: points ride on the part that is placed, planes stay with what it is placed on; fixture: "
+        "the reverse",
+    )
+
+    @property
+    @abstractmethod
+    def pairs_by_name(self) -> Mapping[str, tuple[KeyPath, ContactSpec]]:
+        """The contacts with their fields, by the names that locators have."""
+
+    def paired(self) -> Iterator[tuple[KeyPath, PairSpec]]:
+        """See PlacingSpec."""
+        return iter(self.pairs_by_name.values())
+
+
+class ThreeTwoOneSpec(LocatingSpec):
+    """Three contacts, two, one: normals are made square to each other in this order."""
+
+    words: ClassVar[str] = "a 3-2-1 move"
+
+    kind: Literal["three_two_one"]
+    primary: Annotated[tuple[ContactSpec, ...], listed("pairs", 3, 3)]
+    secondary: Annotated[tuple[ContactSpec, ...], listed("pairs", 2, 2)]
+    tertiary: Annotated[tuple[ContactSpec, ...], listed("pairs", 1, 1)]
+
+    @property
+    def pairs_by_name(self) -> Mapping[str, tuple[KeyPath, ContactSpec]]:
+        """See LocatingSpec."""
+        groups = {"primary": self.primary, "secondary": self.secondary, "tertiary": self.tertiary}
+        return {
+            f"{group} {k + 1}": ((group, k), pair) for group, pairs in groups.items() for k, pair in enumerate(pairs)
+        }
+
+
+class SixPlaneSpec(LocatingSpec):
+    """Six contacts at once, each along its own normal."""
+
+    words: ClassVar[str] = "a six-plane move"
+
+    kind: Literal["six_plane"]
+    pairs: Annotated[tuple[ContactSpec, ...], listed("pairs", 6, 6)]
+
+    @property
+    def pairs_by_name(self) -> Mapping[str, tuple[KeyPath, ContactSpec]]:
+        """See LocatingSpec."""
+        return {str(k + 1): (("pairs", k), pair) for k, pair in enumerate(self.pairs)}

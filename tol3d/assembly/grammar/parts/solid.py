@@ -1,0 +1,65 @@
+"""A part of any shape, of which a scene names features."""
+
+from collections.abc import Iterator, Mapping
+from typing import Any, ClassVar, Literal, Self
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import Field, model_validator
+
+from tol3d.assembly.grammar.feature_name import OwnName
+from tol3d.assembly.grammar.features import FeatureUnion
+from tol3d.assembly.grammar.features.nominal_frame import frame, is_across
+from tol3d.scene.name import Name
+from tol3d.scene.part import PartSpec
+from tol3d.scene.reference import Contradiction, Reference
+from tol3d.scene.vector import Direction, Vector
+from tol3d.strict import Strict, refused
+
+
+class Placement(Strict):
+    """Where a part is nominally."""
+
+    at: Vector | None = Field(default=None, description="its origin, in the world; the world's origin if not given")
+    z: Direction = Field(default=(0.0, 0.0, 1.0), description="its z axis")
+    x: Direction | None = Field(default=None, description="its x axis, as near as may be")
+
+    @property
+    def pose(self) -> NDArray[np.float64]:
+        """In the world (4, 4) [mm]."""
+        at = np.zeros(3) if self.at is None else np.array([own.internal for own in self.at])
+        return frame(at, self.z, self.x)
+
+    @model_validator(mode="after")
+    def _refuse_contradictions(self) -> Self:
+        if self.x is not None and not is_across(self.x, self.z):
+            raise refused("x", "a direction across z", list(self.x))
+        return self
+
+
+class SolidSpec(PartSpec):
+    """A rigid part with features, by numbers."""
+
+    words: ClassVar[str] = "a solid part"
+
+    kind: Literal["solid"]
+    features: Mapping[OwnName, FeatureUnion] = Field(default_factory=dict, description="what its drawing names")
+    like: Name | None = Field(
+        default=None, description="another part whose features and tolerances it has, with deviations of its own"
+    )
+    placed: Placement = Field(default_factory=Placement, description="nominal place; moves find theirs near it")
+
+    def references(self) -> tuple[Reference, ...]:
+        """The part that it is like."""
+        return () if self.like is None else (Reference(("like",), self.like, (SolidSpec,)),)
+
+    def contradictions(self, parts: Mapping[str, Any], moves: Mapping[str, Any]) -> Iterator[Contradiction]:
+        """A part that is like one that is like another."""
+        if self.like is not None and parts[self.like].like is not None:
+            yield Contradiction(("like",), "a part with features of its own", repr(self.like))
+
+    @model_validator(mode="after")
+    def _refuse_contradictions(self) -> Self:
+        if bool(self.features) == (self.like is not None):
+            raise refused("features", "either features or `like: another part`", "both" if self.features else "neither")
+        return self

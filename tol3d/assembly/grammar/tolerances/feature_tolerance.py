@@ -1,0 +1,38 @@
+"""What every tolerance of a feature has in common."""
+
+from collections.abc import Iterator
+from typing import ClassVar
+
+from pydantic import Field
+
+from tol3d.assembly.grammar.datums import DatumSpec
+from tol3d.assembly.grammar.feature_name import FeatureName, Use, part_of
+from tol3d.assembly.grammar.parts import SolidSpec
+from tol3d.scene.place import KeyPath
+from tol3d.scene.reference import Reference
+from tol3d.scene.tolerance import ToleranceEntry
+
+
+class FeatureTolerance(ToleranceEntry):
+    """A tolerance of one feature."""
+
+    applies_to: ClassVar[tuple[str, ...]] = ("point", "plane", "cylinder", "axis")
+
+    of: FeatureName = Field(description="the feature, with its part")
+
+    def references(self) -> tuple[Reference, ...]:
+        """The part."""
+        return (Reference(("of",), part_of(self.of), (SolidSpec,)),)
+
+    @property
+    def named_datums(self) -> tuple[DatumSpec, ...]:
+        """The datums to which it holds."""
+        return ()
+
+    def uses(self) -> Iterator[Use]:
+        """The feature, and the datums."""
+        yield Use(("of",), self.of, self.applies_to)
+        for k, datum in enumerate(self.named_datums):
+            for name in datum.features:
+                path: KeyPath = ("datums", k)
+                yield Use(path, f"{part_of(self.of)}.{name}")

@@ -1,0 +1,68 @@
+"""Zones that say where a feature lies: position, profile, coaxiality."""
+
+from collections.abc import Iterator
+from typing import Any, ClassVar, Literal
+
+from pydantic import Field
+
+from tol3d.assembly.grammar.datums import Datums, DatumSpec
+from tol3d.assembly.grammar.tolerances.feature_tolerance import FeatureTolerance
+from tol3d.assembly.grammar.zone import LawUnion, ProcessLawSpec, ZoneSpec
+from tol3d.scene.place import KeyPath
+
+
+class LocationSpec(FeatureTolerance):
+    """A zone for where a feature lies; zones of orientation and form of the same feature refine it."""
+
+    zone: ZoneSpec
+    law: LawUnion
+    datums: Datums | None = Field(default=None, description="the part's frame if not given")
+
+    @property
+    def named_datums(self) -> tuple[DatumSpec, ...]:
+        """See FeatureTolerance."""
+        return self.datums or ()
+
+    def file_names(self) -> Iterator[tuple[KeyPath, str]]:
+        """Those that its law reads."""
+        law: Any = self.law
+        found = law.distribution.file_names() if isinstance(law, ProcessLawSpec) else ()
+        return ((("law", "distribution", field), name) for field, name in found)
+
+
+class PositionSpec(LocationSpec):
+    """A true position."""
+
+    words: ClassVar[str] = "a position tolerance"
+    applies_to: ClassVar[tuple[str, ...]] = ("point", "cylinder", "axis", "plane")
+
+    kind: Literal["position"]
+
+
+class ProfileSpec(LocationSpec):
+    """A profile of a surface: a width about where it lies nominally, half of it outside unless `outward` says else."""
+
+    words: ClassVar[str] = "a profile tolerance"
+    applies_to: ClassVar[tuple[str, ...]] = ("plane", "point")
+
+    kind: Literal["profile"]
+
+
+class CoaxialitySpec(LocationSpec):
+    """A coaxiality: the axis lies in a cylinder about the datum's axis."""
+
+    words: ClassVar[str] = "a coaxiality tolerance"
+    applies_to: ClassVar[tuple[str, ...]] = ("cylinder", "axis")
+
+    kind: Literal["coaxiality"]
+    datums: Datums = Field(description="the axis that it is coaxial to")
+
+
+class SymmetrySpec(LocationSpec):
+    """A symmetry: a median plane, or an axis in one direction, lies in a width about the datum's."""
+
+    words: ClassVar[str] = "a symmetry tolerance"
+    applies_to: ClassVar[tuple[str, ...]] = ("plane", "cylinder", "axis")
+
+    kind: Literal["symmetry"]
+    datums: Datums = Field(description="the median plane or axis that it is symmetric to")

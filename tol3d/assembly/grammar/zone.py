@@ -1,0 +1,63 @@
+"""Tolerance zones and the laws of deviations in them, as a scene names them."""
+
+from typing import Annotated, Literal, Self
+
+from pydantic import Field, model_validator
+
+from tol3d.distributions import DistributionUnion
+from tol3d.scene.part import Length
+from tol3d.scene.vector import Direction
+from tol3d.strict import Strict, refused
+from tol3d.units import Of, Quantity
+
+
+class ZoneSpec(Strict):
+    """How much room a drawing leaves: a diameter for an axis or a point, else a width."""
+
+    diameter: Length | None = None
+    width: Length | None = None
+    along: Direction | None = Field(
+        default=None, description="of a width for an axis or a point: the one direction in which it limits"
+    )
+    outward: Annotated[Quantity, Of("length")] | None = Field(
+        default=None, description="how much of a profile's width lies outside the material; half if not given"
+    )
+
+    @property
+    def size(self) -> float:
+        """Diameter or width [mm]."""
+        given = self.diameter or self.width
+        return 0.0 if given is None else given.internal
+
+    @model_validator(mode="after")
+    def _refuse_contradictions(self) -> Self:
+        if (self.diameter is None) == (self.width is None):
+            raise refused("diameter", "either a diameter or a width", "neither" if self.width is None else "both")
+        if self.along is not None and self.width is None:
+            raise refused("along", "a width with it", "a diameter")
+        return self
+
+
+class UniformLawSpec(Strict):
+    """Every point of the zone is as likely as any other."""
+
+    kind: Literal["uniform"]
+
+
+class NormalLawSpec(Strict):
+    """Independent normals, 3 sigma of each at its largest value in the zone, on condition that all stay in the zone."""
+
+    kind: Literal["normal"]
+
+
+class ProcessLawSpec(Strict):
+    """A stated law of each coordinate; the zone judges only, and what lies outside stays in the trial."""
+
+    kind: Literal["process"]
+    distribution: DistributionUnion = Field(description="of each coordinate, a length at the end of the feature")
+
+
+LawUnion = Annotated[
+    UniformLawSpec | NormalLawSpec | ProcessLawSpec,
+    Field(discriminator="kind", description="the law of deviations in the zone: uniform, normal or process"),
+]
