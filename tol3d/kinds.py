@@ -24,7 +24,7 @@ from tol3d.system.mechanism import Mechanism, named
 if TYPE_CHECKING:
     from tol3d.runs.summary.kinds import SummaryKinds
 
-SHIPPED: Final = ("tol3d.gearing.mechanism:GEARING",)
+SHIPPED: Final = ("tol3d.gearing.mechanism:GEARING", "tol3d.assembly.mechanism:ASSEMBLY")
 
 GROUP: Final = "tol3d.mechanisms"
 

@@ -10,10 +10,12 @@ from places import ROOT
 
 from tol3d import Scene
 from tol3d.gearing.engines import STATUS_TEXT
+from tol3d.gearing.mechanism import GEARING
+from tol3d.scene import Grammar
 from tol3d.units import FACTORS
 
 DOCS = (ROOT / "docs" / "scene.md").read_text("utf-8")
-SCHEMA: Mapping[str, Any] = Scene.model_json_schema()
+SCHEMA: Mapping[str, Any] = Grammar((GEARING,)).scene.model_json_schema()
 FAILURES = "Builds that fail, and what ppm means"
 KINDS = ("parts", "tolerances", "moves", "measures")
 

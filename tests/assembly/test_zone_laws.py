@@ -1,0 +1,109 @@
+"""Problem 9: what a zone does to a face and to an axis, law by law, as a scene's measures read it."""
+
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+from assembly_trials import Assembled, assembled
+from scipy.stats import norm
+
+WIDTH, A, B, LENGTH = 0.1, 100.0, 60.0, 40.0
+COUNT = 200_000
+
+SCENE = """
+scene: a face and an axis in their zones
+parts:
+  plate:
+    kind: solid
+    features:
+      base: {{kind: plane, at: [0 mm, 0 mm, 0 mm], normal: [0, 0, 1], extent: [100 mm, 60 mm]}}
+      face: {{kind: plane, at: [0 mm, 0 mm, 20 mm], normal: [0, 0, 1], extent: [100 mm, 60 mm]}}
+      upright: {{kind: axis, at: [0 mm, 0 mm, 20 mm], axis: [0, 0, 1], length: 40 mm}}
+      bore: {{kind: axis, at: [0 mm, 0 mm, 20 mm], axis: [0, 0, 1], length: 40 mm}}
+tolerances:
+  profile: {{kind: profile, of: plate.face, zone: {{width: 0.1 mm{outward}}}, law: {law}}}
+  position: {{kind: position, of: plate.bore, zone: {{diameter: 0.1 mm}}, law: {law}}}
+moves:
+  machine: {{kind: fix, part: plate}}
+measures:
+  height: {{kind: gap, from: plate.base, to: plate.face, along: [0, 0, 1]}}
+  about x: {{kind: angle, from: plate.base, to: plate.face, about: [1, 0, 0]}}
+  about y: {{kind: angle, from: plate.base, to: plate.face, about: [0, 1, 0]}}
+  tilt: {{kind: angle, from: plate.upright, to: plate.bore}}
+  parallelism: {{kind: inspected_orientation, of: plate.face, datums: [base]}}
+  true position: {{kind: inspected_position, of: plate.bore}}
+"""
+
+
+def zoned(folder: Path, law: str, outward: str = "") -> Assembled:
+    return assembled(SCENE.format(law=law, outward=outward), folder)
+
+
+@pytest.mark.parametrize("road", ["exact", "analytic"])
+def test_uniform(tmp_path: Path, road: str) -> None:
+    found = zoned(tmp_path, "{kind: uniform}").drawn(COUNT, road)
+    half, error = WIDTH / 2, 4 / math.sqrt(2 * COUNT)
+    assert (found["height"] - 20).std() == pytest.approx(half / math.sqrt(10), rel=error)
+    alpha, beta = half / (B / 2), half / (A / 2)
+    assert found["about x"].std() == pytest.approx(alpha / math.sqrt(10), rel=error)
+    assert found["about y"].std() == pytest.approx(beta / math.sqrt(10), rel=error)
+    share = 1 / 8
+    beyond = (np.abs(found["about x"]) > alpha / 2).mean()
+    assert beyond == pytest.approx(share, abs=4 * math.sqrt(share * (1 - share) / COUNT))
+    mean, rms = 128 / (45 * math.pi) * half / LENGTH, half / LENGTH
+    assert (mean, rms) == pytest.approx((1.131768e-3, 1.25e-3), abs=1e-9)
+    spread = math.sqrt(rms**2 - mean**2)
+    assert found["tilt"].mean() == pytest.approx(mean, abs=4 * spread / math.sqrt(COUNT))
+    assert math.sqrt((found["tilt"] ** 2).mean()) == pytest.approx(rms, rel=8 / math.sqrt(COUNT))
+    close = 1 - 3 * math.sqrt(3) / (4 * math.pi)
+    near = (found["tilt"] < half / LENGTH).mean()  # ends less than half the width apart
+    assert near == pytest.approx(close, abs=4 * math.sqrt(close * (1 - close) / COUNT) + 1e-6)
+    # in its zone: the corners, and both ends; reached, and never left
+    assert found["parallelism"].max() == pytest.approx(WIDTH, rel=0.05)
+    assert found["parallelism"].max() <= WIDTH * (1 + 1e-6)
+    assert found["true position"].max() == pytest.approx(WIDTH, rel=0.01)
+    assert found["true position"].max() <= WIDTH * (1 + 1e-6)
+
+
+def test_normals_that_do_not_know_the_zone(tmp_path: Path) -> None:
+    """By `process` each coordinate has its 6 sigma in the zone; together they leave it in a quarter of trials."""
+    law = "{kind: process, distribution: {kind: normal, mean: 0 mm, sigma: " + repr(WIDTH / 6) + " mm}}"
+    found = zoned(tmp_path, law).drawn(COUNT)
+    half = WIDTH / 2
+    inside = (
+        np.abs(found["height"] - 20) + B / 2 * np.abs(found["about x"]) + A / 2 * np.abs(found["about y"])
+    ) <= half
+    share = 0.7374245  # P(|Z1| + |Z2| + |Z3| <= 3), by quadrature
+    assert inside.mean() == pytest.approx(share, abs=4 * math.sqrt(share * (1 - share) / COUNT))
+    flat = (np.abs(found["height"] - 20) + B / 2 * np.abs(found["about x"])) <= half
+    plane = (2 * norm.cdf(3 / math.sqrt(2)) - 1) ** 2
+    assert flat.mean() == pytest.approx(plane, abs=4 * math.sqrt(plane * (1 - plane) / COUNT))
+
+
+def test_normals_within_the_zone(tmp_path: Path) -> None:
+    found = zoned(tmp_path, "{kind: normal}").drawn(COUNT)
+    sigma = 0.790728 * WIDTH / 6  # what redrawing until inside leaves
+    error = 4 / math.sqrt(2 * COUNT)
+    for name, arm in (("height", 1.0), ("about x", B / 2), ("about y", A / 2)):
+        assert arm * found[name].std() == pytest.approx(sigma, rel=error + 1e-6)
+
+
+def test_unequal_profile(tmp_path: Path) -> None:
+    found = zoned(tmp_path, "{kind: uniform}", ", outward: 0.08 mm").drawn(COUNT)["height"]
+    sigma = WIDTH / 2 / math.sqrt(10)
+    assert found.mean() == pytest.approx(20 + 0.08 - 0.05, abs=4 * sigma / math.sqrt(COUNT))
+    assert found.max() <= 20.08 + 1e-12
+
+
+def test_closed_forms(tmp_path: Path) -> None:
+    system = zoned(tmp_path, "{kind: uniform}").system
+    sigmas = {}
+    for measure in system.measures:
+        form = system.closed_form(measure)
+        sigmas[measure.name] = None if form is None else form.sigma
+    half = WIDTH / 2
+    assert sigmas["height"] == pytest.approx(half / math.sqrt(10), rel=1e-9)
+    assert sigmas["about x"] == pytest.approx(half / (B / 2) / math.sqrt(10), rel=1e-9)
+    assert sigmas["tilt"] is None  # it is a length of two
+    assert sigmas["true position"] is None

@@ -1,0 +1,14 @@
+"""From what a scene says to the assembly that it means.
+
+features      nominal shapes and frames
+datums        datum frames, each once
+contributors  how tolerances are drawn, and what each moves
+zones         the zone that is left to a feature, and its law
+moves         pairs, normals, locators
+measures      what is read
+assembly      all of it together
+"""
+
+from tol3d.assembly.from_scene.assembly import Meant, assembly_of
+
+__all__ = ["Meant", "assembly_of"]

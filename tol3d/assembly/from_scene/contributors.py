@@ -1,0 +1,148 @@
+"""Contributors of a scene, and what each does to features and locators."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tol3d.assembly.from_scene.zones import drawn_in
+from tol3d.assembly.grammar.drawing import Drawing, Stated
+from tol3d.assembly.grammar.features import PlaneSpec, PointSpec
+from tol3d.assembly.grammar.features.nominal_frame import unit
+from tol3d.assembly.grammar.moves.locating import LocatingSpec
+from tol3d.assembly.grammar.tolerances import (
+    LocationSpec,
+    LocatorSpec,
+    OrientationSpec,
+    PlusMinusSpec,
+    SizeSpec,
+)
+from tol3d.assembly.grammar.tolerances.form import FormSpec
+from tol3d.assembly.grammar.zone import NormalLawSpec, ProcessLawSpec
+from tol3d.assembly.model import Contribution
+from tol3d.distributions import Distribution, TruncatedNormal, Uniform
+from tol3d.scene import Scene
+from tol3d.system.draw import Draw, Each, Scalar
+from tol3d.system.plain import PlainContributor
+
+Array = NDArray[np.float64]
+Touch = tuple[str, str]
+"""A move, and one of its pairs by the name that locators have."""
+
+SIGMAS = 3.0  # of a point that touches, in half of the form's zone, by the law `normal`
+
+
+@dataclass
+class Effects:
+    """Contributors in order, and what they do.
+
+    Args:
+        scene: what says it.
+        drawing: its tolerances by feature.
+        touching: the pairs at which each feature touches, by what touches it there; the same for all pairs of a couple.
+    """
+
+    scene: Scene
+    drawing: Drawing
+    touching: Mapping[str, Mapping[str, Sequence[Touch]]]
+    contributors: list[PlainContributor] = field(default_factory=list)
+    moved_by: dict[str, list[Contribution]] = field(default_factory=dict)
+    size_by: dict[str, list[Contribution]] = field(default_factory=dict)
+    locators: dict[Touch, list[Contribution]] = field(default_factory=dict)
+    heights: dict[Touch, list[Contribution]] = field(default_factory=dict)
+    """Of surfaces where they are touched, by their form."""
+    width: int = 0
+
+    def _added(self, name: str, spec_kind: str, description: str, draw: Draw) -> slice:
+        """The columns of a further contributor."""
+        columns = slice(self.width, self.width + len(draw.components))
+        self.contributors.append(PlainContributor(name, spec_kind, draw, description=description))
+        self.width = columns.stop
+        return columns
+
+    def add(self, own: Stated | str) -> None:
+        """A tolerance, if it draws anything."""
+        if isinstance(own, str):
+            self._locator(own)
+            return
+        match own.spec:
+            case PlusMinusSpec() | SizeSpec():
+                self._dimension(own, own.spec)
+            case LocationSpec():
+                self._zone(own)
+            case OrientationSpec() if own.spec.law is not None:
+                self._zone(own)
+            case FormSpec() if own.spec.law is not None:
+                self._form(own, own.spec)
+
+    def _locator(self, name: str) -> None:
+        spec = self.scene.tolerances[name]
+        assert isinstance(spec, LocatorSpec)
+        columns = self._added(name, spec.kind, spec.description, Scalar(spec.distribution.resolve(self.scene.files)))
+        self.locators.setdefault((spec.of, spec.pair), []).append(Contribution(name, columns, np.eye(1)))
+
+    def _dimension(self, own: Stated, spec: PlusMinusSpec | SizeSpec) -> None:
+        draw = Scalar(spec.distribution.resolve(self.scene.files))
+        columns = self._added(own.name, spec.kind, spec.description, draw)
+        if isinstance(spec, SizeSpec):
+            self.size_by.setdefault(own.feature, []).append(Contribution(own.name, columns, np.eye(1)))
+        else:
+            matrix = self._along(own.feature, spec)[:, None]
+            self.moved_by.setdefault(own.feature, []).append(Contribution(own.name, columns, matrix))
+
+    def _along(self, feature: str, spec: PlusMinusSpec) -> Array:
+        """What one mm along a dimension does to the components of a feature."""
+        own = self.drawing.kind(feature)
+        rotation = own.frame[:3, :3]
+        direction = rotation[:, 2] if spec.along is None else unit(spec.along)
+        x, y, z = rotation.T @ direction
+        if isinstance(own, PointSpec):
+            return np.array([x, y, z])
+        return np.array([z, 0.0, 0.0]) if isinstance(own, PlaneSpec) else np.array([x, y, x, y])
+
+    def _zone(self, own: Stated) -> None:
+        draw, matrix = drawn_in(self.scene, own, self.drawing)
+        columns = self._added(own.name, own.spec.kind, own.spec.description, draw)
+        self.moved_by.setdefault(own.feature, []).append(Contribution(own.name, columns, matrix))
+
+    def _form(self, own: Stated, spec: FormSpec) -> None:
+        others = self.touching.get(own.feature, {})
+        if not others:
+            words = f"expected a feature that touches a point in a move, got {own.feature!r}; leave the law out"
+            raise self.scene.refuse(("tolerances", own.entry, "law"), words)
+        half = 0.5 * spec.zone.size
+        match spec.law:
+            case ProcessLawSpec():
+                law: Distribution = spec.law.distribution.resolve(self.scene.files)
+            case NormalLawSpec():
+                law = TruncatedNormal(0.0, half / SIGMAS, -half, half)
+            case _:
+                law = Uniform(-half, half)
+        columns = self._added(own.name, spec.kind, spec.description, Each(law, tuple(others)))
+        for k, touches in enumerate(others.values()):
+            matrix = np.zeros((1, len(others)))
+            matrix[0, k] = 1.0
+            for touch in touches:
+                self.heights.setdefault(touch, []).append(Contribution(own.name, columns, matrix))
+
+
+def effects_of(scene: Scene, drawing: Drawing) -> Effects:
+    """All contributors of a scene, and what they do.
+
+    Raises:
+        SceneError: a zone does not fit its feature, or a file that a law reads makes no sense.
+    """
+    effects = Effects(scene, drawing, _touching(scene))
+    for own in drawing.stated:
+        effects.add(own)
+    return effects
+
+
+def _touching(scene: Scene) -> Mapping[str, Mapping[str, Sequence[Touch]]]:
+    found: dict[str, dict[str, list[Touch]]] = {}
+    for name, move in scene.moves.items():
+        for pair, (_, own) in (move.pairs_by_name if isinstance(move, LocatingSpec) else {}).items():
+            for one, other in ((own.from_, own.to), (own.to, own.from_)):
+                found.setdefault(one, {}).setdefault(other, []).append((name, pair))
+    return found

@@ -1,0 +1,80 @@
+"""Datum frames of a scene: each set of datums once, in the order in which they are made."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from tol3d.assembly.grammar.datums import DatumSpec
+from tol3d.assembly.grammar.features import FeatureUnion
+from tol3d.assembly.model import Datum, DatumFrame
+
+
+@dataclass
+class DatumFrames:
+    """Datum frames as they are asked for.
+
+    Args:
+        features: specs by part and name.
+    """
+
+    features: Mapping[str, Mapping[str, FeatureUnion]]
+    made: dict[str, DatumFrame] = field(default_factory=dict)
+
+    def named(self, part: str, datums: Sequence[DatumSpec]) -> str:
+        """The name of a part's frame on some datums; "" for none, which is the part's own frame."""
+        if not datums:
+            return ""
+        name = "|".join((part, *(_letter(datum) for datum in datums)))
+        if name not in self.made:
+            self.made[name] = DatumFrame(name, part, tuple(self._datum(part, own) for own in datums))
+        return name
+
+    def _datum(self, part: str, spec: DatumSpec) -> Datum:
+        names = tuple(f"{part}.{feature}" for feature in spec.features)
+        if not spec.targets:
+            return Datum(names, spec.simulator)
+        into = np.linalg.inv(self.features[part][spec.features[0]].frame)
+        points = np.array([[*(own.internal for own in target), 1.0] for target in spec.targets])
+        return Datum(names, spec.simulator, (points @ into.T)[:, :3])
+
+    def of(self, part: str) -> tuple[DatumFrame, ...]:
+        """The frames of a part."""
+        return tuple(frame for frame in self.made.values() if frame.part == part)
+
+
+def _letter(spec: DatumSpec) -> str:
+    own = "-".join(spec.features)
+    if spec.targets:
+        return f"{own} at " + "; ".join(" ".join(f"{x.internal:.9g}" for x in target) for target in spec.targets)
+    return own if spec.simulator == "contact" else f"{own} {spec.simulator}"
+
+
+def in_order(
+    parents: Mapping[str, str], frames: Mapping[str, DatumFrame]
+) -> tuple[tuple[str, ...], tuple[str, ...], tuple[str, ...]]:
+    """Features and frames so that each comes after what it is made of; and a ring of names where that cannot be.
+
+    Args:
+        parents: the datum frame of each feature, "" for the part's own.
+        frames: by their names.
+    """
+    features: list[str] = []
+    ordered: list[str] = []
+    done = {""}
+    waiting = list(parents)
+    while waiting:
+        ready = [name for name in waiting if parents[name] in done]
+        if not ready:
+            return tuple(features), tuple(ordered), tuple(waiting)
+        features += ready
+        waiting = [name for name in waiting if name not in ready]
+        for name, frame in frames.items():
+            if name not in done and all(own in features for own in _features(frame)):
+                ordered.append(name)
+                done.add(name)
+    return tuple(features), tuple(ordered), ()
+
+
+def _features(frame: DatumFrame) -> Iterator[str]:
+    return (name for datum in frame.datums for name in datum.features)

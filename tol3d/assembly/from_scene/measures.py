@@ -1,0 +1,44 @@
+"""Measures of a scene: what each reads, and how it is shown."""
+
+from dataclasses import replace
+
+from tol3d.assembly.from_scene.datums import DatumFrames
+from tol3d.assembly.grammar.feature_name import part_of
+from tol3d.assembly.grammar.features.nominal_frame import unit
+from tol3d.assembly.grammar.measures import AssemblyMeasureSpec, DifferenceSpec
+from tol3d.assembly.grammar.measures.assembly_measure import FeatureMeasureSpec
+from tol3d.assembly.model import Measured
+from tol3d.assembly.model.measures import MeasureKind
+from tol3d.scene import Scene
+from tol3d.system.plain import PlainMeasure, measures_of
+
+WORSE_HIGH: frozenset[MeasureKind] = frozenset(("position", "orientation", "flatness"))
+
+
+def measured_of(scene: Scene, frames: DatumFrames) -> dict[str, Measured]:
+    """What each measure of a scene reads."""
+    return {name: _measured(scene, _named(scene, name), frames) for name in scene.measures}
+
+
+def _measured(scene: Scene, spec: AssemblyMeasureSpec, frames: DatumFrames) -> Measured:
+    if isinstance(spec, DifferenceSpec):
+        own, less = (_measured(scene, _named(scene, name), frames) for name in (spec.of, spec.minus))
+        return replace(own, minus=less)
+    assert isinstance(spec, FeatureMeasureSpec)
+    features = tuple(name for _, name, _ in spec.named())
+    direction = None if spec.along is None else unit(spec.along)
+    after = -1 if spec.after is None else list(scene.moves).index(spec.after)
+    frame = frames.named(part_of(features[0]), spec.named_datums)
+    return Measured(spec.reads, features, direction, frame, after)
+
+
+def _named(scene: Scene, name: str) -> AssemblyMeasureSpec:
+    spec = scene.measures[name]
+    assert isinstance(spec, AssemblyMeasureSpec)
+    return spec
+
+
+def shown_measures(scene: Scene, read: dict[str, Measured]) -> tuple[PlainMeasure, ...]:
+    """The measures as studies see them."""
+    found = measures_of(scene)
+    return tuple(replace(own, worse="high" if read[own.name].kind in WORSE_HIGH else "low") for own in found)

@@ -1,0 +1,80 @@
+"""Moves of a scene: pairs, normals, locators."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tol3d.assembly.from_scene.contributors import Effects
+from tol3d.assembly.from_scene.features import TouchedPoints
+from tol3d.assembly.grammar.features.nominal_frame import unit
+from tol3d.assembly.grammar.moves import BestFitSpec, FixSpec, LocatingSpec, MateSpec, PlacingSpec, WeldSpec
+from tol3d.assembly.grammar.moves.locating import ContactSpec
+from tol3d.assembly.model import BestFit, Fit, Fix, Locate, Mate, Move, Pair, Relation, Weld
+from tol3d.scene import Scene
+
+Array = NDArray[np.float64]
+
+FLAT = 1e-6
+"""Sine of the angle between directions that are the same."""
+
+
+def moves_of(scene: Scene, effects: Effects, touched: TouchedPoints) -> tuple[Move, ...]:
+    """All moves of a scene, in order; the points of planes that they touch are added to the features.
+
+    Raises:
+        SceneError: directions that do not fit what they are of.
+    """
+    return tuple(
+        _move(scene, name, spec, effects, touched)
+        for name, spec in scene.moves.items()
+        if isinstance(spec, PlacingSpec | WeldSpec)
+    )
+
+
+def _move(scene: Scene, name: str, spec: PlacingSpec | WeldSpec, effects: Effects, touched: TouchedPoints) -> Move:
+    match spec:
+        case WeldSpec():
+            return Weld(name, spec.part, spec.to)
+        case LocatingSpec():
+            pairs = tuple(_pair(scene, name, number, spec, effects, touched) for number in spec.pairs_by_name)
+            return Locate(name, spec.part, pairs, spec.points_on)
+        case BestFitSpec():
+            fits = tuple(Fit(own.from_, own.to, own.weight, _directions(own.along)) for own in spec.pairs)
+            return BestFit(name, spec.part, fits, spec.criterion)
+        case MateSpec():
+            relations = tuple(
+                Relation(own.kind, own.from_, own.to, 0.0 if own.distance is None else own.distance.internal)
+                for own in spec.relations
+            )
+            return Mate(name, spec.part, relations)
+        case FixSpec():
+            return Fix(name, spec.part)
+    raise NotImplementedError(spec.kind)
+
+
+def _pair(scene: Scene, move: str, number: str, spec: LocatingSpec, effects: Effects, touched: TouchedPoints) -> Pair:
+    path, own = spec.pairs_by_name[number]
+    on_part = spec.points_on == "part"
+    side, point = (own.to, own.from_) if on_part else (own.from_, own.to)
+    touched_point = touched.on(side, point)
+    out = _normal(own, touched.features[side].frame[:3, 2])
+    if touched_point != side and np.linalg.norm(np.cross(out, touched.features[side].frame[:3, 2])) > FLAT:
+        words = f"expected none, or the normal of the plane {side!r}"
+        raise scene.refuse(("moves", move, *path, "along"), words)
+    locators, heights = tuple(effects.locators.get((move, number), ())), tuple(effects.heights.get((move, number), ()))
+    if on_part:
+        return Pair(own.from_, touched_point, out, locators + heights)
+    lifted = touched.lifted(own.to, f"{move} {number}", -out, spec.part, locators) if locators else own.to
+    return Pair(touched_point, lifted, -out, heights)
+
+
+def _normal(own: ContactSpec, feature_normal: Array) -> Array:
+    """Out of the material, in the frame of the part that the plane stays with (3,)."""
+    return feature_normal if own.along is None else unit(own.along)
+
+
+def _directions(along: tuple[tuple[float, float, float], ...]) -> Array:
+    """Orthonormal (directions, 3); all three if none is given."""
+    if not along:
+        return np.eye(3)
+    q, _ = np.linalg.qr(np.array([unit(own) for own in along]).T)
+    return np.asarray(q.T)

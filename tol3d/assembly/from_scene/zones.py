@@ -1,0 +1,89 @@
+"""The zone that a drawing leaves a feature, with all that refines it, and the draw that its law makes."""
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tol3d.assembly.grammar.drawing import Drawing, Stated
+from tol3d.assembly.grammar.features import FeatureUnion, PlaneSpec, PointSpec
+from tol3d.assembly.grammar.features.nominal_frame import Triple, unit
+from tol3d.assembly.grammar.tolerances import CircularRunOutSpec, LocationSpec, OrientationSpec
+from tol3d.assembly.grammar.zone import LawUnion, NormalLawSpec, ProcessLawSpec, ZoneSpec
+from tol3d.assembly.zones import Process, Zone, ZoneDraw, catalogue, normal_in, uniform_in
+from tol3d.errors import InputError
+from tol3d.scene import Scene
+
+Array = NDArray[np.float64]
+
+LEAST_SINE = 1e-9
+"""Of an angle from the axis; a direction nearer to it has no direction across."""
+
+
+def drawn_in(scene: Scene, own: Stated, drawing: Drawing) -> tuple[ZoneDraw, Array]:
+    """How a zone's deviations are drawn, and what they do to the feature (its components, the draw's).
+
+    Raises:
+        SceneError: the zone does not fit the feature.
+    """
+    spec = own.spec
+    assert isinstance(spec, LocationSpec | OrientationSpec)
+    assert spec.law is not None
+    feature = drawing.kind(own.feature)
+    try:
+        zone = (
+            _location(spec, feature, drawing.orientation(own.feature), drawing.form(own.feature))
+            if isinstance(spec, LocationSpec)
+            else _orientation(spec.zone, feature)
+        )
+    except InputError as error:
+        raise scene.refuse(("tolerances", own.entry, "zone"), str(error)) from None
+    return _by_law(scene, spec.law, zone), zone.matrix
+
+
+def _by_law(scene: Scene, law: LawUnion, zone: Zone) -> ZoneDraw:
+    if isinstance(law, ProcessLawSpec):
+        own = law.distribution.resolve(scene.files)
+        return Process(zone, (own,) * len(zone.components))
+    return normal_in(zone) if isinstance(law, NormalLawSpec) else uniform_in(zone)
+
+
+def _location(spec: LocationSpec, feature: FeatureUnion, orientation: float | None, form: float) -> Zone:
+    width, outward = spec.zone.size, None if spec.zone.outward is None else spec.zone.outward.internal
+    if isinstance(feature, PlaneSpec):
+        made = catalogue.rectangle if feature.extent is not None else catalogue.round_face
+        return made(width, orientation, outward, form)
+    if isinstance(feature, PointSpec):
+        if spec.zone.diameter is not None:
+            return catalogue.point_in_sphere(width)
+        return catalogue.point_between_planes(width, _seen(spec.zone.along, feature), outward)
+    if isinstance(spec, CircularRunOutSpec):
+        return catalogue.axis_section(width)
+    if spec.zone.along is not None:
+        return catalogue.flat_axis(width, _across(spec.zone.along, feature), orientation, form)
+    return catalogue.axis(width, orientation, form)
+
+
+def _orientation(zone: ZoneSpec, feature: FeatureUnion) -> Zone:
+    if isinstance(feature, PlaneSpec):
+        made = catalogue.rectangle_orientation if feature.extent is not None else catalogue.round_face_orientation
+        return made(zone.size)
+    if zone.along is not None:
+        return catalogue.flat_axis_orientation(zone.size, _across(zone.along, feature))
+    return catalogue.axis_orientation(zone.size)
+
+
+def _seen(along: Triple | None, feature: FeatureUnion) -> Triple:
+    """A direction in the feature's frame; its normal if there is none."""
+    if along is None:
+        return 0.0, 0.0, 1.0
+    x, y, z = feature.frame[:3, :3].T @ unit(along)
+    return float(x), float(y), float(z)
+
+
+def _across(along: Triple, feature: FeatureUnion) -> tuple[float, float]:
+    """A direction across a feature's axis, in its frame."""
+    x, y, _ = _seen(along, feature)
+    if math.hypot(x, y) < LEAST_SINE:
+        raise InputError("expected a direction `along` across the axis, got one along it")
+    return x, y

@@ -1,0 +1,20 @@
+"""General assemblies as a mechanism: parts with drawings, moves, measures."""
+
+from typing import Final
+
+from tol3d.assembly.grammar import measures, moves, parts, tolerances
+from tol3d.assembly.grammar.checks import unknown_features, unplaced_bodies
+from tol3d.assembly.grammar.drawing_checks import contradicting_tolerances
+from tol3d.scene.grammar import specs_in
+from tol3d.system.mechanism import Mechanism
+
+ASSEMBLY: Final = Mechanism(
+    name="assembly",
+    parts=specs_in(parts),
+    tolerances=specs_in(tolerances),
+    moves=specs_in(moves),
+    measures=specs_in(measures),
+    checks=(unknown_features, unplaced_bodies, contradicting_tolerances),
+    engines=("exact",),
+    system="tol3d.assembly.system:assembly_system",
+)

@@ -1,0 +1,201 @@
+"""All that a study asks of an assembly: two roads, what acts on a measure, closed forms."""
+
+import math
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any, ClassVar, Final, TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tol3d.assembly.from_scene import Meant, assembly_of
+from tol3d.assembly.model import Assembly
+from tol3d.assembly.model.statuses import OK, STATUSES
+from tol3d.assembly.placing import road as placing
+from tol3d.assembly.torsors import road as torsors
+from tol3d.assembly.torsors.slopes import Slopes
+from tol3d.assembly.zones import ZoneDraw
+from tol3d.errors import InputError
+from tol3d.scene import Scene
+from tol3d.scene.schema import SECTIONS
+from tol3d.system.closed_form import ClosedForm, Share
+from tol3d.system.contributor import Contributor
+from tol3d.system.measure import Measure
+from tol3d.system.plain import PlainSystem
+from tol3d.system.regressors import is_group
+from tol3d.system.road import ANALYTIC_ROAD, Answers, Road
+from tol3d.system.stated import component_slices
+from tol3d.system.statuses import Statuses
+from tol3d.system.system import Columns, KeyPath
+from tol3d.system.trials import Trials
+
+Array = NDArray[np.float64]
+T = TypeVar("T")
+
+SAME: Final = 1e-6
+"""mm or rad: both roads read the same nominally to within this, or moves lay parts where they are not drawn."""
+
+FLAT: Final = 1e-6
+"""Change of a measure per deviation that is none: both sides of the mean raise it alike."""
+
+
+@dataclass(frozen=True)
+class TorsorRoad:
+    """The analytic road: small displacements."""
+
+    assembly: Assembly
+
+    chord_error: ClassVar[float] = 0.0
+
+    def answers(self, trials: Trials, measures: Sequence[Measure]) -> Answers:
+        """See Road; every trial is built."""
+        found = torsors.values(self.assembly, trials.deviations, [measure.name for measure in measures])
+        return Answers({name: own[:, None] for name, own in found.items()})
+
+
+@dataclass(frozen=True)
+class PlacingRoad:
+    """The exact road: parts are placed, move by move."""
+
+    assembly: Assembly
+
+    chord_error: ClassVar[float] = 0.0
+
+    def answers(self, trials: Trials, measures: Sequence[Measure]) -> Answers:
+        """See Road."""
+        found = placing.values(self.assembly, trials.deviations, [measure.name for measure in measures])
+        return Answers(
+            {name: own[:, None] for name, (own, _) in found.items()},
+            status={name: codes for name, (_, codes) in found.items()},
+        )
+
+
+@dataclass(frozen=True)
+class AssemblySystem(PlainSystem):
+    """Implements System.
+
+    Args:
+        assembly: nominally, and by its drawings.
+    """
+
+    assembly: Assembly
+
+    statuses: ClassVar[Statuses] = STATUSES
+
+    def road(self, name: str, materials: Any) -> Road:
+        """See System."""
+        return TorsorRoad(self.assembly) if name == ANALYTIC_ROAD else PlacingRoad(self.assembly)
+
+    def problems(self) -> Iterator[tuple[KeyPath, str]]:
+        """Measures of the nominal assembly that the roads read differently, or not at all."""
+        rest = np.zeros((1, self.assembly.width))
+        names = [measure.name for measure in self.measures]
+        exact, linear = placing.values(self.assembly, rest, names), torsors.values(self.assembly, rest, names)
+        for measure in self.measures:
+            (value,), (code,) = exact[measure.name]
+            if code != OK:
+                yield ("measures", measure.name), f"cannot be read even without deviations: {STATUSES.texts[code]}"
+            elif abs(value - linear[measure.name][0]) > SAME:
+                off = abs(value - linear[measure.name][0]) * measure.per_internal
+                words = (
+                    f"moves lay parts elsewhere than they are `placed`, and this reads {off:.3g} {measure.unit} else; "
+                    "place parts and fixtures where they are when all moves are done"
+                )
+                yield ("measures", measure.name), words
+
+    def acting(self, measure: Measure) -> Sequence[Contributor]:
+        """Those with a slope, or that a term which is not linear reads."""
+        slopes = self._slopes_of(measure)
+        acts = slopes.coefficients != 0.0
+        acts[list(slopes.bent)] = True
+        slices = component_slices(self)
+        return [own for own in self.contributors if acts[slices[own.name]].any()]
+
+    def regress(
+        self, measure: Measure, contributors: Sequence[Contributor], columns: Columns, rows: Mapping[str, Array]
+    ) -> None:
+        """Each component of a zone over its own sigma, squared where the measure takes its size; others as ever."""
+        others, slopes, slices = [], self._slopes_of(measure), component_slices(self)
+        for own in contributors:
+            draw = own.draw
+            if not isinstance(draw, ZoneDraw) or len(draw.components) == 1 or is_group(own):
+                others.append(own)
+                continue
+            places = range(*slices[own.name].indices(self.assembly.width))
+            for row, name, mean, sigma, place in zip(
+                rows[own.name], own.columns, draw.mean_vector, draw.sigmas, places, strict=True
+            ):
+                np.multiply(np.asarray(columns[name], dtype=np.float64), own.per_unit / (sigma or 1.0), out=row)
+                if place in slopes.bent and abs(slopes.coefficients[place]) < FLAT:
+                    np.subtract(row, mean / (sigma or 1.0), out=row)
+                    np.square(row, out=row)
+        super().regress(measure, others, columns, rows)
+
+    def closed_form(self, measure: Measure) -> ClosedForm | None:
+        """Of the torsors; None where the measure is not linear in them."""
+        slopes = self._slopes_of(measure)
+        if slopes.bends:
+            return None
+        slices = component_slices(self)
+        shares: list[Share] = []
+        for own in self.acting(measure):
+            coefficients = slopes.coefficients[slices[own.name]]
+            mean, covariance = _moments(own)
+            size = float(coefficients[0]) if len(coefficients) == 1 else float(np.sqrt(coefficients @ coefficients))
+            variance = float(coefficients @ covariance @ coefficients)
+            shares.append(Share(own.name, size, float(coefficients @ mean), variance))
+        middle = slopes.nominal + sum(share.mean for share in shares)
+        sigma = math.sqrt(sum(share.variance for share in shares))
+        return ClosedForm(slopes.nominal, middle, sigma, tuple(shares))
+
+    def is_linear(self, measure: Measure) -> bool:
+        """Whether a measure is linear in all deviations by the analytic road, which then has a closed form."""
+        return not self._slopes_of(measure).bends
+
+    def _slopes_of(self, measure: Measure) -> Slopes:
+        moments = [_moments(own) for own in self.contributors]
+        means = np.concatenate([mean for mean, _ in moments] or [np.zeros(0)])
+        sigmas = np.concatenate([np.sqrt(np.diagonal(covariance)) for _, covariance in moments] or [np.zeros(0)])
+        return torsors.slopes(self.assembly, measure.name, means, sigmas)
+
+
+def _moments(contributor: Contributor) -> tuple[Array, Array]:
+    """Mean (components,) and covariance (components, components) of a contributor [mm]."""
+    draw = contributor.draw
+    if isinstance(draw, ZoneDraw):
+        return draw.mean_vector, draw.covariance
+    mean = np.array(draw.mean(turning=False))
+    return mean, draw.sigma**2 * np.eye(len(mean))
+
+
+def assembly_system(scene: Scene) -> AssemblySystem:
+    """What a scene of an assembly means.
+
+    Raises:
+        SceneError: what it says does not fit together, such as moves that leave a part free.
+    """
+    placed = _asked(scene, lambda: _settled(scene))
+    made = AssemblySystem(scene.scene, placed.contributors, placed.measures, placed.assembly)
+    _asked(
+        scene, lambda: torsors.values(made.assembly, np.zeros((1, made.assembly.width)), list(made.assembly.measures))
+    )
+    measures = (replace(own, adds_up=made.is_linear(own)) for own in made.measures)
+    return replace(made, measures=tuple(measures))
+
+
+def _settled(scene: Scene) -> Meant:
+    """What a scene means, parts at the poses in which its moves lay them without deviations."""
+    drawn = assembly_of(scene)
+    poses = placing.placed(drawn.assembly, np.zeros((1, drawn.assembly.width)))
+    return assembly_of(scene, {name: np.asarray(pose[0]) for name, pose in poses.items()})
+
+
+def _asked(scene: Scene, ask: Callable[[], T]) -> T:
+    try:
+        return ask()
+    except InputError as error:
+        place, _, sentence = str(error).partition(": ")
+        section, _, name = place.partition(".")
+        if section not in SECTIONS or name not in scene.section(section):
+            raise
+        raise scene.refuse((section, name), sentence) from None
