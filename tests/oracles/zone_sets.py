@@ -34,7 +34,7 @@ class ZoneSet:
         reach = self.reach(width, orientation)
         found: list[Array] = []
         while sum(map(len, found)) < count:
-            shape = (max(count, 50_000), len(reach))
+            shape = (max(count, 40_000), len(reach))
             unit = rng.uniform(-1.0, 1.0, shape) if law == "uniform" else rng.standard_normal(shape) / 3
             points = unit * reach
             found.append(points[self.inside(points, width, orientation)])
