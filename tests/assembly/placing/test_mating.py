@@ -61,6 +61,7 @@ def axis(at: Array, deviation: Array, length: float) -> tuple[Array, Array]:
     return at[:3, :3] @ (start + end) / 2 + at[:3, 3], along / np.linalg.norm(along)
 
 
+X, Y, Z = np.eye(3)
 FLOOR, WALL, STOP = frame((50, 40, 0)), frame((0, 40, 20), (1, 0, 0)), frame((50, 0, 20), (0, 1, 0))
 UNDER, SIDE, END = (frame(each[:3, 3] + (3, 2, 1) * (1 - each[:3, 2]), -each[:3, 2]) for each in (FLOOR, WALL, STOP))
 REACH = (50.0, 30.0)
@@ -219,6 +220,52 @@ def test_a_cylinder_lies_on_a_plane_by_the_radius_of_its_trial() -> None:
     found, codes = values(made, np.array([[0.3, 0, 0, 0], [-0.2, 0.1, 0, 0.6]]), ["height"])["height"]
     np.testing.assert_array_equal(codes, 0)
     np.testing.assert_allclose(found, [5.15, 4.9], atol=1e-12)
+
+
+BAR, ITS_AXIS = Axis(60.0, 10.0), frame((50, 40, 12), X)
+SIDE_A, SIDE_B = frame((50, 50, 10), (0, -0.8, 0.6), X), frame((50, 30, 10), (0, 0.8, 0.6), X)
+TRAY = frame((50, 40, 0), Z)
+BAR_END, STOP_AT_END = frame((20, 40, 12), -X), frame((20, 40, 10), X)
+TANGENTS: dict[str, tuple[str, Side, Side]] = {
+    "a": ("tangent", ("part.bar", BAR, ITS_AXIS), ("base.a", FACE, SIDE_A)),
+    "b": ("tangent", ("part.bar b", BAR, ITS_AXIS), ("base.b", FACE, SIDE_B)),
+    "tray": ("tangent", ("part.bar", BAR, ITS_AXIS), ("base.tray", FACE, TRAY)),
+    "end": ("coincident", ("part.end", FACE, BAR_END), ("base.end", FACE, STOP_AT_END)),
+    "side": ("coincident", ("part.side", FACE, END), ("base.wall", FACE, STOP)),
+}
+
+
+@pytest.mark.parametrize("relations", ["tray", "a end", "tray end", "tray side", "a b", "a b end"])
+@pytest.mark.parametrize("seed", range(3))
+def test_what_lies_on_planes_before_anything_holds_a_direction(relations: str, seed: int) -> None:
+    """A cylinder is square to its plane's normal and one radius above it; then a face is as flush as it goes."""
+    asked = [TANGENTS[name] for name in relations.split()]
+    made, slices = mated(asked)
+    row = np.random.default_rng(seed).normal(0, 0.3, made.width)
+    pose = placed(made, row[None])["part"][0]
+    from_world = np.linalg.inv(NOMINAL)
+    seen = []
+    for k, (kind, (_, _, own_at), (_, _, at)) in enumerate(asked):
+        own_row = row[slices[2 * k]]
+        own = (
+            axis(from_world @ own_at, own_row, 60.0)
+            if kind == "tangent"
+            else plane(from_world @ own_at, own_row, REACH)
+        )
+        origin, normal = plane(at, row[slices[2 * k + 1]], REACH)
+        direction = pose[:3, :3] @ own[1]
+        assert normal @ (pose[:3, :3] @ own[0] + pose[:3, 3] - origin) == pytest.approx(
+            5.0 if kind == "tangent" else 0.0, abs=1e-12
+        )
+        if kind == "tangent":
+            assert direction @ normal == pytest.approx(0, abs=1e-13)
+        seen.append((direction, normal))
+    if relations == "tray side":
+        assert seen[1][0] @ seen[1][1] == pytest.approx(-1, abs=1e-13)
+    elif relations.endswith(" end") and "b" not in relations:
+        (_, normal), (face, target) = seen
+        face, target = (each - each @ normal * normal for each in (face, target))
+        np.testing.assert_allclose(np.cross(face, target), 0, atol=1e-13)  # nearest by a turn about the normal
 
 
 def test_what_no_relation_asks_stays() -> None:

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from tol3d.assembly.model.statuses import NO_CONTACT, OK, SINGULAR
 from tol3d.assembly.placing.actual_feature import ActualFeature
 from tol3d.assembly.placing.poses import (
+    IDENTITY,
     Codes,
     Pose,
     about,
@@ -102,12 +103,14 @@ class Step:
         kind: aim: its direction becomes the target's by the least rotation; azimuth: as far as a rotation about the
             held direction goes; level: its direction becomes square to the target's by such a rotation; aim at: the
             line from the pivot to its point goes to the target; turn to: by a rotation about the held direction, as
-            far as that goes; swing: its height is met by such a rotation.
+            far as that goes; swing: its height is met by such a rotation; lie: its direction becomes square to the
+            target's by the least rotation, and the target's is held; lie between: also to that of the pivot's; hold:
+            no rotation, its direction is held.
         tie: whose.
-        pivot: the tie whose point stays; -1 where shifts decide in each trial about what it swings.
+        pivot: the tie whose point stays, or that lies; -1 where shifts decide in each trial about what it swings.
     """
 
-    kind: Literal["aim", "azimuth", "level", "aim at", "turn to", "swing"]
+    kind: Literal["aim", "azimuth", "level", "aim at", "turn to", "swing", "lie", "lie between", "hold"]
     tie: int
     pivot: int = -1
 
@@ -173,19 +176,13 @@ class Alignment:
         ways, codes = self.ways(seats)
         turn, held = start.turn, column(np.zeros(3))
         for number, (step, shifts_before) in enumerate(self.turns):
-            seat, known = seats[step.tie], ways if number == len(self.turns) - 1 else ways[:shifts_before]
+            known = ways if number == len(self.turns) - 1 else ways[:shifts_before]
             for _ in range(self.rounds if step.repeated else 1):
-                if step.kind == "aim":
-                    turned, held = least_rotation(rotated(turn, seat.its_direction), seat.its_toward), seat.its_toward
-                elif step.kind == "azimuth":
-                    turned = _same_azimuth(held, rotated(turn, seat.its_direction), seat.its_toward)
-                elif step.kind == "level":
-                    across = rotated(turn, seat.its_direction)
-                    turned, reached = _met(held, across, seat.its_toward, np.zeros(1))
-                    codes = np.maximum(codes, reached)
-                else:
+                if step.repeated:
                     turned, held, reached = self._by_point(step, seats, known, Pose(turn, start.shift), held)
-                    codes = np.maximum(codes, reached)
+                else:
+                    turned, held, reached = _by_direction(step, seats, turn, held)
+                codes = np.maximum(codes, reached)
                 turn = product(turned, turn)
         return Pose(turn, _shifted(turn, start.shift, seats, ways)), codes
 
@@ -268,6 +265,26 @@ def _shifted(turn: Array, start: Array, seats: Sequence[Seat], ways: Sequence[Wa
             height = height + seat.outermost.rise(rotated_back(turn, way.normal))
         shift = shift + (seat.height - height) / way.steepness * way.along
     return shift
+
+
+def _by_direction(step: Step, seats: Sequence[Seat], turn: Array, held: Array) -> tuple[Array, Array, Codes]:
+    """A rotation by a direction, the direction that is held after it, and what became of it."""
+    seat = seats[step.tie]
+    own, toward = rotated(turn, seat.its_direction), seat.its_toward
+    match step.kind:
+        case "aim":
+            return least_rotation(own, toward), toward, _MET
+        case "azimuth":
+            return _same_azimuth(held, own, toward), held, _MET
+        case "level":
+            turned, reached = _met(held, own, toward, np.zeros(1))
+            return turned, held, reached
+        case "lie":
+            return least_rotation(own, unit(own - dot(own, toward) * toward)), toward, _MET
+        case "lie between":
+            goal = unit(cross(seats[step.pivot].its_toward, toward))
+            return least_rotation(own, np.where(dot(own, goal) < 0, -goal, goal)), toward, _MET
+    return IDENTITY.turn, own, _MET
 
 
 def _same_azimuth(axis: Array, start: Array, end: Array) -> Array:

@@ -29,6 +29,7 @@ def aligned(ties: Sequence[Tie], seats: Sequence[Seat], start: Pose) -> Alignmen
     """
     freedoms = _Freedoms(tuple(ties), tuple(seats), start)
     idle = tuple(tie for tie in range(len(ties)) if not freedoms.take(tie))
+    freedoms.lay_down()
     return replace(freedoms.alignment, idle=idle)
 
 
@@ -42,6 +43,7 @@ class _Freedoms:
         self.taken = np.zeros((0, 3))  # directions of shifts, orthonormal
         self.turning: Array | str = "all"  # or the direction about which a turn is left, or "none"
         self.pivot = -1
+        self.lying = -1  # what is to lie square to its target's direction, while nothing else turns
 
     @property
     def alignment(self) -> Alignment:
@@ -49,11 +51,11 @@ class _Freedoms:
 
     def take(self, index: int) -> bool:
         """Whether a tie takes anything of what is left, and what."""
-        tie, before = self.ties[index], (len(self.turns), len(self.shifts))
+        tie, before = self.ties[index], (len(self.turns), len(self.shifts), self.lying)
         if tie.held == "along":
             self._turn_by_direction(index)
             if not self._shift(index):
-                self._turn_by_point(index, taken_before=len(self.turns) > before[0])
+                self._turn_by_point(index, taken_before=(len(self.turns), self.lying) != (before[0], before[2]))
         else:
             pivot, placed = self.pivot, self._shift(index)
             if pivot >= 0 and not (placed and isinstance(self.turning, str)):
@@ -61,7 +63,12 @@ class _Freedoms:
             self._turn_by_direction(index)
         if self.pivot < 0 and tie.held != "along" and self._centred:
             self.pivot = index
-        return (len(self.turns), len(self.shifts)) != before
+        return (len(self.turns), len(self.shifts), self.lying) != before
+
+    def lay_down(self) -> None:
+        """Lay what still is to lie, for nothing else turns."""
+        if self.lying >= 0 and isinstance(self.turning, str):
+            self._turn(Step("lie", self.lying))
 
     @property
     def _centred(self) -> bool:
@@ -85,16 +92,15 @@ class _Freedoms:
         start = self._pose().turn[:, :, 0] @ seat.its_direction[:, 0]
         end = seat.its_toward[:, 0]
         if isinstance(self.turning, str):
-            if tie.turning == "level":
-                raise InputError(
-                    f"{tie.name} turns about two directions: expected a relation before it that holds a direction"
-                )
+            if tie.turning == "level" or self.lying >= 0:
+                self._turn_lying(index, start, end)
+                return
             if start @ end < HELD:
                 raise InputError(
                     f"{tie.name} lies {np.degrees(np.arccos(np.clip(start @ end, -1, 1))):.0f} deg from its target: "
                     "expected less than 90 deg; turn the nominal pose"
                 )
-            self.turns.append((Step("aim", index), len(self.shifts)))
+            self._turn(Step("aim", index))
             self.turning = end
             return
         across = start if tie.turning == "level" else end
@@ -102,8 +108,34 @@ class _Freedoms:
             return
         if tie.turning == "level" and abs(np.cross(self.turning, start) @ end) < HELD:
             return
-        self.turns.append((Step("level" if tie.turning == "level" else "azimuth", index), len(self.shifts)))
+        self._turn(Step("level" if tie.turning == "level" else "azimuth", index))
         self.turning = "none"
+
+    def _turn_lying(self, index: int, start: Array, end: Array) -> None:
+        """A direction that comes to lie, or one that is aimed while another lies; `start` and `end` are its own."""
+        earlier = self.lying
+        if earlier < 0:
+            self.lying = index
+            return
+        axis = self._pose().turn[:, :, 0] @ self.seats[earlier].its_direction[:, 0]
+        normal = self.seats[earlier].its_toward[:, 0]
+        along = np.linalg.norm(np.cross(axis, start)) < HELD
+        if self.ties[index].turning == "direction" and along:
+            self._turn(Step("lie", earlier), Step("azimuth", index), Step("hold", earlier))
+            self.turning = _unit(end - end @ normal * normal)
+        elif self.ties[index].turning == "direction":
+            self._turn(Step("aim", index), Step("level", earlier))
+            self.turning = "none"
+        elif along and np.linalg.norm(np.cross(normal, end)) > HELD:
+            self._turn(Step("lie between", index, earlier), Step("level", earlier), Step("hold", index))
+            self.turning = _unit(np.cross(normal, end))
+        elif not along:
+            raise InputError(
+                f"{self.ties[index].name} turns about two directions: expected a relation before it that holds one"
+            )
+
+    def _turn(self, *steps: Step) -> None:
+        self.turns += [(step, len(self.shifts)) for step in steps]
 
     def _shift(self, index: int) -> bool:
         """Shifts that a tie takes, as free of earlier ones as can be; whether there are any."""
@@ -142,13 +174,13 @@ class _Freedoms:
         if np.linalg.norm(swung) > HELD:
             turning = self.pivot >= 0 and (around or tie.held == "all")
             step = Step("turn to", index, self.pivot) if turning else Step("swing", index)
-            self.turns.append((step, len(self.shifts)))
+            self._turn(step)
             self.turning = "none"
 
     def _aim_at(self, index: int) -> None:
         """The line from a point that is held to another point takes two of three turns."""
         tie, seat = self.ties[index], self.seats[index]
-        if self.pivot < 0:
+        if self.pivot < 0 or self.lying >= 0:
             raise InputError(
                 f"{tie.name} would turn what no plane, axis or point holds: expected one of these before it; points on "
                 "planes alone are contacts of three_two_one or six_plane"
@@ -164,5 +196,9 @@ class _Freedoms:
                 f"{tie.name} lies beside the point that is held: expected it through that point, or a plane or another "
                 "point before it"
             )
-        self.turns.append((Step("aim at", index, self.pivot), len(self.shifts)))
+        self._turn(Step("aim at", index, self.pivot))
         self.turning = arm / length
+
+
+def _unit(vector: Array) -> Array:
+    return np.asarray(vector / np.linalg.norm(vector))
