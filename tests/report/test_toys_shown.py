@@ -13,12 +13,17 @@ import pytest
 import trimesh
 from fixtures import Command
 from matplotlib.image import imread
+from of_kind import known as known_value
 from toys.parabola import PARABOLA
 from toys.parabola.showing import SIDE
 from toys.registered import TOYS, known
 
 from tol3d import InputError, Run, check_scene, compare_runs, open_run, replay
 from tol3d.report import export_run, view_run
+from tol3d.report.page import Table
+from tol3d.report.spectrum_table import largest_orders, spectrum_blocks
+from tol3d.runs.summary.sample import SpectrumSample
+from tol3d.runs.summary.values import made
 
 SPRING = TOYS / "parabola" / "spring.yaml"
 HEIGHT = "geometric:height"
@@ -61,6 +66,29 @@ def test_the_command_prints_its_tables_and_draws_its_pictures(run: Run, folder: 
     names = {path.name for path in run.path.iterdir()}
     assert {"histogram.png", "terms.png", "histogram-room.png"} <= names
     assert imread(run.path / "terms.png").shape[:2] == (100, 150)
+
+
+def test_the_spectrum_of_a_curve_is_printed_by_order(run: Run, folder: Path) -> None:
+    profile = run.found.measures["profile"]
+    curve = known_value(profile.curve)
+    table, _ = spectrum_blocks(profile, curve)
+    assert isinstance(table, Table)
+    headings = [heading.text for heading in table.headings]
+    for sample, word in ((curve.analytic, "analytic"), (known_value(curve.geometric), "3D")):
+        own = known_value(sample.spectrum)
+        for key, values in (("mean", own.mean), ("p50", own.p50), ("p99.865", own.p99_865)):
+            cells = [row.cells[headings.index(f"{word} {key}")] for row in table.rows]
+            assert [float(cell) for cell in cells] == pytest.approx(values, abs=6e-4)  # um, of which 3 digits are shown
+    assert [row.label for row in table.rows] == ["1", "2", "5"]
+    assert "amplitude [µm]" in (folder / "printed").read_text("utf-8")
+
+
+def test_of_many_orders_the_largest_are_printed() -> None:
+    means: list[float | None] = [float(k * 7 % 20) for k in range(20)]
+    numbers = [float(k) for k in range(1, 21)]
+    same = {"sigma": means, "p0_135": means, "p50": means, "p99_865": means, "max": means}
+    own = made(SpectrumSample, order=numbers, mean=means, **same)
+    assert [means[k] for k in largest_orders(own)] == [mean for mean in means if mean is not None and mean >= 8.0]
 
 
 def test_check_tells_of_the_spring(tol3d: Command) -> None:

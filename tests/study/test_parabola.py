@@ -27,6 +27,7 @@ from toys.registered import TOYS, known, offered
 from tol3d import Overrides, Run, SceneError, load_scene, open_run, run_scene
 from tol3d.execution.pools import Execution
 from tol3d.runs.summary.kinds import default_kinds
+from tol3d.runs.summary.sample import SpectrumSample
 from tol3d.runs.worst import worst_trial
 from tol3d.simulate import Watch, replay, simulation_of
 from tol3d.study import blocks, replaying
@@ -160,6 +161,24 @@ def test_a_curve_has_the_moments_of_each_position(run: Run) -> None:
     np.testing.assert_allclose(curve["mean"], EXACT.k1, atol=SURE * sigmas.max() / math.sqrt(TRIALS))
     np.testing.assert_allclose(curve["sigma"], sigmas, rtol=SURE * 0.6 * math.sqrt(3 / TRIALS))
     assert curve["out_ppm"] == pytest.approx(found(run, "highest")["out_ppm"], abs=1e6 / TRIALS)
+
+
+@pytest.mark.parametrize("road", ["analytic", "geometric"])
+def test_a_curve_s_spectrum_is_pooled_over_the_trials(run: Run, road: str) -> None:
+    """w sin of the position: order 1 has |w|, a half normal, of which the mean curve shows nothing."""
+    spectrum = run.summary["measures"]["profile"]["curve"][road]["spectrum"]
+    assert spectrum["order"] == [1.0, 2.0, 5.0]
+    sigma = math.sqrt(HALF_NORMAL.k2)
+    assert abs(spectrum["mean"][0] - HALF_NORMAL.k1) < SURE * sigma / math.sqrt(TRIALS)
+    assert spectrum["sigma"][0] == pytest.approx(sigma, rel=SURE * math.sqrt(0.7 / TRIALS))  # kurtosis 3.87
+    drawn = np.abs(run.columns("wave [um]")["wave [um]"])
+    assert spectrum["max"][0] == pytest.approx(drawn.max(), rel=1e-12)
+    bin_width = (HALF_NORMAL.k1 + 12 * sigma) * 1.5 / 2**12  # of a pilot's 64 trials, sigma to 9 %
+    for key, share in (("p0.135", 0.00135), ("p50", 0.5), ("p99.865", 0.99865)):
+        ordered = float(np.sort(drawn)[math.ceil(share * TRIALS) - 1])
+        assert spectrum[key][0] == pytest.approx(ordered, abs=bin_width), key
+    assert np.abs(spectrum["max"][1:]).max() < 1e-12
+    assert SpectrumSample.model_validate(spectrum).p99_865 == spectrum["p99.865"]
 
 
 def test_terms_of_a_breakdown_are_pooled_and_shown(run: Run) -> None:

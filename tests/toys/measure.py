@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from tol3d.system.measure import Worse
 from tol3d.system.pooled_statistic import PooledStatistic
 from tol3d.system.positions import Positions, Take
+from tol3d.system.spectrum import Spectrum
 
 
 @dataclass(frozen=True)
@@ -22,6 +23,7 @@ class ToyMeasure:
     adds_up: bool = True
     keeps_overlap: bool = False
     pooled_statistics: tuple[PooledStatistic, ...] = ()
+    spectrum: Spectrum | None = None
 
     unit = "um"
     per_internal = 1e3

@@ -27,6 +27,7 @@ from tol3d.report.number import (
 )
 from tol3d.report.page import BLANK, Block, Line, Page, line, note, page, title, warning
 from tol3d.report.presenter import Presenter, presenter_of
+from tol3d.report.spectrum_table import spectrum_blocks
 from tol3d.report.verdict import ACCEPTED_PPM, verdict_report
 from tol3d.runs.summary.measure import MeasureSummary
 from tol3d.runs.summary.run import RunSummary
@@ -100,7 +101,8 @@ def _measure_blocks(name: str, measure: MeasureSummary, run: RunSummary, present
     head = [title(name), line(f"{measure.words} · {limits_text(measure)}", "dim"), BLANK]
     if measure.curve is not None and measure.take == "curve":
         notes = [*_curve_notes(measure, measure.curve), *_witness_notes(name, measure, run), *_published_notes(measure)]
-        return [*head, curve_table(measure, measure.curve), *map(note, notes)]
+        spectrum = spectrum_blocks(measure, measure.curve)
+        return [*head, curve_table(measure, measure.curve), *map(note, notes), *spectrum]
     notes = [*_notes(name, measure, run)]
     further = presenter.measure_rows(measure, run)
     blocks: list[Block] = [*head, measure_table(run, measure, further), *map(note, notes)]

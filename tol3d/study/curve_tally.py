@@ -5,8 +5,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from tol3d.statistics import LimitCounts, Moments
+from tol3d.statistics import Grid, LimitCounts, Moments
 from tol3d.study.sample import in_unit, lacking_of
+from tol3d.study.spectrum_tally import OrderTally, spectrum_tally
 from tol3d.study.status_counts import added, status_counts
 from tol3d.system.measure import Measure
 from tol3d.system.outcome import ANALYTIC, GEOMETRIC, ROADS, Columns, outcome_of, value_column
@@ -15,7 +16,7 @@ from tol3d.system.statuses import Statuses
 
 @dataclass(frozen=True)
 class CurveTally:
-    """A curve measure: moments at each position, for both roads, and the trials with any position out of limits.
+    """A curve measure: moments at each position, for both roads, the trials with any position out of limits, spectra.
 
     A trial counts at every position, or where one of them did not seat at none.
     """
@@ -25,10 +26,11 @@ class CurveTally:
     geometric: tuple[Moments, ...] | None
     limits: Mapping[str, LimitCounts]
     deepest: float
+    spectra: Mapping[str, tuple[OrderTally, ...]]
 
     @classmethod
-    def of(cls, statuses: Statuses, measure: Measure, columns: Columns) -> "CurveTally":
-        """Tally of one block of columns."""
+    def of(cls, statuses: Statuses, measure: Measure, columns: Columns, grids: Mapping[str, Grid]) -> "CurveTally":
+        """Tally of one block of columns; `grids` as grids_of gives them."""
         curves = {
             road: outcome_of(columns, road, measure.name, statuses.lacking)
             for road in ROADS
@@ -51,6 +53,7 @@ class CurveTally:
             moments.get(GEOMETRIC),
             limits,
             min(own.deepest for own in curves.values()),
+            {road: spectrum_tally(measure, own.values, grids) for road, own in curves.items()},
         )
 
     def merge(self, other: "CurveTally") -> "CurveTally":
@@ -65,4 +68,8 @@ class CurveTally:
             merged(self.geometric, other.geometric) if self.geometric and other.geometric else None,
             {road: counts.merge(other.limits[road]) for road, counts in self.limits.items()},
             min(self.deepest, other.deepest),
+            {
+                road: tuple(a.merge(b) for a, b in zip(own, other.spectra[road], strict=True))
+                for road, own in self.spectra.items()
+            },
         )

@@ -90,7 +90,7 @@ def sample_summary(measure: Measure, sample: Sample) -> summary.Sample:
     by_share = limits.failed > 0 and (lower, upper) != (None, None)
     ppk_found = equivalent_ppk(limits.out_of_limits) if by_share else ppk(lower, upper, moments.mean, moments.sigma)
     pooled = {statistic.name: finite(statistic.of(_pool(sample))) for statistic in measure.pooled_statistics}
-    low, middle, high = (finite(_quantile(sample, p)) for p in QUANTILES)
+    low, middle, high = (finite(quantile(moments, sample.grid, p)) for p in QUANTILES)
     return made(
         summary.Sample,
         count=moments.count,
@@ -128,7 +128,9 @@ def sample_summary(measure: Measure, sample: Sample) -> summary.Sample:
 
 def _pool(sample: Sample) -> Pool:
     moments = sample.moments
-    return Pool(moments.mean, moments.sigma, moments.minimum, moments.maximum, lambda p: _quantile(sample, p))
+    return Pool(
+        moments.mean, moments.sigma, moments.minimum, moments.maximum, lambda p: quantile(moments, sample.grid, p)
+    )
 
 
 @dataclass(frozen=True)
@@ -159,10 +161,10 @@ class _Independent:
         return self.limits.out_of_limits.interval_ppm() if self.limits.total else None
 
 
-def _quantile(sample: Sample, p: float) -> float | None:
-    """The grid's quantile, which lies within a bin, not beyond the sample's own ends."""
-    value = sample.grid.quantile(p)
-    return None if value is None else min(max(value, sample.moments.minimum), sample.moments.maximum)
+def quantile(moments: Moments, grid: Grid, p: float) -> float | None:
+    """The grid's quantile of a sample, which lies within a bin, not beyond the sample's own ends."""
+    value = grid.quantile(p)
+    return None if value is None else min(max(value, moments.minimum), moments.maximum)
 
 
 def finite(value: float | None) -> float | None:

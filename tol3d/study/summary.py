@@ -23,6 +23,7 @@ from tol3d.study.regressors import MOST_REGRESSED
 from tol3d.study.sample import in_unit, listed, sample_summary
 from tol3d.study.shares import share_percents
 from tol3d.study.simulation import Simulation
+from tol3d.study.spectrum_tally import spectrum_sample
 from tol3d.study.stopping import shortfalls
 from tol3d.study.study import Study
 from tol3d.study.tally import MeasureTally, Tally
@@ -149,7 +150,7 @@ def _measure(
         geometric=sample_summary(measure, found.geometric) if found and found.geometric else None,
         agreement=_agreement(found.agreement, explanation) if found and found.agreement else None,
         position_deg=np.degrees(measure.positions.shown or measure.positions.fixed or ()).tolist() if curve else None,
-        curve=_curve(simulation, tally.curves[measure.name]) if curve else None,
+        curve=_curve(simulation, measure, tally.curves[measure.name]) if curve else None,
         contributors=_shares(simulation, road, measure, own) if own else [],
         published=_published(simulation, measure),
     )
@@ -223,8 +224,8 @@ def _high_low_mean(simulation: Simulation, road: Road | None, measure: Measure) 
     return high_low_mean_percents(system, measure, values)
 
 
-def _curve(simulation: Simulation, own: CurveTally) -> CurveRoads:
-    def sample(moments: Sequence[Moments], limits: LimitCounts) -> CurveSample:
+def _curve(simulation: Simulation, measure: Measure, own: CurveTally) -> CurveRoads:
+    def sample(road: str, moments: Sequence[Moments], limits: LimitCounts) -> CurveSample:
         independent = simulation.study.sampler == "monte_carlo"
         return made(
             CurveSample,
@@ -238,12 +239,13 @@ def _curve(simulation: Simulation, own: CurveTally) -> CurveRoads:
             failed_ppm=limits.failures.ppm,
             out_ppm=limits.out_of_limits.ppm,
             out_ppm_95=listed(limits.out_of_limits.interval_ppm()) if independent and limits.total else None,
+            spectrum=spectrum_sample(measure, own.spectra[road]),
         )
 
     return made(
         CurveRoads,
-        analytic=sample(own.analytic, own.limits[ANALYTIC]),
-        geometric=sample(own.geometric, own.limits[GEOMETRIC]) if own.geometric else None,
+        analytic=sample(ANALYTIC, own.analytic, own.limits[ANALYTIC]),
+        geometric=sample(GEOMETRIC, own.geometric, own.limits[GEOMETRIC]) if own.geometric else None,
     )
 
 

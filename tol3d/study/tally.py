@@ -17,6 +17,8 @@ from tol3d.study.regressors import regressors
 from tol3d.study.replicated import rows_of_replicates
 from tol3d.study.sample import Sample
 from tol3d.study.simulation import Simulation
+from tol3d.study.spectrum_tally import BINS as ORDER_BINS
+from tol3d.study.spectrum_tally import amplitudes_of, grid_name
 from tol3d.study.status_counts import added, counted, status_counts
 from tol3d.system.closed_form import ClosedForm
 from tol3d.system.measure import Measure
@@ -33,17 +35,35 @@ DIFFERENCE = "difference"  # of the two, beside them
 
 
 def grids_of(system: System, pilot: Columns) -> Mapping[str, Grid]:
-    """The empty grid of each scalar measure: a function of system and seed alone, so that any blocks add up.
+    """The empty grid of each scalar measure, and of each order of a curve's spectrum, by spectrum_tally's names.
+
+    A function of system and seed alone, so that any blocks add up.
 
     Args:
         system: what is measured.
         pilot: columns of the study's first PILOT_TRIALS trials, whatever the number of trials.
     """
-    return {
+    grids = {
         measure.name: _grid(system, measure, system.closed_form(measure), pilot)
         for measure in system.measures
         if measure.take != "curve"
     }
+    for measure in system.measures:
+        grids |= _spectrum_grids(system, measure, pilot)
+    return grids
+
+
+def _spectrum_grids(system: System, measure: Measure, pilot: Columns) -> dict[str, Grid]:
+    """Of amplitudes, which are at least 0."""
+    spectrum = measure.spectrum
+    if spectrum is None:
+        return {}
+    roads = [road for road in ROADS if value_column(road, measure.name) in pilot]
+    curves = (outcome_of(pilot, road, measure.name, system.statuses.lacking).values for road in roads)
+    found = [amplitudes for own in curves if len(amplitudes := amplitudes_of(measure, spectrum, own))]
+    reach = np.max([own.mean(axis=0) + GRID_SIGMAS * own.std(axis=0) for own in found], axis=0, initial=0.0)
+    spans = np.maximum(np.broadcast_to(reach, len(spectrum.orders)), LEAST_SPAN * measure.per_internal).tolist()
+    return {grid_name(measure.name, k): Grid.empty(0.0, span / ORDER_BINS, ORDER_BINS) for k, span in enumerate(spans)}
 
 
 def _grid(system: System, measure: Measure, form: ClosedForm | None, pilot: Columns) -> Grid:
@@ -193,7 +213,7 @@ class Tally:
             counted(statuses, columns.get("status"), trials),
             _unphysical(system, columns),
             _Block(simulation, columns, rows, first).tally(scalars, grids),
-            {measure.name: CurveTally.of(statuses, measure, columns) for measure in curves},
+            {measure.name: CurveTally.of(statuses, measure, columns, grids) for measure in curves},
             pooled_terms(system.breakdowns, statuses, columns),
         )
 

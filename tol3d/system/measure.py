@@ -5,6 +5,7 @@ from typing import Literal, Protocol
 
 from tol3d.system.pooled_statistic import PooledStatistic
 from tol3d.system.positions import Positions, Take
+from tol3d.system.spectrum import Spectrum
 
 Worse = Literal["low", "high"]
 
@@ -60,6 +61,11 @@ class Measure(Protocol):
     @property
     def pooled_statistics(self) -> Sequence[PooledStatistic]:
         """Statistics of all trials together, besides those that every sample has."""
+        ...
+
+    @property
+    def spectrum(self) -> Spectrum | None:
+        """Harmonics of its curves whose amplitudes are pooled; None for none, and where it is no curve."""
         ...
 
     @property

@@ -27,6 +27,7 @@ from tol3d.system.pooled_statistic import PooledStatistic
 from tol3d.system.positions import AT_RANDOM, Positions, Take
 from tol3d.system.regressors import is_group, regress_plainly, regress_term
 from tol3d.system.road import ANALYTIC_ROAD, Answers, Road, RoadKind
+from tol3d.system.spectrum import Spectrum
 from tol3d.system.stated import component_slices, mean_deviations, stated
 from tol3d.system.statuses import Statuses
 from tol3d.system.system import Columns, KeyPath, Published, StreamKey
@@ -103,6 +104,7 @@ class PlainMeasure:
 
     positions: ClassVar[Positions] = AT_RANDOM
     take: ClassVar[Take] = "value"
+    spectrum: ClassVar[Spectrum | None] = None
 
 
 def contributors_of(scene: Scene, draws: Mapping[type[ToleranceSpec], Drawn]) -> tuple[PlainContributor, ...]:

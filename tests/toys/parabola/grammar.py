@@ -101,6 +101,7 @@ class HeightSpec(LiftMeasureSpec):
     kind: Literal["height"]
     at: Literal["rest", "random", "turn"] = "rest"
     take: Take = "value"
+    orders: tuple[int, ...] = Field(default=(), strict=False, description="harmonics of a curve")
 
     @property
     def gives_curve(self) -> bool:

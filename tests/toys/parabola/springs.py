@@ -13,6 +13,7 @@ from tol3d.scene import Scene
 from tol3d.scene.tolerance import ToleranceSpec
 from tol3d.system.draw import Draw, Each, Scalar
 from tol3d.system.positions import AT_RANDOM, Positions
+from tol3d.system.spectrum import Spectrum
 from toys.contributor import ToyContributor
 from toys.measure import ToyMeasure
 from toys.parabola.grammar import HeightSpec, LiftMeasureSpec, LiftSpec, RippleSpec, RoomSpec, SpringSpec
@@ -102,7 +103,8 @@ def _measure(name: str, spec: LiftMeasureSpec) -> ToyMeasure:
     lower, upper = (None if limit is None else limit.internal for limit in (spec.lower_limit, spec.upper_limit))
     if isinstance(spec, HeightSpec):
         positions = {"rest": AT_REST, "random": AT_RANDOM, "turn": OVER_A_TURN}[spec.at]
-        return ToyMeasure(name, spec.kind, spec.of, positions, spec.take, lower, upper)
+        spectrum = Spectrum.over(positions, spec.orders) if spec.orders else None
+        return ToyMeasure(name, spec.kind, spec.of, positions, spec.take, lower, upper, spectrum=spectrum)
     return ToyMeasure(name, spec.kind, spec.of, AT_REST, "value", lower, upper, keeps_overlap=True)
 
 

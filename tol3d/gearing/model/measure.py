@@ -8,6 +8,7 @@ from tol3d.system import measure as system_measure
 from tol3d.system.measure import Worse
 from tol3d.system.pooled_statistic import PooledStatistic
 from tol3d.system.positions import Positions, Take
+from tol3d.system.spectrum import Spectrum
 from tol3d.units import ARCMIN
 
 BacklashQuantity = Literal["normal_backlash", "circumferential_backlash", "angular_backlash", "rest_angle"]
@@ -222,6 +223,11 @@ class Measure:
     def pooled_statistics(self) -> tuple[PooledStatistic, ...]:
         """None: every sample has those of backlashes."""
         return ()
+
+    @property
+    def spectrum(self) -> Spectrum | None:
+        """None: scenes of gears ask for no harmonics."""
+        return None
 
     @property
     def keeps_overlap(self) -> bool:

@@ -216,6 +216,8 @@ class MeasureSummary(Section):
             lists = (road.mean, road.sigma, road.min, road.max) if road is not None else ()
             if any(len(values) != count for values in lists):
                 raise refused("curve", f"{count} values each, as positions", "another number")
+            if road is not None and road.spectrum is not None:
+                road.spectrum.refuse_uneven()
         for build in (self.nominal, self.mean_build):
             for value in (build.analytic, build.geometric):
                 if value is not None and not (isinstance(value, list) and len(value) == count):

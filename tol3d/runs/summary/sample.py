@@ -14,11 +14,13 @@ from tol3d.runs.summary.values import (
     Maybe,
     NotNegative,
     Number,
+    Numbers,
     Ppm,
     PpmRange,
     Road,
     Section,
 )
+from tol3d.strict import refused
 
 
 class Roads(Section):
@@ -87,6 +89,28 @@ class Histogram(Section):
     counts: Maybe[Mapping[Road, list[Count]]] = LEFT_OUT
 
 
+class SpectrumSample(Section):
+    """One road's amplitudes of harmonics, half of peak to peak, pooled over the trials: a list each, as `order`."""
+
+    order: Numbers = Field(description="cycles per turn of the shaft whose positions the curve is over")
+    mean: KnownNumbers = Field(description="of the trials' amplitudes, not the amplitude of the mean curve")
+    sigma: KnownNumbers
+    p0_135: KnownNumbers = Field(validation_alias="p0.135", description="0.135 % quantile")
+    p50: KnownNumbers
+    p99_865: KnownNumbers = Field(validation_alias="p99.865")
+    max: KnownNumbers
+
+    def refuse_uneven(self) -> None:
+        """Refuse lists that are not as long as `order`.
+
+        Raises:
+            PydanticCustomError: one of them is not.
+        """
+        lists = (self.mean, self.sigma, self.p0_135, self.p50, self.p99_865, self.max)
+        if any(len(values) != len(self.order) for values in lists):
+            raise refused("curve.spectrum", f"{len(self.order)} values each, as orders", "another number")
+
+
 class CurveSample(LimitShares):
     """One road's curves: statistics at each position, and shares of the trials with any position out of limits."""
 
@@ -94,6 +118,7 @@ class CurveSample(LimitShares):
     sigma: KnownNumbers
     min: KnownNumbers
     max: KnownNumbers
+    spectrum: Maybe[SpectrumSample] = LEFT_OUT
 
 
 class CurveRoads(Section):

@@ -1,0 +1,52 @@
+"""The spectrum of a curve as a table: amplitudes of its harmonics, the largest of them where there are many."""
+
+from collections.abc import Iterator, Mapping
+
+from tol3d.report.number import UNIT_SIGNS, value_cell
+from tol3d.report.page import Block, Heading, Row, Table, note
+from tol3d.runs.summary.measure import MeasureSummary
+from tol3d.runs.summary.sample import CurveRoads, SpectrumSample
+from tol3d.runs.summary.values import Road
+
+ORDER_ROWS = 12  # orders that are printed; summary.json has them all
+MEANING = "amplitudes of each trial's curve, half of peak to peak; order: cycles per turn"
+
+
+def spectrum_blocks(measure: MeasureSummary, curve: CurveRoads) -> Iterator[Block]:
+    """The table and its notes; nothing of a curve without a spectrum."""
+    found = {road: own.spectrum for road, own in curve.by_road.items() if own.spectrum is not None}
+    if not found:
+        return
+    yield _table(measure, found)
+    leading = [*found.values()][-1]
+    left_out = len(leading.order) - len(largest_orders(leading))
+    yield note(f"{MEANING}; {left_out} smaller ones in summary.json" if left_out else MEANING)
+
+
+def _table(measure: MeasureSummary, found: Mapping[Road, SpectrumSample]) -> Table:
+    words = {"analytic": "analytic", "geometric": "3D"}
+    leading = [*found.values()][-1]
+    columns = [(f"{words[road]} {word}", road, values) for road, own in found.items() for word, values in _values(own)]
+    headings = [Heading(text, "bold" if road == "geometric" else "") for text, road, _ in columns]
+    rows = [
+        Row(
+            f"{leading.order[k]:g}",
+            [value_cell(values[k], measure.unit) for _, _, values in columns],
+            unit=measure.unit,
+        )
+        for k in largest_orders(leading)
+    ]
+    unit = "" if measure.unit == "arcmin" else f" [{UNIT_SIGNS[measure.unit]}]"  # an angle's cells have their signs
+    return Table(f"amplitude{unit} of order", headings, rows)
+
+
+def _values(own: SpectrumSample) -> Iterator[tuple[str, list[float | None]]]:
+    yield "mean", own.mean
+    yield "p50", own.p50
+    yield "p99.865", own.p99_865
+
+
+def largest_orders(own: SpectrumSample) -> list[int]:
+    """Which orders are printed: the largest by their means, in ascending order."""
+    by_size = sorted(range(len(own.order)), key=lambda k: -(own.mean[k] or 0.0))
+    return sorted(by_size[:ORDER_ROWS])
