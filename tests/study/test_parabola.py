@@ -372,7 +372,7 @@ def test_a_process_that_is_killed_is_gone_on_with_by_another(tmp_path: Path) -> 
     paths = os.pathsep.join(map(str, (offering, TESTS)))
 
     def ended(out: Path, killed_at: int) -> int:
-        words = ("run", str(SPRING), "--trials", "9000", "--no-picture", "--out", str(out))
+        words = ("run", str(SPRING), "--trials", "9000", "--workers", "1", "--no-picture", "--out", str(out))
         code = (sys.executable, "-c", SMALL_BLOCKS, str(int(signal.SIGKILL)), str(killed_at), *words)
         environment = {**os.environ, "PYTHONPATH": paths}
         return subprocess.run(code, env=environment, capture_output=True, timeout=HANGS).returncode
