@@ -24,7 +24,7 @@ from tol3d.system.trials import Trials
 
 def simulated(model: Model, **study: Any) -> Simulation:
     """A model with a study of it."""
-    return Simulation(GearSystem(model), replace(Study(profile_steps=model.profile_steps), **study))
+    return Simulation(GearSystem(model), replace(Study(options={"profile_steps": model.profile_steps}), **study))
 
 
 def model_of_scene(scene: Scene | Path | str, overrides: Overrides = Overrides()) -> Model:  # noqa: B008

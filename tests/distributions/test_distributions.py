@@ -16,10 +16,10 @@ from tol3d.distributions import (
     Constant,
     Distribution,
     DistributionSpec,
-    DistributionUnion,
     Empirical,
     Normal,
     Rayleigh,
+    StatedDistribution,
     Triangular,
     TruncatedNormal,
     Uniform,
@@ -27,7 +27,7 @@ from tol3d.distributions import (
 from tol3d.errors import SceneError
 from tol3d.files import read_file
 
-UNION = TypeAdapter(DistributionUnion)
+UNION = TypeAdapter(StatedDistribution)
 SAMPLE = np.sort(np.random.default_rng(7).normal(0.01, 0.003, 41))
 
 LAWS: dict[str, Distribution] = {
@@ -431,8 +431,8 @@ def test_a_missing_or_huge_file_is_refused(tmp_path: Path) -> None:
 
 def test_reading_a_scene_does_without_scipy_special(tmp_path: Path) -> None:
     code = (
-        "import sys; from tol3d.distributions import DistributionUnion; from pydantic import TypeAdapter\n"
-        "read = TypeAdapter(DistributionUnion).validate_python\n"
+        "import sys; from tol3d.distributions import StatedDistribution; from pydantic import TypeAdapter\n"
+        "read = TypeAdapter(StatedDistribution).validate_python\n"
         "spec = read({'kind': 'truncated_normal', 'mean': '0 um', 'sigma': '1 um', 'lower': '0 um', 'upper': '2 um'})\n"
         "law = spec.resolve(None); print(law.mean, law.variance, law.low, law.high)\n"
         "sys.exit('scipy.special' in sys.modules or 'scipy.stats' in sys.modules)"

@@ -82,7 +82,9 @@ class Distribution(ABC):
 
 
 class DistributionSpec(Strict, ABC):
-    """A distribution as a scene writes it; the tolerance that holds it fixes the dimension."""
+    """A distribution as a scene writes it; the tolerance that holds it fixes the dimension. `kind` is a literal."""
+
+    kind: str
 
     def quantities(self) -> dict[str, Quantity]:
         """Every dimensioned number that was given, by its field, for the tolerance to check."""

@@ -5,6 +5,7 @@ from typing import Annotated, Final, Literal, Self
 
 from pydantic import Field, model_validator
 
+from tol3d.gearing.grammar.study import FEWEST_PROFILE_STEPS, MOST_PROFILE_STEPS
 from tol3d.runs.summary.kinds import SummaryKinds
 from tol3d.runs.summary.measure import Conversion, MeasureSummary
 from tol3d.runs.summary.run import RunSummary
@@ -312,4 +313,10 @@ class TrainsOfRun(RunSummary):
         return self
 
 
-SUMMARY_KINDS: Final = SummaryKinds((BacklashSummary, TrainMeasureSummary), (TrainsOfRun,))
+class ProfileSteps(Section):
+    """How finely flanks were measured."""
+
+    profile_steps: Maybe[Annotated[int, Field(ge=FEWEST_PROFILE_STEPS, le=MOST_PROFILE_STEPS)]] = LEFT_OUT
+
+
+SUMMARY_KINDS: Final = SummaryKinds((BacklashSummary, TrainMeasureSummary), (TrainsOfRun,), options=(ProfileSteps,))

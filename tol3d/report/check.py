@@ -9,8 +9,7 @@ def check_report(simulation: Simulation) -> Page:
     """Everything that a scene says, with what follows from it; nothing is drawn at random."""
     study = simulation.study
     words = [f"{study.trials} trials", f"seed {study.seed}", study.sampler, f"engine {study.engine}"]
-    if any(kind.witness for kind in simulation.system.roads.values()):
-        words.append(f"{study.profile_steps} profile steps")
+    words += [f"{value} {name.replace('_', ' ')}" for name, value in study.options.items()]
     return page(
         line(simulation.system.name, "bold"),
         *presenter_at(simulation.presenter).check(simulation),

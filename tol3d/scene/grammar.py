@@ -1,7 +1,7 @@
 """The kinds of entry that scenes may have, and the class of such scenes."""
 
 import pkgutil
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
 from importlib import import_module
@@ -10,16 +10,20 @@ from typing import Annotated, Any, Final, Union
 
 from pydantic import Field, create_model
 
+from tol3d.distributions import DistributionSpec
+from tol3d.distributions.stated import SHIPPED, Laws, word_of
 from tol3d.errors import InputError
 from tol3d.scene.engines import Engines
 from tol3d.scene.entry import Entry, kind_of
 from tol3d.scene.measure import MeasureEntry
 from tol3d.scene.move import MoveSpec
 from tol3d.scene.name import Name
+from tol3d.scene.options import Option, StudyOptions, options_of
 from tol3d.scene.part import PartSpec
 from tol3d.scene.place import KeyPath
-from tol3d.scene.schema import SECTIONS, Scene, study_class
+from tol3d.scene.schema import SECTIONS, Scene, Study, study_class
 from tol3d.scene.tolerance import ToleranceEntry
+from tol3d.strict import Strict
 
 Check = Callable[[Scene], Iterator[tuple[KeyPath, str]]]
 """Tells what does not hold together across entries whose names all exist: key path and finished sentence."""
@@ -44,6 +48,8 @@ class Vocabulary:
         checks: what must hold across entries.
         includes: names of vocabularies whose kinds may stand beside these in one scene, which is then this one's.
         extends: names of vocabularies in whose scenes these kinds may stand; the scene stays theirs.
+        distributions: laws that tolerances of any scene may state besides those that tol3d ships.
+        options: keys of `study` that scenes of its kinds may have besides.
         engines: words of study.engine, besides "analytic"; the first is taken where nothing is said.
         witness: the one of them that can check the others, if there is one.
 
@@ -59,6 +65,8 @@ class Vocabulary:
     checks: tuple[Check, ...] = ()
     includes: tuple[str, ...] = ()
     extends: tuple[str, ...] = ()
+    distributions: tuple[type[DistributionSpec], ...] = ()
+    options: type[StudyOptions] | None = None
     engines: tuple[str, ...] = ("exact",)
     witness: str = ""
 
@@ -68,6 +76,13 @@ class Vocabulary:
                 if not issubclass(spec, base) or kind_of(spec) is None:
                     wanted = f"subclasses of {base.__name__} whose kind is a literal"
                     raise InputError(f"{self.name}.{section}: expected {wanted}, got {spec.__name__}")
+        for law in self.distributions:
+            if not issubclass(law, DistributionSpec) or word_of(law) is None:
+                wanted = f"subclasses of {DistributionSpec.__name__} whose kind is a literal"
+                raise InputError(f"{self.name}.distributions: expected {wanted}, got {law.__name__}")
+        for name, field in self.options.model_fields.items() if self.options else ():
+            if field.is_required():
+                raise InputError(f"{self.name}.options: expected a default of {name}, found none")
 
     def specs(self, section: str) -> tuple[type[Entry], ...]:
         """The kinds of a section."""
@@ -87,25 +102,23 @@ class Grammar:
 
     def __post_init__(self) -> None:
         for section in SECTIONS:
-            self._refuse_ambiguity(section)
-
-    def _refuse_ambiguity(self, section: str) -> None:
-        first: dict[str, str] = {}
-        for vocabulary in self.vocabularies:
-            for spec in vocabulary.specs(section):
-                kind = str(kind_of(spec))
-                if kind in first:
-                    raise InputError(
-                        f"{vocabulary.name}: expected a kind of its own in {section}, got {kind!r}, which "
-                        f"{first[kind]} registers"
-                    )
-                first[kind] = vocabulary.name
-        if not first:
-            raise InputError(f"expected kinds of {section} in one vocabulary at least, found none")
+            words = {each.name: [str(kind_of(spec)) for spec in each.specs(section)] for each in self.vocabularies}
+            if not any(words.values()):
+                raise InputError(f"expected kinds of {section} in one vocabulary at least, found none")
+            _refuse_ambiguity(f"a kind of its own in {section}", {}, words)
+        laws = {each.name: [str(word_of(law)) for law in each.distributions] for each in self.vocabularies}
+        _refuse_ambiguity("a kind of its own in distributions", {str(word_of(law)): "tol3d" for law in SHIPPED}, laws)
+        options = {each.name: [*each.options.model_fields] for each in self.vocabularies if each.options}
+        _refuse_ambiguity("an option of its own in study", dict.fromkeys(Study.model_fields, "every study"), options)
 
     def kinds(self, section: str) -> Mapping[str, type[Entry]]:
         """The kinds of a section by their words, in the order of registration."""
         return {str(kind_of(spec)): spec for each in self.vocabularies for spec in each.specs(section)}
+
+    @property
+    def laws(self) -> Laws:
+        """The kinds of law that tolerances may state: those that tol3d ships, then the vocabularies' own."""
+        return (*SHIPPED, *(law for each in self.vocabularies for law in each.distributions))
 
     @property
     def engines(self) -> Engines:
@@ -142,6 +155,25 @@ class Grammar:
         used = self._used(scene)
         return tuple(vocabulary for vocabulary in self.vocabularies if vocabulary.name in used)
 
+    def lawgivers_of(self, scene: Scene) -> tuple[Vocabulary, ...]:
+        """The vocabularies whose distributions a scene states."""
+        used = {type(law) for entry in scene.tolerances.values() for law in _laws_in(entry)}
+        return tuple(each for each in self.vocabularies if used & set(each.distributions))
+
+    def options_of(self, scene: Scene) -> Mapping[str, Option]:
+        """The values of the options that vocabularies of a scene's kinds add to its study.
+
+        Raises:
+            SceneError: the study has an option of a vocabulary none of whose kinds the scene has.
+        """
+        used = self.vocabularies_of(scene)
+        for each in self.vocabularies:
+            for name in each.options.model_fields if each.options and each not in used else ():
+                if name in scene.study.model_fields_set:
+                    raise scene.refuse(("study", name), f"no kind of {each.name} is in the scene; take out {name}")
+        values = (options_of(scene.options(each.options), each.options) for each in used if each.options)
+        return {name: value for each in values for name, value in each.items()}
+
     def _used(self, scene: Scene) -> Mapping[str, KeyPath]:
         """The vocabularies whose kinds a scene has, each with its first entry."""
         used: dict[str, KeyPath] = {}
@@ -165,11 +197,30 @@ def _scene_class(grammar: Grammar) -> type[Scene]:
     for section in SECTIONS:
         union = _union(grammar, section)
         sections[section] = (Mapping[Name, union], _field(section))  # type: ignore[valid-type]  # made at run time
-    study = study_class(grammar.engines)
+    study = study_class(grammar.engines, tuple(each.options for each in grammar.vocabularies if each.options))
     sections["study"] = (study, Field(default_factory=study))
     made = create_model("Scene", __base__=Scene, __module__=Scene.__module__, __doc__=Scene.__doc__, **sections)
-    made.grammar = grammar
+    made.grammar, made.laws = grammar, grammar.laws
     return made
+
+
+def _laws_in(value: Any) -> Iterator[DistributionSpec]:
+    """The distributions that an entry states, however deep."""
+    if isinstance(value, DistributionSpec):
+        yield value
+    elif isinstance(value, Strict):
+        for each in vars(value).values():
+            yield from _laws_in(each)
+
+
+def _refuse_ambiguity(expected: str, owners: Mapping[str, str], words: Mapping[str, Sequence[str]]) -> None:
+    """Refuse a word of two vocabularies, or one that others own already."""
+    first = dict(owners)
+    for vocabulary, own in words.items():
+        for word in own:
+            if word in first:
+                raise InputError(f"{vocabulary}: expected {expected}, got {word!r}, which {first[word]} registers")
+            first[word] = vocabulary
 
 
 def _union(grammar: Grammar, section: str) -> Any:

@@ -6,8 +6,21 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Annotated, Any, ClassVar, Final, Literal, Self, TypeVar
 
-from pydantic import BeforeValidator, Discriminator, Field, PrivateAttr, Tag, create_model, model_validator
+from pydantic import (
+    BeforeValidator,
+    Discriminator,
+    Field,
+    GetJsonSchemaHandler,
+    ModelWrapValidatorHandler,
+    PrivateAttr,
+    Tag,
+    create_model,
+    model_validator,
+)
+from pydantic.json_schema import JsonSchemaValue
+from pydantic_core import CoreSchema
 
+from tol3d.distributions.stated import SHIPPED, Laws, stating
 from tol3d.errors import SceneError
 from tol3d.files import Files
 from tol3d.samplers.replicates import REPLICATES, SamplerKind, uneven
@@ -17,6 +30,7 @@ from tol3d.scene.measure import MeasureEntry
 from tol3d.scene.move import MoveSpec
 from tol3d.scene.name import Name
 from tol3d.scene.nearest import nearest
+from tol3d.scene.options import StudyOptions
 from tol3d.scene.part import PartSpec
 from tol3d.scene.place import KeyPath, Origin, Place
 from tol3d.scene.published import PublishedMeasure
@@ -28,13 +42,12 @@ SECTIONS: Final = ("parts", "tolerances", "moves", "measures")
 
 MOST_TRIALS = 10**10
 MOST_SEED = 2**63 - 1  # a signed 64-bit integer, which every file format keeps
-FEWEST_PROFILE_STEPS = 8
-MOST_PROFILE_STEPS = 2000
 FEWEST_REPLICATES = 2  # that have a spread at all
 MOST_REPLICATES = 1000
 MOST_WITNESSED = 1_000_000  # trials; minutes of a slow engine, and all of them are held at once
 
 E = TypeVar("E", bound=Entry)
+Options = TypeVar("Options", bound=StudyOptions)
 
 
 class StandardErrors(Strict):
@@ -74,7 +87,7 @@ Trials = Annotated[
 
 
 class Study(Strict):
-    """How many trials, from which seed, by which sampler and engine, how finely measured."""
+    """How many trials, from which seed, by which sampler and engine; with what its scene's vocabularies add."""
 
     trials: Trials = Field(
         default=2000, description="number of virtual builds; auto: until the stated standard errors are reached"
@@ -96,14 +109,9 @@ class Study(Strict):
     witness: int = Field(
         default=0, ge=0, le=MOST_WITNESSED, description="trials, at random, that another engine measures again"
     )
-    profile_steps: int = Field(
-        default=120,
-        ge=FEWEST_PROFILE_STEPS,
-        le=MOST_PROFILE_STEPS,
-        description="flat facets along a curved profile, for engines that measure facets",
-    )
 
     engines: ClassVar[Engines]  # of the subclass that validates: a grammar makes one that knows them
+    options: ClassVar[tuple[type[StudyOptions], ...]] = ()  # its further bases
 
     @property
     def parts(self) -> int:
@@ -145,24 +153,25 @@ class Study(Strict):
             )
 
     def __reduce__(self) -> tuple[Any, ...]:
-        """Pickled by its engines: the class is made anew where it is read."""
-        return _blank_study, (self.engines,), self.__getstate__()
+        """Pickled by its engines and options: the class is made anew where it is read."""
+        return _blank_study, (self.engines, self.options), self.__getstate__()
 
 
 @lru_cache
-def study_class(engines: Engines) -> type[Study]:
-    """The class of studies by some engines."""
+def study_class(engines: Engines, options: tuple[type[StudyOptions], ...] = ()) -> type[Study]:
+    """The class of studies by some engines, with what vocabularies add to it."""
     field = Study.model_fields["engine"]
     words = Literal[(*engines.names, THEORY)]  # type: ignore[valid-type]  # made at run time
     engine = (words, Field(default=engines.names[0], description=field.description))
-    made = create_model("Study", __base__=Study, __module__=Study.__module__, __doc__=Study.__doc__, engine=engine)
-    made.engines = engines
+    fixed: Any = {"__module__": Study.__module__, "__doc__": Study.__doc__, "__base__": (*options, Study)}
+    made: type[Study] = create_model("Study", **fixed, engine=engine)
+    made.engines, made.options = engines, options
     return made
 
 
-def _blank_study(engines: Engines) -> Study:
+def _blank_study(engines: Engines, options: tuple[type[StudyOptions], ...]) -> Study:
     """A study without anything in it yet, for pickle."""
-    made = study_class(engines)
+    made = study_class(engines, options)
     return made.__new__(made)
 
 
@@ -174,6 +183,7 @@ class Scene(Strict):
     """
 
     grammar: ClassVar[Any]  # the Grammar of the subclass that validates: a grammar makes one that knows its kinds
+    laws: ClassVar[Laws] = SHIPPED  # likewise
 
     scene: Name = Field(description="the scene's name")
     description: str = Field(default="", description="the user's own words, shown in reports")
@@ -187,6 +197,18 @@ class Scene(Strict):
     )
 
     _origin: Origin = PrivateAttr(default_factory=Origin)
+
+    @model_validator(mode="wrap")
+    @classmethod
+    def _with_its_laws(cls, data: Any, handler: ModelWrapValidatorHandler[Self]) -> Self:
+        with stating(cls.laws):
+            return handler(data)
+
+    @classmethod
+    def __get_pydantic_json_schema__(cls, schema: CoreSchema, handler: GetJsonSchemaHandler) -> JsonSchemaValue:
+        """With the laws that its tolerances may have."""
+        with stating(cls.laws):
+            return handler(schema)
 
     def model_post_init(self, context: Any) -> None:
         """Keep the origin that validation was given as its context."""
@@ -257,6 +279,10 @@ class Scene(Strict):
     def distributed(self) -> dict[str, ToleranceSpec]:
         """The tolerances that are one deviation with its distribution, by their names."""
         return {str(name): entry for name, entry in self.tolerances.items() if isinstance(entry, ToleranceSpec)}
+
+    def options(self, kind: type[Options]) -> Options:
+        """What the study says of a vocabulary's options: their defaults where the scene's grammar has them not."""
+        return self.study if isinstance(self.study, kind) else kind()
 
     def refuse(self, path: KeyPath, sentence: str) -> SceneError:
         """The error to raise with a finished sentence, such as that of a GeometryError."""

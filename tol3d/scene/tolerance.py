@@ -6,7 +6,7 @@ from typing import ClassVar, Self
 
 from pydantic import Field, model_validator
 
-from tol3d.distributions import DistributionUnion
+from tol3d.distributions import StatedDistribution
 from tol3d.scene.entry import Entry
 from tol3d.scene.place import KeyPath
 from tol3d.scene.reference import Reference
@@ -28,7 +28,7 @@ class ToleranceSpec(ToleranceEntry):
 
     dimensions: ClassVar[tuple[Dimension, ...]] = ("length",)
 
-    distribution: DistributionUnion = Field(description="the law of the deviation")
+    distribution: StatedDistribution = Field(description="the law of the deviation")
 
     def file_names(self) -> Iterator[tuple[KeyPath, str]]:
         """Those that its law reads."""

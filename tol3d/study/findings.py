@@ -34,9 +34,10 @@ def findings(simulation: Simulation, road: Road | None, tally: Tally, activity: 
 
 def described(simulation: Simulation, tally: Tally, found: Findings) -> dict[str, Any]:
     """Findings with what their system adds: what each measure is, and sections of its own behind the measures."""
-    system = simulation.system
+    system, options = simulation.system, simulation.study.options
     measures = {own.name: {**system.describe(own), **dict(found.measures[own.name].items())} for own in system.measures}
-    further = {"measures": measures, **system.sections(tally.terms, simulation.published)}
-    keys = list(found.keys())
-    last = keys.index("measures") + 1
-    return {**{key: found[key] for key in keys[:last]}, **further, **{key: found[key] for key in keys[last:]}}
+    whole = dict(found.items()) | {"measures": measures}
+    whole |= {key: {**dict(whole[key].items()), **options} for key in ("study", "witness") if key in whole}
+    behind = [*whole].index("measures") + 1
+    sections = system.sections(tally.terms, simulation.published)
+    return {**dict([*whole.items()][:behind]), **sections, **dict([*whole.items()][behind:])}

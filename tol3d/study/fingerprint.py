@@ -17,7 +17,7 @@ def fingerprint_of(scene: Scene, simulation: Simulation, execution: Execution) -
     fingerprint = {
         "scene": text_of(scene).sha256,
         "files": {name: file.sha256 for name, file in scene.files.items()},
-        "study": vars(simulation.study),
+        "study": simulation.study.stated,
         "versions": dict(installed_versions(simulation.requires)),
         "blocks": {"trials": block_trials(simulation), "kept": execution.keep_trials},
     }

@@ -50,7 +50,7 @@ def simulation_of(scene: Scene, overrides: Overrides = AS_WRITTEN) -> Simulation
         raise scene.refuse(place, sentence)
     return Simulation(
         system,
-        study_of(asked.study),
+        study_of(asked),
         published_in(asked),
         requires_of(asked),
         mechanism.presenter,

@@ -5,7 +5,6 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from tol3d.scene import Scene
-from tol3d.scene.schema import Study as StudySpec
 from tol3d.study.study import Study, Until
 from tol3d.system.road import ANALYTIC_ROAD, RoadKind
 from tol3d.system.system import Published, System
@@ -48,8 +47,9 @@ class Simulation:
         return (*self.system.warnings, *self.study.warnings)
 
 
-def study_of(spec: StudySpec) -> Study:
+def study_of(scene: Scene) -> Study:
     """The study of a scene; an automatic one is its trials at most, and when it may stop before."""
+    spec = scene.study
     return Study(
         trials=spec.at_most if spec.trials == "auto" else spec.trials,
         seed=spec.seed,
@@ -60,7 +60,7 @@ def study_of(spec: StudySpec) -> Study:
         ),
         engine=spec.engine,
         witness=spec.witness,
-        profile_steps=spec.profile_steps,
+        options=scene.grammar.options_of(scene),
     )
 
 

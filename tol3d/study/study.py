@@ -1,10 +1,12 @@
 """What is asked of a system: how many trials, drawn how, by which engine, and when they may stop."""
 
-from dataclasses import dataclass
-from typing import NamedTuple
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any, NamedTuple
 
 from tol3d.errors import InputError
 from tol3d.samplers.replicates import SamplerKind, balanced_trials, is_power_of_two, uneven
+from tol3d.scene.options import Option
 
 
 class Until(NamedTuple):
@@ -17,10 +19,10 @@ class Until(NamedTuple):
 
 @dataclass(frozen=True)
 class Study:
-    """How many trials, drawn from which seed and how, by which engine, with how many facets a profile.
+    """How many trials, drawn from which seed and how, by which engine.
 
     With `until` the trials are those at most. `replicates` of a sampler are parts of equal size, each randomised
-    anew.
+    anew. `options` are what the system's vocabulary adds, for its own use.
     """
 
     trials: int = 2000
@@ -30,7 +32,7 @@ class Study:
     until: tuple[Until, ...] = ()
     engine: str = "exact"
     witness: int = 0
-    profile_steps: int = 120
+    options: Mapping[str, Option] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         """Refuse trials that the replicates cannot share evenly: a run's may be other than its scene's.
@@ -40,6 +42,11 @@ class Study:
         """
         if problem := uneven(self.sampler, self.trials, self.replicates):
             raise InputError(f"trials: expected {problem}, got {self.trials}")
+
+    @property
+    def stated(self) -> dict[str, Any]:
+        """All of it by the keys of a summary, options among them."""
+        return {name: value for name, value in vars(self).items() if name != "options"} | dict(self.options)
 
     @property
     def replicate_trials(self) -> int:

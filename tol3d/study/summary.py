@@ -78,7 +78,6 @@ def _asked(study: Study) -> StudySummary:
         until=[list(until) for until in study.until],
         engine=study.engine,
         witness=study.witness,
-        profile_steps=study.profile_steps,
     )
 
 

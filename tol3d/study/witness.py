@@ -54,7 +54,6 @@ def witness_summary(simulation: Simulation, road: Road, trials: int) -> WitnessS
         engine=name,
         trials=len(chosen),
         chord_error_um=1000 * witness.chord_error,
-        profile_steps=study.profile_steps,
         measures={
             measure.name: _witnessed(_difference(seen, given, measure), chosen, witness.bounds(measure))
             for measure in system.measures

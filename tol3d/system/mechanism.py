@@ -67,8 +67,9 @@ def mechanism_of(scene: Scene) -> Mechanism:
 
 
 def requires_of(scene: Scene) -> tuple[str, ...]:
-    """The distributions whose versions decide a scene's results: of its mechanism, and of those that extend it."""
+    """The packages whose versions decide its results: of its mechanism, of what extends it, of laws that it states."""
     own = mechanism_of(scene)
     used = (each for each in scene.grammar.vocabularies_of(scene) if own.name in each.extends)
-    extending = (each.requires for each in used if isinstance(each, Mechanism))
+    others = (*used, *scene.grammar.lawgivers_of(scene))
+    extending = (each.requires for each in others if isinstance(each, Mechanism))
     return tuple(dict.fromkeys(name for names in (own.requires, *extending) for name in names))

@@ -20,6 +20,7 @@ PARABOLA: Final = Mechanism(
     tolerances=(grammar.AbscissaSpec, grammar.OffsetSpec, grammar.RippleSpec, grammar.WaveSpec),
     moves=(grammar.LiftSpec,),
     measures=(grammar.HeightSpec, grammar.RoomSpec),
+    options=grammar.SpringOptions,
     engines=("exact", "chords"),
     witness="chords",
     system="toys.parabola.system:parabola_system",

@@ -8,6 +8,7 @@ from pydantic import Field
 from tol3d.scene.measure import LengthLimit, MeasureSpec, Take
 from tol3d.scene.move import MoveSpec
 from tol3d.scene.name import Name
+from tol3d.scene.options import StudyOptions
 from tol3d.scene.part import Length, PartSpec
 from tol3d.scene.place import KeyPath
 from tol3d.scene.reference import Reference
@@ -118,3 +119,9 @@ class RoomSpec(LiftMeasureSpec):
     kind: Literal["room"]
     room: Annotated[Quantity, Of("length")]
     lost_beyond: Length = Field(description="|x| of which nothing is known")
+
+
+class SpringOptions(StudyOptions):
+    """How finely chords measure."""
+
+    knots: int = Field(default=120, ge=2)

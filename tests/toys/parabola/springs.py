@@ -16,7 +16,7 @@ from tol3d.system.positions import AT_RANDOM, Positions
 from tol3d.system.spectrum import Spectrum
 from toys.contributor import ToyContributor
 from toys.measure import ToyMeasure
-from toys.parabola.grammar import HeightSpec, LiftMeasureSpec, LiftSpec, RippleSpec, RoomSpec, SpringSpec
+from toys.parabola.grammar import HeightSpec, LiftMeasureSpec, LiftSpec, RippleSpec, RoomSpec, SpringOptions, SpringSpec
 
 Array = NDArray[np.float64]
 
@@ -78,7 +78,7 @@ def springs_of(scene: Scene) -> Springs:
         tuple(_contributor(name, spec, scene.files) for name, spec in scene.distributed.items()),
         tuple(_measure(name, spec) for name, spec in measures.items()),
         tuple((name, Room(own.room.internal, own.lost_beyond.internal)) for name, own in scene.of(RoomSpec).items()),
-        scene.study.profile_steps,
+        scene.options(SpringOptions).knots,
     )
 
 

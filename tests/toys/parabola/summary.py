@@ -56,4 +56,10 @@ class TermsOfRun(RunSummary):
     terms: Maybe[Mapping[Label, Mapping[Label, Mapping[Label, Term]]]] = LEFT_OUT
 
 
-SUMMARY_KINDS: Final = SummaryKinds((HeightSummary, RoomSummary), (TermsOfRun,))
+class Knots(Section):
+    """Between how many knots chords were drawn."""
+
+    knots: Maybe[int] = LEFT_OUT
+
+
+SUMMARY_KINDS: Final = SummaryKinds((HeightSummary, RoomSummary), (TermsOfRun,), options=(Knots,))

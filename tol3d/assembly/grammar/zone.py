@@ -4,7 +4,7 @@ from typing import Annotated, Literal, Self
 
 from pydantic import Field, model_validator
 
-from tol3d.distributions import DistributionUnion
+from tol3d.distributions import StatedDistribution
 from tol3d.scene.part import Length
 from tol3d.scene.vector import Direction
 from tol3d.strict import Strict, refused
@@ -54,7 +54,7 @@ class ProcessLawSpec(Strict):
     """A stated law of each coordinate; the zone judges only, and what lies outside stays in the trial."""
 
     kind: Literal["process"]
-    distribution: DistributionUnion = Field(description="of each coordinate, a length at the end of the feature")
+    distribution: StatedDistribution = Field(description="of each coordinate, a length at the end of the feature")
 
 
 LawUnion = Annotated[

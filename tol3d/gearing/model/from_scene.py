@@ -6,6 +6,7 @@ from dataclasses import replace
 from tol3d.errors import SceneError
 from tol3d.gearing.grammar.moves import GearMeshSpec, meshes_of
 from tol3d.gearing.grammar.parts import GearSpec, HousingSpec
+from tol3d.gearing.grammar.study import GearStudyOptions
 from tol3d.gearing.model.layout import Layout, layout_of
 from tol3d.gearing.model.links import links_between_shafts, links_of
 from tol3d.gearing.model.measures import measure_of
@@ -63,7 +64,7 @@ def model_from_scene(scene: Scene) -> Model:
         contributors=tuple(nominal.contributor(name, spec) for name, spec in scene.distributed.items()),
         meshes=meshes,
         measures=(),
-        profile_steps=scene.study.profile_steps,
+        profile_steps=scene.options(GearStudyOptions).profile_steps,
         warnings=tuple(_warnings(meshes)),
         shafts=shafts,
         links=stated,

@@ -71,6 +71,5 @@ class WitnessSummary(Section):
     engine: Label
     trials: Count
     chord_error_um: NotNegative
-    profile_steps: int = Field(ge=8, le=2000)
     measures: Mapping[Label, Witnessed]
     status_differences: Count

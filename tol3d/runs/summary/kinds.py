@@ -9,9 +9,10 @@ from typing import Annotated, Any, Literal, get_args
 
 from pydantic import Field, create_model
 
+from tol3d.runs.summary.agreement import WitnessSummary
 from tol3d.runs.summary.measure import MeasureSummary
-from tol3d.runs.summary.run import RunSummary
-from tol3d.runs.summary.values import MOST_ENTRIES, Label
+from tol3d.runs.summary.run import RunSummary, StudySummary
+from tol3d.runs.summary.values import LEFT_OUT, MOST_ENTRIES, Label, Section
 
 HOME = ("tol3d.kinds", "summary_kinds")  # of what summaries hold where nobody says otherwise
 
@@ -24,16 +25,18 @@ class SummaryKinds:
         measures: classes of measures; `kind` of each is a Literal of the kinds that it is for.
         runs: classes that add sections to the whole, as keys that may be missing.
         plain: kinds of measures that add no key.
+        options: classes of what vocabularies add to a study, and so to that of a witness, as keys that may be missing.
     """
 
     measures: tuple[type[MeasureSummary], ...] = ()
     runs: tuple[type[RunSummary], ...] = ()
     plain: tuple[str, ...] = ()
+    options: tuple[type[Section], ...] = ()
 
     def __or__(self, other: "SummaryKinds") -> "SummaryKinds":
         """Both together."""
         own = (*self.measures, *other.measures), (*self.runs, *other.runs)
-        return SummaryKinds(*own, (*self.plain, *other.plain))
+        return SummaryKinds(*own, (*self.plain, *other.plain), (*self.options, *other.options))
 
     @cached_property
     def every_measure(self) -> tuple[type[MeasureSummary], ...]:
@@ -45,7 +48,7 @@ class SummaryKinds:
 
     def __reduce__(self) -> tuple[Any, ...]:
         """Pickled by what it is made of: classes made of it are made anew."""
-        return SummaryKinds, (self.measures, self.runs, self.plain)
+        return SummaryKinds, (self.measures, self.runs, self.plain, self.options)
 
     @cached_property
     def run(self) -> type[RunSummary]:
@@ -56,9 +59,20 @@ class SummaryKinds:
         measures = Annotated[Mapping[Label, measure], Field(min_length=1, max_length=MOST_ENTRIES)]
         base: Any = self.runs or RunSummary
         found: type[RunSummary] = create_model(
-            RunSummary.__name__, __base__=base, __doc__=RunSummary.__doc__, measures=(measures, ...)
+            RunSummary.__name__,
+            __base__=base,
+            __doc__=RunSummary.__doc__,
+            measures=(measures, ...),
+            study=(self._with_options(StudySummary), ...),
+            witness=(self._with_options(WitnessSummary), LEFT_OUT),
         )
         return found
+
+    def _with_options(self, section: type[Section]) -> Any:
+        if not self.options:
+            return section
+        bases: Any = (*self.options, section)
+        return create_model(section.__name__, __base__=bases, __doc__=section.__doc__)
 
     @cached_property
     def words(self) -> frozenset[str]:

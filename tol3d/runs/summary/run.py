@@ -46,7 +46,6 @@ class StudySummary(Section):
     )
     engine: Label
     witness: int = Field(ge=0, le=1_000_000)
-    profile_steps: int = Field(ge=8, le=2000)
 
 
 class Blocks(Section):
