@@ -20,6 +20,7 @@ FOLDER = ROOT / "benchmarks"
 NUMBER = r"([\d,]*\.?\d+)"
 
 FEW: Mapping[str, tuple[str, ...]] = {
+    "assemblies": ("--trials", "1024", "--rounds", "1", "--systems", "stack"),
     "convergence": ("--studies", "2", "--largest", "1024"),
     "fcl_speed": ("--trials", "10", "--naive", "1", "--rounds", "1"),
     "memory": ("--trials", "100"),
@@ -33,6 +34,7 @@ FEW: Mapping[str, tuple[str, ...]] = {
 """Arguments with which each benchmark takes seconds."""
 
 ROWS: Mapping[str, tuple[str, ...]] = {
+    "assemblies": (rf"3-2-1 stack of three blocks, 20 contributors +│ +{NUMBER} │ +{NUMBER} │ +{NUMBER}",),
     "convergence": tuple(
         rf"sigma driver at one position +{sampler} +order -?[\d.]+ +at 1024: {NUMBER} um"
         for sampler in ("Monte Carlo", "Latin hypercube", "scrambled Sobol'")
