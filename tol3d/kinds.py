@@ -24,7 +24,10 @@ from tol3d.system.mechanism import Mechanism, named
 if TYPE_CHECKING:
     from tol3d.runs.summary.kinds import SummaryKinds
 
-SHIPPED: Final = ("tol3d.gearing.mechanism:GEARING", "tol3d.assembly.mechanism:ASSEMBLY")
+SHIPPED: Final = (
+    "tol3d.gearing.mechanism:GEARING",
+    "tol3d.assembly.mechanism:ASSEMBLY",
+)
 
 GROUP: Final = "tol3d.mechanisms"
 

@@ -1,10 +1,10 @@
 """Read this first: the way of the data, stage by stage.
 
     scene        what the user wrote        scene/                      load_scene        (kinds.py: what it may have)
-    system       what it means, mm and rad  system/, gearing/system.py  mechanism_of
+    system       what it means, mm and rad  system/, */system.py        mechanism_of
     simulation   system, study, published   study/simulation.py         Simulation
     draws        seed -> trials             study/draws.py              drawn
-    roads        trials -> answers          gearing/roads/              Road.answers
+    roads        trials -> answers          each mechanism's own        Road.answers
     columns      both roads, in units       study/columns.py            columns_of
     outcome      which trials seated        system/outcome.py           outcome_of
     statistics   of one block, or several   study/tally.py              Tally             (sample.py: one road's)
@@ -34,6 +34,18 @@ A gear has a seat in each mesh that it is in, and builds have a place for each s
 turn together (`layout.py`), so one position of the first shaft of a tree is that of all. A measure is a weighted sum of
 backlashes, one of a mesh, several of a train, or what that sum moves; both roads go through `play.py`, with what they
 read of single meshes. Spur and bevel pairs go the same way: `gears/pair.py` says what every pair offers.
+
+Assemblies are another. Theirs:
+
+    drawing      tolerances, by feature     assembly/grammar/           Drawing
+    assembly     parts, frames, moves       assembly/from_scene/        assembly_of       (model/: what they are)
+    zones        uniforms -> deviations     assembly/zones/             Confined          (catalogue.py: all zones)
+    placing      deviations -> finite poses assembly/placing/road.py    values
+    torsors      the second road            assembly/torsors/road.py    values
+
+A feature lies in the datum frame that its location is toleranced to, made of the features of the same trial; moves
+place bodies in order, measures read them at the end or after a move. The torsors are worked out from the nominal
+geometry alone: they never see a pose.
 
 `analyses/` asks what takes several studies (shims, compensation), `report/` and `cli/` show what is there. The analytic
 road gets the same deviations and the same positions as the geometric one and never sees a mesh, a pose or an engine. A

@@ -11,7 +11,7 @@ from places import ROOT, TESTS
 
 PACKAGE: Final = ROOT / "tol3d"
 GENERIC: Final = ("study", "runs", "execution", "statistics", "system", "samplers", "distributions", "scene", "report")
-MECHANISMS: Final = ("gearing", "gears", "toys")
+MECHANISMS: Final = ("gearing", "gears", "assembly", "toys")
 
 WORDS: Final = (
     "gear|gears|gearing|mesh|meshes|meshed|meshing|tooth|teeth|train|trains|"
@@ -90,7 +90,8 @@ def test_what_serves_any_mechanism_imports_none_by_name_or_by_text(room: str) ->
 def test_the_registration_names_a_mechanism_in_one_line() -> None:
     lines = (PACKAGE / "kinds.py").read_text("utf-8").splitlines()
     assert [line for line in lines if any(own in line for own in MECHANISMS)] == [
-        'SHIPPED: Final = ("tol3d.gearing.mechanism:GEARING",)'
+        '    "tol3d.gearing.mechanism:GEARING",',
+        '    "tol3d.assembly.mechanism:ASSEMBLY",',
     ]
 
 
