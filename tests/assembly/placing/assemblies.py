@@ -2,8 +2,10 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
+import pytest
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
@@ -21,6 +23,11 @@ from tol3d.assembly.model import (
 
 Array = NDArray[np.float64]
 Vector = Sequence[float] | Array
+
+
+def seeds(few: int) -> list[Any]:
+    """Seeds of random assemblies: a few, and two hundred of the slow tests."""
+    return [*range(few), *(pytest.param(seed, marks=pytest.mark.slow) for seed in range(100, 300))]
 
 
 class Columns:

@@ -4,7 +4,7 @@ from typing import Literal
 
 import numpy as np
 import pytest
-from assembly.placing.assemblies import Columns, assembly, feature, frame, part, posed
+from assembly.placing.assemblies import Columns, assembly, feature, frame, part, posed, seeds
 from numpy.typing import NDArray
 from scipy.optimize import minimize
 from scipy.spatial.transform import Rotation
@@ -82,7 +82,7 @@ def random_points(random: np.random.Generator) -> tuple[Array, Array]:
     return random.uniform(-80, 80, (int(random.integers(4, 8)), 3)), pose
 
 
-@pytest.mark.parametrize("seed", range(10))
+@pytest.mark.parametrize("seed", seeds(10))
 def test_least_squares_in_space_agree_with_kabsch(seed: int) -> None:
     random = np.random.default_rng(seed)
     points, pose = random_points(random)
@@ -93,7 +93,7 @@ def test_least_squares_in_space_agree_with_kabsch(seed: int) -> None:
     np.testing.assert_allclose(placed(made, offsets.reshape(3, -1))["plate"], expected, atol=2e-11, rtol=0)
 
 
-@pytest.mark.parametrize("seed", range(10))
+@pytest.mark.parametrize("seed", seeds(10))
 def test_least_largest_residuals_in_space_agree_with_a_general_optimiser(seed: int) -> None:
     """Scipy's SLSQP from the pose of least squares: T least, T^2 >= each residual squared."""
     random = np.random.default_rng(seed)

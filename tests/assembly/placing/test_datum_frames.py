@@ -244,6 +244,13 @@ def test_a_datum_that_takes_nothing_is_refused() -> None:
         displacement(features, columns, [Datum((f"p.{name}",)) for name in ("A", "B", "top")], np.zeros(9))
 
 
+def test_targets_of_a_primary_plane_that_lie_on_a_line_are_refused() -> None:
+    columns = Columns()
+    targets = np.array([[-80.0, -10, 0], [0, 0, 0], [80, 10, 0]])
+    with pytest.raises(InputError, match=r"targets of its primary datum p\.A lie on a line"):
+        displacement(block(columns), columns, [Datum(("p.A",), "targets", targets)], np.zeros(9))
+
+
 def test_poses_do_not_need_measures() -> None:
     made = assembly(Columns(), [part("p", [])], [Fix("p", "p")])
     np.testing.assert_array_equal(placed(made, np.zeros((2, 0)))["p"], np.broadcast_to(np.eye(4), (2, 4, 4)))

@@ -15,6 +15,9 @@ from tol3d.errors import InputError
 
 Array = NDArray[np.float64]
 
+ABREAST = 1e-6
+"""Spread [mm] of points across a line, under which they lie on it."""
+
 Actual = Callable[[str], ActualFeature]
 Asks = tuple[Held, Turning]
 
@@ -49,6 +52,7 @@ def datum_seats(part: Part) -> dict[str, DatumSeats]:
 
 
 def _of(frame: DatumFrame, nominal: Mapping[str, ActualFeature]) -> DatumSeats:
+    _refuse_few_targets(frame)
     datums, ties, seats = zip(*_asked(frame, nominal.__getitem__, nominal), strict=True)
     alignment = aligned(ties, seats, IDENTITY)
     taking = {datums[tie] for tie in range(len(ties)) if tie not in alignment.idle}
@@ -59,6 +63,19 @@ def _of(frame: DatumFrame, nominal: Mapping[str, ActualFeature]) -> DatumSeats:
                 "that it could take; leave it out"
             )
     return DatumSeats(frame, alignment, nominal)
+
+
+def _refuse_few_targets(frame: DatumFrame) -> None:
+    """Refuse targets of a primary plane that do not hold it; three that do are on the plane itself."""
+    primary = frame.datums[0]
+    if primary.simulator != "targets" or primary.targets is None:
+        return
+    spread = np.linalg.svd(primary.targets - primary.targets.mean(axis=0), compute_uv=False)
+    if len(spread) < 2 or spread[1] < ABREAST:
+        raise InputError(
+            f"datum frame {frame.name}: targets of its primary datum {primary.features[0]} lie on a line: expected "
+            "three or more that do not"
+        )
 
 
 def _nominal(feature: Feature) -> ActualFeature:
