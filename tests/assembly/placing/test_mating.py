@@ -165,7 +165,7 @@ def test_points_swing_a_part_onto_planes(seed: int) -> None:
 def test_three_points_on_three_walls(seed: int) -> None:
     """Flush on the floor, then a point on each of three walls, the last one oblique: nothing lies abreast."""
     points = frame((0, 20, 15)), frame((45, 0, 10)), frame((80, 60, 5))
-    walls = WALL, STOP, frame((80, 60, 20), (-0.8, -0.6, 0))
+    walls = WALL, STOP, frame((80, 60, 20), (-0.6, 0.8, 0))  # 52 mm beside where the others meet
     names = "abc"
     made, slices = mated(
         [
