@@ -36,6 +36,11 @@ class NamedSolid:
     faces: Mapping[str, cq.Face]
 
 
+def numbered(solid: cq.Solid) -> NamedSolid:
+    """A solid whose faces nobody picks by name: "face 1" and so on, in its own order."""
+    return NamedSolid(solid, {f"face {number}": face for number, face in enumerate(solid.Faces(), 1)})
+
+
 def extruded(outline: Sequence[NamedEdge], holes: Sequence[NamedEdge], width: float) -> NamedSolid:
     """Sweep an outline along +z, from its plane z = -width/2 to +width/2 [mm].
 

@@ -7,6 +7,7 @@ import sys
 from collections.abc import Iterator
 from pathlib import Path
 
+import cadquery as cq
 import jsonschema
 import numpy as np
 import pytest
@@ -14,6 +15,7 @@ import trimesh
 from fixtures import Command
 from matplotlib.image import imread
 from of_kind import known as known_value
+from of_kind import of_kind
 from toys.parabola import PARABOLA
 from toys.parabola.showing import SIDE
 from toys.registered import TOYS, known
@@ -127,6 +129,10 @@ def test_a_trial_is_exported_where_it_lifted_to(fmt: str, run: Run, tol3d: Comma
         assert own.is_watertight
         assert own.volume == pytest.approx(20.0 * SIDE**2, rel=1e-5)
         assert own.bounds[0, 2] == pytest.approx(1e-3 * run.columns(HEIGHT)[HEIGHT][5], rel=1e-4)
+    if fmt == "step":
+        (solid,) = (of_kind(cq.Solid, own) for own in cq.importers.importStep(str(path)).solids().vals())
+        assert solid.Volume() == pytest.approx(20.0 * SIDE**2, rel=1e-12)
+        assert solid.BoundingBox().zmin == pytest.approx(1e-3 * run.columns(HEIGHT)[HEIGHT][5], abs=1e-6)
 
 
 def test_the_worst_trial_is_exported_and_magnified(run: Run, tmp_path: Path) -> None:

@@ -9,7 +9,7 @@ PACKAGE = __name__.partition(".")[0]
 
 
 def sources_of(*modules: str) -> Mapping[str, str]:
-    """Texts of some modules and of those of this package that they import, directly or not, by their names.
+    """Texts of some modules and of those of this package or their own that they import, directly or not, by name.
 
     Import statements count wherever they stand; what is imported by a name made up while running is not seen. Packages
     count where they are imported from: not as parents of a module.
@@ -39,8 +39,9 @@ def source(module: str) -> str:
 
 @cache
 def _imports(module: str, text: str) -> tuple[str, ...]:
-    """Modules of this package that a module names in its imports."""
-    return tuple(name for name in _named(module, ast.parse(text)) if name.partition(".")[0] == PACKAGE)
+    """Modules of this package, or of the module's own, that a module names in its imports."""
+    own = {PACKAGE, module.partition(".")[0]}
+    return tuple(name for name in _named(module, ast.parse(text)) if name.partition(".")[0] in own)
 
 
 def _named(module: str, tree: ast.Module) -> Iterator[str]:
@@ -50,7 +51,7 @@ def _named(module: str, tree: ast.Module) -> Iterator[str]:
         elif isinstance(node, ast.ImportFrom):
             origin = _origin(module, node)
             yield origin
-            if origin.partition(".")[0] == PACKAGE and _is_package(origin):
+            if origin.partition(".")[0] in (PACKAGE, module.partition(".")[0]) and _is_package(origin):
                 yield from (name for alias in node.names if _is_module(name := f"{origin}.{alias.name}"))
 
 

@@ -1,6 +1,7 @@
 """From a part's CAD solid to measuring strips, display meshes and STEP; cached, so a warm run loads no CAD."""
 
 from tol3d.solids.bodies import ArmBody, Collar, ShaftBody
+from tol3d.solids.built_shape import BuiltShape, PosedShape
 from tol3d.solids.display_mesh import DisplayMesh, display_mesh
 from tol3d.solids.flank_strips import WHOLE_FACE, FlankStrips, Span, measuring_strips, strip_mesh
 from tol3d.solids.posed_gear import PosedBody, PosedGear, PosedPart
@@ -10,12 +11,14 @@ from tol3d.solids.step import export_step
 __all__ = [
     "WHOLE_FACE",
     "ArmBody",
+    "BuiltShape",
     "Collar",
     "DisplayMesh",
     "FlankStrips",
     "PosedBody",
     "PosedGear",
     "PosedPart",
+    "PosedShape",
     "PulledStrip",
     "ShaftBody",
     "Span",

@@ -14,6 +14,7 @@ from tol3d.gears import Gear
 from tol3d.numerics.cache_folder import FOLDER_VARIABLE, cache_folder, read_entry, write_entry
 from tol3d.numerics.sources import sources_of
 from tol3d.solids.bodies import Body
+from tol3d.solids.built_shape import BuiltShape
 from tol3d.solids.lazy import CAD, Arrays
 
 PACKAGES = ("cadquery", "cadquery-ocp", "numpy", "scipy")
@@ -23,7 +24,9 @@ class CacheWarning(UserWarning):
     """The cache cannot be used; results are the same, only slower."""
 
 
-def cached(kind: str, shape: Gear | Body, settings: Mapping[str, float], build: Callable[[], Arrays]) -> Arrays:
+def cached(
+    kind: str, shape: Gear | Body | BuiltShape, settings: Mapping[str, float], build: Callable[[], Arrays]
+) -> Arrays:
     """The arrays of `build`, from the disk where they have been built before.
 
     Args:
@@ -31,10 +34,15 @@ def cached(kind: str, shape: Gear | Body, settings: Mapping[str, float], build: 
         shape, settings: what `build` depends on besides the program itself.
         build: makes them.
 
+    What a builder without source makes is not kept.
+
     Warns:
         CacheWarning: the folder cannot be written; the arrays are returned all the same.
     """
-    name = f"{kind}-{_key(kind, shape, settings)}.npz"
+    try:
+        name = f"{kind}-{_key(kind, shape, settings)}.npz"
+    except (OSError, ValueError):  # a builder without source, as of a program that is typed in
+        return build()
     kept = _read(name)
     if kept is not None:
         return kept
@@ -47,16 +55,23 @@ def cached(kind: str, shape: Gear | Body, settings: Mapping[str, float], build: 
     return arrays
 
 
-def _key(kind: str, shape: Gear | Body, settings: Mapping[str, float]) -> str:
+def _key(kind: str, shape: Gear | Body | BuiltShape, settings: Mapping[str, float]) -> str:
     made_of = {
         "kind": kind,
         "shape": repr(shape),
         "settings": dict(settings),
         "versions": {name: _version(name) for name in PACKAGES},
-        "sources": sources_of(CAD),
+        "sources": sources_of(CAD, *_made_in(shape)),
     }
+    if isinstance(shape, BuiltShape):
+        made_of["builder"] = shape.builder
     # repr and json write the shortest text that gives back the same double, so no two shapes share a key
     return hashlib.sha256(json.dumps(made_of, sort_keys=True).encode()).hexdigest()
+
+
+def _made_in(shape: Gear | Body | BuiltShape) -> tuple[str, ...]:
+    """Modules besides this package's that decide what a shape is."""
+    return (shape.builder.partition(":")[0],) if isinstance(shape, BuiltShape) else ()
 
 
 def _version(package: str) -> str:

@@ -1,11 +1,12 @@
 """The CAD side of every kind of gear and body, and STEP. Import it through tol3d.solids.lazy.
 
-A kind registers here what its own file does.
+A kind of gear registers here what its own file does; a BuiltShape, of whatever mechanism, brings its builder along.
 """
 
+import importlib
 import itertools
 import os
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from functools import singledispatch
 from pathlib import Path
 
@@ -20,6 +21,7 @@ from tol3d.parts import arm, bevel_gear, shaft, spur_gear
 from tol3d.parts.named_solid import NamedSolid, refuse_cut_step
 from tol3d.solids import bevel_cad, body_cad, spur_cad
 from tol3d.solids.bodies import ArmBody, Body, ShaftBody
+from tol3d.solids.built_shape import BuiltShape
 from tol3d.solids.lazy import Arrays
 from tol3d.solids.posed_gear import PosedPart
 
@@ -27,7 +29,7 @@ Array = NDArray[np.float64]
 
 
 @singledispatch
-def solid_of(shape: Gear | Body) -> NamedSolid:
+def solid_of(shape: Gear | Body | BuiltShape) -> NamedSolid:
     """The solid of a gear or a body, from its builder."""
     raise TypeError(f"cad.py has no builder for {type(shape).__name__}")
 
@@ -44,13 +46,19 @@ def sample_flanks(gear: Gear, steps: int) -> Arrays:
 
 
 @singledispatch
-def tessellate(shape: Gear | Body, deflection: float) -> Arrays:
+def tessellate(shape: Gear | Body | BuiltShape, deflection: float) -> Arrays:
     """Arrays of DisplayMesh, its faces followed within about `deflection` [mm].
 
     Raises:
         GeometryError: OCC could not triangulate the solid.
     """
     raise TypeError(f"cad.py tessellates no {type(shape).__name__}")
+
+
+def _builder_of(shape: BuiltShape) -> Callable[[BuiltShape], NamedSolid]:
+    module, _, name = shape.builder.partition(":")
+    found: Callable[[BuiltShape], NamedSolid] = getattr(importlib.import_module(module), name)
+    return found
 
 
 solid_of.register(SpurGear, spur_gear.build)
@@ -63,7 +71,8 @@ tessellate.register(BevelGear, bevel_cad.tessellate)
 
 solid_of.register(ShaftBody, lambda body: shaft.shaft(body.diameter, body.start, body.end, body.collars))
 solid_of.register(ArmBody, lambda body: arm.arm(body.points, body.diameter))
-for kind in (ShaftBody, ArmBody):
+solid_of.register(BuiltShape, lambda shape: _builder_of(shape)(shape))
+for kind in (ShaftBody, ArmBody, BuiltShape):
     tessellate.register(kind, lambda body, deflection: body_cad.tessellate(solid_of(body), deflection))
 
 

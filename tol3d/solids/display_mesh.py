@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from tol3d.gears import Gear
 from tol3d.solids.bodies import Body
+from tol3d.solids.built_shape import BuiltShape
 from tol3d.solids.cache import cached
 from tol3d.solids.lazy import cad
 
@@ -42,7 +43,7 @@ class DisplayMesh:
         return np.stack([cos * x - sin * y, sin * x + cos * y, z], axis=-1)
 
 
-def display_mesh(shape: Gear | Body, deflection: float) -> DisplayMesh:
+def display_mesh(shape: Gear | Body | BuiltShape, deflection: float) -> DisplayMesh:
     """Mesh whose faces follow the solid's within about `deflection` [mm]; see its chord_error for the truth."""
     arrays = cached("display", shape, {"deflection": deflection}, lambda: cad().tessellate(shape, deflection))
     return DisplayMesh(

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from tol3d.gears import Gear
 from tol3d.solids.bodies import Body
+from tol3d.solids.built_shape import BuiltShape
 from tol3d.solids.posed_gear import PosedPart
 
 CAD = "tol3d.solids.cad"
@@ -24,7 +25,7 @@ class Cad(Protocol):
         """Arrays of FlankStrips."""
         ...
 
-    def tessellate(self, shape: Gear | Body, deflection: float) -> Arrays:
+    def tessellate(self, shape: Gear | Body | BuiltShape, deflection: float) -> Arrays:
         """Arrays of DisplayMesh."""
         ...
 

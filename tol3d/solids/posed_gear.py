@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from tol3d.gears import Gear
 from tol3d.solids.bodies import Body
+from tol3d.solids.built_shape import PosedShape
 
 Array = NDArray[np.float64]
 
@@ -34,4 +35,4 @@ class PosedBody:
     world_from_part: Array
 
 
-PosedPart = PosedGear | PosedBody
+PosedPart = PosedGear | PosedBody | PosedShape

@@ -9,15 +9,16 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from tol3d.errors import InputError
-from tol3d.report.body import Body, Surface, World
+from tol3d.report.body import Body, World
+from tol3d.report.built_body import built_body
 from tol3d.report.page import Block, Heading, Row, Table, line
 from tol3d.report.presenter import Draw, FurtherRow, View, Which
 from tol3d.report.system_check import system_blocks
 from tol3d.runs.summary.measure import MeasureSummary
 from tol3d.runs.worst import worst_trial
 from tol3d.simulate import Replay, replay, replayed, simulation_again
-from tol3d.solids import PosedBody, ShaftBody
 from tol3d.system.stated import mean_build, nominal_build
+from toys.parabola.bar import Bar
 from toys.parabola.springs import Springs
 from toys.parabola.summary import TermsOfRun
 from toys.parabola.system import Lifted, ParabolaSystem
@@ -28,21 +29,15 @@ if TYPE_CHECKING:
     from tol3d.study.simulation import Simulation
 
 SIDE = 5.0  # mm
-SIDES = ((0, 2, 3, 1), (4, 5, 7, 6), (0, 1, 5, 4), (2, 6, 7, 3), (0, 4, 6, 2), (1, 3, 7, 5))
-TRIANGLES = np.array([half for a, b, c, d in SIDES for half in ((a, b, c), (a, c, d))])
+DEFLECTION = 0.01  # mm; of flat faces there is none
 
 
 def bar(springs: Springs, height: float) -> Body:
     """A bar as long as the spring, lifted by a height [mm]."""
-    length, pose = springs.spring.length, np.eye(4)
+    pose = np.eye(4)
     pose[2, 3] = height
-    corners = np.array([[x, y, z] for z in (0.0, length) for y in (0.0, SIDE) for x in (0.0, SIDE)])
-
-    def surface() -> Surface:
-        return corners, TRIANGLES
-
-    solid = PosedBody(springs.spring.name, ShaftBody(SIDE, 0.0, length), pose)
-    return Body(springs.spring.name, pose, surface, lambda: solid, "#4682B4")
+    shape = Bar(SIDE, springs.spring.length)
+    return built_body(springs.spring.name, shape, pose, "#4682B4", deflection=DEFLECTION)
 
 
 @dataclass(frozen=True)

@@ -1,0 +1,32 @@
+"""Shapes that come with a builder of their own: what a mechanism shows and exports that is no gear, shaft or arm."""
+
+from abc import ABC
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+
+@dataclass(frozen=True)
+class BuiltShape(ABC):
+    """Numbers that a solid is built of [mm]; a subclass adds them as fields and names its builder.
+
+    `display_mesh`, `export_step` and the cache take one as they take a gear. The solid may depend on nothing but the
+    fields, which is what it is cached under.
+    """
+
+    builder: ClassVar[str]
+    """Import path `package.module:function` of what makes a `tol3d.parts.named_solid.NamedSolid` of the shape.
+
+    Its module may import CadQuery: it is loaded when a solid is built, and never by opening a scene.
+    """
+
+
+@dataclass(frozen=True, eq=False)
+class PosedShape:
+    """A shape, the name of its part, and its pose: (4, 4), rotation and translation [mm]."""
+
+    name: str
+    shape: BuiltShape
+    world_from_part: NDArray[np.float64]
