@@ -10,6 +10,7 @@ from tol3d.errors import InputError
 from tol3d.report.column import seated_text
 from tol3d.report.difference import difference_of
 from tol3d.report.ends import is_bounded
+from tol3d.report.joint import joint_comparison
 from tol3d.report.number import NOTHING, UNIT_SIGNS, difference_text, share_text, value_cell
 from tol3d.report.page import BLANK, Block, Heading, Page, Row, Shown, Table, line, note, page, title
 from tol3d.runs.run import Run
@@ -72,6 +73,7 @@ def comparison_report(runs: Sequence[Run]) -> Page:
         blocks += [note(SHOWN_APART)] if len(own) < _named_alike(measure.name, runs) else []
         bounded = any(is_bounded(run.found.measures[measure.name]) for _, run in own)
         blocks += [note(ENDS_BEFORE)] if bounded else []
+    blocks += joint_comparison([(label, run.found) for label, run in labelled(runs)])
     words = "low and high: mean ∓ 3 sigma; max and rms: of 3D simulation − analytic, trial by trial"
     words += (
         "; means and sigmas are of the trials that seated, out of limits is of all of them" if _any_failed(runs) else ""

@@ -9,6 +9,7 @@ from tol3d.report.column import (
 )
 from tol3d.report.ends import is_bounded
 from tol3d.report.heading import limits_text
+from tol3d.report.joint import correlation_blocks
 from tol3d.report.measure_table import (
     NOT_ATTRIBUTED,
     SIDES,
@@ -84,7 +85,7 @@ def run_report(
     if detail is Detail.MEASURES:
         for name, measure in run.measures.items():
             blocks += _measure_blocks(name, measure, run, own)
-    blocks += own.sections(run)
+    blocks += [*own.sections(run), *correlation_blocks(run)]
     if detail is Detail.MEASURES and (meanings := list(_meanings(run))):
         blocks += [title("notes"), *map(note, meanings)]
     blocks += verdict

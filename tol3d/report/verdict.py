@@ -6,6 +6,7 @@ from typing import Final, Literal
 
 from tol3d.report.column import columns_of, ranked_contributors, seated_text, shares_of
 from tol3d.report.ends import Ends, is_bounded
+from tol3d.report.joint import yield_lines
 from tol3d.report.number import NOTHING, given_text, share_text, short_text, unit_suffix, unsigned_zero
 from tol3d.report.page import BLANK, Block, Heading, Row, Table, note, title
 from tol3d.runs.summary.measure import MeasureSummary
@@ -66,7 +67,8 @@ def verdict_report(run: RunSummary, accepted_ppm: float = ACCEPTED_PPM, *, blame
         blame: name the contributor that most of each measure's variance comes from.
     """
     head = title("verdict", f" · accepted: {share_text(accepted_ppm)} out of limits")
-    return [head, BLANK, verdict_table(run, accepted_ppm, blame=blame), *map(note, _notes(run))]
+    table = verdict_table(run, accepted_ppm, blame=blame)
+    return [head, BLANK, table, *yield_lines(run), *map(note, _notes(run))]
 
 
 def verdict_table(run: RunSummary, accepted_ppm: float = ACCEPTED_PPM, *, blame: bool = False) -> Table:

@@ -4,6 +4,7 @@ from tol3d.statistics.agreement import Agreement
 from tol3d.statistics.grid import Grid, Histogram
 from tol3d.statistics.limits import LimitCounts, Proportion, equivalent_ppk, pp, ppk
 from tol3d.statistics.moments import Moments
+from tol3d.statistics.pair_sums import PairSums
 from tol3d.statistics.variance_shares import RegressorSums, Shares, shares
 
 __all__ = [
@@ -12,6 +13,7 @@ __all__ = [
     "Histogram",
     "LimitCounts",
     "Moments",
+    "PairSums",
     "Proportion",
     "RegressorSums",
     "Shares",

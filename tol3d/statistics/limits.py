@@ -26,6 +26,10 @@ class Proportion:
     count: int
     total: int
 
+    def merge(self, other: Self) -> Self:
+        """The counts of both."""
+        return type(self)(self.count + other.count, self.total + other.total)
+
     @property
     def ppm(self) -> float | None:
         """Parts per million; None of no trials."""

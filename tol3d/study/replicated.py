@@ -1,7 +1,7 @@
 """A sample whose trials are not independent, by its replicates, which are: their spread gives the errors."""
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -71,33 +71,36 @@ class Replicated:
 
     @property
     def below_interval_ppm(self) -> tuple[float, float] | None:
-        """Bounds [ppm] of the true share below the lower limit, as _interval_ppm makes them."""
+        """Bounds [ppm] of the true share below the lower limit, as interval_of_replicates makes them."""
         return self._interval_ppm(lambda counts: counts.below_limit)
 
     @property
     def above_interval_ppm(self) -> tuple[float, float] | None:
-        """Bounds [ppm] of the true share above the upper limit, as _interval_ppm makes them."""
+        """Bounds [ppm] of the true share above the upper limit, as interval_of_replicates makes them."""
         return self._interval_ppm(lambda counts: counts.above_limit)
 
     @property
     def out_interval_ppm(self) -> tuple[float, float] | None:
-        """Bounds [ppm] of the true share that is out of limits or failed, as _interval_ppm makes them."""
+        """Bounds [ppm] of the true share that is out of limits or failed, as interval_of_replicates makes them."""
         return self._interval_ppm(lambda counts: counts.out_of_limits)
 
     def _interval_ppm(self, share_of: Callable[[LimitCounts], Proportion]) -> tuple[float, float] | None:
-        """Student's interval of the replicates' shares, which are independent of each other.
+        return interval_of_replicates([share_of(counts) for counts in self.limits.values()])
 
-        None where the counts are too few for the shares to be near a normal: no interval is better than one of
-        length zero. Clopper and Pearson's is for independent trials, which these are not.
-        """
-        shares = [share_of(counts) for counts in self.limits.values()]
-        outside, total = sum(share.count for share in shares), sum(share.total for share in shares)
-        if len(shares) < 2 or min(outside, total - outside) < LEAST_COUNT * len(shares):
-            return None
-        parts = [1e6 * share.count / share.total if share.total else math.nan for share in shares]
-        half = _standard_error(parts) * float(scipy.special.stdtrit(len(parts) - 1, (1 + CONFIDENCE) / 2))
-        middle = float(np.mean(parts))
-        return (max(middle - half, 0.0), min(middle + half, 1e6)) if math.isfinite(half) else None
+
+def interval_of_replicates(shares: Sequence[Proportion]) -> tuple[float, float] | None:
+    """Student's interval [ppm] of the replicates' shares, which are independent of each other.
+
+    None where the counts are too few for the shares to be near a normal: no interval is better than one of length
+    zero. Clopper and Pearson's is for independent trials, which these are not.
+    """
+    outside, total = sum(share.count for share in shares), sum(share.total for share in shares)
+    if len(shares) < 2 or min(outside, total - outside) < LEAST_COUNT * len(shares):
+        return None
+    parts = [1e6 * share.count / share.total if share.total else math.nan for share in shares]
+    half = _standard_error(parts) * float(scipy.special.stdtrit(len(parts) - 1, (1 + CONFIDENCE) / 2))
+    middle = float(np.mean(parts))
+    return (max(middle - half, 0.0), min(middle + half, 1e6)) if math.isfinite(half) else None
 
 
 def _standard_error(parts: list[float]) -> float:

@@ -19,6 +19,7 @@ from tol3d.study.columns import columns_of
 from tol3d.study.curve_tally import CurveTally
 from tol3d.study.high_low_mean import high_low_mean_percents
 from tol3d.study.histograms import histograms
+from tol3d.study.joint import joint_summary, uncorrelated
 from tol3d.study.regressors import MOST_REGRESSED
 from tol3d.study.sample import in_unit, listed, sample_summary
 from tol3d.study.shares import share_percents
@@ -57,9 +58,11 @@ def study_summary(simulation: Simulation, road: Road | None, tally: Tally) -> Fi
             measure.name: _measure(simulation, road, measure, tally, explained.get(measure.name))
             for measure in simulation.system.measures
         },
+        joint=joint_summary(simulation, tally.joint),
         warnings=[
             *failures(simulation, tally),
             *_too_many(simulation),
+            *uncorrelated(simulation),
             *faults(explained),
             *simulation.warnings,
             *_unphysical_draws(tally),

@@ -13,6 +13,7 @@ from tol3d.statistics.variance_shares import Products, plain_products
 from tol3d.study.agreement.disagreement import Disagreement
 from tol3d.study.breakdowns import merged_terms, pooled_terms
 from tol3d.study.curve_tally import CurveTally
+from tol3d.study.joint import JointTally, limited
 from tol3d.study.regressors import regressors
 from tol3d.study.replicated import rows_of_replicates
 from tol3d.study.sample import Sample
@@ -127,12 +128,14 @@ class _Block:
         }
 
     @property
-    def _products(self) -> Products:
+    def products(self) -> Products:
         return quick_products() if self.simulation.road.compiled else plain_products
 
-    def tally(self, measures: Sequence[Measure], grids: Mapping[str, Grid]) -> dict[str, MeasureTally]:
-        """Tallies of scalar measures."""
-        found, statuses = self.outcomes(measures), self.simulation.system.statuses
+    def tally(
+        self, measures: Sequence[Measure], grids: Mapping[str, Grid], found: Mapping[tuple[str, str], Outcome]
+    ) -> dict[str, MeasureTally]:
+        """Tallies of scalar measures, `found` their outcomes."""
+        statuses = self.simulation.system.statuses
         values = {key: own.values for key, own in found.items()}
         both = [measure.name for measure in measures if (GEOMETRIC, measure.name) in values]
         values |= {(DIFFERENCE, name): values[GEOMETRIC, name] - values[ANALYTIC, name] for name in both}
@@ -168,7 +171,7 @@ class _Block:
             columns = {(r, m.name): values[r, m.name] for m in alike for r in roads if (r, m.name) in values}
             whole = {name: column for name, column in columns.items() if not np.isnan(np.min(column))}
             if whole:
-                each = RegressorSums.of_each(seen, np.stack(list(whole.values())), self._products)
+                each = RegressorSums.of_each(seen, np.stack(list(whole.values())), self.products)
                 sums |= dict(zip(whole, each, strict=True))
             for measure in alike:  # what failed is the same trials on every road of a measure that lacks some
                 lacking = [(r, measure.name) for r in roads if (r, measure.name) in columns.keys() - whole.keys()]
@@ -176,7 +179,7 @@ class _Block:
                     rows = np.stack([columns[name] for name in lacking])
                     good = ~np.isnan(rows).any(axis=0)
                     sums |= dict(
-                        zip(lacking, RegressorSums.of_each(seen[:, good], rows[:, good], self._products), strict=True)
+                        zip(lacking, RegressorSums.of_each(seen[:, good], rows[:, good], self.products), strict=True)
                     )
         return sums
 
@@ -191,6 +194,7 @@ class Tally:
         unphysical: how many draws lie below what a contributor can be, by its name.
         measures, curves: by name.
         terms: of breakdowns, by measure and road.
+        joint: what measures do together.
     """
 
     trials: int
@@ -199,6 +203,7 @@ class Tally:
     measures: Mapping[str, MeasureTally]
     curves: Mapping[str, CurveTally]
     terms: Mapping[str, Mapping[str, PooledTerms]]
+    joint: JointTally
 
     @classmethod
     def of(cls, simulation: Simulation, grids: Mapping[str, Grid], columns: Columns, first: int = 0) -> "Tally":
@@ -208,13 +213,17 @@ class Tally:
         rows = rows_of_replicates(simulation.study, first, trials)
         scalars = [measure for measure in system.measures if measure.take != "curve"]
         curves = [measure for measure in system.measures if measure.take == "curve"]
+        block = _Block(simulation, columns, rows, first)
+        found = block.outcomes(scalars)
+        together = found | block.outcomes(limited(curves))
         return cls(
             trials,
             counted(statuses, columns.get("status"), trials),
             _unphysical(system, columns),
-            _Block(simulation, columns, rows, first).tally(scalars, grids),
+            block.tally(scalars, grids, found),
             {measure.name: CurveTally.of(statuses, measure, columns, grids) for measure in curves},
             pooled_terms(system.breakdowns, statuses, columns),
+            JointTally.of(system.measures, together, rows, block.products),
         )
 
     def merge(self, other: "Tally") -> "Tally":
@@ -226,6 +235,7 @@ class Tally:
             {name: tally.merge(other.measures[name]) for name, tally in self.measures.items()},
             {name: tally.merge(other.curves[name]) for name, tally in self.curves.items()},
             merged_terms(self.terms, other.terms),
+            self.joint.merge(other.joint),
         )
 
 

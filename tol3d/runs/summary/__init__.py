@@ -4,6 +4,7 @@
     sample      statistics of a measure's trials, by either road
     agreement   how far both roads differ, and what explains it; what the witness found
     measure     one measure
+    joint       what the measures do together
     run         the whole
     kinds       what mechanisms add: classes of their measures, sections of their own
     text        reading and writing summary.json

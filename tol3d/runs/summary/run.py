@@ -6,6 +6,7 @@ from typing import Annotated, Literal, Self
 from pydantic import Field, model_validator
 
 from tol3d.runs.summary.agreement import WitnessSummary
+from tol3d.runs.summary.joint import Joint
 from tol3d.runs.summary.measure import MeasureSummary
 from tol3d.runs.summary.values import (
     LEFT_OUT,
@@ -85,6 +86,7 @@ class Findings(Section):
     )
     chord_error_um: NotNegative | None
     measures: Annotated[Mapping[Label, MeasureSummary], Field(min_length=1, max_length=MOST_ENTRIES)]
+    joint: Maybe[Joint] = LEFT_OUT
     warnings: list[Sentence]
     witness: Maybe[WitnessSummary] = LEFT_OUT
 
@@ -133,4 +135,14 @@ class RunSummary(Findings):
             road = measure.curve.geometric if measure.curve and measure.take == "curve" else measure.geometric
             if (road is not None) != simulated:
                 raise refused(f"measures.{name}", f"geometric as the engine is {self.engine}", "otherwise")
+        if self.joint:
+            self._refuse_another_joint(self.joint)
         return self
+
+    def _refuse_another_joint(self, joint: Joint) -> None:
+        for key, names in (("limited", joint.limited), ("correlated", joint.correlated)):
+            if unknown := sorted(set(names) - set(self.measures)):
+                raise refused(f"joint.{key}", "names of measures", unknown[0])
+        for key, by_road in (("yields", joint.yields), ("correlations", joint.correlations)):
+            if by_road is not None and set(by_road) != set(self.roads):
+                raise refused(f"joint.{key}", f"those of {' and '.join(self.roads)}", ", ".join(by_road) or "none")

@@ -1,0 +1,130 @@
+"""What the measures of a run do together: their common yield in a line, and a table of the largest correlations."""
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from itertools import combinations
+from typing import Final
+
+from tol3d.report.number import NOTHING, unsigned_zero
+from tol3d.report.page import Block, Heading, Row, Shown, Table, line, note, title
+from tol3d.runs.summary.joint import Correlations, Joint
+from tol3d.runs.summary.run import RunSummary
+from tol3d.runs.summary.values import Road
+
+MOST_PAIRS: Final = 12  # correlations that are printed, the largest; all are in summary.json
+NORMAL_95: Final = 1.959964  # sigma; a normal's 95 % lie within
+FISHER_FREEDOM: Final = 3  # trials that Fisher's artanh r takes
+YIELD_DECIMALS: Final = 2  # of a yield in %, more where less than a hundredth is lost
+HEADINGS: Final[Mapping[Road, str]] = {"analytic": "analytic", "geometric": "3D simulation"}
+Pair = tuple[int, int]
+
+
+def joint_of(run: RunSummary) -> Joint | None:
+    """What is shown of measures together: nothing where fewer than two have limits, or in a run made before."""
+    return run.joint if run.joint and len(run.joint.limited) > 1 else None
+
+
+def yield_lines(run: RunSummary) -> list[Block]:
+    """The share of all trials that are within every limit, by the best road, and by the other one beside it."""
+    joint = joint_of(run)
+    if joint is None or not joint.yields:
+        return []
+    own, analytic = joint.yields[run.best_road], joint.yields["analytic"]
+    text = f"yield: {yield_text(own.yield_ppm)} of all trials are within all limits"
+    if own.yield_ppm_95:
+        low, high = map(yield_text, own.yield_ppm_95)
+        text += f" ({low} to {high}, 95 % confidence)"
+    text += f"; analytic {yield_text(analytic.yield_ppm)}" if run.best_road != "analytic" else ""
+    return [line(f" {text}", "bold")]
+
+
+def yield_text(ppm: float | None) -> str:
+    """A yield in %, with two digits of what is lost at least.
+
+    >>> yield_text(983000.0), yield_text(999_971.0), yield_text(1e6), yield_text(0.0), yield_text(None)
+    ('98.30 %', '99.9971 %', '100 %', '0 %', '–')
+    """
+    if ppm is None:
+        return NOTHING
+    lost = 100 - ppm / 1e4
+    if not 0.0 < ppm < 1e6:
+        return f"{100 - lost:.0f} %"
+    return f"{100 - lost:.{max(YIELD_DECIMALS, 1 - math.floor(math.log10(lost)))}f} %"
+
+
+def correlation_blocks(run: RunSummary) -> list[Block]:
+    """The largest correlations of measures, of those that are more than noise; nothing where none is."""
+    joint = joint_of(run)
+    if joint is None or not joint.correlations:
+        return []
+    own = joint.correlations[run.best_road]
+    beyond = sorted(_beyond_noise(own), key=lambda pair: -abs(own.r[pair[0]][pair[1]] or 0.0))
+    if not beyond:
+        return []
+    shown = f" · the largest {MOST_PAIRS} of {len(beyond)}" if len(beyond) > MOST_PAIRS else ""
+    words = (
+        "Pearson's r over the trials in which both have a value, where it is larger than 95 % of as many independent "
+        "trials give without any correlation; all in summary.json"
+    )
+    return [title("correlation of measures", shown), _table(joint, run.best_road, beyond[:MOST_PAIRS]), note(words)]
+
+
+def _beyond_noise(own: Correlations) -> Iterator[Pair]:
+    """The pairs of measures whose correlation is more than noise."""
+    for i, j in combinations(range(len(own.r)), 2):
+        r, count = own.r[i][j], own.trials[i][j]
+        if r is not None and abs(r) > _noise(count):
+            yield i, j
+
+
+def _noise(count: int) -> float:
+    """|r| that 95 % of so many independent trials stay below without any correlation; 1 of three or less."""
+    return math.tanh(NORMAL_95 / math.sqrt(count - FISHER_FREEDOM)) if count > FISHER_FREEDOM else 1.0
+
+
+def _table(joint: Joint, best: Road, pairs: list[Pair]) -> Table:
+    """A row a pair: r of the best road, its interval where that is known, how many trials, and r of the other road."""
+    roads = joint.correlations or {}
+    own = roads[best]
+    low, high = own.r_low_95, own.r_high_95
+    headings = [Heading(HEADINGS[best], "bold")]
+    headings += [Heading("95 % interval")] if low and high else []
+    headings += [Heading("trials")]
+    headings += [Heading(HEADINGS["analytic"])] if best != "analytic" else []
+    rows = []
+    for i, j in pairs:
+        cells: list[str] = [_r_cell(own.r[i][j])]
+        cells += [f"{_r_text(low[i][j])} to {_r_text(high[i][j])}"] if low and high else []
+        cells += [Shown(str(own.trials[i][j]), own.trials[i][j])]
+        cells += [_r_cell(roads["analytic"].r[i][j])] if best != "analytic" else []
+        rows.append(Row(f"{joint.correlated[i]} · {joint.correlated[j]}", cells))
+    return Table("measures", headings, rows, repeated=1)
+
+
+def _r_cell(r: float | None) -> Shown:
+    return Shown(_r_text(r), r)
+
+
+def _r_text(r: float | None) -> str:
+    return NOTHING if r is None else unsigned_zero(f"{r:.3f}")
+
+
+def joint_comparison(runs: Sequence[tuple[str, RunSummary]]) -> list[Block]:
+    """The yields of several runs below each other, each with its label; nothing where no run has any to show."""
+    rows = []
+    for label, run in runs:
+        joint = joint_of(run)
+        for index, (road, own) in enumerate(((joint.yields if joint else None) or {}).items()):
+            low, high = own.yield_ppm_95 or (None, None)
+            cells = [HEADINGS[road], Shown(str(own.trials), own.trials), *map(_yield_cell, (own.yield_ppm, low, high))]
+            measures = str(len(joint.limited)) if joint else ""
+            rows.append(Row("" if index else label, [*cells, measures], unit="%"))
+    if not rows:
+        return []
+    headings = [Heading("road", words=True), *map(Heading, ("trials", "yield", "from", "to", "measures with limits"))]
+    words = "yield: share of all trials within the limits of all measures that have any; from, to: 95 % confidence"
+    return [title("all limits together"), Table("run", headings, rows, repeated=1), note(words)]
+
+
+def _yield_cell(ppm: float | None) -> Shown:
+    return Shown(yield_text(ppm), None if ppm is None else ppm / 1e4)

@@ -1,0 +1,160 @@
+"""What the measures of a study do together: the share of trials within all limits, and correlations."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import TypeVar, cast
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tol3d.runs.summary import joint as summary
+from tol3d.runs.summary.values import Road, made
+from tol3d.statistics import PairSums, Proportion
+from tol3d.statistics.variance_shares import Products
+from tol3d.study.replicated import Rows, interval_of_replicates
+from tol3d.study.sample import finite, in_unit, listed
+from tol3d.study.simulation import Simulation
+from tol3d.system.measure import Measure
+from tol3d.system.outcome import ROADS, Mask, Outcome
+
+Array = NDArray[np.float64]
+Outcomes = Mapping[tuple[str, str], Outcome]
+Key = TypeVar("Key")
+
+MOST_CORRELATED = 64  # measures; the products of all pairs grow as the square, 64 take a microsecond a trial
+
+
+def limited(measures: Sequence[Measure]) -> list[Measure]:
+    """The measures that have a limit, curves among them."""
+    return [measure for measure in measures if (measure.lower_limit, measure.upper_limit) != (None, None)]
+
+
+def correlated(measures: Sequence[Measure]) -> list[Measure]:
+    """The measures whose correlations are found: one number a trial, the first MOST_CORRELATED; none of one alone."""
+    scalars = [measure for measure in measures if measure.take != "curve"]
+    return scalars[:MOST_CORRELATED] if len(scalars) > 1 else []
+
+
+@dataclass(frozen=True)
+class JointTally:
+    """What measures do together, by road.
+
+    Args:
+        within: of all trials, those in which every measure that has a limit is valid and within its limits; empty
+            where none has a limit.
+        replicates: the same of each replicate; empty for independent trials.
+        pairs: of the correlated measures, in their order; empty where there are none.
+    """
+
+    within: Mapping[str, Proportion]
+    replicates: Mapping[str, Mapping[int, Proportion]]
+    pairs: Mapping[str, PairSums]
+
+    @classmethod
+    def of(cls, measures: Sequence[Measure], outcomes: Outcomes, rows: Rows, products: Products) -> "JointTally":
+        """Of one block.
+
+        Args:
+            measures: all of the study.
+            outcomes: by road and name, of each road that was gone; of every scalar measure and every limited curve.
+            rows: which trials belong to each replicate; empty for independent trials.
+            products: see PairSums.of.
+        """
+        roads = [road for road in ROADS if any(own == road for own, _ in outcomes)]
+        judged, paired = limited(measures), correlated(measures)
+        good = {road: _all_within(judged, road, outcomes) for road in roads} if judged else {}
+        return cls(
+            {road: _share(own) for road, own in good.items()},
+            {road: {replicate: _share(own[part]) for replicate, part in rows.items()} for road, own in good.items()},
+            {road: PairSums.of(_values(paired, road, outcomes), products) for road in roads} if paired else {},
+        )
+
+    def merge(self, other: "JointTally") -> "JointTally":
+        """Both tallies as one; fold blocks in their order."""
+        return JointTally(
+            _merged(self.within, other.within),
+            {road: _merged(own, other.replicates[road]) for road, own in self.replicates.items()},
+            {road: own.merge(other.pairs[road]) for road, own in self.pairs.items()},
+        )
+
+
+def _all_within(measures: Sequence[Measure], road: str, outcomes: Outcomes) -> Mask:
+    """Trials (trials,) in which all of some measures are valid and within their limits."""
+    first, *others = (_within(measure, outcomes[road, measure.name]) for measure in measures)
+    for other in others:
+        first &= other
+    return first
+
+
+def _within(measure: Measure, outcome: Outcome) -> Mask:
+    """Trials (trials,) in which a measure is valid and within its limits, a curve at all of its positions.
+
+    A value at a limit is within it; nan, of a trial that failed, is within none.
+    """
+    values = outcome.values
+    lower, upper = in_unit(measure, measure.lower_limit), in_unit(measure, measure.upper_limit)
+    inside = np.ones(values.shape, dtype=bool)
+    if lower is not None:
+        inside &= values >= lower
+    if upper is not None:
+        inside &= values <= upper
+    return inside if inside.ndim == 1 else np.asarray(inside.all(axis=1))
+
+
+def _values(measures: Sequence[Measure], road: str, outcomes: Outcomes) -> list[Array]:
+    return [outcomes[road, measure.name].values for measure in measures]
+
+
+def _share(good: Mask) -> Proportion:
+    return Proportion(int(np.count_nonzero(good)), len(good))
+
+
+def _merged(mine: Mapping[Key, Proportion], its: Mapping[Key, Proportion]) -> dict[Key, Proportion]:
+    """Both; a replicate may have begun in one and end in the other."""
+    both = {key: own.merge(its[key]) if key in its else own for key, own in mine.items()}
+    return both | {key: own for key, own in its.items() if key not in mine}
+
+
+# the summary --------------------------------------------------------------------------------------
+
+
+def joint_summary(simulation: Simulation, tally: JointTally) -> summary.Joint | None:
+    """What measures do together, as summary.json shows it; None where none has a limit and there are no two."""
+    judged, paired = limited(simulation.system.measures), correlated(simulation.system.measures)
+    if not judged and not paired:
+        return None
+    independent = simulation.study.sampler == "monte_carlo"
+    yields = {cast(Road, road): _yield(own, tally.replicates[road]) for road, own in tally.within.items()}
+    pairs = {cast(Road, road): _correlations(own, independent=independent) for road, own in tally.pairs.items()}
+    return made(
+        summary.Joint,
+        limited=[measure.name for measure in judged],
+        yields=yields or None,
+        correlated=[measure.name for measure in paired],
+        correlations=pairs or None,
+    )
+
+
+def uncorrelated(simulation: Simulation) -> Iterator[str]:
+    """A sentence where there are more measures than have correlations."""
+    scalars = sum(measure.take != "curve" for measure in simulation.system.measures)
+    if scalars > MOST_CORRELATED:
+        yield f"correlations are given of the first {MOST_CORRELATED} of {scalars} measures"
+
+
+def _yield(own: Proportion, replicates: Mapping[int, Proportion]) -> summary.JointYield:
+    interval = interval_of_replicates([*replicates.values()]) if replicates else own.interval_ppm()
+    return made(
+        summary.JointYield, trials=own.total, within=own.count, yield_ppm=own.ppm, yield_ppm_95=listed(interval)
+    )
+
+
+def _correlations(own: PairSums, *, independent: bool) -> summary.Correlations:
+    low, high = map(_matrix, own.interval()) if independent else (None, None)
+    return made(
+        summary.Correlations, r=_matrix(own.correlations), r_low_95=low, r_high_95=high, trials=own.counts.tolist()
+    )
+
+
+def _matrix(values: Array) -> list[list[float | None]]:
+    return [[finite(value) for value in row] for row in values.tolist()]
