@@ -77,7 +77,7 @@ def found(run: Run, name: str, road: str = "geometric") -> Mapping[str, Any]:
 
 def assert_bits(first: Run, second: Run) -> None:
     """Columns and statistics, to the last bit."""
-    for key in ("measures", "status", "terms"):
+    for key in ("measures", "status", "terms", "joint"):
         assert second.summary[key] == first.summary[key]
     mine, its = first.columns(), second.columns()
     assert list(mine) == list(its)

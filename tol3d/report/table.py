@@ -44,7 +44,7 @@ SHARES_MEAN = (
     "the others at their means"
 )
 MOST_TABLES = 4  # measures whose tables are shown unasked; of 6 they took 288 lines
-MORE_TABLES = "tables of every measure: -v"
+MORE_TABLES = "tables of every measure: -v, and how they are correlated"
 SAMPLER_WORDS = {"sobol": "scrambled Sobol' points", "latin_hypercube": "Latin hypercubes"}
 TOO_FEW_TO_BOUND = "too few trials on one side of the limit in each replicate to bound the true share"
 
@@ -85,7 +85,8 @@ def run_report(
     if detail is Detail.MEASURES:
         for name, measure in run.measures.items():
             blocks += _measure_blocks(name, measure, run, own)
-    blocks += [*own.sections(run), *correlation_blocks(run)]
+    blocks += own.sections(run)
+    blocks += correlation_blocks(run) if detail is Detail.MEASURES else []
     if detail is Detail.MEASURES and (meanings := list(_meanings(run))):
         blocks += [title("notes"), *map(note, meanings)]
     blocks += verdict

@@ -89,6 +89,7 @@ class PairSums:
         means = np.where(counts > 0, (first + own)[:, None] + totals / divisor, 0.0)
         squares = np.where(several, np.maximum(about_own - totals * totals / divisor, 0.0), 0.0)
         comoments = np.where(several, sums[columns, columns] - totals * totals.T / divisor, 0.0)
+        np.fill_diagonal(squares, np.diagonal(comoments))  # the same sums, to the last bit too
         lost = several & (squares < LOST_RTOL * about_own)
         for i, j in np.argwhere(np.triu(lost | lost.T)).tolist():
             pair = cls._of_whole(rows[[i, j]][:, known[i] & known[j]], plain_products)
