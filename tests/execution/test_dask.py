@@ -97,6 +97,7 @@ def wait_for_workers(address: str, count: int) -> None:
 
 def assert_same_run(first: Run, second: Run) -> None:
     assert second.summary["measures"] == first.summary["measures"]
+    assert second.summary.get("joint") == first.summary.get("joint")
     mine, its = first.columns(), second.columns()
     assert mine.keys() == its.keys()
     for name, values in mine.items():

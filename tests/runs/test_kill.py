@@ -82,6 +82,7 @@ def kept_blocks(out: Path) -> int:
 def assert_same_run(first: Run, second: Run) -> None:
     """Columns and statistics, to the last bit; JSON keeps every bit of a double."""
     assert second.summary["measures"] == first.summary["measures"]
+    assert second.summary.get("joint") == first.summary.get("joint")
     assert second.summary["status"] == first.summary["status"]
     assert second.trials == first.trials
     assert second.keeps_trials == first.keeps_trials

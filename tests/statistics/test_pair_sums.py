@@ -18,7 +18,7 @@ ROUNDING = 1e-11  # of r: sums of 5000 products of order one, each rounded by 1e
 
 
 def gathered(columns: Array, products: Products = plain_products) -> PairSums:
-    first, *others = (PairSums.of(columns[:, a:b], products) for a, b in itertools.pairwise(CUTS))
+    first, *others = (PairSums.of([*columns[:, a:b]], products) for a, b in itertools.pairwise(CUTS))
     for other in others:
         first = first.merge(other)
     return first
@@ -102,9 +102,9 @@ def test_a_pair_whose_trials_lie_close_together_is_summed_by_itself() -> None:
 def test_constant_columns_and_single_trials_have_no_correlation() -> None:
     columns = np.stack([np.full(CUTS[-1], 0.1), np.arange(CUTS[-1]) / 3])
     np.testing.assert_array_equal(gathered(columns).correlations, [[np.nan, np.nan], [np.nan, 1.0]])
-    alone = PairSums.of(np.array([[1.0], [2.0]]))
+    alone = PairSums.of([np.array([1.0]), np.array([2.0])])
     assert np.isnan(alone.correlations).all()
-    none = PairSums.of(np.zeros((2, 0)))
+    none = PairSums.of([np.zeros(0), np.zeros(0)])
     assert np.isnan(none.correlations).all()
     np.testing.assert_array_equal(none.merge(alone).means, alone.means)
 
@@ -117,7 +117,7 @@ def test_the_interval_is_that_of_scipy() -> None:
         own = stats.pearsonr(columns[i], columns[j]).confidence_interval(0.95)
         assert (low[i, j], high[i, j]) == pytest.approx((own.low, own.high), abs=ROUNDING)
     assert (low[0, 0], high[0, 0]) == (1.0, 1.0)
-    few, _ = PairSums.of(columns[:, :3]).interval()
+    few, _ = PairSums.of([*columns[:, :3]]).interval()
     assert np.isnan(few).all()
 
 
@@ -126,6 +126,6 @@ def test_the_interval_holds_the_truth_in_95_of_100_samples() -> None:
     held = 0
     for _ in range(samples):
         x, noise = rng.normal(size=(2, 40))
-        low, high = PairSums.of(np.stack([x, truth * x + 0.8 * noise])).interval()
+        low, high = PairSums.of([x, truth * x + 0.8 * noise]).interval()
         held += bool(low[0, 1] <= truth <= high[0, 1])
     assert abs(held / samples - 0.95) < 5 * np.sqrt(0.95 * 0.05 / samples)
