@@ -3,8 +3,8 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.report.body import Body, Surface
-from tol3d.solids import BuiltShape, PosedShape, display_mesh
+from tol3d.report.body import Body
+from tol3d.solids import BuiltShape, PosedShape, surface_of
 
 
 def built_body(
@@ -19,9 +19,5 @@ def built_body(
         colour: "#RRGGBB".
         deflection: how far its triangles may lie off its faces [mm].
     """
-
-    def surface() -> Surface:
-        mesh = display_mesh(shape, deflection)
-        return mesh.vertices, mesh.triangles
-
-    return Body(name, world_from_part, surface, lambda: PosedShape(name, shape, world_from_part), colour)
+    posed = PosedShape(name, shape, world_from_part)
+    return Body(name, world_from_part, lambda: surface_of(shape, deflection), lambda: posed, colour)

@@ -2,7 +2,7 @@
 
 from tol3d.solids.bodies import ArmBody, Collar, ShaftBody
 from tol3d.solids.built_shape import BuiltShape, PosedShape
-from tol3d.solids.display_mesh import DisplayMesh, display_mesh
+from tol3d.solids.display_mesh import DisplayMesh, display_mesh, surface_of
 from tol3d.solids.flank_strips import WHOLE_FACE, FlankStrips, Span, measuring_strips, strip_mesh
 from tol3d.solids.posed_gear import PosedBody, PosedGear, PosedPart
 from tol3d.solids.pulled_strip import PulledStrip
@@ -26,4 +26,5 @@ __all__ = [
     "export_step",
     "measuring_strips",
     "strip_mesh",
+    "surface_of",
 ]

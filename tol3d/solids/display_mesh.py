@@ -43,6 +43,12 @@ class DisplayMesh:
         return np.stack([cos * x - sin * y, sin * x + cos * y, z], axis=-1)
 
 
+def surface_of(shape: BuiltShape, deflection: float) -> tuple[Array, NDArray[np.int64]]:
+    """Vertices (n, 3) [mm] and triangles (m, 3) of a shape's display mesh."""
+    mesh = display_mesh(shape, deflection)
+    return mesh.vertices, mesh.triangles
+
+
 def display_mesh(shape: Gear | Body | BuiltShape, deflection: float) -> DisplayMesh:
     """Mesh whose faces follow the solid's within about `deflection` [mm]; see its chord_error for the truth."""
     arrays = cached("display", shape, {"deflection": deflection}, lambda: cad().tessellate(shape, deflection))
