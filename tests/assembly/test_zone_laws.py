@@ -8,6 +8,8 @@ import pytest
 from assembly_trials import Assembled, assembled
 from scipy.stats import norm
 
+from tol3d.simulate import Overrides, run_scene
+
 WIDTH, A, B, LENGTH = 0.1, 100.0, 60.0, 40.0
 COUNT = 200_000
 
@@ -79,6 +81,23 @@ def test_normals_that_do_not_know_the_zone(tmp_path: Path) -> None:
     flat = (np.abs(found["height"] - 20) + B / 2 * np.abs(found["about x"])) <= half
     plane = (2 * norm.cdf(3 / math.sqrt(2)) - 1) ** 2
     assert flat.mean() == pytest.approx(plane, abs=4 * math.sqrt(plane * (1 - plane) / COUNT))
+
+
+def test_a_run_counts_what_is_out_of_drawing(tmp_path: Path) -> None:
+    law = "{kind: process, distribution: {kind: normal, mean: 0 mm, sigma: " + repr(WIDTH / 6) + " mm}}"
+    scene = tmp_path / "scene.yaml"
+    scene.write_text(SCENE.format(law=law, outward=""), encoding="utf-8")
+    count = 20_000
+    run = run_scene(scene, overrides=Overrides(trials=count), out=tmp_path / "run")
+    drawn = run.columns("profile.offset [um]", "profile.rise x [um]", "profile.rise y [um]")
+    beyond = int((sum(np.abs(own) for own in drawn.values()) > 1e3 * WIDTH / 2).sum())
+    assert f"profile: {beyond} of {count} draws are out of drawing; kept as drawn" in run.summary["warnings"]
+    share = 1 - 0.7374245
+    assert beyond / count == pytest.approx(share, abs=4 * math.sqrt(share * (1 - share) / count))
+    ends = run.columns(*(f"position.{end} {axis} [um]" for end in ("start", "end") for axis in "xy"))
+    x1, y1, x2, y2 = ends.values()
+    aside = int((np.maximum(np.hypot(x1, y1), np.hypot(x2, y2)) > 1e3 * WIDTH / 2).sum())
+    assert any(f"position: {aside} of {count}" in warning for warning in run.summary["warnings"])
 
 
 def test_normals_within_the_zone(tmp_path: Path) -> None:

@@ -29,6 +29,7 @@ from tol3d.study.stopping import shortfalls
 from tol3d.study.study import Study
 from tol3d.study.tally import MeasureTally, Tally
 from tol3d.system.closed_form import ClosedForm
+from tol3d.system.draw import Judged
 from tol3d.system.measure import Measure
 from tol3d.system.outcome import ANALYTIC, GEOMETRIC, outcome_of, value_column
 from tol3d.system.road import Road
@@ -65,7 +66,7 @@ def study_summary(simulation: Simulation, road: Road | None, tally: Tally) -> Fi
             *uncorrelated(simulation),
             *faults(explained),
             *simulation.warnings,
-            *_unphysical_draws(tally),
+            *_unphysical_draws(simulation, tally),
             *shortfalls(simulation, tally),
         ],
     )
@@ -121,10 +122,12 @@ def _too_many(simulation: Simulation) -> Iterator[str]:
         )
 
 
-def _unphysical_draws(tally: Tally) -> Iterator[str]:
+def _unphysical_draws(simulation: Simulation, tally: Tally) -> Iterator[str]:
+    judged = {own.name for own in simulation.system.contributors if isinstance(own.draw, Judged)}
     for name, count in tally.unphysical.items():
         if count:
-            yield f"{name}: {count} of {tally.trials} draws are below zero, which no clearance is; kept as drawn"
+            why = "out of drawing" if name in judged else "below zero, which no clearance is"
+            yield f"{name}: {count} of {tally.trials} draws are {why}; kept as drawn"
 
 
 def _measure(

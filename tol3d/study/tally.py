@@ -22,6 +22,7 @@ from tol3d.study.spectrum_tally import BINS as ORDER_BINS
 from tol3d.study.spectrum_tally import amplitudes_of, grid_name
 from tol3d.study.status_counts import added, counted, status_counts
 from tol3d.system.closed_form import ClosedForm
+from tol3d.system.draw import Judged
 from tol3d.system.measure import Measure
 from tol3d.system.outcome import ANALYTIC, GEOMETRIC, ROADS, Columns, Outcome, outcome_of, value_column
 from tol3d.system.pooled import PooledTerms
@@ -191,7 +192,7 @@ class Tally:
     Args:
         trials: how many.
         status: how many of them ended how, by the worst of their measures.
-        unphysical: how many draws lie below what a contributor can be, by its name.
+        unphysical: how many draws lie below what a contributor can be, or beyond what its drawing allows, by its name.
         measures, curves: by name.
         terms: of breakdowns, by measure and road.
         joint: what measures do together.
@@ -245,4 +246,7 @@ def _unphysical(system: System, columns: Columns) -> dict[str, int]:
         if contributor.least is not None:
             drawn = np.asarray(columns[contributor.columns[0]], dtype=np.float64)
             counts[contributor.name] = int(np.count_nonzero(drawn < contributor.least / contributor.per_unit))
+        elif isinstance(contributor.draw, Judged):
+            own = [np.asarray(columns[name], dtype=np.float64) * contributor.per_unit for name in contributor.columns]
+            counts[contributor.name] = int(np.count_nonzero(contributor.draw.beyond(*own)))
     return counts

@@ -66,6 +66,15 @@ class Joint(Protocol):
         ...
 
 
+@runtime_checkable
+class Judged(Protocol):
+    """A Draw that a drawing judges and does not confine."""
+
+    def beyond(self, *components: Array) -> NDArray[np.bool_]:
+        """Which draws (trials,) the drawing does not allow, of components (trials,); they stay in their trials."""
+        ...
+
+
 @dataclass(frozen=True)
 class Scalar:
     """One component, drawn straight from the distribution."""

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
+from numpy.typing import NDArray
 
 from tol3d.assembly.zones.domain import Array, Ratio, UnitLaw
 from tol3d.assembly.zones.marginal import Marginal
@@ -212,6 +213,10 @@ class Process(ZoneDraw):
     def covariance(self) -> Array:
         """See ZoneDraw."""
         return np.diag([law.variance for law in self.laws])
+
+    def beyond(self, *components: Array) -> NDArray[np.bool_]:
+        """See Judged: outside the zone of the drawing's width."""
+        return ~self.zone.inside(np.stack(components, axis=-1))
 
     def deviations(self, *uniforms: Array) -> tuple[Array, ...]:
         """See ZoneDraw: whatever the zone is."""
