@@ -66,6 +66,13 @@ class Joint(Protocol):
         ...
 
 
+def component_sigmas(draw: Draw) -> tuple[float, ...]:
+    """Standard deviation of each component of a draw [mm, rad or K]."""
+    if isinstance(draw, Joint):
+        return tuple(np.sqrt(np.diagonal(draw.covariance)).tolist())
+    return (draw.sigma,) * len(draw.components)
+
+
 @runtime_checkable
 class Judged(Protocol):
     """A Draw that a drawing judges and does not confine."""

@@ -17,6 +17,7 @@ from tol3d.study.columns import columns_of
 from tol3d.study.draws import drawn
 from tol3d.study.regressors import regressors
 from tol3d.study.simulation import Simulation
+from tol3d.system.draw import component_sigmas
 from tol3d.system.measure import Measure
 from tol3d.system.outcome import ANALYTIC, GEOMETRIC, Columns, outcome_of, value_column
 from tol3d.system.positions import AT_RANDOM
@@ -110,7 +111,7 @@ def bends(simulation: Simulation, road: Road) -> Mapping[str, Mapping[str, float
     system = simulation.system
     measures = scalars_of(system)
     middle = mean_deviations(system, AT_RANDOM)
-    steps = np.diag([BEND_SIGMAS * c.draw.sigma for c in system.contributors for _ in c.draw.components])
+    steps = np.diag([BEND_SIGMAS * sigma for c in system.contributors for sigma in component_sigmas(c.draw)])
     builds = np.concatenate([middle, middle + steps, middle - steps])
     first = drawn(simulation, 0, BEND_POSITIONS)
     each = []
