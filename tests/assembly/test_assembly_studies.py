@@ -1,0 +1,83 @@
+"""Studies of assemblies: workers, samplers, replays, shares, failed builds, as of any system."""
+
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+from assembly_trials import constant, normal
+from datum_plate import SIGMAS, covariance, plate
+from places import SCENES
+
+from tol3d.runs.run import Run
+from tol3d.simulate import Execution, Overrides, load, replay, run_scene, simulation_of
+from tol3d.study.draws import drawn
+
+COLUMNS = ("geometric:position", "analytic:position", "status:position", "hole x [um]")
+
+
+def ran(folder: Path, name: str, text: str, trials: int = 3_000, workers: int = 1, **study: object) -> Run:
+    scene = folder / f"{name}.yaml"
+    scene.write_text(text, encoding="utf-8")
+    overrides = Overrides(trials=trials, **study)  # type: ignore[arg-type]  # seed, sampler: as the study has them
+    return run_scene(scene, overrides=overrides, out=folder / name, execution=Execution(workers=workers))
+
+
+@pytest.fixture(scope="module")
+def normals() -> str:
+    return plate({name: normal(own) for name, own in SIGMAS.items()})
+
+
+def test_workers_change_no_bit(tmp_path: Path, normals: str) -> None:
+    alone, together = (ran(tmp_path, f"by {workers}", normals, workers=workers) for workers in (1, 2))
+    for name in COLUMNS:
+        assert np.array_equal(alone.columns(name)[name], together.columns(name)[name])
+    assert alone.summary["measures"] == together.summary["measures"]
+
+
+def test_a_trial_can_be_replayed(tmp_path: Path, normals: str) -> None:
+    run = ran(tmp_path, "run", normals)
+    for trial in (0, 17, 2999):
+        again = replay(run, trial)
+        assert again.geometric["position"] == run.columns("geometric:position")["geometric:position"][trial]
+        assert again.analytic["position"] == run.columns("analytic:position")["analytic:position"][trial]
+
+
+def test_sobol_points_know_the_sigma_sooner(tmp_path: Path, normals: str) -> None:
+    text = normals.replace(
+        "measures:\n", "measures:\n  across: {kind: gap, from: plate.b1, to: plate.hole, along: [0, 1, 0]}\n"
+    )
+    sigma = math.hypot(SIGMAS["b1"], SIGMAS["ey"])
+    off = {}
+    for sampler in ("monte_carlo", "sobol"):
+        run = ran(tmp_path, sampler, text, trials=4096, sampler=sampler)
+        off[sampler] = abs(run.summary["measures"]["across"]["geometric"]["sigma"] / (1e3 * sigma) - 1)
+    assert off["sobol"] < 2e-3 < 4 / math.sqrt(2 * 4096)
+
+
+def test_shares_of_what_takes_a_size_are_those_of_squares(tmp_path: Path, normals: str) -> None:
+    """Of position^2 = 4 (dx^2 + dy^2) each deviation's square has a share; that of its root is close."""
+    run = ran(tmp_path, "run", normals, trials=40_000)
+    found = {own["name"]: own["geometric_percent"] for own in run.summary["measures"]["position"]["contributors"]}
+    rows = np.array([[-1 / 16, 1 / 16, -1, 1, 0], [-0.1875, -0.8125, 0, 0, 1]])
+    squares = (rows**2).sum(axis=0) * np.square(list(SIGMAS.values()))
+    alone = 100 * squares**2 / np.trace(covariance() @ covariance())
+    names = ("b1 off", "b2 off", "c off", "hole x", "hole y")
+    for name, own in zip(names, alone, strict=True):
+        assert found[name] == pytest.approx(own, abs=6), name
+
+
+def test_constants_build_and_have_no_shares(tmp_path: Path) -> None:
+    run = ran(tmp_path, "run", plate({name: constant(0.01) for name in SIGMAS}), trials=100)
+    found = run.summary["measures"]["position"]
+    assert found["geometric"]["sigma"] == pytest.approx(0.0, abs=1e-9)
+
+
+def test_bits_of_a_trial_do_not_depend_on_its_neighbours() -> None:
+    simulation = simulation_of(load(SCENES / "door.yaml"), Overrides())
+    many = drawn(simulation, 0, 300)
+    road = simulation.system.road("exact", simulation.system.materials("exact"))
+    whole = road.answers(many, simulation.system.measures).values
+    for trial in (0, 17, 299):
+        alone = road.answers(drawn(simulation, trial, 1), simulation.system.measures).values
+        assert all(np.array_equal(own[0], whole[name][trial]) for name, own in alone.items())
