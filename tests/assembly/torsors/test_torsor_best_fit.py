@@ -5,12 +5,12 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from drafts import Draft, Vector, displacement, turned
+from drafts import Draft, Vector, displacement, frame, turned
 from numpy.typing import NDArray
 from scipy.optimize import linprog, minimize
 from scipy.spatial.transform import Rotation
 
-from tol3d.assembly.model import Assembly, BestFit, Fit, Fix
+from tol3d.assembly.model import Assembly, BestFit, Fit, Fix, Locate, Pair
 from tol3d.assembly.torsors.road import slopes, values
 
 Array = NDArray[np.float64]
@@ -20,6 +20,8 @@ ERRORS = np.array([[0.13, -0.04], [0.09, 0.11], [-0.14, 0.15], [-0.05, -0.08]])
 """Problem 8: actual less nominal, mm."""
 
 IN_PLANE = np.eye(3)[:2]
+
+X, Y, Z = np.eye(3)
 
 
 def fitted(
@@ -182,3 +184,43 @@ def test_an_error_of_all_points_alike_is_followed_by_both_criteria() -> None:
             np.testing.assert_allclose(one, other, atol=1e-9)
         many = np.random.default_rng(2).normal(size=(64, 12)) * 0.1
         np.testing.assert_array_equal(shifts(assembly, HOLES, many)[17], shifts(assembly, HOLES, many[17:18])[0])
+
+
+@pytest.mark.parametrize("criterion", ["squares", "minimax"])
+def test_a_part_rides_on_what_it_is_fitted_to_and_comes_to_points_that_are_drawn_aside(criterion: str) -> None:
+    """A body that is moved first carries the part as it is; gaps that do not count stay, those that count close."""
+    draft = Draft()
+    for name in ("base", "carrier", "part"):
+        draft.part(name)
+    for k, (point, normal) in enumerate(
+        [((0, 0, 0), Z), ((90, 0, 0), Z), ((0, 90, 0), Z), ((0, 0, 0), Y), ((90, 0, 0), Y), ((0, 0, 0), X)]
+    ):
+        draft.feature(f"base.{k}", frame(point, normal))
+        draft.feature(f"carrier.{k}", point, deviates=False)
+    normals = [Z, Z, Z, Y, Y, X]
+    pairs = tuple(Pair(f"carrier.{k}", f"base.{k}", normal) for k, normal in enumerate(normals))
+    fits = []
+    for k, hole in enumerate(HOLES):
+        target = draft.feature(f"carrier.hole {k}", hole + 0.03 * X, deviates=False)
+        moving = draft.feature(f"part.hole {k}", hole + 7.0 * Z, deviates=False)  # 7 over it, and not counted
+        fits.append(Fit(moving, target, 1.0, IN_PLANE))
+    for part in ("carrier", "part"):
+        draft.feature(f"{part}.far", (30, 80, 7), deviates=False)
+    draft.feature("base.zero", (0, 0, 0), deviates=False)
+    move = BestFit("fit", "part", tuple(fits), "squares" if criterion == "squares" else "minimax")
+    measures = {
+        f"{part} {name}": displacement(f"{part}.far", axis, "base.zero")
+        for part in ("carrier", "part")
+        for name, axis in zip("xyz", np.eye(3), strict=True)
+    }
+    assembly = draft.assembly((Fix("fix", "base"), Locate("lay", "carrier", pairs), move), measures)
+    # turned about z and shifted: what the fit sees; a tilt of the carrier would leave the part, which nothing tilts
+    given = draft.trial({"base.3 z": 0.1, "base.4 z": 0.4, "base.5 z": -0.2})
+    found = values(assembly, np.vstack([given, 0.0 * given]), list(measures))
+    for name, gap in (("x", 0.03), ("y", 0.0), ("z", 0.0)):
+        np.testing.assert_allclose(found[f"part {name}"] - found[f"carrier {name}"], gap, atol=1e-12)
+    # tilted about x: points 7 over the carrier's plane ride aside with it, though the part itself stays upright
+    tilted = values(assembly, draft.trial({"base.2 z": 0.9}), list(measures))
+    assert tilted["carrier y"][0] == pytest.approx(80.0 - 7 * 0.9 / 90, abs=1e-12)
+    assert tilted["part y"][0] == pytest.approx(80.0 - 7 * 0.9 / 90, abs=1e-12)
+    assert tilted["part z"][0] == pytest.approx(7.0, abs=1e-12)

@@ -249,3 +249,80 @@ def test_relations_that_take_nothing_or_make_no_sense_are_refused() -> None:
         assembly = draft.assembly(moves, {"size": Measured("size", ("lid.axis",))})
         with pytest.raises(InputError, match=message):
             values(assembly, np.zeros((1, assembly.width)), ["size"])
+
+
+def test_what_nothing_holds_stays_by_the_least_turn_and_about_the_origin_of_the_part() -> None:
+    """A pin in a hole that tilts about x: the lid does not turn about the pin, and its origin does not slide along."""
+    draft = Draft()
+    draft.part("base")
+    draft.part("lid", frame((70, 20, 9)))  # its origin lies off the pin
+    draft.feature("base.hole", frame((10, 20, 0), Z, X), Axis(40.0))
+    draft.feature("lid.pin", frame((-60, 0, -9), Z, X), Axis(40.0), deviates=False)
+    draft.feature("base.zero", (0, 0, 0), deviates=False)
+    draft.feature("lid.origin", (0, 0, 0), deviates=False)
+    draft.feature("lid.far", (30, 40, 50), deviates=False)
+    moves = (Fix("fix", "base"), Mate("lay", "lid", (Relation("coaxial", "lid.pin", "base.hole"),)))
+    measures = {
+        f"{point} {name}": displacement(f"lid.{point}", axis, "base.zero")
+        for point in ("origin", "far")
+        for name, axis in (("x", X), ("y", Y), ("z", Z))
+    }
+    assembly = draft.assembly(moves, measures)
+    tilt = 0.4 / 40.0  # of the hole, about x and about -y, by its end alone; its middle shifts by half
+    given = draft.trial({"base.hole end y": -0.4, "base.hole end x": 0.4})
+    found = values(assembly, given, list(measures))
+    turn = np.array([tilt, tilt, 0.0])
+    middle = np.array([0.2, -0.2, 0.0])
+    # z such that the origin of the part stays at its height
+    lift = -np.cross(turn, [60, 0, 9])[2]
+    for point, at in (("origin", np.zeros(3)), ("far", np.array([30.0, 40, 50]))):
+        shift = middle + lift * Z + np.cross(turn, at + np.array([60, 0, 9]))
+        expected = at + np.array([70, 20, 9]) + shift
+        np.testing.assert_allclose([found[f"{point} {name}"][0] for name in "xyz"], expected, atol=1e-12)
+
+
+def test_a_ball_before_a_plane_or_an_axis_leaves_it_the_turns_alone() -> None:
+    """Of planes the directions come first, of axes the place across; what is left of the other is asked."""
+    draft = Draft()
+    draft.part("base")
+    draft.part("lid")
+    for part, z in (("base", Z), ("lid", -Z)):
+        draft.feature(f"{part}.ball", (0, 0, 0))
+        draft.feature(f"{part}.face", frame((50, 0, 0), z, X), Plane((100, 60)))
+        draft.feature(f"{part}.axis", frame((0, 0, 50), Z, X), Axis(40.0))
+    draft.feature("base.zero", (0, 0, 0), deviates=False)
+    draft.feature("lid.far", (50, 0, 20), deviates=False)
+    ball = Relation("coincident", "lid.ball", "base.ball")
+    measures = {name: displacement("lid.far", axis, "base.zero") for name, axis in (("x", X), ("y", Y), ("z", Z))}
+    for relation, given, expected in (
+        # the face tilts the lid about the ball, and its offset is not met
+        (Relation("coincident", "lid.face", "base.face"), {"face offset": 0.3, "face rise x": 0.1}, (-0.04, 0.0, 0.1)),
+        # the middle of an axis 50 over the ball turns the lid by its place, and its direction is not met
+        (Relation("coaxial", "lid.axis", "base.axis"), {"axis end y": 0.2}, (0.0, 0.1 * 20 / 50, 0.0)),
+    ):
+        assembly = draft.assembly((Fix("fix", "base"), Mate("lay", "lid", (ball, relation))), measures)
+        trial = draft.trial({f"base.{name}": value for name, value in given.items()})
+        found = values(assembly, trial, ["x", "y", "z"])
+        np.testing.assert_allclose([found[name][0] for name in "xyz"], np.array([50, 0, 20]) + expected, atol=1e-12)
+
+
+def test_parts_that_are_drawn_beside_where_their_mates_lay_them_are_laid_there() -> None:
+    """Lifted by 0.1, tilted by 1e-3 and shifted nominally: laid to the second order, that is 1e-6 times the arm."""
+    draft = Draft()
+    draft.part("base")
+    draft.part("lid", turned((1e-3, -2e-3, 1e-3), (0.2, -0.1, 0.1)))
+    for part, z in (("base", Z), ("lid", -Z)):
+        draft.feature(f"{part}.face", frame((50, 0, 0), z, X), Plane((100, 60)), deviates=False)
+        for k, x in enumerate((10, 90)):
+            draft.feature(f"{part}.{k}", frame((x, 0, 0), Z), Axis(40.0), deviates=False)
+    draft.feature("base.zero", (0, 0, 0), deviates=False)
+    draft.feature("lid.far", (50, 30, 20), deviates=False)
+    draft.contribution("none", [""])
+    relations = [Relation("coincident", "lid.face", "base.face")]
+    relations += [Relation("coaxial", f"lid.{k}", f"base.{k}") for k in range(2)]
+    measures = {name: displacement("lid.far", axis, "base.zero") for name, axis in (("x", X), ("y", Y), ("z", Z))}
+    assembly = draft.assembly((Fix("fix", "base"), Mate("lay", "lid", tuple(relations))), measures)
+    found = values(assembly, np.zeros((1, 1)), ["x", "y", "z"])
+    np.testing.assert_allclose([found[name][0] for name in "xyz"], [50, 30, 20], atol=5e-4)
+    before = slopes(draft.assembly((), measures), "z", np.zeros(1), np.zeros(1)).nominal
+    assert abs(before - 20) > 0.05

@@ -232,6 +232,42 @@ def test_flatness_is_the_least_width_between_parallel_planes(places: list[tuple[
         np.testing.assert_allclose(found, np.abs(heights @ [1, -1, 1, -1]) / 2, atol=1e-13)
 
 
+def test_points_that_are_drawn_off_their_plane_have_a_flatness_nominally() -> None:
+    draft = Draft()
+    draft.part("part")
+    places = [(-50, -30, 0.02), (50, -30, 0), (50, 30, 0), (-50, 30, 0)]
+    names = tuple(draft.feature(f"part.{k}", place) for k, place in enumerate(places))
+    assembly = draft.assembly((), {"flatness": Measured("flatness", names, Z)})
+    found = values(assembly, draft.trial({"part.2 z": 0.06}), ["flatness"])["flatness"][0]
+    assert found == pytest.approx((0.02 + 0.06) / 2, abs=1e-15)
+
+
+def test_a_direction_is_fixed_in_a_datum_frame_of_the_trial() -> None:
+    """A face tilts the frame by 0.1 / 50; what lies 40 across the direction is seen so much longer."""
+    draft = Draft()
+    draft.part("part")
+    draft.feature("part.a", frame((0, 0, 0), Z, X), Plane((100, 60)))
+    name = draft.datum_frame("part", Datum(("part.a",)))
+    draft.feature("part.zero", (0, 0, 0), deviates=False)
+    draft.feature("part.far", (40, 0, 30), deviates=False)
+    gaps = {"in it": Measured("gap", ("part.zero", "part.far"), Z, frame=name)}
+    gaps["in the part"] = Measured("gap", ("part.zero", "part.far"), Z)
+    assembly = draft.assembly((), gaps)
+    found = values(assembly, draft.trial({"part.a rise x": 0.1}), list(gaps))
+    assert found["in it"][0] == pytest.approx(30.0 - 40 * 0.1 / 50, abs=1e-12)
+    assert found["in the part"][0] == 30.0
+
+
+def test_contributions_to_a_feature_add_up_though_they_share_columns() -> None:
+    draft = Draft()
+    draft.part("part")
+    draft.feature("part.feature", (5, 0, 0))
+    draft.feature("part.zero", (0, 0, 0), deviates=False)
+    own = draft.features["part.feature"]
+    draft.features["part.feature"] = replace(own, moved_by=(*own.moved_by, *own.moved_by))
+    assert one(draft, displacement("part.feature", Z, "part.zero"), z=0.25) == 0.5
+
+
 def test_flatness_of_too_many_points_is_refused() -> None:
     draft = Draft()
     draft.part("part")

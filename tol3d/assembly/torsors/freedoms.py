@@ -5,7 +5,7 @@ from collections.abc import Iterable
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.assembly.torsors.torsor import cross_matrix, shift_at, turn_about
+from tol3d.assembly.torsors.torsor import cross_matrix, turn_about
 
 Array = NDArray[np.float64]
 
@@ -81,10 +81,8 @@ class Freedoms:
 
     def rest(self) -> Array:
         """The torsor, nothing turning or shifting that no equation asks for: the least turn, then about `origin`."""
-        nothing = np.zeros((3, self._found.shape[1]))
-        self.take(turn_about(np.eye(3)), nothing)
-        self.take(shift_at(self._origin), nothing)
-        return self.torsor
+        self.take(turn_about(np.eye(3)), np.zeros((3, self._found.shape[1])))
+        return self.torsor  # shifts that are left were never taken: at `origin` they are 0
 
 
 def freedom_in_words(torsors: Array) -> str:
