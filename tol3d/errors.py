@@ -31,6 +31,10 @@ class GeometryError(InputError):
     """Gears that cannot be made, or cannot run together; the text carries the numbers."""
 
 
+class MechanismError(Tol3dError):
+    """A mechanism of another package is at fault, not the user's input; exit code 3."""
+
+
 class RunError(InputError):
     """A folder is not a run, is damaged, or cannot be written."""
 

@@ -91,7 +91,8 @@ def _added(vocabulary: Vocabulary) -> "SummaryKinds":
     if isinstance(vocabulary, Mechanism) and vocabulary.summary:
         found: SummaryKinds = named(vocabulary.summary)
         return found
-    plain = tuple(str(kind_of(spec)) for spec in vocabulary.measures)
+    presenter = vocabulary.presenter if isinstance(vocabulary, Mechanism) else ""
+    plain = tuple((str(kind_of(spec)), presenter) for spec in vocabulary.measures)
     made: SummaryKinds = named("tol3d.runs.summary.kinds:SummaryKinds")(plain=plain)
     return made
 

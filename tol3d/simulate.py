@@ -83,6 +83,7 @@ from tol3d.study.stopping import enough
 from tol3d.study.tally import Tally
 from tol3d.study.task import Task, task_of, workers_for
 from tol3d.study.versions import installed_versions
+from tol3d.system.faults import faults_of
 
 COMPILING = "compiling kernels, once on this machine"
 
@@ -118,17 +119,22 @@ def run_scene(
 
     Raises:
         SceneError, RunError, InputError: with the place and what to do.
+        MechanismError: a mechanism of another package is at fault.
     """
     clock = Clock()
     scene = load(scene, trust_parts=trust_parts, kinds=kinds)
     simulation = simulation_of(scene, overrides)
-    order = _order(scene, simulation, execution, out, clock)
+    with faults_of(simulation.mechanism):
+        return _run(_order(scene, simulation, execution, out, clock), watch, force=force)
+
+
+def _run(order: "_Order", watch: Watch, *, force: bool) -> Run:
     if whole := order.whole_run():
         return whole
     with order.writing(force=force) as writer:
         task = order.task(watch)
         outcome = order.run(task, writer, watch)
-        found = findings(simulation, task.road, outcome.statistics, watch.activity)
+        found = findings(order.simulation, task.road, outcome.statistics, watch.activity)
         return order.finished(writer, found, outcome, watch)
 
 
@@ -260,7 +266,8 @@ def folder_for(scene: Scene, simulation: Simulation, execution: Execution, runs:
         scene, simulation, execution: of the run.
         runs: the folder of all runs.
     """
-    fingerprint = fingerprint_of(scene, simulation, execution)
+    with faults_of(simulation.mechanism):
+        fingerprint = fingerprint_of(scene, simulation, execution)
     return free_folder(runs / scene.source.stem, fingerprint, resume=execution.resume)
 
 

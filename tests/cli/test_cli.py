@@ -66,7 +66,15 @@ WRONG_OPTIONS = {
     "no number of trials": (("--trials", "many"), "a whole number from 1 on, or auto, got 'many'"),
     "no trials": (("--trials", "0"), "a whole number from 1 on, or auto, got '0'"),
     "auto without an end": (("--trials", "auto"), "the standard errors to stop at"),
-    "too many trials": (("--trials", "10000000001"), "trials, otherwise than in the scene"),
+    "too many trials": (
+        ("--trials", "10000000001"),
+        "--trials (in Python Overrides.trials): expected a number of at most 1e+10, got 10000000001",
+    ),
+    "no such engine": (
+        ("--engine", "foo"),
+        "--engine (in Python Overrides.engine): expected one of exact, fcl, analytic, got 'foo'; these are the",
+    ),
+    "an engine misspelt": (("--engine", "exat"), "analytic, got 'exat'; did you mean \"exact\"?"),
     "a witness of no simulation": (("--engine", "analytic", "--witness", "3"), "no 3D simulation to check"),
     "a witness of the witness": (("--engine", "fcl", "--witness", "3"), "an exact study may have one"),
     "workers here and there": (("--scheduler", "tcp://here:1", "--workers", "2"), "leave out --workers"),

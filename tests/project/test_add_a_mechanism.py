@@ -126,6 +126,57 @@ def test_the_smallest_of_six_pins_has_the_mean_and_sigma_of_that_order_statistic
         assert found[road]["sigma"] == pytest.approx(sigma, rel=4 / math.sqrt(TRIALS))
 
 
+TWO_GAUGES = """\
+scene: two gauges
+parts:
+  small: {kind: pin_gauge, pins: 3, radius: 8 mm, gap: 30 um}
+  large: {kind: pin_gauge, pins: 5, radius: 25 mm, gap: 12 um}
+  bare: {kind: pin_gauge, pins: 4, radius: 10 mm, gap: 7 um}
+tolerances:
+  pins of small: {kind: pin_position, of: small, distribution: {kind: uniform, lower: -9 um, upper: 4 um}}
+  more of small: {kind: pin_position, of: small, distribution: {kind: normal, lower: -3 um, upper: 3 um}}
+  pins of large: {kind: pin_position, of: large, distribution: {kind: normal, lower: -6 um, upper: 6 um}}
+  offset of large: {kind: peg_offset, of: large, distribution: {kind: rayleigh, scale: 2 um}}
+moves:
+  into small: {kind: peg_among_pins, gauge: small}
+  into large: {kind: peg_among_pins, gauge: large}
+  into bare: {kind: peg_among_pins, gauge: bare}
+measures:
+  large gap: {kind: smallest_gap, of: into large}
+  small gap: {kind: smallest_gap, of: into small}
+  bare gap: {kind: smallest_gap, of: into bare}
+study: {trials: 300, seed: 4}
+"""
+
+
+def test_gauges_of_one_scene_have_their_own_sizes_and_tolerances(names: dict[str, Any], tmp_path: Path) -> None:
+    """By hand from the columns, as above; a gauge without tolerances has its nominal gap in every trial."""
+    scene = tmp_path / "two.yaml"
+    scene.write_text(TWO_GAUGES, "utf-8")
+    run = tol3d.run_scene(scene, out=tmp_path / "run")
+    frame = run.frame()
+    x, y = frame["offset of large.x [um]"].to_numpy(), frame["offset of large.y [um]"].to_numpy()
+    large, placed = [], []
+    for k in range(5):
+        pin = frame[f"pins of large.pin {k + 1} [um]"].to_numpy()
+        cos, sin = math.cos(math.radians(72 * k)), math.sin(math.radians(72 * k))
+        large.append(12 + pin - cos * x - sin * y)
+        placed.append(np.hypot((25_000 + pin) * cos - x, (25_000 + pin) * sin - y) - 25_000 + 12)
+    small = [30 + frame[f"pins of small.pin {k} [um]"] + frame[f"more of small.pin {k} [um]"] for k in (1, 2, 3)]
+    assert frame["analytic:large gap"].to_numpy() == pytest.approx(np.min(large, axis=0), abs=1e-8)
+    assert frame["geometric:large gap"].to_numpy() == pytest.approx(np.min(placed, axis=0), abs=1e-8)
+    for road in ("analytic", "geometric"):
+        assert frame[f"{road}:small gap"].to_numpy() == pytest.approx(np.min(small, axis=0), abs=1e-8)
+        assert frame[f"{road}:bare gap"].to_numpy() == pytest.approx(7.0, abs=1e-8)
+    shares = {name: [own.name for own in found.contributors] for name, found in run.found.measures.items()}
+    assert shares == {
+        "large gap": ["pins of large", "offset of large"],
+        "small gap": ["pins of small", "more of small"],
+        "bare gap": [],
+    }
+    assert "bare gap" in str(tol3d.check_scene(scene))
+
+
 def test_its_run_opens_again_and_any_trial_is_replayed(run: Run) -> None:
     again = tol3d.open_run(run.path)
     worst = again.worst("smallest gap")
@@ -183,7 +234,7 @@ def test_the_command_runs_shows_and_compares_it(names: dict[str, Any], command: 
 def test_a_run_without_a_presenter_has_no_further_pictures_and_no_builds_to_show(run: Run, tmp_path: Path) -> None:
     """What is its own is named by its mechanism, and no other presenter takes its place."""
     assert picture.system_files(run.found) == {}
-    with pytest.raises(InputError, match="cannot be shown: it has no presenter"):
+    with pytest.raises(InputError, match="nothing to show in 3D: the mechanism 'pin gauges' has no presenter; its"):
         tol3d.export_trial(run, 0, out=tmp_path)
     assert list(tmp_path.iterdir()) == []
 

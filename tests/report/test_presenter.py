@@ -2,8 +2,10 @@
 
 import ctypes.util
 import os
+import pickle
 import sys
 from pathlib import Path
+from typing import get_args
 
 import numpy as np
 import pytest
@@ -15,7 +17,11 @@ from tol3d import Overrides, Run, run_scene
 from tol3d.errors import InputError
 from tol3d.gearing.presenting import PRESENTER as GEARS
 from tol3d.report import export_run, part_meshes, picture, view_run
-from tol3d.report.presenter import presenter_of
+from tol3d.report.body import Body, World
+from tol3d.report.presenter import View, presenter_of
+from tol3d.report.whole import _best_eye
+from tol3d.runs.summary.kinds import SummaryKinds
+from tol3d.solids import PosedBody
 
 BOXES = "report.box_presenter"
 CUBES = {"small": (GROWTH * SIDES["small"]) ** 3, "large": SIDES["large"] ** 3}  # mm^3
@@ -85,9 +91,55 @@ def test_the_window_of_a_system_without_panels_shows_its_bodies_named(run: Run, 
         assert (np.abs(pixels - wanted).max(axis=2) < 3).sum() > 500
 
 
+@renders
+def test_a_body_within_another_is_seen_nowhere_not_even_at_an_edge() -> None:
+    """Bodies are found by the colours of their numbers: half of the second's at an edge would be the first's."""
+    pose = np.eye(4)
+    pose[:3, 3] = 3.0, 4.0, 5.0
+
+    def cube(name: str, side: float) -> Body:
+        solid = trimesh.creation.box((side,) * 3)
+        return Body(name, pose, lambda: (np.asarray(solid.vertices), np.asarray(solid.faces)), unposed, "#888888")
+
+    def unposed() -> PosedBody:
+        raise AssertionError("no STEP file is written")
+
+    _, anchors = _best_eye(World("nested", (cube("inner", 2.0), cube("outer", 20.0))), 1.0)
+    assert anchors["inner"] == pytest.approx([3.0, 4.0, 5.0])
+    assert np.abs(anchors["outer"] - [3.0, 4.0, 5.0]).max() == pytest.approx(10.0, abs=0.1)  # mm, a pixel
+
+
 def test_a_close_up_that_is_not_there_is_refused_by_the_presenter(run: Run, tmp_path: Path) -> None:
     with pytest.raises(InputError, match="no teeth"):
         view_run(run, 3, screenshot=tmp_path / "none.png", close_up="teeth", presenter=BOXES)
+
+
+def test_a_build_without_bodies_is_refused_and_nothing_is_written(
+    run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    class Empty:
+        label, notes, worlds = "trial-3", (), (World("empty", ()),)
+
+        def view(self, close_up: str | None) -> View:
+            return View()
+
+    monkeypatch.setattr(type(PRESENTER), "display", lambda *_, **__: Empty())
+    words = r"^trial-3: there is nothing to show in 3D: its presenter gives no bodies$"
+    with pytest.raises(InputError, match=words):
+        view_run(run, 3, screenshot=tmp_path / "empty.png", presenter=BOXES)
+    with pytest.raises(InputError, match=words):
+        export_run(run, 3, "glb", out=tmp_path, presenter=BOXES)
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_measures_without_keys_of_their_own_are_shown_by_their_mechanisms_presenter() -> None:
+    """Of two mechanisms together, each by its own."""
+    both = SummaryKinds(plain=(("first", BOXES), ("second", "")))
+    both = pickle.loads(pickle.dumps(both | SummaryKinds(plain=(("third", BOXES),))))
+    found = {
+        kind: own.presenter for own in both.every_measure for kind in get_args(own.model_fields["kind"].annotation)
+    }
+    assert found == {"first": BOXES, "third": BOXES, "second": ""}
 
 
 def test_a_run_whose_measures_name_no_presenter_has_no_further_pictures_and_says_why_nothing_is_shown(
@@ -97,5 +149,5 @@ def test_a_run_whose_measures_name_no_presenter_has_no_further_pictures_and_says
     for measure in run.found.measures.values():
         monkeypatch.setattr(type(measure), "presenter", "")
     assert picture.system_files(run.found) == {}
-    with pytest.raises(InputError, match=r"cannot be shown: it has no presenter$"):
+    with pytest.raises(InputError, match="nothing to show in 3D: the mechanism 'gearing' has no presenter; its histo"):
         export_run(run, 0, "stl", out=tmp_path)

@@ -117,7 +117,7 @@ def test_a_scene_of_kinds_from_outside_is_pickled_with_its_class(tmp_path: Path,
 CHANGES = {
     "unknown kind": (
         ("kind: spring,", "kind: sprig,"),
-        "3: parts.spring.kind: expected one of arm, bearing, bevel_gear, housing, shaft, spur_gear, spring, "
+        "3: parts.spring.kind: expected one of arm, bearing, bevel_gear, housing, shaft, spur_gear, solid, spring, "
         "got 'sprig'; "
         'did you mean "spring"?',
     ),
@@ -263,8 +263,8 @@ NEW_FILES = {
     ),
     "tol3d/gearing/grammar/tolerances/groove.py": (
         '"""A groove."""\n\nfrom typing import Literal\n\n'
-        "from tol3d.gearing.grammar.tolerances.gear_tolerance import GearToleranceSpec\n\n\n"
-        'class GrooveSpec(GearToleranceSpec):\n    """A groove."""\n\n    kind: Literal["groove"]\n'
+        "from tol3d.gearing.grammar.tolerances.tooth_thickness import ToothThicknessSpec\n\n\n"
+        'class GrooveSpec(ToothThicknessSpec):\n    """A groove."""\n\n    kind: Literal["groove"]\n'
     ),
     "tol3d/gearing/grammar/moves/belt.py": (
         '"""A belt."""\n\nfrom typing import ClassVar, Literal\n\nfrom tol3d.scene.move import MoveSpec\n'

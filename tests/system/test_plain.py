@@ -86,7 +86,7 @@ def scene() -> Scene:
 @pytest.fixture
 def system(scene: Scene) -> PlainSystem:
     return PlainSystem(
-        "a block", contributors_of(scene, {ShiftSpec: lambda law: Planar(law, None)}), measures_of(scene)
+        "a block", contributors_of(scene, {ShiftSpec: lambda law, tolerance: Planar(law, None)}), measures_of(scene)
     )
 
 
@@ -111,10 +111,12 @@ def test_limits_are_internal_and_a_measure_s_unit_is_that_of_its_dimension(syste
 
 
 def test_deviations_of_a_kind_add_up_and_are_0_where_there_is_none(system: PlainSystem) -> None:
+    height, _ = system.measures
     trials = stated(system, np.array([[1.0, 2.0, 3.0, 4.0], [5.0, 6.0, 7.0, 9.0]]))
     assert system.deviations(trials, "shift").tolist() == [[1.0, 2.0], [5.0, 6.0]]
     assert system.deviations(trials, "tilt").tolist() == [[7.0], [16.0]]
     assert system.deviations(trials, "warmth").tolist() == [[0.0], [0.0]]
+    assert system.deviations(trials, "warmth", height, 3).tolist() == [[0.0] * 3] * 2
     assert len(nominal_build(system)) == 1
 
 
@@ -127,7 +129,7 @@ def test_roads_are_its_two_functions() -> None:
             return np.hypot(*trials.deviations[:, :2].T)
 
     made: Scene = Grammar((BLOCKS,)).scene.model_validate(ENTRIES)
-    sums = Sums("sums", contributors_of(made, {ShiftSpec: lambda law: Planar(law, None)}), measures_of(made))
+    sums = Sums("sums", contributors_of(made, {ShiftSpec: lambda law, tolerance: Planar(law, None)}), measures_of(made))
     trials = stated(sums, np.array([[3.0, 4.0, 0.0, 1.0]]))
     found = {name: sums.road(name, sums.materials(name)).answers(trials, sums.measures) for name in sums.roads}
     assert {name: answers.values["height"].tolist() for name, answers in found.items()} == {

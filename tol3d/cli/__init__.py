@@ -1,8 +1,8 @@
 """The command line: arguments, exit codes, progress. The only place that prints.
 
 Exit codes: 0 done, 1 limits failed (with --fail-on-limits), 2 wrong input, or a write that the disk or the system
-refused (full, read-only, broken, a limit on files), 3 a fault of tol3d, 130 interrupted.
-Imports stand inside the functions here, so that `tol3d --help` loads no numpy, no CAD and no plotting.
+refused (full, read-only, broken, a limit on files), 3 a fault of tol3d or of a mechanism of another package, 130
+interrupted. Imports stand inside the functions here, so that `tol3d --help` loads no numpy, no CAD and no plotting.
 """
 
 import gc
@@ -82,7 +82,7 @@ def _plain_warnings() -> Iterator[None]:
 
 @contextmanager
 def _exit_codes() -> Iterator[None]:
-    from tol3d.errors import InputError
+    from tol3d.errors import InputError, MechanismError
 
     try:
         yield
@@ -98,12 +98,20 @@ def _exit_codes() -> Iterator[None]:
         if refused := _refused_write(error):
             err_console.print(refused)
             sys.exit(WRONG_INPUT)
-        import traceback
-
-        err_console.print(f"a fault in tol3d, not in your scene: {type(error).__name__}: {error}")
-        err_console.print("please report it with the scene and these lines:")
-        err_console.print("".join(traceback.format_exception(error)[-3:]).rstrip())
+        if isinstance(error, MechanismError):
+            _print_fault(str(error), "to its authors ", error.__cause__ or error)
+        else:
+            _print_fault(f"a fault in tol3d, not in your scene: {type(error).__name__}: {error}", "", error)
         sys.exit(FAULT)
+
+
+def _print_fault(words: str, whom: str, error: BaseException) -> None:
+    """A fault of code, with the last lines of its traceback for those who mend it."""
+    import traceback
+
+    err_console.print(words)
+    err_console.print(f"please report it {whom}with the scene and these lines:")
+    err_console.print("".join(traceback.format_exception(error)[-3:]).rstrip())
 
 
 def _refused_write(error: Exception) -> str:

@@ -78,16 +78,19 @@ def run(
     from tol3d.report.table import Detail, run_report
     from tol3d.report.verdict import ACCEPTED_PPM, all_ok
     from tol3d.simulate import Overrides, folder_for, load, run_scene, simulation_of, workers_for
+    from tol3d.system.faults import faults_of
 
     path = scene_path(scene)
     overrides = Overrides(trials, seed, engine, sampler.value if sampler else None, witness)
     loaded = load(path, trust_parts=trust_parts)
     simulation = simulation_of(loaded, overrides)
-    for warning in simulation.warnings:
-        warn(warning)
-    if notice := long_study(simulation):
-        err_console.print(notice)
-    execution = Execution(workers or workers_for(simulation), scheduler, keep_trials=not no_trials, resume=resume)
+    with faults_of(simulation.mechanism):
+        for warning in simulation.warnings:
+            warn(warning)
+        if notice := long_study(simulation):
+            err_console.print(notice)
+        workers = workers or workers_for(simulation)
+    execution = Execution(workers, scheduler, keep_trials=not no_trials, resume=resume)
     folder, taken = out or Path("runs") / path.stem, ""
     if out is None and not force:
         folder, taken = folder_for(loaded, simulation, execution, Path("runs"))

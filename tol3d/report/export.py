@@ -13,7 +13,7 @@ import trimesh
 
 from tol3d.errors import InputError, unwritable
 from tol3d.report.body import Body, World
-from tol3d.report.presenter import Display, Which, presenter_of
+from tol3d.report.presenter import Display, Which, presenter_of, require_bodies
 from tol3d.runs.atomic_write import named_in_errors
 from tol3d.runs.run import Run
 from tol3d.solids import export_step
@@ -56,13 +56,14 @@ def export_run(
         presenter: import path of what shows the system; by default that of the run's measures.
 
     Raises:
-        InputError: an unknown format or build, a STEP file magnified, or a folder that cannot be written.
+        InputError: an unknown format or build, no bodies, a STEP file magnified, or a folder that cannot be written.
     """
     if fmt not in FORMATS:
         raise InputError(f"format: expected one of {', '.join(FORMATS)}, got {fmt!r}")
     if fmt == "step" and magnify != 1.0:
         raise InputError("a STEP file holds the real parts: leave out --magnify, or choose stl, ply or glb")
     display = presenter_of(run.found, presenter).display(run, which, magnify=magnify)
+    require_bodies(display)
     try:
         out.mkdir(parents=True, exist_ok=True)
         files = list(_files(display, fmt, out))

@@ -138,6 +138,16 @@ def presenter_of(run: "RunSummary", path: str | None = None) -> Presenter:
     return presenter_at(next(named, "") if path is None else path)
 
 
+def require_bodies(display: Display) -> None:
+    """Refuse a build of which nothing can be seen.
+
+    Raises:
+        InputError: it has no bodies.
+    """
+    if not any(world.bodies for world in display.worlds):
+        raise InputError(f"{display.label}: there is nothing to show in 3D: its presenter gives no bodies")
+
+
 class _Nothing:
     """Shows nothing more of a system."""
 
@@ -155,7 +165,12 @@ class _Nothing:
         return blocks
 
     def display(self, run: "Run", which: Which, *, magnify: float) -> Display:
-        raise InputError(f"{run.path}: builds of this system cannot be shown: it has no presenter")
+        maker = run.found.mechanism
+        whose = f"the mechanism {maker.name!r}" if maker else "its mechanism"
+        raise InputError(
+            f"{run.path}: there is nothing to show in 3D: {whose} has no presenter; its histograms and tables are in "
+            "the run's folder and in tol3d compare"
+        )
 
     def replayed(self, replay: "Replay", label: str) -> Display:
-        raise InputError(f"{label}: builds of this system cannot be shown: it has no presenter")
+        raise InputError(f"{label}: there is nothing to show in 3D: its mechanism has no presenter")

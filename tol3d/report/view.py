@@ -12,7 +12,7 @@ import pyvista as pv
 
 from tol3d.errors import InputError, unwritable
 from tol3d.report.drawn_solids import add_title
-from tol3d.report.presenter import Display, Panel, Which, presenter_of
+from tol3d.report.presenter import Display, Panel, Which, presenter_of, require_bodies
 from tol3d.report.whole import draw_whole
 from tol3d.runs.run import Run
 
@@ -45,12 +45,15 @@ def view_run(
         what the user should know, such as the magnification in use.
 
     Raises:
-        InputError: no such build or close-up, no display to open a window on, or the picture cannot be written.
+        InputError: no such build or close-up, nothing to show, no display to open a window on, or the picture cannot
+            be written.
     """
     if screenshot is not None and screenshot.suffix.lower() not in PICTURES:
         raise InputError(f"{screenshot}: expected a picture ending in {', '.join(PICTURES)}")
     display = presenter_of(run.found, presenter).display(run, which, magnify=magnify)
     view = display.view(close_up)
+    if not view.panels:
+        require_bodies(display)
     choose_window(needs_display=screenshot is None)
     plotter = plot(view.panels or (partial(_first_world, display),), off_screen=screenshot is not None)
     try:

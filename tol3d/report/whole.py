@@ -155,7 +155,7 @@ def _best_eye(world: World, width_by_height: float) -> tuple[Eye, Mapping[str, A
     """Of the four corners the one from which most is seen of the bodies, and a point to be seen of each body."""
     plotter = pv.Plotter(off_screen=True, window_size=[round(PROBE_HEIGHT * width_by_height), PROBE_HEIGHT])
     plotter.renderer.set_background("black")
-    plotter.renderer.disable_anti_aliasing()
+    plotter.disable_anti_aliasing()  # a pixel between two bodies would have the number of a third
     try:
         for number, body in enumerate(world.bodies, 1):
             plotter.add_mesh(poly_data(*body.mesh), color=f"#{number:06X}", lighting=False)

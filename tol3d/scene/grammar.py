@@ -54,7 +54,7 @@ class Vocabulary:
         witness: the one of them that can check the others, if there is one.
 
     Raises:
-        InputError: a class stands where it is none of the section's kinds.
+        InputError: a class stands where it is none of the section's kinds, or lacks a method that it must have.
     """
 
     name: str
@@ -76,6 +76,8 @@ class Vocabulary:
                 if not issubclass(spec, base) or kind_of(spec) is None:
                     wanted = f"subclasses of {base.__name__} whose kind is a literal"
                     raise InputError(f"{self.name}.{section}: expected {wanted}, got {spec.__name__}")
+                if lacking := sorted(spec.__abstractmethods__):
+                    raise InputError(f"{self.name}.{section}: {spec.__name__} lacks {', '.join(lacking)}")
         for law in self.distributions:
             if not issubclass(law, DistributionSpec) or word_of(law) is None:
                 wanted = f"subclasses of {DistributionSpec.__name__} whose kind is a literal"

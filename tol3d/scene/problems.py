@@ -1,7 +1,7 @@
 """What pydantic finds wrong, said in the user's words and with its place."""
 
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any, Final
 
 from pydantic import ValidationError
@@ -29,7 +29,7 @@ def messages(error: ValidationError, data: Mapping[str, Any], origin: Origin, gr
     found: dict[str, int] = {}
     for details in error.errors(include_url=False):
         path = _path(details["loc"], data)
-        sentence = _sentence(details, _dimensions(path, data, grammar))
+        sentence = problem_sentence(details, _dimensions(path, data, grammar))
         context = details.get("ctx", {})
         if details["type"] == "unknown_key":
             path = (*path, context["key"])
@@ -80,7 +80,13 @@ def _dimensions(path: KeyPath, data: Mapping[str, Any], grammar: Grammar) -> tup
 # sentences ----------------------------------------------------------------------------------------
 
 
-def _sentence(details: ErrorDetails, dimensions: tuple[Dimension, ...]) -> str:
+def problem_sentence(details: ErrorDetails, dimensions: tuple[Dimension, ...] = ()) -> str:
+    """What was expected and what came, of one of pydantic's findings.
+
+    Args:
+        details: the finding.
+        dimensions: what a quantity there measures.
+    """
     if details["type"] == "quantity":
         return _quantity(details, dimensions)
     return SENTENCES.get(details["type"], _unexpected)(details)
@@ -115,14 +121,15 @@ def _missing_kind(details: ErrorDetails) -> str:
 def _unknown_kind(details: ErrorDetails) -> str:
     known = QUOTED_WORD.findall(details["ctx"]["expected_tags"])
     tag = details["input"].get("kind") if isinstance(details["input"], dict) else details["ctx"]["tag"]
-    return _word_expected(tag, known)
+    return word_expected(tag, known)
 
 
 def _literal(details: ErrorDetails) -> str:
-    return _word_expected(details["input"], QUOTED_WORD.findall(details["ctx"]["expected"]))
+    return word_expected(details["input"], QUOTED_WORD.findall(details["ctx"]["expected"]))
 
 
-def _word_expected(value: object, known: list[str]) -> str:
+def word_expected(value: object, known: Sequence[str]) -> str:
+    """The sentence of a word that is none of those known, with the nearest of them."""
     listed = " or ".join(known) if len(known) < 3 else f"one of {', '.join(known)}"
     return f"expected {listed}, got {shown(value)}{nearest(value, known) if isinstance(value, str) else ''}"
 

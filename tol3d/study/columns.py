@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from tol3d.system.faults import UnfitError
 from tol3d.system.measure import Measure
 from tol3d.system.outcome import ANALYTIC, GEOMETRIC, status_column, value_column
 from tol3d.system.road import ANALYTIC_ROAD, Answers, Codes, Road
@@ -53,22 +54,33 @@ def _columns(system: System, road: Road | None, trials: Trials, measures: Sequen
             columns[name] = own[:, k] / contributor.per_unit
     columns |= system.columns(trials)
     analytic = system.road(ANALYTIC_ROAD, None).answers(trials, measures)
-    columns |= _values(ANALYTIC, analytic, measures) | _terms(system, ANALYTIC, analytic)
+    columns |= _values(ANALYTIC, analytic, measures, len(trials)) | _terms(system, ANALYTIC, analytic)
     if road is None:
         return columns
     geometric = road.answers(trials, measures)
-    columns |= _values(GEOMETRIC, geometric, measures)
+    columns |= _values(GEOMETRIC, geometric, measures, len(trials))
     columns |= {**geometric.details, **_terms(system, GEOMETRIC, geometric)}
     seated = np.full(len(trials), OK, dtype=np.int8)
     status = {measure.name: geometric.status.get(measure.name, seated) for measure in measures}
     return columns | _status_columns(system.statuses, status)
 
 
-def _values(road: str, answers: Answers, measures: Sequence[Measure]) -> Columns:
+def _values(road: str, answers: Answers, measures: Sequence[Measure], count: int) -> Columns:
     return {
-        value_column(road, measure.name): taken(measure, answers.values[measure.name]) * measure.per_internal
+        value_column(road, measure.name): taken(measure, _read(road, answers, measure, count)) * measure.per_internal
         for measure in measures
     }
+
+
+def _read(road: str, answers: Answers, measure: Measure, count: int) -> NDArray[np.float64]:
+    """Values (trials, positions) of a measure, if the road has answered as many."""
+    values, expected = answers.values.get(measure.name), (count, measure.positions.in_a_trial)
+    if values is None or np.shape(values) != expected:
+        got = "none" if values is None else f"an array of shape {np.shape(values)}"
+        raise UnfitError(
+            f"{road} road, measure {measure.name!r}: expected values (trials, positions) of shape {expected}, got {got}"
+        )
+    return values
 
 
 def _terms(system: System, road: str, answers: Answers) -> Columns:

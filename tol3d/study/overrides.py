@@ -1,6 +1,6 @@
 """What a run is asked to do: a scene, and what is said otherwise than there."""
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -8,8 +8,10 @@ from pydantic import ValidationError
 
 from tol3d.errors import InputError
 from tol3d.scene import Scene
-from tol3d.scene.engines import Engines
+from tol3d.scene.engines import THEORY, Engines
+from tol3d.scene.problems import problem_sentence, word_expected
 from tol3d.study.simulation import Simulation, published_in, study_of
+from tol3d.system.faults import faults_of, require_whole
 from tol3d.system.mechanism import mechanism_of, requires_of
 
 
@@ -33,29 +35,47 @@ def simulation_of(scene: Scene, overrides: Overrides = AS_WRITTEN) -> Simulation
     Raises:
         SceneError: the scene cannot be built, or its parts overlap at the mean build.
         InputError: an override that no scene could say.
+        MechanismError: a mechanism of another package is at fault.
     """
+    mechanism = mechanism_of(scene)
+    _refuse_engine(scene, overrides, overrides.engine or scene.study.engine, mechanism.engines)
     asked = _overridden(scene, overrides)
-    mechanism = mechanism_of(asked)
-    system = mechanism.system_of(asked)
-    if asked.study.engine not in system.roads:
-        expected = ", ".join(system.roads)
-        raise asked.refuse(
-            ("study", "engine"), f"expected one of {expected} for this scene, got {asked.study.engine!r}"
-        )
+    with faults_of(mechanism.origin):
+        system = mechanism.system_of(asked)
+        require_whole(system)
+    _refuse_engine(scene, overrides, asked.study.engine, system.roads)
     if asked.study.witness and not any(kind.witness for kind in system.roads.values()):
         raise asked.refuse(
             ("study", "witness"), f"expected none, for this scene has no witness, got {asked.study.witness}"
         )
-    for place, sentence in system.problems():
-        raise scene.refuse(place, sentence)
+    with faults_of(mechanism.origin):
+        problem = next(iter(system.problems()), None)
+    if problem:
+        raise scene.refuse(*problem)
     return Simulation(
         system,
         study_of(asked),
         published_in(asked),
-        requires_of(asked),
-        mechanism.presenter,
-        {"name": mechanism.name, "module": mechanism.module},
+        requires=requires_of(asked),
+        presenter=mechanism.presenter,
+        mechanism=mechanism.origin,
     )
+
+
+def _refuse_engine(scene: Scene, overrides: Overrides, engine: str, known: Iterable[str]) -> None:
+    """Refuse an engine that the scene does not have, where it was asked for."""
+    names = [*(name for name in known if name != THEORY), THEORY]
+    if engine in names:
+        return
+    sentence = f"{word_expected(engine, names)}; these are the engines of this scene"
+    if overrides.engine is None:
+        raise scene.refuse(("study", "engine"), sentence)
+    raise InputError(f"{_said_by('engine')}: {sentence}")
+
+
+def _said_by(option: str) -> str:
+    """How a run is asked for something otherwise than its scene has it."""
+    return f"--{option} (in Python Overrides.{option})"
 
 
 def _overridden(scene: Scene, overrides: Overrides) -> Scene:
@@ -68,8 +88,8 @@ def _overridden(scene: Scene, overrides: Overrides) -> Scene:
     except ValidationError as error:
         details = error.errors(include_url=False)[0]
         place = ".".join(str(key) for key in details["loc"][:1]) or details.get("ctx", {}).get("field") or "study"
-        got = "" if details["type"] == "value_refused" else f", got {details['input']!r}"
-        raise InputError(f"{place}, otherwise than in the scene: {details['msg']}{got}") from None
+        where = _said_by(place) if place in given else f"study.{place}"
+        raise InputError(f"{where}: {problem_sentence(details)}") from None
     return scene.model_copy(update={"study": study})
 
 

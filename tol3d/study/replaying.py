@@ -17,6 +17,7 @@ from tol3d.study.simulation import Simulation
 from tol3d.study.study import Study, Until
 from tol3d.study.task import materials_of, road_of
 from tol3d.study.versions import installed_versions
+from tol3d.system.faults import faults_of
 from tol3d.system.outcome import ANALYTIC, GEOMETRIC, value_column
 from tol3d.system.road import ANALYTIC_ROAD
 from tol3d.system.trials import Trials
@@ -82,7 +83,16 @@ def replay(run: Run | Path | str, trial: int, kinds: Grammar) -> Replay:
 
 
 def replayed(simulation: Simulation, trials: Trials) -> Replay:
-    """One build with all its contacts, for any deviations; that of an analytic study by the system's first engine."""
+    """One build with all its contacts, for any deviations; that of an analytic study by the system's first engine.
+
+    Raises:
+        MechanismError: the system's mechanism is at fault.
+    """
+    with faults_of(simulation.mechanism):
+        return _replayed(simulation, trials)
+
+
+def _replayed(simulation: Simulation, trials: Trials) -> Replay:
     system = simulation.system
     if not simulation.has_geometry:
         engine = next(name for name in system.roads if name != ANALYTIC_ROAD)

@@ -6,6 +6,7 @@ from typing import Any
 
 from tol3d.scene import Scene
 from tol3d.study.study import Study, Until
+from tol3d.system.faults import Origin
 from tol3d.system.road import ANALYTIC_ROAD, RoadKind
 from tol3d.system.system import Published, System
 from tol3d.units import Quantity
@@ -21,7 +22,7 @@ class Simulation:
         published: columns of others.
         requires: packages, besides those of every study, whose versions decide its results.
         presenter: import path of what shows the system, see `tol3d.report.presenter`; "" for nothing.
-        mechanism: name and module of the mechanism that understood the scene; None of a system made otherwise.
+        mechanism: the one that understood the scene; None of a system made without.
     """
 
     system: System
@@ -29,7 +30,7 @@ class Simulation:
     published: Published = field(default_factory=dict)
     requires: tuple[str, ...] = ()
     presenter: str = ""
-    mechanism: Mapping[str, str] | None = None
+    mechanism: Origin | None = None
 
     @property
     def road(self) -> RoadKind:

@@ -46,7 +46,7 @@ def study_summary(simulation: Simulation, road: Road | None, tally: Tally) -> Fi
     return made(
         Findings,
         scene=simulation.system.name,
-        mechanism=made(MechanismSummary, name=mechanism["name"], module=mechanism["module"]) if mechanism else None,
+        mechanism=made(MechanismSummary, name=mechanism.name, module=mechanism.module) if mechanism else None,
         seed=study.seed,
         trials=tally.trials,
         engine=study.engine,

@@ -16,6 +16,7 @@ from tol3d.study.draws import drawn
 from tol3d.study.simulation import Simulation
 from tol3d.study.tally import PILOT_TRIALS, Tally, grids_of
 from tol3d.study.versions import Versions, installed_versions, refuse_other_versions
+from tol3d.system.faults import faults_of
 from tol3d.system.road import Road
 
 Columns = dict[str, NDArray[Any]]
@@ -90,6 +91,10 @@ class Task:
     def columns(self, first: int, count: int) -> Columns:
         """See folding.Work."""
         refuse_other_versions(self.versions, self.requires)
+        with faults_of(self.simulation.mechanism):  # here too: what is raised in a process loses where it came from
+            return self._by_threads_or_one(first, count)
+
+    def _by_threads_or_one(self, first: int, count: int) -> Columns:
         if self.concurrency is Concurrency.THREADS:
             return self._columns(first, count)
         with _ONE_AT_A_TIME:  # a road of processes may have state, and a Dask worker has several threads

@@ -70,5 +70,8 @@ class Measure(Protocol):
 
     @property
     def keeps_overlap(self) -> bool:
-        """Whether the value of a trial whose parts overlap is by how much, below 0, and smooth through 0."""
+        """Whether a trial whose parts overlap has the depth of the overlap as its value.
+
+        Such a value is negative and continues the gap smoothly through 0, so both roads may be compared there too.
+        """
         ...

@@ -6,6 +6,7 @@ from typing import Any
 
 from tol3d.errors import InputError
 from tol3d.scene import Scene, Vocabulary
+from tol3d.system.faults import Origin
 from tol3d.system.system import System
 
 
@@ -30,9 +31,9 @@ class Mechanism(Vocabulary):
     requires: tuple[str, ...] = ()
 
     @property
-    def module(self) -> str:
-        """The module that has the function of its system."""
-        return self.system.partition(":")[0]
+    def origin(self) -> Origin:
+        """Which one it is, for messages and summaries."""
+        return Origin(self.name, self.system.partition(":")[0])
 
     def system_of(self, scene: Scene) -> System:
         """What a scene means.

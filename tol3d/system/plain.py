@@ -21,6 +21,7 @@ from tol3d.system.breakdown import Breakdown
 from tol3d.system.closed_form import ClosedForm
 from tol3d.system.contributor import Contributor, column_names
 from tol3d.system.draw import Draw, Scalar
+from tol3d.system.faults import UnfitError
 from tol3d.system.measure import Measure, Worse
 from tol3d.system.pooled import PooledTerms
 from tol3d.system.pooled_statistic import PooledStatistic
@@ -35,7 +36,8 @@ from tol3d.system.trials import Trials
 from tol3d.units import Dimension
 
 Array = NDArray[np.float64]
-Drawn = Callable[[Distribution], Draw]
+Drawn = Callable[[Distribution, Any], Draw]
+"""How components are drawn, from a tolerance's law and the tolerance itself."""
 
 UNITS: Mapping[Dimension, tuple[str, float]] = {
     "length": ("um", 1e-3),
@@ -88,6 +90,8 @@ class PlainMeasure:
         per_internal: one mm or rad in that unit.
         worse: which end is the worse one where there is no limit.
         adds_up: whether it is a sum of effects; False where load paths or contacts are compared.
+        keeps_overlap: whether a trial whose parts overlap has the depth of the overlap as its value, a negative number
+            that continues the gap smoothly through 0; False where its value is on another scale or means nothing.
         pooled_statistics: of all trials together, besides those that every sample has.
     """
 
@@ -112,7 +116,8 @@ def contributors_of(scene: Scene, draws: Mapping[type[ToleranceSpec], Drawn]) ->
 
     Args:
         scene: the scene.
-        draws: by kind of tolerance, how its components are drawn; one component from its law if not given.
+        draws: by kind of tolerance, how its components are drawn, from its law and itself; one component from its law
+            if not given.
 
     Raises:
         SceneError: a file of measured values that a law reads makes no sense.
@@ -121,12 +126,16 @@ def contributors_of(scene: Scene, draws: Mapping[type[ToleranceSpec], Drawn]) ->
         PlainContributor(
             name,
             spec.kind,
-            draws.get(type(spec), Scalar)(spec.distribution.resolve(scene.files)),
+            draws.get(type(spec), _scalar)(spec.distribution.resolve(scene.files), spec),
             *UNITS[spec.dimensions[0]],
             spec.description,
         )
         for name, spec in scene.distributed.items()
     )
+
+
+def _scalar(law: Distribution, _: Any) -> Draw:
+    return Scalar(law)
 
 
 def measures_of(scene: Scene, *, worse: Worse = "low", adds_up: bool = True) -> tuple[PlainMeasure, ...]:
@@ -164,7 +173,16 @@ class PlainRoad:
 
     def answers(self, trials: Trials, measures: Sequence[Measure]) -> Answers:
         """See Road."""
-        return Answers({measure.name: self.values(trials, measure)[:, None] for measure in measures})
+        return Answers({measure.name: self._column(trials, measure) for measure in measures})
+
+    def _column(self, trials: Trials, measure: Measure) -> Array:
+        values = np.asarray(self.values(trials, measure))
+        if values.shape != (len(trials),):
+            raise UnfitError(
+                f"{self.values.__qualname__} of {measure.name!r}: expected values (trials,) of {len(trials)} trials, "
+                f"got an array of shape {values.shape}"
+            )
+        return values[:, None]
 
 
 @dataclass(frozen=True)
@@ -192,11 +210,11 @@ class PlainSystem:
 
     def analytic(self, trials: Trials, measure: Measure) -> Array:
         """Values (trials,) [mm or rad] by theory."""
-        raise NotImplementedError
+        raise UnfitError(f"{type(self).__name__} lacks analytic(trials, measure), its values by theory")
 
     def exact(self, trials: Trials, measure: Measure) -> Array:
         """Values (trials,) [mm or rad] of the parts as they are placed."""
-        raise NotImplementedError
+        raise UnfitError(f"{type(self).__name__} lacks exact(trials, measure), its values of placed parts")
 
     def road(self, name: str, materials: Any) -> Road:
         """One of the two functions."""
@@ -292,8 +310,16 @@ class PlainSystem:
         """Nothing to draw."""
         return None
 
-    def deviations(self, trials: Trials, kind: str) -> Array:
-        """Components (trials, components) [mm, rad, K] of a kind's contributors, added up; 0 where there is none."""
+    def deviations(self, trials: Trials, kind: str, measure: Measure | None = None, components: int = 1) -> Array:
+        """Components (trials, components) [mm, rad, K] of a kind's contributors, added up.
+
+        Args:
+            trials: whose deviations.
+            kind: of tolerance, the scene's word.
+            measure: only contributors that act on it; all of the kind if not given.
+            components: how many zeros a trial has where there is no such contributor.
+        """
         slices = component_slices(self)
-        own = [trials.deviations[:, slices[each.name]] for each in self.contributors if each.kind == kind]
-        return np.asarray(sum(own, np.zeros((len(trials), 1))))
+        acting = self.contributors if measure is None else self.acting(measure)
+        own = [trials.deviations[:, slices[each.name]] for each in acting if each.kind == kind]
+        return np.asarray(sum(own, np.zeros((len(trials), components))))

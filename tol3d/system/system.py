@@ -100,11 +100,19 @@ class System(Protocol):
         ...
 
     def materials(self, road: str) -> Any:
-        """What a road is made of that takes long or needs CAD: made once in the parent, it pickles."""
+        """What a road is made of that takes long to make or needs CAD; None where it needs nothing.
+
+        Made once, in the parent process, for the study's engine; it pickles, and `road` gets it in every worker.
+        """
         ...
 
     def road(self, name: str, materials: Any) -> Road:
-        """A road, made in the worker."""
+        """A road, made in the worker.
+
+        Args:
+            name: one of `roads`.
+            materials: what `materials(name)` has made; always None for the analytic road, which must do without.
+        """
         ...
 
     def cost(self, measures: Sequence[Measure]) -> int:

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from tol3d.distributions import Distribution
 from tol3d.scene import Scene
+from tol3d.scene.tolerance import ToleranceSpec
 from tol3d.system.draw import Each, Planar
 from tol3d.system.measure import Measure
 from tol3d.system.plain import PlainSystem, contributors_of, measures_of
@@ -99,10 +100,10 @@ def pins_system(scene: Scene) -> PinsSystem:
     ((_, plate),) = scene.of(PlateSpec).items()
     ((_, disc),) = scene.of(DiscSpec).items()
 
-    def each(law: Distribution) -> Each:
+    def each(law: Distribution, _: ToleranceSpec) -> Each:
         return Each(law, tuple(f"{pin:02d}" for pin in range(plate.pins)))
 
-    def anywhere(law: Distribution) -> Planar:
+    def anywhere(law: Distribution, _: ToleranceSpec) -> Planar:
         return Planar(law, None)
 
     contributors = contributors_of(scene, {PinSpec: each, OffCentreSpec: anywhere})

@@ -24,13 +24,13 @@ class SummaryKinds:
     Args:
         measures: classes of measures; `kind` of each is a Literal of the kinds that it is for.
         runs: classes that add sections to the whole, as keys that may be missing.
-        plain: kinds of measures that add no key.
+        plain: kinds of measures that add no key, each with the import path of what shows its system, or "".
         options: classes of what vocabularies add to a study, and so to that of a witness, as keys that may be missing.
     """
 
     measures: tuple[type[MeasureSummary], ...] = ()
     runs: tuple[type[RunSummary], ...] = ()
-    plain: tuple[str, ...] = ()
+    plain: tuple[tuple[str, str], ...] = ()
     options: tuple[type[Section], ...] = ()
 
     def __or__(self, other: "SummaryKinds") -> "SummaryKinds":
@@ -40,11 +40,17 @@ class SummaryKinds:
 
     @cached_property
     def every_measure(self) -> tuple[type[MeasureSummary], ...]:
-        """The classes of measures, that of plain ones last."""
-        if not self.plain:
-            return self.measures
-        kind: Any = (Literal[self.plain], ...)
-        return *self.measures, create_model("PlainMeasure", __base__=MeasureSummary, __doc__="A measure.", kind=kind)
+        """The classes of measures, those of plain ones last."""
+        presenters = dict.fromkeys(presenter for _, presenter in self.plain)
+        return *self.measures, *map(self._plain, presenters)
+
+    def _plain(self, presenter: str) -> type[MeasureSummary]:
+        """The class of the plain measures that something shows."""
+        kinds = tuple(kind for kind, its in self.plain if its == presenter)
+        kind: Any = (Literal[kinds], ...)
+        made = create_model("PlainMeasure", __base__=MeasureSummary, __doc__="A measure.", kind=kind)
+        made.presenter = presenter
+        return made
 
     def __reduce__(self) -> tuple[Any, ...]:
         """Pickled by what it is made of: classes made of it are made anew."""
