@@ -330,6 +330,21 @@ def test_first_orders_pickle_and_keep_their_bits() -> None:
         np.testing.assert_array_equal(copied.values(trials, [name])[name], found)
 
 
+def test_an_assembly_without_deviations_has_its_nominal_values() -> None:
+    """Also no trials, no measures, and a distance from a point to itself."""
+    draft = Draft()
+    draft.part("part")
+    draft.feature("part.a", (0, 0, 0), deviates=False)
+    draft.feature("part.b", (3, 4, 0), Axis(10.0, 5.0), deviates=False)
+    measures = {"distance": ("part.a", "part.b"), "none": ("part.a", "part.a")}
+    own = first_order(draft.assembly((), {name: Measured("distance", of) for name, of in measures.items()}))
+    found = own.values(np.zeros((2, 0)), ["distance", "none"])
+    np.testing.assert_array_equal([found["distance"], found["none"]], [[5.0, 5.0], [0.0, 0.0]])
+    assert own.values(np.zeros((2, 0)), []) == {}
+    assert len(own.values(np.zeros((0, 0)), ["none"])["none"]) == 0
+    assert own.slopes("none", np.zeros(0), np.zeros(0)).bends == ()
+
+
 def test_a_measure_after_a_move_sees_the_parts_as_it_left_them() -> None:
     draft, moves = lid_on_base()
     last = Measured("gap", ("base.point", "lid.point"), X)

@@ -37,7 +37,9 @@ class FirstOrder:
 
     def values(self, deviations: Array, names: Sequence[str]) -> dict[str, Array]:
         """Values (trials,) of some measures [mm or rad] from deviations (trials, columns) [mm, rad]."""
-        rows = np.array([self.rows[name] for name in names]).reshape(len(names), -1)
+        if not names:
+            return {}
+        rows = np.array([self.rows[name] for name in names])
         terms = self._read_by(rows)
         found = np.empty((len(names), len(deviations)))
         for first in range(0, len(deviations), TOGETHER):
