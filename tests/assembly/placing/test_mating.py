@@ -5,6 +5,26 @@ from collections.abc import Sequence
 import numpy as np
 import pytest
 from assembly.placing.assemblies import Columns, assembly, feature, frame, moved_as_a_whole, part, posed, seeds
+from assembly.placing.mated_parts import (
+    END,
+    FACE,
+    FLOOR,
+    HOLE,
+    NOMINAL,
+    PIN,
+    REACH,
+    SIDE,
+    STOP,
+    UNDER,
+    WALL,
+    Side,
+    X,
+    Z,
+    axis,
+    features_seen,
+    mated,
+    plane,
+)
 from assembly.placing.rigid_search import solved_pose
 from numpy.typing import NDArray
 
@@ -12,60 +32,18 @@ from tol3d.assembly.model import (
     Assembly,
     Axis,
     Contribution,
-    Feature,
     Fix,
     Mate,
     Measured,
     Move,
-    Plane,
     Point,
     Relation,
-    Shape,
 )
 from tol3d.assembly.model.statuses import NO_CONTACT, OK
 from tol3d.assembly.placing.road import placed, values
 from tol3d.errors import InputError
 
 Array = NDArray[np.float64]
-
-NOMINAL = posed((0.1, -0.2, 0.15), (40.0, 30.0, 20.0))
-
-Side = tuple[str, Shape, Array]
-
-
-def mated(relations: Sequence[tuple[str, Side, Side]]) -> tuple[Assembly, Sequence[slice]]:
-    """A part mated to a base, each feature where its frame says in the world nominally, all of them deviating."""
-    columns = Columns()
-    base, moving, asked, slices = list[Feature](), list[Feature](), list[Relation](), list[slice]()
-    from_world = np.linalg.inv(NOMINAL)
-    for kind, (own, own_shape, own_at), (target, shape, at) in relations:
-        for side, name, its, place in ((moving, own, own_shape, from_world @ own_at), (base, target, shape, at)):
-            contribution = columns(count=len(its.components))
-            slices.append(contribution.columns)
-            side.append(feature(name, its, place, [contribution]))
-        asked.append(Relation(kind, own, target))  # type: ignore[arg-type]
-    parts = [part("base", base), part("part", moving, pose=NOMINAL)]
-    return assembly(columns, parts, [Fix("base", "base"), Mate("mate", "part", tuple(asked))]), slices
-
-
-def plane(at: Array, deviation: Array, reach: tuple[float, float]) -> tuple[Array, Array]:
-    """Origin and normal of a plane by offset and rises."""
-    normal = np.array([-deviation[1] / reach[0], -deviation[2] / reach[1], 1.0])
-    return at[:3, :3] @ (0, 0, deviation[0]) + at[:3, 3], at[:3, :3] @ normal / np.linalg.norm(normal)
-
-
-def axis(at: Array, deviation: Array, length: float) -> tuple[Array, Array]:
-    """Origin and direction of an axis by its ends."""
-    start, end = np.array([*deviation[:2], -length / 2]), np.array([*deviation[2:], length / 2])
-    along = at[:3, :3] @ (end - start)
-    return at[:3, :3] @ (start + end) / 2 + at[:3, 3], along / np.linalg.norm(along)
-
-
-X, Y, Z = np.eye(3)
-FLOOR, WALL, STOP = frame((50, 40, 0)), frame((0, 40, 20), (1, 0, 0)), frame((50, 0, 20), (0, 1, 0))
-UNDER, SIDE, END = (frame(each[:3, 3] + (3, 2, 1) * (1 - each[:3, 2]), -each[:3, 2]) for each in (FLOOR, WALL, STOP))
-REACH = (50.0, 30.0)
-FACE = Plane((100.0, 60.0))
 
 
 def corner() -> tuple[Assembly, Sequence[slice]]:
@@ -98,7 +76,6 @@ def test_a_block_in_a_corner(seed: int) -> None:
     np.testing.assert_allclose(placed(made, row[None])["part"][0], solved_pose(lacking, NOMINAL), atol=1e-10)
 
 
-PIN, HOLE = Axis(20.0, 8.0), Axis(20.0, 8.1, inner=True)
 FIRST, SECOND, SECOND_PIN = frame((20, 30, 10)), frame((90, 50, 10)), frame((90, 50, 4))
 
 
@@ -243,20 +220,11 @@ def test_what_lies_on_planes_before_anything_holds_a_direction(relations: str, s
     made, slices = mated(asked)
     row = np.random.default_rng(seed).normal(0, 0.3, made.width)
     pose = placed(made, row[None])["part"][0]
-    from_world = np.linalg.inv(NOMINAL)
     seen = []
-    for k, (kind, (_, _, own_at), (_, _, at)) in enumerate(asked):
-        own_row = row[slices[2 * k]]
-        own = (
-            axis(from_world @ own_at, own_row, 60.0)
-            if kind == "tangent"
-            else plane(from_world @ own_at, own_row, REACH)
-        )
-        origin, normal = plane(at, row[slices[2 * k + 1]], REACH)
+    for (kind, _, _), (own, (origin, normal)) in zip(asked, features_seen(asked, row, slices), strict=True):
         direction = pose[:3, :3] @ own[1]
-        assert normal @ (pose[:3, :3] @ own[0] + pose[:3, 3] - origin) == pytest.approx(
-            5.0 if kind == "tangent" else 0.0, abs=1e-12
-        )
+        height = normal @ (pose[:3, :3] @ own[0] + pose[:3, 3] - origin)
+        assert height == pytest.approx(5.0 if kind == "tangent" else 0.0, abs=1e-12)
         if kind == "tangent":
             assert direction @ normal == pytest.approx(0, abs=1e-13)
         seen.append((direction, normal))

@@ -58,7 +58,7 @@ class _Freedoms:
                 self._turn_by_point(index, taken_before=(len(self.turns), self.lying) != (before[0], before[2]))
         else:
             pivot, placed = self.pivot, self._shift(index)
-            if pivot >= 0 and not (placed and isinstance(self.turning, str)):
+            if not isinstance(self.turning, str) or (pivot >= 0 and not placed):
                 self._turn_by_point(index, taken_before=False)
             self._turn_by_direction(index)
         if self.pivot < 0 and tie.held != "along" and self._centred:
