@@ -26,7 +26,7 @@ from tol3d.scene.tolerance import ToleranceEntry
 from tol3d.strict import Strict
 
 Check = Callable[[Scene], Iterator[tuple[KeyPath, str]]]
-"""Tells what does not hold together across entries whose names all exist: key path and finished sentence."""
+"""What does not hold together across entries whose names all exist: key path and finished sentence."""
 
 REQUIRED: Final = frozenset(("parts", "moves", "measures"))  # sections that every scene has, with an entry at least
 

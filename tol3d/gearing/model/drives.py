@@ -7,7 +7,8 @@ from fractions import Fraction
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.gearing.model.layout import Drive, Layout
+from tol3d.gearing.model.drive import Drive
+from tol3d.gearing.model.layout import Layout
 
 Array = NDArray[np.float64]
 

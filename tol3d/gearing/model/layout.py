@@ -8,7 +8,7 @@ a world of its own, with its driver's axis at rest as z and the mate at +x.
 
 import math
 from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 
@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.gearing.links import StatedLink
+from tol3d.gearing.model.drive import Drive, drives_of, periods_of
 from tol3d.gearing.model.links import (
     Link,
     LoadPath,
@@ -48,23 +49,6 @@ class Turning:
 
 
 RESTS = Turning(0.0, Fraction(0))
-
-
-@dataclass(frozen=True)
-class Drive:
-    """A tree of shafts.
-
-    Args:
-        root: its first shaft.
-        name: of the stream that draws its positions.
-        turns: of the root, until all teeth meet again in the same places; a fraction.
-        moves: its meshes' names, then those of its other links whose play depends on the position.
-    """
-
-    root: str
-    name: str
-    turns: Fraction
-    moves: tuple[str, ...]
 
 
 @dataclass(frozen=True)
@@ -172,6 +156,8 @@ def layout_of(meshes: Sequence[Mesh], shafts: Sequence[Shaft], stated: Sequence[
     busy = Counter(gear for mesh in meshes for gear in (mesh.driver, mesh.driven))
     for link in closing:
         placing.close(link, causes[link.name], busy)
+    rates = {name: turning.rate for name, turning in placing.mesh_turn.items()}
+    periods = periods_of(meshes, stated, rates)
     return Layout(
         links=links,
         driving=driving,
@@ -184,7 +170,7 @@ def layout_of(meshes: Sequence[Mesh], shafts: Sequence[Shaft], stated: Sequence[
         shaft_from_gear=placing.frames,
         carrying=placing.carrying,
         closed=placing.closed,
-        drives=tuple(_drives(links, placing.root_of, _periods(meshes, stated, placing.mesh_turn))),
+        drives=tuple(drives_of(links, placing.root_of, periods)),
     )
 
 
@@ -301,33 +287,6 @@ def _turn_between(first: Array, second: Array) -> float:
     """Azimuth of the second frame's x axis in the first one [rad], their z axes the same."""
     turn = first[:3, :3].T @ second[:3, :3]
     return math.atan2(turn[1, 0], turn[0, 0])
-
-
-def _periods(
-    meshes: Sequence[Mesh], stated: Sequence[StatedLink], mesh_turn: Mapping[str, Turning]
-) -> Mapping[str, Fraction]:
-    """Turns of the root after which each mesh, and each other link with positions, stands as before."""
-    periods = {mesh.name: mesh.pair.long_period_turns / abs(mesh_turn[mesh.name].rate) for mesh in meshes}
-    for own in stated:
-        if own.turns is not None and mesh_turn[own.name].rate:
-            periods[own.name] = own.turns / abs(mesh_turn[own.name].rate)
-    return periods
-
-
-def _drives(links: Sequence[Link], root_of: Mapping[str, str], periods: Mapping[str, Fraction]) -> Iterator[Drive]:
-    for root in dict.fromkeys(root_of.values()):
-        own_links = [link for link in links if root_of[link.driver] == root]
-        names = {link.name for link in own_links}
-        own = {name: period for name, period in periods.items() if name in names}
-        if own:
-            name = own_links[0].name if len(own_links) == 1 else root
-            yield Drive(root, name, _least_common(list(own.values())), tuple(own))
-
-
-def _least_common(periods: Sequence[Fraction]) -> Fraction:
-    """The least common multiple of fractions."""
-    numerators = math.lcm(*(period.numerator for period in periods))
-    return Fraction(numerators, math.gcd(*(period.denominator for period in periods)))
 
 
 def _shaft_from_gear(own: Carried) -> Array:

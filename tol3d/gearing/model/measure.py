@@ -86,7 +86,7 @@ class Stage:
 
 @dataclass(frozen=True)
 class ParallelStage:
-    """Ways that part at one shaft and meet at another: what is free there is free on all of them.
+    """Load paths in parallel between two shafts: the play where they join is the intersection of their plays.
 
     Args:
         link: its links' names.

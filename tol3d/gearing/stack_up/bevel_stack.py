@@ -10,7 +10,7 @@ face: where contact or gap are read over the whole of it, they differ by several
 import math
 from typing import Literal
 
-from tol3d.gearing.stack_up.neglect import Neglect, Part
+from tol3d.gearing.stack_up.neglect import Bound, Neglect
 from tol3d.gearing.stack_up.stack import Stack
 from tol3d.gearing.stack_up.term import Term
 from tol3d.gears import BevelPair
@@ -40,29 +40,29 @@ class BevelStack(Stack[BevelPair]):
         return tuple(neglect for neglect in found if any(part.terms for part in neglect.parts))
 
     @property
-    def _by_offset(self) -> tuple[Part, ...]:
-        return (Part(1.0, self._left_out("claimed")),)
+    def _by_offset(self) -> tuple[Bound, ...]:
+        return (Bound(1.0, self._left_out("claimed")),)
 
     @property
-    def _by_position(self) -> tuple[Part, ...]:
+    def _by_position(self) -> tuple[Bound, ...]:
         short = 1 - math.cos(self._furthest)
         return (
-            Part(2 * math.sin(self._furthest), self._left_out("along_line")),
-            Part(short, self._left_out("by_shifts")),
-            Part(short, self._aside_by_shifts),
+            Bound(2 * math.sin(self._furthest), self._left_out("along_line")),
+            Bound(short, self._left_out("by_shifts")),
+            Bound(short, self._aside_by_shifts),
         )
 
     @property
-    def _by_face(self) -> tuple[Part, ...]:
+    def _by_face(self) -> tuple[Bound, ...]:
         """A turn's gap varies by half the face where the gap is read over it; a shift's contact by the ends' ratio."""
         inner, outer = self.pair.face
         gap = (outer - inner) / (outer + inner) if self.reading.gap == "face" else 0.0
         contact = (outer if self.reading.gap == "face" else self.pair.mean_cone_distance) / inner - 1
         shifts = contact if self.reading.contact == "face" else gap
         return (
-            Part(gap, self._left_out("by_turns")),
-            Part(shifts / 2, self._left_out("by_shifts")),
-            Part(shifts, self._aside_by_shifts),
+            Bound(gap, self._left_out("by_turns")),
+            Bound(shifts / 2, self._left_out("by_shifts")),
+            Bound(shifts, self._aside_by_shifts),
         )
 
     @property

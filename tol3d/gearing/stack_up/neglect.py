@@ -12,7 +12,7 @@ Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
-class Part:
+class Bound:
     """A bound: `factor` times the absolute value of what some terms add up to."""
 
     factor: float
@@ -29,7 +29,7 @@ class Neglect:
     """
 
     words: str
-    parts: tuple[Part, ...]
+    parts: tuple[Bound, ...]
 
     def bound(self, slices: Mapping[str, slice], deviations: Array, angles: tuple[Array, Array]) -> Array:
         """Largest change of j_bn that is left out [mm], (rows,); 0 where no deviation of its terms acts.

@@ -7,7 +7,7 @@ strains have different base pitches (up to 3.5 um for a pinion alone 20 K warmer
 
 import math
 
-from tol3d.gearing.stack_up.neglect import Neglect, Part
+from tol3d.gearing.stack_up.neglect import Bound, Neglect
 from tol3d.gearing.stack_up.stack import Stack
 from tol3d.gearing.stack_up.term import Term
 from tol3d.gears import SpurPair
@@ -28,9 +28,9 @@ class SpurStack(Stack[SpurPair]):
         if not any(growth.values()):
             return ()
         apart = (*growth[self.mesh.driver], *(term.times(-1.0) for term in growth[self.mesh.driven]))
-        scaled = (Part(abs(self.nominal), terms) for terms in growth.values())
+        scaled = (Bound(abs(self.nominal), terms) for terms in growth.values())
         return (
-            Neglect("base pitches of gears that grow by different strains", (Part(2 * self._longest_path, apart),)),
+            Neglect("base pitches of gears that grow by different strains", (Bound(2 * self._longest_path, apart),)),
             Neglect("growth of the nominal backlash", tuple(scaled)),
         )
 
