@@ -28,6 +28,7 @@ from tol3d.solids.cache import CacheWarning
 from tol3d.study.task import workers_for
 
 SPUR = str(SCENES / "spur_pair.yaml")
+PLAIN = ("--no-picture",)  # where no picture is asked about: drawing one takes two seconds of a processor
 
 
 def test_run_prints_the_table_and_writes_the_run(tol3d: Command, tmp_path: Path) -> None:
@@ -42,21 +43,21 @@ def test_run_prints_the_table_and_writes_the_run(tol3d: Command, tmp_path: Path)
 
 
 def test_overrides_are_recorded(tol3d: Command, tmp_path: Path) -> None:
-    arguments = ("--trials", "50", "--seed", "9", "--engine", "analytic", "--out", str(tmp_path / "run"))
+    arguments = ("--trials", "50", "--seed", "9", "--engine", "analytic", *PLAIN, "--out", str(tmp_path / "run"))
     assert tol3d("run", SPUR, *arguments)[0] == 0
     study = json.loads((tmp_path / "run" / "summary.json").read_text("utf-8"))["study"]
     assert (study["trials"], study["seed"], study["engine"]) == (50, 9, "analytic")
 
 
 def test_sampler_and_witness_are_recorded(tol3d: Command, tmp_path: Path) -> None:
-    arguments = ("--trials", "64", "--sampler", "sobol", "--witness", "3")
+    arguments = ("--trials", "64", "--sampler", "sobol", "--witness", "3", *PLAIN)
     assert tol3d("run", SPUR, *arguments, "--out", str(tmp_path / "run"))[0] == 0
     study = json.loads((tmp_path / "run" / "summary.json").read_text("utf-8"))["study"]
     assert (study["sampler"], study["witness"]) == ("sobol", 3)
 
 
 def test_a_scenes_witness_is_not_asked_of_another_engine(tol3d: Command, tmp_path: Path) -> None:
-    arguments = ("run", SPUR, "--trials", "4", "--out", str(tmp_path / "run"), "--force", "--engine")
+    arguments = ("run", SPUR, "--trials", "4", *PLAIN, "--out", str(tmp_path / "run"), "--force", "--engine")
     for engine in ("analytic", "fcl"):
         assert tol3d(*arguments, engine)[0] == 0
         assert json.loads((tmp_path / "run" / "summary.json").read_text("utf-8"))["study"]["witness"] == 0
@@ -128,7 +129,7 @@ def test_no_trials_keeps_the_statistics_only(tol3d: Command, tmp_path: Path) -> 
 
 
 def test_resume_of_a_finished_run_mends_it(tol3d: Command, tmp_path: Path) -> None:
-    arguments = ("--trials", "200", "--engine", "analytic", "--out", str(tmp_path / "run"))
+    arguments = ("--trials", "200", "--engine", "analytic", *PLAIN, "--out", str(tmp_path / "run"))
     assert tol3d("run", SPUR, *arguments)[0] == 0
     block = tmp_path / "run" / "trials" / "block-000000.parquet"
     whole = block.read_bytes()
@@ -156,7 +157,7 @@ def test_an_interrupted_command_ends_nobody_who_called_it(
 
 
 def test_fail_on_limits_exits_with_1_only_when_a_limit_fails(tol3d: Command, tmp_path: Path) -> None:
-    common = ("--trials", "200", "--engine", "analytic", "--fail-on-limits")
+    common = ("--trials", "200", "--engine", "analytic", *PLAIN, "--fail-on-limits")
     assert tol3d("run", SPUR, *common, "--out", str(tmp_path / "good"))[0] == 0
     tight = tmp_path / "tight.yaml"
     tight.write_text(Path(SPUR).read_text("utf-8").replace("lower_limit: 15 um", "lower_limit: 50 um"), "utf-8")
@@ -184,7 +185,7 @@ def test_compare_lays_runs_over_each_other(tol3d: Command, tmp_path: Path) -> No
     runs = []
     for seed in ("1", "2"):
         runs.append(str(tmp_path / f"run{seed}"))
-        assert tol3d("run", SPUR, "--trials", "60", "--seed", seed, "--out", runs[-1])[0] == 0
+        assert tol3d("run", SPUR, "--trials", "60", "--seed", seed, *PLAIN, "--out", runs[-1])[0] == 0
     code, out, _ = tol3d("compare", *runs, "--out", str(tmp_path / "both.png"))
     assert code == 0
     assert "normal backlash" in out
@@ -339,7 +340,7 @@ def test_ctrl_c_means_after_a_run_what_it_meant_before(tol3d: Command, tmp_path:
 
 def test_an_export_tells_which_trial_it_took_and_why(tol3d: Command, tmp_path: Path) -> None:
     run = str(tmp_path / "run")
-    assert tol3d("run", SPUR, "--trials", "40", "--out", run)[0] == 0
+    assert tol3d("run", SPUR, "--trials", "40", *PLAIN, "--out", run)[0] == 0
     values = open_run(Path(run)).columns("geometric:normal backlash")["geometric:normal backlash"]
     words = f"trial {values.argmin()}, the worst: the nearest to a limit of normal backlash"
     for said, expected in (((), f"no build named: {words}"), (("--worst",), words)):
@@ -368,14 +369,14 @@ def test_a_fault_of_ours_exits_with_3_and_asks_for_a_report(tol3d: Command, monk
 
 
 def test_export_and_view_refuse_two_choices(tol3d: Command, tmp_path: Path) -> None:
-    assert tol3d("run", SPUR, "--trials", "5", "--engine", "analytic", "--out", str(tmp_path / "run"))[0] == 0
+    assert tol3d("run", SPUR, "--trials", "5", "--engine", "analytic", *PLAIN, "--out", str(tmp_path / "run"))[0] == 0
     code, _, err = tol3d("export", str(tmp_path / "run"), "--trial", "1", "--worst")
     assert code == 2
     assert "one of" in err
 
 
 def test_view_refuses_a_mesh_that_is_not_there(tol3d: Command, tmp_path: Path) -> None:
-    assert tol3d("run", SPUR, "--trials", "5", "--engine", "analytic", "--out", str(tmp_path / "run"))[0] == 0
+    assert tol3d("run", SPUR, "--trials", "5", "--engine", "analytic", *PLAIN, "--out", str(tmp_path / "run"))[0] == 0
     arguments = ("--nominal", "--mesh", "gear pear", "--screenshot", str(tmp_path / "view.png"))
     code, out, err = tol3d("view", str(tmp_path / "run"), *arguments)
     assert (code, out) == (2, "")
