@@ -4,6 +4,7 @@ import ast
 import subprocess
 import sys
 import tomllib
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -39,6 +40,18 @@ def python_files() -> list[Path]:
     return sorted(path for folder in PACKAGE_FOLDERS.values() for path in folder.rglob("*.py"))
 
 
+@cache
+def parsed(path: Path) -> ast.Module:
+    """Read once for all libraries: parsing every file takes a second."""
+    return ast.parse(path.read_text("utf-8"))
+
+
+@cache
+def imported_by(path: Path) -> frozenset[str]:
+    """The top names of what a file imports, anywhere in it."""
+    return frozenset(name.split(".")[0] for name in imported_names(parsed(path)))
+
+
 def imported_names(tree: ast.AST) -> list[str]:
     names = [alias.name for node in ast.walk(tree) if isinstance(node, ast.Import) for alias in node.names]
     return names + [node.module for node in ast.walk(tree) if isinstance(node, ast.ImportFrom) and node.module]
@@ -56,7 +69,7 @@ def test_a_heavy_library_has_one_door(library: str) -> None:
     strangers = [
         str(path.relative_to(ROOT))
         for path in python_files()
-        if any(name.split(".")[0] == library for name in imported_names(ast.parse(path.read_text("utf-8"))))
+        if library in imported_by(path)
         and not str(path.relative_to(ROOT)).startswith(DOORS[library] or ("nowhere",))
     ]
     assert strangers == []
@@ -67,7 +80,7 @@ def test_imports_stand_at_the_top() -> None:
         f"{path.relative_to(ROOT)}:{node.lineno}"
         for path in python_files()
         if not str(path.relative_to(ROOT)).startswith(MAY_IMPORT_INSIDE_FUNCTIONS)
-        for function in ast.walk(ast.parse(path.read_text("utf-8")))
+        for function in ast.walk(parsed(path))
         if isinstance(function, ast.FunctionDef | ast.AsyncFunctionDef)
         for node in ast.walk(function)
         if isinstance(node, ast.Import | ast.ImportFrom)
