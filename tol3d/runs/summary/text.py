@@ -13,12 +13,12 @@ from tol3d.errors import RunError
 from tol3d.runs.summary.kinds import SummaryKinds, default_kinds
 from tol3d.runs.summary.run import RunSummary
 from tol3d.runs.summary.values import UNSAFE
-from tol3d.system.faults import OWN_PACKAGE
 from tol3d.units import shown
 
 SUMMARY_FILE = "summary.json"
 LONGEST_MESSAGE = 400  # characters
 MOST_NAMED = 3  # unknown kinds
+OWN_PACKAGE = "tol3d"
 WHERE = "its keys are written down in tol3d/runs/summary/ and by mechanisms, one line each in the class of their place"
 
 
