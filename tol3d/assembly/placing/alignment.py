@@ -103,9 +103,9 @@ class Step:
         kind: aim: its direction becomes the target's by the least rotation; azimuth: as far as a rotation about the
             held direction goes; level: its direction becomes square to the target's by such a rotation; aim at: the
             line from the pivot to its point goes to the target; turn to: by a rotation about the held direction, as
-            far as that goes; swing: its height is met by such a rotation; lie: its direction becomes square to the
-            target's by the least rotation, and the target's is held; lie between: also to that of the pivot's; hold:
-            no rotation, its direction is held.
+            far as that goes; swing: its height is met by such a rotation, or its point comes nearest; lie: its
+            direction becomes square to the target's by the least rotation, and the target's is held; lie between: also
+            to that of the pivot's; hold: no rotation, its direction is held.
         tie: whose.
         pivot: the tie whose point stays, or that lies; -1 where shifts decide in each trial about what it swings.
     """
@@ -201,9 +201,10 @@ class Alignment:
             return least_rotation(unit(arm), held), held, _MET
         if step.kind == "turn to":
             return _same_azimuth(held, arm, line), held, _MET
-        normal = self._normal(step.tie, seat, cross(held, arm))
-        turned, reached = _met(held, arm, normal, dot(normal, line) + seat.height)
-        return turned, held, reached
+        if self.ties[step.tie].held == "along":
+            turned, reached = _met(held, arm, seat.its_toward, dot(seat.its_toward, line) + seat.height)
+            return turned, held, reached
+        return _nearer(held, arm, line, seat.toward if self.ties[step.tie].held == "across" else None), held, _MET
 
     def ways(self, seats: Sequence[Seat]) -> tuple[list[Way], Codes]:
         """How shifts go in the trials, and whether they still can (n,)."""
@@ -226,14 +227,6 @@ class Alignment:
         if self.ties[tie].held != "across":
             return seat.target
         return seat.target + dot(point - seat.target, seat.its_toward) * seat.its_toward
-
-    def _normal(self, tie: int, seat: Seat, motion: Array) -> Array:
-        """Along which a swing meets a height; elsewhere as the point moves."""
-        if self.ties[tie].held == "along":
-            return seat.its_toward
-        if self.ties[tie].held == "all":
-            return unit(motion)
-        return unit(motion - dot(motion, seat.its_toward) * seat.its_toward)
 
 
 def drift(pose: Pose, seats: Sequence[Seat], ways: Sequence[Way], axis: Array) -> Array:
@@ -296,6 +289,25 @@ def _same_azimuth(axis: Array, start: Array, end: Array) -> Array:
     some = length > 0
     length = np.sqrt(np.where(some, length, 1.0))
     return about(axis, np.where(some, cos / length, 1.0), np.where(some, sin / length, 0.0))
+
+
+def _nearer(axis: Array, arm: Array, line: Array, along: Array | None) -> Array:
+    """Rotations about an axis by Newton's step to where an arm's end is nearest to that of a line.
+
+    Args:
+        axis: (3, n), of unit length.
+        arm, line: from a point of the axis (3, n) [mm].
+        along: in which their distance does not count (3, n), if there is one.
+    """
+    lacking, motion = arm - line, cross(axis, arm)
+    bend = cross(axis, motion)
+    if along is not None:
+        lacking, motion = lacking - dot(lacking, along) * along, motion - dot(motion, along) * along
+    square = dot(motion, motion)
+    curvature = square + dot(lacking, bend)
+    angle = -dot(lacking, motion) / np.where(curvature > 0, curvature, square)
+    cos = 1.0 / np.sqrt(1.0 + angle * angle)
+    return about(axis, cos, angle * cos)
 
 
 def _met(axis: Array, arm: Array, normal: Array, height: Array) -> tuple[Array, Codes]:
