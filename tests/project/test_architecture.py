@@ -69,8 +69,7 @@ def test_a_heavy_library_has_one_door(library: str) -> None:
     strangers = [
         str(path.relative_to(ROOT))
         for path in python_files()
-        if library in imported_by(path)
-        and not str(path.relative_to(ROOT)).startswith(DOORS[library] or ("nowhere",))
+        if library in imported_by(path) and not str(path.relative_to(ROOT)).startswith(DOORS[library] or ("nowhere",))
     ]
     assert strangers == []
 

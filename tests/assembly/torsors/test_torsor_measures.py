@@ -320,6 +320,27 @@ def test_a_datum_that_is_touched_by_its_corner_bends_what_is_measured_from_it() 
         assert rise in found.bent
 
 
+def test_a_position_in_a_datum_frame_that_is_touched_by_a_corner_bends_twice() -> None:
+    """The frame's height is its offset and the amount of a rise; a fixed point is as far off, twice that is read."""
+    draft = Draft()
+    draft.part("part")
+    draft.feature("part.a", frame((0, 0, 0), -Z), Plane((90, 70)), deviates=False)
+    draft.feature("part.feature", frame((0, 0, 10), -Y, X), Plane((80, 20)))
+    name = draft.datum_frame("part", Datum(("part.a",)), Datum(("part.feature",)))
+    draft.feature("part.far", (0, 50, 0), deviates=False)
+    measured = Measured("position", ("part.far",), frame=name)
+    for offset, rise in ((0.02, 0.03), (0.02, -0.03), (-0.05, 0.03), (-0.01, -0.03)):
+        expected = 2 * abs(offset + abs(rise))
+        assert one(draft, measured, offset=offset, rise_y=rise) == pytest.approx(expected, abs=1e-15)
+    assembly = draft.assembly((), {"position": measured})
+    found = slopes(assembly, "position", np.zeros(assembly.width), np.full(assembly.width, 0.1))
+    columns = [draft.columns.index(f"part.feature {name}") for name in ("offset", "rise y")]
+    inner, outer = found.bends
+    assert (inner.columns, inner.weights.tolist(), outer.weights.tolist()) == ((columns[1],), [0.0], [2.0])
+    assert outer.vectors is None
+    assert set(columns) <= set(outer.columns)
+
+
 def test_first_orders_pickle_and_keep_their_bits() -> None:
     draft, moves = lid_on_base()
     measures = {name: measured for name, (measured, _) in EXACT.items()}
