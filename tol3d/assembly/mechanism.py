@@ -17,4 +17,6 @@ ASSEMBLY: Final = Mechanism(
     checks=(unknown_features, unplaced_bodies, contradicting_tolerances),
     engines=("exact",),
     system="tol3d.assembly.system:assembly_system",
+    summary="tol3d.assembly.summary_types:SUMMARY_KINDS",
+    presenter="tol3d.assembly.presenting",
 )

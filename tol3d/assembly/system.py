@@ -76,15 +76,21 @@ class AssemblySystem(PlainSystem):
 
     Args:
         assembly: nominally, and by its drawings.
+        named: by measure, the features that it names, or two measures.
     """
 
     assembly: Assembly
+    named: Mapping[str, tuple[str, ...]]
 
     statuses: ClassVar[Statuses] = STATUSES
 
     def road(self, name: str, materials: Any) -> Road:
         """See System."""
         return TorsorRoad(self.assembly) if name == ANALYTIC_ROAD else PlacingRoad(self.assembly)
+
+    def describe(self, measure: Measure) -> Mapping[str, Any]:
+        """Its kind, and what it is of."""
+        return {**super().describe(measure), "of": list(self.named[measure.name])}
 
     def problems(self) -> Iterator[tuple[KeyPath, str]]:
         """Measures of the nominal assembly that the roads read differently, or not at all."""
@@ -175,7 +181,7 @@ def assembly_system(scene: Scene) -> AssemblySystem:
         SceneError: what it says does not fit together, such as moves that leave a part free.
     """
     placed = _asked(scene, lambda: _settled(scene))
-    made = AssemblySystem(scene.scene, placed.contributors, placed.measures, placed.assembly)
+    made = AssemblySystem(scene.scene, placed.contributors, placed.measures, placed.assembly, placed.named)
     _asked(
         scene, lambda: torsors.values(made.assembly, np.zeros((1, made.assembly.width)), list(made.assembly.measures))
     )

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from tol3d.assembly.from_scene.contributors import effects_of
 from tol3d.assembly.from_scene.datums import DatumFrames, in_order
 from tol3d.assembly.from_scene.features import TouchedPoints, features_of, poses_of
-from tol3d.assembly.from_scene.measures import measured_of, shown_measures
+from tol3d.assembly.from_scene.measures import measured_of, named_by, shown_measures
 from tol3d.assembly.from_scene.moves import moves_of
 from tol3d.assembly.grammar.drawing import Drawing
 from tol3d.assembly.grammar.parts import SolidSpec
@@ -28,11 +28,13 @@ class Meant:
         assembly: at nominal poses as the scene says them.
         contributors: in the scene's order, a contributor of a part that is like another after the other's.
         measures: in the scene's order.
+        named: what each measure names: features, or two measures.
     """
 
     assembly: Assembly
     contributors: tuple[PlainContributor, ...]
     measures: tuple[PlainMeasure, ...]
+    named: Mapping[str, tuple[str, ...]]
 
 
 def assembly_of(scene: Scene, settled: Mapping[str, Array] | None = None) -> Meant:
@@ -64,4 +66,4 @@ def assembly_of(scene: Scene, settled: Mapping[str, Array] | None = None) -> Mea
         for name in scene.of(SolidSpec)
     )
     assembly = Assembly(parts, moves, measured, effects.width)
-    return Meant(assembly, tuple(effects.contributors), shown_measures(scene, measured))
+    return Meant(assembly, tuple(effects.contributors), shown_measures(scene, measured), named_by(scene))

@@ -67,7 +67,7 @@ class TouchedPoints:
             rise = np.zeros((3, 3))
             rise[2] = 1.0, x / along_x, y / along_y
             moved_by = tuple(replace(own, matrix=rise @ own.matrix) for own in plane.moved_by)
-            self.features[name] = Feature(name, plane.part, Point(), frame, plane.parent, moved_by)
+            self.features[name] = Feature(name, plane.part, Point(), frame, plane.parent, moved_by, is_named=False)
         return name
 
     def lifted(self, point: str, pair: str, along: Array, part: str, by: Sequence[Contribution]) -> str:
@@ -87,7 +87,7 @@ class TouchedPoints:
         moved_by = tuple(replace(each, matrix=middle @ each.matrix) for each in own.moved_by)
         moved_by += tuple(replace(each, matrix=direction[:, None] @ each.matrix) for each in by)
         name = f"{point} in {pair}"
-        self.features[name] = Feature(name, own.part, Point(), own.frame, own.parent, moved_by)
+        self.features[name] = Feature(name, own.part, Point(), own.frame, own.parent, moved_by, is_named=False)
         return name
 
     def _seen_from(self, plane: Feature, point: Feature) -> Sequence[float]:

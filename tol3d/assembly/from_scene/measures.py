@@ -42,3 +42,15 @@ def shown_measures(scene: Scene, read: dict[str, Measured]) -> tuple[PlainMeasur
     """The measures as studies see them."""
     found = measures_of(scene)
     return tuple(replace(own, worse="high" if read[own.name].kind in WORSE_HIGH else "low") for own in found)
+
+
+def named_by(scene: Scene) -> dict[str, tuple[str, ...]]:
+    """The features that each measure names, or the measures of a difference."""
+    found: dict[str, tuple[str, ...]] = {}
+    for name in scene.measures:
+        spec = _named(scene, name)
+        if isinstance(spec, DifferenceSpec):
+            found[name] = (spec.of, spec.minus)
+        elif isinstance(spec, FeatureMeasureSpec):
+            found[name] = tuple(feature for _, feature, _ in spec.named())
+    return found

@@ -84,6 +84,30 @@ def placed(assembly: Assembly, deviations: Array) -> dict[str, Array]:
     return found
 
 
+def features_placed(assembly: Assembly, deviations: Array) -> dict[str, Array]:
+    """Frames of all features of placed parts as they lie in each trial, after the last move.
+
+    Args:
+        assembly: the model.
+        deviations: (trials, width) [mm].
+
+    Returns:
+        By feature: frames in the world (trials, 4, 4), not a number where a move that placed its part failed.
+
+    Raises:
+        InputError: a move leaves a freedom or takes one twice; a part is not placed.
+    """
+    plan = planned(assembly)
+    block = _placed(plan, np.asarray(deviations, dtype=np.float64))
+    found = {}
+    for part, causes in plan.causes[-1].placed.items():
+        failed = block.first_of(ordered(causes)) != OK
+        for feature in assembly.part[part].features:
+            frames = block.worlds[-1].placed(feature.name).pose.matrices(len(deviations))
+            found[feature.name] = np.where(np.broadcast_to(failed, len(deviations))[:, None, None], np.nan, frames)
+    return found
+
+
 @dataclass(frozen=True, eq=False)
 class Plan:
     """An assembly as it is placed, and what its nominal geometry decides once for all trials.

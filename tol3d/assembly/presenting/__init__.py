@@ -1,0 +1,56 @@
+"""How assemblies are shown: features as they lie in a trial, deviations magnified; tables of parts and moves.
+
+symbols         closed surfaces that stand for features
+shown_assembly  a build's parts, for pictures and files of triangles
+tables          what a scene means
+"""
+
+from collections.abc import Mapping, Sequence
+from importlib import import_module
+from typing import TYPE_CHECKING, Any, Final
+
+from tol3d.runs.summary.measure import MeasureSummary
+from tol3d.runs.summary.run import RunSummary
+
+if TYPE_CHECKING:
+    from tol3d.report.page import Block
+    from tol3d.report.presenter import Display, Draw, FurtherRow, Which
+    from tol3d.runs.run import Run
+    from tol3d.simulate import Replay
+    from tol3d.study.simulation import Simulation
+
+
+class AssemblyPresenter:
+    """The presenter of assemblies; see `tol3d.report.presenter.Presenter`."""
+
+    def pictures(self, summary: RunSummary) -> "Mapping[str, Draw]":
+        """None besides the histograms."""
+        return {}
+
+    def sections(self, summary: RunSummary) -> "Sequence[Block]":
+        """None."""
+        return ()
+
+    def measure_rows(self, measure: MeasureSummary, summary: RunSummary) -> "Sequence[FurtherRow]":
+        """None."""
+        return ()
+
+    def check(self, simulation: "Simulation") -> "Sequence[Block]":
+        """Features with their datum frames, moves, and what any system shows."""
+        return _lazily("tables").check_blocks(simulation)  # type: ignore[no-any-return]
+
+    def display(self, run: "Run", which: "Which", *, magnify: float) -> "Display":
+        """A build with its parts placed again."""
+        return _lazily("shown_assembly").display(run, which, magnify=magnify)  # type: ignore[no-any-return]
+
+    def replayed(self, replay: "Replay", label: str) -> "Display":
+        """A trial that was replayed."""
+        return _lazily("shown_assembly").replayed_display(replay, label)  # type: ignore[no-any-return]
+
+
+def _lazily(module: str) -> Any:
+    """A module of this folder, imported when it is needed."""
+    return import_module(f"{__name__}.{module}")
+
+
+PRESENTER: Final = AssemblyPresenter()

@@ -1,0 +1,95 @@
+"""Closed surfaces that stand for features which are stated by numbers: slabs, rods, rings, octahedra."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tol3d.assembly.model import Axis, Plane, Point, RoundPlane, Shape
+
+Array = NDArray[np.float64]
+Surface = tuple[Array, NDArray[np.int64]]
+
+SIDES = 48
+"""Of a round surface."""
+
+
+def symbol(shape: Shape, thickness: float) -> Surface:
+    """What stands for a feature, in its frame: vertices (n, 3) [mm], triangles (m, 3).
+
+    Args:
+        shape: a plane is a slab below it, an axis a rod of its diameter, a hole a ring, a point an octahedron.
+        thickness: of what has none of its own [mm].
+    """
+    match shape:
+        case Point():
+            corners = thickness * np.concatenate([np.eye(3), -np.eye(3)])
+            faces = [(a, b, c) for a in (0, 3) for b in (1, 4) for c in (2, 5)]
+            return corners, np.array([_outward(corners, face) for face in faces])
+        case Plane():
+            a, b = shape.reach
+            outline = np.array([(-a, -b), (a, -b), (a, b), (-a, b)])
+            return prism(outline, -thickness, 0.0)
+        case RoundPlane():
+            return prism(circle(shape.radius), -thickness, 0.0)
+        case Axis():
+            half = shape.length / 2
+            radius = thickness / 4 if shape.diameter is None else shape.diameter / 2
+            if shape.inner:
+                return ring(radius, radius + thickness, -half, half)
+            return prism(circle(radius), -half, half)
+
+
+def circle(radius: float) -> Array:
+    """A circle's corners (SIDES, 2), counter-clockwise [mm]."""
+    angles = 2 * np.pi * np.arange(SIDES) / SIDES
+    return radius * np.stack([np.cos(angles), np.sin(angles)], axis=-1)
+
+
+def prism(outline: Array, low: float, high: float) -> Surface:
+    """A closed prism over a convex outline (n, 2), counter-clockwise, from one height to another [mm]."""
+    n = len(outline)
+    vertices = np.concatenate([np.column_stack([outline, np.full(n, z)]) for z in (low, high)])
+    here = np.arange(n)
+    there = (here + 1) % n
+    walls = np.concatenate(
+        [
+            np.stack([here, there, there + n], axis=-1),
+            np.stack([here, there + n, here + n], axis=-1),
+        ]
+    )
+    fan = np.stack([np.zeros(n - 2, dtype=np.int64), here[1:-1], here[2:]], axis=-1)
+    return vertices, np.concatenate([walls, fan[:, ::-1], fan + n])
+
+
+def ring(inner: float, outer: float, low: float, high: float) -> Surface:
+    """A closed tube from one height to another [mm]."""
+    vertices = np.concatenate(
+        [
+            np.column_stack([circle(radius), np.full(SIDES, z)])
+            for radius, z in ((outer, low), (outer, high), (inner, high), (inner, low))
+        ]
+    )
+    here = np.arange(SIDES)
+    there = (here + 1) % SIDES
+    bands = []
+    for k in range(4):
+        own, following = k * SIDES, (k + 1) % 4 * SIDES
+        bands.append(np.stack([here + own, there + own, there + following], axis=-1))
+        bands.append(np.stack([here + own, there + following, here + following], axis=-1))
+    return vertices, np.concatenate(bands)
+
+
+def rod(start: Array, end: Array, radius: float) -> Surface:
+    """A closed rod from one point (3,) to another [mm]."""
+    along = end - start
+    length = float(np.linalg.norm(along))
+    z = along / length
+    x = np.cross(z, np.eye(3)[int(np.argmin(np.abs(z)))])
+    x /= np.linalg.norm(x)
+    vertices, triangles = prism(circle(radius), 0.0, length)
+    return start + vertices @ np.stack([x, np.cross(z, x), z]), triangles
+
+
+def _outward(corners: Array, face: tuple[int, int, int]) -> tuple[int, int, int]:
+    """A triangle of a solid about the origin, turned so that it looks outward."""
+    a, b, c = (corners[k] for k in face)
+    return face if float(np.cross(b - a, c - a) @ a) > 0.0 else (face[0], face[2], face[1])

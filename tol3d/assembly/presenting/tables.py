@@ -1,0 +1,65 @@
+"""What a scene of an assembly means, as tables: features with their datum frames, moves."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from tol3d.assembly.model import Axis, Feature, Locate, Move, Plane, RoundPlane
+from tol3d.assembly.model.moves import BestFit, Mate, Weld
+from tol3d.assembly.system import AssemblySystem
+from tol3d.report.page import Block, Heading, Row, Table, titled
+from tol3d.report.system_check import system_blocks
+from tol3d.study.simulation import Simulation
+
+
+def check_blocks(simulation: Simulation) -> Sequence[Block]:
+    """Features, moves, and what any system shows."""
+    system = simulation.system
+    assert isinstance(system, AssemblySystem)
+    rows = [
+        Row(own.name, (_shape(own), _place(system, own), _frame(own)))
+        for part in system.assembly.parts
+        for own in part.features
+        if own.is_named
+    ]
+    words = [Heading(word, words=True) for word in ("shape", "at [mm]", "lies in the frame of")]
+    features = titled("features, nominally in the world", Table("", words, rows))
+    moves = [Row(move.name, _move(move)) for move in system.assembly.moves]
+    steps = titled("moves", Table("", [Heading(word, words=True) for word in ("kind", "part", "by")], moves))
+    return (*features, *steps, *system_blocks(simulation))
+
+
+def _shape(feature: Feature) -> str:
+    match feature.shape:
+        case Plane(extent=(a, b)):
+            return f"plane {a:g} × {b:g} mm"
+        case RoundPlane(radius=radius):
+            return f"plane, radius {radius:g} mm"
+        case Axis(length=length, diameter=None):
+            return f"axis, {length:g} mm long"
+        case Axis(length=length, diameter=diameter, inner=inner):
+            return f"{'hole' if inner else 'pin'} ⌀{diameter:g} mm, {length:g} mm long"
+    return "point"
+
+
+def _place(system: AssemblySystem, feature: Feature) -> str:
+    pose = system.assembly.part[feature.part].pose
+    at = pose[:3, :3] @ feature.frame[:3, 3] + pose[:3, 3]
+    return ", ".join(f"{float(np.round(own, 6)) + 0.0:g}" for own in at)
+
+
+def _frame(feature: Feature) -> str:
+    return "its part" if not feature.parent else feature.parent.partition("|")[2].replace("|", ", ")
+
+
+def _move(move: Move) -> tuple[str, str, str]:
+    match move:
+        case Locate():
+            return "six contacts", move.part, f"points ride on the {move.points_on}"
+        case BestFit():
+            return "best fit", move.part, f"{len(move.fits)} points, {move.criterion}"
+        case Mate():
+            return "mate", move.part, ", ".join(f"{own.kind} {own.target}" for own in move.relations)
+        case Weld():
+            return "weld", move.part, ", ".join(move.others)
+    return "fixed", move.part, ""

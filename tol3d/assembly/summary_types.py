@@ -1,0 +1,57 @@
+"""What summary.json holds of assemblies: of which features each measure is."""
+
+from typing import Annotated, Final, Literal
+
+from pydantic import Field
+
+from tol3d.runs.summary.kinds import SummaryKinds
+from tol3d.runs.summary.measure import MeasureSummary
+from tol3d.runs.summary.values import MOST_ENTRIES, Label
+
+PRESENTER: Final = "tol3d.assembly.presenting"
+
+
+class AssemblyMeasureSummary(MeasureSummary):
+    """A measure of features, or the difference of two measures."""
+
+    presenter = PRESENTER
+
+    kind: Literal[
+        "angle",
+        "difference",
+        "distance",
+        "flush",
+        "gap",
+        "inspected_flatness",
+        "inspected_orientation",
+        "inspected_position",
+        "inspected_size",
+        "point_plane",
+    ]
+    of: Annotated[list[Label], Field(min_length=1, max_length=MOST_ENTRIES)]
+
+    @property
+    def words(self) -> str:
+        """See MeasureSummary.
+
+        >>> AssemblyMeasureSummary.model_construct(kind="gap", of=["base.rim", "cover.rim"]).words
+        'gap from base.rim to cover.rim'
+        >>> AssemblyMeasureSummary.model_construct(kind="difference", of=["upper gap", "lower gap"]).words
+        'upper gap less lower gap'
+        >>> AssemblyMeasureSummary.model_construct(kind="inspected_size", of=["base.bore"]).words
+        'inspected size of base.bore'
+        """
+        kind = self.kind.replace("_", " ")
+        if self.kind == "difference":
+            return " less ".join(self.of)
+        if len(self.of) == 2:
+            return f"{kind} from {self.of[0]} to {self.of[1]}"
+        return f"{kind} of {', '.join(self.of)}"
+
+    @property
+    def identity(self) -> tuple[str | None, ...]:
+        """See MeasureSummary."""
+        return (self.kind, *self.of)
+
+
+SUMMARY_KINDS: Final = SummaryKinds((AssemblyMeasureSummary,))
