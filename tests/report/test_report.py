@@ -314,7 +314,7 @@ study: {trials: 10}
 def test_check_names_the_measures_whose_shares_no_closed_form_tells(run: Run, tmp_path: Path) -> None:
     (tmp_path / "ways.yaml").write_text(TWO_WAYS, encoding="utf-8")
     text = one_line(check_report(simulation_of(load_scene(tmp_path / "ways.yaml"))))
-    assert "no shares of both: the tighter load path counts, which is no sum; run tells the shares of its" in text
+    assert "no shares of both: the tighter load path counts, which is no sum; run gives the shares of its" in text
     assert "no shares" not in one_line(check_report(simulation_again(run)))
 
 

@@ -482,7 +482,7 @@ TRAINS = {
         "three_stage_train",
         (*OTHER, ("centre_distance: 25 mm", "centre_distance: 25 mm, working_flank: either")),
         "other: {kind: mesh",
-        "moves.other.working_flank: expected right or left, got either: no train tells the load; add a move of kind "
+        "moves.other.working_flank: expected right or left, got either: no train gives the load; add a move of kind "
         "train that drives 'a'",
     ),
     "a gear in no mesh": (

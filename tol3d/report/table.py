@@ -160,7 +160,7 @@ def _sampling_notes(measure: MeasureSummary, own: Sample, run: RunSummary) -> It
             f"sigma ±{difference_text(own.sigma_se, unit)} (one standard error)"
         )
     if is_bounded(measure):
-        yield "trials end before mean ∓ 3 sigma here: the quantiles tell more than low and high"
+        yield "trials end before mean ∓ 3 sigma here: the quantiles say more than low and high"
     for key, label in limit_rows(measure).items():
         low_high = getattr(own, f"{key}_95")
         if low_high:

@@ -102,7 +102,7 @@ class Study(Strict):
         default=None,
         ge=FEWEST_REPLICATES,
         le=MOST_REPLICATES,
-        description="parts of equal size, each randomised anew, whose spread tells the errors of sobol and "
+        description="parts of equal size, each randomised anew, whose spread gives the errors of sobol and "
         f"latin_hypercube; {REPLICATES} if not given",
     )
     engine: str = Field(default="exact", description="what the 3D simulation measures with; analytic: none of it")

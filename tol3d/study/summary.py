@@ -116,7 +116,7 @@ def _too_many(simulation: Simulation) -> Iterator[str]:
             alike.setdefault(count, []).append(measure.name)
     for count, names in alike.items():
         yield (
-            f"{', '.join(names)}: {count} tolerances act; shares of the 3D simulation are told of the {MOST_REGRESSED} "
+            f"{', '.join(names)}: {count} tolerances act; shares of the 3D simulation are of the {MOST_REGRESSED} "
             "that matter most by the stack-up (or come first, where it has no closed form), the others are in none; "
             "no high-low-mean shares"
         )

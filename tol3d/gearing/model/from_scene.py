@@ -105,7 +105,7 @@ def _loaded(scene: Scene, mesh: Mesh, trains: tuple[Train, ...], layout: Layout,
         return replace(mesh, working_flank=flank)
     raise scene.refuse(
         ("moves", mesh.name, "working_flank"),
-        f"expected right or left, got either: no train tells the load; add a move of kind train that drives {root!r}",
+        f"expected right or left, got either: no train gives the load; add a move of kind train that drives {root!r}",
     )
 
 

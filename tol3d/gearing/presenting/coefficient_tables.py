@@ -8,7 +8,7 @@ from tol3d.report.number import degrees_text, percent_cell
 from tol3d.report.page import Block, Heading, Row, Table, line, titled
 
 OTHER = "≠"
-NO_SUM = "the tighter load path counts, which is no sum; run tells the shares of its trials"
+NO_SUM = "the tighter load path counts, which is no sum; run gives the shares of its trials"
 
 
 def coefficients_tables(model: Model) -> list[Block]:

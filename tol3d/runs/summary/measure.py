@@ -104,7 +104,7 @@ class MeasureSummary(Section):
     contributors: list[ContributorShare]
     published: Mapping[Label, PublishedColumn]
 
-    # what it says of itself; a mechanism's class says it in its own words --------------------------------
+    # how it describes itself; a mechanism's class does so in its own words --------------------------------
 
     @property
     def words(self) -> str:

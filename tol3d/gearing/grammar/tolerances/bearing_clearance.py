@@ -40,7 +40,7 @@ class BearingClearanceSpec(GearToleranceSpec):
     of: Name = Field(description="the gear that the bearing carries, or a bearing")
     mesh: Name | None = Field(
         default=None,
-        description="the mesh whose line of centres or tooth force tells the direction; needed where the gear is in "
+        description="the mesh whose line of centres or tooth force gives the direction; needed where the gear is in "
         "several, and for a bearing whose direction is apart or tooth_force",
     )
     direction: Annotated[
