@@ -21,14 +21,15 @@ from oracles.involute_gear import InvoluteGear
 from places import SCENES as FOLDER
 from scipy.integrate import quad
 from scipy.stats import halfnorm, norm, uniform
+from shipped import shipped
 from vectors import vector
 
 from tol3d import Run, load_scene
 from tol3d.gearing.model import model_from_scene
 from tol3d.gears.flank import Flank
 
-ELSEWHERE = re.compile("bevel|robot|train|door")  # test_*_scenes.py, test_compensation.py, tests/assembly
-SCENES = sorted(path.stem for path in FOLDER.glob("*.yaml") if not ELSEWHERE.search(path.stem))
+ELSEWHERE = re.compile("bevel|robot|train")  # test_*_scenes.py, test_compensation.py
+SCENES = [name for name in shipped("gearing") if not ELSEWHERE.search(name)]
 ALPHA = math.radians(20.0)
 ARCMIN = 10800 / math.pi / 1000  # one um at a radius of one mm
 

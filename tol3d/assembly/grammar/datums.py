@@ -12,12 +12,21 @@ from tol3d.strict import Strict, refused
 from tol3d.units import shown
 
 
+def _joined(value: Any) -> Any:
+    """`floor` or `bore 1-bore 2` as names; of a list each is one."""
+    return [name.strip() for name in value.split("-")] if isinstance(value, str) else value
+
+
 class DatumSpec(Strict):
     """A datum: a feature of the part, or two as a common datum, and how it lies on what holds it."""
 
     words: ClassVar[str] = "a datum"
 
-    features: Annotated[tuple[OwnName, ...], listed("features", 1, 2)]
+    features: Annotated[
+        tuple[OwnName, ...],
+        listed("features", 1, 2),
+        BeforeValidator(_joined, json_schema_input_type=str | tuple[OwnName, ...]),
+    ] = Field(alias="feature", description="its name; of a common datum both, such as bore 1-bore 2")
     simulator: Simulator = Field(default="contact", description="how a later plane lies in the orientation left to it")
     targets: Annotated[tuple[Vector, ...], listed("points", 1, 3)] = Field(
         default=(), description="points of the part that touch, for simulator: targets"
@@ -25,21 +34,16 @@ class DatumSpec(Strict):
 
 
 def _datum(value: Any) -> Any:
-    """`floor`, `bore 1-bore 2` or {feature: floor, simulator: fitted} as a DatumSpec's fields."""
+    """`floor` as a DatumSpec's fields."""
     if isinstance(value, str):
-        return {"features": tuple(name.strip() for name in value.split("-"))}
-    if isinstance(value, dict) and isinstance(value.get("feature"), str):
-        return {
-            "features": tuple(name.strip() for name in value["feature"].split("-")),
-            **{key: own for key, own in value.items() if key != "feature"},
-        }
+        return {"feature": value}
     if isinstance(value, DatumSpec | dict):
         return value
     raise refused("", "a feature such as floor, a common datum such as bore 1-bore 2, or {feature: ..}", shown(value))
 
 
 Datums = Annotated[
-    tuple[Annotated[DatumSpec, BeforeValidator(_datum)], ...],
+    tuple[Annotated[DatumSpec, BeforeValidator(_datum, json_schema_input_type=str | DatumSpec)], ...],
     listed("datums", 1, 3),
     Field(description="primary, secondary, tertiary; features of the same part"),
 ]

@@ -1,0 +1,142 @@
+"""docs/assemblies.md against the JSON schema and the scenes that it quotes, which say every field once at least."""
+
+import re
+from collections.abc import Mapping
+from typing import Any, get_args
+
+import pytest
+from fixtures import Command
+from kinds_page import KindsPage, words
+from places import ROOT, SCENES
+from said_fields import fields_said, fields_within, unsaid
+
+from tol3d import load_scene
+from tol3d.assembly.grammar.datums import DatumSpec
+from tol3d.assembly.grammar.zone import ZoneSpec
+from tol3d.assembly.mechanism import ASSEMBLY
+from tol3d.assembly.model.datum_frame import Simulator
+from tol3d.assembly.model.statuses import STATUSES
+from tol3d.scene import Grammar
+from tol3d.scene.schema import SECTIONS
+from tol3d.units import FACTORS
+
+DOCS = (ROOT / "docs" / "assemblies.md").read_text("utf-8")
+KINDS = Grammar((ASSEMBLY,))
+SCHEMA: Mapping[str, Any] = KINDS.scene.model_json_schema()
+WORDS = "What the words mean"
+COMMON = {
+    "tolerances": ["Each has `kind` and, if you like, `description`"],
+    "moves": ["A pair has `from`"],
+    "measures": ["Each has `kind` and may have `lower_limit`"],
+}
+PAGE = KindsPage(DOCS, SCHEMA, COMMON)
+QUOTED = re.findall(r"```yaml\n(.*?)```", DOCS, re.DOTALL)
+TABLES = re.findall(r"```text\n([^\n]*analytic.*?)```", DOCS, re.DOTALL)
+
+
+def one_line(text: str) -> str:
+    return " ".join(text.split())
+
+
+def union(definition: str, field: str) -> Mapping[str, Any]:
+    """Kinds that a field of a definition may hold, by their words."""
+    found: dict[str, Any] = {}
+    pending: list[Any] = [SCHEMA["$defs"][definition]["properties"][field]]
+    while pending:
+        node = pending.pop()
+        if isinstance(node, dict):
+            if "discriminator" in node:
+                found |= PAGE.mapping(node)
+            pending += [own for name, own in node.items() if name != "discriminator"]
+        elif isinstance(node, list):
+            pending += node
+    return found
+
+
+FEATURES, LAWS = union("SolidSpec", "features"), union("PositionSpec", "law")
+
+
+# the scenes --------------------------------------------------------------------------------------------------
+
+
+def test_the_page_quotes_both_scenes() -> None:
+    names = ("cover_on_base", "every_assembly_field")
+    assert [(SCENES / f"{name}.yaml").read_text("utf-8") for name in names] == QUOTED
+
+
+def test_the_tables_of_the_example_are_those_of_the_run(tol3d: Command, tmp_path: Any) -> None:
+    code, out, _ = tol3d("run", "cover_on_base", "--out", str(tmp_path / "run"))
+    assert code == 0
+    assert len(TABLES) == 3
+    for table in TABLES:
+        assert one_line(table) in one_line(out)
+
+
+def test_every_assembly_field_uses_every_field_of_every_kind() -> None:
+    kinds = [spec for section in SECTIONS for spec in ASSEMBLY.specs(section)]
+    known = {own for spec in kinds for own in fields_within(spec) if own[0].__module__.startswith("tol3d.assembly")}
+    assert len({model for model, _ in known}) == len(kinds) + 13  # placement, datum, zone; 4 features, 3 laws, 3 pairs
+    said = set(fields_said(load_scene(SCENES / "every_assembly_field.yaml", KINDS)))
+    assert unsaid(known, said) == set()
+    assert set(kinds) <= {model for model, _ in said}
+
+
+# the tables --------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("section", SECTIONS)
+def test_every_kind_has_a_row_and_every_row_is_a_kind(section: str) -> None:
+    rows = [kind for kind, _ in PAGE.table(section.capitalize()).rows]
+    assert sorted(rows) == sorted(PAGE.kinds(section))
+
+
+@pytest.mark.parametrize(("section", "kind"), PAGE.section_kinds)
+def test_a_row_and_what_its_section_says_of_all_name_every_field(section: str, kind: str) -> None:
+    assert PAGE.unnamed(section, kind) == set()
+
+
+@pytest.mark.parametrize(("section", "kind"), PAGE.section_kinds)
+def test_a_row_names_no_field_that_the_grammar_does_not_know(section: str, kind: str) -> None:
+    assert PAGE.strange(section, kind) <= {"placed"}  # of the part
+
+
+def test_the_table_of_features_names_their_fields() -> None:
+    rows = dict(PAGE.table("Features").rows)
+    assert set(rows) == set(FEATURES)
+    for kind, own in FEATURES.items():
+        assert words(" ".join(rows[kind])) == set(own["properties"]) - {"kind"}
+
+
+@pytest.mark.parametrize(
+    ("head", "expected"),
+    [("simulator", get_args(Simulator)), ("law", tuple(LAWS)), ("status", STATUSES.texts)],
+    ids=lambda own: own if isinstance(own, str) else "",
+)
+def test_small_tables_have_every_value(head: str, expected: tuple[str, ...]) -> None:
+    rows = [row.split("` (")[0] for row, _ in PAGE.table(WORDS, head).rows]
+    assert sorted(word for row in rows for word in row.split("`, `")) == sorted(expected)
+
+
+def test_the_table_of_relations_has_every_kind() -> None:
+    spec = SCHEMA["$defs"]["RelationSpec"]["properties"]["kind"]["enum"]
+    assert {row for row, _ in PAGE.table("Moves", "relation").rows} == set(spec)
+
+
+@pytest.mark.parametrize("model", [ZoneSpec, DatumSpec])
+def test_the_paragraph_below_the_tolerances_names_what_is_in_a_zone_and_a_datum(model: type[ZoneSpec]) -> None:
+    paragraph = next(each for each in DOCS.split("\n\n") if each.startswith("A `zone` has"))
+    fields = {"feature" if field == "features" else field for field in model.model_fields}
+    assert fields <= words(paragraph)
+
+
+def test_no_table_is_forgotten() -> None:
+    known = {(section.capitalize(), "kind") for section in SECTIONS} | {("Features", "kind"), ("Moves", "relation")}
+    known |= {(WORDS, head) for head in ("simulator", "law", "status")}
+    assert {(each.section, each.head[0]) for each in PAGE.tables} == known
+
+
+def test_every_word_of_the_page_that_looks_like_a_field_is_one() -> None:
+    known = {*PAGE.vocabulary(SCHEMA), *SECTIONS, "study", "published", "feature", "kind"}
+    known |= {kind for section in SECTIONS for kind in PAGE.kinds(section)} | set(FEATURES) | set(LAWS)
+    known |= {unit for units in FACTORS.values() for unit in units} | {"gauge", "ok", "singular"}
+    assert words(PAGE.prose) - known == set()

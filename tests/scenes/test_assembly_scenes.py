@@ -1,0 +1,68 @@
+"""The scenes of assemblies run, none of their trials fails, and they meet the numbers in the files beside them."""
+
+import math
+from collections.abc import Callable
+from typing import Any
+
+import pytest
+from expected import expected
+from places import SCENES as FOLDER
+from shipped import shipped
+
+from tol3d import Overrides, Run, load_scene, run_scene
+
+SCENES = shipped("assembly")
+PRINTED = 1e-5  # um or arcmin; the files give that many digits
+SEEN = 1e-5  # um or arcmin: another machine's bits, of lengths up to 100 mm
+ARCMIN = 10800 / math.pi
+
+
+def measures_of(scene: str) -> dict[str, dict[str, Any]]:
+    return {name: own for name, own in expected(scene).items() if isinstance(own, dict)}
+
+
+@pytest.mark.parametrize("scene", SCENES)
+def test_an_assembly_meets_its_expected_numbers(scene: str, run_of: Callable[[str], Run]) -> None:
+    summary = run_of(scene).summary
+    trials = expected(scene)["trials"]
+    assert summary["engine"] == "exact"
+    assert summary["status"]["ok"] == sum(summary["status"].values()) == trials
+    assert list(measures_of(scene)) == list(load_scene(FOLDER / f"{scene}.yaml").measures) == list(summary["measures"])
+    for name, own in measures_of(scene).items():
+        found = summary["measures"][name]
+        for road in ("analytic", "geometric"):
+            for moment in ("mean", "sigma"):
+                assert found[road][moment] == pytest.approx(own[road][moment], abs=PRINTED + SEEN), name
+            for build in ("nominal", "mean_build"):
+                assert found[build][road] == pytest.approx(own[build][road], abs=PRINTED + SEEN), name
+        assert ("analytic_closed_form" in found) == ("closed_form" in own), name
+        if "closed_form" in own:
+            form = {key: found["analytic_closed_form"][key] for key in ("mean", "sigma")}
+            assert form == pytest.approx(own["closed_form"], abs=PRINTED + SEEN), name
+
+
+@pytest.mark.parametrize("scene", SCENES)
+def test_both_roads_of_an_assembly_differ_by_nothing_that_is_not_explained(
+    scene: str, run_of: Callable[[str], Run]
+) -> None:
+    summary = run_of(scene).summary
+    assert summary["warnings"] == []
+    for own in summary["measures"].values():
+        assert own["agreement"]["explanation"]["faults"] == []
+
+
+def test_the_cover_s_numbers_follow_by_hand(tmp_path: Any) -> None:
+    """Datum C stands off by |a| + |b| of the left wall, rises a, b uniform in |a| + |b| <= 10 um; the cover touches
+    it at 0.4 b. The middle of each hole is that of two ends, drawn in discs by normals cut at 3 sigma."""
+    count = 20_000
+    found = run_scene(FOLDER / "cover_on_base.yaml", overrides=Overrides(trials=count), out=tmp_path / "run").summary
+    disc = (100 / 3) ** 2 * (1 - 4.5 * math.exp(-4.5) / (1 - math.exp(-4.5)))
+    by_hand = {
+        "hole offset": (-20 / 3, math.sqrt(2 * disc / 2 + 10**2 / 18 + 0.4**2 * 10**2 / 6)),
+        "flush": (0.0, math.sqrt(2) * 100 / 3),
+    }
+    for name, (mean, sigma) in by_hand.items():
+        for road in ("analytic", "geometric"):
+            own = found["measures"][name][road]
+            assert own["mean"] == pytest.approx(mean, abs=4 * sigma / math.sqrt(count))
+            assert own["sigma"] == pytest.approx(sigma, rel=4 / math.sqrt(2 * count))
