@@ -25,6 +25,7 @@ from tol3d.runs.summary.values import (
 )
 from tol3d.strict import refused
 from tol3d.system.outcome import SEATED
+from tol3d.system.road import ANALYTIC_ROAD
 from tol3d.system.statuses import Meaning
 
 
@@ -102,7 +103,7 @@ class RunSummary(Findings):
     @property
     def roads(self) -> tuple[Road, ...]:
         """The roads by which it was measured."""
-        return ("analytic",) if self.engine == "analytic" else ("analytic", "geometric")
+        return ("analytic",) if self.engine == ANALYTIC_ROAD else ("analytic", "geometric")
 
     @property
     def lacking(self) -> frozenset[str]:
@@ -130,7 +131,7 @@ class RunSummary(Findings):
             raise refused("status", f"{self.trials} trials in all", sum(self.status.values()))
         if "scene.yaml" not in self.files:
             raise refused("files", "scene.yaml among them", "none of that name")
-        simulated = self.engine != "analytic"
+        simulated = self.engine != ANALYTIC_ROAD
         for name, measure in self.measures.items():
             road = measure.curve.geometric if measure.curve and measure.take == "curve" else measure.geometric
             if (road is not None) != simulated:
