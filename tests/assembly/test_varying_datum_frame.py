@@ -9,6 +9,8 @@ from assembly_trials import assembled, constant, normal
 from datum_plate import SIGMAS, covariance, plate
 from scipy.integrate import dblquad
 
+from tol3d.errors import SceneError
+
 
 def share_beyond(radius: float) -> float:
     """P(hypot(dx, dy) > radius), of both correlated normals, by quadrature over the disc."""
@@ -47,3 +49,9 @@ def test_statistics(tmp_path: Path, road: str) -> None:
     assert machine == pytest.approx(0.000884, abs=1e-6)
     assert (found["in the machine"] > 0.3).mean() == pytest.approx(machine, abs=4 * math.sqrt(machine / count))
     assert abs((found["position"] > 0.3).mean() - machine) > 10 * math.sqrt(machine / count)
+
+
+def test_a_datum_that_takes_nothing_is_refused_where_it_stands(tmp_path: Path) -> None:
+    text = plate({name: normal(own) for name, own in SIGMAS.items()})
+    with pytest.raises(SceneError, match=r"yaml:21: measures\.position\.datums: plate\.floor takes no freedom"):
+        assembled(text.replace("datums: [floor, b1-b2, c]", "datums: [floor, floor]"), tmp_path)

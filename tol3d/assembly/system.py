@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.assembly.from_scene import Meant, assembly_of
+from tol3d.assembly.from_scene.datums import place_of
 from tol3d.assembly.model import Assembly
 from tol3d.assembly.model.statuses import OK, STATUSES
 from tol3d.assembly.placing import road as placing
@@ -34,6 +35,9 @@ T = TypeVar("T")
 
 SAME: Final = 1e-6
 """mm or rad: both roads read the same nominally to within this, or moves lay parts where they are not drawn."""
+
+FRAME: Final = "datum frame "
+"""How messages of the roads begin that are of a datum frame; others begin with a place in the scene."""
 
 FLAT: Final = 1e-6
 """Change of a measure per deviation that is none: both sides of the mean raise it alike."""
@@ -202,6 +206,10 @@ def _asked(scene: Scene, ask: Callable[[], T]) -> T:
     except InputError as error:
         place, _, sentence = str(error).partition(": ")
         section, _, name = place.partition(".")
-        if section not in SECTIONS or name not in scene.section(section):
+        if place.startswith(FRAME):
+            path = place_of(scene, place.removeprefix(FRAME))
+        else:
+            path = (section, name) if section in SECTIONS and name in scene.section(section) else ()
+        if not path:
             raise
-        raise scene.refuse((section, name), sentence) from None
+        raise scene.refuse(path, sentence) from None

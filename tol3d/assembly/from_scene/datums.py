@@ -6,8 +6,14 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from tol3d.assembly.grammar.datums import DatumSpec
+from tol3d.assembly.grammar.drawing import Drawing
+from tol3d.assembly.grammar.feature_name import part_of
 from tol3d.assembly.grammar.features import FeatureUnion
+from tol3d.assembly.grammar.measures.assembly_measure import FeatureMeasureSpec
+from tol3d.assembly.grammar.tolerances import FeatureTolerance
 from tol3d.assembly.model import Datum, DatumFrame
+from tol3d.scene import Scene
+from tol3d.scene.place import KeyPath
 
 
 @dataclass
@@ -48,6 +54,22 @@ def _letter(spec: DatumSpec) -> str:
     if spec.targets:
         return f"{own} at " + "; ".join(" ".join(f"{x.internal:.9g}" for x in target) for target in spec.targets)
     return own if spec.simulator == "contact" else f"{own} {spec.simulator}"
+
+
+def place_of(scene: Scene, frame: str) -> KeyPath:
+    """Where a scene names the datums of a frame first: a tolerance's or a measure's; () where none does."""
+    frames = DatumFrames(Drawing(scene).features)
+    for (section, name), entry in scene.entries().items():
+        match entry:
+            case FeatureTolerance():
+                part, datums = part_of(entry.of), entry.named_datums
+            case FeatureMeasureSpec():
+                part, datums = part_of(entry.named()[0][1]), entry.named_datums
+            case _:
+                continue
+        if datums and frames.named(part, datums) == frame:
+            return section, name, "datums"
+    return ()
 
 
 def in_order(
