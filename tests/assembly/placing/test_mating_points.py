@@ -21,6 +21,7 @@ RELATIONS: dict[str, tuple[str, Side, Side]] = {
     "floor": ("coincident", ("part.under", FACE, UNDER), ("base.floor", FACE, FLOOR)),
     "pin": ("coincident", ("part.on pin", Point(), SPOTS[0]), ("base.pin", PIN, frame((10, 10, 0)))),
     "wall": ("coincident", ("part.at wall", Point(), frame((0, 70, 15))), ("base.wall", FACE, WALL)),
+    "table": ("coincident", ("part.on table", Point(), SPOTS[2]), ("base.table", FACE, SPOTS[2])),
     "oblique": ("coincident", ("part.far", Point(), SPOTS[2]), ("base.oblique", PIN, frame((30, 70, 25), (1, 2, 3)))),
 }
 
@@ -54,13 +55,12 @@ def test_three_points_on_three_points(seed: int) -> None:
 
 @pytest.mark.parametrize("seed", seeds(3))
 def test_two_points_then_a_plane(seed: int) -> None:
-    """The point at the wall swings about the line of the first two."""
-    (first, its_first, _), (second, its_second, _), (at_wall, wall, normal) = trial(
-        ["point 0", "point 1", "wall"], seed
-    )
+    """The third point swings about the line of the first two, up or down to the table."""
+    seen = trial(["point 0", "point 1", "table"], seed)
+    (first, its_first, _), (second, its_second, _), (third, table, normal) = seen
     np.testing.assert_allclose(first, its_first, atol=1e-12)
     np.testing.assert_allclose(np.cross(second - first, its_second - first) / 80, 0, atol=1e-11)
-    assert normal @ (at_wall - wall) == pytest.approx(0, abs=1e-11)
+    assert normal @ (third - table) == pytest.approx(0, abs=1e-11)
 
 
 @pytest.mark.parametrize(
