@@ -73,8 +73,8 @@ def wait_for(port: int) -> None:
 Cluster = tuple[str, list[subprocess.Popen[bytes]]]
 
 
-@pytest.fixture
-def cluster(tmp_path: Path) -> Iterator[Cluster]:
+@contextmanager
+def scheduler_and_workers(folder: Path) -> Iterator[Cluster]:
     """A scheduler's address and its two workers, each one thread without a nanny that would start it anew."""
     port = free_port()
     address = f"tcp://127.0.0.1:{port}"
@@ -83,9 +83,23 @@ def cluster(tmp_path: Path) -> Iterator[Cluster]:
         wait_for(port)
         for k in range(2):
             more = ("--nthreads", "1", "--no-nanny", "--no-dashboard", "--host", "127.0.0.1")
-            started.append(start("dask_worker", address, *more, "--local-directory", str(tmp_path / f"worker{k}")))
+            started.append(start("dask_worker", address, *more, "--local-directory", str(folder / f"worker{k}")))
         wait_for_workers(address, 2)
         yield address, started[1:]
+
+
+@pytest.fixture
+def cluster(tmp_path: Path) -> Iterator[Cluster]:
+    """One of a test's own, which may kill it."""
+    with scheduler_and_workers(tmp_path) as own:
+        yield own
+
+
+@pytest.fixture(scope="module")
+def address(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
+    """The address of one for all tests that leave it as it is; its workers find the toys."""
+    with known(PARABOLA), scheduler_and_workers(tmp_path_factory.mktemp("dask")) as (found, _):
+        yield found
 
 
 def wait_for_workers(address: str, count: int) -> None:
@@ -105,8 +119,7 @@ def assert_same_run(first: Run, second: Run) -> None:
         assert np.array_equal(bits, its[name].view(bits.dtype) if bits.dtype.kind == "i" else its[name]), name
 
 
-def test_two_dask_workers_give_the_bits_of_one_process(cluster: Cluster, tmp_path: Path) -> None:
-    address, _ = cluster
+def test_two_dask_workers_give_the_bits_of_one_process(address: str, tmp_path: Path) -> None:
     study = STUDIES["analytic"]
     alone = run_scene(SPUR_PAIR, overrides=study, out=tmp_path / "alone")
     spread = run_scene(SPUR_PAIR, overrides=study, out=tmp_path / "dask", execution=Execution(scheduler=address))
@@ -117,18 +130,8 @@ def test_two_dask_workers_give_the_bits_of_one_process(cluster: Cluster, tmp_pat
     assert statistics.summary["measures"] == alone.summary["measures"]
 
 
-@pytest.fixture
-def springs() -> Iterator[None]:
-    """A mechanism from outside, before any worker starts."""
-    with known(PARABOLA):
-        yield
-
-
 @pytest.mark.parametrize("engine", ["exact", "chords"])
-def test_dask_workers_run_a_mechanism_from_outside(
-    engine: str, springs: None, cluster: Cluster, tmp_path: Path
-) -> None:
-    address, _ = cluster
+def test_dask_workers_run_a_mechanism_from_outside(engine: str, address: str, tmp_path: Path) -> None:
     scene, study = TOYS / "parabola" / "spring.yaml", Overrides(trials=6 * BLOCK + 77, engine=engine)
     alone = run_scene(scene, overrides=study, out=tmp_path / "alone")
     spread = run_scene(scene, overrides=study, out=tmp_path / "dask", execution=Execution(scheduler=address))
