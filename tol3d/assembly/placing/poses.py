@@ -93,24 +93,6 @@ def _rotation(
     )
 
 
-def from_gibbs(vector: Array) -> Array:
-    """Rotations by Gibbs' vectors (3, n), direction times tan of half the angle: orthonormal to the last bits.
-
-    R = 1 + 2 ([g]x + [g]x^2) / (1 + g . g).
-    """
-    x, y, z = vector
-    share = 2.0 / (1.0 + (x * x + y * y + z * z))
-    sx, sy, sz = share * x, share * y, share * z
-    xy, xz, yz = sx * y, sx * z, sy * z
-    return np.stack(
-        [
-            np.stack([1.0 - (sy * y + sz * z), xy - sz, xz + sy]),
-            np.stack([xy + sz, 1.0 - (sx * x + sz * z), yz - sx]),
-            np.stack([xz - sy, yz + sx, 1.0 - (sx * x + sy * y)]),
-        ]
-    )
-
-
 @dataclass(frozen=True, eq=False)
 class Pose:
     """From one frame to another: x = turn p + shift.
@@ -141,12 +123,6 @@ class Pose:
     def inverse(self) -> "Pose":
         """From the end to the start."""
         return Pose(np.swapaxes(self.turn, 0, 1), -rotated_back(self.turn, self.shift))
-
-    def where(self, good: NDArray[np.bool_], other: "Pose") -> "Pose":
-        """This pose in the trials that are good (n,), the other elsewhere."""
-        if good.all():
-            return self
-        return Pose(np.where(good, self.turn, other.turn), np.where(good, self.shift, other.shift))
 
     def matrices(self, trials: int) -> Array:
         """4x4 poses (trials, 4, 4)."""
