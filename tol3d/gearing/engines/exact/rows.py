@@ -10,8 +10,8 @@ from tol3d.gearing.engines.exact.foot import grown, section
 from tol3d.gearing.engines.exact.nearest import SHARP_FALL
 from tol3d.gearing.engines.exact.numbers import PairNumbers, Pose
 from tol3d.gearing.engines.exact.seating import (
-    Build,
     Look,
+    MeshBuild,
     Side,
     Turn,
     closed,
@@ -67,10 +67,10 @@ def build_of(
     flank_offset: Array,
     scale: Array,
     row: int,
-) -> Build:
-    """The Build of a row."""
+) -> MeshBuild:
+    """The mesh of a row, built."""
     driver, driven = gears
-    return Build(
+    return MeshBuild(
         grown(pinion, scale[row, driver]),
         grown(wheel, scale[row, driven]),
         pair,
@@ -87,7 +87,7 @@ def build_of(
 
 
 @part
-def within_reach(build: Build, driver_scale: float, driven_scale: float) -> bool:
+def within_reach(build: MeshBuild, driver_scale: float, driven_scale: float) -> bool:
     """Whether the candidate teeth are those of the nominal pose still.
 
     Gears that grow with their housing are the nominal ones at another scale. Where base pitches differ by d a tip
@@ -142,7 +142,7 @@ def looks_of(pair: PairNumbers, which: Integers) -> Looks:
 
 
 @part
-def free_turn(build: Build, at: Turn, other: Side, angle: float, looks: Looks) -> float:
+def free_turn(build: MeshBuild, at: Turn, other: Side, angle: float, looks: Looks) -> float:
     """Turn of the driven gear [rad] until the non-working flanks touch; nan where it cannot be known."""
     sigma, near_at, near = looks.working.sigma, at, other
     if not looks.gap_closes:  # the smallest gap shows nearly by how much

@@ -26,8 +26,8 @@ SAME_PITCH = 1e-13  # relative; rounding
 ALL_TEETH, DRIVER_TOOTH, DRIVEN_TOOTH = 0, 1, 2
 
 
-class Build(NamedTuple):
-    """One build of a mesh.
+class MeshBuild(NamedTuple):
+    """A mesh in one trial, as kernels read it.
 
     Args:
         driver, driven: their teeth, grown.
@@ -115,7 +115,7 @@ class Side(NamedTuple):
 
 
 @part
-def standing(build: Build, driver: float, driven: float) -> Turn:
+def standing(build: MeshBuild, driver: float, driven: float) -> Turn:
     """The gears of a build at their angles [rad]."""
     p = build.pose
     cos, sin = math.cos(driver), math.sin(driver)
@@ -135,7 +135,7 @@ def driven_on(at: Turn, angle: float) -> Turn:
 
 
 @part
-def pose_at(build: Build, at: Turn) -> Pose:
+def pose_at(build: MeshBuild, at: Turn) -> Pose:
     """Where the driven gear's centre sees the driver's: their shafts' frames, from centre to centre."""
     p = build.pose
     return Pose(p.xx, p.xy, p.xz, p.yx, p.yy, p.yz, p.zx, p.zy, p.zz, at.x - at.fx, at.y - at.fy, at.z)
@@ -165,7 +165,7 @@ def middle_first(step: int, first: float, count: int, middle: float) -> float:
 
 
 @part
-def azimuths(build: Build, at: Turn, sigma: float, tooth: float) -> tuple[float, float]:
+def azimuths(build: MeshBuild, at: Turn, sigma: float, tooth: float) -> tuple[float, float]:
     """Azimuths [rad] of a tooth of the driver and of the driven's that it meets, their flanks' turns included."""
     mating = -tooth if sigma > 0.0 else -tooth - 1.0
     driver = at.driver + build.pair.driver_pitch * tooth - sigma * build.driver_turn
@@ -173,7 +173,7 @@ def azimuths(build: Build, at: Turn, sigma: float, tooth: float) -> tuple[float,
 
 
 @part
-def start_on(build: Build, pose: Pose, sigma: float, own_azimuth: float) -> float:
+def start_on(build: MeshBuild, pose: Pose, sigma: float, own_azimuth: float) -> float:
     """The profile parameter of the driver's flank at which the pair is nearest, to first order.
 
     A flank with the radius of curvature r_1, moved by v along the profile against one with r_2, meets it r_1 v/(r_1 +
@@ -197,7 +197,7 @@ def start_on(build: Build, pose: Pose, sigma: float, own_azimuth: float) -> floa
 
 @part
 def pair_nearest(
-    build: Build,
+    build: MeshBuild,
     at: Turn,
     sigma: float,
     tooth: float,
@@ -241,7 +241,7 @@ def aside(at: Turn, turn: float, near: Nearest) -> float:
 
 
 @part
-def seen(build: Build, at: Turn, seen_at: float, look: Look) -> Side:
+def seen(build: MeshBuild, at: Turn, seen_at: float, look: Look) -> Side:
     """The candidate pairs of one side.
 
     Args:
@@ -294,7 +294,7 @@ def seen(build: Build, at: Turn, seen_at: float, look: Look) -> Side:
 
 
 @part
-def closed(side: Side, build: Build, at: Turn, look: Look) -> tuple[Turn, Side]:
+def closed(side: Side, build: MeshBuild, at: Turn, look: Look) -> tuple[Turn, Side]:
     """Where the gears stand when the driven one has turned to the first contact of a side, and how that looked last.
 
     Args:
@@ -312,7 +312,7 @@ def closed(side: Side, build: Build, at: Turn, look: Look) -> tuple[Turn, Side]:
 
 
 @part
-def driver_turn(build: Build, at: Turn, look: Look) -> float:
+def driver_turn(build: MeshBuild, at: Turn, look: Look) -> float:
     """The turn of the driver [rad], the driven gear held, until a side touches; nan where it is unknown."""
     angle, p = at.driver, build.pose
     for _ in range(LOOKS):
