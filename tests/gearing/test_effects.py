@@ -27,7 +27,7 @@ from tol3d.gearing.effects import (
     ToothThickness,
     TurningOffset,
 )
-from tol3d.gearing.engines.exact.assembly import assembly_of
+from tol3d.gearing.engines.exact.compiled_displacements import compiled_displacements
 from tol3d.gearing.model import Contributor, Mesh, Model, Reading, Scalar, model_from_scene
 from tol3d.gearing.stack_up import stack_of
 from tol3d.gearing.stack_up.terms import contribution
@@ -125,7 +125,7 @@ FIELDS = ("world_from_shaft", "centre", "axis_turn", "flank_turn", "flank_offset
 
 
 def assert_built_alike(model: Model, deviations: np.ndarray) -> None:
-    made, compiled = build(model, deviations), assembly_of(model).build(deviations)
+    made, compiled = build(model, deviations), compiled_displacements(model).build(deviations)
     for name in FIELDS:
         ours, theirs = getattr(made, name), getattr(compiled, name)
         assert ours.shape == theirs.shape
@@ -150,6 +150,6 @@ def test_two_effects_of_one_deviation_on_one_seat_add_up() -> None:
     law = model.contributors[0].distribution
     model = replace(model, contributors=(Contributor("c", "", twice, Scalar(law), "um"),))
     deviations = np.array([[0.01]])
-    for made in (build(model, deviations), assembly_of(model).build(deviations)):
+    for made in (build(model, deviations), compiled_displacements(model).build(deviations)):
         moved = made.world_from_shaft[0, 1, :3, 3] - model.meshes[0].pair.wheel_origin
         assert moved == pytest.approx([0.02, 0.005, 0.0], abs=1e-14)

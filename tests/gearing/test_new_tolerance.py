@@ -20,7 +20,7 @@ from tol3d.gearing.displacements import Displacement, displacements
 from tol3d.gearing.displacements.slots import FLANK_OFFSET
 from tol3d.gearing.effects import Effect
 from tol3d.gearing.engines.exact import ExactEngine
-from tol3d.gearing.engines.exact.assembly import assembly_of
+from tol3d.gearing.engines.exact.compiled_displacements import compiled_displacements
 from tol3d.gearing.grammar.tolerances.gear_tolerance import GearToleranceSpec
 from tol3d.gearing.grammar.tolerances.gearing_tolerance import Meaning
 from tol3d.gearing.mechanism import GEARING
@@ -161,7 +161,7 @@ def test_derivatives_by_a_new_kind_are_minus_two_per_mm(tmp_path: Path) -> None:
 def test_builds_rates_and_compiled_builds_read_the_same_displacement(tmp_path: Path) -> None:
     model = model_from_scene(coated(tmp_path))
     deviations = np.array([[0.004, -0.01], [0.009, 0.0]])
-    made, compiled = build(model, deviations), assembly_of(model).build(deviations)
+    made, compiled = build(model, deviations), compiled_displacements(model).build(deviations)
     assert made.flank_offset.tolist() == compiled.flank_offset.tolist() == [[0.004, 0.0], [0.009, 0.0]]
     assert build_rates(model, made, deviations).flank_offset[:, :, 0].tolist() == [[1.0, 0.0], [1.0, 0.0]]
 

@@ -11,7 +11,7 @@ import pytest
 from places import ROOT, SCENES
 
 from tol3d.gearing.engines.exact import kernels
-from tol3d.gearing.engines.exact.sums import assemble
+from tol3d.gearing.engines.exact.sums import write_builds
 from tol3d.numerics import compiled, sources
 from tol3d.numerics.compiled import Kernel
 from tol3d.numerics.sources import sources_of
@@ -23,7 +23,7 @@ KERNELS = {
     "spur gaps": kernels.spur_gaps,
     "bevel read": kernels.bevel_read,
     "bevel gaps": kernels.bevel_gaps,
-    "assemble": assemble,
+    "write builds": write_builds,
     "draw": quick_uniforms._draw,
     "products": quick_products._add_products,
 }

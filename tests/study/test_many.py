@@ -11,7 +11,7 @@ from places import SPUR_PAIR
 
 from tol3d import load_scene
 from tol3d.gearing.build import build
-from tol3d.gearing.engines.exact.assembly import assembly_of
+from tol3d.gearing.engines.exact.compiled_displacements import compiled_displacements
 from tol3d.gearing.model import Model, model_from_scene
 from tol3d.gearing.system import GearSystem
 from tol3d.gears import SpurGear
@@ -109,10 +109,10 @@ def test_few_contributors_are_all_regressed_on(paper_model: Model) -> None:
     assert regressed(system, measure) == system.acting(measure)
 
 
-def test_an_assembly_found_one_contributor_at_a_time_builds_as_build_does(tmp_path: Path) -> None:
+def test_displacements_found_one_contributor_at_a_time_build_as_build_does(tmp_path: Path) -> None:
     for model in (model_of(tmp_path, 20), model_from_scene(load_scene(SPUR_PAIR.with_name("three_stage_train.yaml")))):
         block = drawn_trials(model, 3, 0, 50)
-        made, expected = assembly_of(model).build(block.deviations), build(model, block.deviations)
+        made, expected = compiled_displacements(model).build(block.deviations), build(model, block.deviations)
         for name, values in vars(expected).items():
             assert np.abs(vars(made)[name] - values).max() < 1e-12, name
 

@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.gearing.build import Build
-from tol3d.gearing.engines.exact.assembly import assembly_of
 from tol3d.gearing.engines.exact.bevel import BevelTooth
+from tol3d.gearing.engines.exact.compiled_displacements import compiled_displacements
 from tol3d.gearing.engines.exact.kernels import bevel_gaps, bevel_read, spur_gaps, spur_read
 from tol3d.gearing.engines.exact.numbers import PairNumbers, Pose
 from tol3d.gearing.engines.exact.rows import CONTACT, DRIVEN_ANGLE, DRIVEN_TURN, DRIVER_TURN, GAP, READINGS
@@ -52,7 +52,7 @@ class ExactEngine:
     def __init__(self, model: Model) -> None:
         self._model = model
         self._pairs = {mesh.name: kernels_of(mesh.pair) for mesh in model.meshes}
-        self._assembly = assembly_of(model)
+        self._displacements = compiled_displacements(model)
 
     @property
     def kept(self) -> bool:
@@ -69,7 +69,7 @@ class ExactEngine:
 
     def build(self, deviations: Array) -> Build:
         """See ReadingEngine.build."""
-        return self._assembly.build(deviations)
+        return self._displacements.build(deviations)
 
     def gaps(
         self,

@@ -1,4 +1,4 @@
-"""Deviations added up to builds, compiled; `assembly.py` finds what is added.
+"""Deviations added up to builds, compiled; `compiled_displacements.py` finds what is added.
 
 No model is imported here: whatever a kernel's module imports has it compiled anew where it changes.
 """
@@ -18,7 +18,7 @@ Array = NDArray[np.float64]
 
 SCALE = DISPLACED  # growth of the seat's gear comes after what is displaced
 SLOTS = DISPLACED + 1
-ASSEMBLY = (
+BUILD_ARRAYS = (
     "float64[:, ::1], int64[:, ::1], float64[::1], int64[:, ::1], float64[:, ::1], float64[:, ::1], "
     "float64[:, :, :, ::1], float64[:, :, ::1], float64[:, :, ::1], float64[:, ::1], float64[:, ::1], float64[:, ::1]"
 )
@@ -43,8 +43,8 @@ def rotate(shaft: Array, x: float, y: float, z: float) -> None:
         shaft[i, 2] = cosine * c + along * z + first * (a * y - b * x)
 
 
-@kernel(arrays=ASSEMBLY)
-def assemble(
+@kernel(arrays=BUILD_ARRAYS)
+def write_builds(
     deviations: Any,
     terms: Any,
     coefficients: Any,
@@ -58,7 +58,7 @@ def assemble(
     flank_offset: Any,
     scale: Any,
 ) -> None:
-    """Write the arrays of a Build; arguments as in Assembly and Build."""
+    """Write the arrays of a Build; arguments as in CompiledDisplacements and Build."""
     seats = len(rest)
     slots = np.empty(SLOTS * seats + seats)
     for row in range(len(deviations)):

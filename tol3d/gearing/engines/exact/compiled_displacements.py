@@ -1,4 +1,4 @@
-"""Builds, compiled: displacements are linear, so that each deviation has its coefficients.
+"""Displacements, compiled to builds: they are linear, so that each deviation has its coefficients.
 
 A turn about a point off the gear's origin is the exception, worked out in sums.py.
 """
@@ -10,15 +10,15 @@ from numpy.typing import NDArray
 
 from tol3d.gearing.build import Build
 from tol3d.gearing.displacements import Displacement, Growth, PivotShift, displacements
-from tol3d.gearing.engines.exact.sums import SCALE, SLOTS, assemble
+from tol3d.gearing.engines.exact.sums import SCALE, SLOTS, write_builds
 from tol3d.gearing.model import Model
 
 Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
-class Assembly:
-    """How deviations become builds.
+class CompiledDisplacements:
+    """What deviations add to the seats of a build, as the kernel sums it.
 
     Args:
         terms: (terms, 2), component of the deviations and slot: SLOTS a seat, then the growth of each mesh's housing.
@@ -45,7 +45,7 @@ class Assembly:
             flank_offset=np.empty((trials, seats)),
             scale=np.empty((trials, seats)),
         )
-        assemble(
+        write_builds(
             np.require(deviations, requirements=["C", "W"]),
             self.terms,
             self.coefficients,
@@ -57,8 +57,8 @@ class Assembly:
         return made
 
 
-def assembly_of(model: Model) -> Assembly:
-    """The assembly of a model."""
+def compiled_displacements(model: Model) -> CompiledDisplacements:
+    """The displacements of a model's contributors."""
     terms, coefficients, pivots, levers = [], [], [], []
     for contributor in model.contributors:
         first, components = model.component_slices[contributor.name].start, len(contributor.draw.components)
@@ -76,7 +76,7 @@ def assembly_of(model: Model) -> Assembly:
                         totals[:, _growing(model, term.part)] += model.expansions[term.part]
         terms += [(first + component, slot) for component, slot in np.argwhere(totals)]
         coefficients += totals[totals != 0.0].tolist()
-    return Assembly(
+    return CompiledDisplacements(
         np.array(terms, dtype=np.int64).reshape(-1, 2),
         np.array(coefficients),
         np.array(pivots, dtype=np.int64).reshape(-1, 2),
