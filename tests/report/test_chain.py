@@ -20,7 +20,7 @@ from of_kind import known
 from printing import printed, row_of
 
 from tol3d.gearing.presenting.chain import chain_figure
-from tol3d.gearing.presenting.stage import shafts_along, stages_of, sums_of, trains_of
+from tol3d.gearing.presenting.shown_stage import shafts_along, stages_of, sums_of, trains_of
 from tol3d.gearing.presenting.train_tables import train_report
 from tol3d.gearing.summary_types import TrainSummary
 from tol3d.report import picture

@@ -32,7 +32,7 @@ from tol3d.gearing.presenting.chain_grid import (
 )
 from tol3d.gearing.presenting.chain_sum import draw_sums, height_of_sums, sum_lines
 from tol3d.gearing.presenting.link_symbol import draw_link
-from tol3d.gearing.presenting.stage import Stage, stages_of, trains_of, whole_ratio_text
+from tol3d.gearing.presenting.shown_stage import ShownStage, stages_of, trains_of, whole_ratio_text
 from tol3d.gearing.summary_types import TrainSummary
 from tol3d.report.canvas import BLACK, GREY, OUTSIDE, new_figure, save_figure, say_instead
 from tol3d.report.column import seated_text
@@ -136,7 +136,7 @@ def _line_at(line: int) -> float:
     return LINES - (line + 0.5) * LINE
 
 
-def _link_lines(stage: Stage) -> Iterator[tuple[str, str]]:
+def _link_lines(stage: ShownStage) -> Iterator[tuple[str, str]]:
     """What stands below a link, with its weight: ratio, flank, and its own lost motion at its driven shaft."""
     yield stage.ratio_text, "bold"
     yield stage.working_flank or NOTHING, "normal"

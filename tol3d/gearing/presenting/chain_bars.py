@@ -21,7 +21,7 @@ from tol3d.gearing.presenting.chain_grid import (
     published_colours,
 )
 from tol3d.gearing.presenting.link_symbol import link_colour
-from tol3d.gearing.presenting.stage import Stage, share_text
+from tol3d.gearing.presenting.shown_stage import ShownStage, share_text
 from tol3d.gearing.summary_types import TrainSummary
 from tol3d.report.canvas import BLACK
 from tol3d.report.label import wrapped
@@ -35,13 +35,13 @@ TRACK_LENGTH, TRACK_THICKNESS = 1.0, 0.1  # inch, of a share's gauge
 TRACK_BELOW, TEXT_BELOW = 0.15, 0.34  # inch, from the foot of the bars to a gauge and to its text
 
 
-def highest_bar(stages: Sequence[Stage]) -> float:
+def highest_bar(stages: Sequence[ShownStage]) -> float:
     """The largest of all bars and marks [arcmin]."""
     ends = [(stage.at_shaft.mean, stage.at_shaft.high, *_published_highs(stage).values()) for stage in stages]
     return max((end for own in ends for end in own if end is not None), default=0.0)
 
 
-def _published_highs(stage: Stage) -> dict[str, float]:
+def _published_highs(stage: ShownStage) -> dict[str, float]:
     """Others' highs at the shaft that is read [arcmin]."""
     highs = {name: ends.times(stage.factor).high for name, ends in stage.published.items()}
     return {name: high for name, high in highs.items() if high is not None}
@@ -82,7 +82,7 @@ def draw_bars(figure: Figure, place: SubplotSpec, train: TrainSummary, row: Chai
     draw_caption(axes, (BARS - BAR_LABEL) / 2 / BARS, wrapped(f"at {train.shaft}", CAPTIONS - EDGE, SMALL, 3))
 
 
-def _draw_published(axes: Axes, train: TrainSummary, stage: Stage, x: float, width: float) -> float:
+def _draw_published(axes: Axes, train: TrainSummary, stage: ShownStage, x: float, width: float) -> float:
     """Marks of others' highs side by side over the bar of ours; returns the highest [arcmin]."""
     colours, highs = published_colours(train), _published_highs(stage)
     for k, (name, high) in enumerate(highs.items()):

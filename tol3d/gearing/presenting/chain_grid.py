@@ -9,7 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.gridspec import SubplotSpec
 
-from tol3d.gearing.presenting.stage import Stage, shafts_along
+from tol3d.gearing.presenting.shown_stage import ShownStage, shafts_along
 from tol3d.gearing.summary_types import TrainSummary
 from tol3d.report.canvas import GREY, PUBLISHED_COLOURS
 
@@ -44,7 +44,7 @@ class ChainRow:
         last: whether the train ends here.
     """
 
-    stages: Sequence[Stage]
+    stages: Sequence[ShownStage]
     shafts: Sequence[str]
     senses: Sequence[int]
     first: float
@@ -70,7 +70,7 @@ class ChainRow:
         return self.shaft_at(column) + self.shaft / 2, self.shaft_at(column + 1) - self.shaft / 2
 
 
-def rows_of(stages: Sequence[Stage], held: str, arm: float) -> list[ChainRow]:
+def rows_of(stages: Sequence[ShownStage], held: str, arm: float) -> list[ChainRow]:
     """The chain in as few rows as it needs, about as many links in each.
 
     Args:

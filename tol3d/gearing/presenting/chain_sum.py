@@ -10,7 +10,7 @@ from matplotlib.gridspec import SubplotSpec
 
 from tol3d.gearing.presenting.chain_grid import LIGHT, SMALL, TEXT, WIDTH, published_colours
 from tol3d.gearing.presenting.link_symbol import link_colour
-from tol3d.gearing.presenting.stage import Range, Stage, distributions_of, leading_sums
+from tol3d.gearing.presenting.shown_stage import Range, ShownStage, distributions_of, leading_sums
 from tol3d.gearing.summary_types import TrainSummary
 from tol3d.report.canvas import BLACK, OUTSIDE, ROAD_COLOURS, label_angles, plain_axes
 from tol3d.report.label import legible
@@ -75,7 +75,7 @@ def height_of_sums(lines: Sequence[SumLine]) -> float:
 
 
 def draw_sums(
-    figure: Figure, place: SubplotSpec, train: TrainSummary, stages: Sequence[Stage], lines: Sequence[SumLine]
+    figure: Figure, place: SubplotSpec, train: TrainSummary, stages: Sequence[ShownStage], lines: Sequence[SumLine]
 ) -> None:
     """All lines on one axis, and the worst case as a mark across them."""
     width = WIDTH - LABELS - VALUES
@@ -102,7 +102,7 @@ def draw_sums(
     axes.set_xlabel(f"lost motion of {legible(train.shaft, 50)} [′, ″ of arc]", fontsize=10)
 
 
-def _stack_highs(axes: Axes, stages: Sequence[Stage], y: float, per_inch: float) -> None:
+def _stack_highs(axes: Axes, stages: Sequence[ShownStage], y: float, per_inch: float) -> None:
     start = 0.0
     for stage in stages:
         high = max(stage.at_shaft.high or 0.0, 0.0)

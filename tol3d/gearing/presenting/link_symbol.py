@@ -8,7 +8,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.patches import Circle, FancyBboxPatch, Patch, Polygon
 
-from tol3d.gearing.presenting.stage import Stage
+from tol3d.gearing.presenting.shown_stage import ShownStage
 from tol3d.report.canvas import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, SKY
 from tol3d.report.label import wrapped
 
@@ -36,7 +36,7 @@ def link_colour(kind: str) -> str:
     return LINK_COLOURS.get(kind, OTHER_COLOUR)
 
 
-def draw_link(axes: Axes, stage: Stage, ends: tuple[float, float], y: float) -> None:
+def draw_link(axes: Axes, stage: ShownStage, ends: tuple[float, float], y: float) -> None:
     """Draw a link between the ends of its two shafts at height `y`."""
     left, right = ends
     middle, width = (left + right) / 2, min(right - left - 0.08, MOST_WIDTH)
@@ -59,7 +59,7 @@ def _number(axes: Axes, x: float, y: float, number: int) -> None:
     axes.text(x, y, str(number), fontsize=SMALL, ha="center", va="center", color=BLACK, zorder=4)
 
 
-def _gears(axes: Axes, stage: Stage, x: float, y: float, width: float, ends: tuple[float, float]) -> None:
+def _gears(axes: Axes, stage: ShownStage, x: float, y: float, width: float, ends: tuple[float, float]) -> None:
     driver, driven = stage.teeth or (1, 1)
     share = min(max(driver / (driver + driven), LEAST_SHARE), MOST_SHARE)
     pitch_width = width - TOOTH_HEIGHT
@@ -85,7 +85,7 @@ def _gear_outline(
     return np.column_stack([(x + reach * np.cos(angle)).ravel(), (y + reach * np.sin(angle)).ravel()])
 
 
-def _cones(axes: Axes, stage: Stage, x: float, y: float, width: float, ends: tuple[float, float]) -> None:
+def _cones(axes: Axes, stage: ShownStage, x: float, y: float, width: float, ends: tuple[float, float]) -> None:
     """Two frusta with one apex: the driver's lies on the axis of its shaft, the driven stands on it."""
     driver, driven = stage.teeth or (1, 1)
     angle = min(max(math.atan2(driver, driven), 0.5), math.pi / 2 - 0.5)  # pitch angle of the driver
@@ -105,7 +105,7 @@ def _cones(axes: Axes, stage: Stage, x: float, y: float, width: float, ends: tup
     _number(axes, apex, y + 0.72 * tall, driven)
 
 
-def _reducer(axes: Axes, stage: Stage, x: float, y: float, width: float, ends: tuple[float, float]) -> None:
+def _reducer(axes: Axes, stage: ShownStage, x: float, y: float, width: float, ends: tuple[float, float]) -> None:
     """A box with a sun, planets and a ring."""
     half = min(width / 2, 0.44)
     _line(axes, (ends[0], y), (x - half, y))
@@ -123,7 +123,7 @@ def _reducer(axes: Axes, stage: Stage, x: float, y: float, width: float, ends: t
         axes.add_patch(circle)
 
 
-def _other(axes: Axes, stage: Stage, x: float, y: float, width: float, ends: tuple[float, float]) -> None:
+def _other(axes: Axes, stage: ShownStage, x: float, y: float, width: float, ends: tuple[float, float]) -> None:
     """A box with the word of the kind."""
     half, height = min(width / 2, 0.5), 0.2
     _line(axes, (ends[0], y), (x - half, y))
@@ -135,7 +135,7 @@ def _other(axes: Axes, stage: Stage, x: float, y: float, width: float, ends: tup
     axes.text(x, y, words, fontsize=SMALL, ha="center", va="center", color=BLACK, zorder=4)
 
 
-def _parallel(axes: Axes, stage: Stage, x: float, y: float, width: float, ends: tuple[float, float]) -> None:
+def _parallel(axes: Axes, stage: ShownStage, x: float, y: float, width: float, ends: tuple[float, float]) -> None:
     """Two load paths in parallel, a gear pair on each."""
     half, rise = 0.42 * width, 0.26
     for side in (-1.0, 1.0):
@@ -146,7 +146,7 @@ def _parallel(axes: Axes, stage: Stage, x: float, y: float, width: float, ends: 
             _fill(axes, Polygon(outline), link_colour(stage.kind))
 
 
-Symbol = Callable[[Axes, Stage, float, float, float, tuple[float, float]], None]
+Symbol = Callable[[Axes, ShownStage, float, float, float, tuple[float, float]], None]
 SYMBOLS: Final[Mapping[str, Symbol]] = {
     "reducer": _reducer,
     "mesh": _gears,

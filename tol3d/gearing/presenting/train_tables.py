@@ -2,9 +2,9 @@
 
 from collections.abc import Iterator
 
-from tol3d.gearing.presenting.stage import (
+from tol3d.gearing.presenting.shown_stage import (
     Range,
-    Stage,
+    ShownStage,
     distributions_of,
     ends_by_column,
     leading_road,
@@ -61,7 +61,7 @@ def train_words(train: TrainSummary) -> str:
     return f"{' → '.join(shafts)} · {train.held} held{turns}"
 
 
-def stages_table(train: TrainSummary, stages: list[Stage]) -> Table:
+def stages_table(train: TrainSummary, stages: list[ShownStage]) -> Table:
     """A row a stage, and the whole train below; angles in minutes and seconds of arc."""
     published = list(dict.fromkeys(name for stage in stages for name in stage.published))
     headings = [
@@ -73,7 +73,7 @@ def stages_table(train: TrainSummary, stages: list[Stage]) -> Table:
     return Table("stage", headings, [Row(stage.link, _cells(stage, published)) for stage in stages])
 
 
-def _cells(stage: Stage, published: list[str]) -> list[str]:
+def _cells(stage: ShownStage, published: list[str]) -> list[str]:
     highs = [stage.published[name].high if name in stage.published else None for name in published]
     return [
         stage.ratio_text,

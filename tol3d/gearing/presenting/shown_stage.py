@@ -1,4 +1,4 @@
-"""The stages of a train as they stand in a run's summary, and what each brings to the lost motion at a shaft."""
+"""The stages of a train as they are shown from a run's summary, and what each brings to the lost motion at a shaft."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
@@ -51,8 +51,8 @@ class Range:
 
 
 @dataclass(frozen=True)
-class Stage:
-    """A link of a train.
+class ShownStage:
+    """A stage of a train as it is shown: its link, and what it brings to the shaft that is read.
 
     Args:
         number: its place in the train, from 1 on.
@@ -112,15 +112,15 @@ def leading_sums(train: TrainSummary) -> Range:
     return Range.of(train.sums.geometric if leading_road(train) == "geometric" else train.sums.analytic)
 
 
-def stages_of(train: TrainSummary) -> list[Stage]:
+def stages_of(train: TrainSummary) -> list[ShownStage]:
     """The stages of a train's summary, from the held shaft on, by the leading road."""
     road = leading_road(train)
     return [_stage(number, stage, stage.roads.by(road)) for number, stage in enumerate(train.stages, 1)]
 
 
-def _stage(number: int, stage: StageSummary, values: Ends) -> Stage:
+def _stage(number: int, stage: StageSummary, values: Ends) -> ShownStage:
     own, factor = Range.of(values), abs(stage.factor)
-    return Stage(
+    return ShownStage(
         number=number,
         link=stage.link,
         kind=stage.kind,
@@ -149,7 +149,7 @@ def _nearer_than_3_sigma(own: Range, sigma: float | None) -> bool:
     return min(own.mean - own.low, own.high - own.mean) < (3 - ROUNDING) * sigma
 
 
-def shafts_along(stages: Sequence[Stage], held: str) -> list[str]:
+def shafts_along(stages: Sequence[ShownStage], held: str) -> list[str]:
     """The shafts from the held one to the one that is read; a link may be gone through from its driven side."""
     shafts = [held]
     for stage in stages:
@@ -218,7 +218,7 @@ def whole_ratio_text(ratio: float) -> str:
     return f"{abs(ratio):.6g}" if abs(ratio) < MANY_TURNS else f"{abs(ratio):.0f}"
 
 
-def sense_text(stage: Stage) -> str:
+def sense_text(stage: ShownStage) -> str:
     """How the shafts of a stage turn."""
     return "opposite" if stage.opposite else "same"
 
