@@ -5,6 +5,8 @@ from typing import Final
 from tol3d.assembly.grammar import measures, moves, parts, tolerances
 from tol3d.assembly.grammar.checks import unknown_features, unplaced_bodies
 from tol3d.assembly.grammar.drawing_checks import contradicting_tolerances
+from tol3d.assembly.grammar.measure_checks import mixed_dimensions
+from tol3d.assembly.grammar.orientation_checks import unfit_orientations
 from tol3d.scene.grammar import specs_in
 from tol3d.system.mechanism import Mechanism
 
@@ -14,7 +16,7 @@ ASSEMBLY: Final = Mechanism(
     tolerances=specs_in(tolerances),
     moves=specs_in(moves),
     measures=specs_in(measures),
-    checks=(unknown_features, unplaced_bodies, contradicting_tolerances),
+    checks=(unknown_features, unplaced_bodies, contradicting_tolerances, unfit_orientations, mixed_dimensions),
     engines=("exact",),
     system="tol3d.assembly.system:assembly_system",
     summary="tol3d.assembly.summary_types:SUMMARY_KINDS",

@@ -4,13 +4,15 @@ from dataclasses import replace
 
 from tol3d.assembly.from_scene.datums import DatumFrames
 from tol3d.assembly.grammar.feature_name import part_of
-from tol3d.assembly.grammar.features.nominal_frame import unit
+from tol3d.assembly.grammar.features.nominal_frame import unit as unit_vector
+from tol3d.assembly.grammar.measure_checks import dimension_of
 from tol3d.assembly.grammar.measures import AssemblyMeasureSpec, DifferenceSpec
 from tol3d.assembly.grammar.measures.assembly_measure import FeatureMeasureSpec
 from tol3d.assembly.model import Measured
 from tol3d.assembly.model.measures import MeasureKind
 from tol3d.scene import Scene
-from tol3d.system.plain import PlainMeasure, measures_of
+from tol3d.system.measure import Worse
+from tol3d.system.plain import UNITS, PlainMeasure, measures_of
 
 WORSE_HIGH: frozenset[MeasureKind] = frozenset(("position", "orientation", "flatness"))
 
@@ -26,7 +28,7 @@ def _measured(scene: Scene, spec: AssemblyMeasureSpec, frames: DatumFrames) -> M
         return replace(own, minus=less)
     assert isinstance(spec, FeatureMeasureSpec)
     features = tuple(name for _, name, _ in spec.named())
-    direction = None if spec.along is None else unit(spec.along)
+    direction = None if spec.along is None else unit_vector(spec.along)
     after = -1 if spec.after is None else list(scene.moves).index(spec.after)
     frame = frames.named(part_of(features[0]), spec.named_datums)
     return Measured(spec.reads, features, direction, frame, after)
@@ -40,8 +42,12 @@ def _named(scene: Scene, name: str) -> AssemblyMeasureSpec:
 
 def shown_measures(scene: Scene, read: dict[str, Measured]) -> tuple[PlainMeasure, ...]:
     """The measures as studies see them."""
-    found = measures_of(scene)
-    return tuple(replace(own, worse="high" if read[own.name].kind in WORSE_HIGH else "low") for own in found)
+    found = []
+    for own in measures_of(scene):
+        unit, per_unit = UNITS[dimension_of(scene, own.name)]
+        worse: Worse = "high" if read[own.name].kind in WORSE_HIGH else "low"
+        found.append(replace(own, worse=worse, unit=unit, per_internal=1.0 / per_unit))
+    return tuple(found)
 
 
 def named_by(scene: Scene) -> dict[str, tuple[str, ...]]:

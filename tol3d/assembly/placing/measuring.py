@@ -1,11 +1,13 @@
 """Measures of features as they lie in their trials."""
 
+import math
 from collections.abc import Callable, Mapping, Sequence
+from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.assembly.model import Axis, Measured, Plane, RoundPlane
+from tol3d.assembly.model import Assembly, Axis, Measured, Plane, RoundPlane
 from tol3d.assembly.model.measures import MeasureKind
 from tol3d.assembly.placing.actual_feature import ActualFeature, actual_size
 from tol3d.assembly.placing.flatness import widths
@@ -13,6 +15,10 @@ from tol3d.assembly.placing.poses import column, cross, dot, rotated
 from tol3d.assembly.placing.world import World
 
 Array = NDArray[np.float64]
+
+TURN: Final = 2 * math.pi
+FLAT: Final = 1e-12
+"""Sine of an angle that is nominally 0 or half a turn: half a turn is pi, not -pi."""
 
 
 def reading(measured: Measured, worlds: Sequence[World]) -> Array:
@@ -65,7 +71,20 @@ def _angle(measured: Measured, world: World) -> Array:
     across, along = cross(start, end), dot(start, end)
     if measured.direction is None:
         return np.asarray(np.arctan2(_length(across), along))
-    return np.asarray(np.arctan2(dot(_direction(measured, world), across), along))
+    found = np.arctan2(dot(_direction(measured, world), across), along)
+    return np.asarray(found + TURN * np.round((_nominal_angle(measured, world.assembly) - found) / TURN))
+
+
+def _nominal_angle(measured: Measured, assembly: Assembly) -> float:
+    """About a direction, above -pi to pi: angles of trials are those within half a turn of it [rad]."""
+    assert measured.direction is not None
+    owners = [assembly.part[assembly.features[name].part] for name in measured.features]
+    start, end = (
+        part.pose[:3, :3] @ assembly.features[name].frame[:3, 2]
+        for part, name in zip(owners, measured.features, strict=True)
+    )
+    sine = float(owners[0].pose[:3, :3] @ measured.direction @ np.cross(start, end))
+    return math.atan2(0.0 if abs(sine) < FLAT else sine, float(start @ end))
 
 
 def _size(measured: Measured, world: World) -> Array:

@@ -17,6 +17,8 @@ Array = NDArray[np.float64]
 
 NEAR = 1.0
 """Points nominally nearer than this [mm]: their distance is the length of its first-order vector, else linear."""
+FLAT = 1e-12
+"""Sine of an angle about a direction that is 0 or half a turn: half a turn is pi, not -pi."""
 SLANT = 1e-3
 """Directions whose sine is nominally less are in line: their angle is the length of its first-order vector."""
 
@@ -102,7 +104,7 @@ def _angle(measured: Measured, world: World) -> Array:
         sine_varies = normal @ across_varies + across @ normal_varies
         along_varies = start @ end_varies + end @ start_varies
         row = (along * sine_varies - sine * along_varies) / (sine**2 + along**2)
-        return _constant(world, math.atan2(sine, along)) + row
+        return _constant(world, math.atan2(0.0 if abs(sine) < FLAT else sine, along)) + row
     sine = float(np.linalg.norm(across))
     if sine >= SLANT:
         return (

@@ -1,0 +1,153 @@
+"""Drawings that make no sense are refused, and those that do mean what a metrologist reads."""
+
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+from assembly_trials import assembled, uniform
+
+from tol3d.errors import SceneError
+
+BLOCK = """
+scene: a block
+parts:
+  block:
+    kind: solid
+    features:
+      floor: {{kind: plane, at: [0 mm, 0 mm, 0 mm], normal: [0, 0, -1], extent: [100 mm, 60 mm]}}
+      top: {{kind: plane, at: [0 mm, 0 mm, 30 mm], normal: [0, 0, 1], extent: [100 mm, 60 mm]}}
+      bore: {{kind: cylinder, at: [0 mm, 0 mm, 15 mm], axis: [0, 0, 1], length: 30 mm, diameter: 10 mm, hole: true}}
+      seat: {{kind: cylinder, at: [30 mm, 0 mm, 15 mm], axis: [0, 0, 1], length: 30 mm, diameter: 10 mm, hole: true}}
+tolerances:
+{tolerances}
+moves:
+  machine: {{kind: fix, part: block}}
+measures:
+{measures}
+"""
+
+FLOOR = "  floor: {kind: profile, of: block.floor, zone: {width: 0.2 mm}, law: {kind: uniform}}\n"
+PARALLEL = (
+    "  parallel: {kind: parallelism, of: block.top, zone: {width: 0.02 mm}, law: {kind: uniform}, datums: [floor]}\n"
+)
+SEEN = "  parallelism: {kind: inspected_orientation, of: block.top, datums: [floor]}\n"
+
+
+def thickness(datums: str) -> str:
+    return f"  thickness: {{kind: plus_minus, of: block.top, distribution: {uniform(0.1)}{datums}}}\n"
+
+
+def test_a_thickness_with_a_parallelism_to_the_floor(tmp_path: Path) -> None:
+    """The top follows the floor, which tilts: its parallelism to it stays within the zone, and reaches it."""
+    text = BLOCK.format(tolerances=FLOOR + thickness(", datums: [floor]") + PARALLEL, measures=SEEN)
+    for road in ("exact", "analytic"):
+        found = assembled(text, tmp_path).drawn(20_000, road)["parallelism"]
+        assert found.max() == pytest.approx(0.02, rel=0.02)
+        assert found.max() <= 0.02 * (1 + 1e-6)
+
+
+def test_an_orientation_in_another_frame_than_its_feature_is_refused(tmp_path: Path) -> None:
+    text = BLOCK.format(tolerances=FLOOR + thickness("") + PARALLEL, measures=SEEN)
+    with pytest.raises(SceneError, match=r"parallel\.datums: .* give 'thickness' datums that begin with floor"):
+        assembled(text, tmp_path)
+    profile = "  profile: {kind: profile, of: block.top, zone: {width: 0.2 mm}, law: {kind: uniform}}\n"
+    refined = PARALLEL.replace(" law: {kind: uniform},", "")
+    with pytest.raises(SceneError, match="give 'profile' datums that begin with floor"):
+        assembled(BLOCK.format(tolerances=FLOOR + profile + refined, measures=SEEN), tmp_path)
+
+
+def test_a_flat_zone_does_not_refine_a_round_one(tmp_path: Path) -> None:
+    text = (
+        "  position: {kind: position, of: block.bore, zone: {diameter: 0.2 mm}, law: {kind: uniform}, "
+        "datums: [floor]}\n"
+        "  square: {kind: perpendicularity, of: block.bore, zone: {width: 0.05 mm, along: [1, 0, 0]}, "
+        "datums: [floor]}\n"
+    )
+    with pytest.raises(SceneError, match=r"square\.zone: expected a zone of the shape of 'position'"):
+        assembled(BLOCK.format(tolerances=text, measures=SEEN), tmp_path)
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        (
+            "{kind: perpendicularity, of: block.top, zone: {width: 1 um}, law: {kind: uniform}, datums: [floor]}",
+            "at 0 deg",
+        ),
+        (
+            "{kind: parallelism, of: block.bore, zone: {diameter: 1 um}, law: {kind: uniform}, datums: [floor]}",
+            "at 90 deg",
+        ),
+        (
+            "{kind: coaxiality, of: block.bore, zone: {diameter: 1 um}, law: {kind: uniform}, datums: [floor]}",
+            "expected an axis among them",
+        ),
+    ],
+)
+def test_orientations_that_the_nominal_part_does_not_have(tmp_path: Path, text: str, words: str) -> None:
+    with pytest.raises(SceneError, match=words):
+        assembled(BLOCK.format(tolerances=f"  own: {text}\n", measures=SEEN), tmp_path)
+
+
+def test_what_the_nominal_part_has_is_taken(tmp_path: Path) -> None:
+    text = (
+        "  square: {kind: perpendicularity, of: block.bore, zone: {diameter: 0.1 mm}, law: {kind: uniform}, "
+        "datums: [floor]}\n"
+        "  parallel: {kind: parallelism, of: block.seat, zone: {diameter: 0.1 mm}, law: {kind: uniform}, "
+        "datums: [bore]}\n"
+    )
+    measure = "  square: {kind: inspected_orientation, of: block.bore, datums: [floor]}\n".replace(
+        "square", "squareness"
+    )
+    found = assembled(BLOCK.format(tolerances=text, measures=measure), tmp_path).drawn(2_000)["squareness"]
+    assert found.max() <= 0.1 * (1 + 1e-6)
+
+
+@pytest.mark.parametrize("road", ["exact", "analytic"])
+def test_an_angle_about_half_a_turn_does_not_jump(tmp_path: Path, road: str) -> None:
+    """Faces that look at each other: 180 deg and what they tilt, not -180."""
+    tilt = (
+        "  tilt: {kind: perpendicularity, of: block.bore, zone: {diameter: 0.1 mm}, law: {kind: uniform}, "
+        "datums: [floor]}\n"
+    )
+    measures = "".join(
+        f"  about {axis}: {{kind: angle, from: block.floor, to: block.bore, about: {about}}}\n"
+        for axis, about in (("x", [1, 0, 0]), ("y", [0, 1, 0]))
+    )
+    count = 20_000
+    found = assembled(BLOCK.format(tolerances=tilt, measures=measures), tmp_path).drawn(count, road)
+    sigma = 0.05 / 2 / 15  # ends opposite, uniform in a disc of 0.05: half of it is the sigma across
+    for values in found.values():
+        assert np.abs(values - math.pi).max() < 0.004
+        assert values.std() == pytest.approx(sigma, rel=4 / math.sqrt(2 * count))
+
+
+@pytest.mark.parametrize(
+    ("measure", "words"),
+    [
+        ("{kind: gap, from: block.floor, to: block.top, along: [0, 0, 1], upper_limit: 1 deg}", "expected a length"),
+        ("{kind: angle, from: block.floor, to: block.top, lower_limit: 1 mm}", "expected an angle"),
+        ("{kind: difference, of: height, minus: tilt}", "an angle"),
+        ("{kind: difference, of: tilt, minus: tilt, upper_limit: 1 mm}", "expected an angle"),
+    ],
+)
+def test_lengths_go_with_lengths_and_angles_with_angles(tmp_path: Path, measure: str, words: str) -> None:
+    more = (
+        "  height: {kind: gap, from: block.floor, to: block.top, along: [0, 0, 1]}\n"
+        "  tilt: {kind: angle, from: block.floor, to: block.top}\n"
+    )
+    with pytest.raises(SceneError, match=words):
+        assembled(BLOCK.format(tolerances=FLOOR, measures=f"{more}  own: {measure}\n"), tmp_path)
+
+
+def test_a_difference_of_angles_is_an_angle(tmp_path: Path) -> None:
+    measures = (
+        "  one: {kind: angle, from: block.floor, to: block.top}\n"
+        "  other: {kind: angle, from: block.floor, to: block.bore}\n"
+        "  both: {kind: difference, of: one, minus: other, upper_limit: 1 deg}\n"
+    )
+    system = assembled(BLOCK.format(tolerances=FLOOR, measures=measures), tmp_path).system
+    both = next(own for own in system.measures if own.name == "both")
+    assert both.unit == "arcmin"
+    assert both.upper_limit == pytest.approx(math.radians(1))
