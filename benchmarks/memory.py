@@ -8,7 +8,7 @@ Each run is a process of its own; the operating system's peak resident size is p
 import argparse
 from collections.abc import Sequence
 
-from studies import SCENES, Study, measured
+from studies import SCENES, TimedStudy, measured
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
@@ -18,7 +18,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
     parser.add_argument("--engine", choices=["exact", "analytic", "fcl"], default="exact")
     given = parser.parse_args(arguments)
     for trials in given.trials:
-        peak = measured(Study("spur pair", given.engine, trials, 1, "kept"), SCENES / "spur_pair.yaml").peak_mb
+        peak = measured(TimedStudy("spur pair", given.engine, trials, 1, "kept"), SCENES / "spur_pair.yaml").peak_mb
         print(f"{trials:>10} trials, {given.engine}: {peak:7.0f} MB at the peak")
 
 

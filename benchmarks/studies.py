@@ -61,7 +61,7 @@ SYSTEMS: Mapping[str, System] = {
 
 
 @dataclass(frozen=True)
-class Study:
+class TimedStudy:
     """One row of the table."""
 
     system: str
@@ -81,7 +81,7 @@ class Found:
     peak_mb: float
 
 
-def measured(study: Study, scene: Path) -> Found:
+def measured(study: TimedStudy, scene: Path) -> Found:
     """Run a study in a process of its own."""
     with tempfile.TemporaryDirectory() as folder:
         environment = dict(os.environ)
@@ -97,25 +97,25 @@ def measured(study: Study, scene: Path) -> Found:
         return Found(timing["trials_per_s"], seconds, timing["peak_mb"])
 
 
-def studies_of(system: str, trials: int) -> tuple[Study, ...]:
+def studies_of(system: str, trials: int) -> tuple[TimedStudy, ...]:
     """The rows of a system, `trials` being those of the largest."""
     return (
-        Study(system, "exact", 2000, 1, cold=True),
-        Study(system, "exact", 2000, 1),
-        Study(system, "exact", trials // 4, 1),
-        Study(system, "exact", trials, 2),
-        Study(system, "exact", trials // 2, 2, "kept"),
-        Study(system, "fcl", 2000, 1),
-        Study(system, "analytic", trials // 4, 2),
+        TimedStudy(system, "exact", 2000, 1, cold=True),
+        TimedStudy(system, "exact", 2000, 1),
+        TimedStudy(system, "exact", trials // 4, 1),
+        TimedStudy(system, "exact", trials, 2),
+        TimedStudy(system, "exact", trials // 2, 2, "kept"),
+        TimedStudy(system, "fcl", 2000, 1),
+        TimedStudy(system, "analytic", trials // 4, 2),
     )
 
 
-def asked(given: argparse.Namespace) -> Iterator[Study]:
+def asked(given: argparse.Namespace) -> Iterator[TimedStudy]:
     """The rows that the arguments want; of those that are the same the first."""
     trials = QUICK_TRIALS if given.quick else TRIALS
     rows = [study for system in given.systems for study in studies_of(system, trials)]
     if given.hundred_million:
-        rows.append(Study("spur pair", "exact", HUNDRED_MILLION, 2))
+        rows.append(TimedStudy("spur pair", "exact", HUNDRED_MILLION, 2))
     if given.warm:
         rows = [study for study in rows if not study.cold]
     if given.most:
@@ -135,7 +135,7 @@ def scene_of(system: System, folder: Path) -> Path:
     return path
 
 
-def add_row(table: Table, study: Study, found: Sequence[Found], naive: float) -> None:
+def add_row(table: Table, study: TimedStudy, found: Sequence[Found], naive: float) -> None:
     """A row: medians of what was found."""
     rates = sorted(each.rate for each in found)
     rate = statistics.median(rates)

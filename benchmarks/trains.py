@@ -15,7 +15,7 @@ from pathlib import Path
 
 from rich.console import Console
 from rich.table import Table
-from studies import SCENES, Study, measured
+from studies import SCENES, TimedStudy, measured
 
 from tol3d import load_scene
 from tol3d.simulate import Overrides, simulation_of
@@ -38,7 +38,7 @@ def add_rows(table: Table, train: str, contacts: int, rounds: int) -> None:
     scene = TRAINS[train]
     of_a_trial = contacts_of(simulation_of(load_scene(scene), Overrides(witness=0)))
     for workers in (1, 2):
-        study = Study(train, "exact", contacts * workers // of_a_trial, workers)
+        study = TimedStudy(train, "exact", contacts * workers // of_a_trial, workers)
         found = [measured(study, scene) for _ in range(rounds)]
         rates = sorted(each.rate for each in found)
         rate = statistics.median(rates)

@@ -21,7 +21,7 @@ from tol3d.scene.name import Name
 from tol3d.scene.options import Option, StudyOptions, options_of
 from tol3d.scene.part import PartSpec
 from tol3d.scene.place import KeyPath
-from tol3d.scene.schema import SECTIONS, Scene, Study, study_class
+from tol3d.scene.schema import SECTIONS, Scene, StudySpec, study_spec_class
 from tol3d.scene.tolerance import ToleranceEntry
 from tol3d.strict import Strict
 
@@ -111,7 +111,9 @@ class Grammar:
         laws = {each.name: [str(word_of(law)) for law in each.distributions] for each in self.vocabularies}
         _refuse_ambiguity("a kind of its own in distributions", {str(word_of(law)): "tol3d" for law in SHIPPED}, laws)
         options = {each.name: [*each.options.model_fields] for each in self.vocabularies if each.options}
-        _refuse_ambiguity("an option of its own in study", dict.fromkeys(Study.model_fields, "every study"), options)
+        _refuse_ambiguity(
+            "an option of its own in study", dict.fromkeys(StudySpec.model_fields, "every study"), options
+        )
 
     def kinds(self, section: str) -> Mapping[str, type[Entry]]:
         """The kinds of a section by their words, in the order of registration."""
@@ -199,7 +201,7 @@ def _scene_class(grammar: Grammar) -> type[Scene]:
     for section in SECTIONS:
         union = _union(grammar, section)
         sections[section] = (Mapping[Name, union], _field(section))  # type: ignore[valid-type]  # made at run time
-    study = study_class(grammar.engines, tuple(each.options for each in grammar.vocabularies if each.options))
+    study = study_spec_class(grammar.engines, tuple(each.options for each in grammar.vocabularies if each.options))
     sections["study"] = (study, Field(default_factory=study))
     made = create_model("Scene", __base__=Scene, __module__=Scene.__module__, __doc__=Scene.__doc__, **sections)
     made.grammar, made.laws = grammar, grammar.laws

@@ -86,7 +86,7 @@ Trials = Annotated[
 ]
 
 
-class Study(Strict):
+class StudySpec(Strict):
     """How many trials, from which seed, by which sampler and engine; with what its scene's vocabularies add."""
 
     trials: Trials = Field(
@@ -154,24 +154,25 @@ class Study(Strict):
 
     def __reduce__(self) -> tuple[Any, ...]:
         """Pickled by its engines and options: the class is made anew where it is read."""
-        return _blank_study, (self.engines, self.options), self.__getstate__()
+        return _blank_study_spec, (self.engines, self.options), self.__getstate__()
 
 
 @lru_cache
-def study_class(engines: Engines, options: tuple[type[StudyOptions], ...] = ()) -> type[Study]:
+def study_spec_class(engines: Engines, options: tuple[type[StudyOptions], ...] = ()) -> type[StudySpec]:
     """The class of studies by some engines, with what vocabularies add to it."""
-    field = Study.model_fields["engine"]
+    field = StudySpec.model_fields["engine"]
     words = Literal[(*engines.names, THEORY)]  # type: ignore[valid-type]  # made at run time
     engine = (words, Field(default=engines.names[0], description=field.description))
-    fixed: Any = {"__module__": Study.__module__, "__doc__": Study.__doc__, "__base__": (*options, Study)}
-    made: type[Study] = create_model("Study", **fixed, engine=engine)
+    fixed: Any = {"__module__": StudySpec.__module__, "__doc__": StudySpec.__doc__, "__base__": (*options, StudySpec)}
+    # the name under which the JSON Schema defines it, and which editors show
+    made: type[StudySpec] = create_model("Study", **fixed, engine=engine)
     made.engines, made.options = engines, options
     return made
 
 
-def _blank_study(engines: Engines, options: tuple[type[StudyOptions], ...]) -> Study:
+def _blank_study_spec(engines: Engines, options: tuple[type[StudyOptions], ...]) -> StudySpec:
     """A study without anything in it yet, for pickle."""
-    made = study_class(engines, options)
+    made = study_spec_class(engines, options)
     return made.__new__(made)
 
 
@@ -191,7 +192,7 @@ class Scene(Strict):
     tolerances: Mapping[Name, ToleranceEntry] = Field(default_factory=dict)
     moves: Mapping[Name, MoveSpec] = Field(min_length=1)
     measures: Mapping[Name, MeasureEntry] = Field(min_length=1)
-    study: Study = Field(default_factory=Study)
+    study: StudySpec = Field(default_factory=StudySpec)
     published: Mapping[Name, Mapping[Name, PublishedMeasure]] = Field(
         default_factory=dict, description="columns of others, shown beside ours: column, measure, values"
     )
