@@ -129,13 +129,13 @@ class Shift:
 
 
 @dataclass(frozen=True, eq=False)
-class Way:
-    """How a shift goes in the trials.
+class ShiftDirection:
+    """The direction of a shift in the trials.
 
     Args:
         tie: whose height it meets.
         normal: along which that counts (3, n).
-        along: the way it goes, free of earlier ones (3, n), of unit length.
+        along: the direction, free of earlier ones (3, n), of unit length.
     """
 
     tie: int
@@ -144,7 +144,7 @@ class Way:
 
     @cached_property
     def steepness(self) -> Array:
-        """Height a way (n,)."""
+        """Height gained per length of the shift (n,)."""
         return dot(self.normal, self.along)
 
 
@@ -173,10 +173,10 @@ class Alignment:
             seats: one of each tie.
             start: the pose before anything is aligned.
         """
-        ways, codes = self.ways(seats)
+        directions, codes = self.shift_directions(seats)
         turn, held = start.turn, column(np.zeros(3))
         for number, (step, shifts_before) in enumerate(self.turns):
-            known = ways if number == len(self.turns) - 1 else ways[:shifts_before]
+            known = directions if number == len(self.turns) - 1 else directions[:shifts_before]
             for _ in range(self.rounds if step.repeated else 1):
                 if step.repeated:
                     turned, held, reached = self._by_point(step, seats, known, Pose(turn, start.shift), held)
@@ -184,16 +184,16 @@ class Alignment:
                     turned, held, reached = _by_direction(step, seats, turn, held)
                 codes = np.maximum(codes, reached)
                 turn = product(turned, turn)
-        return Pose(turn, _shifted(turn, start.shift, seats, ways)), codes
+        return Pose(turn, _shifted(turn, start.shift, seats, directions)), codes
 
     def _by_point(
-        self, step: Step, seats: Sequence[Seat], ways: Sequence[Way], start: Pose, held: Array
+        self, step: Step, seats: Sequence[Seat], directions: Sequence[ShiftDirection], start: Pose, held: Array
     ) -> tuple[Array, Array, Codes]:
         """A rotation by a point, the direction that is held after it, and what became of it."""
         turn, seat = start.turn, seats[step.tie]
-        pose = Pose(turn, _shifted(turn, start.shift, seats, ways))
+        pose = Pose(turn, _shifted(turn, start.shift, seats, directions))
         stays = step.pivot >= 0
-        pivot = pose.point(seats[step.pivot].point) if stays else cross(held, drift(pose, seats, ways, held))
+        pivot = pose.point(seats[step.pivot].point) if stays else cross(held, drift(pose, seats, directions, held))
         point = pose.point(seat.point)
         arm, line = point - pivot, self._target(step.tie, seat, point) - pivot
         if step.kind == "aim at":
@@ -206,21 +206,21 @@ class Alignment:
             return turned, held, reached
         return _nearer(held, arm, line, seat.toward if self.ties[step.tie].held == "across" else None), held, _MET
 
-    def ways(self, seats: Sequence[Seat]) -> tuple[list[Way], Codes]:
-        """How shifts go in the trials, and whether they still can (n,)."""
-        ways, codes = list[Way](), _MET
+    def shift_directions(self, seats: Sequence[Seat]) -> tuple[list[ShiftDirection], Codes]:
+        """Directions of the shifts in the trials, and whether each still has one (n,)."""
+        directions, codes = list[ShiftDirection](), _MET
         for shift in self.shifts:
             seat, held = seats[shift.tie], self.ties[shift.tie].held
             normal = seat.its_toward if shift.along is None else shift.along
             if held == "across":
                 normal = normal - dot(normal, seat.its_toward) * seat.its_toward
             along = normal
-            for taken in ways:
+            for taken in directions:
                 along = along - dot(along, taken.along) * taken.along
             codes = np.maximum(codes, np.where(dot(along, along) > _LOST**2 / 4, OK, SINGULAR).astype(np.int8))
             along = unit(along)
-            ways.append(Way(shift.tie, along if held == "all" else normal, along))
-        return ways, codes
+            directions.append(ShiftDirection(shift.tie, along if held == "all" else normal, along))
+        return directions, codes
 
     def _target(self, tie: int, seat: Seat, point: Array) -> Array:
         """Where a point is to lie; of an axis abreast of where it lies."""
@@ -229,34 +229,34 @@ class Alignment:
         return seat.target + dot(point - seat.target, seat.its_toward) * seat.its_toward
 
 
-def drift(pose: Pose, seats: Sequence[Seat], ways: Sequence[Way], axis: Array) -> Array:
+def drift(pose: Pose, seats: Sequence[Seat], directions: Sequence[ShiftDirection], axis: Array) -> Array:
     """How the world's origin shifts with a turn about an axis through it, the shifts keeping what they hold.
 
     Args:
         pose: from which it turns.
         seats: one of each tie.
-        ways: of the shifts.
+        directions: of the shifts.
         axis: about which it turns (3, n), of unit length.
 
     Returns:
         Per turn (3, n) [mm / rad].
     """
     moved = column(np.zeros(3))
-    for way in ways:
-        rate = dot(way.normal, moved + cross(axis, pose.point(seats[way.tie].point)))
-        moved = moved - rate / way.steepness * way.along
+    for direction in directions:
+        rate = dot(direction.normal, moved + cross(axis, pose.point(seats[direction.tie].point)))
+        moved = moved - rate / direction.steepness * direction.along
     return moved
 
 
-def _shifted(turn: Array, start: Array, seats: Sequence[Seat], ways: Sequence[Way]) -> Array:
+def _shifted(turn: Array, start: Array, seats: Sequence[Seat], directions: Sequence[ShiftDirection]) -> Array:
     """The shift (3, n) that meets heights one after the other."""
     shift = start
-    for way in ways:
-        seat = seats[way.tie]
-        height = dot(way.normal, rotated(turn, seat.point) + shift - seat.target)
+    for direction in directions:
+        seat = seats[direction.tie]
+        height = dot(direction.normal, rotated(turn, seat.point) + shift - seat.target)
         if seat.outermost is not None:
-            height = height + seat.outermost.rise(rotated_back(turn, way.normal))
-        shift = shift + (seat.height - height) / way.steepness * way.along
+            height = height + seat.outermost.rise(rotated_back(turn, direction.normal))
+        shift = shift + (seat.height - height) / direction.steepness * direction.along
     return shift
 
 

@@ -69,7 +69,7 @@ def best_fitting(move: BestFit, nominal: World) -> BestFitting:
             raise InputError(f"moves.{move.name}: expected a positive weight of {fit.moving}, got {fit.weight}")
     # of a residual by shift of the origin and turn: D v + D (w x arm)
     rows = np.concatenate(
-        [np.hstack([ways, np.cross(arm, ways)]) for ways, arm in zip(directions[:, :, :, 0], arms, strict=True)]
+        [np.hstack([own, np.cross(arm, own)]) for own, arm in zip(directions[:, :, :, 0], arms, strict=True)]
     )
     basis = _seen(free_motions(rows, np.zeros(3), reach), reach)
     if not basis.shape[1]:
@@ -107,9 +107,9 @@ def _asked(move: BestFit, world: World) -> tuple[Array, Array, Array]:
     directions = []
     for fit in move.fits:
         turn = world.poses[world.part_of(fit.target)].turn
-        ways = [rotated(turn, column(way)) for way in fit.directions]
-        ways += [column(np.zeros(3))] * (3 - len(ways))
-        directions.append(np.stack(np.broadcast_arrays(*ways)))
+        own = [rotated(turn, column(direction)) for direction in fit.directions]
+        own += [column(np.zeros(3))] * (3 - len(own))
+        directions.append(np.stack(np.broadcast_arrays(*own)))
     return _stacked(points), _stacked(targets), _stacked(directions)
 
 

@@ -57,12 +57,12 @@ def rows_of(fits: Any, f: int, i: int, arm: Any, basis: Any, reach: float, rows:
 
 
 @part
-def moved(pose: Any, basis: Any, way: Any, share: float, reach: float, step: Any) -> Any:
-    """Move a pose by a share of a way along the basis; the step's length."""
+def moved(pose: Any, basis: Any, direction: Any, share: float, reach: float, step: Any) -> Any:
+    """Move a pose by a share of a search direction, which is given in the basis; the step's length."""
     for r in range(6):
         step[r] = 0.0
         for s in range(basis.shape[1]):
-            step[r] += share * basis[r, s] * way[s]
+            step[r] += share * basis[r, s] * direction[s]
     return stepped(pose, step, reach)
 
 
@@ -98,8 +98,8 @@ def largest(pose: Any, fits: Any, i: int, arm: Any, residual: Any) -> Any:
 
 
 @part
-def barrier_way(pose: Any, top: float, share: float, fits: Any, i: int, basis: Any, reach: float, rooms: Any) -> Any:
-    """Newton's way to a barrier's centre, that of T last; its decrement squared, negative where there is none."""
+def barrier_step(pose: Any, top: float, share: float, fits: Any, i: int, basis: Any, reach: float, rooms: Any) -> Any:
+    """Newton's step to a barrier's centre, that of T last; its decrement squared, negative where there is none."""
     matrix, right, arm, residual, rows, _, pull = rooms
     count = basis.shape[1]
     matrix[:], right[:] = 0.0, 0.0
@@ -140,7 +140,7 @@ def by_barriers(pose: Any, fits: Any, i: int, basis: Any, reach: float, rooms: A
     while share > LEAST_SHARE:
         share = max(FALL * share, LEAST_SHARE)
         for _ in range(STEPS):
-            decrement = barrier_way(pose, top, share, fits, i, basis, reach, rooms)
+            decrement = barrier_step(pose, top, share, fits, i, basis, reach, rooms)
             if not decrement >= 0.0:
                 return False
             length = 1.0 / (1.0 + np.sqrt(decrement))

@@ -165,8 +165,8 @@ class _Freedoms:
             self._aim_at(index)
             return
         pose, axis = self._pose(), column(self.turning)
-        ways, _ = self.alignment.ways(self.seats)
-        swung = (drift(pose, self.seats, ways, axis) + cross(axis, pose.point(seat.point)))[:, 0]
+        directions, _ = self.alignment.shift_directions(self.seats)
+        swung = (drift(pose, self.seats, directions, axis) + cross(axis, pose.point(seat.point)))[:, 0]
         around = tie.held == "across" and abs(self.turning @ seat.its_toward[:, 0]) > 1 - HELD**2
         if tie.held != "all":
             toward = seat.its_toward[:, 0]
