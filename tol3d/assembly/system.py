@@ -189,8 +189,8 @@ def assembly_system(scene: Scene) -> AssemblySystem:
     _asked(
         scene, lambda: torsors.values(made.assembly, np.zeros((1, made.assembly.width)), list(made.assembly.measures))
     )
-    measures = (replace(own, adds_up=made.is_linear(own)) for own in made.measures)
-    return replace(made, measures=tuple(measures))
+    measures = _asked(scene, lambda: tuple(replace(own, adds_up=made.is_linear(own)) for own in made.measures))
+    return replace(made, measures=measures)
 
 
 def _settled(scene: Scene) -> Meant:

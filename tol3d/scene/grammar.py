@@ -152,7 +152,9 @@ class Grammar:
             if vocabulary.name in used and used.keys() <= self._understood(vocabulary):
                 return vocabulary
         *_, (last, path) = used.items()
-        raise scene.refuse(path, f"kinds of {' and '.join(used)} do not go together; take out {last}")
+        kinds = " and ".join(f"{first[1]!r} of {own}" for own, first in used.items())
+        words = f"kinds of {' and '.join(used)} do not go together in one scene, got {kinds}"
+        raise scene.refuse(path, f"{words}; take out {last}, or make two scenes")
 
     def vocabularies_of(self, scene: Scene) -> tuple[Vocabulary, ...]:
         """The vocabularies whose kinds a scene has, in the order of registration."""

@@ -90,6 +90,11 @@ class TouchedPoints:
         self.features[name] = Feature(name, own.part, Point(), own.frame, own.parent, moved_by, is_named=False)
         return name
 
+    def origin(self, name: str) -> Array:
+        """Where a feature's middle lies nominally, in the world (3,) [mm]."""
+        own = self.features[name]
+        return np.asarray((self.poses[own.part] @ own.frame)[:3, 3])
+
     def _seen_from(self, plane: Feature, point: Feature) -> Sequence[float]:
         """Where a point lies in the plane, x and y [mm]."""
         into = np.linalg.inv(self.poses[plane.part] @ plane.frame)

@@ -38,6 +38,7 @@ def _move(scene: Scene, name: str, spec: PlacingSpec | WeldSpec, effects: Effect
             pairs = tuple(_pair(scene, name, number, spec, effects, touched) for number in spec.pairs_by_name)
             return Locate(name, spec.part, pairs, spec.points_on)
         case BestFitSpec():
+            _refuse_a_line(scene, name, spec, touched)
             fits = tuple(Fit(own.from_, own.to, own.weight, _directions(own.along)) for own in spec.pairs)
             return BestFit(name, spec.part, fits, spec.criterion)
         case MateSpec():
@@ -51,13 +52,24 @@ def _move(scene: Scene, name: str, spec: PlacingSpec | WeldSpec, effects: Effect
     raise NotImplementedError(spec.kind)
 
 
+def _refuse_a_line(scene: Scene, name: str, spec: BestFitSpec, touched: TouchedPoints) -> None:
+    """Points in space that leave a turn free; with directions of its own a fit may leave what it does not name."""
+    if any(own.along for own in spec.pairs):
+        return
+    points = np.array([touched.origin(own.from_) for own in spec.pairs])
+    spread = np.linalg.svd(points - points.mean(axis=0), compute_uv=False)
+    if spread[1] <= FLAT * max(spread[0], 1.0):
+        words = f"expected points that do not all lie on one line, about which {spec.part!r} would be free to turn"
+        raise scene.refuse(("moves", name, "pairs"), f"{words}; add a point beside it")
+
+
 def _pair(scene: Scene, move: str, number: str, spec: LocatingSpec, effects: Effects, touched: TouchedPoints) -> Pair:
     path, own = spec.pairs_by_name[number]
     on_part = spec.points_on == "part"
     side, point = (own.to, own.from_) if on_part else (own.from_, own.to)
     touched_point = touched.on(side, point)
     out = _normal(own, touched.features[side].frame[:3, 2])
-    if touched_point != side and np.linalg.norm(np.cross(out, touched.features[side].frame[:3, 2])) > FLAT:
+    if touched_point != side and np.linalg.norm(out - touched.features[side].frame[:3, 2]) > FLAT:
         words = f"expected none, or the normal of the plane {side!r}"
         raise scene.refuse(("moves", move, *path, "along"), words)
     locators, heights = tuple(effects.locators.get((move, number), ())), tuple(effects.heights.get((move, number), ()))

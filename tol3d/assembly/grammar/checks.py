@@ -1,12 +1,13 @@
 """What must hold across the entries of a scene of an assembly."""
 
 from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
 
 from tol3d.assembly.grammar.drawing import Drawing
-from tol3d.assembly.grammar.feature_name import Use, UsesFeatures
+from tol3d.assembly.grammar.feature_name import Use, UsesFeatures, part_of
 from tol3d.assembly.grammar.features import FeatureUnion
+from tol3d.assembly.grammar.measures.assembly_measure import FeatureMeasureSpec
 from tol3d.assembly.grammar.moves import PlacingSpec, WeldSpec
-from tol3d.assembly.grammar.moves.placing_move import PairSpec
 from tol3d.assembly.grammar.parts import SolidSpec
 from tol3d.scene import Scene
 from tol3d.scene.nearest import hint
@@ -39,51 +40,85 @@ def _unfit(use: Use, parts: Mapping[str, Mapping[str, FeatureUnion]]) -> str:
 
 
 def unplaced_bodies(scene: Scene) -> Iterator[Problem]:
-    """Bodies that are placed twice or never, and moves against what is not placed yet."""
-    if not scene.of(SolidSpec):
-        return
-    placed: dict[str, str] = {}  # bodies, and the move that places each; none of what was welded since
-    body = {name: name for name in scene.of(SolidSpec)}
-    for name, move in scene.moves.items():
-        here: KeyPath = ("moves", name)
-        if isinstance(move, WeldSpec):
-            yield from _welded(here, move, placed, body)
-        elif isinstance(move, PlacingSpec):
-            yield from _placed(here, move, placed, body)
-    for part in body:
-        if body[part] not in placed:
-            words = f"expected a move that places {part!r}, got none; add one, such as {{kind: fix, part: {part}}}"
-            yield ("parts", part), words
+    """Bodies that are placed twice or never, moves against what is not placed yet, and measures read before that."""
+    if scene.of(SolidSpec):
+        bodies = Bodies(scene)
+        yield from bodies.problems()
+        yield from _read_too_early(scene, bodies)
 
 
-def _welded(here: KeyPath, move: WeldSpec, placed: dict[str, str], body: dict[str, str]) -> Iterator[Problem]:
-    for part in (move.part, *move.to):
-        if body[part] not in placed:
-            yield here, f"expected parts that are placed already, got {part!r}, which no move before this one places"
-    joined = {body[part] for part in (move.part, *move.to)}
-    for part, own in body.items():
-        if own in joined:
-            body[part] = move.part
-    placed[move.part] = ""  # it may be moved again, and stays where it is if it is not
+@dataclass
+class Bodies:
+    """Parts and what is welded to them, move by move.
+
+    Args:
+        scene: its parts and moves.
+    """
+
+    scene: Scene
+    placed: dict[str, str] = field(default_factory=dict)
+    """Bodies, and the move that places each; none of what was welded since."""
+    body: dict[str, str] = field(default_factory=dict)
+    """Of each part."""
+    by: dict[str, set[str]] = field(default_factory=dict)
+    """Parts that are placed after each move."""
+
+    def problems(self) -> Iterator[Problem]:
+        """What does not hold, move by move; then parts that no move places."""
+        self.body = {name: name for name in self.scene.of(SolidSpec)}
+        moving = {move.part for move in self.scene.moves.values() if isinstance(move, PlacingSpec)}
+        for name, move in self.scene.moves.items():
+            here: KeyPath = ("moves", name)
+            if isinstance(move, WeldSpec):
+                yield from self._welded(here, move, moving)
+            elif isinstance(move, PlacingSpec):
+                yield from self._placed(here, move, moving)
+            self.by[name] = {part for part, own in self.body.items() if own in self.placed}
+        for part, own in self.body.items():
+            if own not in self.placed:
+                words = f"expected a move that places {part!r}, got none; add one, such as {{kind: fix, part: {part}}}"
+                yield ("parts", part), words
+
+    def _welded(self, here: KeyPath, move: WeldSpec, moving: set[str]) -> Iterator[Problem]:
+        joined = {self.body[move.part]}
+        for k, part in enumerate(move.to):
+            if self.body[part] in joined:
+                yield (*here, "to", k), f"expected a part of another body, got {part!r}, which is of this one already"
+            joined.add(self.body[part])
+        for part in (move.part, *move.to):
+            if self.body[part] not in self.placed and part in moving:
+                words = f"expected parts that are placed already, got {part!r}"
+                yield here, f"{words}; put the move that places it before this one"
+        for part, own in self.body.items():
+            if own in joined:
+                self.body[part] = move.part
+        if joined <= self.placed.keys():
+            self.placed[move.part] = ""  # it may be moved again, and stays where it is if it is not
+
+    def _placed(self, here: KeyPath, move: PlacingSpec, moving: set[str]) -> Iterator[Problem]:
+        own = self.body[move.part]
+        if before := self.placed.get(own):
+            yield (*here, "part"), f"expected a part that is not placed yet, got {move.part!r}, which {before!r} places"
+        early: set[str] = set()  # each is said once
+        for path, pair in move.paired():
+            moving_part, target = part_of(pair.from_), part_of(pair.to)
+            if self.body[moving_part] != own:
+                yield (*here, *path, "from"), f"expected a feature of the part that is placed, got {pair.from_!r}"
+            if self.body[target] == own:
+                words = f"expected a feature of another part, got {pair.to!r}, which is placed by this move"
+                yield (*here, *path, "to"), words
+            elif self.body[target] not in self.placed and target in moving - early:
+                early.add(target)
+                words = f"expected a feature of a part that is placed already, got {pair.to!r}"
+                yield (*here, *path, "to"), f"{words}; put the move that places {target!r} before this one"
+        self.placed[own] = str(here[1])
 
 
-def _placed(here: KeyPath, move: PlacingSpec, placed: dict[str, str], body: dict[str, str]) -> Iterator[Problem]:
-    own = body[move.part]
-    before = placed.get(own)
-    if before:
-        yield (*here, "part"), f"expected a part that is not placed yet, got {move.part!r}, which {before!r} places"
-    for path, pair in move.paired():
-        yield from _pair_problems((*here, *path), pair, own, placed, body)
-    placed[own] = str(here[1])
-
-
-def _pair_problems(
-    path: KeyPath, pair: PairSpec, own: str, placed: dict[str, str], body: dict[str, str]
-) -> Iterator[Problem]:
-    moving, target = pair.from_.partition(".")[0], pair.to.partition(".")[0]
-    if body[moving] != own:
-        yield (*path, "from"), f"expected a feature of the part that is placed, got {pair.from_!r}"
-    if body[target] == own:
-        yield (*path, "to"), f"expected a feature of another part, got {pair.to!r}, which is placed by this move"
-    elif body[target] not in placed:
-        yield (*path, "to"), f"expected a feature of a part that is placed already, got {pair.to!r}; move it before"
+def _read_too_early(scene: Scene, bodies: Bodies) -> Iterator[Problem]:
+    for name, measure in scene.measures.items():
+        if isinstance(measure, FeatureMeasureSpec) and measure.after is not None:
+            for _, feature, _ in measure.named():
+                if part_of(feature) not in bodies.by[measure.after]:
+                    words = f"expected a move by which {part_of(feature)!r} is placed, got {measure.after!r}"
+                    yield ("measures", name, "after"), f"{words}; name a later one"
+                    break

@@ -1,8 +1,8 @@
 """Datums as tolerances name them: features of the toleranced part, in order."""
 
-from typing import Annotated, Any, ClassVar
+from typing import Annotated, Any, ClassVar, Self
 
-from pydantic import BeforeValidator, Field
+from pydantic import BeforeValidator, Field, model_validator
 
 from tol3d.assembly.grammar.feature_name import OwnName
 from tol3d.assembly.model.datum_frame import Simulator
@@ -31,6 +31,21 @@ class DatumSpec(Strict):
     targets: Annotated[tuple[Vector, ...], listed("points", 1, 3)] = Field(
         default=(), description="points of the part that touch, for simulator: targets"
     )
+
+    @property
+    def kinds(self) -> tuple[str, ...]:
+        """Kinds of feature that it may be of."""
+        if len(self.features) > 1:
+            return ("point", "cylinder", "axis")
+        return ("plane",) if self.targets else ()
+
+    @model_validator(mode="after")
+    def _refuse_contradictions(self) -> Self:
+        if self.targets and self.simulator != "targets":
+            raise refused("targets", "simulator: targets beside them", f"simulator: {self.simulator}")
+        if not self.targets and self.simulator == "targets":
+            raise refused("targets", "the points that touch, such as [[10 mm, 0 mm, 5 mm]]", "none")
+        return self
 
 
 def _datum(value: Any) -> Any:

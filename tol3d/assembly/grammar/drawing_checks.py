@@ -63,6 +63,8 @@ def _zones(drawing: Drawing, feature: str) -> Iterator[Problem]:
     for own in filter(_is_own, drawing.of(feature, FeatureTolerance)):
         here: KeyPath = ("tolerances", own.entry)
         spec = own.spec
+        if drawing.kind(feature).kind not in spec.applies_to:
+            continue  # said already, see unknown_features
         if isinstance(spec, LocationSpec | OrientationSpec):
             yield from _shape_problems(here, spec, drawing.kind(feature).kind)
         if isinstance(spec, LocationSpec):
@@ -132,7 +134,7 @@ def _direction_problems(here: KeyPath, spec: PlusMinusSpec, drawing: Drawing, fe
     if own.kind == "plane" and abs(share) < ROUNDING:
         yield (*here, "along"), "expected a direction that is not in the plane, which would not move it"
     if own.kind in ("axis", "cylinder") and 1.0 - abs(share) < ROUNDING:
-        yield (*here, "along"), "expected a direction across the axis, along which it does not deviate"
+        yield (*here, "along"), "expected a direction across the axis, got one along it, where it does not deviate"
 
 
 def _names(drawing: Drawing) -> Iterator[Problem]:
@@ -156,6 +158,8 @@ def cyclic_datums(drawing: Drawing) -> Iterator[Problem]:
     waiting = dict(after)
     while ready := [name for name, needed in waiting.items() if not needed & waiting.keys()]:
         waiting = {name: needed for name, needed in waiting.items() if name not in ready}
+    while ends := [name for name in waiting if not any(name in needed for needed in waiting.values())]:
+        waiting = {name: needed for name, needed in waiting.items() if name not in ends}
     for name in waiting:
         own = [stated for stated in drawing.of(name, FeatureTolerance) if stated.spec.named_datums and _is_own(stated)]
         if own:

@@ -1,14 +1,14 @@
 """Tolerance zones and the laws of deviations in them, as a scene names them."""
 
-from typing import Annotated, Literal, Self
+from typing import Annotated, Any, Literal, Self
 
-from pydantic import Field, model_validator
+from pydantic import BeforeValidator, Field, model_validator
 
 from tol3d.distributions import StatedDistribution
 from tol3d.scene.part import Length
 from tol3d.scene.vector import Direction
 from tol3d.strict import Strict, refused
-from tol3d.units import Of, Quantity
+from tol3d.units import Of, Quantity, shown
 
 
 class ZoneSpec(Strict):
@@ -57,7 +57,14 @@ class ProcessLawSpec(Strict):
     distribution: StatedDistribution = Field(description="of each coordinate, a length at the end of the feature")
 
 
+def _no_word(value: Any) -> Any:
+    if isinstance(value, str):
+        raise refused("", "a law such as {kind: uniform}", shown(value))
+    return value
+
+
 LawUnion = Annotated[
     UniformLawSpec | NormalLawSpec | ProcessLawSpec,
     Field(discriminator="kind", description="the law of deviations in the zone: uniform, normal or process"),
+    BeforeValidator(_no_word),
 ]

@@ -64,7 +64,7 @@ class FeatureMeasureSpec(AssemblyMeasureSpec):
             yield Use(path, name, kinds)
         for k, datum in enumerate(self.named_datums):
             for name in datum.features:
-                yield Use(("datums", k), f"{part_of(self.named()[0][1])}.{name}")
+                yield Use(("datums", k), f"{part_of(self.named()[0][1])}.{name}", datum.kinds)
 
 
 class BetweenSpec(FeatureMeasureSpec):

@@ -1,17 +1,18 @@
 """What a measuring machine says of a feature, in the datum frame of the same trial."""
 
 from collections.abc import Sequence
-from typing import Annotated, ClassVar, Literal
+from typing import Annotated, ClassVar, Literal, Self
 
-from pydantic import Field
+from pydantic import Field, model_validator
 
 from tol3d.assembly.grammar.datums import Datums, DatumSpec
-from tol3d.assembly.grammar.feature_name import FeatureName
+from tol3d.assembly.grammar.feature_name import FeatureName, part_of
 from tol3d.assembly.grammar.measures.assembly_measure import FeatureMeasureSpec
 from tol3d.assembly.model.measures import MeasureKind
 from tol3d.scene.listed import listed
 from tol3d.scene.place import KeyPath
 from tol3d.scene.vector import Direction
+from tol3d.strict import refused
 
 
 class InspectedSpec(FeatureMeasureSpec):
@@ -43,6 +44,10 @@ class InspectedPositionSpec(InspectedSpec):
         """See FeatureMeasureSpec."""
         return self.across
 
+    def named(self) -> Sequence[tuple[KeyPath, FeatureName, tuple[str, ...]]]:
+        """See FeatureMeasureSpec."""
+        return ((("of",), self.of, () if self.across is None else ("point",)),)
+
 
 class InspectedOrientationSpec(InspectedSpec):
     """Width of the zone, oriented nominally, that holds it: perpendicularity, parallelism, angularity."""
@@ -69,6 +74,13 @@ class InspectedFlatnessSpec(FeatureMeasureSpec):
     def along(self) -> Direction | None:
         """See FeatureMeasureSpec."""
         return self.normal
+
+    @model_validator(mode="after")
+    def _refuse_several_parts(self) -> Self:
+        parts = sorted({part_of(name) for name in self.points})
+        if len(parts) > 1:
+            raise refused("points", "points of one part", f"points of {', '.join(map(repr, parts))}")
+        return self
 
     def named(self) -> Sequence[tuple[KeyPath, FeatureName, tuple[str, ...]]]:
         """See FeatureMeasureSpec."""

@@ -2,6 +2,7 @@
 
 from abc import abstractmethod
 from collections.abc import Iterator
+from typing import ClassVar
 
 from pydantic import Field
 
@@ -23,6 +24,8 @@ class PairSpec(Strict):
 
 class PlacingSpec(MoveSpec):
     """A move that places a part, and what is welded to it."""
+
+    words: ClassVar[str] = "a move that places a part"
 
     part: Name = Field(description="the part that is placed")
 

@@ -35,4 +35,4 @@ class FeatureTolerance(ToleranceEntry):
         for k, datum in enumerate(self.named_datums):
             for name in datum.features:
                 path: KeyPath = ("datums", k)
-                yield Use(path, f"{part_of(self.of)}.{name}")
+                yield Use(path, f"{part_of(self.of)}.{name}", datum.kinds)

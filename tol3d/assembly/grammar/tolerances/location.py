@@ -3,12 +3,13 @@
 from collections.abc import Iterator
 from typing import Any, ClassVar, Literal
 
-from pydantic import Field
+from pydantic import Field, model_validator
 
 from tol3d.assembly.grammar.datums import Datums, DatumSpec
 from tol3d.assembly.grammar.tolerances.feature_tolerance import FeatureTolerance
 from tol3d.assembly.grammar.zone import LawUnion, ProcessLawSpec, ZoneSpec
 from tol3d.scene.place import KeyPath
+from tol3d.strict import refused
 
 
 class LocationSpec(FeatureTolerance):
@@ -17,6 +18,14 @@ class LocationSpec(FeatureTolerance):
     zone: ZoneSpec
     law: LawUnion
     datums: Datums | None = Field(default=None, description="the part's frame if not given")
+
+    @model_validator(mode="before")
+    @classmethod
+    def _refuse_no_law(cls, value: Any) -> Any:
+        if isinstance(value, dict) and "law" not in value:
+            laws = "{kind: uniform}, {kind: normal} or {kind: process, distribution: …}"
+            raise refused("law", f"how deviations lie in the zone, which drawings leave open: {laws}", "none")
+        return value
 
     @property
     def named_datums(self) -> tuple[DatumSpec, ...]:
