@@ -278,7 +278,7 @@ def test_check_leaves_no_coefficient_empty(tol3d: object, scene: str) -> None:
     for row in rows:
         stack_up, geometry, share = row.split()[-3:]
         assert "–" not in (stack_up, geometry)
-        assert share != "–" or scene == "split_train"  # of parallel ways there are no shares without trials
+        assert share != "–" or scene == "split_train"  # of parallel load paths there are no shares without trials
 
 
 # random shafts ------------------------------------------------------------------------------------------------

@@ -114,21 +114,21 @@ class Mechanism:
     links: Links
 
     def reach(self, shaft: str, *, as_meshes: bool = False) -> Reach:
-        """How far a shaft can go, the first shaft standing; its ends pass each other where the ways bind.
+        """How far a shaft can go, the first shaft standing; its ends pass each other where the load paths bind.
 
         Args:
             shaft: its name.
             as_meshes: take each mesh by itself, its driver where it would be without deviations, and add up.
         """
-        ways = [
+        paths = [
             self._behind(link, as_meshes=as_meshes)
             for link in self.links
             if (self.gears[link.driven].shaft if isinstance(link, Mesh) else link.driven) == shaft
         ]
-        if not ways:
+        if not paths:
             angle = np.array([self.shafts[shaft].angle])
             return angle, angle
-        return np.max([low for low, _ in ways], axis=0), np.min([high for _, high in ways], axis=0)
+        return np.max([low for low, _ in paths], axis=0), np.min([high for _, high in paths], axis=0)
 
     def _behind(self, link: Mesh | Reducer, *, as_meshes: bool) -> Reach:
         if isinstance(link, Reducer):

@@ -1,4 +1,4 @@
-"""What a summary says of a train whose first measure is a tip's, of ways that bind each other, and of odd swings."""
+"""Summaries of a train whose first measure is a tip's, of load paths that bind each other, and of odd swings."""
 
 from pathlib import Path
 from typing import Any
@@ -98,7 +98,7 @@ def test_trials_in_which_ways_bind_are_left_out_of_the_stages_too(tmp_path: Path
     measure, train = run.summary["measures"]["lost motion"], run.summary["trains"]["stage"]
     bound = run.summary["status"]["interferes"]
     assert 0 < bound == 300 - measure["geometric"]["count"]
-    (stage,) = train["stages"]  # the ways are all that there is: what they leave is the lost motion
+    (stage,) = train["stages"]  # the load paths are all that there is: what they leave is the lost motion
     for key in ("mean", "high_3sigma", "sample_min"):
         assert stage["roads"]["geometric"][key] == pytest.approx(measure["geometric"][key], rel=1e-12)
 

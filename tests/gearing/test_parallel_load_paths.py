@@ -1,4 +1,4 @@
-"""Ways that part at one shaft and meet at another, against hand formulas and a mechanism that is turned to its ends.
+"""Load paths from one shaft to another, against hand formulas and a mechanism that is turned to its ends.
 
 The mechanism, `oracles.split`, knows one world, true angles and involutes; it has no frames of meshes, no working
 flanks and no stack-up. Drawings are made here, of gears of 20 deg; scenes and mechanisms follow from them.
@@ -69,7 +69,7 @@ class Drawing:
     def text(self, tolerances: Sequence[str], over: str = "random", held: str = "input", shaft: str = "output") -> str:
         """The scene; its measure is named lost motion."""
         shafts = dict.fromkeys([*(gear.shaft for gear in self.gears.values()), "input", "output"])
-        lines = ["scene: ways", "parts:"]
+        lines = ["scene: load paths", "parts:"]
         for shaft_name in shafts:
             carried = ", ".join(
                 f"{name}: {{facing: {FACING[gear.sense]}, phase: {math.degrees(gear.phase)!r} deg}}"
@@ -133,7 +133,7 @@ def mesh(driver: str, driven: str, degrees: float, distance: float) -> split.Mes
 
 
 def model_of(folder: Path, text: str) -> Model:
-    path = folder / "ways.yaml"
+    path = folder / "load_paths.yaml"
     path.write_text(text, encoding="utf-8")
     return model_from_scene(load_scene(path))
 
@@ -209,7 +209,7 @@ def told(model: Model, block: Trials, name: str) -> np.ndarray:
 
 
 def plays(model: Model, block: Trials, side: str) -> np.ndarray:
-    """Free turn of the bull gear on one way by thicknesses alone [rad]: what both teeth lack, over the driven arm."""
+    """Free turn of the bull gear on one path by thicknesses alone [rad]: what both teeth lack, over the driven arm."""
     fast = told(model, block, "sun thickness") + told(model, block, f"{side} wheel thickness")
     slow = told(model, block, "bull thickness") + told(model, block, f"{side} pinion thickness")
     return -fast * COS / ARMS["wheel"] * SLOW - slow * COS / ARMS["bull"]
@@ -220,7 +220,7 @@ def both_roads(model: Model, block: Trials) -> Mapping[str, np.ndarray]:
     return {road: found[f"{road}:lost motion"] / ARCMIN for road in ("analytic", "geometric")} | dict(found)
 
 
-def test_by_thickness_alone_the_tighter_way_decides(tmp_path: Path) -> None:
+def test_by_thickness_alone_the_tighter_load_path_decides(tmp_path: Path) -> None:
     model = model_of(tmp_path, split_stage().text(tolerances("thickness", *ALL)))
     block = drawn_trials(model, 1, 0, 500)
     left, right = (plays(model, block, side) for side in SIDES[:2])
@@ -230,9 +230,9 @@ def test_by_thickness_alone_the_tighter_way_decides(tmp_path: Path) -> None:
         assert np.abs(found[road] - np.minimum(left, right)).max() < AGREES, road
 
 
-def test_clocking_shifts_what_each_way_leaves_free(tmp_path: Path) -> None:
+def test_clocking_shifts_what_each_load_path_leaves_free(tmp_path: Path) -> None:
     """Gears that sit ahead: a wheel leaves its shaft behind, and the bull gear goes on by 19/41 of that; a pinion
-    takes it back by as much. What sun and bull gear do they do to both ways alike."""
+    takes it back by as much. What sun and bull gear do they do to both load paths alike."""
     lines = [*tolerances("thickness", *ALL), *tolerances("clocking", *ALL)]
     model = model_of(tmp_path, split_stage().text(lines))
     block = drawn_trials(model, 2, 0, 500)
@@ -252,7 +252,7 @@ def test_clocking_shifts_what_each_way_leaves_free(tmp_path: Path) -> None:
 
 THICKNESS = 0.05  # mm that each gear lacks
 FREE = 2 * THICKNESS * COS * (SLOW / ARMS["wheel"] + 1 / ARMS["bull"])
-"""Of either way [rad], where each gear lacks that."""
+"""Of either load path [rad], where each gear lacks that."""
 
 
 def constants(*gears: str) -> list[str]:
@@ -261,7 +261,7 @@ def constants(*gears: str) -> list[str]:
 
 
 def test_ways_bind_as_often_as_one_pinion_sits_beyond_the_play(tmp_path: Path) -> None:
-    """Both ways free alike; the pinion's clocking, normal, shifts one by 19/41 of it: they bind beyond the play."""
+    """Both paths free alike; the pinion's clocking, normal, shifts one by 19/41 of it: they bind beyond the play."""
     trials, sigma = 100_000, FREE / SLOW / 2.2
     clocking = f"  right pinion clocking: {{kind: clocking, of: right pinion, distribution: {{kind: normal, mean: 0 rad, sigma: {sigma!r} rad}}}}"  # noqa: E501
     model = model_of(tmp_path, split_stage().text([*constants(*ALL), clocking]))
@@ -274,7 +274,7 @@ def test_ways_bind_as_often_as_one_pinion_sits_beyond_the_play(tmp_path: Path) -
     wanted = FREE - SLOW * np.abs(told(model, block, "right pinion clocking"))
     beside = np.abs(wanted) > AGREES  # of a trial that is on the edge either may be said
     assert np.array_equal(tight[beside], wanted[beside] < 0)
-    for road in ("geometric", "analytic"):  # what binds is less than nothing by what the ways lack
+    for road in ("geometric", "analytic"):  # what binds is less than nothing by what the load paths lack
         assert np.abs(found[road] - wanted).max() < AGREES
 
 
@@ -338,7 +338,7 @@ def test_lost_motion_is_what_the_mechanism_leaves_free(stage: str, tmp_path: Pat
 
 
 @pytest.mark.parametrize("stage", [*STAGES, "idlers"])
-def test_eccentric_gears_are_seen_alike_by_both_ways(stage: str, tmp_path: Path) -> None:
+def test_eccentric_gears_are_seen_alike_by_both_load_paths(stage: str, tmp_path: Path) -> None:
     """The bull gear's centre and its shaft's, one vector that both meshes see from their own side."""
     drawing = with_idlers(50.4) if stage == "idlers" else STAGES[stage]
     lines = [*tolerances("thickness", *drawing.gears), *tolerances("eccentricity", *drawing.gears)]
@@ -374,7 +374,7 @@ def test_ways_that_are_alike_leave_what_one_of_them_does(tmp_path: Path) -> None
     assert np.abs(found[2] - found[0]).max() < SAME_TURN
 
 
-# ways within ways -------------------------------------------------------------------------------------------------
+# load paths within load paths --------------------------------------------------------------------------------------
 
 
 def nested_lines(play: str = "lower: 4 arcmin, upper: 12 arcmin", clocking: float = 1.0) -> list[str]:
@@ -388,7 +388,7 @@ def nested_lines(play: str = "lower: 4 arcmin, upper: 12 arcmin", clocking: floa
 
 
 @pytest.mark.parametrize("play", ["lower: 4 arcmin, upper: 12 arcmin", "lower: 80 arcmin, upper: 90 arcmin"])
-def test_a_way_may_part_again_and_may_be_a_reducer(play: str, tmp_path: Path) -> None:
+def test_a_load_path_may_part_again_and_may_be_a_reducer(play: str, tmp_path: Path) -> None:
     found, wanted = against_mechanism(nested(), nested_lines(play), tmp_path, 8, as_meshes=False)
     assert np.abs(found - wanted).max() < AGREES
 
@@ -422,7 +422,7 @@ def test_the_input_goes_by_the_ratio_further_while_the_output_is_held(tmp_path: 
 
 def test_the_stack_up_is_off_by_squares_only(tmp_path: Path) -> None:
     """Centres aside by s at a mesh of distance a: j and the rest bend by s^2/(a sin(alpha)) each at most, and a gear
-    off its centre by e that turns from flank to flank by g adds e g. Either end of either way may be off by that."""
+    off its centre by e that turns from flank to flank by g adds e g. Either end of either path may be off by that."""
     lines = [line for kind in ("thickness", "eccentricity", "clocking") for line in tolerances(kind, *ALL)]
     model = model_of(tmp_path, split_stage().text([*lines, *tolerances("axis", *LAY), *OUTPUT]))
     block = drawn_trials(model, 11, 0, 2000)
@@ -592,7 +592,7 @@ STAGE = (SCENES / "split_train.yaml").read_text(encoding="utf-8")
 MIDST = "'left': a shaft inside the parallel load paths left fast + left slow ∥ right fast + right slow"
 SKEW = "driver: right pinion, driven: bull, centre_distance: 60 mm, azimuth: 170"
 BAD = {
-    "ways of other ratios": (
+    "load paths of other ratios": (
         {
             "right wheel: {kind: spur_gear, teeth: 56": "right wheel: {kind: spur_gear, teeth: 58",
             "driven: right wheel, centre_distance: 60 mm": "driven: right wheel, centre_distance: 61.5 mm",
@@ -601,7 +601,7 @@ BAD = {
         "moves.right slow: a loop of shafts that locks: 'output' turns 0.191758 times with 'input' here and 0.198606 "
         "times by 'left slow'; give both load paths one ratio, or take out one",
     ),
-    "a way that ends elsewhere": (
+    "a load path that ends elsewhere": (
         {"driver: right pinion, driven: bull, centre_distance: 60 mm, azimuth: 180": SKEW},
         "  right slow:",
         f"moves.right slow: the load paths to 'output' do not fit: here it lies "
@@ -696,7 +696,7 @@ def split_run(tmp_path_factory: pytest.TempPathFactory) -> Run:
 
 
 def test_the_split_trains_expected_mean_and_closed_form_follow_by_hand() -> None:
-    """Thicknesses in um: half of sums of limits; the pinions sit 5 arcmin apart, else the ways are alike."""
+    """Thicknesses in um: half of sums of limits; the pinions sit 5 arcmin apart, else the paths are alike."""
     slow, fast = (46 + 56) * COS, (42 + 49) * COS
     squares = COS**2 * (2**2 + (16 / 6) ** 2) + (2 * SIN) ** 2 * (2**2 + 3**2)
     squares += (SIN * COS_OF_RANDOM) ** 2 * (100 + 20 + 4) / 3
