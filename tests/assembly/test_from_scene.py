@@ -107,7 +107,7 @@ def test_form_is_an_error_of_its_own_at_each_pad(tmp_path: Path) -> None:
 
 def test_form_takes_its_room_from_the_location(tmp_path: Path) -> None:
     text = (
-        "  profile: {kind: profile, of: base.rim, zone: {width: 0.1 mm}, law: {kind: uniform}}\n"
+        "  profile: {kind: profile, of: base.rim, zone: {width: 0.1 mm}, law: {kind: uniform}, datums: [side 1]}\n"
         "  flatness: {kind: flatness, of: base.rim, zone: {width: 0.04 mm}}\n"
         "  parallelism: {kind: parallelism, of: base.rim, zone: {width: 0.03 mm}, datums: [side 1]}\n"
     )
