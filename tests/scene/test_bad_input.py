@@ -205,7 +205,8 @@ CHANGES = {
     ),
     "unknown kind of move": (
         ("kind: mesh", "kind: mash"),
-        "moves.gear pair.kind: expected one of bevel_mesh, mesh, reducer, train, got 'mash'; did you mean \"mesh\"?",
+        "moves.gear pair.kind: expected one of bevel_mesh, mesh, reducer, train, best_fit, fix, three_two_one, "
+        "six_plane, mate, weld, got 'mash'; did you mean \"mesh\"?",
     ),
     "missing kind": (
         ("{kind: rayleigh, scale", "{scale"),

@@ -7,7 +7,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.assembly.model import Assembly, Axis, Measured, Plane, RoundPlane
+from tol3d.assembly.model import Assembly, Axis, Measured, Plane, RoundPlane, Shape
 from tol3d.assembly.model.measures import MeasureKind
 from tol3d.assembly.placing.actual_feature import ActualFeature, actual_size
 from tol3d.assembly.placing.flatness import widths
@@ -117,13 +117,12 @@ def _position(measured: Measured, world: World) -> Array:
     return 2.0 * largest
 
 
-def _ends(shape: object) -> Array:
+def _ends(shape: Shape) -> Array:
     """Where a shape's position is judged, in its frame, in the order of `ActualFeature.ends`."""
     if isinstance(shape, RoundPlane):
         a = shape.radius
         return np.array([[a, 0.0, 0.0], [0.0, a, 0.0], [-a, 0.0, 0.0], [0.0, -a, 0.0]])
-    ends: Array = shape.ends  # type: ignore[attr-defined]
-    return ends
+    return shape.ends
 
 
 def _across(vector: Array, direction: Array) -> Array:
