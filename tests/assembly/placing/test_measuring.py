@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from assembly.placing.assemblies import Columns, assembly, feature, frame, moved_as_a_whole, pair, part, posed
 from numpy.typing import NDArray
+from of_kind import of_kind
 from scipy.optimize import minimize
 from scipy.spatial.transform import Rotation
 
@@ -274,7 +275,7 @@ def test_a_welded_body_moves_as_one_on_features_of_all_its_parts() -> None:
     np.testing.assert_allclose(np.linalg.inv(poses["box"]) @ poses["lid"], lid, atol=1e-12)
     assert before == pytest.approx(float(lid[2] @ (150, 70, 60, 1)), abs=1e-12)
     assert read(made, row)["tip"] == pytest.approx(float(poses["lid"][2] @ (150, 70, 60, 1)), abs=1e-12)
-    for each in made.moves[-1].pairs:  # type: ignore[union-attr]
+    for each in of_kind(Locate, made.moves[-1]).pairs:
         moving, target = made.features[each.moving], made.features[each.target]
         own = row[moving.moved_by[0].columns] if moving.moved_by else np.zeros(3)
         reached = (poses[moving.part] @ [*(moving.frame[:3, 3] + moving.frame[:3, :3] @ own), 1.0])[:3]
