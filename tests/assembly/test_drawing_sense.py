@@ -151,3 +151,30 @@ def test_a_difference_of_angles_is_an_angle(tmp_path: Path) -> None:
     both = next(own for own in system.measures if own.name == "both")
     assert both.unit == "arcmin"
     assert both.upper_limit == pytest.approx(math.radians(1))
+
+
+@pytest.mark.parametrize(
+    ("measure", "words"),
+    [
+        (
+            "points: [block.a, block.b, block.c, block.d], normal: [0, 1, 0]",
+            "flat.normal: expected the normal of a plane",
+        ),
+        (
+            "points: [block.a, block.b, block.e, block.f], normal: [0, 0, 1]",
+            "flat.points: expected points that do not all",
+        ),
+    ],
+)
+def test_flatness_of_points_that_lie_on_no_such_plane(tmp_path: Path, measure: str, words: str) -> None:
+    places = {"a": (0, 0), "b": (10, 0), "c": (10, 10), "d": (0, 10), "e": (20, 0), "f": (30, 0)}
+    points = "".join(f"      {name}: {{kind: point, at: [{x} mm, {y} mm, 0 mm]}}\n" for name, (x, y) in places.items())
+    text = BLOCK.format(tolerances=FLOOR, measures=f"  flat: {{kind: inspected_flatness, {measure}}}\n")
+    with pytest.raises(SceneError, match=words):
+        assembled(text.replace("tolerances:\n", f"{points}tolerances:\n", 1), tmp_path)
+
+
+def test_a_law_that_leaves_nothing_of_a_diameter(tmp_path: Path) -> None:
+    size = "  size: {kind: size, of: block.bore, distribution: {kind: uniform, lower: -10 mm, upper: 0 mm}}\n"
+    with pytest.raises(SceneError, match=r"size\.distribution: expected sizes above 0, got down to -10 mm"):
+        assembled(BLOCK.format(tolerances=size, measures=SEEN), tmp_path)

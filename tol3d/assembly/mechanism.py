@@ -5,7 +5,7 @@ from typing import Final
 from tol3d.assembly.grammar import measures, moves, parts, tolerances
 from tol3d.assembly.grammar.checks import unknown_features, unplaced_bodies
 from tol3d.assembly.grammar.drawing_checks import contradicting_tolerances
-from tol3d.assembly.grammar.measure_checks import mixed_dimensions
+from tol3d.assembly.grammar.measure_checks import mixed_dimensions, unfit_points
 from tol3d.assembly.grammar.orientation_checks import unfit_orientations
 from tol3d.scene.grammar import specs_in
 from tol3d.system.mechanism import Mechanism
@@ -22,6 +22,7 @@ ASSEMBLY: Final = Mechanism(
         contradicting_tolerances,
         unfit_orientations,
         mixed_dimensions,
+        unfit_points,
     ),
     engines=("exact",),
     system="tol3d.assembly.system:assembly_system",

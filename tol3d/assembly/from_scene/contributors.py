@@ -20,7 +20,7 @@ from tol3d.assembly.grammar.tolerances import (
 )
 from tol3d.assembly.grammar.tolerances.form import FormSpec
 from tol3d.assembly.grammar.zone import NormalLawSpec, ProcessLawSpec
-from tol3d.assembly.model import Contribution
+from tol3d.assembly.model import Axis, Contribution
 from tol3d.distributions import Distribution, TruncatedNormal, Uniform
 from tol3d.scene import Scene
 from tol3d.system.draw import Draw, Each, Scalar
@@ -86,10 +86,19 @@ class Effects:
         draw = Scalar(spec.distribution.resolve(self.scene.files))
         columns = self._added(own.name, spec.kind, spec.description, draw)
         if isinstance(spec, SizeSpec):
+            self._refuse_no_size(own, draw)
             self.size_by.setdefault(own.feature, []).append(Contribution(own.name, columns, np.eye(1)))
         else:
             matrix = self._along(own.feature, spec)[:, None]
             self.moved_by.setdefault(own.feature, []).append(Contribution(own.name, columns, matrix))
+
+    def _refuse_no_size(self, own: Stated, draw: Scalar) -> None:
+        """A law that leaves nothing of a diameter."""
+        shape = self.drawing.kind(own.feature).shape
+        nominal = shape.diameter if isinstance(shape, Axis) else None
+        if nominal is not None and nominal + draw.distribution.low <= 0.0:
+            words = f"expected sizes above 0, got down to {draw.distribution.low:g} mm on a nominal {nominal:g} mm"
+            raise self.scene.refuse(("tolerances", own.entry, "distribution"), words)
 
     def _along(self, feature: str, spec: PlusMinusSpec) -> Array:
         """What one mm along a dimension does to the components of a feature."""

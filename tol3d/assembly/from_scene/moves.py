@@ -68,6 +68,10 @@ def _pair(scene: Scene, move: str, number: str, spec: LocatingSpec, effects: Eff
     on_part = spec.points_on == "part"
     side, point = (own.to, own.from_) if on_part else (own.from_, own.to)
     touched_point = touched.on(side, point)
+    named = effects.drawing.kind(side)
+    if own.along is None and (named.kind in ("axis", "cylinder") or (named.kind == "point" and named.normal is None)):
+        words = f"expected the direction `along` in which {side!r} is touched, for it has no normal; got none"
+        raise scene.refuse(("moves", move, *path), words)
     out = _normal(own, touched.features[side].frame[:3, 2])
     if touched_point != side and np.linalg.norm(out - touched.features[side].frame[:3, 2]) > FLAT:
         words = f"expected none, or the normal of the plane {side!r}"

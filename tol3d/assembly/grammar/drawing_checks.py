@@ -4,7 +4,6 @@ from collections.abc import Iterator
 
 from tol3d.assembly.grammar.drawing import Drawing, Stated
 from tol3d.assembly.grammar.feature_name import part_of
-from tol3d.assembly.grammar.features.nominal_frame import is_across
 from tol3d.assembly.grammar.tolerances import (
     CircularRunOutSpec,
     CoaxialitySpec,
@@ -17,7 +16,6 @@ from tol3d.assembly.grammar.tolerances import (
     TotalRunOutSpec,
 )
 from tol3d.assembly.grammar.tolerances.form import FormSpec
-from tol3d.assembly.grammar.zone import ZoneSpec
 from tol3d.scene import Scene
 from tol3d.scene.place import KeyPath
 
@@ -113,13 +111,6 @@ def _room_problems(here: KeyPath, spec: LocationSpec, drawing: Drawing, feature:
                 (*here, "zone"),
                 f"expected more than the {own * 1e3:g} um of {other.entry!r}, which refines it, {got}",
             )
-
-
-def _alike(zone: ZoneSpec, other: ZoneSpec) -> bool:
-    """Whether both zones are round, or both flat along one direction."""
-    if (zone.diameter is None) != (other.diameter is None) or (zone.along is None) != (other.along is None):
-        return False
-    return zone.along is None or other.along is None or not is_across(zone.along, other.along)
 
 
 def _direction_problems(here: KeyPath, spec: PlusMinusSpec, drawing: Drawing, feature: str) -> Iterator[Problem]:

@@ -1,13 +1,20 @@
-"""What must hold of limits and differences: lengths with lengths, angles with angles."""
+"""What must hold of measures: lengths with lengths, angles with angles, points on a plane."""
 
 from collections.abc import Iterator
 
-from tol3d.assembly.grammar.measures import AssemblyMeasureSpec, DifferenceSpec
+import numpy as np
+
+from tol3d.assembly.grammar.drawing import Drawing
+from tol3d.assembly.grammar.feature_name import part_of
+from tol3d.assembly.grammar.features.nominal_frame import unit
+from tol3d.assembly.grammar.measures import AssemblyMeasureSpec, DifferenceSpec, InspectedFlatnessSpec
 from tol3d.scene import Scene
 from tol3d.scene.place import KeyPath
 from tol3d.units import Dimension, expectation
 
 Problem = tuple[KeyPath, str]
+
+FLAT = 1e-6  # of the points' extent, or mm
 
 
 def dimension_of(scene: Scene, name: str) -> Dimension:
@@ -31,6 +38,23 @@ def mixed_dimensions(scene: Scene) -> Iterator[Problem]:
             limit = getattr(spec, field)
             if limit is not None and limit.dimension != own:
                 yield ("measures", name, field), f"expected {expectation(own)}, got {str(limit)!r}"
+
+
+def unfit_points(scene: Scene) -> Iterator[Problem]:
+    """Points whose flatness is inspected, and that are nominally not on a plane with that normal, or on a line."""
+    drawing = Drawing(scene)
+    for name, spec in scene.measures.items():
+        if not isinstance(spec, InspectedFlatnessSpec):
+            continue
+        features = drawing.features[part_of(spec.points[0])]
+        known = [features[own] for own in (point.partition(".")[2] for point in spec.points) if own in features]
+        places = np.array([feature.origin for feature in known])
+        off = (places - places.mean(axis=0)) @ unit(spec.normal)
+        if len(known) == len(spec.points) and np.abs(off).max() > FLAT * max(float(np.ptp(places)), 1.0):
+            words = "expected the normal of a plane on which all points lie nominally"
+            yield ("measures", name, "normal"), f"{words}; one lies {np.abs(off).max():.4g} mm off their middle"
+        elif np.linalg.svd(places - places.mean(axis=0), compute_uv=False)[1] < FLAT:
+            yield ("measures", name, "points"), "expected points that do not all lie on one line; add one beside it"
 
 
 def _an(dimension: Dimension) -> str:
