@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 
 import numpy as np
-from assembly.placing.assemblies import Columns, assembly, feature, frame, part, posed
+from assembly.placing.built_by_numbers import Columns, assembly, feature, frame, part, posed
 from numpy.typing import NDArray
 
 from tol3d.assembly.model import Assembly, Axis, Feature, Fix, Mate, Plane, Point, Relation, Shape

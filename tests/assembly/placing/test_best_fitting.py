@@ -4,7 +4,7 @@ from typing import Literal
 
 import numpy as np
 import pytest
-from assembly.placing.assemblies import Columns, assembly, feature, frame, part, posed, seeds
+from assembly.placing.built_by_numbers import Columns, assembly, feature, frame, part, posed, seeds
 from numpy.typing import NDArray
 from scipy.optimize import minimize
 from scipy.spatial.transform import Rotation

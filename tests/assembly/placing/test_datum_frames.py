@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 import numpy as np
 import pytest
-from assembly.placing.assemblies import Columns, assembly, feature, frame, part
+from assembly.placing.built_by_numbers import Columns, assembly, feature, frame, part
 from assembly.placing.rigid_search import solved_pose
 from numpy.typing import NDArray
 

@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from assembly.placing.assemblies import (
+from assembly.placing.built_by_numbers import (
     Columns,
     assembly,
     feature,

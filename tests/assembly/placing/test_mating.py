@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 import numpy as np
 import pytest
-from assembly.placing.assemblies import Columns, assembly, feature, frame, moved_as_a_whole, part, posed, seeds
+from assembly.placing.built_by_numbers import Columns, assembly, feature, frame, moved_as_a_whole, part, posed, seeds
 from assembly.placing.mated_parts import (
     END,
     FACE,

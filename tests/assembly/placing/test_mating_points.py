@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from assembly.placing.assemblies import frame, seeds
+from assembly.placing.built_by_numbers import frame, seeds
 from assembly.placing.mated_parts import FACE, FLOOR, PIN, UNDER, WALL, Side, features_seen, mated
 from numpy.typing import NDArray
 

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 
 import numpy as np
 import pytest
-from assembly.placing.assemblies import Columns, assembly, feature, frame, moved_as_a_whole, pair, part, posed
+from assembly.placing.built_by_numbers import Columns, assembly, feature, frame, moved_as_a_whole, pair, part, posed
 from numpy.typing import NDArray
 from of_kind import of_kind
 from scipy.optimize import minimize

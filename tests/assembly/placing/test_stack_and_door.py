@@ -4,7 +4,7 @@ from collections.abc import Mapping
 
 import numpy as np
 import pytest
-from assembly.placing.assemblies import Columns, assembly, feature, frame, pair, part, posed
+from assembly.placing.built_by_numbers import Columns, assembly, feature, frame, pair, part, posed
 from numpy.typing import NDArray
 
 from tol3d.assembly.model import Assembly, Fix, Locate, Mate, Measured, Move, Plane, Point, Relation
