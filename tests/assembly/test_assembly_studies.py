@@ -81,3 +81,26 @@ def test_bits_of_a_trial_do_not_depend_on_its_neighbours() -> None:
     for trial in (0, 17, 299):
         alone = road.answers(drawn(simulation, trial, 1), simulation.system.measures).values
         assert all(np.array_equal(own[0], whole[name][trial]) for name, own in alone.items())
+
+
+def test_shares_do_not_depend_on_the_order_of_measures(tmp_path: Path) -> None:
+    """What takes a size is regressed on squares, what is linear on the deviations: each by its own rows."""
+    position = "  position: {kind: inspected_position, of: plate.hole}\n"
+    across = "  across: {kind: gap, from: plate.b1, to: plate.hole, along: [1, 0, 0]}\n"
+    text = plate({name: constant(0.0) for name in SIGMAS})
+    head = text[: text.index("tolerances:")]
+    zone = "  zone: {kind: position, of: plate.hole, zone: {diameter: 0.2 mm}, law: {kind: uniform}}\n"
+    shares = {}
+    for order, measures in (("first", position + across), ("last", across + position)):
+        made = f"{head}tolerances:\n{zone}moves:\n  machine: {{kind: fix, part: plate}}\nmeasures:\n{measures}"
+        found = ran(tmp_path, order, made).summary["measures"]
+        shares[order] = {name: own["contributors"][0]["geometric_percent"] for name, own in found.items()}
+    assert shares["first"] == pytest.approx(shares["last"], abs=1e-9)
+    assert shares["first"]["across"] == pytest.approx(100, abs=1e-6)
+    assert shares["first"]["position"] > 50
+
+
+def test_a_measure_that_nothing_moves_is_not_warned_of(tmp_path: Path) -> None:
+    text = plate({name: constant(0.01) for name in SIGMAS})
+    text += "  still: {kind: point_plane, from: plate.floor, to: plate.b1}\n"
+    assert ran(tmp_path, "run", text).summary["warnings"] == []

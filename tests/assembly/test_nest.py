@@ -23,15 +23,21 @@ ONE_SHOT = np.array([2.0, -1.5, 3.0, 1.2, -2.0, 0.8])
 SIGMAS = (0.05, 0.05, 0.05, 0.03, 0.03, 0.02)
 
 
-def nest(laws: Sequence[str], points_on: str) -> str:
-    """A block on six locators whose heights have laws."""
+def nest(laws: Sequence[str], points_on: str, *, welded: bool = False) -> str:
+    """A block on six locators whose heights have laws; or welded to a part whose frame is another, and moved by it."""
+    own = [1, 2, 0] if welded else [0, 1, 2]  # the block's x, y, z in the world's
+    turned = "    placed: {z: [1, 0, 0], x: [0, 1, 0]}\n" if welded else ""
+    joined = "  put: {kind: fix, part: block}\n  joined: {kind: weld, part: carrier, to: [block]}\n" if welded else ""
+    locators, normals, places = LOCATORS[:, own], NORMALS[:, own], SEEN[:, own]
     block = "".join(
-        f"      l{k}: {point(at, -n)}\n" for k, (at, n) in enumerate(zip(LOCATORS, NORMALS, strict=True), 1)
+        f"      l{k}: {point(at, -n)}\n" for k, (at, n) in enumerate(zip(locators, normals, strict=True), 1)
     )
+    block += "".join(f"      s{k}: {point(at)}\n" for k, at in enumerate(places, 1))
     base = "".join(f"      l{k}: {point(at, n)}\n" for k, (at, n) in enumerate(zip(LOCATORS, NORMALS, strict=True), 1))
     seen = "".join(f"      s{k}: {point(at)}\n" for k, at in enumerate(SEEN, 1))
     out = -1 if points_on == "fixture" else 1
-    pairs = [f"{{from: block.l{k}, to: base.l{k}, along: {(out * n).tolist()}}}" for k, n in enumerate(NORMALS, 1)]
+    along = normals if points_on == "fixture" else NORMALS  # of the part that the plane stays with
+    pairs = [f"{{from: block.l{k}, to: base.l{k}, along: {(out * n).tolist()}}}" for k, n in enumerate(along, 1)]
     heights = "".join(
         f"  height {k}: {{kind: locator, of: nest, pair: {name}, distribution: {law}}}\n"
         for k, (name, law) in enumerate(zip(NAMES, laws, strict=True), 1)
@@ -50,15 +56,17 @@ parts:
 {base}{seen}
   block:
     kind: solid
-    features:
-{block}{seen}
+{turned}    features:
+{block}
+  carrier: {{kind: solid, features: {{middle: {point((0, 0, 0))}}}}}
 tolerances:
 {heights}
 moves:
   machine: {{kind: fix, part: base}}
-  nest:
+  carried: {{kind: fix, part: carrier}}
+{joined}  nest:
     kind: three_two_one
-    part: block
+    part: {"carrier" if welded else "block"}
     points_on: {points_on}
     primary: [{", ".join(pairs[:3])}]
     secondary: [{", ".join(pairs[3:5])}]
@@ -100,6 +108,14 @@ def matrix() -> Array:
 def test_a_block_lies_where_scipy_lays_it(tmp_path: Path, points_on: str) -> None:
     made = assembled(nest([constant(own) for own in ONE_SHOT.tolist()], points_on), tmp_path)
     assert seen(made, "exact") == pytest.approx(displaced(ONE_SHOT, points_on), abs=1e-9)
+
+
+@pytest.mark.parametrize("road", ["exact", "analytic"])
+@pytest.mark.parametrize("points_on", ["fixture", "part"])
+def test_a_welded_part_may_have_any_frame(tmp_path: Path, points_on: str, road: str) -> None:
+    laws = [constant(own) for own in (ONE_SHOT / 50).tolist()]
+    alone, joined = (assembled(nest(laws, points_on, welded=welded), tmp_path) for welded in (False, True))
+    assert seen(joined, road) == pytest.approx(seen(alone, road), abs=1e-9)
 
 
 def test_the_printed_one_shots(tmp_path: Path) -> None:

@@ -126,3 +126,12 @@ def test_closed_forms(tmp_path: Path) -> None:
     assert sigmas["about x"] == pytest.approx(half / (B / 2) / math.sqrt(10), rel=1e-9)
     assert sigmas["tilt"] is None  # it is a length of two
     assert sigmas["true position"] is None
+
+
+def test_the_mean_of_a_process_offsets_a_face_and_does_not_tilt_it(tmp_path: Path) -> None:
+    law = "{kind: process, distribution: {kind: normal, mean: 0.02 mm, sigma: 0.005 mm}}"
+    found = zoned(tmp_path, law).drawn(20_000)
+    error = 4 * 0.005 / math.sqrt(20_000)
+    assert found["height"].mean() == pytest.approx(20.02, abs=error)
+    assert B / 2 * found["about x"].mean() == pytest.approx(0.0, abs=error)
+    assert B / 2 * found["about x"].std() == pytest.approx(0.005, rel=4 / math.sqrt(40_000))

@@ -1,7 +1,7 @@
 """All that a study asks of an assembly: two roads, what acts on a measure, closed forms."""
 
 import math
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Hashable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, ClassVar, Final, TypeVar
 
@@ -121,11 +121,20 @@ class AssemblySystem(PlainSystem):
         slices = component_slices(self)
         return [own for own in self.contributors if acts[slices[own.name]].any()]
 
+    def regressor_key(self, measure: Measure) -> Hashable:
+        """As of any system; also which components are squared."""
+        return super().regressor_key(measure), self._squared(self._slopes_of(measure))
+
+    @staticmethod
+    def _squared(slopes: Slopes) -> tuple[int, ...]:
+        """Columns that raise a measure to both sides of their mean."""
+        return tuple(place for place in slopes.bent if abs(slopes.coefficients[place]) < FLAT)
+
     def regress(
         self, measure: Measure, contributors: Sequence[Contributor], columns: Columns, rows: Mapping[str, Array]
     ) -> None:
         """Each component of a zone over its own sigma, squared where the measure takes its size; others as ever."""
-        others, slopes, slices = [], self._slopes_of(measure), component_slices(self)
+        others, squared, slices = [], self._squared(self._slopes_of(measure)), component_slices(self)
         for own in contributors:
             draw = own.draw
             if not isinstance(draw, ZoneDraw) or len(draw.components) == 1 or is_group(own):
@@ -136,7 +145,7 @@ class AssemblySystem(PlainSystem):
                 rows[own.name], own.columns, draw.mean_vector, draw.sigmas, places, strict=True
             ):
                 np.multiply(np.asarray(columns[name], dtype=np.float64), own.per_unit / (sigma or 1.0), out=row)
-                if place in slopes.bent and abs(slopes.coefficients[place]) < FLAT:
+                if place in squared:
                     np.subtract(row, mean / (sigma or 1.0), out=row)
                     np.square(row, out=row)
         super().regress(measure, others, columns, rows)

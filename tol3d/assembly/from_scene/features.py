@@ -70,6 +70,10 @@ class TouchedPoints:
             self.features[name] = Feature(name, plane.part, Point(), frame, plane.parent, moved_by, is_named=False)
         return name
 
+    def turned(self, direction: Array, owner: str, part: str) -> Array:
+        """A direction (3,) of one part as another one sees it, where both lie nominally."""
+        return np.asarray(direction @ self.poses[owner][:3, :3].T @ self.poses[part][:3, :3])
+
     def lifted(self, point: str, pair: str, along: Array, part: str, by: Sequence[Contribution]) -> str:
         """The name of a point that locators shift along a direction.
 

@@ -79,8 +79,9 @@ def _pair(scene: Scene, move: str, number: str, spec: LocatingSpec, effects: Eff
     locators, heights = tuple(effects.locators.get((move, number), ())), tuple(effects.heights.get((move, number), ()))
     if on_part:
         return Pair(own.from_, touched_point, out, locators + heights)
-    lifted = touched.lifted(own.to, f"{move} {number}", -out, spec.part, locators) if locators else own.to
-    return Pair(touched_point, lifted, -out, heights)
+    inward = touched.turned(-out, touched.features[side].part, spec.part)
+    lifted = touched.lifted(own.to, f"{move} {number}", inward, spec.part, locators) if locators else own.to
+    return Pair(touched_point, lifted, inward, heights)
 
 
 def _normal(own: ContactSpec, feature_normal: Array) -> Array:

@@ -11,10 +11,14 @@ from tol3d.assembly.grammar.features.nominal_frame import Triple, unit
 from tol3d.assembly.grammar.tolerances import CircularRunOutSpec, LocationSpec, OrientationSpec
 from tol3d.assembly.grammar.zone import LawUnion, NormalLawSpec, ProcessLawSpec, ZoneSpec
 from tol3d.assembly.zones import Process, Zone, ZoneDraw, catalogue, normal_in, uniform_in
+from tol3d.assembly.zones.centred import Centred
 from tol3d.errors import InputError
 from tol3d.scene import Scene
 
 Array = NDArray[np.float64]
+
+TILTS = ("rise x", "rise y")
+"""Components of planes that a process spreads about 0, whatever its mean: an offset does not tilt a face."""
 
 LEAST_SINE = 1e-9
 """Of an angle from the axis; a direction nearer to it has no direction across."""
@@ -44,7 +48,8 @@ def drawn_in(scene: Scene, own: Stated, drawing: Drawing) -> tuple[ZoneDraw, Arr
 def _by_law(scene: Scene, law: LawUnion, zone: Zone) -> ZoneDraw:
     if isinstance(law, ProcessLawSpec):
         own = law.distribution.resolve(scene.files)
-        return Process(zone, (own,) * len(zone.components))
+        about_zero = Centred(own)
+        return Process(zone, tuple(about_zero if name in TILTS else own for name in zone.components))
     return normal_in(zone) if isinstance(law, NormalLawSpec) else uniform_in(zone)
 
 

@@ -40,6 +40,7 @@ FURTHER_LOOKS = 256  # trials looked at again beyond the regressors: what is lef
 FURTHER_SLOW_LOOKS = 64  # by an engine with chord errors, which takes a millisecond for each of the three builds
 CHORDS_OF_A_LOOK = 4  # chord errors in a second look: 4 D(1/2) - D(1) - 3 D(0), none of them below 0
 SECOND_ORDER = "second order, for the means lie off the nominal build"
+ROUNDING = 1e-9  # of the measure's unit; roads that never differ by more agree
 NAMED_BENDS = 3  # contributors named for the second order
 NAMED_SHARE = 0.1  # of the largest second difference; smaller ones are not named
 
@@ -131,7 +132,9 @@ class _Case:
         known = not np.isnan(curved[first]).all()
         left_rms = min(left.residual, self.fits.difference.residual) if left else None
         return Explanation(
-            faults=(
+            faults=()
+            if self.fits.disagreement.largest <= ROUNDING
+            else (
                 *self._unexplained(parts),
                 *self._beyond(left_rms, allowed + CHORDS_OF_A_LOOK * self.chords),
                 *self._beyond_in_the_worst(bounds, mean),
