@@ -15,8 +15,9 @@ TESTS = (
     *("project/test_readme", "project/test_python", "scene/test_scene", "scene/test_scene_docs", "cli/test_cli"),
     *("distributions/test_distributions", "samplers/test_samplers", "solids/test_solids", "gearing/test_exact"),
     *("report/test_printed_tables", "report/test_report", "report/test_train_export", "runs/test_kept_runs"),
+    *("assembly/test_door", "assembly/test_zone_laws", "assembly/test_hole_pattern"),
 )
-"""What meets every dependency: scenes, laws, samplers, compiled kernels, solids, FCL, tables, pictures, views."""
+"""What meets every dependency: scenes, laws, assemblies, samplers, kernels, solids, FCL, tables, pictures, views."""
 
 
 def oldest_versions(project: Path) -> Iterator[str]:
