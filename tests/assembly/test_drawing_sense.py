@@ -178,3 +178,24 @@ def test_a_law_that_leaves_nothing_of_a_diameter(tmp_path: Path) -> None:
     size = "  size: {kind: size, of: block.bore, distribution: {kind: uniform, lower: -10 mm, upper: 0 mm}}\n"
     with pytest.raises(SceneError, match=r"size\.distribution: expected sizes above 0, got down to -10 mm"):
         assembled(BLOCK.format(tolerances=size, measures=SEEN), tmp_path)
+
+
+def test_two_flat_positions_across_each_other_limit_a_hole_in_both_directions(tmp_path: Path) -> None:
+    """The common pair of a drawing: 0.1 along x, 0.3 along y; the middle of two ends, uniform each for itself."""
+    text = "".join(
+        f"  position {axis}: {{kind: position, of: block.bore, zone: {{width: {width} mm, along: {along}}}, "
+        "law: {kind: uniform}, datums: [floor]}\n"
+        for axis, width, along in (("x", 0.1, [1, 0, 0]), ("y", 0.3, [0, 1, 0]))
+    )
+    measures = "".join(
+        f"  {axis}: {{kind: gap, from: block.floor, to: block.bore, along: {along}}}\n"
+        for axis, along in (("x", [1, 0, 0]), ("y", [0, 1, 0]))
+    )
+    count = 50_000
+    found = assembled(BLOCK.format(tolerances=text, measures=measures), tmp_path).drawn(count)
+    for axis, width in (("x", 0.1), ("y", 0.3)):
+        sigma = width / 2 / math.sqrt(3) / math.sqrt(2)
+        assert found[axis].std() == pytest.approx(sigma, rel=4 / math.sqrt(2 * count))
+    slanted = text.replace("[0, 1, 0]", "[1, 1, 0]")
+    with pytest.raises(SceneError, match="would count twice"):
+        assembled(BLOCK.format(tolerances=slanted, measures=measures), tmp_path)

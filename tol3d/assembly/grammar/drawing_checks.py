@@ -4,6 +4,7 @@ from collections.abc import Iterator
 
 from tol3d.assembly.grammar.drawing import Drawing, Stated
 from tol3d.assembly.grammar.feature_name import part_of
+from tol3d.assembly.grammar.features.nominal_frame import unit
 from tol3d.assembly.grammar.tolerances import (
     CircularRunOutSpec,
     CoaxialitySpec,
@@ -21,7 +22,7 @@ from tol3d.scene.place import KeyPath
 
 Problem = tuple[KeyPath, str]
 
-ROUNDING = 1e-9  # mm; of a sum of widths
+ROUNDING = 1e-9  # mm, of a sum of widths; cosine of a right angle
 
 
 def contradicting_tolerances(scene: Scene) -> Iterator[Problem]:
@@ -36,7 +37,7 @@ def contradicting_tolerances(scene: Scene) -> Iterator[Problem]:
 
 
 def _twice(drawing: Drawing, feature: str) -> Iterator[Problem]:
-    located, dimensions = drawing.of(feature, LocationSpec), drawing.of(feature, PlusMinusSpec)
+    located, dimensions = _counted_once(drawing, feature), drawing.of(feature, PlusMinusSpec)
     for several, what in (
         ((*located, *dimensions) if located else (), "where it lies"),
         (drawing.of(feature, OrientationSpec), "how it is turned"),
@@ -47,6 +48,18 @@ def _twice(drawing: Drawing, feature: str) -> Iterator[Problem]:
             first, second = several[0].entry, several[1].entry
             words = f"expected one tolerance of {feature!r} for {what}, got {first!r} too, which would count twice"
             yield ("tolerances", second), words
+
+
+def _counted_once(drawing: Drawing, feature: str) -> tuple[Stated, ...]:
+    """Its location tolerances; of two flat ones across each other, in one frame, only the first."""
+    found = drawing.of(feature, LocationSpec)
+    specs = [own.spec for own in found if isinstance(own.spec, LocationSpec)]
+    along = [spec.zone.along for spec in specs]
+    if len(found) == 2 and along[0] is not None and along[1] is not None:
+        across = abs(float(unit(along[0]) @ unit(along[1]))) < ROUNDING
+        if across and specs[0].named_datums == specs[1].named_datums:
+            return found[:1]
+    return found
 
 
 def _apart(drawing: Drawing, feature: str) -> Iterator[Problem]:
