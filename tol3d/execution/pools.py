@@ -4,6 +4,7 @@ All take calls and give what is pending; `in_order` keeps a bounded number of th
 knows joblib and Dask.
 """
 
+import gc
 import importlib
 import os
 from collections import deque
@@ -214,14 +215,7 @@ def _cluster(address: str) -> Iterator[Pool]:
         distributed = importlib.import_module("distributed")  # optional, and nobody else should wait for it to load
     except ImportError:
         raise InputError("--scheduler needs Dask: pip install 'tol3d[dask]'") from None
-    try:
-        client = distributed.Client(address, timeout=ANSWER_S, set_as_default=False)
-    except (OSError, ValueError, TypeError) as error:
-        raise InputError(
-            f"--scheduler {address}: no Dask scheduler answered within {ANSWER_S:.0f} s "
-            f"({' '.join(str(error).split()) or type(error).__name__}); expected an address such as "
-            "tcp://127.0.0.1:8786, which `dask scheduler` prints"
-        ) from None
+    client = _client(distributed, address)
     try:
         yield OnCluster(client, _threads_of(client, address))
     except distributed.scheduler.KilledWorker as error:
@@ -233,6 +227,20 @@ def _cluster(address: str) -> Iterator[Pool]:
         ) from None
     finally:
         client.close(timeout=ANSWER_S)
+
+
+def _client(distributed: Any, address: str) -> Any:
+    """A client of a scheduler."""
+    try:
+        return distributed.Client(address, timeout=ANSWER_S, set_as_default=False)
+    except (OSError, ValueError, TypeError) as error:
+        why = " ".join(str(error).split()) or type(error).__name__
+    # What is half made closes itself when it is collected: here, and not while the next one starts and holds a lock.
+    gc.collect()
+    raise InputError(
+        f"--scheduler {address}: no Dask scheduler answered within {ANSWER_S:.0f} s ({why}); expected an address "
+        "such as tcp://127.0.0.1:8786, which `dask scheduler` prints"
+    )
 
 
 def _threads_of(client: Any, address: str) -> int:
