@@ -426,6 +426,7 @@ LOADED = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("what", LOADED)
 def test_a_command_loads_what_it_needs_and_nothing_heavy_besides(what: str, tmp_path: Path) -> None:
     """What a command has loaded at its end, in a process of its own; strips and kernels are in the cache."""

@@ -223,6 +223,7 @@ print(quick_uniforms(5, "a", "", 0, 40).tobytes().hex())
 """
 
 
+@pytest.mark.slow
 def test_processes_that_compile_at_once_end_with_one_whole_kernel(folder: Path, tmp_path: Path) -> None:
     marks = [str(tmp_path / name) for name in "abc"]
     commands = [[sys.executable, "-c", TOGETHER, mark, *marks] for mark in marks]

@@ -104,6 +104,7 @@ def test_kernels_have_names_of_their_own() -> None:
     assert len({name_of(kernel) for kernel in KERNELS.values()}) == len(KERNELS)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("setting", ["NUMBA_CPU_NAME", "NUMBA_CPU_FEATURES", "NUMBA_OPT"])
 def test_another_target_is_another_kernel(setting: str) -> None:
     code = "from tol3d.samplers.quick_uniforms import _draw; print(_draw.name)"

@@ -33,6 +33,9 @@ FEW: Mapping[str, tuple[str, ...]] = {
 }
 """Arguments with which each benchmark takes seconds."""
 
+LONG = ("fcl_speed", "memory", "startup", "structure", "studies", "trains")
+"""Those that take more than a few of them."""
+
 ROWS: Mapping[str, tuple[str, ...]] = {
     "assemblies": (rf"3-2-1 stack of three blocks, 20 contributors +│ +{NUMBER} │ +{NUMBER} │ +{NUMBER}",),
     "convergence": tuple(
@@ -84,7 +87,9 @@ def benchmarks() -> list[str]:
     return sorted(path.stem for path in FOLDER.glob("*.py") if "\ndef main(" in path.read_text("utf-8"))
 
 
-@pytest.mark.parametrize("name", benchmarks())
+@pytest.mark.parametrize(
+    "name", [pytest.param(own, marks=pytest.mark.slow if own in LONG else ()) for own in benchmarks()]
+)
 def test_a_benchmark_runs_and_prints_every_row(
     name: str, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:

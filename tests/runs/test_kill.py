@@ -161,6 +161,7 @@ def test_killed_at_two_files_a_run_ends_with_the_same_bits(kind: str, tmp_path: 
     assert_same_run(open_run(tmp_path / "whole"), resumed)
 
 
+@pytest.mark.slow
 def test_ctrl_c_tells_the_command_that_goes_on(tmp_path: Path) -> None:
     out = tmp_path / "run"
     stopped = ended(*command(out, *KINDS["analytic"], told=signal.SIGINT, at=12))
@@ -325,6 +326,7 @@ def tiny_disk(tmp_path: Path) -> Iterator[Path]:
     subprocess.run(["umount", str(place)], check=True)
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(shutil.which("mount") is None, reason="no mount")
 def test_a_full_disk_is_told_and_loses_nothing(tiny_disk: Path, tmp_path: Path) -> None:
     study = ("--engine", "analytic", "--trials", str(10 * BLOCK), "--workers", "2")

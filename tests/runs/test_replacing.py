@@ -219,6 +219,7 @@ class Killed(BaseException):
     """What no handler takes for an error."""
 
 
+@pytest.mark.slow
 def test_killed_at_any_step_of_a_replacement_the_old_or_the_new_run_is_there(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -196,6 +196,7 @@ def edits(folder: Path, share: float) -> Iterator[tuple[KeyPath, Any]]:
                 yield path, value
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("scene", ["whole", "train"])
 def test_an_edit_of_a_summary_is_refused(scene: str, request: pytest.FixtureRequest, tmp_path: Path) -> None:
     folder = Path(shutil.copytree(request.getfixturevalue(scene), tmp_path / "run"))

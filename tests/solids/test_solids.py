@@ -386,6 +386,7 @@ print(hashlib.sha256(b"".join(strips.inner[f].tobytes() for f in (1, -1))).hexdi
 """
 
 
+@pytest.mark.slow
 def test_two_processes_that_build_at_once_end_with_one_whole_entry(own_cache: Path, tmp_path: Path) -> None:
     ready = [str(tmp_path / "first"), str(tmp_path / "second")]
     runs = [

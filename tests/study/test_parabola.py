@@ -366,6 +366,7 @@ def test_bits_are_those_of_any_blocks_workers_and_resume(tmp_path: Path, monkeyp
         assert np.array_equal(column, other.columns(name)[name], equal_nan=column.dtype.kind == "f"), name
 
 
+@pytest.mark.slow
 def test_a_process_that_is_killed_is_gone_on_with_by_another(tmp_path: Path) -> None:
     """The command knows the mechanism by the package that offers it."""
     offering = offered(tmp_path / "site", springs="toys.parabola:PARABOLA")
