@@ -105,6 +105,13 @@ def test_form_is_an_error_of_its_own_at_each_pad(tmp_path: Path) -> None:
     assert made.drawn(count)["height"].std() == pytest.approx(sigma, rel=4 / math.sqrt(2 * count))
 
 
+def test_form_of_a_copy_that_touches_nothing_draws_nothing(tmp_path: Path) -> None:
+    text = "  flatness: {kind: flatness, of: base.rim, zone: {width: 60 um}, law: {kind: uniform}}\n"
+    spare = "  spare: {kind: solid, like: base, placed: {at: [300 mm, 0 mm, 0 mm]}}\ntolerances:"
+    scene = cover_on_rim(text, more="  beside: {kind: fix, part: spare}").replace("tolerances:", spare)
+    assert [own.name for own in assembled(scene, tmp_path).system.contributors] == ["flatness"]
+
+
 def test_form_takes_its_room_from_the_location(tmp_path: Path) -> None:
     text = (
         "  profile: {kind: profile, of: base.rim, zone: {width: 0.1 mm}, law: {kind: uniform}, datums: [side 1]}\n"

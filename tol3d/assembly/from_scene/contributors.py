@@ -117,6 +117,8 @@ class Effects:
 
     def _form(self, own: Stated, spec: FormSpec) -> None:
         others = self.touching.get(own.feature, {})
+        if not others and own.name != own.entry:
+            return  # a part that is like the toleranced one, and touches nothing there
         if not others:
             words = f"expected a feature that touches a point in a move, got {own.feature!r}; leave the law out"
             raise self.scene.refuse(("tolerances", own.entry, "law"), words)

@@ -1,5 +1,6 @@
 """What every measure of an assembly has in common."""
 
+from abc import abstractmethod
 from collections.abc import Iterator, Sequence
 from typing import ClassVar
 
@@ -48,9 +49,9 @@ class FeatureMeasureSpec(AssemblyMeasureSpec):
         """Datums of the first feature's part to which it is read."""
         return ()
 
+    @abstractmethod
     def named(self) -> Sequence[tuple[KeyPath, FeatureName, tuple[str, ...]]]:
         """Its features with their fields, and the kinds that they may be; from, to."""
-        raise NotImplementedError
 
     def references(self) -> tuple[Reference, ...]:
         """Parts, and the move after which it is read."""
