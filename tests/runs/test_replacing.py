@@ -215,6 +215,43 @@ def test_a_note_written_while_a_run_is_replaced_is_not_lost(tmp_path: Path) -> N
     assert open_run(tmp_path / "run").trials == 20
 
 
+LEFT = "run.replaced-4711-0123abcd"
+
+
+@pytest.mark.parametrize("deleted", ["nothing", "the blocks", "all but the list", "all but the folder"])
+def test_what_a_kill_left_of_a_replaced_run_goes_with_the_next(deleted: str, tmp_path: Path) -> None:
+    a_run(tmp_path / "run")
+    left = tmp_path / LEFT
+    shutil.copytree(tmp_path / "run", left)
+    if deleted == "the blocks":
+        for block in (left / "trials").glob("*.parquet"):
+            block.unlink()
+    elif deleted != "nothing":
+        for path in left.iterdir():
+            if path.name != MANIFEST or deleted == "all but the folder":
+                shutil.rmtree(path) if path.is_dir() else path.unlink()
+    a_run(tmp_path / "run")
+    assert [path.name for path in tmp_path.iterdir()] == ["run"]
+
+
+@pytest.mark.parametrize("added", ADDED)
+def test_what_a_user_keeps_in_what_a_kill_left_is_moved_aside(added: str, tmp_path: Path) -> None:
+    a_run(tmp_path / "run")
+    shutil.copytree(tmp_path / "run", tmp_path / LEFT)
+    ADDED[added](tmp_path / LEFT)
+    before = files_in(tmp_path / LEFT)
+    with pytest.warns(MovedAsideWarning, match=r"run\.1"):
+        a_run(tmp_path / "run")
+    assert files_in(tmp_path / "run.1") == before
+
+
+def test_a_folder_that_is_called_like_what_a_kill_leaves_is_left_alone(tmp_path: Path) -> None:
+    a_run(tmp_path / "run")
+    before = files_in(project(tmp_path / LEFT))
+    a_run(tmp_path / "run")
+    assert files_in(tmp_path / LEFT) == before
+
+
 class Killed(BaseException):
     """What no handler takes for an error."""
 
@@ -255,6 +292,7 @@ def test_killed_at_any_step_of_a_replacement_the_old_or_the_new_run_is_there(
         assert whole or new or goes_on(out)
         a_run(out, OTHER_SEED, force=True)  # and the same command ends well
         assert seed_of(out) == 5
+        assert [path.name for path in out.parent.iterdir()] == ["run"]  # and nothing is left of the old one
     assert moments > 10
 
 

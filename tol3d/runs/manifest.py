@@ -8,6 +8,7 @@ import hashlib
 import os
 import re
 from collections.abc import Iterable, Iterator, Mapping
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path, PurePosixPath
 
@@ -102,22 +103,24 @@ class Manifest:
         return not path.is_symlink() and (name not in self.sums or _sum_of(self.folder, name) == self.sums[name])
 
     def remove(self) -> bool:
-        """Delete the run's own files, then the folders that are empty; True when nothing is left."""
+        """Delete the run's own files, then the folders that are empty; True when nothing is left.
+
+        The lists go last, that of the blocks after these and the manifest after all: killed in here, it can go on.
+        """
         own = self.paths - {MANIFEST}
-        for name in own:
+        for name in sorted(own, key=lambda name: name in self.sums):
             (self.folder / name).unlink(missing_ok=True)
-        folders = {str(folder) for name in own for folder in PurePosixPath(name).parents} - {"."}
         for name in _below(self.folder):
             if PurePosixPath(name).name in OF_FILE_MANAGERS:
-                (self.folder / name).unlink()
-        (self.folder / MANIFEST).unlink()  # last, for it shows what is ours
-        try:
-            for name in sorted(folders, reverse=True):
+                (self.folder / name).unlink(missing_ok=True)
+        folders = {str(folder) for name in own for folder in PurePosixPath(name).parents} - {"."}
+        for name in sorted(folders, reverse=True):
+            with suppress(OSError):
                 (self.folder / name).rmdir()
+        (self.folder / MANIFEST).unlink(missing_ok=True)
+        with suppress(OSError):
             self.folder.rmdir()
-        except OSError:
-            return False
-        return True
+        return not self.folder.exists()
 
 
 def _below(folder: Path) -> Iterator[str]:

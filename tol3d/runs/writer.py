@@ -1,7 +1,9 @@
 """Writes a run into `<name>.partial`, block by block, and puts it in its place at the end."""
 
+import glob
 import json
 import os
+import re
 import secrets
 import warnings
 from collections.abc import Iterator, Mapping
@@ -42,6 +44,8 @@ T = TypeVar("T")
 BEGINNING = {LOCK, f"{FINGERPRINT}.writing"}  # what there may be before the fingerprint
 DRAWN = "drawn"  # folder of pictures until they are whole
 NOBODYS = "{}"  # the fingerprint of no run
+REPLACED = "replaced"
+REPLACED_NAME = re.compile(rf"\.{REPLACED}-[0-9]+-[0-9a-f]{{8}}")  # of a run until it is deleted, after the run's own
 
 
 class RunWriter:
@@ -246,6 +250,18 @@ class RunWriter:
         tidy(self.path)
         if old is not None and not Manifest.read(old).remove():  # something came into it since
             self._move_aside(old, "more than the run")
+        for left in self.path.parent.glob(f"{glob.escape(self.path.name)}.{REPLACED}-*"):
+            if REPLACED_NAME.fullmatch(left.name.removeprefix(self.path.name)):
+                self._remove_left(left)
+
+    def _remove_left(self, folder: Path) -> None:
+        """Delete what a kill left of a run that was replaced; with anything else in it, it is moved aside."""
+        with suppress(OSError):
+            folder.rmdir()  # its list goes last: without one there is only the folder
+        with suppress(RunError):
+            manifest = Manifest.read(folder)
+            if manifest.foreign() or not manifest.remove():
+                self._move_aside(folder, "more than the run")
 
     def _moved_away(self) -> Path | None:
         """Free the run's place: the old run's new name if it may be deleted, None if it was moved aside."""
@@ -257,7 +273,7 @@ class RunWriter:
         if occupant is not None and (occupant.foreign or (occupant.others and not self._force)):
             self._move_aside(self.path, occupant.reason.removeprefix("holds "))
             return None
-        old = self.path.with_name(f"{self.path.name}.replaced-{os.getpid()}-{secrets.token_hex(4)}")
+        old = self.path.with_name(f"{self.path.name}.{REPLACED}-{os.getpid()}-{secrets.token_hex(4)}")
         self.path.rename(old)
         return old
 
