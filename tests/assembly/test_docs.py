@@ -53,6 +53,9 @@ def union(definition: str, field: str) -> Mapping[str, Any]:
     return found
 
 
+FIELD_SCENES = ("every_assembly_field",)
+"""Between them every kind and every field."""
+
 FEATURES, LAWS = union("SolidSpec", "features"), union("PositionSpec", "law")
 
 
@@ -72,11 +75,11 @@ def test_the_tables_of_the_example_are_those_of_the_run(tol3d: Command, tmp_path
         assert one_line(table) in one_line(out)
 
 
-def test_every_assembly_field_uses_every_field_of_every_kind() -> None:
+def test_the_scenes_use_every_field_of_every_kind() -> None:
     kinds = [spec for section in SECTIONS for spec in ASSEMBLY.specs(section)]
     known = {own for spec in kinds for own in fields_within(spec) if own[0].__module__.startswith("tol3d.assembly")}
     assert len({model for model, _ in known}) == len(kinds) + 13  # placement, datum, zone; 4 features, 3 laws, 3 pairs
-    said = set(fields_said(load_scene(SCENES / "every_assembly_field.yaml", KINDS)))
+    said = {own for name in FIELD_SCENES for own in fields_said(load_scene(SCENES / f"{name}.yaml", KINDS))}
     assert unsaid(known, said) == set()
     assert set(kinds) <= {model for model, _ in said}
 
