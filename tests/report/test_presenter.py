@@ -1,6 +1,5 @@
 """A system that is no gear is shown and exported by its presenter alone: boxes whose sizes and places are known."""
 
-import ctypes.util
 import os
 import pickle
 import sys
@@ -11,17 +10,16 @@ import numpy as np
 import pytest
 import trimesh
 from matplotlib.image import imread
+from rendering import renders
 from report.box_presenter import COLOURS, GROWTH, PLACES, PRESENTER, SIDES
 
 from tol3d import Overrides, Run, run_scene
 from tol3d.errors import InputError
 from tol3d.gearing.presenting import PRESENTER as GEARS
 from tol3d.report import export_run, part_meshes, picture, view_run
-from tol3d.report.body import Body, World
+from tol3d.report.body import World
 from tol3d.report.presenter import View, presenter_of
-from tol3d.report.whole import _best_eye
 from tol3d.runs.summary.kinds import SummaryKinds
-from tol3d.solids import PosedBody
 
 BOXES = "report.box_presenter"
 CUBES = {"small": (GROWTH * SIDES["small"]) ** 3, "large": SIDES["large"] ** 3}  # mm^3
@@ -74,14 +72,6 @@ def test_further_pictures_are_drawn_beside_the_histogram(
     assert imread(tmp_path / "boxes_ all.png").shape[1] == 2 * 4  # two inches, as many pixels an inch as trials
 
 
-renders = pytest.mark.skipif(
-    sys.platform == "linux"
-    and not os.environ.get("DISPLAY")
-    and not (ctypes.util.find_library("EGL") or ctypes.util.find_library("OSMesa")),
-    reason="no display, no libEGL, no libOSMesa",
-)
-
-
 @renders
 def test_the_window_of_a_system_without_panels_shows_its_bodies_named(run: Run, tmp_path: Path) -> None:
     assert view_run(run, 3, screenshot=tmp_path / "boxes.png", presenter=BOXES) == ("a note", "all is shown")
@@ -89,24 +79,6 @@ def test_the_window_of_a_system_without_panels_shows_its_bodies_named(run: Run, 
     for colour in COLOURS.values():  # labels are flat, each in its body's colour
         wanted = np.array([*bytes.fromhex(colour[1:])])
         assert (np.abs(pixels - wanted).max(axis=2) < 3).sum() > 500
-
-
-@renders
-def test_a_body_within_another_is_seen_nowhere_not_even_at_an_edge() -> None:
-    """Bodies are found by the colours of their numbers: half of the second's at an edge would be the first's."""
-    pose = np.eye(4)
-    pose[:3, 3] = 3.0, 4.0, 5.0
-
-    def cube(name: str, side: float) -> Body:
-        solid = trimesh.creation.box((side,) * 3)
-        return Body(name, pose, lambda: (np.asarray(solid.vertices), np.asarray(solid.faces)), unposed, "#888888")
-
-    def unposed() -> PosedBody:
-        raise AssertionError("no STEP file is written")
-
-    _, anchors = _best_eye(World("nested", (cube("inner", 2.0), cube("outer", 20.0))), 1.0)
-    assert anchors["inner"] == pytest.approx([3.0, 4.0, 5.0])
-    assert np.abs(anchors["outer"] - [3.0, 4.0, 5.0]).max() == pytest.approx(10.0, abs=0.1)  # mm, a pixel
 
 
 def test_a_close_up_that_is_not_there_is_refused_by_the_presenter(run: Run, tmp_path: Path) -> None:

@@ -1,8 +1,6 @@
 """Tables, pictures, meshes and views of a small run: every number in them against the run or a closed form."""
 
-import ctypes.util
 import math
-import os
 import re
 import subprocess
 import sys
@@ -22,6 +20,7 @@ from matplotlib.image import imread
 from of_kind import known, of_kind
 from places import SCENES
 from printing import printed, row_of
+from rendering import renders
 from rich.console import RenderableType
 from scipy.stats import norm
 
@@ -723,13 +722,6 @@ def test_export_where_nothing_can_be_written_is_refused(run: Run, tmp_path: Path
 
 
 # view ---------------------------------------------------------------------------------------------
-
-renders = pytest.mark.skipif(
-    sys.platform == "linux"
-    and not os.environ.get("DISPLAY")
-    and not (ctypes.util.find_library("EGL") or ctypes.util.find_library("OSMesa")),
-    reason="no display, no libEGL, no libOSMesa",
-)
 
 
 @renders

@@ -1,9 +1,6 @@
 """A system that is no gear is run, shown, compared and exported by the commands: a package offers it, nothing else."""
 
-import ctypes.util
 import json
-import os
-import sys
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -16,6 +13,7 @@ from fixtures import Command
 from matplotlib.image import imread
 from of_kind import known as known_value
 from of_kind import of_kind
+from rendering import renders
 from toys.parabola import PARABOLA
 from toys.parabola.showing import SIDE
 from toys.registered import TOYS, known
@@ -143,14 +141,6 @@ def test_the_worst_trial_is_exported_and_magnified(run: Run, tmp_path: Path) -> 
     assert trimesh.load_mesh(path).bounds[0, 2] == pytest.approx(1e-3 * columns[HEIGHT][deepest], rel=1e-4)
     (far,) = export_run(run, "nominal", "stl", out=tmp_path, magnify=3.0).files
     assert trimesh.load_mesh(far).bounds[0, 2] == 0.0
-
-
-renders = pytest.mark.skipif(
-    sys.platform == "linux"
-    and not os.environ.get("DISPLAY")
-    and not (ctypes.util.find_library("EGL") or ctypes.util.find_library("OSMesa")),
-    reason="no display, no libEGL, no libOSMesa",
-)
 
 
 @renders

@@ -1,9 +1,6 @@
 """Whole trains in one world: poses told by hand, teeth that mesh across files, pictures that name their parts."""
 
-import ctypes.util
 import math
-import os
-import sys
 from itertools import pairwise
 from pathlib import Path
 
@@ -13,6 +10,7 @@ import pytest
 import trimesh
 from matplotlib.image import imread
 from of_kind import known, of_kind
+from rendering import renders
 
 from tol3d import Run
 from tol3d.errors import InputError
@@ -21,7 +19,6 @@ from tol3d.gearing.placed import DISPLAY_DEFLECTION
 from tol3d.gearing.presenting.whole_trains import HOUSING_COLOUR, WholeTrain, whole_trains
 from tol3d.gears import SpurGear
 from tol3d.report import export_run, view_run
-from tol3d.report.whole import Frame, _places
 from tol3d.simulate import run_scene
 from tol3d.solids.bodies import ShaftBody
 
@@ -305,13 +302,6 @@ def test_wide_bores_are_filled_by_collars(tmp_path: Path) -> None:
 
 # pictures -------------------------------------------------------------------------------------------
 
-renders = pytest.mark.skipif(
-    sys.platform == "linux"
-    and not os.environ.get("DISPLAY")
-    and not (ctypes.util.find_library("EGL") or ctypes.util.find_library("OSMesa")),
-    reason="no display, no libEGL, no libOSMesa",
-)
-
 
 @renders
 def test_the_picture_shows_every_shaft_in_its_colour_beside_the_close_ups(
@@ -406,23 +396,3 @@ def test_trees_of_shafts_that_nothing_connects_are_files_of_their_own(tmp_path: 
         "close up is lone pair, not first, second, bevels (choose with --mesh)",
         "shown are the shafts downstream of lone, not those of motor",
     )
-
-
-def test_lines_to_labels_never_cross() -> None:
-    rng = np.random.default_rng(3)
-    frame = Frame(np.zeros(3), 200.0, 100.0, np.full(3, -40.0), np.full(3, 40.0), 80.0)
-    for _ in range(50):
-        points = rng.uniform(-40, 40, (9, 3))
-        places = _places(points, 45.0, frame)
-        assert np.diff(np.sort(places[:, 1])).min() > 100.0 / 26 * 0.999  # rows do not overlap
-        assert np.abs(places[:, 1]).max() < 50.0
-        for one in range(9):
-            for other in range(one):
-                assert not cross(points[one, :2], places[one], points[other, :2], places[other])
-
-
-def cross(a: np.ndarray, b: np.ndarray, c: np.ndarray, d: np.ndarray) -> bool:
-    def side(p: np.ndarray, q: np.ndarray, r: np.ndarray) -> float:
-        return float((q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0]))
-
-    return side(a, b, c) * side(a, b, d) < 0 and side(c, d, a) * side(c, d, b) < 0

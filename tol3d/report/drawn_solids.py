@@ -7,10 +7,13 @@ import pyvista as pv
 from numpy.typing import NDArray
 from vtkmodules.vtkFiltersGeneral import vtkContourTriangulator
 
+from tol3d.report.label import legible
+
 Array = NDArray[np.float64]
 
 EDGE_COLOUR: Final = "#30373F"
 CONTACT_COLOUR, GAP_COLOUR = "#00714F", "#C03A00"  # green and vermillion: Okabe and Ito, darkened
+NAME_SIZE: Final = 12
 EDGE_ANGLE: Final = 25.0  # deg; sharper edges are drawn as lines: tips, ends, not the facets of a curved face
 
 
@@ -61,7 +64,7 @@ def add_label(plotter: pv.Plotter, place: Array, text: str, colour: str) -> None
     """A label at a point, whatever is in front of it."""
     plotter.add_point_labels(
         np.asarray(place)[None],
-        [text],
+        [legible(text)],
         text_color="white",
         shape_color=colour,
         shape_opacity=0.9,
@@ -73,8 +76,15 @@ def add_label(plotter: pv.Plotter, place: Array, text: str, colour: str) -> None
     )
 
 
+def add_names_below(plotter: pv.Plotter, left: str, right: str) -> None:
+    """What stands at the left and at the right, in the lower corners: letters are as large as both have room for."""
+    names = plotter.add_text(f" {left} ", position="lower_left", font_size=NAME_SIZE, color="white")
+    names.set_text("lower_right", f" {right} ")
+    names.prop.bold, names.prop.background_color, names.prop.background_opacity = True, EDGE_COLOUR, 0.9
+
+
 def add_title(plotter: pv.Plotter, text: str, size: int) -> None:
     """A title in the upper left corner."""
-    actor = plotter.add_text(f" {text} ", position="upper_left", font_size=size, color=EDGE_COLOUR)
+    actor = plotter.add_text(f" {legible(text, len(text))} ", position="upper_left", font_size=size, color=EDGE_COLOUR)
     actor.prop.background_color = "white"
     actor.prop.background_opacity = 0.75

@@ -1,7 +1,11 @@
-"""Bodies in one picture: seen from a corner, their names beside them."""
+"""Bodies in one picture: seen from a corner, their names beside them.
+
+Labels are placed here because pyvista's point labels leave out those that collide, and matplotlib has no placement of
+its own: adjustText overlaps dense labels, and both it and textalloc put them over the parts.
+"""
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Final
 
@@ -25,6 +29,7 @@ from tol3d.report.drawn_solids import (
     poly_data,
     set_background,
 )
+from tol3d.report.label import legible
 
 Array = NDArray[np.float64]
 
@@ -32,6 +37,7 @@ ISOMETRIC: Final = math.asin(1 / math.sqrt(3))  # rad above the horizon: three e
 PARTS_WIDE, PARTS_HIGH = 0.56, 0.84  # of the picture; the labels stand on either side
 NO_MARKS: Final[Mapping[str, Array]] = {}
 LABEL_ROW: Final = 1 / 26  # of the picture's height, from label to label at least
+MOST_ROWS: Final = 24  # labels in a column; of more the letters are smaller
 LABEL_GAP: Final = 0.02  # of the picture's width, between parts and labels
 LABEL_SIZE: Final = 11
 ARROW_SHARE: Final = 0.16  # of the picture's height
@@ -133,14 +139,13 @@ def _label_in_place(plotter: pv.Plotter, picture: Whole) -> None:
 def _label_beside(plotter: pv.Plotter, picture: Whole) -> None:
     """Name the parts in two columns beside them, with lines to what is named, for a picture."""
     eye, frame = picture.eye, picture.frame
-    for side in (-1.0, 1.0):
-        column = [label for label in picture.labels if side * (eye.seen(label.point)[0] - frame.middle[0]) > 0.0]
+    for side, column in zip((-1.0, 1.0), _columns(picture), strict=True):
         points = np.array([eye.seen(label.point) for label in column]).reshape(-1, 3)
         edge = (frame.low if side < 0.0 else frame.high)[0] + side * LABEL_GAP * frame.width
-        places = _places(points, edge, frame)
-        for label, place in zip(column, places, strict=True):
+        size = int(LABEL_SIZE * _row(len(column)) / LABEL_ROW)
+        for label, place in zip(column, _places(points, edge, frame), strict=True):
             _add_line(plotter, picture, label, place)
-            _add_text(plotter, label, frame, place, "right" if side < 0.0 else "left")
+            _add_text(plotter, label, frame, place, size)
     plotter.reset_camera_clipping_range()
 
 
@@ -222,6 +227,20 @@ def _clear_place(shown: NDArray[np.bool_]) -> tuple[int, int]:
 # the picture --------------------------------------------------------------------------------------
 
 
+def _columns(picture: Whole) -> tuple[Sequence[Label], Sequence[Label]]:
+    """The labels at the left and at the right: each on its own side, as long as there is room."""
+    across = np.array([picture.eye.seen(label.point)[0] for label in picture.labels])
+    most = max(MOST_ROWS, -(-len(across) // 2))
+    left = min(max(int(np.sum(across < picture.frame.middle[0])), len(across) - most), most)
+    order = [picture.labels[k] for k in np.argsort(across, kind="stable")]
+    return order[:left], order[left:]
+
+
+def _row(count: int) -> float:
+    """From label to label in a column of so many, as a share of the picture's height."""
+    return LABEL_ROW * min(1.0, (MOST_ROWS - 1) / max(count - 1, 1))
+
+
 def _places(points: Array, edge: float, frame: Frame) -> Array:
     """Where labels of these points stand along an edge, (n, 2): the lines to them are shortest, so none cross."""
     heights = _spread(-np.sort(-points[:, 1]), frame)
@@ -241,16 +260,23 @@ def _add_line(plotter: pv.Plotter, picture: Whole, label: Label, place: Array) -
     plotter.add_mesh(pv.Sphere(radius=radius * frame.height, center=end), color=colour, lighting=False)
 
 
-def _add_text(plotter: pv.Plotter, label: Label, frame: Frame, place: Array, side: str) -> None:
+def _add_text(plotter: pv.Plotter, label: Label, frame: Frame, place: Array, size: int) -> None:
+    """A label between a place and the nearer border of the picture, cut where it would leave it."""
     x, y = 0.5 + (place - frame.middle[:2]) / (frame.width, frame.height)
-    actor = plotter.add_text(f" {label.text} ", position=(x, y), viewport=True, font_size=LABEL_SIZE, color=label.ink)
-    actor.prop.justification_horizontal, actor.prop.justification_vertical = side, "center"
+    room = plotter.renderer.GetSize()[0] * min(x, 1.0 - x)  # pixels
+    actor = plotter.add_text("", position=(x, y), viewport=True, font_size=size, color=label.ink)
+    actor.prop.justification_horizontal, actor.prop.justification_vertical = "right" if x < 0.5 else "left", "center"
     actor.prop.background_color, actor.prop.background_opacity = label.colour, 1.0
+    for letters in range(len(label.text), 0, -1):
+        actor.input = f" {legible(label.text, letters)} "
+        actor.GetSize(plotter.renderer, extent := [0.0, 0.0])
+        if extent[0] <= room:
+            break
 
 
 def _spread(wanted: Array, frame: Frame) -> Array:
     """Heights from above down, as near to the wanted ones as rows that do not overlap can be, inside the picture."""
-    rows = LABEL_ROW * frame.height * np.arange(len(wanted))
+    rows = _row(len(wanted)) * frame.height * np.arange(len(wanted))
     if not len(wanted):
         return wanted
     heights = isotonic_regression(wanted + rows, increasing=False).x - rows

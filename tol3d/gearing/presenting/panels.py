@@ -17,9 +17,9 @@ from tol3d.gearing.presenting.whole_trains import WholeTrain
 from tol3d.report.camera import FRONT, look, look_from_near
 from tol3d.report.drawn_solids import (
     CONTACT_COLOUR,
-    EDGE_COLOUR,
     GAP_COLOUR,
     add_label,
+    add_names_below,
     add_section,
     add_solid,
     add_title,
@@ -27,6 +27,7 @@ from tol3d.report.drawn_solids import (
     poly_data,
     set_background,
 )
+from tol3d.report.label import legible
 from tol3d.report.number import measured_text
 from tol3d.report.presenter import Panel
 from tol3d.report.whole import draw_whole
@@ -39,8 +40,6 @@ GAPS_HIGH: Final = 3.0  # gaps from the middle of the gap to the upper edge of t
 LEAST_HIGH: Final = 0.03  # mm; a close-up of no gap at all still shows something
 LEAST_GAP: Final = 1e-4  # mm; VTK keeps coordinates in single precision, in which nearer ends may be one point
 FROM_ABOVE: Final = np.array([0.0, np.sin(np.radians(22.0)), np.cos(np.radians(22.0))])  # the front, for the whole
-LETTER: Final = 0.14  # modules; a letter of a label, which begins so much further left where it would be cut
-ROOMY_NAME: Final = 15  # letters that have room
 MAIN_TITLE, SIDE_TITLE = 13, 10  # sizes of titles
 
 
@@ -110,11 +109,7 @@ class CloseUp:
             beside = np.array([0.5 * module, 0.0, 0.0])
             add_label(plotter, (ends[0] + ends[1]) / 2 + beside, _gap_text(seated), GAP_COLOUR)
             middle = (contact + (ends[0] + ends[1]) / 2) / 2
-        for part, role, aside in zip((seated.driver, seated.driven), ("driver", "driven"), (-1.0, 1.0), strict=True):
-            text = f"{part.name} ({role})"
-            over = LETTER * max(0, len(text) - ROOMY_NAME) if aside > 0.0 else 0.0
-            place = middle + module * np.array([2.1 * aside - 0.8 - over, -2.65, 0.0])
-            add_label(plotter, place, text, EDGE_COLOUR)
+        add_names_below(plotter, f"{legible(seated.driver.name)} (driver)", f"{legible(seated.driven.name)} (driven)")
         add_title(plotter, self.title, self.title_size)
         look_from_near(plotter, middle, TEETH_HIGH * module)
 
