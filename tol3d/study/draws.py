@@ -1,7 +1,8 @@
 """Seed and contributors to trials: every draw is keyed, so a trial can be replayed alone.
 
 A system has streams of uniforms for positions, and one for each uniform that a contributor draws; the study's sampler
-draws them. A trial depends on (system, seed, trial index) and on nothing else: not on blocks or workers.
+draws them. A trial depends on (system, seed, trial index) and on nothing else: not on blocks or workers. Contributors
+that read others are drawn after them, from streams of their own.
 """
 
 from collections.abc import Mapping
@@ -12,6 +13,7 @@ from numpy.typing import NDArray
 from tol3d.samplers import LatinHypercube, MonteCarlo, Sampler, Sobol, Stream
 from tol3d.samplers.lazy import quick_monte_carlo
 from tol3d.study.simulation import Simulation
+from tol3d.system.dependent import Dependent, in_draw_order
 from tol3d.system.stated import component_count, component_slices
 from tol3d.system.system import StreamKey, System
 from tol3d.system.trials import Trials
@@ -57,9 +59,14 @@ def deviations(simulation: Simulation, first: int, count: int) -> Array:
 
 def _deviations(system: System, sampler: Sampler, streams: Mapping[StreamKey, Stream], first: int, count: int) -> Array:
     columns = np.empty((component_count(system), count))
-    for contributor, own in zip(system.contributors, component_slices(system).values(), strict=True):
-        draw = contributor.draw
+    slices = component_slices(system)
+    for contributor in in_draw_order(system.contributors):
+        draw, own = contributor.draw, slices[contributor.name]
         draws = [sampler.uniforms(streams[contributor.name, str(k)], first, count) for k in range(draw.uniforms)]
-        for column, values in zip(columns[own], draw.deviations(*draws), strict=True):
+        if isinstance(draw, Dependent):
+            found = draw.deviations_given({name: columns[slices[name]] for name in draw.reads}, *draws)
+        else:
+            found = draw.deviations(*draws)
+        for column, values in zip(columns[own], found, strict=True):
             column[:] = values
     return columns.T

@@ -4,16 +4,18 @@ No theory is needed, so any system has it; both roads stand beside each other be
 """
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.study.columns import columns_of
+from tol3d.study.extremes import ends_together
 from tol3d.study.simulation import Simulation
 from tol3d.system.contributor import Contributor
-from tol3d.system.draw import Each, Joint
+from tol3d.system.dependent import reads_of
+from tol3d.system.draw import Joint
 from tol3d.system.measure import Measure
 from tol3d.system.outcome import ANALYTIC, GEOMETRIC, outcome_of
 from tol3d.system.road import Road
@@ -108,16 +110,27 @@ def first_order(system: System, measure: Measure, values: Values) -> FirstOrder:
     nominal = np.zeros((1, component_count(system)))
     mean = mean_deviations(system, measure.positions)
     slices = component_slices(system)
-    effects, low, high = [], mean.copy(), mean.copy()
-    for contributor in system.acting(measure):
-        own = slices[contributor.name]
-        turning = system.turns_at_random(contributor, measure.positions)
-        slopes = _slopes(mean, own, contributor.draw.sigma or contributor.per_unit, values)
-        ends = _ends(contributor, slopes, turning=turning)
-        low[:, own], high[:, own] = ends
-        effects.append(_effect(contributor, slopes, ends, turning=turning))
+    turning = {own.name: system.turns_at_random(own, measure.positions) for own in system.contributors}
+    slopes = {own.name: np.zeros(len(own.draw.components)) for own in system.contributors}
+    acting = system.acting(measure)
+    for own in acting:
+        slopes[own.name] = _slopes(mean, slices[own.name], own.draw.sigma or own.per_unit, values)
+    ends = ends_together(_concerned(system, acting), slopes, turning)
+    low, high = mean.copy(), mean.copy()
+    for name, own_ends in ends.items():
+        low[:, slices[name]], high[:, slices[name]] = own_ends
+    effects = [_effect(own, slopes[own.name], ends[own.name], turning=turning[own.name]) for own in acting]
     found = values(np.concatenate([nominal, mean, low, high]))
     return FirstOrder(float(found[0]), float(found[1]), tuple(effects), (float(found[2]), float(found[3])))
+
+
+def _concerned(system: System, acting: Sequence[Contributor]) -> list[Contributor]:
+    """Those that act on a measure and those that they read, directly or not, in the system's order."""
+    known = {own.name: own for own in system.contributors}
+    names = {own.name for own in acting}
+    while added := {name for own in names for name in reads_of(known[own])} - names:
+        names |= added
+    return [own for own in system.contributors if own.name in names]
 
 
 def _slopes(mean: Array, own: slice, step: float, values: Values) -> Array:
@@ -129,18 +142,6 @@ def _slopes(mean: Array, own: slice, step: float, values: Values) -> Array:
     change = found[:count] - found[count:]
     change[np.abs(change) <= NOISE * np.abs(found).max()] = 0.0
     return np.asarray(change / (2 * step))
-
-
-def _ends(contributor: Contributor, slopes: Array, *, turning: bool) -> Array:
-    """The ends (2, components) that lower and that raise what has these slopes.
-
-    Features that are drawn each for itself are all at their own worst ends.
-    """
-    law = contributor.distribution
-    if isinstance(contributor.draw, Each):
-        return np.stack([np.where(slopes > 0.0, law.low, law.high), np.where(slopes > 0.0, law.high, law.low)])
-    ends = contributor.draw.ends(lambda rows: rows @ slopes, turning=turning)
-    return ends if float(ends[0] @ slopes) <= float(ends[1] @ slopes) else ends[::-1]
 
 
 def _effect(contributor: Contributor, slopes: Array, ends: Array, *, turning: bool) -> Effect:

@@ -11,6 +11,7 @@ from tol3d.scene import Scene
 from tol3d.scene.engines import THEORY, Engines
 from tol3d.scene.problems import problem_sentence, word_expected
 from tol3d.study.simulation import Simulation, published_in, study_of
+from tol3d.system.dependent import in_draw_order
 from tol3d.system.faults import faults_of, require_whole
 from tol3d.system.mechanism import mechanism_of, requires_of
 
@@ -43,6 +44,7 @@ def simulation_of(scene: Scene, overrides: Overrides = AS_WRITTEN) -> Simulation
     with faults_of(mechanism.origin):
         system = mechanism.system_of(asked)
         require_whole(system)
+        in_draw_order(system.contributors)
     _refuse_engine(scene, overrides, asked.study.engine, system.roads)
     if asked.study.witness and not any(kind.witness for kind in system.roads.values()):
         raise asked.refuse(

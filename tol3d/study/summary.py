@@ -29,6 +29,7 @@ from tol3d.study.stopping import shortfalls
 from tol3d.study.study import Study
 from tol3d.study.tally import MeasureTally, Tally
 from tol3d.system.closed_form import ClosedForm
+from tol3d.system.dependent import DependentlyJudged
 from tol3d.system.draw import Judged
 from tol3d.system.measure import Measure
 from tol3d.system.outcome import ANALYTIC, GEOMETRIC, outcome_of, value_column
@@ -123,7 +124,7 @@ def _too_many(simulation: Simulation) -> Iterator[str]:
 
 
 def _unphysical_draws(simulation: Simulation, tally: Tally) -> Iterator[str]:
-    judged = {own.name for own in simulation.system.contributors if isinstance(own.draw, Judged)}
+    judged = {own.name for own in simulation.system.contributors if isinstance(own.draw, Judged | DependentlyJudged)}
     for name, count in tally.unphysical.items():
         if count:
             why = "out of drawing" if name in judged else "below zero, which no clearance is"

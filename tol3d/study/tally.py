@@ -22,6 +22,7 @@ from tol3d.study.spectrum_tally import BINS as ORDER_BINS
 from tol3d.study.spectrum_tally import amplitudes_of, grid_name
 from tol3d.study.status_counts import added, counted, status_counts
 from tol3d.system.closed_form import ClosedForm
+from tol3d.system.dependent import DependentlyJudged
 from tol3d.system.draw import Judged
 from tol3d.system.measure import Measure
 from tol3d.system.outcome import ANALYTIC, GEOMETRIC, ROADS, Columns, Outcome, outcome_of, value_column
@@ -241,12 +242,21 @@ class Tally:
 
 
 def _unphysical(system: System, columns: Columns) -> dict[str, int]:
+    known = {own.name: own for own in system.contributors}
+
+    def components(name: str) -> list[NDArray[np.float64]]:
+        own = known[name]
+        return [np.asarray(columns[column], dtype=np.float64) * own.per_unit for column in own.columns]
+
     counts = {}
-    for contributor in system.contributors:
+    for name, contributor in known.items():
+        draw = contributor.draw
         if contributor.least is not None:
             drawn = np.asarray(columns[contributor.columns[0]], dtype=np.float64)
-            counts[contributor.name] = int(np.count_nonzero(drawn < contributor.least / contributor.per_unit))
-        elif isinstance(contributor.draw, Judged):
-            own = [np.asarray(columns[name], dtype=np.float64) * contributor.per_unit for name in contributor.columns]
-            counts[contributor.name] = int(np.count_nonzero(contributor.draw.beyond(*own)))
+            counts[name] = int(np.count_nonzero(drawn < contributor.least / contributor.per_unit))
+        elif isinstance(draw, DependentlyJudged):
+            given = {own: np.stack(components(own)) for own in draw.reads}
+            counts[name] = int(np.count_nonzero(draw.beyond_given(given, *components(name))))
+        elif isinstance(draw, Judged):
+            counts[name] = int(np.count_nonzero(draw.beyond(*components(name))))
     return counts

@@ -1,0 +1,71 @@
+"""What a scene says of a rod."""
+
+from typing import ClassVar, Literal
+
+from tol3d.scene.move import MoveSpec
+from tol3d.scene.name import Name
+from tol3d.scene.part import Length, PartSpec
+from tol3d.scene.reference import Reference
+from tol3d.scene.tolerance import ToleranceSpec
+from tol3d.system.plain import LengthSpec
+
+
+class RodSpec(PartSpec):
+    """A rod."""
+
+    words: ClassVar[str] = "a rod"
+
+    kind: Literal["rod"]
+    length: Length
+
+
+class LengthToleranceSpec(ToleranceSpec):
+    """How much longer a rod is."""
+
+    kind: Literal["rod_length"]
+    of: Name
+
+    def references(self) -> tuple[Reference, ...]:
+        return (Reference(("of",), self.of, (RodSpec,)),)
+
+
+class TipSpec(LengthToleranceSpec):
+    """How far its tip strays: what is drawn, times 1 + ten times the deviation of the length [mm]."""
+
+    kind: Literal["rod_tip"]  # type: ignore[assignment]  # a kind of its own
+    length: Name
+
+    def references(self) -> tuple[Reference, ...]:
+        return (*super().references(), Reference(("length",), self.length, (LengthToleranceSpec,)))
+
+
+class MarkSpec(LengthToleranceSpec):
+    """How far a mark strays: what is drawn [mm], as often as the tip strays by 10 um."""
+
+    kind: Literal["rod_mark"]  # type: ignore[assignment]  # a kind of its own
+    tip: Name
+
+    def references(self) -> tuple[Reference, ...]:
+        return (*super().references(), Reference(("tip",), self.tip, (TipSpec,)))
+
+
+class StandSpec(MoveSpec):
+    """A rod stands."""
+
+    words: ClassVar[str] = "a standing rod"
+
+    kind: Literal["stand"]
+    rod: Name
+
+    def references(self) -> tuple[Reference, ...]:
+        return (Reference(("rod",), self.rod, (RodSpec,)),)
+
+
+class ReachSpec(LengthSpec):
+    """How far it reaches: length, tip and mark together."""
+
+    kind: Literal["rod_reach"]
+    of: Name
+
+    def references(self) -> tuple[Reference, ...]:
+        return (Reference(("of",), self.of, (StandSpec,)),)

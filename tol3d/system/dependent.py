@@ -1,0 +1,82 @@
+"""Draws that read what other contributors are in the same trial, such as a zone that a size widens.
+
+They are drawn after what they read; their uniforms stay their own, so that a trial is a pure function of its index.
+"""
+
+from collections.abc import Mapping, Sequence
+from typing import Protocol, TypeVar, runtime_checkable
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tol3d.system.contributor import Contributor
+from tol3d.system.faults import UnfitError
+
+Array = NDArray[np.float64]
+Given = Mapping[str, Array]
+"""Components (components, trials) [mm, rad or K] of the contributors that a draw reads, by their names."""
+
+Own = TypeVar("Own", bound=Contributor)
+
+
+@runtime_checkable
+class Dependent(Protocol):
+    """A Draw that reads contributors drawn before it; studies ask `deviations_given` of it, not `deviations`.
+
+    `mean`, `sigma`, `ends` and a covariance are over all that those contributors may be.
+    """
+
+    @property
+    def reads(self) -> tuple[str, ...]:
+        """Names of the contributors whose deviations it reads."""
+        ...
+
+    def deviations_given(self, given: Given, *uniforms: Array) -> tuple[Array, ...]:
+        """See Draw.deviations; each trial by what it reads in the same trial."""
+        ...
+
+    def furthest_given(self, given: Given, slopes: Array) -> Array:
+        """The components (components,) of a draw that lies furthest along slopes (components,), of one trial."""
+        ...
+
+
+@runtime_checkable
+class DependentlyJudged(Protocol):
+    """A Draw that a drawing judges by what other contributors are in the same trial, and does not confine."""
+
+    @property
+    def reads(self) -> tuple[str, ...]:
+        """Names of the contributors by which it is judged."""
+        ...
+
+    def beyond_given(self, given: Given, *components: Array) -> NDArray[np.bool_]:
+        """See Judged.beyond."""
+        ...
+
+
+def reads_of(contributor: Contributor) -> tuple[str, ...]:
+    """Names of the contributors that one reads; of most none."""
+    draw = contributor.draw
+    return draw.reads if isinstance(draw, Dependent) else ()
+
+
+def in_draw_order(contributors: Sequence[Own]) -> tuple[Own, ...]:
+    """Contributors so that each comes after those that it reads; else in the order given.
+
+    Raises:
+        UnfitError: one reads what is no contributor, or contributors read each other in a ring.
+    """
+    if not any(reads_of(own) for own in contributors):
+        return tuple(contributors)
+    waiting = {own.name: own for own in contributors}
+    for own in contributors:
+        if unknown := [name for name in reads_of(own) if name not in waiting]:
+            raise UnfitError(f"contributor {own.name!r} reads {unknown[0]!r}, which is no contributor")
+    ordered: list[Own] = []
+    while waiting:
+        ready = [own for own in waiting.values() if not any(name in waiting for name in reads_of(own))]
+        if not ready:
+            raise UnfitError(f"contributors read each other in a ring: {', '.join(map(repr, waiting))}")
+        ordered += ready
+        waiting = {name: own for name, own in waiting.items() if own not in ready}
+    return tuple(ordered)
