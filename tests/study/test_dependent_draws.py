@@ -102,8 +102,10 @@ def test_uniforms_are_keyed_by_name_and_in_the_scene_s_order(sampler: str) -> No
 
 
 def test_extremes_move_what_is_read_along() -> None:
-    """Highest: the longest rod, and the tip as far as that lets it stray. Lowest: the shortest rod, for 0.1 mm of length
-    outweigh the 20 um that the tip of the longest strays further."""
+    """Highest: the longest rod, and the tip as far as that lets it stray.
+
+    Lowest: the shortest, for 0.1 mm of length outweigh the 20 um that the tip of the longest strays further.
+    """
     simulation = simulation_of(load(SCENE), Overrides())
     (measure,) = simulation.system.measures
     found = first_orders(simulation, None, measure)["analytic"]

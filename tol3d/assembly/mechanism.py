@@ -6,6 +6,7 @@ from tol3d.assembly.grammar import measures, moves, parts, tolerances
 from tol3d.assembly.grammar.checks import unknown_features, unplaced_bodies
 from tol3d.assembly.grammar.drawing_checks import contradicting_tolerances
 from tol3d.assembly.grammar.measure_checks import mixed_dimensions, unfit_points
+from tol3d.assembly.grammar.modifier_checks import unfit_modifiers
 from tol3d.assembly.grammar.orientation_checks import unfit_orientations
 from tol3d.scene.grammar import specs_in
 from tol3d.system.mechanism import Mechanism
@@ -21,6 +22,7 @@ ASSEMBLY: Final = Mechanism(
         unplaced_bodies,
         contradicting_tolerances,
         unfit_orientations,
+        unfit_modifiers,
         mixed_dimensions,
         unfit_points,
     ),

@@ -6,8 +6,8 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
+from tol3d.assembly.model.bonus import Modifier
 from tol3d.assembly.zones import Bonus, Confined, Zone, catalogue, normal_in, uniform_in
-from tol3d.assembly.zones.bonus import Modifier
 from tol3d.distributions import Distribution
 from tol3d.distributions.normal import Normal
 from tol3d.distributions.uniform import Uniform

@@ -2,13 +2,16 @@
 
 from dataclasses import replace
 
+from tol3d.assembly.from_scene.bonus import sized_by
 from tol3d.assembly.from_scene.datums import DatumFrames
+from tol3d.assembly.grammar.drawing import Drawing
 from tol3d.assembly.grammar.feature_name import part_of
 from tol3d.assembly.grammar.features.nominal_frame import unit as unit_vector
 from tol3d.assembly.grammar.measure_checks import dimension_of
-from tol3d.assembly.grammar.measures import AssemblyMeasureSpec, DifferenceSpec
+from tol3d.assembly.grammar.measures import AssemblyMeasureSpec, DifferenceSpec, InspectedPositionSpec
 from tol3d.assembly.grammar.measures.assembly_measure import FeatureMeasureSpec
 from tol3d.assembly.model import Measured
+from tol3d.assembly.model.bonus import MaterialBonus
 from tol3d.assembly.model.measures import MeasureKind
 from tol3d.scene import Scene
 from tol3d.system.measure import Worse
@@ -31,7 +34,14 @@ def _measured(scene: Scene, spec: AssemblyMeasureSpec, frames: DatumFrames) -> M
     direction = None if spec.along is None else unit_vector(spec.along)
     after = -1 if spec.after is None else list(scene.moves).index(spec.after)
     frame = frames.named(part_of(features[0]), spec.named_datums)
-    return Measured(spec.reads, features, direction, frame, after)
+    return Measured(spec.reads, features, direction, frame, after, _bonus(scene, spec))
+
+
+def _bonus(scene: Scene, spec: FeatureMeasureSpec) -> MaterialBonus | None:
+    if not isinstance(spec, InspectedPositionSpec) or spec.modifier is None:
+        return None
+    bonus = sized_by(scene, Drawing(scene), spec.of, spec.modifier).bonus
+    return MaterialBonus(bonus.low, bonus.high, bonus.grows)
 
 
 def _named(scene: Scene, name: str) -> AssemblyMeasureSpec:

@@ -1,16 +1,29 @@
 """The zone that a drawing leaves a feature, with all that refines it, and the draw that its law makes."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
+from tol3d.assembly.from_scene.bonus import sized_by
 from tol3d.assembly.grammar.drawing import Drawing, Stated
 from tol3d.assembly.grammar.features import FeatureUnion, PlaneSpec, PointSpec
 from tol3d.assembly.grammar.features.nominal_frame import Triple, unit
 from tol3d.assembly.grammar.tolerances import CircularRunOutSpec, LocationSpec, OrientationSpec
+from tol3d.assembly.grammar.tolerances.modified import Modified
 from tol3d.assembly.grammar.zone import LawUnion, NormalLawSpec, ProcessLawSpec, ZoneSpec
-from tol3d.assembly.zones import Process, Zone, ZoneDraw, catalogue, normal_in, uniform_in
+from tol3d.assembly.zones import (
+    JudgedProcess,
+    Process,
+    SizedBy,
+    Widened,
+    Zone,
+    ZoneDraw,
+    catalogue,
+    normal_in,
+    uniform_in,
+)
 from tol3d.assembly.zones.centred import Centred
 from tol3d.errors import InputError
 from tol3d.scene import Scene
@@ -42,15 +55,31 @@ def drawn_in(scene: Scene, own: Stated, drawing: Drawing) -> tuple[ZoneDraw, Arr
         )
     except InputError as error:
         raise scene.refuse(("tolerances", own.entry, "zone"), str(error)) from None
-    return _by_law(scene, spec.law, zone), zone.matrix
+    return _by_law(scene, spec.law, zone, _size(scene, own, drawing)), zone.matrix
 
 
-def _by_law(scene: Scene, law: LawUnion, zone: Zone) -> ZoneDraw:
+def _size(scene: Scene, own: Stated, drawing: Drawing) -> SizedBy | None:
+    """The size that widens a zone; None where no modifier of it, or of what refines it, says so."""
+    spec = own.spec
+    of_zone = spec.modifier if isinstance(spec, Modified) else None
+    refining = drawing.of(own.feature, OrientationSpec) if isinstance(spec, LocationSpec) else ()
+    of_orientation = next((each.spec.modifier for each in refining if isinstance(each.spec, Modified)), None)
+    modifier = of_zone or of_orientation
+    if modifier is None:
+        return None
+    found = sized_by(scene, drawing, own.feature, modifier)
+    bonus = replace(found.bonus, of_zone=of_zone is not None, of_orientation=of_orientation is not None)
+    return replace(found, bonus=bonus)
+
+
+def _by_law(scene: Scene, law: LawUnion, zone: Zone, size: SizedBy | None) -> ZoneDraw:
     if isinstance(law, ProcessLawSpec):
         own = law.distribution.resolve(scene.files)
         about_zero = Centred(own)
-        return Process(zone, tuple(about_zero if name in TILTS else own for name in zone.components))
-    return normal_in(zone) if isinstance(law, NormalLawSpec) else uniform_in(zone)
+        laws = tuple(about_zero if name in TILTS else own for name in zone.components)
+        return Process(zone, laws) if size is None else JudgedProcess(zone, laws, size)
+    confined = normal_in(zone) if isinstance(law, NormalLawSpec) else uniform_in(zone)
+    return confined if size is None else Widened(zone, confined, size)
 
 
 def _location(spec: LocationSpec, feature: FeatureUnion, orientation: float | None, form: float) -> Zone:

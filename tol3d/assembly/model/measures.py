@@ -6,6 +6,8 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from tol3d.assembly.model.bonus import MaterialBonus
+
 Array = NDArray[np.float64]
 
 MeasureKind = Literal["distance", "gap", "point_plane", "angle", "size", "position", "orientation", "flatness"]
@@ -20,7 +22,8 @@ MeasureKind = Literal["distance", "gap", "point_plane", "angle", "size", "positi
 - size: nominal size and its deviation.
 - position: twice the largest distance of the feature's ends from where `frame` has them nominally: of an axis across
   the nominal axis, of a plane along the nominal normal, of a point in space; across the direction if there is one,
-  which is fixed in that frame.
+  which is fixed in that frame. With a bonus less that of the feature's size: what is judged against the zone at its
+  material condition, for 2 distance <= t0 + bonus.
 - orientation: width of the zone that holds the feature and is oriented nominally in `frame`: of a plane the range of
   its ends' heights along the nominal normal, of an axis how far its ends lie apart across the nominal axis.
 - flatness: smallest distance of two parallel planes with all the points between them, of points of one part that lie
@@ -39,6 +42,7 @@ class Measured:
         frame: name of a datum frame of that part in which the direction is fixed, or to which a position or an
             orientation is inspected; "" for the part's frame.
         after: index of the move after which it is read; -1 for the end.
+        bonus: of a position, what the feature's size takes from it.
         minus: a second one that is subtracted in the same trial.
     """
 
@@ -47,4 +51,5 @@ class Measured:
     direction: Array | None = None
     frame: str = ""
     after: int = -1
+    bonus: MaterialBonus | None = None
     minus: "Measured | None" = None

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from tol3d.assembly.model import Assembly, Axis, Measured, Plane, RoundPlane, Shape
 from tol3d.assembly.model.measures import MeasureKind
-from tol3d.assembly.placing.actual_feature import ActualFeature, actual_size
+from tol3d.assembly.placing.actual_feature import ActualFeature, actual_size, total
 from tol3d.assembly.placing.flatness import widths
 from tol3d.assembly.placing.poses import column, cross, dot, rotated
 from tol3d.assembly.placing.world import World
@@ -114,7 +114,16 @@ def _position(measured: Measured, world: World) -> Array:
         elif isinstance(shape, (Plane, RoundPlane)):
             aside = dot(aside, z) * z
         largest = np.maximum(largest, _length(aside))
-    return 2.0 * largest
+    return 2.0 * largest - _bonus(measured, world)
+
+
+def _bonus(measured: Measured, world: World) -> Array:
+    """What the size of the measured feature adds to its zone (n,) or (1,) [mm]."""
+    own = measured.bonus
+    if own is None:
+        return np.zeros(1)
+    size = total(world.assembly.features[measured.features[0]].size_by, 1, world.columns)[0]
+    return np.clip(size - own.low if own.grows else own.high - size, 0.0, own.high - own.low)
 
 
 def _ends(shape: Shape) -> Array:

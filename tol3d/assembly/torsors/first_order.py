@@ -113,10 +113,10 @@ def _reads(rows: Array) -> NDArray[np.bool_]:
 
 
 def _room(assembly: Assembly) -> int:
-    """How many columns terms may make: of each datum one, of a minimax fit six, of what a measure reads two."""
+    """How many columns terms may make: of each datum one, of a minimax fit six, of what a measure reads three."""
     datums = sum(len(frame.datums) for frame in assembly.datum_frames.values())
     fits = sum(isinstance(move, BestFit) and move.criterion == "minimax" for move in assembly.moves)
-    return datums + 6 * fits + 2 * sum(map(_readings, assembly.measures.values()))
+    return datums + 6 * fits + 3 * sum(map(_readings, assembly.measures.values()))
 
 
 def _readings(measured: Measured) -> int:

@@ -7,9 +7,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.assembly.model import Axis, Measured, Plane, Point, RoundPlane
+from tol3d.assembly.model.bonus import MaterialBonus
 from tol3d.assembly.torsors.columns import without_rounding
 from tol3d.assembly.torsors.flatness import balances
-from tol3d.assembly.torsors.terms import Width
+from tol3d.assembly.torsors.terms import Clipped, Width
 from tol3d.assembly.torsors.torsor import cross_matrix, height_at, perpendicular, shift_at
 from tol3d.assembly.torsors.world import World
 
@@ -165,7 +166,16 @@ def _position(measured: Measured, world: World) -> Array:
             directions = rotation[:, :2].T
         case Plane():
             directions = rotation[:, 2:].T
-    return 2.0 * world.columns.largest(_at_ends(measured, world, directions))
+    row: Array = 2.0 * world.columns.largest(_at_ends(measured, world, directions))
+    return row if measured.bonus is None else row - _clipped(measured.bonus, measured.features[0], world)
+
+
+def _clipped(bonus: MaterialBonus, feature: str, world: World) -> Array:
+    """What a feature's size adds to its zone (columns,) [mm]."""
+    sign, origin = (1.0, bonus.low) if bonus.grows else (-1.0, bonus.high)
+    departure = sign * (world.size(feature) - _constant(world, origin))
+    row: Array = world.columns.made_by(Clipped(departure[None], bonus.high - bonus.low))[0]
+    return row
 
 
 def _orientation(measured: Measured, world: World) -> Array:

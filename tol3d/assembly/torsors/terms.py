@@ -10,9 +10,9 @@ from tol3d.assembly.torsors.ordered import ordered_product, squared_lengths
 
 Array = NDArray[np.float64]
 
-Form = Literal["largest length", "least width", "least largest residual"]
+Form = Literal["largest length", "least width", "least largest residual", "clipped amount"]
 """How a term depends on what it reads: the largest length of vectors and the least width between parallel planes are
-convex; a pose of least largest residual is not, but linear in pieces."""
+convex; a pose of least largest residual and a clipped amount are not, but linear in pieces."""
 
 
 class Term(Protocol):
@@ -81,3 +81,22 @@ class Width:
         for width in widths:
             np.maximum(largest, width, out=largest)
         return largest[None]
+
+
+@dataclass(frozen=True, eq=False)
+class Clipped:
+    """An amount that is held between 0 and a most.
+
+    Args:
+        forms: (1, columns).
+        most: [mm].
+    """
+
+    forms: Array
+    most: float
+    form: Form = "clipped amount"
+    count: int = 1
+
+    def values(self, read: Array) -> Array:
+        """(1, trials) from (1, trials)."""
+        return np.clip(read, 0.0, self.most)

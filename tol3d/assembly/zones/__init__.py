@@ -1,11 +1,24 @@
 """Tolerance zones as sets of small displacements, and draws from them by named laws.
 
 `catalogue` has the zones; `uniform_in`, `normal_in` and `process_in` make a draw of one; `Bonus` widens a zone by the
-size of its feature.
+size of its feature, `Widened` draws from what it leaves.
 """
 
 from tol3d.assembly.zones.bonus import Bonus
+from tol3d.assembly.zones.widened import JudgedProcess, SizedBy, Widened
 from tol3d.assembly.zones.zone import Zone
 from tol3d.assembly.zones.zone_draw import Confined, Process, ZoneDraw, normal_in, process_in, uniform_in
 
-__all__ = ["Bonus", "Confined", "Process", "Zone", "ZoneDraw", "normal_in", "process_in", "uniform_in"]
+__all__ = [
+    "Bonus",
+    "Confined",
+    "JudgedProcess",
+    "Process",
+    "SizedBy",
+    "Widened",
+    "Zone",
+    "ZoneDraw",
+    "normal_in",
+    "process_in",
+    "uniform_in",
+]

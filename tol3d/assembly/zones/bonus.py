@@ -1,18 +1,18 @@
 """Bonus: how much a zone grows as its feature departs from its maximum (or least) material size."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
-from typing import Final, Literal, Self
+from typing import Final, Self
 
 import numpy as np
 from scipy.optimize import minimize_scalar
 
+from tol3d.assembly.model.bonus import Modifier
 from tol3d.assembly.zones.domain import Array
+from tol3d.assembly.zones.zone import Zone
 from tol3d.assembly.zones.zone_draw import Confined
 from tol3d.distributions import Distribution
 from tol3d.errors import InputError
-
-Modifier = Literal["mmc", "lmc"]
 
 SIZES: Final = 512  # of equal probability, over which a covariance is averaged: 1e-5 of a normal's
 SIZE_XTOL: Final = 1e-9  # mm; a support is stationary there, so its error is of order 2
@@ -25,11 +25,16 @@ class Bonus:
     Args:
         low, high: limits of the size, as deviations from nominal [mm].
         grows: whether larger sizes widen: of a hole at MMC and of a pin at LMC.
+        of_zone: whether the width of the zone has it.
+        of_orientation: whether the orientation that refines the zone has it, by a modifier of its own; never beyond
+            what the width of the zone leaves.
     """
 
     low: float
     high: float
     grows: bool
+    of_zone: bool = True
+    of_orientation: bool = False
 
     def __post_init__(self) -> None:
         if not self.low <= self.high:
@@ -56,6 +61,21 @@ class Bonus:
         room = size - self.low if self.grows else self.high - size
         return np.clip(room, 0.0, self.most)
 
+    def widths(self, zone: Zone, size: Array) -> tuple[Array, Array | None]:
+        """Width t and orientation t_o (trials,) [mm] of a zone for deviations of size (trials,) [mm].
+
+        t_o is None where it stays as the zone has it.
+        """
+        own = self.of(size)
+        width = zone.width + own if self.of_zone else np.full(np.shape(size), zone.width)
+        return width, zone.orientation + own if self.of_orientation and zone.orientation is not None else None
+
+    def zone_at(self, zone: Zone, size: float) -> Zone:
+        """A zone as one deviation of size [mm] widens it."""
+        width, orientation = self.widths(zone, np.asarray(size))
+        own = zone.orientation if orientation is None else float(orientation)
+        return replace(zone, width=float(width), orientation=None if own is None else min(own, float(width)))
+
     def covariance(self, draw: Confined, size: Distribution) -> Array:
         """Covariance (components, components) [mm^2] of a draw whose zone each size widens; its mean stays.
 
@@ -66,8 +86,9 @@ class Bonus:
             size: law of the deviation of size.
         """
         sizes = size.ppf((np.arange(SIZES) + 0.5) / SIZES)
-        widths, counts = np.unique(draw.zone.width + self.of(sizes), return_counts=True)
-        total = sum(count * draw.covariance_in(float(width)) for width, count in zip(widths, counts, strict=True))
+        _, firsts, counts = np.unique(self.of(sizes), return_index=True, return_counts=True)
+        zones = (self.zone_at(draw.zone, float(sizes[first])) for first in firsts)
+        total = sum(count * replace(draw, zone=zone).covariance for count, zone in zip(counts, zones, strict=True))
         return np.asarray(total / SIZES)
 
     def support(self, draw: Confined, gradient: Array, size: Distribution, per_size: float = 0.0) -> float:
@@ -84,8 +105,7 @@ class Bonus:
         """
 
         def reached(own: float) -> float:
-            width = draw.zone.width + float(self.of(np.asarray(own)))
-            return draw.zone.support(gradient, width) + per_size * own
+            return self.zone_at(draw.zone, own).support(gradient) + per_size * own
 
         inner = (own for own in (self.low, self.high) if size.low < own < size.high)
         places = sorted({size.low, size.high, *inner})

@@ -8,6 +8,7 @@ from pydantic import Field, model_validator
 from tol3d.assembly.grammar.datums import Datums, DatumSpec
 from tol3d.assembly.grammar.feature_name import FeatureName, part_of
 from tol3d.assembly.grammar.measures.assembly_measure import FeatureMeasureSpec
+from tol3d.assembly.model.bonus import Modifier
 from tol3d.assembly.model.measures import MeasureKind
 from tol3d.scene.listed import listed
 from tol3d.scene.place import KeyPath
@@ -38,6 +39,9 @@ class InspectedPositionSpec(InspectedSpec):
 
     kind: Literal["inspected_position"]
     across: Direction | None = Field(default=None, description="of a point: the direction that does not count")
+    modifier: Modifier | None = Field(
+        default=None, description="mmc or lmc: less the bonus of the feature's size, so that it counts against t0"
+    )
 
     @property
     def along(self) -> Direction | None:
@@ -46,7 +50,8 @@ class InspectedPositionSpec(InspectedSpec):
 
     def named(self) -> Sequence[tuple[KeyPath, FeatureName, tuple[str, ...]]]:
         """See FeatureMeasureSpec."""
-        return ((("of",), self.of, () if self.across is None else ("point",)),)
+        kinds = ("cylinder",) if self.modifier is not None else () if self.across is None else ("point",)
+        return ((("of",), self.of, kinds),)
 
 
 class InspectedOrientationSpec(InspectedSpec):

@@ -7,6 +7,7 @@ from pydantic import Field, model_validator
 
 from tol3d.assembly.grammar.datums import Datums, DatumSpec
 from tol3d.assembly.grammar.tolerances.feature_tolerance import FeatureTolerance
+from tol3d.assembly.grammar.tolerances.modified import Modified
 from tol3d.assembly.grammar.zone import LawUnion, ProcessLawSpec, ZoneSpec
 from tol3d.scene.place import KeyPath
 from tol3d.strict import refused
@@ -39,7 +40,7 @@ class LocationSpec(FeatureTolerance):
         return ((("law", "distribution", field), name) for field, name in found)
 
 
-class PositionSpec(LocationSpec):
+class PositionSpec(Modified, LocationSpec):
     """A true position."""
 
     words: ClassVar[str] = "a position tolerance"
@@ -57,7 +58,7 @@ class ProfileSpec(LocationSpec):
     kind: Literal["profile"]
 
 
-class CoaxialitySpec(LocationSpec):
+class CoaxialitySpec(Modified, LocationSpec):
     """A coaxiality: the axis lies in a cylinder about the datum's axis."""
 
     words: ClassVar[str] = "a coaxiality tolerance"

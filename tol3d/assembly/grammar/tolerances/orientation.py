@@ -6,10 +6,11 @@ from pydantic import Field
 
 from tol3d.assembly.grammar.datums import Datums, DatumSpec
 from tol3d.assembly.grammar.tolerances.feature_tolerance import FeatureTolerance
+from tol3d.assembly.grammar.tolerances.modified import Modified
 from tol3d.assembly.grammar.zone import LawUnion, ZoneSpec
 
 
-class OrientationSpec(FeatureTolerance):
+class OrientationSpec(Modified, FeatureTolerance):
     """A zone for how a feature is turned."""
 
     applies_to: ClassVar[tuple[str, ...]] = ("plane", "cylinder", "axis")
