@@ -53,7 +53,7 @@ def union(definition: str, field: str) -> Mapping[str, Any]:
     return found
 
 
-FIELD_SCENES = ("every_assembly_field",)
+FIELD_SCENES = ("every_assembly_field", "bolted_cover")
 """Between them every kind and every field."""
 
 FEATURES, LAWS = union("SolidSpec", "features"), union("PositionSpec", "law")
