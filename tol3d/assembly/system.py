@@ -67,9 +67,10 @@ class PlacingRoad:
 
     def answers(self, trials: Trials, measures: Sequence[Measure]) -> Answers:
         """See Road."""
-        found = placing.values(self.assembly, trials.deviations, [measure.name for measure in measures])
+        found, carried = placing.answers(self.assembly, trials.deviations, [measure.name for measure in measures])
         return Answers(
             {name: own[:, None] for name, (own, _) in found.items()},
+            details={f"carries:{move}": contacts for move, contacts in carried.items()},
             status={name: codes for name, (_, codes) in found.items()},
         )
 

@@ -28,13 +28,13 @@ def measured_of(scene: Scene, frames: DatumFrames) -> dict[str, Measured]:
 def _measured(scene: Scene, spec: AssemblyMeasureSpec, frames: DatumFrames) -> Measured:
     if isinstance(spec, DifferenceSpec):
         own, less = (_measured(scene, _named(scene, name), frames) for name in (spec.of, spec.minus))
-        return replace(own, minus=less)
+        return replace(own, minus=less, rocking=spec.rocking)
     assert isinstance(spec, FeatureMeasureSpec)
     features = tuple(name for _, name, _ in spec.named())
     direction = None if spec.along is None else unit_vector(spec.along)
     after = -1 if spec.after is None else list(scene.moves).index(spec.after)
     frame = frames.named(part_of(features[0]), spec.named_datums)
-    return Measured(spec.reads, features, direction, frame, after, _bonus(scene, spec))
+    return Measured(spec.reads, features, direction, frame, after, _bonus(scene, spec), rocking=spec.rocking)
 
 
 def _bonus(scene: Scene, spec: FeatureMeasureSpec) -> MaterialBonus | None:

@@ -6,9 +6,9 @@ from numpy.typing import NDArray
 from tol3d.assembly.from_scene.contributors import Effects
 from tol3d.assembly.from_scene.features import TouchedPoints
 from tol3d.assembly.grammar.features.nominal_frame import unit
-from tol3d.assembly.grammar.moves import BestFitSpec, FixSpec, LocatingSpec, MateSpec, PlacingSpec, WeldSpec
+from tol3d.assembly.grammar.moves import BestFitSpec, FixSpec, LocatingSpec, MateSpec, PlacingSpec, RestSpec, WeldSpec
 from tol3d.assembly.grammar.moves.locating import ContactSpec
-from tol3d.assembly.model import BestFit, Fit, Fix, Locate, Mate, Move, Pair, Relation, Weld
+from tol3d.assembly.model import BestFit, Fit, Fix, Locate, Mate, Move, Pair, Relation, Rest, Weld
 from tol3d.scene import Scene
 
 Array = NDArray[np.float64]
@@ -34,6 +34,10 @@ def _move(scene: Scene, name: str, spec: PlacingSpec | WeldSpec, effects: Effect
     match spec:
         case WeldSpec():
             return Weld(name, spec.part, spec.to)
+        case RestSpec():
+            pairs = tuple(_pair(scene, name, number, spec, effects, touched) for number in spec.pairs_by_name)
+            at = np.array([own.internal for own in spec.force.at])
+            return Rest(name, spec.part, pairs, unit(spec.force.direction), at, spec.points_on)
         case LocatingSpec():
             pairs = tuple(_pair(scene, name, number, spec, effects, touched) for number in spec.pairs_by_name)
             return Locate(name, spec.part, pairs, spec.points_on)

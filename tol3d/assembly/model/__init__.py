@@ -7,7 +7,7 @@ from tol3d.assembly.model.assembly import Assembly, Part
 from tol3d.assembly.model.datum_frame import Datum, DatumFrame
 from tol3d.assembly.model.feature import Contribution, Feature
 from tol3d.assembly.model.measures import Measured
-from tol3d.assembly.model.moves import BestFit, Fit, Fix, Locate, Mate, Move, Pair, Relation, Weld
+from tol3d.assembly.model.moves import BestFit, Fit, Fix, Locate, Mate, Move, Pair, Relation, Rest, Weld
 from tol3d.assembly.model.shape import Axis, Plane, Point, RoundPlane, Shape
 
 __all__ = [
@@ -29,6 +29,7 @@ __all__ = [
     "Plane",
     "Point",
     "Relation",
+    "Rest",
     "RoundPlane",
     "Shape",
     "Weld",

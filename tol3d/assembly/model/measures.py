@@ -31,6 +31,10 @@ MeasureKind = Literal["distance", "gap", "point_plane", "angle", "size", "positi
 """
 
 
+Rocking = Literal["least", "middle", "largest"]
+"""Where a part may rock on its contacts: which value over its ends is read, middle of both."""
+
+
 @dataclass(frozen=True, eq=False)
 class Measured:
     """What a measure reads; see each kind.
@@ -44,6 +48,7 @@ class Measured:
         after: index of the move after which it is read; -1 for the end.
         bonus: of a position, what the feature's size takes from it.
         minus: a second one that is subtracted in the same trial.
+        rocking: which value it has where a part may rock on its contacts; None where it then has none. Not of `minus`.
     """
 
     kind: MeasureKind
@@ -53,3 +58,4 @@ class Measured:
     after: int = -1
     bonus: MaterialBonus | None = None
     minus: "Measured | None" = None
+    rocking: Rocking | None = None

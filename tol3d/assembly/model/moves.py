@@ -123,6 +123,29 @@ class Mate:
     relations: tuple[Relation, ...]
 
 
+@dataclass(frozen=True, eq=False)
+class Rest:
+    """One-sided contacts of points on planes, without friction: the part goes as far along the force as they let it.
+
+    Which contacts carry follows from the lever arms as they are nominally; what a turn of the trial does to the arms is
+    of second order. Freedoms that no contact sees stay as nominal (least rotation, about the part's origin).
+
+    Args:
+        name, part: of the move, and what it places.
+        pairs: one or more, see Pair; a gap is normal . (origin of moving - origin of target) - locator, 0 or more.
+        force: direction (3,), of unit length, in the world.
+        at: a point on its line (3,), in the frame of the part [mm].
+        points_on: which side the points ride on.
+    """
+
+    name: str
+    part: str
+    pairs: tuple[Pair, ...]
+    force: Array
+    at: Array
+    points_on: PointsOn = "part"
+
+
 @dataclass(frozen=True)
 class Weld:
     """Parts that are placed already become one body, which may be moved again.
@@ -138,4 +161,4 @@ class Weld:
     others: tuple[str, ...]
 
 
-Move = Fix | Locate | BestFit | Mate | Weld
+Move = Fix | Locate | BestFit | Mate | Rest | Weld

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from tol3d.assembly.model import BestFit
 from tol3d.assembly.model.statuses import OK, SINGULAR
 from tol3d.assembly.placing.fits import least_largest, least_squares
-from tol3d.assembly.placing.free_motion import free_motions
+from tol3d.assembly.placing.free_motion import free_motions, seen_steps
 from tol3d.assembly.placing.poses import Codes, Pose, column, rotated
 from tol3d.assembly.placing.world import World
 from tol3d.errors import InputError
@@ -71,7 +71,7 @@ def best_fitting(move: BestFit, nominal: World) -> BestFitting:
     rows = np.concatenate(
         [np.hstack([own, np.cross(arm, own)]) for own, arm in zip(directions[:, :, :, 0], arms, strict=True)]
     )
-    basis = _seen(free_motions(rows, np.zeros(3), reach), reach)
+    basis = seen_steps(free_motions(rows, np.zeros(3), reach), reach)
     if not basis.shape[1]:
         raise InputError(f"moves.{move.name}: no residual sees {move.part}: expected directions in which they count")
     weights = np.array([fit.weight for fit in move.fits])
@@ -83,21 +83,6 @@ def best_fitting(move: BestFit, nominal: World) -> BestFitting:
         np.ascontiguousarray(np.column_stack([turn, np.zeros(3)])),
         column(origin),
     )
-
-
-def _seen(free: Array, reach: float) -> Array:
-    """Steps (6, steps), turn times reach and shift, without free motions: least turn, then least shift of the origin.
-
-    Args:
-        free: motions (motions, 6) that nothing sees, shift of the origin [mm] and turn [rad].
-        reach: [mm].
-    """
-    turns, sizes, _ = np.linalg.svd(free[:, 3:] * reach, full_matrices=True)
-    rank = int(np.sum(sizes > 1e-9))
-    not_asked = [np.concatenate([row[3:] * reach, np.zeros(3)]) for row in turns.T[:rank] @ free]
-    not_asked += [np.concatenate([np.zeros(3), row[:3]]) for row in turns.T[rank:] @ free]
-    _, _, right = np.linalg.svd(np.array([*not_asked, np.zeros(6)]))
-    return np.ascontiguousarray(right[len(not_asked) :].T)
 
 
 def _asked(move: BestFit, world: World) -> tuple[Array, Array, Array]:

@@ -3,7 +3,7 @@
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
-from tol3d.assembly.model import Assembly, BestFit, Locate, Mate, Measured, Move, Weld
+from tol3d.assembly.model import Assembly, BestFit, Locate, Mate, Measured, Move, Rest, Weld
 from tol3d.errors import InputError
 
 Cause = str | int
@@ -58,7 +58,7 @@ class Causes:
         return Causes(self.assembly, {**self.placed, **placed, move.part: causes}, self.bodies)
 
     def _of_move(self, move: Move) -> Iterable[frozenset[Cause]]:
-        if isinstance(move, Locate):
+        if isinstance(move, Locate | Rest):
             pairs = [(pair.moving, pair.target) for pair in move.pairs]
         elif isinstance(move, BestFit):
             pairs = [(fit.moving, fit.target) for fit in move.fits]

@@ -25,6 +25,21 @@ def free_motions(rows: Array, middle: Array, reach: float) -> Array:
     return np.asarray(motions)
 
 
+def seen_steps(free: Array, reach: float) -> Array:
+    """Steps (6, steps), turn times reach and shift, without free motions: least turn, then least shift of the origin.
+
+    Args:
+        free: motions (motions, 6) that nothing sees, shift of the origin [mm] and turn [rad].
+        reach: [mm].
+    """
+    turns, sizes, _ = np.linalg.svd(free[:, 3:] * reach, full_matrices=True)
+    rank = int(np.sum(sizes > 1e-9))
+    not_asked = [np.concatenate([row[3:] * reach, np.zeros(3)]) for row in turns.T[:rank] @ free]
+    not_asked += [np.concatenate([np.zeros(3), row[:3]]) for row in turns.T[rank:] @ free]
+    _, _, right = np.linalg.svd(np.array([*not_asked, np.zeros(6)]))
+    return np.ascontiguousarray(right[len(not_asked) :].T)
+
+
 def in_words(motions: Array) -> str:
     """The simplest of some motions, such as "it shifts along x" or "it turns about z through (0, 40, 0)"."""
     length = max(float(np.abs(motions).max()), 1.0)

@@ -7,7 +7,7 @@ from functools import cached_property, lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.assembly.model import Assembly, BestFit, Fix, Locate, Mate, Move, Weld
+from tol3d.assembly.model import Assembly, BestFit, Fix, Locate, Mate, Move, Rest, Weld
 from tol3d.assembly.model.statuses import OK, SINGULAR
 from tol3d.assembly.placing.best_fitting import BestFitting, best_fitting
 from tol3d.assembly.placing.causes import Cause, Causes, causes_of, ordered
@@ -17,6 +17,8 @@ from tol3d.assembly.placing.mating import Mating, mating
 from tol3d.assembly.placing.measuring import reading
 from tol3d.assembly.placing.part_features import PartFeatures
 from tol3d.assembly.placing.poses import Codes, Pose
+from tol3d.assembly.placing.resting import Resting, resting
+from tol3d.assembly.placing.rocking import carrying, over_poses, slope_of, varying
 from tol3d.assembly.placing.world import World
 
 Array = NDArray[np.float64]
@@ -26,7 +28,7 @@ BLOCK = 8192
 
 _MOVED: Codes = np.full(1, OK, dtype=np.int8)
 
-Placing = Fix | Weld | Locating | Mating | BestFitting
+Placing = Fix | Weld | Locating | Mating | BestFitting | Resting
 
 
 def values(assembly: Assembly, deviations: Array, names: Sequence[str]) -> dict[str, tuple[Array, Codes]]:
@@ -44,16 +46,26 @@ def values(assembly: Assembly, deviations: Array, names: Sequence[str]) -> dict[
     Raises:
         InputError: a move leaves a freedom or takes one twice; a part is not placed.
     """
+    return answers(assembly, deviations, names)[0]
+
+
+def answers(
+    assembly: Assembly, deviations: Array, names: Sequence[str]
+) -> tuple[dict[str, tuple[Array, Codes]], dict[str, NDArray[np.str_]]]:
+    """What measures read, as `values`; and by rest which contacts carry in each trial (trials,), such as "1 3 4"."""
     plan = planned(assembly)
     deviations = np.asarray(deviations, dtype=np.float64)
-    causes = {name: plan.of_measures[name] for name in names}
     found = {name: (np.empty(len(deviations)), np.empty(len(deviations), dtype=np.int8)) for name in names}
+    carried: dict[str, list[NDArray[np.str_]]] = {move.name: [] for move in assembly.moves if isinstance(move, Rest)}
     for start in range(0, len(deviations), BLOCK):
         rows = slice(start, start + BLOCK)
         block = _placed(plan, deviations[rows])
         for name, (numbers, codes) in found.items():
-            numbers[rows], codes[rows] = _read(plan, block, name, causes[name])
-    return found
+            numbers[rows], codes[rows] = _over_rests(plan, block, name, deviations[rows])
+        for name, own in carried.items():
+            sets, which = carrying(block.worlds[-1].loads[name])
+            own.append(np.array([" ".join(map(str, np.flatnonzero(each) + 1)) for each in sets])[which])
+    return found, {name: np.concatenate(own) for name, own in carried.items() if own}
 
 
 def placed(assembly: Assembly, deviations: Array) -> dict[str, Array]:
@@ -160,6 +172,8 @@ def _planned(move: Move, nominal: World) -> Placing:
             return mating(move, nominal)
         case BestFit():
             return best_fitting(move, nominal)
+        case Rest():
+            return resting(move, nominal)
         case _:
             return move
 
@@ -190,12 +204,13 @@ class _Block:
         return first
 
 
-def _placed(plan: Plan, deviations: Array) -> _Block:
+def _placed(plan: Plan, deviations: Array, instead: Mapping[int, Resting] | None = None) -> _Block:
+    """Trials as moves place them; `instead` has other moves for some, by their places."""
     assembly = plan.assembly
     worlds, codes = [_world(assembly, plan.datum_seats, np.ascontiguousarray(deviations.T))], dict[int, Codes]()
     with np.errstate(all="ignore"):  # what is not a number gets a code
         for index, move in enumerate(plan.moves):
-            world, codes[index] = _after(move, worlds[-1])
+            world, codes[index] = _after(instead.get(index, move) if instead else move, worlds[-1])
             worlds.append(world)
     return _Block(tuple(worlds), codes)
 
@@ -218,3 +233,49 @@ def _read(plan: Plan, block: _Block, name: str, causes: Sequence[Cause]) -> tupl
         first = block.first_of(causes)
     first = np.where((first == OK) & ~np.isfinite(numbers), np.int8(SINGULAR), first)
     return np.where(first == OK, numbers, np.nan), first
+
+
+def _over_rests(plan: Plan, block: _Block, name: str, deviations: Array) -> tuple[Array, Codes]:
+    """A measure's values and codes (n,); where parts may rock, over all poses that they may take."""
+    numbers, codes = _read(plan, block, name, plan.of_measures[name])
+    leaning, varies = dict[int, Array](), np.zeros(len(numbers), dtype=bool)
+    for index in plan.of_measures[name]:
+        move = plan.moves[index] if isinstance(index, int) else None
+        if isinstance(move, Resting) and isinstance(index, int):
+            carried = block.worlds[-1].loads[move.move.name]
+            if (np.count_nonzero(carried, axis=0) < len(move.pull)).any():
+                slope = _slope(plan, name, index)
+                if slope is not None:
+                    leaning[index], varies = slope, varies | varying(slope, move, carried)
+    varies &= codes == OK
+    if not varies.any():
+        return numbers, codes
+    ends = []
+    for sign in (-1.0, 1.0):
+        instead = {index: _leaning(plan, index, (sign * own).tobytes()) for index, own in leaning.items()}
+        there = _placed(plan, deviations[varies], instead)
+        ends.append(_read(plan, there, name, plan.of_measures[name])[0])
+    numbers[varies], codes[varies] = over_poses(
+        ends[0], ends[1], numbers[varies], codes[varies], plan.assembly.measures[name].rocking
+    )
+    return np.where(codes == OK, numbers, np.nan), codes
+
+
+@lru_cache(maxsize=256)
+def _slope(plan: Plan, name: str, index: int) -> Array | None:
+    """How a measure changes with a part at rest."""
+    move = plan.moves[index]
+    assert isinstance(move, Resting)
+
+    def read(deviations: Array, instead: Mapping[int, Resting]) -> Array:
+        return _read(plan, _placed(plan, deviations, instead), name, plan.of_measures[name])[0]
+
+    return slope_of(plan.assembly.measures[name], index, move, read, plan.assembly.width)
+
+
+@lru_cache(maxsize=256)
+def _leaning(plan: Plan, index: int, along: bytes) -> Resting:
+    """A rest that leans along some motion."""
+    move = plan.moves[index]
+    assert isinstance(move, Resting)
+    return move.leaning(np.frombuffer(along))

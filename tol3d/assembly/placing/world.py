@@ -1,7 +1,7 @@
 """Parts of consecutive trials in the world, as moves leave them."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,6 +24,7 @@ class World:
         own: features and datum frames of each part, by its name.
         poses: of parts that are placed, in the world.
         bodies: of each part, what it is welded to, itself among them.
+        loads: by move, the part of its force that each contact carries (contacts, n).
     """
 
     assembly: Assembly
@@ -31,6 +32,7 @@ class World:
     own: Mapping[str, PartFeatures]
     poses: Mapping[str, Pose]
     bodies: Mapping[str, frozenset[str]]
+    loads: Mapping[str, Array] = field(default_factory=dict)
 
     @property
     def trials(self) -> int:
@@ -61,6 +63,10 @@ class World:
         for other in self.bodies[part] - {part}:
             moved[other] = pose @ (self.poses[part].inverse @ self.poses[other])
         return replace(self, poses={**self.poses, **moved})
+
+    def with_loads(self, move: str, loads: Array) -> "World":
+        """The world in which contacts of a move carry some parts of its force (contacts, n)."""
+        return replace(self, loads={**self.loads, move: loads})
 
     def with_welded(self, parts: tuple[str, ...]) -> "World":
         """The world in which parts, and what is welded to them, are one body."""

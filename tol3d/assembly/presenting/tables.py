@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from tol3d.assembly.model import Axis, Feature, Locate, Move, Plane, RoundPlane
-from tol3d.assembly.model.moves import BestFit, Mate, Weld
+from tol3d.assembly.model.moves import BestFit, Mate, Rest, Weld
 from tol3d.assembly.system import AssemblySystem
 from tol3d.report.page import Block, Heading, Row, Table, titled
 from tol3d.report.system_check import system_blocks
@@ -60,6 +60,8 @@ def _move(move: Move) -> tuple[str, str, str]:
             return "best fit", move.part, f"{len(move.fits)} points, {move.criterion}"
         case Mate():
             return "mate", move.part, ", ".join(f"{own.kind} {own.target}" for own in move.relations)
+        case Rest():
+            return "rest", move.part, f"{len(move.pairs)} contacts, points ride on the {move.points_on}"
         case Weld():
             return "weld", move.part, ", ".join(move.others)
     return "fixed", move.part, ""

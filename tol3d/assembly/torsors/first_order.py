@@ -6,13 +6,13 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.assembly.model import Assembly, BestFit, Measured
+from tol3d.assembly.model import Assembly, BestFit, Measured, Rest
 from tol3d.assembly.torsors.columns import Columns, without_rounding
 from tol3d.assembly.torsors.measures import reading
 from tol3d.assembly.torsors.moves import after
 from tol3d.assembly.torsors.ordered import ordered_product
 from tol3d.assembly.torsors.slopes import STEP, Bend, Slopes
-from tol3d.assembly.torsors.terms import Largest, Term
+from tol3d.assembly.torsors.terms import Ends, Largest, Term
 from tol3d.assembly.torsors.world import World
 
 Array = NDArray[np.float64]
@@ -100,11 +100,37 @@ def first_order(assembly: Assembly) -> FirstOrder:
         InputError: a move leaves a freedom that it should hold or asks twice for the same; a measure that has no sense.
     """
     columns = Columns(assembly.width, _room(assembly))
-    worlds = [World(assembly, columns)]
-    for move in assembly.moves:
-        worlds.append(after(move, worlds[-1]))
+    first = World(assembly, columns)
+    worlds, unknowns = _moved(first, {})
     rows = {name: without_rounding(reading(measured, worlds)) for name, measured in assembly.measures.items()}
+    for name, measured in assembly.measures.items():
+        if measured.rocking is not None and unknowns:
+            rows[name] = _rocked(measured, rows[name], first, unknowns)
     return FirstOrder(assembly.width, tuple(columns.terms), rows)
+
+
+def _moved(first: World, leaning: Mapping[int, Array]) -> tuple[list[World], dict[int, slice]]:
+    """Before the first move and after each, with whither some rests lean; and the columns that rests make."""
+    worlds, unknowns = [first], dict[int, slice]()
+    for index, move in enumerate(first.assembly.moves):
+        worlds.append(after(move, worlds[-1], leaning.get(index)))
+        if isinstance(move, Rest):
+            start, term = first.columns.terms[-1]
+            unknowns[index] = slice(start, start + term.count)
+    return worlds, unknowns
+
+
+def _rocked(measured: Measured, row: Array, first: World, unknowns: Mapping[int, slice]) -> Array:
+    """A measure's row (columns,) at one end of what parts may rock, or in the middle of both."""
+    weights = {index: row[own] for index, own in unknowns.items()}
+    ends = []
+    for sign in (-1.0, 1.0):
+        worlds, _ = _moved(first, {index: sign * own for index, own in weights.items()})
+        ends.append(without_rounding(reading(measured, worlds)))
+    if measured.rocking == "middle":
+        return (ends[0] + ends[1]) / 2.0
+    made: Array = first.columns.made_by(Ends(np.array(ends), measured.rocking == "largest"))[0]
+    return made
 
 
 def _reads(rows: Array) -> NDArray[np.bool_]:
@@ -113,10 +139,15 @@ def _reads(rows: Array) -> NDArray[np.bool_]:
 
 
 def _room(assembly: Assembly) -> int:
-    """How many columns terms may make: of each datum one, of a minimax fit six, of what a measure reads three."""
+    """How many columns terms may make: of each datum one, of a minimax fit or a rest six, of a measure's reading three.
+
+    Moves are followed once, and twice more for each measure that is read at an end of what parts may rock.
+    """
     datums = sum(len(frame.datums) for frame in assembly.datum_frames.values())
     fits = sum(isinstance(move, BestFit) and move.criterion == "minimax" for move in assembly.moves)
-    return datums + 6 * fits + 3 * sum(map(_readings, assembly.measures.values()))
+    rests = sum(isinstance(move, Rest) for move in assembly.moves)
+    rocking = sum(own.rocking is not None for own in assembly.measures.values()) if rests else 0
+    return datums + (6 * fits + 6 * rests) * (1 + 2 * rocking) + 10 * sum(map(_readings, assembly.measures.values()))
 
 
 def _readings(measured: Measured) -> int:

@@ -3,17 +3,23 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.assembly.model import BestFit, Fix, Locate, Mate, Move, Weld
+from tol3d.assembly.model import BestFit, Fix, Locate, Mate, Move, Rest, Weld
 from tol3d.assembly.torsors.best_fit import fitted
 from tol3d.assembly.torsors.locators import located
 from tol3d.assembly.torsors.mating import mated
+from tol3d.assembly.torsors.resting import rested
 from tol3d.assembly.torsors.world import World
 
 Array = NDArray[np.float64]
 
 
-def after(move: Move, world: World) -> World:
+def after(move: Move, world: World, leaning: Array | None = None) -> World:
     """The world after a move.
+
+    Args:
+        move: which.
+        world: before it.
+        leaning: of a rest, along its unknowns, how the part lies where it may rock; in the middle if not given.
 
     Raises:
         InputError: it leaves a freedom that it should hold, or asks twice for the same.
@@ -27,5 +33,7 @@ def after(move: Move, world: World) -> World:
             return world.with_part_at(move.part, mated(move, world))
         case BestFit():
             return world.with_part_at(move.part, fitted(move, world))
+        case Rest():
+            return world.with_part_at(move.part, rested(move, world, leaning))
         case Weld():
             return world.with_welded((move.part, *move.others))

@@ -10,9 +10,9 @@ from tol3d.assembly.torsors.ordered import ordered_product, squared_lengths
 
 Array = NDArray[np.float64]
 
-Form = Literal["largest length", "least width", "least largest residual", "clipped amount"]
+Form = Literal["largest length", "least width", "least largest residual", "clipped amount", "one-sided contacts", "end"]
 """How a term depends on what it reads: the largest length of vectors and the least width between parallel planes are
-convex; a pose of least largest residual and a clipped amount are not, but linear in pieces."""
+convex; a pose of least largest residual or on one-sided contacts and a clipped amount are not, but linear in pieces."""
 
 
 class Term(Protocol):
@@ -58,6 +58,25 @@ class Largest:
             return np.asarray(np.abs(read).max(axis=0, keepdims=True))
         squares = squared_lengths(read.reshape(-1, self.size, read.shape[1]))
         return np.asarray(np.sqrt(squares.max(axis=0, keepdims=True)))
+
+
+@dataclass(frozen=True, eq=False)
+class Ends:
+    """The larger or the smaller one of some amounts.
+
+    Args:
+        forms: (amounts, columns).
+        is_largest: which.
+    """
+
+    forms: Array
+    is_largest: bool
+    form: Form = "end"
+    count: int = 1
+
+    def values(self, read: Array) -> Array:
+        """(1, trials) from (amounts, trials)."""
+        return np.asarray(read.max(axis=0, keepdims=True) if self.is_largest else read.min(axis=0, keepdims=True))
 
 
 @dataclass(frozen=True, eq=False)

@@ -11,7 +11,7 @@ from tol3d.assembly.grammar.feature_name import FeatureName, Use, part_of
 from tol3d.assembly.grammar.moves.placing_move import PlacingSpec
 from tol3d.assembly.grammar.moves.weld import WeldSpec
 from tol3d.assembly.grammar.parts import SolidSpec
-from tol3d.assembly.model.measures import MeasureKind
+from tol3d.assembly.model.measures import MeasureKind, Rocking
 from tol3d.scene.measure import AngleLimit, LengthLimit, MeasureEntry
 from tol3d.scene.name import Name
 from tol3d.scene.place import KeyPath
@@ -30,6 +30,10 @@ class AssemblyMeasureSpec(MeasureEntry):
 
     lower_limit: LengthLimit | AngleLimit | None = Field(default=None, description="less than this is out of limits")
     upper_limit: LengthLimit | AngleLimit | None = Field(default=None, description="more than this is out of limits")
+    rocking: Rocking | None = Field(
+        default=None,
+        description="which value it has where a part may rock on its contacts; without one it then has no value",
+    )
 
 
 class FeatureMeasureSpec(AssemblyMeasureSpec):

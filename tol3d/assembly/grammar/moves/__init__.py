@@ -5,6 +5,7 @@ from tol3d.assembly.grammar.moves.fix import FixSpec
 from tol3d.assembly.grammar.moves.locating import LocatingSpec, SixPlaneSpec, ThreeTwoOneSpec
 from tol3d.assembly.grammar.moves.mate import MateSpec
 from tol3d.assembly.grammar.moves.placing_move import PlacingSpec
+from tol3d.assembly.grammar.moves.rest import RestSpec
 from tol3d.assembly.grammar.moves.weld import WeldSpec
 
 __all__ = [
@@ -13,6 +14,7 @@ __all__ = [
     "LocatingSpec",
     "MateSpec",
     "PlacingSpec",
+    "RestSpec",
     "SixPlaneSpec",
     "ThreeTwoOneSpec",
     "WeldSpec",

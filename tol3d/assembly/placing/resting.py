@@ -1,0 +1,206 @@
+"""Parts at rest on one-sided contacts: what these are nominally, and the pose that each trial takes."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import nnls
+
+from tol3d.assembly.model import Pair, Rest
+from tol3d.assembly.model.statuses import NO_BUILD, OK, SINGULAR
+from tol3d.assembly.placing.actual_feature import total
+from tol3d.assembly.placing.free_motion import free_motions, in_words, seen_steps
+from tol3d.assembly.placing.poses import Codes, Pose, column, dot
+from tol3d.assembly.placing.rests import TIED, rests_found
+from tol3d.assembly.placing.world import World
+from tol3d.errors import InputError
+
+Array = NDArray[np.float64]
+
+SLIGHT = 1e-5
+"""Of the force: what is added to it to see which contacts would carry if it pointed a little aside."""
+MISSED = 1e-9
+"""Part of a force that contacts leave over, of which none is left."""
+OUTCOMES: Codes = np.array([OK, NO_BUILD, SINGULAR], dtype=np.int8)
+
+
+@dataclass(frozen=True, eq=False)
+class Resting:
+    """A rest, as its contacts are nominally; solved in the world, with the part's nominal origin at 0.
+
+    Args:
+        move: which.
+        origin: of the part, nominally in the world (3, 1) [mm].
+        reach: of the contacts about it [mm].
+        start: the nominal pose there (3, 4).
+        steps: motions that contacts see, turn times reach and shift (6, motions).
+        rows: how nominal gaps change with the motions (contacts, motions).
+        pull: of the force, along the motions (motions,).
+        basis: contacts that would carry if all were touched, one for each motion.
+        inverse: of their rows (motions, motions).
+        loads: on them, of the force and of what it leans to (2, motions).
+        nudge: by which the part is moved on once it rests, along the motions (motions, n); none if not given.
+    """
+
+    move: Rest
+    origin: Array
+    reach: float
+    start: Array
+    steps: Array
+    rows: Array
+    pull: Array
+    basis: NDArray[np.int64]
+    inverse: Array
+    loads: Array
+    nudge: Array | None = None
+
+    def placed(self, world: World) -> tuple[World, Codes]:
+        """The world after the move, and what became of it (n,)."""
+        points, normals, heights = _contacts(self.move, world, self.origin)
+        trials = world.trials
+        turn, shift = np.empty((3, 3, trials)), np.empty((3, trials))
+        carried, outcomes = np.empty((len(self.rows), trials)), np.empty(trials, dtype=np.int8)
+        rests_found(
+            points, normals, heights, self.move.points_on == "part", self.rows, self.steps, self.basis, self.inverse,
+            self.loads, self.start, self.reach, turn, shift, carried, outcomes,
+        )  # fmt: skip
+        if self.nudge is not None:
+            turn, shift = self._moved_on(self.nudge, turn, shift)
+        pose = Pose(turn, shift + self.origin)
+        return world.with_part_at(self.move.part, pose).with_loads(self.move.name, carried), OUTCOMES[outcomes]
+
+    def _moved_on(self, by: Array, turn: Array, shift: Array) -> tuple[Array, Array]:
+        moved = self.steps @ by
+        x, y, z = moved[:3] / self.reach
+        none = np.zeros_like(x)
+        skew = np.array([[none, -z, y], [z, none, -x], [-y, x, none]])
+        once = np.einsum("ijn,jkn->ikn", skew, turn)
+        return turn + once + np.einsum("ijn,jkn->ikn", skew, once) / 2.0, shift + moved[3:]
+
+    def leaning(self, along: Array) -> "Resting":
+        """The same, that goes as far along some motion (motions,) as it can where it may rock."""
+        basis, inverse, loads = first_basis(self.rows, self.pull, along)
+        return replace(self, basis=basis, inverse=inverse, loads=loads)
+
+    def nudged(self, by: Array) -> "Resting":
+        """The same, moved on along the motions (motions, n), to second order."""
+        return replace(self, nudge=by)
+
+
+def resting(move: Rest, nominal: World) -> Resting:
+    """A rest.
+
+    Args:
+        move: which.
+        nominal: the world before it without deviations, the part at its nominal pose.
+
+    Raises:
+        InputError: the contacts do not hold the part against the force, or leave it free to move across the force.
+    """
+    pose = nominal.poses[move.part]
+    turn, origin = pose.turn[:, :, 0], pose.shift[:, 0]
+    on_part = move.points_on == "part"
+    points, normals, _ = (own[..., 0] for own in _contacts(move, nominal, column(origin)))
+    arms, normals = (points @ turn.T, normals) if on_part else (points, normals @ turn.T)
+    reach = max(float(np.linalg.norm(arms, axis=1).max()), 1.0)
+    # of a gap by shift of the origin and turn
+    free = free_motions(np.hstack([normals, np.cross(arms, normals)]), np.zeros(3), reach)
+    rows = np.hstack([np.cross(arms, normals) / reach, normals])
+    pull = np.concatenate([np.cross(turn @ move.at, move.force) / reach, move.force])
+    steps = seen_steps(free, reach)
+    _refuse_unheld(move, rows, pull, reach, origin)
+    _refuse_loose(move, rows, pull, steps, reach, origin)
+    own_rows, own_pull = np.ascontiguousarray(rows @ steps), steps.T @ pull
+    basis, inverse, loads = first_basis(own_rows, own_pull, generic(len(own_pull)))
+    start = np.ascontiguousarray(np.column_stack([turn, np.zeros(3)]))
+    return Resting(move, column(origin), reach, start, steps, own_rows, own_pull, basis, inverse, loads)
+
+
+def generic(motions: int) -> Array:
+    """A motion that is along nothing in particular (motions,)."""
+    return np.asarray(np.sqrt(2.0 + np.arange(motions)) % 1.0 + 0.1)
+
+
+def first_basis(rows: Array, pull: Array, along: Array) -> tuple[NDArray[np.int64], Array, Array]:
+    """Contacts that carry a force and, where several sets do, also what leans along another motion.
+
+    Returns:
+        Contacts (motions,), the inverse of their rows (motions, motions), loads on them of both (2, motions).
+    """
+    wanted = along / max(float(np.linalg.norm(along)), 1e-300)
+    shares, _ = nnls(rows.T, -(pull + SLIGHT * wanted))
+    basis = np.argsort(-shares, kind="stable")[: len(pull)]
+    if np.linalg.matrix_rank(rows[basis]) < len(pull):
+        basis = _completed(rows, np.flatnonzero(shares > 0.0))
+    inverse = np.ascontiguousarray(np.linalg.inv(rows[basis]))
+    loads = np.array([-(pull @ inverse), -(wanted @ inverse)])
+    loads[0, np.abs(loads[0]) < TIED] = 0.0
+    return basis.astype(np.int64), inverse, loads
+
+
+def _completed(rows: Array, chosen: NDArray[np.int64]) -> NDArray[np.int64]:
+    """Contacts that carry, and others that make them as many as motions."""
+    basis = list(chosen)
+    for k in range(len(rows)):
+        if len(basis) < rows.shape[1] and np.linalg.matrix_rank(rows[[*basis, k]], tol=1e-9) > len(basis):
+            basis.append(k)
+    return np.array(basis)
+
+
+def _refuse_unheld(move: Rest, rows: Array, pull: Array, reach: float, origin: Array) -> None:
+    """Refuse contacts of which no forces balance the one on the part, with the motion that it then takes."""
+    shares, left = nnls(rows.T, -pull)
+    if left > MISSED * np.linalg.norm(pull):
+        motion = _world_motion(pull + rows.T @ shares, reach, origin)
+        raise InputError(
+            f"moves.{move.name}: its contacts do not hold {move.part} against the force: {in_words(motion)}; expected "
+            "contacts on all sides to which it would give way"
+        )
+
+
+def _refuse_loose(move: Rest, rows: Array, pull: Array, steps: Array, reach: float, origin: Array) -> None:
+    """Refuse contacts that nothing presses the part against, with the motion by which it may leave them."""
+    for step in steps.T:
+        for aside in (step, -step):
+            leaning = pull + SLIGHT * aside
+            shares, left = nnls(rows.T, -leaning)
+            if left > 1e-3 * SLIGHT:
+                motion = _world_motion(leaning + rows.T @ shares, reach, origin)
+                raise InputError(
+                    f"moves.{move.name}: the force does not press {move.part} against all of its contacts: "
+                    f"{in_words(motion)}, away from some; expected a force that points towards those too, or contacts "
+                    "on both sides"
+                )
+
+
+def _world_motion(step: Array, reach: float, origin: Array) -> Array:
+    """A step, turn times reach and shift of the part's origin, as a motion about the world's (1, 6)."""
+    turn, shift = step[:3] / reach, step[3:]
+    size = max(float(np.abs(step).max()), 1e-300)
+    return np.concatenate([shift - np.cross(turn, origin), turn])[None] / size
+
+
+def _contacts(move: Rest, world: World, origin: Array) -> tuple[Array, Array, Array]:
+    """Points, normals (contacts, 3, n) and heights (contacts, n); a gap is as `rests.gap_of` has it."""
+    contacts = [_contact(move, pair, world, origin) for pair in move.pairs]
+    return _stacked([own[0] for own in contacts]), _stacked([own[1] for own in contacts]), _stacked(
+        [own[2] for own in contacts]
+    )  # fmt: skip
+
+
+def _contact(move: Rest, pair: Pair, world: World, origin: Array) -> tuple[Array, Array, Array]:
+    moving = world.on_body(pair.moving, move.part).origin
+    target = world.placed(pair.target).origin - origin
+    locator = total(pair.locator, 1, world.columns)[0]
+    normal = column(pair.normal)
+    if move.points_on == "part":
+        turn = world.poses[world.part_of(pair.target)].turn
+        normal = turn[:, 0] * normal[0] + turn[:, 1] * normal[1] + turn[:, 2] * normal[2]
+        return moving, normal, dot(normal, target) + locator
+    return target, normal, locator - dot(normal, moving)
+
+
+def _stacked(arrays: Sequence[Array]) -> Array:
+    """Of all contacts, (contacts, ..., n) or (contacts, ..., 1)."""
+    return np.ascontiguousarray(np.stack(np.broadcast_arrays(*arrays)))

@@ -1,0 +1,201 @@
+"""Parts on one-sided contacts under a force: the finite pose, trial by trial.
+
+Each step solves a linear programme about the pose reached: the farthest motion along the force with no gap below 0, by
+the dual simplex method with the nominal lever arms; then gaps are found again. Several motions may go as far: a second
+direction, which counts where the first one is met alike, chooses among them (a lexicographic programme). Each trial
+begins with the same contacts, so that it has the same bits alone and among thousands.
+"""
+
+from typing import Any, Final
+
+import numpy as np
+
+from tol3d.assembly.placing.pose_steps import stepped
+from tol3d.numerics.compiled import kernel, part
+
+STEPS: Final = 60
+MET: Final = 1e-13
+"""Step [rad, and mm a mm of reach] after which a trial is done."""
+OPEN: Final = -1e-11
+"""Gap [mm] under which a contact is pierced."""
+PIVOTS: Final = 400
+"""Exchanges of contacts in one trial; in practice as many as contacts."""
+ACTS: Final = 1e-9
+"""How far a gap closes as another one opens, under which it does not."""
+TIED: Final = 1e-9
+"""Part of the force under which a contact carries nothing."""
+RESTS: Final = 0
+CLASHES: Final = 1
+"""No motion opens all gaps: the part finds no room."""
+LOST: Final = 2
+
+
+@part
+def gap_of(pose: Any, contacts: Any, k: int, i: int, on_part: bool) -> Any:
+    """A gap [mm]: n . (R p + t) - h, or with the normal on the part (R n) . (t - p) - h."""
+    points, normals, heights = contacts
+    p, q, h = min(i, points.shape[2] - 1), min(i, normals.shape[2] - 1), min(i, heights.shape[1] - 1)
+    total = -heights[k, h]
+    if on_part:
+        x, y, z = points[k, 0, p], points[k, 1, p], points[k, 2, p]
+        for r in range(3):
+            total += normals[k, r, q] * (pose[r, 0] * x + pose[r, 1] * y + pose[r, 2] * z + pose[r, 3])
+    else:
+        a, b, c = normals[k, 0, q], normals[k, 1, q], normals[k, 2, q]
+        for r in range(3):
+            total += (pose[r, 0] * a + pose[r, 1] * b + pose[r, 2] * c) * (pose[r, 3] - points[k, r, p])
+    return total
+
+
+@part
+def leaving(inverse: Any, loads: Any, row: Any, closes: Any) -> int:
+    """Which contact of the basis a new one relieves first; -1 if none. `closes` becomes row . inverse."""
+    count = loads.shape[1]
+    best = -1
+    least, second = np.inf, np.inf
+    for b in range(count):
+        total = 0.0
+        for j in range(count):
+            total += row[j] * inverse[j, b]
+        closes[b] = total
+        if total > ACTS:
+            first, other = max(loads[0, b], 0.0) / total, loads[1, b] / total
+            if first < least - 1e-12 or (first < least + 1e-12 and other < second):
+                best, least, second = b, min(first, least), other
+    return best
+
+
+@part
+def exchange(inverse: Any, loads: Any, closes: Any, out: int) -> None:
+    """Let a new contact take the place of one: the inverse of the basis, and the loads on it."""
+    count = loads.shape[1]
+    pivot = closes[out]
+    for j in range(count):
+        inverse[j, out] /= pivot
+    for b in range(count):
+        if b != out:
+            for j in range(count):
+                inverse[j, b] -= inverse[j, out] * closes[b]
+    for level in range(2):
+        share = loads[level, out] / pivot
+        for b in range(count):
+            loads[level, b] -= share * closes[b]
+        loads[level, out] = share
+
+
+@part
+def farthest(rows: Any, gaps: Any, basis: Any, inverse: Any, loads: Any, rooms: Any, pivots: int) -> int:
+    """Motion z, into the first room, that goes farthest with rows z + gaps >= 0; the exchanges made, or below 0.
+
+    Returns:
+        -1: gaps contradict each other. -2: too many exchanges.
+    """
+    z, closes = rooms
+    count = loads.shape[1]
+    while True:
+        for j in range(count):
+            total = 0.0
+            for b in range(count):
+                total -= inverse[j, b] * gaps[basis[b]]
+            z[j] = total
+        entering, deepest = -1, OPEN
+        for k in range(rows.shape[0]):
+            total = gaps[k]
+            for j in range(count):
+                total += rows[k, j] * z[j]
+            if total < deepest:
+                among = False
+                for b in range(count):
+                    among = among or basis[b] == k
+                if not among:
+                    entering, deepest = k, total
+        if entering < 0:
+            return pivots
+        if pivots == PIVOTS:
+            return -2
+        out = leaving(inverse, loads, rows[entering], closes)
+        if out < 0:
+            return -1
+        exchange(inverse, loads, closes, out)
+        basis[out] = entering
+        pivots += 1
+
+
+@kernel(
+    arrays="float64[:,:,::1], float64[:,:,::1], float64[:,::1], boolean, float64[:,::1], float64[:,::1], int64[::1], "
+    "float64[:,::1], float64[:,::1], float64[:,::1], float64, float64[:,:,::1], float64[:,::1], float64[:,::1], "
+    "int8[::1]"
+)
+def rests_found(
+    points: Any,
+    normals: Any,
+    heights: Any,
+    on_part: bool,
+    rows: Any,
+    steps: Any,
+    first_basis: Any,
+    first_inverse: Any,
+    first_loads: Any,
+    start: Any,
+    reach: float,
+    turns: Any,
+    shifts: Any,
+    carried: Any,
+    outcomes: Any,
+) -> None:
+    """Poses of parts at rest.
+
+    Args:
+        points, normals, heights: of the contacts (contacts, 3, n) and (contacts, n), see gap_of; (..., 1) of what does
+            not vary.
+        on_part: whether the points are on the part.
+        rows: how nominal gaps change with the motions (contacts, motions) [mm/mm].
+        steps: of the motions, turn by reach and shift (6, motions).
+        first_basis: contacts that would carry if all were touched, one for each motion.
+        first_inverse: of their rows (motions, motions).
+        first_loads: on them, of the force and of the second direction (2, motions).
+        start: the nominal pose (3, 4).
+        reach: of the points about its origin [mm].
+        turns, shifts: found (3, 3, n), (3, n) [mm]; not a number where there is none.
+        carried: the part of the force that each contact carries (contacts, n).
+        outcomes: RESTS, CLASHES or LOST (n,).
+    """
+    contacts = (points, normals, heights)
+    count, motions = rows.shape
+    gaps, step, pose = np.empty(count), np.empty(6), np.empty((3, 4))
+    rooms = (np.empty(motions), np.empty(motions))
+    basis, inverse, loads = np.empty(motions, np.int64), np.empty((motions, motions)), np.empty((2, motions))
+    for i in range(outcomes.shape[0]):
+        pose[:] = start
+        basis[:] = first_basis
+        inverse[:] = first_inverse
+        loads[:] = first_loads
+        pivots, outcome = 0, LOST
+        for _ in range(STEPS):
+            for k in range(count):
+                gaps[k] = gap_of(pose, contacts, k, i, on_part)
+            pivots = farthest(rows, gaps, basis, inverse, loads, rooms, pivots)
+            if pivots < 0:
+                outcome = CLASHES if pivots == -1 else LOST
+                break
+            for r in range(6):
+                total = 0.0
+                for j in range(motions):
+                    total += steps[r, j] * rooms[0][j]
+                step[r] = total
+            length = stepped(pose, step, reach)
+            if length <= MET:
+                outcome = RESTS
+                break
+            if not length < np.inf:
+                break
+        outcomes[i] = outcome
+        for k in range(count):
+            carried[k, i] = 0.0
+        for b in range(motions):
+            if loads[0, b] > TIED and outcome == RESTS:
+                carried[basis[b], i] = loads[0, b]
+        for r in range(3):
+            for c in range(3):
+                turns[r, c, i] = pose[r, c] if outcome == RESTS else np.nan
+            shifts[r, i] = pose[r, 3] if outcome == RESTS else np.nan

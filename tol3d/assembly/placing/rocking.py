@@ -1,0 +1,92 @@
+"""Measures of parts that may rock: a force that fewer contacts than freedoms carry leaves a part more poses than one.
+
+The poses that go as far along the force as each other are a flat piece of all poses. What varies over it, to first
+order, is read at the two ends that lie farthest apart for the measure.
+"""
+
+from collections.abc import Callable, Mapping
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tol3d.assembly.model import Measured
+from tol3d.assembly.model.measures import Rocking
+from tol3d.assembly.model.statuses import NOT_UNIQUE, OK
+from tol3d.assembly.placing.poses import Codes
+from tol3d.assembly.placing.resting import Resting, generic
+
+Array = NDArray[np.float64]
+
+NUDGE: Final = 1e-3
+"""mm; by which parts are moved for the slopes of measures."""
+DEPENDS: Final = 1e-6
+"""Slope [mm/mm] of a measure under which it does not see a motion."""
+KINK: Final = 1e-2
+"""Change of a slope over a nudge from which a measure is not smooth: a distance that is nominally 0."""
+NARROW: Final = 1e-9
+"""mm or rad; what varies by less over all poses is unique."""
+
+Read = Callable[[Array, Mapping[int, Resting]], Array]
+"""Values (n,) of a measure in some trials (n, width), with other moves for some by their places."""
+
+
+def slope_of(measured: Measured, index: int, move: Resting, read: Read, width: int) -> Array | None:
+    """How a measure changes nominally with the motions of a part at rest (motions,) [mm/mm]; None where it does not.
+
+    Of a measure that is not smooth there, some motion: what it depends on is not one slope.
+    """
+    motions = move.rows.shape[1]
+    nudges = NUDGE * np.hstack([np.zeros((motions, 1)), np.eye(motions), -np.eye(motions)])
+    values = read(np.zeros((1 + 2 * motions, width)), {index: move.nudged(nudges)})
+    values = values * (move.reach if measured.kind == "angle" else 1.0) / NUDGE
+    ahead, back = values[1 : 1 + motions], values[1 + motions :]
+    if not np.abs(ahead + back - 2 * values[0]).max() < KINK:
+        return generic(motions)
+    slope = (ahead - back) / 2.0
+    return slope if np.abs(slope).max() > DEPENDS else None
+
+
+def varying(slope: Array, move: Resting, carried: Array) -> NDArray[np.bool_]:
+    """In which trials a measure changes with a motion that no contact which carries the force prevents (n,).
+
+    Args:
+        slope: of the measure along the motions (motions,).
+        move: the rest.
+        carried: the part of the force that each contact carries (contacts, n).
+    """
+    sets, which = carrying(carried)
+    varies = []
+    for contacts in sets:
+        rows = move.rows[contacts]
+        left = slope - rows.T @ np.linalg.lstsq(rows.T, slope, rcond=None)[0]
+        varies.append(contacts.sum() < len(slope) and np.abs(left).max() > DEPENDS)
+    return np.array(varies, dtype=bool)[which]
+
+
+def carrying(carried: Array) -> tuple[NDArray[np.bool_], NDArray[np.intp]]:
+    """The sets of contacts that carry (sets, contacts), and which one does in each trial (n,)."""
+    keys = np.packbits(carried > 0.0, axis=0).T
+    _, first, which = np.unique(
+        np.ascontiguousarray(keys).view(np.dtype((np.void, keys.shape[1])))[:, 0],
+        return_index=True,
+        return_inverse=True,
+    )
+    return carried[:, first].T > 0.0, which
+
+
+def over_poses(low: Array, high: Array, alone: Array, codes: Codes, rocking: Rocking | None) -> tuple[Array, Codes]:
+    """Values and codes (n,) of a measure that varies between two ends.
+
+    Args:
+        low, high: its values there (n,).
+        alone: at some pose between (n,).
+        codes: so far (n,).
+        rocking: which one is asked.
+    """
+    wide = (codes == OK) & ~(np.abs(high - low) <= NARROW)
+    if rocking is None:
+        return alone, np.where(wide, np.int8(NOT_UNIQUE), codes)
+    ends = np.minimum(low, high), np.maximum(low, high)
+    asked = {"least": ends[0], "middle": (ends[0] + ends[1]) / 2.0, "largest": ends[1]}[rocking]
+    return np.where(wide, asked, alone), codes

@@ -1,0 +1,125 @@
+"""Rest: the torsor that goes farthest along a force, contacts kept from piercing each other."""
+
+from itertools import combinations
+from math import comb
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tol3d.assembly.model import Pair, Rest
+from tol3d.assembly.torsors.features import summed
+from tol3d.assembly.torsors.freedoms import INDEPENDENT, Freedoms, freedom_in_words
+from tol3d.assembly.torsors.one_sided import Corner, OneSided
+from tol3d.assembly.torsors.torsor import height_at
+from tol3d.assembly.torsors.world import World
+from tol3d.errors import InputError
+
+Array = NDArray[np.float64]
+
+MOST_SETS = 500_000
+"""Sets of contacts that are tried, once: 36 contacts of three freedoms, or 20 of six, are far fewer."""
+NONE = 1e-9
+"""Part of the force under which a contact carries nothing."""
+SLIGHTER = 1e-4
+"""Of a wish: what is added to it so that it is along nothing in particular."""
+ALIKE = 1e-6
+"""Least singular value of rows, lengths of about 1, that are independent."""
+
+
+def rested(move: Rest, world: World, leaning: Array | None = None) -> Array:
+    """The torsor (6, columns) of a part at rest; in the middle of what it may rock.
+
+    Args:
+        move: which.
+        world: before it.
+        leaning: along its unknowns (unknowns,), whither it goes where it may rock; to the middle if not given.
+
+    Raises:
+        InputError: no contacts balance the force, or too many of them to try.
+    """
+    contacts = [_contact(pair, move, world) for pair in move.pairs]
+    rows, values = (np.concatenate(each) for each in zip(*contacts, strict=True))
+    part = world.assembly.part[move.part]
+    points = [world.origin(pair.moving) for pair in move.pairs]
+    freedoms = Freedoms(part.pose[:3, 3], points, world.columns.count)
+    asked = rows @ freedoms.left
+    _, strengths, right = np.linalg.svd(asked)
+    seen = right[: int(np.sum(strengths > INDEPENDENT * strengths[0]))]
+    at = part.pose[:3, :3] @ move.at + part.pose[:3, 3]
+    pull = (height_at(at, move.force) @ freedoms.left)[0]
+    size = np.linalg.norm(pull)
+    beside = pull - seen.T @ (seen @ pull)
+    if np.linalg.norm(beside) > ALIKE * size:
+        _refuse(move, freedoms.left @ (beside / size)[:, None])
+    matrix = asked @ seen.T
+    generic = np.sqrt(2.0 + np.arange(len(seen))) % 1.0 + 0.1
+    wishes = [generic, -generic] if leaning is None else [_clear(leaning, generic)]
+    corners = []
+    for wish in wishes:
+        corners.append(corners_of(matrix, seen @ pull / size, wish / np.linalg.norm(wish)))
+        if not corners[-1]:
+            _refuse(move, freedoms.left @ seen.T @ _given_way(matrix, seen @ pull)[:, None])
+    if not any(np.any(corner.loads < NONE) for corner in corners[0]):
+        corners = corners[:1]  # it never rocks
+    found = world.columns.made_by(OneSided(-values, matrix, tuple(tuple(own) for own in corners)))
+    freedoms.take(np.linalg.pinv(matrix) @ rows, found)
+    return freedoms.rest()
+
+
+def _clear(leaning: Array, generic: Array) -> Array:
+    """A wish that also decides, slightly, where a part may rock across it."""
+    return leaning + SLIGHTER * max(float(np.linalg.norm(leaning)), 1e-9) * generic
+
+
+def _contact(pair: Pair, move: Rest, world: World) -> tuple[Array, Array]:
+    """Row (1, 6) and values (1, columns) of a gap, row . torsor - values."""
+    moving, target = world.origin(pair.moving), world.origin(pair.target)
+    target_part = world.part_of(pair.target)
+    normal = world.turned(pair.normal, target_part if move.points_on == "part" else move.part)
+    at_moving, at_target = height_at(moving, normal), height_at(target, normal)
+    row = at_moving if move.points_on == "part" else at_target
+    own = at_moving @ world.on_body(pair.moving, move.part)
+    other = row @ world.parts[target_part] + at_target @ world.on_part(pair.target)
+    gap = world.columns.constants(normal @ (moving - target)[:, None])
+    return row, other - own - gap + summed(pair.locator, 1, world.columns)
+
+
+def corners_of(matrix: Array, pull: Array, wish: Array) -> list[Corner]:
+    """The sets of contacts that balance a force, and a slight one along a wish where several sets do.
+
+    Args:
+        matrix: how gaps change with the unknowns (contacts, unknowns).
+        pull, wish: along the unknowns (unknowns,).
+    """
+    count = matrix.shape[1]
+    if comb(len(matrix), count) > MOST_SETS:
+        raise InputError(f"{len(matrix)} one-sided contacts for {count} freedoms: expected fewer on the analytic road")
+    found = []
+    for chosen in combinations(range(len(matrix)), count):
+        rows = matrix[list(chosen)]
+        if np.linalg.svd(rows, compute_uv=False)[-1] < ALIKE:
+            continue
+        inverse = np.asarray(np.linalg.inv(rows), dtype=np.float64)
+        loads, slight = np.asarray(-pull @ inverse), np.asarray(-wish @ inverse)
+        loads[np.abs(loads) < NONE] = 0.0
+        if np.all(loads >= 0.0) and np.all((loads > 0.0) | (slight >= -NONE)):
+            found.append(Corner(chosen, -inverse, loads, slight))
+    return found
+
+
+def _given_way(matrix: Array, pull: Array) -> Array:
+    """A motion (unknowns,) along a force that closes no gap, as near to it as can be (Hildreth's projection)."""
+    motion, shares = pull.copy(), np.zeros(len(matrix))
+    for _ in range(2000):
+        for k, row in enumerate(matrix):
+            change = max(-shares[k], -(row @ motion) / (row @ row))
+            shares[k] += change
+            motion += change * row
+    return motion
+
+
+def _refuse(move: Rest, torsors: Array) -> None:
+    raise InputError(
+        f"moves.{move.name}: its contacts do not hold {move.part} against the force: {freedom_in_words(torsors)}; "
+        "expected contacts on all sides to which it would give way"
+    )
