@@ -27,6 +27,7 @@ class AssemblyMeasureSummary(MeasureSummary):
         "inspected_position",
         "inspected_size",
         "point_plane",
+        "virtual_clearance",
     ]
     of: Annotated[list[Label], Field(min_length=1, max_length=MOST_ENTRIES)]
 
@@ -40,11 +41,13 @@ class AssemblyMeasureSummary(MeasureSummary):
         'upper gap less lower gap'
         >>> AssemblyMeasureSummary.model_construct(kind="inspected_size", of=["base.bore"]).words
         'inspected size of base.bore'
+        >>> AssemblyMeasureSummary.model_construct(kind="virtual_clearance", of=["base.hole", "lid.hole"]).words
+        'virtual clearance of base.hole, lid.hole'
         """
         kind = self.kind.replace("_", " ")
         if self.kind == "difference":
             return " less ".join(self.of)
-        if len(self.of) == 2:
+        if len(self.of) == 2 and self.kind != "virtual_clearance":
             return f"{kind} from {self.of[0]} to {self.of[1]}"
         return f"{kind} of {', '.join(self.of)}"
 

@@ -3,11 +3,18 @@
 from collections.abc import Iterator
 
 import numpy as np
+from numpy.typing import NDArray
 
 from tol3d.assembly.grammar.drawing import Drawing
 from tol3d.assembly.grammar.feature_name import part_of
 from tol3d.assembly.grammar.features.nominal_frame import unit
-from tol3d.assembly.grammar.measures import AssemblyMeasureSpec, DifferenceSpec, InspectedFlatnessSpec
+from tol3d.assembly.grammar.measures import (
+    AssemblyMeasureSpec,
+    DifferenceSpec,
+    InspectedFlatnessSpec,
+    VirtualClearanceSpec,
+)
+from tol3d.assembly.grammar.parts import SolidSpec
 from tol3d.scene import Scene
 from tol3d.scene.place import KeyPath
 from tol3d.units import Dimension, expectation
@@ -15,6 +22,7 @@ from tol3d.units import Dimension, expectation
 Problem = tuple[KeyPath, str]
 
 FLAT = 1e-6  # of the points' extent, or mm
+LEANING = 5.0  # deg; holes drawn at more do not take one bolt, and their circles would be ellipses by 0.4 %
 
 
 def dimension_of(scene: Scene, name: str) -> Dimension:
@@ -55,6 +63,31 @@ def unfit_points(scene: Scene) -> Iterator[Problem]:
             yield ("measures", name, "normal"), f"{words}; one lies {np.abs(off).max():.4g} mm off their middle"
         elif np.linalg.svd(places - places.mean(axis=0), compute_uv=False)[1] < FLAT:
             yield ("measures", name, "points"), "expected points that do not all lie on one line; add one beside it"
+
+
+def unfit_holes(scene: Scene) -> Iterator[Problem]:
+    """Pins, and holes that do not run along the first of those that a bolt passes."""
+    drawing = Drawing(scene)
+    poses = {name: solid.placed.pose[:3, :3] for name, solid in scene.of(SolidSpec).items()}
+    for name, spec in scene.measures.items():
+        if not isinstance(spec, VirtualClearanceSpec):
+            continue
+        known = [own for own in spec.holes if own in drawing.names and drawing.kind(own).kind == "cylinder"]
+        axes = {own: poses[part_of(own)] @ drawing.kind(own).frame[:3, 2] for own in known}
+        for k, own in enumerate(spec.holes):
+            feature = drawing.kind(own) if own in known else None
+            if feature is None:
+                continue  # said already
+            path = ("measures", name, "holes", k)
+            if not getattr(feature.shape, "inner", True):
+                yield path, f"expected a hole, got {own!r}, which is a pin; a bolt passes through holes"
+            elif spec.holes[0] in axes and (lean := _between(axes[spec.holes[0]], axes[own])) > LEANING:
+                yield path, f"expected a hole along {spec.holes[0]!r}, got {own!r} at {lean:.4g} deg to it"
+
+
+def _between(first: NDArray[np.float64], second: NDArray[np.float64]) -> float:
+    """The angle of two axes [deg], 0 to 90."""
+    return float(np.degrees(np.arctan2(np.linalg.norm(np.cross(first, second)), abs(first @ second))))
 
 
 def _an(dimension: Dimension) -> str:

@@ -10,7 +10,17 @@ from tol3d.assembly.model.bonus import MaterialBonus
 
 Array = NDArray[np.float64]
 
-MeasureKind = Literal["distance", "gap", "point_plane", "angle", "size", "position", "orientation", "flatness"]
+MeasureKind = Literal[
+    "distance",
+    "gap",
+    "point_plane",
+    "angle",
+    "size",
+    "position",
+    "orientation",
+    "flatness",
+    "virtual_clearance",
+]
 """What is read, of features' origins and z directions as they are in the trial (p, z), in the world:
 
 - distance: |p_to - p_from|; with a direction along it only, see gap.
@@ -28,6 +38,8 @@ MeasureKind = Literal["distance", "gap", "point_plane", "angle", "size", "positi
   its ends' heights along the nominal normal, of an axis how far its ends lie apart across the nominal axis.
 - flatness: smallest distance of two parallel planes with all the points between them, of points of one part that lie
   nominally on a plane with normal `direction`, in the part's frame.
+- virtual_clearance: diameter of the largest straight bolt through all holes, along the nominal axis of the first as its
+  part or `frame` carries it.
 """
 
 

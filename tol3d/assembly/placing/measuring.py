@@ -12,6 +12,7 @@ from tol3d.assembly.model.measures import MeasureKind
 from tol3d.assembly.placing.actual_feature import ActualFeature, actual_size, total
 from tol3d.assembly.placing.flatness import widths
 from tol3d.assembly.placing.poses import column, cross, dot, rotated
+from tol3d.assembly.placing.virtual_clearance import virtual_clearance
 from tol3d.assembly.placing.world import World
 
 Array = NDArray[np.float64]
@@ -159,4 +160,5 @@ READINGS: Mapping[MeasureKind, Callable[[Measured, World], Array]] = {
     "position": _position,
     "orientation": _orientation,
     "flatness": _flatness,
+    "virtual_clearance": virtual_clearance,
 }

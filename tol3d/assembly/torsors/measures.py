@@ -1,6 +1,7 @@
 """Measures to first order: one row each over the columns; what clips is a term of its own."""
 
 import math
+from dataclasses import replace
 from itertools import combinations
 
 import numpy as np
@@ -9,6 +10,7 @@ from numpy.typing import NDArray
 from tol3d.assembly.model import Axis, Measured, Plane, Point, RoundPlane
 from tol3d.assembly.model.bonus import MaterialBonus
 from tol3d.assembly.torsors.columns import without_rounding
+from tol3d.assembly.torsors.common_opening import CommonOpening
 from tol3d.assembly.torsors.flatness import balances
 from tol3d.assembly.torsors.terms import Clipped, Width
 from tol3d.assembly.torsors.torsor import cross_matrix, height_at, perpendicular, shift_at
@@ -209,6 +211,29 @@ def _flatness(measured: Measured, world: World) -> Array:
     return row
 
 
+def _virtual_clearance(measured: Measured, world: World) -> Array:
+    """See Measured; the bolt's direction turns with the first hole's part or with its datum frame."""
+    first = measured.features[0]
+    part = world.part_of(first)
+    sides = world.frame(first)[:3, :2].T
+    carrier = world.parts[part] + world.frame_on_part(measured.frame, part)
+    turning = [_turned(side, carrier) for side in sides]
+    start = world.origin(first)
+    start_varies = shift_at(start) @ world.placed(first)
+    forms = []
+    for name in measured.features:
+        frame, torsor = world.frame(name), world.placed(name)
+        shape = world.assembly.features[name].shape
+        radius = 0.5 * _size(replace(measured, kind="size", features=(name,)), world)
+        assert isinstance(shape, Axis)
+        for end in shape.ends @ frame[:3, :3].T + frame[:3, 3]:
+            apart, varying = end - start, shift_at(end) @ torsor - start_varies
+            aside = [side @ varying + apart @ turn for side, turn in zip(sides, turning, strict=True)]
+            forms += [*(aside + world.columns.constants(sides @ apart)), radius]
+    row: Array = world.columns.made_by(CommonOpening(without_rounding(np.array(forms))))[0]
+    return row
+
+
 _READINGS = {
     "distance": _distance,
     "gap": _gap,
@@ -218,4 +243,5 @@ _READINGS = {
     "position": _position,
     "orientation": _orientation,
     "flatness": _flatness,
+    "virtual_clearance": _virtual_clearance,
 }

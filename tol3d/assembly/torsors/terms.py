@@ -10,9 +10,18 @@ from tol3d.assembly.torsors.ordered import ordered_product, squared_lengths
 
 Array = NDArray[np.float64]
 
-Form = Literal["largest length", "least width", "least largest residual", "clipped amount", "one-sided contacts", "end"]
+Form = Literal[
+    "largest length",
+    "least width",
+    "least largest residual",
+    "clipped amount",
+    "largest inscribed circle",
+    "one-sided contacts",
+    "end",
+]
 """How a term depends on what it reads: the largest length of vectors and the least width between parallel planes are
-convex; a pose of least largest residual or on one-sided contacts and a clipped amount are not, but linear in pieces."""
+convex, a largest inscribed circle is concave; a pose of least largest residual or on one-sided contacts and a clipped
+amount are neither, but linear in pieces."""
 
 
 class Term(Protocol):

@@ -10,6 +10,7 @@ from tol3d.assembly.grammar.measures.inspected import (
     InspectedPositionSpec,
 )
 from tol3d.assembly.grammar.measures.inspected_size import InspectedSizeSpec
+from tol3d.assembly.grammar.measures.virtual_clearance import VirtualClearanceSpec
 
 __all__ = [
     "AngleSpec",
@@ -23,4 +24,5 @@ __all__ = [
     "InspectedPositionSpec",
     "InspectedSizeSpec",
     "PointPlaneSpec",
+    "VirtualClearanceSpec",
 ]

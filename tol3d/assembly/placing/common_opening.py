@@ -1,0 +1,162 @@
+"""The common opening of holes that are seen along one direction: the largest circle in all of their discs.
+
+With discs of centres c and radii r, the least of max(|x - c| - r) over all points x of a plane is minus its radius.
+That is a convex programme of two unknowns, decided by one, two or three discs: each step takes the disc that is
+violated most to those that decided before, and finds exactly what these four at most leave (an LP-type problem after
+Sharir and Welzl): of all points that one, two or three of them may decide, the one that violates the worst of them
+least.
+"""
+
+from math import sqrt
+from typing import Any, Final
+
+import numpy as np
+
+from tol3d.numerics.compiled import kernel, part
+
+MET: Final = 1e-13
+"""mm, by which no disc is violated any more."""
+STEPS: Final = 200
+"""Each decides by other discs than all before; in practice 2 to 6."""
+
+
+@part
+def violated(discs: Any, k: int, i: int, point: Any) -> Any:
+    """How far a point lies outside a disc [mm]; below 0 inside."""
+    x, y, radii = discs
+    a, b = point[0] - x[k, i], point[1] - y[k, i]
+    return sqrt(a * a + b * b) - radii[k, i]
+
+
+@part
+def worst_of(discs: Any, chosen: Any, count: int, i: int, point: Any) -> Any:
+    """How far a point lies outside of several discs at most [mm]."""
+    worst = -np.inf
+    for c in range(count):
+        worst = max(worst, violated(discs, chosen[c], i, point))
+    return worst
+
+
+@part
+def between(discs: Any, j: int, k: int, i: int, point: Any) -> bool:
+    """Whether two discs decide together, neither within the other, and the point (2,) where they do."""
+    x, y, radii = discs
+    a, b = x[k, i] - x[j, i], y[k, i] - y[j, i]
+    distance = sqrt(a * a + b * b)
+    if not distance > abs(radii[k, i] - radii[j, i]):
+        return False
+    share = 0.5 * (distance + radii[j, i] - radii[k, i]) / distance
+    point[0], point[1] = x[j, i] + share * a, y[j, i] + share * b
+    return True
+
+
+@part
+def touching(discs: Any, j: int, k: int, m: int, i: int, points: Any) -> int:
+    """Points (2, 2) that three discs violate alike (Apollonius), and how many.
+
+    About the first centre, w = |x| is how much more than minus its radius each violates: |x - c| = w + s, with s by how
+    much the other radius is larger, so that c . x = (c^2 - s^2) / 2 - w s.
+    """
+    x, y, radii = discs
+    a, b, s = x[k, i] - x[j, i], y[k, i] - y[j, i], radii[k, i] - radii[j, i]
+    c, d, t = x[m, i] - x[j, i], y[m, i] - y[j, i], radii[m, i] - radii[j, i]
+    area = a * d - b * c
+    if area == 0.0:
+        return 0
+    e, f = 0.5 * (a * a + b * b - s * s), 0.5 * (c * c + d * d - t * t)
+    p, q = (e * d - f * b) / area, (f * a - e * c) / area  # x = (p, q) + w (u, v)
+    u, v = (t * b - s * d) / area, (s * c - t * a) / area
+    square, half, rest = u * u + v * v - 1.0, p * u + q * v, p * p + q * q
+    root = half * half - square * rest
+    if root < 0.0:
+        return 0
+    middle = -(half + sqrt(root)) if half > 0.0 else -half + sqrt(root)
+    count = 0
+    for n in range(2):
+        if (square if n == 0 else middle) == 0.0:
+            continue
+        w = middle / square if n == 0 else rest / middle
+        if w >= 0.0:
+            points[count, 0], points[count, 1] = x[j, i] + p + w * u, y[j, i] + q + w * v
+            count += 1
+    return count
+
+
+@part
+def better(discs: Any, chosen: Any, count: int, i: int, point: Any, best: Any, found: Any) -> Any:
+    """The least violation so far (of `found` (2,), or of a further point, which is then kept)."""
+    own = worst_of(discs, chosen, count, i, point)
+    if own < best:
+        found[0], found[1] = point[0], point[1]
+        return own
+    return best
+
+
+@part
+def decided(discs: Any, chosen: Any, count: int, i: int, found: Any, deciding: Any, rooms: Any) -> Any:
+    """The least violation of up to four discs, its point, and which of them decide; -1 for none."""
+    point, points = rooms
+    best = np.inf
+    for a in range(count):
+        j = chosen[a]
+        point[0], point[1] = discs[0][j, i], discs[1][j, i]
+        own = better(discs, chosen, count, i, point, best, found)
+        if own < best:
+            best, deciding[0], deciding[1], deciding[2] = own, j, -1, -1
+        for b in range(a + 1, count):
+            k = chosen[b]
+            if between(discs, j, k, i, point):
+                own = better(discs, chosen, count, i, point, best, found)
+                if own < best:
+                    best, deciding[0], deciding[1], deciding[2] = own, j, k, -1
+            for c in range(b + 1, count):
+                m = chosen[c]
+                for n in range(touching(discs, j, k, m, i, points)):
+                    own = better(discs, chosen, count, i, points[n], best, found)
+                    if own < best:
+                        best, deciding[0], deciding[1], deciding[2] = own, j, k, m
+    return best
+
+
+@kernel(arrays="float64[:,::1], float64[:,::1], float64[:,::1], float64[::1], float64[:,::1]")
+def common_openings(x: Any, y: Any, radii: Any, openings: Any, centres: Any) -> None:
+    """Diameters of the largest circles in all discs; below 0 where they have no point in common.
+
+    Args:
+        x, y: centres (discs, n) [mm].
+        radii: (discs, n) [mm].
+        openings: found (n,) [mm].
+        centres: of the circles, found (2, n) [mm].
+    """
+    discs = (x, y, radii)
+    chosen, deciding = np.empty(4, dtype=np.int64), np.empty(3, dtype=np.int64)
+    rooms, found = (np.empty(2), np.empty((2, 2))), np.empty(2)
+    for i in range(openings.shape[0]):
+        smallest = 0
+        for k in range(1, radii.shape[0]):
+            if radii[k, i] < radii[smallest, i]:
+                smallest = k
+        found[0], found[1] = x[smallest, i], y[smallest, i]
+        deciding[0], deciding[1], deciding[2] = smallest, -1, -1
+        least, largest = -radii[smallest, i], 0.0
+        for _ in range(STEPS):
+            worst, largest = 0, -np.inf
+            for k in range(radii.shape[0]):
+                own = violated(discs, k, i, found)
+                if own > largest:
+                    worst, largest = k, own
+            if not largest > least + MET:
+                break
+            count = 0
+            for c in range(3):
+                if deciding[c] >= 0:
+                    chosen[count] = deciding[c]
+                    count += 1
+            chosen[count] = worst
+            own = decided(discs, chosen, count + 1, i, found, deciding, rooms)
+            if not own > least:
+                largest = own  # by rounding: nothing is left to gain
+                break
+            least = own
+        openings[i] = -2.0 * largest
+        centres[0, i], centres[1, i] = found[0], found[1]

@@ -1,0 +1,92 @@
+"""The largest circle in several discs, as a term: what each three of them leave, and of these the least."""
+
+from dataclasses import dataclass
+from itertools import combinations
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tol3d.assembly.torsors.terms import Form
+
+Array = NDArray[np.float64]
+Disc = tuple[Array, Array, Array]
+"""x, y, radius (trials,) [mm]."""
+
+TINY: Final = 1e-300
+"""Under any length; where a divisor is nil, the quotient is not used."""
+
+
+@dataclass(frozen=True, eq=False)
+class CommonOpening:
+    """The diameter of the largest circle that lies in all discs.
+
+    How far a point lies outside a disc is convex in it, so that the least largest of them in the plane is that of some
+    three discs (Helly's theorem).
+
+    Args:
+        forms: (discs * 3, columns): x, y and radius of each disc.
+    """
+
+    forms: Array
+    form: Form = "largest inscribed circle"
+    count: int = 1
+
+    def values(self, read: Array) -> Array:
+        """(1, trials) from (discs * 3, trials)."""
+        discs = [(x, y, radius) for x, y, radius in read.reshape(-1, 3, read.shape[1])]
+        if len(discs) == 2:
+            least, _, _ = _of_two(*discs)
+            return -2.0 * least[None]
+        least = np.full(read.shape[1], -np.inf)
+        for three in combinations(discs, 3):
+            np.maximum(least, _of_three(*three), out=least)
+        return -2.0 * least[None]
+
+
+def _of_two(first: Disc, second: Disc) -> Disc:
+    """How far the best point lies outside of two discs at most, and that point."""
+    (x, y, radius), (its_x, its_y, its_radius) = first, second
+    apart = np.sqrt((its_x - x) ** 2 + (its_y - y) ** 2)
+    along = np.clip(0.5 * (apart + radius - its_radius), 0.0, apart)  # within, the smaller one decides
+    share = along / np.maximum(apart, TINY)
+    outside = np.maximum(along - radius, apart - along - its_radius)
+    return outside, x + share * (its_x - x), y + share * (its_y - y)
+
+
+def _of_three(first: Disc, second: Disc, third: Disc) -> Array:
+    """How far the best point lies outside of three discs at most (trials,)."""
+    pairs = ((first, second, third), (second, third, first), (third, first, second))
+    at_pairs = [_of_two(one, other) for one, other, _ in pairs]
+    least = np.maximum.reduce([outside for outside, _, _ in at_pairs])
+    # where the pair that lies furthest outside leaves the third disc inside, it decides
+    left = [_outside(disc, x, y) for (_, _, disc), (_, x, y) in zip(pairs, at_pairs, strict=True)]
+    most = np.select([outside == least for outside, _, _ in at_pairs], [np.maximum(own, least) for own in left])
+    with np.errstate(all="ignore"):
+        together = _alike(first, second, third, least)
+    return np.where(most <= least, least, np.fmin(np.fmax(together, least), most))
+
+
+def _outside(disc: Disc, x: Array, y: Array) -> Array:
+    return np.sqrt((disc[0] - x) ** 2 + (disc[1] - y) ** 2) - disc[2]
+
+
+def _alike(first: Disc, second: Disc, third: Disc, least: Array) -> Array:
+    """The least amount, from `least` on, by which one point lies outside of three discs alike; nan where none does.
+
+    By Cramer's rule from the differences of |c_k - p|^2 = (amount + r_k)^2, in which the amount over minus the first
+    radius is a root of a quadratic equation.
+    """
+    rows = [(disc[0] - first[0], disc[1] - first[1], disc[2] - first[2]) for disc in (second, third)]
+    (a, b, s), (c, d, t) = rows
+    area = a * d - b * c
+    e, f = 0.5 * (a * a + b * b - s * s), 0.5 * (c * c + d * d - t * t)
+    p, q = (e * d - b * f) / area, (a * f - c * e) / area
+    u, v = (b * t - d * s) / area, (c * s - a * t) / area
+    square, half, rest = u * u + v * v - 1.0, p * u + q * v, p * p + q * q
+    root = np.sqrt(np.where(half * half >= square * rest, half * half - square * rest, np.nan))
+    middle = -(half + np.copysign(root, half))
+    amounts = np.stack([middle / square, rest / middle])
+    allowed = np.isfinite(amounts) & (amounts >= 0.0) & (amounts - first[2] >= least)
+    found = np.where(allowed, amounts, np.inf).min(axis=0) - first[2]
+    return np.where(np.isfinite(found), found, np.nan)
