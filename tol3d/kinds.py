@@ -27,6 +27,7 @@ if TYPE_CHECKING:
 SHIPPED: Final = (
     "tol3d.gearing.mechanism:GEARING",
     "tol3d.assembly.mechanism:ASSEMBLY",
+    "tol3d.gearbox.mechanism:GEARBOX",
 )
 
 GROUP: Final = "tol3d.mechanisms"

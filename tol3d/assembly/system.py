@@ -8,7 +8,7 @@ from typing import Any, ClassVar, Final, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.assembly.from_scene import Meant, assembly_of
+from tol3d.assembly.from_scene import Meant, Warming, assembly_of
 from tol3d.assembly.from_scene.datums import place_of
 from tol3d.assembly.model import Assembly
 from tol3d.assembly.model.statuses import OK, STATUSES
@@ -160,7 +160,7 @@ class AssemblySystem(PlainSystem):
         shares: list[Share] = []
         for own in self.acting(measure):
             coefficients = slopes.coefficients[slices[own.name]]
-            mean, covariance = _moments(own)
+            mean, covariance = moments_of(own)
             size = float(coefficients[0]) if len(coefficients) == 1 else float(np.sqrt(coefficients @ coefficients))
             variance = float(coefficients @ covariance @ coefficients)
             shares.append(Share(own.name, size, float(coefficients @ mean), variance))
@@ -173,14 +173,14 @@ class AssemblySystem(PlainSystem):
         return not self._slopes_of(measure).bends
 
     def _slopes_of(self, measure: Measure) -> Slopes:
-        moments = [_moments(own) for own in self.contributors]
+        moments = [moments_of(own) for own in self.contributors]
         means = np.concatenate([mean for mean, _ in moments] or [np.zeros(0)])
         sigmas = np.concatenate([np.sqrt(np.diagonal(covariance)) for _, covariance in moments] or [np.zeros(0)])
         return torsors.slopes(self.assembly, measure.name, means, sigmas)
 
 
-def _moments(contributor: Contributor) -> tuple[Array, Array]:
-    """Mean (components,) and covariance (components, components) of a contributor [mm]."""
+def moments_of(contributor: Contributor) -> tuple[Array, Array]:
+    """Mean (components,) and covariance (components, components) of a contributor [mm, K]."""
     draw = contributor.draw
     if isinstance(draw, ZoneDraw):
         return draw.mean_vector, draw.covariance
@@ -188,13 +188,17 @@ def _moments(contributor: Contributor) -> tuple[Array, Array]:
     return mean, draw.sigma**2 * np.eye(len(mean))
 
 
-def assembly_system(scene: Scene) -> AssemblySystem:
+def assembly_system(scene: Scene, warmings: Sequence[Warming] = ()) -> AssemblySystem:
     """What a scene of an assembly means.
+
+    Args:
+        scene: the scene.
+        warmings: temperatures of its parts.
 
     Raises:
         SceneError: what it says does not fit together, such as moves that leave a part free.
     """
-    placed = _asked(scene, lambda: _settled(scene))
+    placed = _asked(scene, lambda: _settled(scene, warmings))
     made = AssemblySystem(scene.scene, placed.contributors, placed.measures, placed.assembly, placed.named)
     _asked(
         scene, lambda: torsors.values(made.assembly, np.zeros((1, made.assembly.width)), list(made.assembly.measures))
@@ -203,11 +207,12 @@ def assembly_system(scene: Scene) -> AssemblySystem:
     return replace(made, measures=measures)
 
 
-def _settled(scene: Scene) -> Meant:
+def _settled(scene: Scene, warmings: Sequence[Warming]) -> Meant:
     """What a scene means, parts at the poses in which its moves lay them without deviations."""
-    drawn = assembly_of(scene)
+    drawn = assembly_of(scene, warmings=warmings)
     poses = placing.placed(drawn.assembly, np.zeros((1, drawn.assembly.width)))
-    return assembly_of(scene, {name: np.asarray(pose[0]) for name, pose in poses.items()})
+    settled = {name: np.asarray(pose[0]) for name, pose in poses.items()}
+    return assembly_of(scene, settled, warmings)
 
 
 def _asked(scene: Scene, ask: Callable[[], T]) -> T:

@@ -1,6 +1,6 @@
 """What every kind of part has in common."""
 
-from typing import Annotated
+from typing import Annotated, ClassVar
 
 from pydantic import Field
 
@@ -16,3 +16,9 @@ class PartSpec(Entry):
     expansion: Annotated[Quantity, Of("expansion")] | None = Field(
         default=None, description="coefficient of linear thermal expansion"
     )
+
+
+class GrowingSpec(PartSpec):
+    """A part that grows where it is warmer; kinds of part on whose size something depends are subclasses."""
+
+    words: ClassVar[str] = "a part that grows with temperature"

@@ -7,9 +7,11 @@ contributors  how tolerances are drawn, and what each moves
 zones         the zone that is left to a feature, and its law
 moves         pairs, normals, locators
 measures      what is read
+warming       parts that are warmer grow
 assembly      all of it together
 """
 
 from tol3d.assembly.from_scene.assembly import Meant, assembly_of
+from tol3d.assembly.from_scene.warming import Warming
 
-__all__ = ["Meant", "assembly_of"]
+__all__ = ["Meant", "Warming", "assembly_of"]

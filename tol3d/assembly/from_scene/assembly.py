@@ -1,6 +1,6 @@
 """The assembly that a scene means, its contributors and its measures."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -11,6 +11,7 @@ from tol3d.assembly.from_scene.datums import DatumFrames, in_order
 from tol3d.assembly.from_scene.features import TouchedPoints, features_of, poses_of
 from tol3d.assembly.from_scene.measures import measured_of, named_by, shown_measures
 from tol3d.assembly.from_scene.moves import moves_of
+from tol3d.assembly.from_scene.warming import Warming, warmed
 from tol3d.assembly.grammar.drawing import Drawing
 from tol3d.assembly.grammar.parts import SolidSpec
 from tol3d.assembly.model import Assembly, Part
@@ -37,12 +38,15 @@ class Meant:
     named: Mapping[str, tuple[str, ...]]
 
 
-def assembly_of(scene: Scene, settled: Mapping[str, Array] | None = None) -> Meant:
+def assembly_of(
+    scene: Scene, settled: Mapping[str, Array] | None = None, warmings: Sequence[Warming] = ()
+) -> Meant:
     """What a scene means.
 
     Args:
         scene: the scene.
         settled: nominal poses of its parts in the world (4, 4); as it says itself, if not given.
+        warmings: temperatures of its parts.
 
     Raises:
         SceneError: tolerances, zones or directions that do not fit what they are of.
@@ -50,6 +54,7 @@ def assembly_of(scene: Scene, settled: Mapping[str, Array] | None = None) -> Mea
     drawing = Drawing(scene)
     effects = effects_of(scene, drawing)
     frames = DatumFrames(drawing.features)
+    warmed(effects, drawing, frames, warmings)
     features = features_of(drawing, effects, frames)
     measured = measured_of(scene, frames)
     poses = poses_of(scene) if settled is None else settled

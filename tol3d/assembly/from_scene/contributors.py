@@ -55,9 +55,12 @@ class Effects:
     width: int = 0
 
     def _added(self, name: str, spec_kind: str, description: str, draw: Draw) -> slice:
+        return self.added(PlainContributor(name, spec_kind, draw, description=description))
+
+    def added(self, contributor: PlainContributor) -> slice:
         """The columns of a further contributor."""
-        columns = slice(self.width, self.width + len(draw.components))
-        self.contributors.append(PlainContributor(name, spec_kind, draw, description=description))
+        columns = slice(self.width, self.width + len(contributor.draw.components))
+        self.contributors.append(contributor)
         self.width = columns.stop
         return columns
 

@@ -43,9 +43,7 @@ def model_from_scene(scene: Scene) -> Model:
     refuse_bearings(scene)
     refuse_second_laws(scene)
     shafts, stated, arms = shafts_of(scene), stated_links_of(scene), arms_of(scene)
-    meshes = tuple(_mesh(scene, name, move) for name, move in scene.moves.items() if isinstance(move, GearMeshSpec))
-    refuse_no_trees(scene, links_between_shafts(meshes, shafts, stated))
-    layout = layout_of(meshes, shafts, stated)
+    meshes, layout = meshes_of_scene(scene)
     refuse_revolving(scene, layout, arms)
     refuse_misfits(scene, meshes, layout)
     trains = trains_of(scene, layout)
@@ -72,6 +70,18 @@ def model_from_scene(scene: Scene) -> Model:
         trains=trains,
     )
     return replace(model, measures=tuple(measure_of(scene, name, model) for name in scene.measures))
+
+
+def meshes_of_scene(scene: Scene) -> tuple[tuple[Mesh, ...], Layout]:
+    """The meshes of a scene, with flanks as it says them, and where its shafts lie.
+
+    Raises:
+        SceneError: gears that cannot be made or run together, or shafts that do not make trees.
+    """
+    shafts, stated = shafts_of(scene), stated_links_of(scene)
+    meshes = tuple(_mesh(scene, name, move) for name, move in scene.moves.items() if isinstance(move, GearMeshSpec))
+    refuse_no_trees(scene, links_between_shafts(meshes, shafts, stated))
+    return meshes, layout_of(meshes, shafts, stated)
 
 
 def _mesh(scene: Scene, name: str, move: GearMeshSpec) -> Mesh:

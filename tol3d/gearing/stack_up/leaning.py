@@ -8,8 +8,8 @@ in equal parts where two act together.
 Source: Saltelli et al., Comput. Phys. Commun. 181 (2010), table 2 (the estimators of both indices).
 """
 
-from collections.abc import Mapping, Sequence
-from functools import lru_cache
+from collections.abc import Callable, Mapping, Sequence
+from functools import lru_cache, partial
 from itertools import islice
 
 import numpy as np
@@ -21,8 +21,11 @@ from tol3d.gears import GearPair
 from tol3d.samplers.sobol import Sobol
 from tol3d.samplers.stream import Stream
 from tol3d.system.closed_form import Share
+from tol3d.system.contributor import Contributor as AnyContributor
 
 Array = NDArray[np.float64]
+
+Change = Callable[[Mapping[str, Array]], Array]
 
 NET_POINTS = 2**16  # errors seen: of sigma 1e-5 with two bearings, 3e-4 with four normal laws; of a mean 1e-4 sigma
 
@@ -46,15 +49,25 @@ def leaning_shares(parts: Sequence[tuple[float, Stack[GearPair]]], group: Sequen
         parts: each stack-up with the change of the measure by its normal backlash.
         group: contributors whose deviations rest in the world.
     """
+    return shares_by_net(partial(_change, parts), group)
+
+
+def shares_by_net(change: Change, group: Sequence[AnyContributor]) -> list[Share]:
+    """The shares of a group in a measure that is no sum of what they do alone.
+
+    Args:
+        change: of the measure (points,), by the deviations (points, components) of the group, by name.
+        group: contributors whose deviations rest in the world.
+    """
     first, second = (_deviations(group, half) for half in _net(2 * sum(c.draw.uniforms for c in group)))
-    value, other = _change(parts, first), _change(parts, second)
+    value, other = change(first), change(second)
     mean, variance = float(value.mean()), float(value.var())
     alone, involved = np.zeros(len(group)), np.zeros(len(group))
     for k, contributor in enumerate(group):
         name = contributor.name
-        alike = _change(parts, {**second, name: first[name]})
+        alike = change({**second, name: first[name]})
         alone[k] = float(np.mean((value - mean) * (alike - other)))
-        changed = _change(parts, {**first, name: second[name]})
+        changed = change({**first, name: second[name]})
         involved[k] = float(np.mean((value - changed) ** 2)) / 2
     together = np.maximum(involved - alone, 0.0)
     weights = together / together.sum() if together.any() else np.full(len(group), 1 / len(group))
@@ -91,7 +104,7 @@ def _net(dimensions: int) -> tuple[Array, Array]:
     return points[: dimensions // 2], points[dimensions // 2 :]
 
 
-def _deviations(group: Sequence[Contributor], uniforms: Array) -> Mapping[str, Array]:
+def _deviations(group: Sequence[AnyContributor], uniforms: Array) -> Mapping[str, Array]:
     """Deviations (points, components) of each of a group."""
     streams = iter(uniforms)
     draws = ((each.name, each.draw.deviations(*islice(streams, each.draw.uniforms))) for each in group)
@@ -103,4 +116,4 @@ def _mean_slope(own: Array, value: Array) -> float:
     spread = own - own.mean(axis=0)
     squares = (spread**2).sum(axis=0)
     slopes = (spread * (value - value.mean())[:, None]).sum(axis=0) / np.where(squares > 0.0, squares, 1.0)
-    return float(slopes[0]) if len(slopes) == 1 else float(np.hypot(*slopes))
+    return float(slopes[0]) if len(slopes) == 1 else float(np.hypot.reduce(slopes))

@@ -11,7 +11,7 @@ from tol3d.assembly.grammar.feature_name import OwnName
 from tol3d.assembly.grammar.features import FeatureUnion
 from tol3d.assembly.grammar.features.nominal_frame import frame, is_across
 from tol3d.scene.name import Name
-from tol3d.scene.part import PartSpec
+from tol3d.scene.part import GrowingSpec
 from tol3d.scene.reference import Contradiction, Reference
 from tol3d.scene.vector import Direction, Vector
 from tol3d.strict import Strict, refused
@@ -37,7 +37,7 @@ class Placement(Strict):
         return self
 
 
-class SolidSpec(PartSpec):
+class SolidSpec(GrowingSpec):
     """A rigid part with features, by numbers."""
 
     words: ClassVar[str] = "a solid part"

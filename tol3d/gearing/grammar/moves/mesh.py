@@ -18,7 +18,10 @@ class MeshSpec(GearMeshSpec):
     gear_spec: ClassVar[type[GearSpec]] = SpurGearSpec
 
     kind: Literal["mesh"]
-    centre_distance: Annotated[Quantity, Of("length"), Positive()] = Field(description="nominal distance of the axes")
+    centre_distance: Annotated[Quantity, Of("length"), Positive()] | None = Field(
+        default=None,
+        description="nominal distance of the axes; left out only where both shafts lie in bores, from which it follows",
+    )
     housing: Name | None = Field(default=None, description="the housing whose expansion changes the centre distance")
 
     def references(self) -> tuple[Reference, ...]:

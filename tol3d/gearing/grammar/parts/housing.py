@@ -2,10 +2,10 @@
 
 from typing import ClassVar, Literal
 
-from tol3d.scene.part import PartSpec
+from tol3d.scene.part import GrowingSpec
 
 
-class HousingSpec(PartSpec):
+class HousingSpec(GrowingSpec):
     """A housing: its expansion changes the centre distance of the meshes that name it."""
 
     words: ClassVar[str] = "a housing"

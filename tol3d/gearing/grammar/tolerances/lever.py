@@ -19,11 +19,13 @@ class Lever:
         own: the gear on the shaft.
         moved: z of the point that moves [mm].
         fixed: z of one that does not; None where all of the shaft moves alike.
+        rate: how far the point moves by a deviation of 1; half of it by a clearance.
     """
 
     own: "Carried"
     moved: float
     fixed: float | None
+    rate: float = 0.5
 
     @property
     def share(self) -> float:
@@ -31,21 +33,21 @@ class Lever:
         return 1.0 if self.fixed is None else (self.own.at - self.fixed) / (self.moved - self.fixed)
 
     def anywhere(self) -> Iterator[Effect]:
-        """Shift and tilt of the gear's axis where the point moves by half a deviation with a direction on the shaft."""
+        """Shift and tilt of the gear's axis where the point moves by a deviation with a direction on the shaft."""
         plane = Plane(mirrored=self.own.backward)
-        yield AxisOffset(self.own.gear, factor=0.5 * self.share, plane=plane)
+        yield AxisOffset(self.own.gear, factor=self.rate * self.share, plane=plane)
         if self.fixed is not None:
-            per_length = 0.5 * self.own.sense / (self.moved - self.fixed)
+            per_length = self.rate * self.own.sense / (self.moved - self.fixed)
             yield AxisTilt(self.own.gear, per_length=per_length, plane=plane)
 
     def towards(self, azimuth: float) -> Iterator[Effect]:
-        """Shift and tilt of the gear's axis where the point moves by half a deviation, at an azimuth on the shaft."""
+        """Shift and tilt of the gear's axis where the point moves by a deviation, at an azimuth on the shaft."""
         sense = -1.0 if self.own.backward else 1.0
         x, y, _ = unit_vector(azimuth)
-        yield AxisOffset(self.own.gear, (x, sense * y, 0.0), factor=0.5 * self.share)
+        yield AxisOffset(self.own.gear, (x, sense * y, 0.0), factor=self.rate * self.share)
         if self.fixed is not None:
             # z of the shaft turns towards (x, y): about z cross (x, y) = (-y, x)
-            per_length = 0.5 / (self.moved - self.fixed)
+            per_length = self.rate / (self.moved - self.fixed)
             yield AxisTilt(self.own.gear, (-y, sense * x, 0.0), per_length=per_length)
 
 

@@ -7,9 +7,9 @@ from pydantic import BeforeValidator, Field, WithJsonSchema
 
 from tol3d.gearing.effects import Temperature
 from tol3d.gearing.grammar.moves import MoveSpec
-from tol3d.gearing.grammar.parts import HousingSpec, PartSpec, SpurGearSpec
 from tol3d.gearing.grammar.tolerances.gearing_tolerance import GearingToleranceSpec, Meaning
 from tol3d.scene.name import LONGEST_NAME, Name
+from tol3d.scene.part import GrowingSpec, PartSpec
 from tol3d.scene.reference import Contradiction, Reference
 from tol3d.strict import refused
 from tol3d.units import Dimension, shown
@@ -47,7 +47,7 @@ class TemperatureSpec(GearingToleranceSpec):
 
     def references(self) -> tuple[Reference, ...]:
         """Every part."""
-        return tuple(Reference(("of", index), name, (SpurGearSpec, HousingSpec)) for index, name in enumerate(self.of))
+        return tuple(Reference(("of", index), name, (GrowingSpec,)) for index, name in enumerate(self.of))
 
     def contradictions(self, parts: Mapping[str, PartSpec], moves: Mapping[str, MoveSpec]) -> Iterator[Contradiction]:
         """A part without a coefficient of expansion would take no notice."""

@@ -11,6 +11,9 @@ from tol3d.scene import Scene
 @pair_of.register
 def _(move: MeshSpec, name: str, scene: Scene) -> GearPair:
     pinion, wheel = (_spur_gear(scene, gear) for gear in move.gears)
+    if move.centre_distance is None:
+        words = "expected the centre_distance of the axes, got none; it follows only where both shafts lie in bores"
+        raise scene.refuse(("moves", name), words)
     try:
         pair = SpurPair(pinion, wheel, move.centre_distance.internal)
         pair.refuse_interference()

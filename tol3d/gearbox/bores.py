@@ -1,0 +1,120 @@
+"""How far the axes of shafts lie off their nominal places, trial by trial: what both roads of the assembly say.
+
+Each point of an axis has a twin that stands still where the point is nominally; gaps between the two along the shaft's
+x, y and z are measures of the assembly, which either road reads as it reads any other.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tol3d.assembly.model import Assembly, Axis, Contribution, Feature, Fix, Measured, Part, Point
+from tol3d.gearbox.nominal import HousedShaft
+
+Array = NDArray[np.float64]
+
+GROUND: Final = ".ground"
+"""The part that stands still; scenes cannot name one so."""
+
+COMPONENTS: Final = ("x", "y")
+"""Across the axis at each of its two points, in the frame of the shaft at rest."""
+
+
+def reading_name(shaft: str, point: int, direction: str) -> str:
+    """The measure of the assembly that says how far a point of an axis lies aside; scenes cannot name one so."""
+    return f".{shaft}.{point}.{direction}"
+
+
+@dataclass(frozen=True, eq=False)
+class Bores:
+    """The axes of shafts in bores, as an assembly reads them.
+
+    Args:
+        assembly: with the ground and the points of the axes.
+        shafts: in the order of their columns: x, y at the first point, x, y at the second.
+    """
+
+    assembly: Assembly
+    shafts: tuple[HousedShaft, ...]
+
+    @cached_property
+    def names(self) -> tuple[str, ...]:
+        """The measures of the assembly that say where the axes lie."""
+        return tuple(
+            reading_name(own.shaft, k, direction) for own in self.shafts for k in range(2) for direction in "xyz"
+        )
+
+    @cached_property
+    def lateral_names(self) -> tuple[str, ...]:
+        """Those across the axes, in the order of the columns."""
+        return tuple(
+            reading_name(own.shaft, k, direction) for own in self.shafts for k in range(2) for direction in COMPONENTS
+        )
+
+    def exactly(self, read: Mapping[str, Array]) -> Array:
+        """Columns (trials, shafts * 4) [mm]: where lines through displaced points pass the points' nominal heights.
+
+        Args:
+            read: by `names`, displacements (trials,) [mm].
+        """
+        found = []
+        for own in self.shafts:
+            first, last = (
+                [np.asarray(read[reading_name(own.shaft, k, direction)]) for direction in "xyz"] for k in range(2)
+            )
+            low, high = (own.along(bore) for bore in own.bores)
+            length = (high + last[2]) - (low + first[2])
+            slopes = [(last[k] - first[k]) / length for k in range(2)]
+            found += [first[k] - slopes[k] * first[2] for k in range(2)]
+            found += [last[k] - slopes[k] * last[2] for k in range(2)]
+        return np.stack(found, axis=1)
+
+    def to_first_order(self, read: Mapping[str, Array]) -> Array:
+        """The same columns to first order: displacements along the axes do not matter."""
+        return np.stack([np.asarray(read[name]) for name in self.lateral_names], axis=1)
+
+
+def bores_of(assembly: Assembly, shafts: Sequence[HousedShaft]) -> Bores:
+    """An assembly with the points of the axes of shafts."""
+    points: list[Feature] = []
+    ends: dict[str, list[Feature]] = {}
+    measures: dict[str, Measured] = {}
+    for own in shafts:
+        for k, bore in enumerate(own.bores):
+            frame = own.frame.copy()
+            frame[:3, 3] = bore.place
+            twin = f"{GROUND}.{own.shaft} {k}"
+            points.append(Feature(twin, GROUND, Point(), frame, is_named=False))
+            actual = assembly.features[bore.feature]
+            if bore.end is not None:
+                actual = _end_of(actual, bore.end)
+                ends.setdefault(actual.part, []).append(actual)
+            for direction, column in zip("xyz", own.frame[:3, :3].T, strict=True):
+                name = reading_name(own.shaft, k, direction)
+                measures[name] = Measured("gap", (twin, actual.name), np.array(column))
+    ground = Part(GROUND, np.eye(4), tuple(points), ())
+    parts = tuple(replace(part, features=(*part.features, *ends.get(part.name, ()))) for part in assembly.parts)
+    return Bores(
+        Assembly(
+            (*parts, ground),
+            (*assembly.moves, Fix(GROUND, GROUND)),
+            {**assembly.measures, **measures},
+            assembly.width,
+        ),
+        tuple(shafts),
+    )
+
+
+def _end_of(bore: Feature, end: int) -> Feature:
+    """The end of a bore as a point."""
+    assert isinstance(bore.shape, Axis)
+    frame = bore.frame.copy()
+    frame[:3, 3] += frame[:3, :3] @ bore.shape.ends[end]
+    aside = np.zeros((3, 4))
+    aside[0, 2 * end] = aside[1, 2 * end + 1] = 1.0
+    moved_by = tuple(Contribution(own.contributor, own.columns, aside @ own.matrix) for own in bore.moved_by)
+    return Feature(f"{bore.name} end {end}", bore.part, Point(), frame, bore.parent, moved_by, is_named=False)

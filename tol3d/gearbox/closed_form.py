@@ -1,0 +1,118 @@
+"""Mean, standard deviation and shares of a backlash in a housing, without drawing anything.
+
+Where no axis leans, or the middle of the faces is read, a backlash is linear in the displacements of the bores, and
+these in the tolerances of the housing. Where axes lean, what they take is no sum: mean and variance are integrated over
+the laws of all contributors that lean gears, those of the bores among them, as for bearings (see
+gearing/stack_up/leaning.py).
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tol3d.assembly.system import moments_of
+from tol3d.gearing.model import Contributor as GearContributor
+from tol3d.gearing.model import Measure as GearMeasure
+from tol3d.gearing.model import Model
+from tol3d.gearing.roads.analytic import analytic_values
+from tol3d.gearing.stack_up import closed_form as closed_form_of_gears
+from tol3d.gearing.stack_up import reference_form, stack_of
+from tol3d.gearing.stack_up.leaning import shares_by_net
+from tol3d.system.closed_form import ClosedForm, Share
+from tol3d.system.contributor import Contributor
+from tol3d.system.stated import component_slices, stated
+
+if TYPE_CHECKING:
+    from tol3d.gearbox.system import GearboxSystem
+
+Array = NDArray[np.float64]
+
+
+def closed_form(system: "GearboxSystem", measure: GearMeasure, *, at_one_position: bool = False) -> ClosedForm | None:
+    """Moments of a backlash; None of extremes over a turn, and where load paths are compared.
+
+    Args:
+        system: whose.
+        measure: of its gears.
+        at_one_position: of a measure that takes an extreme or a curve, that of its value at one position.
+    """
+    model = system.gears.model
+    leaning = _leaning(model, measure)
+    group = [own for own in system.contributors if own.name in leaning or own.name in _moving(system)]
+    net = bool(leaning & {own.name for own in model.contributors[len(system.drawn_by_gears) :]})
+    drawn = tuple(own for own in system.drawn_by_gears if not (net and own.name in leaning))
+    plain = replace(model, contributors=drawn)
+    form = reference_form(plain, measure) if at_one_position else closed_form_of_gears(plain, measure)
+    if form is None:
+        return None
+    shares = [*form.shares, *(_by_net(system, measure, group) if net else _linear(system, measure))]
+    together = tuple(_merged(system.contributors, shares))
+    return replace(
+        form,
+        mean=form.nominal + sum(share.mean for share in together),
+        sigma=float(np.sqrt(max(0.0, sum(share.variance for share in together)))),
+        shares=together,
+        leaning=form.leaning | (frozenset(own.name for own in group) if net else frozenset()),
+    )
+
+
+def _leaning(model: Model, measure: GearMeasure) -> set[str]:
+    """Contributors of the gears, displacements of the bores too, that lean a gear where its lean counts."""
+    stacks = [stack_of(model, model.mesh(own.mesh), own.reading) for _, own in measure.kind.backlashes]
+    return {term.contributor.name for stack in stacks for term in stack.terms if term.leans}
+
+
+def _moving(system: "GearboxSystem") -> set[str]:
+    """Contributors of the assembly that move bores."""
+    slices = component_slices(system.drawn)
+    return {own.name for own in system.drawn.contributors if system.displacing[:, slices[own.name]].any()}
+
+
+def _linear(system: "GearboxSystem", measure: GearMeasure) -> list[Share]:
+    """Shares of what moves the bores, where a backlash is linear in that."""
+    slopes = np.asarray(system.bore_slopes(measure) @ system.displacing)
+    slices = component_slices(system.drawn)
+    found = []
+    for own in system.drawn.contributors:
+        coefficients = slopes[slices[own.name]]
+        mean, covariance = moments_of(own)
+        size = float(coefficients[0]) if len(coefficients) == 1 else float(np.sqrt(coefficients @ coefficients))
+        if coefficients.any():
+            variance = float(coefficients @ covariance @ coefficients)
+            found.append(Share(own.name, size, float(coefficients @ mean), variance))
+    return found
+
+
+def _by_net(system: "GearboxSystem", measure: GearMeasure, group: Sequence[Contributor]) -> list[Share]:
+    """Shares of a group that leans gears."""
+    slices = component_slices(system)
+    width = slices[system.contributors[-1].name].stop
+    nominal = _values(system, measure, np.zeros((1, width)))[0]
+
+    def change(deviations: Mapping[str, Array]) -> Array:
+        rows = np.zeros((len(next(iter(deviations.values()))), width))
+        for name, own in deviations.items():
+            rows[:, slices[name]] = own
+        return np.asarray(_values(system, measure, rows) - nominal)
+
+    return shares_by_net(change, group)
+
+
+def _values(system: "GearboxSystem", measure: GearMeasure, deviations: Array) -> Array:
+    """By theory (trials,), the driver at 0."""
+    trials = system.linear_gear_trials(stated(system, deviations))
+    return np.asarray(analytic_values(system.gears.model, measure, trials)[:, 0])
+
+
+def _merged(contributors: Sequence[Contributor | GearContributor], shares: Sequence[Share]) -> list[Share]:
+    """One share a contributor, in their order: what it does to the gears and by the bores added up."""
+    found = []
+    for contributor in contributors:
+        own = [share for share in shares if share.name == contributor.name]
+        if own:
+            sums = (sum(getattr(share, key) for share in own) for key in ("coefficient", "mean", "variance"))
+            found.append(Share(contributor.name, *sums))
+    return found

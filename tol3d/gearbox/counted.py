@@ -1,0 +1,46 @@
+"""What a scene would count twice: deviations of axes that bores give, and tolerances that say them again."""
+
+from collections.abc import Iterator
+
+from tol3d.assembly.grammar.feature_name import part_of
+from tol3d.assembly.grammar.tolerances import SizeSpec
+from tol3d.gearbox.grammar.shaft_in_bores import ShaftInBoresSpec
+from tol3d.gearbox.system import GearboxSystem
+from tol3d.gearing.grammar.parts import BearingSpec
+from tol3d.gearing.grammar.tolerances import BearingClearanceSpec
+from tol3d.gearing.grammar.tolerances.mesh_tolerance import MeshToleranceSpec
+from tol3d.scene import Scene
+
+def refuse_counted_twice(scene: Scene, system: GearboxSystem) -> None:
+    """Refuse tolerances of axes that deviate as bores do already, and bore sizes beside bearing clearances.
+
+    Raises:
+        SceneError: at the tolerance of the gears, naming the other one.
+    """
+    for name, spec in scene.tolerances.items():
+        if isinstance(spec, MeshToleranceSpec):
+            for other in system.moving_apart(spec.of):
+                words = f"expected no {spec.kind} of {spec.of!r}, for {other!r} moves the bores of its shafts"
+                raise scene.refuse(("tolerances", name), f"{words} already, and both would count; take out one")
+        elif isinstance(spec, BearingClearanceSpec):
+            for other in _sizes(scene, spec):
+                words = f"expected no clearance beside {other!r}, the size of the bore in which this bearing sits"
+                raise scene.refuse(("tolerances", name), f"{words}: both would count; take out one")
+
+
+def _sizes(scene: Scene, spec: BearingClearanceSpec) -> Iterator[str]:
+    """Tolerances of the sizes of the bores of a shaft."""
+    part = scene.parts[spec.of]
+    gear = part.shaft if isinstance(part, BearingSpec) else spec.of
+    carrying = (name for name, own in scene.parts.items() if gear in getattr(own, "carries", {}))
+    shaft = next(carrying, gear)
+    bores = {bore for move in scene.of(ShaftInBoresSpec).values() if move.shaft == shaft for bore in move.in_}
+    for name, size in scene.of(SizeSpec).items():
+        if size.of in bores or any(_is_copy(scene, bore, size.of) for bore in bores):
+            yield name
+
+
+def _is_copy(scene: Scene, bore: str, original: str) -> bool:
+    """Whether a bore is that of a part that is like the toleranced one."""
+    like = getattr(scene.parts[part_of(bore)], "like", None)
+    return f"{like}.{bore.partition('.')[2]}" == original

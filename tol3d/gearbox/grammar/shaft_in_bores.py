@@ -1,0 +1,47 @@
+"""A shaft in the bores of parts that are placed."""
+
+from collections.abc import Iterator
+from typing import Annotated, ClassVar, Literal
+
+from pydantic import Field
+
+from tol3d.assembly.grammar.feature_name import FeatureName, Use, part_of
+from tol3d.assembly.grammar.parts import SolidSpec
+from tol3d.gearing.grammar.parts.shaft_reference import ShaftReference
+from tol3d.scene.listed import listed
+from tol3d.scene.move import MoveSpec
+from tol3d.scene.name import Name
+from tol3d.scene.reference import Reference
+from tol3d.scene.vector import Coordinate
+
+BORES = ("axis", "cylinder")
+
+
+class ShaftInBoresSpec(MoveSpec):
+    """The axis of a shaft is the line through the middles of two bores as they lie in the trial, or a long bore's own.
+
+    Centre distances, azimuths and tilts of the meshes on such shafts follow from their bores. What bearings leave free
+    is a tolerance of its own, `bearing_clearance`.
+    """
+
+    words: ClassVar[str] = "a shaft in bores"
+
+    kind: Literal["shaft_in_bores"]
+    shaft: Name = Field(description="the shaft, or the gear that is its own")
+    in_: Annotated[tuple[FeatureName, ...], listed("bores", 1, 2)] = Field(
+        alias="in", description="two bores, or one that is long enough to hold the shaft alone, such as housing.bore 1"
+    )
+    at: Coordinate | None = Field(
+        default=None,
+        description="where the shaft's origin lies, from the middle of the first bore towards the other one, or along "
+        "the z of a single one; 0 mm of a train's first shaft, else it follows from the meshes",
+    )
+
+    def references(self) -> tuple[Reference, ...]:
+        """The shaft, and the parts with its bores."""
+        parts = (Reference(("in", k), part_of(name), (SolidSpec,)) for k, name in enumerate(self.in_))
+        return (ShaftReference(("shaft",), self.shaft), *parts)
+
+    def uses(self) -> Iterator[Use]:
+        """The bores."""
+        return (Use(("in", k), name, BORES) for k, name in enumerate(self.in_))

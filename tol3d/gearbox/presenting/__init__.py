@@ -1,0 +1,38 @@
+"""How gears in a housing are shown: chains and tables of the trains, features and moves of the parts, all in one world."""
+
+from collections.abc import Sequence
+from importlib import import_module
+from typing import TYPE_CHECKING, Any, Final
+
+from tol3d.gearing.presenting import GearPresenter
+
+if TYPE_CHECKING:
+    from tol3d.report.page import Block
+    from tol3d.report.presenter import Display, Which
+    from tol3d.runs.run import Run
+    from tol3d.simulate import Replay
+    from tol3d.study.simulation import Simulation
+
+
+class GearboxPresenter(GearPresenter):
+    """The presenter of gears in a housing; see `tol3d.report.presenter.Presenter`."""
+
+    def check(self, simulation: "Simulation") -> "Sequence[Block]":
+        """Features and moves of the parts, gears, meshes, trains, and what any system shows."""
+        return _lazily("tables").check_blocks(simulation)  # type: ignore[no-any-return]
+
+    def display(self, run: "Run", which: "Which", *, magnify: float) -> "Display":
+        """A build with its parts placed and its gears seated again."""
+        return _lazily("shown_gearbox").display(run, which, magnify=magnify)  # type: ignore[no-any-return]
+
+    def replayed(self, replay: "Replay", label: str) -> "Display":
+        """A trial that was replayed."""
+        return _lazily("shown_gearbox").replayed(replay, label)  # type: ignore[no-any-return]
+
+
+def _lazily(module: str) -> Any:
+    """A module of this folder, imported when it is needed."""
+    return import_module(f"{__name__}.{module}")
+
+
+PRESENTER: Final = GearboxPresenter()

@@ -1,0 +1,109 @@
+"""Both roads of gears in a housing: the assembly is placed, then the gears mesh on the axes that its bores give."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tol3d.assembly.placing import road as placing
+from tol3d.assembly.torsors import road as torsors
+from tol3d.gearbox.statuses import FROM_ASSEMBLIES
+from tol3d.gearing.model.measure import Measure as GearMeasure
+from tol3d.system.measure import Measure
+from tol3d.system.road import Answers, Codes, Road
+from tol3d.system.trials import Trials
+
+if TYPE_CHECKING:
+    from tol3d.gearbox.system import GearboxSystem
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class GearboxRoad:
+    """A road of the gears behind one of the assembly; implements WitnessRoad where the gears' does.
+
+    Args:
+        system: whose.
+        gears: the gears' own road.
+        exact: whether parts are placed by finite poses; else by torsors.
+    """
+
+    system: "GearboxSystem"
+    gears: Road
+    exact: bool
+
+    @property
+    def chord_error(self) -> float:
+        """See Road."""
+        return self.gears.chord_error
+
+    def bounds(self, measure: Measure) -> tuple[float, float]:
+        """See WitnessRoad; what is read of the assembly alone is read as the road reads it that is witnessed."""
+        if not isinstance(measure, GearMeasure):
+            return 0.0, 0.0
+        witness: Any = self.gears
+        found: tuple[float, float] = witness.bounds(measure)
+        return found
+
+    def answers(self, trials: Trials, measures: Sequence[Measure]) -> Answers:
+        """See Road."""
+        of_gears = [measure for measure in measures if isinstance(measure, GearMeasure)]
+        others = [measure.name for measure in measures if not isinstance(measure, GearMeasure)]
+        values, codes = self._read(trials, (*self.system.bores.names, *others) if of_gears else others)
+        own = Answers({name: values[name][:, None] for name in others}, status=self._status(codes, others))
+        if not of_gears:
+            return own
+        seen, failed = self._seen(trials, values, codes)
+        answers = self.gears.answers(seen, of_gears)
+        return self._joined(answers, own, of_gears, failed)
+
+    def gear_trials(self, trials: Trials) -> tuple[Trials, Mapping[str, Codes]]:
+        """Trials as the gears see them, and by shaft what became of its bores (trials,), codes of this system."""
+        values, codes = self._read(trials, self.system.bores.names)
+        return self._seen(trials, values, codes)
+
+    def _read(self, trials: Trials, names: Sequence[str]) -> tuple[Mapping[str, Array], Mapping[str, Codes]]:
+        """Measures of the assembly, and what became of them in its own codes; empty where all are built."""
+        assembly, deviations = self.system.bores.assembly, trials.deviations[:, self.system.assembly_places]
+        if not self.exact:
+            return torsors.values(assembly, deviations, names), {}
+        found = placing.values(assembly, deviations, names)
+        return {name: own for name, (own, _) in found.items()}, {name: codes for name, (_, codes) in found.items()}
+
+    def _seen(
+        self, trials: Trials, values: Mapping[str, Array], codes: Mapping[str, Codes]
+    ) -> tuple[Trials, Mapping[str, Codes]]:
+        bores = self.system.bores
+        displaced = bores.exactly(values) if self.exact else bores.to_first_order(values)
+        failed = {}
+        for k, own in enumerate(bores.shafts):
+            names = bores.names[6 * k : 6 * k + 6]
+            worst = np.max([codes[name] for name in names], axis=0) if codes else np.zeros(len(trials), dtype=np.int8)
+            failed[own.shaft] = FROM_ASSEMBLIES[worst]
+        return self.system.gear_trials(trials, np.nan_to_num(displaced, nan=0.0)), failed
+
+    def _status(self, codes: Mapping[str, Codes], names: Sequence[str]) -> dict[str, Codes]:
+        return {name: FROM_ASSEMBLIES[codes[name]] for name in names} if codes else {}
+
+    def _joined(
+        self, answers: Answers, own: Answers, measures: Sequence[GearMeasure], failed: Mapping[str, Codes]
+    ) -> Answers:
+        """Answers of gears and of the assembly; a backlash whose bores are not where they should be has none."""
+        values, status = {**answers.values, **own.values}, {**answers.status, **own.status}
+        if any(codes.any() for codes in failed.values()):
+            for measure in measures:
+                before = status.get(measure.name, np.zeros(len(values[measure.name]), dtype=np.int8))
+                codes = np.max([np.zeros_like(before), *(failed[shaft] for shaft in self._shafts(measure))], axis=0)
+                status[measure.name] = np.where(codes != 0, codes, before).astype(np.int8)
+                values[measure.name] = np.where((codes != 0)[:, None], np.nan, values[measure.name])
+        return replace(answers, values=values, status=status)
+
+    def _shafts(self, measure: GearMeasure) -> set[str]:
+        """Shafts in bores of the meshes that a measure reads."""
+        model = self.system.gears.model
+        meshes = [model.mesh(backlash.mesh) for _, backlash in measure.kind.backlashes]
+        shafts = {model.layout.carrying[gear][0] for mesh in meshes for gear in (mesh.driver, mesh.driven)}
+        return shafts & {own.shaft for own in self.system.bores.shafts}
