@@ -89,13 +89,14 @@ def _summary_kinds(grammar: Grammar) -> "SummaryKinds":
 
 
 def _added(vocabulary: Vocabulary) -> "SummaryKinds":
-    if isinstance(vocabulary, Mechanism) and vocabulary.summary:
-        found: SummaryKinds = named(vocabulary.summary)
-        return found
+    made = named("tol3d.runs.summary.kinds:SummaryKinds")
     presenter = vocabulary.presenter if isinstance(vocabulary, Mechanism) else ""
-    plain = tuple((str(kind_of(spec)), presenter) for spec in vocabulary.measures)
-    made: SummaryKinds = named("tol3d.runs.summary.kinds:SummaryKinds")(plain=plain)
-    return made
+    shown: SummaryKinds = made(presenters=((vocabulary.name, presenter),) if presenter else ())
+    if isinstance(vocabulary, Mechanism) and vocabulary.summary:
+        found: SummaryKinds = named(vocabulary.summary) | shown
+        return found
+    plain: SummaryKinds = made(plain=tuple((str(kind_of(spec)), presenter) for spec in vocabulary.measures))
+    return plain | shown
 
 
 @cache

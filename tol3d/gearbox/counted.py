@@ -11,6 +11,7 @@ from tol3d.gearing.grammar.tolerances import BearingClearanceSpec
 from tol3d.gearing.grammar.tolerances.mesh_tolerance import MeshToleranceSpec
 from tol3d.scene import Scene
 
+
 def refuse_counted_twice(scene: Scene, system: GearboxSystem) -> None:
     """Refuse tolerances of axes that deviate as bores do already, and bore sizes beside bearing clearances.
 

@@ -1,6 +1,6 @@
 """From one scene to gears, the assembly that holds them, and the bores between the two."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import replace
 from typing import Any
 

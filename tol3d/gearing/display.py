@@ -15,7 +15,7 @@ from tol3d.gearing.model import Measure, Mesh, Model
 from tol3d.gearing.placed import PlacedGear, SeatedMesh
 from tol3d.gearing.play import SeatKey, seat_keys
 from tol3d.gearing.seats import Seats
-from tol3d.gearing.system import gear_model
+from tol3d.gearing.system import gears_in
 from tol3d.report.presenter import Which
 from tol3d.runs.run import Run
 from tol3d.runs.worst import worst_trial
@@ -59,7 +59,7 @@ def seated_build(run: Run, which: Which, *, magnify: float = 1.0) -> SeatedBuild
     """
     if not (math.isfinite(magnify) and magnify >= 0.0):
         raise InputError(f"magnify: expected a number of at least 0, got {magnify:g}")
-    label, seen = _replayed(run, which)
+    label, seen = replayed_of(run, which)
     plain = replayed_build(seen, label)
     if magnify == 1.0:
         return plain
@@ -84,7 +84,12 @@ def replayed_build(seen: Replay, label: str) -> SeatedBuild:
     return SeatedBuild(_model(seen), label, 1.0, meshes, seen.geometric, failed)
 
 
-def _replayed(run: Run, which: Which) -> tuple[str, Replay]:
+def replayed_of(run: Run, which: Which) -> tuple[str, Replay]:
+    """A build of a run again, with its label.
+
+    Raises:
+        InputError: no such build.
+    """
     if which == "worst":
         which = worst_trial(run)
     if isinstance(which, int):
@@ -105,7 +110,7 @@ def _scaled(seen: Replay, factor: float) -> Replay:
 
 
 def _model(seen: Replay) -> Model:
-    return gear_model(seen.simulation.system)
+    return gears_in(seen.simulation.system).model
 
 
 def _seats_of(seen: Replay) -> Seats:

@@ -210,6 +210,18 @@ def gear_model(system: System) -> Model:
     return system.model
 
 
+def gears_in(system: System) -> GearSystem:
+    """The gears of a system that is of gears, or holds some as its `gears`, as one in a housing does.
+
+    Raises:
+        InputError: there are none.
+    """
+    found = getattr(system, "gears", system)
+    if not isinstance(found, GearSystem):
+        raise InputError(f"{system.name}: there are no gears in its moves")
+    return found
+
+
 def gear_system(scene: Scene) -> GearSystem:
     """What a scene of gears means.
 

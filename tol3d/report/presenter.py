@@ -133,9 +133,12 @@ def presenter_at(path: str) -> Presenter:
 
 
 def presenter_of(run: "RunSummary", path: str | None = None) -> Presenter:
-    """The presenter at an import path; without one that of the run's measures."""
-    named = (measure.presenter for measure in run.measures.values() if measure.presenter)
-    return presenter_at(next(named, "") if path is None else path)
+    """The presenter at an import path; without one that of the mechanism that made the run, or of its measures."""
+    if path is not None:
+        return presenter_at(path)
+    own = run.presenters.get(run.mechanism.name, "") if run.mechanism else ""
+    of_measures = (measure.presenter for measure in run.measures.values() if measure.presenter)
+    return presenter_at(own or next(of_measures, ""))
 
 
 def require_bodies(display: Display) -> None:

@@ -38,9 +38,7 @@ class Meant:
     named: Mapping[str, tuple[str, ...]]
 
 
-def assembly_of(
-    scene: Scene, settled: Mapping[str, Array] | None = None, warmings: Sequence[Warming] = ()
-) -> Meant:
+def assembly_of(scene: Scene, settled: Mapping[str, Array] | None = None, warmings: Sequence[Warming] = ()) -> Meant:
     """What a scene means.
 
     Args:

@@ -16,6 +16,11 @@ def check_blocks(simulation: Simulation) -> Sequence[Block]:
     """Features, moves, and what any system shows."""
     system = simulation.system
     assert isinstance(system, AssemblySystem)
+    return (*drawing_blocks(system), *system_blocks(simulation))
+
+
+def drawing_blocks(system: AssemblySystem) -> Sequence[Block]:
+    """Features and moves."""
     rows = [
         Row(own.name, (_shape(own), _place(system, own), _frame(own)))
         for part in system.assembly.parts
@@ -26,7 +31,7 @@ def check_blocks(simulation: Simulation) -> Sequence[Block]:
     features = titled("features, nominally in the world", Table("", words, rows))
     moves = [Row(move.name, _move(move)) for move in system.assembly.moves]
     steps = titled("moves", Table("", [Heading(word, words=True) for word in ("kind", "part", "by")], moves))
-    return (*features, *steps, *system_blocks(simulation))
+    return (*features, *steps)
 
 
 def _shape(feature: Feature) -> str:

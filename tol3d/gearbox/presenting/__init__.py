@@ -1,4 +1,4 @@
-"""How gears in a housing are shown: chains and tables of the trains, features and moves of the parts, all in one world."""
+"""How gears in a housing are shown: the trains, and the features and moves of the parts around them, in one world."""
 
 from collections.abc import Sequence
 from importlib import import_module

@@ -22,9 +22,14 @@ UM = 1000.0  # um in a mm
 def check_blocks(system: System) -> list[Block]:
     """Gears, meshes, trains, measures and contributors of a scene, with what follows from them."""
     model = gear_model(system)
-    housings = [housings_line(model)] if model.housings else []
-    blocks = [*gears_table(model), *housings, *meshes_table(model), *train_blocks(model), *measures_table(model)]
+    blocks = [*mechanics_blocks(model), *measures_table(model)]
     return [*blocks, *(contributors_table(model) if model.contributors else ())]
+
+
+def mechanics_blocks(model: Model) -> list[Block]:
+    """Gears, meshes and trains."""
+    housings = [housings_line(model)] if model.housings else []
+    return [*gears_table(model), *housings, *meshes_table(model), *train_blocks(model)]
 
 
 def _side_by_side(title: str, names: Sequence[str], rows: Mapping[str, Sequence[str]]) -> list[Block]:

@@ -26,17 +26,24 @@ class SummaryKinds:
         runs: classes that add sections to the whole, as keys that may be missing.
         plain: kinds of measures that add no key, each with the import path of what shows its system, or "".
         options: classes of what vocabularies add to a study, and so to that of a witness, as keys that may be missing.
+        presenters: names of mechanisms, each with the import path of what shows its systems.
     """
 
     measures: tuple[type[MeasureSummary], ...] = ()
     runs: tuple[type[RunSummary], ...] = ()
     plain: tuple[tuple[str, str], ...] = ()
     options: tuple[type[Section], ...] = ()
+    presenters: tuple[tuple[str, str], ...] = ()
 
     def __or__(self, other: "SummaryKinds") -> "SummaryKinds":
         """Both together."""
-        own = (*self.measures, *other.measures), (*self.runs, *other.runs)
-        return SummaryKinds(*own, (*self.plain, *other.plain), (*self.options, *other.options))
+        return SummaryKinds(
+            measures=(*self.measures, *other.measures),
+            runs=(*self.runs, *other.runs),
+            plain=(*self.plain, *other.plain),
+            options=(*self.options, *other.options),
+            presenters=(*self.presenters, *other.presenters),
+        )
 
     @cached_property
     def every_measure(self) -> tuple[type[MeasureSummary], ...]:
@@ -54,7 +61,7 @@ class SummaryKinds:
 
     def __reduce__(self) -> tuple[Any, ...]:
         """Pickled by what it is made of: classes made of it are made anew."""
-        return SummaryKinds, (self.measures, self.runs, self.plain, self.options)
+        return SummaryKinds, (self.measures, self.runs, self.plain, self.options, self.presenters)
 
     @cached_property
     def run(self) -> type[RunSummary]:
@@ -72,6 +79,7 @@ class SummaryKinds:
             study=(self._with_options(StudySummary), ...),
             witness=(self._with_options(WitnessSummary), LEFT_OUT),
         )
+        found.presenters = dict(self.presenters)
         return found
 
     def _with_options(self, section: type[Section]) -> Any:

@@ -1,7 +1,7 @@
 """The whole of summary.json: what a run of a scene found."""
 
 from collections.abc import Mapping
-from typing import Annotated, Literal, Self
+from typing import Annotated, ClassVar, Literal, Self
 
 from pydantic import Field, model_validator
 
@@ -94,6 +94,9 @@ class Findings(Section):
 
 class RunSummary(Findings):
     """summary.json: what a run of a scene found. Lengths um, of a tip mm; angles arcmin; shares ppm or %."""
+
+    presenters: ClassVar[Mapping[str, str]] = {}
+    """By mechanism, the import path of what shows its systems."""
 
     blocks: Blocks
     files: Mapping[Label, Sha256] = Field(description="SHA-256 of the scene and of every file that it names")

@@ -1,0 +1,107 @@
+"""Builds of gears in a housing as they are shown: seated gears, and the features of the parts around them."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tol3d.assembly.placing import road as placing
+from tol3d.assembly.presenting.shown_assembly import MOST_NAMED, bodies
+from tol3d.errors import RunError
+from tol3d.gearbox.system import GearboxSystem
+from tol3d.gearing.display import replayed_build, replayed_of, seated_build
+from tol3d.gearing.presenting.gear_display import GearDisplay
+from tol3d.report.body import World
+from tol3d.report.presenter import View, Which
+from tol3d.runs.run import Run
+from tol3d.simulate import Replay
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class ShownGearbox:
+    """Implements Display.
+
+    Args:
+        gears: at rest on the axes that the bores of the build give.
+        system: whose build it is.
+        frames: of the features of the parts in their world (4, 4).
+    """
+
+    gears: GearDisplay
+    system: GearboxSystem
+    frames: Mapping[str, Array]
+
+    @property
+    def label(self) -> str:
+        """See Display."""
+        return self.gears.label
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """See Display."""
+        return self.gears.notes
+
+    @cached_property
+    def worlds(self) -> tuple[World, ...]:
+        """The worlds of the gears, each with the parts around them."""
+        return tuple(self._with_parts(world) for world in self.gears.worlds)
+
+    def _with_parts(self, world: World) -> World:
+        into = self._world_from_parts(world.name)
+        if into is None:
+            return world
+        assembly = self.system.drawn.assembly
+        parts = (replace(own, world_from_part=into) for own in bodies(assembly, dict(self.frames)))
+        named = [own.name for own in assembly.features.values() if own.is_named]
+        places = {name: (into @ self.frames[name])[:3, 3] for name in named}
+        points = {**world.points, **(places if len(places) <= MOST_NAMED else {})}
+        return replace(world, bodies=(*world.bodies, *parts), points=points, one_file=True)
+
+    def _world_from_parts(self, name: str) -> Array | None:
+        """Where the world of the parts lies in that of a train, or of a mesh; None where the train has no bores."""
+        layout = self.system.gears.model.layout
+        if name in layout.root_of:
+            root, own = layout.root_of[name], np.eye(4)
+        else:
+            mesh = self.system.gears.model.mesh(name)
+            root, own = layout.root_of[layout.carrying[mesh.driver][0]], layout.world_from_mesh[name]
+        there = self.system.worlds.get(root)
+        return None if there is None else np.asarray(np.linalg.inv(there @ own))
+
+    def view(self, close_up: str | None) -> View:
+        """The whole gearbox; with a mesh named, that mesh close up as in any train."""
+        return View() if close_up is None else self.gears.view(close_up)
+
+
+def display(run: Run, which: Which, *, magnify: float) -> ShownGearbox:
+    """A build of a run, its deviations magnified as far as the teeth allow.
+
+    Raises:
+        InputError, RunError: no such build, or one that cannot be shown.
+    """
+    build = seated_build(run, which, magnify=magnify)
+    label, seen = replayed_of(run, which)
+    return _shown(GearDisplay(build), seen, label, build.magnify)
+
+
+def replayed(replay: Replay, label: str) -> ShownGearbox:
+    """A trial that was replayed.
+
+    Raises:
+        RunError: it is not built.
+    """
+    return _shown(GearDisplay(replayed_build(replay, label)), replay, label, 1.0)
+
+
+def _shown(gears: GearDisplay, seen: Replay, label: str, magnify: float) -> ShownGearbox:
+    system = seen.simulation.system
+    assert isinstance(system, GearboxSystem)
+    deviations = magnify * seen.trials.deviations[:1, system.assembly_places]
+    frames = placing.features_placed(system.drawn.assembly, deviations)
+    if any(np.isnan(frame).any() for frame in frames.values()):
+        raise RunError(f"{label}: cannot be shown: {seen.status}")
+    return ShownGearbox(gears, system, {name: own[0] for name, own in frames.items()})

@@ -1,0 +1,39 @@
+"""What a scene of gears in a housing means, as tables."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from tol3d.assembly.presenting.tables import drawing_blocks
+from tol3d.gearbox.bores import Bores
+from tol3d.gearbox.system import GearboxSystem
+from tol3d.gearing.presenting.scene_check import mechanics_blocks
+from tol3d.report.page import Block, Heading, Row, Table, titled
+from tol3d.report.system_check import system_blocks
+from tol3d.study.simulation import Simulation
+
+
+def check_blocks(simulation: Simulation) -> Sequence[Block]:
+    """Features and moves of the parts, shafts in their bores, gears and trains, and what any system shows."""
+    system = simulation.system
+    assert isinstance(system, GearboxSystem)
+    shafts, gears = shafts_table(system.bores), mechanics_blocks(system.gears.model)
+    return (*drawing_blocks(system.drawn), *shafts, *gears, *system_blocks(simulation))
+
+
+def shafts_table(bores: Bores) -> Sequence[Block]:
+    """Where shafts lie: their bores, and how far along the shaft these are."""
+    rows = [
+        Row(
+            own.shaft,
+            (
+                ", ".join(bore.words for bore in own.bores),
+                ", ".join(f"{own.along(bore):g}" for bore in own.bores),
+                ", ".join(f"{number:g}" for number in np.round(own.frame[:3, 3], 6) + 0.0),
+                ", ".join(f"{number:g}" for number in np.round(own.frame[:3, 2], 6) + 0.0),
+            ),
+        )
+        for own in bores.shafts
+    ]
+    words = ("in", "at its z [mm]", "origin at [mm]", "z along")
+    return titled("shafts in bores", Table("", [Heading(word, words=True) for word in words], rows))
