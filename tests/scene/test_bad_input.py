@@ -150,8 +150,8 @@ CHANGES = {
         "study.trials: expected a whole number or auto, got 'no'",
     ),
     "nothing behind a key": (
-        ("centre_distance: 172.5 mm", "centre_distance: "),
-        'moves.gear pair.centre_distance: expected a length with its unit, such as "4.5 um", got nothing',
+        ("teeth: 28, module: 2.5 mm", "teeth: 28, module: "),
+        'parts.pinion.module: expected a length with its unit, such as "4.5 um", got nothing',
     ),
     "missing part": (
         ("driver: pinion", "driver: pinon"),
@@ -206,7 +206,7 @@ CHANGES = {
     "unknown kind of move": (
         ("kind: mesh", "kind: mash"),
         "moves.gear pair.kind: expected one of bevel_mesh, mesh, reducer, train, best_fit, fix, three_two_one, "
-        "six_plane, mate, weld, got 'mash'; did you mean \"mesh\"?",
+        "six_plane, mate, weld, shaft_in_bores, got 'mash'; did you mean \"mesh\"?",
     ),
     "missing kind": (
         ("{kind: rayleigh, scale", "{scale"),

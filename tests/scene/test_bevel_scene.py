@@ -75,7 +75,8 @@ WRONG = {
     ),
     "warm bevel gears": (
         (OTHER, "kind: temperature, of: driver, distribution: {kind: constant, value: 20 K}"),
-        "8: tolerances.other.of[0]: expected the name of a spur gear or a housing, got 'driver', which is a bevel gear",
+        "8: tolerances.other.of[0]: expected the name of a part that grows with temperature, got 'driver', which is a "
+        "bevel gear",
     ),
     "a reading that is none": (
         ("normal_backlash, of: pair", "normal_backlash, of: pair, read_at: heel"),

@@ -11,7 +11,7 @@ from shipped import shipped
 
 from tol3d import Overrides, Run, load_scene, run_scene
 
-SCENES = shipped("assembly")
+SCENES = (*shipped("assembly"), *shipped("gearbox"))
 PRINTED = 1e-5  # um or arcmin; the files give that many digits
 SEEN = 1e-5  # um or arcmin: another machine's bits, of lengths up to 100 mm
 ARCMIN = 10800 / math.pi

@@ -1,7 +1,8 @@
 """How far the axes of shafts lie off their nominal places, trial by trial: what both roads of the assembly say.
 
-Each point of an axis has a twin that stands still where the point is nominally; gaps between the two along the shaft's
-x, y and z are measures of the assembly, which either road reads as it reads any other.
+Each point of an axis has a twin where the point is nominally, on the part that carries the first bore of its train.
+Gaps between the two along the shaft's x, y and z are measures of the assembly, which either road reads as any other.
+So a housing that stands askew takes its shafts along, and nothing of that reaches the gears.
 """
 
 from collections.abc import Mapping, Sequence
@@ -12,13 +13,10 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.assembly.model import Assembly, Axis, Contribution, Feature, Fix, Measured, Part, Point
+from tol3d.assembly.model import Assembly, Axis, Contribution, Feature, Measured, Point
 from tol3d.gearbox.nominal import HousedShaft
 
 Array = NDArray[np.float64]
-
-GROUND: Final = ".ground"
-"""The part that stands still; scenes cannot name one so."""
 
 COMPONENTS: Final = ("x", "y")
 """Across the axis at each of its two points, in the frame of the shaft at rest."""
@@ -34,7 +32,7 @@ class Bores:
     """The axes of shafts in bores, as an assembly reads them.
 
     Args:
-        assembly: with the ground and the points of the axes.
+        assembly: with the points of the axes and their twins.
         shafts: in the order of their columns: x, y at the first point, x, y at the second.
     """
 
@@ -80,33 +78,24 @@ class Bores:
 
 def bores_of(assembly: Assembly, shafts: Sequence[HousedShaft]) -> Bores:
     """An assembly with the points of the axes of shafts."""
-    points: list[Feature] = []
-    ends: dict[str, list[Feature]] = {}
+    added: dict[str, list[Feature]] = {part.name: [] for part in assembly.parts}
     measures: dict[str, Measured] = {}
     for own in shafts:
+        host = assembly.part[own.host]
+        into = np.linalg.inv(host.pose)
         for k, bore in enumerate(own.bores):
             frame = own.frame.copy()
             frame[:3, 3] = bore.place
-            twin = f"{GROUND}.{own.shaft} {k}"
-            points.append(Feature(twin, GROUND, Point(), frame, is_named=False))
+            twin = Feature(f"{own.host}..{own.shaft} {k}", own.host, Point(), into @ frame, is_named=False)
+            added[own.host].append(twin)
             actual = assembly.features[bore.feature]
             if bore.end is not None:
                 actual = _end_of(actual, bore.end)
-                ends.setdefault(actual.part, []).append(actual)
-            for direction, column in zip("xyz", own.frame[:3, :3].T, strict=True):
-                name = reading_name(own.shaft, k, direction)
-                measures[name] = Measured("gap", (twin, actual.name), np.array(column))
-    ground = Part(GROUND, np.eye(4), tuple(points), ())
-    parts = tuple(replace(part, features=(*part.features, *ends.get(part.name, ()))) for part in assembly.parts)
-    return Bores(
-        Assembly(
-            (*parts, ground),
-            (*assembly.moves, Fix(GROUND, GROUND)),
-            {**assembly.measures, **measures},
-            assembly.width,
-        ),
-        tuple(shafts),
-    )
+                added[actual.part].append(actual)
+            for direction, column in zip("xyz", (into[:3, :3] @ own.frame[:3, :3]).T, strict=True):
+                measures[reading_name(own.shaft, k, direction)] = Measured("gap", (twin.name, actual.name), column)
+    parts = tuple(replace(part, features=(*part.features, *added[part.name])) for part in assembly.parts)
+    return Bores(replace(assembly, parts=parts, measures={**assembly.measures, **measures}), tuple(shafts))
 
 
 def _end_of(bore: Feature, end: int) -> Feature:

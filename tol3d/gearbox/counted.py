@@ -25,7 +25,7 @@ def refuse_counted_twice(scene: Scene, system: GearboxSystem) -> None:
                 raise scene.refuse(("tolerances", name), f"{words} already, and both would count; take out one")
         elif isinstance(spec, BearingClearanceSpec):
             for other in _sizes(scene, spec):
-                words = f"expected no clearance beside {other!r}, the size of the bore in which this bearing sits"
+                words = f"expected no clearance beside {other!r}, the size of a bore of the same shaft"
                 raise scene.refuse(("tolerances", name), f"{words}: both would count; take out one")
 
 

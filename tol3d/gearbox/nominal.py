@@ -59,12 +59,14 @@ class HousedShaft:
         shaft: its name.
         bores: two points of its axis.
         frame: the frame of the shaft at rest, in the world of the parts (4, 4).
+        host: the part that carries the first bore of its train: shafts lie off their places as it sees them.
     """
 
     move: str
     shaft: str
     bores: tuple[Bore, Bore]
     frame: Array
+    host: str
 
     def along(self, bore: Bore) -> float:
         """Where a point of it lies along the shaft's z [mm]."""
@@ -136,10 +138,11 @@ def housed(scene: Scene, gears: Scene, assembly: Assembly) -> Housed:
             mesh = next(own for own in meshes if own.name == link.name)
             gears = _with_azimuth(gears, mesh, lines[link.driven][1], worlds[layout.root_of[link.driver]], layout)
     _, layout = meshes_of_scene(gears)
-    shafts = {
-        shaft: HousedShaft(move, shaft, bores, worlds[layout.root_of[shaft]] @ layout.world_from_shaft[shaft])
-        for shaft, (move, bores) in lines.items()
-    }
+    shafts = {}
+    for shaft, (move, bores) in lines.items():
+        root = layout.root_of[shaft]
+        host = assembly.features[lines[root][1][0].feature].part
+        shafts[shaft] = HousedShaft(move, shaft, bores, worlds[root] @ layout.world_from_shaft[shaft], host)
     for own in shafts.values():
         _refuse_misfit(scene, own)
     return Housed(gears, shafts, worlds)
@@ -201,10 +204,6 @@ def _worlds(
     scene: Scene, lines: Mapping[str, tuple[str, tuple[Bore, Bore]]], layout: Layout
 ) -> Iterator[tuple[str, Array]]:
     """By first shaft, the frame of its bores."""
-    for shaft, (move, _) in lines.items():
-        if shaft not in layout.root_of:
-            words = f"expected a shaft that takes part in a mesh or another link, got {shaft!r}, which does not"
-            raise scene.refuse(("moves", move, "shaft"), words)
     for root in dict.fromkeys(layout.root_of[shaft] for shaft in lines):
         if root not in lines:
             shaft, move = next((own, lines[own][0]) for own in lines if layout.root_of[own] == root)

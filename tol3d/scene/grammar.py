@@ -1,7 +1,7 @@
 """The kinds of entry that scenes may have, and the class of such scenes."""
 
 import pkgutil
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence, Set
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
 from importlib import import_module
@@ -154,7 +154,17 @@ class Grammar:
         *_, (last, path) = used.items()
         kinds = " and ".join(f"{first[1]!r} of {own}" for own, first in used.items())
         words = f"kinds of {' and '.join(used)} do not go together in one scene, got {kinds}"
-        raise scene.refuse(path, f"{words}; take out {last}, or make two scenes")
+        raise scene.refuse(path, f"{words}; {self._joining(used.keys()) or f'take out {last}'}, or make two scenes")
+
+    def _joining(self, names: Set[str]) -> str:
+        """The kinds of a vocabulary that understands some others and whose own are not there; or nothing."""
+        joining = next((each for each in self.vocabularies if names <= self._understood(each)), None)
+        kinds = (
+            [(section[:-1], kind_of(spec)) for section in SECTIONS for spec in joining.specs(section)]
+            if joining
+            else []
+        )
+        return "join them by " + " or ".join(f"a {section} of kind {kind}" for section, kind in kinds) if kinds else ""
 
     def vocabularies_of(self, scene: Scene) -> tuple[Vocabulary, ...]:
         """The vocabularies whose kinds a scene has, in the order of registration."""

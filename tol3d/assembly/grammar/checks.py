@@ -35,7 +35,9 @@ def _unfit(use: Use, parts: Mapping[str, Mapping[str, FeatureUnion]]) -> str:
     if use.kinds and features[feature].kind not in use.kinds:
         fitting = [f"{part}.{name}" for name, own in features.items() if own.kind in use.kinds]
         wanted = " or ".join(use.kinds)
-        return f"expected a {wanted}, got {use.name!r}, which is {features[feature].words}{hint(use.name, fitting)}"
+        article = "an" if wanted[0] in "aeiou" else "a"
+        got = f"got {use.name!r}, which is {features[feature].words}"
+        return f"expected {article} {wanted}, {got}{hint(use.name, fitting)}"
     return ""
 
 
