@@ -17,6 +17,7 @@ from places import SCENES
 from tol3d import load_scene
 from tol3d.errors import SceneError
 from tol3d.gearing.model import model_from_scene
+from tol3d.kinds import all_kinds
 from tol3d.scene.problems import MOST_PROBLEMS
 from tol3d.scene.text import MAX_BYTES, MAX_DEPTH
 from tol3d.units import Quantity
@@ -205,8 +206,8 @@ CHANGES = {
     ),
     "unknown kind of move": (
         ("kind: mesh", "kind: mash"),
-        "moves.gear pair.kind: expected one of bevel_mesh, mesh, reducer, train, best_fit, fix, three_two_one, "
-        "six_plane, mate, weld, shaft_in_bores, got 'mash'; did you mean \"mesh\"?",
+        f"moves.gear pair.kind: expected one of {', '.join(all_kinds().kinds('moves'))}, got 'mash'; "
+        'did you mean "mesh"?',
     ),
     "missing kind": (
         ("{kind: rayleigh, scale", "{scale"),
