@@ -439,14 +439,12 @@ def test_a_chain_says_of_how_many_trials_it_is_where_some_failed() -> None:
     )
 
 
-@pytest.mark.parametrize("lever", [LEVER, None])
-@pytest.mark.parametrize("count", [1, 2, 3, 4, 5, 6, 7, 9, 12])
-def test_no_two_labels_overlap_and_none_leaves_the_picture(count: int, lever: float) -> None:
-    figure = chain_figure(typed_run(long_train(count, lever)), "shoulder swing")
+def assert_labels_apart(figure: Figure, least: int) -> None:
+    """So many labels at least, none over another one and none beyond the picture."""
     figure.canvas.draw()
     width, height = figure.canvas.get_width_height()
     boxes = [(text.get_text(), text.get_window_extent()) for text in artists_of(figure)]
-    assert len(boxes) > 12 * count
+    assert len(boxes) > least
     for text, box in boxes:
         assert box.x0 >= 0, text
         assert box.y0 >= 0, text
@@ -455,6 +453,32 @@ def test_no_two_labels_overlap_and_none_leaves_the_picture(count: int, lever: fl
     for (text, box), (other, beside) in itertools.combinations(boxes, 2):
         apart = box.x1 <= beside.x0 or beside.x1 <= box.x0 or box.y1 <= beside.y0 or beside.y1 <= box.y0
         assert apart, (text, other)
+
+
+@pytest.mark.parametrize("lever", [LEVER, None])
+@pytest.mark.parametrize("count", [1, 2, 3, 4, 5, 6, 7, 9, 12])
+def test_no_two_labels_overlap_and_none_leaves_the_picture(count: int, lever: float) -> None:
+    assert_labels_apart(chain_figure(typed_run(long_train(count, lever)), "shoulder swing"), 12 * count)
+
+
+@pytest.mark.parametrize("others", [1, 2, 3, 4])
+def test_a_long_title_and_many_published_names_stand_apart_and_every_one_is_named(others: int) -> None:
+    summary = long_train(3)
+    train = summary["trains"].pop("shoulder swing")
+    name = "the train that swings the arm of the robot about its shoulder, as measured on the bench"
+    summary["trains"][name] = train | {
+        "driven": "the shaft of the motor " * 4,
+        "held": "the shaft that the brake holds",
+    }
+    for each in (*train["stages"], train["sums"]):
+        own = train["sums"]["geometric"] if each is train["sums"] else each["roads"]["geometric"]
+        each["published"] = {f"{k}: a column of somebody's own long paper": own for k in range(others)}
+    figure = chain_figure(typed_run(summary), name)
+    assert_labels_apart(figure, 36)
+    texts = texts_of(figure)
+    assert [text[0] for text in texts if text.endswith(": high")] == [str(k) for k in range(others)]
+    assert sum(text.startswith("the train that swings") for text in texts) == 1
+    assert "2000 trials, seed 7" in " ".join(texts).replace("\n", " ")
 
 
 @pytest.mark.parametrize("teeth", [(31, 31), (20, 40), (40, 20)])

@@ -12,26 +12,22 @@ from matplotlib.patches import Circle, FancyBboxPatch, Patch, Polygon
 from tol3d.gearing.presenting.chain_bars import draw_bars, draw_shares, highest_bar
 from tol3d.gearing.presenting.chain_grid import (
     ARM,
-    BARS,
+    CAPTIONS,
     CHAIN,
     EDGE,
     HEAD,
     LIGHT,
-    LINES,
-    NAMES,
-    SHARES,
-    SKETCH,
+    ROW,
     STRONG,
     TEXT,
     WIDTH,
     ChainRow,
-    draw_caption,
     plain_part,
     published_colours,
     rows_of,
 )
 from tol3d.gearing.presenting.chain_sum import draw_sums, height_of_sums, sum_lines
-from tol3d.gearing.presenting.link_symbol import draw_link
+from tol3d.gearing.presenting.link_symbol import draw_link, draw_text
 from tol3d.gearing.presenting.shown_stage import ShownStage, stages_of, trains_of, whole_ratio_text
 from tol3d.gearing.summary_types import TrainSummary
 from tol3d.report.canvas import BLACK, GREY, OUTSIDE, new_figure, save_figure, say_instead
@@ -41,11 +37,11 @@ from tol3d.report.number import NOTHING, given_text, value_text
 from tol3d.runs.summary.run import RunSummary
 
 SHAFT_HEIGHT: Final = 0.68  # inch
-MIDDLE: Final = LINES + CHAIN / 2  # inch, of the shafts, from the foot of their part of the picture
-LINE: Final = 0.19  # inch, from line to line of text
-SENSE_ABOVE: Final = 0.14  # inch, of the shaft's box
+SENSE_HEIGHT: Final = SHAFT_HEIGHT / 2 + 0.14  # inch, from the middle of the shafts
 TIP_REACH: Final = 0.42  # inch, of the arrow at the tip
 LINE_CAPTIONS: Final = ("ratio", "working flank", "own lost motion", "low … high (±3σ)")
+TITLE, SENSE = 16.0, 15.0  # points
+PUBLISHED_LETTERS, MOST_LETTERS = 60, 28  # of all names of others together, which leaves room for the title; of one
 OF_ITS_LAW: Final = ", its law's"  # after ends that are nearer than 3 sigma
 NO_LINKS: Final = "there is no link between the shaft that is held and the one that is read"
 
@@ -65,20 +61,21 @@ def chain_figure(summary: RunSummary, train_name: str) -> Figure:
     stages = stages_of(train)
     lines = sum_lines(train, summary)
     rows = rows_of(stages, train.held, ARM if train.lever_mm is not None else 0.0) if stages else []
-    heights = [HEAD, *(part for _ in rows for part in (SKETCH, BARS, SHARES)), height_of_sums(lines)]
+    heights = [HEAD, *ROW * len(rows), height_of_sums(lines)]
     figure = new_figure(WIDTH, sum(heights))
     figure.set_layout_engine("none")
     grid = figure.add_gridspec(
-        len(heights), 1, height_ratios=heights, left=0.0, right=1.0, bottom=0.0, top=1.0, hspace=0.0
+        len(heights), 1, height_ratios=heights, left=CAPTIONS / WIDTH, right=1.0, bottom=0.0, top=1.0, hspace=0.0
     )
-    _draw_head(plain_part(figure, grid[0, 0], HEAD), train_name, train, summary)
+    _draw_head(plain_part(figure, grid[0, 0], (0, HEAD)), train_name, train, summary)
     if not rows:
-        say_instead(plain_part(figure, grid[1, 0], heights[1]), NO_LINKS, GREY)
+        say_instead(plain_part(figure, grid[1, 0], (0, 1)), NO_LINKS, GREY)
         return figure
     highest = highest_bar(stages)
     for index, row in enumerate(rows):
-        sketch, bars, shares = (grid[1 + 3 * index + part, 0] for part in range(3))
-        _draw_row(plain_part(figure, sketch, SKETCH), train, row)
+        chain, words, bars, shares = (grid[2 + index * len(ROW) + part, 0] for part in range(4))
+        _draw_row(plain_part(figure, chain, (-CHAIN / 2, CHAIN / 2), {SENSE_HEIGHT: "sense of rotation"}), train, row)
+        _draw_words(plain_part(figure, words, (3.5, -0.5), dict(enumerate(LINE_CAPTIONS))), row)
         draw_bars(figure, bars, train, row, highest)
         draw_shares(figure, shares, row)
     draw_sums(figure, grid[len(heights) - 1, 0], train, stages, lines)
@@ -86,54 +83,59 @@ def chain_figure(summary: RunSummary, train_name: str) -> Figure:
 
 
 def _draw_head(axes: Axes, name: str, train: TrainSummary, summary: RunSummary) -> None:
-    axes.text(EDGE, HEAD - 0.3, legible(name, 60), fontsize=16, fontweight="bold", color=BLACK, va="center")
-    ends = f"{legible(train.driven, 40)} → {legible(train.output, 40)},  i = {whole_ratio_text(train.ratio)}"
-    words = f"{ends}   ·   {legible(train.held, 40)} held   ·   {summary.trials} trials, seed {summary.seed}"
-    seated = seated_text(summary.measures[train.measure]) if train.measure in summary.measures else ""
-    words += f"   ·   {seated}" if seated else ""
-    axes.text(EDGE, HEAD - 0.63, words, fontsize=STRONG, color=GREY, va="center")
+    """The legend at the right, the name in the room that it leaves, and below it what train this is."""
+    left, right = EDGE - CAPTIONS, WIDTH - CAPTIONS - EDGE
+    published = published_colours(train)
+    letters = min(PUBLISHED_LETTERS // max(len(published), 1), MOST_LETTERS)
     marks: list[Patch | Line2D] = [
         Patch(facecolor=GREY, label="mean"),
         Patch(facecolor=GREY, alpha=LIGHT, label="high (+3 sigma)"),
         *(
-            Line2D([], [], color=colour, linewidth=2.5, label=f"{legible(who, 28)}: high")
-            for who, colour in published_colours(train).items()
+            Line2D([], [], color=colour, linewidth=2.5, label=f"{legible(who, letters)}: high")
+            for who, colour in published.items()
         ),
     ]
-    axes.legend(
+    legend = axes.legend(
         handles=marks,
         loc="upper right",
-        bbox_to_anchor=(WIDTH - EDGE, HEAD - 0.15),
+        bbox_to_anchor=(right, HEAD - 0.15),
         bbox_transform=axes.transData,
-        ncols=min(len(marks), 4),
+        ncols=len(marks),
         fontsize=TEXT,
         frameon=False,
         borderpad=0,
     )
+    room = legend.get_window_extent().transformed(axes.transData.inverted()).x0 - left
+    title = wrapped(name, room, TITLE, 1, "bold")
+    axes.text(left, HEAD - 0.3, title, fontsize=TITLE, fontweight="bold", color=BLACK, va="center")
+    words = f"{train.driven} → {train.output},  i = {whole_ratio_text(train.ratio)}"
+    words += f"   ·   {train.held} held   ·   {summary.trials} trials, seed {summary.seed}"
+    seated = seated_text(summary.measures[train.measure]) if train.measure in summary.measures else ""
+    words += f"   ·   {seated}" if seated else ""
+    words = wrapped(words, right - left, STRONG, 2)
+    axes.text(left, HEAD - 0.54, words, fontsize=STRONG, color=GREY, va="top")
 
 
 def _draw_row(axes: Axes, train: TrainSummary, row: ChainRow) -> None:
-    for column, stage in enumerate(row.stages):
-        x = row.link_at(column)
-        name = wrapped(f"{stage.number}  {stage.link}", row.pitch - 0.12, STRONG, 2, "bold")
-        axes.text(
-            x, SKETCH - NAMES / 2, name, ha="center", va="center", fontsize=STRONG, fontweight="bold", color=BLACK
-        )
-        draw_link(axes, stage, row.link_ends(column), MIDDLE)
-        for line, (text, weight) in enumerate(_link_lines(stage)):
-            axes.text(x, _line_at(line), text, ha="center", va="center", fontsize=TEXT, fontweight=weight, color=BLACK)
-    for column in range(len(row.shafts)):
-        _draw_shaft(axes, row, column)
-    for line, caption in enumerate(LINE_CAPTIONS):
-        draw_caption(axes, _line_at(line) / SKETCH, caption)
-    draw_caption(axes, (MIDDLE + SHAFT_HEIGHT / 2 + SENSE_ABOVE) / SKETCH, "sense of rotation")
+    """The shafts of a row, the signs of its links between them and their names above; y from the shafts' middle."""
+    names = [wrapped(f"{stage.number}  {stage.link}", row.pitch - 0.12, STRONG, 2, "bold") for stage in row.stages]
+    axes.xaxis.tick_top()
+    axes.set_xticks(row.links, names, fontsize=STRONG, fontweight="bold", color=BLACK)
+    half = (row.pitch - row.shaft) / 2
+    for x, stage in zip(row.links, row.stages, strict=True):
+        draw_link(axes, stage, (x - half, x + half))
+    for x, name, sense in zip(row.middles, row.shafts, row.senses, strict=True):
+        _draw_shaft(axes, row, x, name)
+        draw_text(axes, x, SENSE_HEIGHT, "↺" if sense > 0 else "↻", SENSE)
     if row.last and train.lever_mm is not None:
-        _draw_arm(axes, train, row)
+        _draw_arm(axes, train, row.middles[-1] + row.shaft / 2)
 
 
-def _line_at(line: int) -> float:
-    """Height of a line of text below the shafts."""
-    return LINES - (line + 0.5) * LINE
+def _draw_words(axes: Axes, row: ChainRow) -> None:
+    """What each link of a row is, line by line."""
+    for x, stage in zip(row.links, row.stages, strict=True):
+        for line, (text, weight) in enumerate(_link_lines(stage)):
+            draw_text(axes, x, line, text, TEXT, weight)
 
 
 def _link_lines(stage: ShownStage) -> Iterator[tuple[str, str]]:
@@ -145,32 +147,26 @@ def _link_lines(stage: ShownStage) -> Iterator[tuple[str, str]]:
     yield ends + (OF_ITS_LAW if stage.within_its_law else ""), "normal"
 
 
-def _draw_shaft(axes: Axes, row: ChainRow, column: int) -> None:
+def _draw_shaft(axes: Axes, row: ChainRow, x: float, name: str) -> None:
     """A box with round ends; dashed where the same shaft has stood at the end of the row before."""
-    x, y = row.shaft_at(column), MIDDLE
-    corner = (x - row.shaft / 2, y - SHAFT_HEIGHT / 2)
+    corner = (x - row.shaft / 2, -SHAFT_HEIGHT / 2)
     ends = f"round,pad=0,rounding_size={0.45 * SHAFT_HEIGHT}"
     box = FancyBboxPatch(corner, row.shaft, SHAFT_HEIGHT, boxstyle=ends)
-    seen = row.goes_on and column == 0
+    seen = row.goes_on and x == row.middles[0]
     box.set(facecolor="#F3F3F3", edgecolor=GREY, linewidth=1.3, linestyle="--" if seen else "-", zorder=3)
     axes.add_patch(box)
-    name = wrapped(row.shafts[column], row.shaft - 0.14, TEXT, 3)
-    axes.text(x, y, name, ha="center", va="center", fontsize=TEXT, color=BLACK, zorder=4, linespacing=1.1)
-    sense = "↺" if row.senses[column] > 0 else "↻"
-    above = y + SHAFT_HEIGHT / 2 + SENSE_ABOVE
-    axes.text(x, above, sense, ha="center", va="center", fontsize=15, color=BLACK)
+    draw_text(axes, x, 0.0, wrapped(name, row.shaft - 0.14, TEXT, 3), TEXT)
 
 
-def _draw_arm(axes: Axes, train: TrainSummary, row: ChainRow) -> None:
-    """An arm that grows thinner to its tip, at the right of the last shaft."""
-    start, y = row.shaft_at(len(row.stages)) + row.shaft / 2, MIDDLE
+def _draw_arm(axes: Axes, train: TrainSummary, start: float) -> None:
+    """An arm that grows thinner to its tip, from the right end of the last shaft."""
     end = start + ARM - 0.25
-    beam = Polygon([(start - 0.1, y - 0.13), (start - 0.1, y + 0.13), (end, y + 0.05), (end, y - 0.05)])
+    beam = Polygon([(start - 0.1, -0.13), (start - 0.1, 0.13), (end, 0.05), (end, -0.05)])
     beam.set(facecolor="#D9D9D9", edgecolor=GREY, linewidth=1.3, zorder=1)
     axes.add_patch(beam)
-    axes.add_patch(Circle((end, y), 0.09, facecolor=OUTSIDE, edgecolor="white", linewidth=1.2, zorder=4))
+    axes.add_patch(Circle((end, 0.0), 0.09, facecolor=OUTSIDE, edgecolor="white", linewidth=1.2, zorder=4))
     arrow = {"arrowstyle": "<->", "color": OUTSIDE, "linewidth": 1.4, "shrinkA": 0, "shrinkB": 0}
-    axes.annotate("", (end, y + TIP_REACH), (end, y - TIP_REACH), arrowprops=arrow)
+    axes.annotate("", (end, TIP_REACH), (end, -TIP_REACH), arrowprops=arrow)
     name = wrapped(train.point or "tip", ARM, TEXT, 2)
     text = f"{name}\nlever {given_text(train.lever_mm, 'mm')} mm"
-    axes.text(start + ARM / 2, LINES, text, ha="center", va="top", fontsize=TEXT, color=BLACK, linespacing=1.25)
+    axes.text(start + ARM / 2, -CHAIN / 2, text, ha="center", va="top", fontsize=TEXT, color=BLACK, linespacing=1.25)

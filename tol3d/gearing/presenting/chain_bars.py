@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from typing import Final
 
+import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.gridspec import SubplotSpec
@@ -12,15 +13,13 @@ from tol3d.gearing.presenting.chain_grid import (
     CAPTIONS,
     EDGE,
     LIGHT,
-    SHARES,
     SMALL,
     TEXT,
+    Array,
     ChainRow,
-    draw_caption,
     plain_part,
     published_colours,
 )
-from tol3d.gearing.presenting.link_symbol import link_colour
 from tol3d.gearing.presenting.shown_stage import ShownStage, share_text
 from tol3d.gearing.summary_types import TrainSummary
 from tol3d.report.canvas import BLACK
@@ -28,11 +27,12 @@ from tol3d.report.label import wrapped
 from tol3d.report.number import NOTHING, tip_mm
 
 BAR_LABEL: Final = 0.46  # inch, of two lines of text
+LEAST_HEIGHT: Final = 1e-9  # arcmin; of a bar that has a label above it
 LABEL_LIFT: Final = 3.6  # points, from a bar to its label
 LONG_MM: Final = 10.0  # mm; from there on two decimals, or two labels do not stand side by side
 MOST_APART: Final = 0.85  # inch, from a mean's bar to its high's
-TRACK_LENGTH, TRACK_THICKNESS = 1.0, 0.1  # inch, of a share's gauge
-TRACK_BELOW, TEXT_BELOW = 0.15, 0.34  # inch, from the foot of the bars to a gauge and to its text
+GAUGE_LENGTH: Final = 1.0  # inch
+GAUGE_SHARE: Final = 0.8  # of the height of its part
 
 
 def highest_bar(stages: Sequence[ShownStage]) -> float:
@@ -56,52 +56,41 @@ def draw_bars(figure: Figure, place: SubplotSpec, train: TrainSummary, row: Chai
         row: whose links.
         highest: of the bars in all rows [arcmin], which leaves room for its label.
     """
-    axes = plain_part(figure, place, max(highest, 1e-9) * BARS / (BARS - BAR_LABEL))
+    highest = max(highest, LEAST_HEIGHT)
+    caption = wrapped(f"at {train.shaft}", CAPTIONS - EDGE, SMALL, 3)
+    axes = plain_part(figure, place, (0, highest * BARS / (BARS - BAR_LABEL)), {highest / 2: caption})
+    axes.bar(row.links, 0.0, 0.9 * row.pitch, edgecolor="#999999", linewidth=0.8, clip_on=False)
     apart = min(0.42 * row.pitch, MOST_APART)
-    for column, stage in enumerate(row.stages):
-        x, half = row.link_at(column), 0.45 * row.pitch
-        axes.hlines(0.0, x - half, x + half, color="#999999", linewidth=0.8, clip_on=False)
-        marked = _draw_published(axes, train, stage, x + apart / 2, 0.75 * apart)
-        for value, at, opacity, least in (
-            (stage.at_shaft.mean, x - apart / 2, 1.0, 0.0),
-            (stage.at_shaft.high, x + apart / 2, LIGHT, marked),
-        ):
-            top = max(value or 0.0, 0.0)
-            axes.bar(at, top, 0.62 * apart, color=link_colour(stage.kind), alpha=opacity, linewidth=0)
-            axes.annotate(
-                _bar_text(value, train.lever_mm),
-                (at, max(top, least)),
-                (0, LABEL_LIFT),
-                textcoords="offset points",
-                ha="center",
-                va="bottom",
-                fontsize=SMALL,
-                color=BLACK,
-                linespacing=1.1,
-            )
-    draw_caption(axes, (BARS - BAR_LABEL) / 2 / BARS, wrapped(f"at {train.shaft}", CAPTIONS - EDGE, SMALL, 3))
+    marked = _draw_published(axes, train, row, row.links + apart / 2, 0.75 * apart)
+    for values, at, opacity, least in (
+        ([stage.at_shaft.mean for stage in row.stages], row.links - apart / 2, 1.0, 0.0),
+        ([stage.at_shaft.high for stage in row.stages], row.links + apart / 2, LIGHT, marked),
+    ):
+        heights = np.array([max(value or 0.0, LEAST_HEIGHT) for value in values])
+        axes.bar(at, heights, 0.62 * apart, color=row.colours, alpha=opacity, linewidth=0)
+        texts = [_bar_text(value, train.lever_mm) for value in values]
+        labelled = axes.bar(at, np.maximum(heights, least), alpha=0.0)  # to what is higher: the bar or a mark
+        axes.bar_label(labelled, texts, padding=LABEL_LIFT, fontsize=SMALL, color=BLACK, linespacing=1.1)
 
 
-def _draw_published(axes: Axes, train: TrainSummary, stage: ShownStage, x: float, width: float) -> float:
-    """Marks of others' highs side by side over the bar of ours; returns the highest [arcmin]."""
-    colours, highs = published_colours(train), _published_highs(stage)
-    for k, (name, high) in enumerate(highs.items()):
-        begin, end = (x + width * (part / len(highs) - 0.5) for part in (k, k + 1))
-        axes.hlines(high, begin, end, color=colours[name], linewidth=2.5, zorder=3)
-    return max(highs.values(), default=0.0)
+def _draw_published(axes: Axes, train: TrainSummary, row: ChainRow, at: Array, width: float) -> Array:
+    """Marks of others' highs side by side over the bars of ours; returns the highest of each link [arcmin]."""
+    colours = published_colours(train)
+    highs = [_published_highs(stage) for stage in row.stages]
+    for own, x in zip(highs, at, strict=True):
+        ends = x + width * np.linspace(-0.5, 0.5, len(own) + 1)
+        axes.hlines([*own.values()], ends[:-1], ends[1:], [colours[name] for name in own], linewidth=2.5, zorder=3)
+    return np.array([max(own.values(), default=0.0) for own in highs])
 
 
 def draw_shares(figure: Figure, place: SubplotSpec, row: ChainRow) -> None:
     """Shares of the variance of the links of a row, each as the filled part of a gauge."""
-    axes = plain_part(figure, place, SHARES)
-    for column, stage in enumerate(row.stages):
-        x, y = row.link_at(column), SHARES - TRACK_BELOW
-        for share, colour in ((100.0, "#E6E6E6"), (stage.share or 0.0, link_colour(stage.kind))):
-            length = TRACK_LENGTH * min(max(share, 0.0), 100.0) / 100
-            axes.barh(y, length, TRACK_THICKNESS, left=x - TRACK_LENGTH / 2, color=colour, linewidth=0)
-        text = share_text(stage.share)
-        axes.text(x, SHARES - TEXT_BELOW, text, ha="center", va="center", fontsize=TEXT, color=BLACK)
-    draw_caption(axes, 1 - TEXT_BELOW / SHARES, "share of variance")
+    axes = plain_part(figure, place, (-1, 1), {0.0: "share of variance"})
+    shares = np.clip([stage.share or 0.0 for stage in row.stages], 0.0, 100.0)
+    for filled, colour in ((100.0, "#E6E6E6"), (shares, row.colours)):
+        left = row.links - GAUGE_LENGTH / 2
+        axes.barh(0.0 * left, GAUGE_LENGTH * filled / 100, GAUGE_SHARE, left=left, color=colour, linewidth=0)
+    axes.set_xticks(row.links, [share_text(stage.share) for stage in row.stages], fontsize=TEXT, color=BLACK)
 
 
 def _bar_text(arcmin: float | None, lever_mm: float | None) -> str:

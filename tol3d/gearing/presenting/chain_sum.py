@@ -8,7 +8,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.gridspec import SubplotSpec
 
-from tol3d.gearing.presenting.chain_grid import LIGHT, SMALL, TEXT, WIDTH, published_colours
+from tol3d.gearing.presenting.chain_grid import CAPTIONS, LIGHT, SMALL, TEXT, WIDTH, published_colours
 from tol3d.gearing.presenting.link_symbol import link_colour
 from tol3d.gearing.presenting.shown_stage import Range, ShownStage, distributions_of, leading_sums
 from tol3d.gearing.summary_types import TrainSummary
@@ -79,7 +79,7 @@ def draw_sums(
 ) -> None:
     """All lines on one axis, and the worst case as a mark across them."""
     width = WIDTH - LABELS - VALUES
-    heights, widths = [ABOVE, LINE * len(lines), FOOT], [LABELS, width, VALUES]
+    heights, widths = [ABOVE, LINE * len(lines), FOOT], [LABELS - CAPTIONS, width, VALUES]
     parts = place.subgridspec(3, 3, height_ratios=heights, width_ratios=widths, wspace=0.0, hspace=0.0)
     axes = plain_axes(figure.add_subplot(parts[1, 1]))
     axes.grid(axis="y", visible=False)

@@ -1,4 +1,4 @@
-"""Signs for the links of a train: two gears, two cones, a planetary reducer; lengths in inches of the picture."""
+"""Signs for the links of a train, of shapes that matplotlib has: two gears, two cones, a reducer; lengths in inches."""
 
 import math
 from collections.abc import Callable, Mapping
@@ -36,11 +36,9 @@ def link_colour(kind: str) -> str:
     return LINK_COLOURS.get(kind, OTHER_COLOUR)
 
 
-def draw_link(axes: Axes, stage: ShownStage, ends: tuple[float, float], y: float) -> None:
-    """Draw a link between the ends of its two shafts at height `y`."""
-    left, right = ends
-    middle, width = (left + right) / 2, min(right - left - 0.08, MOST_WIDTH)
-    SYMBOLS.get(stage.kind, _other)(axes, stage, middle, y, width, ends)
+def draw_link(axes: Axes, stage: ShownStage, ends: tuple[float, float]) -> None:
+    """Draw a link between the ends of its two shafts, which lie at height 0."""
+    SYMBOLS.get(stage.kind, _other)(axes, stage, sum(ends) / 2, min(ends[1] - ends[0] - 0.08, MOST_WIDTH), ends)
 
 
 def _line(axes: Axes, *points: tuple[float, float]) -> None:
@@ -55,21 +53,21 @@ def _fill(axes: Axes, patch: Patch, colour: str) -> None:
     axes.add_patch(patch)
 
 
-def _number(axes: Axes, x: float, y: float, number: int) -> None:
-    axes.text(x, y, str(number), fontsize=SMALL, ha="center", va="center", color=BLACK, zorder=4)
+def draw_text(axes: Axes, x: float, y: float, text: str, size: float = SMALL, weight: str = "normal") -> None:
+    """A text with its middle at a point."""
+    axes.text(x, y, text, ha="center", va="center", fontsize=size, fontweight=weight, color=BLACK, zorder=4)
 
 
-def _gears(axes: Axes, stage: ShownStage, x: float, y: float, width: float, ends: tuple[float, float]) -> None:
+def _gears(axes: Axes, stage: ShownStage, x: float, width: float, ends: tuple[float, float]) -> None:
     driver, driven = stage.teeth or (1, 1)
     share = min(max(driver / (driver + driven), LEAST_SHARE), MOST_SHARE)
     pitch_width = width - TOOTH_HEIGHT
     radii = (share * pitch_width / 2, (1 - share) * pitch_width / 2)
     centres = (x - pitch_width / 2 + radii[0], x + pitch_width / 2 - radii[1])
-    _line(axes, (ends[0], y), (centres[0], y))
-    _line(axes, (centres[1], y), (ends[1], y))
+    _line(axes, (ends[0], 0), (ends[1], 0))
     for k, (radius, centre, teeth) in enumerate(zip(radii, centres, (driver, driven), strict=True)):
-        _fill(axes, Polygon(_gear_outline(centre, y, radius, meshing=k)), link_colour(stage.kind))
-        _number(axes, centre, y, teeth)
+        _fill(axes, Polygon(_gear_outline(centre, 0, radius, meshing=k)), link_colour(stage.kind))
+        draw_text(axes, centre, 0, str(teeth))
 
 
 def _gear_outline(
@@ -85,7 +83,7 @@ def _gear_outline(
     return np.column_stack([(x + reach * np.cos(angle)).ravel(), (y + reach * np.sin(angle)).ravel()])
 
 
-def _cones(axes: Axes, stage: ShownStage, x: float, y: float, width: float, ends: tuple[float, float]) -> None:
+def _cones(axes: Axes, stage: ShownStage, x: float, width: float, ends: tuple[float, float]) -> None:
     """Two frusta with one apex: the driver's lies on the axis of its shaft, the driven stands on it."""
     driver, driven = stage.teeth or (1, 1)
     angle = min(max(math.atan2(driver, driven), 0.5), math.pi / 2 - 0.5)  # pitch angle of the driver
@@ -96,57 +94,55 @@ def _cones(axes: Axes, stage: ShownStage, x: float, y: float, width: float, ends
     cut = 0.42  # of the cones is left out near the apex
     lying = [(-long, -tall), (-long, tall), (-cut * long, cut * tall), (-cut * long, -cut * tall)]
     standing = [(-long, tall), (long, tall), (cut * long, cut * tall), (-cut * long, cut * tall)]
-    top, bend = y + tall + 0.1, ends[1] - LINE_AFTER
-    _line(axes, (ends[0], y), (apex - long, y))
-    _line(axes, (apex, y + tall), (apex, top), (bend, top), (bend, y), (ends[1], y))
+    top, bend = tall + 0.1, ends[1] - LINE_AFTER
+    _line(axes, (ends[0], 0), (apex - long, 0))
+    _line(axes, (apex, tall), (apex, top), (bend, top), (bend, 0), (ends[1], 0))
     for corners in (lying, standing):
-        _fill(axes, Polygon([(apex + u, y + v) for u, v in corners]), link_colour(stage.kind))
-    _number(axes, apex - 0.72 * long, y, driver)
-    _number(axes, apex, y + 0.72 * tall, driven)
+        _fill(axes, Polygon([(apex + u, v) for u, v in corners]), link_colour(stage.kind))
+    draw_text(axes, apex - 0.72 * long, 0, str(driver))
+    draw_text(axes, apex, 0.72 * tall, str(driven))
 
 
-def _reducer(axes: Axes, stage: ShownStage, x: float, y: float, width: float, ends: tuple[float, float]) -> None:
+def _reducer(axes: Axes, stage: ShownStage, x: float, width: float, ends: tuple[float, float]) -> None:
     """A box with a sun, planets and a ring."""
     half = min(width / 2, 0.44)
-    _line(axes, (ends[0], y), (x - half, y))
-    _line(axes, (x + half, y), (ends[1], y))
-    colour = link_colour(stage.kind)
-    rounded = f"round,pad=0,rounding_size={0.2 * half}"
-    _fill(axes, FancyBboxPatch((x - half, y - half), 2 * half, 2 * half, boxstyle=rounded), colour)
+    _box(axes, stage, x, half, half, ends)
     ring = 0.82 * half
     sun, planet = 0.3 * ring, 0.35 * ring
     turns = [math.pi / 2 + 2 * math.pi * k / PLANETS for k in range(PLANETS)]
-    centres = [(x + (sun + planet) * math.cos(turn), y + (sun + planet) * math.sin(turn)) for turn in turns]
-    circles = [Circle((x, y), ring), Circle((x, y), sun), *(Circle(centre, planet) for centre in centres)]
-    for circle in circles:
-        circle.set(facecolor="white", edgecolor=colour, linewidth=1.3, zorder=3)
+    centres = [(x + (sun + planet) * math.cos(turn), (sun + planet) * math.sin(turn)) for turn in turns]
+    for circle in (Circle((x, 0), ring), Circle((x, 0), sun), *(Circle(centre, planet) for centre in centres)):
+        circle.set(facecolor="white", edgecolor=link_colour(stage.kind), linewidth=1.3, zorder=3)
         axes.add_patch(circle)
 
 
-def _other(axes: Axes, stage: ShownStage, x: float, y: float, width: float, ends: tuple[float, float]) -> None:
+def _other(axes: Axes, stage: ShownStage, x: float, width: float, ends: tuple[float, float]) -> None:
     """A box with the word of the kind."""
-    half, height = min(width / 2, 0.5), 0.2
-    _line(axes, (ends[0], y), (x - half, y))
-    _line(axes, (x + half, y), (ends[1], y))
+    half = min(width / 2, 0.5)
+    _box(axes, stage, x, half, 0.2, ends)
+    draw_text(axes, x, 0, wrapped(stage.kind.replace("_", " "), 2 * half - 0.1, SMALL, 2))
+
+
+def _box(axes: Axes, stage: ShownStage, x: float, half: float, height: float, ends: tuple[float, float]) -> None:
+    """A box with round corners on the line between the shafts; half of its width, half of its height."""
+    _line(axes, (ends[0], 0), (ends[1], 0))
     rounded = f"round,pad=0,rounding_size={0.2 * height}"
-    box = FancyBboxPatch((x - half, y - height), 2 * half, 2 * height, boxstyle=rounded)
+    box = FancyBboxPatch((x - half, -height), 2 * half, 2 * height, boxstyle=rounded)
     _fill(axes, box, link_colour(stage.kind))
-    words = wrapped(stage.kind.replace("_", " "), 2 * half - 0.1, SMALL, 2)
-    axes.text(x, y, words, fontsize=SMALL, ha="center", va="center", color=BLACK, zorder=4)
 
 
-def _parallel(axes: Axes, stage: ShownStage, x: float, y: float, width: float, ends: tuple[float, float]) -> None:
+def _parallel(axes: Axes, stage: ShownStage, x: float, width: float, ends: tuple[float, float]) -> None:
     """Two load paths in parallel, a gear pair on each."""
-    half, rise = 0.42 * width, 0.26
+    (left, right), half, rise = ends, 0.42 * width, 0.26
     for side in (-1.0, 1.0):
-        across = y + side * rise
-        _line(axes, (ends[0], y), (x - half, y), (x - half, across), (x + half, across), (x + half, y), (ends[1], y))
+        across = side * rise
+        _line(axes, (left, 0), (x - half, 0), (x - half, across), (x + half, across), (x + half, 0), (right, 0))
         for centre, radius in ((x - 0.15 * width, 0.11), (x + 0.13 * width, 0.17)):
             outline = _gear_outline(centre, across, radius, meshing=int(centre > x))
             _fill(axes, Polygon(outline), link_colour(stage.kind))
 
 
-Symbol = Callable[[Axes, ShownStage, float, float, float, tuple[float, float]], None]
+Symbol = Callable[[Axes, ShownStage, float, float, tuple[float, float]], None]
 SYMBOLS: Final[Mapping[str, Symbol]] = {
     "reducer": _reducer,
     "mesh": _gears,
