@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
-from tol3d.assembly.model import Assembly, Axis, Fix, Locate, Mate, Plane, Point
+from tol3d.assembly.model import Assembly, Axis, Fix, Locate, Mate, Plane, Point, RoundPlane
 
 Array = NDArray[np.float64]
 Poses = Mapping[str, Array]
@@ -43,7 +43,7 @@ class RigidParts:
         match feature.shape:
             case Point():
                 origin, z = moved, np.array([0.0, 0.0, 1.0])
-            case Plane():
+            case Plane() | RoundPlane():
                 a, b = feature.shape.reach
                 origin, z = np.array([0.0, 0.0, moved[0]]), np.array([-moved[1] / a, -moved[2] / b, 1.0])
             case Axis():

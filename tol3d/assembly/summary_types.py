@@ -18,6 +18,7 @@ class AssemblyMeasureSummary(MeasureSummary):
 
     kind: Literal[
         "angle",
+        "contact_angle",
         "difference",
         "distance",
         "flush",
@@ -28,6 +29,7 @@ class AssemblyMeasureSummary(MeasureSummary):
         "inspected_size",
         "point_plane",
         "virtual_clearance",
+        "surface_gap",
     ]
     of: Annotated[list[Label], Field(min_length=1, max_length=MOST_ENTRIES)]
 

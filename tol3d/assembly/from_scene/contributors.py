@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from tol3d.assembly.from_scene.zones import drawn_in
 from tol3d.assembly.grammar.drawing import Drawing, Stated
-from tol3d.assembly.grammar.features import PlaneSpec, PointSpec
+from tol3d.assembly.grammar.features import PlaneSpec, PointSpec, SphereSpec
 from tol3d.assembly.grammar.features.nominal_frame import unit
 from tol3d.assembly.grammar.moves.locating import LocatingSpec
 from tol3d.assembly.grammar.tolerances import (
@@ -20,7 +20,7 @@ from tol3d.assembly.grammar.tolerances import (
 )
 from tol3d.assembly.grammar.tolerances.form import FormSpec
 from tol3d.assembly.grammar.zone import NormalLawSpec, ProcessLawSpec
-from tol3d.assembly.model import Axis, Contribution
+from tol3d.assembly.model import Axis, Contribution, Point
 from tol3d.distributions import Distribution, TruncatedNormal, Uniform
 from tol3d.scene import Scene
 from tol3d.system.draw import Draw, Each, Scalar
@@ -98,7 +98,7 @@ class Effects:
     def _refuse_no_size(self, own: Stated, draw: Scalar) -> None:
         """A law that leaves nothing of a diameter."""
         shape = self.drawing.kind(own.feature).shape
-        nominal = shape.diameter if isinstance(shape, Axis) else None
+        nominal = shape.diameter if isinstance(shape, Axis | Point) else None
         if nominal is not None and nominal + draw.distribution.low <= 0.0:
             words = f"expected sizes above 0, got down to {draw.distribution.low:g} mm on a nominal {nominal:g} mm"
             raise self.scene.refuse(("tolerances", own.entry, "distribution"), words)
@@ -109,7 +109,7 @@ class Effects:
         rotation = own.frame[:3, :3]
         direction = rotation[:, 2] if spec.along is None else unit(spec.along)
         x, y, z = rotation.T @ direction
-        if isinstance(own, PointSpec):
+        if isinstance(own, PointSpec | SphereSpec):
             return np.array([x, y, z])
         return np.array([z, 0.0, 0.0]) if isinstance(own, PlaneSpec) else np.array([x, y, x, y])
 

@@ -5,8 +5,18 @@ from numpy.typing import NDArray
 
 from tol3d.assembly.from_scene.contributors import Effects
 from tol3d.assembly.from_scene.features import TouchedPoints
+from tol3d.assembly.from_scene.touches import touch
 from tol3d.assembly.grammar.features.nominal_frame import unit
-from tol3d.assembly.grammar.moves import BestFitSpec, FixSpec, LocatingSpec, MateSpec, PlacingSpec, RestSpec, WeldSpec
+from tol3d.assembly.grammar.moves import (
+    BestFitSpec,
+    FixSpec,
+    LocatingSpec,
+    MateSpec,
+    PlacingSpec,
+    RestSpec,
+    TouchSpec,
+    WeldSpec,
+)
 from tol3d.assembly.grammar.moves.locating import ContactSpec
 from tol3d.assembly.model import BestFit, Fit, Fix, Locate, Mate, Move, Pair, Relation, Rest, Weld
 from tol3d.scene import Scene
@@ -51,6 +61,8 @@ def _move(scene: Scene, name: str, spec: PlacingSpec | WeldSpec, effects: Effect
                 for own in spec.relations
             )
             return Mate(name, spec.part, relations)
+        case TouchSpec():
+            return touch(scene, name, spec, touched.features)
         case FixSpec():
             return Fix(name, spec.part)
     raise NotImplementedError(spec.kind)
@@ -73,7 +85,8 @@ def _pair(scene: Scene, move: str, number: str, spec: LocatingSpec, effects: Eff
     side, point = (own.to, own.from_) if on_part else (own.from_, own.to)
     touched_point = touched.on(side, point)
     named = effects.drawing.kind(side)
-    if own.along is None and (named.kind in ("axis", "cylinder") or (named.kind == "point" and named.normal is None)):
+    has_normal = named.kind == "plane" or (named.kind == "point" and named.normal is not None)
+    if own.along is None and not has_normal:
         words = f"expected the direction `along` in which {side!r} is touched, for it has no normal; got none"
         raise scene.refuse(("moves", move, *path), words)
     out = _normal(own, touched.features[side].frame[:3, 2])

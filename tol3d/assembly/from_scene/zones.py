@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from tol3d.assembly.from_scene.bonus import sized_by
 from tol3d.assembly.grammar.drawing import Drawing, Stated
-from tol3d.assembly.grammar.features import FeatureUnion, PlaneSpec, PointSpec
+from tol3d.assembly.grammar.features import FeatureUnion, PlaneSpec, PointSpec, SphereSpec
 from tol3d.assembly.grammar.features.nominal_frame import Triple, unit
 from tol3d.assembly.grammar.tolerances import CircularRunOutSpec, LocationSpec, OrientationSpec
 from tol3d.assembly.grammar.tolerances.modified import Modified
@@ -87,7 +87,7 @@ def _location(spec: LocationSpec, feature: FeatureUnion, orientation: float | No
     if isinstance(feature, PlaneSpec):
         made = catalogue.rectangle if feature.extent is not None else catalogue.round_face
         return made(width, orientation, outward, form)
-    if isinstance(feature, PointSpec):
+    if isinstance(feature, PointSpec | SphereSpec):
         if spec.zone.diameter is not None:
             return catalogue.point_in_sphere(width)
         return catalogue.point_between_planes(width, _seen(spec.zone.along, feature), outward)

@@ -36,7 +36,7 @@ class DatumSpec(Strict):
     def kinds(self) -> tuple[str, ...]:
         """Kinds of feature that it may be of."""
         if len(self.features) > 1:
-            return ("point", "cylinder", "axis")
+            return ("point", "sphere", "cylinder", "axis")
         return ("plane",) if self.targets else ()
 
     @model_validator(mode="after")

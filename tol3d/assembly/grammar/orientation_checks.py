@@ -79,7 +79,7 @@ def _other_angle(drawing: Drawing, own: Stated) -> Iterator[Problem]:
     if isinstance(spec, AngularitySpec) or len(datum.features) > 1:
         return
     feature, other = drawing.kind(own.feature), features.get(datum.features[0])
-    if other is None or other is feature or "point" in (other.kind, feature.kind):
+    if other is None or other is feature or {"point", "sphere"} & {other.kind, feature.kind}:
         return  # unknown, a ring, of the wrong kind: said already
     along = abs(float(feature.frame[:3, 2] @ other.frame[:3, 2]))
     normals = (feature.kind == "plane") == (other.kind == "plane")  # else an axis and a normal: parallel is square

@@ -9,11 +9,13 @@ from tol3d.assembly.model.feature import Contribution, Feature
 from tol3d.assembly.model.measures import Measured
 from tol3d.assembly.model.moves import BestFit, Fit, Fix, Locate, Mate, Move, Pair, Relation, Rest, Weld
 from tol3d.assembly.model.shape import Axis, Plane, Point, RoundPlane, Shape
+from tol3d.assembly.model.touch import Contact, Touch
 
 __all__ = [
     "Assembly",
     "Axis",
     "BestFit",
+    "Contact",
     "Contribution",
     "Datum",
     "DatumFrame",
@@ -32,5 +34,6 @@ __all__ = [
     "Rest",
     "RoundPlane",
     "Shape",
+    "Touch",
     "Weld",
 ]

@@ -20,6 +20,8 @@ MeasureKind = Literal[
     "orientation",
     "flatness",
     "virtual_clearance",
+    "contact_angle",
+    "surface_gap",
 ]
 """What is read, of features' origins and z directions as they are in the trial (p, z), in the world:
 
@@ -40,6 +42,10 @@ MeasureKind = Literal[
   nominally on a plane with normal `direction`, in the part's frame.
 - virtual_clearance: diameter of the largest straight bolt through all holes, along the nominal axis of the first as its
   part or `frame` carries it.
+- surface_gap: how far the surfaces of two features are apart, at least one of them round: as contacts of a touch ask,
+  0 where they touch; negative where they overlap.
+- contact_angle: between the normal of such a contact, from the first feature's axis, centre or plane towards the
+  second's, and the z of a third feature or a direction that is fixed as for gap [rad], 0 to pi.
 """
 
 

@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.assembly.model.feature import Contribution
+from tol3d.assembly.model.touch import Touch
 
 Array = NDArray[np.float64]
 
@@ -161,4 +162,4 @@ class Weld:
     others: tuple[str, ...]
 
 
-Move = Fix | Locate | BestFit | Mate | Rest | Weld
+Move = Fix | Locate | BestFit | Mate | Rest | Weld | Touch

@@ -16,7 +16,15 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Point:
-    """A point; z of its frame is the direction in which it touches, if it has one."""
+    """A point; z of its frame is the direction in which it touches, if it has one.
+
+    Args:
+        diameter: nominal size of the sphere of which it is the centre [mm]; None for a point alone.
+        inner: whether that is a socket, not a ball.
+    """
+
+    diameter: float | None = None
+    inner: bool = False
 
     components: ClassVar[tuple[str, ...]] = ("x", "y", "z")
 

@@ -151,7 +151,7 @@ def actual(feature: Feature, base: Pose, columns: Array) -> ActualFeature:
 def actual_size(feature: Feature, columns: Array) -> Array:
     """Its diameter in its trials (n,) or (1,) [mm]; of an axis that has one."""
     shape = feature.shape
-    nominal = shape.diameter if isinstance(shape, Axis) and shape.diameter is not None else 0.0
+    nominal = getattr(shape, "diameter", None) or 0.0
     return nominal + total(feature.size_by, 1, columns)[0]
 
 

@@ -3,7 +3,7 @@
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
-from tol3d.assembly.model import Assembly, BestFit, Locate, Mate, Measured, Move, Rest, Weld
+from tol3d.assembly.model import Assembly, BestFit, Locate, Mate, Measured, Move, Rest, Touch, Weld
 from tol3d.errors import InputError
 
 Cause = str | int
@@ -64,6 +64,8 @@ class Causes:
             pairs = [(fit.moving, fit.target) for fit in move.fits]
         elif isinstance(move, Mate):
             pairs = [(relation.moving, relation.target) for relation in move.relations]
+        elif isinstance(move, Touch):
+            pairs = [(contact.moving, contact.target) for contact in move.contacts]
         else:
             return
         for moving, target in pairs:

@@ -12,6 +12,7 @@ from tol3d.assembly.model.measures import MeasureKind
 from tol3d.assembly.placing.actual_feature import ActualFeature, actual_size, total
 from tol3d.assembly.placing.flatness import widths
 from tol3d.assembly.placing.poses import column, cross, dot, rotated
+from tol3d.assembly.placing.surfaces import PARALLEL, common_normal, surface_gap
 from tol3d.assembly.placing.virtual_clearance import virtual_clearance
 from tol3d.assembly.placing.world import World
 
@@ -79,13 +80,19 @@ def _angle(measured: Measured, world: World) -> Array:
 def _nominal_angle(measured: Measured, assembly: Assembly) -> float:
     """About a direction, above -pi to pi: angles of trials are those within half a turn of it [rad]."""
     assert measured.direction is not None
-    owners = [assembly.part[assembly.features[name].part] for name in measured.features]
-    start, end = (
-        part.pose[:3, :3] @ assembly.features[name].frame[:3, 2]
-        for part, name in zip(owners, measured.features, strict=True)
-    )
-    sine = float(owners[0].pose[:3, :3] @ measured.direction @ np.cross(start, end))
+    start, end = _nominal_directions(measured, assembly)
+    owner = assembly.part[assembly.features[measured.features[0]].part]
+    sine = float(owner.pose[:3, :3] @ measured.direction @ np.cross(start, end))
     return math.atan2(0.0 if abs(sine) < FLAT else sine, float(start @ end))
+
+
+def _nominal_directions(measured: Measured, assembly: Assembly) -> tuple[Array, Array]:
+    """z of the first two features in the world (3,)."""
+    start, end, *_ = (
+        assembly.part[assembly.features[name].part].pose[:3, :3] @ assembly.features[name].frame[:3, 2]
+        for name in measured.features
+    )
+    return start, end
 
 
 def _size(measured: Measured, world: World) -> Array:
@@ -151,6 +158,24 @@ def _flatness(measured: Measured, world: World) -> Array:
     return widths([world.on_part(name).origin for name in measured.features])
 
 
+def _surface_gap(measured: Measured, world: World) -> Array:
+    start, end = (world.placed(name) for name in measured.features)
+    return surface_gap(start, end, world.columns, parallel=_parallel(measured, world.assembly))
+
+
+def _contact_angle(measured: Measured, world: World) -> Array:
+    start, end, *against = (world.placed(name) for name in measured.features)
+    normal, _ = common_normal(start, end, parallel=_parallel(measured, world.assembly))
+    direction = against[0].direction if against else _direction(measured, world)
+    return np.asarray(np.arctan2(_length(cross(normal, direction)), dot(normal, direction)))
+
+
+def _parallel(measured: Measured, assembly: Assembly) -> bool:
+    """Whether both features lie along each other nominally."""
+    start, end = _nominal_directions(measured, assembly)
+    return bool(np.linalg.norm(np.cross(start, end)) < PARALLEL)
+
+
 READINGS: Mapping[MeasureKind, Callable[[Measured, World], Array]] = {
     "distance": _distance,
     "gap": _gap,
@@ -161,4 +186,6 @@ READINGS: Mapping[MeasureKind, Callable[[Measured, World], Array]] = {
     "orientation": _orientation,
     "flatness": _flatness,
     "virtual_clearance": virtual_clearance,
+    "surface_gap": _surface_gap,
+    "contact_angle": _contact_angle,
 }

@@ -7,7 +7,7 @@ from functools import cached_property, lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.assembly.model import Assembly, BestFit, Fix, Locate, Mate, Move, Rest, Weld
+from tol3d.assembly.model import Assembly, BestFit, Fix, Locate, Mate, Move, Rest, Touch, Weld
 from tol3d.assembly.model.statuses import OK, SINGULAR
 from tol3d.assembly.placing.best_fitting import BestFitting, best_fitting
 from tol3d.assembly.placing.causes import Cause, Causes, causes_of, ordered
@@ -19,6 +19,7 @@ from tol3d.assembly.placing.part_features import PartFeatures
 from tol3d.assembly.placing.poses import Codes, Pose
 from tol3d.assembly.placing.resting import Resting, resting
 from tol3d.assembly.placing.rocking import carrying, over_poses, slope_of, varying
+from tol3d.assembly.placing.touching import Touching, touching
 from tol3d.assembly.placing.world import World
 
 Array = NDArray[np.float64]
@@ -28,7 +29,7 @@ BLOCK = 8192
 
 _MOVED: Codes = np.full(1, OK, dtype=np.int8)
 
-Placing = Fix | Weld | Locating | Mating | BestFitting | Resting
+Placing = Fix | Weld | Locating | Mating | BestFitting | Resting | Touching
 
 
 def values(assembly: Assembly, deviations: Array, names: Sequence[str]) -> dict[str, tuple[Array, Codes]]:
@@ -174,6 +175,8 @@ def _planned(move: Move, nominal: World) -> Placing:
             return best_fitting(move, nominal)
         case Rest():
             return resting(move, nominal)
+        case Touch():
+            return touching(move, nominal)
         case _:
             return move
 

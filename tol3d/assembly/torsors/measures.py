@@ -12,6 +12,7 @@ from tol3d.assembly.model.bonus import MaterialBonus
 from tol3d.assembly.torsors.columns import without_rounding
 from tol3d.assembly.torsors.common_opening import CommonOpening
 from tol3d.assembly.torsors.flatness import balances
+from tol3d.assembly.torsors.surfaces import Surfaces
 from tol3d.assembly.torsors.terms import Clipped, Width
 from tol3d.assembly.torsors.torsor import cross_matrix, height_at, perpendicular, shift_at
 from tol3d.assembly.torsors.world import World
@@ -121,8 +122,7 @@ def _angle(measured: Measured, world: World) -> Array:
 
 def _size(measured: Measured, world: World) -> Array:
     (name,) = measured.features
-    shape = world.assembly.features[name].shape
-    nominal = shape.diameter if isinstance(shape, Axis) and shape.diameter is not None else 0.0
+    nominal = getattr(world.assembly.features[name].shape, "diameter", None) or 0.0
     return _constant(world, nominal) + world.size(name)
 
 
@@ -234,6 +234,30 @@ def _virtual_clearance(measured: Measured, world: World) -> Array:
     return row
 
 
+def _surface_gap(measured: Measured, world: World) -> Array:
+    start, end = measured.features
+    nominal, varying = Surfaces(world, start, end).gap("measures")
+    return _constant(world, nominal) + varying
+
+
+def _contact_angle(measured: Measured, world: World) -> Array:
+    start, end, *against = measured.features
+    normal, normal_varies = Surfaces(world, start, end).turning_normal("measures")
+    if against:
+        direction = world.axis(against[0])
+        varies = _turned(direction, world.placed(against[0]))
+    else:
+        direction, varies = _fixed_in(measured, world)
+    across, along = np.cross(normal, direction), float(normal @ direction)
+    across_varies = cross_matrix(normal) @ varies - cross_matrix(direction) @ normal_varies
+    sine = float(np.linalg.norm(across))
+    if sine >= SLANT:
+        return _constant(world, math.atan2(sine, along)) - (normal @ varies + direction @ normal_varies) / sine
+    sides = perpendicular(normal)
+    length = _length(sides @ across, sides @ across_varies, world)
+    return length if along > 0.0 else _constant(world, math.pi) - length
+
+
 _READINGS = {
     "distance": _distance,
     "gap": _gap,
@@ -244,4 +268,6 @@ _READINGS = {
     "orientation": _orientation,
     "flatness": _flatness,
     "virtual_clearance": _virtual_clearance,
+    "surface_gap": _surface_gap,
+    "contact_angle": _contact_angle,
 }

@@ -2,6 +2,7 @@
 
 from tol3d.assembly.grammar.measures.angle import AngleSpec
 from tol3d.assembly.grammar.measures.assembly_measure import AssemblyMeasureSpec
+from tol3d.assembly.grammar.measures.contact import ContactAngleSpec, SurfaceGapSpec
 from tol3d.assembly.grammar.measures.difference import DifferenceSpec
 from tol3d.assembly.grammar.measures.gap import DistanceSpec, FlushSpec, GapSpec, PointPlaneSpec
 from tol3d.assembly.grammar.measures.inspected import (
@@ -15,6 +16,7 @@ from tol3d.assembly.grammar.measures.virtual_clearance import VirtualClearanceSp
 __all__ = [
     "AngleSpec",
     "AssemblyMeasureSpec",
+    "ContactAngleSpec",
     "DifferenceSpec",
     "DistanceSpec",
     "FlushSpec",
@@ -24,5 +26,6 @@ __all__ = [
     "InspectedPositionSpec",
     "InspectedSizeSpec",
     "PointPlaneSpec",
+    "SurfaceGapSpec",
     "VirtualClearanceSpec",
 ]

@@ -21,4 +21,4 @@ class InspectedSizeSpec(FeatureMeasureSpec):
 
     def named(self) -> Sequence[tuple[KeyPath, FeatureName, tuple[str, ...]]]:
         """See FeatureMeasureSpec."""
-        return ((("of",), self.of, ("cylinder",)),)
+        return ((("of",), self.of, ("cylinder", "sphere")),)

@@ -6,6 +6,7 @@ from tol3d.assembly.grammar.moves.locating import LocatingSpec, SixPlaneSpec, Th
 from tol3d.assembly.grammar.moves.mate import MateSpec
 from tol3d.assembly.grammar.moves.placing_move import PlacingSpec
 from tol3d.assembly.grammar.moves.rest import RestSpec
+from tol3d.assembly.grammar.moves.touch import TouchSpec
 from tol3d.assembly.grammar.moves.weld import WeldSpec
 
 __all__ = [
@@ -17,5 +18,6 @@ __all__ = [
     "RestSpec",
     "SixPlaneSpec",
     "ThreeTwoOneSpec",
+    "TouchSpec",
     "WeldSpec",
 ]

@@ -44,7 +44,7 @@ class PositionSpec(Modified, LocationSpec):
     """A true position."""
 
     words: ClassVar[str] = "a position tolerance"
-    applies_to: ClassVar[tuple[str, ...]] = ("point", "cylinder", "axis", "plane")
+    applies_to: ClassVar[tuple[str, ...]] = ("point", "sphere", "cylinder", "axis", "plane")
 
     kind: Literal["position"]
 

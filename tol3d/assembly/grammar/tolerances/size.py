@@ -1,4 +1,4 @@
-"""Size: the diameter of a cylinder."""
+"""Size: the diameter of a cylinder or a sphere."""
 
 from collections.abc import Iterator
 from typing import Annotated, ClassVar, Literal, Self
@@ -21,7 +21,7 @@ class SizeSpec(FeatureTolerance, ToleranceSpec):
     """How much larger a diameter is than nominal."""
 
     words: ClassVar[str] = "a size tolerance"
-    applies_to: ClassVar[tuple[str, ...]] = ("cylinder",)
+    applies_to: ClassVar[tuple[str, ...]] = ("cylinder", "sphere")
 
     kind: Literal["size"]
     limits: Annotated[tuple[Deviation, Deviation], listed("lengths", 2, 2)] | None = Field(

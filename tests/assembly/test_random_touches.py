@@ -1,0 +1,83 @@
+"""Touches by random round features: poses against scipy, small displacements against finite poses."""
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+from random_touches import KINDS, RandomTouch, random_touch
+
+from tol3d.assembly.model.statuses import OK
+from tol3d.assembly.placing import road as placing
+from tol3d.assembly.torsors import road as torsors
+
+Array = NDArray[np.float64]
+
+SIGMA = 0.02  # mm
+
+
+def drawn(made: RandomTouch, seed: int, count: int) -> Array:
+    return np.random.default_rng(seed + 10_000).normal(size=(count, made.assembly.width)) * SIGMA
+
+
+def poses_agree(made: RandomTouch, deviations: Array) -> None:
+    found = placing.placed(made.assembly, deviations)["part"]
+    for row, pose in zip(deviations, found, strict=True):
+        np.testing.assert_allclose(pose, made.pose(row), rtol=0.0, atol=1e-9, err_msg=str(made.kinds))
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_each_contact_alone_is_met_as_scipy_meets_it(kind: str) -> None:
+    made = random_touch(KINDS.index(kind), kinds=(kind,))
+    poses_agree(made, drawn(made, 0, 2))
+
+
+@pytest.mark.parametrize("seed", range(25))
+def test_random_touches_are_those_of_scipy(seed: int) -> None:
+    made = random_touch(seed)
+    poses_agree(made, drawn(made, seed, 2))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("hundred", range(10))
+def test_a_thousand_random_touches_are_those_of_scipy(hundred: int) -> None:
+    for seed in range(1000 + 100 * hundred, 1100 + 100 * hundred):
+        made = random_touch(seed)
+        poses_agree(made, drawn(made, seed, 1))
+
+
+def left_out(made: RandomTouch, deviations: Array, name: str) -> Array:
+    """By how much the roads differ at most, at shares of the deviations that fall to a half each (4,)."""
+    found = []
+    for share in 0.5 ** np.arange(4):
+        exact, codes = placing.values(made.assembly, share * deviations, [name])[name]
+        assert (codes == OK).all()
+        found.append(np.abs(torsors.values(made.assembly, share * deviations, [name])[name] - exact).max())
+    return np.array(found)
+
+
+@pytest.mark.parametrize("seed", range(30))
+def test_what_small_displacements_leave_out_is_of_second_order(seed: int) -> None:
+    """Halves of the deviations leave quarters: a slope of 2 in logarithms, by what the third order makes of it."""
+    made = random_touch(seed)
+    deviations = drawn(made, seed, 20)
+    for name in made.assembly.measures:
+        found = left_out(made, deviations, name)
+        if name.startswith("gap"):
+            assert found[0] < 1e-3
+        if found[-1] > 1e-10:
+            slope = np.polyfit(np.log(0.5 ** np.arange(4)), np.log(found), 1)[0]
+            assert slope == pytest.approx(2.0, abs=0.1), (name, made.kinds)
+
+
+@pytest.mark.parametrize("seed", range(30))
+def test_slopes_are_central_differences_of_finite_poses(seed: int) -> None:
+    """Steps of h and 2h, extrapolated: the fourth power is left of 4e-3 mm over lengths of some mm, and rounding."""
+    made, step = random_touch(seed), 2e-3
+    width, names = made.assembly.width, list(made.assembly.measures)
+    found = []
+    for size in (step, 2 * step):
+        sides = [placing.values(made.assembly, sign * size * np.eye(width), names) for sign in (1.0, -1.0)]
+        found.append({name: (sides[0][name][0] - sides[1][name][0]) / (2.0 * size) for name in names})
+    for name in names:
+        slopes = torsors.slopes(made.assembly, name, *np.zeros((2, width))).coefficients
+        central = (4.0 * found[0][name] - found[1][name]) / 3.0
+        np.testing.assert_allclose(slopes, central, atol=2e-8, err_msg=f"{name}: {made.kinds}")

@@ -1,0 +1,55 @@
+"""What is read where round features touch: how far surfaces are apart, the angle of the contact's normal."""
+
+from collections.abc import Sequence
+from typing import ClassVar, Literal, Self
+
+from pydantic import Field, model_validator
+
+from tol3d.assembly.grammar.feature_name import FeatureName
+from tol3d.assembly.grammar.measures.assembly_measure import BetweenSpec
+from tol3d.assembly.grammar.moves.touch import SURFACES
+from tol3d.assembly.model.measures import MeasureKind
+from tol3d.scene.place import KeyPath
+from tol3d.scene.vector import Direction
+from tol3d.strict import refused
+from tol3d.units import Dimension
+
+
+class SurfaceGapSpec(BetweenSpec):
+    """How far two surfaces are apart, by the sizes of the trial; negative where they overlap."""
+
+    reads: ClassVar[MeasureKind] = "surface_gap"
+
+    kind: Literal["surface_gap"]
+
+    def named(self) -> Sequence[tuple[KeyPath, FeatureName, tuple[str, ...]]]:
+        """See FeatureMeasureSpec."""
+        return ((("from",), self.from_, SURFACES), (("to",), self.to, SURFACES))
+
+
+class ContactAngleSpec(BetweenSpec):
+    """The angle of the normal of a contact to a plane's normal or an axis, or to a direction, 0 to 180 degrees."""
+
+    dimension: ClassVar[Dimension] = "angle"
+    reads: ClassVar[MeasureKind] = "contact_angle"
+
+    kind: Literal["contact_angle"]
+    against: FeatureName | None = Field(default=None, description="a plane or an axis; or a direction `along`")
+    direction: Direction | None = Field(default=None, alias="along", description="in the frame of the part of `from`")
+
+    @property
+    def along(self) -> Direction | None:
+        """See FeatureMeasureSpec."""
+        return self.direction
+
+    def named(self) -> Sequence[tuple[KeyPath, FeatureName, tuple[str, ...]]]:
+        """See FeatureMeasureSpec."""
+        sides = ((("from",), self.from_, SURFACES), (("to",), self.to, SURFACES))
+        return sides if self.against is None else (*sides, (("against",), self.against, ("plane", "cylinder", "axis")))
+
+    @model_validator(mode="after")
+    def _refuse_contradictions(self) -> Self:
+        if (self.against is None) == (self.direction is None):
+            got = "neither" if self.against is None else "both"
+            raise refused("against", "either a plane or an axis `against`, or a direction `along`", got)
+        return self

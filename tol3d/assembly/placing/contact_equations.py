@@ -1,0 +1,196 @@
+"""What contacts of round features ask of a pose, and how that changes with it, in kernels.
+
+A contact has two sides, each a point, a line or a plane by an origin and a direction: centres of spheres, axes of
+cylinders. Its error is how far the surfaces are apart [mm]; a cylinder that lies along something has a second one, the
+rise of its axis over a stated length. `rows` are their changes with a shift of the part and a turn about its origin.
+"""
+
+from typing import Any, Final
+
+import numpy as np
+
+from tol3d.numerics.compiled import part
+
+POINT_PLANE: Final = 0
+PLANE_POINT: Final = 1
+LINE_PLANE: Final = 2
+PLANE_LINE: Final = 3
+POINT_POINT: Final = 4
+POINT_LINE: Final = 5
+LINE_POINT: Final = 6
+ALONG: Final = 7
+CROSSING: Final = 8
+"""Sides of a contact, that of the part that is placed first; two lines lie along each other or cross."""
+
+TWO: Final = (LINE_PLANE, PLANE_LINE, ALONG)
+"""Contacts along a line: they ask for two things."""
+
+
+@part
+def count_of(kind: int) -> Any:
+    """How many equations a contact makes."""
+    return 2 if kind in TWO else 1
+
+
+@part
+def dot(a: Any, b: Any) -> Any:
+    """Scalar product."""
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+
+
+@part
+def crossed(a: Any, b: Any, out: Any) -> None:
+    """Vector product."""
+    x = a[1] * b[2] - a[2] * b[1]
+    y = a[2] * b[0] - a[0] * b[2]
+    z = a[0] * b[1] - a[1] * b[0]
+    out[0], out[1], out[2] = x, y, z
+
+
+@part
+def pushed(row: Any, normal: Any, arm: Any, factor: float) -> None:
+    """Add to a row what a point does along a normal, at an arm from the part's origin."""
+    for k in range(3):
+        row[k] += factor * normal[k]
+    row[3] += factor * (arm[1] * normal[2] - arm[2] * normal[1])
+    row[4] += factor * (arm[2] * normal[0] - arm[0] * normal[2])
+    row[5] += factor * (arm[0] * normal[1] - arm[1] * normal[0])
+
+
+@part
+def tilted(row: Any, direction: Any, normal: Any, factor: float) -> None:
+    """Add to a row what a direction that turns with the part does along a normal."""
+    row[3] += factor * (direction[1] * normal[2] - direction[2] * normal[1])
+    row[4] += factor * (direction[2] * normal[0] - direction[0] * normal[2])
+    row[5] += factor * (direction[0] * normal[1] - direction[1] * normal[0])
+
+
+@part
+def aside(apart: Any, direction: Any, normal: Any) -> Any:
+    """Length of what is across a direction, which as a direction becomes `normal`."""
+    along = dot(apart, direction)
+    for k in range(3):
+        normal[k] = apart[k] - along * direction[k]
+    length = np.sqrt(dot(normal, normal))
+    for k in range(3):
+        normal[k] = normal[k] / length
+    return length
+
+
+@part
+def on_plane(kind: int, sides: Any, errors: Any, rows: Any, e: int, length: float) -> Any:
+    """A contact with a plane: its first error without the radius; fills the second one of a line."""
+    arm, along, other, apart, room = sides
+    if kind in (POINT_PLANE, LINE_PLANE):
+        normal, lying = other, along
+        height = dot(apart, normal)
+        pushed(rows[e], normal, arm, 1.0)
+    else:
+        normal, lying = along, other
+        height = -dot(apart, normal)
+        for k in range(3):
+            room[k] = arm[k] - apart[k]  # to the target, which the plane of the part touches there
+        pushed(rows[e], normal, room, -1.0)
+    if kind in (LINE_PLANE, PLANE_LINE):
+        errors[e + 1] = length * dot(normal, lying)
+        tilted(rows[e + 1], along, other, length)
+    return height
+
+
+@part
+def off_line(kind: int, sides: Any, normal: Any, errors: Any, rows: Any, e: int, length: float) -> Any:
+    """Distance of a point and a point or a line, or of lines along each other, whose second error it fills."""
+    arm, along, other, apart, room = sides
+    if kind == POINT_POINT:
+        distance = np.sqrt(dot(apart, apart))
+        for k in range(3):
+            normal[k] = apart[k] / distance
+        pushed(rows[e], normal, arm, 1.0)
+    elif kind == LINE_POINT:
+        distance = aside(apart, along, normal)
+        back = dot(apart, along)
+        for k in range(3):
+            room[k] = arm[k] - back * along[k]
+        pushed(rows[e], normal, room, 1.0)
+    else:
+        distance = aside(apart, other, normal)
+        pushed(rows[e], normal, arm, 1.0)
+    if kind == ALONG:
+        rise, lies = dot(along, normal), dot(along, other)
+        errors[e + 1] = length * rise
+        tilted(rows[e + 1], along, normal, length)
+        for k in range(3):
+            room[k] = along[k] - rise * normal[k] - lies * other[k]
+        pushed(rows[e + 1], room, arm, length / distance)
+    return distance
+
+
+@part
+def at_crossing(sides: Any, normal: Any, rows: Any, e: int, sign: float) -> Any:
+    """Distance of two lines that cross, along their common normal, with a sign."""
+    arm, along, other, apart, room = sides
+    crossed(along, other, normal)
+    sine = np.sqrt(dot(normal, normal))
+    for k in range(3):
+        normal[k] = sign * normal[k] / sine
+    distance = dot(apart, normal)
+    pushed(rows[e], normal, arm, 1.0)
+    for k in range(3):
+        room[k] = sign * (apart[k] - distance * normal[k]) / sine
+    crossed(other, room, room)
+    tilted(rows[e], along, room, 1.0)
+    return distance
+
+
+@part
+def interpolated(nominal: Any, given: Any, c: int, i: int, share: float, out: Any) -> None:
+    """A side (6,), origin and direction: of a trial, or a share of the way there."""
+    at = min(i, given.shape[2] - 1)
+    square = 0.0
+    for k in range(6):
+        out[k] = given[c, k, at]
+        if share != 1.0:
+            out[k] = nominal[c, k] + share * (out[k] - nominal[c, k])
+            square += out[k] * out[k] if k > 2 else 0.0
+    if share != 1.0 and square > 0.0:
+        for k in range(3, 6):
+            out[k] = out[k] / np.sqrt(square)
+
+
+@part
+def equations(pose: Any, asked: Any, i: int, share: float, errors: Any, rows: Any, rooms: Any) -> Any:
+    """Errors and rows of all contacts at a pose (3, 4), a share of the way from nominal; whether they make sense."""
+    kinds, signs, length, moving, targets, sums, nominal = asked
+    ours, theirs, sides, normal = rooms
+    arm, along, other, apart, _ = sides
+    rows[:], e = 0.0, 0
+    for c in range(kinds.shape[0]):
+        interpolated(nominal[0], moving, c, i, share, ours)
+        interpolated(nominal[1], targets, c, i, share, theirs)
+        for r in range(3):
+            arm[r] = pose[r, 0] * ours[0] + pose[r, 1] * ours[1] + pose[r, 2] * ours[2]
+            along[r] = pose[r, 0] * ours[3] + pose[r, 1] * ours[4] + pose[r, 2] * ours[5]
+            other[r] = theirs[3 + r]
+            apart[r] = arm[r] + pose[r, 3] - theirs[r]
+        total = sums[c, min(i, sums.shape[1] - 1)]
+        if share != 1.0:
+            total = nominal[2][c] + share * (total - nominal[2][c])
+        if not total > 0.0:
+            return False  # what is inside is larger
+        kind = kinds[c]
+        if kind <= PLANE_LINE:
+            distance = on_plane(kind, sides, errors, rows, e, length)
+        elif kind == CROSSING:
+            distance = at_crossing(sides, normal, rows, e, signs[c])
+        else:
+            distance = off_line(kind, sides, normal, errors, rows, e, length)
+        errors[e] = distance - total
+        e += count_of(kind)
+    return True
+
+
+@part
+def new_sides() -> Any:
+    """What equations work with."""
+    sides = (np.empty(3), np.empty(3), np.empty(3), np.empty(3), np.empty(3))
+    return np.empty(6), np.empty(6), sides, np.empty(3)

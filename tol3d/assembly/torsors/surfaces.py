@@ -1,0 +1,161 @@
+"""Surfaces of two features, one of them round at least: the nominal common normal, and what they change along it."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tol3d.assembly.model import Axis, Plane, Point, RoundPlane, Shape
+from tol3d.assembly.model.touch import is_inner, unfit_for_contact
+from tol3d.assembly.torsors.torsor import cross_matrix, height_at, shift_at, turn_about
+from tol3d.assembly.torsors.world import World
+from tol3d.errors import InputError
+
+Array = NDArray[np.float64]
+
+PARALLEL = 1e-6
+"""Sine of the angle of axes that nominally lie along each other, not across."""
+NO_DISTANCE = 1e-9
+"""Centres or axes nearer than that [mm] have no direction from one to the other."""
+
+
+@dataclass(frozen=True, eq=False)
+class Surfaces:
+    """Two surfaces and their common normal, nominally in the world.
+
+    Args:
+        world: in which they are.
+        start, end: the features.
+    """
+
+    world: World
+    start: str
+    end: str
+
+    @property
+    def shapes(self) -> tuple[Shape, Shape]:
+        """Of both."""
+        features = self.world.assembly.features
+        return features[self.start].shape, features[self.end].shape
+
+    @property
+    def is_inside(self) -> bool:
+        """Whether one lies in the other."""
+        return any(is_inner(shape) for shape in self.shapes)
+
+    @property
+    def parallel(self) -> bool:
+        """Whether two axes lie along each other."""
+        sine = np.linalg.norm(np.cross(self.world.axis(self.start), self.world.axis(self.end)))
+        return all(isinstance(shape, Axis) for shape in self.shapes) and bool(sine < PARALLEL)
+
+    @property
+    def _feet(self) -> tuple[Array, Array]:
+        """Where the common normal meets centres, axes and planes (3,), (3,) [mm]."""
+        start, end = self.world.origin(self.start), self.world.origin(self.end)
+        own, other = self.world.axis(self.start), self.world.axis(self.end)
+        apart = end - start
+        match tuple(map(_word, self.shapes)):
+            case "plane", _:
+                return end - own * (own @ apart), end
+            case _, "plane":
+                return start, start + other * (other @ apart)
+            case "axis", "axis" if not self.parallel:
+                along = np.linalg.lstsq(np.column_stack([own, -other]), apart, rcond=None)[0]
+                return start + along[0] * own, end + along[1] * other
+            case "axis", _:
+                return start + own * (own @ apart), end
+            case _, "axis":
+                return start, end - other * (other @ apart)
+        return start, end
+
+    @property
+    def _normal(self) -> Array:
+        """From the first to the second (3,)."""
+        if isinstance(self.shapes[0], Plane | RoundPlane):
+            return self.world.axis(self.start)
+        if isinstance(self.shapes[1], Plane | RoundPlane):
+            return -self.world.axis(self.end)
+        start, end = self._feet
+        return np.asarray((end - start) / np.linalg.norm(end - start))
+
+    def checked(self, name: str) -> tuple[Array, float, Array]:
+        """The normal (3,), how far centres, axes and planes are apart along it [mm], and where it is (3,).
+
+        Raises:
+            InputError: there is none.
+        """
+        words = unfit_for_contact(*self.shapes)
+        if not words and self.is_inside and not self.parallel and all(isinstance(own, Axis) for own in self.shapes):
+            words = "expected axes that are nominally parallel, for one lies inside the other"
+        start, end = self._feet
+        if not words and not any(isinstance(own, Plane | RoundPlane) for own in self.shapes):
+            words = "" if np.linalg.norm(end - start) > NO_DISTANCE else "lies in its middle, which has no direction"
+        if words:
+            raise InputError(f"{name}: contact of {self.start} and {self.end}: {words}")
+        return self._normal, float(self._normal @ (end - start)), end
+
+    def touching(self) -> tuple[float, Array]:
+        """The sum of the radii, or the difference of one inside the other: nominally [mm], how it varies (columns,)."""
+        features = self.world.assembly.features
+        sizes = [getattr(features[name].shape, "diameter", None) or 0.0 for name in (self.start, self.end)]
+        varying = [self.world.size(name) for name in (self.start, self.end)]
+        signs = (1.0, 1.0)
+        if self.is_inside:
+            signs = (1.0, -1.0) if is_inner(self.shapes[0]) else (-1.0, 1.0)
+        nominal = sum(sign * size / 2 for sign, size in zip(signs, sizes, strict=True))
+        return nominal, signs[0] * varying[0] / 2 + signs[1] * varying[1] / 2
+
+    def gap(self, name: str) -> tuple[float, Array]:
+        """How far the surfaces are apart: nominally [mm], how it varies (columns,)."""
+        normal, distance, point = self.checked(name)
+        nominal, varying = self.touching()
+        apart = (height_at(point, normal) @ (self.world.placed(self.end) - self.world.placed(self.start)))[0]
+        sign = -1.0 if self.is_inside else 1.0
+        return sign * (distance - nominal), sign * (apart - varying)
+
+    def hinge(self, name: str) -> tuple[Array, float] | None:
+        """The axis about which what lies along a line tilts off it, as a turn (1, 6), and its sine nominally."""
+        words = tuple(map(_word, self.shapes))
+        if words == ("plane", "axis") or words == ("axis", "plane") or self.parallel:
+            normal, _, _ = self.checked(name)
+            if words == ("axis", "plane"):
+                lying = self.world.axis(self.start)
+                return turn_about(np.cross(normal, lying)[None]), float(lying @ normal)
+            lying = self.world.axis(self.end)
+            return turn_about(np.cross(lying, normal)[None]), float(lying @ normal)
+        return None
+
+    def turning_normal(self, name: str) -> tuple[Array, Array]:
+        """The normal from the first to the second (3,), and how it varies (3, columns)."""
+        normal, distance, _ = self.checked(name)
+        start, end = self.world.placed(self.start), self.world.placed(self.end)
+        first, second = map(_word, self.shapes)
+        if first == "plane":
+            return normal, -cross_matrix(normal) @ start[3:]
+        if second == "plane":
+            return normal, -cross_matrix(normal) @ end[3:]
+        feet = self._feet
+        apart = shift_at(feet[1]) @ end - shift_at(feet[0]) @ start
+        varying = (apart - np.outer(normal, normal @ apart)) / distance
+        axes = [self.world.axis(name) for name in (self.start, self.end)]
+        if (first, second) == ("axis", "axis") and not self.parallel:
+            # square to both axes as they turn
+            asked = np.array([normal, *axes])
+            turns = [normal @ cross_matrix(own) @ torsor[3:] for own, torsor in zip(axes, (start, end), strict=True)]
+            return normal, np.linalg.solve(asked, np.array([np.zeros_like(turns[0]), *turns]))
+        for word, axis, torsor in zip((first, second), axes, (start, end), strict=True):
+            if word == "axis":  # square to the axis as it turns; of two the first counts
+                turned = normal @ cross_matrix(axis) @ torsor[3:]
+                return normal, varying + np.outer(axis, turned - axis @ varying)
+        return normal, varying
+
+
+def _word(shape: Shape) -> str:
+    match shape:
+        case Point():
+            return "point"
+        case Axis():
+            return "axis"
+        case _:
+            return "plane"
