@@ -5,7 +5,7 @@ import pytest
 from numpy.typing import NDArray
 from random_touches import KINDS, RandomTouch, random_touch
 
-from tol3d.assembly.model.statuses import OK
+from tol3d.assembly.model.statuses import NO_CONTACT, OK
 from tol3d.assembly.placing import road as placing
 from tol3d.assembly.torsors import road as torsors
 
@@ -18,30 +18,43 @@ def drawn(made: RandomTouch, seed: int, count: int) -> Array:
     return np.random.default_rng(seed + 10_000).normal(size=(count, made.assembly.width)) * SIGMA
 
 
-def poses_agree(made: RandomTouch, deviations: Array) -> None:
-    found = placing.placed(made.assembly, deviations)["part"]
-    for row, pose in zip(deviations, found, strict=True):
-        np.testing.assert_allclose(pose, made.pose(row), rtol=0.0, atol=1e-9, err_msg=str(made.kinds))
+def poses_agree(made: RandomTouch, deviations: Array) -> int:
+    """Of how many trials: the others have no contact, by scipy either."""
+    found, count = placing.placed(made.assembly, deviations)["part"], 0
+    codes = placing.values(made.assembly, deviations, ["x"])["x"][1]
+    for row, pose, code in zip(deviations, found, codes, strict=True):
+        expected = made.pose(row)
+        if expected is None:
+            assert code == NO_CONTACT
+            continue
+        if np.abs(pose - expected).max() > 1e-9:  # another one of several poses, perhaps: that which grows from nominal
+            expected = made.pose(row, steps=200)
+            assert expected is not None
+        np.testing.assert_allclose(pose, expected, rtol=0.0, atol=1e-9, err_msg=str(made.kinds))
+        count += 1
+    return count
 
 
 @pytest.mark.parametrize("kind", KINDS)
 def test_each_contact_alone_is_met_as_scipy_meets_it(kind: str) -> None:
     made = random_touch(KINDS.index(kind), kinds=(kind,))
-    poses_agree(made, drawn(made, 0, 2))
+    assert poses_agree(made, drawn(made, 0, 2)) == 2
 
 
 @pytest.mark.parametrize("seed", range(25))
 def test_random_touches_are_those_of_scipy(seed: int) -> None:
     made = random_touch(seed)
-    poses_agree(made, drawn(made, seed, 2))
+    assert poses_agree(made, drawn(made, seed, 2)) == 2
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("hundred", range(10))
 def test_a_thousand_random_touches_are_those_of_scipy(hundred: int) -> None:
+    count = 0
     for seed in range(1000 + 100 * hundred, 1100 + 100 * hundred):
         made = random_touch(seed)
-        poses_agree(made, drawn(made, seed, 1))
+        count += poses_agree(made, drawn(made, seed, 1))
+    assert count >= 98
 
 
 def left_out(made: RandomTouch, deviations: Array, name: str) -> Array:

@@ -46,13 +46,14 @@ def in_words(motions: Array) -> str:
     left, sizes, _ = np.linalg.svd(motions[:, 3:] * length)
     if len(motions) > np.sum(sizes > FREE * length):
         shift = left[:, -1] @ motions[:, :3]
-        return f"it shifts along {_direction(shift)}"
+        return f"it shifts along {direction_in_words(shift)}"
     shift, turn = np.split(motions[0] / np.linalg.norm(motions[0, 3:]), 2)
-    words = f"it turns about {_direction(turn)} through {_numbers(np.cross(turn, shift))}"
+    words = f"it turns about {direction_in_words(turn)} through {_numbers(np.cross(turn, shift))}"
     return words if abs(turn @ shift) < FREE * length else f"{words} and shifts along it"
 
 
-def _direction(vector: Array) -> str:
+def direction_in_words(vector: Array) -> str:
+    """x, y, z, or three numbers."""
     vector = vector / np.linalg.norm(vector)
     largest = int(np.argmax(np.abs(vector)))
     if abs(vector[largest]) > 1.0 - FREE:

@@ -1,6 +1,6 @@
 """Parts laid against others by contacts of round features: what the contacts ask, trial by trial."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Final
 
@@ -8,11 +8,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.assembly.model import Contact, Touch
+from tol3d.assembly.model.statuses import OK
 from tol3d.assembly.model.touch import unfit_for_contact
 from tol3d.assembly.placing import contact_equations
 from tol3d.assembly.placing.actual_feature import ActualFeature
 from tol3d.assembly.placing.contact_equations import ALONG, CROSSING
-from tol3d.assembly.placing.free_motion import free_motions, in_words, seen_steps
+from tol3d.assembly.placing.free_motion import direction_in_words, free_motions, in_words, seen_steps
 from tol3d.assembly.placing.poses import Codes, Pose, column, cross, rotated
 from tol3d.assembly.placing.surfaces import PARALLEL, common_normal, is_inside, kind_of, touching_distance
 from tol3d.assembly.placing.touches import lacking_at, touching_poses
@@ -54,7 +55,7 @@ class Touching:
         origin: of the part, nominally in the world (3, 1) [mm].
         lacking: errors at the nominal pose (k,) [mm].
         side: of the folds, on which the nominal pose lies.
-        taken: how many freedoms each contact takes.
+        rows: how errors change with a shift and a turn about the part's origin there (k, 6).
         free: motions (motions, 6) of the part that no contact decides, shift of the world's origin and turn.
     """
 
@@ -69,7 +70,7 @@ class Touching:
     origin: Array
     lacking: Array
     side: float
-    taken: tuple[int, ...]
+    rows: Array
     free: Array
 
     def placed(self, world: World) -> tuple[World, Codes]:
@@ -81,6 +82,25 @@ class Touching:
         about = (self.start, self.basis, self.reach, self.lacking, self.side, self._force(world), self.inner)
         touching_poses(*contacts, *about, turn, shift, codes)
         return world.with_part_at(self.move.part, Pose(turn, shift + self.origin)), codes
+
+    @property
+    def in_words(self) -> str:
+        """What each contact touches and takes, and how many freedoms are left."""
+        held = [f"{contact.target}: {taken}" for contact, taken in zip(self.move.contacts, self._taken(), strict=True)]
+        left = f"{len(self.free)} left as drawn, such as: {in_words(self.free)}" if len(self.free) else "none left"
+        return f"{'; '.join(held)}; freedoms {left}"
+
+    def _taken(self) -> Iterator[str]:
+        """What each contact takes of the part's freedoms: the shift along its normal, the turn of a line off it."""
+        e = 0
+        for kind in self.kinds:
+            shift = direction_in_words(self.rows[e, :3])
+            if kind in contact_equations.TWO:
+                yield f"a shift along {shift}, a turn about {direction_in_words(self.rows[e + 1, 3:])}"
+                e += 2
+            else:
+                yield f"a shift along {shift}"
+                e += 1
 
     def _force(self, world: World) -> Array:
         if self.move.pressed is None:
@@ -115,7 +135,7 @@ def touching(move: Touch, nominal: World) -> Touching:
     about_origin = rows * np.array([1.0, 1.0, 1.0, reach, reach, reach])
     basis = np.roll(seen_steps(free_motions(about_origin, np.zeros(3), reach), reach), 3, axis=0)
     shapes = [[nominal.assembly.features[name].shape for name in (own.moving, own.target)] for own in move.contacts]
-    return Touching(
+    made = Touching(
         move,
         kinds,
         signs,
@@ -127,9 +147,15 @@ def touching(move: Touch, nominal: World) -> Touching:
         column(origin),
         lacking,
         float(np.sign(np.linalg.det(rows @ basis))),
-        tuple(counts),
+        about_origin,
         free_motions(about_origin, origin, reach),
     )
+    if made.placed(nominal)[1][0] != OK:
+        raise InputError(
+            f"moves.{move.name}: {move.part} has no contact even without deviations: expected surfaces that reach each "
+            "other near where it is `placed`, and contacts on which it is pressed if it is `pressed`"
+        )
+    return made
 
 
 def _contact(move: Touch, contact: Contact, nominal: World) -> tuple[int, float, float]:

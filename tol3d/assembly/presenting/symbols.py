@@ -1,5 +1,7 @@
 """Closed surfaces that stand for features which are stated by numbers: slabs, rods, rings, octahedra."""
 
+from collections.abc import Sequence
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -16,10 +18,13 @@ def symbol(shape: Shape, thickness: float) -> Surface:
     """What stands for a feature, in its frame: vertices (n, 3) [mm], triangles (m, 3).
 
     Args:
-        shape: a plane is a slab below it, an axis a rod of its diameter, a hole a ring, a point an octahedron.
+        shape: a plane is a slab below it, an axis a rod of its diameter, a hole a ring, a point an octahedron,
+            a sphere a ball, a socket the zone of a shell between 45 degrees of latitude.
         thickness: of what has none of its own [mm].
     """
     match shape:
+        case Point(diameter=float(diameter)):
+            return zone(diameter / 2, diameter / 2 + thickness) if shape.inner else ball(diameter / 2)
         case Point():
             corners = thickness * np.concatenate([np.eye(3), -np.eye(3)])
             faces = [(a, b, c) for a in (0, 3) for b in (1, 4) for c in (2, 5)]
@@ -62,17 +67,36 @@ def prism(outline: Array, low: float, high: float) -> Surface:
 
 def ring(inner: float, outer: float, low: float, high: float) -> Surface:
     """A closed tube from one height to another [mm]."""
-    vertices = np.concatenate(
-        [
-            np.column_stack([circle(radius), np.full(SIDES, z)])
-            for radius, z in ((outer, low), (outer, high), (inner, high), (inner, low))
-        ]
-    )
+    return turned(((outer, low), (outer, high), (inner, high), (inner, low)))
+
+
+def zone(inner: float, outer: float) -> Surface:
+    """A closed piece of a spherical shell about z, between 45 degrees of latitude [mm]."""
+    latitudes = np.pi / 4 * np.linspace(-1.0, 1.0, SIDES // 4 + 1)
+    arc = np.stack([np.cos(latitudes), np.sin(latitudes)], axis=-1)
+    return turned([*(outer * arc), *(inner * arc[::-1])])
+
+
+def ball(radius: float) -> Surface:
+    """A closed ball [mm]."""
+    latitudes = np.pi * (np.arange(1, SIDES // 2) / (SIDES // 2) - 0.5)
+    vertices, triangles = turned(radius * np.stack([np.cos(latitudes), np.sin(latitudes)], axis=-1), closed=False)
+    here, last = np.arange(SIDES), len(vertices)
+    there, top = (here + 1) % SIDES, last - SIDES
+    poles = np.array([(0.0, 0.0, -radius), (0.0, 0.0, radius)])
+    low = np.stack([there, here, np.full(SIDES, last)], axis=-1)
+    high = np.stack([here + top, there + top, np.full(SIDES, last + 1)], axis=-1)
+    return np.concatenate([vertices, poles]), np.concatenate([triangles, low, high])
+
+
+def turned(profile: Sequence[Sequence[float]] | Array, *, closed: bool = True) -> Surface:
+    """A profile of radii and heights (n, 2), counter-clockwise seen with z up, turned about z [mm]."""
+    vertices = np.concatenate([np.column_stack([circle(radius), np.full(SIDES, z)]) for radius, z in profile])
     here = np.arange(SIDES)
     there = (here + 1) % SIDES
     bands = []
-    for k in range(4):
-        own, following = k * SIDES, (k + 1) % 4 * SIDES
+    for k in range(len(profile) if closed else len(profile) - 1):
+        own, following = k * SIDES, (k + 1) % len(profile) * SIDES
         bands.append(np.stack([here + own, there + own, there + following], axis=-1))
         bands.append(np.stack([here + own, there + following, here + following], axis=-1))
     return vertices, np.concatenate(bands)

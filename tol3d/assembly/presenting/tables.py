@@ -4,8 +4,10 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from tol3d.assembly.model import Axis, Feature, Locate, Move, Plane, RoundPlane
+from tol3d.assembly.model import Axis, Feature, Locate, Move, Plane, Point, RoundPlane, Touch
 from tol3d.assembly.model.moves import BestFit, Mate, Rest, Weld
+from tol3d.assembly.placing import road as placing
+from tol3d.assembly.placing.touching import Touching
 from tol3d.assembly.system import AssemblySystem
 from tol3d.report.page import Block, Heading, Row, Table, titled
 from tol3d.report.system_check import system_blocks
@@ -29,7 +31,8 @@ def drawing_blocks(system: AssemblySystem) -> Sequence[Block]:
     ]
     words = [Heading(word, words=True) for word in ("shape", "at [mm]", "lies in the frame of")]
     features = titled("features, nominally in the world", Table("", words, rows))
-    moves = [Row(move.name, _move(move)) for move in system.assembly.moves]
+    planned = placing.planned(system.assembly).moves
+    moves = [Row(move.name, _move(move, plan)) for move, plan in zip(system.assembly.moves, planned, strict=True)]
     steps = titled("moves", Table("", [Heading(word, words=True) for word in ("kind", "part", "by")], moves))
     return (*features, *steps)
 
@@ -40,6 +43,8 @@ def _shape(feature: Feature) -> str:
             return f"plane {a:g} × {b:g} mm"
         case RoundPlane(radius=radius):
             return f"plane, radius {radius:g} mm"
+        case Point(diameter=float(diameter), inner=inner):
+            return f"{'socket' if inner else 'ball'} ⌀{diameter:g} mm"
         case Axis(length=length, diameter=None):
             return f"axis, {length:g} mm long"
         case Axis(length=length, diameter=diameter, inner=inner):
@@ -57,7 +62,7 @@ def _frame(feature: Feature) -> str:
     return "its part" if not feature.parent else feature.parent.partition("|")[2].replace("|", ", ")
 
 
-def _move(move: Move) -> tuple[str, str, str]:
+def _move(move: Move, plan: placing.Placing) -> tuple[str, str, str]:
     match move:
         case Locate():
             return "six contacts", move.part, f"points ride on the {move.points_on}"
@@ -67,6 +72,9 @@ def _move(move: Move) -> tuple[str, str, str]:
             return "mate", move.part, ", ".join(f"{own.kind} {own.target}" for own in move.relations)
         case Rest():
             return "rest", move.part, f"{len(move.pairs)} contacts, points ride on the {move.points_on}"
+        case Touch():
+            assert isinstance(plan, Touching)
+            return "touch", move.part, plan.in_words
         case Weld():
             return "weld", move.part, ", ".join(move.others)
     return "fixed", move.part, ""

@@ -65,8 +65,16 @@ class RandomTouch:
         nominal = getattr(feature.shape, "diameter", None) or 0.0
         return float(nominal + sum(float(deviations[own.columns].sum()) for own in feature.size_by)) / 2.0
 
-    def pose(self, deviations: Array) -> Array:
-        """Of the part (4, 4), near its nominal one: nothing turns or shifts that contacts do not decide there."""
+    def pose(self, deviations: Array, steps: int = 1) -> Array | None:
+        """Of the part (4, 4), near its nominal one: nothing turns or shifts that contacts do not decide there.
+
+        Args:
+            deviations: (columns,) [mm].
+            steps: in which they grow from nothing; the pose is followed.
+
+        Returns:
+            None where contacts cannot be met.
+        """
         start = self.assembly.part["part"].pose
 
         def posed(unknowns: Array) -> Array:
@@ -82,17 +90,21 @@ class RandomTouch:
         left, sizes, right = np.linalg.svd(free[3:])
         turning = int((sizes > 1e-6).sum())
         pure = free[:3] @ right[turning:].T  # shifts without a turn
-        still = np.vstack(
-            [np.hstack([np.zeros((turning, 3)), left[:, :turning].T]), np.hstack([pure.T, np.zeros((pure.shape[1], 3))])]
-        )
+        turns = np.hstack([np.zeros((turning, 3)), left[:, :turning].T])
+        still = np.vstack([turns, np.hstack([pure.T, np.zeros((pure.shape[1], 3))])])
         # central differences of step h leave h^2 / R^2 of a direction: of what is free it acts on the third order
 
-        def asked(unknowns: Array) -> Array:
-            return np.concatenate([self.errors(deviations, posed(unknowns)), still @ unknowns])
+        unknowns = np.zeros(6)
+        for share in np.linspace(0.0, 1.0, steps + 1)[1:]:
 
-        found = least_squares(asked, np.zeros(6), method="lm", xtol=1e-15, ftol=1e-15, gtol=1e-15)
-        assert np.abs(found.fun).max() < 1e-11
-        return posed(found.x)
+            def asked(unknowns: Array, share: float = share) -> Array:
+                return np.concatenate([self.errors(share * deviations, posed(unknowns)), still @ unknowns])
+
+            found = least_squares(asked, unknowns, method="lm", xtol=1e-15, ftol=1e-15, gtol=1e-15)
+            if np.abs(found.fun).max() > 1e-11:
+                return None
+            unknowns = found.x
+        return posed(unknowns)
 
 
 def errors_of(kind: str, own: tuple[Array, Array], other: tuple[Array, Array], radii: list[float]) -> list[float]:
