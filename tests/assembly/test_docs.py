@@ -53,7 +53,7 @@ def union(definition: str, field: str) -> Mapping[str, Any]:
     return found
 
 
-FIELD_SCENES = ("every_assembly_field", "bolted_cover", "four_pads")
+FIELD_SCENES = ("every_assembly_field", "bolted_cover", "four_pads", "box_with_discs", "clutch")
 """Between them every kind and every field."""
 
 FEATURES, LAWS = union("SolidSpec", "features"), union("PositionSpec", "law")
@@ -78,9 +78,8 @@ def test_the_tables_of_the_example_are_those_of_the_run(tol3d: Command, tmp_path
 def test_the_scenes_use_every_field_of_every_kind() -> None:
     kinds = [spec for section in SECTIONS for spec in ASSEMBLY.specs(section)]
     known = {own for spec in kinds for own in fields_within(spec) if own[0].__module__.startswith("tol3d.assembly")}
-    assert (
-        len({model for model, _ in known}) == len(kinds) + 14
-    )  # placement, datum, zone, force; 4 features, 3 laws, 3 pairs
+    beside = 16  # placement, datum, zone, force; 5 features, 3 laws, 4 pairs
+    assert len({model for model, _ in known}) == len(kinds) + beside
     said = {own for name in FIELD_SCENES for own in fields_said(load_scene(SCENES / f"{name}.yaml", KINDS))}
     assert unsaid(known, said) == set()
     assert set(kinds) <= {model for model, _ in said}
@@ -135,7 +134,8 @@ def test_the_paragraph_below_the_tolerances_names_what_is_in_a_zone_and_a_datum(
 
 
 def test_no_table_is_forgotten() -> None:
-    known = {(section.capitalize(), "kind") for section in SECTIONS} | {("Features", "kind"), ("Moves", "relation")}
+    known = {(section.capitalize(), "kind") for section in SECTIONS} | {("Features", "kind")}
+    known |= {("Moves", head) for head in ("relation", "contact")}
     known |= {(WORDS, head) for head in ("simulator", "law", "status")}
     assert {(each.section, each.head[0]) for each in PAGE.tables} == known
 

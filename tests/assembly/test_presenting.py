@@ -9,6 +9,7 @@ import pytest
 import trimesh
 from assembly_trials import constant
 from datum_plate import plate
+from numpy.typing import NDArray
 
 from tol3d.assembly.mechanism import ASSEMBLY
 from tol3d.assembly.model import Axis, Plane, Point, RoundPlane, Shape
@@ -20,8 +21,28 @@ from tol3d.report.page import page
 from tol3d.scene.entry import kind_of
 from tol3d.simulate import Overrides, load, run_scene, simulation_of
 
+Array = NDArray[np.float64]
+
 OFF = {"b1": 0.3, "b2": -0.2, "c": 0.25, "ex": 0.05, "ey": -0.1}
 POLYGON = SIDES / 2 * math.sin(2 * math.pi / SIDES)  # area of the regular polygon in a circle of radius 1
+
+
+def frusta(radii: Array, heights: Array) -> float:
+    """Volume of a pile of frusta of polygons."""
+    a, b = radii[:-1], radii[1:]
+    return float(POLYGON / 3 * (np.diff(heights) * (a**2 + a * b + b**2)).sum())
+
+
+def ball(radius: float) -> float:
+    latitudes = np.linspace(-math.pi / 2, math.pi / 2, SIDES // 2 + 1)
+    return frusta(radius * np.cos(latitudes), radius * np.sin(latitudes))
+
+
+def zone(radius: float) -> float:
+    """Of a ball between 45 degrees of latitude, less the cones from its middle that end there."""
+    latitudes = np.linspace(-math.pi / 4, math.pi / 4, SIDES // 4 + 1)
+    cones = 2 * POLYGON / 3 * radius**3 * math.sqrt(0.5) ** 3
+    return frusta(radius * np.cos(latitudes), radius * np.sin(latitudes)) - cones
 
 
 @pytest.mark.parametrize(
@@ -33,6 +54,8 @@ POLYGON = SIDES / 2 * math.sin(2 * math.pi / SIDES)  # area of the regular polyg
         (Axis(20.0), POLYGON * 0.5**2 * 20),
         (Axis(20.0, 10.0), POLYGON * 5**2 * 20),
         (Axis(20.0, 10.0, inner=True), POLYGON * (7**2 - 5**2) * 20),
+        (Point(10.0), ball(5.0)),
+        (Point(10.0, inner=True), zone(7.0) - zone(5.0)),
     ],
 )
 def test_symbols_are_closed_and_look_outward(shape: Shape, volume: float) -> None:

@@ -79,7 +79,7 @@ WRONG: dict[str, tuple[Sequence[Edit], str, str]] = {
     "feature of the wrong kind": (
         [added(TOLERANCES, f"thick: {{kind: size, of: base.floor, {SPREAD}}}")],
         "tolerances.thick.of",
-        "expected a cylinder, got 'base.floor', which is a plane; did you mean \"base.hole\"?",
+        "expected a cylinder or sphere, got 'base.floor', which is a plane; did you mean \"base.hole\"?",
     ),
     "point with an orientation": (
         [added(TOLERANCES, "level: {kind: parallelism, of: base.rim, zone: {width: 0.1 mm}, datums: [floor]}")],
