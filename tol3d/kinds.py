@@ -91,7 +91,10 @@ def _summary_kinds(grammar: Grammar) -> "SummaryKinds":
 def _added(vocabulary: Vocabulary) -> "SummaryKinds":
     made = named("tol3d.runs.summary.kinds:SummaryKinds")
     presenter = vocabulary.presenter if isinstance(vocabulary, Mechanism) else ""
-    shown: SummaryKinds = made(presenters=((vocabulary.name, presenter),) if presenter else ())
+    shown: SummaryKinds = made(
+        presenters=((vocabulary.name, presenter),) if presenter else (),
+        published=(vocabulary.published,) if vocabulary.published else (),
+    )
     if isinstance(vocabulary, Mechanism) and vocabulary.summary:
         found: SummaryKinds = named(vocabulary.summary) | shown
         return found

@@ -91,7 +91,7 @@ def test_the_papers_published_columns_agree_with_its_own_formulas() -> None:
         degrees = 0.12195 * 1e3 * normal / 275  # the paper's formula, normal backlash in um
         assert lost_motion * 57.29577951 == pytest.approx(degrees, abs=0.5 / 3600)  # printed to the second of arc
     # Table 3 is printed to 0.1 % a row, so its seven rows make 100 % to 0.35
-    assert sum(column["normal backlash"].contributors.values()) == pytest.approx(100.0, abs=0.35)
+    assert sum(column["normal backlash"].percents.values()) == pytest.approx(100.0, abs=0.35)
 
 
 # every field --------------------------------------------------------------------------------------

@@ -63,12 +63,27 @@ def test_the_study_and_the_published_columns_are_told_field_by_field() -> None:
     study, published = SCHEMA["$defs"]["Study"], SCHEMA["$defs"]["PublishedMeasure"]
     first = next(paragraph for paragraph in text.split("\n\n") if paragraph.startswith("`study` has"))
     assert set(study["properties"]) == words(first) - {"study"} - {"tol3d"}
-    last = next(paragraph for paragraph in text.split("\n\n") if paragraph.startswith("`published` holds"))
-    quantiles = set(re.findall(r"`(p\d+\.\d+)`", last))
-    assert set(published["properties"]) == words(last) - {"published"} | quantiles
+    last = next(paragraph for paragraph in text.split("\n\n") if paragraph.startswith("**Of a measure"))
+    inner = ("Share", "Histogram", "Agreement", "Curve", "Spectrum")
+    known = set(published["properties"]).union(*(SCHEMA["$defs"][f"Published{own}"]["properties"] for own in inner))
+    assert known == words(last) | set(re.findall(r"`(p\d+\.\d+)`", last))
     for head, field in (("engine", "engine"), ("sampler", "sampler")):
         values = {row.split("`")[0] for row, _ in PAGE.table("Study and published columns", head).rows}
         assert values == set(study["properties"][field]["enum"])
+
+
+def test_the_table_of_what_is_published_of_the_whole_has_every_key_and_its_fields() -> None:
+    rows = PAGE.table("Study and published columns", "key").rows
+    column = SCHEMA["$defs"]["PublishedColumn"]["properties"]
+    assert {key for row, _ in rows for key in words(f"`{row}`")} == set(column)
+    fields: dict[str, tuple[str, ...]] = {
+        "joint": ("Joint", "Yield", "Correlation"),
+        "trains": ("Train", "Stage", "Ends"),
+    }
+    fields |= {"study": ("Study",), "timing": ("Timing",)}
+    for key, models in fields.items():
+        said = words(next(" ".join(cells) for row, cells in rows if row.strip("`") == key))
+        assert said == {field for own in models for field in SCHEMA["$defs"][f"Published{own}"]["properties"]}
 
 
 def test_the_table_of_units_is_that_of_the_grammar() -> None:
@@ -86,7 +101,7 @@ def test_the_table_of_what_becomes_of_a_build_has_every_status() -> None:
 def test_no_table_is_forgotten() -> None:
     known = {(section.capitalize(), "kind") for section in SECTIONS}
     known |= {("Distributions", "kind"), ("Units", "what"), (FAILURES, "status")}
-    known |= {("Study and published columns", head) for head in ("engine", "sampler")}
+    known |= {("Study and published columns", head) for head in ("engine", "sampler", "key")}
     assert {(each.section, each.head[0].strip("`")) for each in PAGE.tables} == known
 
 

@@ -3,6 +3,7 @@
 import math
 import os
 import pickle
+import re
 import signal
 import subprocess
 import sys
@@ -16,6 +17,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 from places import TESTS
+from printing import printed
 from runs.test_kill import HANGS, SMALL_BLOCKS
 from scipy import integrate, stats
 from toys.parabola import PARABOLA, roads
@@ -26,6 +28,7 @@ from toys.registered import TOYS, known, offered
 
 from tol3d import Overrides, Run, SceneError, load_scene, open_run, run_scene
 from tol3d.execution.pools import Execution
+from tol3d.report.table import Detail, run_report
 from tol3d.runs.summary.kinds import default_kinds
 from tol3d.runs.summary.sample import SpectrumSample
 from tol3d.runs.worst import worst_trial
@@ -438,6 +441,29 @@ def test_a_published_column_stands_beside_ours(run: Run) -> None:
         "contributors": {"x": 80.0, "offset": 15.0},
         "description": "by hand",
     }
+
+
+def test_a_system_from_outside_has_figures_of_its_own_sections_published(run: Run, tmp_path: Path) -> None:
+    """0.002 mm are 2 um; ours beside them is found under the same keys."""
+    assert run.summary["published"] == {"theirs": {"terms": {"height": {"bow": {"mean": 2.0, "share_percent": 3.0}}}}}
+    rows = [line.split() for line in printed(run_report(run.found, Detail.SECTIONS), 120).splitlines()]
+    own = run.summary["terms"]["height"]
+    row = next(row for row in rows if row[:5] == ["terms", "·", "height", "·", "bow"] and "mean" in row)
+    assert [float(cell) for cell in row[-3:]] == pytest.approx(
+        [own["analytic"]["bow"]["mean"], own["geometric"]["bow"]["mean"], 2.0], abs=6e-4
+    )
+    text = SPRING.read_text("utf-8")
+    (tmp_path / "spring.csv").write_bytes((SPRING.parent / "spring.csv").read_bytes())
+    for change, words in (
+        (("terms: {height:", "terms: {hight:"), "published.theirs.terms.hight: expected the name of a height"),
+        (("    terms:", "    term:"), 'published.theirs.term: unknown key "term"; did you mean "terms"?'),
+        (("mean: 0.002 mm", "mean: 2 deg"), "published.theirs.terms.height.bow.mean: expected a length"),
+        (("share_percent: 3", "share_percents: 3"), 'unknown key "share_percents"; did you mean "share_percent"?'),
+    ):
+        assert change[0] in text
+        (tmp_path / "spring.yaml").write_text(text.replace(*change), "utf-8")
+        with pytest.raises(SceneError, match=re.escape(words)):
+            load_scene(tmp_path / "spring.yaml")
 
 
 # what is refused ------------------------------------------------------------------------------------

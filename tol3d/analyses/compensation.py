@@ -10,7 +10,7 @@ Angles here are in minutes of arc and tips in mm, as in columns and in summary.j
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any, Final, Literal
+from typing import Final, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -135,7 +135,7 @@ class Compensation:
         return self.tip.tip.lever if self.tip and self.tip.tip else None
 
     @property
-    def published_tips(self) -> Mapping[str, Mapping[str, Any]]:
+    def published_tips(self) -> Mapping[str, Mapping[str, float]]:
         """What others published of the tip's displacement without compensation [mm]."""
         own = self.tip and self.tip.tip
         alike = [
@@ -145,7 +145,7 @@ class Compensation:
             if measure.kind.train == self.train.name and measure.kind.tip == own
         ]
         published = self.simulation.published
-        return {column: published[column][name] for column in published for name in alike if name in published[column]}
+        return {column: own[name].internal for column, own in published.items() for name in alike if name in own}
 
 
 def compensation(

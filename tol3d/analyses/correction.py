@@ -60,7 +60,10 @@ def corrections_of(
     for road in robots.lost:
         own = {stage.link: stage.roads.by(road) for stage in summary.stages}
         yield road, _correction(model, train, measure, compensated, own)
+    meshes = [stage for stage in summary.stages if stage.gears]
     for column in summary.sums.published:
+        if not all(column in stage.published for stage in meshes):
+            continue
         known = {stage.link: stage.published.get(column, stage.roads.analytic) for stage in summary.stages}
         yield column, _correction(model, train, measure, compensated, known)
 

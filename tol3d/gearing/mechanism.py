@@ -4,6 +4,7 @@ from typing import Final
 
 from tol3d.gearing.grammar import measures, moves, parts, tolerances
 from tol3d.gearing.grammar.checks import carried_again
+from tol3d.gearing.grammar.published import PublishedTrains
 from tol3d.gearing.grammar.study import GearStudyOptions
 from tol3d.scene.grammar import specs_in
 from tol3d.system.mechanism import Mechanism
@@ -16,6 +17,7 @@ GEARING: Final = Mechanism(
     measures=specs_in(measures),
     checks=(carried_again,),
     options=GearStudyOptions,
+    published=PublishedTrains,
     engines=("exact", "fcl"),
     witness="fcl",
     system="tol3d.gearing.system:gear_system",

@@ -1,11 +1,12 @@
 """Trains as summary.json shows them: their stages, and the sums of the stages' ends."""
 
 from collections.abc import Mapping, Sequence
-from typing import Any
+from dataclasses import dataclass
 
 import numpy as np
 
 from tol3d.gearing.breakdowns import staged_measures
+from tol3d.gearing.grammar.published import PublishedEnds, PublishedTrain
 from tol3d.gearing.linked import link_contributors
 from tol3d.gearing.model import Backlash, LostMotion, Measure, Model
 from tol3d.gearing.model.measure import AnyStage, ParallelStage, Tip
@@ -14,10 +15,11 @@ from tol3d.gearing.stack_up import per_normal_backlash
 from tol3d.gearing.summary_types import Ends, StageRoads, StageSummary, Sums, TrainSummary
 from tol3d.gears import LEFT
 from tol3d.runs.summary.values import made
+from tol3d.scene.published import PublishedColumn
 from tol3d.system.outcome import ANALYTIC, GEOMETRIC
 from tol3d.system.pooled import PooledTerms
 from tol3d.system.system import Published
-from tol3d.units import ARCMIN
+from tol3d.units import ARCMIN, Quantity
 
 ENDS = ("low_3sigma", "mean", "high_3sigma")
 
@@ -64,12 +66,12 @@ def _train(
         unit="arcmin",
         lever_mm=tip.lever if tip else None,
         point=f"{tip.point} of {tip.arm}" if tip else None,
-        stages=[_stage(model, stage, found, published) for stage in kind.stages],
+        stages=[_stage(model, stage, found, published.stages) for stage in kind.stages],
         sums=made(
             Sums,
             analytic=_sums(kind, found[ANALYTIC]),
             geometric=_sums(kind, found[GEOMETRIC]) if GEOMETRIC in found else None,
-            published={column: _sums(kind, own) for column, own in published.items()},
+            published=published.sums,
         ),
     )
 
@@ -106,7 +108,7 @@ def _stage(model: Model, stage: AnyStage, roads: Mapping[str, ByLink], published
             analytic=roads[ANALYTIC][stage.link],
             geometric=roads[GEOMETRIC][stage.link] if GEOMETRIC in roads else None,
         ),
-        published={column: own[stage.link] for column, own in published.items() if stage.backlash is not None},
+        published={column: own[stage.link] for column, own in published.items() if stage.link in own},
     )
 
 
@@ -151,29 +153,57 @@ def _within(ends: Ends, law: tuple[float, float] | None) -> Ends:
     return ends.model_copy(update={"low_3sigma": max(low, law[0] * ARCMIN), "high_3sigma": min(high, law[1] * ARCMIN)})
 
 
-def _published(model: Model, kind: LostMotion, ours: ByLink, others: Published) -> dict[str, ByLink]:
-    """Columns of others that have every mesh of a train, by link [arcmin]; what is no single mesh is as we have it."""
-    found: dict[str, ByLink] = {}
-    if not any(stage.backlash for stage in kind.stages):
-        return found
-    for column, measures in others.items():
-        ends = {
-            stage.link: ours[stage.link] if stage.backlash is None else _published_ends(model, measures, stage.backlash)
-            for stage in kind.stages
-        }
-        known = {link: own for link, own in ends.items() if own is not None}
-        if len(known) == len(ends):
-            found[column] = known
-    return found
+@dataclass(frozen=True)
+class _Others:
+    """What others found of a train [arcmin], by column: of stages, by link, and the sum of the stages' ends."""
+
+    stages: Mapping[str, ByLink]
+    sums: ByLink
 
 
-def _published_ends(model: Model, measures: Mapping[str, Mapping[str, Any]], backlash: Backlash) -> Ends | None:
+def _published(model: Model, kind: LostMotion, ours: ByLink, others: Published) -> _Others:
+    """What others say of a train itself; else what follows of their meshes, where they have every one of them.
+
+    What is no single mesh is as we have it where nothing is said of it.
+    """
+    stages: dict[str, ByLink] = {}
+    sums: dict[str, Ends] = {}
+    for column, figures in others.items():
+        train: PublishedTrain | None = figures.figures.get("trains", {}).get(kind.train)
+        said = {link: _stated_ends(own) for link, own in train.stages.items()} if train else {}
+        of_meshes = _ends_of_meshes(model, kind, figures, said)
+        stages[column] = {**of_meshes, **said}
+        if train and train.sums:
+            sums[column] = _stated_ends(train.sums)
+        elif of_meshes:
+            sums[column] = _sums(kind, {**ours, **of_meshes, **said})
+    return _Others(stages, sums)
+
+
+def _ends_of_meshes(model: Model, kind: LostMotion, figures: PublishedColumn, said: ByLink) -> ByLink:
+    """Each mesh's ends by what somebody says of it; nothing if he says none of one of them."""
+    meshes = {stage.link: stage.backlash for stage in kind.stages if stage.backlash is not None}
+    ends = {link: said.get(link) or _published_ends(model, figures, own) for link, own in meshes.items()}
+    known = {link: own for link, own in ends.items() if own is not None}
+    return known if len(known) == len(ends) else {}
+
+
+def _stated_ends(own: PublishedEnds) -> Ends:
+    return Ends(**{key: value for key in Ends.model_fields if (value := _arcmin(getattr(own, key))) is not None})
+
+
+def _arcmin(value: Quantity | float | None) -> float | None:
+    """An angle as summaries have it; a share as it is."""
+    return value.internal * ARCMIN if isinstance(value, Quantity) else value
+
+
+def _published_ends(model: Model, measures: PublishedColumn, backlash: Backlash) -> Ends | None:
     """Somebody's lost motion of a mesh's driven gear, or else his normal backlash as such a turn; None of neither."""
     for quantity in ("angular_backlash", "normal_backlash"):
         for measure in model.measures:
             kind = measure.kind
             alike = isinstance(kind, Backlash) and (kind.quantity, kind.mesh) == (quantity, backlash.mesh)
-            values = measures.get(measure.name, {})
+            values = measures[measure.name].internal if measure.name in measures else {}
             if alike and isinstance(kind, Backlash) and any(end in values for end in ENDS):
                 per = per_normal_backlash(model, backlash) / per_normal_backlash(model, kind)
                 low, mean, high = (values[end] * per * ARCMIN if end in values else None for end in ENDS)

@@ -50,9 +50,7 @@ def columns_of(measure: MeasureSummary) -> list[Column]:
         for road, values in found.items()
         if values is not None
     ]
-    return ours + [
-        Column(name, "published", values, values.contributors or {}) for name, values in measure.published.items()
-    ]
+    return ours + [Column(name, "published", values, values.percents) for name, values in measure.published.items()]
 
 
 def seated_text(measure: MeasureSummary) -> str:
@@ -76,7 +74,12 @@ def contributor_columns(measure: MeasureSummary) -> list[Column]:
     columns = shares_of(measure)
     ours = [column for column in columns if column.road != "published"]
     known = any(percent is not None for percent in alone.percents.values())
-    return [*ours, *([alone] if known else []), *columns[len(ours) :]]
+    others = (
+        Column(f"{name}, {alone.heading}", "published", None, own.high_low_mean_percents)
+        for name, own in measure.published.items()
+        if own.high_low_mean_percents
+    )
+    return [*ours, *([alone] if known else []), *columns[len(ours) :], *others]
 
 
 def ranked_contributors(measure: MeasureSummary) -> list[str]:

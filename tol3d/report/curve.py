@@ -7,9 +7,10 @@ import numpy as np
 from matplotlib.axes import Axes
 from numpy.typing import NDArray
 
-from tol3d.report.canvas import GREY, ORANGE, OUTSIDE, ROAD_COLOURS, label_angles, say_instead
+from tol3d.report.canvas import GREY, ORANGE, OUTSIDE, PUBLISHED_COLOURS, ROAD_COLOURS, label_angles, say_instead
 from tol3d.report.distribution import NO_VALUES, values_label
 from tol3d.report.heading import position_of
+from tol3d.report.label import legible
 from tol3d.report.number import given_text, unit_suffix
 from tol3d.runs.summary.measure import MeasureSummary
 
@@ -61,6 +62,7 @@ def draw_curve(axes: Axes, name: str, measure: MeasureSummary) -> None:
         axes.plot(x, stepped(values), color=colour, linewidth=1.0, linestyle=(0, (1, 1)), label=text)
     if leading != "analytic" and analytic:
         axes.plot(x, stepped(analytic.mean), color=ORANGE, linewidth=1.8, linestyle="--", label="analytic, mean")
+    _draw_published(axes, measure)
     _mark_jumps(axes, measure, stepped.jumps)
     for limit, limit_word in zip(measure.limits, ("LSL", "USL"), strict=True):
         if limit is not None:
@@ -73,6 +75,18 @@ def draw_curve(axes: Axes, name: str, measure: MeasureSummary) -> None:
     if np.isnan(mean).all():
         say_instead(axes, NO_VALUES, OUTSIDE)
     axes.legend(fontsize=8.5, frameon=False, loc="center left", bbox_to_anchor=(1.0, 0.5))
+
+
+def _draw_published(axes: Axes, measure: MeasureSummary) -> None:
+    """Means that others published, as marks at their own positions."""
+    drawn = 0
+    for name, own in measure.published.items():
+        curve = own.get("curve")
+        if curve is not None and "mean" in curve and "position_deg" in own:
+            x = np.asarray(own["position_deg"]) / per_unit(measure)
+            colour = PUBLISHED_COLOURS[drawn % len(PUBLISHED_COLOURS)]
+            axes.plot(x, curve["mean"], "D", color=colour, markersize=5, label=f"{legible(name, 30)}, mean")
+            drawn += 1
 
 
 def position_label(measure: MeasureSummary) -> str:

@@ -21,6 +21,7 @@ from tol3d.report.ends import Ends, is_bounded
 from tol3d.report.label import legible, wrapped
 from tol3d.report.number import UNIT_SIGNS, given_text, share_text, unit_suffix
 from tol3d.runs.summary.measure import MeasureSummary
+from tol3d.runs.summary.values import Section
 
 SIGMAS_SHOWN: Final = 3.6  # of the mean; a little more than the +-3 sigma that are marked
 LIMIT_REACH: Final = 0.6  # of the shown span; a limit further off is named at the edge, not drawn to scale
@@ -69,20 +70,41 @@ def draw_distribution(axes: Axes, measure: MeasureSummary) -> None:
     if not samples:
         say_instead(axes, NO_VALUES, OUTSIDE)
         return
-    span = shown_span(measure, [sample.bars for sample in samples])
+    colours = column_colours(columns_of(measure))
+    histograms = {
+        name: _published_bars(own["histogram"], own.value("trials"))
+        for name, own in measure.published.items()
+        if "histogram" in own
+    }
+    span = shown_span(measure, [*(sample.bars for sample in samples), *histograms.values()])
     draw_samples(axes, samples)
     form = measure.analytic_closed_form
     if form and form.sigma:
         x = np.linspace(*span, 400)
         normal = 100 * np.exp(-(((x - form.mean) / form.sigma) ** 2) / 2) / (form.sigma * math.sqrt(2 * math.pi))
         axes.plot(x, normal, color=BLACK, linewidth=1.2, linestyle=(0, (5, 3)))
-    axes.set_ylim(0, 1.25 * max(float(sample.bars.density.max()) for sample in samples))
+    peaks = [float(sample.bars.density.max()) for sample in samples]
+    peaks += [_draw_published(axes, own, colours[name]) for name, own in histograms.items()]
+    axes.set_ylim(0, 1.25 * max(peaks))
     axes.set_xlim(*span)
     draw_ends(axes, samples[0], LINE_TOP)
     name_ends(axes, samples[0], measure.unit, span)
     _mark_limits(axes, measure, span)
     axes.ticklabel_format(axis="y", style="plain")  # a power of ten would stand in the words above
     axes.set_ylabel(density_label(measure.unit), fontsize=10)
+
+
+def _published_bars(own: Section, trials: float | None) -> Bars:
+    """Somebody's histogram, of so many trials if he says that."""
+    counts = np.asarray(own["counts"], dtype=np.float64)
+    edges = own["lower_edge"] + own["bin_width"] * np.arange(len(counts) + 1, dtype=np.float64)
+    return Bars(edges, counts, max(float(counts.sum()), trials or 0.0))
+
+
+def _draw_published(axes: Axes, bars: Bars, colour: str) -> float:
+    """Somebody's histogram as an outline; its highest density."""
+    axes.stairs(bars.density, bars.edges, color=colour, linewidth=1.4)
+    return float(bars.density.max())
 
 
 def shown_span(measure: MeasureSummary, bars: Sequence[Bars]) -> tuple[float, float]:

@@ -35,6 +35,9 @@ def yield_lines(run: RunSummary) -> list[Block]:
         low, high = map(yield_text, own.yield_ppm_95)
         text += f" ({low} to {high}, 95 % confidence)"
     text += f"; analytic {yield_text(analytic.yield_ppm)}" if run.best_road != "analytic" else ""
+    others = {name: column.get("joint") for name, column in (run.published or {}).items()}
+    known = {name: its["yields"].value("yield_ppm") for name, its in others.items() if its and "yields" in its}
+    text += "".join(f"; {name} {yield_text(ppm)}" for name, ppm in known.items() if ppm is not None)
     return [line(f" {text}", "bold")]
 
 

@@ -17,9 +17,10 @@ from tol3d.report.number import (
 )
 from tol3d.report.page import Heading, Row, Shown, Table
 from tol3d.report.presenter import FurtherRow
+from tol3d.report.published import curve_columns, published_counts, published_rows
 from tol3d.runs.summary.measure import MeasureSummary
 from tol3d.runs.summary.run import RunSummary
-from tol3d.runs.summary.sample import CurveRoads
+from tol3d.runs.summary.sample import CurveRoads, Roads
 from tol3d.system.outcome import SEATED
 
 ROWS = {
@@ -64,10 +65,14 @@ def measure_table(run: RunSummary, measure: MeasureSummary, further: Sequence[Fu
         if any(column.value(key) is not None for column in columns)
     ]
     rows += [
-        Row(label, [value_cell(build.value(column.road), unit) for column in columns], unit=unit)
-        for label, build in (("build at all means", measure.mean_build), ("nominal build", measure.nominal))
+        Row(label, [_build_cell(column, key, build, unit) for column in columns], unit=unit)
+        for key, label, build in (
+            ("mean_build", "build at all means", measure.mean_build),
+            ("nominal", "nominal build", measure.nominal),
+        )
     ]
     rows += [*_converted_rows(measure, columns), *_further_rows(further, columns, unit)]
+    rows += published_rows(measure, columns, (*ROWS, *limit_rows(measure), *INDICES))
     return Table(UNIT_HEADINGS[unit], _headings(columns), rows)
 
 
@@ -76,18 +81,25 @@ def _cell(column: Column, key: str, unit: str) -> Shown:
     return Shown(text(column.value(key), unit), column.value(key))
 
 
+def _build_cell(column: Column, key: str, build: Roads, unit: str) -> Shown:
+    """Of one build: by both roads, and what others say of it."""
+    return _cell(column, key, unit) if column.road == "published" else value_cell(build.value(column.road), unit)
+
+
 def _index_cell(value: float | None) -> Shown:
     return Shown(NOTHING if value is None else unsigned_zero(f"{value:.3f}"), value)
 
 
 def _failure_rows(run: RunSummary, measure: MeasureSummary, columns: Sequence[Column]) -> Iterator[Row]:
     """How many trials seated, and how the others failed; nothing where all of them seated."""
-    if not seated_text(measure):
+    others = [published_counts(column) for column in columns]
+    if not seated_text(measure) and not any(others):
         return
     own = {"geometric": measure.status, "analytic": {SEATED: measure.trials}}
-    for status, count in measure.status.items():
-        if count or status == SEATED:
-            cells = [str(own[c.road].get(status, 0)) if c.road in own else NOTHING for c in columns]
+    counts = [its or own.get(column.road, {}) for its, column in zip(others, columns, strict=True)]
+    for status in dict.fromkeys(status for each in (measure.status, *others) for status in each):
+        if measure.status.get(status) or status == SEATED or any(status in its for its in others):
+            cells = [str(each.get(status, 0)) if each else NOTHING for each in counts]
             yield Row(f"trials {run.state(status)}", cells)
 
 
@@ -166,14 +178,16 @@ def not_attributed(measure: MeasureSummary) -> list[float | None]:
 def curve_table(measure: MeasureSummary, curve: CurveRoads) -> Table:
     """A curve measure at some of its positions."""
     words = {"analytic": "analytic", "geometric": "3D"}
-    columns = [
+    columns: list[tuple[str, str, Sequence[float | None]]] = [
         (f"{words[road]} {key}", road, getattr(own, key))
         for road, own in curve.by_road.items()
         for key in ("mean", "sigma")
     ]
     leading, own = [*curve.by_road.items()][-1]
     columns += [(f"{words[leading]} smallest", leading, own.min), (f"{words[leading]} largest", leading, own.max)]
-    headings = [Heading(text, "bold" if road == "geometric" else "") for text, road, _ in columns]
+    columns += [(text, "published", values) for text, values in curve_columns(measure)]
+    styles = {"geometric": "bold", "published": "green"}
+    headings = [Heading(text, styles.get(road, "")) for text, road, _ in columns]
     positions = [unsigned_zero(f"{position:.1f}") for position in measure.position_deg or ()]
     longest = max(map(len, positions), default=0)
     rows = [

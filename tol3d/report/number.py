@@ -157,6 +157,20 @@ def ppm_text(value: float | None) -> str:
     return f"{value:.0f}" if value >= 100 else f"{value:.3g}"
 
 
+def number_text(value: float | None) -> str:
+    """A number without a dimension, with six digits.
+
+    >>> number_text(5000), number_text(-0.0), number_text(0.12345678), number_text(None)
+    ('5000', '0', '0.123457', '–')
+    """
+    return NOTHING if value is None else unsigned_zero(f"{value:.6g}" if isinstance(value, float) else str(value))
+
+
+def number_cell(value: float | None) -> Shown:
+    """A number without a dimension as a cell."""
+    return Shown(number_text(value), value)
+
+
 def unsigned_zero(text: str) -> str:
     """A number's text without the sign of a zero.
 

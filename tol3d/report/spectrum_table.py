@@ -4,6 +4,7 @@ from collections.abc import Iterator, Mapping
 
 from tol3d.report.number import UNIT_SIGNS, value_cell
 from tol3d.report.page import Block, Heading, Row, Table, note
+from tol3d.report.published import spectrum_columns
 from tol3d.runs.summary.measure import MeasureSummary
 from tol3d.runs.summary.sample import CurveRoads, SpectrumSample
 from tol3d.runs.summary.values import Road
@@ -27,11 +28,14 @@ def _table(measure: MeasureSummary, found: Mapping[Road, SpectrumSample]) -> Tab
     words = {"analytic": "analytic", "geometric": "3D"}
     leading = [*found.values()][-1]
     columns = [(f"{words[road]} {word}", road, values) for road, own in found.items() for word, values in _values(own)]
+    others = spectrum_columns(measure, leading.order)
     headings = [Heading(text, "bold" if road == "geometric" else "") for text, road, _ in columns]
+    headings += [Heading(text, "green") for text, _ in others]
+    every = [*(values for _, _, values in columns), *(values for _, values in others)]
     rows = [
         Row(
             f"{leading.order[k]:g}",
-            [value_cell(values[k], measure.unit) for _, _, values in columns],
+            [value_cell(values[k], measure.unit) for values in every],
             unit=measure.unit,
         )
         for k in largest_orders(leading)

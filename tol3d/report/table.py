@@ -28,6 +28,8 @@ from tol3d.report.number import (
 )
 from tol3d.report.page import BLANK, Block, Line, Page, line, note, page, title, warning
 from tol3d.report.presenter import Presenter, presenter_of
+from tol3d.report.published import published_notes
+from tol3d.report.published_whole import published_blocks
 from tol3d.report.spectrum_table import spectrum_blocks
 from tol3d.report.verdict import ACCEPTED_PPM, verdict_report
 from tol3d.runs.summary.measure import MeasureSummary
@@ -86,6 +88,7 @@ def run_report(
         for name, measure in run.measures.items():
             blocks += _measure_blocks(name, measure, run, own)
     blocks += own.sections(run)
+    blocks += published_blocks(run)
     blocks += correlation_blocks(run) if detail is Detail.MEASURES else []
     if detail is Detail.MEASURES and (meanings := list(_meanings(run))):
         blocks += [title("notes"), *map(note, meanings)]
@@ -102,7 +105,7 @@ def _run_line(run: RunSummary) -> Line:
 def _measure_blocks(name: str, measure: MeasureSummary, run: RunSummary, presenter: Presenter) -> list[Block]:
     head = [title(name), line(f"{measure.words} · {limits_text(measure)}", "dim"), BLANK]
     if measure.curve is not None and measure.take == "curve":
-        notes = [*_curve_notes(measure, measure.curve), *_witness_notes(name, measure, run), *_published_notes(measure)]
+        notes = [*_curve_notes(measure, measure.curve), *_witness_notes(name, measure, run), *published_notes(measure)]
         spectrum = spectrum_blocks(measure, measure.curve)
         return [*head, curve_table(measure, measure.curve), *map(note, notes), *spectrum]
     notes = [*_notes(name, measure, run)]
@@ -146,7 +149,7 @@ def _notes(name: str, measure: MeasureSummary, run: RunSummary) -> Iterator[str]
     yield from _witness_notes(name, measure, run)
     if own := measure.sample(measure.best_road):
         yield from _sampling_notes(measure, own, run)
-    yield from _published_notes(measure)
+    yield from published_notes(measure)
 
 
 def _sampling_notes(measure: MeasureSummary, own: Sample, run: RunSummary) -> Iterator[str]:
@@ -168,13 +171,6 @@ def _sampling_notes(measure: MeasureSummary, own: Sample, run: RunSummary) -> It
             yield f"{label}: the true share lies between {low} and {high} (95 % confidence)"
         elif own.error_by == "replicates":
             yield f"{label}: {TOO_FEW_TO_BOUND}"
-
-
-def _published_notes(measure: MeasureSummary) -> Iterator[str]:
-    """What the scene says of other people's numbers."""
-    for column, values in measure.published.items():
-        if values.description:
-            yield f"{column}: {values.description}"
 
 
 def _by_replicates(sample: Sample, run: RunSummary) -> str:

@@ -1,7 +1,28 @@
-"""What the user wrote: a scene file, read strictly, with the place of everything in it."""
+"""What the user wrote: a scene file, read strictly, with the place of everything in it.
 
-from tol3d.scene.grammar import Grammar, Vocabulary
-from tol3d.scene.load import read_scene, scene_from_python
-from tol3d.scene.schema import Scene
+Names are loaded when they are first used: summaries read the classes of published figures alone.
+"""
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from tol3d.scene.grammar import Grammar, Vocabulary
+    from tol3d.scene.load import read_scene, scene_from_python
+    from tol3d.scene.schema import Scene
+
+_HOMES = {
+    "Grammar": "tol3d.scene.grammar",
+    "Scene": "tol3d.scene.schema",
+    "Vocabulary": "tol3d.scene.grammar",
+    "read_scene": "tol3d.scene.load",
+    "scene_from_python": "tol3d.scene.load",
+}
 
 __all__ = ["Grammar", "Scene", "Vocabulary", "read_scene", "scene_from_python"]
+
+
+def __getattr__(name: str) -> Any:
+    if name in _HOMES:
+        return getattr(import_module(_HOMES[name]), name)
+    raise AttributeError(f"module 'tol3d.scene' has no attribute {name!r}")

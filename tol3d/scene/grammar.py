@@ -21,7 +21,9 @@ from tol3d.scene.name import Name
 from tol3d.scene.options import Option, StudyOptions, options_of
 from tol3d.scene.part import PartSpec
 from tol3d.scene.place import KeyPath
-from tol3d.scene.schema import SECTIONS, Scene, StudySpec, study_spec_class
+from tol3d.scene.published import PublishedFigures
+from tol3d.scene.published.column import published_column_class
+from tol3d.scene.schema import PUBLISHED_MEANS, SECTIONS, Scene, StudySpec, study_spec_class
 from tol3d.scene.tolerance import ToleranceEntry
 from tol3d.strict import Strict
 
@@ -50,6 +52,7 @@ class Vocabulary:
         extends: names of vocabularies in whose scenes these kinds may stand; the scene stays theirs.
         distributions: laws that tolerances of any scene may state besides those that tol3d ships.
         options: keys of `study` that scenes of its kinds may have besides.
+        published: keys that columns of `published` may have besides measures: sections of summary.json.
         engines: words of study.engine, besides "analytic"; the first is taken where nothing is said.
         witness: the one of them that can check the others, if there is one.
 
@@ -67,6 +70,7 @@ class Vocabulary:
     extends: tuple[str, ...] = ()
     distributions: tuple[type[DistributionSpec], ...] = ()
     options: type[StudyOptions] | None = None
+    published: type[PublishedFigures] | None = None
     engines: tuple[str, ...] = ("exact",)
     witness: str = ""
 
@@ -82,9 +86,10 @@ class Vocabulary:
             if not issubclass(law, DistributionSpec) or word_of(law) is None:
                 wanted = f"subclasses of {DistributionSpec.__name__} whose kind is a literal"
                 raise InputError(f"{self.name}.distributions: expected {wanted}, got {law.__name__}")
-        for name, field in self.options.model_fields.items() if self.options else ():
-            if field.is_required():
-                raise InputError(f"{self.name}.options: expected a default of {name}, found none")
+        for argument, own in (("options", self.options), ("published", self.published)):
+            for name, field in own.model_fields.items() if own else ():
+                if field.is_required():
+                    raise InputError(f"{self.name}.{argument}: expected a default of {name}, found none")
 
     def specs(self, section: str) -> tuple[type[Entry], ...]:
         """The kinds of a section."""
@@ -114,6 +119,9 @@ class Grammar:
         _refuse_ambiguity(
             "an option of its own in study", dict.fromkeys(StudySpec.model_fields, "every study"), options
         )
+        published = {each.name: [*each.published.model_fields] for each in self.vocabularies if each.published}
+        taken = dict.fromkeys(published_column_class().model_fields, "every run")
+        _refuse_ambiguity("a key of its own in published", taken, published)
 
     def kinds(self, section: str) -> Mapping[str, type[Entry]]:
         """The kinds of a section by their words, in the order of registration."""
@@ -215,6 +223,8 @@ def _scene_class(grammar: Grammar) -> type[Scene]:
         sections[section] = (Mapping[Name, union], _field(section))  # type: ignore[valid-type]  # made at run time
     study = study_spec_class(grammar.engines, tuple(each.options for each in grammar.vocabularies if each.options))
     sections["study"] = (study, Field(default_factory=study))
+    column: Any = published_column_class(tuple(each.published for each in grammar.vocabularies if each.published))
+    sections["published"] = (Mapping[Name, column], Field(default_factory=dict, description=PUBLISHED_MEANS))
     made = create_model("Scene", __base__=Scene, __module__=Scene.__module__, __doc__=Scene.__doc__, **sections)
     made.grammar, made.laws = grammar, grammar.laws
     return made

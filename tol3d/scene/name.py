@@ -15,7 +15,12 @@ INVISIBLE = {"Cc", "Cf", "Cs", "Zl", "Zp"}  # Unicode categories: control, forma
 COMPONENT_ENDINGS = (".x", ".y")  # columns of a result end so where a contributor has two components
 
 
-def _checked(name: str) -> str:
+def checked_name(name: str) -> str:
+    """A name as it is kept, NFC-normalised.
+
+    Raises:
+        PydanticCustomError: no such text may be a name.
+    """
     if not name or name != name.strip():
         raise refused("", "a name without blanks around it", shown(name))
     if len(name) > LONGEST_NAME:
@@ -27,7 +32,9 @@ def _checked(name: str) -> str:
     return unicodedata.normalize("NFC", name)
 
 
-Name = Annotated[str, AfterValidator(_checked), Field(json_schema_extra={"minLength": 1, "maxLength": LONGEST_NAME})]
+Name = Annotated[
+    str, AfterValidator(checked_name), Field(json_schema_extra={"minLength": 1, "maxLength": LONGEST_NAME})
+]
 """Any text of 1 to 80 characters without / \\ : or invisible characters, NFC-normalised."""
 
 

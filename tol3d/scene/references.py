@@ -9,6 +9,9 @@ from tol3d.scene.entry import Entry
 from tol3d.scene.nearest import hint
 from tol3d.scene.place import KeyPath
 from tol3d.scene.problems import first_few
+from tol3d.scene.published import PublishedFigures
+from tol3d.scene.published.figures import quantities_in
+from tol3d.scene.published.whole import PublishedWhole
 from tol3d.scene.reference import Reference, Taken
 from tol3d.scene.schema import SECTIONS, Scene
 from tol3d.units import expectation, shown
@@ -105,12 +108,15 @@ def _unpublished(scene: Scene) -> Iterator[Problem]:
             path: KeyPath = ("published", column, name)
             measure = scene.measures.get(name)
             if measure is None:
-                yield path, f"expected the name of a measure, got {name!r}{hint(name, scene.measures)}"
+                known = [*scene.measures, *measures.keys_of_the_whole()]
+                yield path, f"expected the name of a measure, got {name!r}{hint(name, known)}"
                 continue
-            for field, quantity in values.quantities().items():
+            for field, quantity in quantities_in(values):
                 if quantity.dimension != measure.dimension:
                     expected = f"{expectation(measure.dimension)} ({name!r} is of kind {measure.kind})"
-                    yield (*path, field), f"expected {expected}, got {str(quantity)!r}"
+                    yield (*path, *field), f"expected {expected}, got {str(quantity)!r}"
+            if values.curve and not measure.gives_curve:
+                yield (*path, "curve"), f"expected none, for {name!r} has one value a trial, got a curve"
             for contributor in values.contributors:
                 if contributor not in scene.tolerances:
                     near = hint(contributor, scene.tolerances)
@@ -118,6 +124,10 @@ def _unpublished(scene: Scene) -> Iterator[Problem]:
                         (*path, "contributors", contributor),
                         f"expected the name of a tolerance, got {contributor!r}{near}",
                     )
+        kinds: tuple[type[PublishedFigures], ...] = (PublishedWhole, *measures.sections)
+        for sections in kinds:
+            for place, sentence in sections.problems(measures, scene):  # type: ignore[arg-type]  # it is of all of them
+                yield ("published", column, *place), sentence
 
 
 def _unstoppable(scene: Scene) -> Iterator[Problem]:

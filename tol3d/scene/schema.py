@@ -33,11 +33,12 @@ from tol3d.scene.nearest import nearest
 from tol3d.scene.options import StudyOptions
 from tol3d.scene.part import PartSpec
 from tol3d.scene.place import KeyPath, Origin, Place
-from tol3d.scene.published import PublishedMeasure
+from tol3d.scene.published import PublishedColumn
 from tol3d.scene.tolerance import ToleranceEntry, ToleranceSpec
 from tol3d.strict import Strict, refused
 from tol3d.units import Positive, Quantity, shown
 
+PUBLISHED_MEANS: Final = "columns of others, shown beside ours: column, measure or key of the whole run, values"
 SECTIONS: Final = ("parts", "tolerances", "moves", "measures")
 
 MOST_TRIALS = 10**10
@@ -193,9 +194,7 @@ class Scene(Strict):
     moves: Mapping[Name, MoveSpec] = Field(min_length=1)
     measures: Mapping[Name, MeasureEntry] = Field(min_length=1)
     study: StudySpec = Field(default_factory=StudySpec)
-    published: Mapping[Name, Mapping[Name, PublishedMeasure]] = Field(
-        default_factory=dict, description="columns of others, shown beside ours: column, measure, values"
-    )
+    published: Mapping[Name, PublishedColumn] = Field(default_factory=dict, description=PUBLISHED_MEANS)
 
     _origin: Origin = PrivateAttr(default_factory=Origin)
 

@@ -10,7 +10,7 @@ from tol3d.errors import InputError
 from tol3d.scene import Scene
 from tol3d.scene.engines import THEORY, Engines
 from tol3d.scene.problems import problem_sentence, word_expected
-from tol3d.study.simulation import Simulation, published_in, study_of
+from tol3d.study.simulation import Simulation, study_of
 from tol3d.system.dependent import in_draw_order
 from tol3d.system.faults import faults_of, require_whole
 from tol3d.system.mechanism import mechanism_of, requires_of
@@ -57,7 +57,7 @@ def simulation_of(scene: Scene, overrides: Overrides = AS_WRITTEN) -> Simulation
     return Simulation(
         system,
         study_of(asked),
-        published_in(asked),
+        asked.published,
         requires=requires_of(asked),
         presenter=mechanism.presenter,
         mechanism=mechanism.origin,

@@ -1,8 +1,6 @@
 """What is simulated: a system, what is asked of it, and what others found of it."""
 
-from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Any
 
 from tol3d.scene import Scene
 from tol3d.study.study import Study, Until
@@ -67,19 +65,3 @@ def study_of(scene: Scene) -> Study:
 
 def _internal(quantity: Quantity | None) -> float | None:
     return None if quantity is None else quantity.internal
-
-
-def published_in(scene: Scene) -> Mapping[str, Mapping[str, Mapping[str, Any]]]:
-    """Columns of others, in mm and rad."""
-    return {
-        column: {
-            measure: {
-                **{key: quantity.internal for key, quantity in values.quantities().items()},
-                **({"numbers": values.numbers()} if values.numbers() else {}),
-                **({"contributors": dict(values.contributors)} if values.contributors else {}),
-                **({"description": values.description} if values.description else {}),
-            }
-            for measure, values in measures.items()
-        }
-        for column, measures in scene.published.items()
-    }

@@ -7,7 +7,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.runs.summary.agreement import Agreement
-from tol3d.runs.summary.measure import ContributorShare, MeasureSummary, PublishedColumn
+from tol3d.runs.summary.measure import ContributorShare, MeasureSummary, Published, PublishedColumn
+from tol3d.runs.summary.published import PER_INTERNAL, converted
 from tol3d.runs.summary.run import Findings, MechanismSummary, StudySummary
 from tol3d.runs.summary.sample import CurveRoads, CurveSample, Normal, Roads
 from tol3d.runs.summary.values import Unit, made
@@ -36,6 +37,7 @@ from tol3d.system.outcome import ANALYTIC, GEOMETRIC, outcome_of, value_column
 from tol3d.system.road import Road
 from tol3d.system.stated import mean_build, nominal_build, stated
 from tol3d.system.trials import Trials
+from tol3d.units import FACTORS
 
 FAILURES_NAMED = 1e-3  # of the trials; a third of the 0.27 % that ±3 sigma leave out, in the table all the same
 
@@ -61,6 +63,7 @@ def study_summary(simulation: Simulation, road: Road | None, tally: Tally) -> Fi
             for measure in simulation.system.measures
         },
         joint=joint_summary(simulation, tally.joint),
+        published=_published_of_the_whole(simulation) or None,
         warnings=[
             *failures(simulation, tally),
             *_too_many(simulation),
@@ -257,18 +260,15 @@ def _curve(simulation: Simulation, measure: Measure, own: CurveTally) -> CurveRo
 
 def _published(simulation: Simulation, measure: Measure) -> dict[str, PublishedColumn]:
     """Other people's columns for this measure, in its unit."""
-
-    def column(values: Mapping[str, Any]) -> PublishedColumn:
-        lengths = {
-            key: value * measure.per_internal if isinstance(value, float) else value
-            for key, value in values.items()
-            if key != "numbers"
-        }
-        keys = {**lengths, **values.get("numbers", {})}
-        return made(PublishedColumn, **{key.replace(".", "_"): value for key, value in keys.items()})
-
+    per_internal = dict.fromkeys(FACTORS, measure.per_internal)
     return {
-        name: column(measures[measure.name])
-        for name, measures in simulation.published.items()
-        if measure.name in measures
+        name: converted(own[measure.name], per_internal, Published)
+        for name, own in simulation.published.items()
+        if measure.name in own
     }
+
+
+def _published_of_the_whole(simulation: Simulation) -> dict[str, Any]:
+    """What others found beside measures, by column and key."""
+    found = {name: own.figures for name, own in simulation.published.items()}
+    return {name: converted(own, PER_INTERNAL) for name, own in found.items() if own}

@@ -6,6 +6,7 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from tol3d.scene.published import PublishedColumn
 from tol3d.system.breakdown import Breakdown
 from tol3d.system.closed_form import ClosedForm
 from tol3d.system.contributor import Contributor
@@ -18,9 +19,8 @@ from tol3d.system.trials import Trials
 
 Array = NDArray[np.float64]
 Columns = Mapping[str, NDArray[Any]]
-Published = Mapping[str, Mapping[str, Mapping[str, Any]]]
-"""Columns of others by column, measure and key: numbers [mm or rad], shares [%], words; without a dimension in
-`numbers`."""
+Published = Mapping[str, PublishedColumn]
+"""Columns of others: what they found of each measure, and of the whole."""
 
 KeyPath = tuple[str | int, ...]
 StreamKey = tuple[str, str]

@@ -21,6 +21,7 @@ PARABOLA: Final = Mechanism(
     moves=(grammar.LiftSpec,),
     measures=(grammar.HeightSpec, grammar.RoomSpec),
     options=grammar.SpringOptions,
+    published=grammar.PublishedTerms,
     engines=("exact", "chords"),
     witness="chords",
     system="toys.parabola.system:parabola_system",

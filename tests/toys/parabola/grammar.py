@@ -1,6 +1,6 @@
 """What a scene says of springs."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from typing import Annotated, ClassVar, Literal
 
 from pydantic import Field
@@ -11,9 +11,32 @@ from tol3d.scene.name import Name
 from tol3d.scene.options import StudyOptions
 from tol3d.scene.part import Length, PartSpec
 from tol3d.scene.place import KeyPath
+from tol3d.scene.published import PublishedFigures
+from tol3d.scene.published.figures import Percent
 from tol3d.scene.reference import Reference
+from tol3d.scene.schema import Scene
 from tol3d.scene.tolerance import ToleranceSpec
+from tol3d.strict import Strict
 from tol3d.units import Dimension, Of, Quantity
+
+
+class PublishedTerm(Strict):
+    """What others found of a term."""
+
+    mean: Annotated[Quantity, Of("length")] | None = None
+    sigma: Length | None = None
+    share_percent: Percent | None = None
+
+
+class PublishedTerms(PublishedFigures):
+    """What others found of the terms of heights."""
+
+    terms: Mapping[Name, Mapping[Name, PublishedTerm]] = Field(default_factory=dict, description="measure, term")
+
+    def problems(self, scene: Scene) -> Iterator[tuple[KeyPath, str]]:
+        for name in self.terms:
+            if name not in scene.of(HeightSpec):
+                yield ("terms", name), f"expected the name of a height, got {name!r}"
 
 
 class SpringSpec(PartSpec):

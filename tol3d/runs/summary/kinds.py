@@ -11,8 +11,11 @@ from pydantic import Field, create_model
 
 from tol3d.runs.summary.agreement import WitnessSummary
 from tol3d.runs.summary.measure import MeasureSummary
+from tol3d.runs.summary.published import in_summary
 from tol3d.runs.summary.run import RunSummary, StudySummary
 from tol3d.runs.summary.values import LEFT_OUT, MOST_ENTRIES, Label, Section
+from tol3d.scene.published import PublishedFigures
+from tol3d.scene.published.whole import PublishedWhole
 
 HOME = ("tol3d.kinds", "summary_kinds")  # of what summaries hold where nobody says otherwise
 
@@ -27,6 +30,7 @@ class SummaryKinds:
         plain: kinds of measures that add no key, each with the import path of what shows its system, or "".
         options: classes of what vocabularies add to a study, and so to that of a witness, as keys that may be missing.
         presenters: names of mechanisms, each with the import path of what shows its systems.
+        published: what others may have found beside measures, as scenes have it; besides that of any run.
     """
 
     measures: tuple[type[MeasureSummary], ...] = ()
@@ -34,6 +38,7 @@ class SummaryKinds:
     plain: tuple[tuple[str, str], ...] = ()
     options: tuple[type[Section], ...] = ()
     presenters: tuple[tuple[str, str], ...] = ()
+    published: tuple[type[PublishedFigures], ...] = ()
 
     def __or__(self, other: "SummaryKinds") -> "SummaryKinds":
         """Both together."""
@@ -43,6 +48,7 @@ class SummaryKinds:
             plain=(*self.plain, *other.plain),
             options=(*self.options, *other.options),
             presenters=(*self.presenters, *other.presenters),
+            published=(*self.published, *other.published),
         )
 
     @cached_property
@@ -61,7 +67,8 @@ class SummaryKinds:
 
     def __reduce__(self) -> tuple[Any, ...]:
         """Pickled by what it is made of: classes made of it are made anew."""
-        return SummaryKinds, (self.measures, self.runs, self.plain, self.options, self.presenters)
+        own = (self.measures, self.runs, self.plain, self.options, self.presenters, self.published)
+        return SummaryKinds, own
 
     @cached_property
     def run(self) -> type[RunSummary]:
@@ -78,9 +85,19 @@ class SummaryKinds:
             measures=(measures, ...),
             study=(self._with_options(StudySummary), ...),
             witness=(self._with_options(WitnessSummary), LEFT_OUT),
+            published=(self._columns, RunSummary.model_fields["published"]),
         )
         found.presenters = dict(self.presenters)
         return found
+
+    @property
+    def _columns(self) -> Any:
+        """What others found beside measures, by column."""
+        bases: Any = tuple(in_summary(each) for each in (*self.published, PublishedWhole))
+        column: Any = create_model(
+            "PublishedOfTheWhole", __base__=bases, __doc__="What somebody else found of the whole."
+        )
+        return Annotated[Mapping[Label, column], Field(max_length=MOST_ENTRIES)]
 
     def _with_options(self, section: type[Section]) -> Any:
         if not self.options:

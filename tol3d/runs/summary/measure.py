@@ -2,11 +2,12 @@
 
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, ClassVar, Literal, Self, get_args
+from typing import TYPE_CHECKING, ClassVar, Literal, Self
 
-from pydantic import Field, create_model, model_validator
+from pydantic import Field, model_validator
 
 from tol3d.runs.summary.agreement import Agreement
+from tol3d.runs.summary.published import in_summary
 from tol3d.runs.summary.sample import CurveRoads, CurveSample, Histogram, Normal, Roads, Sample
 from tol3d.runs.summary.values import (
     LEFT_OUT,
@@ -14,13 +15,13 @@ from tol3d.runs.summary.values import (
     Known,
     Label,
     Maybe,
-    Number,
     Numbers,
     Road,
     Section,
     Sentence,
     Unit,
 )
+from tol3d.scene.published import PublishedMeasure
 from tol3d.strict import refused
 from tol3d.system.outcome import SEATED
 
@@ -38,33 +39,32 @@ class ContributorShare(Section):
 
 
 class Published(Section):
-    """What somebody else found for a measure: numbers of a sample, in the measure's unit, and shares [%]."""
+    """What somebody else found for a measure, in its unit, shares in %: any number that there is of ours."""
 
-    contributors: Maybe[Mapping[Label, Number]] = LEFT_OUT
     description: Maybe[Sentence] = LEFT_OUT
 
+    @property
+    def percents(self) -> dict[str, float]:
+        """Shares of the variance [%], by contributor."""
+        return self._shares("percent")
 
-def _is_number(annotation: Any) -> bool:
-    return bool({int, float} & {annotation, *get_args(annotation), *map(_bare, get_args(annotation))})
+    @property
+    def high_low_mean_percents(self) -> dict[str, float]:
+        """Shares of the squares of high-low-mean ranges [%], by contributor."""
+        return self._shares("high_low_mean_percent")
 
+    def _shares(self, key: str) -> dict[str, float]:
+        found = {
+            name: own.value(key) if isinstance(own, Section) else own if key == "percent" else None
+            for name, own in (self.get("contributors") or {}).items()
+        }
+        return {name: share for name, share in found.items() if share is not None}
 
-def _bare(annotation: Any) -> Any:
-    return get_args(annotation)[0] if get_args(annotation) else annotation
-
-
-PUBLISHED_NUMBERS = {
-    name: (Number, Field(default=LEFT_OUT, validation_alias=field.validation_alias))
-    for name, field in Sample.model_fields.items()
-    if _is_number(field.annotation)
-}
-"""Every number of a sample may be published."""
 
 if TYPE_CHECKING:
     PublishedColumn = Published
 else:
-    PublishedColumn = create_model(
-        "PublishedColumn", __base__=Published, __doc__=Published.__doc__, **PUBLISHED_NUMBERS
-    )
+    PublishedColumn = in_summary(PublishedMeasure, Published)
 
 
 @dataclass(frozen=True)

@@ -88,6 +88,9 @@ class Findings(Section):
     chord_error_um: NotNegative | None
     measures: Annotated[Mapping[Label, MeasureSummary], Field(min_length=1, max_length=MOST_ENTRIES)]
     joint: Maybe[Joint] = LEFT_OUT
+    published: Maybe[Mapping[Label, Section]] = Field(
+        default=LEFT_OUT, description="what others found beside measures, by column and by the keys of this file"
+    )
     warnings: list[Sentence]
     witness: Maybe[WitnessSummary] = LEFT_OUT
 

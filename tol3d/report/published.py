@@ -1,0 +1,144 @@
+"""What others published of a measure besides its usual rows: further rows, notes, columns of curves."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Final
+
+from tol3d.report.column import Column
+from tol3d.report.number import (
+    NOTHING,
+    difference_text,
+    given_text,
+    number_cell,
+    share_cell,
+    share_text,
+    value_text,
+)
+from tol3d.report.page import Row, Shown
+from tol3d.runs.summary.measure import MeasureSummary
+from tol3d.runs.summary.values import Section
+
+DIMENSIONED: Final[Mapping[str, str]] = {
+    "mean_se": "standard error of the mean",
+    "sigma_se": "standard error of sigma",
+    "quantile_error": "quantiles are read to",
+    "deepest_overlap": "deepest overlap",
+}
+NUMBERS: Final[Mapping[str, str]] = {
+    "skewness": "skewness",
+    "kurtosis": "excess kurtosis",
+    "count": "trials with a value",
+    "trials": "trials",
+    "outside_grid": "trials outside the grid of quantiles",
+}
+SHARES: Final[Mapping[str, str]] = {
+    "below_limit_ppm": "below the lower limit",
+    "above_limit_ppm": "above the upper limit",
+    "failed_ppm": "failed",
+    "out_ppm": "out in all",
+}
+AGREEMENT: Final[Mapping[str, str]] = {
+    "max_abs_difference": "at most",
+    "rms_difference": "rms",
+    "mean_difference": "mean",
+}
+
+
+def published_rows(measure: MeasureSummary, columns: Sequence[Column], shown: Sequence[str]) -> Iterator[Row]:
+    """Rows of the numbers that somebody published and that have no row else.
+
+    Args:
+        measure: whose table it is.
+        columns: of the table.
+        shown: keys that have a row.
+    """
+    others = [column for column in columns if column.road == "published"]
+
+    def is_asked(key: str) -> bool:
+        return key not in shown and any(column.value(key) is not None for column in others)
+
+    for key, label in DIMENSIONED.items():
+        if is_asked(key):
+            yield Row(label, [_cell(column, column.value(key), measure.unit) for column in columns], unit=measure.unit)
+    for key, label in NUMBERS.items():
+        if is_asked(key):
+            yield Row(label, [number_cell(column.value(key)) for column in columns])
+    for key, label in SHARES.items():
+        if is_asked(key):
+            yield Row(label, [share_cell(column.value(key)) for column in columns], unit="ppm")
+    for key, label in SHARES.items():
+        bounds = [_pair(column.values, f"{key}_95") for column in columns]
+        if any(own for own, column in zip(bounds, columns, strict=True) if column.road == "published"):
+            yield Row(f"{label}, 95 %", [" to ".join(map(share_text, own)) or NOTHING for own in bounds])
+    for name in dict.fromkeys(name for column in others for name in _pooled(column)):
+        yield Row(name, [_cell(own, _pooled(own).get(name), measure.unit) for own in columns], unit=measure.unit)
+
+
+def published_counts(column: Column) -> Mapping[str, int]:
+    """How many trials of somebody's ended how; nothing where he does not say."""
+    if column.road != "published" or column.values is None:
+        return {}
+    found: Mapping[str, int] = column.values.get("status") or {}
+    return found
+
+
+def _pooled(column: Column) -> Mapping[str, float | None]:
+    return (column.values.get("pooled") if column.values else None) or {}
+
+
+def _pair(values: Section | None, key: str) -> Sequence[float]:
+    return (values.get(key) if values else None) or ()
+
+
+def _cell(column: Column, value: float | None, unit: str) -> Shown:
+    return Shown((given_text if column.road == "published" else value_text)(value, unit), value)
+
+
+def published_notes(measure: MeasureSummary) -> Iterator[str]:
+    """What others say of their numbers, of their own two roads, and of whole curves."""
+    for name, values in measure.published.items():
+        if agreement := values.get("agreement"):
+            known = {word: agreement.value(key) for key, word in AGREEMENT.items() if agreement.value(key) is not None}
+            parts = [f"{word} {difference_text(value, measure.unit)}" for word, value in known.items()]
+            parts += [f"of {agreement.compared} trials"] if "compared" in agreement else []
+            yield f"{name}: simulation − analytic {', '.join(parts)}"
+        if (curve := values.get("curve")) and (text := _curve_text(curve)):
+            yield f"{name}: {text}"
+        if values.description:
+            yield f"{name}: {values.description}"
+
+
+def _curve_text(curve: Section) -> str:
+    """Shares of trials by their whole curves."""
+    parts = [f"{label} {share_text(own)}" for key, label in SHARES.items() if (own := curve.value(key)) is not None]
+    parts += [
+        f"out in all between {' and '.join(map(share_text, own))} (95 %)" for own in [_pair(curve, "out_ppm_95")] if own
+    ]
+    parts += [f"of {curve['trials']} trials"] if "trials" in curve else []
+    return f"anywhere on the curve: {', '.join(parts)}" if parts else ""
+
+
+def at_places(places: Sequence[float], theirs: Sequence[float], values: Sequence[float]) -> list[float | None]:
+    """Somebody's values at our positions or orders; None where he has none."""
+    known = {round(place, 6): value for place, value in zip(theirs, values, strict=True)}
+    return [known.get(round(place, 6)) for place in places]
+
+
+def curve_columns(measure: MeasureSummary) -> Iterator[tuple[str, list[float | None]]]:
+    """What others published of a curve, at its positions: headings and values."""
+    for name, own in measure.published.items():
+        curve, places = own.get("curve"), own.get("position_deg")
+        for key, word in (("mean", "mean"), ("sigma", "sigma"), ("min", "smallest"), ("max", "largest")):
+            if curve is not None and places and key in curve:
+                yield f"{name}: {word}", at_places(measure.position_deg or (), places, curve[key])
+
+
+def spectrum_columns(measure: MeasureSummary, orders: Sequence[float]) -> list[tuple[str, list[float | None]]]:
+    """What others published of a spectrum, at some orders: headings and values."""
+    spectra = {name: own["curve"].get("spectrum") for name, own in measure.published.items() if "curve" in own}
+    return [
+        (f"{name}: {key}", at_places(orders, own["order"], own[key]))
+        for name, own in spectra.items()
+        if own is not None
+        for key in ("mean", "sigma", "p0.135", "p50", "p99.865", "max")
+        if key in own
+    ]

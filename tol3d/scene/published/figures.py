@@ -1,0 +1,91 @@
+"""Kinds of published number, and the quantities that are somewhere among them."""
+
+from collections.abc import Iterator, Mapping
+from typing import Annotated, Any, Final
+
+from pydantic import AfterValidator, BeforeValidator, Discriminator, Field, Tag
+
+from tol3d.scene.place import KeyPath
+from tol3d.strict import Strict, refused
+from tol3d.units import Quantity
+
+LARGEST: Final = 1e15  # as in summaries: of any unit
+MOST_TRIALS: Final = 10**10  # as in studies
+MOST_FIGURES: Final = 10_000  # of one list; a scene has room for twice as many values
+
+Figure = Annotated[float, Field(ge=-LARGEST, le=LARGEST)]
+NotNegative = Annotated[float, Field(ge=0.0, le=LARGEST)]
+Percent = Annotated[float, Field(ge=0.0, le=100.0)]
+Ppm = Annotated[float, Field(ge=0.0, le=1e6)]
+R = Annotated[float, Field(ge=-1.0, le=1.0)]
+Count = Annotated[int, Field(ge=0, le=MOST_TRIALS)]
+Counts = Annotated[list[Count], Field(min_length=1, max_length=MOST_FIGURES)]
+Figures = Annotated[list[Figure], Field(min_length=1, max_length=MOST_FIGURES)]
+Quantities = Annotated[list[Quantity], Field(min_length=1, max_length=MOST_FIGURES)]
+
+
+def _rising(bounds: list[float]) -> list[float]:
+    if not bounds[0] <= bounds[1]:
+        raise refused("", f"the lower bound first, at most {bounds[1]:g}", f"{bounds[0]:g}")
+    return bounds
+
+
+PpmRange = Annotated[list[Ppm], Field(min_length=2, max_length=2), AfterValidator(_rising)]
+
+
+def _shape(value: Any) -> str:
+    """The tag of a number or of keys with values, for pydantic's Discriminator."""
+    return "keys" if isinstance(value, dict | Strict) else "number"
+
+
+def _number_or_keys(value: Any) -> Any:
+    if isinstance(value, str | list) or value is None:
+        raise refused("", "a number, or keys with values", repr(value) if isinstance(value, str) else "another value")
+    return value
+
+
+class PublishedShare(Strict):
+    """What somebody else found of a contributor: shares of the measure's variance [%]."""
+
+    percent: Percent | None = None
+    percent_se: Percent | None = Field(default=None, description="standard error of the share")
+    high_low_mean_percent: Percent | None = Field(
+        default=None, description="share of the squares of high-low-mean ranges"
+    )
+
+
+class PublishedCorrelation(Strict):
+    """What somebody else found of two measures together."""
+
+    r: R | None = Field(default=None, description="Pearson's")
+    r_low_95: R | None = None
+    r_high_95: R | None = None
+    trials: Count | None = Field(default=None, description="trials that have both values")
+
+
+Share = Annotated[
+    Annotated[Percent, Tag("number")] | Annotated[PublishedShare, Tag("keys")],
+    Discriminator(_shape),
+    BeforeValidator(_number_or_keys),
+]
+Correlation = Annotated[
+    Annotated[R, Tag("number")] | Annotated[PublishedCorrelation, Tag("keys")],
+    Discriminator(_shape),
+    BeforeValidator(_number_or_keys),
+]
+
+
+def quantities_in(value: Any, path: KeyPath = ()) -> Iterator[tuple[KeyPath, Quantity]]:
+    """Every dimensioned number in published figures, with its place below them."""
+    if isinstance(value, Quantity):
+        yield path, value
+        return
+    items: Iterator[tuple[str | int, Any]] = iter(())
+    if isinstance(value, Strict):
+        items = ((field.alias or name, getattr(value, name)) for name, field in type(value).model_fields.items())
+    elif isinstance(value, Mapping):
+        items = iter(value.items())
+    elif isinstance(value, list):
+        items = iter(enumerate(value))
+    for key, own in items:
+        yield from quantities_in(own, (*path, key))

@@ -1,0 +1,120 @@
+"""What somebody else found of more than one measure: yields, correlations, how many trials, how long they took."""
+
+from collections.abc import Iterator, Mapping
+from typing import TYPE_CHECKING, Self
+
+from pydantic import Field, model_validator
+
+from tol3d.scene.name import Name, Remark
+from tol3d.scene.nearest import hint
+from tol3d.scene.place import KeyPath
+from tol3d.scene.published.figures import (
+    Correlation,
+    Count,
+    NotNegative,
+    Ppm,
+    PpmRange,
+    PublishedCorrelation,
+)
+from tol3d.strict import Strict, refused
+
+if TYPE_CHECKING:
+    from tol3d.scene.schema import Scene
+
+Problem = tuple[KeyPath, str]
+
+
+class PublishedFigures(Strict):
+    """Keys of a published column beside the measures: sections of summary.json, by its keys, roads left out.
+
+    A mechanism declares a subclass with the sections that it adds: fields of plain numbers, of quantities (lengths um,
+    angles arcmin in summary.json), of `Strict` classes and of mappings and lists of these; none is required.
+    """
+
+    def problems(self, scene: "Scene") -> Iterator[Problem]:
+        """What does not fit the rest of the scene, such as names that it does not have: place below the column."""
+        return iter(())
+
+
+class PublishedYield(Strict):
+    """The share of trials within all limits."""
+
+    trials: Count | None = None
+    within: Count | None = Field(default=None, description="trials within all limits")
+    yield_ppm: Ppm | None = Field(default=None, description="share of all trials [ppm]")
+    yield_ppm_95: PpmRange | None = Field(default=None, description="bounds of the true share, 95 % confidence [ppm]")
+
+    @model_validator(mode="after")
+    def _refuse_contradictions(self) -> Self:
+        if self.trials is not None and self.within is not None and self.within > self.trials:
+            raise refused("within", f"at most the {self.trials} trials", self.within)
+        return self
+
+
+class PublishedJoint(Strict):
+    """What measures do together."""
+
+    yields: PublishedYield | None = Field(default=None, description="trials within all limits")
+    correlations: Mapping[Name, Mapping[Name, Correlation]] = Field(
+        default_factory=dict, description="Pearson's r by both measures, each pair once"
+    )
+    description: Remark = Field(default="", description="what must be known of these numbers")
+
+    @model_validator(mode="after")
+    def _refuse_contradictions(self) -> Self:
+        for first, others in self.correlations.items():
+            for second, own in others.items():
+                place = f"correlations.{first}.{second}"
+                if first == second:
+                    raise refused(f"correlations.{first}", "another measure", repr(str(second)))
+                if first in self.correlations.get(second, {}):
+                    raise refused(place, "each pair once", "it both ways")
+                if isinstance(own, PublishedCorrelation):
+                    known = [value for value in (own.r_low_95, own.r, own.r_high_95) if value is not None]
+                    if known != sorted(known):
+                        raise refused(place, "r_low_95, r and r_high_95 in rising order", str(known))
+        return self
+
+
+class PublishedStudy(Strict):
+    """The study of others."""
+
+    trials: Count | None = None
+    seed: Count | None = None
+    replicates: Count | None = None
+    witness: Count | None = None
+
+
+class PublishedTiming(Strict):
+    """How long it took others."""
+
+    setup_s: NotNegative | None = None
+    simulate_s: NotNegative | None = None
+    first_block_s: NotNegative | None = None
+    trials_per_s: NotNegative | None = None
+    resumed_trials: Count | None = None
+    workers: Count | None = None
+    peak_memory_mb: NotNegative | None = None
+
+
+class PublishedWhole(PublishedFigures):
+    """What somebody else may have found of any run."""
+
+    seed: Count | None = None
+    trials: Count | None = None
+    chord_error_um: NotNegative | None = None
+    status: Mapping[Name, Count] = Field(default_factory=dict, description="how many trials ended how")
+    joint: PublishedJoint | None = None
+    study: PublishedStudy | None = None
+    timing: PublishedTiming | None = None
+
+    def problems(self, scene: "Scene") -> Iterator[Problem]:
+        """Correlations of what is no measure, or of a curve."""
+        correlations = self.joint.correlations if self.joint else {}
+        for first, others in correlations.items():
+            path: KeyPath = ("joint", "correlations", first)
+            for place, name in [(path, first), *(((*path, second), second) for second in others)]:
+                if (measure := scene.measures.get(name)) is None:
+                    yield place, f"expected the name of a measure, got {name!r}{hint(name, scene.measures)}"
+                elif measure.gives_curve:
+                    yield place, f"expected a measure of one value a trial, got {name!r}, which takes a curve"
