@@ -114,12 +114,13 @@ def test_measures_without_keys_of_their_own_are_shown_by_their_mechanisms_presen
     assert found == {"first": BOXES, "third": BOXES, "second": ""}
 
 
-def test_a_run_whose_measures_name_no_presenter_has_no_further_pictures_and_says_why_nothing_is_shown(
+def test_a_run_whose_mechanism_and_measures_name_no_presenter_has_no_further_pictures_and_says_why_nothing_is_shown(
     run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     assert presenter_of(run.found) is GEARS
     for measure in run.found.measures.values():
         monkeypatch.setattr(type(measure), "presenter", "")
+    monkeypatch.setattr(type(run.found), "presenters", {})
     assert picture.system_files(run.found) == {}
     with pytest.raises(InputError, match="nothing to show in 3D: the mechanism 'gearing' has no presenter; its histo"):
         export_run(run, 0, "stl", out=tmp_path)
