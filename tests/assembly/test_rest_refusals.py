@@ -10,7 +10,8 @@ from places import SCENES
 from tol3d.errors import SceneError
 from tol3d.simulate import Overrides, simulation_of
 
-PADS = (SCENES / "four_pads.yaml").read_text("utf-8")
+SHIPPED = (SCENES / "four_pads.yaml").read_text("utf-8")
+PADS = SHIPPED[: SHIPPED.index("    relations:")] + SHIPPED[SHIPPED.index("    force:") :]  # it may slide
 AT, DIRECTION = "at: [0 mm, 0 mm, 5 mm]", "direction: [0, 0, -1]"
 FIRST = "      - {from: plate.bottom, to: table.pad 1}\n      - {from: plate.bottom, to: table.pad 2}\n"
 LAST = "      - {from: plate.bottom, to: table.pad 3}\n      - {from: plate.bottom, to: table.pad 4}\n"
@@ -27,11 +28,6 @@ WRONG: dict[str, tuple[Sequence[tuple[str, str]], str, str]] = {
     "upwards": ([(DIRECTION, "direction: [0, 0, 1]")], MOVE, f"{HELD}: it shifts along z"),
     "nowhere": ([(DIRECTION, "direction: [0, 0, 0]")], f"{MOVE}.force.direction", "a number other than 0, got zeros"),
     "two pads": ([(FIRST, "")], MOVE, f"{HELD}: it turns about x through (0, 60, 0)"),
-    "two pads under the weight": (
-        [(FIRST, ""), (AT, "at: [0 mm, 60 mm, 5 mm]")],
-        MOVE,
-        f"{PRESSED}: it turns about x through (0, 60, 0)",
-    ),
     "no contacts": ([(f"contacts:\n{FIRST}{LAST}", "contacts: []\n")], f"{MOVE}.contacts", "1 or more contacts"),
     "a wall that nothing presses against": (
         [("points_on: fixture", "points_on: part"), (LAST, f"{LAST}      - {WALL}\n")],

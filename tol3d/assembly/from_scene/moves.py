@@ -1,5 +1,7 @@
 """Moves of a scene: pairs, normals, locators."""
 
+from collections.abc import Sequence
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -18,6 +20,7 @@ from tol3d.assembly.grammar.moves import (
     WeldSpec,
 )
 from tol3d.assembly.grammar.moves.locating import ContactSpec
+from tol3d.assembly.grammar.moves.mate import RelationSpec
 from tol3d.assembly.model import BestFit, Fit, Fix, Locate, Mate, Move, Pair, Relation, Rest, Weld
 from tol3d.scene import Scene
 
@@ -47,7 +50,9 @@ def _move(scene: Scene, name: str, spec: PlacingSpec | WeldSpec, effects: Effect
         case RestSpec():
             pairs = tuple(_pair(scene, name, number, spec, effects, touched) for number in spec.pairs_by_name)
             at = np.array([own.internal for own in spec.force.at])
-            return Rest(name, spec.part, pairs, unit(spec.force.direction), at, spec.points_on)
+            return Rest(
+                name, spec.part, pairs, unit(spec.force.direction), at, spec.points_on, _relations(spec.relations)
+            )
         case LocatingSpec():
             pairs = tuple(_pair(scene, name, number, spec, effects, touched) for number in spec.pairs_by_name)
             return Locate(name, spec.part, pairs, spec.points_on)
@@ -56,16 +61,18 @@ def _move(scene: Scene, name: str, spec: PlacingSpec | WeldSpec, effects: Effect
             fits = tuple(Fit(own.from_, own.to, own.weight, _directions(own.along)) for own in spec.pairs)
             return BestFit(name, spec.part, fits, spec.criterion)
         case MateSpec():
-            relations = tuple(
-                Relation(own.kind, own.from_, own.to, 0.0 if own.distance is None else own.distance.internal)
-                for own in spec.relations
-            )
-            return Mate(name, spec.part, relations)
+            return Mate(name, spec.part, _relations(spec.relations))
         case TouchSpec():
             return touch(scene, name, spec, touched.features)
         case FixSpec():
             return Fix(name, spec.part)
     raise NotImplementedError(spec.kind)
+
+
+def _relations(specs: Sequence[RelationSpec]) -> tuple[Relation, ...]:
+    return tuple(
+        Relation(own.kind, own.from_, own.to, 0.0 if own.distance is None else own.distance.internal) for own in specs
+    )
 
 
 def _refuse_a_line(scene: Scene, name: str, spec: BestFitSpec, touched: TouchedPoints) -> None:

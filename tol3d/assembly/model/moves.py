@@ -129,7 +129,8 @@ class Rest:
     """One-sided contacts of points on planes, without friction: the part goes as far along the force as they let it.
 
     Which contacts carry follows from the lever arms as they are nominally; what a turn of the trial does to the arms is
-    of second order. Freedoms that no contact sees stay as nominal (least rotation, about the part's origin).
+    of second order. Freedoms that no relation, contact or force sees stay as nominal (least rotation, about the part's
+    origin).
 
     Args:
         name, part: of the move, and what it places.
@@ -137,6 +138,7 @@ class Rest:
         force: direction (3,), of unit length, in the world.
         at: a point on its line (3,), in the frame of the part [mm].
         points_on: which side the points ride on.
+        relations: met first, as those of a mate, and kept.
     """
 
     name: str
@@ -145,6 +147,7 @@ class Rest:
     force: Array
     at: Array
     points_on: PointsOn = "part"
+    relations: tuple[Relation, ...] = ()
 
 
 @dataclass(frozen=True)

@@ -58,8 +58,11 @@ class Causes:
         return Causes(self.assembly, {**self.placed, **placed, move.part: causes}, self.bodies)
 
     def _of_move(self, move: Move) -> Iterable[frozenset[Cause]]:
-        if isinstance(move, Locate | Rest):
+        if isinstance(move, Locate):
             pairs = [(pair.moving, pair.target) for pair in move.pairs]
+        elif isinstance(move, Rest):
+            pairs = [(pair.moving, pair.target) for pair in move.pairs]
+            pairs += [(relation.moving, relation.target) for relation in move.relations]
         elif isinstance(move, BestFit):
             pairs = [(fit.moving, fit.target) for fit in move.fits]
         elif isinstance(move, Mate):

@@ -1,6 +1,6 @@
 """Mated parts: what relations ask of their two features, trial by trial."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Final
 
@@ -46,13 +46,19 @@ class Mating:
 
     def placed(self, world: World) -> tuple[World, Codes]:
         """The world after the move, and what became of it (n,) or (1,)."""
-        start = Pose.of(world.assembly.part[self.move.part].pose)
-        seats = [
+        pose, codes = self.poses(world, self.seats(world))
+        return world.with_part_at(self.move.part, pose), codes
+
+    def seats(self, world: World) -> list[Seat]:
+        """Its relations in their trials."""
+        return [
             _seat(self.move, relation, sign, world)
             for relation, sign in zip(self.move.relations, self.signs, strict=True)
         ]
-        pose, codes = self.alignment.poses(seats, start)
-        return world.with_part_at(self.move.part, pose), codes
+
+    def poses(self, world: World, seats: Sequence[Seat]) -> tuple[Pose, Codes]:
+        """Of the part, and what became of it (n,) or (1,)."""
+        return self.alignment.poses(seats, Pose.of(world.assembly.part[self.move.part].pose))
 
 
 def mating(move: Mate, nominal: World) -> Mating:

@@ -5,12 +5,13 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import nnls
+from scipy.optimize import linprog, nnls
 
 from tol3d.assembly.model import Pair, Rest
 from tol3d.assembly.model.statuses import NO_BUILD, OK, SINGULAR
 from tol3d.assembly.placing.actual_feature import total
 from tol3d.assembly.placing.free_motion import free_motions, in_words, seen_steps
+from tol3d.assembly.placing.kept_relations import NOTHING, KeptRelations, kept_motions, kept_relations, kept_rows
 from tol3d.assembly.placing.poses import Codes, Pose, column, dot
 from tol3d.assembly.placing.rests import TIED, rests_found
 from tol3d.assembly.placing.world import World
@@ -33,8 +34,11 @@ class Resting:
         move: which.
         origin: of the part, nominally in the world (3, 1) [mm].
         reach: of the contacts about it [mm].
-        start: the nominal pose there (3, 4).
-        steps: motions that contacts see, turn times reach and shift (6, motions).
+        start: the nominal pose there (3, 4, 1).
+        relations: that are kept, if there are any.
+        undo: steps that undo a change of what they keep (6, kept).
+        all_rows: how nominal gaps change with turn times reach and shift (contacts, 6).
+        steps: motions that contacts see and relations leave, turn times reach and shift (6, motions).
         rows: how nominal gaps change with the motions (contacts, motions).
         pull: of the force, along the motions (motions,).
         basis: contacts that would carry if all were touched, one for each motion.
@@ -47,6 +51,9 @@ class Resting:
     origin: Array
     reach: float
     start: Array
+    relations: KeptRelations | None
+    undo: Array
+    all_rows: Array
     steps: Array
     rows: Array
     pull: Array
@@ -61,14 +68,20 @@ class Resting:
         trials = world.trials
         turn, shift = np.empty((3, 3, trials)), np.empty((3, trials))
         carried, outcomes = np.empty((len(self.rows), trials)), np.empty(trials, dtype=np.int8)
+        start, kept, before = self.start, NOTHING, np.full(1, OK, dtype=np.int8)
+        if self.relations is not None:
+            pose, before, kept = self.relations.met(world)
+            start = _array(pose, self.origin)
         rests_found(
-            points, normals, heights, self.move.points_on == "part", self.rows, self.steps, self.basis, self.inverse,
-            self.loads, self.start, self.reach, turn, shift, carried, outcomes,
+            points, normals, heights, self.move.points_on == "part", kept.vectors, kept.normals, kept.shifts, self.undo,
+            self.all_rows, self.rows, self.steps, self.basis, self.inverse, self.loads, start, self.reach, turn, shift,
+            carried, outcomes,
         )  # fmt: skip
         if self.nudge is not None:
             turn, shift = self._moved_on(self.nudge, turn, shift)
         pose = Pose(turn, shift + self.origin)
-        return world.with_part_at(self.move.part, pose).with_loads(self.move.name, carried), OUTCOMES[outcomes]
+        placed = world.with_part_at(self.move.part, pose).with_loads(self.move.name, carried)
+        return placed, np.where(before == OK, OUTCOMES[outcomes], before).astype(np.int8)
 
     def _moved_on(self, by: Array, turn: Array, shift: Array) -> tuple[Array, Array]:
         moved = self.steps @ by
@@ -77,6 +90,17 @@ class Resting:
         skew = np.array([[none, -z, y], [z, none, -x], [-y, x, none]])
         once = np.einsum("ijn,jkn->ikn", skew, turn)
         return turn + once + np.einsum("ijn,jkn->ikn", skew, once) / 2.0, shift + moved[3:]
+
+    def carries(self) -> tuple[Array, Array]:
+        """The least and the largest part of the force that each contact may carry (contacts,)."""
+        ends = [
+            [
+                linprog(sign * one, A_eq=self.rows.T, b_eq=-self.pull, method="highs").fun
+                for one in np.eye(len(self.rows))
+            ]
+            for sign in (1.0, -1.0)
+        ]
+        return np.array(ends[0]), -np.array(ends[1])
 
     def leaning(self, along: Array) -> "Resting":
         """The same, that goes as far along some motion (motions,) as it can where it may rock."""
@@ -104,17 +128,37 @@ def resting(move: Rest, nominal: World) -> Resting:
     points, normals, _ = (own[..., 0] for own in _contacts(move, nominal, column(origin)))
     arms, normals = (points @ turn.T, normals) if on_part else (points, normals @ turn.T)
     reach = max(float(np.linalg.norm(arms, axis=1).max()), 1.0)
-    # of a gap by shift of the origin and turn
-    free = free_motions(np.hstack([normals, np.cross(arms, normals)]), np.zeros(3), reach)
+    relations = kept_relations(move, nominal, reach)
+    kept = NOTHING if relations is None else relations.met(nominal)[2]
     rows = np.hstack([np.cross(arms, normals) / reach, normals])
     pull = np.concatenate([np.cross(turn @ move.at, move.force) / reach, move.force])
-    steps = seen_steps(free, reach)
-    _refuse_unheld(move, rows, pull, reach, origin)
+    left, _ = kept_motions(kept, turn, reach, np.eye(6))
+    _refuse_unheld(move, rows, pull, left, reach, origin)
+    steps, undo = kept_motions(kept, turn, reach, _seen(rows, kept_rows(kept, turn, reach), reach))
+    if not steps.shape[1]:
+        raise InputError(f"moves.{move.name}: its relations leave its contacts nothing to hold; leave one of them out")
     _refuse_loose(move, rows, pull, steps, reach, origin)
     own_rows, own_pull = np.ascontiguousarray(rows @ steps), steps.T @ pull
     basis, inverse, loads = first_basis(own_rows, own_pull, generic(len(own_pull)))
-    start = np.ascontiguousarray(np.column_stack([turn, np.zeros(3)]))
-    return Resting(move, column(origin), reach, start, steps, own_rows, own_pull, basis, inverse, loads)
+    start = _array(pose, column(origin))
+    return Resting(
+        move, column(origin), reach, start, relations, undo, np.ascontiguousarray(rows), np.ascontiguousarray(steps),
+        own_rows, own_pull, basis, inverse, loads,
+    )  # fmt: skip
+
+
+def _array(pose: Pose, origin: Array) -> Array:
+    """Poses (3, 4, n) about an origin (3, 1)."""
+    shift = pose.shift - origin
+    made = np.empty((3, 4, max(pose.turn.shape[-1], shift.shape[-1])))
+    made[:, :3], made[:, 3] = pose.turn, shift
+    return made
+
+
+def _seen(rows: Array, kept: Array, reach: float) -> Array:
+    """Steps, turn times reach and shift (6, steps), that contacts or relations see."""
+    both = np.vstack([rows, kept])
+    return seen_steps(free_motions(np.hstack([both[:, 3:], both[:, :3] * reach]), np.zeros(3), reach), reach)
 
 
 def generic(motions: int) -> Array:
@@ -148,11 +192,15 @@ def _completed(rows: Array, chosen: NDArray[np.int64]) -> NDArray[np.int64]:
     return np.array(basis)
 
 
-def _refuse_unheld(move: Rest, rows: Array, pull: Array, reach: float, origin: Array) -> None:
-    """Refuse contacts of which no forces balance the one on the part, with the motion that it then takes."""
-    shares, left = nnls(rows.T, -pull)
+def _refuse_unheld(move: Rest, rows: Array, pull: Array, free: Array, reach: float, origin: Array) -> None:
+    """Refuse contacts of which no forces balance the one on the part, with the motion that it then takes.
+
+    Args:
+        free: steps that relations leave (6, steps).
+    """
+    shares, left = nnls((rows @ free).T, -(pull @ free))
     if left > MISSED * np.linalg.norm(pull):
-        motion = _world_motion(pull + rows.T @ shares, reach, origin)
+        motion = _world_motion(free @ ((pull + rows.T @ shares) @ free), reach, origin)
         raise InputError(
             f"moves.{move.name}: its contacts do not hold {move.part} against the force: {in_words(motion)}; expected "
             "contacts on all sides to which it would give way"
@@ -161,12 +209,13 @@ def _refuse_unheld(move: Rest, rows: Array, pull: Array, reach: float, origin: A
 
 def _refuse_loose(move: Rest, rows: Array, pull: Array, steps: Array, reach: float, origin: Array) -> None:
     """Refuse contacts that nothing presses the part against, with the motion by which it may leave them."""
-    for step in steps.T:
+    own_rows, own_pull = rows @ steps, pull @ steps
+    for step in np.eye(len(own_pull)):
         for aside in (step, -step):
-            leaning = pull + SLIGHT * aside
-            shares, left = nnls(rows.T, -leaning)
+            leaning = own_pull + SLIGHT * aside
+            shares, left = nnls(own_rows.T, -leaning)
             if left > 1e-3 * SLIGHT:
-                motion = _world_motion(leaning + rows.T @ shares, reach, origin)
+                motion = _world_motion(steps @ (leaning + own_rows.T @ shares), reach, origin)
                 raise InputError(
                     f"moves.{move.name}: the force does not press {move.part} against all of its contacts: "
                     f"{in_words(motion)}, away from some; expected a force that points towards those too, or contacts "

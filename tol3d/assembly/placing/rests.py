@@ -48,6 +48,19 @@ def gap_of(pose: Any, contacts: Any, k: int, i: int, on_part: bool) -> Any:
 
 
 @part
+def kept_at(pose: Any, kept: Any, e: int, i: int) -> Any:
+    """n . (R p + s t) of what is kept."""
+    vectors, normals, shifts = kept
+    p, q = min(i, vectors.shape[2] - 1), min(i, normals.shape[2] - 1)
+    x, y, z = vectors[e, 0, p], vectors[e, 1, p], vectors[e, 2, p]
+    total = 0.0
+    for r in range(3):
+        here = pose[r, 0] * x + pose[r, 1] * y + pose[r, 2] * z + shifts[e] * pose[r, 3]
+        total += normals[e, r, q] * here
+    return total
+
+
+@part
 def leaving(inverse: Any, loads: Any, row: Any, closes: Any) -> int:
     """Which contact of the basis a new one relieves first; -1 if none. `closes` becomes row . inverse."""
     count = loads.shape[1]
@@ -122,15 +135,20 @@ def farthest(rows: Any, gaps: Any, basis: Any, inverse: Any, loads: Any, rooms: 
 
 
 @kernel(
-    arrays="float64[:,:,::1], float64[:,:,::1], float64[:,::1], boolean, float64[:,::1], float64[:,::1], int64[::1], "
-    "float64[:,::1], float64[:,::1], float64[:,::1], float64, float64[:,:,::1], float64[:,::1], float64[:,::1], "
-    "int8[::1]"
+    arrays="float64[:,:,::1], float64[:,:,::1], float64[:,::1], boolean, float64[:,:,::1], float64[:,:,::1], "
+    "float64[::1], float64[:,::1], float64[:,::1], float64[:,::1], float64[:,::1], int64[::1], float64[:,::1], "
+    "float64[:,::1], float64[:,:,::1], float64, float64[:,:,::1], float64[:,::1], float64[:,::1], int8[::1]"
 )
 def rests_found(
     points: Any,
     normals: Any,
     heights: Any,
     on_part: bool,
+    kept_vectors: Any,
+    kept_normals: Any,
+    kept_shifts: Any,
+    kept_steps: Any,
+    all_rows: Any,
     rows: Any,
     steps: Any,
     first_basis: Any,
@@ -149,12 +167,16 @@ def rests_found(
         points, normals, heights: of the contacts (contacts, 3, n) and (contacts, n), see gap_of; (..., 1) of what does
             not vary.
         on_part: whether the points are on the part.
+        kept_vectors, kept_normals: of what stays as it begins, n . (R p + s t), p and n (kept, 3, n).
+        kept_shifts: s (kept,).
+        kept_steps: turn by reach and shift, that undo a change of it (6, kept).
+        all_rows: how nominal gaps change with turn by reach and shift (contacts, 6).
         rows: how nominal gaps change with the motions (contacts, motions) [mm/mm].
         steps: of the motions, turn by reach and shift (6, motions).
         first_basis: contacts that would carry if all were touched, one for each motion.
         first_inverse: of their rows (motions, motions).
         first_loads: on them, of the force and of the second direction (2, motions).
-        start: the nominal pose (3, 4).
+        start: the pose before contacts count (3, 4, n).
         reach: of the points about its origin [mm].
         turns, shifts: found (3, 3, n), (3, n) [mm]; not a number where there is none.
         carried: the part of the force that each contact carries (contacts, n).
@@ -163,17 +185,28 @@ def rests_found(
     contacts = (points, normals, heights)
     count, motions = rows.shape
     gaps, step, pose = np.empty(count), np.empty(6), np.empty((3, 4))
+    kept = (kept_vectors, kept_normals, kept_shifts)
+    first = np.empty(kept_shifts.shape[0])
     rooms = (np.empty(motions), np.empty(motions))
     basis, inverse, loads = np.empty(motions, np.int64), np.empty((motions, motions)), np.empty((2, motions))
     for i in range(outcomes.shape[0]):
-        pose[:] = start
+        pose[:] = start[:, :, min(i, start.shape[2] - 1)]
+        for e in range(first.shape[0]):
+            first[e] = kept_at(pose, kept, e, i)
         basis[:] = first_basis
         inverse[:] = first_inverse
         loads[:] = first_loads
         pivots, outcome = 0, LOST
         for _ in range(STEPS):
+            step[:] = 0.0
+            for e in range(first.shape[0]):
+                change = kept_at(pose, kept, e, i) - first[e]
+                for r in range(6):
+                    step[r] -= kept_steps[r, e] * change
             for k in range(count):
                 gaps[k] = gap_of(pose, contacts, k, i, on_part)
+                for r in range(6):
+                    gaps[k] += all_rows[k, r] * step[r]
             pivots = farthest(rows, gaps, basis, inverse, loads, rooms, pivots)
             if pivots < 0:
                 outcome = CLASHES if pivots == -1 else LOST
@@ -182,7 +215,7 @@ def rests_found(
                 total = 0.0
                 for j in range(motions):
                     total += steps[r, j] * rooms[0][j]
-                step[r] = total
+                step[r] += total
             length = stepped(pose, step, reach)
             if length <= MET:
                 outcome = RESTS

@@ -7,6 +7,7 @@ import numpy as np
 from tol3d.assembly.model import Axis, Feature, Locate, Move, Plane, Point, RoundPlane, Touch
 from tol3d.assembly.model.moves import BestFit, Mate, Rest, Weld
 from tol3d.assembly.placing import road as placing
+from tol3d.assembly.placing.resting import Resting
 from tol3d.assembly.placing.touching import Touching
 from tol3d.assembly.system import AssemblySystem
 from tol3d.report.page import Block, Heading, Row, Table, titled
@@ -34,7 +35,34 @@ def drawing_blocks(system: AssemblySystem) -> Sequence[Block]:
     planned = placing.planned(system.assembly).moves
     moves = [Row(move.name, _move(move, plan)) for move, plan in zip(system.assembly.moves, planned, strict=True)]
     steps = titled("moves", Table("", [Heading(word, words=True) for word in ("kind", "part", "by")], moves))
-    return (*features, *steps)
+    return (*features, *steps, *_rests(system))
+
+
+def _rests(system: AssemblySystem) -> Sequence[Block]:
+    """What contacts of parts at rest may carry of the force."""
+    blocks: list[Block] = []
+    for move in placing.planned(system.assembly).moves:
+        if isinstance(move, Resting):
+            least, most = move.carries()
+            rows = [
+                Row(
+                    str(k),
+                    (
+                        _touched(system, own.moving),
+                        _touched(system, own.target),
+                        f"{100 * low:.0f} to {100 * high:.0f} %",
+                    ),
+                )
+                for k, (own, low, high) in enumerate(zip(move.move.pairs, least, most, strict=True), 1)
+            ]
+            words = [Heading(word, words=True) for word in ("of the part", "on", "carries of the force")]
+            blocks += titled(f"contacts of {move.move.name}, one-sided", Table("", words, rows))
+    return blocks
+
+
+def _touched(system: AssemblySystem, name: str) -> str:
+    """A feature, or the plane of which it is a point that another feature touches."""
+    return name if system.assembly.features[name].is_named else name.rpartition(" at ")[0] or name
 
 
 def _shape(feature: Feature) -> str:

@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.assembly.model import Axis, Mate, Plane, Point, Relation, RoundPlane
+from tol3d.assembly.model import Axis, Mate, Plane, Point, Relation, Rest, RoundPlane
 from tol3d.assembly.model.shape import Shape
 from tol3d.assembly.torsors.freedoms import Freedoms
 from tol3d.assembly.torsors.torsor import height_at, perpendicular, shift_at, turn_about
@@ -22,16 +22,25 @@ def mated(move: Mate, world: World) -> Array:
     part = world.assembly.part[move.part]
     points = [world.origin(name) for each in move.relations for name in (each.moving, each.target)]
     freedoms = Freedoms(part.pose[:3, 3], points, world.columns.count)
+    take_relations(freedoms, move, world)
+    return freedoms.rest()
+
+
+def take_relations(freedoms: Freedoms, move: Mate | Rest, world: World) -> None:
+    """Let the relations of a move take freedoms, in order.
+
+    Raises:
+        InputError: as mated.
+    """
     for relation in move.relations:
         if not _take(freedoms, relation, move, world):
             raise InputError(
                 f"moves.{move.name}: {relation.kind} of {relation.moving} and {relation.target} takes no freedom: "
                 "earlier relations hold all that it asks; leave it out"
             )
-    return freedoms.rest()
 
 
-def _take(freedoms: Freedoms, relation: Relation, move: Mate, world: World) -> int:
+def _take(freedoms: Freedoms, relation: Relation, move: Mate | Rest, world: World) -> int:
     """How many freedoms a relation takes."""
     pairing = _Pairing(freedoms, relation, move, world)
     shapes = [world.assembly.features[name].shape for name in (relation.moving, relation.target)]
@@ -72,7 +81,7 @@ def _word(shape: Shape) -> str:
 class _Pairing:
     """The two features of a relation, and the equations that it may be made of."""
 
-    def __init__(self, freedoms: Freedoms, relation: Relation, move: Mate, world: World) -> None:
+    def __init__(self, freedoms: Freedoms, relation: Relation, move: Mate | Rest, world: World) -> None:
         self._freedoms = freedoms
         self._relation = relation
         self._move = move

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from tol3d.assembly.model import Pair, Rest
 from tol3d.assembly.torsors.features import summed
 from tol3d.assembly.torsors.freedoms import INDEPENDENT, Freedoms, freedom_in_words
+from tol3d.assembly.torsors.mating import take_relations
 from tol3d.assembly.torsors.one_sided import Corner, OneSided
 from tol3d.assembly.torsors.torsor import height_at
 from tol3d.assembly.torsors.world import World
@@ -41,7 +42,10 @@ def rested(move: Rest, world: World, leaning: Array | None = None) -> Array:
     rows, values = (np.concatenate(each) for each in zip(*contacts, strict=True))
     part = world.assembly.part[move.part]
     points = [world.origin(pair.moving) for pair in move.pairs]
+    points += [world.origin(name) for own in move.relations for name in (own.moving, own.target)]
     freedoms = Freedoms(part.pose[:3, 3], points, world.columns.count)
+    take_relations(freedoms, move, world)
+    before = rows @ freedoms.torsor
     asked = rows @ freedoms.left
     _, strengths, right = np.linalg.svd(asked)
     seen = right[: int(np.sum(strengths > INDEPENDENT * strengths[0]))]
@@ -61,8 +65,9 @@ def rested(move: Rest, world: World, leaning: Array | None = None) -> Array:
             _refuse(move, freedoms.left @ seen.T @ _given_way(matrix, seen @ pull)[:, None])
     if not any(np.any(corner.loads < NONE) for corner in corners[0]):
         corners = corners[:1]  # it never rocks
-    found = world.columns.made_by(OneSided(-values, matrix, tuple(tuple(own) for own in corners)))
-    freedoms.take(np.linalg.pinv(matrix) @ rows, found)
+    found = world.columns.made_by(OneSided(before - values, matrix, tuple(tuple(own) for own in corners)))
+    back = np.linalg.pinv(matrix)
+    freedoms.take(back @ rows, found + back @ before)
     return freedoms.rest()
 
 

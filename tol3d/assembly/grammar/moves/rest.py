@@ -1,11 +1,14 @@
 """A part that rests on one-sided contacts under a force, such as its weight."""
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from itertools import chain
 from typing import Annotated, ClassVar, Literal
 
 from pydantic import Field
 
 from tol3d.assembly.grammar.moves.locating import ContactSpec, LocatingSpec
+from tol3d.assembly.grammar.moves.mate import RelationSpec
+from tol3d.assembly.grammar.moves.placing_move import PairSpec
 from tol3d.scene.listed import listed
 from tol3d.scene.place import KeyPath
 from tol3d.scene.vector import Direction, Vector
@@ -27,8 +30,15 @@ class RestSpec(LocatingSpec):
     kind: Literal["rest"]
     contacts: Annotated[tuple[ContactSpec, ...], listed("contacts", 1)]
     force: ForceSpec
+    relations: Annotated[tuple[RelationSpec, ...], listed("relations", 1, 6)] = Field(
+        default=(), description="as of a mate, kept while the force moves what they leave free"
+    )
 
     @property
     def pairs_by_name(self) -> Mapping[str, tuple[KeyPath, ContactSpec]]:
         """See LocatingSpec."""
         return {str(k + 1): (("contacts", k), pair) for k, pair in enumerate(self.contacts)}
+
+    def paired(self) -> Iterator[tuple[KeyPath, PairSpec]]:
+        """Contacts, then relations."""
+        return chain(super().paired(), ((("relations", k), pair) for k, pair in enumerate(self.relations)))
