@@ -81,11 +81,52 @@ def stack() -> str:
     )
 
 
+BORES = ("input", "middle", "output")
+
+
+def without_housing() -> str:
+    """The gears of housed_gears.yaml on axes of their own, with about as many contributors of their own kinds."""
+    text = (SCENES / "housed_gears.yaml").read_text("utf-8")
+    lines = [line for line in text.splitlines() if "bores apart" not in line]
+    parts, tolerances = lines.index("parts:"), lines.index("tolerances:")
+    kept = [line for line in lines[parts:tolerances] if ": {kind: shaft" in line or ": {kind: spur_gear" in line]
+    random = "direction: random, distribution: {kind: uniform, lower: 5 um, upper: 15 um}"
+    bearings = [(f"{name} {end}", name, z) for name in BORES for end, z in (("near", -34), ("far", 34))]
+    kept += [f"  {bearing}: {{kind: bearing, shaft: {shaft}, at: {z} mm}}" for bearing, shaft, z in bearings]
+    own = [line for line in lines[tolerances:] if "tooth_thickness" in line or ": second wheel, dist" in line]
+    own += [f"  {bearing} play: {{kind: bearing_clearance, of: {bearing}, {random}}}" for bearing, _, _ in bearings]
+    own += [
+        f"  {gear} run: {{kind: eccentricity, of: {gear}, distribution: {{kind: rayleigh, scale: 5 um}}}}"
+        for gear in ("first pinion", "first wheel", "second pinion")
+    ]
+    own += [
+        f"  {name}: {{kind: temperature, of: {gear}, distribution: {{kind: normal, mean: 25 K, sigma: 5 K}}}}"
+        for name, gear in (("warm pinion", "first pinion"), ("warm wheel", "first wheel"))
+    ]
+    moves = [
+        "  first stage: {kind: mesh, driver: first pinion, driven: first wheel, centre_distance: 52.5 mm}",
+        "  second stage: {kind: mesh, driver: second pinion, driven: second wheel, centre_distance: 63 mm}",
+        "  gearbox: {kind: train, driven: input, output: output}",
+    ]
+    measures = [line for line in lines if "kind: normal_backlash" in line or "kind: lost_motion" in line]
+    sections = {"parts": kept, "tolerances": own, "moves": moves, "measures": measures}
+    return "scene: without housing\n" + "".join(
+        f"{name}:\n" + "".join(line + "\n" for line in own) for name, own in sections.items()
+    )
+
+
 def systems(folder: Path) -> dict[str, Path]:
     """Scenes by the names of the rows."""
     blocks = folder / "blocks.yaml"
     blocks.write_text(stack(), encoding="utf-8")
-    return {"3-2-1 stack of three blocks, 20 contributors": blocks, "door": SCENES / "door.yaml"}
+    train = folder / "train.yaml"
+    train.write_text(without_housing(), encoding="utf-8")
+    return {
+        "3-2-1 stack of three blocks, 20 contributors": blocks,
+        "door": SCENES / "door.yaml",
+        "gears in a housing": SCENES / "housed_gears.yaml",
+        "the same gears without": train,
+    }
 
 
 def measured(scene: Path, trials: int) -> dict[str, float]:

@@ -125,6 +125,23 @@ def test_a_warm_housing_moves_its_bores_as_it_opens_a_centre_distance(road: str,
     assert housed.closed_form(housed.measures[0]) is not None
 
 
+@pytest.mark.parametrize("leans", [False, True])
+def test_one_temperature_of_gears_and_housing_is_one_variable_in_the_closed_form(leans: bool, tmp_path: Path) -> None:
+    """What it does by the bores and by the gears is added before it is squared; leaning shafts change nothing in it."""
+    law = "distribution: {kind: normal, mean: 20 K, sigma: 8 K}"
+    warm = f"\n  warm: {{kind: temperature, of: [housing, pinion, wheel], {law}}}"
+    lean = "\n  lean: {kind: position, of: housing.bore 2b, zone: {diameter: 1e-6 um}, law: {kind: uniform}}"
+    housed = gearbox_of(housed_scene(tolerances=warm + (lean if leans else "")), tmp_path)
+    old = "\n  housing: {kind: housing, expansion: 23e-6 1/K}"
+    parts = SHAFTS + GEARS + old
+    plain = system_of(plain_scene(tolerances=warm, parts=parts, mesh=", housing: housing"), tmp_path, "plain")
+    found, expected = (own.closed_form(own.measures[0]) for own in (housed, plain))
+    assert found is not None
+    assert expected is not None
+    assert found.mean == pytest.approx(expected.mean, rel=1e-4 if leans else 1e-9)
+    assert found.sigma == pytest.approx(expected.sigma, rel=1e-3 if leans else 1e-9)
+
+
 def test_the_centre_distance_follows_from_the_bores(tmp_path: Path) -> None:
     housed = gearbox_of(housed_scene(tolerances=THICK), tmp_path)
     (mesh,) = housed.gears.model.meshes

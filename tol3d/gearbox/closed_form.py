@@ -8,7 +8,7 @@ gearing/stack_up/leaning.py).
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,18 +17,21 @@ from tol3d.assembly.system import moments_of
 from tol3d.gearing.model import Contributor as GearContributor
 from tol3d.gearing.model import Measure as GearMeasure
 from tol3d.gearing.model import Model
-from tol3d.gearing.roads.analytic import analytic_values
 from tol3d.gearing.stack_up import closed_form as closed_form_of_gears
 from tol3d.gearing.stack_up import reference_form, stack_of
-from tol3d.gearing.stack_up.leaning import shares_by_net
+from tol3d.gearing.stack_up.closed_form import factored_stacks
+from tol3d.gearing.stack_up.leaning import change_of, shares_by_net
 from tol3d.system.closed_form import ClosedForm, Share
 from tol3d.system.contributor import Contributor
-from tol3d.system.stated import component_slices, stated
+from tol3d.system.stated import component_slices
 
 if TYPE_CHECKING:
     from tol3d.gearbox.system import GearboxSystem
 
 Array = NDArray[np.float64]
+
+LEVEL: Final = 1e-12
+"""Difference of the displacements of both ends of an axis per mm, rad or K that is rounding."""
 
 
 def closed_form(system: "GearboxSystem", measure: GearMeasure, *, at_one_position: bool = False) -> ClosedForm | None:
@@ -42,13 +45,16 @@ def closed_form(system: "GearboxSystem", measure: GearMeasure, *, at_one_positio
     model = system.gears.model
     leaning = _leaning(model, measure)
     group = [own for own in system.contributors if own.name in leaning or own.name in _moving(system)]
-    net = bool(leaning & {own.name for own in model.contributors[len(system.drawn_by_gears) :]})
+    net = bool(leaning & _leaning_bores(system))
     drawn = tuple(own for own in system.drawn_by_gears if not (net and own.name in leaning))
     plain = replace(model, contributors=drawn)
     form = reference_form(plain, measure) if at_one_position else closed_form_of_gears(plain, measure)
     if form is None:
         return None
-    shares = [*form.shares, *(_by_net(system, measure, group) if net else _linear(system, measure))]
+    both = {own.name for own in system.drawn.contributors} & {own.name for own in drawn}
+    direct = {share.name: share.coefficient for share in form.shares if share.name in both}
+    shares = [share for share in form.shares if share.name not in both]
+    shares += _by_net(system, measure, group, direct) if net else _linear(system, measure, direct)
     together = tuple(_merged(system.contributors, shares))
     return replace(
         form,
@@ -65,19 +71,27 @@ def _leaning(model: Model, measure: GearMeasure) -> set[str]:
     return {term.contributor.name for stack in stacks for term in stack.terms if term.leans}
 
 
+def _leaning_bores(system: "GearboxSystem") -> set[str]:
+    """The displacements of the bores of shafts that contributors of the assembly lean."""
+    bores = system.gears.contributors[len(system.drawn_by_gears) :]
+    first, last = (system.displacing.reshape(-1, 2, 2, system.displacing.shape[1])[:, k] for k in range(2))
+    leans = (np.abs(last - first) > LEVEL).any(axis=(1, 2))
+    return {own.name for own, lean in zip(bores, np.repeat(leans, 2), strict=True) if lean}
+
+
 def _moving(system: "GearboxSystem") -> set[str]:
     """Contributors of the assembly that move bores."""
     slices = component_slices(system.drawn)
     return {own.name for own in system.drawn.contributors if system.displacing[:, slices[own.name]].any()}
 
 
-def _linear(system: "GearboxSystem", measure: GearMeasure) -> list[Share]:
-    """Shares of what moves the bores, where a backlash is linear in that."""
+def _linear(system: "GearboxSystem", measure: GearMeasure, direct: Mapping[str, float]) -> list[Share]:
+    """Shares of what moves the bores, where a backlash is linear in that; `direct` is what it does to the gears too."""
     slopes = np.asarray(system.bore_slopes(measure) @ system.displacing)
     slices = component_slices(system.drawn)
     found = []
     for own in system.drawn.contributors:
-        coefficients = slopes[slices[own.name]]
+        coefficients = slopes[slices[own.name]] + direct.get(own.name, 0.0)
         mean, covariance = moments_of(own)
         size = float(coefficients[0]) if len(coefficients) == 1 else float(np.sqrt(coefficients @ coefficients))
         if coefficients.any():
@@ -86,25 +100,31 @@ def _linear(system: "GearboxSystem", measure: GearMeasure) -> list[Share]:
     return found
 
 
-def _by_net(system: "GearboxSystem", measure: GearMeasure, group: Sequence[Contributor]) -> list[Share]:
-    """Shares of a group that leans gears."""
-    slices = component_slices(system)
-    width = slices[system.contributors[-1].name].stop
-    nominal = _values(system, measure, np.zeros((1, width)))[0]
+def _by_net(
+    system: "GearboxSystem", measure: GearMeasure, group: Sequence[Contributor], direct: Mapping[str, float]
+) -> list[Share]:
+    """Shares of a group that leans gears; `direct` is what those do to the gears that do more than move bores."""
+    stacks = factored_stacks(system.gears.model, measure)
+    bores = system.gears.contributors[len(system.drawn_by_gears) :]
+    slices = component_slices(system.drawn)
+    displaced: dict[tuple[str, int], Array] = {}
+    nothing = np.zeros((1, 4 * len(system.bores.shafts)))
+
+    def displacement(name: str, own: Array) -> Array:
+        """Of the bores (points, shafts * 4); worked out once of each array."""
+        key = name, id(own)
+        if key not in displaced:
+            displaced[key] = own @ system.displacing[:, slices[name]].T
+        return displaced[key]
 
     def change(deviations: Mapping[str, Array]) -> Array:
-        rows = np.zeros((len(next(iter(deviations.values()))), width))
-        for name, own in deviations.items():
-            rows[:, slices[name]] = own
-        return np.asarray(_values(system, measure, rows) - nominal)
+        moved = sum((displacement(name, own) for name, own in deviations.items() if name in slices), nothing)
+        by_bores = {own.name: np.asarray(moved)[:, 2 * k : 2 * k + 2] for k, own in enumerate(bores)}
+        others = {name: own for name, own in deviations.items() if name not in slices}
+        linear = sum(slope * deviations[name][:, 0] for name, slope in direct.items() if name in deviations)
+        return change_of(stacks, by_bores | others) + linear
 
     return shares_by_net(change, group)
-
-
-def _values(system: "GearboxSystem", measure: GearMeasure, deviations: Array) -> Array:
-    """By theory (trials,), the driver at 0."""
-    trials = system.linear_gear_trials(stated(system, deviations))
-    return np.asarray(analytic_values(system.gears.model, measure, trials)[:, 0])
 
 
 def _merged(contributors: Sequence[Contributor | GearContributor], shares: Sequence[Share]) -> list[Share]:

@@ -263,13 +263,24 @@ class GearboxSystem:
         """See System."""
         if not isinstance(measure, GearMeasure):
             return self.assembly.closed_form(measure)
-        return closed_form(self, measure)
+        return self._form(measure, at_one_position=False)
+
+    def _form(self, measure: GearMeasure, *, at_one_position: bool) -> ClosedForm | None:
+        key = measure, at_one_position
+        if key not in self._forms:
+            self._forms[key] = closed_form(self, measure, at_one_position=at_one_position)
+        return self._forms[key]
+
+    @cached_property
+    def _forms(self) -> dict[tuple[GearMeasure, bool], ClosedForm | None]:
+        """Closed forms that are known: where axes lean, each takes a tenth of a second."""
+        return {}
 
     def reference_form(self, measure: Measure) -> ClosedForm | None:
         """See System."""
         if not isinstance(measure, GearMeasure):
             return self.assembly.reference_form(measure)
-        return closed_form(self, measure, at_one_position=True)
+        return self._form(measure, at_one_position=True)
 
     def neglected(self, measure: Measure, trials: Trials) -> Mapping[str, Array]:
         """See System."""

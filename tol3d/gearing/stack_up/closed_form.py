@@ -47,9 +47,8 @@ def closed_form(model: Model, measure: Measure) -> ClosedForm | None:
     shares = _with_covariances(own) if measure.positions.over == "random" else [each.share for each in own]
     shares += [share for tilts in plain.values() for share in tilts]
     shares += [Share(term.term.contributor.name, 0.0, 0.0, 0.0) for term in terms if _plane(term) == "none"]
-    stacks = [(part.factor, part.stack) for part in parts]
     for group in leaning:
-        shares += leaning_shares(stacks, group)
+        shares += leaning_shares([(part.factor, part.stack) for part in parts], group)
     nominal = _nominal(model, measure, sums)
     together = tuple(_merged(model, shares))
     return ClosedForm(
@@ -120,6 +119,11 @@ class _Part:
         if term.turns == "driver":
             return angle, rate
         return float(mesh.pair.driven_angle(np.array([angle]))[0]), rate * mesh.rate
+
+
+def factored_stacks(model: Model, measure: Measure) -> list[tuple[float, Stack[GearPair]]]:
+    """The stack-up of each mesh that a measure reads, with the change of the measure by its normal backlash."""
+    return [(part.factor, part.stack) for part in _parts(model, measure)]
 
 
 def _lever(measure: Measure) -> float:

@@ -49,7 +49,7 @@ def leaning_shares(parts: Sequence[tuple[float, Stack[GearPair]]], group: Sequen
         parts: each stack-up with the change of the measure by its normal backlash.
         group: contributors whose deviations rest in the world.
     """
-    return shares_by_net(partial(_change, parts), group)
+    return shares_by_net(partial(change_of, parts), group)
 
 
 def shares_by_net(change: Change, group: Sequence[AnyContributor]) -> list[Share]:
@@ -78,7 +78,7 @@ def shares_by_net(change: Change, group: Sequence[AnyContributor]) -> list[Share
     ]
 
 
-def _change(parts: Sequence[tuple[float, Stack[GearPair]]], deviations: Mapping[str, Array]) -> Array:
+def change_of(parts: Sequence[tuple[float, Stack[GearPair]]], deviations: Mapping[str, Array]) -> Array:
     """Change of a measure (points,) by the deviations (points, components) of some contributors alone."""
     total = np.zeros(len(next(iter(deviations.values()))))
     at_rest = (np.zeros(1), np.zeros(1))
