@@ -5,7 +5,7 @@ from typing import Final
 from tol3d.assembly.grammar import measures, moves, parts, tolerances
 from tol3d.assembly.grammar.checks import unknown_features, unplaced_bodies
 from tol3d.assembly.grammar.drawing_checks import contradicting_tolerances
-from tol3d.assembly.grammar.measure_checks import mixed_dimensions, unfit_holes, unfit_points
+from tol3d.assembly.grammar.measure_checks import mixed_dimensions, unfit_holes, unfit_patterns, unfit_points
 from tol3d.assembly.grammar.modifier_checks import unfit_modifiers
 from tol3d.assembly.grammar.orientation_checks import unfit_orientations
 from tol3d.scene.grammar import specs_in
@@ -26,6 +26,7 @@ ASSEMBLY: Final = Mechanism(
         mixed_dimensions,
         unfit_points,
         unfit_holes,
+        unfit_patterns,
     ),
     engines=("exact",),
     system="tol3d.assembly.system:assembly_system",

@@ -25,6 +25,7 @@ class AssemblyMeasureSummary(MeasureSummary):
         "gap",
         "inspected_flatness",
         "inspected_orientation",
+        "inspected_pattern",
         "inspected_position",
         "inspected_size",
         "point_plane",
@@ -49,7 +50,7 @@ class AssemblyMeasureSummary(MeasureSummary):
         kind = self.kind.replace("_", " ")
         if self.kind == "difference":
             return " less ".join(self.of)
-        if len(self.of) == 2 and self.kind != "virtual_clearance":
+        if len(self.of) == 2 and self.kind not in ("virtual_clearance", "inspected_pattern"):
             return f"{kind} from {self.of[0]} to {self.of[1]}"
         return f"{kind} of {', '.join(self.of)}"
 

@@ -1,5 +1,6 @@
 """Measures of a scene: what each reads, and how it is shown."""
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 from tol3d.assembly.from_scene.bonus import sized_by
@@ -8,7 +9,12 @@ from tol3d.assembly.grammar.drawing import Drawing
 from tol3d.assembly.grammar.feature_name import part_of
 from tol3d.assembly.grammar.features.nominal_frame import unit as unit_vector
 from tol3d.assembly.grammar.measure_checks import dimension_of
-from tol3d.assembly.grammar.measures import AssemblyMeasureSpec, DifferenceSpec, InspectedPositionSpec
+from tol3d.assembly.grammar.measures import (
+    AssemblyMeasureSpec,
+    DifferenceSpec,
+    InspectedPatternSpec,
+    InspectedPositionSpec,
+)
 from tol3d.assembly.grammar.measures.assembly_measure import FeatureMeasureSpec
 from tol3d.assembly.model import Measured
 from tol3d.assembly.model.bonus import MaterialBonus
@@ -17,7 +23,7 @@ from tol3d.scene import Scene
 from tol3d.system.measure import Worse
 from tol3d.system.plain import UNITS, PlainMeasure, measures_of
 
-WORSE_HIGH: frozenset[MeasureKind] = frozenset(("position", "orientation", "flatness"))
+WORSE_HIGH: frozenset[MeasureKind] = frozenset(("position", "orientation", "flatness", "pattern"))
 
 
 def measured_of(scene: Scene, frames: DatumFrames) -> dict[str, Measured]:
@@ -34,14 +40,19 @@ def _measured(scene: Scene, spec: AssemblyMeasureSpec, frames: DatumFrames) -> M
     direction = None if spec.along is None else unit_vector(spec.along)
     after = -1 if spec.after is None else list(scene.moves).index(spec.after)
     frame = frames.named(part_of(features[0]), spec.named_datums)
-    return Measured(spec.reads, features, direction, frame, after, _bonus(scene, spec), rocking=spec.rocking)
+    bonuses = _bonuses(scene, spec, features)
+    gauge = spec.free if isinstance(spec, InspectedPatternSpec) else "shift"
+    return Measured(spec.reads, features, direction, frame, after, bonuses, gauge, rocking=spec.rocking)
 
 
-def _bonus(scene: Scene, spec: FeatureMeasureSpec) -> MaterialBonus | None:
-    if not isinstance(spec, InspectedPositionSpec) or spec.modifier is None:
-        return None
-    bonus = sized_by(scene, Drawing(scene), spec.of, spec.modifier).bonus
-    return MaterialBonus(bonus.low, bonus.high, bonus.grows)
+def _bonuses(scene: Scene, spec: FeatureMeasureSpec, features: Sequence[str]) -> tuple[MaterialBonus, ...]:
+    """Of each feature; none where no modifier asks for them."""
+    modifier = spec.modifier if isinstance(spec, InspectedPositionSpec | InspectedPatternSpec) else None
+    if modifier is None:
+        return ()
+    drawing = Drawing(scene)
+    found = (sized_by(scene, drawing, own, modifier).bonus for own in features)
+    return tuple(MaterialBonus(own.low, own.high, own.grows) for own in found)
 
 
 def _named(scene: Scene, name: str) -> AssemblyMeasureSpec:

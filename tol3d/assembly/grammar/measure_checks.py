@@ -12,6 +12,7 @@ from tol3d.assembly.grammar.measures import (
     AssemblyMeasureSpec,
     DifferenceSpec,
     InspectedFlatnessSpec,
+    InspectedPatternSpec,
     VirtualClearanceSpec,
 )
 from tol3d.assembly.grammar.parts import SolidSpec
@@ -22,6 +23,7 @@ from tol3d.units import Dimension, expectation
 Problem = tuple[KeyPath, str]
 
 FLAT = 1e-6  # of the points' extent, or mm
+PARALLEL = 1e-4  # deg
 LEANING = 5.0  # deg; holes drawn at more do not take one bolt, and their circles would be ellipses by 0.4 %
 
 
@@ -83,6 +85,26 @@ def unfit_holes(scene: Scene) -> Iterator[Problem]:
                 yield path, f"expected a hole, got {own!r}, which is a pin; a bolt passes through holes"
             elif spec.holes[0] in axes and (lean := _between(axes[spec.holes[0]], axes[own])) > LEANING:
                 yield path, f"expected a hole along {spec.holes[0]!r}, got {own!r} at {lean:.4g} deg to it"
+
+
+def unfit_patterns(scene: Scene) -> Iterator[Problem]:
+    """Features of a pattern that are not parallel, or all on one axis about which the gauge would turn freely."""
+    drawing = Drawing(scene)
+    for name, spec in scene.measures.items():
+        if not isinstance(spec, InspectedPatternSpec) or not set(spec.features) <= set(drawing.names):
+            continue
+        frames = [drawing.kind(own).frame for own in spec.features]
+        axis, start = frames[0][:3, 2], frames[0][:3, 3]
+        for k, (own, frame) in enumerate(zip(spec.features, frames, strict=True)):
+            if drawing.kind(own).kind in ("cylinder", "axis") and _between(axis, frame[:3, 2]) > PARALLEL:
+                lean = _between(axis, frame[:3, 2])
+                words = (
+                    f"expected an axis parallel to that of {spec.features[0]!r}, got {own!r} at {lean:.4g} deg to it"
+                )
+                yield ("measures", name, "of", k), words
+        far = max(float(np.linalg.norm(np.cross(frame[:3, 3] - start, axis))) for frame in frames)
+        if spec.free == "shift_and_turn" and far < FLAT:
+            yield ("measures", name, "free"), "expected shift, for all features lie on one axis; got shift_and_turn"
 
 
 def _between(first: NDArray[np.float64], second: NDArray[np.float64]) -> float:

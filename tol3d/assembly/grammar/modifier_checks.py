@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 
 from tol3d.assembly.grammar.drawing import Drawing, Stated
-from tol3d.assembly.grammar.measures import InspectedPositionSpec
+from tol3d.assembly.grammar.measures import InspectedPatternSpec, InspectedPositionSpec
 from tol3d.assembly.grammar.tolerances import LocationSpec, OrientationSpec, SizeSpec
 from tol3d.assembly.grammar.tolerances.modified import Modified
 from tol3d.scene import Scene
@@ -20,8 +20,9 @@ def unfit_modifiers(scene: Scene) -> Iterator[Problem]:
             yield from _of_tolerance(drawing, own, own.spec)
     cylinders = {name for name in drawing.names if drawing.kind(name).kind == "cylinder"}  # others are said already
     for name, spec in scene.measures.items():
-        if isinstance(spec, InspectedPositionSpec) and spec.modifier is not None and spec.of in cylinders:
-            yield from _unsized(drawing, spec.of, ("measures", name, "modifier"), spec.modifier)
+        if isinstance(spec, InspectedPositionSpec | InspectedPatternSpec) and spec.modifier is not None:
+            for own in (feature for _, feature, _ in spec.named() if feature in cylinders):
+                yield from _unsized(drawing, own, ("measures", name, "modifier"), spec.modifier)
 
 
 def _of_tolerance(drawing: Drawing, own: Stated, spec: Modified) -> Iterator[Problem]:

@@ -20,6 +20,7 @@ MeasureKind = Literal[
     "orientation",
     "flatness",
     "virtual_clearance",
+    "pattern",
     "contact_angle",
     "surface_gap",
 ]
@@ -42,6 +43,8 @@ MeasureKind = Literal[
   nominally on a plane with normal `direction`, in the part's frame.
 - virtual_clearance: diameter of the largest straight bolt through all holes, along the nominal axis of the first as its
   part or `frame` carries it.
+- pattern: the largest of several positions (less bonuses) at the best pose of their nominal places, which may shift
+  across the nominal axis of the first, or also turn about it.
 - surface_gap: how far the surfaces of two features are apart, at least one of them round: as contacts of a touch ask,
   0 where they touch; negative where they overlap.
 - contact_angle: between the normal of such a contact, from the first feature's axis, centre or plane towards the
@@ -51,6 +54,9 @@ MeasureKind = Literal[
 
 Rocking = Literal["least", "middle", "largest"]
 """Where a part may rock on its contacts: which value over its ends is read, middle of both."""
+
+
+Gauge = Literal["shift", "shift_and_turn"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,7 +70,8 @@ class Measured:
         frame: name of a datum frame of that part in which the direction is fixed, or to which a position or an
             orientation is inspected; "" for the part's frame.
         after: index of the move after which it is read; -1 for the end.
-        bonus: of a position, what the feature's size takes from it.
+        bonuses: of a position and a pattern, what the size of each feature takes from it; () for nothing.
+        gauge: how a pattern's gauge finds its best pose in the frame.
         minus: a second one that is subtracted in the same trial.
         rocking: which value it has where a part may rock on its contacts; None where it then has none. Not of `minus`.
     """
@@ -74,6 +81,7 @@ class Measured:
     direction: Array | None = None
     frame: str = ""
     after: int = -1
-    bonus: MaterialBonus | None = None
+    bonuses: tuple[MaterialBonus, ...] = ()
+    gauge: Gauge = "shift"
     minus: "Measured | None" = None
     rocking: Rocking | None = None

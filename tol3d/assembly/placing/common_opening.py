@@ -118,6 +118,46 @@ def decided(discs: Any, chosen: Any, count: int, i: int, found: Any, deciding: A
     return best
 
 
+@part
+def opened(discs: Any, i: int, found: Any, deciding: Any, rooms: Any) -> Any:
+    """The least violation of all discs: its point (2,) in `found`, and in `deciding` (3,) which decide; -1 for none."""
+    radii = discs[2]
+    chosen, own_rooms = rooms
+    smallest = 0
+    for k in range(1, radii.shape[0]):
+        if radii[k, i] < radii[smallest, i]:
+            smallest = k
+    found[0], found[1] = discs[0][smallest, i], discs[1][smallest, i]
+    deciding[0], deciding[1], deciding[2] = smallest, -1, -1
+    least, largest = -radii[smallest, i], 0.0
+    for _ in range(STEPS):
+        worst, largest = 0, -np.inf
+        for k in range(radii.shape[0]):
+            own = violated(discs, k, i, found)
+            if own > largest:
+                worst, largest = k, own
+        if not largest > least + MET:
+            break
+        count = 0
+        for c in range(3):
+            if deciding[c] >= 0:
+                chosen[count] = deciding[c]
+                count += 1
+        chosen[count] = worst
+        own = decided(discs, chosen, count + 1, i, found, deciding, own_rooms)
+        if not own > least:
+            largest = own  # by rounding: nothing is left to gain
+            break
+        least = own
+    return largest
+
+
+@part
+def new_rooms() -> Any:
+    """What `opened` works with."""
+    return np.empty(4, dtype=np.int64), (np.empty(2), np.empty((2, 2)))
+
+
 @kernel(arrays="float64[:,::1], float64[:,::1], float64[:,::1], float64[::1], float64[:,::1]")
 def common_openings(x: Any, y: Any, radii: Any, openings: Any, centres: Any) -> None:
     """Diameters of the largest circles in all discs; below 0 where they have no point in common.
@@ -128,35 +168,7 @@ def common_openings(x: Any, y: Any, radii: Any, openings: Any, centres: Any) -> 
         openings: found (n,) [mm].
         centres: of the circles, found (2, n) [mm].
     """
-    discs = (x, y, radii)
-    chosen, deciding = np.empty(4, dtype=np.int64), np.empty(3, dtype=np.int64)
-    rooms, found = (np.empty(2), np.empty((2, 2))), np.empty(2)
+    discs, rooms, deciding, found = (x, y, radii), new_rooms(), np.empty(3, dtype=np.int64), np.empty(2)
     for i in range(openings.shape[0]):
-        smallest = 0
-        for k in range(1, radii.shape[0]):
-            if radii[k, i] < radii[smallest, i]:
-                smallest = k
-        found[0], found[1] = x[smallest, i], y[smallest, i]
-        deciding[0], deciding[1], deciding[2] = smallest, -1, -1
-        least, largest = -radii[smallest, i], 0.0
-        for _ in range(STEPS):
-            worst, largest = 0, -np.inf
-            for k in range(radii.shape[0]):
-                own = violated(discs, k, i, found)
-                if own > largest:
-                    worst, largest = k, own
-            if not largest > least + MET:
-                break
-            count = 0
-            for c in range(3):
-                if deciding[c] >= 0:
-                    chosen[count] = deciding[c]
-                    count += 1
-            chosen[count] = worst
-            own = decided(discs, chosen, count + 1, i, found, deciding, rooms)
-            if not own > least:
-                largest = own  # by rounding: nothing is left to gain
-                break
-            least = own
-        openings[i] = -2.0 * largest
+        openings[i] = -2.0 * opened(discs, i, found, deciding, rooms)
         centres[0, i], centres[1, i] = found[0], found[1]

@@ -9,8 +9,9 @@ from numpy.typing import NDArray
 
 from tol3d.assembly.model import Assembly, Axis, Measured, Plane, RoundPlane, Shape
 from tol3d.assembly.model.measures import MeasureKind
-from tol3d.assembly.placing.actual_feature import ActualFeature, actual_size, total
+from tol3d.assembly.placing.actual_feature import ActualFeature, actual_size
 from tol3d.assembly.placing.flatness import widths
+from tol3d.assembly.placing.patterns import bonuses, pattern
 from tol3d.assembly.placing.poses import column, cross, dot, rotated
 from tol3d.assembly.placing.surfaces import PARALLEL, common_normal, surface_gap
 from tol3d.assembly.placing.virtual_clearance import virtual_clearance
@@ -127,11 +128,7 @@ def _position(measured: Measured, world: World) -> Array:
 
 def _bonus(measured: Measured, world: World) -> Array:
     """What the size of the measured feature adds to its zone (n,) or (1,) [mm]."""
-    own = measured.bonus
-    if own is None:
-        return np.zeros(1)
-    size = total(world.assembly.features[measured.features[0]].size_by, 1, world.columns)[0]
-    return np.clip(size - own.low if own.grows else own.high - size, 0.0, own.high - own.low)
+    return bonuses(measured, world)[0] if measured.bonuses else np.zeros(1)
 
 
 def _ends(shape: Shape) -> Array:
@@ -186,6 +183,7 @@ READINGS: Mapping[MeasureKind, Callable[[Measured, World], Array]] = {
     "orientation": _orientation,
     "flatness": _flatness,
     "virtual_clearance": virtual_clearance,
+    "pattern": pattern,
     "surface_gap": _surface_gap,
     "contact_angle": _contact_angle,
 }

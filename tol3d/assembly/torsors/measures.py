@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from tol3d.assembly.model import Axis, Measured, Plane, Point, RoundPlane
 from tol3d.assembly.model.bonus import MaterialBonus
 from tol3d.assembly.torsors.columns import without_rounding
-from tol3d.assembly.torsors.common_opening import CommonOpening
+from tol3d.assembly.torsors.common_opening import CommonOpening, TurnedOpening
 from tol3d.assembly.torsors.flatness import balances
 from tol3d.assembly.torsors.surfaces import Surfaces
 from tol3d.assembly.torsors.terms import Clipped, Width
@@ -169,7 +169,7 @@ def _position(measured: Measured, world: World) -> Array:
         case Plane():
             directions = rotation[:, 2:].T
     row: Array = 2.0 * world.columns.largest(_at_ends(measured, world, directions))
-    return row if measured.bonus is None else row - _clipped(measured.bonus, measured.features[0], world)
+    return row - _clipped(measured.bonuses[0], measured.features[0], world) if measured.bonuses else row
 
 
 def _clipped(bonus: MaterialBonus, feature: str, world: World) -> Array:
@@ -258,6 +258,26 @@ def _contact_angle(measured: Measured, world: World) -> Array:
     return length if along > 0.0 else _constant(world, math.pi) - length
 
 
+def _pattern(measured: Measured, world: World) -> Array:
+    """See Measured; nominal places turn about their middle. Ends that deviate alike are one place."""
+    features = [world.assembly.features[name] for name in measured.features]
+    sides = features[0].frame[:3, :2].T
+    places = np.array([sides @ feature.frame[:3, 3] for feature in features])
+    bonuses = [_clipped(own, name, world) for own, name in zip(measured.bonuses, measured.features, strict=False)]
+    forms: list[Array] = []
+    arms: list[Array] = []
+    for k, (name, (x, y)) in enumerate(zip(measured.features, places - places.mean(axis=0), strict=True)):
+        radius = 0.5 * bonuses[k] if bonuses else _constant(world, 0.0)
+        ends = without_rounding(_at_ends(replace(measured, features=(name,)), world, sides))
+        for own in ends[: 1 if np.array_equal(ends[0], ends[-1]) else None]:
+            forms += [*own, radius]
+            arms.append(np.array([-y, x]))
+    rows = np.array(forms)
+    term = CommonOpening(rows) if measured.gauge == "shift" else TurnedOpening(rows, np.array(arms))
+    row: Array = -world.columns.made_by(term)[0]
+    return row
+
+
 _READINGS = {
     "distance": _distance,
     "gap": _gap,
@@ -268,6 +288,7 @@ _READINGS = {
     "orientation": _orientation,
     "flatness": _flatness,
     "virtual_clearance": _virtual_clearance,
+    "pattern": _pattern,
     "surface_gap": _surface_gap,
     "contact_angle": _contact_angle,
 }

@@ -10,6 +10,7 @@ from tol3d.assembly.grammar.measures.inspected import (
     InspectedOrientationSpec,
     InspectedPositionSpec,
 )
+from tol3d.assembly.grammar.measures.inspected_pattern import InspectedPatternSpec
 from tol3d.assembly.grammar.measures.inspected_size import InspectedSizeSpec
 from tol3d.assembly.grammar.measures.virtual_clearance import VirtualClearanceSpec
 
@@ -23,6 +24,7 @@ __all__ = [
     "GapSpec",
     "InspectedFlatnessSpec",
     "InspectedOrientationSpec",
+    "InspectedPatternSpec",
     "InspectedPositionSpec",
     "InspectedSizeSpec",
     "PointPlaneSpec",

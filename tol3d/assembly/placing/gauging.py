@@ -1,0 +1,149 @@
+"""A pattern over a gauge that may shift and turn: how far its worst hole is off, at the best pose, trial by trial.
+
+For each turn the shift is that of a common opening. What is left is a function of the turn alone, the least of convex
+ones, whose slope follows from the discs that decide: turns are bracketed by the signs of slopes, and the next one is
+where the tangents at both ends meet, or the middle where they gain less than half.
+"""
+
+from math import cos, sin, sqrt
+from typing import Any, Final
+
+import numpy as np
+
+from tol3d.assembly.placing.common_opening import new_rooms, opened
+from tol3d.numerics.compiled import kernel, part
+
+MET: Final = 1e-12
+"""mm, under the tangents of both ends of the bracket."""
+LEAST: Final = 1e-16
+"""rad; a bracket that is no wider is done."""
+WIDEST: Final = 0.5
+"""rad, where the search for a bracket ends."""
+TURNS: Final = 200
+"""In practice 5 to 15."""
+
+
+@part
+def slope_of(discs: Any, deciding: Any, found: Any, rises: Any, pulls: Any) -> Any:
+    """Change of the least violation with the turn.
+
+    Those that decide pull the point with weights that balance; each violation grows as its centre moves away.
+
+    Args:
+        discs: one trial.
+        deciding: which decide (3,).
+        found: the point (2,).
+        rises: how the centres move with the turn (discs, 2).
+        pulls: room for directions and weights (3, 3).
+    """
+    count = 0
+    for c in range(3):
+        k = deciding[c]
+        if k < 0:
+            continue
+        a, b = found[0] - discs[0][k, 0], found[1] - discs[1][k, 0]
+        length = sqrt(a * a + b * b)
+        if length == 0.0:
+            return 0.0
+        pulls[count, 0], pulls[count, 1] = a / length, b / length
+        count += 1
+    if count < 2:
+        return 0.0
+    pulls[0, 2], pulls[1, 2] = 0.5, 0.5
+    if count == 3:
+        total = 0.0
+        for c in range(3):
+            d, e = (c + 1) % 3, (c + 2) % 3
+            pulls[c, 2] = pulls[d, 0] * pulls[e, 1] - pulls[d, 1] * pulls[e, 0]
+            total += pulls[c, 2]
+        if total == 0.0:
+            return 0.0
+        for c in range(3):
+            pulls[c, 2] /= total
+    slope, count = 0.0, 0
+    for c in range(3):
+        k = deciding[c]
+        if k >= 0:
+            slope -= pulls[count, 2] * (pulls[count, 0] * rises[k, 0] + pulls[count, 1] * rises[k, 1])
+            count += 1
+    return slope
+
+
+@part
+def turned(pattern: Any, i: int, turn: float, rooms: Any) -> Any:
+    """The least violation with the gauge turned, and its slope."""
+    x, y, radii, nominal = pattern
+    discs, rises, found, deciding, pulls, others = rooms
+    c, s = cos(turn), sin(turn)
+    for k in range(x.shape[0]):
+        p, q = nominal[k, 0], nominal[k, 1]
+        discs[0][k, 0], discs[1][k, 0] = x[k, i] - (c * p - s * q), y[k, i] - (s * p + c * q)
+        discs[2][k, 0] = radii[k, i]
+        rises[k, 0], rises[k, 1] = s * p + c * q, s * q - c * p
+    least = opened(discs, 0, found, deciding, others)
+    return least, slope_of(discs, deciding, found, rises, pulls)
+
+
+@part
+def gauged(pattern: Any, i: int, step: float, rooms: Any) -> Any:
+    """The least violation over all turns."""
+    least, slope = turned(pattern, i, 0.0, rooms)
+    if slope == 0.0:
+        return least
+    near, near_value, near_slope = 0.0, least, slope
+    far = -step if slope > 0.0 else step
+    far_value, far_slope = turned(pattern, i, far, rooms)
+    while far_slope * slope > 0.0 and abs(far) < WIDEST:
+        near, near_value, near_slope = far, far_value, far_slope
+        far = 2.0 * far
+        far_value, far_slope = turned(pattern, i, far, rooms)
+    least = min(least, near_value, far_value)
+    for _ in range(TURNS):
+        width = far - near
+        if far_slope == 0.0 or abs(width) <= LEAST:
+            break
+        meet = (far_value - near_value - far_slope * width) / (near_slope - far_slope)  # from `near`
+        if not near_value + near_slope * meet < least - MET:
+            break
+        if not 0.0 < meet / width < 1.0:
+            meet = 0.5 * width
+        middle = near + meet
+        value, slope = turned(pattern, i, middle, rooms)
+        least = min(least, value)
+        if slope * near_slope > 0.0:
+            near, near_value, near_slope = middle, value, slope
+        else:
+            far, far_value, far_slope = middle, value, slope
+        if abs(far - near) > 0.5 * abs(width):
+            middle = 0.5 * (near + far)
+            value, slope = turned(pattern, i, middle, rooms)
+            least = min(least, value)
+            if slope * near_slope > 0.0:
+                near, near_value, near_slope = middle, value, slope
+            else:
+                far, far_value, far_slope = middle, value, slope
+    return least
+
+
+@kernel(arrays="float64[:,::1], float64[:,::1], float64[:,::1], float64[:,::1], float64[::1]")
+def gauged_patterns(x: Any, y: Any, radii: Any, nominal: Any, worst: Any) -> None:
+    """How far the worst place lies outside of its disc, over the best shift and turn of the nominal places.
+
+    Args:
+        x, y: places as they are (places, n) [mm].
+        radii: of the discs about the nominal ones (places, n) [mm].
+        nominal: places (places, 2), about their middle [mm].
+        worst: found (n,) [mm]; 0 or less where each is within its disc.
+    """
+    size = x.shape[0]
+    reach = 0.0
+    for k in range(size):
+        reach = max(reach, sqrt(nominal[k, 0] ** 2 + nominal[k, 1] ** 2))
+    discs = (np.empty((size, 1)), np.empty((size, 1)), np.empty((size, 1)))
+    rooms = (discs, np.empty((size, 2)), np.empty(2), np.empty(3, dtype=np.int64), np.empty((3, 3)), new_rooms())
+    pattern = (x, y, radii, nominal)
+    for i in range(worst.shape[0]):
+        off = 0.0
+        for k in range(size):
+            off = max(off, abs(x[k, i] - nominal[k, 0]), abs(y[k, i] - nominal[k, 1]))
+        worst[i] = gauged(pattern, i, 0.25 * off / reach + LEAST, rooms)
