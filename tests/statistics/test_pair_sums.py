@@ -1,6 +1,7 @@
 """Correlations gathered block by block are numpy's of the whole, pair by pair, whatever values trials lack."""
 
 import itertools
+from collections.abc import Sequence
 
 import numpy as np
 import pytest
@@ -9,7 +10,7 @@ from scipy import stats
 
 from tol3d.statistics import PairSums
 from tol3d.statistics.lazy import quick_products
-from tol3d.statistics.variance_shares import Products, plain_products
+from tol3d.statistics.variance_shares import Products, RegressorSums, plain_products
 
 Array = NDArray[np.float64]
 
@@ -129,3 +130,20 @@ def test_the_interval_holds_the_truth_in_95_of_100_samples() -> None:
         low, high = PairSums.of([x, truth * x + 0.8 * noise]).interval()
         held += bool(low[0, 1] <= truth <= high[0, 1])
     assert abs(held / samples - 0.95) < 5 * np.sqrt(0.95 * 0.05 / samples)
+
+
+@pytest.mark.parametrize("products", [plain_products, quick_products()], ids=["plain", "compiled"])
+@pytest.mark.parametrize("groups", [[range(6)], [range(1, 3), range(3, 6), range(1)], [[k] for k in range(6)]])
+def test_sums_that_come_of_a_regression_are_those_of_the_columns_to_the_last_bit(
+    groups: list[Sequence[int]], products: Products
+) -> None:
+    """Targets of one regression have their co-moments beside those of its regressors; pairs across them have not."""
+    columns = mixed(11)
+    features = np.random.default_rng(12).normal(size=(3, columns.shape[1]))
+    known = [RegressorSums.with_targets(features, columns[[*own]], products)[1] for own in groups]
+    ordered = [k for own in groups for k in own]
+    found = PairSums.of([*columns[ordered]], products, known).of_columns([ordered.index(k) for k in range(6)])
+    expected = PairSums.of([*columns], products)
+    for mine, its in zip(vars(found).values(), vars(expected).values(), strict=True):
+        np.testing.assert_array_equal(mine, its)
+    np.testing.assert_allclose(found.correlations, np.corrcoef(columns), rtol=0, atol=ROUNDING)

@@ -9,7 +9,7 @@ import scipy
 from numpy.typing import NDArray
 
 from tol3d.statistics.limits import CONFIDENCE
-from tol3d.statistics.variance_shares import CONSTANT_RTOL, Products, plain_products
+from tol3d.statistics.variance_shares import CONSTANT_RTOL, Products, TargetSums, add_products, plain_products
 
 Array = NDArray[np.float64]
 Counts = NDArray[np.int64]
@@ -35,13 +35,19 @@ class PairSums:
     comoments: Array
 
     @classmethod
-    def of(cls, columns: Sequence[Array], products: Products = plain_products) -> Self:
+    def of(
+        cls, columns: Sequence[Array], products: Products = plain_products, known: Sequence[TargetSums] = ()
+    ) -> Self:
         """The sums of one block.
 
         Args:
             columns: each (trials,), NaN where a trial has no value.
             products: what sums the products of all pairs of rows (rows, trials) over the trials, (rows, rows).
+            known: sums of the first columns, of the next ones ..., of all of them, by the same products; without any
+                they are worked out. No trial lacks a value then.
         """
+        if known:
+            return cls._of_known(columns, products, known)
         failing = [np.isnan(column) for column in columns if np.isnan(np.min(column, initial=0.0))]
         if not failing:
             return cls._of_whole(np.stack(columns), products)
@@ -53,12 +59,35 @@ class PairSums:
         return found.merge(cls._of_pairs(others, products)) if others.size else found
 
     @classmethod
+    def _of_known(cls, columns: Sequence[Array], products: Products, known: Sequence[TargetSums]) -> Self:
+        """Of trials that have all values, where the sums within groups of columns are known."""
+        if len(known) == 1:
+            return cls._of_sums(known[0])
+        if products is not plain_products:  # compiled ones are quicker than what could be left out
+            return cls._of_whole(np.stack(columns), products)
+
+        def between_groups(rows: Array) -> Array:
+            sums = np.empty((len(rows), len(rows)))
+            ends = np.cumsum([len(own.means) for own in known]).tolist()
+            for own, end in zip(known, ends, strict=True):
+                sums[end - len(own.means) : end, end - len(own.means) : end] = own.comoments
+            add_products(sums, rows, [end for own, end in zip(known, ends, strict=True) for _ in own.means])
+            return sums
+
+        return cls._of_whole(np.stack(columns), between_groups)
+
+    @classmethod
+    def _of_sums(cls, own: TargetSums) -> Self:
+        size, squares = len(own.means), np.diagonal(own.comoments)
+        counts = np.full((size, size), own.count, dtype=np.int64)
+        return cls(counts, np.tile(own.means[:, None], size), np.tile(squares[:, None], size), own.comoments)
+
+    @classmethod
     def _of_whole(cls, rows: Array, products: Products) -> Self:
         """Of trials that have all values; the rows (columns, trials) are centred in place."""
         size, count = rows.shape
-        counts = np.full((size, size), count, dtype=np.int64)
         if count == 0:
-            return cls(counts, *(np.zeros((size, size)) for _ in range(3)))
+            return cls(np.zeros((size, size), dtype=np.int64), *(np.zeros((size, size)) for _ in range(3)))
         # from the first value, so that a constant column has no spread at all, not a rounding error's
         first = rows[:, 0].copy()
         rows -= first[:, None]
@@ -66,8 +95,7 @@ class PairSums:
         rows -= means[:, None]
         comoments = products(rows)
         means += first
-        squares = np.diagonal(comoments)
-        return cls(counts, np.tile(means[:, None], size), np.tile(squares[:, None], size), comoments)
+        return cls._of_sums(TargetSums(count, means, comoments))
 
     @classmethod
     def _of_pairs(cls, rows: Array, products: Products) -> Self:
@@ -97,6 +125,11 @@ class PairSums:
             squares[i, j], squares[j, i] = pair.squares[:, 0]
             comoments[i, j] = comoments[j, i] = pair.comoments[0, 1]
         return cls(counts, means, squares, comoments)
+
+    def of_columns(self, which: Sequence[int]) -> Self:
+        """The sums of some of the columns, in their order."""
+        own = np.ix_(which, which)
+        return type(self)(self.counts[own], self.means[own], self.squares[own], self.comoments[own])
 
     def merge(self, other: Self) -> Self:
         """The sums of both blocks together; Pebay, SAND2008-6212, 2008 (covariances)."""

@@ -1,7 +1,7 @@
 """Which group of features a measure's variance comes from, by least squares on the trials."""
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Self
 
@@ -23,9 +23,33 @@ def plain_products(rows: Array) -> Array:
     By numpy alone: a BLAS product's bits would depend on threads and shapes.
     """
     sums = np.empty((len(rows), len(rows)))
-    for i, row in enumerate(rows):
-        sums[i, i:] = sums[i:, i] = np.einsum("j,kj->k", row, rows[i:])
+    add_products(sums, rows, range(len(rows)))
     return sums
+
+
+def add_products(sums: Array, rows: Array, starts: Sequence[int]) -> None:
+    """Write the sums of products of pairs of rows, each with those from its start on; a pair's bits are its own."""
+    for i, (row, start) in enumerate(zip(rows, starts, strict=True)):
+        sums[i, start:] = sums[start:, i] = np.einsum("j,kj->k", row, rows[start:])
+
+
+@dataclass(frozen=True, eq=False)
+class TargetSums:
+    """Means and co-moments of several targets over the same trials, all of which have a value.
+
+    Args:
+        count: number of trials.
+        means: (targets,).
+        comoments: (targets, targets).
+    """
+
+    count: int
+    means: Array
+    comoments: Array
+
+    def of(self, which: Sequence[int]) -> "TargetSums":
+        """Those of some of the targets, in their order."""
+        return TargetSums(self.count, self.means[[*which]], self.comoments[np.ix_(which, which)])
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,9 +84,15 @@ class RegressorSums:
             features, targets: as said.
             products: what sums the products of all pairs of rows (rows, trials) over the trials, (rows, rows).
         """
+        return cls.with_targets(features, targets, products)[0]
+
+    @classmethod
+    def with_targets(cls, features: Array, targets: Array, products: Products) -> tuple[tuple[Self, ...], TargetSums]:
+        """The same, and the sums of the targets among each other, which come of the same products."""
         count, width = targets.shape[1], len(features) + 1
         if count == 0:
-            return tuple(cls(0, np.zeros(width), np.zeros((width, width))) for _ in targets)
+            none = TargetSums(0, np.zeros(len(targets)), np.zeros((len(targets), len(targets))))
+            return tuple(cls(0, np.zeros(width), np.zeros((width, width))) for _ in targets), none
         # from the first value, so that a constant column has no spread at all, not a rounding error's;
         # a row each, for the order of a sum, and so its bits, follow the layout in memory
         rows = np.empty((len(features) + len(targets), count))
@@ -74,7 +104,8 @@ class RegressorSums:
         comoments = products(rows)
         means += first
         each = [[*range(width - 1), k] for k in range(width - 1, len(rows))]
-        return tuple(cls(count, means[own], comoments[np.ix_(own, own)]) for own in each)
+        among = TargetSums(count, means[width - 1 :], comoments[width - 1 :, width - 1 :])
+        return tuple(cls(count, means[own], comoments[np.ix_(own, own)]) for own in each), among
 
     def merge(self, other: Self) -> Self:
         """The sums of both blocks together; Pebay, SAND2008-6212, 2008 (covariances)."""

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from tol3d.runs.summary import joint as summary
 from tol3d.runs.summary.values import Road, made
 from tol3d.statistics import PairSums, Proportion
-from tol3d.statistics.variance_shares import Products
+from tol3d.statistics.variance_shares import Products, TargetSums
 from tol3d.study.replicated import Rows, interval_of_replicates
 from tol3d.study.sample import finite, in_unit, listed
 from tol3d.study.simulation import Simulation
@@ -20,6 +20,8 @@ from tol3d.system.outcome import ROADS, Mask, Outcome
 Array = NDArray[np.float64]
 Outcomes = Mapping[tuple[str, str], Outcome]
 Key = TypeVar("Key")
+Among = Mapping[tuple[tuple[str, str], ...], TargetSums]
+"""Sums of columns among each other, by their roads and names."""
 
 MOST_CORRELATED = 64  # measures; the products of all pairs grow as the square, 64 take a microsecond a trial
 
@@ -51,7 +53,9 @@ class JointTally:
     pairs: Mapping[str, PairSums]
 
     @classmethod
-    def of(cls, measures: Sequence[Measure], outcomes: Outcomes, rows: Rows, products: Products) -> "JointTally":
+    def of(
+        cls, measures: Sequence[Measure], outcomes: Outcomes, rows: Rows, products: Products, among: Among
+    ) -> "JointTally":
         """Of one block.
 
         Args:
@@ -59,6 +63,7 @@ class JointTally:
             outcomes: by road and name, of each road that was gone; of every scalar measure and every limited curve.
             rows: which trials belong to each replicate; empty for independent trials.
             products: see PairSums.of.
+            among: what is known already of columns that no trial lacks.
         """
         roads = [road for road in ROADS if any(own == road for own, _ in outcomes)]
         judged, paired = limited(measures), correlated(measures)
@@ -66,7 +71,7 @@ class JointTally:
         return cls(
             {road: _share(own) for road, own in good.items()},
             {road: {replicate: _share(own[part]) for replicate, part in rows.items()} for road, own in good.items()},
-            {road: PairSums.of(_values(paired, road, outcomes), products) for road in roads} if paired else {},
+            {road: _pairs(paired, road, outcomes, products, among) for road in roads} if paired else {},
         )
 
     def merge(self, other: "JointTally") -> "JointTally":
@@ -101,8 +106,19 @@ def _within(measure: Measure, outcome: Outcome) -> Mask:
     return inside if inside.ndim == 1 else np.asarray(inside.all(axis=1))
 
 
-def _values(measures: Sequence[Measure], road: str, outcomes: Outcomes) -> list[Array]:
-    return [outcomes[road, measure.name].values for measure in measures]
+def _pairs(measures: Sequence[Measure], road: str, outcomes: Outcomes, products: Products, among: Among) -> PairSums:
+    """Sums of all pairs of measures on a road: those that are known, where no trial lacks any, and the others."""
+    names = [measure.name for measure in measures]
+    groups, ordered = [], list[str]()
+    for keys, own in among.items():
+        which = [k for k, (its_road, name) in enumerate(keys) if its_road == road and name in names]
+        if which:
+            groups.append(own.of(which))
+            ordered += [keys[k][1] for k in which]
+    if len(ordered) < len(names):
+        return PairSums.of([outcomes[road, name].values for name in names], products)
+    found = PairSums.of([outcomes[road, name].values for name in ordered], products, groups)
+    return found.of_columns([ordered.index(name) for name in names])
 
 
 def _share(good: Mask) -> Proportion:

@@ -9,11 +9,11 @@ from numpy.typing import NDArray
 from tol3d.statistics import Agreement, Grid, RegressorSums
 from tol3d.statistics.grid import BINS
 from tol3d.statistics.lazy import quick_products
-from tol3d.statistics.variance_shares import Products, plain_products
+from tol3d.statistics.variance_shares import Products, TargetSums, plain_products
 from tol3d.study.agreement.disagreement import Disagreement
 from tol3d.study.breakdowns import merged_terms, pooled_terms
 from tol3d.study.curve_tally import CurveTally
-from tol3d.study.joint import JointTally, limited
+from tol3d.study.joint import Among, JointTally, limited
 from tol3d.study.regressors import regressors
 from tol3d.study.replicated import rows_of_replicates
 from tol3d.study.sample import Sample
@@ -135,13 +135,13 @@ class _Block:
 
     def tally(
         self, measures: Sequence[Measure], grids: Mapping[str, Grid], found: Mapping[tuple[str, str], Outcome]
-    ) -> dict[str, MeasureTally]:
-        """Tallies of scalar measures, `found` their outcomes."""
+    ) -> tuple[dict[str, MeasureTally], Among]:
+        """Tallies of scalar measures, `found` their outcomes, and what is known of columns among each other."""
         statuses = self.simulation.system.statuses
         values = {key: own.values for key, own in found.items()}
         both = [measure.name for measure in measures if (GEOMETRIC, measure.name) in values]
         values |= {(DIFFERENCE, name): values[GEOMETRIC, name] - values[ANALYTIC, name] for name in both}
-        sums = self._sums(measures, values)
+        sums, among = self._sums(measures, values)
         tallies = {}
         for measure in measures:
             analytic, geometric = found[ANALYTIC, measure.name], found.get((GEOMETRIC, measure.name))
@@ -157,13 +157,17 @@ class _Block:
                 if geometric
                 else None,
             )
-        return tallies
+        return tallies, among
 
     def _sums(
         self, measures: Sequence[Measure], values: Mapping[tuple[str, str], Array]
-    ) -> dict[tuple[str, str], RegressorSums]:
-        """What each road's column of each measure has in common with its regressors, by road and name."""
+    ) -> tuple[dict[tuple[str, str], RegressorSums], Among]:
+        """What each road's column of each measure has in common with its regressors, by road and name.
+
+        And with those columns that have the same regressors and that no trial lacks.
+        """
         sums: dict[tuple[str, str], RegressorSums] = {}
+        among: dict[tuple[tuple[str, str], ...], TargetSums] = {}
         system = self.simulation.system
         keys = {measure.name: system.regressor_key(measure) for measure in measures}
         for key in dict.fromkeys(keys.values()):
@@ -173,7 +177,8 @@ class _Block:
             columns = {(r, m.name): values[r, m.name] for m in alike for r in roads if (r, m.name) in values}
             whole = {name: column for name, column in columns.items() if not np.isnan(np.min(column))}
             if whole:
-                each = RegressorSums.of_each(seen, np.stack(list(whole.values())), self.products)
+                columns_of_all = np.stack(list(whole.values()))
+                each, among[tuple(whole)] = RegressorSums.with_targets(seen, columns_of_all, self.products)
                 sums |= dict(zip(whole, each, strict=True))
             for measure in alike:  # what failed is the same trials on every road of a measure that lacks some
                 lacking = [(r, measure.name) for r in roads if (r, measure.name) in columns.keys() - whole.keys()]
@@ -183,7 +188,7 @@ class _Block:
                     sums |= dict(
                         zip(lacking, RegressorSums.of_each(seen[:, good], rows[:, good], self.products), strict=True)
                     )
-        return sums
+        return sums, among
 
 
 @dataclass(frozen=True)
@@ -218,14 +223,15 @@ class Tally:
         block = _Block(simulation, columns, rows, first)
         found = block.outcomes(scalars)
         together = found | block.outcomes(limited(curves))
+        tallies, among = block.tally(scalars, grids, found)
         return cls(
             trials,
             counted(statuses, columns.get("status"), trials),
             _unphysical(system, columns),
-            block.tally(scalars, grids, found),
+            tallies,
             {measure.name: CurveTally.of(statuses, measure, columns, grids) for measure in curves},
             pooled_terms(system.breakdowns, statuses, columns),
-            JointTally.of(system.measures, together, rows, block.products),
+            JointTally.of(system.measures, together, rows, block.products, among),
         )
 
     def merge(self, other: "Tally") -> "Tally":
