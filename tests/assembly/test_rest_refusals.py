@@ -15,6 +15,8 @@ PADS = SHIPPED[: SHIPPED.index("    relations:")] + SHIPPED[SHIPPED.index("    f
 AT, DIRECTION = "at: [0 mm, 0 mm, 5 mm]", "direction: [0, 0, -1]"
 FIRST = "      - {from: plate.bottom, to: table.pad 1}\n      - {from: plate.bottom, to: table.pad 2}\n"
 LAST = "      - {from: plate.bottom, to: table.pad 3}\n      - {from: plate.bottom, to: table.pad 4}\n"
+FORCE = PADS[PADS.index("    force:") : PADS.index("measures:")]
+SIX = 6 * "      - {from: plate.bottom, to: table.pad 1}\n"
 WALL = "{from: plate.middle, to: table.pad 1, along: [1, 0, 0]}"
 LOCATOR = "{kind: locator, of: plate on the pads, pair: '5', distribution: {kind: constant, value: 1 um}}"
 MOVE = "moves.plate on the pads"
@@ -33,6 +35,11 @@ WRONG: dict[str, tuple[Sequence[tuple[str, str]], str, str]] = {
         [("points_on: fixture", "points_on: part"), (LAST, f"{LAST}      - {WALL}\n")],
         MOVE,
         f"{PRESSED}: it shifts along x",
+    ),
+    "rocking where nothing rests": (
+        [("kind: rest ", "kind: six_plane "), (f"contacts:\n{FIRST}{LAST}", f"pairs:\n{SIX}"), (FORCE, "")],
+        "measures.gap at pad 1.rocking",
+        "expected none, for no part of this scene rests on one-sided contacts, got 'largest'",
     ),
     "another word for rocking": (
         [("rocking: largest", "rocking: biggest")],

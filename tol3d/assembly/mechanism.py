@@ -8,6 +8,7 @@ from tol3d.assembly.grammar.drawing_checks import contradicting_tolerances
 from tol3d.assembly.grammar.measure_checks import mixed_dimensions, unfit_holes, unfit_patterns, unfit_points
 from tol3d.assembly.grammar.modifier_checks import unfit_modifiers
 from tol3d.assembly.grammar.orientation_checks import unfit_orientations
+from tol3d.assembly.grammar.rest_checks import idle_rocking
 from tol3d.scene.grammar import specs_in
 from tol3d.system.mechanism import Mechanism
 
@@ -25,6 +26,7 @@ ASSEMBLY: Final = Mechanism(
         unfit_modifiers,
         mixed_dimensions,
         unfit_points,
+        idle_rocking,
         unfit_holes,
         unfit_patterns,
     ),

@@ -162,7 +162,7 @@ def shares(sums: RegressorSums, groups: Mapping[str, slice]) -> Shares:
 
 def column_sigmas(sums: RegressorSums) -> Array:
     """Standard deviation of each column, exactly 0 for one that holds rounding errors only."""
-    sigma: Array = np.sqrt(np.diagonal(sums.comoments) / sums.count)
+    sigma: Array = np.sqrt(np.diagonal(sums.comoments) / max(sums.count, 1))
     return np.where(sigma > CONSTANT_RTOL * np.abs(sums.means), sigma, 0.0)
 
 

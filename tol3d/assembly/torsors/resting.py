@@ -1,6 +1,6 @@
 """Rest: the torsor that goes farthest along a force, contacts kept from piercing each other."""
 
-from itertools import combinations
+from itertools import combinations, islice
 from math import comb
 
 import numpy as np
@@ -19,6 +19,8 @@ Array = NDArray[np.float64]
 
 MOST_SETS = 500_000
 """Sets of contacts that are tried, once: 36 contacts of three freedoms, or 20 of six, are far fewer."""
+TOGETHER = 10_000
+"""Sets at once."""
 NONE = 1e-9
 """Part of the force under which a contact carries nothing."""
 SLIGHTER = 1e-4
@@ -99,16 +101,17 @@ def corners_of(matrix: Array, pull: Array, wish: Array) -> list[Corner]:
     count = matrix.shape[1]
     if comb(len(matrix), count) > MOST_SETS:
         raise InputError(f"{len(matrix)} one-sided contacts for {count} freedoms: expected fewer on the analytic road")
-    found = []
-    for chosen in combinations(range(len(matrix)), count):
-        rows = matrix[list(chosen)]
-        if np.linalg.svd(rows, compute_uv=False)[-1] < ALIKE:
-            continue
-        inverse = np.asarray(np.linalg.inv(rows), dtype=np.float64)
-        loads, slight = np.asarray(-pull @ inverse), np.asarray(-wish @ inverse)
+    found: list[Corner] = []
+    sets = combinations(range(len(matrix)), count)
+    while some := list(islice(sets, TOGETHER)):
+        chosen = np.array(some)
+        chosen = chosen[np.linalg.svd(matrix[chosen], compute_uv=False)[:, -1] > ALIKE]
+        inverses = np.linalg.inv(matrix[chosen])
+        loads, slight = -pull @ inverses, -wish @ inverses
         loads[np.abs(loads) < NONE] = 0.0
-        if np.all(loads >= 0.0) and np.all((loads > 0.0) | (slight >= -NONE)):
-            found.append(Corner(chosen, -inverse, loads, slight))
+        carry = np.all(loads >= 0.0, axis=1) & np.all((loads > 0.0) | (slight >= -NONE), axis=1)
+        for k in np.flatnonzero(carry):
+            found.append(Corner(tuple(chosen[k].tolist()), -inverses[k], loads[k], slight[k]))
     return found
 
 
