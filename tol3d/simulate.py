@@ -47,6 +47,14 @@ A feature lies in the datum frame that its location is toleranced to, made of th
 place bodies in order, measures read them at the end or after a move. The torsors are worked out from the nominal
 geometry alone: they never see a pose.
 
+Gears in a machined housing are both, joined at the bores (`gearbox/`):
+
+    bores        where shafts lie nominally gearbox/nominal.py          housed
+    displaced    deviations -> axes         gearbox/bores.py            Bores.exactly     (and to first order)
+    both         placed, then meshed        gearbox/roads.py            GearboxRoad
+
+Each road of the assembly hands the axes of the trial to the same road of the gears, as deviations that nobody draws.
+
 `analyses/` asks what takes several studies (shims, compensation), `report/` and `cli/` show what is there. The analytic
 road gets the same deviations and the same positions as the geometric one and never sees a mesh, a pose or an engine. A
 trial is a pure function of (system, seed, trial index): `replay` makes any of them again.
