@@ -8,6 +8,8 @@ grammar/     the move, and what must not be counted twice
 nominal      where shafts lie in their bores, and the centre distances and azimuths that follow
 bores        the lines through bores, trial by trial, by either road of the assembly
 from_scene   the gears, the assembly and the bores between them, from one scene
+joined       both together: whose columns are whose, how bores follow from deviations
+roads        placed, then meshed
 counted      what would be counted twice
 closed_form  moments of a backlash by the tolerances of the bores too
 system       all of it as one system

@@ -8,12 +8,13 @@ gearing/stack_up/leaning.py).
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.assembly.system import moments_of
+from tol3d.gearbox.joined import Joined
 from tol3d.gearing.model import Contributor as GearContributor
 from tol3d.gearing.model import Measure as GearMeasure
 from tol3d.gearing.model import Model
@@ -25,16 +26,13 @@ from tol3d.system.closed_form import ClosedForm, Share
 from tol3d.system.contributor import Contributor
 from tol3d.system.stated import component_slices
 
-if TYPE_CHECKING:
-    from tol3d.gearbox.system import GearboxSystem
-
 Array = NDArray[np.float64]
 
 LEVEL: Final = 1e-12
 """Difference of the displacements of both ends of an axis per mm, rad or K that is rounding."""
 
 
-def closed_form(system: "GearboxSystem", measure: GearMeasure, *, at_one_position: bool = False) -> ClosedForm | None:
+def closed_form(system: Joined, measure: GearMeasure, *, at_one_position: bool = False) -> ClosedForm | None:
     """Moments of a backlash; None of extremes over a turn, and where load paths are compared.
 
     Args:
@@ -71,7 +69,7 @@ def _leaning(model: Model, measure: GearMeasure) -> set[str]:
     return {term.contributor.name for stack in stacks for term in stack.terms if term.leans}
 
 
-def _leaning_bores(system: "GearboxSystem") -> set[str]:
+def _leaning_bores(system: Joined) -> set[str]:
     """The displacements of the bores of shafts that contributors of the assembly lean."""
     bores = system.gears.contributors[len(system.drawn_by_gears) :]
     first, last = (system.displacing.reshape(-1, 2, 2, system.displacing.shape[1])[:, k] for k in range(2))
@@ -79,13 +77,13 @@ def _leaning_bores(system: "GearboxSystem") -> set[str]:
     return {own.name for own, lean in zip(bores, np.repeat(leans, 2), strict=True) if lean}
 
 
-def _moving(system: "GearboxSystem") -> set[str]:
+def _moving(system: Joined) -> set[str]:
     """Contributors of the assembly that move bores."""
     slices = component_slices(system.drawn)
     return {own.name for own in system.drawn.contributors if system.displacing[:, slices[own.name]].any()}
 
 
-def _linear(system: "GearboxSystem", measure: GearMeasure, direct: Mapping[str, float]) -> list[Share]:
+def _linear(system: Joined, measure: GearMeasure, direct: Mapping[str, float]) -> list[Share]:
     """Shares of what moves the bores, where a backlash is linear in that; `direct` is what it does to the gears too."""
     slopes = np.asarray(system.bore_slopes(measure) @ system.displacing)
     slices = component_slices(system.drawn)
@@ -101,7 +99,7 @@ def _linear(system: "GearboxSystem", measure: GearMeasure, direct: Mapping[str, 
 
 
 def _by_net(
-    system: "GearboxSystem", measure: GearMeasure, group: Sequence[Contributor], direct: Mapping[str, float]
+    system: Joined, measure: GearMeasure, group: Sequence[Contributor], direct: Mapping[str, float]
 ) -> list[Share]:
     """Shares of a group that leans gears; `direct` is what those do to the gears that do more than move bores."""
     stacks = factored_stacks(system.gears.model, measure)

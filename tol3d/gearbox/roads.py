@@ -2,21 +2,19 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.assembly.placing import road as placing
 from tol3d.assembly.torsors import road as torsors
+from tol3d.gearbox.joined import Joined
 from tol3d.gearbox.statuses import FROM_ASSEMBLIES
 from tol3d.gearing.model.measure import Measure as GearMeasure
 from tol3d.system.measure import Measure
 from tol3d.system.road import Answers, Codes, Road
 from tol3d.system.trials import Trials
-
-if TYPE_CHECKING:
-    from tol3d.gearbox.system import GearboxSystem
 
 Array = NDArray[np.float64]
 
@@ -31,7 +29,7 @@ class GearboxRoad:
         exact: whether parts are placed by finite poses; else by torsors.
     """
 
-    system: "GearboxSystem"
+    system: Joined
     gears: Road
     exact: bool
 

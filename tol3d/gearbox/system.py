@@ -3,21 +3,18 @@
 from collections.abc import Hashable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any, Final
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.assembly.system import AssemblySystem, moments_of
-from tol3d.assembly.torsors import road as torsors
-from tol3d.gearbox.bores import Bores
+from tol3d.assembly.system import AssemblySystem
 from tol3d.gearbox.closed_form import closed_form
+from tol3d.gearbox.joined import Joined
 from tol3d.gearbox.regressors import regress_bores
 from tol3d.gearbox.roads import GearboxRoad
 from tol3d.gearbox.statuses import STATUSES
-from tol3d.gearing.model import Contributor as GearContributor
 from tol3d.gearing.model.measure import Measure as GearMeasure
-from tol3d.gearing.roads.analytic import analytic_values
 from tol3d.gearing.system import ROADS, GearSystem
 from tol3d.system.breakdown import Breakdown
 from tol3d.system.closed_form import ClosedForm
@@ -26,51 +23,22 @@ from tol3d.system.measure import Measure
 from tol3d.system.pooled import PooledTerms
 from tol3d.system.positions import Positions
 from tol3d.system.road import ANALYTIC_ROAD, Road
-from tol3d.system.stated import component_slices, mean_deviations, stated
+from tol3d.system.stated import component_slices
 from tol3d.system.statuses import Statuses
 from tol3d.system.system import Columns, KeyPath, Published, StreamKey
 from tol3d.system.trials import Trials
 
 Array = NDArray[np.float64]
 
-NOTHING: Final = 1e-12
-"""Displacement [mm] of an axis per mm, rad or K that is rounding."""
-
-STEP: Final = 1e-4
-"""mm; over which the analytic road's slopes by displacements of bores are taken, to both sides."""
-
 
 @dataclass(frozen=True, eq=False)
-class GearboxSystem:
-    """Implements System.
-
-    Args:
-        name: of the scene.
-        contributors: of gears and of the assembly, in the scene's order.
-        measures: likewise.
-        gears: whose last contributors are the displacements of the bores: two a shaft, x and y each, that nobody draws.
-        drawn: the assembly as the scene has it.
-        bores: the same assembly with what reads its bores.
-        worlds: by the first shaft of each train in bores, where its world lies in that of the parts (4, 4).
-    """
-
-    name: str
-    contributors: tuple[Any, ...]
-    measures: tuple[Any, ...]
-    gears: GearSystem
-    drawn: AssemblySystem
-    bores: Bores
-    worlds: Mapping[str, Array]
+class GearboxSystem(Joined):
+    """Implements System."""
 
     roads = ROADS
     statuses: Statuses = STATUSES
 
     # what it is -------------------------------------------------------------------------------------
-
-    @cached_property
-    def assembly(self) -> AssemblySystem:
-        """The assembly's system, with what reads the bores."""
-        return replace(self.drawn, assembly=self.bores.assembly)
 
     @property
     def breakdowns(self) -> Sequence[Breakdown]:
@@ -118,34 +86,6 @@ class GearboxSystem:
         """Contributors that act on gears themselves."""
         return frozenset(own.name for own in self.drawn_by_gears)
 
-    @property
-    def drawn_by_gears(self) -> tuple[GearContributor, ...]:
-        """The contributors of the gears but the displacements of the bores."""
-        return self.gears.contributors[: len(self.gears.contributors) - 2 * len(self.bores.shafts)]
-
-    @cached_property
-    def gear_places(self) -> NDArray[np.intp]:
-        """Where the columns of the gears' own contributors lie among all."""
-        return self._places(self.drawn_by_gears)
-
-    @cached_property
-    def assembly_places(self) -> NDArray[np.intp]:
-        """Where the columns of the assembly's contributors lie among all."""
-        return self._places(self.drawn.contributors)
-
-    def _places(self, contributors: Sequence[Contributor]) -> NDArray[np.intp]:
-        slices = component_slices(self)
-        ranges = [np.arange(slices[own.name].start, slices[own.name].stop) for own in contributors]
-        return np.concatenate([*ranges, np.zeros(0)]).astype(np.intp)
-
-    def gear_trials(self, trials: Trials, displaced: Array) -> Trials:
-        """Trials as the gears see them, the bores displaced (trials, shafts * 4) [mm]."""
-        return replace(trials, deviations=np.concatenate([trials.deviations[:, self.gear_places], displaced], axis=1))
-
-    def linear_gear_trials(self, trials: Trials) -> Trials:
-        """The same, the bores displaced to first order."""
-        return self.gear_trials(trials, trials.deviations[:, self.assembly_places] @ self.displacing.T)
-
     # its roads --------------------------------------------------------------------------------------
 
     def is_compiled(self, road: str) -> bool:
@@ -170,49 +110,6 @@ class GearboxSystem:
         return self._owner(measure).chord_bound(measure, chord_error)
 
     # what acts on a measure -------------------------------------------------------------------------
-
-    @cached_property
-    def displacing(self) -> Array:
-        """Displacements of the bores per deviation of the assembly's contributors, (shafts * 4, columns)."""
-        moments = [moments_of(own) for own in self.drawn.contributors]
-        means = np.concatenate([mean for mean, _ in moments] or [np.zeros(0)])
-        sigmas = np.concatenate([np.sqrt(np.diagonal(covariance)) for _, covariance in moments] or [np.zeros(0)])
-        assembly = self.bores.assembly
-        rows = [torsors.slopes(assembly, name, means, sigmas).coefficients for name in self.bores.lateral_names]
-        found = np.array(rows).reshape(len(rows), assembly.width)
-        return np.where(np.abs(found) < NOTHING, 0.0, found)
-
-    def moving_apart(self, mesh: str) -> Iterator[str]:
-        """Contributors but temperatures that change the distance or the parallelism of the axes of a mesh."""
-        layout, own = self.gears.model.layout, self.gears.model.mesh(mesh)
-        lines = [self._line(layout.carrying[gear][0]) for gear in (own.driver, own.driven)]
-        if lines[0] is None or lines[1] is None:
-            return
-        (place, low, tilt), (other, low_other, tilt_other) = lines
-        z = self._housed[layout.carrying[own.driver][0]].frame[:3, 2]
-        apart = other - place
-        apart = (apart - z * (apart @ z)) / np.linalg.norm(apart - z * (apart @ z))
-        # both at the height of the first point of the driver's axis
-        shifted = low_other + tilt_other * ((place - other) @ z)
-        changes = np.vstack([apart @ (shifted - low), tilt_other - tilt])
-        slices = component_slices(self.drawn)
-        for each in self.drawn.contributors:
-            if each.kind != "temperature" and (np.abs(changes[:, slices[each.name]]) > NOTHING).any():
-                yield each.name
-
-    @cached_property
-    def _housed(self) -> Mapping[str, Any]:
-        return {own.shaft: own for own in self.bores.shafts}
-
-    def _line(self, shaft: str) -> Any:
-        """First point of a shaft's axis (3,), its displacement and that per mm of z (3, columns), in the world."""
-        names = [own.shaft for own in self.bores.shafts]
-        if shaft not in names:
-            return None
-        own, start = self._housed[shaft], 4 * names.index(shaft)
-        low, high = (own.frame[:3, :2] @ self.displacing[start + 2 * k : start + 2 * k + 2] for k in range(2))
-        length = own.along(own.bores[1]) - own.along(own.bores[0])
-        return own.bores[0].place, low, (high - low) / length
 
     def acting(self, measure: Measure) -> Sequence[Contributor]:
         """See System: of a backlash also what moves the bores of its shafts."""
@@ -247,17 +144,6 @@ class GearboxSystem:
         per_column = self.bore_slopes(measure) @ self.displacing
         slices = component_slices(self.drawn)
         return {own.name: per_column[slices[own.name]] for own in contributors}
-
-    def bore_slopes(self, measure: GearMeasure) -> Array:
-        """Change of a backlash by theory per displacement of the bores (shafts * 4,), at the means."""
-        system = self.gears
-        middle = mean_deviations(system, measure.positions)
-        count = 4 * len(self.bores.shafts)
-        steps = np.zeros((count, middle.shape[1]))
-        steps[:, middle.shape[1] - count :] = STEP * np.eye(count)
-        trials = stated(system, np.concatenate([middle + steps, middle - steps]))
-        values = analytic_values(system.model, measure, trials)[:, 0]
-        return np.asarray((values[:count] - values[count:]) / (2 * STEP))
 
     def closed_form(self, measure: Measure) -> ClosedForm | None:
         """See System."""

@@ -14,13 +14,17 @@ from tol3d.system.trials import Trials
 Array = NDArray[np.float64]
 
 
-class Varying(Protocol):
-    """A system, or a model of one: what its trials are made of."""
+class Toleranced(Protocol):
+    """What has contributors."""
 
     @property
     def contributors(self) -> Sequence[Contributor]:
         """See System."""
         ...
+
+
+class Varying(Toleranced, Protocol):
+    """A system, or a model of one: what its trials are made of."""
 
     @property
     def streams(self) -> Sequence[tuple[str, str]]:
@@ -36,7 +40,7 @@ class Varying(Protocol):
         ...
 
 
-def component_slices(system: Varying) -> Mapping[str, slice]:
+def component_slices(system: Toleranced) -> Mapping[str, slice]:
     """Which columns of the deviations belong to each contributor, by its name."""
     slices, start = {}, 0
     for contributor in system.contributors:
@@ -46,7 +50,7 @@ def component_slices(system: Varying) -> Mapping[str, slice]:
     return slices
 
 
-def component_count(system: Varying) -> int:
+def component_count(system: Toleranced) -> int:
     """Columns of the deviations."""
     return sum(len(contributor.draw.components) for contributor in system.contributors)
 
