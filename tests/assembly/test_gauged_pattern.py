@@ -283,4 +283,4 @@ def test_what_is_wrong_is_said_once(case: str, tmp_path: Path) -> None:
     place = f"measures.{TURN}.{field}".removesuffix(".")
     with pytest.raises(SceneError) as caught:
         simulation_of(load(path), Overrides())
-    assert str(caught.value).partition(": ")[2]== f"{place}: {sentence}"
+    assert str(caught.value).partition(": ")[2] == f"{place}: {sentence}"

@@ -10,13 +10,17 @@ from tol3d.assembly.model import Assembly, BestFit, Measured, Rest
 from tol3d.assembly.torsors.columns import Columns, without_rounding
 from tol3d.assembly.torsors.measures import reading
 from tol3d.assembly.torsors.moves import after
+from tol3d.assembly.torsors.one_sided import OneSided
 from tol3d.assembly.torsors.ordered import ordered_product
+from tol3d.assembly.torsors.resting import along_nothing
 from tol3d.assembly.torsors.slopes import STEP, Bend, Slopes
 from tol3d.assembly.torsors.terms import Ends, Largest, Term
 from tol3d.assembly.torsors.world import World
 
 Array = NDArray[np.float64]
 
+UNSEEN = 1e-9
+"""Change of a measure by what a part may rock [mm or rad a mm] that is rounding."""
 TOGETHER = 4096
 """Trials that are evaluated at once: their columns stay in the cache."""
 
@@ -122,7 +126,11 @@ def _moved(first: World, leaning: Mapping[int, Array]) -> tuple[list[World], dic
 
 def _rocked(measured: Measured, row: Array, first: World, unknowns: Mapping[int, slice]) -> Array:
     """A measure's row (columns,) at one end of what parts may rock, or in the middle of both."""
-    weights = {index: row[own] for index, own in unknowns.items()}
+    through = _through(row, first.columns.terms)
+    weights = {index: through[own] for index, own in unknowns.items()}
+    for index, own in weights.items():
+        if np.abs(own).max() < UNSEEN:  # it does not see it, or by a term that is not linear
+            weights[index] = along_nothing(len(own))
     ends = []
     for sign in (-1.0, 1.0):
         worlds, _ = _moved(first, {index: sign * own for index, own in weights.items()})
@@ -131,6 +139,18 @@ def _rocked(measured: Measured, row: Array, first: World, unknowns: Mapping[int,
         return (ends[0] + ends[1]) / 2.0
     made: Array = first.columns.made_by(Ends(np.array(ends), measured.rocking == "largest"))[0]
     return made
+
+
+def _through(row: Array, terms: Sequence[tuple[int, Term]]) -> Array:
+    """A row (columns,) whose parts on rests are taken on to the rests beneath: a part goes along with those.
+
+    A part on one-sided contacts A z + g goes along with what displaces all of them by A q: z falls by q.
+    """
+    for start, term in reversed(terms):
+        if isinstance(term, OneSided):
+            own = row[start : start + term.count]
+            row = row - own @ np.linalg.pinv(term.matrix) @ term.forms
+    return row
 
 
 def _reads(rows: Array) -> NDArray[np.bool_]:

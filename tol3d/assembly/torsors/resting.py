@@ -58,7 +58,7 @@ def rested(move: Rest, world: World, leaning: Array | None = None) -> Array:
     if np.linalg.norm(beside) > ALIKE * size:
         _refuse(move, freedoms.left @ (beside / size)[:, None])
     matrix = asked @ seen.T
-    generic = np.sqrt(2.0 + np.arange(len(seen))) % 1.0 + 0.1
+    generic = along_nothing(len(seen))
     wishes = [generic, -generic] if leaning is None else [_clear(leaning, generic)]
     corners = []
     for wish in wishes:
@@ -71,6 +71,11 @@ def rested(move: Rest, world: World, leaning: Array | None = None) -> Array:
     back = np.linalg.pinv(matrix)
     freedoms.take(back @ rows, found + back @ before)
     return freedoms.rest()
+
+
+def along_nothing(count: int) -> Array:
+    """Unknowns (count,) that are along nothing in particular."""
+    return np.asarray(np.sqrt(2.0 + np.arange(count)) % 1.0 + 0.1)
 
 
 def _clear(leaning: Array, generic: Array) -> Array:
