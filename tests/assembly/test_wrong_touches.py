@@ -28,7 +28,7 @@ WRONG = {
     "nothing round": (
         ((SOCKET, "      - {from: cap.top, to: box.lid}"),),
         "moves.fourth.contacts[0]",
-        "expected a cylinder or a sphere on one side at least; points on planes touch in three_two_one",
+        "expected a cylinder or a sphere on one side at least",
     ),
     "a socket on a plane": (
         ((SOCKET, "      - {from: cap.socket, to: box.floor}"),),
@@ -77,6 +77,16 @@ WRONG = {
         ((DISC, "\n".join([DISC] * 6)),),
         "moves.first.contacts",
         "expected a list of 1 to 6 contacts, got a list of 7",
+    ),
+    "a gap of planes": (
+        (("    from: upper disc.rim\n    to: box.lid", "    from: box.floor\n    to: box.lid"),),
+        "measures.gap",
+        "expected a cylinder or a sphere on one side at least",
+    ),
+    "a gap of a socket and a plane": (
+        (("    from: upper disc.rim\n    to: box.lid", "    from: cap.socket\n    to: box.lid"),),
+        "measures.gap",
+        "expected what lies in the hole, got a plane",
     ),
     "an angle to nothing": (
         (("    along: [1, 0, 0]           # to a direction", "    # to a direction"),),

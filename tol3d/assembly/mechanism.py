@@ -9,6 +9,7 @@ from tol3d.assembly.grammar.measure_checks import mixed_dimensions, unfit_holes,
 from tol3d.assembly.grammar.modifier_checks import unfit_modifiers
 from tol3d.assembly.grammar.orientation_checks import unfit_orientations
 from tol3d.assembly.grammar.rest_checks import idle_rocking
+from tol3d.assembly.grammar.surface_checks import unfit_pairs
 from tol3d.scene.grammar import specs_in
 from tol3d.system.mechanism import Mechanism
 
@@ -29,6 +30,7 @@ ASSEMBLY: Final = Mechanism(
         idle_rocking,
         unfit_holes,
         unfit_patterns,
+        unfit_pairs,
     ),
     engines=("exact",),
     system="tol3d.assembly.system:assembly_system",

@@ -52,7 +52,8 @@ def add_round_solid(plotter: pv.Plotter, mesh: pv.PolyData, colour: str) -> None
 
 def _add_edges(plotter: pv.Plotter, mesh: pv.PolyData) -> None:
     edges = mesh.extract_feature_edges(EDGE_ANGLE, boundary_edges=False, manifold_edges=False)
-    plotter.add_mesh(edges, color=EDGE_COLOUR, line_width=1.2)
+    if edges.n_points:  # a ball has none
+        plotter.add_mesh(edges, color=EDGE_COLOUR, line_width=1.2)
 
 
 def arrow(tip_from: Array, direction: Array, length: float) -> pv.PolyData:

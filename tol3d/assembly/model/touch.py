@@ -52,21 +52,29 @@ def is_inner(shape: Shape) -> bool:
     return isinstance(shape, Axis | Point) and shape.inner
 
 
-def unfit_for_contact(moving: Shape, target: Shape) -> str:
-    """Why two surfaces do not touch as a `Contact` asks, in words; "" where they do."""
-    if any(isinstance(own, Axis) and own.diameter is None for own in (moving, target)):
+def unfit_surfaces(start: Shape, end: Shape) -> str:
+    """Why two surfaces have no common normal, in words; "" where they have one."""
+    if any(isinstance(own, Axis) and own.diameter is None for own in (start, end)):
         return "expected a cylinder, got an axis without a diameter"
-    diameters = [getattr(own, "diameter", None) for own in (moving, target)]
-    if diameters == [None, None]:
-        return "expected a cylinder or a sphere on one side at least; points on planes touch in three_two_one"
-    if is_inner(moving) and is_inner(target):
+    if [getattr(own, "diameter", None) for own in (start, end)] == [None, None]:
+        return "expected a cylinder or a sphere on one side at least"
+    if is_inner(start) and is_inner(end):
         return "expected one of them to lie inside the other, got two holes"
-    if not is_inner(moving) and not is_inner(target):
+    if not is_inner(start) and not is_inner(end):
         return ""
-    hole, other = (moving, target) if is_inner(moving) else (target, moving)
+    hole, other = (start, end) if is_inner(start) else (end, start)
     if isinstance(other, Plane | RoundPlane):
         return "expected what lies in the hole, got a plane"
     if isinstance(hole, Point) and isinstance(other, Axis):
         return "expected a sphere or a point in a socket, got a cylinder"
+    return ""
+
+
+def unfit_for_contact(moving: Shape, target: Shape) -> str:
+    """Why two surfaces do not touch as a `Contact` asks, in words; "" where they do."""
+    words = unfit_surfaces(moving, target)
+    if words or is_inner(moving) == is_inner(target):
+        return words
+    hole, other = (moving, target) if is_inner(moving) else (target, moving)
     room, size = getattr(hole, "diameter", None) or 0.0, getattr(other, "diameter", None) or 0.0
     return "" if size < room else f"expected less than the {room:g} mm of the hole in which it lies, got {size:g} mm"

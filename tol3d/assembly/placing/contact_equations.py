@@ -158,25 +158,34 @@ def interpolated(nominal: Any, given: Any, c: int, i: int, share: float, out: An
 
 
 @part
-def equations(pose: Any, asked: Any, i: int, share: float, errors: Any, rows: Any, rooms: Any) -> Any:
-    """Errors and rows of all contacts at a pose (3, 4), a share of the way from nominal; whether they make sense."""
-    kinds, signs, length, moving, targets, sums, nominal = asked
-    ours, theirs, sides, normal = rooms
+def asked_of(asked: Any, i: int, share: float, rooms: Any) -> Any:
+    """Fill in what the contacts of a trial ask, a share of the way from nominal; whether it makes sense."""
+    kinds, _, _, moving, targets, sums, nominal = asked
+    ours, theirs, totals = rooms[:3]
+    for c in range(kinds.shape[0]):
+        interpolated(nominal[0], moving, c, i, share, ours[c])
+        interpolated(nominal[1], targets, c, i, share, theirs[c])
+        totals[c] = sums[c, min(i, sums.shape[1] - 1)]
+        if share != 1.0:
+            totals[c] = nominal[2][c] + share * (totals[c] - nominal[2][c])
+        if not totals[c] > 0.0:
+            return False  # what is inside is larger
+    return True
+
+
+@part
+def equations(pose: Any, asked: Any, errors: Any, rows: Any, rooms: Any) -> None:
+    """Errors and rows of all contacts at a pose (3, 4), as `asked_of` has filled them in."""
+    kinds, signs, length = asked[:3]
+    ours, theirs, totals, sides, normal = rooms
     arm, along, other, apart, _ = sides
     rows[:], e = 0.0, 0
     for c in range(kinds.shape[0]):
-        interpolated(nominal[0], moving, c, i, share, ours)
-        interpolated(nominal[1], targets, c, i, share, theirs)
         for r in range(3):
-            arm[r] = pose[r, 0] * ours[0] + pose[r, 1] * ours[1] + pose[r, 2] * ours[2]
-            along[r] = pose[r, 0] * ours[3] + pose[r, 1] * ours[4] + pose[r, 2] * ours[5]
-            other[r] = theirs[3 + r]
-            apart[r] = arm[r] + pose[r, 3] - theirs[r]
-        total = sums[c, min(i, sums.shape[1] - 1)]
-        if share != 1.0:
-            total = nominal[2][c] + share * (total - nominal[2][c])
-        if not total > 0.0:
-            return False  # what is inside is larger
+            arm[r] = pose[r, 0] * ours[c, 0] + pose[r, 1] * ours[c, 1] + pose[r, 2] * ours[c, 2]
+            along[r] = pose[r, 0] * ours[c, 3] + pose[r, 1] * ours[c, 4] + pose[r, 2] * ours[c, 5]
+            other[r] = theirs[c, 3 + r]
+            apart[r] = arm[r] + pose[r, 3] - theirs[c, r]
         kind = kinds[c]
         if kind <= PLANE_LINE:
             distance = on_plane(kind, sides, errors, rows, e, length)
@@ -184,13 +193,12 @@ def equations(pose: Any, asked: Any, i: int, share: float, errors: Any, rows: An
             distance = at_crossing(sides, normal, rows, e, signs[c])
         else:
             distance = off_line(kind, sides, normal, errors, rows, e, length)
-        errors[e] = distance - total
+        errors[e] = distance - totals[c]
         e += count_of(kind)
-    return True
 
 
 @part
-def new_sides() -> Any:
+def new_sides(contacts: int) -> Any:
     """What equations work with."""
     sides = (np.empty(3), np.empty(3), np.empty(3), np.empty(3), np.empty(3))
-    return np.empty(6), np.empty(6), sides, np.empty(3)
+    return np.empty((contacts, 6)), np.empty((contacts, 6)), np.empty(contacts), sides, np.empty(3)

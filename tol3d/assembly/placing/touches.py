@@ -11,13 +11,15 @@ from typing import Any, Final
 import numpy as np
 
 from tol3d.assembly.model.statuses import NO_CONTACT, OK, SINGULAR
-from tol3d.assembly.placing.contact_equations import count_of, equations, new_sides
+from tol3d.assembly.placing.contact_equations import asked_of, count_of, equations, new_sides
 from tol3d.assembly.placing.pose_steps import NO_PIVOT, solved, turned_by
 from tol3d.numerics.compiled import kernel, part
 
 STEPS: Final = 60
 MET: Final = 1e-13
 """Step [rad, and mm a mm of reach] after which a trial is done."""
+LAST: Final = 1e-15
+"""The same of the next one, as far as it can be told: a hundredth, for it is told roughly."""
 ROUNDING: Final = 1e-13
 """Error [mm a mm of reach] that is rounding where steps do not get shorter, near a fold."""
 FALLING: Final = 0.75
@@ -71,10 +73,11 @@ def by_steps(amounts: Any, asked: Any, i: int, share: float, falling: float, abo
     start, basis, reach, lacking = about
     pose, moves, errors, rows, matrix, right, sides = rooms
     count, before = basis.shape[1], np.inf
+    if not asked_of(asked, i, share, sides):
+        return False
     for _ in range(STEPS):
         posed(start, basis, reach, amounts, pose, moves)
-        if not equations(pose, asked, i, share, errors, rows, sides):
-            return False
+        equations(pose, asked, errors, rows, sides)
         worst = 0.0
         for e in range(count):
             right[e] = (1.0 - share) * lacking[e] - errors[e] if share != 1.0 else -errors[e]
@@ -86,7 +89,8 @@ def by_steps(amounts: Any, asked: Any, i: int, share: float, falling: float, abo
         for s in range(count):
             amounts[s] += right[s]
             length = max(length, abs(right[s]))
-        if length <= MET * reach:
+        # steps fall as their squares: the next one is about as much shorter, squared
+        if length <= MET * reach or (before < np.inf and length * (length / before) ** 2 <= LAST * reach):
             return True
         if not length <= falling * before:
             return worst <= ROUNDING * reach
@@ -183,7 +187,7 @@ def held(asked: Any, i: int, about: Any, rooms: Any, force: Any, inner: Any) -> 
 
 
 @part
-def new_rooms(count: int) -> Any:
+def new_rooms(count: int, contacts: int) -> Any:
     """What steps work with."""
     return (
         np.empty((3, 4)),
@@ -192,7 +196,7 @@ def new_rooms(count: int) -> Any:
         np.empty((count, 6)),
         np.empty((count, count)),
         np.empty(count),
-        new_sides(),
+        new_sides(contacts),
     )
 
 
@@ -219,7 +223,9 @@ def lacking_at(
 ) -> None:
     """Errors (equations,) and rows (equations, 6) of the first trial at a pose (3, 4); see `touching_poses`."""
     asked = (kinds, signs, length, moving, targets, sums, (nominal_moving, nominal_targets, nominal_sums))
-    equations(start, asked, 0, 1.0, errors, rows, new_sides())
+    sides = new_sides(kinds.shape[0])
+    asked_of(asked, 0, 1.0, sides)
+    equations(start, asked, errors, rows, sides)
 
 
 @kernel(
@@ -268,7 +274,7 @@ def touching_poses(
         codes: what became of the trials (n,).
     """
     asked = (kinds, signs, length, moving, targets, sums, (nominal_moving, nominal_targets, nominal_sums))
-    about, rooms = (start, basis, reach, lacking), new_rooms(basis.shape[1])
+    about, rooms = (start, basis, reach, lacking), new_rooms(basis.shape[1], kinds.shape[0])
     amounts, kept, pose = np.empty(basis.shape[1]), np.empty(basis.shape[1]), rooms[0]
     for i in range(codes.shape[0]):
         found = end_of(amounts, kept, asked, i, side, about, rooms)

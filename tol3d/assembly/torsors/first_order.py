@@ -16,6 +16,7 @@ from tol3d.assembly.torsors.resting import along_nothing
 from tol3d.assembly.torsors.slopes import STEP, Bend, Slopes
 from tol3d.assembly.torsors.terms import Ends, Largest, Term
 from tol3d.assembly.torsors.world import World
+from tol3d.errors import InputError
 
 Array = NDArray[np.float64]
 
@@ -106,7 +107,7 @@ def first_order(assembly: Assembly) -> FirstOrder:
     columns = Columns(assembly.width, _room(assembly))
     first = World(assembly, columns)
     worlds, unknowns = _moved(first, {})
-    rows = {name: without_rounding(reading(measured, worlds)) for name, measured in assembly.measures.items()}
+    rows = {name: _row(name, measured, worlds) for name, measured in assembly.measures.items()}
     for name, measured in assembly.measures.items():
         if measured.rocking is not None and unknowns:
             rows[name] = _rocked(measured, rows[name], first, unknowns)
@@ -151,6 +152,13 @@ def _through(row: Array, terms: Sequence[tuple[int, Term]]) -> Array:
             own = row[start : start + term.count]
             row = row - own @ np.linalg.pinv(term.matrix) @ term.forms
     return row
+
+
+def _row(name: str, measured: Measured, worlds: list[World]) -> Array:
+    try:
+        return without_rounding(reading(measured, worlds))
+    except InputError as error:
+        raise InputError(f"measures.{name}: {error}") from None
 
 
 def _reads(rows: Array) -> NDArray[np.bool_]:

@@ -236,13 +236,12 @@ def _virtual_clearance(measured: Measured, world: World) -> Array:
 
 def _surface_gap(measured: Measured, world: World) -> Array:
     start, end = measured.features
-    nominal, varying = Surfaces(world, start, end).gap("measures")
-    return _constant(world, nominal) + varying
+    return Surfaces(world, start, end).gap()
 
 
 def _contact_angle(measured: Measured, world: World) -> Array:
     start, end, *against = measured.features
-    normal, normal_varies = Surfaces(world, start, end).turning_normal("measures")
+    normal, normal_varies = Surfaces(world, start, end).turning_normal()
     if against:
         direction = world.axis(against[0])
         varies = _turned(direction, world.placed(against[0]))

@@ -6,8 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.assembly.model import Axis, Plane, Point, RoundPlane, Shape
-from tol3d.assembly.model.touch import is_inner, unfit_for_contact
-from tol3d.assembly.torsors.torsor import cross_matrix, height_at, shift_at, turn_about
+from tol3d.assembly.model.touch import is_inner, unfit_surfaces
+from tol3d.assembly.torsors.torsor import cross_matrix, perpendicular, shift_at, turn_about
 from tol3d.assembly.torsors.world import World
 from tol3d.errors import InputError
 
@@ -15,6 +15,8 @@ Array = NDArray[np.float64]
 
 PARALLEL = 1e-6
 """Sine of the angle of axes that nominally lie along each other, not across."""
+NEAR = 1.0
+"""Nominally nearer than this [mm]: a distance is the length of its first-order vector, else linear."""
 NO_DISTANCE = 1e-9
 """Centres or axes nearer than that [mm] have no direction from one to the other."""
 
@@ -79,21 +81,29 @@ class Surfaces:
         start, end = self._feet
         return np.asarray((end - start) / np.linalg.norm(end - start))
 
-    def checked(self, name: str) -> tuple[Array, float, Array]:
+    def checked(self) -> tuple[Array, float, Array]:
         """The normal (3,), how far centres, axes and planes are apart along it [mm], and where it is (3,).
 
         Raises:
             InputError: there is none.
         """
-        words = unfit_for_contact(*self.shapes)
+        self.refuse_unfit()
+        start, end = self._feet
+        if len(self._sides) and np.linalg.norm(end - start) <= NO_DISTANCE:
+            raise InputError(f"{self.start} and {self.end} lie in each other's middle, which has no direction")
+        return self._normal, float(self._normal @ (end - start)), end
+
+    def refuse_unfit(self) -> None:
+        """Refuse surfaces that have no common normal.
+
+        Raises:
+            InputError: such surfaces.
+        """
+        words = unfit_surfaces(*self.shapes)
         if not words and self.is_inside and not self.parallel and all(isinstance(own, Axis) for own in self.shapes):
             words = "expected axes that are nominally parallel, for one lies inside the other"
-        start, end = self._feet
-        if not words and not any(isinstance(own, Plane | RoundPlane) for own in self.shapes):
-            words = "" if np.linalg.norm(end - start) > NO_DISTANCE else "lies in its middle, which has no direction"
         if words:
-            raise InputError(f"{name}: contact of {self.start} and {self.end}: {words}")
-        return self._normal, float(self._normal @ (end - start)), end
+            raise InputError(f"{self.start} and {self.end}: {words}")
 
     def touching(self) -> tuple[float, Array]:
         """The sum of the radii, or the difference of one inside the other: nominally [mm], how it varies (columns,)."""
@@ -106,19 +116,45 @@ class Surfaces:
         nominal = sum(sign * size / 2 for sign, size in zip(signs, sizes, strict=True))
         return nominal, signs[0] * varying[0] / 2 + signs[1] * varying[1] / 2
 
-    def gap(self, name: str) -> tuple[float, Array]:
-        """How far the surfaces are apart: nominally [mm], how it varies (columns,)."""
-        normal, distance, point = self.checked(name)
-        nominal, varying = self.touching()
-        apart = (height_at(point, normal) @ (self.world.placed(self.end) - self.world.placed(self.start)))[0]
-        sign = -1.0 if self.is_inside else 1.0
-        return sign * (distance - nominal), sign * (apart - varying)
+    def gap(self) -> Array:
+        """How far the surfaces are apart (columns,) [mm]; near each other's middle by the length of what is between.
 
-    def hinge(self, name: str) -> tuple[Array, float] | None:
+        Raises:
+            InputError: as `checked`.
+        """
+        columns, (nominal, varying) = self.world.columns, self.touching()
+        sides = self._sides
+        feet = self._feet
+        apart = feet[1] - feet[0]
+        moved = shift_at(feet[1]) @ self.world.placed(self.end) - shift_at(feet[0]) @ self.world.placed(self.start)
+        if len(sides) and np.linalg.norm(apart) < NEAR:
+            self.refuse_unfit()
+            distance = columns.largest((sides @ moved + columns.constants(sides @ apart))[None])
+        else:
+            normal, length, _ = self.checked()
+            distance = normal @ moved + columns.constants(np.array([length]))[0]
+        sign = -1.0 if self.is_inside else 1.0
+        return np.asarray(sign * (distance - varying - columns.constants(np.array([nominal]))[0]))
+
+    @property
+    def _sides(self) -> Array:
+        """Directions (directions, 3) in which centres and axes are apart; none of a plane."""
+        words = tuple(map(_word, self.shapes))
+        own, other = self.world.axis(self.start), self.world.axis(self.end)
+        if "plane" in words:
+            return np.zeros((0, 3))
+        if words == ("axis", "axis") and not self.parallel:
+            across = np.cross(own, other)
+            return across[None] / np.linalg.norm(across)
+        if "axis" in words:
+            return perpendicular(own if words[0] == "axis" else other)
+        return np.eye(3)
+
+    def hinge(self) -> tuple[Array, float] | None:
         """The axis about which what lies along a line tilts off it, as a turn (1, 6), and its sine nominally."""
         words = tuple(map(_word, self.shapes))
         if words == ("plane", "axis") or words == ("axis", "plane") or self.parallel:
-            normal, _, _ = self.checked(name)
+            normal, _, _ = self.checked()
             if words == ("axis", "plane"):
                 lying = self.world.axis(self.start)
                 return turn_about(np.cross(normal, lying)[None]), float(lying @ normal)
@@ -126,9 +162,9 @@ class Surfaces:
             return turn_about(np.cross(lying, normal)[None]), float(lying @ normal)
         return None
 
-    def turning_normal(self, name: str) -> tuple[Array, Array]:
+    def turning_normal(self) -> tuple[Array, Array]:
         """The normal from the first to the second (3,), and how it varies (3, columns)."""
-        normal, distance, _ = self.checked(name)
+        normal, distance, _ = self.checked()
         start, end = self.world.placed(self.start), self.world.placed(self.end)
         first, second = map(_word, self.shapes)
         if first == "plane":

@@ -36,13 +36,15 @@ def touched(move: Touch, world: World) -> Array:
 def _asked(contact: Contact, move: Touch, world: World) -> tuple[Array, Array]:
     """Rows (equations, 6) and values (equations, columns): the gap of the surfaces, and the tilt of a line [mm]."""
     surfaces = Surfaces(world, contact.target, contact.moving)
-    name = f"moves.{move.name}"
-    normal, distance, point = surfaces.checked(name)
+    try:
+        normal, distance, point = surfaces.checked()
+    except InputError as error:
+        raise InputError(f"moves.{move.name}: {error}") from None
     nominal, varying = surfaces.touching()
     others = world.placed(contact.target) - world.on_body(contact.moving, move.part)
     rows = [height_at(point, normal)]
     values = [rows[0] @ others + world.columns.constants(np.array([nominal - distance])) + varying]
-    if (hinge := surfaces.hinge(name)) is not None:
+    if (hinge := surfaces.hinge()) is not None:
         turn, sine = hinge
         length = max(1.0, float(np.linalg.norm(point - world.assembly.part[move.part].pose[:3, 3])))
         rows.append(length * turn)
