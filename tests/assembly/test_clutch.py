@@ -155,6 +155,21 @@ def test_a_roller_that_is_too_large_for_its_room_has_no_contact() -> None:
     np.testing.assert_allclose(found[[0, 4]], angle(*(NOMINAL + deviations[[0, 4]]).T), rtol=1e-8)
 
 
+def test_the_roller_stays_on_its_side_however_far_it_goes() -> None:
+    """Angles from 0.1 to 40 deg; that of the mirrored contact would be the same, its place would not."""
+    a, c, e = NOMINAL
+    limit = e - 2 * c - a
+    deviations = np.zeros((500, 3))
+    deviations[:, 0] = np.linspace(-9.0, limit - 1e-4, 500)
+    angles, codes = built(deviations)
+    assert (codes == OK).all()
+    assert angles.min() < 0.2
+    assert angles.max() > 39.0
+    found = placing.placed(system().assembly, deviations * COLUMNS)["roller"][:, 0, 3]
+    expected = np.sqrt((e - c) ** 2 - (a + deviations[:, 0] + c) ** 2)
+    np.testing.assert_allclose(found, expected, rtol=0.0, atol=1e-9)
+
+
 def test_wide_tolerances_count_what_has_no_contact_and_leave_it_out_of_the_mean(tmp_path: Path) -> None:
     path, count = tmp_path / "wide.yaml", 4000
     text = SCENE.read_text("utf-8").replace("lower: -50 um, upper: 50 um", "lower: -500 um, upper: 500 um")
