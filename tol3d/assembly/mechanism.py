@@ -3,6 +3,7 @@
 from typing import Final
 
 from tol3d.assembly.grammar import measures, moves, parts, tolerances
+from tol3d.assembly.grammar.boundary_checks import unfit_boundaries
 from tol3d.assembly.grammar.checks import unknown_features, unplaced_bodies
 from tol3d.assembly.grammar.drawing_checks import contradicting_tolerances
 from tol3d.assembly.grammar.measure_checks import mixed_dimensions, unfit_holes, unfit_patterns, unfit_points
@@ -25,6 +26,7 @@ ASSEMBLY: Final = Mechanism(
         contradicting_tolerances,
         unfit_orientations,
         unfit_modifiers,
+        unfit_boundaries,
         mixed_dimensions,
         unfit_points,
         idle_rocking,

@@ -3,6 +3,7 @@
 features      nominal shapes and frames
 datums        datum frames, each once
 bonus         the size that widens a zone
+boundaries    the gauges of datums at their maximum material boundary
 contributors  how tolerances are drawn, and what each moves
 zones         the zone that is left to a feature, and its law
 moves         pairs, normals, locators

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from tol3d.assembly.from_scene.boundaries import shift_frames
 from tol3d.assembly.from_scene.contributors import effects_of
 from tol3d.assembly.from_scene.datums import DatumFrames, in_order
 from tol3d.assembly.from_scene.features import TouchedPoints, features_of, poses_of
@@ -56,6 +57,7 @@ def assembly_of(scene: Scene, settled: Mapping[str, Array] | None = None, warmin
     features = features_of(drawing, effects, frames)
     measured = measured_of(scene, frames)
     poses = poses_of(scene) if settled is None else settled
+    shift_frames(scene, drawing, effects, frames)
     moves = moves_of(scene, effects, TouchedPoints(features, poses))
     parents = {name: feature.parent for name, feature in features.items()}
     feature_order, frame_order, _ = in_order(parents, frames.made)  # rings are refused where the scene is checked

@@ -53,6 +53,8 @@ def _letter(spec: DatumSpec) -> str:
     own = "-".join(spec.features)
     if spec.targets:
         return f"{own} at " + "; ".join(" ".join(f"{x.internal:.9g}" for x in target) for target in spec.targets)
+    if spec.mmb is not None:
+        return f"{own} mmb {spec.mmb}"
     return own if spec.simulator == "contact" else f"{own} {spec.simulator}"
 
 

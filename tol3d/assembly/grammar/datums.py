@@ -1,6 +1,6 @@
 """Datums as tolerances name them: features of the toleranced part, in order."""
 
-from typing import Annotated, Any, ClassVar, Self
+from typing import Annotated, Any, ClassVar, Literal, Self
 
 from pydantic import BeforeValidator, Field, model_validator
 
@@ -32,11 +32,19 @@ class DatumSpec(Strict):
         default=(), description="points of the part that touch, for simulator: targets"
     )
 
+    mmb: Literal["random", "centred"] | None = Field(
+        default=None,
+        description="at its maximum material boundary: how the gauge lies in the room that it has there; regardless of "
+        "size if not given",
+    )
+
     @property
     def kinds(self) -> tuple[str, ...]:
         """Kinds of feature that it may be of."""
         if len(self.features) > 1:
             return ("point", "sphere", "cylinder", "axis")
+        if self.mmb is not None:
+            return ("cylinder",)
         return ("plane",) if self.targets else ()
 
     @model_validator(mode="after")
@@ -45,6 +53,8 @@ class DatumSpec(Strict):
             raise refused("targets", "simulator: targets beside them", f"simulator: {self.simulator}")
         if not self.targets and self.simulator == "targets":
             raise refused("targets", "the points that touch, such as [[10 mm, 0 mm, 5 mm]]", "none")
+        if self.mmb is not None and (len(self.features) > 1 or self.simulator != "contact"):
+            raise refused("mmb", "it at a single hole or pin", "a common datum or a simulator of planes")
         return self
 
 

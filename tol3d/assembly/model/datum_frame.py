@@ -6,6 +6,8 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from tol3d.assembly.model.feature import Contribution
+
 Array = NDArray[np.float64]
 
 Simulator = Literal["contact", "fitted", "targets"]
@@ -45,8 +47,11 @@ class DatumFrame:
         name: "part|A|B|C" of its features.
         part: whose.
         datums: primary, secondary, tertiary.
+        shifted_by: how a gauge lies off its datum feature, which shifts the frame (3, components), nominally in the
+            part's frame.
     """
 
     name: str
     part: str
     datums: tuple[Datum, ...]
+    shifted_by: tuple[Contribution, ...] = ()

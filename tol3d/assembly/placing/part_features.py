@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.assembly.model import Part
-from tol3d.assembly.placing.actual_feature import ActualFeature, actual
+from tol3d.assembly.placing.actual_feature import ActualFeature, actual, total
 from tol3d.assembly.placing.datum_seats import DatumSeats
 from tol3d.assembly.placing.poses import IDENTITY, Codes, Pose
 
@@ -49,5 +49,9 @@ class PartFeatures:
         if name not in self._frames:
             seats = self._datum_seats[name]
             aligned, codes = seats.alignment.poses(seats.of(self.feature), IDENTITY)
-            self._frames[name] = aligned.inverse, codes
+            displacement = aligned.inverse
+            if seats.frame.shifted_by:
+                shift = np.stack(np.broadcast_arrays(*total(seats.frame.shifted_by, 3, self._columns)))
+                displacement = Pose(displacement.turn, displacement.point(shift))
+            self._frames[name] = displacement, codes
         return self._frames[name]

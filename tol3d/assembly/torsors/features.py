@@ -46,7 +46,9 @@ class PartTorsors:
         if name not in self._displacements:
             frame = self._frames[name]
             datums = [[(self._features[each], self.feature(each)) for each in datum.features] for datum in frame.datums]
-            self._displacements[name] = displacement_of(frame, datums, self._columns)
+            found = displacement_of(frame, datums, self._columns)
+            found[:3] += summed(frame.shifted_by, 3, self._columns)
+            self._displacements[name] = found
         return self._displacements[name]
 
     def size(self, name: str) -> Array:

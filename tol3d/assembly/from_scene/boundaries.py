@@ -1,0 +1,114 @@
+"""Datums at their maximum material boundary: the gauge of virtual condition, and how it shifts the datum frame."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tol3d.assembly.from_scene.bonus import sized_by
+from tol3d.assembly.from_scene.contributors import Effects
+from tol3d.assembly.from_scene.datums import DatumFrames
+from tol3d.assembly.grammar.datums import DatumSpec
+from tol3d.assembly.grammar.drawing import Drawing
+from tol3d.assembly.grammar.tolerances import FeatureTolerance, LocationSpec, OrientationSpec
+from tol3d.assembly.model import Axis, Contribution, DatumFrame
+from tol3d.assembly.zones import Bonus, SizedBy, ZoneDraw, catalogue, uniform_in
+from tol3d.assembly.zones.gauge_shift import GaugeShift, Leaning
+from tol3d.scene import Scene
+from tol3d.system.plain import PlainContributor
+
+Array = NDArray[np.float64]
+
+ANY = 1e3
+"""mm; the room of a gauge grows with the size, beyond the drawing's limits too."""
+
+HALF_DIFFERENCE = 0.5 * np.array([[-1.0, 0.0, 1.0, 0.0], [0.0, -1.0, 0.0, 1.0]])
+"""Of start x, start y, end x, end y."""
+
+
+@dataclass(frozen=True)
+class Boundary:
+    """A datum at its maximum material boundary, as a tolerance of its part names it.
+
+    Args:
+        feature: with its part.
+        earlier: datums before it, which orient the gauge.
+        own: the datum.
+    """
+
+    feature: str
+    earlier: tuple[DatumSpec, ...]
+    own: DatumSpec
+
+
+def shift_frames(scene: Scene, drawing: Drawing, effects: Effects, frames: DatumFrames) -> None:
+    """Let the gauges of datum frames shift them: a contributor each, common to all that is toleranced to the frame."""
+    for name, boundary in _boundaries(drawing, frames).items():
+        if boundary.own.mmb == "random":
+            frame = frames.made[name]
+            frames.made[name] = replace(frame, shifted_by=(_shift(scene, drawing, effects, frame, boundary),))
+
+
+def _boundaries(drawing: Drawing, frames: DatumFrames) -> dict[str, Boundary]:
+    """By the name of the frame, in the order of the tolerances."""
+    found: dict[str, Boundary] = {}
+    for own in drawing.stated:
+        if isinstance(own, str):
+            continue
+        datums = own.spec.named_datums
+        if datums and datums[-1].mmb is not None:
+            part = own.feature.partition(".")[0]
+            feature = f"{part}.{datums[-1].features[0]}"
+            found.setdefault(frames.named(part, datums), Boundary(feature, datums[:-1], datums[-1]))
+    return found
+
+
+def _shift(scene: Scene, drawing: Drawing, effects: Effects, frame: DatumFrame, boundary: Boundary) -> Contribution:
+    draw = _room(scene, drawing, effects, boundary)
+    to = ", ".join(name for datum in boundary.earlier for name in datum.features)
+    name = f"shift of {boundary.feature} to {to}"
+    columns = slice(effects.width, effects.width + len(draw.components))
+    words = "of the gauge at the maximum material boundary of a datum"
+    effects.contributors.append(PlainContributor(name, "datum_shift", draw, description=words))
+    effects.width = columns.stop
+    across = drawing.kind(boundary.feature).frame[:3, :2]
+    return Contribution(name, columns, across)
+
+
+def _room(scene: Scene, drawing: Drawing, effects: Effects, boundary: Boundary) -> GaugeShift:
+    shape = drawing.kind(boundary.feature).shape
+    assert isinstance(shape, Axis)
+    sized = sized_by(scene, drawing, boundary.feature, "mmc")
+    tolerance = own_tolerance(drawing, boundary)
+    if shape.inner:
+        virtual = sized.bonus.low - tolerance
+        bonus = Bonus(virtual, virtual + ANY, grows=True)
+    else:
+        virtual = sized.bonus.high + tolerance
+        bonus = Bonus(virtual - ANY, virtual, grows=False)
+    zone = catalogue.point_in_disc(0.0)
+    draws = {own.name: own.draw for own in effects.contributors}
+    leaning = []
+    for own in effects.moved_by.get(boundary.feature, ()):
+        matrix, draw = HALF_DIFFERENCE @ own.matrix, draws[own.contributor]
+        if isinstance(draw, ZoneDraw) and _tilts(matrix, draw):
+            leaning.append(Leaning(own.contributor, draw, tuple(tuple(row) for row in matrix.tolist())))
+    return GaugeShift(zone, uniform_in(zone), SizedBy(sized.name, sized.law, bonus), tuple(leaning))
+
+
+def _tilts(matrix: Array, draw: ZoneDraw) -> bool:
+    """Whether the ends of the datum feature ever lie apart by a contributor."""
+    return bool((matrix @ draw.covariance @ matrix.T).any() or (matrix @ draw.mean_vector).any())
+
+
+def own_tolerance(drawing: Drawing, boundary: Boundary) -> float:
+    """What the datum feature's virtual condition adds to its maximum material size, at this precedence [mm].
+
+    The width of its orientation zone to the datums before it, or of its location zone to just these; 0 without.
+    """
+    kinds: tuple[type[FeatureTolerance], ...] = (OrientationSpec, LocationSpec)
+    for kind in kinds:
+        for own in drawing.of(boundary.feature, kind):
+            if isinstance(own.spec, OrientationSpec | LocationSpec) and own.spec.named_datums == boundary.earlier:
+                return own.spec.zone.size
+    return 0.0
