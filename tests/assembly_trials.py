@@ -14,7 +14,8 @@ from tol3d.scene import Scene
 from tol3d.simulate import Overrides, load, simulation_of
 from tol3d.study.draws import drawn
 from tol3d.study.simulation import Simulation
-from tol3d.system.stated import nominal_build
+from tol3d.system.contributor import Contributor
+from tol3d.system.stated import component_slices, nominal_build
 from tol3d.system.trials import Trials
 
 Array = NDArray[np.float64]
@@ -48,6 +49,11 @@ class Assembled:
             for first in range(0, count, BLOCK)
         ]
         return {name: np.concatenate([piece[name] for piece in pieces]) for name in pieces[0]}
+
+    @property
+    def slices(self) -> Sequence[tuple[Contributor, slice]]:
+        """Contributors with their columns of the deviations."""
+        return list(zip(self.system.contributors, component_slices(self.system).values(), strict=True))
 
     @cached_property
     def nominal(self) -> Mapping[str, float]:

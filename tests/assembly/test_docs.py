@@ -53,7 +53,15 @@ def union(definition: str, field: str) -> Mapping[str, Any]:
     return found
 
 
-FIELD_SCENES = ("every_assembly_field", "bolted_cover", "four_pads", "box_with_discs", "clutch")
+FIELD_SCENES = (
+    "every_assembly_field",
+    "bolted_cover",
+    "four_pads",
+    "box_with_discs",
+    "clutch",
+    "hole_and_slot",
+    "two_plates",
+)
 """Between them every kind and every field."""
 
 FEATURES, LAWS = union("SolidSpec", "features"), union("PositionSpec", "law")
@@ -78,7 +86,7 @@ def test_the_tables_of_the_example_are_those_of_the_run(tol3d: Command, tmp_path
 def test_the_scenes_use_every_field_of_every_kind() -> None:
     kinds = [spec for section in SECTIONS for spec in ASSEMBLY.specs(section)]
     known = {own for spec in kinds for own in fields_within(spec) if own[0].__module__.startswith("tol3d.assembly")}
-    beside = 16  # placement, datum, zone, force; 5 features, 3 laws, 4 pairs
+    beside = 21  # placement, datum, zone, force; 6 features, 3 laws, 5 pairs, 3 floats
     assert len({model for model, _ in known}) == len(kinds) + beside
     said = {own for name in FIELD_SCENES for own in fields_said(load_scene(SCENES / f"{name}.yaml", KINDS))}
     assert unsaid(known, said) == set()

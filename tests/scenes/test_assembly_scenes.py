@@ -26,7 +26,8 @@ def test_an_assembly_meets_its_expected_numbers(scene: str, run_of: Callable[[st
     summary = run_of(scene).summary
     trials = expected(scene)["trials"]
     assert summary["engine"] == "exact"
-    assert summary["status"]["ok"] == sum(summary["status"].values()) == trials
+    assert sum(summary["status"].values()) == trials
+    assert summary["status"]["ok"] == expected(scene).get("built", trials)
     assert list(measures_of(scene)) == list(load_scene(FOLDER / f"{scene}.yaml").measures) == list(summary["measures"])
     for name, own in measures_of(scene).items():
         found = summary["measures"][name]
@@ -46,7 +47,8 @@ def test_both_roads_of_an_assembly_differ_by_nothing_that_is_not_explained(
     scene: str, run_of: Callable[[str], Run]
 ) -> None:
     summary = run_of(scene).summary
-    assert summary["warnings"] == []
+    lost = expected(scene)["trials"] - expected(scene).get("built", expected(scene)["trials"])
+    assert [own for own in summary["warnings"] if f" {lost} do not build: " not in own] == []
     for own in summary["measures"].values():
         assert own["agreement"]["explanation"]["faults"] == []
 

@@ -29,6 +29,7 @@ class AssemblyMeasureSummary(MeasureSummary):
         "inspected_position",
         "inspected_size",
         "point_plane",
+        "slack",
         "virtual_clearance",
         "surface_gap",
     ]

@@ -21,6 +21,7 @@ from tol3d.scene import Scene
 from tol3d.scene.schema import SECTIONS
 from tol3d.system.closed_form import ClosedForm, Share
 from tol3d.system.contributor import Contributor
+from tol3d.system.draw import Joint
 from tol3d.system.measure import Measure
 from tol3d.system.plain import PlainSystem
 from tol3d.system.regressors import is_group
@@ -67,10 +68,14 @@ class PlacingRoad:
 
     def answers(self, trials: Trials, measures: Sequence[Measure]) -> Answers:
         """See Road."""
-        found, carried = placing.answers(self.assembly, trials.deviations, [measure.name for measure in measures])
+        names = [measure.name for measure in measures]
+        found, carried, tightest = placing.answers(self.assembly, trials.deviations, names)
         return Answers(
             {name: own[:, None] for name, (own, _) in found.items()},
-            details={f"carries:{move}": contacts for move, contacts in carried.items()},
+            details={
+                **{f"carries:{move}": contacts for move, contacts in carried.items()},
+                **{f"tightest:{move}": pairs for move, pairs in tightest.items()},
+            },
             status={name: codes for name, (_, codes) in found.items()},
         )
 
@@ -185,6 +190,8 @@ def moments_of(contributor: Contributor) -> tuple[Array, Array]:
     if isinstance(draw, ZoneDraw):
         return draw.mean_vector, draw.covariance
     mean = np.array(draw.mean(turning=False))
+    if isinstance(draw, Joint):
+        return mean, draw.covariance
     return mean, draw.sigma**2 * np.eye(len(mean))
 
 

@@ -8,9 +8,11 @@ from numpy.typing import NDArray
 
 from tol3d.assembly.from_scene.zones import drawn_in
 from tol3d.assembly.grammar.drawing import Drawing, Stated
-from tol3d.assembly.grammar.features import PlaneSpec, PointSpec, SphereSpec
+from tol3d.assembly.grammar.features import PlaneSpec, PointSpec, SlotSpec, SphereSpec
 from tol3d.assembly.grammar.features.nominal_frame import unit
+from tol3d.assembly.grammar.moves import PinAndHoleSpec, PlaySpec
 from tol3d.assembly.grammar.moves.locating import LocatingSpec
+from tol3d.assembly.grammar.moves.play import RandomSpec
 from tol3d.assembly.grammar.tolerances import (
     LocationSpec,
     LocatorSpec,
@@ -20,7 +22,9 @@ from tol3d.assembly.grammar.tolerances import (
 )
 from tol3d.assembly.grammar.tolerances.form import FormSpec
 from tol3d.assembly.grammar.zone import NormalLawSpec, ProcessLawSpec
-from tol3d.assembly.model import Axis, Contribution, Point
+from tol3d.assembly.model import Contribution
+from tol3d.assembly.model.shape import nominal_size
+from tol3d.assembly.zones.float_draw import FloatDraw, Law
 from tol3d.distributions import Distribution, TruncatedNormal, Uniform
 from tol3d.scene import Scene
 from tol3d.system.draw import Draw, Each, Scalar
@@ -52,6 +56,8 @@ class Effects:
     locators: dict[Touch, list[Contribution]] = field(default_factory=dict)
     heights: dict[Touch, list[Contribution]] = field(default_factory=dict)
     """Of surfaces where they are touched, by their form."""
+    floats: dict[str, slice] = field(default_factory=dict)
+    """Of moves with play, the columns of what is drawn of where in its room the part lies."""
     width: int = 0
 
     def _added(self, name: str, spec_kind: str, description: str, draw: Draw) -> slice:
@@ -79,6 +85,23 @@ class Effects:
             case FormSpec() if own.spec.law is not None:
                 self._form(own, own.spec)
 
+    def add_float(self, name: str, spec: PlaySpec) -> None:
+        """What is drawn of a part with play, if anything is."""
+        if not isinstance(spec.floating, RandomSpec):
+            return
+        if is_pattern(spec, self.drawing):
+            draw = FloatDraw(("direction", "fraction"), (*SHIFT_AND_TURN, "fraction"))
+        else:
+            ends = ("",) if spec.relations else ("start ", "end ")
+            names = [f"{end}{axis}" for end in ends for axis in "xy"] + ["across"] * (len(spec.engaged) - 1)
+            laws: list[Law] = ["disc" for _ in ends]
+            laws += ["interval" for _ in spec.engaged[1:]]
+            draw = FloatDraw(tuple(laws), tuple(names))
+        columns = slice(self.width, self.width + len(draw.components))
+        words = f"where {spec.part} lies in its room"
+        self.contributors.append(PlainContributor(f"float of {name}", "float", draw, "1", 1.0, words))
+        self.width, self.floats[name] = columns.stop, columns
+
     def _locator(self, name: str) -> None:
         spec = self.scene.tolerances[name]
         assert isinstance(spec, LocatorSpec)
@@ -96,9 +119,9 @@ class Effects:
             self.moved_by.setdefault(own.feature, []).append(Contribution(own.name, columns, matrix))
 
     def _refuse_no_size(self, own: Stated, draw: Scalar) -> None:
-        """A law that leaves nothing of a diameter."""
+        """A law that leaves nothing of a diameter or width."""
         shape = self.drawing.kind(own.feature).shape
-        nominal = shape.diameter if isinstance(shape, Axis | Point) else None
+        nominal = nominal_size(shape)
         if nominal is not None and nominal + draw.distribution.low <= 0.0:
             words = f"expected sizes above 0, got down to {draw.distribution.low:g} mm on a nominal {nominal:g} mm"
             raise self.scene.refuse(("tolerances", own.entry, "distribution"), words)
@@ -111,7 +134,7 @@ class Effects:
         x, y, z = rotation.T @ direction
         if isinstance(own, PointSpec | SphereSpec):
             return np.array([x, y, z])
-        return np.array([z, 0.0, 0.0]) if isinstance(own, PlaneSpec) else np.array([x, y, x, y])
+        return np.array([z, 0.0, 0.0]) if isinstance(own, PlaneSpec | SlotSpec) else np.array([x, y, x, y])
 
     def _zone(self, own: Stated) -> None:
         draw, matrix = drawn_in(self.scene, own, self.drawing)
@@ -141,6 +164,15 @@ class Effects:
                 self.heights.setdefault(touch, []).append(Contribution(own.name, columns, matrix))
 
 
+SHIFT_AND_TURN = ("shift x", "shift y", "shift z", "turn x", "turn y", "turn z")
+
+
+def is_pattern(spec: PlaySpec, drawing: Drawing) -> bool:
+    """Whether all engagements share their room: those of a pattern, or of two round holes."""
+    kinds = [drawing.kind(name).kind for pair in spec.engaged for name in (pair.from_, pair.to)]
+    return not isinstance(spec, PinAndHoleSpec) or (len(spec.engaged) == 2 and "slot" not in kinds)
+
+
 def effects_of(scene: Scene, drawing: Drawing) -> Effects:
     """All contributors of a scene, and what they do.
 
@@ -150,6 +182,9 @@ def effects_of(scene: Scene, drawing: Drawing) -> Effects:
     effects = Effects(scene, drawing, _touching(scene))
     for own in drawing.stated:
         effects.add(own)
+    for name, move in scene.moves.items():
+        if isinstance(move, PlaySpec):
+            effects.add_float(name, move)
     return effects
 
 

@@ -14,6 +14,7 @@ from tol3d.assembly.grammar.measures import (
     DifferenceSpec,
     InspectedPatternSpec,
     InspectedPositionSpec,
+    SlackSpec,
 )
 from tol3d.assembly.grammar.measures.assembly_measure import FeatureMeasureSpec
 from tol3d.assembly.model import Measured
@@ -35,6 +36,8 @@ def _measured(scene: Scene, spec: AssemblyMeasureSpec, frames: DatumFrames) -> M
     if isinstance(spec, DifferenceSpec):
         own, less = (_measured(scene, _named(scene, name), frames) for name in (spec.of, spec.minus))
         return replace(own, minus=less, rocking=spec.rocking)
+    if isinstance(spec, SlackSpec):
+        return Measured("slack", (), of_move=list(scene.moves).index(spec.of))
     assert isinstance(spec, FeatureMeasureSpec)
     features = tuple(name for _, name, _ in spec.named())
     direction = None if spec.along is None else unit_vector(spec.along)
@@ -78,6 +81,8 @@ def named_by(scene: Scene) -> dict[str, tuple[str, ...]]:
         spec = _named(scene, name)
         if isinstance(spec, DifferenceSpec):
             found[name] = (spec.of, spec.minus)
+        elif isinstance(spec, SlackSpec):
+            found[name] = (spec.of,)
         elif isinstance(spec, FeatureMeasureSpec):
             found[name] = tuple(feature for _, feature, _ in spec.named())
     return found

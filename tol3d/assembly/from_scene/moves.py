@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from tol3d.assembly.from_scene.contributors import Effects
 from tol3d.assembly.from_scene.features import TouchedPoints
+from tol3d.assembly.from_scene.play import engaged_by
 from tol3d.assembly.from_scene.touches import touch
 from tol3d.assembly.grammar.features.nominal_frame import unit
 from tol3d.assembly.grammar.moves import (
@@ -15,6 +16,7 @@ from tol3d.assembly.grammar.moves import (
     LocatingSpec,
     MateSpec,
     PlacingSpec,
+    PlaySpec,
     RestSpec,
     TouchSpec,
     WeldSpec,
@@ -64,6 +66,8 @@ def _move(scene: Scene, name: str, spec: PlacingSpec | WeldSpec, effects: Effect
             return Mate(name, spec.part, _relations(spec.relations))
         case TouchSpec():
             return touch(scene, name, spec, touched.features)
+        case PlaySpec():
+            return engaged_by(scene, name, spec, _relations(spec.relations), effects, touched.features)
         case FixSpec():
             return Fix(name, spec.part)
     raise NotImplementedError(spec.kind)

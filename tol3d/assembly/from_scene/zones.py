@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from tol3d.assembly.from_scene.bonus import sized_by
 from tol3d.assembly.grammar.drawing import Drawing, Stated
-from tol3d.assembly.grammar.features import FeatureUnion, PlaneSpec, PointSpec, SphereSpec
+from tol3d.assembly.grammar.features import FeatureUnion, PlaneSpec, PointSpec, SlotSpec, SphereSpec
 from tol3d.assembly.grammar.features.nominal_frame import Triple, unit
 from tol3d.assembly.grammar.tolerances import CircularRunOutSpec, LocationSpec, OrientationSpec
 from tol3d.assembly.grammar.tolerances.modified import Modified
@@ -84,7 +84,7 @@ def _by_law(scene: Scene, law: LawUnion, zone: Zone, size: SizedBy | None) -> Zo
 
 def _location(spec: LocationSpec, feature: FeatureUnion, orientation: float | None, form: float) -> Zone:
     width, outward = spec.zone.size, None if spec.zone.outward is None else spec.zone.outward.internal
-    if isinstance(feature, PlaneSpec):
+    if isinstance(feature, PlaneSpec | SlotSpec):
         made = catalogue.rectangle if feature.extent is not None else catalogue.round_face
         return made(width, orientation, outward, form)
     if isinstance(feature, PointSpec | SphereSpec):
@@ -99,7 +99,7 @@ def _location(spec: LocationSpec, feature: FeatureUnion, orientation: float | No
 
 
 def _orientation(zone: ZoneSpec, feature: FeatureUnion) -> Zone:
-    if isinstance(feature, PlaneSpec):
+    if isinstance(feature, PlaneSpec | SlotSpec):
         made = catalogue.rectangle_orientation if feature.extent is not None else catalogue.round_face_orientation
         return made(zone.size)
     if zone.along is not None:

@@ -93,7 +93,7 @@ def _zones(drawing: Drawing, feature: str) -> Iterator[Problem]:
 
 def _shape_problems(here: KeyPath, spec: LocationSpec | OrientationSpec, kind: str) -> Iterator[Problem]:
     zone, place = spec.zone, (*here, "zone")
-    if kind == "plane":
+    if kind in ("plane", "slot"):
         if zone.diameter is not None:
             yield (*place, "diameter"), "expected a width, for a plane lies between two planes"
         if zone.along is not None:
@@ -135,7 +135,7 @@ def _direction_problems(here: KeyPath, spec: PlusMinusSpec, drawing: Drawing, fe
         return
     length = float(sum(number**2 for number in spec.along)) ** 0.5
     share = float(z @ spec.along) / length
-    if own.kind == "plane" and abs(share) < ROUNDING:
+    if own.kind in ("plane", "slot") and abs(share) < ROUNDING:
         yield (*here, "along"), "expected a direction that is not in the plane, which would not move it"
     if own.kind in ("axis", "cylinder") and 1.0 - abs(share) < ROUNDING:
         yield (*here, "along"), "expected a direction across the axis, got one along it, where it does not deviate"

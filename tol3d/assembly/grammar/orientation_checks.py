@@ -24,6 +24,7 @@ from tol3d.scene.place import KeyPath
 
 Problem = tuple[KeyPath, str]
 
+FLAT = ("plane", "slot")  # kinds with a normal, not an axis
 SQUARE = 1e-6  # cosine; directions nearer to a right angle are square to each other
 
 
@@ -82,7 +83,7 @@ def _other_angle(drawing: Drawing, own: Stated) -> Iterator[Problem]:
     if other is None or other is feature or {"point", "sphere"} & {other.kind, feature.kind}:
         return  # unknown, a ring, of the wrong kind: said already
     along = abs(float(feature.frame[:3, 2] @ other.frame[:3, 2]))
-    normals = (feature.kind == "plane") == (other.kind == "plane")  # else an axis and a normal: parallel is square
+    normals = (feature.kind in FLAT) == (other.kind in FLAT)  # else an axis and a normal: parallel is square
     angle = float(np.degrees(np.arccos(min(along, 1.0))))
     angle = angle if normals else 90.0 - angle
     if abs(angle - (90.0 if isinstance(spec, PerpendicularitySpec) else 0.0)) > np.degrees(SQUARE):

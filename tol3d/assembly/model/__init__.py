@@ -7,8 +7,22 @@ from tol3d.assembly.model.assembly import Assembly, Part
 from tol3d.assembly.model.datum_frame import Datum, DatumFrame
 from tol3d.assembly.model.feature import Contribution, Feature
 from tol3d.assembly.model.measures import Measured
-from tol3d.assembly.model.moves import BestFit, Fit, Fix, Locate, Mate, Move, Pair, Relation, Rest, Weld
-from tol3d.assembly.model.shape import Axis, Plane, Point, RoundPlane, Shape
+from tol3d.assembly.model.moves import (
+    BestFit,
+    Engage,
+    Engagement,
+    Fit,
+    Fix,
+    Floating,
+    Locate,
+    Mate,
+    Move,
+    Pair,
+    Relation,
+    Rest,
+    Weld,
+)
+from tol3d.assembly.model.shape import Axis, Plane, Point, RoundPlane, Shape, Slot
 from tol3d.assembly.model.touch import Contact, Touch
 
 __all__ = [
@@ -19,9 +33,12 @@ __all__ = [
     "Contribution",
     "Datum",
     "DatumFrame",
+    "Engage",
+    "Engagement",
     "Feature",
     "Fit",
     "Fix",
+    "Floating",
     "Locate",
     "Mate",
     "Measured",
@@ -34,6 +51,7 @@ __all__ = [
     "Rest",
     "RoundPlane",
     "Shape",
+    "Slot",
     "Touch",
     "Weld",
 ]

@@ -23,6 +23,7 @@ MeasureKind = Literal[
     "pattern",
     "contact_angle",
     "surface_gap",
+    "slack",
 ]
 """What is read, of features' origins and z directions as they are in the trial (p, z), in the world:
 
@@ -49,6 +50,7 @@ MeasureKind = Literal[
   0 where they touch; negative where they overlap.
 - contact_angle: between the normal of such a contact, from the first feature's axis, centre or plane towards the
   second's, and the z of a third feature or a direction that is fixed as for gap [rad], 0 to pi.
+- slack: of the move `of_move`, an Engage; no features.
 """
 
 
@@ -72,6 +74,7 @@ class Measured:
         after: index of the move after which it is read; -1 for the end.
         bonuses: of a position and a pattern, what the size of each feature takes from it; () for nothing.
         gauge: how a pattern's gauge finds its best pose in the frame.
+        of_move: index of the move whose slack is read; -1 of other kinds.
         minus: a second one that is subtracted in the same trial.
         rocking: which value it has where a part may rock on its contacts; None where it then has none. Not of `minus`.
     """
@@ -83,5 +86,6 @@ class Measured:
     after: int = -1
     bonuses: tuple[MaterialBonus, ...] = ()
     gauge: Gauge = "shift"
+    of_move: int = -1
     minus: "Measured | None" = None
     rocking: Rocking | None = None

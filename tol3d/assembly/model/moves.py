@@ -1,6 +1,6 @@
 """Moves: each places one body, a part and what is welded to it, against placed ones."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Literal
 
 import numpy as np
@@ -165,4 +165,74 @@ class Weld:
     others: tuple[str, ...]
 
 
-Move = Fix | Locate | BestFit | Mate | Rest | Weld | Touch
+@dataclass(frozen=True, eq=False)
+class Engagement:
+    """A pin in a hole, a pin in a slot or a tab in a slot.
+
+    Its offset at a place: how far the outer one's point lies from the inner one's, across the inner one's axis (both
+    components of a hole) or across its width (one of a slot). Its clearance: half of how much larger the inner one is.
+
+    Args:
+        inner, outer: names of the features: hole or slot, pin or tab.
+        places: where it engages, (places, 3) in the frame of the inner one: on a hole's axis, on a slot's plane.
+        outer_places: the same in the frame of the outer one.
+    """
+
+    inner: str
+    outer: str
+    places: Array
+    outer_places: Array
+
+    @property
+    def name(self) -> str:
+        """In words."""
+        return f"{self.outer} in {self.inner}"
+
+
+@dataclass(frozen=True, eq=False)
+class Floating:
+    """Where in its room a part with play lies.
+
+    - centred: where the least slack (clearance less offset) is largest; of several such poses that in which the least
+      of the others is, and so on.
+    - random, by_pairs: the first engagement anywhere in its disc (in the lens of both ends' discs), the second one
+      anywhere in what is left of its slot; each as often by area.
+    - random: from the centred pose in any direction of its m freedoms, shift at the middle of all places and turn times
+      their largest distance from it; to fraction^(1/m) of the way to where the room ends.
+    - toward: where a point of the part goes farthest along a direction; what that leaves open is as centred as may be.
+
+    Args:
+        kind: which.
+        columns: of the draws: components of a unit disc (and of an interval -1 to 1), or a shift and a turn (6) whose
+            directions are alike, and a fraction.
+        by_pairs: see random.
+        at: the name of the feature, for `toward`.
+        along: (3,), of unit length, in the frame of its part, for `toward`.
+    """
+
+    kind: Literal["centred", "random", "toward"]
+    columns: slice = field(default_factory=lambda: slice(0, 0))
+    by_pairs: bool = False
+    at: str = ""
+    along: Array | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class Engage:
+    """Relations first, as of a mate; the freedoms that they leave are limited by clearances.
+
+    Args:
+        name, part: of the move, and what it places.
+        relations: in order.
+        engagements: all at once.
+        floating: where in its room the part lies.
+    """
+
+    name: str
+    part: str
+    relations: tuple[Relation, ...]
+    engagements: tuple[Engagement, ...]
+    floating: Floating
+
+
+Move = Fix | Locate | BestFit | Mate | Engage | Rest | Weld | Touch

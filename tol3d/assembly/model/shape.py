@@ -60,6 +60,20 @@ class Plane:
 
 
 @dataclass(frozen=True)
+class Slot(Plane):
+    """A slot or a tab: the plane in the middle between its faces, z across its width.
+
+    Args:
+        extent: of that plane [mm].
+        width: nominal size [mm].
+        inner: whether it is a slot, not a tab.
+    """
+
+    width: float
+    inner: bool = True
+
+
+@dataclass(frozen=True)
 class RoundPlane:
     """A flat disc.
 
@@ -101,3 +115,13 @@ class Axis:
 
 
 Shape = Point | Plane | RoundPlane | Axis
+
+
+def nominal_size(shape: Shape) -> float | None:
+    """Diameter or width [mm]; None of a shape without one."""
+    match shape:
+        case Axis() | Point():
+            return shape.diameter
+        case Slot():
+            return shape.width
+    return None

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.assembly.model.feature import Contribution, Feature
-from tol3d.assembly.model.shape import Axis, Plane, RoundPlane
+from tol3d.assembly.model.shape import Axis, Plane, RoundPlane, nominal_size
 from tol3d.assembly.placing.poses import Pose, dot, least_rotation, product, rotated, unit
 
 Array = NDArray[np.float64]
@@ -109,8 +109,10 @@ class ActualFeature:
         return sum(heights[1:], start=heights[0])
 
     def at(self, target: Array) -> Array:
-        """A point of a plane, stated in its frame (3,), at the height that the plane has there (3, n) [mm]."""
+        """A point of a plane or an axis, stated in its frame (3,), as high or far aside as it is there (3, n) [mm]."""
         shape = self.feature.shape
+        if isinstance(shape, Axis):
+            return np.asarray(self.origin + 2.0 * target[2] / shape.length * self.spans[0])
         if not isinstance(shape, (Plane, RoundPlane)):
             return self.base.point(self.centre + np.reshape(target, (3, 1)))
         (a, b), (along_x, along_y) = shape.reach, self.spans
@@ -149,10 +151,8 @@ def actual(feature: Feature, base: Pose, columns: Array) -> ActualFeature:
 
 
 def actual_size(feature: Feature, columns: Array) -> Array:
-    """Its diameter in its trials (n,) or (1,) [mm]; of an axis that has one."""
-    shape = feature.shape
-    nominal = getattr(shape, "diameter", None) or 0.0
-    return nominal + total(feature.size_by, 1, columns)[0]
+    """Its diameter or width in its trials (n,) or (1,) [mm]; of a feature that has one."""
+    return (nominal_size(feature.shape) or 0.0) + total(feature.size_by, 1, columns)[0]
 
 
 def _vector(x: Array | float, y: Array | float, z: Array | float) -> Array:

@@ -1,9 +1,9 @@
 """What may fail on the way to a measure: datum frames and moves, as each needs others before it."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
-from tol3d.assembly.model import Assembly, BestFit, Locate, Mate, Measured, Move, Rest, Touch, Weld
+from tol3d.assembly.model import Assembly, BestFit, Engage, Locate, Mate, Measured, Move, Rest, Touch, Weld
 from tol3d.errors import InputError
 
 Cause = str | int
@@ -65,8 +65,9 @@ class Causes:
             pairs += [(relation.moving, relation.target) for relation in move.relations]
         elif isinstance(move, BestFit):
             pairs = [(fit.moving, fit.target) for fit in move.fits]
-        elif isinstance(move, Mate):
+        elif isinstance(move, Mate | Engage):
             pairs = [(relation.moving, relation.target) for relation in move.relations]
+            pairs += self._engaged(move)
         elif isinstance(move, Touch):
             pairs = [(contact.moving, contact.target) for contact in move.contacts]
         else:
@@ -77,6 +78,18 @@ class Causes:
             own = self.assembly.features[moving].part
             if own != move.part:
                 yield self.of_part(own, f"moves.{move.name}") | self.of_part(move.part, f"moves.{move.name}")
+
+    def _engaged(self, move: Mate | Engage) -> Sequence[tuple[str, str]]:
+        """Of what engages, the feature of the body that is placed and the other one."""
+        if isinstance(move, Mate):
+            return ()
+        body = self.bodies[move.part]
+        both = [(own.inner, own.outer) for own in move.engagements]
+        return [pair if self.assembly.features[pair[0]].part in body else pair[::-1] for pair in both]
+
+    def before(self, move: Move) -> frozenset[Cause]:
+        """What may have failed before a move, of what it needs."""
+        return frozenset[Cause]().union(*self._of_move(move))
 
 
 def causes_of(measured: Measured, name: str, moments: tuple[Causes, ...]) -> tuple[Cause, ...]:
@@ -96,6 +109,8 @@ def ordered(causes: Iterable[Cause]) -> tuple[Cause, ...]:
 
 
 def _causes(measured: Measured, name: str, moments: tuple[Causes, ...]) -> frozenset[Cause]:
+    if measured.kind == "slack":
+        return moments[measured.of_move].before(moments[0].assembly.moves[measured.of_move])
     causes = moments[-1] if measured.after < 0 else moments[measured.after + 1]
     found = causes.of_frame(measured.frame).union(*(causes.of_feature(feature) for feature in measured.features))
     if measured.kind not in ON_PART:

@@ -56,9 +56,9 @@ class Mating:
             for relation, sign in zip(self.move.relations, self.signs, strict=True)
         ]
 
-    def poses(self, world: World, seats: Sequence[Seat]) -> tuple[Pose, Codes]:
-        """Of the part, and what became of it (n,) or (1,)."""
-        return self.alignment.poses(seats, Pose.of(world.assembly.part[self.move.part].pose))
+    def poses(self, world: World, seats: Sequence[Seat], start: Pose | None = None) -> tuple[Pose, Codes]:
+        """Of the part, from its nominal pose or another one, and what became of it (n,) or (1,)."""
+        return self.alignment.poses(seats, start or Pose.of(world.assembly.part[self.move.part].pose))
 
 
 def mating(move: Mate, nominal: World) -> Mating:

@@ -173,6 +173,10 @@ def _parallel(measured: Measured, assembly: Assembly) -> bool:
     return bool(np.linalg.norm(np.cross(start, end)) < PARALLEL)
 
 
+def _slack(measured: Measured, world: World) -> Array:
+    return np.asarray(world.slacks[world.assembly.moves[measured.of_move].name])
+
+
 READINGS: Mapping[MeasureKind, Callable[[Measured, World], Array]] = {
     "distance": _distance,
     "gap": _gap,
@@ -186,4 +190,5 @@ READINGS: Mapping[MeasureKind, Callable[[Measured, World], Array]] = {
     "pattern": pattern,
     "surface_gap": _surface_gap,
     "contact_angle": _contact_angle,
+    "slack": _slack,
 }

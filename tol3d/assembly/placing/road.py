@@ -7,11 +7,12 @@ from functools import cached_property, lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.assembly.model import Assembly, BestFit, Fix, Locate, Mate, Move, Rest, Touch, Weld
+from tol3d.assembly.model import Assembly, BestFit, Engage, Fix, Locate, Mate, Move, Rest, Touch, Weld
 from tol3d.assembly.model.statuses import OK, SINGULAR
 from tol3d.assembly.placing.best_fitting import BestFitting, best_fitting
 from tol3d.assembly.placing.causes import Cause, Causes, causes_of, ordered
 from tol3d.assembly.placing.datum_seats import DatumSeats, datum_seats
+from tol3d.assembly.placing.engaging import Engaging, engaging
 from tol3d.assembly.placing.locating import Locating, locating
 from tol3d.assembly.placing.mating import Mating, mating
 from tol3d.assembly.placing.measuring import reading
@@ -29,7 +30,7 @@ BLOCK = 8192
 
 _MOVED: Codes = np.full(1, OK, dtype=np.int8)
 
-Placing = Fix | Weld | Locating | Mating | BestFitting | Resting | Touching
+Placing = Fix | Weld | Locating | Mating | BestFitting | Resting | Touching | Engaging
 
 
 def values(assembly: Assembly, deviations: Array, names: Sequence[str]) -> dict[str, tuple[Array, Codes]]:
@@ -52,21 +53,31 @@ def values(assembly: Assembly, deviations: Array, names: Sequence[str]) -> dict[
 
 def answers(
     assembly: Assembly, deviations: Array, names: Sequence[str]
-) -> tuple[dict[str, tuple[Array, Codes]], dict[str, NDArray[np.str_]]]:
-    """What measures read, as `values`; and by rest which contacts carry in each trial (trials,), such as "1 3 4"."""
+) -> tuple[dict[str, tuple[Array, Codes]], dict[str, NDArray[np.str_]], dict[str, NDArray[np.str_]]]:
+    """What measures read, as `values`; and by move what decided in each trial (trials,).
+
+    Of a rest which contacts carry, such as "1 3 4"; and of a move with play the pair that has the least slack.
+    """
     plan = planned(assembly)
     deviations = np.asarray(deviations, dtype=np.float64)
     found = {name: (np.empty(len(deviations)), np.empty(len(deviations), dtype=np.int8)) for name in names}
-    carried: dict[str, list[NDArray[np.str_]]] = {move.name: [] for move in assembly.moves if isinstance(move, Rest)}
+    carried, tightest = dict[str, list[NDArray[np.str_]]](), dict[str, list[NDArray[np.str_]]]()
     for start in range(0, len(deviations), BLOCK):
         rows = slice(start, start + BLOCK)
         block = _placed(plan, deviations[rows])
         for name, (numbers, codes) in found.items():
             numbers[rows], codes[rows] = _over_rests(plan, block, name, deviations[rows])
-        for name, own in carried.items():
-            sets, which = carrying(block.worlds[-1].loads[name])
-            own.append(np.array([" ".join(map(str, np.flatnonzero(each) + 1)) for each in sets])[which])
-    return found, {name: np.concatenate(own) for name, own in carried.items() if own}
+        for name, loads in block.worlds[-1].loads.items():
+            sets, which = carrying(loads)
+            words = np.array([" ".join(map(str, np.flatnonzero(each) + 1)) for each in sets])
+            carried.setdefault(name, []).append(words[which])
+        for name, pairs in block.worlds[-1].tightest.items():
+            tightest.setdefault(name, []).append(pairs)
+    return found, _joined(carried), _joined(tightest)
+
+
+def _joined(pieces: Mapping[str, Sequence[NDArray[np.str_]]]) -> dict[str, NDArray[np.str_]]:
+    return {name: np.concatenate(own) for name, own in pieces.items()}
 
 
 def placed(assembly: Assembly, deviations: Array) -> dict[str, Array]:
@@ -177,6 +188,8 @@ def _planned(move: Move, nominal: World) -> Placing:
             return resting(move, nominal)
         case Touch():
             return touching(move, nominal)
+        case Engage():
+            return engaging(move, nominal)
         case _:
             return move
 

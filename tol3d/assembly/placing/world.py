@@ -25,6 +25,8 @@ class World:
         poses: of parts that are placed, in the world.
         bodies: of each part, what it is welded to, itself among them.
         loads: by move, the part of its force that each contact carries (contacts, n).
+        slacks: of moves with play, by their names (n,) [mm].
+        tightest: of moves with play, by their names, the pair that decides it (n,).
     """
 
     assembly: Assembly
@@ -33,6 +35,8 @@ class World:
     poses: Mapping[str, Pose]
     bodies: Mapping[str, frozenset[str]]
     loads: Mapping[str, Array] = field(default_factory=dict)
+    slacks: Mapping[str, Array] = field(default_factory=dict)
+    tightest: Mapping[str, NDArray[np.str_]] = field(default_factory=dict)
 
     @property
     def trials(self) -> int:
@@ -67,6 +71,10 @@ class World:
     def with_loads(self, move: str, loads: Array) -> "World":
         """The world in which contacts of a move carry some parts of its force (contacts, n)."""
         return replace(self, loads={**self.loads, move: loads})
+
+    def with_slack(self, move: str, slack: Array, tightest: NDArray[np.str_]) -> "World":
+        """The world in which a move with play has a slack (n,), and the pairs that decide it (n,)."""
+        return replace(self, slacks={**self.slacks, move: slack}, tightest={**self.tightest, move: tightest})
 
     def with_welded(self, parts: tuple[str, ...]) -> "World":
         """The world in which parts, and what is welded to them, are one body."""

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.assembly.model import Assembly, BestFit, Measured, Rest
+from tol3d.assembly.model import Assembly, BestFit, Engage, Measured, Rest
 from tol3d.assembly.torsors.columns import Columns, without_rounding
 from tol3d.assembly.torsors.measures import reading
 from tol3d.assembly.torsors.moves import after
@@ -167,15 +167,17 @@ def _reads(rows: Array) -> NDArray[np.bool_]:
 
 
 def _room(assembly: Assembly) -> int:
-    """How many columns terms may make: of each datum one, of a minimax fit or a rest six, of a measure's reading three.
+    """How many columns terms may make: of a datum one, of a minimax fit or a rest six, of play seven, of a reading ten.
 
     Moves are followed once, and twice more for each measure that is read at an end of what parts may rock.
     """
     datums = sum(len(frame.datums) for frame in assembly.datum_frames.values())
     fits = sum(isinstance(move, BestFit) and move.criterion == "minimax" for move in assembly.moves)
     rests = sum(isinstance(move, Rest) for move in assembly.moves)
+    plays = sum(isinstance(move, Engage) for move in assembly.moves)
     rocking = sum(own.rocking is not None for own in assembly.measures.values()) if rests else 0
-    return datums + (6 * fits + 6 * rests) * (1 + 2 * rocking) + 10 * sum(map(_readings, assembly.measures.values()))
+    moved = 6 * fits + 6 * rests + 7 * plays
+    return datums + moved * (1 + 2 * rocking) + 10 * sum(map(_readings, assembly.measures.values()))
 
 
 def _readings(measured: Measured) -> int:

@@ -19,11 +19,16 @@ def mated(move: Mate, world: World) -> Array:
     Raises:
         InputError: a relation takes nothing, or is not one of its two features.
     """
+    return freedoms_after(move, world).rest()
+
+
+def freedoms_after(move: Mate, world: World) -> Freedoms:
+    """What relations decide, and leave; as `mated`."""
     part = world.assembly.part[move.part]
     points = [world.origin(name) for each in move.relations for name in (each.moving, each.target)]
     freedoms = Freedoms(part.pose[:3, 3], points, world.columns.count)
     take_relations(freedoms, move, world)
-    return freedoms.rest()
+    return freedoms
 
 
 def take_relations(freedoms: Freedoms, move: Mate | Rest, world: World) -> None:

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from tol3d.assembly.model import Axis, Measured, Plane, Point, RoundPlane
 from tol3d.assembly.model.bonus import MaterialBonus
+from tol3d.assembly.model.shape import nominal_size
 from tol3d.assembly.torsors.columns import without_rounding
 from tol3d.assembly.torsors.common_opening import CommonOpening, TurnedOpening
 from tol3d.assembly.torsors.flatness import balances
@@ -122,8 +123,7 @@ def _angle(measured: Measured, world: World) -> Array:
 
 def _size(measured: Measured, world: World) -> Array:
     (name,) = measured.features
-    nominal = getattr(world.assembly.features[name].shape, "diameter", None) or 0.0
-    return _constant(world, nominal) + world.size(name)
+    return _constant(world, nominal_size(world.assembly.features[name].shape) or 0.0) + world.size(name)
 
 
 def _from_frame(measured: Measured, world: World) -> Array:
@@ -277,6 +277,10 @@ def _pattern(measured: Measured, world: World) -> Array:
     return row
 
 
+def _slack(measured: Measured, world: World) -> Array:
+    return world.slacks[world.assembly.moves[measured.of_move].name]
+
+
 _READINGS = {
     "distance": _distance,
     "gap": _gap,
@@ -290,4 +294,5 @@ _READINGS = {
     "pattern": _pattern,
     "surface_gap": _surface_gap,
     "contact_angle": _contact_angle,
+    "slack": _slack,
 }

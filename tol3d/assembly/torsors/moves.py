@@ -3,8 +3,9 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.assembly.model import BestFit, Fix, Locate, Mate, Move, Rest, Touch, Weld
+from tol3d.assembly.model import BestFit, Engage, Fix, Locate, Mate, Move, Rest, Touch, Weld
 from tol3d.assembly.torsors.best_fit import fitted
+from tol3d.assembly.torsors.engaging import engaged
 from tol3d.assembly.torsors.locators import located
 from tol3d.assembly.torsors.mating import mated
 from tol3d.assembly.torsors.resting import rested
@@ -38,5 +39,7 @@ def after(move: Move, world: World, leaning: Array | None = None) -> World:
             return world.with_part_at(move.part, rested(move, world, leaning))
         case Touch():
             return world.with_part_at(move.part, touched(move, world))
+        case Engage():
+            return engaged(move, world)
         case Weld():
             return world.with_welded((move.part, *move.others))

@@ -18,10 +18,11 @@ Form = Literal[
     "largest inscribed circle",
     "one-sided contacts",
     "end",
+    "place in a room",
 ]
 """How a term depends on what it reads: the largest length of vectors and the least width between parallel planes are
 convex, a largest inscribed circle is concave; a pose of least largest residual or on one-sided contacts and a clipped
-amount are neither, but linear in pieces."""
+amount are neither, but linear in pieces; a place in a room is neither."""
 
 
 class Term(Protocol):

@@ -27,6 +27,7 @@ class World:
         self.columns = columns
         self.own = {part.name: PartTorsors(part, columns) for part in assembly.parts}
         self.parts: Mapping[str, Array] = {part.name: columns.zeros(6) for part in assembly.parts}
+        self.slacks: Mapping[str, Array] = {}
         self._bodies = {part.name: frozenset([part.name]) for part in assembly.parts}
 
     def part_of(self, feature: str) -> str:
@@ -73,6 +74,16 @@ class World:
         changed = copy(self)
         changed.parts = {name: own + moved if name in body else own for name, own in self.parts.items()}
         return changed
+
+    def with_slack(self, move: str, slack: Array) -> "World":
+        """The world in which a move with play has a slack (columns,)."""
+        changed = copy(self)
+        changed.slacks = {**self.slacks, move: slack}
+        return changed
+
+    def is_of_body(self, feature: str, part: str) -> bool:
+        """Whether a feature belongs to a part or to what is welded to it."""
+        return self.part_of(feature) in self._bodies[part]
 
     def with_welded(self, parts: tuple[str, ...]) -> "World":
         """The world in which parts and what is welded to them are one body."""

@@ -7,8 +7,11 @@ from pydantic import Field
 from tol3d.assembly.grammar.features.axis import AxisSpec, CylinderSpec
 from tol3d.assembly.grammar.features.plane import PlaneSpec
 from tol3d.assembly.grammar.features.point import PointSpec
+from tol3d.assembly.grammar.features.slot import SlotSpec
 from tol3d.assembly.grammar.features.sphere import SphereSpec
 
-FeatureUnion = Annotated[PointSpec | SphereSpec | PlaneSpec | CylinderSpec | AxisSpec, Field(discriminator="kind")]
+FeatureUnion = Annotated[
+    PointSpec | SphereSpec | PlaneSpec | SlotSpec | CylinderSpec | AxisSpec, Field(discriminator="kind")
+]
 
-__all__ = ["AxisSpec", "CylinderSpec", "FeatureUnion", "PlaneSpec", "PointSpec", "SphereSpec"]
+__all__ = ["AxisSpec", "CylinderSpec", "FeatureUnion", "PlaneSpec", "PointSpec", "SlotSpec", "SphereSpec"]

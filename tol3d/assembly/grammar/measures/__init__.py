@@ -12,6 +12,7 @@ from tol3d.assembly.grammar.measures.inspected import (
 )
 from tol3d.assembly.grammar.measures.inspected_pattern import InspectedPatternSpec
 from tol3d.assembly.grammar.measures.inspected_size import InspectedSizeSpec
+from tol3d.assembly.grammar.measures.slack import SlackSpec
 from tol3d.assembly.grammar.measures.virtual_clearance import VirtualClearanceSpec
 
 __all__ = [
@@ -28,6 +29,7 @@ __all__ = [
     "InspectedPositionSpec",
     "InspectedSizeSpec",
     "PointPlaneSpec",
+    "SlackSpec",
     "SurfaceGapSpec",
     "VirtualClearanceSpec",
 ]

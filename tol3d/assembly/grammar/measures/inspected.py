@@ -63,7 +63,7 @@ class InspectedOrientationSpec(InspectedSpec):
 
     def named(self) -> Sequence[tuple[KeyPath, FeatureName, tuple[str, ...]]]:
         """See FeatureMeasureSpec."""
-        return ((("of",), self.of, ("plane", "cylinder", "axis")),)
+        return ((("of",), self.of, ("plane", "slot", "cylinder", "axis")),)
 
 
 class InspectedFlatnessSpec(FeatureMeasureSpec):

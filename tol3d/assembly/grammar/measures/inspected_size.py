@@ -12,7 +12,7 @@ from tol3d.scene.place import KeyPath
 
 
 class InspectedSizeSpec(FeatureMeasureSpec):
-    """A diameter as it is in the trial."""
+    """A diameter or width as it is in the trial."""
 
     reads: ClassVar[MeasureKind] = "size"
 
@@ -21,4 +21,4 @@ class InspectedSizeSpec(FeatureMeasureSpec):
 
     def named(self) -> Sequence[tuple[KeyPath, FeatureName, tuple[str, ...]]]:
         """See FeatureMeasureSpec."""
-        return ((("of",), self.of, ("cylinder", "sphere")),)
+        return ((("of",), self.of, ("cylinder", "slot", "sphere")),)

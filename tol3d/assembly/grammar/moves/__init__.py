@@ -5,6 +5,7 @@ from tol3d.assembly.grammar.moves.fix import FixSpec
 from tol3d.assembly.grammar.moves.locating import LocatingSpec, SixPlaneSpec, ThreeTwoOneSpec
 from tol3d.assembly.grammar.moves.mate import MateSpec
 from tol3d.assembly.grammar.moves.placing_move import PlacingSpec
+from tol3d.assembly.grammar.moves.play import PatternSpec, PinAndHoleSpec, PlaySpec
 from tol3d.assembly.grammar.moves.rest import RestSpec
 from tol3d.assembly.grammar.moves.touch import TouchSpec
 from tol3d.assembly.grammar.moves.weld import WeldSpec
@@ -14,7 +15,10 @@ __all__ = [
     "FixSpec",
     "LocatingSpec",
     "MateSpec",
+    "PatternSpec",
+    "PinAndHoleSpec",
     "PlacingSpec",
+    "PlaySpec",
     "RestSpec",
     "SixPlaneSpec",
     "ThreeTwoOneSpec",

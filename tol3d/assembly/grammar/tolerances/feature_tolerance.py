@@ -16,7 +16,7 @@ from tol3d.scene.tolerance import ToleranceEntry
 class FeatureTolerance(ToleranceEntry):
     """A tolerance of one feature."""
 
-    applies_to: ClassVar[tuple[str, ...]] = ("point", "sphere", "plane", "cylinder", "axis")
+    applies_to: ClassVar[tuple[str, ...]] = ("point", "sphere", "plane", "slot", "cylinder", "axis")
 
     of: FeatureName = Field(description="the feature, with its part")
 

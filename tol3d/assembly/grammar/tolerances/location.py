@@ -44,7 +44,7 @@ class PositionSpec(Modified, LocationSpec):
     """A true position."""
 
     words: ClassVar[str] = "a position tolerance"
-    applies_to: ClassVar[tuple[str, ...]] = ("point", "sphere", "cylinder", "axis", "plane")
+    applies_to: ClassVar[tuple[str, ...]] = ("point", "sphere", "cylinder", "axis", "plane", "slot")
 
     kind: Literal["position"]
 
@@ -72,7 +72,7 @@ class SymmetrySpec(LocationSpec):
     """A symmetry: a median plane, or an axis in one direction, lies in a width about the datum's."""
 
     words: ClassVar[str] = "a symmetry tolerance"
-    applies_to: ClassVar[tuple[str, ...]] = ("plane", "cylinder", "axis")
+    applies_to: ClassVar[tuple[str, ...]] = ("plane", "slot", "cylinder", "axis")
 
     kind: Literal["symmetry"]
     datums: Datums = Field(description="the median plane or axis that it is symmetric to")

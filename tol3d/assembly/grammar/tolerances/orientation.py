@@ -13,7 +13,7 @@ from tol3d.assembly.grammar.zone import LawUnion, ZoneSpec
 class OrientationSpec(Modified, FeatureTolerance):
     """A zone for how a feature is turned."""
 
-    applies_to: ClassVar[tuple[str, ...]] = ("plane", "cylinder", "axis")
+    applies_to: ClassVar[tuple[str, ...]] = ("plane", "slot", "cylinder", "axis")
 
     zone: ZoneSpec
     law: LawUnion | None = Field(

@@ -1,4 +1,4 @@
-"""Size: the diameter of a cylinder or a sphere."""
+"""Size: the diameter of a cylinder or a sphere, the width of a slot or tab."""
 
 from collections.abc import Iterator
 from typing import Annotated, ClassVar, Literal, Self
@@ -18,10 +18,10 @@ Deviation = Annotated[Quantity, Of("length")]
 
 
 class SizeSpec(FeatureTolerance, ToleranceSpec):
-    """How much larger a diameter is than nominal."""
+    """How much larger a diameter or width is than nominal."""
 
     words: ClassVar[str] = "a size tolerance"
-    applies_to: ClassVar[tuple[str, ...]] = ("cylinder", "sphere")
+    applies_to: ClassVar[tuple[str, ...]] = ("cylinder", "slot", "sphere")
 
     kind: Literal["size"]
     limits: Annotated[tuple[Deviation, Deviation], listed("lengths", 2, 2)] | None = Field(

@@ -1,0 +1,280 @@
+"""Pins with play: problems 11a, 11b and 13, where floats lie in their rooms, what is refused."""
+
+import math
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+import pytest
+from assembly_trials import Assembled, assembled
+from numpy.typing import NDArray
+from places import SCENES
+from plates_with_pins import plates
+from scipy.optimize import brentq
+
+from tol3d.assembly.placing import road as placing
+from tol3d.assembly.torsors import road as torsors
+from tol3d.errors import SceneError
+from tol3d.simulate import Overrides, load, simulation_of
+from tol3d.study.draws import drawn
+
+Array = NDArray[np.float64]
+
+ROADS = ("exact", "analytic")
+PLATE = (SCENES / "hole_and_slot.yaml").read_text("utf-8")
+
+
+@pytest.mark.parametrize("road", ROADS)
+def test_hole_and_slot(road: str) -> None:
+    """Problem 13: the disc of a hole and the width of a slot, area and not radius uniform, of each trial's sizes."""
+    count = 60_000
+    found = Assembled(simulation_of(load(SCENES / "hole_and_slot.yaml"), Overrides())).drawn(count, road)
+    first, second = (c**2 + (0.01**2 + 0.004**2) / 4 for c in (0.05, 0.03))
+    x, y, length = 300.0, 80.0, 120.0
+    variances = {
+        "corner x": first / 4 * (1 + (y / length) ** 2) + second / 3 * (y / length) ** 2,
+        "corner y": first / 4 * (1 - x / length) ** 2 + second / 3 * (x / length) ** 2,
+    }
+    assert [round(math.sqrt(own), 6) for own in variances.values()] == [0.032417, 0.057948]
+    for name, variance in variances.items():
+        assert found[name].std() == pytest.approx(math.sqrt(variance), rel=4 / math.sqrt(2 * count))
+    common = -first / 4 * (y / length) * (1 - x / length) * -1 - second / 3 * x * y / length**2
+    correlation = common / math.sqrt(variances["corner x"] * variances["corner y"])
+    assert correlation == pytest.approx(-0.61131, abs=2e-5)
+    both = np.corrcoef(found["corner x"], found["corner y"])[0, 1]
+    assert both == pytest.approx(correlation, abs=4 * (1 - correlation**2) / math.sqrt(count))
+    assert np.abs(found["corner y"]).max() < abs(1 - x / length) * 0.08 + x / length * 0.06  # of sizes 5 sigma off
+
+
+def key(width: float, floating: str) -> str:
+    """The key of the shipped scene, alone, of exact sizes."""
+    text = PLATE.replace("width: 20.03 mm", f"width: {width} mm").replace("sigma: 2 um", "sigma: 1e-6 um")
+    return text.replace("{kind: toward, along: [0, 1, 0], at: key.tip}", floating)
+
+
+def test_a_tongue_leans_in_its_slot_until_its_corners_touch(tmp_path: Path) -> None:
+    """Problem 11a: w cos(th) + l sin(th) = W."""
+    made = assembled(key(20.3, "{kind: toward, along: [0, 1, 0], at: key.tip}"), tmp_path)
+    tilt = brentq(lambda th: 20 * math.cos(th) + 30 * math.sin(th) - 20.3, 0, 0.1, xtol=1e-15)
+    assert tilt == pytest.approx(10.03372663e-3, abs=1e-11)
+    assert made.nominal["tilt"] == pytest.approx(tilt, abs=1e-9)
+    assert made.nominal["tip"] == pytest.approx(150 * math.sin(tilt), abs=1e-7)
+    other = assembled(key(20.3, "{kind: toward, along: [0, -1, 0], at: key.tip}"), tmp_path)
+    assert other.nominal["tip"] == pytest.approx(-150 * math.sin(tilt), abs=1e-7)
+    assert assembled(key(20.3, "{kind: centred}"), tmp_path).nominal["tip"] == pytest.approx(0.0, abs=1e-9)
+
+
+BORE = """
+scene: a pin in a bore
+parts:
+  body:
+    kind: solid
+    features:
+      bore: {kind: cylinder, at: [0 mm, 0 mm, 20 mm], axis: [0, 0, 1], length: 40 mm, diameter: 10.1 mm, hole: true}
+      mark: {kind: point, at: [0 mm, 0 mm, 120 mm]}
+  shaft:
+    kind: solid
+    features:
+      pin: {kind: cylinder, at: [0 mm, 0 mm, 60 mm], axis: [0, 0, 1], length: 120 mm, diameter: 10 mm}
+      tip: {kind: point, at: [0 mm, 0 mm, 120 mm]}
+tolerances:
+  bore size: {kind: size, of: body.bore, distribution: {kind: constant, value: 0 mm}}
+  pin size: {kind: size, of: shaft.pin, distribution: {kind: constant, value: 0 mm}}
+moves:
+  body: {kind: fix, part: body}
+  in: {kind: pin_and_hole, part: shaft, pairs: [{from: shaft.pin, to: body.bore}], float: {kind: random}}
+measures:
+  x: {kind: gap, from: body.mark, to: shaft.tip, along: [1, 0, 0]}
+  y: {kind: gap, from: body.mark, to: shaft.tip, along: [0, 1, 0]}
+""".replace("  body: {kind: fix", "  set: {kind: fix")
+
+
+@pytest.mark.parametrize("road", ROADS)
+def test_a_pin_in_a_bore(tmp_path: Path, road: str) -> None:
+    """Problem 11b: both ends anywhere in their discs; 100 from the middle sigma (c/2) sqrt(1/2 + 2 d^2/l^2), and within
+    c (1 + 2 d/l - 1/2 + 1/2)."""
+    count, c, d, length = 40_000, 0.05, 100.0, 40.0
+    found = assembled(BORE, tmp_path).drawn(count, road)
+    sigma = c / 2 * math.sqrt(0.5 + 2 * d**2 / length**2)
+    assert sigma == pytest.approx(0.0901388, abs=1e-7)
+    for own in found.values():
+        assert own.std() == pytest.approx(sigma, rel=4 / math.sqrt(2 * count))
+    reach = 2 * c * d / length
+    largest = np.hypot(found["x"], found["y"]).max()
+    assert reach == pytest.approx(0.25)
+    assert 0.85 * reach < largest < reach + 1e-6
+
+
+def leaning(floating: str, spread: str) -> str:
+    """The plate on its pins, whose hole leans by a stated amount."""
+    text = PLATE.replace("float: {kind: random} ", f"float: {floating} ")
+    lean = f"of: plate.hole, zone: {{diameter: 0.2 mm}}, datums: [bottom], law: {spread}"
+    return text.replace("\nmoves:\n", f"  lean: {{kind: perpendicularity, {lean}}}\n\nmoves:\n")
+
+
+@pytest.mark.parametrize("road", ROADS)
+def test_a_hole_that_leans_leaves_a_lens(tmp_path: Path, road: str) -> None:
+    """Uniform by area in the lens of two discs 2a apart: second moments by rejection from the box about it."""
+    half = 0.03
+    law = f"{{kind: process, distribution: {{kind: constant, value: {half * 1e3} um}}}}"
+    made = assembled(leaning("{kind: random}", law), tmp_path)
+    rows = drawn(made.simulation, 0, 40_000).deviations
+    for contributor, own in made.slices:
+        if contributor.kind == "size":
+            rows[:, own] = 0.0
+    names = ["corner x", "corner y"]
+    x, y = (
+        torsors.values(made.system.assembly, rows, names)[name]
+        if road == "analytic"
+        else placing.values(made.system.assembly, rows, names)[name][0]
+        for name in names
+    )
+    # the middle of the hole, from the corner: y of the slot's middle has its own interval of 0.03
+    lean = next(rows[0, own] for contributor, own in made.slices if contributor.name == "lean")
+    assert np.abs(lean).max() > 0.0
+    box = np.random.default_rng(3).uniform(-0.05, 0.05, (2_000_000, 2))
+    ends = np.array([-lean[:2], -lean[-2:]]) if len(lean) == 4 else np.array([lean, -lean])
+    inside = (np.linalg.norm(box[:, None] - ends[None], axis=2) <= 0.05).all(axis=1)
+    lens = box[inside]
+    across = np.random.default_rng(4).uniform(-0.03, 0.03, len(lens))
+    turn = (across - lens[:, 1]) / 120
+    corner = np.stack([lens[:, 0] - 80 * turn, lens[:, 1] + 300 * turn], axis=1)
+    for found, other in ((x, corner[:, 0]), (y, corner[:, 1])):
+        errors = 4 / math.sqrt(2 * len(found)) + 4 / math.sqrt(2 * len(lens))
+        assert found.std() == pytest.approx(other.std(), rel=errors)
+        assert np.abs(found).max() < np.abs(other).max() + 1e-3
+
+
+def four(floating: str, tmp_path: Path) -> Assembled:
+    at = ((-30.0, -20.0), (30.0, -20.0), (30.0, 20.0), (-30.0, 20.0))
+    return assembled(plates(at, 10.2, 10.0, floating), tmp_path)
+
+
+@pytest.mark.parametrize("road", ROADS)
+def test_a_random_pattern_stays_in_its_room_and_fills_it(tmp_path: Path, road: str) -> None:
+    """Four equal pins: a pose (x, y, turn R) is inside where the farthest pin is; shares of the way out are u^(1/3)."""
+    made = four("{kind: random}", tmp_path)
+    rows = drawn(made.simulation, 0, 4000).deviations
+    floats = next(own for contributor, own in made.slices if contributor.kind == "float")
+    rows[:, : floats.start] = 0.0
+    if road == "exact":
+        found = {name: own for name, (own, _) in placing.values(made.system.assembly, rows, ["x", "y", "turn"]).items()}
+    else:
+        found = dict(torsors.values(made.system.assembly, rows, ["x", "y", "turn"]))
+    turn = (found["y"] - found["turn"]) / 130
+    x, y = found["x"], found["y"] - 100 * turn
+    at = np.array([(-30.0, -20.0), (30.0, -20.0), (30.0, 20.0), (-30.0, 20.0)])
+    farthest = np.max([np.hypot(x - turn * b, y + turn * a) for a, b in at], axis=0)
+    share = farthest / 0.1
+    assert share.max() < 1 + (1e-9 if road == "analytic" else 2e-3)  # half of squared turns of 3e-3, 36 mm off, of 0.1
+    assert np.sort(share**3) == pytest.approx((np.arange(4000) + 0.5) / 4000, abs=1.95 / math.sqrt(4000))  # 99.9 %
+    ways = np.stack([x, y, turn * math.hypot(30, 20)])
+    ways /= np.linalg.norm(ways, axis=0)
+    assert ways.mean(axis=1) == pytest.approx(0, abs=4 / math.sqrt(3 * 4000))
+    assert (ways**2).mean(axis=1) == pytest.approx(1 / 3, abs=4 * math.sqrt(4 / 45 / 4000))
+
+
+@pytest.mark.parametrize("road", ROADS)
+def test_a_pattern_pushed_along_x_goes_by_the_smallest_clearance(tmp_path: Path, road: str) -> None:
+    made = four("{kind: toward, along: [1, 0, 0], at: upper.edge}", tmp_path)
+    rows = np.zeros((3, made.system.assembly.width))
+    sizes = {contributor.name: own.start for contributor, own in made.slices if contributor.kind == "size"}
+    rows[1, sizes["pin 2 size"]] = 0.05
+    rows[2, sizes["pin 2 size"]] = 0.25  # does not go in
+    found = (
+        {name: own for name, (own, _) in placing.values(made.system.assembly, rows, ["x", "y", "slack"]).items()}
+        if road == "exact"
+        else torsors.values(made.system.assembly, rows, ["x", "y", "slack"])
+    )
+    assert found["x"][0] == pytest.approx(0.1, abs=1e-6)
+    assert 0.075 < found["x"][1] <= 0.1  # the others let it turn about the tight one
+    assert found["slack"] == pytest.approx([0.1, 0.075, -0.025], abs=1e-6)
+
+
+def test_the_pair_that_does_not_go_in_is_named(tmp_path: Path) -> None:
+    made = four("{kind: centred}", tmp_path)
+    rows = np.zeros((2, made.system.assembly.width))
+    sizes = {contributor.name: own.start for contributor, own in made.slices if contributor.kind == "size"}
+    rows[1, sizes["hole 2 size"]] = -0.3
+    found, _, columns = placing.answers(made.system.assembly, rows, ["slack", "x"])
+    assert columns["together"][1] == "lower.pin 2 in upper.hole 2"
+    assert found["slack"][0] == pytest.approx([0.1, -0.05], abs=1e-9)
+    assert np.isnan(found["x"][0]).tolist() == [False, True]
+
+
+WRONG: dict[str, tuple[Sequence[tuple[str, str]], str]] = {
+    "no size": (
+        [
+            ("  slot size: {kind: size", "  #"),
+            (" of: plate.slot, distribution: {kind: normal, mean: 0 um, sigma: 10 um}}\n", "\n"),
+        ],
+        "moves.plate on the pins.pairs[1].from: expected a size tolerance of 'plate.slot', for its play follows from "
+        "its size, got none; a size that does not vary "
+        "is {kind: size, ..., distribution: {kind: constant, value: 0 mm}}",
+    ),
+    "smaller than its pin": (
+        [("diameter: 10.1 mm", "diameter: 9.9 mm")],
+        "moves.plate on the pins.pairs[0]: expected a size of 'plate.hole' over that of 'base.pin 1' at the mean, got "
+        "100 um under it; nothing could be assembled",
+    ),
+    "two holes": (
+        [("{from: plate.hole, to: base.pin 1}", "{from: plate.hole, to: base.keyway}")],
+        "moves.plate on the pins.pairs[0]: expected a pin or tab and a hole or slot, got two holes or slots, "
+        "'plate.hole' and 'base.keyway'",
+    ),
+    "a plane": (
+        [("{from: plate.hole, to: base.pin 1}", "{from: plate.hole, to: base.top}")],
+        "moves.plate on the pins.pairs[0]: expected a pin or tab and a hole or slot, got 'base.top', which is a plane",
+    ),
+    "slot first": (
+        [("{from: plate.hole, to: base.pin 1}", "{from: plate.slot, to: base.pin 1}")],
+        "moves.plate on the pins.pairs[0]: expected a pin in a hole first, which holds both shifts, got a slot; put it "
+        "second, or take a pattern",
+    ),
+    "no float": (
+        [("    float: {kind: random} ", "    # ")],
+        'moves.plate on the pins: expected the key "float" here, found none',
+    ),
+    "float as a word": (
+        [("float: {kind: random} ", "float: random ")],
+        "moves.plate on the pins.float: expected where in its room the part lies, such as {kind: random}, got 'random'",
+    ),
+    "outside": (
+        [("hole: {kind: cylinder, at: [0 mm, 0 mm, 4 mm]", "hole: {kind: cylinder, at: [0 mm, 0 mm, 40 mm]")],
+        "moves.plate on the pins.pairs[0]: expected features that share a stretch nominally, got 'base.pin 1' outside "
+        "'plate.hole'; place the parts, or say whose ends count as `over`",
+    ),
+    "askew": (
+        [
+            (
+                "hole: {kind: cylinder, at: [0 mm, 0 mm, 4 mm], axis: [0, 0, 1]",
+                "hole: {kind: cylinder, at: [0 mm, 0 mm, 4 mm], axis: [0, 0.1, 1]",
+            )
+        ],
+        "moves.plate on the pins.pairs[0]: expected a pin nominally along the axis of its hole, got "
+        "'base.pin 1' at an angle",
+    ),
+    "pushed where it is held": (
+        [("along: [0, 1, 0], at: key.tip", "along: [0, 0, 1], at: key.tip")],
+        "moves.key in its way: key.tip does not move along its direction: it is held there",
+    ),
+    "slack of another move": (
+        [("measures:\n", "measures:\n  room: {kind: slack, of: table}\n")],
+        "measures.room.of: expected the name of a move with play, got 'table', which is a fixed part; known here: "
+        "plate on the pins, key in its way",
+    ),
+}
+
+
+@pytest.mark.parametrize("case", WRONG)
+def test_what_is_wrong_is_said_once(case: str, tmp_path: Path) -> None:
+    edits, expected = WRONG[case]
+    text = PLATE
+    for old, new in edits:
+        assert old in text, old
+        text = text.replace(old, new, 1)
+    path = tmp_path / "scene.yaml"
+    path.write_text(text, "utf-8")
+    with pytest.raises(SceneError) as caught:
+        simulation_of(load(path), Overrides())
+    assert str(caught.value).partition(": ")[2] == expected

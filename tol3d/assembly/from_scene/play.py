@@ -1,0 +1,134 @@
+"""Moves with play: where pins, tabs, holes and slots engage nominally."""
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tol3d.assembly.from_scene.contributors import Effects, is_pattern
+from tol3d.assembly.from_scene.features import poses_of
+from tol3d.assembly.grammar.feature_name import part_of
+from tol3d.assembly.grammar.features.nominal_frame import unit
+from tol3d.assembly.grammar.moves import PlaySpec
+from tol3d.assembly.grammar.moves.play import EngagementSpec, RandomSpec, TowardSpec
+from tol3d.assembly.model import Axis, Engage, Engagement, Feature, Floating, Plane, Relation, Slot
+from tol3d.assembly.model.shape import nominal_size
+from tol3d.scene import Scene
+
+Array = NDArray[np.float64]
+
+FLAT = 1e-6
+"""Sine of an angle that is none."""
+SHORT = 1e-9
+"""Of an engagement [mm]: none."""
+
+
+def engaged_by(
+    scene: Scene,
+    name: str,
+    spec: PlaySpec,
+    relations: tuple[Relation, ...],
+    effects: Effects,
+    features: Mapping[str, Feature],
+) -> Engage:
+    """A move with play.
+
+    Args:
+        scene: whose.
+        name: of the move.
+        spec: what it says.
+        relations: its relations.
+        effects: of the scene's tolerances, the float's among them.
+        features: all, by their names.
+
+    Raises:
+        SceneError: features that do not engage nominally; a hole that is smaller than its pin at the mean.
+    """
+    engagements, poses = [], poses_of(scene)  # as they are drawn: moves may lean a part in its play
+    for k, pair in enumerate(spec.engaged):
+        here = ("moves", name, "pairs", k)
+        found = _engagement(pair, features, poses)
+        if isinstance(found, str):
+            raise scene.refuse(here, found)
+        clearance = _mean_size(effects, features[found.inner]) - _mean_size(effects, features[found.outer])
+        if clearance < 0.0:
+            words = f"expected a size of {found.inner!r} over that of {found.outer!r} at the mean"
+            raise scene.refuse(here, f"{words}, got {-clearance * 1e3:.6g} um under it; nothing could be assembled")
+        engagements.append(found)
+    return Engage(name, spec.part, relations, tuple(engagements), _floating(name, spec, effects))
+
+
+def _floating(name: str, spec: PlaySpec, effects: Effects) -> Floating:
+    match spec.floating:
+        case RandomSpec():
+            return Floating("random", effects.floats[name], by_pairs=not is_pattern(spec, effects.drawing))
+        case TowardSpec(along=along, at=at):
+            return Floating("toward", at=at, along=unit(along))
+    return Floating("centred")
+
+
+def _mean_size(effects: Effects, feature: Feature) -> float:
+    """At the means of its tolerances [mm]."""
+    contributors = {own.name: own for own in effects.contributors}
+    off = sum(float(own.matrix[0] @ contributors[own.contributor].draw.mean(turning=False)) for own in feature.size_by)
+    return (nominal_size(feature.shape) or 0.0) + off
+
+
+def _engagement(pair: EngagementSpec, features: Mapping[str, Feature], poses: Mapping[str, Array]) -> Engagement | str:
+    """Where a pair engages; a sentence where it does not."""
+    one, other = features[pair.from_], features[pair.to]
+    inner, outer = (one, other) if getattr(one.shape, "inner", False) else (other, one)
+    seen = np.linalg.inv(poses[part_of(inner.name)] @ inner.frame) @ poses[part_of(outer.name)] @ outer.frame
+    whose = {"from": one, "to": other}[pair.over] if pair.over else None
+    over = () if whose is None else ("inner",) if whose is inner else ("outer",)
+    axis = seen[:3, 2]
+    if isinstance(inner.shape, Axis):
+        if np.hypot(axis[0], axis[1]) > FLAT:
+            return f"expected a pin nominally along the axis of its hole, got {outer.name!r} at an angle"
+        ends = _overlap([inner.shape.ends[:, 2], seen[2, 3] + axis[2] * _ends(outer)], over)
+        places = np.zeros((2, 3))
+        places[:, 2] = ends
+    elif isinstance(outer.shape, Axis):
+        assert isinstance(inner.shape, Plane)
+        if abs(axis[2]) > FLAT:
+            return f"expected a pin nominally along the faces of its slot, got {outer.name!r} across them"
+        inside = [_within(seen[r, 3], axis[r], inner.shape.reach[r]) for r in (0, 1)]
+        slot = np.array([max(low for low, _ in inside), min(high for _, high in inside)])
+        ends = _overlap([slot, _ends(outer)], over)
+        places = seen[:3, 3] + ends[:, None] * axis
+        places[:, 2] = 0.0
+    else:
+        if np.hypot(axis[0], axis[1]) > FLAT:
+            return f"expected a tab nominally parallel to its slot, got {outer.name!r} at an angle"
+        assert isinstance(inner.shape, Slot)
+        assert isinstance(outer.shape, Slot)
+        own, its = inner.shape.ends, outer.shape.ends @ seen[:3, :3].T + seen[:3, 3]
+        ranges = [_overlap([np.sort(own[:, r])[[0, -1]], np.sort(its[:, r])[[0, -1]]], over) for r in (0, 1)]
+        ends = min(ranges, key=lambda found: found[1] - found[0])
+        places = np.array([[x, y, 0.0] for x in ranges[0] for y in ranges[1]])
+    if ends[1] - ends[0] <= SHORT:
+        words = f"expected features that share a stretch nominally, got {outer.name!r} outside {inner.name!r}"
+        return f"{words}; place the parts, or say whose ends count as `over`"
+    back = np.linalg.inv(seen)
+    return Engagement(inner.name, outer.name, places, places @ back[:3, :3].T + back[:3, 3])
+
+
+def _ends(feature: Feature) -> Array:
+    assert isinstance(feature.shape, Axis)
+    return feature.shape.ends[:, 2]
+
+
+def _overlap(ranges: Sequence[Array], over: Sequence[str]) -> Array:
+    """What two ranges share, or the one that counts: lower and upper end."""
+    inner, outer = (np.sort(own) for own in ranges)
+    if over:
+        return inner if over[0] == "inner" else outer
+    return np.array([max(inner[0], outer[0]), min(inner[1], outer[1])])
+
+
+def _within(start: float, slope: float, reach: float) -> tuple[float, float]:
+    """Where a line lies within -reach to reach."""
+    if abs(slope) < FLAT:
+        return (-np.inf, np.inf) if abs(start) <= reach else (np.inf, -np.inf)
+    low, high = sorted(((-reach - start) / slope, (reach - start) / slope))
+    return low, high

@@ -1,0 +1,61 @@
+"""What must hold of moves with play: which features engage, and that their sizes are toleranced."""
+
+from collections.abc import Iterator
+
+from tol3d.assembly.grammar.drawing import Drawing
+from tol3d.assembly.grammar.features import CylinderSpec, FeatureUnion, SlotSpec
+from tol3d.assembly.grammar.moves import PinAndHoleSpec, PlaySpec
+from tol3d.assembly.grammar.moves.play import EngagementSpec
+from tol3d.assembly.grammar.tolerances import SizeSpec
+from tol3d.scene import Scene
+from tol3d.scene.place import KeyPath
+
+Problem = tuple[KeyPath, str]
+
+NO_SIZE = "a size that does not vary is {kind: size, ..., distribution: {kind: constant, value: 0 mm}}"
+
+
+def unfit_engagements(scene: Scene) -> Iterator[Problem]:
+    """Pairs of a move with play that do not engage, or whose sizes have no tolerance."""
+    drawing = Drawing(scene)
+    for name, move in scene.moves.items():
+        if not isinstance(move, PlaySpec):
+            continue
+        for k, pair in enumerate(move.engaged):
+            here: KeyPath = ("moves", name, "pairs", k)
+            if not all(own in drawing.names for own in (pair.from_, pair.to)):
+                continue  # unknown, said already
+            problem = _unfit(pair, drawing) or _unfit_first(move, k, drawing.kind(pair.from_), drawing.kind(pair.to))
+            if problem:
+                yield here, problem
+                continue
+            for end, own in (("from", pair.from_), ("to", pair.to)):
+                if not drawing.of(own, SizeSpec):
+                    words = f"expected a size tolerance of {own!r}, for its play follows from its size, got none"
+                    yield (*here, end), f"{words}; {NO_SIZE}"
+
+
+def _unfit(pair: EngagementSpec, drawing: Drawing) -> str:
+    one, other = drawing.kind(pair.from_), drawing.kind(pair.to)
+    for name, own in ((pair.from_, one), (pair.to, other)):
+        if not isinstance(own, CylinderSpec | SlotSpec):
+            return f"expected a pin or tab and a hole or slot, got {name!r}, which is {own.words}"
+    if is_inner(one) == is_inner(other):
+        both = "two holes or slots" if is_inner(one) else "two pins or tabs"
+        return f"expected a pin or tab and a hole or slot, got {both}, {pair.from_!r} and {pair.to!r}"
+    inner, outer = (one, other) if is_inner(one) else (other, one)
+    if isinstance(inner, CylinderSpec) and isinstance(outer, SlotSpec):
+        return "expected a pin in a hole, a pin in a slot or a tab in a slot, got a tab in a hole"
+    return ""
+
+
+def is_inner(feature: FeatureUnion) -> bool:
+    """Whether it is a hole or a slot."""
+    return (isinstance(feature, CylinderSpec) and feature.hole) or (isinstance(feature, SlotSpec) and not feature.tab)
+
+
+def _unfit_first(move: PlaySpec, k: int, one: FeatureUnion, other: FeatureUnion) -> str:
+    """Of a pin-and-hole move the first holds both shifts."""
+    if isinstance(move, PinAndHoleSpec) and k == 0 and (one.kind, other.kind) != ("cylinder", "cylinder"):
+        return "expected a pin in a hole first, which holds both shifts, got a slot; put it second, or take a pattern"
+    return ""

@@ -1,0 +1,188 @@
+"""Convex programmes over second-order cones with a few unknowns, in kernels: interior points.
+
+Cones are y_k = (c_k - s, o_k + B_k p), inside where |o_k + B_k p| < c_k - s. Primal and dual steps go along Nesterov
+and Todd's directions (Andersen, Dahl, Vandenberghe: CVXOPT's coneprog): W is the scaling with W z = W^-1 y.
+"""
+
+from typing import Any, Final
+
+import numpy as np
+
+from tol3d.numerics.compiled import part
+
+STEPS: Final = 60
+"""Of interior points, 8 to 15 in practice."""
+GAP: Final = 1e-12
+"""Where they end, of the size of offsets and clearances: by how much the slack may be better."""
+AIM: Final = 0.1
+"""Of the gap from one step to the next."""
+SHORT_OF: Final = 0.98
+"""Of the way to where a cone ends."""
+OWED: Final = 1e-9
+"""Share of what the multipliers lack of balance at the start that may be left."""
+ROUNDING: Final = 1e-14
+"""Of a pivot, what is left of it."""
+
+
+@part
+def factored(matrix: Any, count: int) -> None:
+    """Cholesky's factors of a matrix without negative eigenvalues, in place; what is rounding of 0 is not moved by."""
+    for j in range(count):
+        whole = matrix[j, j]
+        for k in range(j):
+            matrix[j, j] -= matrix[j, k] * matrix[j, k]
+        matrix[j, j] = np.sqrt(matrix[j, j]) if matrix[j, j] > ROUNDING * whole else np.inf
+        for i in range(j + 1, count):
+            for k in range(j):
+                matrix[i, j] -= matrix[i, k] * matrix[j, k]
+            matrix[i, j] /= matrix[j, j]
+
+
+@part
+def substituted(matrix: Any, right: Any, count: int) -> None:
+    """Solve with Cholesky's factors, in place."""
+    for i in range(count):
+        for k in range(i):
+            right[i] -= matrix[i, k] * right[k]
+        right[i] /= matrix[i, i]
+    for i in range(count - 1, -1, -1):
+        for k in range(i + 1, count):
+            right[i] -= matrix[k, i] * right[k]
+        right[i] /= matrix[i, i]
+
+
+@part
+def reach_of(a: float, b: float, c: float, u: float, v: float, w: float) -> Any:
+    """The largest share by which a point (a, b, c) of a cone can go along (u, v, w)."""
+    square, slope = a * a - b * b - c * c, a * u - b * v - c * w
+    bend = u * u - v * v - w * w
+    # square + 2 slope t + bend t^2 = 0 and a + u t > 0
+    rest = slope * slope - bend * square
+    if bend < 0.0:
+        return (-slope - np.sqrt(max(rest, 0.0))) / bend
+    if slope < 0.0 and rest > 0.0:
+        return square / (-slope + np.sqrt(rest))
+    return 1e30 if u >= 0.0 else -a / u
+
+
+@part
+def equations(cones: Any, size: int, lifts: int, matrix: Any, right: Any, aim: float, turned: Any) -> bool:
+    """Those of a step, without the goal: G' W^-2 G and -aim G' y^-1; whether y and z lie inside."""
+    y, z, rows, used = cones
+    unknowns = size + lifts
+    for r in range(unknowns):
+        right[r] = 0.0
+        for s in range(r + 1):
+            matrix[r, s] = 0.0
+    for k in range(y.shape[0]):
+        if not used[k]:
+            continue
+        first = y[k, 0] * y[k, 0] - y[k, 1] * y[k, 1] - y[k, 2] * y[k, 2]
+        second = z[k, 0] * z[k, 0] - z[k, 1] * z[k, 1] - z[k, 2] * z[k, 2]
+        if not (first > 0.0 and second > 0.0):
+            return False
+        a, b = 1.0 / np.sqrt(first), 1.0 / np.sqrt(second)
+        both = (y[k, 0] * z[k, 0] + y[k, 1] * z[k, 1] + y[k, 2] * z[k, 2]) * a * b
+        half = 0.5 / np.sqrt(0.5 * (1.0 + both))
+        w0 = half * (a * y[k, 0] + b * z[k, 0])
+        w1 = half * (a * y[k, 1] - b * z[k, 1])
+        w2 = half * (a * y[k, 2] - b * z[k, 2])
+        weight = a / b  # 1 / beta^2
+        back = aim / first
+        for r in range(size):
+            turned[r] = rows[k, 0, r] * w1 + rows[k, 1, r] * w2
+            right[r] -= back * (rows[k, 0, r] * y[k, 1] + rows[k, 1, r] * y[k, 2])
+        if lifts:
+            turned[size] = w0
+            right[size] -= back * y[k, 0]
+            matrix[size, size] -= weight
+        for r in range(unknowns):
+            for s in range(r + 1):
+                matrix[r, s] += 2.0 * weight * turned[r] * turned[s]
+        for r in range(size):
+            for s in range(r + 1):
+                matrix[r, s] += weight * (rows[k, 0, r] * rows[k, 0, s] + rows[k, 1, r] * rows[k, 1, s])
+    return True
+
+
+@part
+def changes_of(cones: Any, size: int, lifts: int, step: Any, aim: float, dy: Any, dz: Any) -> Any:
+    """Changes of cones and multipliers that go with a step, and how far each can go."""
+    y, z, rows, used = cones
+    ahead, behind = 1e30, 1e30
+    for k in range(y.shape[0]):
+        if not used[k]:
+            continue
+        d0, d1, d2 = 0.0, 0.0, 0.0
+        if lifts:
+            d0 = -step[size]
+        for r in range(size):
+            d1 += rows[k, 0, r] * step[r]
+            d2 += rows[k, 1, r] * step[r]
+        dy[k, 0], dy[k, 1], dy[k, 2] = d0, d1, d2
+        first = y[k, 0] * y[k, 0] - y[k, 1] * y[k, 1] - y[k, 2] * y[k, 2]
+        second = z[k, 0] * z[k, 0] - z[k, 1] * z[k, 1] - z[k, 2] * z[k, 2]
+        a, b = 1.0 / np.sqrt(first), 1.0 / np.sqrt(second)
+        both = (y[k, 0] * z[k, 0] + y[k, 1] * z[k, 1] + y[k, 2] * z[k, 2]) * a * b
+        half = 0.5 / np.sqrt(0.5 * (1.0 + both))
+        w0 = half * (a * y[k, 0] + b * z[k, 0])
+        w1 = half * (a * y[k, 1] - b * z[k, 1])
+        w2 = half * (a * y[k, 2] - b * z[k, 2])
+        weight, back = a / b, aim / first
+        along = 2.0 * weight * (w0 * d0 - w1 * d1 - w2 * d2)
+        # W^-2 d with (w0, -w1, -w2), of which -J takes (d0, d1, d2) to (-d0, d1, d2)
+        dz[k, 0] = back * y[k, 0] - z[k, 0] - (along * w0 - weight * d0)
+        dz[k, 1] = -back * y[k, 1] - z[k, 1] - (-along * w1 + weight * d1)
+        dz[k, 2] = -back * y[k, 2] - z[k, 2] - (-along * w2 + weight * d2)
+        ahead = min(ahead, reach_of(y[k, 0], y[k, 1], y[k, 2], d0, d1, d2))
+        behind = min(behind, reach_of(z[k, 0], z[k, 1], z[k, 2], dz[k, 0], dz[k, 1], dz[k, 2]))
+    return min(1.0, SHORT_OF * ahead), min(1.0, SHORT_OF * behind)
+
+
+@part
+def climbed(cones: Any, size: int, lifts: int, goal: Any, found: Any, rooms: Any) -> bool:
+    """Whether a programme's optimum is found: the largest goal . p, or s where it lifts.
+
+    Args:
+        cones: y at p = 0 and multipliers z, both inside (cones, 3), changed; B_k (cones, 2, size); which of them count.
+        size: of p.
+        lifts: 1 for the largest s, 0 for the largest goal.
+        goal: (size,).
+        found: p and s, as changes (size + 1,).
+        rooms: to work in.
+    """
+    y, z, _, used = cones
+    matrix, step, dy, dz, turned = rooms
+    count, scale, owed = 0, 0.0, 1.0
+    for k in range(y.shape[0]):
+        if used[k]:
+            count += 1
+            scale = max(scale, y[k, 0])
+    found[:] = 0.0
+    for _ in range(STEPS):
+        gap = 0.0
+        for k in range(y.shape[0]):
+            if used[k]:
+                gap += y[k, 0] * z[k, 0] + y[k, 1] * z[k, 1] + y[k, 2] * z[k, 2]
+        if gap <= GAP * scale and owed <= OWED:
+            return True
+        aim = AIM * gap / count
+        if not equations(cones, size, lifts, matrix, step, aim, turned):
+            return gap <= 1e3 * GAP * scale
+        if lifts:
+            step[size] += 1.0
+        else:
+            for r in range(size):
+                step[r] += goal[r]
+        factored(matrix, size + lifts)
+        substituted(matrix, step, size + lifts)
+        ahead, behind = changes_of(cones, size, lifts, step, aim, dy, dz)
+        owed *= 1.0 - behind
+        for r in range(size + lifts):
+            found[r] += ahead * step[r]
+        for k in range(y.shape[0]):
+            if used[k]:
+                for r in range(3):
+                    y[k, r] += ahead * dy[k, r]
+                    z[k, r] += behind * dz[k, r]
+    return False

@@ -1,0 +1,212 @@
+"""Parts that engage with play: offsets of pins, tabs, holes and slots, and the pose in their room, trial by trial.
+
+The programme of `rooms` is one of small displacements: offsets as they are at a pose, their changes as they are
+nominally. Its steps are made as finite motions, relations are met again, offsets are read anew, until nothing moves:
+the pose at which the programme, with the offsets of that pose, stays where it is.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tol3d.assembly.model import Axis, Engage, Engagement, Mate
+from tol3d.assembly.model.statuses import NO_BUILD, OK, SINGULAR
+from tol3d.assembly.placing.actual_feature import ActualFeature, actual_size
+from tol3d.assembly.placing.floats import Floats, floats_of
+from tol3d.assembly.placing.mating import Mating, mating
+from tol3d.assembly.placing.poses import Codes, Pose, column, cross, dot, product, rotated
+from tol3d.assembly.placing.rooms import room_found
+from tol3d.assembly.placing.world import World
+from tol3d.errors import InputError
+
+Array = NDArray[np.float64]
+
+ROUNDS: Final = 12
+"""How often a pose is corrected; each time leaves a turn's share, 1e-3 or less, of what it corrects."""
+MET: Final = 3e-8
+"""Step [mm] after which a trial is done."""
+LOST: Final = 1e-6
+"""Step [mm] at which it is not found, if that is still left after all rounds."""
+NUDGE: Final = 1e-4
+"""Motion [mm] by which it is found what relations leave free."""
+SEEN: Final = 1e-6
+"""Change of all offsets by a freedom of length 1 that is none."""
+
+
+@dataclass(frozen=True, eq=False)
+class Engaging:
+    """A move with play, as its features lie nominally.
+
+    Args:
+        move: which.
+        mating: of its relations.
+        middle: of all places, nominally in the world (3,) [mm].
+        reach: of them about it [mm].
+        freedoms: motions that relations leave and offsets see: shift of the middle, turn times reach (6, freedoms).
+        rows: change of each offset by them (cones, 2, freedoms).
+        floats: where in its room the part lies.
+    """
+
+    move: Engage
+    mating: Mating
+    middle: Array
+    reach: float
+    freedoms: Array
+    rows: Array
+    floats: Floats
+
+    def placed(self, world: World) -> tuple[World, Codes]:
+        """The world after the move, and what became of it (n,)."""
+        start, seats = Pose.of(world.assembly.part[self.move.part].pose), self.mating.seats(world)
+        pose, codes = self.mating.poses(world, seats, start)
+        pose, count = _full(pose, world.trials), world.trials
+        steps, slacks = np.zeros((self.freedoms.shape[1], count)), np.zeros(count)
+        asked, found, lacking = np.ones(count, dtype=bool), np.ones(count, dtype=bool), np.full(count, np.inf)
+        deciding = np.zeros(count, dtype=np.int64)
+        targets = [world.placed(own) for own in self._targets(world)]
+        for _ in range(ROUNDS):
+            offsets, clearances = self._offsets(world, pose, targets)
+            push = self.floats.push
+            room_found(offsets, clearances, self.rows, push, asked, steps, slacks, deciding, found)
+            whole = self.floats.steps(offsets, clearances, self.rows, steps, slacks, world.columns)
+            lacking = np.where(asked, np.abs(whole).max(axis=0, initial=0.0), lacking)
+            moved, _ = self.mating.poses(world, seats, self._moved(pose, whole))
+            pose = Pose(np.where(asked, moved.turn, pose.turn), np.where(asked, moved.shift, pose.shift))
+            asked = asked & (lacking > MET)
+            if not asked.any():
+                break
+        codes = np.where(codes == OK, np.where(slacks < 0.0, NO_BUILD, OK), codes)
+        codes = np.where((codes == OK) & ~(found & (lacking < LOST)), SINGULAR, codes).astype(np.int8)
+        world = world.with_part_at(self.move.part, pose)
+        return world.with_slack(self.move.name, slacks, self._pairs[deciding]), codes
+
+    @cached_property
+    def _pairs(self) -> NDArray[np.str_]:
+        """Of each cone, what engages there."""
+        return np.array([own.name for own in self.move.engagements for _ in own.places])
+
+    def _targets(self, world: World) -> Sequence[str]:
+        body = world.bodies[self.move.part]
+        return [own.outer if world.part_of(own.inner) in body else own.inner for own in self.move.engagements]
+
+    def _offsets(self, world: World, pose: Pose, targets: Sequence[ActualFeature]) -> tuple[Array, Array]:
+        """Offsets (cones, 2, n) and clearances (cones, n) of the part at a pose."""
+        offsets = np.zeros((len(self.rows), 2, world.trials))
+        clearances = np.empty((len(self.rows), world.trials))
+        start = 0
+        for own, target in zip(self.move.engagements, targets, strict=True):
+            moving_name = own.inner if target.feature.name == own.outer else own.outer
+            moving = world.on_body(moving_name, self.move.part).moved(pose)
+            inner, outer = (moving, target) if moving_name == own.inner else (target, moving)
+            for k, (own_offsets, clearance) in enumerate(_at_places(own, inner, outer, world.columns)):
+                for r, offset in enumerate(own_offsets):
+                    offsets[start + k, r] = offset
+                clearances[start + k] = clearance
+            start += len(own.places)
+        return offsets, clearances
+
+    def _moved(self, pose: Pose, steps: Array) -> Pose:
+        """A pose after steps (freedoms, n) as finite motions."""
+        motion = np.einsum("rf,fn->rn", self.freedoms, steps, optimize=False)
+        return moved_about(pose, self.middle, motion[:3], motion[3:] / self.reach)
+
+
+def moved_about(pose: Pose, middle: Array, shift: Array, turn: Array) -> Pose:
+    """A pose turned further about a middle (3,) by a vector (3, n), of angle 2 atan(length / 2), and shifted (3, n)."""
+    half = turn / 2
+    share = 2.0 / (1.0 + dot(half, half))
+
+    def turned(vector: Array) -> Array:
+        across = cross(half, vector)
+        return np.asarray(vector + share * (across + cross(half, across)))
+
+    arm = pose.shift - column(middle)
+    columns = [turned(pose.turn[:, k]) for k in range(3)]
+    return Pose(np.stack(columns, axis=1), column(middle) + turned(arm) + shift)
+
+
+def _full(pose: Pose, trials: int) -> Pose:
+    """With a trial of its own each."""
+    return Pose(
+        np.array(np.broadcast_to(pose.turn, (3, 3, trials))), np.array(np.broadcast_to(pose.shift, (3, trials)))
+    )
+
+
+def _at_places(
+    own: Engagement, inner: ActualFeature, outer: ActualFeature, columns: Array
+) -> list[tuple[list[Array], Array]]:
+    """Offsets (one or two) and clearance at each place (n,) or (1,)."""
+    inside, outside = actual_size(inner.feature, columns), actual_size(outer.feature, columns)
+    found = []
+    if isinstance(inner.feature.shape, Axis):
+        x, y = inner.pose.turn[:, 0], inner.pose.turn[:, 1]
+        for place, its in zip(own.places, own.outer_places, strict=True):
+            apart = outer.at(its) - inner.at(place)
+            found.append(([dot(x, apart), dot(y, apart)], (inside - outside) / 2))
+        return found
+    along = dot(inner.direction, outer.direction)
+    leaning = np.sqrt(np.maximum(1.0 - along * along, 0.0)) if isinstance(outer.feature.shape, Axis) else np.abs(along)
+    for its in own.outer_places:
+        apart = outer.at(its) - inner.origin
+        found.append(([dot(inner.direction, apart)], (inside - outside * leaning) / 2))
+    return found
+
+
+def engaging(move: Engage, nominal: World) -> Engaging:
+    """A move with play.
+
+    Args:
+        move: which.
+        nominal: the world before it without deviations, the part at its nominal pose.
+
+    Raises:
+        InputError: see `mating`; or nothing is free where pins engage.
+    """
+    mate = mating(Mate(move.name, move.part, move.relations), nominal)
+    start, _ = mate.poses(nominal, mate.seats(nominal), nominal.poses[move.part])
+    world = nominal.with_part_at(move.part, start)
+    places, ways = [], []
+    for own in move.engagements:
+        frame, inner_moves = world.placed(own.inner).pose, world.part_of(own.inner) in world.bodies[move.part]
+        sign = -1.0 if inner_moves else 1.0  # an offset is of the outer one
+        x, y, z = (sign * frame.turn[:, k, 0] for k in range(3))
+        for its in own.outer_places:
+            places.append(world.placed(own.outer).at(its)[:, 0])
+            flat = not isinstance(world.assembly.features[own.inner].shape, Axis)
+            ways.append([z, np.zeros(3)] if flat else [x, y])
+    at = np.array(places)
+    middle = at.mean(axis=0)
+    reach = max(float(np.linalg.norm(at - middle, axis=1).max()), 1.0)
+    arms = (at - middle)[:, None]
+    whole = np.concatenate([np.array(ways), np.cross(arms, np.array(ways)) / reach], axis=2)  # (cones, 2, 6)
+    free = _free(mate, nominal, start, middle, reach)
+    _, sizes, right = np.linalg.svd((whole @ free).reshape(-1, free.shape[1]), full_matrices=True)
+    freedoms = free @ right[: int(np.sum(sizes > SEEN))].T
+    if not freedoms.shape[1]:
+        raise InputError(f"moves.{move.name}: its relations leave nothing free where its pins engage: take a mate")
+    rows = np.ascontiguousarray(whole @ freedoms)
+    return Engaging(move, mate, middle, reach, freedoms, rows, floats_of(move, world, freedoms, rows, middle, reach))
+
+
+def _free(mate: Mating, world: World, start: Pose, middle: Array, reach: float) -> Array:
+    """Orthonormal motions (6, free) that relations leave as they are: shift of the middle, turn times reach."""
+    ends, seats = [], mate.seats(world)
+    for sign in (1.0, -1.0):
+        motion = sign * NUDGE * np.eye(6)
+        many = moved_about(_full(start, 6), middle, motion[:, :3].T, motion[:, 3:].T / reach)
+        poses = [Pose(many.turn[:, :, k : k + 1], many.shift[:, k : k + 1]) for k in range(6)]
+        ends.append([mate.poses(world, seats, pose)[0] for pose in poses])
+    made = np.empty((6, 6))
+    for k, (after, before) in enumerate(zip(*ends, strict=True)):
+        turn = product(after.turn, np.swapaxes(before.turn, 0, 1))[:, :, 0]
+        spin = np.array([turn[2, 1] - turn[1, 2], turn[0, 2] - turn[2, 0], turn[1, 0] - turn[0, 1]]) / 2
+        own = column(middle) - start.shift
+        back = rotated(np.swapaxes(start.turn, 0, 1), own)
+        made[:3, k] = (after.point(back) - before.point(back))[:, 0] / (2 * NUDGE)
+        made[3:, k] = spin * reach / (2 * NUDGE)
+    left, sizes, _ = np.linalg.svd(made)
+    return np.asarray(left[:, sizes > 1e-3])

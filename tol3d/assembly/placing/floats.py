@@ -1,0 +1,203 @@
+"""Where in its room a part with play lies, from its centred pose: see model.Floating."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tol3d.assembly.model import Engage
+from tol3d.assembly.placing.world import World
+from tol3d.errors import InputError
+
+Array = NDArray[np.float64]
+
+NEWTONS: Final = 12
+"""Steps to the angle of a segment, from that of its third root: 5 reach rounding, more where it is small."""
+PART: Final = 1e-6
+"""Change of an offset by a freedom of length 1 that is none."""
+
+
+@dataclass(frozen=True, eq=False)
+class Floats:
+    """Of a move.
+
+    Args:
+        move: which.
+        freedoms: (6, freedoms), orthonormal.
+        push: the direction in which the part goes as far as it can (freedoms,); 0 where it does not.
+    """
+
+    move: Engage
+    freedoms: Array
+    push: Array
+    by_pairs: "Discs | None" = None
+
+    def steps(
+        self, offsets: Array, clearances: Array, rows: Array, centred: Array, slacks: Array, columns: Array
+    ) -> Array:
+        """Steps (freedoms, n) from offsets o_k to where the part lies.
+
+        Args:
+            offsets, clearances, rows: o_k (cones, 2, n), c_k (cones, n) [mm], B_k (cones, 2, freedoms).
+            centred: steps to the centred pose (freedoms, n), or as far as it goes along `push`.
+            slacks: of the centred pose (n,) [mm].
+            columns: the deviations (width, n).
+        """
+        floating = self.move.floating
+        if floating.kind != "random":
+            return centred
+        drawn = columns[floating.columns]
+        if self.by_pairs is not None:
+            return np.where(slacks > 0.0, self.by_pairs.steps(offsets, clearances, rows, centred, drawn), centred)
+        along = np.stack([sum(self.freedoms[r, f] * drawn[r] for r in range(6)) for f in range(len(centred))])
+        size = np.sqrt(sum(own * own for own in along))
+        along = along / np.where(size > 0.0, size, 1.0)
+        way = self._way(offsets, clearances, rows, centred, along)
+        share = drawn[6] ** (1.0 / len(centred)) * way
+        return np.asarray(centred + np.where((slacks > 0.0) & (size > 0.0), share, 0.0) * along)
+
+    def _way(self, offsets: Array, clearances: Array, rows: Array, centred: Array, along: Array) -> Array:
+        """How far the room goes from the centred pose (n,) [mm]."""
+        way = np.full(offsets.shape[2], np.inf)
+        for own, clearance, row in zip(offsets, clearances, rows, strict=True):
+            at = [own[r] + sum(row[r, f] * centred[f] for f in range(len(centred))) for r in (0, 1)]
+            gone = [sum(row[r, f] * along[f] for f in range(len(centred))) for r in (0, 1)]
+            # |at + t gone| = clearance
+            square = gone[0] * gone[0] + gone[1] * gone[1]
+            slope = at[0] * gone[0] + at[1] * gone[1]
+            room = clearance * clearance - at[0] * at[0] - at[1] * at[1]
+            root = np.sqrt(np.maximum(slope * slope + square * room, 0.0))
+            away = slope > 0.0
+            ahead = np.where(away, room, root - slope) / np.where(
+                away, slope + root, np.where(square > 0.0, square, 1.0)
+            )
+            way = np.where(square > 0.0, np.minimum(way, np.maximum(ahead, 0.0)), way)
+        return np.where(np.isfinite(way), way, 0.0)
+
+
+def floats_of(move: Engage, world: World, freedoms: Array, rows: Array, middle: Array, reach: float) -> Floats:
+    """Where in its room a part lies.
+
+    Args:
+        move: which.
+        world: nominal, the part where relations lay it.
+        freedoms: shift of the middle and turn times reach (6, freedoms).
+        rows: B_k (cones, 2, freedoms).
+        middle: (3,) [mm].
+        reach: [mm].
+
+    Raises:
+        InputError: a direction in which nothing is free.
+    """
+    push = np.zeros(freedoms.shape[1])
+    floating = move.floating
+    if floating.kind == "toward":
+        assert floating.along is not None
+        direction = world.poses[world.part_of(floating.at)].turn[:, :, 0] @ floating.along
+        arm = world.placed(floating.at).origin[:, 0] - middle
+        push = np.concatenate([direction, np.cross(arm, direction) / reach]) @ freedoms
+        if np.abs(push).max() < PART:
+            raise InputError(f"moves.{move.name}: {floating.at} does not move along its direction: it is held there")
+        push = np.ascontiguousarray(push / np.linalg.norm(push))
+    discs = discs_of(move, rows) if floating.kind == "random" and floating.by_pairs else None
+    return Floats(move, freedoms, push, discs)
+
+
+@dataclass(frozen=True, eq=False)
+class Discs:
+    """A pin anywhere in its hole, then a second one anywhere in what is left of its slot.
+
+    Args:
+        inverse: of what the hole sees: the middle of both ends, or one end after the other (freedoms, 2 or 4).
+        turn: the freedom that the slot has left (freedoms,); None without one.
+    """
+
+    inverse: Array
+    turn: Array | None
+
+    def steps(self, offsets: Array, clearances: Array, rows: Array, centred: Array, drawn: Array) -> Array:
+        """See Floats."""
+        at = [[offsets[k, r] + _along(rows[k, r], centred) for r in (0, 1)] for k in range(len(rows))]
+        if self.inverse.shape[1] == 4:
+            lacking = [clearances[k] * drawn[2 * k + r] - at[k][r] for k in (0, 1) for r in (0, 1)]
+        else:
+            apart = [(at[0][r] - at[1][r]) / 2 for r in (0, 1)]
+            goal = in_lens(apart[0], apart[1], clearances[0], drawn[0], drawn[1])
+            lacking = [goal[r] - (at[0][r] + at[1][r]) / 2 for r in (0, 1)]
+        found = centred + np.stack([_along(own, lacking) for own in self.inverse])
+        if self.turn is None:
+            return found
+        low, high = np.full(offsets.shape[2], -np.inf), np.full(offsets.shape[2], np.inf)
+        for k in range(2, len(rows)):
+            gain = float(rows[k, 0] @ self.turn)
+            middle = -(offsets[k, 0] + _along(rows[k, 0], found)) / gain
+            half = clearances[k] / abs(gain)
+            low, high = np.maximum(low, middle - half), np.minimum(high, middle + half)
+        share = (low + high) / 2 + drawn[-1] * np.maximum(high - low, 0.0) / 2
+        return np.asarray(found + self.turn[:, None] * share)
+
+
+def _along(row: Array, steps: Sequence[Array] | Array) -> Array:
+    return np.asarray(sum((row[f] * steps[f] for f in range(len(row))), np.zeros(1)))
+
+
+def discs_of(move: Engage, rows: Array) -> Discs:
+    """How a pin lies in its hole and the next in its slot, by what they see of the freedoms.
+
+    Raises:
+        InputError: relations hold one tilt of the hole and not the other, or the slot does not hold one turn.
+    """
+    floating, (_, *others) = move.floating, move.engagements
+    alone = floating.columns.stop - floating.columns.start - len(others) == 4
+    seen = rows[:2].reshape(4, -1) if alone else rows[:2].mean(axis=0)
+    left, sizes, right = np.linalg.svd(seen)
+    rank = int(np.sum(sizes > PART))
+    tilts = np.linalg.matrix_rank(rows[:2].reshape(4, -1), PART)
+    if rank != len(left) or (not alone and tilts != 2):
+        raise InputError(
+            f"moves.{move.name}: a random float needs relations that hold both tilts of its first pin, or none; "
+            "take a pattern"
+        )
+    free, turn = right[rank:], None
+    if others:
+        held = rows[2:, 0] @ free.T
+        if free.shape[0] != 1 or np.abs(held).min(initial=np.inf) < PART:
+            raise InputError(f"moves.{move.name}: a random float needs a slot that holds the turn; take a pattern")
+        turn = free[0]
+    return Discs(np.asarray(np.linalg.pinv(seen)), turn)
+
+
+def in_lens(x: Array, y: Array, clearance: Array, u: Array, v: Array) -> tuple[Array, Array]:
+    """Points of the lens that two discs share, as a point of the disc of radius 1 maps to it, areas kept.
+
+    Along the line of the centres a segment of the lens beyond a point has the share of that of the disc; across, the
+    shares of the chords are the same.
+
+    Args:
+        x, y: from the middle to one centre (n,) [mm]; the other lies opposite.
+        clearance: radius of both discs (n,) [mm].
+        u, v: of the disc (n,).
+    """
+    length = np.sqrt(x * x + y * y)
+    some = length > 0.0
+    a, b = np.where(some, x / np.where(some, length, 1.0), 1.0), np.where(some, y / np.where(some, length, 1.0), 0.0)
+    along, across = u * a + v * b, v * a - u * b
+    share = np.minimum(length / np.where(clearance > 0.0, clearance, 1.0), 1.0)
+    cut = _segment(np.abs(along)) / (np.pi / 2) * _segment(share)
+    angle = np.minimum(np.cbrt(12 * cut), np.pi)  # of the segment: (angle - sin angle) / 2 is its area
+    for _ in range(NEWTONS):
+        slope = 1 - np.cos(angle)
+        off = (angle - np.sin(angle) - 2 * cut) / np.where(slope > 0.0, slope, 1.0)
+        angle = angle - np.where(slope > 0.0, off, 0.0)
+    out = np.where(along == 0.0, share, np.cos(angle / 2))
+    chord = np.sqrt(np.maximum(1 - along * along, 0.0))
+    aside = across / np.where(chord > 0.0, chord, 1.0) * np.sqrt(np.maximum(1 - out * out, 0.0))
+    forth = np.copysign(np.maximum(out - share, 0.0), along)
+    return clearance * (forth * a - aside * b), clearance * (forth * b + aside * a)
+
+
+def _segment(height: Array) -> Array:
+    """Area of a disc's segment beyond a height, radius 1."""
+    return np.asarray(np.arccos(height) - height * np.sqrt(np.maximum(1 - height * height, 0.0)))

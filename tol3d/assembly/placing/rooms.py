@@ -1,0 +1,248 @@
+"""Where a part with play lies in its room: convex programmes a trial, in a kernel.
+
+Offsets o_k + B_k q of the places where it engages (two numbers each; of a slot the second is 0) have to stay within
+clearances c_k. The centred q makes the least slack s = min(c_k - |o_k + B_k q|) as large as can be, then the least of
+those that this leaves open, and so on. A cone with a multiplier has the same offset in every solution of its round, so
+that further rounds keep it.
+"""
+
+from typing import Any, Final
+
+import numpy as np
+
+from tol3d.assembly.placing.cones import climbed
+from tol3d.numerics.compiled import kernel, part
+
+HELD: Final = 1e-6
+"""Multiplier (they sum to 1) over which a cone is tight."""
+UNSEEN: Final = 1e-6
+"""Change of an offset by a freedom, as a share of how far that moves what is farthest, that is none."""
+
+
+@part
+def reduced(rows: Any, basis: Any, size: int, seen: Any) -> None:
+    """Rows B_k in the freedoms that are left (cones, 2, size)."""
+    for k in range(rows.shape[0]):
+        for r in range(2):
+            for s in range(size):
+                total = 0.0
+                for j in range(rows.shape[2]):
+                    total += rows[k, r, j] * basis[j, s]
+                seen[k, r, s] = total
+
+
+@part
+def narrowed(seen: Any, tight: Any, basis: Any, size: int, held: Any) -> int:
+    """Take from the freedoms those that tight cones hold; how many are left.
+
+    Args:
+        seen: rows in the freedoms (cones, 2, size).
+        tight: which cones are.
+        basis: of the freedoms (all, size); changed.
+        size: how many.
+        held: to work in (all, all).
+    """
+    count = 0
+    for k in range(seen.shape[0]):
+        if not tight[k]:
+            continue
+        for r in range(2):
+            if count < size:
+                for s in range(size):
+                    held[count, s] = seen[k, r, s]
+                count += independent(held, count, size)
+    first = count
+    for s in range(size):  # what is square to them: the unit vectors less their parts in what is held
+        if count < size:
+            for t in range(size):
+                held[count, t] = 1.0 if t == s else 0.0
+            count += independent(held, count, size)
+    room = held[size]
+    for j in range(basis.shape[0]):
+        for s in range(first, count):
+            total = 0.0
+            for t in range(size):
+                total += basis[j, t] * held[s, t]
+            room[s - first] = total
+        for s in range(count - first):
+            basis[j, s] = room[s]
+    return count - first
+
+
+@part
+def independent(held: Any, count: int, size: int) -> int:
+    """Make row `count` square to those before it and of length 1; 0 where nothing is left of it."""
+    for _ in range(2):
+        for k in range(count):
+            share = 0.0
+            for s in range(size):
+                share += held[k, s] * held[count, s]
+            for s in range(size):
+                held[count, s] -= share * held[k, s]
+    square = 0.0
+    for s in range(size):
+        square += held[count, s] * held[count, s]
+    if not square > UNSEEN * UNSEEN:
+        return 0
+    length = np.sqrt(square)
+    for s in range(size):
+        held[count, s] /= length
+    return 1
+
+
+@part
+def seeing(seen: Any, used: Any, done: Any, size: int) -> int:
+    """Find the cones that the freedoms left change, and that are not done; how many."""
+    count = 0
+    for k in range(seen.shape[0]):
+        largest = 0.0
+        for r in range(2):
+            for s in range(size):
+                largest = max(largest, abs(seen[k, r, s]))
+        used[k] = largest > UNSEEN and not done[k]
+        count += used[k]
+    return count
+
+
+@part
+def at_step(offsets: Any, rows: Any, q: Any, k: int) -> Any:
+    """The offset of a cone after a step."""
+    a, b = offsets[k, 0], offsets[k, 1]
+    for j in range(rows.shape[2]):
+        a += rows[k, 0, j] * q[j]
+        b += rows[k, 1, j] * q[j]
+    return a, b
+
+
+@part
+def started(place: Any, q: Any, used: Any, y: Any, z: Any, count: int, lifts: int, strength: float) -> None:
+    """Cones and multipliers inside, from which a programme starts: with less slack than there is, or with none."""
+    offsets, clearances, rows = place
+    least, widest = 1e30, 0.0
+    for k in range(rows.shape[0]):
+        y[k, 1], y[k, 2] = at_step(offsets, rows, q, k)
+        if used[k]:
+            length = np.sqrt(y[k, 1] * y[k, 1] + y[k, 2] * y[k, 2])
+            least, widest = min(least, clearances[k] - length), max(widest, length)
+    start = least - 0.5 * (widest + 1e-3) if lifts else 0.0
+    for k in range(rows.shape[0]):
+        y[k, 0] = clearances[k] - start
+        z[k, 0], z[k, 1], z[k, 2] = strength / count, 0.0, 0.0
+
+
+@part
+def least_slack(place: Any, q: Any) -> Any:
+    """The least slack, and a cone that has it."""
+    offsets, clearances, rows = place
+    least, which = np.inf, 0
+    for k in range(rows.shape[0]):
+        a, b = at_step(offsets, rows, q, k)
+        slack = clearances[k] - np.sqrt(a * a + b * b)
+        if slack < least:
+            least, which = slack, k
+    return least, which
+
+
+@part
+def opened(basis: Any, done: Any) -> int:
+    """Make all freedoms free, and no cone held; how many freedoms there are."""
+    done[:] = False
+    for j in range(basis.shape[0]):
+        for s in range(basis.shape[0]):
+            basis[j, s] = 1.0 if s == j else 0.0
+    return int(basis.shape[0])
+
+
+@part
+def lain(place: Any, push: Any, strength: float, basis: Any, done: Any, q: Any, rooms: Any) -> Any:
+    """Find the step q of a trial: whether it is found, the least slack of the centred pose, a cone that has it.
+
+    Args:
+        place: o_k (cones, 2), c_k (cones,), B_k (cones, 2, freedoms).
+        push: (freedoms,).
+        strength: largest amount of it; 0 for the centred pose.
+        basis, done, rooms: to work in: freedoms (freedoms, freedoms), cones that are held (cones,), see `new_rooms`.
+        q: (freedoms,); changed.
+    """
+    seen, used, y, z, found, held, inner = rooms
+    rows = place[2]
+    slack, which, pushes = 0.0, 0, 0  # then 1 while it pushes, 2 after it
+    size = opened(basis, done)
+    q[:] = 0.0
+    while True:
+        reduced(rows, basis, size, seen)
+        count = seeing(seen, used, done, size)
+        if count == 0:
+            if pushes > 0:
+                return True, slack, which
+            slack, which = least_slack(place, q)
+            if strength == 0.0 or not slack > 0.0:
+                return True, slack, which
+            pushes, size = 1, opened(basis, done)
+            continue
+        lifts = 0 if pushes == 1 else 1
+        weight = 1.0 if lifts else strength
+        started(place, q, used, y, z, count, lifts, weight)
+        if not climbed((y, z, seen, used), size, lifts, push, found, inner):
+            return False, slack, which
+        for j in range(rows.shape[2]):
+            for s in range(size):
+                q[j] += basis[j, s] * found[s]
+        for k in range(rows.shape[0]):
+            used[k] = used[k] and z[k, 0] > HELD * weight
+            done[k] = done[k] or used[k]
+        size = narrowed(seen, used, basis, size, held)
+        pushes = 2 if pushes == 1 else pushes
+
+
+@part
+def new_rooms(cones: int, freedoms: int) -> Any:
+    """What programmes work with."""
+    size = freedoms + 1
+    inner = (np.empty((size, size)), np.empty(size), np.empty((cones, 3)), np.empty((cones, 3)), np.empty(size))
+    return (
+        np.empty((cones, 2, size)),
+        np.empty(cones, dtype=np.bool_),
+        np.empty((cones, 3)),
+        np.empty((cones, 3)),
+        np.empty(size),
+        np.empty((size, size)),
+        inner,
+    )
+
+
+@kernel(
+    arrays="float64[:,:,::1], float64[:,::1], float64[:,:,::1], float64[::1], boolean[::1], float64[:,::1], "
+    "float64[::1], int64[::1], boolean[::1]"
+)
+def room_found(
+    offsets: Any, clearances: Any, rows: Any, push: Any, asked: Any, steps: Any, slacks: Any, deciding: Any, found: Any
+) -> None:
+    """Steps to where a part lies in its room.
+
+    Args:
+        offsets: o_k (cones, 2, n) [mm].
+        clearances: c_k (cones, n) [mm].
+        rows: B_k (cones, 2, freedoms).
+        push: the direction of the freedoms in which it goes as far as it can; 0 for the centred pose (freedoms,).
+        asked: for which trials (n,); the others are left.
+        steps: q (freedoms, n).
+        slacks: the least slack of the centred q (n,) [mm].
+        deciding: a cone that has that slack (n,).
+        found: whether it is found (n,).
+    """
+    cones, freedoms = rows.shape[0], rows.shape[2]
+    rooms = new_rooms(cones, freedoms)
+    basis, q, own, clear = np.empty((freedoms, freedoms)), np.empty(freedoms), np.empty((cones, 2)), np.empty(cones)
+    done = np.empty(cones, dtype=np.bool_)
+    strength = 0.0
+    for j in range(freedoms):
+        strength = max(strength, abs(push[j]))
+    for i in range(found.shape[0]):
+        if not asked[i]:
+            continue
+        for k in range(cones):
+            own[k, 0], own[k, 1], clear[k] = offsets[k, 0, i], offsets[k, 1, i], clearances[k, i]
+        found[i], slacks[i], deciding[i] = lain((own, clear, rows), push, strength, basis, done, q, rooms)
+        for j in range(freedoms):
+            steps[j, i] = q[j] if found[i] else np.nan

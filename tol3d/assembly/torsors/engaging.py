@@ -1,0 +1,151 @@
+"""Moves with play: what relations leave, limited by the clearances of pins, tabs, holes and slots."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tol3d.assembly.model import Axis, Engage, Engagement, Floating, Mate
+from tol3d.assembly.model.shape import nominal_size
+from tol3d.assembly.torsors.centring import Cones, centred
+from tol3d.assembly.torsors.columns import without_rounding
+from tol3d.assembly.torsors.floating import along_rays, by_pairs, pushed
+from tol3d.assembly.torsors.mating import freedoms_after
+from tol3d.assembly.torsors.ordered import ordered_product
+from tol3d.assembly.torsors.terms import Form
+from tol3d.assembly.torsors.torsor import cross_matrix, height_at, shift_at
+from tol3d.assembly.torsors.world import World
+from tol3d.errors import InputError
+
+Array = NDArray[np.float64]
+
+SEEN = 1e-6
+"""Change of all offsets by a freedom of length 1 [mm] that is none."""
+
+
+@dataclass(frozen=True, eq=False)
+class Room:
+    """The freedoms of a part with play, and its slack, trial by trial.
+
+    Args:
+        forms: offsets (places * 2), clearances (places), then what is drawn of the float.
+        rows: change of the offsets by the freedoms (places, 2, freedoms).
+        floating: where in its room it lies.
+        directions: of what is drawn as a shift and a turn, the freedoms (freedoms, 6).
+        push: the direction in which it goes as far as it can (freedoms,); 0 where it does not.
+    """
+
+    forms: Array
+    rows: Array
+    floating: Floating
+    directions: Array
+    push: Array
+    form: Form = "place in a room"
+
+    @property
+    def count(self) -> int:
+        """Freedoms, and the slack."""
+        return int(self.rows.shape[2]) + 1
+
+    def values(self, read: Array) -> Array:
+        """(freedoms + 1, trials) [mm]."""
+        places = len(self.rows)
+        cones = Cones(read[: 2 * places].reshape(places, 2, -1), read[2 * places : 3 * places], self.rows)
+        q = centred(cones)
+        slack = cones.slack(q)
+        inside = slack > 0.0
+        if inside.any() and self.floating.kind != "centred":
+            own = cones.of(inside)
+            if self.floating.kind == "toward":
+                q[:, inside] = pushed(own, q[:, inside], self.push)
+            elif self.floating.by_pairs:
+                q[:, inside] = by_pairs(own, q[:, inside], read[3 * places :, inside])
+            else:
+                drawn = read[3 * places :, inside]
+                q[:, inside] = along_rays(own, q[:, inside], ordered_product(self.directions, drawn[:6]), drawn[6])
+        return np.concatenate([q, slack[None]])
+
+
+def engaged(move: Engage, world: World) -> World:
+    """The world after a move with play.
+
+    Raises:
+        InputError: as `mated`; nothing is free where its pins engage.
+    """
+    relations = freedoms_after(Mate(move.name, move.part, move.relations), world)
+    left, rest = relations.left, relations.rest()
+    before = world.with_part_at(move.part, rest)
+    places = np.concatenate([_points(own, world) for own in move.engagements])
+    middle = places.mean(axis=0)
+    reach = max(float(np.linalg.norm(places - middle, axis=1).max()), 1.0)
+    to_torsor = np.eye(6)  # shift of the middle and turn times reach -> torsor
+    to_torsor[:3, 3:] = cross_matrix(middle) / reach
+    to_torsor[3:, 3:] /= reach
+    free = np.linalg.qr(np.linalg.solve(to_torsor, left))[0] if left.shape[1] else left
+    offsets, clearances, ways = [], [], []
+    for own in move.engagements:
+        for rows, values, clearance in _places(own, before, move.part):
+            ways.append(rows @ to_torsor)
+            offsets.append(values)
+            clearances.append(clearance)
+    whole = np.array(ways)
+    _, strengths, right = np.linalg.svd((whole @ free).reshape(-1, free.shape[1]))
+    free = free @ right[: int(np.sum(strengths > SEEN))].T
+    if not free.shape[1]:
+        raise InputError(f"moves.{move.name}: its relations leave nothing free where its pins engage: take a mate")
+    forms = without_rounding(np.concatenate([np.concatenate(offsets), np.array(clearances), _drawn(move, world)]))
+    push = _push(move, world) @ to_torsor @ free if move.floating.kind == "toward" else np.zeros(free.shape[1])
+    push = push / max(float(np.linalg.norm(push)), 1e-300)
+    made = world.columns.made_by(Room(forms, whole @ free, move.floating, free.T, push))
+    torsor = rest + to_torsor @ free @ made[:-1]
+    return before.with_part_at(move.part, torsor).with_slack(move.name, made[-1])
+
+
+def _points(own: Engagement, world: World) -> Array:
+    """Where it engages, nominally in the world (places, 3)."""
+    frame = world.frame(own.inner)
+    return own.places @ frame[:3, :3].T + frame[:3, 3]
+
+
+def _places(own: Engagement, world: World, part: str) -> Sequence[tuple[Array, Array, Array]]:
+    """Of each place: rows (2, 6) of the part's torsor, offsets (2, columns) and clearance (columns,)."""
+    frame, features = world.frame(own.inner), world.assembly.features
+    round_ = isinstance(features[own.inner].shape, Axis)
+    directions = frame[:3, :2].T if round_ else np.array([frame[:3, 2], np.zeros(3)])
+    relative = world.placed(own.outer) - world.placed(own.inner)
+    sign = 1.0 if world.is_of_body(own.outer, part) else -1.0
+    inner, outer = (nominal_size(features[name].shape) or 0.0 for name in (own.inner, own.outer))
+    outer *= _leaning(own, world)
+    clearance = (world.size(own.inner) - world.size(own.outer)) / 2.0
+    clearance = clearance + world.columns.constants(np.array([(inner - outer) / 2.0]))[0]
+    its_frame = world.frame(own.outer)
+    found = []
+    for point, place in zip(_points(own, world), own.outer_places, strict=True):
+        at = directions @ shift_at(point)
+        apart = its_frame[:3, :3] @ place + its_frame[:3, 3] - point
+        values = at @ relative + world.columns.constants(directions @ apart)
+        found.append((sign * at, values, clearance))
+    return found
+
+
+def _leaning(own: Engagement, world: World) -> float:
+    """How much of its size what is in a slot takes of the width where it leans nominally; 1 in a hole."""
+    if isinstance(world.assembly.features[own.inner].shape, Axis):
+        return 1.0
+    along = float(world.axis(own.inner) @ world.axis(own.outer))
+    return max(1.0 - along**2, 0.0) ** 0.5 if isinstance(world.assembly.features[own.outer].shape, Axis) else abs(along)
+
+
+def _push(move: Engage, world: World) -> Array:
+    """How far the part's torsor takes its point along the direction of a float (6,)."""
+    assert move.floating.along is not None
+    direction = world.turned(move.floating.along, world.part_of(move.floating.at))
+    row: Array = height_at(world.origin(move.floating.at), direction)[0]
+    return row
+
+
+def _drawn(move: Engage, world: World) -> Array:
+    """What is drawn of the float, as it is (draws, columns)."""
+    columns = range(move.floating.columns.start, move.floating.columns.stop)
+    return np.eye(world.columns.count)[list(columns)]
