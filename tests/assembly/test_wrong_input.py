@@ -79,12 +79,12 @@ WRONG: dict[str, tuple[Sequence[Edit], str, str]] = {
     "feature of the wrong kind": (
         [added(TOLERANCES, f"thick: {{kind: size, of: base.floor, {SPREAD}}}")],
         "tolerances.thick.of",
-        "expected a cylinder or sphere, got 'base.floor', which is a plane; did you mean \"base.hole\"?",
+        "expected a cylinder or slot or sphere, got 'base.floor', which is a plane; did you mean \"base.hole\"?",
     ),
     "point with an orientation": (
         [added(TOLERANCES, "level: {kind: parallelism, of: base.rim, zone: {width: 0.1 mm}, datums: [floor]}")],
         "tolerances.level.of",
-        "expected a plane or cylinder or axis, got 'base.rim', which is a point; did you mean \"base.floor\"?",
+        "expected a plane or slot or cylinder or axis, got 'base.rim', which is a point; did you mean \"base.floor\"?",
     ),
     "three locators on a line": (
         [("at: [60 mm, 70 mm, 0 mm]", "at: [60 mm, 10 mm, 0 mm]")],
