@@ -10,9 +10,10 @@ import trimesh
 from assembly_trials import constant
 from datum_plate import plate
 from numpy.typing import NDArray
+from places import SCENES
 
 from tol3d.assembly.mechanism import ASSEMBLY
-from tol3d.assembly.model import Axis, Plane, Point, RoundPlane, Shape
+from tol3d.assembly.model import Axis, Plane, Point, RoundPlane, Shape, Slot
 from tol3d.assembly.presenting import PRESENTER
 from tol3d.assembly.presenting.symbols import SIDES, rod, symbol
 from tol3d.assembly.summary_types import AssemblyMeasureSummary
@@ -50,6 +51,8 @@ def zone(radius: float) -> float:
     [
         (Point(), 4 / 3 * 2.0**3),
         (Plane((40.0, 30.0)), 40 * 30 * 2.0),
+        (Slot((40.0, 30.0), 6.0, inner=False), 40 * 30 * 6.0),
+        (Slot((40.0, 30.0), 6.0), 2 * 40 * 30 * 2.0),
         (RoundPlane(15.0), POLYGON * 15**2 * 2),
         (Axis(20.0), POLYGON * 0.5**2 * 20),
         (Axis(20.0, 10.0), POLYGON * 5**2 * 20),
@@ -102,6 +105,13 @@ def test_check_lists_features_with_their_datum_frames_and_moves(tmp_path: Path) 
     assert 'plate.hole,"axis, 10 mm long","150, 60, 0","floor, b1-b2"' in shown
     assert 'plate.floor,plane 200 × 100 mm,"100, 50, 0",its part' in shown
     assert "machine,fixed,plate," in shown
+
+
+def test_check_shows_what_floats() -> None:
+    shown = page(*PRESENTER.check(simulation_of(load(SCENES / "hole_and_slot.yaml"), Overrides()))).csv()
+    assert '"slot 10.06 mm wide, 14 × 8 mm"' in shown
+    assert '"base.pin 1 in plate.hole, base.pin 2 in plate.slot; 3 freedoms, random"' in shown
+    assert "float of plate on the pins" in shown
 
 
 def test_summaries_know_every_measure() -> None:

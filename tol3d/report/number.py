@@ -7,7 +7,7 @@ from tol3d.report.page import Shown
 from tol3d.units import RAD_PER_ARCMIN, angle_text
 
 NOTHING: Final = "–"
-UNIT_SIGNS: Final = {"um": "µm", "mm": "mm", "arcmin": "′", "mrad": "mrad", "K": "K"}
+UNIT_SIGNS: Final = {"um": "µm", "mm": "mm", "arcmin": "′", "mrad": "mrad", "K": "K", "1": "1"}
 MANY_UM: Final = 1000.0  # um; from there on a nanometre says nothing
 UM_PER_MM: Final = 1000.0
 LEAST_PERCENT: Final = 1000.0  # ppm; smaller shares are given in ppm, as quality people do

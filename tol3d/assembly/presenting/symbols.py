@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.assembly.model import Axis, Plane, Point, RoundPlane, Shape
+from tol3d.assembly.model import Axis, Plane, Point, RoundPlane, Shape, Slot
 
 Array = NDArray[np.float64]
 Surface = tuple[Array, NDArray[np.int64]]
@@ -18,7 +18,8 @@ def symbol(shape: Shape, thickness: float) -> Surface:
     """What stands for a feature, in its frame: vertices (n, 3) [mm], triangles (m, 3).
 
     Args:
-        shape: a plane is a slab below it, an axis a rod of its diameter, a hole a ring, a point an octahedron,
+        shape: a plane is a slab below it, a tab a block, a slot its two walls,
+            an axis a rod of its diameter, a hole a ring, a point an octahedron,
             a sphere a ball, a socket the zone of a shell between 45 degrees of latitude.
         thickness: of what has none of its own [mm].
     """
@@ -29,6 +30,13 @@ def symbol(shape: Shape, thickness: float) -> Surface:
             corners = thickness * np.concatenate([np.eye(3), -np.eye(3)])
             faces = [(a, b, c) for a in (0, 3) for b in (1, 4) for c in (2, 5)]
             return corners, np.array([_outward(corners, face) for face in faces])
+        case Slot():
+            a, b = shape.reach
+            outline, half = np.array([(-a, -b), (a, -b), (a, b), (-a, b)]), shape.width / 2
+            if not shape.inner:
+                return prism(outline, -half, half)
+            walls = prism(outline, half, half + thickness), prism(outline, -half - thickness, -half)
+            return np.concatenate([own for own, _ in walls]), np.concatenate([walls[0][1], walls[1][1] + 8])
         case Plane():
             a, b = shape.reach
             outline = np.array([(-a, -b), (a, -b), (a, b), (-a, b)])

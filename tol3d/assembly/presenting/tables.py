@@ -4,9 +4,10 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from tol3d.assembly.model import Axis, Feature, Locate, Move, Plane, Point, RoundPlane, Touch
+from tol3d.assembly.model import Axis, Engage, Feature, Locate, Move, Plane, Point, RoundPlane, Slot, Touch
 from tol3d.assembly.model.moves import BestFit, Mate, Rest, Weld
 from tol3d.assembly.placing import road as placing
+from tol3d.assembly.placing.engaging import Engaging
 from tol3d.assembly.placing.resting import Resting
 from tol3d.assembly.placing.touching import Touching
 from tol3d.assembly.system import AssemblySystem
@@ -67,6 +68,8 @@ def _touched(system: AssemblySystem, name: str) -> str:
 
 def _shape(feature: Feature) -> str:
     match feature.shape:
+        case Slot(extent=(a, b), width=width, inner=inner):
+            return f"{'slot' if inner else 'tab'} {width:g} mm wide, {a:g} × {b:g} mm"
         case Plane(extent=(a, b)):
             return f"plane {a:g} × {b:g} mm"
         case RoundPlane(radius=radius):
@@ -98,6 +101,11 @@ def _move(move: Move, plan: placing.Placing) -> tuple[str, str, str]:
             return "best fit", move.part, f"{len(move.fits)} points, {move.criterion}"
         case Mate():
             return "mate", move.part, ", ".join(f"{own.kind} {own.target}" for own in move.relations)
+        case Engage():
+            assert isinstance(plan, Engaging)
+            kind = move.floating.kind
+            names = ", ".join(own.name for own in move.engagements)
+            return "play", move.part, f"{names}; {plan.freedoms.shape[1]} freedoms, {kind}"
         case Rest():
             return "rest", move.part, f"{len(move.pairs)} contacts, points ride on the {move.points_on}"
         case Touch():
