@@ -28,7 +28,11 @@ def plain_products(rows: Array) -> Array:
 
 
 def add_products(sums: Array, rows: Array, starts: Sequence[int]) -> None:
-    """Write the sums of products of pairs of rows, each with those from its start on; a pair's bits are its own."""
+    """Write the sums of products of pairs of rows, each row with those from its start on.
+
+    Of over 8192 trials the order of a pair's sum, and so its last bits, follow from its place among the rows: numpy
+    sums in pieces that do not begin with the rows.
+    """
     for i, (row, start) in enumerate(zip(rows, starts, strict=True)):
         sums[i, start:] = sums[start:, i] = np.einsum("j,kj->k", row, rows[start:])
 
