@@ -69,7 +69,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from tol3d.execution.folding import Outcome, Plan, run_blocks
+from tol3d.execution.folding import Plan, StudyOutcome, run_blocks
 from tol3d.execution.pools import ONE_WORKER, Execution, pool_of
 from tol3d.execution.timing import Clock
 from tol3d.execution.watch import UNWATCHED, Watch
@@ -195,7 +195,7 @@ class _Order:
         watch.activity(self.simulation.road.setup if compiled else COMPILING)
         return task_of(self.simulation, str(self.fingerprint), keep_trials=self.execution.keep_trials)
 
-    def run(self, task: Task, writer: RunWriter, watch: Watch) -> Outcome[Tally]:
+    def run(self, task: Task, writer: RunWriter, watch: Watch) -> StudyOutcome[Tally]:
         """All trials, until it is enough."""
         self.clock.start_trials()
         watch.activity("trials")
@@ -213,7 +213,7 @@ class _Order:
         self.clock.end_trials(pool.slots)
         return outcome
 
-    def finished(self, writer: RunWriter, found: Mapping[str, Any], outcome: Outcome[Tally], watch: Watch) -> Run:
+    def finished(self, writer: RunWriter, found: Mapping[str, Any], outcome: StudyOutcome[Tally], watch: Watch) -> Run:
         """The run on disk, with its pictures."""
         versions = dict(installed_versions(self.simulation.requires))
         summary = {

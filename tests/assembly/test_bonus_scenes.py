@@ -19,7 +19,7 @@ from tol3d.errors import SceneError
 from tol3d.simulate import Execution, Overrides, load, replay, run_scene, simulation_of
 from tol3d.study.extremes import ends_together
 from tol3d.study.first_order import first_orders
-from tol3d.system.draw import Joint, Scalar
+from tol3d.system.draw import JointDraw, Scalar
 from tol3d.system.plain import PlainContributor
 from tol3d.system.stated import stated
 
@@ -239,7 +239,7 @@ def test_check_says_which_model_it_is(tmp_path: Path) -> None:
     }
     for law, words in expected.items():
         draw = assembled(zoned(law), tmp_path).system.contributors[0].draw
-        assert isinstance(draw, Joint)
+        assert isinstance(draw, JointDraw)
         assert draw.words == words
 
 

@@ -14,7 +14,7 @@ from scipy import stats
 
 from tol3d import Overrides, Run, run_scene
 from tol3d.report.table import MOST_TABLES, Detail, run_report
-from tol3d.report.verdict import ACCEPTED_PPM, Judged, all_ok, verdict_table
+from tol3d.report.verdict import ACCEPTED_PPM, JudgedMeasure, all_ok, verdict_table
 
 
 def lines_of(shown: RenderableType, width: int = 200) -> list[str]:
@@ -56,26 +56,26 @@ def stated(below: int, trials: int, limit: float | None = 15.0) -> dict[str, Any
 )
 def test_a_verdict_is_told_where_the_whole_interval_is_on_one_side(below: int, trials: int, verdict: str) -> None:
     assert pytest.approx(2e6 * stats.norm.sf(3), rel=1e-3) == ACCEPTED_PPM
-    assert Judged.of(typed_measure(stated(below, trials))).verdict == verdict
+    assert JudgedMeasure.of(typed_measure(stated(below, trials))).verdict == verdict
 
 
 def test_verdicts_are_wrong_for_one_study_in_twenty_at_most() -> None:
     """Of measures that have just as much out as is accepted, by the binomial law of 5000 trials: no sampling."""
     counts = np.arange(40)
-    wrong = [Judged.of(typed_measure(stated(int(k), 5000))).verdict != "too few trials" for k in counts]
+    wrong = [JudgedMeasure.of(typed_measure(stated(int(k), 5000))).verdict != "too few trials" for k in counts]
     assert stats.binom(5000, 0.0027).pmf(counts) @ wrong <= 0.05
     assert stats.binom(5000, 0.0027).sf(39) < 1e-6
 
 
 def test_without_limits_only_failed_trials_are_judged() -> None:
-    assert Judged.of(typed_measure(stated(0, 20, limit=None))).verdict == "no limits"
-    assert Judged.of(typed_measure(stated(5, 20, limit=None))).verdict == "NOT OK"
+    assert JudgedMeasure.of(typed_measure(stated(0, 20, limit=None))).verdict == "no limits"
+    assert JudgedMeasure.of(typed_measure(stated(5, 20, limit=None))).verdict == "NOT OK"
 
 
 def test_a_study_that_cannot_bound_its_share_has_too_few_trials() -> None:
     own = stated(3, 4096)
     own["geometric"]["out_ppm_95"] = None  # of replicates with few trials out
-    assert Judged.of(typed_measure(own)).verdict == "too few trials"
+    assert JudgedMeasure.of(typed_measure(own)).verdict == "too few trials"
 
 
 def test_a_row_has_what_is_counted_of_the_trials(tmp_path: Path) -> None:

@@ -21,7 +21,7 @@ from tol3d.scene import Scene
 from tol3d.scene.schema import SECTIONS
 from tol3d.system.closed_form import ClosedForm, Share
 from tol3d.system.contributor import Contributor
-from tol3d.system.draw import Joint
+from tol3d.system.draw import JointDraw
 from tol3d.system.measure import Measure
 from tol3d.system.plain import PlainSystem
 from tol3d.system.regressors import is_group
@@ -190,7 +190,7 @@ def moments_of(contributor: Contributor) -> tuple[Array, Array]:
     if isinstance(draw, ZoneDraw):
         return draw.mean_vector, draw.covariance
     mean = np.array(draw.mean(turning=False))
-    if isinstance(draw, Joint):
+    if isinstance(draw, JointDraw):
         return mean, draw.covariance
     return mean, draw.sigma**2 * np.eye(len(mean))
 

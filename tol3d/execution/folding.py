@@ -137,7 +137,7 @@ class Block:
 
 
 @dataclass(frozen=True)
-class Outcome(Generic[S]):
+class StudyOutcome(Generic[S]):
     """What a study gave.
 
     Args:
@@ -171,7 +171,7 @@ def run_blocks(
     *,
     on_progress: Progress = lambda done: None,
     enough: Callable[[S], bool] = lambda statistics: False,
-) -> Outcome[S]:
+) -> StudyOutcome[S]:
     """Run all blocks of a study and fold their statistics.
 
     Args:
@@ -211,7 +211,7 @@ def run_blocks(
         raise
     if folded is None:
         raise ValueError("a study has at least one trial")
-    return Outcome(folded, trials, resumed, first_block_s)
+    return StudyOutcome(folded, trials, resumed, first_block_s)
 
 
 @dataclass(frozen=True)

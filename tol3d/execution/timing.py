@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-from tol3d.execution.folding import Outcome
+from tol3d.execution.folding import StudyOutcome
 
 try:
     import resource
@@ -31,7 +31,7 @@ class Clock:
         """All trials are made, by so many workers."""
         self.trials_ended, self.slots = time.perf_counter(), slots
 
-    def timing(self, outcome: Outcome[Any]) -> Mapping[str, float | None]:
+    def timing(self, outcome: StudyOutcome[Any]) -> Mapping[str, float | None]:
         """As summary.json shows it.
 
         Args:

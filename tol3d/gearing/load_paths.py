@@ -15,32 +15,32 @@ from tol3d.gearing.model.measure import AnyStage, ParallelStage, Stage
 
 Array = NDArray[np.float64]
 
-Part = tuple[Stage, Literal["play", "rest"]]
-Reading = Callable[[Part], Array]
+Variable = tuple[Stage, Literal["play", "rest"]]
+VariableValues = Callable[[Variable], Array]
 """A stage's own play [rad], or the angle at which its driven gear rests [rad]; (trials, positions).
 
 Of a link that is no mesh the middle of its free turn stands for that angle.
 """
 
-Form = Mapping[Part, Array]
+LinearForm = Mapping[Variable, Array]
 """Weights of the stages' plays and rests, each (trials, positions) or a scalar."""
 
-Flank = Callable[[Stage], int | None]
+WorkingFlank = Callable[[Stage], int | None]
 """The driver's flank that works in a stage; None for a link that is no mesh."""
 
 
-def value(form: Form, read: Reading) -> Array:
+def value(form: LinearForm, read: VariableValues) -> Array:
     """What a form adds up to [rad], (trials, positions)."""
-    return np.asarray(sum(weight * read(part) for part, weight in form.items()))
+    return np.asarray(sum(weight * read(variable) for variable, weight in form.items()))
 
 
-def free_form(stage: ParallelStage, flank: Flank, read: Reading) -> Form:
+def free_form(stage: ParallelStage, flank: WorkingFlank, read: VariableValues) -> LinearForm:
     """Play of the shaft where load paths join; below 0 they bind each other."""
     low, high = _meeting(stage, flank, read)
-    return _sum(high, {part: -weight for part, weight in low.items()})
+    return _sum(high, {variable: -weight for variable, weight in low.items()})
 
 
-def _meeting(stage: ParallelStage, flank: Flank, read: Reading) -> tuple[Form, Form]:
+def _meeting(stage: ParallelStage, flank: WorkingFlank, read: VariableValues) -> tuple[LinearForm, LinearForm]:
     """Both ends of what is free on all load paths."""
     each = [_ends_of_path(path, flank, read) for path in stage.paths]
     lows, highs = [low for low, _ in each], [high for _, high in each]
@@ -50,42 +50,48 @@ def _meeting(stage: ParallelStage, flank: Flank, read: Reading) -> tuple[Form, F
     )
 
 
-def _ends_of_path(path: tuple[AnyStage, ...], flank: Flank, read: Reading) -> tuple[Form, Form]:
-    low: Form = {}
-    high: Form = {}
+def _ends_of_path(
+    path: tuple[AnyStage, ...], flank: WorkingFlank, read: VariableValues
+) -> tuple[LinearForm, LinearForm]:
+    low: LinearForm = {}
+    high: LinearForm = {}
     for stage in path:
         ends = _ends(stage, flank, read)
         low, high = _sum(low, ends[0]), _sum(high, ends[1])
     return low, high
 
 
-def _ends(stage: AnyStage, flank: Flank, read: Reading) -> tuple[Form, Form]:
+def _ends(stage: AnyStage, flank: WorkingFlank, read: VariableValues) -> tuple[LinearForm, LinearForm]:
     """Both ends of what a stage leaves free, at the shaft where its load paths join."""
     factor = np.array(stage.sense * stage.factor)
     if isinstance(stage, ParallelStage):
-        both = tuple({part: factor * weight for part, weight in form.items()} for form in _meeting(stage, flank, read))
+        both = tuple(
+            {variable: factor * weight for variable, weight in form.items()} for form in _meeting(stage, flank, read)
+        )
         return (both[0], both[1]) if stage.sense > 0 else (both[1], both[0])
     side = flank(stage)
     if side is None:
         half = np.array(stage.factor / 2)
-        middle: Form = {(stage, "rest"): factor} if stage.has_middle else {}
+        middle: LinearForm = {(stage, "rest"): factor} if stage.has_middle else {}
         return {**middle, (stage, "play"): -half}, {**middle, (stage, "play"): half}
     # a right flank (1) is left by a turn in the positive sense
-    resting: Form = {(stage, "rest"): factor}
-    turned: Form = {(stage, "rest"): factor, (stage, "play"): factor * side}
+    resting: LinearForm = {(stage, "rest"): factor}
+    turned: LinearForm = {(stage, "rest"): factor, (stage, "play"): factor * side}
     return (resting, turned) if factor * side > 0.0 else (turned, resting)
 
 
-def _sum(first: Form, second: Form) -> Form:
-    zero = np.array(0.0)
-    return {part: np.asarray(first.get(part, zero) + second.get(part, zero)) for part in {**first, **second}}
-
-
-def _chosen(forms: list[Form], which: NDArray[np.intp]) -> Form:
-    """Row by row one of several forms."""
-    parts = dict.fromkeys(part for form in forms for part in form)
+def _sum(first: LinearForm, second: LinearForm) -> LinearForm:
     zero = np.array(0.0)
     return {
-        part: np.select([which == k for k in range(len(forms))], [form.get(part, zero) for form in forms])
-        for part in parts
+        variable: np.asarray(first.get(variable, zero) + second.get(variable, zero)) for variable in {**first, **second}
+    }
+
+
+def _chosen(forms: list[LinearForm], which: NDArray[np.intp]) -> LinearForm:
+    """Row by row one of several forms."""
+    variables = dict.fromkeys(variable for form in forms for variable in form)
+    zero = np.array(0.0)
+    return {
+        variable: np.select([which == k for k in range(len(forms))], [form.get(variable, zero) for form in forms])
+        for variable in variables
     }

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from tol3d.gearing.clocking import clocking
 from tol3d.gearing.linked import LinkLaw, link_trials
 from tol3d.gearing.links.stated_link import middle_of
-from tol3d.gearing.load_paths import Form, Part, free_form, value
+from tol3d.gearing.load_paths import LinearForm, Variable, free_form, value
 from tol3d.gearing.model import Backlash, LostMotion, Measure, Model, Reading
 from tol3d.gearing.model.measure import AnyStage, ParallelStage, Stage
 from tol3d.system.trials import Trials
@@ -91,20 +91,20 @@ class Play:
 
     def of(self, stage: AnyStage) -> Array:
         """What a stage leaves free at the shaft that it drives [rad], (trials, positions)."""
-        return value(self.form(stage), self.reading)
+        return value(self.form(stage), self.values_of)
 
-    def form(self, stage: AnyStage) -> Form:
+    def form(self, stage: AnyStage) -> LinearForm:
         """That as a weighted sum of the readings of its links."""
         if isinstance(stage, Stage):
             return {(stage, "play"): np.array(1.0)}
-        return free_form(stage, self._flank, self.reading)
+        return free_form(stage, self._flank, self.values_of)
 
-    def reading(self, part: Part) -> Array:
+    def values_of(self, variable: Variable) -> Array:
         """A stage's own play, or the angle at which its driven gear rests on its shaft [rad], (trials, positions).
 
         Of a link that is no mesh the middle of its free turn stands for that angle.
         """
-        stage, what = part
+        stage, what = variable
         if stage.backlash is None:
             link = self.model.link(stage.link)
             turn = self.law(link, link_trials(self.model, self.measure, link, self.trials))

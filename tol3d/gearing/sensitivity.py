@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from tol3d.gearing.engines import OK, Engine, Gaps
 from tol3d.gearing.linked import link_trials
-from tol3d.gearing.load_paths import Part
+from tol3d.gearing.load_paths import Variable
 from tol3d.gearing.measures import moved_rate
 from tol3d.gearing.meshing import Meshing, MeshSeat
 from tol3d.gearing.model import Backlash, Contributor, Measure, Model, Planar
@@ -67,15 +67,15 @@ def _free_rates(model: Model, measure: Measure, moves: BuildRates, seats: Seats)
     total = np.zeros((len(moves.scale), model.component_count))
     play = play_of(measure, seats)
     for stage in kind.stages:
-        for part, weight in play.form(stage).items():
+        for variable, weight in play.form(stage).items():
             rows = np.broadcast_to(weight, (len(seats.trials), measure.positions.in_a_trial)).reshape(-1, 1)
-            total += stage.factor * rows * _part_rates(model, measure, moves, seats, part)
+            total += stage.factor * rows * _variable_rates(model, measure, moves, seats, variable)
     return total
 
 
-def _part_rates(model: Model, measure: Measure, moves: BuildRates, seats: Seats, part: Part) -> Array:
-    """Derivatives of a stage's part, (rows, components)."""
-    stage, what = part
+def _variable_rates(model: Model, measure: Measure, moves: BuildRates, seats: Seats, variable: Variable) -> Array:
+    """Derivatives of a stage's play, or of the angle at which its driven gear rests, (rows, components)."""
+    stage, what = variable
     rates = np.zeros((len(moves.scale), model.component_count))
     if stage.backlash is None:
         link = model.link(stage.link)

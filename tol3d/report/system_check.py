@@ -11,7 +11,7 @@ from tol3d.study.first_order import FirstOrder, first_orders
 from tol3d.study.simulation import Simulation
 from tol3d.study.task import materials_of, road_of
 from tol3d.system.contributor import Contributor
-from tol3d.system.draw import Joint
+from tol3d.system.draw import JointDraw
 from tol3d.system.measure import Measure
 
 SLOPES = (
@@ -51,7 +51,7 @@ def law_name(law: Distribution) -> str:
 def law_words(contributor: Contributor) -> str:
     """The law of a contributor and what is drawn by it: "rayleigh, random direction", "normal, each of 6"."""
     draw = contributor.draw
-    if isinstance(draw, Joint):
+    if isinstance(draw, JointDraw):
         return draw.words
     law, count = law_name(draw.distribution), len(draw.components)
     if count == 1:

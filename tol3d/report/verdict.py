@@ -19,7 +19,7 @@ STYLES: Final[Mapping[Verdict, str]] = {"NOT OK": "red", "too few trials": "yell
 
 
 @dataclass(frozen=True)
-class Judged:
+class JudgedMeasure:
     """A measure as it is judged.
 
     Args:
@@ -33,7 +33,7 @@ class Judged:
     verdict: Verdict
 
     @classmethod
-    def of(cls, measure: MeasureSummary, accepted_ppm: float = ACCEPTED_PPM) -> "Judged":
+    def of(cls, measure: MeasureSummary, accepted_ppm: float = ACCEPTED_PPM) -> "JudgedMeasure":
         """A measure of a summary: OK or NOT OK where all of the interval is on one side of the accepted share."""
         out, found = measure.shares.out_ppm, measure.shares.out_ppm_95
         interval = (found[0], found[1]) if found else None
@@ -55,7 +55,7 @@ def _verdict(interval: tuple[float, float] | None, accepted_ppm: float) -> Verdi
 
 def all_ok(run: RunSummary, accepted_ppm: float) -> bool:
     """Whether every measure that has limits, or failed trials, is OK."""
-    return all(Judged.of(own, accepted_ppm).verdict in ("OK", "no limits") for own in run.measures.values())
+    return all(JudgedMeasure.of(own, accepted_ppm).verdict in ("OK", "no limits") for own in run.measures.values())
 
 
 def verdict_report(run: RunSummary, accepted_ppm: float = ACCEPTED_PPM, *, blame: bool = False) -> list[Block]:
@@ -81,7 +81,7 @@ def verdict_table(run: RunSummary, accepted_ppm: float = ACCEPTED_PPM, *, blame:
 
 
 def _row(name: str, measure: MeasureSummary, accepted_ppm: float, *, blame: bool) -> Row:
-    judged = Judged.of(measure, accepted_ppm)
+    judged = JudgedMeasure.of(measure, accepted_ppm)
     low, mean, high = _curve_ends(measure) if measure.take == "curve" else _ends(measure)
     verdict = NOTHING if judged.verdict == "no limits" else judged.verdict
     cells = [verdict, *(_short(value, measure.unit) for value in (mean, low, high)), _limits(measure)]
@@ -124,7 +124,7 @@ def _limits(measure: MeasureSummary) -> str:
     return f"{given_text(lower, unit)} to {given_text(upper, unit)}{suffix}"
 
 
-def _out(judged: Judged) -> str:
+def _out(judged: JudgedMeasure) -> str:
     if judged.out_ppm is None or judged.interval is None:
         return share_text(judged.out_ppm)
     low, high = map(share_text, judged.interval)

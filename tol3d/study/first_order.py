@@ -15,7 +15,7 @@ from tol3d.study.extremes import ends_together
 from tol3d.study.simulation import Simulation
 from tol3d.system.contributor import Contributor
 from tol3d.system.dependent import reads_of
-from tol3d.system.draw import Joint
+from tol3d.system.draw import JointDraw
 from tol3d.system.measure import Measure
 from tol3d.system.outcome import ANALYTIC, GEOMETRIC, outcome_of
 from tol3d.system.road import Road
@@ -30,7 +30,7 @@ NOISE = 1e-9  # of the values; smaller differences are rounding, and have no sig
 
 
 @dataclass(frozen=True)
-class Effect:
+class FirstOrderEffect:
     """What a contributor does to a measure, of first order at the mean build.
 
     Args:
@@ -62,7 +62,7 @@ class FirstOrder:
 
     nominal: float
     mean: float
-    effects: tuple[Effect, ...]
+    effects: tuple[FirstOrderEffect, ...]
     ends: tuple[float, float]
 
     @property
@@ -70,11 +70,11 @@ class FirstOrder:
         """Standard deviation by the root sum of squares (RSS)."""
         return math.sqrt(sum(own.variance for own in self.effects))
 
-    def variance_percent(self, effect: Effect) -> float:
+    def variance_percent(self, effect: FirstOrderEffect) -> float:
         """Share of the variance [%]; 0 where nothing varies."""
         return _percent(effect.variance, sum(own.variance for own in self.effects))
 
-    def reach_percent(self, effect: Effect) -> float:
+    def reach_percent(self, effect: FirstOrderEffect) -> float:
         """Share of the worst case [%]: of the sum of all reaches; 0 where nothing varies."""
         return _percent(effect.reach, sum(own.reach for own in self.effects))
 
@@ -144,10 +144,10 @@ def _slopes(mean: Array, own: slice, step: float, values: Values) -> Array:
     return np.asarray(change / (2 * step))
 
 
-def _effect(contributor: Contributor, slopes: Array, ends: Array, *, turning: bool) -> Effect:
+def _effect(contributor: Contributor, slopes: Array, ends: Array, *, turning: bool) -> FirstOrderEffect:
     law, sigma, draw = contributor.distribution, contributor.draw.sigma, contributor.draw
     size = float(slopes[0]) if len(slopes) == 1 else float(np.sqrt((slopes * slopes).sum()))
-    variance = float(slopes @ draw.covariance @ slopes) if isinstance(draw, Joint) else size**2 * sigma**2
+    variance = float(slopes @ draw.covariance @ slopes) if isinstance(draw, JointDraw) else size**2 * sigma**2
     if draw.uniforms == 1 and len(slopes) > 1:  # a length in one direction
         if turning:
             variance = size**2 * (law.variance + law.mean**2) / 2
@@ -156,7 +156,7 @@ def _effect(contributor: Contributor, slopes: Array, ends: Array, *, turning: bo
             size = float(slopes @ along) / (float(np.sqrt((along * along).sum())) or 1.0)
             variance = size**2 * sigma**2
     reach = float((ends[1] - ends[0]) @ slopes)
-    return Effect(contributor.name, contributor.unit, size * contributor.per_unit, variance, reach)
+    return FirstOrderEffect(contributor.name, contributor.unit, size * contributor.per_unit, variance, reach)
 
 
 def _percent(part: float, whole: float) -> float:

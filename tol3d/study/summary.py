@@ -31,7 +31,7 @@ from tol3d.study.study import Study
 from tol3d.study.tally import MeasureTally, Tally
 from tol3d.system.closed_form import ClosedForm
 from tol3d.system.dependent import DependentlyJudged
-from tol3d.system.draw import Judged
+from tol3d.system.draw import JudgedDraw
 from tol3d.system.measure import Measure
 from tol3d.system.outcome import ANALYTIC, GEOMETRIC, outcome_of, value_column
 from tol3d.system.road import Road
@@ -127,7 +127,9 @@ def _too_many(simulation: Simulation) -> Iterator[str]:
 
 
 def _unphysical_draws(simulation: Simulation, tally: Tally) -> Iterator[str]:
-    judged = {own.name for own in simulation.system.contributors if isinstance(own.draw, Judged | DependentlyJudged)}
+    judged = {
+        own.name for own in simulation.system.contributors if isinstance(own.draw, JudgedDraw | DependentlyJudged)
+    }
     for name, count in tally.unphysical.items():
         if count:
             why = "out of drawing" if name in judged else "below zero, which no clearance is"

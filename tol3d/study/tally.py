@@ -23,7 +23,7 @@ from tol3d.study.spectrum_tally import amplitudes_of, grid_name
 from tol3d.study.status_counts import added, counted, status_counts
 from tol3d.system.closed_form import ClosedForm
 from tol3d.system.dependent import DependentlyJudged
-from tol3d.system.draw import Judged
+from tol3d.system.draw import JudgedDraw
 from tol3d.system.measure import Measure
 from tol3d.system.outcome import ANALYTIC, GEOMETRIC, ROADS, Columns, Outcome, outcome_of, value_column
 from tol3d.system.pooled import PooledTerms
@@ -263,6 +263,6 @@ def _unphysical(system: System, columns: Columns) -> dict[str, int]:
         elif isinstance(draw, DependentlyJudged):
             given = {own: np.stack(components(own)) for own in draw.reads}
             counts[name] = int(np.count_nonzero(draw.beyond_given(given, *components(name))))
-        elif isinstance(draw, Judged):
+        elif isinstance(draw, JudgedDraw):
             counts[name] = int(np.count_nonzero(draw.beyond(*components(name))))
     return counts

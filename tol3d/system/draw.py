@@ -52,7 +52,7 @@ class Draw(Protocol):
 
 
 @runtime_checkable
-class Joint(Protocol):
+class JointDraw(Protocol):
     """A Draw whose components spread differently or together."""
 
     @property
@@ -68,13 +68,13 @@ class Joint(Protocol):
 
 def component_sigmas(draw: Draw) -> tuple[float, ...]:
     """Standard deviation of each component of a draw [mm, rad or K]."""
-    if isinstance(draw, Joint):
+    if isinstance(draw, JointDraw):
         return tuple(np.sqrt(np.diagonal(draw.covariance)).tolist())
     return (draw.sigma,) * len(draw.components)
 
 
 @runtime_checkable
-class Judged(Protocol):
+class JudgedDraw(Protocol):
     """A Draw that a drawing judges and does not confine."""
 
     def beyond(self, *components: Array) -> NDArray[np.bool_]:

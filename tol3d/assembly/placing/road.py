@@ -133,7 +133,7 @@ def features_placed(assembly: Assembly, deviations: Array) -> dict[str, Array]:
 
 
 @dataclass(frozen=True, eq=False)
-class Plan:
+class PlacingPlan:
     """An assembly as it is placed, and what its nominal geometry decides once for all trials.
 
     Args:
@@ -155,7 +155,7 @@ class Plan:
 
 
 @lru_cache(maxsize=8)
-def planned(assembly: Assembly) -> Plan:
+def planned(assembly: Assembly) -> PlacingPlan:
     """What the nominal geometry decides.
 
     Raises:
@@ -173,7 +173,7 @@ def planned(assembly: Assembly) -> Plan:
     for move in assembly.moves:
         moves.append(_planned(move, world))
         world, _ = _after(moves[-1], world)
-    return Plan(assembly, seats, tuple(moves), tuple(causes))
+    return PlacingPlan(assembly, seats, tuple(moves), tuple(causes))
 
 
 def _planned(move: Move, nominal: World) -> Placing:
@@ -220,7 +220,7 @@ class _Block:
         return first
 
 
-def _placed(plan: Plan, deviations: Array, instead: Mapping[int, Resting] | None = None) -> _Block:
+def _placed(plan: PlacingPlan, deviations: Array, instead: Mapping[int, Resting] | None = None) -> _Block:
     """Trials as moves place them; `instead` has other moves for some, by their places."""
     assembly = plan.assembly
     worlds, codes = [_world(assembly, plan.datum_seats, np.ascontiguousarray(deviations.T))], dict[int, Codes]()
@@ -242,7 +242,7 @@ def _after(move: Placing, world: World) -> tuple[World, Codes]:
             return move.placed(world)
 
 
-def _read(plan: Plan, block: _Block, name: str, causes: Sequence[Cause]) -> tuple[Array, Codes]:
+def _read(plan: PlacingPlan, block: _Block, name: str, causes: Sequence[Cause]) -> tuple[Array, Codes]:
     """A measure's values and codes (n,)."""
     with np.errstate(all="ignore"):
         numbers = reading(plan.assembly.measures[name], block.worlds)
@@ -251,7 +251,7 @@ def _read(plan: Plan, block: _Block, name: str, causes: Sequence[Cause]) -> tupl
     return np.where(first == OK, numbers, np.nan), first
 
 
-def _over_rests(plan: Plan, block: _Block, name: str, deviations: Array) -> tuple[Array, Codes]:
+def _over_rests(plan: PlacingPlan, block: _Block, name: str, deviations: Array) -> tuple[Array, Codes]:
     """A measure's values and codes (n,); where parts may rock, over all poses that they may take."""
     numbers, codes = _read(plan, block, name, plan.of_measures[name])
     leaning, varies = dict[int, Array](), np.zeros(len(numbers), dtype=bool)
@@ -278,7 +278,7 @@ def _over_rests(plan: Plan, block: _Block, name: str, deviations: Array) -> tupl
 
 
 @lru_cache(maxsize=256)
-def _slope(plan: Plan, name: str, index: int) -> Array | None:
+def _slope(plan: PlacingPlan, name: str, index: int) -> Array | None:
     """How a measure changes with a part at rest."""
     move = plan.moves[index]
     assert isinstance(move, Resting)
@@ -290,7 +290,7 @@ def _slope(plan: Plan, name: str, index: int) -> Array | None:
 
 
 @lru_cache(maxsize=256)
-def _leaning(plan: Plan, index: int, along: bytes) -> Resting:
+def _leaning(plan: PlacingPlan, index: int, along: bytes) -> Resting:
     """A rest that leans along some motion."""
     move = plan.moves[index]
     assert isinstance(move, Resting)

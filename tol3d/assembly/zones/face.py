@@ -14,7 +14,7 @@ from scipy.special import ndtr, ndtri
 
 from tol3d.assembly.zones.cross_section import SIGMAS, CrossSection, Diamond, Disc
 from tol3d.assembly.zones.domain import Array, Domain, Ratio, UnitLaw
-from tol3d.assembly.zones.inverse import NODES, WEIGHTS, Density, Table, integral, inverse, inverse_family, table
+from tol3d.assembly.zones.inverse import NODES, WEIGHTS, Density, InverseTable, integral, inverse, inverse_family, table
 
 
 @dataclass(frozen=True)
@@ -164,5 +164,5 @@ def _tip_mass(density: Density, ratio: Ratio) -> Ratio:
 
 
 @cache
-def _tip_masses(density: Density) -> Table:
+def _tip_masses(density: Density) -> InverseTable:
     return table(lambda ratio: integral(density, np.ones_like(ratio), ratio))

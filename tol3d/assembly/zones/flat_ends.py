@@ -11,7 +11,7 @@ from tol3d.assembly.zones.balls import NormalLine
 from tol3d.assembly.zones.cross_section import SIGMAS
 from tol3d.assembly.zones.domain import Array, Domain, Ratio, UnitLaw
 from tol3d.assembly.zones.ends import CUT_SIGMAS, cut_variance
-from tol3d.assembly.zones.inverse import NODES, WEIGHTS, Table, integral, inverse, table
+from tol3d.assembly.zones.inverse import NODES, WEIGHTS, InverseTable, integral, inverse, table
 
 
 @dataclass(frozen=True)
@@ -121,7 +121,7 @@ def _share(ratio: float) -> float:
 
 
 @cache
-def _shares() -> Table:
+def _shares() -> InverseTable:
     return table(lambda ratio: integral(_apart, ratio, _ONE) / integral(_apart, _ONE, _ONE))
 
 

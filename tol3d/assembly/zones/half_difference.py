@@ -13,7 +13,7 @@ from scipy.special import erf
 
 from tol3d.assembly.zones.cross_section import SIGMAS
 from tol3d.assembly.zones.domain import Array, Ratio
-from tol3d.assembly.zones.inverse import NODES, WEIGHTS, Density, Table, integral, inverse, table
+from tol3d.assembly.zones.inverse import NODES, WEIGHTS, Density, InverseTable, integral, inverse, table
 
 QUARTER_TURN = 0.5 * math.pi
 HALF_RANGE = 0.25 * math.pi  # rad; where the tables of small and of large differences meet
@@ -63,7 +63,7 @@ class HalfDifference:
         return self._share(math.sin(HALF_RANGE))
 
     @cached_property
-    def _table(self) -> Table:
+    def _table(self) -> InverseTable:
         whole = integral(self.small, np.asarray(2.0), np.asarray(1.0))
         return table(lambda place: integral(self.small, 2.0 * place, np.asarray(1.0)) / (whole * place * place))
 
@@ -115,7 +115,7 @@ def _normal_large(angle: Array) -> Array:
 
 
 @cache
-def _normal_lens_mass() -> Table:
+def _normal_lens_mass() -> InverseTable:
     """Mass of the normal in a lens, over the cube of its angle's size."""
     return table(lambda size: integral(normal_lens, np.ones_like(size), size) / size**2)
 

@@ -55,7 +55,7 @@ def solved(density: Density, order: int, w: Array, parameters: Array) -> Array:
 
 
 @dataclass(frozen=True, eq=False)
-class Table:
+class InverseTable:
     """A smooth function on [0, 1]: polynomials in the place within each cell, (degree + 1, cells)."""
 
     coefficients: Array
@@ -74,7 +74,7 @@ class Table:
 class Inverse:
     """z(w) of one law."""
 
-    ratio: Table
+    ratio: InverseTable
 
     def __call__(self, w: Array) -> Array:
         """Z (trials,) of w (trials,) in [0, 1]."""
@@ -106,10 +106,10 @@ class InverseFamily:
         return np.minimum(ratio, 1.0, out=ratio)
 
 
-def table(function: Callable[[Array], Array]) -> Table:
+def table(function: Callable[[Array], Array]) -> InverseTable:
     """Of a smooth function on [0, 1], which takes arrays of any shape."""
     places, w = _nodes(CELLS, DEGREE)
-    return Table(_coefficients(places, function(w)))
+    return InverseTable(_coefficients(places, function(w)))
 
 
 @lru_cache(maxsize=256)
