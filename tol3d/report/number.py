@@ -158,12 +158,12 @@ def ppm_text(value: float | None) -> str:
 
 
 def number_text(value: float | None) -> str:
-    """A number without a dimension, with six digits.
+    """A number without a dimension, with seven digits, so that a million ppm is one.
 
-    >>> number_text(5000), number_text(-0.0), number_text(0.12345678), number_text(None)
-    ('5000', '0', '0.123457', '–')
+    >>> number_text(5000), number_text(-0.0), number_text(1e6), number_text(None)
+    ('5000', '0', '1000000', '–')
     """
-    return NOTHING if value is None else unsigned_zero(f"{value:.6g}" if isinstance(value, float) else str(value))
+    return NOTHING if value is None else unsigned_zero(f"{value:.7g}" if isinstance(value, float) else str(value))
 
 
 def number_cell(value: float | None) -> Shown:
