@@ -41,7 +41,7 @@ def test_each_contact_alone_is_met_as_scipy_meets_it(kind: str) -> None:
     assert poses_agree(made, drawn(made, 0, 2)) == 2
 
 
-@pytest.mark.parametrize("seed", range(25))
+@pytest.mark.parametrize("seed", range(16))
 def test_random_touches_are_those_of_scipy(seed: int) -> None:
     made = random_touch(seed)
     assert poses_agree(made, drawn(made, seed, 2)) == 2
@@ -67,7 +67,7 @@ def left_out(made: RandomTouch, deviations: Array, name: str) -> Array:
     return np.array(found)
 
 
-@pytest.mark.parametrize("seed", range(30))
+@pytest.mark.parametrize("seed", range(16))
 def test_what_small_displacements_leave_out_is_of_second_order(seed: int) -> None:
     """Halves of the deviations leave quarters: a slope of 2 in logarithms, by what the third order makes of it."""
     made = random_touch(seed)
@@ -81,7 +81,7 @@ def test_what_small_displacements_leave_out_is_of_second_order(seed: int) -> Non
             assert slope == pytest.approx(2.0, abs=0.1), (name, made.kinds)
 
 
-@pytest.mark.parametrize("seed", range(30))
+@pytest.mark.parametrize("seed", range(16))
 def test_slopes_are_central_differences_of_finite_poses(seed: int) -> None:
     """Steps of h and 2h, extrapolated: the fourth power is left of 4e-3 mm over lengths of some mm, and rounding."""
     made, step = random_touch(seed), 2e-3
@@ -94,3 +94,14 @@ def test_slopes_are_central_differences_of_finite_poses(seed: int) -> None:
         slopes = torsors.slopes(made.assembly, name, *np.zeros((2, width))).coefficients
         central = (4.0 * found[0][name] - found[1][name]) / 3.0
         np.testing.assert_allclose(slopes, central, atol=2e-8, err_msg=f"{name}: {made.kinds}")
+
+
+def test_a_trial_has_the_same_bits_alone_and_among_others() -> None:
+    made = random_touch(3)
+    deviations, names = drawn(made, 3, 40), list(made.assembly.measures)
+    for road in (placing, torsors):
+        together = road.values(made.assembly, deviations, names)
+        for k in (0, 17, 39):
+            alone = road.values(made.assembly, deviations[k : k + 1], names)
+            for name in names:
+                assert np.array_equal(np.atleast_2d(alone[name])[:, 0], np.atleast_2d(together[name])[:, k])

@@ -17,7 +17,7 @@ PIN = ROD.replace("axis, at", "cylinder, diameter: 3 mm, at").replace("rod:", "p
 DISC_RIM = "{kind: cylinder, at: [0 mm, 0 mm, 0 mm], axis: [0, 0, 1], length: 8 mm, diameter: 40 mm}"
 THREE = """      - {from: lower disc.rim, to: box.left}
       - {from: lower disc.rim, to: box.right}"""
-FREE = "expected contacts that are independent of each other"
+FREE = "expected contacts that are independent of each other where lower disc is `placed`"
 
 WRONG = {
     "an axis without a size": (

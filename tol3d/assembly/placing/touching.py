@@ -196,7 +196,7 @@ def _refuse_redundant(move: Touch, rows: Array, ends: Sequence[int], origin: Arr
             free = f"{move.part} is still free: {in_words(left)}" if len(left) else f"nothing of {move.part} is free"
             raise InputError(
                 f"moves.{move.name}: contact of {contact.moving} and {contact.target} asks what earlier contacts hold; "
-                f"{free}; expected contacts that are independent of each other"
+                f"{free}; expected contacts that are independent of each other where {move.part} is `placed`"
             )
         before = end
 
