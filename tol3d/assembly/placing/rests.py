@@ -1,7 +1,9 @@
 """Parts on one-sided contacts under a force: the finite pose, trial by trial.
 
 Each step solves a linear programme about the pose reached: the farthest motion along the force with no gap below 0, by
-the dual simplex method with the nominal lever arms; then gaps are found again. Several motions may go as far: a second
+the dual simplex method with the nominal lever arms; then gaps are found again. Where that does not end, for turns are
+large or contacts hold the part barely, gaps are linearised anew at each pose; what carries is judged by the nominal
+loads all the same. Several motions may go as far: a second
 direction, which counts where the first one is met alike, chooses among them (a lexicographic programme). Each trial
 begins with the same contacts, so that it has the same bits alone and among thousands.
 """
@@ -10,7 +12,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from tol3d.assembly.placing.pose_steps import stepped
+from tol3d.assembly.placing.pose_steps import solved, stepped
 from tol3d.numerics.compiled import kernel, part
 
 STEPS: Final = 60
@@ -134,6 +136,99 @@ def farthest(rows: Any, gaps: Any, basis: Any, inverse: Any, loads: Any, rooms: 
         pivots += 1
 
 
+@part
+def rows_now(pose: Any, contacts: Any, i: int, on_part: bool, steps: Any, reach: float, now: Any) -> None:
+    """How gaps change at a pose, into the first room by turn by reach and shift, into the second by the motions."""
+    points, normals, _ = contacts
+    all_rows, rows = now
+    arm, normal = np.empty(3), np.empty(3)
+    for k in range(all_rows.shape[0]):
+        p, q = min(i, points.shape[2] - 1), min(i, normals.shape[2] - 1)
+        for r in range(3):
+            if on_part:
+                normal[r] = normals[k, r, q]
+                arm[r] = pose[r, 0] * points[k, 0, p] + pose[r, 1] * points[k, 1, p] + pose[r, 2] * points[k, 2, p]
+            else:
+                normal[r] = (
+                    pose[r, 0] * normals[k, 0, q] + pose[r, 1] * normals[k, 1, q] + pose[r, 2] * normals[k, 2, q]
+                )
+                arm[r] = points[k, r, p] - pose[r, 3]
+        all_rows[k, 0] = (arm[1] * normal[2] - arm[2] * normal[1]) / reach
+        all_rows[k, 1] = (arm[2] * normal[0] - arm[0] * normal[2]) / reach
+        all_rows[k, 2] = (arm[0] * normal[1] - arm[1] * normal[0]) / reach
+        for r in range(3):
+            all_rows[k, 3 + r] = normal[r]
+        for j in range(rows.shape[1]):
+            total = 0.0
+            for r in range(6):
+                total += all_rows[k, r] * steps[r, j]
+            rows[k, j] = total
+
+
+@part
+def inverted(rows: Any, basis: Any, inverse: Any, matrix: Any, right: Any) -> bool:
+    """Whether the rows of a basis have an inverse, and that."""
+    count = basis.shape[0]
+    for b in range(count):
+        for j in range(count):
+            right[j] = 1.0 if j == b else 0.0
+            for c in range(count):
+                matrix[j, c] = rows[basis[j], c]
+        if not solved(matrix, right, count):
+            return False
+        for j in range(count):
+            inverse[j, b] = right[j]
+    return True
+
+
+@part
+def settled(
+    pose: Any, contacts: Any, i: int, on_part: bool, kept: Any, programme: Any, begun: Any, rooms: Any, reach: float,
+    anew: bool,
+) -> int:  # fmt: skip
+    """What becomes of a part that goes along the force from a pose; by nominal rows, or by those of each pose."""
+    vectors, normals, shifts, kept_steps, first = kept
+    all_rows, rows, steps = programme
+    basis, inverse, loads = begun
+    gaps, step, moves, matrix, right = rooms
+    pivots = 0
+    for _ in range(STEPS):
+        if anew:
+            rows_now(pose, contacts, i, on_part, steps, reach, (all_rows, rows))
+            if not inverted(rows, basis, inverse, matrix, right):
+                return LOST
+        step[:] = 0.0
+        for e in range(first.shape[0]):
+            change = kept_at(pose, (vectors, normals, shifts), e, i) - first[e]
+            for r in range(6):
+                step[r] -= kept_steps[r, e] * change
+        for k in range(gaps.shape[0]):
+            gaps[k] = gap_of(pose, contacts, k, i, on_part)
+            for r in range(6):
+                gaps[k] += all_rows[k, r] * step[r]
+        pivots = farthest(rows, gaps, basis, inverse, loads, moves, pivots)
+        if pivots < 0:
+            return CLASHES if pivots == -1 else LOST
+        for r in range(6):
+            for j in range(rows.shape[1]):
+                step[r] += steps[r, j] * moves[0][j]
+        length = stepped(pose, step, reach)
+        if length <= MET:
+            return RESTS
+        if not length < np.inf:
+            return LOST
+    return LOST
+
+
+@part
+def begin(pose: Any, first: Any, start: Any, i: int, kept: Any) -> None:
+    """Put the pose where it begins, and note what is kept there."""
+    vectors, normals, shifts, _, _ = kept
+    pose[:] = start[:, :, min(i, start.shape[2] - 1)]
+    for e in range(first.shape[0]):
+        first[e] = kept_at(pose, (vectors, normals, shifts), e, i)
+
+
 @kernel(
     arrays="float64[:,:,::1], float64[:,:,::1], float64[:,::1], boolean, float64[:,:,::1], float64[:,:,::1], "
     "float64[::1], float64[:,::1], float64[:,::1], float64[:,::1], float64[:,::1], int64[::1], float64[:,::1], "
@@ -182,46 +277,22 @@ def rests_found(
         carried: the part of the force that each contact carries (contacts, n).
         outcomes: RESTS, CLASHES or LOST (n,).
     """
-    contacts = (points, normals, heights)
+    contacts, programme = (points, normals, heights), (all_rows, rows, steps)
     count, motions = rows.shape
-    gaps, step, pose = np.empty(count), np.empty(6), np.empty((3, 4))
-    kept = (kept_vectors, kept_normals, kept_shifts)
-    first = np.empty(kept_shifts.shape[0])
-    rooms = (np.empty(motions), np.empty(motions))
+    pose, first = np.empty((3, 4)), np.empty(kept_shifts.shape[0])
+    kept = (kept_vectors, kept_normals, kept_shifts, kept_steps, first)
     basis, inverse, loads = np.empty(motions, np.int64), np.empty((motions, motions)), np.empty((2, motions))
+    anew = (np.empty((count, 6)), np.empty((count, motions)), steps)
+    moves = (np.empty(motions), np.empty(motions))
+    rooms = (np.empty(count), np.empty(6), moves, np.empty((motions, motions)), np.empty(motions))
     for i in range(outcomes.shape[0]):
-        pose[:] = start[:, :, min(i, start.shape[2] - 1)]
-        for e in range(first.shape[0]):
-            first[e] = kept_at(pose, kept, e, i)
-        basis[:] = first_basis
-        inverse[:] = first_inverse
-        loads[:] = first_loads
-        pivots, outcome = 0, LOST
-        for _ in range(STEPS):
-            step[:] = 0.0
-            for e in range(first.shape[0]):
-                change = kept_at(pose, kept, e, i) - first[e]
-                for r in range(6):
-                    step[r] -= kept_steps[r, e] * change
-            for k in range(count):
-                gaps[k] = gap_of(pose, contacts, k, i, on_part)
-                for r in range(6):
-                    gaps[k] += all_rows[k, r] * step[r]
-            pivots = farthest(rows, gaps, basis, inverse, loads, rooms, pivots)
-            if pivots < 0:
-                outcome = CLASHES if pivots == -1 else LOST
-                break
-            for r in range(6):
-                total = 0.0
-                for j in range(motions):
-                    total += steps[r, j] * rooms[0][j]
-                step[r] += total
-            length = stepped(pose, step, reach)
-            if length <= MET:
-                outcome = RESTS
-                break
-            if not length < np.inf:
-                break
+        begin(pose, first, start, i, kept)
+        basis[:], inverse[:], loads[:] = first_basis, first_inverse, first_loads
+        outcome = settled(pose, contacts, i, on_part, kept, programme, (basis, inverse, loads), rooms, reach, False)
+        if outcome == LOST:
+            begin(pose, first, start, i, kept)
+            basis[:], inverse[:], loads[:] = first_basis, first_inverse, first_loads
+            outcome = settled(pose, contacts, i, on_part, kept, anew, (basis, inverse, loads), rooms, reach, True)
         outcomes[i] = outcome
         for k in range(count):
             carried[k, i] = 0.0
