@@ -10,6 +10,8 @@ from assembly_trials import assembled
 from numpy.typing import NDArray
 from scipy import integrate
 
+from tol3d.assembly.model.statuses import NO_BUILD, OK
+from tol3d.assembly.placing.datum_rooms import least_in_rooms
 from tol3d.assembly.zones.gauge_shift import GaugeShift
 from tol3d.errors import SceneError
 from tol3d.simulate import Execution, Overrides, load, replay, run_scene, simulation_of
@@ -174,6 +176,110 @@ def test_workers_and_replays_change_no_bit(tmp_path: Path) -> None:
 
 
 RANDOM = "{feature: bore, mmb: random}"
+# the least over the shift ------------------------------------------------------------------------------------
+
+OFF, T0 = 0.06, 0.1  # mm: sigma of the hole's centre along each axis, and its zone at MMC
+INSPECTED = """
+scene: an inspected hole
+parts:
+  plate:
+    kind: solid
+    features:
+      floor: {{kind: plane, at: [30 mm, 0 mm, 0 mm], normal: [0, 0, -1], extent: [100 mm, 60 mm]}}
+      bore: {{kind: cylinder, at: [0 mm, 0 mm, 10 mm], axis: [0, 0, 1], length: 20 mm, diameter: 10 mm, hole: true}}
+      one: {{kind: cylinder, at: [60 mm, 0 mm, 10 mm], axis: [0, 0, 1], length: 20 mm, diameter: 8 mm, hole: true}}
+tolerances:
+  one x: {{kind: plus_minus, of: plate.one, along: [1, 0, 0], datums: [floor, bore], distribution: {off}}}
+  one y: {{kind: plus_minus, of: plate.one, along: [0, 1, 0], datums: [floor, bore], distribution: {off}}}
+  one size: {{kind: size, of: plate.one, distribution: {{kind: uniform, lower: 0 mm, upper: 0.1 mm}}}}
+  bore square: {{kind: perpendicularity, of: plate.bore, zone: {{diameter: 0.05 mm}}, law: {law}, datums: [floor]}}
+  bore size: {{kind: size, of: plate.bore, distribution: {{kind: uniform, lower: 0 mm, upper: 0.2 mm}}}}
+moves:
+  machine: {{kind: fix, part: plate}}
+measures:
+  least: {{kind: inspected_position, of: plate.one, modifier: mmc, datums: {datums}, upper_limit: 0.1 mm}}
+  plain: {{kind: inspected_position, of: plate.one, modifier: mmc, datums: [floor, bore], upper_limit: 0.1 mm}}
+"""
+
+
+def inspected(law: str = UPRIGHT) -> str:
+    off = f"{{kind: normal, mean: 0 mm, sigma: {OFF} mm}}"
+    return INSPECTED.format(law=law, off=off, datums="[floor, {feature: bore, mmb: least}]")
+
+
+@pytest.mark.parametrize("road", ["exact", "analytic"])
+def test_a_gauge_that_may_shift_accepts_more(tmp_path: Path, road: str) -> None:
+    """|e| <= t0 / 2 + bonus / 2 + clearance, both sizes uniform; value by value 2 max(|e| - c, 0) - bonus."""
+    made = assembled(inspected(), tmp_path)
+    trials = drawn(made.simulation, 0, COUNT // 3)
+    found = made.values(trials, road)
+    x, y, bonus, *_, size = trials.deviations.T
+    expected = 2 * np.maximum(np.hypot(x, y) - (size + 0.05) / 2, 0) - bonus
+    assert found["least"] == pytest.approx(expected, abs=1e-9)
+    assert found["plain"] == pytest.approx(2 * np.hypot(x, y) - bonus, abs=1e-9)
+
+    def accepted(own: float, datum: float) -> float:
+        room = (T0 + own + datum + 0.05) / 2
+        return (1 - math.exp(-(room**2) / (2 * OFF**2))) / (0.1 * 0.2)
+
+    share = integrate.dblquad(accepted, 0, 0.2, 0, 0.1)[0]
+    assert (found["least"] <= T0).mean() == pytest.approx(share, abs=4 * math.sqrt(3 * share * (1 - share) / COUNT))
+
+
+def distance_to_lens(point: Array, half: Array, room: float) -> float:
+    """From a point to what two discs about ±half have in common: to one of them where that is in the other, or to a
+    corner."""
+    if max(np.hypot(*(point - half)), np.hypot(*(point + half))) <= room:
+        return 0.0
+    found = []
+    for centre in (half, -half):
+        foot = centre + room * (point - centre) / np.hypot(*(point - centre))
+        if np.hypot(*(foot + centre)) <= room:
+            found.append(foot)
+    length = float(np.hypot(*half))
+    corner = math.sqrt(room**2 - length**2) / length * np.array([-half[1], half[0]])
+    return min(float(np.hypot(*(point - own))) for own in (*found, corner, -corner))
+
+
+def test_a_datum_that_leans_limits_the_shift_at_both_ends(tmp_path: Path) -> None:
+    made = assembled(inspected(law="{kind: uniform}"), tmp_path)
+    trials = drawn(made.simulation, 0, 2_000)
+    found = {road: made.values(trials, road)["least"] for road in ("exact", "analytic")}
+    expected = [
+        2 * distance_to_lens(np.array([x, y]), np.array(half), (size + 0.05) / 2) - bonus
+        for x, y, bonus, *half, size in trials.deviations
+    ]
+    assert found["analytic"] == pytest.approx(np.array(expected), abs=1e-9)
+    assert found["exact"] == pytest.approx(np.array(expected), abs=1e-6)  # of order 2: turns of 2e-3 over 20 mm
+    assert (np.array(expected) > -trials.deviations[:, 2] + 1e-6).mean() > 0.3
+
+
+def test_circles_that_no_shift_reaches_have_no_value() -> None:
+    """Of places and a room by numbers: reached, reached where the room ends, and a room that is empty."""
+    x = np.array([[1.0, 1.0, 1.0], [0.0, 0.0, 0.3], [0.0, 0.0, -0.3]])
+    radii = np.array([[0.0, 0.1, 0.0], [2.0, 0.5, 0.2], [2.0, 0.5, 0.2]])
+    least = np.empty(3)
+    least_in_rooms(x, np.zeros((3, 3)), radii, 1, least)
+    assert least[:2] == pytest.approx([0.0, 0.4], abs=1e-11)
+    assert np.isnan(least[2])
+
+
+def test_a_datum_that_does_not_take_its_gauge_is_no_build(tmp_path: Path) -> None:
+    law = "{kind: process, distribution: {kind: normal, mean: 0 mm, sigma: 0.05 mm}}"
+    made = assembled(inspected(law=law), tmp_path)
+    trials = drawn(made.simulation, 0, 4_000)
+    answers = made.system.road("exact", None).answers(trials, made.system.measures)
+    half, size = np.hypot(*trials.deviations[:, 3:5].T), trials.deviations[:, 5]
+    fits = half <= (size + 0.05) / 2
+    assert 0.2 < fits.mean() < 0.95
+    clear = np.abs(half - (size + 0.05) / 2) > 1e-6
+    assert np.array_equal((answers.status["least"] == OK)[clear], fits[clear])
+    assert set(answers.status["least"].tolist()) == {OK, NO_BUILD}
+    assert (answers.status["plain"] == OK).all()
+
+
+# what is refused ---------------------------------------------------------------------------------------------
+
 WRONG: dict[str, tuple[Callable[[str], str], str, str]] = {
     "without a size": (
         lambda text: "".join(line for line in text.splitlines(True) if not line.startswith("  bore size")),
@@ -199,7 +305,12 @@ WRONG: dict[str, tuple[Callable[[str], str], str, str]] = {
     "in a measure": (
         lambda text: text.replace("datums: [floor, bore]", "datums: [floor, {feature: bore, mmb: random}]"),
         "measures.inspected.datums",
-        "expected datums without mmb: a measure is read where the datum features lie, regardless of size",
+        "expected datums without mmb, or mmb: least of an inspected position",
+    ),
+    "least of a tolerance": (
+        lambda text: text.replace("mmb: random", "mmb: least", 1),
+        "tolerances.one position.datums",
+        "expected mmb: random or mmb: centred, for least is of what is inspected",
     ),
     "of a plane": (
         lambda text: text.replace("datums: [floor, {feature: bore", "datums: [floor, {feature: floor", 1),

@@ -12,6 +12,7 @@ from tol3d.assembly.grammar.datums import DatumSpec
 from tol3d.assembly.grammar.drawing import Drawing
 from tol3d.assembly.grammar.tolerances import FeatureTolerance, LocationSpec, OrientationSpec
 from tol3d.assembly.model import Axis, Contribution, DatumFrame
+from tol3d.assembly.model.bonus import GaugeRoom
 from tol3d.assembly.zones import Bonus, SizedBy, ZoneDraw, catalogue, uniform_in
 from tol3d.assembly.zones.gauge_shift import GaugeShift, Leaning
 from tol3d.scene import Scene
@@ -63,6 +64,25 @@ def _boundaries(drawing: Drawing, frames: DatumFrames) -> dict[str, Boundary]:
     return found
 
 
+def room_of(scene: Scene, drawing: Drawing, part: str, datums: tuple[DatumSpec, ...]) -> GaugeRoom | None:
+    """Where the gauge of the last datum may lie in its feature; None where it is not at its boundary."""
+    if not datums or datums[-1].mmb is None:
+        return None
+    boundary = Boundary(f"{part}.{datums[-1].features[0]}", datums[:-1], datums[-1])
+    shape = drawing.kind(boundary.feature).shape
+    assert isinstance(shape, Axis)
+    assert shape.diameter is not None
+    return GaugeRoom(boundary.feature, shape.diameter + _virtual(scene, drawing, boundary), shape.inner)
+
+
+def _virtual(scene: Scene, drawing: Drawing, boundary: Boundary) -> float:
+    """Virtual condition, as a deviation from nominal [mm]."""
+    shape = drawing.kind(boundary.feature).shape
+    bonus = sized_by(scene, drawing, boundary.feature, "mmc").bonus
+    tolerance = own_tolerance(drawing, boundary)
+    return bonus.low - tolerance if isinstance(shape, Axis) and shape.inner else bonus.high + tolerance
+
+
 def _shift(scene: Scene, drawing: Drawing, effects: Effects, frame: DatumFrame, boundary: Boundary) -> Contribution:
     draw = _room(scene, drawing, effects, boundary)
     to = ", ".join(name for datum in boundary.earlier for name in datum.features)
@@ -79,13 +99,8 @@ def _room(scene: Scene, drawing: Drawing, effects: Effects, boundary: Boundary) 
     shape = drawing.kind(boundary.feature).shape
     assert isinstance(shape, Axis)
     sized = sized_by(scene, drawing, boundary.feature, "mmc")
-    tolerance = own_tolerance(drawing, boundary)
-    if shape.inner:
-        virtual = sized.bonus.low - tolerance
-        bonus = Bonus(virtual, virtual + ANY, grows=True)
-    else:
-        virtual = sized.bonus.high + tolerance
-        bonus = Bonus(virtual - ANY, virtual, grows=False)
+    virtual, inner = _virtual(scene, drawing, boundary), shape.inner
+    bonus = Bonus(virtual if inner else virtual - ANY, virtual + ANY if inner else virtual, grows=inner)
     zone = catalogue.point_in_disc(0.0)
     draws = {own.name: own.draw for own in effects.contributors}
     leaning = []

@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from tol3d.assembly.from_scene.bonus import sized_by
+from tol3d.assembly.from_scene.boundaries import room_of
 from tol3d.assembly.from_scene.datums import DatumFrames
 from tol3d.assembly.grammar.drawing import Drawing
 from tol3d.assembly.grammar.feature_name import part_of
@@ -44,8 +45,9 @@ def _measured(scene: Scene, spec: AssemblyMeasureSpec, frames: DatumFrames) -> M
     after = -1 if spec.after is None else list(scene.moves).index(spec.after)
     frame = frames.named(part_of(features[0]), spec.named_datums)
     bonuses = _bonuses(scene, spec, features)
+    room = room_of(scene, Drawing(scene), part_of(features[0]), spec.named_datums)
     gauge = spec.free if isinstance(spec, InspectedPatternSpec) else "shift"
-    return Measured(spec.reads, features, direction, frame, after, bonuses, gauge, rocking=spec.rocking)
+    return Measured(spec.reads, features, direction, frame, after, bonuses, gauge, room, rocking=spec.rocking)
 
 
 def _bonuses(scene: Scene, spec: FeatureMeasureSpec, features: Sequence[str]) -> tuple[MaterialBonus, ...]:

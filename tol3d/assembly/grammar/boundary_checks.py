@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from tol3d.assembly.grammar.datums import DatumSpec
 from tol3d.assembly.grammar.drawing import Drawing
 from tol3d.assembly.grammar.feature_name import part_of
+from tol3d.assembly.grammar.measures import InspectedPositionSpec
 from tol3d.assembly.grammar.measures.assembly_measure import FeatureMeasureSpec
 from tol3d.assembly.grammar.tolerances import FeatureTolerance, PlusMinusSpec, SizeSpec
 from tol3d.scene import Scene
@@ -26,11 +27,32 @@ def unfit_boundaries(scene: Scene) -> Iterator[Problem]:
         if isinstance(spec, FeatureTolerance):
             for k, datum in enumerate(spec.named_datums):
                 if datum.mmb is not None:
-                    yield from _unfit(drawing, part_of(spec.of), spec.named_datums, k, ("tolerances", name, "datums"))
+                    place: KeyPath = ("tolerances", name, "datums")
+                    yield from _unfit(drawing, part_of(spec.of), spec.named_datums, k, place)
+                    if datum.mmb == "least":
+                        yield place, "expected mmb: random or mmb: centred, for least is of what is inspected"
     for name, measure in scene.measures.items():
-        if isinstance(measure, FeatureMeasureSpec) and any(datum.mmb is not None for datum in measure.named_datums):
-            words = "expected datums without mmb: a measure is read where the datum features lie, regardless of size"
-            yield ("measures", name, "datums"), words
+        if isinstance(measure, FeatureMeasureSpec):
+            yield from _of_measure(drawing, name, measure)
+
+
+def _of_measure(drawing: Drawing, name: str, spec: FeatureMeasureSpec) -> Iterator[Problem]:
+    place: KeyPath = ("measures", name, "datums")
+    for k, datum in enumerate(spec.named_datums):
+        if datum.mmb is None:
+            continue
+        if not isinstance(spec, InspectedPositionSpec) or datum.mmb != "least":
+            yield place, "expected datums without mmb, or mmb: least of an inspected position"
+            continue
+        yield from _unfit(drawing, part_of(spec.of), spec.named_datums, k, place)
+        known = f"{part_of(spec.of)}.{datum.features[0]}"
+        if {known, spec.of} <= set(drawing.names):
+            frames = [drawing.kind(own).frame[:3, 2] for own in (known, spec.of)]
+            if drawing.kind(spec.of).kind not in ("cylinder", "axis") or not is_square(*frames):
+                yield (
+                    ("measures", name, "of"),
+                    f"expected a hole, pin or axis along {known!r}, in which the gauge shifts",
+                )
 
 
 def is_square(normal: Array, axis: Array) -> bool:

@@ -32,10 +32,10 @@ class DatumSpec(Strict):
         default=(), description="points of the part that touch, for simulator: targets"
     )
 
-    mmb: Literal["random", "centred"] | None = Field(
+    mmb: Literal["random", "centred", "least"] | None = Field(
         default=None,
-        description="at its maximum material boundary: how the gauge lies in the room that it has there; regardless of "
-        "size if not given",
+        description="at its maximum material boundary: how the gauge lies in the room that it has there; least, of a "
+        "measure, where it is best; regardless of size if not given",
     )
 
     @property

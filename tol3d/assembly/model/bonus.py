@@ -19,3 +19,18 @@ class MaterialBonus:
     low: float
     high: float
     grows: bool
+
+
+@dataclass(frozen=True)
+class GaugeRoom:
+    """Where a gauge of virtual condition may lie in a datum feature: within ±(size - virtual) / 2 of its ends.
+
+    Args:
+        feature: the hole or pin, with its part.
+        virtual: diameter of the gauge [mm].
+        grows: whether larger features leave more room: holes.
+    """
+
+    feature: str
+    virtual: float
+    grows: bool

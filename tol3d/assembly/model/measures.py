@@ -6,7 +6,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.assembly.model.bonus import MaterialBonus
+from tol3d.assembly.model.bonus import GaugeRoom, MaterialBonus
 
 Array = NDArray[np.float64]
 
@@ -73,6 +73,7 @@ class Measured:
             orientation is inspected; "" for the part's frame.
         after: index of the move after which it is read; -1 for the end.
         bonuses: of a position and a pattern, what the size of each feature takes from it; () for nothing.
+        room: of a position, in which the gauge of its last datum takes the shift that makes it least.
         gauge: how a pattern's gauge finds its best pose in the frame.
         of_move: index of the move whose slack is read; -1 of other kinds.
         minus: a second one that is subtracted in the same trial.
@@ -86,6 +87,7 @@ class Measured:
     after: int = -1
     bonuses: tuple[MaterialBonus, ...] = ()
     gauge: Gauge = "shift"
+    room: GaugeRoom | None = None
     of_move: int = -1
     minus: "Measured | None" = None
     rocking: Rocking | None = None

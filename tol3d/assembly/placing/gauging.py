@@ -24,6 +24,39 @@ TURNS: Final = 200
 
 
 @part
+def weights_of(discs: Any, deciding: Any, found: Any, pulls: Any) -> int:
+    """How many discs decide; in pulls (3, 3) their directions from centre to point, and the weights that balance them.
+
+    Args:
+        discs: one trial.
+        deciding: which decide (3,).
+        found: the point (2,).
+        pulls: found; 0 if a single one decides, in its centre.
+    """
+    count = 0
+    for c in range(3):
+        k = deciding[c]
+        if k < 0:
+            continue
+        a, b = found[0] - discs[0][k, 0], found[1] - discs[1][k, 0]
+        length = sqrt(a * a + b * b)
+        share = 1.0 / length if length > 0.0 else 0.0
+        pulls[count, 0], pulls[count, 1], pulls[count, 2] = a * share, b * share, 1.0
+        count += 1
+    if count == 2:
+        pulls[0, 2], pulls[1, 2] = 0.5, 0.5
+    if count == 3:
+        total = 0.0
+        for c in range(3):
+            d, e = (c + 1) % 3, (c + 2) % 3
+            pulls[c, 2] = pulls[d, 0] * pulls[e, 1] - pulls[d, 1] * pulls[e, 0]
+            total += pulls[c, 2]
+        for c in range(3):
+            pulls[c, 2] = pulls[c, 2] / total if total != 0.0 else 1.0 / 3.0
+    return count
+
+
+@part
 def slope_of(discs: Any, deciding: Any, found: Any, rises: Any, pulls: Any) -> Any:
     """Change of the least violation with the turn.
 
@@ -36,30 +69,8 @@ def slope_of(discs: Any, deciding: Any, found: Any, rises: Any, pulls: Any) -> A
         rises: how the centres move with the turn (discs, 2).
         pulls: room for directions and weights (3, 3).
     """
-    count = 0
-    for c in range(3):
-        k = deciding[c]
-        if k < 0:
-            continue
-        a, b = found[0] - discs[0][k, 0], found[1] - discs[1][k, 0]
-        length = sqrt(a * a + b * b)
-        if length == 0.0:
-            return 0.0
-        pulls[count, 0], pulls[count, 1] = a / length, b / length
-        count += 1
-    if count < 2:
+    if weights_of(discs, deciding, found, pulls) < 2:
         return 0.0
-    pulls[0, 2], pulls[1, 2] = 0.5, 0.5
-    if count == 3:
-        total = 0.0
-        for c in range(3):
-            d, e = (c + 1) % 3, (c + 2) % 3
-            pulls[c, 2] = pulls[d, 0] * pulls[e, 1] - pulls[d, 1] * pulls[e, 0]
-            total += pulls[c, 2]
-        if total == 0.0:
-            return 0.0
-        for c in range(3):
-            pulls[c, 2] /= total
     slope, count = 0.0, 0
     for c in range(3):
         k = deciding[c]

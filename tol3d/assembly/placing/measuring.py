@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from tol3d.assembly.model import Assembly, Axis, Measured, Plane, RoundPlane, Shape
 from tol3d.assembly.model.measures import MeasureKind
 from tol3d.assembly.placing.actual_feature import ActualFeature, actual_size
+from tol3d.assembly.placing.datum_rooms import position_in_room
 from tol3d.assembly.placing.flatness import widths
 from tol3d.assembly.placing.patterns import bonuses, pattern
 from tol3d.assembly.placing.poses import column, cross, dot, rotated
@@ -109,6 +110,9 @@ def _inspected(measured: Measured, world: World) -> tuple[ActualFeature, Array]:
 
 def _position(measured: Measured, world: World) -> Array:
     actual, frame = _inspected(measured, world)
+    if measured.room is not None:
+        into = world.own[world.part_of(measured.features[0])].displacement(measured.frame).inverse
+        return position_in_room(measured, world, actual, into, _bonus(measured, world))
     shape, z = actual.feature.shape, column(frame[:3, 2])
     if isinstance(shape, RoundPlane) and measured.direction is None:
         return 2.0 * (np.abs(dot(z, actual.origin - column(frame[:3, 3]))) + actual.rise(z))

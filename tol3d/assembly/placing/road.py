@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.assembly.model import Assembly, BestFit, Engage, Fix, Locate, Mate, Move, Rest, Touch, Weld
-from tol3d.assembly.model.statuses import OK, SINGULAR
+from tol3d.assembly.model.statuses import NO_BUILD, OK, SINGULAR
 from tol3d.assembly.placing.best_fitting import BestFitting, best_fitting
 from tol3d.assembly.placing.causes import Cause, Causes, causes_of, ordered
 from tol3d.assembly.placing.datum_seats import DatumSeats, datum_seats
@@ -247,7 +247,8 @@ def _read(plan: PlacingPlan, block: _Block, name: str, causes: Sequence[Cause]) 
     with np.errstate(all="ignore"):
         numbers = reading(plan.assembly.measures[name], block.worlds)
         first = block.first_of(causes)
-    first = np.where((first == OK) & ~np.isfinite(numbers), np.int8(SINGULAR), first)
+    lost = SINGULAR if plan.assembly.measures[name].room is None else NO_BUILD  # a datum does not take its gauge
+    first = np.where((first == OK) & ~np.isfinite(numbers), np.int8(lost), first)
     return np.where(first == OK, numbers, np.nan), first
 
 

@@ -17,6 +17,8 @@ GOLDEN: Final = (5**0.5 - 1) / 2
 SECTIONS: Final = 44
 """Of a bracket of milliradians; 6e-10 of it are left, at arms of 50 mm 1e-10 mm."""
 
+HALVINGS: Final = 48
+"""Of tenths of a millimetre: down to rounding."""
 TINY: Final = 1e-300
 """Under any length; where a divisor is nil, the quotient is not used."""
 
@@ -143,3 +145,44 @@ class TurnedOpening:
         off = np.sqrt(((discs[first, :2] - discs[second, :2]) ** 2).sum(axis=0))
         room = discs[first, 2] + discs[second, 2] - self._at(read, np.zeros(read.shape[1]))
         return np.asarray((off + np.maximum(room, 0.0)) / apart[first, second])
+
+
+@dataclass(frozen=True, eq=False)
+class LeastInRoom:
+    """Twice the least by which discs about places grow until all discs have a point in common.
+
+    By halving, from what the places ask alone to what they need in the middle of the room.
+
+    Args:
+        forms: (discs * 3, columns): x, y and radius, of the places, then of the room.
+        places: how many of them are places.
+    """
+
+    forms: Array
+    places: int
+    form: Form = "least in a room"
+    count: int = 1
+
+    def values(self, read: Array) -> Array:
+        """(1, trials) from (discs * 3, trials)."""
+        discs = read.reshape(-1, 3, read.shape[1])
+        own, room = discs[: self.places], discs[self.places :]
+        low = -0.5 * _opening(own)
+        middle = room[:, :2].mean(axis=0)
+        far = np.sqrt(((own[:, :2] - middle) ** 2).sum(axis=1)) - own[:, 2]
+        high = np.maximum(far.max(axis=0), low)
+        for _ in range(HALVINGS):
+            grown = discs.copy()
+            between = 0.5 * (low + high)
+            grown[: self.places, 2] += between
+            enough = _opening(grown) >= 0.0
+            low, high = np.where(enough, low, between), np.where(enough, between, high)
+        return np.asarray(2.0 * high[None])
+
+
+def _opening(discs: Array) -> Array:
+    """As CommonOpening, of one disc too (trials,), from (discs, 3, trials)."""
+    if len(discs) == 1:
+        return np.asarray(2.0 * discs[0, 2], dtype=np.float64)
+    found: Array = CommonOpening(np.zeros((0, 0))).values(discs.reshape(-1, discs.shape[2]))[0]
+    return found

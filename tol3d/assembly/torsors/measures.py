@@ -8,10 +8,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.assembly.model import Axis, Measured, Plane, Point, RoundPlane
-from tol3d.assembly.model.bonus import MaterialBonus
+from tol3d.assembly.model.bonus import GaugeRoom, MaterialBonus
 from tol3d.assembly.model.shape import nominal_size
 from tol3d.assembly.torsors.columns import without_rounding
-from tol3d.assembly.torsors.common_opening import CommonOpening, TurnedOpening
+from tol3d.assembly.torsors.common_opening import CommonOpening, LeastInRoom, TurnedOpening
 from tol3d.assembly.torsors.flatness import balances
 from tol3d.assembly.torsors.surfaces import Surfaces
 from tol3d.assembly.torsors.terms import Clipped, Width
@@ -153,7 +153,29 @@ def _disc(measured: Measured, world: World, radius: float) -> tuple[Array, Array
     return world.columns.largest(middle[None]), rim
 
 
+def _in_room(measured: Measured, room: GaugeRoom, world: World) -> Array:
+    """Twice the least distance of the worse end, less the bonus, over the shifts of the gauge in its datum feature."""
+    (name,) = measured.features
+    shape = world.assembly.features[room.feature].shape
+    assert isinstance(shape, Axis)
+    sides = world.assembly.features[room.feature].frame[:3, :2].T
+    still = _constant(world, 0.0)
+    bonus = _clipped(measured.bonuses[0], name, world) if measured.bonuses else still
+    size = world.size(room.feature) + _constant(world, (shape.diameter or 0.0) - room.virtual)
+    forms: list[Array] = []
+    counts: list[int] = []
+    for own, radius in ((name, 0.5 * bonus), (room.feature, 0.5 * size if room.grows else -0.5 * size)):
+        ends = without_rounding(_at_ends(replace(measured, features=(own,)), world, sides))
+        for end in ends[: 1 if np.array_equal(ends[0], ends[-1]) else None]:
+            forms += [*end, radius]
+        counts.append(len(forms) // 3)
+    row: Array = world.columns.made_by(LeastInRoom(np.array(forms), counts[0]))[0]
+    return row
+
+
 def _position(measured: Measured, world: World) -> Array:
+    if measured.room is not None:
+        return _in_room(measured, measured.room, world)
     feature = world.assembly.features[measured.features[0]]
     rotation = feature.frame[:3, :3]
     match feature.shape:

@@ -16,13 +16,14 @@ Form = Literal[
     "least largest residual",
     "clipped amount",
     "largest inscribed circle",
+    "least in a room",
     "one-sided contacts",
     "end",
     "place in a room",
 ]
 """How a term depends on what it reads: the largest length of vectors and the least width between parallel planes are
-convex, a largest inscribed circle is concave; a pose of least largest residual or on one-sided contacts and a clipped
-amount are neither, but linear in pieces; a place in a room is neither."""
+convex, as is the least in a room of its places; a largest inscribed circle is concave; a pose of least largest residual
+or on one-sided contacts and a clipped amount are neither, but linear in pieces; a place in a room is neither."""
 
 
 class Term(Protocol):
