@@ -9,7 +9,7 @@ from tol3d.assembly.grammar.drawing_checks import contradicting_tolerances
 from tol3d.assembly.grammar.measure_checks import mixed_dimensions, unfit_holes, unfit_patterns, unfit_points
 from tol3d.assembly.grammar.modifier_checks import unfit_modifiers
 from tol3d.assembly.grammar.orientation_checks import unfit_orientations
-from tol3d.assembly.grammar.play_checks import unfit_engagements
+from tol3d.assembly.grammar.play_checks import idle_over_play, unfit_engagements
 from tol3d.assembly.grammar.rest_checks import idle_rocking
 from tol3d.assembly.grammar.surface_checks import unfit_pairs
 from tol3d.scene.grammar import specs_in
@@ -34,6 +34,7 @@ ASSEMBLY: Final = Mechanism(
         unfit_holes,
         unfit_patterns,
         unfit_engagements,
+        idle_over_play,
         unfit_pairs,
     ),
     engines=("exact",),

@@ -17,7 +17,7 @@ from tol3d.assembly.grammar.measures import (
     InspectedPositionSpec,
     SlackSpec,
 )
-from tol3d.assembly.grammar.measures.assembly_measure import FeatureMeasureSpec
+from tol3d.assembly.grammar.measures.assembly_measure import FeatureMeasureSpec, OverPlaySpec
 from tol3d.assembly.model import Measured
 from tol3d.assembly.model.bonus import MaterialBonus
 from tol3d.assembly.model.measures import MeasureKind
@@ -47,7 +47,9 @@ def _measured(scene: Scene, spec: AssemblyMeasureSpec, frames: DatumFrames) -> M
     bonuses = _bonuses(scene, spec, features)
     room = room_of(scene, Drawing(scene), part_of(features[0]), spec.named_datums)
     gauge = spec.free if isinstance(spec, InspectedPatternSpec) else "shift"
-    return Measured(spec.reads, features, direction, frame, after, bonuses, gauge, room, rocking=spec.rocking)
+    over = spec.over_play if isinstance(spec, OverPlaySpec) else None
+    found = Measured(spec.reads, features, direction, frame, after, bonuses, gauge, room, rocking=spec.rocking)
+    return replace(found, over_play=over)
 
 
 def _bonuses(scene: Scene, spec: FeatureMeasureSpec, features: Sequence[str]) -> tuple[MaterialBonus, ...]:

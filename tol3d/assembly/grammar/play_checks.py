@@ -4,6 +4,7 @@ from collections.abc import Iterator
 
 from tol3d.assembly.grammar.drawing import Drawing
 from tol3d.assembly.grammar.features import CylinderSpec, FeatureUnion, SlotSpec
+from tol3d.assembly.grammar.measures.assembly_measure import OverPlaySpec
 from tol3d.assembly.grammar.moves import PinAndHoleSpec, PlaySpec
 from tol3d.assembly.grammar.moves.play import EngagementSpec
 from tol3d.assembly.grammar.tolerances import SizeSpec
@@ -13,6 +14,15 @@ from tol3d.scene.place import KeyPath
 Problem = tuple[KeyPath, str]
 
 NO_SIZE = "a size that does not vary is {kind: size, ..., distribution: {kind: constant, value: 0 mm}}"
+
+
+def idle_over_play(scene: Scene) -> Iterator[Problem]:
+    """Values over the play of parts where none has any."""
+    if not any(isinstance(move, PlaySpec) for move in scene.moves.values()):
+        for name, spec in scene.measures.items():
+            if isinstance(spec, OverPlaySpec) and spec.over_play is not None:
+                words = "expected a move of kind pin_and_hole or pattern, which leaves play, got none; leave it out"
+                yield ("measures", name, "over_play"), words
 
 
 def unfit_engagements(scene: Scene) -> Iterator[Problem]:

@@ -60,6 +60,9 @@ Rocking = Literal["least", "middle", "largest"]
 
 Gauge = Literal["shift", "shift_and_turn"]
 
+OverPlay = Literal["least", "largest"]
+"""Which value over all poses that play leaves is read."""
+
 
 @dataclass(frozen=True, eq=False)
 class Measured:
@@ -76,6 +79,7 @@ class Measured:
         room: of a position, in which the gauge of its last datum takes the shift that makes it least.
         gauge: how a pattern's gauge finds its best pose in the frame.
         of_move: index of the move whose slack is read; -1 of other kinds.
+        over_play: which value it has over the rooms of parts with play; None where the floats of the moves decide.
         minus: a second one that is subtracted in the same trial.
         rocking: which value it has where a part may rock on its contacts; None where it then has none. Not of `minus`.
     """
@@ -91,3 +95,4 @@ class Measured:
     of_move: int = -1
     minus: "Measured | None" = None
     rocking: Rocking | None = None
+    over_play: OverPlay | None = None

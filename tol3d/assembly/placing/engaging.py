@@ -6,7 +6,7 @@ the pose at which the programme, with the offsets of that pose, stays where it i
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Final
 
@@ -49,6 +49,7 @@ class Engaging:
         freedoms: motions that relations leave and offsets see: shift of the middle, turn times reach (6, freedoms).
         rows: change of each offset by them (cones, 2, freedoms).
         floats: where in its room the part lies.
+        nudge: a step (freedoms,) [mm] from where relations lay it that is all that the part does; None for its float.
     """
 
     move: Engage
@@ -58,12 +59,22 @@ class Engaging:
     freedoms: Array
     rows: Array
     floats: Floats
+    nudge: Array | None = None
+
+    def pushed(self, push: Array) -> "Engaging":
+        """It with the part as far along a direction of its freedoms (freedoms,) as its room goes; centred along 0."""
+        size = float(np.linalg.norm(push))
+        along = np.ascontiguousarray(push / size if size > 0.0 else push)
+        return replace(self, floats=Floats(self.move, self.freedoms, along, is_pushed=True))
 
     def placed(self, world: World) -> tuple[World, Codes]:
         """The world after the move, and what became of it (n,)."""
         start, seats = Pose.of(world.assembly.part[self.move.part].pose), self.mating.seats(world)
         pose, codes = self.mating.poses(world, seats, start)
         pose, count = _full(pose, world.trials), world.trials
+        if self.nudge is not None:
+            pose, _ = self.mating.poses(world, seats, self._moved(pose, self.nudge[:, None] * np.ones(count)))
+            return world.with_part_at(self.move.part, pose), codes
         steps, slacks = np.zeros((self.freedoms.shape[1], count)), np.zeros(count)
         asked, found, lacking = np.ones(count, dtype=bool), np.ones(count, dtype=bool), np.full(count, np.inf)
         deciding = np.zeros(count, dtype=np.int64)

@@ -27,12 +27,15 @@ class Floats:
         move: which.
         freedoms: (6, freedoms), orthonormal.
         push: the direction in which the part goes as far as it can (freedoms,); 0 where it does not.
+        by_pairs: of a random float, pin by pin.
+        is_pushed: whether `push` counts, not the float of the move.
     """
 
     move: Engage
     freedoms: Array
     push: Array
     by_pairs: "Discs | None" = None
+    is_pushed: bool = False
 
     def steps(
         self, offsets: Array, clearances: Array, rows: Array, centred: Array, slacks: Array, columns: Array
@@ -46,7 +49,7 @@ class Floats:
             columns: the deviations (width, n).
         """
         floating = self.move.floating
-        if floating.kind != "random":
+        if floating.kind != "random" or self.is_pushed:
             return centred
         drawn = columns[floating.columns]
         if self.by_pairs is not None:

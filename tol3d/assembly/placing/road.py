@@ -1,7 +1,7 @@
 """The exact road: where parts are and what measures read, by finite poses, block by block of trials."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
 
 import numpy as np
@@ -27,6 +27,11 @@ Array = NDArray[np.float64]
 
 BLOCK = 8192
 """Trials at a time: their arrays stay in a core's cache."""
+
+NUDGE = 1e-3
+"""Step [mm] from which it follows how a measure changes with a part's play."""
+FLAT = 1e-9
+"""Change of a measure with it that is none."""
 
 _MOVED: Codes = np.full(1, OK, dtype=np.int8)
 
@@ -220,7 +225,7 @@ class _Block:
         return first
 
 
-def _placed(plan: PlacingPlan, deviations: Array, instead: Mapping[int, Resting] | None = None) -> _Block:
+def _placed(plan: PlacingPlan, deviations: Array, instead: Mapping[int, Resting | Engaging] | None = None) -> _Block:
     """Trials as moves place them; `instead` has other moves for some, by their places."""
     assembly = plan.assembly
     worlds, codes = [_world(assembly, plan.datum_seats, np.ascontiguousarray(deviations.T))], dict[int, Codes]()
@@ -254,6 +259,8 @@ def _read(plan: PlacingPlan, block: _Block, name: str, causes: Sequence[Cause]) 
 
 def _over_rests(plan: PlacingPlan, block: _Block, name: str, deviations: Array) -> tuple[Array, Codes]:
     """A measure's values and codes (n,); where parts may rock, over all poses that they may take."""
+    if plan.assembly.measures[name].over_play is not None:
+        block = _placed(plan, deviations, _over_play(plan, name))
     numbers, codes = _read(plan, block, name, plan.of_measures[name])
     leaning, varies = dict[int, Array](), np.zeros(len(numbers), dtype=bool)
     for index in plan.of_measures[name]:
@@ -276,6 +283,23 @@ def _over_rests(plan: PlacingPlan, block: _Block, name: str, deviations: Array) 
         ends[0], ends[1], numbers[varies], codes[varies], plan.assembly.measures[name].rocking
     )
     return np.where(codes == OK, numbers, np.nan), codes
+
+
+@lru_cache(maxsize=256)
+def _over_play(plan: PlacingPlan, name: str) -> Mapping[int, Engaging]:
+    """Moves with play as they take a measure to its least or largest value, by its change with each nominally."""
+    sign = 1.0 if plan.assembly.measures[name].over_play == "largest" else -1.0
+    found, rest = dict[int, Engaging](), np.zeros((1, plan.assembly.width))
+    for index, move in enumerate(plan.moves):
+        if isinstance(move, Engaging):
+            read = []
+            for side in (1.0, -1.0):
+                nudged = [replace(move, nudge=side * own) for own in NUDGE * np.eye(move.freedoms.shape[1])]
+                blocks = [_placed(plan, rest, {index: own}) for own in nudged]
+                read.append([_read(plan, own, name, plan.of_measures[name])[0][0] for own in blocks])
+            slope = np.subtract(*np.array(read)) / (2 * NUDGE)
+            found[index] = move.pushed(sign * np.where(np.abs(slope) > FLAT, slope, 0.0))
+    return found
 
 
 @lru_cache(maxsize=256)

@@ -67,8 +67,13 @@ class Room:
         return np.concatenate([q, slack[None]])
 
 
-def engaged(move: Engage, world: World) -> World:
+def engaged(move: Engage, world: World, whither: Array | None = None) -> World:
     """The world after a move with play.
+
+    Args:
+        move: which.
+        world: before it.
+        whither: a direction of its freedoms in which it goes as far as it can; by its float if not given.
 
     Raises:
         InputError: as `mated`; nothing is free where its pins engage.
@@ -96,8 +101,11 @@ def engaged(move: Engage, world: World) -> World:
         raise InputError(f"moves.{move.name}: its relations leave nothing free where its pins engage: take a mate")
     forms = without_rounding(np.concatenate([np.concatenate(offsets), np.array(clearances), _drawn(move, world)]))
     push = _push(move, world) @ to_torsor @ free if move.floating.kind == "toward" else np.zeros(free.shape[1])
+    floating = move.floating
+    if whither is not None:
+        push, floating = whither, Floating("toward" if np.abs(whither).max() > SEEN else "centred")
     push = push / max(float(np.linalg.norm(push)), 1e-300)
-    made = world.columns.made_by(Room(forms, whole @ free, move.floating, free.T, push))
+    made = world.columns.made_by(Room(forms, whole @ free, floating, free.T, push))
     torsor = rest + to_torsor @ free @ made[:-1]
     return before.with_part_at(move.part, torsor).with_slack(move.name, made[-1])
 

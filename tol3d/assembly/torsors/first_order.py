@@ -111,7 +111,17 @@ def first_order(assembly: Assembly) -> FirstOrder:
     for name, measured in assembly.measures.items():
         if measured.rocking is not None and unknowns:
             rows[name] = _rocked(measured, rows[name], first, unknowns)
+        if measured.over_play is not None:
+            rows[name] = _played(name, measured, rows[name], first, unknowns)
     return FirstOrder(assembly.width, tuple(columns.terms), rows)
+
+
+def _played(name: str, measured: Measured, row: Array, first: World, unknowns: Mapping[int, slice]) -> Array:
+    """A measure's row (columns,) at its least or largest over the rooms of parts with play."""
+    sign = 1.0 if measured.over_play == "largest" else -1.0
+    plays = {index: own for index, own in unknowns.items() if isinstance(first.assembly.moves[index], Engage)}
+    whither = {index: sign * row[own.start : own.stop - 1] for index, own in plays.items()}
+    return _row(name, measured, _moved(first, whither)[0])
 
 
 def _moved(first: World, leaning: Mapping[int, Array]) -> tuple[list[World], dict[int, slice]]:
@@ -119,7 +129,7 @@ def _moved(first: World, leaning: Mapping[int, Array]) -> tuple[list[World], dic
     worlds, unknowns = [first], dict[int, slice]()
     for index, move in enumerate(first.assembly.moves):
         worlds.append(after(move, worlds[-1], leaning.get(index)))
-        if isinstance(move, Rest):
+        if isinstance(move, Rest | Engage):
             start, term = first.columns.terms[-1]
             unknowns[index] = slice(start, start + term.count)
     return worlds, unknowns
@@ -128,7 +138,8 @@ def _moved(first: World, leaning: Mapping[int, Array]) -> tuple[list[World], dic
 def _rocked(measured: Measured, row: Array, first: World, unknowns: Mapping[int, slice]) -> Array:
     """A measure's row (columns,) at one end of what parts may rock, or in the middle of both."""
     through = _through(row, first.columns.terms)
-    weights = {index: through[own] for index, own in unknowns.items()}
+    moves = first.assembly.moves
+    weights = {index: through[own] for index, own in unknowns.items() if isinstance(moves[index], Rest)}
     for index, own in weights.items():
         if np.abs(own).max() < UNSEEN:  # it does not see it, or by a term that is not linear
             weights[index] = along_nothing(len(own))
@@ -175,9 +186,10 @@ def _room(assembly: Assembly) -> int:
     fits = sum(isinstance(move, BestFit) and move.criterion == "minimax" for move in assembly.moves)
     rests = sum(isinstance(move, Rest) for move in assembly.moves)
     plays = sum(isinstance(move, Engage) for move in assembly.moves)
+    played = sum(own.over_play is not None for own in assembly.measures.values())
     rocking = sum(own.rocking is not None for own in assembly.measures.values()) if rests else 0
     moved = 6 * fits + 6 * rests + 7 * plays
-    return datums + moved * (1 + 2 * rocking) + 10 * sum(map(_readings, assembly.measures.values()))
+    return datums + moved * (1 + 2 * rocking + played) + 10 * sum(map(_readings, assembly.measures.values()))
 
 
 def _readings(measured: Measured) -> int:

@@ -21,7 +21,8 @@ def after(move: Move, world: World, leaning: Array | None = None) -> World:
     Args:
         move: which.
         world: before it.
-        leaning: of a rest, along its unknowns, how the part lies where it may rock; in the middle if not given.
+        leaning: of a rest, along its unknowns, how the part lies where it may rock; in the middle if not given. Of
+            play, along its freedoms, whither the part is pushed; by its float if not given.
 
     Raises:
         InputError: it leaves a freedom that it should hold, or asks twice for the same.
@@ -40,6 +41,6 @@ def after(move: Move, world: World, leaning: Array | None = None) -> World:
         case Touch():
             return world.with_part_at(move.part, touched(move, world))
         case Engage():
-            return engaged(move, world)
+            return engaged(move, world, leaning)
         case Weld():
             return world.with_welded((move.part, *move.others))

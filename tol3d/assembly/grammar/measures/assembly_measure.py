@@ -11,7 +11,7 @@ from tol3d.assembly.grammar.feature_name import FeatureName, Use, part_of
 from tol3d.assembly.grammar.moves.placing_move import PlacingSpec
 from tol3d.assembly.grammar.moves.weld import WeldSpec
 from tol3d.assembly.grammar.parts import SolidSpec
-from tol3d.assembly.model.measures import MeasureKind, Rocking
+from tol3d.assembly.model.measures import MeasureKind, OverPlay, Rocking
 from tol3d.scene.measure import AngleLimit, LengthLimit, MeasureEntry
 from tol3d.scene.name import Name
 from tol3d.scene.place import KeyPath
@@ -90,3 +90,12 @@ class BetweenSpec(FeatureMeasureSpec):
     def named(self) -> Sequence[tuple[KeyPath, FeatureName, tuple[str, ...]]]:
         """See FeatureMeasureSpec."""
         return ((("from",), self.from_, ()), (("to",), self.to, ()))
+
+
+class OverPlaySpec(BetweenSpec):
+    """A measure from one feature to another that may be read over all poses that play leaves."""
+
+    over_play: OverPlay | None = Field(
+        default=None,
+        description="least or largest value over the play of parts in the trial; as `float` says if not given",
+    )

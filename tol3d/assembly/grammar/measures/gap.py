@@ -6,7 +6,7 @@ from typing import ClassVar, Literal
 from pydantic import Field
 
 from tol3d.assembly.grammar.feature_name import FeatureName
-from tol3d.assembly.grammar.measures.assembly_measure import BetweenSpec
+from tol3d.assembly.grammar.measures.assembly_measure import BetweenSpec, OverPlaySpec
 from tol3d.assembly.model.measures import MeasureKind
 from tol3d.scene.place import KeyPath
 from tol3d.scene.vector import Direction
@@ -20,7 +20,7 @@ class DistanceSpec(BetweenSpec):
     kind: Literal["distance"]
 
 
-class DirectedSpec(BetweenSpec):
+class DirectedSpec(OverPlaySpec):
     """How far `to` lies from `from` along a direction."""
 
     reads: ClassVar[MeasureKind] = "gap"
@@ -45,7 +45,7 @@ class FlushSpec(DirectedSpec):
     kind: Literal["flush"]
 
 
-class PointPlaneSpec(BetweenSpec):
+class PointPlaneSpec(OverPlaySpec):
     """How far a point lies above a plane, along its normal."""
 
     reads: ClassVar[MeasureKind] = "point_plane"
