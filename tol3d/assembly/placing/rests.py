@@ -229,6 +229,21 @@ def begin(pose: Any, first: Any, start: Any, i: int, kept: Any) -> None:
         first[e] = kept_at(pose, (vectors, normals, shifts), e, i)
 
 
+@part
+def note(outcome: int, pose: Any, basis: Any, loads: Any, i: int, found: Any) -> None:
+    """Write down where a part rests and what its contacts carry; nothing of one that does not."""
+    turns, shifts, carried = found
+    for k in range(carried.shape[0]):
+        carried[k, i] = 0.0
+    for b in range(basis.shape[0]):
+        if loads[0, b] > TIED and outcome == RESTS:
+            carried[basis[b], i] = loads[0, b]
+    for r in range(3):
+        for c in range(3):
+            turns[r, c, i] = pose[r, c] if outcome == RESTS else np.nan
+        shifts[r, i] = pose[r, 3] if outcome == RESTS else np.nan
+
+
 @kernel(
     arrays="float64[:,:,::1], float64[:,:,::1], float64[:,::1], boolean, float64[:,:,::1], float64[:,:,::1], "
     "float64[::1], float64[:,::1], float64[:,::1], float64[:,::1], float64[:,::1], int64[::1], float64[:,::1], "
@@ -274,8 +289,7 @@ def rests_found(
         start: the pose before contacts count (3, 4, n).
         reach: of the points about its origin [mm].
         turns, shifts: found (3, 3, n), (3, n) [mm]; not a number where there is none.
-        carried: the part of the force that each contact carries (contacts, n).
-        outcomes: RESTS, CLASHES or LOST (n,).
+        carried, outcomes: part of the force on each contact (contacts, n); RESTS, CLASHES or LOST (n,).
     """
     contacts, programme = (points, normals, heights), (all_rows, rows, steps)
     count, motions = rows.shape
@@ -283,8 +297,8 @@ def rests_found(
     kept = (kept_vectors, kept_normals, kept_shifts, kept_steps, first)
     basis, inverse, loads = np.empty(motions, np.int64), np.empty((motions, motions)), np.empty((2, motions))
     anew = (np.empty((count, 6)), np.empty((count, motions)), steps)
-    moves = (np.empty(motions), np.empty(motions))
-    rooms = (np.empty(count), np.empty(6), moves, np.empty((motions, motions)), np.empty(motions))
+    moves, square = (np.empty(motions), np.empty(motions)), np.empty((motions, motions))
+    rooms = (np.empty(count), np.empty(6), moves, square, np.empty(motions))
     for i in range(outcomes.shape[0]):
         begin(pose, first, start, i, kept)
         basis[:], inverse[:], loads[:] = first_basis, first_inverse, first_loads
@@ -294,12 +308,4 @@ def rests_found(
             basis[:], inverse[:], loads[:] = first_basis, first_inverse, first_loads
             outcome = settled(pose, contacts, i, on_part, kept, anew, (basis, inverse, loads), rooms, reach, True)
         outcomes[i] = outcome
-        for k in range(count):
-            carried[k, i] = 0.0
-        for b in range(motions):
-            if loads[0, b] > TIED and outcome == RESTS:
-                carried[basis[b], i] = loads[0, b]
-        for r in range(3):
-            for c in range(3):
-                turns[r, c, i] = pose[r, c] if outcome == RESTS else np.nan
-            shifts[r, i] = pose[r, 3] if outcome == RESTS else np.nan
+        note(outcome, pose, basis, loads, i, (turns, shifts, carried))
