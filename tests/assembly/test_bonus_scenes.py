@@ -243,6 +243,21 @@ def test_check_says_which_model_it_is(tmp_path: Path) -> None:
         assert draw.words == words
 
 
+@pytest.mark.parametrize(("tab", "grows"), [("false", 1), ("true", -1)])
+def test_the_width_of_a_slot_widens_its_zone_too(tmp_path: Path, tab: str, grows: int) -> None:
+    slot = "{kind: slot, at: [30 mm, 0 mm, 20 mm], normal: [0, 1, 0], extent: [40 mm, 10 mm], width: 6 mm, tab: " + tab
+    lines = [line for line in zoned().splitlines(keepends=True) if not line.startswith(("  along x", "  tilt"))]
+    text = "".join(lines).replace("{diameter: 0.14 mm}", "{width: 0.14 mm}")
+    start = text.index("{kind: cylinder")
+    text = text[:start] + slot + text[text.index("}", start) :]
+    found = assembled(text, tmp_path).drawn(20_000)
+    width = found["diameter"] - 6
+    room = T0 + (width if grows > 0 else HIGH - width)
+    assert (found["position"] <= room + 1e-9).all()
+    assert (found["position"] / room).max() > 0.97
+    assert found["judged"] == pytest.approx(found["position"] - room + T0, abs=1e-12)
+
+
 # extremes ----------------------------------------------------------------------------------------------------
 
 
@@ -311,7 +326,7 @@ WRONG = {
     "no cylinder": (
         without("judged", "diameter").replace(SIZE, "").replace(SIZED, "kind: axis").replace(", diameter: 10 mm", ""),
         "tolerances.bore position.modifier",
-        "expected none, for 'plate.bore' is an axis and has no size, got mmc",
+        "expected none, for 'plate.bore' is an axis, whose zone no size widens, got mmc",
     ),
     "two conditions": (
         zoned(square="lmc"),

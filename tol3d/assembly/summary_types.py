@@ -1,12 +1,13 @@
 """What summary.json holds of assemblies: of which features each measure is."""
 
+from collections.abc import Mapping
 from typing import Annotated, Final, Literal
 
 from pydantic import Field
 
 from tol3d.runs.summary.kinds import SummaryKinds
 from tol3d.runs.summary.measure import MeasureSummary
-from tol3d.runs.summary.values import MOST_ENTRIES, Label
+from tol3d.runs.summary.values import LEFT_OUT, MOST_ENTRIES, Label, Maybe
 
 PRESENTER: Final = "tol3d.assembly.presenting"
 
@@ -33,6 +34,9 @@ class AssemblyMeasureSummary(MeasureSummary):
         "virtual_clearance",
         "surface_gap",
     ]
+    laws: Maybe[Mapping[Label, Label]] = Field(
+        default=LEFT_OUT, description="laws of zones that a size widens, and of those that only judge, by tolerance"
+    )
     of: Annotated[list[Label], Field(min_length=1, max_length=MOST_ENTRIES)]
 
     @property

@@ -15,7 +15,7 @@ from tol3d.assembly.model.statuses import OK, STATUSES
 from tol3d.assembly.placing import road as placing
 from tol3d.assembly.torsors import road as torsors
 from tol3d.assembly.torsors.slopes import Slopes
-from tol3d.assembly.zones import ZoneDraw
+from tol3d.assembly.zones import Process, Widened, ZoneDraw
 from tol3d.errors import InputError
 from tol3d.scene import Scene
 from tol3d.scene.schema import SECTIONS
@@ -99,8 +99,10 @@ class AssemblySystem(PlainSystem):
         return TorsorRoad(self.assembly) if name == ANALYTIC_ROAD else PlacingRoad(self.assembly)
 
     def describe(self, measure: Measure) -> Mapping[str, Any]:
-        """Its kind, and what it is of."""
-        return {**super().describe(measure), "of": list(self.named[measure.name])}
+        """Its kind, what it is of, and by which laws those zones vary that a size widens or that only judge."""
+        acting = (own for own in self.acting(measure) if isinstance(own.draw, Widened | Process))
+        laws = {own.name: own.draw.words for own in acting if isinstance(own.draw, ZoneDraw)}
+        return {**super().describe(measure), "of": list(self.named[measure.name]), **({"laws": laws} if laws else {})}
 
     def problems(self) -> Iterator[tuple[KeyPath, str]]:
         """Measures of the nominal assembly that the roads read differently, or not at all."""

@@ -2,7 +2,7 @@
 
 from tol3d.assembly.grammar.drawing import Drawing
 from tol3d.assembly.grammar.tolerances import SizeSpec
-from tol3d.assembly.model import Axis
+from tol3d.assembly.model import Axis, Slot
 from tol3d.assembly.model.bonus import Modifier
 from tol3d.assembly.zones import Bonus, SizedBy
 from tol3d.scene import Scene
@@ -17,7 +17,7 @@ def sized_by(scene: Scene, drawing: Drawing, feature: str, modifier: Modifier) -
     (own,) = drawing.of(feature, SizeSpec)
     spec, shape = own.spec, drawing.kind(feature).shape
     assert isinstance(spec, SizeSpec)
-    assert isinstance(shape, Axis)
+    assert isinstance(shape, Axis | Slot)
     law = spec.distribution.resolve(scene.files)
     limits = law.limits if spec.limits is None else tuple(own.internal for own in spec.limits)
     if limits is None:

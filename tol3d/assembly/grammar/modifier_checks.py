@@ -11,6 +11,9 @@ from tol3d.scene.place import KeyPath
 
 Problem = tuple[KeyPath, str]
 
+SIZED = ("cylinder", "slot")
+"""Kinds of feature whose size widens their zones."""
+
 
 def unfit_modifiers(scene: Scene) -> Iterator[Problem]:
     """Modifiers of features without a size or a tolerance of it, and two that differ on one feature."""
@@ -18,10 +21,10 @@ def unfit_modifiers(scene: Scene) -> Iterator[Problem]:
     for own in drawing.stated:
         if isinstance(own, Stated) and own.name == own.entry and isinstance(own.spec, Modified):
             yield from _of_tolerance(drawing, own, own.spec)
-    cylinders = {name for name in drawing.names if drawing.kind(name).kind == "cylinder"}  # others are said already
+    sized = {name for name in drawing.names if drawing.kind(name).kind in SIZED}  # others are said already
     for name, spec in scene.measures.items():
         if isinstance(spec, InspectedPositionSpec | InspectedPatternSpec) and spec.modifier is not None:
-            for own in (feature for _, feature, _ in spec.named() if feature in cylinders):
+            for own in (feature for _, feature, _ in spec.named() if feature in sized):
                 yield from _unsized(drawing, own, ("measures", name, "modifier"), spec.modifier)
 
 
@@ -38,9 +41,9 @@ def _of_tolerance(drawing: Drawing, own: Stated, spec: Modified) -> Iterator[Pro
 
 
 def _unsized(drawing: Drawing, feature: str, place: KeyPath, modifier: str) -> Iterator[Problem]:
-    if drawing.kind(feature).kind != "cylinder":
+    if drawing.kind(feature).kind not in SIZED:
         words = drawing.kind(feature).words
-        yield place, f"expected none, for {feature!r} is {words} and has no size, got {modifier}"
+        yield place, f"expected none, for {feature!r} is {words}, whose zone no size widens, got {modifier}"
     elif not drawing.of(feature, SizeSpec):
         words = f"expected a tolerance of the size of {feature!r}, from which the bonus counts, got none"
         yield place, f"{words}; add one of kind size"

@@ -28,8 +28,13 @@ class AssemblyPresenter:
         return {}
 
     def sections(self, summary: RunSummary) -> "Sequence[Block]":
-        """None."""
-        return ()
+        """By which laws those zones vary that a size widens, or that only judge."""
+        laws = {
+            name: words
+            for own in summary.measures.values()
+            for name, words in (getattr(own, "laws", None) or {}).items()
+        }
+        return _lazily("tables").law_blocks(laws) if laws else ()
 
     def measure_rows(self, measure: MeasureSummary, summary: RunSummary) -> "Sequence[FurtherRow]":
         """None."""

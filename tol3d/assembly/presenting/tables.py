@@ -1,6 +1,6 @@
 """What a scene of an assembly means, as tables: features with their datum frames, moves."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
@@ -114,3 +114,9 @@ def _move(move: Move, plan: placing.Placing) -> tuple[str, str, str]:
         case Weld():
             return "weld", move.part, ", ".join(move.others)
     return "fixed", move.part, ""
+
+
+def law_blocks(laws: Mapping[str, str]) -> Sequence[Block]:
+    """The laws of tolerances, by their names."""
+    rows = [Row(name, (words,)) for name, words in laws.items()]
+    return titled("laws of zones", Table("", [Heading("law", words=True)], rows))

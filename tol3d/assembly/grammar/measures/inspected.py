@@ -50,7 +50,7 @@ class InspectedPositionSpec(InspectedSpec):
 
     def named(self) -> Sequence[tuple[KeyPath, FeatureName, tuple[str, ...]]]:
         """See FeatureMeasureSpec."""
-        kinds = ("cylinder",) if self.modifier is not None else () if self.across is None else ("point",)
+        kinds = ("cylinder", "slot") if self.modifier is not None else () if self.across is None else ("point",)
         return ((("of",), self.of, kinds),)
 
 
