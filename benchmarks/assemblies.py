@@ -124,6 +124,7 @@ def systems(folder: Path) -> dict[str, Path]:
     return {
         "3-2-1 stack of three blocks, 20 contributors": blocks,
         "door": SCENES / "door.yaml",
+        "two plates, two pins": SCENES / "two_plates.yaml",
         "gears in a housing": SCENES / "housed_gears.yaml",
         "the same gears without": train,
     }
