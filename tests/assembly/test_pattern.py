@@ -243,3 +243,19 @@ def test_a_trial_has_the_same_bits_alone() -> None:
         together, alone = read(plates, rows, road), [read(plates, rows[k : k + 1], road) for k in range(60)]
         for name, own in together.items():
             np.testing.assert_array_equal(own, [each[name][0] for each in alone])
+
+
+def test_two_plates_whose_faces_do_not_meet(tmp_path: Path) -> None:
+    """Without relations tilts are free too, five freedoms in all; both roads, which share no code, find the same room.
+
+    By second order they differ: squares of slopes of 2e-3 over 100 mm.
+    """
+    text = (SCENES / "two_plates.yaml").read_text("utf-8")
+    path = tmp_path / "plates.yaml"
+    path.write_text(text[: text.index("    relations:")] + text[text.index("    pairs:") :], "utf-8")
+    plates = Assembled(simulation_of(load(path), Overrides()))
+    rows = drawn(plates.simulation, 0, 1000).deviations
+    slack = read(plates, rows)["slack"]
+    np.testing.assert_allclose(read(plates, rows, "analytic")["slack"], slack, atol=4e-4)
+    meeting = Assembled(simulation_of(load(SCENES / "two_plates.yaml"), Overrides()))
+    assert (slack >= read(meeting, rows)["slack"] - 4e-4).all()  # more freedoms, more room

@@ -91,7 +91,9 @@ class Engaging:
             if not asked.any():
                 break
         codes = np.where(codes == OK, np.where(slacks < 0.0, NO_BUILD, OK), codes)
-        codes = np.where((codes == OK) & ~(found & (lacking < LOST)), SINGULAR, codes).astype(np.int8)
+        lost = ~(found & (lacking < LOST))
+        codes = np.where((codes == OK) & lost, SINGULAR, codes).astype(np.int8)
+        slacks = np.where(lost, np.nan, slacks)
         world = world.with_part_at(self.move.part, pose)
         return world.with_slack(self.move.name, slacks, self._pairs[deciding]), codes
 

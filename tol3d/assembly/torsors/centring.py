@@ -82,13 +82,14 @@ def refined(cones: Cones, q: Array, free: Array, decided: Mask) -> Array:
     going = np.arange(q.shape[1])
     for _ in range(cones.freedoms):
         own, rows = Cones(cones.offsets[:, :, going], cones.clearances[:, going], cones.rows), _open(cones, free, going)
+        closed = np.eye(len(free))[:, :, None] - free
         sees = (np.abs(rows).max(axis=(1, 2)) > LOST) & ~decided[:, going]
         any_left = sees.any(axis=0)
         going, own, rows, sees = going[any_left], own.of(any_left), rows[..., any_left], sees[:, any_left]
         if not len(going):
             break
         offsets = own.at(q[:, going])
-        step, multipliers = largest_slack(offsets, own.clearances, rows, sees)
+        step, multipliers = largest_slack(offsets, own.clearances, rows, sees, closed[..., going])
         q[:, going] += ordered_sum(free[:, i, going] * step[i] for i in range(len(step)))
         decides = sees & (multipliers > DECIDES)
         decided[:, going] |= decides
@@ -126,7 +127,7 @@ def narrowed(free: Array, rows: Array, held: Mask) -> Array:
     return free
 
 
-def largest_slack(offsets: Array, clearances: Array, rows: Array, counts: Mask) -> tuple[Array, Array]:
+def largest_slack(offsets: Array, clearances: Array, rows: Array, counts: Mask, closed: Array) -> tuple[Array, Array]:
     """Steps (freedoms, trials) to the largest common slack, and multipliers of the places (places, trials).
 
     Args:
@@ -134,6 +135,7 @@ def largest_slack(offsets: Array, clearances: Array, rows: Array, counts: Mask) 
         clearances: (places, trials).
         rows: (places, 2, freedoms, trials).
         counts: which places do (places, trials).
+        closed: projectors to what is not open (freedoms, freedoms, trials).
     """
     lengths = np.sqrt(offsets[:, 0] ** 2 + offsets[:, 1] ** 2)
     least = np.where(counts, clearances - lengths, np.inf).min(axis=0)
@@ -141,16 +143,19 @@ def largest_slack(offsets: Array, clearances: Array, rows: Array, counts: Mask) 
     primal = np.concatenate([np.where(counts, clearances - start, 1.0)[:, None], offsets], axis=1)
     dual = np.zeros(primal.shape)
     dual[:, 0] = np.where(counts, 1.0 / counts.sum(axis=0), 1.0)
-    return climbed(primal, dual, rows, counts, np.zeros(rows.shape[2:]), True)
+    return climbed(primal, dual, rows, counts, closed, np.zeros(rows.shape[2:]), lifts=True)
 
 
-def climbed(primal: Array, dual: Array, rows: Array, counts: Mask, goal: Array, lifts: bool) -> tuple[Array, Array]:
+def climbed(
+    primal: Array, dual: Array, rows: Array, counts: Mask, closed: Array, goal: Array, *, lifts: bool
+) -> tuple[Array, Array]:
     """Interior points, until each trial's gap is closed: steps (freedoms, trials), multipliers (places, trials).
 
     Args:
         primal, dual: cones at the start and multipliers, inside (places, 3, trials).
         rows: (places, 2, freedoms, trials).
         counts: which places do (places, trials).
+        closed: projectors to what is not open, where nothing moves (freedoms, freedoms, trials).
         goal: what is to be largest, besides the slack (freedoms, trials).
         lifts: whether the slack is.
     """
@@ -167,10 +172,10 @@ def climbed(primal: Array, dual: Array, rows: Array, counts: Mask, goal: Array, 
             if not left.any():
                 break
             going, moved, owed, scale, gap = going[left], moved[:, left], owed[left], scale[left], gap[left]
-            primal, dual, rows, goal = (own[..., left] for own in (primal, dual, rows, goal))
+            primal, dual, rows, closed, goal = (own[..., left] for own in (primal, dual, rows, closed, goal))
             counts = counts[:, left]
         target = TARGET * gap / counts.sum(axis=0)
-        step, changes = _direction(primal, dual, rows, counts, goal, lifts, target)
+        step, changes = _direction(primal, dual, rows, counts, closed, goal if not lifts else None, target)
         up, down = (_way(own, change, counts) for own, change in zip((primal, dual), changes, strict=True))
         moved = moved + up * step
         primal, dual = primal + up * changes[0], dual + down * changes[1]
@@ -179,9 +184,10 @@ def climbed(primal: Array, dual: Array, rows: Array, counts: Mask, goal: Array, 
 
 
 def _direction(
-    primal: Array, dual: Array, rows: Array, counts: Mask, goal: Array, lifts: bool, target: Array
+    primal: Array, dual: Array, rows: Array, counts: Mask, closed: Array, goal: Array | None, target: Array
 ) -> tuple[Array, tuple[Array, Array]]:
-    """A step (freedoms, trials), and the changes of cones and multipliers that go with it."""
+    """A step (freedoms, trials), and the changes of cones and multipliers; the slack rises where there is no goal."""
+    lifts = goal is None
     inside, outside = (own[:, 0] ** 2 - own[:, 1] ** 2 - own[:, 2] ** 2 for own in (primal, dual))
     inside, outside = np.maximum(inside, 1e-300), np.maximum(outside, 1e-300)
     a, b = 1.0 / np.sqrt(inside), 1.0 / np.sqrt(outside)
@@ -205,9 +211,11 @@ def _direction(
             system[i, j] = system[j, i] = ordered_sum(weight * own)
         if i < count:
             pull = ordered_sum(rows[:, r, i] * primal[:, 1 + r] for r in (0, 1))
-            right[i] = goal[i] - ordered_sum(back * pull)
+            right[i] = (0.0 if goal is None else goal[i]) - ordered_sum(back * pull)
         else:
             right[i] = 1.0 - ordered_sum(back * primal[:, 0])
+    stiff = np.max([system[i, i] for i in range(count)], axis=0)
+    system[:count, :count] += stiff * closed  # else equations of what is closed would be rounding
     solution = ordered_solution(system, right)
     step, rise = solution[:count], solution[count] if lifts else np.zeros(primal.shape[2])
     change = np.concatenate([np.broadcast_to(-rise, (len(rows), 1, len(rise))), _times(rows, step)], axis=1)
