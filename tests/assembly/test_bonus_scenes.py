@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from assembly_trials import assembled
+from fixtures import Command
 from numpy.typing import NDArray
 from scipy import integrate
 from scipy.stats import norm
@@ -16,6 +17,7 @@ from tol3d.distributions import Distribution
 from tol3d.distributions.normal import Normal
 from tol3d.distributions.uniform import Uniform
 from tol3d.errors import SceneError
+from tol3d.runs.run import open_run
 from tol3d.simulate import Execution, Overrides, load, replay, run_scene, simulation_of
 from tol3d.study.extremes import ends_together
 from tol3d.study.first_order import first_orders
@@ -256,6 +258,18 @@ def test_the_width_of_a_slot_widens_its_zone_too(tmp_path: Path, tab: str, grows
     assert (found["position"] <= room + 1e-9).all()
     assert (found["position"] / room).max() > 0.97
     assert found["judged"] == pytest.approx(found["position"] - room + T0, abs=1e-12)
+
+
+def test_a_run_says_which_model_it_is(tol3d: Command, tmp_path: Path) -> None:
+    path = tmp_path / "scene.yaml"
+    path.write_text(zoned(), "utf-8")
+    code, out, _ = tol3d("run", str(path), "--trials", "500", "--out", str(tmp_path / "run"))
+    assert code == 0
+    words = "uniform in its zone, widened by the bonus of bore size"
+    table = " ".join(out.partition("laws of zones")[2].partition("verdict")[0].split())
+    assert "bore position uniform in its zone, widened by the bonus of bore" in table
+    assert open_run(tmp_path / "run").summary["measures"]["along x"]["laws"] == {"bore position": words}
+    assert "laws" not in open_run(tmp_path / "run").summary["measures"]["diameter"]
 
 
 # extremes ----------------------------------------------------------------------------------------------------
