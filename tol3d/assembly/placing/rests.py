@@ -221,6 +221,26 @@ def settled(
 
 
 @part
+def pressed(rows: Any, basis: Any, inverse: Any, loads: Any, firsts: Any, rooms: Any) -> bool:
+    """Whether the force presses all contacts of a basis by the nominal rows; and the loads on them."""
+    first_basis, first_loads = firsts
+    _, _, (pull, _), matrix, right = rooms
+    if not inverted(rows, basis, inverse, matrix, right):
+        return False
+    for j in range(pull.shape[0]):
+        pull[j] = 0.0
+        for b in range(pull.shape[0]):
+            pull[j] -= first_loads[0, b] * rows[first_basis[b], j]
+    for b in range(pull.shape[0]):
+        loads[0, b] = 0.0
+        for j in range(pull.shape[0]):
+            loads[0, b] -= pull[j] * inverse[j, b]
+        if loads[0, b] < -TIED:
+            return False
+    return True
+
+
+@part
 def begin(pose: Any, first: Any, start: Any, i: int, kept: Any) -> None:
     """Put the pose where it begins, and note what is kept there."""
     vectors, normals, shifts, _, _ = kept
@@ -307,5 +327,7 @@ def rests_found(
             begin(pose, first, start, i, kept)
             basis[:], inverse[:], loads[:] = first_basis, first_inverse, first_loads
             outcome = settled(pose, contacts, i, on_part, kept, anew, (basis, inverse, loads), rooms, reach, True)
+            if outcome == RESTS and not pressed(rows, basis, inverse, loads, (first_basis, first_loads), rooms):
+                outcome = LOST
         outcomes[i] = outcome
         note(outcome, pose, basis, loads, i, (turns, shifts, carried))
