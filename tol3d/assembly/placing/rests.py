@@ -241,8 +241,9 @@ def pressed(rows: Any, basis: Any, inverse: Any, loads: Any, firsts: Any, rooms:
 
 
 @part
-def begin(pose: Any, first: Any, start: Any, i: int, kept: Any) -> None:
-    """Put the pose where it begins, and note what is kept there."""
+def begin(pose: Any, first: Any, start: Any, i: int, kept: Any, begun: Any, firsts: Any) -> None:
+    """Put the pose and the basis as they begin, and note what is kept there."""
+    begun[0][:], begun[1][:], begun[2][:] = firsts
     vectors, normals, shifts, _, _ = kept
     pose[:] = start[:, :, min(i, start.shape[2] - 1)]
     for e in range(first.shape[0]):
@@ -320,12 +321,10 @@ def rests_found(
     moves, square = (np.empty(motions), np.empty(motions)), np.empty((motions, motions))
     rooms = (np.empty(count), np.empty(6), moves, square, np.empty(motions))
     for i in range(outcomes.shape[0]):
-        begin(pose, first, start, i, kept)
-        basis[:], inverse[:], loads[:] = first_basis, first_inverse, first_loads
+        begin(pose, first, start, i, kept, (basis, inverse, loads), (first_basis, first_inverse, first_loads))
         outcome = settled(pose, contacts, i, on_part, kept, programme, (basis, inverse, loads), rooms, reach, False)
         if outcome == LOST:
-            begin(pose, first, start, i, kept)
-            basis[:], inverse[:], loads[:] = first_basis, first_inverse, first_loads
+            begin(pose, first, start, i, kept, (basis, inverse, loads), (first_basis, first_inverse, first_loads))
             outcome = settled(pose, contacts, i, on_part, kept, anew, (basis, inverse, loads), rooms, reach, True)
             if outcome == RESTS and not pressed(rows, basis, inverse, loads, (first_basis, first_loads), rooms):
                 outcome = LOST
