@@ -236,12 +236,15 @@ def _json_schema(*dimensions: Dimension) -> dict[str, Any]:
 
 
 def angle_text(angle: float) -> str:
-    """An angle [rad] as gear people read it, minutes and seconds of arc.
+    """An angle [rad] as gear people read it, degrees, minutes and seconds of arc.
 
-    >>> angle_text(math.radians(1 / 60 + 25.2 / 3600))
-    '1′25.2″'
+    >>> angle_text(math.radians(1 / 60 + 25.2 / 3600)), angle_text(math.radians(-7.0192))
+    ('1′25.2″', '-7°01′09.1″')
     """
     seconds = round(abs(angle) * 648000 / math.pi, 1)
     minutes, rest = divmod(seconds, 60)
+    degrees, minutes = divmod(int(minutes), 60)
     sign = "-" if angle < 0 and seconds > 0 else ""
-    return f"{sign}{int(minutes)}′{rest:04.1f}″" if minutes else f"{sign}{rest:.1f}″"
+    if degrees:
+        return f"{sign}{degrees}°{minutes:02}′{rest:04.1f}″"
+    return f"{sign}{minutes}′{rest:04.1f}″" if minutes else f"{sign}{rest:.1f}″"

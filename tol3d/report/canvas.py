@@ -38,6 +38,7 @@ TITLE_LIFT: Final = 4.0  # points, from the axes to the words above them
 MOST_LINES: Final = 5  # of names and words; enough for the longest names there may be
 LEGEND_BELOW: Final = 0.5  # inch, from the axis to the first line of the legend below it
 DOTS_PER_INCH: Final = 150
+MINUTES = 60  # of a degree
 ANGLE_STEPS: Final = (0.1, 0.2, 0.5, 1, 2, 5, 10, 15, 20, 30, 60, 120, 300, 600, 900, 1800, 3600)  # arc seconds
 MOST_TICKS: Final = 9
 FORMATS: Final = (".png", ".svg", ".pdf")
@@ -120,6 +121,8 @@ def _minutes_seconds(arcmin: float) -> str:
     minutes, rest = divmod(tenths, 600)
     seconds = f"{rest / 10:.1f}″" if rest % 10 else f"{rest // 10}″"
     sign = "−" if arcmin < 0 and tenths else ""
+    if minutes >= MINUTES:
+        return f"{sign}{minutes // MINUTES}°{minutes % MINUTES:02}′" + (f"{'0' * (rest < 100)}{seconds}" if rest else "")
     return f"{sign}{minutes}′{'0' * (rest < 100)}{seconds}" if minutes else f"{sign}{seconds}"
 
 
