@@ -122,7 +122,8 @@ def _minutes_seconds(arcmin: float) -> str:
     seconds = f"{rest / 10:.1f}″" if rest % 10 else f"{rest // 10}″"
     sign = "−" if arcmin < 0 and tenths else ""
     if minutes >= MINUTES:
-        return f"{sign}{minutes // MINUTES}°{minutes % MINUTES:02}′" + (f"{'0' * (rest < 100)}{seconds}" if rest else "")
+        degrees = f"{sign}{minutes // MINUTES}°{minutes % MINUTES:02}′"
+        return degrees + f"{'0' * (rest < 100)}{seconds}" if rest else degrees
     return f"{sign}{minutes}′{'0' * (rest < 100)}{seconds}" if minutes else f"{sign}{seconds}"
 
 
