@@ -106,4 +106,4 @@ def _end_of(bore: Feature, end: int) -> Feature:
     aside = np.zeros((3, 4))
     aside[0, 2 * end] = aside[1, 2 * end + 1] = 1.0
     moved_by = tuple(Contribution(own.contributor, own.columns, aside @ own.matrix) for own in bore.moved_by)
-    return Feature(f"{bore.name} end {end}", bore.part, Point(), frame, bore.parent, moved_by, is_named=False)
+    return Feature(f"{bore.name} end {end}", bore.part, Point(), frame, bore.parent, moved_by, (), bore.grown_by, False)

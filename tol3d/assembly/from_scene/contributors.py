@@ -53,6 +53,7 @@ class Effects:
     contributors: list[PlainContributor] = field(default_factory=list)
     moved_by: dict[str, list[Contribution]] = field(default_factory=dict)
     size_by: dict[str, list[Contribution]] = field(default_factory=dict)
+    grown_by: dict[str, list[Contribution]] = field(default_factory=dict)
     locators: dict[Touch, list[Contribution]] = field(default_factory=dict)
     heights: dict[Touch, list[Contribution]] = field(default_factory=dict)
     """Of surfaces where they are touched, by their form."""

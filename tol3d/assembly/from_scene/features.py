@@ -35,6 +35,7 @@ def features_of(drawing: Drawing, effects: Effects, frames: DatumFrames) -> dict
             frames.named(part_of(name), datums),
             tuple(effects.moved_by.get(name, ())),
             tuple(effects.size_by.get(name, ())),
+            tuple(effects.grown_by.get(name, ())),
         )
     return found
 
@@ -67,7 +68,9 @@ class TouchedPoints:
             rise = np.zeros((3, 3))
             rise[2] = 1.0, x / along_x, y / along_y
             moved_by = tuple(replace(own, matrix=rise @ own.matrix) for own in plane.moved_by)
-            self.features[name] = Feature(name, plane.part, Point(), frame, plane.parent, moved_by, is_named=False)
+            self.features[name] = Feature(
+                name, plane.part, Point(), frame, plane.parent, moved_by, grown_by=plane.grown_by, is_named=False
+            )
         return name
 
     def turned(self, direction: Array, owner: str, part: str) -> Array:
@@ -91,7 +94,9 @@ class TouchedPoints:
         moved_by = tuple(replace(each, matrix=middle @ each.matrix) for each in own.moved_by)
         moved_by += tuple(replace(each, matrix=direction[:, None] @ each.matrix) for each in by)
         name = f"{point} in {pair}"
-        self.features[name] = Feature(name, own.part, Point(), own.frame, own.parent, moved_by, is_named=False)
+        self.features[name] = Feature(
+            name, own.part, Point(), own.frame, own.parent, moved_by, grown_by=own.grown_by, is_named=False
+        )
         return name
 
     def origin(self, name: str) -> Array:

@@ -37,6 +37,7 @@ class Feature:
         parent: name of the datum frame to which its location is toleranced; "" for the part's frame.
         moved_by: contributions to its shape's components, which make delta; they add up.
         size_by: contributions to its size (1, components of the contributor); positive is a larger diameter or width.
+        grown_by: contributions to where its origin lies as its part grows (3, components), in its frame [mm].
         is_named: whether a drawing names it; a point that a move makes of one is not.
     """
 
@@ -47,4 +48,5 @@ class Feature:
     parent: str = ""
     moved_by: tuple[Contribution, ...] = ()
     size_by: tuple[Contribution, ...] = ()
+    grown_by: tuple[Contribution, ...] = ()
     is_named: bool = True

@@ -133,6 +133,14 @@ def actual(feature: Feature, base: Pose, columns: Array) -> ActualFeature:
         base: of its nominal frame in the part's, as its datum frame carries it in the trials.
         columns: the deviations, (width, n) [mm].
     """
+    found = _deviating(feature, base, columns)
+    if not feature.grown_by:
+        return found
+    return replace(found, centre=found.centre + _vector(*total(feature.grown_by, 3, columns)))
+
+
+def _deviating(feature: Feature, base: Pose, columns: Array) -> ActualFeature:
+    """By its shape's components."""
     shape = feature.shape
     moved = total(feature.moved_by, len(shape.components), columns)
     if isinstance(shape, Axis):

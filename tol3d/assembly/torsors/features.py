@@ -36,6 +36,7 @@ class PartTorsors:
             own = from_components(feature.shape) @ summed(
                 feature.moved_by, len(feature.shape.components), self._columns
             )
+            own[:3] += summed(feature.grown_by, 3, self._columns)
             self._torsors[name] = self.datum_frame(feature.parent) + seen_from(feature.frame) @ own
         return self._torsors[name]
 
