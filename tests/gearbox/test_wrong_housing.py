@@ -35,7 +35,8 @@ WRONG: dict[str, tuple[dict[str, str], str, str]] = {
             "more": BEARING,
         },
         "tolerances.play",
-        "expected no clearance beside 'wide', the size of a bore of the same shaft: both would count; take out one",
+        "expected no clearance beside 'wide', the size of a bore of the same shaft, for both say how loose it "
+        "is; take out one",
     ),
     "another centre distance than that of the bores": (
         {"tolerances": F, "moves": LAID.replace("driven: wheel", "driven: wheel, centre_distance: 75 mm")},

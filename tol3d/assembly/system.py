@@ -33,6 +33,7 @@ from tol3d.system.trials import Trials
 
 Array = NDArray[np.float64]
 T = TypeVar("T")
+Words = NDArray[np.str_]
 
 SAME: Final = 1e-6
 """mm or rad: both roads read the same nominally to within this, or moves lay parts where they are not drawn."""
@@ -42,6 +43,14 @@ FRAME: Final = "datum frame "
 
 FLAT: Final = 1e-6
 """Change of a measure per deviation that is none: both sides of the mean raise it alike."""
+
+
+def details_of(carried: Mapping[str, Words], tightest: Mapping[str, Words]) -> dict[str, NDArray[np.generic]]:
+    """Columns of words about moves: the contacts that carry, the pair with the least room."""
+    return {
+        **{f"carries:{move}": contacts for move, contacts in carried.items()},
+        **{f"tightest:{move}": pairs for move, pairs in tightest.items()},
+    }
 
 
 @dataclass(frozen=True)
@@ -72,10 +81,7 @@ class PlacingRoad:
         found, carried, tightest = placing.answers(self.assembly, trials.deviations, names)
         return Answers(
             {name: own[:, None] for name, (own, _) in found.items()},
-            details={
-                **{f"carries:{move}": contacts for move, contacts in carried.items()},
-                **{f"tightest:{move}": pairs for move, pairs in tightest.items()},
-            },
+            details=details_of(carried, tightest),
             status={name: codes for name, (_, codes) in found.items()},
         )
 
@@ -125,7 +131,7 @@ class AssemblySystem(PlainSystem):
 
     def acting(self, measure: Measure) -> Sequence[Contributor]:
         """Those with a slope, or that a term which is not linear reads."""
-        slopes = self._slopes_of(measure)
+        slopes = self.slopes_of(measure.name)
         acts = slopes.coefficients != 0.0
         acts[list(slopes.bent)] = True
         slices = component_slices(self)
@@ -133,10 +139,10 @@ class AssemblySystem(PlainSystem):
 
     def regressor_key(self, measure: Measure) -> Hashable:
         """As of any system; also which components are squared."""
-        return super().regressor_key(measure), self._squared(self._slopes_of(measure))
+        return super().regressor_key(measure), self.squared(self.slopes_of(measure.name))
 
     @staticmethod
-    def _squared(slopes: Slopes) -> tuple[int, ...]:
+    def squared(slopes: Slopes) -> tuple[int, ...]:
         """Columns that raise a measure to both sides of their mean."""
         return tuple(place for place in slopes.bent if abs(slopes.coefficients[place]) < FLAT)
 
@@ -144,7 +150,7 @@ class AssemblySystem(PlainSystem):
         self, measure: Measure, contributors: Sequence[Contributor], columns: Columns, rows: Mapping[str, Array]
     ) -> None:
         """Each component of a zone over its own sigma, squared where the measure takes its size; others as ever."""
-        others, squared, slices = [], self._squared(self._slopes_of(measure)), component_slices(self)
+        others, squared, slices = [], self.squared(self.slopes_of(measure.name)), component_slices(self)
         for own in contributors:
             draw = own.draw
             if not isinstance(draw, ZoneDraw) or len(draw.components) == 1 or is_group(own):
@@ -162,7 +168,7 @@ class AssemblySystem(PlainSystem):
 
     def closed_form(self, measure: Measure) -> ClosedForm | None:
         """Of the torsors; None where the measure is not linear in them."""
-        slopes = self._slopes_of(measure)
+        slopes = self.slopes_of(measure.name)
         if slopes.bends:
             return None
         slices = component_slices(self)
@@ -179,13 +185,14 @@ class AssemblySystem(PlainSystem):
 
     def is_linear(self, measure: Measure) -> bool:
         """Whether a measure is linear in all deviations by the analytic road, which then has a closed form."""
-        return not self._slopes_of(measure).bends
+        return not self.slopes_of(measure.name).bends
 
-    def _slopes_of(self, measure: Measure) -> Slopes:
+    def slopes_of(self, name: str) -> Slopes:
+        """How a measure of the assembly changes with each deviation, at the means."""
         moments = [moments_of(own) for own in self.contributors]
         means = np.concatenate([mean for mean, _ in moments] or [np.zeros(0)])
         sigmas = np.concatenate([np.sqrt(np.diagonal(covariance)) for _, covariance in moments] or [np.zeros(0)])
-        return torsors.slopes(self.assembly, measure.name, means, sigmas)
+        return torsors.slopes(self.assembly, name, means, sigmas)
 
 
 def moments_of(contributor: Contributor) -> tuple[Array, Array]:

@@ -24,6 +24,7 @@ from tol3d.gearing.stack_up.closed_form import factored_stacks
 from tol3d.gearing.stack_up.leaning import change_of, shares_by_net
 from tol3d.system.closed_form import ClosedForm, Share
 from tol3d.system.contributor import Contributor
+from tol3d.system.dependent import reads_of
 from tol3d.system.stated import component_slices
 
 Array = NDArray[np.float64]
@@ -33,7 +34,10 @@ LEVEL: Final = 1e-12
 
 
 def closed_form(system: Joined, measure: GearMeasure, *, at_one_position: bool = False) -> ClosedForm | None:
-    """Moments of a backlash; None of extremes over a turn, and where load paths are compared.
+    """Moments of a backlash.
+
+    None of extremes over a turn, where load paths are compared, and where what displaces bores is no sum itself: a
+    plane that touches with its outermost corner, a part that rests; or reads sizes and leans gears.
 
     Args:
         system: whose.
@@ -44,6 +48,8 @@ def closed_form(system: Joined, measure: GearMeasure, *, at_one_position: bool =
     leaning = _leaning(model, measure)
     group = [own for own in system.contributors if own.name in leaning or own.name in _moving(system)]
     net = bool(leaning & _leaning_bores(system))
+    if system.bends(measure) or (net and any(reads_of(own) for own in group)):
+        return None
     drawn = tuple(own for own in system.drawn_by_gears if not (net and own.name in leaning))
     plain = replace(model, contributors=drawn)
     form = reference_form(plain, measure) if at_one_position else closed_form_of_gears(plain, measure)
@@ -71,10 +77,9 @@ def _leaning(model: Model, measure: GearMeasure) -> set[str]:
 
 def _leaning_bores(system: Joined) -> set[str]:
     """The displacements of the bores of shafts that contributors of the assembly lean."""
-    bores = system.gears.contributors[len(system.drawn_by_gears) :]
     first, last = (system.displacing.reshape(-1, 2, 2, system.displacing.shape[1])[:, k] for k in range(2))
     leans = (np.abs(last - first) > LEVEL).any(axis=(1, 2))
-    return {own.name for own, lean in zip(bores, np.repeat(leans, 2), strict=True) if lean}
+    return {own.name for own, lean in zip(system.displacements, np.repeat(leans, 2), strict=True) if lean}
 
 
 def _moving(system: Joined) -> set[str]:
@@ -103,7 +108,7 @@ def _by_net(
 ) -> list[Share]:
     """Shares of a group that leans gears; `direct` is what those do to the gears that do more than move bores."""
     stacks = factored_stacks(system.gears.model, measure)
-    bores = system.gears.contributors[len(system.drawn_by_gears) :]
+    bores = system.displacements
     slices = component_slices(system.drawn)
     displaced: dict[tuple[str, int], Array] = {}
     nothing = np.zeros((1, 4 * len(system.bores.shafts)))

@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 
 from tol3d.assembly.grammar.feature_name import part_of
-from tol3d.assembly.grammar.tolerances import SizeSpec
+from tol3d.assembly.grammar.tolerances import FeatureTolerance, SizeSpec
 from tol3d.gearbox.grammar.shaft_in_bores import ShaftInBoresSpec
 from tol3d.gearbox.system import GearboxSystem
 from tol3d.gearing.grammar.parts import BearingSpec
@@ -25,8 +25,10 @@ def refuse_counted_twice(scene: Scene, system: GearboxSystem) -> None:
                 raise scene.refuse(("tolerances", name), f"{words} already, and both would count; take out one")
         elif isinstance(spec, BearingClearanceSpec):
             for other in _sizes(scene, spec):
-                words = f"expected no clearance beside {other!r}, the size of a bore of the same shaft"
-                raise scene.refuse(("tolerances", name), f"{words}: both would count; take out one")
+                words = (
+                    f"expected no clearance beside {other!r}, the size of a bore of the same shaft, for both say how "
+                )
+                raise scene.refuse(("tolerances", name), f"{words}loose it is; take out one")
 
 
 def _sizes(scene: Scene, spec: BearingClearanceSpec) -> Iterator[str]:
@@ -36,7 +38,10 @@ def _sizes(scene: Scene, spec: BearingClearanceSpec) -> Iterator[str]:
     carrying = (name for name, own in scene.parts.items() if gear in getattr(own, "carries", {}))
     shaft = next(carrying, gear)
     bores = {bore for move in scene.of(ShaftInBoresSpec).values() if move.shaft == shaft for bore in move.in_}
+    modified = {own.of for own in scene.of(FeatureTolerance).values() if getattr(own, "modifier", None)}
     for name, size in scene.of(SizeSpec).items():
+        if size.of in modified:
+            continue  # it widens a zone
         if size.of in bores or any(_is_copy(scene, bore, size.of) for bore in bores):
             yield name
 

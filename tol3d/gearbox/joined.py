@@ -8,8 +8,9 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.assembly.system import AssemblySystem, moments_of
+from tol3d.assembly.system import AssemblySystem
 from tol3d.assembly.torsors import road as torsors
+from tol3d.assembly.torsors.slopes import Slopes
 from tol3d.gearbox.bores import Bores
 from tol3d.gearing.model import Contributor as GearContributor
 from tol3d.gearing.model.measure import Measure as GearMeasure
@@ -20,9 +21,13 @@ from tol3d.system.stated import component_slices, mean_deviations, stated
 from tol3d.system.trials import Trials
 
 Array = NDArray[np.float64]
+Bools = NDArray[np.bool_]
 
 NOTHING: Final = 1e-12
 """Displacement [mm] of an axis per mm, rad or K that is rounding."""
+
+FLAT: Final = 1e-6
+"""Displacement per deviation of one that raises it to both sides."""
 
 STEP: Final = 1e-4
 """mm; over which the analytic road's slopes by displacements of bores are taken, to both sides."""
@@ -81,27 +86,60 @@ class Joined:
 
     def linear_gear_trials(self, trials: Trials) -> Trials:
         """The same, the bores displaced to first order."""
-        return self.gear_trials(trials, trials.deviations[:, self.assembly_places] @ self.displacing.T)
+        names = self.bores.lateral_names
+        read = torsors.values(self.bores.assembly, trials.deviations[:, self.assembly_places], names)
+        return self.gear_trials(trials, self.bores.to_first_order(read))
+
+    @cached_property
+    def _slopes(self) -> Sequence[Slopes]:
+        """Of the displacements of the bores, in their order."""
+        reading = replace(self.drawn, assembly=self.bores.assembly)
+        return [reading.slopes_of(name) for name in self.bores.lateral_names]
 
     @cached_property
     def displacing(self) -> Array:
         """Displacements of the bores per deviation of the assembly's contributors, (shafts * 4, columns)."""
-        moments = [moments_of(own) for own in self.drawn.contributors]
-        means = np.concatenate([mean for mean, _ in moments] or [np.zeros(0)])
-        sigmas = np.concatenate([np.sqrt(np.diagonal(covariance)) for _, covariance in moments] or [np.zeros(0)])
-        assembly = self.bores.assembly
-        rows = [torsors.slopes(assembly, name, means, sigmas).coefficients for name in self.bores.lateral_names]
-        found = np.array(rows).reshape(len(rows), assembly.width)
+        found = np.array([own.coefficients for own in self._slopes]).reshape(-1, self.bores.assembly.width)
         return np.where(np.abs(found) < NOTHING, 0.0, found)
+
+    @cached_property
+    def bending(self) -> Bools:
+        """Which displacements depend on which deviations otherwise than by a slope, (shafts * 4, columns)."""
+        found = np.zeros(self.displacing.shape, dtype=bool)
+        for row, own in zip(found, self._slopes, strict=True):
+            row[list(own.bent)] = True
+        return found
+
+    def bends(self, measure: GearMeasure) -> bool:
+        """Whether a backlash depends on displacements of bores that are no sum of effects."""
+        return bool(self.bending[self.reading(measure)].any())
+
+    def reading(self, measure: GearMeasure) -> Bools:
+        """Which displacements of the bores a backlash depends on (shafts * 4,)."""
+        own = {each.name for each in self.gears.acting(measure)}
+        return np.array([each.name in own for each in self.displacements for _ in "xy"], dtype=bool)
+
+    @property
+    def displacements(self) -> tuple[GearContributor, ...]:
+        """The displacements of the bores, as the gears have them."""
+        return self.gears.contributors[len(self.drawn_by_gears) :]
+
+    @property
+    def squared(self) -> Bools:
+        """Deviations (columns,) that displace some bore to both sides of their mean alike."""
+        return np.asarray((self.bending & (np.abs(self.displacing) < FLAT)).any(axis=0))
 
     def moving_apart(self, mesh: str) -> Iterator[str]:
         """Contributors but temperatures that change the distance or the parallelism of the axes of a mesh."""
         layout, own = self.gears.model.layout, self.gears.model.mesh(mesh)
-        lines = [self._line(layout.carrying[gear][0]) for gear in (own.driver, own.driven)]
+        driver = self._housed.get(layout.carrying[own.driver][0])
+        if driver is None:
+            return
+        z = driver.frame[:3, 2]
+        lines = [self._line(layout.carrying[gear][0], z) for gear in (own.driver, own.driven)]
         if lines[0] is None or lines[1] is None:
             return
         (place, low, tilt), (other, low_other, tilt_other) = lines
-        z = self._housed[layout.carrying[own.driver][0]].frame[:3, 2]
         apart = other - place
         apart = (apart - z * (apart @ z)) / np.linalg.norm(apart - z * (apart @ z))
         # both at the height of the first point of the driver's axis
@@ -109,21 +147,23 @@ class Joined:
         changes = np.vstack([apart @ (shifted - low), tilt_other - tilt])
         slices = component_slices(self.drawn)
         for each in self.drawn.contributors:
-            if each.kind != "temperature" and (np.abs(changes[:, slices[each.name]]) > NOTHING).any():
+            place = slices[each.name]
+            moves = (np.abs(changes[:, place]) > NOTHING).any() or self.bending[:, place].any()
+            if moves and each.kind != "temperature":
                 yield each.name
 
     @cached_property
     def _housed(self) -> Mapping[str, Any]:
         return {own.shaft: own for own in self.bores.shafts}
 
-    def _line(self, shaft: str) -> Any:
-        """First point of a shaft's axis (3,), its displacement and that per mm of z (3, columns), in the world."""
+    def _line(self, shaft: str, axis: Array) -> Any:
+        """First point of a shaft's line (3,), its displacement, and that per mm along an axis (3, columns)."""
         names = [own.shaft for own in self.bores.shafts]
         if shaft not in names:
             return None
         own, start = self._housed[shaft], 4 * names.index(shaft)
         low, high = (own.frame[:3, :2] @ self.displacing[start + 2 * k : start + 2 * k + 2] for k in range(2))
-        length = own.along(own.bores[1]) - own.along(own.bores[0])
+        length = float((own.bores[1].place - own.bores[0].place) @ axis)
         return own.bores[0].place, low, (high - low) / length
 
     def bore_slopes(self, measure: GearMeasure) -> Array:

@@ -141,7 +141,8 @@ def housed(scene: Scene, gears: Scene, assembly: Assembly) -> Housed:
     shafts = {}
     for shaft, (move, bores) in lines.items():
         root = layout.root_of[shaft]
-        host = assembly.features[lines[root][1][0].feature].part
+        first = min((own for own in lines if layout.root_of[own] == root), key=lambda own: len(layout.upstream(own)))
+        host = assembly.features[lines[first][1][0].feature].part
         shafts[shaft] = HousedShaft(move, shaft, bores, worlds[root] @ layout.world_from_shaft[shaft], host)
     for own in shafts.values():
         _refuse_misfit(scene, own)
@@ -203,15 +204,16 @@ def _with_move(scene: Scene, name: str, move: Any) -> Scene:
 def _worlds(
     scene: Scene, lines: Mapping[str, tuple[str, tuple[Bore, Bore]]], layout: Layout
 ) -> Iterator[tuple[str, Array]]:
-    """By first shaft, the frame of its bores."""
-    for root in dict.fromkeys(layout.root_of[shaft] for shaft in lines):
-        if root not in lines:
-            shaft, move = next((own, lines[own][0]) for own in lines if layout.root_of[own] == root)
-            words = f"expected {root!r}, the first shaft of its train, to lie in bores too, as {shaft!r} does"
-            raise scene.refuse(("moves", move), f"{words}; add a move of kind shaft_in_bores for it")
-        move, bores = lines[root]
-        spec = scene.of(ShaftInBoresSpec)[move]
-        yield root, _frame(bores, 0.0 if spec.at is None else spec.at.internal)
+    """By first shaft of a train, where its world lies: as the first of its shafts that lies in bores."""
+    found: set[str] = set()
+    for shaft in sorted(lines, key=lambda own: len(layout.upstream(own))):
+        root = layout.root_of[shaft]
+        if root not in found:
+            found.add(root)
+            move, bores = lines[shaft]
+            spec = scene.of(ShaftInBoresSpec)[move]
+            frame = _frame(bores, 0.0 if spec.at is None else spec.at.internal)
+            yield root, frame @ np.linalg.inv(layout.world_from_shaft[shaft])
 
 
 def _frame(bores: tuple[Bore, Bore], at: float) -> Array:

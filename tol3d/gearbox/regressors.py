@@ -17,6 +17,7 @@ def regress_bores(
     contributors: Sequence[Contributor],
     columns: Columns,
     rows: Mapping[str, Array],
+    squared: Mapping[str, NDArray[np.bool_]],
     slopes: Callable[[], Mapping[str, Array]],
 ) -> None:
     """Write contributors' rows (regressors, trials), see System.regress.
@@ -25,6 +26,7 @@ def regress_bores(
         contributors: that move bores.
         columns: of the trials.
         rows: by contributor.
+        squared: by contributor, which components displace bores to both sides of their mean alike.
         slopes: of the measure by each component of a contributor; asked for groups only.
     """
     for own in contributors:
@@ -34,7 +36,10 @@ def regress_bores(
             term = sum((slope * value for slope, value in zip(mine, values, strict=True)), np.zeros(len(values[0])))
             regress_term(rows[own.name], term, own.draw.sigma * float(np.sqrt((mine * mine).sum())))
         elif isinstance(own.draw, ZoneDraw) and len(values) > 1:
-            for row, value, sigma in zip(rows[own.name], values, own.draw.sigmas, strict=True):
-                np.multiply(value, 1.0 / (sigma or 1.0), out=row)
+            moments = zip(own.draw.mean_vector, own.draw.sigmas, squared[own.name], strict=True)
+            for row, value, (mean, sigma, bent) in zip(rows[own.name], values, moments, strict=True):
+                np.multiply(value - mean if bent else value, 1.0 / (sigma or 1.0), out=row)
+                if bent:
+                    np.square(row, out=row)
         else:
             regress_plainly(rows[own.name], own, values)

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.assembly.placing import road as placing
+from tol3d.assembly.system import details_of
 from tol3d.assembly.torsors import road as torsors
 from tol3d.gearbox.joined import Joined
 from tol3d.gearbox.statuses import FROM_ASSEMBLIES
@@ -50,8 +51,10 @@ class GearboxRoad:
         """See Road."""
         of_gears = [measure for measure in measures if isinstance(measure, GearMeasure)]
         others = [measure.name for measure in measures if not isinstance(measure, GearMeasure)]
-        values, codes = self._read(trials, (*self.system.bores.names, *others) if of_gears else others)
-        own = Answers({name: values[name][:, None] for name in others}, status=self._status(codes, others))
+        values, codes, details = self._read(trials, (*self.system.bores.names, *others) if of_gears else others)
+        own = Answers(
+            {name: values[name][:, None] for name in others}, details=details, status=self._status(codes, others)
+        )
         if not of_gears:
             return own
         seen, failed = self._seen(trials, values, codes)
@@ -60,16 +63,19 @@ class GearboxRoad:
 
     def gear_trials(self, trials: Trials) -> tuple[Trials, Mapping[str, Codes]]:
         """Trials as the gears see them, and by shaft what became of its bores (trials,), codes of this system."""
-        values, codes = self._read(trials, self.system.bores.names)
+        values, codes, _ = self._read(trials, self.system.bores.names)
         return self._seen(trials, values, codes)
 
-    def _read(self, trials: Trials, names: Sequence[str]) -> tuple[Mapping[str, Array], Mapping[str, Codes]]:
-        """Measures of the assembly, and what became of them in its own codes; empty where all are built."""
+    def _read(
+        self, trials: Trials, names: Sequence[str]
+    ) -> tuple[Mapping[str, Array], Mapping[str, Codes], Mapping[str, NDArray[np.generic]]]:
+        """Measures of the assembly, what became of them in its own codes, empty where all are built, and details."""
         assembly, deviations = self.system.bores.assembly, trials.deviations[:, self.system.assembly_places]
         if not self.exact:
-            return torsors.values(assembly, deviations, names), {}
-        found = placing.values(assembly, deviations, names)
-        return {name: own for name, (own, _) in found.items()}, {name: codes for name, (_, codes) in found.items()}
+            return torsors.values(assembly, deviations, names), {}, {}
+        found, carried, tightest = placing.answers(assembly, deviations, names)
+        values = {name: own for name, (own, _) in found.items()}
+        return values, {name: codes for name, (_, codes) in found.items()}, details_of(carried, tightest)
 
     def _seen(
         self, trials: Trials, values: Mapping[str, Array], codes: Mapping[str, Codes]
@@ -97,7 +103,7 @@ class GearboxRoad:
                 codes = np.max([np.zeros_like(before), *(failed[shaft] for shaft in self._shafts(measure))], axis=0)
                 status[measure.name] = np.where(codes != 0, codes, before).astype(np.int8)
                 values[measure.name] = np.where((codes != 0)[:, None], np.nan, values[measure.name])
-        return replace(answers, values=values, status=status)
+        return replace(answers, values=values, details={**answers.details, **own.details}, status=status)
 
     def _shafts(self, measure: GearMeasure) -> set[str]:
         """Shafts in bores of the meshes that a measure reads."""

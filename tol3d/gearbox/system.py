@@ -117,10 +117,10 @@ class GearboxSystem(Joined):
             names = {own.name for own in self.assembly.acting(measure)}
         else:
             own = {each.name for each in self.gears.acting(measure)}
-            displaced = [each.name in own for each in self.gears.contributors[len(self.drawn_by_gears) :] for _ in "xy"]
-            acts = self.displacing[np.array(displaced, dtype=bool)].any(axis=0)
+            rows = self.reading(measure)
+            acts: NDArray[np.bool_] = np.concatenate([self.displacing[rows] != 0.0, self.bending[rows]]).any(axis=0)
             slices = component_slices(self.drawn)
-            names = own | {each.name for each in self.drawn.contributors if acts[slices[each.name]].any()}
+            names = own | {each.name for each in self.drawn.contributors if np.any(acts[slices[each.name]])}
         return [each for each in self.contributors if each.name in names]
 
     def regressor_key(self, measure: Measure) -> Hashable:
@@ -137,9 +137,11 @@ class GearboxSystem(Joined):
             return
         self.gears.regress(measure, [own for own in contributors if own.name in self._of_gears], columns, rows)
         others = [own for own in contributors if own.name not in self._of_gears]
-        regress_bores(others, columns, rows, lambda: self._slopes(measure, others))
+        slices = component_slices(self.drawn)
+        squared = {own.name: self.squared[slices[own.name]] for own in others}
+        regress_bores(others, columns, rows, squared, lambda: self._bore_slopes(measure, others))
 
-    def _slopes(self, measure: GearMeasure, contributors: Sequence[Contributor]) -> Mapping[str, Array]:
+    def _bore_slopes(self, measure: GearMeasure, contributors: Sequence[Contributor]) -> Mapping[str, Array]:
         """Change of a backlash by each component of contributors that move bores."""
         per_column = self.bore_slopes(measure) @ self.displacing
         slices = component_slices(self.drawn)

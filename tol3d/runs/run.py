@@ -25,6 +25,7 @@ from tol3d.runs.summary.kinds import SummaryKinds
 from tol3d.runs.summary.run import RunSummary
 from tol3d.runs.summary.text import missing_mechanism, parsed, typed
 from tol3d.runs.worst import worst_trial
+from tol3d.system.outcome import ANALYTIC, GEOMETRIC
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -36,7 +37,7 @@ SCENE = "scene.yaml"
 PIECES = "pieces"
 CHECKPOINT = "checkpoint"
 FILES = "files"
-STATUS = "status"  # columns of words begin so; all others are numbers
+STATUS = "status"  # columns of words begin so; of all others only details may be words
 LOCK = "lock"
 LARGEST_SUMMARY = 50_000_000  # bytes; a thousand curves of a thousand positions
 
@@ -197,7 +198,7 @@ class Run:
         for block in self._block_sizes:
             piece = blocks.read(block, names or known)
             for name, values in piece.items():
-                if (values.dtype.kind == "U") != name.startswith(STATUS):
+                if (values.dtype.kind == "U") != name.startswith(STATUS) and not _is_words(name, values):
                     raise RunError(f"{blocks.path(block)}: column {name!r:.100} holds something else; {MENDED}")
             yield piece
 
@@ -317,6 +318,11 @@ def whole_file(files: BlockFiles, name: str) -> bool:
 def warn_of_damage(error: RunError) -> None:
     """Warn that a damaged block is made again."""
     warnings.warn(str(error).removesuffix(f"; {MENDED}") + "; it is made again", DamageWarning, stacklevel=2)
+
+
+def _is_words(name: str, values: NDArray[Any]) -> bool:
+    """Whether a column is a detail in words, such as which contacts carry: values and what has a unit are numbers."""
+    return values.dtype.kind == "U" and not name.startswith((ANALYTIC, GEOMETRIC)) and not name.endswith("]")
 
 
 def tidy_after_kill(run: Run) -> None:
