@@ -118,7 +118,7 @@ class GearboxSystem(Joined):
         else:
             own = {each.name for each in self.gears.acting(measure)}
             rows = self.reading(measure)
-            acts: NDArray[np.bool_] = np.concatenate([self.displacing[rows] != 0.0, self.bending[rows]]).any(axis=0)
+            acts = np.asarray(np.concatenate([self.displacing[rows] != 0.0, self.bending[rows]]).any(axis=0))
             slices = component_slices(self.drawn)
             names = own | {each.name for each in self.drawn.contributors if np.any(acts[slices[each.name]])}
         return [each for each in self.contributors if each.name in names]
