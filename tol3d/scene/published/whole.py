@@ -1,7 +1,7 @@
 """What somebody else found of more than one measure: yields, correlations, how many trials, how long they took."""
 
 from collections.abc import Iterator, Mapping
-from typing import TYPE_CHECKING, Self
+from typing import Any, Self
 
 from pydantic import Field, model_validator
 
@@ -18,9 +18,6 @@ from tol3d.scene.published.figures import (
 )
 from tol3d.strict import Strict, refused
 
-if TYPE_CHECKING:
-    from tol3d.scene.schema import Scene
-
 Problem = tuple[KeyPath, str]
 
 
@@ -31,7 +28,7 @@ class PublishedFigures(Strict):
     angles arcmin in summary.json), of `Strict` classes and of mappings and lists of these; none is required.
     """
 
-    def problems(self, scene: "Scene") -> Iterator[Problem]:
+    def problems(self, scene: Any) -> Iterator[Problem]:
         """What does not fit the rest of the scene, such as names that it does not have: place below the column."""
         return iter(())
 
@@ -108,7 +105,7 @@ class PublishedWhole(PublishedFigures):
     study: PublishedStudy | None = None
     timing: PublishedTiming | None = None
 
-    def problems(self, scene: "Scene") -> Iterator[Problem]:
+    def problems(self, scene: Any) -> Iterator[Problem]:
         """Correlations of what is no measure, or of a curve."""
         correlations = self.joint.correlations if self.joint else {}
         for first, others in correlations.items():
