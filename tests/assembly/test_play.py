@@ -27,7 +27,7 @@ PLATE = (SCENES / "hole_and_slot.yaml").read_text("utf-8")
 @pytest.mark.parametrize("road", ROADS)
 def test_hole_and_slot(road: str) -> None:
     """Problem 13: the disc of a hole and the width of a slot, area and not radius uniform, of each trial's sizes."""
-    count = 60_000
+    count = 20_000
     found = Assembled(simulation_of(load(SCENES / "hole_and_slot.yaml"), Overrides())).drawn(count, road)
     first, second = (c**2 + (0.01**2 + 0.004**2) / 4 for c in (0.05, 0.03))
     x, y, length = 300.0, 80.0, 120.0
@@ -144,7 +144,7 @@ def test_a_hole_that_leans_leaves_a_lens(tmp_path: Path, road: str) -> None:
     half = 0.03
     law = f"{{kind: process, distribution: {{kind: constant, value: {half * 1e3} um}}}}"
     made = assembled(leaning("{kind: random}", law), tmp_path)
-    rows = drawn(made.simulation, 0, 40_000).deviations
+    rows = drawn(made.simulation, 0, 15_000).deviations
     for contributor, own in made.slices:
         if contributor.kind == "size":
             rows[:, own] = 0.0
