@@ -5,6 +5,7 @@ datums        datum frames, each once
 bonus         the size that widens a zone
 boundaries    the gauges of datums at their maximum material boundary
 contributors  how tolerances are drawn, and what each moves
+projected     axes beyond their ends
 zones         the zone that is left to a feature, and its law
 moves         pairs, normals, locators
 measures      what is read

@@ -10,7 +10,7 @@ from tol3d.assembly.from_scene.boundaries import shift_frames
 from tol3d.assembly.from_scene.contributors import effects_of
 from tol3d.assembly.from_scene.datums import DatumFrames, in_order
 from tol3d.assembly.from_scene.features import TouchedPoints, features_of, poses_of
-from tol3d.assembly.from_scene.measures import measured_of, named_by, shown_measures
+from tol3d.assembly.from_scene.measures import add_projected, measured_of, named_by, shown_measures
 from tol3d.assembly.from_scene.moves import moves_of
 from tol3d.assembly.from_scene.warming import Warming, warmed
 from tol3d.assembly.grammar.drawing import Drawing
@@ -55,6 +55,7 @@ def assembly_of(scene: Scene, settled: Mapping[str, Array] | None = None, warmin
     frames = DatumFrames(drawing.features)
     warmed(effects, drawing, frames, warmings)
     features = features_of(drawing, effects, frames)
+    add_projected(scene, features)
     measured = measured_of(scene, frames)
     poses = poses_of(scene) if settled is None else settled
     shift_frames(scene, drawing, effects, frames)

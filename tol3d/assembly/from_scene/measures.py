@@ -6,6 +6,7 @@ from dataclasses import replace
 from tol3d.assembly.from_scene.bonus import sized_by
 from tol3d.assembly.from_scene.boundaries import room_of
 from tol3d.assembly.from_scene.datums import DatumFrames
+from tol3d.assembly.from_scene.projected import projected, projected_name
 from tol3d.assembly.grammar.drawing import Drawing
 from tol3d.assembly.grammar.feature_name import part_of
 from tol3d.assembly.grammar.features.nominal_frame import unit as unit_vector
@@ -18,7 +19,7 @@ from tol3d.assembly.grammar.measures import (
     SlackSpec,
 )
 from tol3d.assembly.grammar.measures.assembly_measure import FeatureMeasureSpec, OverPlaySpec
-from tol3d.assembly.model import Measured
+from tol3d.assembly.model import Feature, Measured
 from tol3d.assembly.model.bonus import MaterialBonus
 from tol3d.assembly.model.measures import MeasureKind
 from tol3d.scene import Scene
@@ -41,15 +42,25 @@ def _measured(scene: Scene, spec: AssemblyMeasureSpec, frames: DatumFrames) -> M
         return Measured("slack", (), of_move=list(scene.moves).index(spec.of))
     assert isinstance(spec, FeatureMeasureSpec)
     features = tuple(name for _, name, _ in spec.named())
+    bonuses = _bonuses(scene, spec, features)
+    if isinstance(spec, InspectedPositionSpec) and spec.projected is not None:
+        features = (projected_name(spec.of, spec.projected.internal),)
     direction = None if spec.along is None else unit_vector(spec.along)
     after = -1 if spec.after is None else list(scene.moves).index(spec.after)
     frame = frames.named(part_of(features[0]), spec.named_datums)
-    bonuses = _bonuses(scene, spec, features)
     room = room_of(scene, Drawing(scene), part_of(features[0]), spec.named_datums)
     gauge = spec.free if isinstance(spec, InspectedPatternSpec) else "shift"
     over = spec.over_play if isinstance(spec, OverPlaySpec) else None
     found = Measured(spec.reads, features, direction, frame, after, bonuses, gauge, room, rocking=spec.rocking)
     return replace(found, over_play=over)
+
+
+def add_projected(scene: Scene, features: dict[str, Feature]) -> None:
+    """Add the projected parts of axes that measures inspect."""
+    for spec in scene.of(InspectedPositionSpec).values():
+        if spec.projected is not None:
+            own = projected(features[spec.of], spec.projected.internal)
+            features[own.name] = own
 
 
 def _bonuses(scene: Scene, spec: FeatureMeasureSpec, features: Sequence[str]) -> tuple[MaterialBonus, ...]:

@@ -7,12 +7,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.assembly.from_scene.bonus import sized_by
+from tol3d.assembly.from_scene.projected import seen_from_projected
 from tol3d.assembly.grammar.drawing import Drawing, Stated
 from tol3d.assembly.grammar.features import FeatureUnion, PlaneSpec, PointSpec, SlotSpec, SphereSpec
 from tol3d.assembly.grammar.features.nominal_frame import Triple, unit
 from tol3d.assembly.grammar.tolerances import CircularRunOutSpec, LocationSpec, OrientationSpec
 from tol3d.assembly.grammar.tolerances.modified import Modified
 from tol3d.assembly.grammar.zone import LawUnion, NormalLawSpec, ProcessLawSpec, ZoneSpec
+from tol3d.assembly.model import Axis
 from tol3d.assembly.zones import (
     JudgedProcess,
     Process,
@@ -55,7 +57,27 @@ def drawn_in(scene: Scene, own: Stated, drawing: Drawing) -> tuple[ZoneDraw, Arr
         )
     except InputError as error:
         raise scene.refuse(("tolerances", own.entry, "zone"), str(error)) from None
-    return _by_law(scene, spec.law, zone, _size(scene, own, drawing)), zone.matrix
+    matrix = zone.matrix if spec.zone.projected is None else _projecting(scene, own, drawing) @ zone.matrix
+    return _by_law(scene, spec.law, zone, _size(scene, own, drawing)), matrix
+
+
+def _projecting(scene: Scene, own: Stated, drawing: Drawing) -> Array:
+    """(4, 4): what the ends of the projected part of an axis do to its own ends.
+
+    Raises:
+        SceneError: the feature is no axis, or the zone no location alone.
+    """
+    assert isinstance(own.spec, LocationSpec | OrientationSpec)
+    projected = own.spec.zone.projected
+    assert projected is not None
+    shape, path = drawing.kind(own.feature).shape, ("tolerances", own.entry, "zone", "projected")
+    if not isinstance(shape, Axis) or isinstance(own.spec, OrientationSpec | CircularRunOutSpec):
+        words = f"expected a location of an axis or a cylinder, got {own.spec.kind} of {own.feature!r}"
+        raise scene.refuse(path, f"{words}; take projected out")
+    for other in drawing.of(own.feature, OrientationSpec):
+        words = f"expected no tolerance of its orientation beside a projected zone, got {other.entry!r}"
+        raise scene.refuse(path, f"{words}, which holds the axis over its own length; take out one")
+    return seen_from_projected(shape.length, projected.internal)
 
 
 def _size(scene: Scene, own: Stated, drawing: Drawing) -> SizedBy | None:

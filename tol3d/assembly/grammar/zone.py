@@ -19,6 +19,11 @@ class ZoneSpec(Strict):
     along: Direction | None = Field(
         default=None, description="of a width for an axis or a point: the one direction in which it limits"
     )
+    projected: Length | None = Field(
+        default=None,
+        description="of a location of an axis: the zone holds the axis over such a length beyond its end along +z, "
+        "where what is screwed in stands out, instead of over the axis itself",
+    )
     outward: Annotated[Quantity, Of("length")] | None = Field(
         default=None, description="how much of a profile's width lies outside the material; half if not given"
     )

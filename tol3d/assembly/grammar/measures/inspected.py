@@ -11,6 +11,7 @@ from tol3d.assembly.grammar.measures.assembly_measure import FeatureMeasureSpec
 from tol3d.assembly.model.bonus import Modifier
 from tol3d.assembly.model.measures import MeasureKind
 from tol3d.scene.listed import listed
+from tol3d.scene.part import Length
 from tol3d.scene.place import KeyPath
 from tol3d.scene.vector import Direction
 from tol3d.strict import refused
@@ -39,6 +40,9 @@ class InspectedPositionSpec(InspectedSpec):
 
     kind: Literal["inspected_position"]
     across: Direction | None = Field(default=None, description="of a point: the direction that does not count")
+    projected: Length | None = Field(
+        default=None, description="of an axis: over such a length beyond its end along +z instead of over itself"
+    )
     modifier: Modifier | None = Field(
         default=None, description="mmc or lmc: less the bonus of the feature's size, so that it counts against t0"
     )
@@ -51,6 +55,8 @@ class InspectedPositionSpec(InspectedSpec):
     def named(self) -> Sequence[tuple[KeyPath, FeatureName, tuple[str, ...]]]:
         """See FeatureMeasureSpec."""
         kinds = ("cylinder", "slot") if self.modifier is not None else () if self.across is None else ("point",)
+        if self.projected is not None:
+            kinds = ("cylinder",) if self.modifier is not None else ("axis", "cylinder")
         return ((("of",), self.of, kinds),)
 
 

@@ -1,0 +1,105 @@
+"""A projected zone holds an axis where what is screwed in stands out: its own ends follow by the straight line."""
+
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+from places import SCENES
+
+from tol3d import Overrides, load_scene, run_scene
+from tol3d.errors import SceneError
+from tol3d.study.draws import drawn
+from tol3d.study.overrides import simulation_of
+
+Array = NDArray[np.float64]
+
+BOLTED = (SCENES / "bolted_cover.yaml").read_text("utf-8")
+STUD = "zone: {diameter: 0.1 mm, projected: 20 mm}, law: {kind: uniform}, datums: [face]"
+OWN = "  own: {kind: inspected_position, of: base.stud hole, datums: [face]}\n"
+LENGTH, BEYOND, ZONE = 10.0, 20.0, 0.1
+
+
+def written(folder: Path, *edits: tuple[str, str]) -> Path:
+    text = BOLTED
+    for old, new in edits:
+        assert old in text, old
+        text = text.replace(old, new, 1)
+    path = folder / "scene.yaml"
+    path.write_text(text, "utf-8")
+    return path
+
+
+def test_the_axis_fills_the_zone_beyond_its_end_and_leans_out_of_it_within(tmp_path: Path) -> None:
+    """Both projected ends are uniform in discs of t/2 = R: the larger of two such radii has mean 4R/5 and mean square
+    2R²/3. The near end of the axis is the projected one, the far end s(1 + L/p) - e L/p of both."""
+    count = 20_000
+    path = written(tmp_path, ("\nmeasures:\n", "\nmeasures:\n" + OWN))
+    simulation = simulation_of(load_scene(path), Overrides())
+    trials = drawn(simulation, 0, count)
+    names = [column for own in simulation.system.contributors for column in own.columns]
+    start, end = (
+        np.stack([trials.deviations[:, names.index(f"stud hole.{which} {x} [um]")] for x in "xy"], axis=1)
+        for which in ("start", "end")
+    )
+    assert max(np.hypot(*start.T).max(), np.hypot(*end.T).max()) <= ZONE / 2
+    far = start * (1 + LENGTH / BEYOND) - end * LENGTH / BEYOND
+    expected = {
+        "stud": 2 * np.maximum(np.hypot(*start.T), np.hypot(*end.T)),
+        "own": 2 * np.maximum(np.hypot(*start.T), np.hypot(*far.T)),
+    }
+    measures = [own for own in simulation.system.measures if own.name in expected]
+    for road in ("exact", "analytic"):
+        found = simulation.system.road(road, None).answers(trials, measures).values
+        for name, own in expected.items():
+            np.testing.assert_allclose(found[name][:, 0], own, rtol=0, atol=2e-7)  # a slope of 1e-2, squared
+    radius, sigma = ZONE / 2, ZONE * math.sqrt(2 / 3 - 16 / 25)
+    assert expected["stud"].mean() == pytest.approx(2 * 0.8 * radius, abs=4 * sigma / math.sqrt(count))
+    assert expected["own"].max() > ZONE
+
+
+def test_a_hole_inspected_within_its_plate_is_judged_by_another_zone(tmp_path: Path) -> None:
+    path = written(tmp_path, ("\nmeasures:\n", "\nmeasures:\n" + OWN.replace("[face]", "[face], upper_limit: 0.1 mm")))
+    summary = run_scene(path, overrides=Overrides(trials=4000, engine="analytic"), out=tmp_path / "run").summary
+    own, stud = summary["measures"]["own"], summary["measures"]["stud"]
+    assert stud["analytic"]["above_limit_ppm"] == 0.0
+    assert own["analytic"]["above_limit_ppm"] > 10_000
+
+
+@pytest.mark.parametrize(
+    ("edits", "place", "words"),
+    [
+        (
+            [
+                (
+                    "zone: {diameter: 0.05 mm}, law: {kind: uniform}, datums: [under]",
+                    "zone: {diameter: 0.05 mm, projected: 9 mm}, law: {kind: uniform}, datums: [under]",
+                )
+            ],
+            "tolerances.cover hole 1.zone.projected",
+            "expected a location of an axis or a cylinder, got perpendicularity of 'cover.hole 1'; take projected out",
+        ),
+        (
+            [
+                (
+                    "    of: base.hole 1\n    zone: {diameter: 0.2 mm}",
+                    "    of: base.hole 1\n    zone: {diameter: 0.2 mm, projected: 9 mm}",
+                )
+            ],
+            "tolerances.base hole 1.zone.projected",
+            "expected no tolerance of its orientation beside a projected zone, got 'base hole 1 upright', which holds "
+            "the axis over its own length; take out one",
+        ),
+        (
+            [("of: base.stud hole, projected: 20 mm", "of: base.face, projected: 20 mm")],
+            "measures.stud.of",
+            "expected an axis or cylinder, got 'base.face', which is a plane",
+        ),
+    ],
+)
+def test_what_no_zone_projects_is_refused(edits: list[tuple[str, str]], place: str, words: str, tmp_path: Path) -> None:
+    path = written(tmp_path, *edits)
+    with pytest.raises(SceneError) as caught:
+        simulation_of(load_scene(path), Overrides())
+    assert f"{place}: {words}" in str(caught.value)
