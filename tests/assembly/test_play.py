@@ -11,7 +11,9 @@ from numpy.typing import NDArray
 from places import SCENES
 from plates_with_pins import plates
 from scipy.optimize import brentq
+from scipy.stats import norm
 
+from tol3d.assembly.model.statuses import NO_BUILD
 from tol3d.assembly.placing import road as placing
 from tol3d.assembly.torsors import road as torsors
 from tol3d.errors import SceneError
@@ -215,6 +217,31 @@ def test_a_pattern_pushed_along_x_goes_by_the_smallest_clearance(tmp_path: Path,
     assert found["x"][0] == pytest.approx(0.1, abs=1e-6)
     assert 0.075 < found["x"][1] <= 0.1  # the others let it turn about the tight one
     assert found["slack"] == pytest.approx([0.1, 0.075, -0.025], abs=1e-6)
+
+
+@pytest.mark.parametrize("road", ROADS)
+def test_a_plate_hangs_on_two_pins_as_low_as_both_clearances_let_it(tmp_path: Path, road: str) -> None:
+    """Problem 11c: clearances c = 0.1, the pins e too far apart, the weight midway: -sqrt(c² - e²/4); the mean and
+    sigma of e in N(0, 0.04) by quadrature, no build beyond 2c."""
+    at = ((60.0, 0.0), (140.0, 0.0))  # the upper edge is midway
+    hung = assembled(plates(at, 10.2, 10.0, "{kind: toward, along: [0, -1, 0], at: upper.edge}"), tmp_path)
+    nodes, weights = np.polynomial.hermite_e.hermegauss(60)
+    apart = np.append(0.04 * nodes[np.abs(nodes) < 4.9], [0.12, 0.201])
+    rows = np.zeros((len(apart), hung.system.assembly.width))
+    rows[:, next(own.start for contributor, own in hung.slices if contributor.name == "pin 1 x")] = apart
+    if road == "exact":
+        found, codes = placing.values(hung.system.assembly, rows, ["y"])["y"]
+        assert codes[-1] == NO_BUILD
+        assert not codes[:-1].any()
+    else:
+        found = torsors.values(hung.system.assembly, rows, ["y"])["y"]
+    np.testing.assert_allclose(found[:-1], -np.sqrt(0.01 - apart[:-1] ** 2 / 4), rtol=0, atol=1e-9)
+    assert found[-2] == pytest.approx(-0.08, abs=1e-9)
+    share = weights[np.abs(nodes) < 4.9] / math.sqrt(2 * math.pi)
+    mean = share @ found[:-2]
+    assert mean == pytest.approx(-0.0979326, abs=2e-7)
+    assert math.sqrt(share @ (found[:-2] - mean) ** 2) == pytest.approx(0.0030360, abs=2e-6)
+    assert 2 * norm.sf(0.2 / 0.04) == pytest.approx(5.733e-7, rel=1e-3)
 
 
 def test_the_pair_that_does_not_go_in_is_named(tmp_path: Path) -> None:
