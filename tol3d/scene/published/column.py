@@ -101,7 +101,8 @@ class PublishedColumn(Strict):
         for key, own in found["properties"].items():
             kept = {name: own.pop(name) for name in ("title", "description", "default") if name in own}
             found["properties"][key] = {**kept, "anyOf": [*own.get("anyOf", [own]), measure]}
-        return {**found, "additionalProperties": measure, "propertyNames": measures["propertyNames"]}
+        names = {key: measures[key] for key in ("propertyNames",) if key in measures}  # pydantic 2.9 does not say them
+        return {**found, "additionalProperties": measure, **names}
 
     def __reduce__(self) -> tuple[Any, ...]:
         """Pickled by its sections: the class is made anew where it is read."""
