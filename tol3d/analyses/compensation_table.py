@@ -11,7 +11,7 @@ from tol3d.analyses.robots import STATES, State
 from tol3d.analyses.spread import Spread
 from tol3d.gears import LEFT, Flank
 from tol3d.report.number import NOTHING, given_text, tip_mm, value_text
-from tol3d.report.page import BLANK, Block, Heading, Line, Page, Row, Table, line, note, page
+from tol3d.report.page import BLANK, Heading, Line, Page, PageItem, Row, Table, line, note, page
 
 COLUMN_WORDS: Final[Mapping[str, str]] = {"analytic": "analytic, same trials", "geometric": "3D simulation"}
 STATE_WORDS: Final[Mapping[State, str]] = {
@@ -49,7 +49,7 @@ ARCMIN_PER_DEG: Final = 60.0
 
 def compensation_report(found: Sequence[Compensation]) -> Page:
     """All of it, a column a scene."""
-    blocks: list[Block] = []
+    blocks: list[PageItem] = []
     for own in found:
         blocks += [_title(own), line(_words(own), "dim")]
     blocks += [*_section("Δφ_c, the turn of the motor that makes good for the lost motion"), corrections_table(found)]

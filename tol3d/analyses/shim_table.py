@@ -9,7 +9,7 @@ from tol3d.analyses.shimmed import MINIMUM_WORDS, UM, Shimmed
 from tol3d.analyses.stock import thickness_text
 from tol3d.report.measure_table import CONVERTED_ROWS
 from tol3d.report.number import NOTHING, value_text
-from tol3d.report.page import BLANK, Block, Heading, Line, Page, Row, Table, line, note, page, warning
+from tol3d.report.page import BLANK, Heading, Line, Page, PageItem, Row, Table, line, note, page, warning
 
 ROWS: Final[Mapping[str, str]] = {
     "low_3sigma": "low (−3 sigma)",
@@ -26,7 +26,7 @@ SIDES: Final[Mapping[str, str]] = {
 
 def shim_report(plan: ShimPlan) -> Page:
     """Where the shims go, how thick they are, what they do to the backlash."""
-    blocks: list[Block] = [_title(plan), _words(plan), BLANK]
+    blocks: list[PageItem] = [_title(plan), _words(plan), BLANK]
     blocks += [line(f"  {shim.name}: {_place(shim)}") for shim in plan.shims]
     blocks += [BLANK, _table(plan), *map(note, _notes(plan))]
     blocks += [*map(warning, _warnings(plan))]

@@ -12,7 +12,7 @@ from tol3d.report.difference import difference_of
 from tol3d.report.ends import is_bounded
 from tol3d.report.joint import joint_comparison
 from tol3d.report.number import NOTHING, UNIT_SIGNS, difference_text, share_text, value_cell
-from tol3d.report.page import BLANK, Block, Heading, Page, Row, Shown, Table, line, note, page, title
+from tol3d.report.page import BLANK, Heading, Page, PageItem, Row, Shown, Table, line, note, page, title
 from tol3d.runs.run import Run
 from tol3d.runs.summary.measure import MeasureSummary
 from tol3d.runs.summary.values import Road
@@ -64,7 +64,7 @@ def measures_of(runs: Sequence[Run]) -> list[Compared]:
 
 def comparison_report(runs: Sequence[Run]) -> Page:
     """Tables of every measure: mean, sigma and range of each run and road, and how far the roads differ."""
-    blocks: list[Block] = []
+    blocks: list[PageItem] = []
     for measure in measures_of(runs):
         own = measure.found_in(runs)
         blocks += [title(measure.name)]

@@ -6,7 +6,7 @@ from itertools import combinations
 from typing import Final
 
 from tol3d.report.number import NOTHING, unsigned_zero
-from tol3d.report.page import Block, Heading, Row, Shown, Table, line, note, title
+from tol3d.report.page import Heading, PageItem, Row, Shown, Table, line, note, title
 from tol3d.runs.summary.joint import Correlations, Joint
 from tol3d.runs.summary.run import RunSummary
 from tol3d.runs.summary.values import Road
@@ -24,7 +24,7 @@ def joint_of(run: RunSummary) -> Joint | None:
     return run.joint if run.joint and len(run.joint.limited) > 1 else None
 
 
-def yield_lines(run: RunSummary) -> list[Block]:
+def yield_lines(run: RunSummary) -> list[PageItem]:
     """The share of all trials that are within every limit, by the best road, and by the other one beside it."""
     joint = joint_of(run)
     if joint is None or not joint.yields:
@@ -55,7 +55,7 @@ def yield_text(ppm: float | None) -> str:
     return f"{100 - lost:.{max(YIELD_DECIMALS, 1 - math.floor(math.log10(lost)))}f} %"
 
 
-def correlation_blocks(run: RunSummary) -> list[Block]:
+def correlation_blocks(run: RunSummary) -> list[PageItem]:
     """The largest correlations of measures, of those that are more than noise; nothing where none is."""
     joint = joint_of(run)
     if joint is None or not joint.correlations:
@@ -112,7 +112,7 @@ def _r_text(r: float | None) -> str:
     return NOTHING if r is None else unsigned_zero(f"{r:.3f}")
 
 
-def joint_comparison(runs: Sequence[tuple[str, RunSummary]]) -> list[Block]:
+def joint_comparison(runs: Sequence[tuple[str, RunSummary]]) -> list[PageItem]:
     """The yields of several runs below each other, each with its label; nothing where no run has any to show."""
     rows = []
     for label, run in runs:

@@ -89,14 +89,14 @@ class Line:
         return _rendered(self)
 
 
-Block = Line | Table
+PageItem = Line | Table
 
 
 @dataclass(frozen=True)
 class Page:
     """Lines and tables below each other."""
 
-    blocks: tuple[Block, ...]
+    blocks: tuple[PageItem, ...]
 
     @property
     def tables(self) -> tuple[Table, ...]:
@@ -120,7 +120,7 @@ class Page:
         return _rendered(self)
 
 
-def page(*blocks: Block) -> Page:
+def page(*blocks: PageItem) -> Page:
     """Blocks as a page."""
     return Page(blocks)
 
@@ -148,12 +148,12 @@ def warning(text: str) -> Line:
     return line(f"warning: {text}", "yellow")
 
 
-def titled(text: str, table: Table) -> list[Block]:
+def titled(text: str, table: Table) -> list[PageItem]:
     """A table below its title."""
     return [title(text), table]
 
 
-def _rendered(shown: Page | Block) -> "RenderableType":
+def _rendered(shown: Page | PageItem) -> "RenderableType":
     """For rich's console; what is never printed there loads no rich."""
     rendered: RenderableType = import_module("tol3d.report.sheet").rendered(shown)
     return rendered

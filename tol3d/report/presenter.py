@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Protocol, cast
 
 from tol3d.errors import InputError
-from tol3d.report.page import Block
+from tol3d.report.page import PageItem
 from tol3d.runs.summary.measure import MeasureSummary
 
 if TYPE_CHECKING:
@@ -90,7 +90,7 @@ class Presenter(Protocol):
         """Further pictures of a run by their names, which become file names."""
         ...
 
-    def sections(self, summary: "RunSummary") -> Sequence[Block]:
+    def sections(self, summary: "RunSummary") -> Sequence[PageItem]:
         """Further tables of a run."""
         ...
 
@@ -98,7 +98,7 @@ class Presenter(Protocol):
         """Further rows below a measure's statistics."""
         ...
 
-    def check(self, simulation: "Simulation") -> Sequence[Block]:
+    def check(self, simulation: "Simulation") -> Sequence[PageItem]:
         """What a scene means, before any trial: `tol3d.report.system_check.system_blocks`, or more than that.
 
         Args:
@@ -157,14 +157,14 @@ class _Nothing:
     def pictures(self, summary: "RunSummary") -> Mapping[str, Draw]:
         return {}
 
-    def sections(self, summary: "RunSummary") -> Sequence[Block]:
+    def sections(self, summary: "RunSummary") -> Sequence[PageItem]:
         return ()
 
     def measure_rows(self, measure: MeasureSummary, summary: "RunSummary") -> Sequence[FurtherRow]:
         return ()
 
-    def check(self, simulation: "Simulation") -> Sequence[Block]:
-        blocks: Sequence[Block] = import_module(SYSTEM_CHECK).system_blocks(simulation)
+    def check(self, simulation: "Simulation") -> Sequence[PageItem]:
+        blocks: Sequence[PageItem] = import_module(SYSTEM_CHECK).system_blocks(simulation)
         return blocks
 
     def display(self, run: "Run", which: Which, *, magnify: float) -> Display:

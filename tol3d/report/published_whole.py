@@ -4,7 +4,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Any, Final
 
 from tol3d.report.number import UNIT_SIGNS, given_text, number_cell, number_text, value_text
-from tol3d.report.page import Block, Heading, Row, Shown, Table, note, title
+from tol3d.report.page import Heading, PageItem, Row, Shown, Table, note, title
 from tol3d.runs.summary.joint import Joint
 from tol3d.runs.summary.run import RunSummary
 from tol3d.runs.summary.values import Road, Section, key_of
@@ -15,7 +15,7 @@ MEANING: Final = "by the keys of summary.json; ours beside it, where there is on
 Place = tuple[str, ...]
 
 
-def published_blocks(run: RunSummary) -> list[Block]:
+def published_blocks(run: RunSummary) -> list[PageItem]:
     """The table and what is said of its columns; nothing where nothing was published."""
     columns = run.published or {}
     given = {name: dict(_numbers(own, ())) for name, own in columns.items()}

@@ -10,14 +10,14 @@ from rich.padding import Padding
 from rich.table import Table as RichTable
 from rich.text import Text
 
-from tol3d.report.page import Block, Heading, Page, Table
+from tol3d.report.page import Heading, Page, PageItem, Table
 
 GAP = 2  # blanks between two columns
 TIGHT_LABELS = 14  # characters; what labels keep before they wrap, where that saves a table below
 LABELS_SHARE = 3  # else they keep a third of the width
 
 
-def rendered(shown: Page | Block) -> RenderableType:
+def rendered(shown: Page | PageItem) -> RenderableType:
     """What is shown, for rich's console."""
     if isinstance(shown, Page):
         return Group(*map(rendered, shown.blocks))
@@ -27,7 +27,7 @@ def rendered(shown: Page | Block) -> RenderableType:
     return Padding(text, (0, 0, 0, 1)) if shown.note else text
 
 
-def as_text(shown: Page | Block, width: int) -> str:
+def as_text(shown: Page | PageItem, width: int) -> str:
     """What is shown, in so many columns, without colours."""
     console = Console(file=StringIO(), width=width, highlight=False, markup=False, color_system=None)
     with console.capture() as captured:

@@ -3,7 +3,7 @@
 from collections.abc import Iterator, Mapping
 
 from tol3d.report.number import UNIT_SIGNS, value_cell
-from tol3d.report.page import Block, Heading, Row, Table, note
+from tol3d.report.page import Heading, PageItem, Row, Table, note
 from tol3d.report.published import spectrum_columns
 from tol3d.runs.summary.measure import MeasureSummary
 from tol3d.runs.summary.sample import CurveRoads, SpectrumSample
@@ -13,7 +13,7 @@ ORDER_ROWS = 12  # orders that are printed; summary.json has them all
 MEANING = "amplitudes of each trial's curve, half of peak to peak; order: cycles per turn"
 
 
-def spectrum_blocks(measure: MeasureSummary, curve: CurveRoads) -> Iterator[Block]:
+def spectrum_blocks(measure: MeasureSummary, curve: CurveRoads) -> Iterator[PageItem]:
     """The table and its notes; nothing of a curve without a spectrum."""
     found = {road: own.spectrum for road, own in curve.by_road.items() if own.spectrum is not None}
     if not found:

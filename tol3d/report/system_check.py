@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 
 from tol3d.distributions import Distribution
 from tol3d.report.number import NOTHING, UNIT_SIGNS, given_text, measured_text, unit_suffix, unsigned_zero, value_text
-from tol3d.report.page import Block, Heading, Row, Shown, Table, note, titled
+from tol3d.report.page import Heading, PageItem, Row, Shown, Table, note, titled
 from tol3d.study.first_order import FirstOrder, first_orders
 from tol3d.study.simulation import Simulation
 from tol3d.study.task import materials_of, road_of
@@ -22,7 +22,7 @@ SHARES = "RSS: share of the variance by root sum of squares; worst: share of the
 NO_SUM = "no sum of effects, so no RSS and no worst case: its slopes are means over two sigma; run draws its trials"
 
 
-def system_blocks(simulation: Simulation) -> list[Block]:
+def system_blocks(simulation: Simulation) -> list[PageItem]:
     """Contributors, measures and first-order coefficients by both roads, of any kind of system."""
     system, study = simulation.system, simulation.study
     road = road_of(simulation, materials_of(simulation))
@@ -61,7 +61,7 @@ def law_words(contributor: Contributor) -> str:
     return f"{law}, random direction" if draw.uniforms > 1 else f"{law}, fixed direction"
 
 
-def _contributors(contributors: Sequence[Contributor]) -> list[Block]:
+def _contributors(contributors: Sequence[Contributor]) -> list[PageItem]:
     rows = []
     for own in contributors:
         numbers = [f"{own.distribution.mean / own.per_unit:.4g}", f"{own.draw.sigma / own.per_unit:.3g}"]
@@ -78,7 +78,7 @@ def _measures(
     kinds: Mapping[str, str],
     found: Mapping[str, Mapping[str, FirstOrder]],
     headings: Mapping[str, str],
-) -> list[Block]:
+) -> list[PageItem]:
     rows = []
     for measure in measures:
         values = [_value(getattr(found[measure.name].get(road), build, None), measure.unit)
@@ -102,7 +102,7 @@ def _limits(measure: Measure) -> str:
     return ", ".join(f"{sign} {given_text(limit, unit)}{unit_suffix(unit)}" for sign, limit in given) or NOTHING
 
 
-def _coefficients(measure: Measure, found: Mapping[str, FirstOrder], headings: Mapping[str, str]) -> list[Block]:
+def _coefficients(measure: Measure, found: Mapping[str, FirstOrder], headings: Mapping[str, str]) -> list[PageItem]:
     rows = []
     for effects in zip(*(own.effects for own in found.values()), strict=True):
         roads = list(zip(found.values(), effects, strict=True))

@@ -26,7 +26,7 @@ from tol3d.report.number import (
     share_text,
     unit_suffix,
 )
-from tol3d.report.page import BLANK, Block, Line, Page, line, note, page, title, warning
+from tol3d.report.page import BLANK, Line, Page, PageItem, line, note, page, title, warning
 from tol3d.report.presenter import Presenter, presenter_of
 from tol3d.report.published import published_notes
 from tol3d.report.published_whole import published_blocks
@@ -83,7 +83,7 @@ def run_report(
     verdict = verdict_report(run, accepted_ppm, blame=detail is not Detail.MEASURES)
     if detail is Detail.VERDICT:
         return page(*verdict, *warnings)
-    blocks: list[Block] = [_run_line(run)]
+    blocks: list[PageItem] = [_run_line(run)]
     if detail is Detail.MEASURES:
         for name, measure in run.measures.items():
             blocks += _measure_blocks(name, measure, run, own)
@@ -102,7 +102,7 @@ def _run_line(run: RunSummary) -> Line:
     return Line(((run.scene, "bold"), (f" · {trials} · seed {run.seed} · engine {run.engine}", "bold dim")))
 
 
-def _measure_blocks(name: str, measure: MeasureSummary, run: RunSummary, presenter: Presenter) -> list[Block]:
+def _measure_blocks(name: str, measure: MeasureSummary, run: RunSummary, presenter: Presenter) -> list[PageItem]:
     head = [title(name), line(f"{measure.words} · {limits_text(measure)}", "dim"), BLANK]
     if measure.curve is not None and measure.take == "curve":
         notes = [*_curve_notes(measure, measure.curve), *_witness_notes(name, measure, run), *published_notes(measure)]
@@ -110,7 +110,7 @@ def _measure_blocks(name: str, measure: MeasureSummary, run: RunSummary, present
         return [*head, curve_table(measure, measure.curve), *map(note, notes), *spectrum]
     notes = [*_notes(name, measure, run)]
     further = presenter.measure_rows(measure, run)
-    blocks: list[Block] = [*head, measure_table(run, measure, further), *map(note, notes)]
+    blocks: list[PageItem] = [*head, measure_table(run, measure, further), *map(note, notes)]
     blocks += [line(f" {text}", "bold red") for text in unexplained_lines(measure.agreement)]
     if measure.contributors:
         blocks += [BLANK, contributors_table(measure)]

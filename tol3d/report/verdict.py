@@ -8,7 +8,7 @@ from tol3d.report.column import columns_of, ranked_contributors, seated_text, sh
 from tol3d.report.ends import Ends, is_bounded
 from tol3d.report.joint import yield_lines
 from tol3d.report.number import NOTHING, given_text, share_text, short_text, unit_suffix, unsigned_zero
-from tol3d.report.page import BLANK, Block, Heading, Row, Table, note, title
+from tol3d.report.page import BLANK, Heading, PageItem, Row, Table, note, title
 from tol3d.runs.summary.measure import MeasureSummary
 from tol3d.runs.summary.run import RunSummary
 
@@ -58,7 +58,7 @@ def all_ok(run: RunSummary, accepted_ppm: float) -> bool:
     return all(JudgedMeasure.of(own, accepted_ppm).verdict in ("OK", "no limits") for own in run.measures.values())
 
 
-def verdict_report(run: RunSummary, accepted_ppm: float = ACCEPTED_PPM, *, blame: bool = False) -> list[Block]:
+def verdict_report(run: RunSummary, accepted_ppm: float = ACCEPTED_PPM, *, blame: bool = False) -> list[PageItem]:
     """The verdict of every measure, what it rests on, and how it is reached.
 
     Args:

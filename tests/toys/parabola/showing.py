@@ -11,7 +11,7 @@ import numpy as np
 from tol3d.errors import InputError
 from tol3d.report.body import Body, World
 from tol3d.report.built_body import built_body
-from tol3d.report.page import Block, Heading, Row, Table, line
+from tol3d.report.page import Heading, PageItem, Row, Table, line
 from tol3d.report.presenter import Draw, FurtherRow, View, Which
 from tol3d.report.system_check import system_blocks
 from tol3d.runs.summary.measure import MeasureSummary
@@ -64,7 +64,7 @@ class SpringPresenter:
     def pictures(self, summary: "RunSummary") -> Mapping[str, Draw]:
         return {"terms": partial(_draw, summary)} if isinstance(summary, TermsOfRun) else {}
 
-    def sections(self, summary: "RunSummary") -> Sequence[Block]:
+    def sections(self, summary: "RunSummary") -> Sequence[PageItem]:
         if not isinstance(summary, TermsOfRun) or summary.terms is None:
             return ()
         roads = summary.terms["height"]
@@ -77,7 +77,7 @@ class SpringPresenter:
             return ()
         return (FurtherRow("mean of the bow", {r: t["bow"].mean for r, t in summary.terms["height"].items()}),)
 
-    def check(self, simulation: "Simulation") -> Sequence[Block]:
+    def check(self, simulation: "Simulation") -> Sequence[PageItem]:
         assert isinstance(simulation.system, ParabolaSystem)
         spring = simulation.system.springs.spring
         own = line(f"spring {spring.name}: a {spring.a:g}, b {spring.b:g}, q {spring.q:g}")

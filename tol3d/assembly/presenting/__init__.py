@@ -13,7 +13,7 @@ from tol3d.runs.summary.measure import MeasureSummary
 from tol3d.runs.summary.run import RunSummary
 
 if TYPE_CHECKING:
-    from tol3d.report.page import Block
+    from tol3d.report.page import PageItem
     from tol3d.report.presenter import Display, Draw, FurtherRow, Which
     from tol3d.runs.run import Run
     from tol3d.simulate import Replay
@@ -27,7 +27,7 @@ class AssemblyPresenter:
         """None besides the histograms."""
         return {}
 
-    def sections(self, summary: RunSummary) -> "Sequence[Block]":
+    def sections(self, summary: RunSummary) -> "Sequence[PageItem]":
         """By which laws those zones vary that a size widens, or that only judge."""
         laws = {
             name: words
@@ -40,7 +40,7 @@ class AssemblyPresenter:
         """None."""
         return ()
 
-    def check(self, simulation: "Simulation") -> "Sequence[Block]":
+    def check(self, simulation: "Simulation") -> "Sequence[PageItem]":
         """Features with their datum frames, moves, and what any system shows."""
         return _lazily("tables").check_blocks(simulation)  # type: ignore[no-any-return]
 

@@ -11,19 +11,19 @@ from tol3d.assembly.placing.engaging import Engaging
 from tol3d.assembly.placing.resting import Resting
 from tol3d.assembly.placing.touching import Touching
 from tol3d.assembly.system import AssemblySystem
-from tol3d.report.page import Block, Heading, Row, Table, titled
+from tol3d.report.page import Heading, PageItem, Row, Table, titled
 from tol3d.report.system_check import system_blocks
 from tol3d.study.simulation import Simulation
 
 
-def check_blocks(simulation: Simulation) -> Sequence[Block]:
+def check_blocks(simulation: Simulation) -> Sequence[PageItem]:
     """Features, moves, and what any system shows."""
     system = simulation.system
     assert isinstance(system, AssemblySystem)
     return (*drawing_blocks(system), *system_blocks(simulation))
 
 
-def drawing_blocks(system: AssemblySystem) -> Sequence[Block]:
+def drawing_blocks(system: AssemblySystem) -> Sequence[PageItem]:
     """Features and moves."""
     rows = [
         Row(own.name, (_shape(own), _place(system, own), _frame(own)))
@@ -39,9 +39,9 @@ def drawing_blocks(system: AssemblySystem) -> Sequence[Block]:
     return (*features, *steps, *_rests(system))
 
 
-def _rests(system: AssemblySystem) -> Sequence[Block]:
+def _rests(system: AssemblySystem) -> Sequence[PageItem]:
     """What contacts of parts at rest may carry of the force."""
-    blocks: list[Block] = []
+    blocks: list[PageItem] = []
     for move in placing.planned(system.assembly).moves:
         if isinstance(move, Resting):
             least, most = move.carries()
@@ -116,7 +116,7 @@ def _move(move: Move, plan: placing.Placing) -> tuple[str, str, str]:
     return "fixed", move.part, ""
 
 
-def law_blocks(laws: Mapping[str, str]) -> Sequence[Block]:
+def law_blocks(laws: Mapping[str, str]) -> Sequence[PageItem]:
     """The laws of tolerances, by their names."""
     rows = [Row(name, (words,)) for name, words in laws.items()]
     return titled("laws of zones", Table("", [Heading("law", words=True)], rows))

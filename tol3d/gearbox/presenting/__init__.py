@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, Final
 from tol3d.gearing.presenting import GearPresenter
 
 if TYPE_CHECKING:
-    from tol3d.report.page import Block
+    from tol3d.report.page import PageItem
     from tol3d.report.presenter import Display, Which
     from tol3d.runs.run import Run
     from tol3d.simulate import Replay
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 class GearboxPresenter(GearPresenter):
     """The presenter of gears in a housing; see `tol3d.report.presenter.Presenter`."""
 
-    def check(self, simulation: "Simulation") -> "Sequence[Block]":
+    def check(self, simulation: "Simulation") -> "Sequence[PageItem]":
         """Features and moves of the parts, gears, meshes, trains, and what any system shows."""
         return _lazily("tables").check_blocks(simulation)  # type: ignore[no-any-return]
 

@@ -8,12 +8,12 @@ from tol3d.assembly.presenting.tables import drawing_blocks
 from tol3d.gearbox.bores import Bores
 from tol3d.gearbox.system import GearboxSystem
 from tol3d.gearing.presenting.scene_check import mechanics_blocks
-from tol3d.report.page import Block, Heading, Row, Table, titled
+from tol3d.report.page import Heading, PageItem, Row, Table, titled
 from tol3d.report.system_check import system_blocks
 from tol3d.study.simulation import Simulation
 
 
-def check_blocks(simulation: Simulation) -> Sequence[Block]:
+def check_blocks(simulation: Simulation) -> Sequence[PageItem]:
     """Features and moves of the parts, shafts in their bores, gears and trains, and what any system shows."""
     system = simulation.system
     assert isinstance(system, GearboxSystem)
@@ -21,7 +21,7 @@ def check_blocks(simulation: Simulation) -> Sequence[Block]:
     return (*drawing_blocks(system.drawn), *shafts, *gears, *system_blocks(simulation))
 
 
-def shafts_table(bores: Bores) -> Sequence[Block]:
+def shafts_table(bores: Bores) -> Sequence[PageItem]:
     """Where shafts lie: their bores, and how far along the shaft these are."""
     rows = [
         Row(

@@ -11,7 +11,7 @@ from tol3d.runs.summary.measure import MeasureSummary
 from tol3d.runs.summary.run import RunSummary
 
 if TYPE_CHECKING:
-    from tol3d.report.page import Block
+    from tol3d.report.page import PageItem
     from tol3d.report.presenter import Display, Draw, FurtherRow, Which
     from tol3d.runs.run import Run
     from tol3d.simulate import Replay
@@ -30,7 +30,7 @@ class GearPresenter:
         trains = (summary.trains or {}) if isinstance(summary, TrainsOfRun) else {}
         return {f"chain-{name}" if k else "chain": partial(_draw_chain, summary, name) for k, name in enumerate(trains)}
 
-    def sections(self, summary: RunSummary) -> "Sequence[Block]":
+    def sections(self, summary: RunSummary) -> "Sequence[PageItem]":
         """Tables of every train."""
         return _lazily("train_tables").train_report(summary)  # type: ignore[no-any-return]
 
@@ -38,7 +38,7 @@ class GearPresenter:
         """Sums of the stages' ends, where a measure is the sum of a train's stages."""
         return _lazily("train_tables").sum_rows(measure, summary)  # type: ignore[no-any-return]
 
-    def check(self, simulation: "Simulation") -> "Sequence[Block]":
+    def check(self, simulation: "Simulation") -> "Sequence[PageItem]":
         """Gears, meshes, trains, measures, and contributors with their coefficients."""
         return _lazily("scene_check").check_blocks(simulation.system)  # type: ignore[no-any-return]
 

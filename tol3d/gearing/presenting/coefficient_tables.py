@@ -5,13 +5,13 @@ from collections.abc import Sequence
 from tol3d.gearing.coefficients import DISAGREES, ONE_SIDED, Coefficient, coefficients_by_value, of_one_value
 from tol3d.gearing.model import Backlash, Measure, Model
 from tol3d.report.number import degrees_text, percent_cell
-from tol3d.report.page import Block, Heading, Row, Table, line, titled
+from tol3d.report.page import Heading, PageItem, Row, Table, line, titled
 
 OTHER = "≠"
 NO_SUM = "the tighter load path counts, which is no sum; run gives the shares of its trials"
 
 
-def coefficients_tables(model: Model) -> list[Block]:
+def coefficients_tables(model: Model) -> list[PageItem]:
     """A table for all measures that have the same coefficients, and what its signs mean."""
     names: dict[Measure, list[str]] = {}
     for measure in model.measures:

@@ -11,7 +11,7 @@ from tol3d.gearing.summary_types import QUANTITY_WORDS, TAKE_WORDS, Reading, rea
 from tol3d.gearing.system import gear_model
 from tol3d.gears import RIGHT, BevelGear, BevelPair, Gear, GearPair, SpurGear, SpurPair
 from tol3d.report.number import NOTHING, UNIT_SIGNS, degrees_text, given_text, unsigned_zero, value_text
-from tol3d.report.page import Block, Heading, Line, Row, Table, line, titled
+from tol3d.report.page import Heading, Line, PageItem, Row, Table, line, titled
 from tol3d.report.system_check import law_name
 from tol3d.system.system import System
 from tol3d.units import angle_text
@@ -19,26 +19,26 @@ from tol3d.units import angle_text
 UM = 1000.0  # um in a mm
 
 
-def check_blocks(system: System) -> list[Block]:
+def check_blocks(system: System) -> list[PageItem]:
     """Gears, meshes, trains, measures and contributors of a scene, with what follows from them."""
     model = gear_model(system)
     blocks = [*mechanics_blocks(model), *measures_table(model)]
     return [*blocks, *(contributors_table(model) if model.contributors else ())]
 
 
-def mechanics_blocks(model: Model) -> list[Block]:
+def mechanics_blocks(model: Model) -> list[PageItem]:
     """Gears, meshes and trains."""
     housings = [housings_line(model)] if model.housings else []
     return [*gears_table(model), *housings, *meshes_table(model), *train_blocks(model)]
 
 
-def _side_by_side(title: str, names: Sequence[str], rows: Mapping[str, Sequence[str]]) -> list[Block]:
+def _side_by_side(title: str, names: Sequence[str], rows: Mapping[str, Sequence[str]]) -> list[PageItem]:
     """A column for each name."""
     headings = [Heading(name) for name in names]
     return titled(title, Table("", headings, [Row(label, cells) for label, cells in rows.items()]))
 
 
-def gears_table(model: Model) -> list[Block]:
+def gears_table(model: Model) -> list[PageItem]:
     """The gears side by side, lengths in mm."""
     rows = [gear_rows(part.gear) for part in model.gears]
     expansions = [f"{1e6 * part.expansion:g}" if part.expansion else NOTHING for part in model.gears]
@@ -109,7 +109,7 @@ def housings_line(model: Model) -> Line:
     return line(f"housing: {', '.join(words)}")
 
 
-def meshes_table(model: Model) -> list[Block]:
+def meshes_table(model: Model) -> list[PageItem]:
     """The moves, with what the nominal pair gives."""
     rows: Mapping[str, list[str]] = {
         "driver → driven": [f"{mesh.driver} → {mesh.driven}" for mesh in model.meshes],
@@ -153,7 +153,7 @@ def _(pair: BevelPair) -> dict[str, str]:
     }
 
 
-def measures_table(model: Model) -> list[Block]:
+def measures_table(model: Model) -> list[PageItem]:
     """The measures with limits and positions."""
     rows = []
     for measure in model.measures:
@@ -201,7 +201,7 @@ def _limits(measure: Measure) -> str:
     return ", ".join(given) or NOTHING
 
 
-def contributors_table(model: Model) -> list[Block]:
+def contributors_table(model: Model) -> list[PageItem]:
     """The contributors: law and limits, and what each measure makes of them.
 
     Low and high of one with a direction are lengths, its sigma is that along any one axis.

@@ -10,12 +10,12 @@ from tol3d.gearing.model.links import LoadPath, Parallel, links_of
 from tol3d.gearing.model.trains import gravity_torque
 from tol3d.gears import LEFT
 from tol3d.report.number import NOTHING
-from tol3d.report.page import Block, Heading, Line, Row, Table, line, title
+from tol3d.report.page import Heading, Line, PageItem, Row, Table, line, title
 
 Array = NDArray[np.float64]
 
 
-def train_blocks(model: Model) -> list[Block]:
+def train_blocks(model: Model) -> list[PageItem]:
     """What a scene says of shafts, where any of them carries or drives more than one gear; else nothing."""
     if len(model.layout.links) == len(model.layout.drives) and not model.trains:
         return []

@@ -17,7 +17,7 @@ from tol3d.gearing.presenting.shown_stage import (
 )
 from tol3d.gearing.summary_types import TrainSummary
 from tol3d.report.number import percent_text, tip_mm, value_text
-from tol3d.report.page import BLANK, Block, Heading, Row, Table, line, note, title
+from tol3d.report.page import BLANK, Heading, PageItem, Row, Table, line, note, title
 from tol3d.report.presenter import FurtherRow
 from tol3d.runs.summary.measure import MeasureSummary
 from tol3d.runs.summary.run import RunSummary
@@ -28,12 +28,12 @@ STAGES_MEAN = "low, mean, high: a stage's own angular backlash at its driven sha
 OF_LAWS = "; of a data sheet's law its ends, where they are nearer than 3 sigma"
 
 
-def train_report(summary: RunSummary) -> list[Block]:
+def train_report(summary: RunSummary) -> list[PageItem]:
     """Tables of every train of a run: its stages, then sums of their ends beside the distribution of the sum."""
     return [block for name in trains_of(summary) for block in _train_blocks(name, summary)]
 
 
-def _train_blocks(name: str, summary: RunSummary) -> Iterator[Block]:
+def _train_blocks(name: str, summary: RunSummary) -> Iterator[PageItem]:
     train = trains_of(summary)[name]
     stages = stages_of(train)
     yield title(f"train {name}")
