@@ -124,7 +124,7 @@ def lacking_balance(at: Array, own: Array, clearances: Array, slack: float) -> f
     At the largest slack some multipliers of the touching pins, 1 in all and none negative, balance in force and moment.
     """
     lengths = np.linalg.norm(own, axis=1)
-    touching = np.abs(clearances - lengths - slack) < 2e-8
+    touching = np.abs(clearances - lengths - slack) < 1e-8
     directions = own[touching] / np.maximum(lengths[touching], 1e-300)[:, None]
     if lengths[touching].min() < 1e-7:
         return 0.0  # a pin in the middle of the tightest hole: nothing can be more
@@ -162,8 +162,8 @@ def test_random_patterns_are_at_their_optimum(tmp_path: Path, seed: int, road: s
     built = np.isfinite(own).all(axis=(1, 2))
     assert built.sum() >= 10
     for k in np.flatnonzero(built):
-        assert (clearances[k] - np.linalg.norm(own[k], axis=1)).min() == pytest.approx(slack[k], abs=3e-8)
-        assert lacking_balance(at, own[k], clearances[k], slack[k]) < 1e-5
+        assert (clearances[k] - np.linalg.norm(own[k], axis=1)).min() == pytest.approx(slack[k], abs=1e-8)
+        assert lacking_balance(at, own[k], clearances[k], slack[k]) < (1e-8 if road == "analytic" else 1e-6)
         if k < 3:
             best = largest_slack(at, pins[k] - holes[k], clearances[k])
             assert slack[k] >= best - (1e-10 if road == "analytic" else FINITE)

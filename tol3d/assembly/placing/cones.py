@@ -1,7 +1,8 @@
 """Convex programmes over second-order cones with a few unknowns, in kernels: interior points.
 
 Cones are y_k = (c_k - s, o_k + B_k p), inside where |o_k + B_k p| < c_k - s. Primal and dual steps go along Nesterov
-and Todd's directions (Andersen, Dahl, Vandenberghe: CVXOPT's coneprog): W is the scaling with W z = W^-1 y.
+and Todd's directions (Andersen, Dahl, Vandenberghe: CVXOPT's coneprog): W is the scaling with W z = W^-1 y. Where it
+shows which cones decide the largest s, Newton's steps end it: these cones meet exactly, and their multipliers balance.
 """
 
 from typing import Any, Final
@@ -22,6 +23,18 @@ OWED: Final = 1e-9
 """Share of what the multipliers lack of balance at the start that may be left."""
 ROUNDING: Final = 1e-14
 """Of a pivot, what is left of it."""
+SHOWN: Final = 1e-3, 1e-6, 1e-10
+"""Gaps, of the size of offsets and clearances, at which it may show which cones decide."""
+LAST: Final = 10
+"""Of Newton's steps, 2 to 4 in practice."""
+STIFF: Final = 1e5
+"""By how much more cones that decide resist a step than their bend does; 1e-6 of what they miss is left by each."""
+MET: Final = 1e-13
+"""How far from each other they may be, of the size of offsets and clearances."""
+BALANCED: Final = 1e-9
+"""Of multipliers that are 1 in all, what may be out of balance."""
+POINTED: Final = 1e-6
+"""Length of an offset, of its clearance, below which it has no direction."""
 
 
 @part
@@ -140,6 +153,119 @@ def changes_of(cones: Any, size: int, lifts: int, step: Any, aim: float, dy: Any
 
 
 @part
+def closing(cones: Any, size: int, rooms: Any) -> Any:
+    """Equations of Newton's step from `at` (y), with multipliers m; how far cones that decide are apart, and balance.
+
+    Each of them gives m + stiff (u . B p + s + w) at the end of the step; negative where one has no direction.
+    """
+    _, _, rows, used = cones
+    matrix, step, at, own, turned, _ = rooms
+    for r in range(size + 1):
+        step[r] = 0.0
+        turned[r] = 0.0
+        for s in range(r + 1):
+            matrix[r, s] = 0.0
+    turned[size], apart, balance = 1.0, 0.0, 0.0
+    for k in range(at.shape[0]):
+        if not used[k] or own[k, 1] == 0.0:
+            continue
+        length = np.sqrt(at[k, 1] * at[k, 1] + at[k, 2] * at[k, 2])
+        if not length > POINTED * at[k, 0]:
+            return -1.0, 1.0
+        m, stiff, w = own[k, 0], own[k, 1], at[k, 0] - length
+        u, v = at[k, 1] / length, at[k, 2] / length
+        apart = max(apart, abs(w))
+        for r in range(size):
+            along, across = u * rows[k, 0, r] + v * rows[k, 1, r], u * rows[k, 1, r] - v * rows[k, 0, r]
+            turned[r] -= m * along
+            step[r] += stiff * w * along
+            matrix[size, r] += stiff * along
+            for s in range(r + 1):
+                matrix[r, s] += stiff * along * (u * rows[k, 0, s] + v * rows[k, 1, s])
+                matrix[r, s] += max(m, 0.0) / length * across * (u * rows[k, 1, s] - v * rows[k, 0, s])
+        turned[size] -= m
+        step[size] += stiff * w
+        matrix[size, size] += stiff
+    for r in range(size + 1):
+        balance = max(balance, abs(turned[r]))
+        step[r] += turned[r]
+    return apart, balance
+
+
+@part
+def stepped(cones: Any, size: int, rooms: Any) -> None:
+    """Go Newton's whole step."""
+    _, _, rows, used = cones
+    _, step, at, own, _, gone = rooms
+    for r in range(size + 1):
+        gone[r] += step[r]
+    for k in range(at.shape[0]):
+        if not used[k]:
+            continue
+        a, b = 0.0, 0.0
+        for r in range(size):
+            a += rows[k, 0, r] * step[r]
+            b += rows[k, 1, r] * step[r]
+        if own[k, 1] > 0.0:
+            length = np.sqrt(at[k, 1] * at[k, 1] + at[k, 2] * at[k, 2])
+            along = (at[k, 1] * a + at[k, 2] * b) / length
+            own[k, 0] += own[k, 1] * (along + step[size] - at[k, 0] + length)
+        at[k, 0] -= step[size]
+        at[k, 1] += a
+        at[k, 2] += b
+
+
+@part
+def amiss(cones: Any, rooms: Any, limit: float) -> int:
+    """A cone that is beyond those that decide, or decides with a multiplier below 0; -1 where there is none."""
+    used = cones[3]
+    at, own = rooms[2], rooms[3]
+    for k in range(at.shape[0]):
+        if used[k]:
+            length = np.sqrt(at[k, 1] * at[k, 1] + at[k, 2] * at[k, 2])
+            if own[k, 0] < 0.0 or at[k, 0] - length < -limit:
+                return k
+    return -1
+
+
+@part
+def ended(cones: Any, size: int, scale: float, found: Any, rooms: Any) -> bool:
+    """Whether Newton's steps reach the largest s: all its conditions hold. Otherwise nothing is changed.
+
+    Args:
+        cones: as in `climbed`; the multipliers are changed to z = (m, 0, 0).
+        size: of p.
+        scale: of offsets and clearances.
+        found: changed by the step.
+        rooms: to work in, whose fourth has the first multipliers m, 0 of cones that do not decide.
+    """
+    y, z, _, used = cones
+    matrix, step, at, own, _, gone = rooms
+    gone[:] = 0.0
+    for k in range(y.shape[0]):
+        at[k, 0], at[k, 1], at[k, 2] = y[k, 0], y[k, 1], y[k, 2]
+        own[k, 1] = STIFF / scale if own[k, 0] > 0.0 else 0.0
+    for _ in range(LAST):
+        apart, balance = closing(cones, size, rooms)
+        if apart < 0.0:
+            return False
+        if apart <= MET * scale and balance <= BALANCED:
+            wrong = amiss(cones, rooms, MET * scale)
+            if wrong < 0:
+                for k in range(y.shape[0]):
+                    z[k, 0] = own[k, 0] if used[k] else 0.0
+                for r in range(size + 1):
+                    found[r] += gone[r]
+                return True
+            own[wrong, 0], own[wrong, 1] = 0.0, STIFF / scale if own[wrong, 1] == 0.0 else 0.0
+            apart, balance = closing(cones, size, rooms)
+        factored(matrix, size + 1)
+        substituted(matrix, step, size + 1)
+        stepped(cones, size, rooms)
+    return False
+
+
+@part
 def climbed(cones: Any, size: int, lifts: int, goal: Any, found: Any, rooms: Any) -> bool:
     """Whether a programme's optimum is found: the largest goal . p, or s where it lifts.
 
@@ -152,8 +278,8 @@ def climbed(cones: Any, size: int, lifts: int, goal: Any, found: Any, rooms: Any
         rooms: to work in.
     """
     y, z, _, used = cones
-    matrix, step, dy, dz, turned = rooms
-    count, scale, owed = 0, 0.0, 1.0
+    matrix, step, dy, dz, turned, _ = rooms
+    count, scale, owed, tries = 0, 0.0, 1.0, 0
     for k in range(y.shape[0]):
         if used[k]:
             count += 1
@@ -166,6 +292,13 @@ def climbed(cones: Any, size: int, lifts: int, goal: Any, found: Any, rooms: Any
                 gap += y[k, 0] * z[k, 0] + y[k, 1] * z[k, 1] + y[k, 2] * z[k, 2]
         if gap <= GAP * scale and owed <= OWED:
             return True
+        if lifts and tries < len(SHOWN) and gap <= SHOWN[tries] * scale:
+            tries += 1
+            for k in range(y.shape[0]):
+                length = np.sqrt(y[k, 1] * y[k, 1] + y[k, 2] * y[k, 2])
+                dz[k, 0] = z[k, 0] if used[k] and z[k, 0] * scale > y[k, 0] - length else 0.0
+            if ended(cones, size, scale, found, rooms):
+                return True
         aim = AIM * gap / count
         if not equations(cones, size, lifts, matrix, step, aim, turned):
             return gap <= 1e3 * GAP * scale

@@ -77,12 +77,13 @@ class Engaging:
             return world.with_part_at(self.move.part, pose), codes
         steps, slacks = np.zeros((self.freedoms.shape[1], count)), np.zeros(count)
         asked, found, lacking = np.ones(count, dtype=bool), np.ones(count, dtype=bool), np.full(count, np.inf)
-        deciding = np.zeros(count, dtype=np.int64)
+        deciding, places = np.zeros(count, dtype=np.int64), len(self.rows)
+        before = np.zeros((places, count)), np.zeros((places, count), dtype=np.int64)
         targets = [world.placed(own) for own in self._targets(world)]
         for _ in range(ROUNDS):
             offsets, clearances = self._offsets(world, pose, targets)
             push = self.floats.push
-            room_found(offsets, clearances, self.rows, push, asked, steps, slacks, deciding, found)
+            room_found(offsets, clearances, self.rows, push, asked, steps, slacks, deciding, found, *before)
             whole = self.floats.steps(offsets, clearances, self.rows, steps, slacks, world.columns)
             lacking = np.where(asked, np.abs(whole).max(axis=0, initial=0.0), lacking)
             moved, _ = self.mating.poses(world, seats, self._moved(pose, whole))

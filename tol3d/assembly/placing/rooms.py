@@ -10,7 +10,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from tol3d.assembly.placing.cones import climbed
+from tol3d.assembly.placing.cones import climbed, ended
 from tol3d.numerics.compiled import kernel, part
 
 HELD: Final = 1e-6
@@ -154,19 +154,41 @@ def opened(basis: Any, done: Any) -> int:
 
 
 @part
-def lain(place: Any, push: Any, strength: float, basis: Any, done: Any, q: Any, rooms: Any) -> Any:
+def again(cones: Any, size: int, before: Any, turn: int, found: Any, rooms: Any) -> bool:
+    """Whether the cones that decided this programme at the pose before decide it here: the largest s by Newton's steps.
+
+    Args:
+        cones, size, found, rooms: as in `climbed`.
+        before: multipliers, and of which programme (cones,).
+        turn: which programme it is, from 1.
+    """
+    y, _, _, used = cones
+    own, scale, some = rooms[3], 0.0, False
+    for k in range(y.shape[0]):
+        decided = used[k] and before[1][k] == turn
+        own[k, 0] = before[0][k] if decided else 0.0
+        some = some or decided
+        scale = max(scale, y[k, 0] if used[k] else 0.0)
+    found[:] = 0.0
+    return some and ended(cones, size, scale, found, rooms)
+
+
+@part
+def lain(place: Any, push: Any, strength: float, before: Any, basis: Any, done: Any, q: Any, rooms: Any) -> Any:
     """Find the step q of a trial: whether it is found, the least slack of the centred pose, a cone that has it.
 
     Args:
         place: o_k (cones, 2), c_k (cones,), B_k (cones, 2, freedoms).
         push: (freedoms,).
         strength: largest amount of it; 0 for the centred pose.
+        before: of the cones that decided at the pose before, multipliers and in which programme, 0 for none (cones,);
+            changed to those of this pose.
         basis, done, rooms: to work in: freedoms (freedoms, freedoms), cones that are held (cones,), see `new_rooms`.
         q: (freedoms,); changed.
     """
     seen, used, y, z, found, held, inner = rooms
     rows = place[2]
-    slack, which, pushes = 0.0, 0, 0  # then 1 while it pushes, 2 after it
+    slack, which, pushes, turn = 0.0, 0, 0, 0  # it pushes: then 1, and 2 after it
     size = opened(basis, done)
     q[:] = 0.0
     while True:
@@ -183,7 +205,9 @@ def lain(place: Any, push: Any, strength: float, basis: Any, done: Any, q: Any, 
         lifts = 0 if pushes == 1 else 1
         weight = 1.0 if lifts else strength
         started(place, q, used, y, z, count, lifts, weight)
-        if not climbed((y, z, seen, used), size, lifts, push, found, inner):
+        cones, turn = (y, z, seen, used), turn + 1
+        met = lifts > 0 and again(cones, size, before, turn, found, inner)
+        if not met and not climbed(cones, size, lifts, push, found, inner):
             return False, slack, which
         for j in range(rows.shape[2]):
             for s in range(size):
@@ -191,6 +215,10 @@ def lain(place: Any, push: Any, strength: float, basis: Any, done: Any, q: Any, 
         for k in range(rows.shape[0]):
             used[k] = used[k] and z[k, 0] > HELD * weight
             done[k] = done[k] or used[k]
+            if used[k]:
+                before[0][k], before[1][k] = z[k, 0], turn
+            elif before[1][k] == turn:
+                before[1][k] = 0
         size = narrowed(seen, used, basis, size, held)
         pushes = 2 if pushes == 1 else pushes
 
@@ -199,7 +227,10 @@ def lain(place: Any, push: Any, strength: float, basis: Any, done: Any, q: Any, 
 def new_rooms(cones: int, freedoms: int) -> Any:
     """What programmes work with."""
     size = freedoms + 1
-    inner = (np.empty((size, size)), np.empty(size), np.empty((cones, 3)), np.empty((cones, 3)), np.empty(size))
+    inner = (
+        np.empty((size, size)), np.empty(size), np.empty((cones, 3)), np.empty((cones, 3)), np.empty(size),
+        np.empty(size),
+    )  # fmt: skip
     return (
         np.empty((cones, 2, size)),
         np.empty(cones, dtype=np.bool_),
@@ -213,11 +244,12 @@ def new_rooms(cones: int, freedoms: int) -> Any:
 
 @kernel(
     arrays="float64[:,:,::1], float64[:,::1], float64[:,:,::1], float64[::1], boolean[::1], float64[:,::1], "
-    "float64[::1], int64[::1], boolean[::1]"
+    "float64[::1], int64[::1], boolean[::1], float64[:,::1], int64[:,::1]"
 )
 def room_found(
-    offsets: Any, clearances: Any, rows: Any, push: Any, asked: Any, steps: Any, slacks: Any, deciding: Any, found: Any
-) -> None:
+    offsets: Any, clearances: Any, rows: Any, push: Any, asked: Any, steps: Any, slacks: Any, deciding: Any, found: Any,
+    multipliers: Any, programmes: Any,
+) -> None:  # fmt: skip
     """Steps to where a part lies in its room.
 
     Args:
@@ -230,12 +262,14 @@ def room_found(
         slacks: the least slack of the centred q (n,) [mm].
         deciding: a cone that has that slack (n,).
         found: whether it is found (n,).
+        multipliers, programmes: of the cones that decided at the same trial's pose before, and in which of its
+            programmes, from 1, or 0 (cones, n); changed to those of this pose.
     """
     cones, freedoms = rows.shape[0], rows.shape[2]
     rooms = new_rooms(cones, freedoms)
     basis, q, own, clear = np.empty((freedoms, freedoms)), np.empty(freedoms), np.empty((cones, 2)), np.empty(cones)
     done = np.empty(cones, dtype=np.bool_)
-    strength = 0.0
+    before, strength = (np.empty(cones), np.empty(cones, dtype=np.int64)), 0.0
     for j in range(freedoms):
         strength = max(strength, abs(push[j]))
     for i in range(found.shape[0]):
@@ -243,6 +277,9 @@ def room_found(
             continue
         for k in range(cones):
             own[k, 0], own[k, 1], clear[k] = offsets[k, 0, i], offsets[k, 1, i], clearances[k, i]
-        found[i], slacks[i], deciding[i] = lain((own, clear, rows), push, strength, basis, done, q, rooms)
+            before[0][k], before[1][k] = multipliers[k, i], programmes[k, i]
+        found[i], slacks[i], deciding[i] = lain((own, clear, rows), push, strength, before, basis, done, q, rooms)
+        for k in range(cones):
+            multipliers[k, i], programmes[k, i] = before[0][k], before[1][k]
         for j in range(freedoms):
             steps[j, i] = q[j] if found[i] else np.nan

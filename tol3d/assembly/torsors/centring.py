@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.assembly.torsors.ordered import ordered_solution, ordered_sum
+from tol3d.assembly.torsors.quick_centring import quickly_centred
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
@@ -137,6 +138,24 @@ def largest_slack(offsets: Array, clearances: Array, rows: Array, counts: Mask, 
         counts: which places do (places, trials).
         closed: projectors to what is not open (freedoms, freedoms, trials).
     """
+    trials = rows.shape[3]
+    step, multipliers, found = np.empty(rows.shape[2:]), np.empty(counts.shape), np.zeros(trials, dtype=bool)
+    counts = np.ascontiguousarray(counts)
+    offsets, clearances, rows, closed = (np.ascontiguousarray(own) for own in (offsets, clearances, rows, closed))
+    quickly_centred(offsets, clearances, rows, counts, closed, step, multipliers, found)
+    if not found.all():
+        left, counts = ~found, np.ascontiguousarray(counts[:, ~found])
+        offsets, clearances, rows, closed = (
+            np.ascontiguousarray(own[..., left]) for own in (offsets, clearances, rows, closed)
+        )
+        near, its = _by_cones(offsets, clearances, rows, counts, closed)
+        quickly_centred(offsets, clearances, rows, counts, closed, near, its, np.ones(len(counts[0]), dtype=bool))
+        step[:, left], multipliers[:, left] = near, its
+    return step, multipliers
+
+
+def _by_cones(offsets: Array, clearances: Array, rows: Array, counts: Mask, closed: Array) -> tuple[Array, Array]:
+    """See `largest_slack`."""
     lengths = np.sqrt(offsets[:, 0] ** 2 + offsets[:, 1] ** 2)
     least = np.where(counts, clearances - lengths, np.inf).min(axis=0)
     start = least - 0.5 * (np.where(counts, lengths, 0.0).max(axis=0) + 1e-3)
