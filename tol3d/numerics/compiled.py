@@ -2,7 +2,7 @@
 
 What was compiled is kept in the user's cache, under a name made of all that it is made of: the sources of the kernel's
 module and of all that they import (a kernel freezes the constants it finds there), the compiler, and the processor it
-compiles for. Studies of other engines than the exact one compile nothing.
+compiles for. Studies of gears by other engines than the exact one compile nothing.
 """
 
 import contextlib
