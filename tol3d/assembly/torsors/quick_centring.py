@@ -119,8 +119,7 @@ def slowly(place: Any, trial: Any, q: Any, state: Any, system: Any, step: Any) -
         if counts[k]:
             length = np.sqrt(offsets[k, 0] * offsets[k, 0] + offsets[k, 1] * offsets[k, 1])
             s, scale, count = min(s, clearances[k] - length), max(scale, clearances[k] + length), count + 1
-    s -= 0.5 * scale
-    t, near = count / scale, 1e-4
+    s, t, near = s - 0.5 * scale, count / scale, 1e-4
     for _ in range(SLOW):
         for i in range(size + 1):
             step[i] = 0.0
