@@ -5,6 +5,7 @@ import math
 import pickle
 import re
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import jsonschema
@@ -19,6 +20,7 @@ from pydantic import ValidationError
 from tol3d import Run, load_scene
 from tol3d.analyses.compensation import CompensationQuestion, compensation
 from tol3d.analyses.compensation_table import worst_table
+from tol3d.report import published_whole
 from tol3d.report.distribution import draw_distribution
 from tol3d.report.measure_table import curve_table
 from tol3d.report.published import published_notes
@@ -247,6 +249,13 @@ def test_each_stands_beside_ours_in_print(whole: Run) -> None:
     assert [float(cell) for cell in cells] == pytest.approx(expected, rel=1e-5)
     assert ["trials", "60", "60", "100"] in [line.split() for line in lines]
     assert any("at most 2.000 µm, of 90 trials" in line for line in lines)
+
+
+def test_a_correlation_is_that_of_its_road() -> None:
+    found = {"analytic": {"r": [[1.0, 0.25], [0.25, 1.0]]}, "geometric": {"r": [[1.0, 0.5], [0.5, 1.0]]}}
+    joint: Any = SimpleNamespace(correlated=["a", "b"], correlations=found)
+    of_roads = [published_whole._correlation(joint, ("a", "b"), road) for road in ("analytic", "geometric")]
+    assert of_roads == [0.25, 0.5]
 
 
 def test_the_picture_has_the_published_histogram_at_its_density(whole: Run) -> None:
