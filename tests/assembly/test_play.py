@@ -26,7 +26,7 @@ ROADS = ("exact", "analytic")
 PLATE = (SCENES / "hole_and_slot.yaml").read_text("utf-8")
 
 
-@pytest.mark.parametrize("road", ROADS)
+@pytest.mark.parametrize("road", [pytest.param("exact", marks=pytest.mark.slow), "analytic"])
 def test_hole_and_slot(road: str) -> None:
     """Problem 13: the disc of a hole and the width of a slot, area and not radius uniform, of each trial's sizes."""
     count = 20_000

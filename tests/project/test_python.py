@@ -99,7 +99,13 @@ def test_a_curve_has_a_column_a_position_or_none(tmp_path: Path) -> None:
         run.frame(curves="flat")  # type: ignore[arg-type]
 
 
-@pytest.mark.parametrize("scene", bundled_scenes())
+LONGER = ("bolted_cover", "every_assembly_field", "hole_and_slot", "robot_shoulder_swing")
+
+
+@pytest.mark.parametrize(
+    "scene",
+    [pytest.param(own, marks=pytest.mark.slow) if own in LONGER else own for own in bundled_scenes()],
+)
 def test_every_bundled_scene_has_a_frame(scene: str, tmp_path: Path) -> None:
     """Each value of each column once: as many columns as values a trial."""
     overrides = tol3d.Overrides(trials=8, engine="analytic")

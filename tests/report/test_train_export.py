@@ -318,6 +318,7 @@ def test_the_picture_shows_every_shaft_in_its_colour_beside_the_close_ups(
         assert (np.abs(pixels - wanted).max(axis=2) < 3).sum() > 500
 
 
+@pytest.mark.slow
 @renders
 def test_the_close_ups_are_those_of_the_mesh_that_was_chosen(run: Run, tmp_path: Path) -> None:
     """In the nominal build its gap is nothing but rounding: that is drawn as a point."""

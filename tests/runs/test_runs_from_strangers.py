@@ -385,7 +385,9 @@ BOMBS: dict[str, Callable[[dict[str, Any]], dict[str, Any]]] = {
 READ_AS_BLOCKS = ("words for numbers", "no 3D simulation")  # of the size of a block
 
 
-@pytest.mark.parametrize("bomb", BOMBS)
+@pytest.mark.parametrize(
+    "bomb", [pytest.param(own, marks=pytest.mark.slow) if "megabytes" in own else own for own in BOMBS]
+)
 def test_a_block_that_is_none_is_refused_before_it_is_unpacked(
     bomb: str, run: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -80,7 +80,7 @@ def printed(report: Any) -> str:
         ("every_field", 0.04),
         pytest.param("every_field", 0.15, marks=pytest.mark.slow),
         ("every_bevel_field", 0.15),
-        ("robot_shoulder_swing", 0.15),
+        pytest.param("robot_shoulder_swing", 0.15, marks=pytest.mark.slow),
     ],
 )
 def test_an_absurd_number_is_refused_or_checked(name: str, share: float, tmp_path: Path) -> None:
