@@ -93,8 +93,7 @@ class Joined:
     @cached_property
     def _slopes(self) -> Sequence[Slopes]:
         """Of the displacements of the bores, in their order."""
-        reading = replace(self.drawn, assembly=self.bores.assembly)
-        return [reading.slopes_of(name) for name in self.bores.lateral_names]
+        return [self.assembly.slopes_of(name) for name in self.bores.lateral_names]
 
     @cached_property
     def displacing(self) -> Array:

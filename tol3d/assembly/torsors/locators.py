@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.assembly.model import Locate, Pair
+from tol3d.assembly.model import Locate, Pair, Rest
 from tol3d.assembly.torsors.features import summed
 from tol3d.assembly.torsors.freedoms import Freedoms, freedom_in_words
 from tol3d.assembly.torsors.torsor import height_at
@@ -19,7 +19,7 @@ def located(move: Locate, world: World) -> Array:
     Raises:
         InputError: the contacts leave a freedom.
     """
-    contacts = [_contact(pair, move, world) for pair in move.pairs]
+    contacts = [contact(pair, move, world) for pair in move.pairs]
     rows, values = (np.concatenate(each) for each in zip(*contacts, strict=True))
     points = [world.origin(pair.moving) for pair in move.pairs]
     freedoms = Freedoms(world.assembly.part[move.part].pose[:3, 3], points, world.columns.count)
@@ -31,7 +31,7 @@ def located(move: Locate, world: World) -> Array:
     return freedoms.torsor
 
 
-def _contact(pair: Pair, move: Locate, world: World) -> tuple[Array, Array]:
+def contact(pair: Pair, move: Locate | Rest, world: World) -> tuple[Array, Array]:
     """Row (1, 6) and values (1, columns) of the condition n . (moving - target) = locator, n turning with its part."""
     moving, target = world.origin(pair.moving), world.origin(pair.target)
     target_part = world.part_of(pair.target)

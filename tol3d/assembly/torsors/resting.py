@@ -6,9 +6,9 @@ from math import comb
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.assembly.model import Pair, Rest
-from tol3d.assembly.torsors.features import summed
+from tol3d.assembly.model import Rest
 from tol3d.assembly.torsors.freedoms import INDEPENDENT, Freedoms, freedom_in_words
+from tol3d.assembly.torsors.locators import contact
 from tol3d.assembly.torsors.mating import take_relations
 from tol3d.assembly.torsors.one_sided import Corner, OneSided
 from tol3d.assembly.torsors.torsor import height_at
@@ -40,7 +40,7 @@ def rested(move: Rest, world: World, leaning: Array | None = None) -> Array:
     Raises:
         InputError: no contacts balance the force, or too many of them to try.
     """
-    contacts = [_contact(pair, move, world) for pair in move.pairs]
+    contacts = [contact(pair, move, world) for pair in move.pairs]
     rows, values = (np.concatenate(each) for each in zip(*contacts, strict=True))
     part = world.assembly.part[move.part]
     points = [world.origin(pair.moving) for pair in move.pairs]
@@ -81,19 +81,6 @@ def along_nothing(count: int) -> Array:
 def _clear(leaning: Array, generic: Array) -> Array:
     """A wish that also decides, slightly, where a part may rock across it."""
     return leaning + SLIGHTER * max(float(np.linalg.norm(leaning)), 1e-9) * generic
-
-
-def _contact(pair: Pair, move: Rest, world: World) -> tuple[Array, Array]:
-    """Row (1, 6) and values (1, columns) of a gap, row . torsor - values."""
-    moving, target = world.origin(pair.moving), world.origin(pair.target)
-    target_part = world.part_of(pair.target)
-    normal = world.turned(pair.normal, target_part if move.points_on == "part" else move.part)
-    at_moving, at_target = height_at(moving, normal), height_at(target, normal)
-    row = at_moving if move.points_on == "part" else at_target
-    own = at_moving @ world.on_body(pair.moving, move.part)
-    other = row @ world.parts[target_part] + at_target @ world.on_part(pair.target)
-    gap = world.columns.constants(normal @ (moving - target)[:, None])
-    return row, other - own - gap + summed(pair.locator, 1, world.columns)
 
 
 def corners_of(matrix: Array, pull: Array, wish: Array) -> list[Corner]:

@@ -1,5 +1,6 @@
 """Parts that pins or tabs hold with play in holes or slots: what engages, and where in its room the part lies."""
 
+from abc import abstractmethod
 from collections.abc import Iterator
 from typing import Annotated, Any, ClassVar, Literal
 
@@ -69,9 +70,9 @@ class PlaySpec(PlacingSpec):
     floating: FloatUnion = Field(alias="float")
 
     @property
+    @abstractmethod
     def engaged(self) -> tuple[EngagementSpec, ...]:
         """What engages, in order."""
-        raise NotImplementedError
 
     def paired(self) -> Iterator[tuple[KeyPath, PairSpec]]:
         """See PlacingSpec."""
