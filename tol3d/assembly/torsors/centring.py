@@ -11,19 +11,13 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.assembly.torsors.ordered import ordered_solution, ordered_sum
+from tol3d.assembly.torsors.interior_points import climbed
+from tol3d.assembly.torsors.ordered import ordered_sum
 from tol3d.assembly.torsors.quick_centring import quickly_centred
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 
-GAP: Final = 1e-12
-"""Of the largest room: by how much the slack may be better."""
-MOST_STEPS: Final = 80
-TARGET: Final = 0.1
-"""Of the gap, from one step to the next."""
-NEAR: Final = 0.98
-"""Of the way to the end of a cone."""
 DECIDES: Final = 1e-6
 """Least multiplier, of 1 in all, of a place that decides."""
 LOST: Final = 1e-6
@@ -162,99 +156,9 @@ def _by_cones(offsets: Array, clearances: Array, rows: Array, counts: Mask, clos
     primal = np.concatenate([np.where(counts, clearances - start, 1.0)[:, None], offsets], axis=1)
     dual = np.zeros(primal.shape)
     dual[:, 0] = np.where(counts, 1.0 / counts.sum(axis=0), 1.0)
-    return climbed(primal, dual, rows, counts, closed, np.zeros(rows.shape[2:]), lifts=True)
-
-
-def climbed(
-    primal: Array, dual: Array, rows: Array, counts: Mask, closed: Array, goal: Array, *, lifts: bool
-) -> tuple[Array, Array]:
-    """Interior points, until each trial's gap is closed: steps (freedoms, trials), multipliers (places, trials).
-
-    Args:
-        primal, dual: cones at the start and multipliers, inside (places, 3, trials).
-        rows: (places, 2, freedoms, trials).
-        counts: which places do (places, trials).
-        closed: projectors to what is not open, where nothing moves (freedoms, freedoms, trials).
-        goal: what is to be largest, besides the slack (freedoms, trials).
-        lifts: whether the slack is.
-    """
-    trials = primal.shape[2]
-    found, multipliers = np.zeros(rows.shape[2:]), np.zeros(counts.shape)
-    scale = np.where(counts, primal[:, 0], 0.0).max(axis=0)
-    going, moved, owed = np.arange(trials), np.zeros(rows.shape[2:]), np.ones(trials)
-    for number in range(MOST_STEPS):
-        gap = ordered_sum(np.where(counts, ordered_sum(primal[:, r] * dual[:, r] for r in range(3)), 0.0))
-        done = (gap <= GAP * scale) & (owed <= 1e-9 if not lifts else True) | (number == MOST_STEPS - 1)
-        if done.any():
-            found[:, going[done]], multipliers[:, going[done]] = moved[:, done], dual[:, 0, done]
-            left = ~done
-            if not left.any():
-                break
-            going, moved, owed, scale, gap = going[left], moved[:, left], owed[left], scale[left], gap[left]
-            primal, dual, rows, closed, goal = (own[..., left] for own in (primal, dual, rows, closed, goal))
-            counts = counts[:, left]
-        target = TARGET * gap / counts.sum(axis=0)
-        step, changes = _direction(primal, dual, rows, counts, closed, goal if not lifts else None, target)
-        up, down = (_way(own, change, counts) for own, change in zip((primal, dual), changes, strict=True))
-        moved = moved + up * step
-        primal, dual = primal + up * changes[0], dual + down * changes[1]
-        owed = owed * (1.0 - down)
-    return found, multipliers
-
-
-def _direction(
-    primal: Array, dual: Array, rows: Array, counts: Mask, closed: Array, goal: Array | None, target: Array
-) -> tuple[Array, tuple[Array, Array]]:
-    """A step (freedoms, trials), and the changes of cones and multipliers; the slack rises where there is no goal."""
-    lifts = goal is None
-    inside, outside = (own[:, 0] ** 2 - own[:, 1] ** 2 - own[:, 2] ** 2 for own in (primal, dual))
-    inside, outside = np.maximum(inside, 1e-300), np.maximum(outside, 1e-300)
-    a, b = 1.0 / np.sqrt(inside), 1.0 / np.sqrt(outside)
-    joint = ordered_sum(primal[:, r] * dual[:, r] for r in range(3)) * a * b
-    mirror = np.array([1.0, -1.0, -1.0])[:, None]
-    point = (a[:, None] * primal + mirror * b[:, None] * dual) * (0.5 / np.sqrt(0.5 * (1.0 + joint)))[:, None]
-    weight = np.where(counts, a / b, 0.0)
-    back = np.where(counts, target / inside, 0.0)
-    count = rows.shape[2]
-    seen = ordered_sum(rows[:, r] * point[:, 1 + r, None] for r in (0, 1))  # (places, freedoms, trials)
-    full = np.concatenate([seen, point[:, :1]], axis=1) if lifts else seen
-    size = full.shape[1]
-    system, right = np.empty((size, size, primal.shape[2])), np.empty((size, primal.shape[2]))
-    for i in range(size):
-        for j in range(i + 1):
-            own = 2.0 * full[:, i] * full[:, j]
-            if i < count:
-                own = own + ordered_sum(rows[:, r, i] * rows[:, r, j] for r in (0, 1))
-            elif j == i:
-                own = own - 1.0
-            system[i, j] = system[j, i] = ordered_sum(weight * own)
-        if i < count:
-            pull = ordered_sum(rows[:, r, i] * primal[:, 1 + r] for r in (0, 1))
-            right[i] = (0.0 if goal is None else goal[i]) - ordered_sum(back * pull)
-        else:
-            right[i] = 1.0 - ordered_sum(back * primal[:, 0])
-    stiff = np.max([system[i, i] for i in range(count)], axis=0)
-    system[:count, :count] += stiff * closed  # else equations of what is closed would be rounding
-    solution = ordered_solution(system, right)
-    step, rise = solution[:count], solution[count] if lifts else np.zeros(primal.shape[2])
-    change = np.concatenate([np.broadcast_to(-rise, (len(rows), 1, len(rise))), _times(rows, step)], axis=1)
-    along = 2.0 * weight * ordered_sum(mirror[r] * point[:, r] * change[:, r] for r in range(3))
-    turned = mirror * (along[:, None] * point - weight[:, None] * change)
-    other = back[:, None] * mirror * primal - dual - turned
-    return step, (np.where(counts[:, None], change, 0.0), np.where(counts[:, None], other, 0.0))
-
-
-def _way(cone: Array, change: Array, counts: Mask) -> Array:
-    """The share of a change that stays inside all cones (trials,), 1 at most."""
-    inside = cone[:, 0] ** 2 - cone[:, 1] ** 2 - cone[:, 2] ** 2
-    slope = cone[:, 0] * change[:, 0] - cone[:, 1] * change[:, 1] - cone[:, 2] * change[:, 2]
-    bend = change[:, 0] ** 2 - change[:, 1] ** 2 - change[:, 2] ** 2
-    rest = np.sqrt(np.maximum(slope**2 - bend * inside, 0.0))
-    with np.errstate(divide="ignore", invalid="ignore"):
-        outward = np.where(bend < 0.0, -(slope + rest) / bend, np.inf)
-        falling = np.where((bend >= 0.0) & (slope < 0.0), inside / (rest - slope), np.inf)
-    found = np.where(counts, np.minimum(outward, falling), np.inf).min(axis=0)
-    return np.asarray(np.minimum(1.0, NEAR * found))
+    step, multipliers, no_goal = np.empty(rows.shape[2:]), np.empty(counts.shape), np.zeros(rows.shape[2:])
+    climbed(primal, dual, rows, counts, closed, no_goal, 1, step, multipliers)
+    return step, multipliers
 
 
 def _times(rows: Array, q: Array) -> Array:

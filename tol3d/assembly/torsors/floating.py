@@ -5,7 +5,8 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.assembly.torsors.centring import DECIDES, Cones, climbed, narrowed, refined
+from tol3d.assembly.torsors.centring import DECIDES, Cones, narrowed, refined
+from tol3d.assembly.torsors.interior_points import climbed
 from tol3d.assembly.torsors.ordered import ordered_product, ordered_sum
 
 Array = NDArray[np.float64]
@@ -20,12 +21,13 @@ def pushed(cones: Cones, q: Array, push: Array) -> Array:
     """As far along a direction of the freedoms (freedoms,) as the room goes; what that leaves open is centred."""
     trials = q.shape[1]
     rows = cones.rows[..., None] * np.ones(trials)
-    counts = np.broadcast_to((np.abs(cones.rows).max(axis=(1, 2)) > NONE)[:, None], cones.clearances.shape)
+    counts = np.repeat((np.abs(cones.rows).max(axis=(1, 2)) > NONE)[:, None], trials, axis=1)
     primal = np.concatenate([cones.clearances[:, None], cones.at(q)], axis=1)
     dual = np.zeros(primal.shape)
     dual[:, 0] = 1.0 / counts.sum(axis=0)
     closed = np.zeros((len(q), len(q), trials))
-    step, multipliers = climbed(primal, dual, rows, counts, closed, push[:, None] * np.ones(trials), lifts=False)
+    step, multipliers, goal = np.empty(q.shape), np.empty(counts.shape), push[:, None] * np.ones(trials)
+    climbed(primal, dual, rows, counts, closed, goal, 0, step, multipliers)
     decides = counts & (multipliers > DECIDES)
     everything = np.eye(len(q))[:, :, None] * np.ones(trials)
     return refined(cones, q + step, narrowed(everything, rows, decides), decides)
