@@ -6,12 +6,11 @@ from typing import Final
 import cadquery as cq
 import numpy as np
 from numpy.typing import NDArray
-from OCP.BRepAlgoAPI import BRepAlgoAPI_Fuse
 from OCP.BRepPrimAPI import BRepPrimAPI_MakeCylinder, BRepPrimAPI_MakeSphere
 from OCP.gp import gp_Ax2, gp_Dir, gp_Pnt
-from OCP.TopTools import TopTools_ListOfShape
 
 from tol3d.errors import GeometryError
+from tol3d.parts.named_boolean import fused
 from tol3d.parts.named_solid import NamedSolid
 from tol3d.parts.shaft import shaft
 
@@ -38,15 +37,8 @@ def arm(points: Sequence[Point], diameter: float) -> NamedSolid:
     """
     if not (points and diameter > 0.0):
         raise GeometryError(f"an arm needs points and a diameter, got {len(points)} points and {diameter:g} mm")
-    pieces = list(_pieces(_places(points, diameter), diameter))
-    fusion = BRepAlgoAPI_Fuse()
-    fusion.SetArguments(_shapes(pieces[:1]))
-    fusion.SetTools(_shapes(pieces[1:]))
-    fusion.Build()
-    solids = cq.Shape.cast(fusion.Shape()).Solids() if len(pieces) > 1 else [pieces[0].solid]
-    if len(solids) != 1 or not solids[0].isValid():
-        raise GeometryError("the bars of the arm do not fuse into one valid solid")
-    return NamedSolid(solids[0], dict(_left_faces(fusion, pieces, solids[0])))
+    first, *others = _pieces(_places(points, diameter), diameter)
+    return fused(first, others, "the arm")
 
 
 def _places(points: Sequence[Point], diameter: float) -> list[Point]:
@@ -89,23 +81,3 @@ def _out_of_the_way(*bars: Array) -> tuple[Array, Array]:
 def _across(direction: Array) -> Array:
     """A vector square to a unit vector."""
     return np.cross(direction, np.eye(3)[np.argmin(np.abs(direction))])
-
-
-def _shapes(pieces: Sequence[NamedSolid]) -> TopTools_ListOfShape:
-    listed = TopTools_ListOfShape()
-    for piece in pieces:
-        listed.Append(piece.solid.wrapped)
-    return listed
-
-
-def _left_faces(
-    fusion: BRepAlgoAPI_Fuse, pieces: Sequence[NamedSolid], solid: cq.Solid
-) -> Iterator[tuple[str, cq.Face]]:
-    """Faces of the fused solid by name, told by the fusion's own history; one that two pieces share is the first's."""
-    outward = {face: face for face in solid.Faces()}
-    for piece in pieces:
-        for name, face in piece.faces.items():
-            images = [cq.Face(image) for image in fusion.Modified(face.wrapped)] or [face]
-            left = [outward.pop(image) for image in images if image in outward]
-            for number, image in enumerate(left, start=1):
-                yield (name if number == 1 else f"{name} piece {number}"), image

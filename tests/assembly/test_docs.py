@@ -61,6 +61,7 @@ FIELD_SCENES = (
     "clutch",
     "hole_and_slot",
     "two_plates",
+    "machined_parts",
 )
 """Between them every kind and every field."""
 
@@ -86,7 +87,7 @@ def test_the_tables_of_the_example_are_those_of_the_run(tol3d: Command, tmp_path
 def test_the_scenes_use_every_field_of_every_kind() -> None:
     kinds = [spec for section in SECTIONS for spec in ASSEMBLY.specs(section)]
     known = {own for spec in kinds for own in fields_within(spec) if own[0].__module__.startswith("tol3d.assembly")}
-    beside = 21  # placement, datum, zone, force; 6 features, 3 laws, 5 pairs, 3 floats
+    beside = 25  # placement, datum, zone, force; 6 features, 3 laws, 5 pairs, 3 floats; plate, hole, slot, pin
     assert len({model for model, _ in known}) == len(kinds) + beside
     said = {own for name in FIELD_SCENES for own in fields_said(load_scene(SCENES / f"{name}.yaml", KINDS))}
     assert unsaid(known, said) == set()

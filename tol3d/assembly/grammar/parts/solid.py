@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field, model_validator
 
+from tol3d.assembly.grammar.builders import BuilderUnion
 from tol3d.assembly.grammar.feature_name import OwnName
 from tol3d.assembly.grammar.features import FeatureUnion
 from tol3d.assembly.grammar.features.nominal_frame import frame, is_across
@@ -44,8 +45,10 @@ class SolidSpec(GrowingSpec):
 
     kind: Literal["solid"]
     features: Mapping[OwnName, FeatureUnion] = Field(default_factory=dict, description="what its drawing names")
+    builder: BuilderUnion | None = Field(default=None, description="its solid by dimensions, for what needs one")
     like: Name | None = Field(
-        default=None, description="another part whose features and tolerances it has, with deviations of its own"
+        default=None,
+        description="another part whose features, tolerances and solid it has, with deviations of its own",
     )
     placed: Placement = Field(default_factory=Placement, description="nominal place; moves find theirs near it")
 
@@ -62,4 +65,6 @@ class SolidSpec(GrowingSpec):
     def _refuse_contradictions(self) -> Self:
         if bool(self.features) == (self.like is not None):
             raise refused("features", "either features or `like: another part`", "both" if self.features else "neither")
+        if self.builder is not None and self.like is not None:
+            raise refused("builder", "none beside `like`, which brings that part's", self.builder.kind)
         return self

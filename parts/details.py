@@ -1,0 +1,106 @@
+"""What is cut into a part or stands on it, by numbers: holes, slots and pins. Loads no CAD."""
+
+import math
+from dataclasses import dataclass
+
+Place = tuple[float, float]
+"""Two coordinates of the part [mm]: x, y and z in this order without the one that a face is square to."""
+
+
+@dataclass(frozen=True)
+class Hole:
+    """A drilled hole.
+
+    Args:
+        name: its wall's; the flat end of a blind hole is the face "NAME floor".
+        at: its axis on the face.
+        diameter: [mm].
+        depth: [mm] of a blind hole, from the face; through the material if None.
+        face: that it is drilled into.
+    """
+
+    name: str
+    at: Place
+    diameter: float
+    depth: float | None = None
+    face: str = "top"
+
+    @property
+    def reach(self) -> Place:
+        """How far it reaches from its place along both coordinates [mm]."""
+        return self.diameter / 2, self.diameter / 2
+
+    @property
+    def words(self) -> str:
+        """For messages."""
+        return f"hole {self.name!r} (diameter {self.diameter:g} mm at {place_words(self.at)})"
+
+
+@dataclass(frozen=True)
+class Slot:
+    """A milled slot with round ends.
+
+    Args:
+        name: its walls are "NAME left wall" and "NAME right wall" (looking onto the face, along the slot), its round
+            ends "NAME start" and "NAME end", the flat end of a blind slot "NAME floor".
+        at: its middle on the face.
+        length: from end to end [mm].
+        width: between the walls [mm].
+        turned: from the face's first coordinate towards its second [rad].
+        depth: [mm] of a blind slot, from the face; through the material if None.
+        face: that it is milled into.
+    """
+
+    name: str
+    at: Place
+    length: float
+    width: float
+    turned: float = 0.0
+    depth: float | None = None
+    face: str = "top"
+
+    @property
+    def reach(self) -> Place:
+        """How far it reaches from its place along both coordinates [mm]."""
+        straight = (self.length - self.width) / 2
+        return (
+            straight * abs(math.cos(self.turned)) + self.width / 2,
+            straight * abs(math.sin(self.turned)) + self.width / 2,
+        )
+
+    @property
+    def words(self) -> str:
+        """For messages."""
+        return f"slot {self.name!r} ({self.length:g} mm by {self.width:g} mm at {place_words(self.at)})"
+
+
+@dataclass(frozen=True)
+class Pin:
+    """A round pin that stands on the top: its side is the face "NAME", its end "NAME end".
+
+    Args:
+        name: its side's.
+        at: its axis.
+        diameter: [mm].
+        height: above the top [mm].
+    """
+
+    name: str
+    at: Place
+    diameter: float
+    height: float
+
+    @property
+    def reach(self) -> Place:
+        """How far it reaches from its place along both coordinates [mm]."""
+        return self.diameter / 2, self.diameter / 2
+
+    @property
+    def words(self) -> str:
+        """For messages."""
+        return f"pin {self.name!r} (diameter {self.diameter:g} mm at {place_words(self.at)})"
+
+
+def place_words(at: Place) -> str:
+    """A place for messages: [10, -5] mm."""
+    return f"[{at[0]:g}, {at[1]:g}] mm"
