@@ -102,14 +102,14 @@ def test_check_lists_features_with_their_datum_frames_and_moves(tmp_path: Path) 
     text = text.replace("of: plate.hole, along: [0, 1, 0]", "of: plate.hole, datums: [floor, b1-b2], along: [0, 1, 0]")
     scene.write_text(text, encoding="utf-8")
     shown = page(*PRESENTER.check(simulation_of(load(scene), Overrides()))).csv()
-    assert 'plate.hole,"axis, 10 mm long","150, 60, 0","floor, b1-b2"' in shown
-    assert 'plate.floor,plane 200 × 100 mm,"100, 50, 0",its part' in shown
+    assert 'plate.hole,"axis, 10 mm long, along z","150, 60, 0","floor, b1-b2"' in shown
+    assert 'plate.floor,"plane 200 × 100 mm, facing -z","100, 50, 0",its part' in shown
     assert "machine,fixed,plate," in shown
 
 
 def test_check_shows_what_floats() -> None:
     shown = page(*PRESENTER.check(simulation_of(load(SCENES / "hole_and_slot.yaml"), Overrides()))).csv()
-    assert '"slot 10.06 mm wide, 14 × 8 mm"' in shown
+    assert '"slot 10.06 mm wide, 14 × 8 mm, along y"' in shown
     assert '"base.pin 1 in plate.hole, base.pin 2 in plate.slot; 3 freedoms, random"' in shown
     assert "float of plate on the pins" in shown
 

@@ -80,11 +80,16 @@ def mating(move: Mate, nominal: World) -> Mating:
     return Mating(move, alignment, signs)
 
 
+def asked_of(relation: Relation, features: Mapping[str, Feature]) -> tuple[Held, Turning] | None:
+    """What a relation asks; None where it is none of its two features."""
+    return ASKED.get((relation.kind, _word(features[relation.moving]), _word(features[relation.target])))
+
+
 def _tie(move: Mate, relation: Relation, world: World) -> Tie:
     features = world.assembly.features
     shapes = _word(features[relation.moving]), _word(features[relation.target])
     name = f"moves.{move.name}: {relation.kind} of {relation.moving} and {relation.target}"
-    asked = ASKED.get((relation.kind, *shapes))
+    asked = asked_of(relation, features)
     if asked is None:
         expected = " or ".join(f"{moving} on {target}" for kind, moving, target in ASKED if kind == relation.kind)
         raise InputError(f"{name}: expected {expected}, got {shapes[0]} on {shapes[1]}")

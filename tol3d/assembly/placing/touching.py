@@ -1,6 +1,6 @@
 """Parts laid against others by contacts of round features: what the contacts ask, trial by trial."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Final
 
@@ -13,7 +13,7 @@ from tol3d.assembly.model.touch import unfit_for_contact
 from tol3d.assembly.placing import contact_equations
 from tol3d.assembly.placing.actual_feature import ActualFeature
 from tol3d.assembly.placing.contact_equations import ALONG, CROSSING
-from tol3d.assembly.placing.free_motion import direction_in_words, free_motions, in_words, seen_steps
+from tol3d.assembly.placing.free_motion import free_motions, in_words, seen_steps
 from tol3d.assembly.placing.poses import Codes, Pose, column, cross, rotated
 from tol3d.assembly.placing.surfaces import PARALLEL, common_normal, is_inside, kind_of, touching_distance
 from tol3d.assembly.placing.touches import lacking_at, touching_poses
@@ -56,7 +56,6 @@ class Touching:
         lacking: errors at the nominal pose (k,) [mm].
         side: of the folds, on which the nominal pose lies.
         rows: how errors change with a shift and a turn about the part's origin there (k, 6).
-        free: motions (motions, 6) of the part that no contact decides, shift of the world's origin and turn.
     """
 
     move: Touch
@@ -71,7 +70,6 @@ class Touching:
     lacking: Array
     side: float
     rows: Array
-    free: Array
 
     def placed(self, world: World) -> tuple[World, Codes]:
         """The world after the move, and what became of it (n,)."""
@@ -82,25 +80,6 @@ class Touching:
         about = (self.start, self.basis, self.reach, self.lacking, self.side, self._force(world), self.inner)
         touching_poses(*contacts, *about, turn, shift, codes)
         return world.with_part_at(self.move.part, Pose(turn, shift + self.origin)), codes
-
-    @property
-    def in_words(self) -> str:
-        """What each contact touches and takes, and how many freedoms are left."""
-        held = [f"{contact.target}: {taken}" for contact, taken in zip(self.move.contacts, self._taken(), strict=True)]
-        left = f"{len(self.free)} left as drawn, such as: {in_words(self.free)}" if len(self.free) else "none left"
-        return f"{'; '.join(held)}; freedoms {left}"
-
-    def _taken(self) -> Iterator[str]:
-        """What each contact takes of the part's freedoms: the shift along its normal, the turn of a line off it."""
-        e = 0
-        for kind in self.kinds:
-            shift = direction_in_words(self.rows[e, :3])
-            if kind in contact_equations.TWO:
-                yield f"a shift along {shift}, a turn about {direction_in_words(self.rows[e + 1, 3:])}"
-                e += 2
-            else:
-                yield f"a shift along {shift}"
-                e += 1
 
     def _force(self, world: World) -> Array:
         if self.move.pressed is None:
@@ -148,7 +127,6 @@ def touching(move: Touch, nominal: World) -> Touching:
         lacking,
         float(np.sign(np.linalg.det(rows @ basis))),
         about_origin,
-        free_motions(about_origin, origin, reach),
     )
     if made.placed(nominal)[1][0] != OK:
         raise InputError(

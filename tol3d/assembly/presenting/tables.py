@@ -9,7 +9,7 @@ from tol3d.assembly.model.moves import BestFit, Mate, Rest, Weld
 from tol3d.assembly.placing import road as placing
 from tol3d.assembly.placing.engaging import Engaging
 from tol3d.assembly.placing.resting import Resting
-from tol3d.assembly.placing.touching import Touching
+from tol3d.assembly.presenting.freedom_tables import datum_blocks, freedom_blocks
 from tol3d.assembly.system import AssemblySystem
 from tol3d.report.page import Heading, PageItem, Row, Table, titled
 from tol3d.report.system_check import system_blocks
@@ -26,7 +26,7 @@ def check_blocks(simulation: Simulation) -> Sequence[PageItem]:
 def drawing_blocks(system: AssemblySystem) -> Sequence[PageItem]:
     """Features and moves."""
     rows = [
-        Row(own.name, (_shape(own), _place(system, own), _frame(own)))
+        Row(own.name, (_shape(own) + _facing(system, own), _place(system, own), _frame(own)))
         for part in system.assembly.parts
         for own in part.features
         if own.is_named
@@ -36,7 +36,7 @@ def drawing_blocks(system: AssemblySystem) -> Sequence[PageItem]:
     planned = placing.planned(system.assembly).moves
     moves = [Row(move.name, _move(move, plan)) for move, plan in zip(system.assembly.moves, planned, strict=True)]
     steps = titled("moves", Table("", [Heading(word, words=True) for word in ("kind", "part", "by")], moves))
-    return (*features, *steps, *_rests(system))
+    return (*features, *datum_blocks(system.assembly), *steps, *freedom_blocks(system.assembly), *_rests(system))
 
 
 def _rests(system: AssemblySystem) -> Sequence[PageItem]:
@@ -89,6 +89,17 @@ def _place(system: AssemblySystem, feature: Feature) -> str:
     return ", ".join(f"{float(np.round(own, 6)) + 0.0:g}" for own in at)
 
 
+def _facing(system: AssemblySystem, feature: Feature) -> str:
+    """The normal or the axis of a feature in the world, in words; of a point nothing."""
+    if isinstance(feature.shape, Point):
+        return ""
+    z = (system.assembly.part[feature.part].pose[:3, :3] @ feature.frame[:3, 2]).round(6) + 0.0
+    named = f"{'-' if z.sum() < 0 else ''}{'xyz'[int(np.abs(z).argmax())]}"
+    direction = named if np.abs(z).max() == 1 else "(" + ", ".join(f"{value:.4g}" for value in z) + ")"
+    is_flat = isinstance(feature.shape, Plane | RoundPlane) and not isinstance(feature.shape, Slot)
+    return f", facing {direction}" if is_flat else f", along {direction}"
+
+
 def _frame(feature: Feature) -> str:
     return "its part" if not feature.parent else feature.parent.partition("|")[2].replace("|", ", ")
 
@@ -109,8 +120,7 @@ def _move(move: Move, plan: placing.Placing) -> tuple[str, str, str]:
         case Rest():
             return "rest", move.part, f"{len(move.pairs)} contacts, points ride on the {move.points_on}"
         case Touch():
-            assert isinstance(plan, Touching)
-            return "touch", move.part, plan.in_words
+            return "touch", move.part, f"{len(move.contacts)} contacts"
         case Weld():
             return "weld", move.part, ", ".join(move.others)
     return "fixed", move.part, ""

@@ -1,6 +1,7 @@
 """What a scene of gears in a housing means, as tables."""
 
 from collections.abc import Sequence
+from typing import Final
 
 import numpy as np
 
@@ -8,9 +9,11 @@ from tol3d.assembly.presenting.tables import drawing_blocks
 from tol3d.gearbox.bores import Bores
 from tol3d.gearbox.system import GearboxSystem
 from tol3d.gearing.presenting.scene_check import mechanics_blocks
-from tol3d.report.page import Heading, PageItem, Row, Table, titled
+from tol3d.report.page import Heading, PageItem, Row, Table, note, titled
 from tol3d.report.system_check import system_blocks
 from tol3d.study.simulation import Simulation
+
+HELD: Final = "bores hold a shaft across its axis and against tilts; along it and about it its train decides"
 
 
 def check_blocks(simulation: Simulation) -> Sequence[PageItem]:
@@ -36,4 +39,5 @@ def shafts_table(bores: Bores) -> Sequence[PageItem]:
         for own in bores.shafts
     ]
     words = ("in", "at its z [mm]", "origin at [mm]", "z along")
-    return titled("shafts in bores", Table("", [Heading(word, words=True) for word in words], rows))
+    table = Table("", [Heading(word, words=True) for word in words], rows)
+    return (*titled("shafts in bores", table), note(HELD))

@@ -1,0 +1,202 @@
+"""What datums and moves ask, nominally: which freedoms each takes, for lists."""
+
+from collections.abc import Iterator, Sequence
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tol3d.assembly.model import (
+    Assembly,
+    Axis,
+    BestFit,
+    Datum,
+    DatumFrame,
+    Engage,
+    Fix,
+    Locate,
+    Mate,
+    Pair,
+    Plane,
+    Relation,
+    Rest,
+    RoundPlane,
+    Touch,
+    Weld,
+)
+from tol3d.assembly.placing import contact_equations
+from tol3d.assembly.placing.engaging import Engaging
+from tol3d.assembly.placing.mating import asked_of
+from tol3d.assembly.placing.resting import Resting
+from tol3d.assembly.placing.road import Placing
+from tol3d.assembly.placing.taken_freedoms import Asked, Freedoms, taken
+from tol3d.assembly.placing.touching import Touching
+
+Array = NDArray[np.float64]
+
+ORDER: Final = ("primary", "secondary", "tertiary")
+
+SAME: Final = 1e-6
+"""Sine of the angle between directions that are the same."""
+
+
+def held_by_datums(assembly: Assembly, frame: DatumFrame) -> Freedoms:
+    """What each datum of a frame takes, along the axes of its part."""
+    asked = [Asked(_datum_name(datum), _of_datum(assembly, datum, k)) for k, datum in enumerate(frame.datums)]
+    origins = np.array([assembly.features[name].frame[:3, 3] for own in frame.datums for name in own.features])
+    return taken(asked, np.zeros(3), _reach(origins))
+
+
+def _datum_name(datum: Datum) -> str:
+    return "-".join(name.partition(".")[2] for name in datum.features)
+
+
+def _of_datum(assembly: Assembly, datum: Datum, place: int) -> Array:
+    features = [assembly.features[name] for name in datum.features]
+    frame = features[0].frame
+    at, z = frame[:3, 3], frame[:3, 2]
+    if len(features) > 1:
+        line = features[1].frame[:3, 3] - at
+        return _line(at, line / np.linalg.norm(line))
+    if isinstance(features[0].shape, Axis):
+        return _line(at, z)
+    if not isinstance(features[0].shape, Plane | RoundPlane):
+        return _point(at, np.eye(3))
+    if datum.simulator == "targets" and datum.targets is not None and place > 0:
+        return np.concatenate([_point(at + frame[:3, :3] @ target, z[None]) for target in datum.targets])
+    return np.concatenate([_point(at, z[None]), _direction(z)])
+
+
+def held_by(assembly: Assembly, plan: Placing) -> Freedoms:
+    """What a move takes, step by step, along the axes of the world; of what lays a part against nothing: nothing."""
+    part = plan.part if isinstance(plan, Fix | Weld) else plan.move.part
+    middle = assembly.part[part].pose[:3, 3]
+    asked = list(_asked(assembly, plan, middle))
+    places = [_pose(assembly, own.name)[:3, 3] for own in assembly.part[part].features]
+    return taken(asked, middle, _reach(np.array(places) - middle))
+
+
+def _asked(assembly: Assembly, plan: Placing, middle: Array) -> Iterator[Asked]:
+    """Rows about a middle (3,) in the world."""
+    match getattr(plan, "move", plan):
+        case Locate() as move:
+            yield from _located(assembly, move, middle)
+        case BestFit() as move:
+            directions = []
+            for fit in move.fits:
+                turn = assembly.part[assembly.features[fit.target].part].pose[:3, :3]
+                directions.append(_point(_pose(assembly, fit.moving)[:3, 3] - middle, fit.directions @ turn.T))
+            yield Asked(f"fit of {_listed([own.moving for own in move.fits])}", np.concatenate(directions))
+        case Mate() as move:
+            yield from _related(assembly, move.relations, middle)
+        case Engage() as move:
+            assert isinstance(plan, Engaging)
+            yield from _related(assembly, move.relations, middle)
+            rows = plan.rows.reshape(-1, plan.freedoms.shape[1]) @ plan.freedoms.T
+            rows = np.hstack([rows[:, :3], plan.reach * rows[:, 3:]])
+            words = ", ".join(own.name for own in move.engagements)
+            yield Asked(words, _about(rows, plan.middle - middle), is_room=True)
+        case Rest() as move:
+            assert isinstance(plan, Resting)
+            yield from _related(assembly, move.relations, middle)
+            rows = np.hstack([plan.all_rows[:, 3:], plan.reach * plan.all_rows[:, :3]])
+            targets = dict.fromkeys(_touched(assembly, own.target) for own in move.pairs)
+            words = f"contacts with {_listed(list(targets))}, pressed on"
+            yield Asked(words, _about(rows, plan.origin[:, 0] - middle))
+        case Touch() as move:
+            assert isinstance(plan, Touching)
+            start = 0
+            for contact, kind in zip(move.contacts, plan.kinds, strict=True):
+                end = start + (2 if kind in contact_equations.TWO else 1)
+                words = f"{contact.moving} on {contact.target}"
+                yield Asked(words, _about(plan.rows[start:end], plan.origin[:, 0] - middle))
+                start = end
+
+
+def _located(assembly: Assembly, move: Locate, middle: Array) -> Iterator[Asked]:
+    """Contacts with one normal together."""
+    groups: list[list[tuple[Pair, Array]]] = []
+    for pair in move.pairs:
+        stays = pair.target if move.points_on == "part" else pair.moving
+        normal = assembly.part[assembly.features[stays].part].pose[:3, :3] @ pair.normal
+        if groups and np.linalg.norm(groups[-1][-1][1] - normal) < SAME:
+            groups[-1].append((pair, normal))
+        else:
+            groups.append([(pair, normal)])
+    in_order = [len(group) for group in groups] == [3, 2, 1]
+    first = 1
+    for k, group in enumerate(groups):
+        last = first + len(group) - 1
+        name = ORDER[k] if in_order else f"contact {first}" if first == last else f"contacts {first} to {last}"
+        points = [own.moving if move.points_on == "part" else own.target for own, _ in group]
+        rows = [
+            _point(_pose(assembly, at)[:3, 3] - middle, own[1][None]) for at, own in zip(points, group, strict=True)
+        ]
+        targets = dict.fromkeys(_touched(assembly, own.target) for own, _ in group)
+        moving = dict.fromkeys(_touched(assembly, own.moving) for own, _ in group)
+        yield Asked(f"{name}: {_listed(list(moving))} on {_listed(list(targets))}", np.concatenate(rows))
+        first = last + 1
+
+
+def _related(assembly: Assembly, relations: Sequence[Relation], middle: Array) -> Iterator[Asked]:
+    for own in relations:
+        asked = asked_of(own, assembly.features)
+        assert asked is not None  # others are refused before
+        held, turning = asked
+        moving, target = _pose(assembly, own.moving), _pose(assembly, own.target)
+        at, z = moving[:3, 3] - middle, target[:3, 2]
+        across = np.eye(3) if held == "all" else z[None] if held == "along" else _across(z)
+        rows = [_point(at, across)]
+        if turning == "direction":
+            rows.append(_direction(z))
+        elif turning == "level":
+            rows.append(np.hstack([np.zeros(3), np.cross(moving[:3, 2], z)])[None])
+        yield Asked(f"{own.kind}: {own.moving} on {own.target}", np.concatenate(rows))
+
+
+def _pose(assembly: Assembly, feature: str) -> Array:
+    """A feature's frame in the world (4, 4)."""
+    own = assembly.features[feature]
+    return np.asarray(assembly.part[own.part].pose @ own.frame)
+
+
+def _touched(assembly: Assembly, name: str) -> str:
+    """A feature, or the plane of which it is a point that another feature touches."""
+    return name if assembly.features[name].is_named else name.rpartition(" at ")[0] or name
+
+
+def _listed(names: Sequence[str]) -> str:
+    """Names of features; their part once, where it is one: "cover.A1, A2"."""
+    part = names[0].partition(".")[0]
+    if any(name.partition(".")[0] != part for name in names):
+        return ", ".join(names)
+    return ", ".join([names[0], *(name.partition(".")[2] for name in names[1:])])
+
+
+def _point(at: Array, directions: Array) -> Array:
+    """Rows of a point (3,) along directions (n, 3)."""
+    return np.hstack([directions, np.cross(at, directions)])
+
+
+def _direction(toward: Array) -> Array:
+    """Rows of a direction that stays."""
+    return np.hstack([np.zeros((2, 3)), _across(toward)])
+
+
+def _line(at: Array, direction: Array) -> Array:
+    """Rows of a line that stays."""
+    return np.concatenate([_point(at, _across(direction)), _direction(direction)])
+
+
+def _across(direction: Array) -> Array:
+    """Two directions square to one (2, 3)."""
+    return np.asarray(np.linalg.svd(direction[None])[2][1:])
+
+
+def _about(rows: Array, off: Array) -> Array:
+    """Rows (n, 6) about another point, from which that of the given ones lies off (3,)."""
+    return np.hstack([rows[:, :3], rows[:, 3:] + np.cross(off, rows[:, :3])])
+
+
+def _reach(places: Array) -> float:
+    return max(1.0, float(np.linalg.norm(places.reshape(-1, 3), axis=1).max(initial=0.0)))
