@@ -9,7 +9,11 @@ from tol3d.kinds import all_kinds
 
 
 @cache
+def _mechanisms() -> dict[str, str]:
+    """Of each scene."""
+    return {path.stem: all_kinds().vocabulary_of(load_scene(path)).name for path in sorted(SCENES.glob("*.yaml"))}
+
+
 def shipped(mechanism: str) -> tuple[str, ...]:
     """Names of the scenes that a mechanism understands."""
-    paths = sorted(SCENES.glob("*.yaml"))
-    return tuple(path.stem for path in paths if all_kinds().vocabulary_of(load_scene(path)).name == mechanism)
+    return tuple(scene for scene, its in _mechanisms().items() if its == mechanism)

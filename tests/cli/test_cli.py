@@ -177,8 +177,11 @@ def test_check_shows_coefficients_limits_and_sigma(tol3d: Command) -> None:
 def test_schema_accepts_the_example_scenes(tol3d: Command) -> None:
     code, out, _ = tol3d("schema")
     assert code == 0
+    schema = json.loads(out)
+    kind = jsonschema.validators.validator_for(schema)
+    kind.check_schema(schema)
     for scene in SCENES.glob("*.yaml"):
-        jsonschema.validate(YAML(typ="safe", pure=True).load(scene.read_text("utf-8")), json.loads(out))
+        kind(schema).validate(YAML(typ="safe", pure=True).load(scene.read_text("utf-8")))
 
 
 def test_compare_lays_runs_over_each_other(tol3d: Command, tmp_path: Path) -> None:
