@@ -61,20 +61,30 @@ def summary_kinds() -> "SummaryKinds":
 
 
 def load_scene(
-    path: Path | str, kinds: Grammar | None = None, *, trust_parts: bool = False, files: Files | None = None
+    path: Path | str,
+    kinds: Grammar | None = None,
+    *,
+    trust_parts: bool = False,
+    run_builders: bool = False,
+    files: Files | None = None,
 ) -> Scene:
-    """Read a scene and the files that it names; this runs none of it and builds no geometry.
+    """Read a scene and the files that it names.
+
+    Where it picks features from solids, these are built, unless that was done before; programs that it names are run
+    only where that is allowed.
 
     Args:
         path: the YAML file, or the name of a scene that tol3d brings along.
         kinds: what it may have; every mechanism's kinds if not given.
         trust_parts: whether the scene may name files outside its own folder.
-        files: the contents of the files that it names, where they are known; none is read then.
+        run_builders: whether programs that it names as builders of its parts may be run.
+        files: the contents of the files that it names, where they are known; none is read then, and nothing built.
 
     Raises:
         SceneError: one or several messages `file:line: place: what was expected, what came`.
     """
-    return read_scene(path, all_kinds() if kinds is None else kinds, trust_parts=trust_parts, files=files)
+    grammar = all_kinds() if kinds is None else kinds
+    return read_scene(path, grammar, trust_parts=trust_parts, run_builders=run_builders, files=files)
 
 
 @lru_cache

@@ -197,18 +197,26 @@ class Replay(simulate.Replay):
         return report.part_meshes(self.display)
 
 
-def check_scene(scene: Scene | Path | str, *, overrides: Overrides = AS_WRITTEN, trust_parts: bool = False) -> Check:
+def check_scene(
+    scene: Scene | Path | str,
+    *,
+    overrides: Overrides = AS_WRITTEN,
+    trust_parts: bool = False,
+    run_builders: bool = False,
+) -> Check:
     """What a scene means before any trial, as `tol3d check` shows it.
 
     Args:
         scene: a scene, its path, or the name of a bundled one.
         overrides: what is said otherwise than in its study.
         trust_parts: allow files outside the scene's folder.
+        run_builders: run the Python files that the scene names as builders of its parts.
 
     Raises:
         SceneError: it cannot be read or built.
     """
-    simulation = simulate.simulation_of(simulate.load(scene, trust_parts=trust_parts), overrides)
+    loaded = simulate.load(scene, trust_parts=trust_parts, run_builders=run_builders)
+    simulation = simulate.simulation_of(loaded, overrides)
     return Check(report.check_report(simulation), simulation.system)
 
 
@@ -303,6 +311,7 @@ def find_shims(
         rounding: "down" never falls below the target, "nearest" takes the nearest thickness.
         overrides: what is said otherwise than in the scene's study.
         trust_parts: allow files outside the scene's folder.
+        run_builders: run the Python files that the scene names as builders of its parts.
 
     Raises:
         InputError: no such measure or shims, or no thickness that gives that minimum.

@@ -107,6 +107,7 @@ def run_scene(
     out: Path | str | None = None,
     execution: Execution = ONE_WORKER,
     trust_parts: bool = False,
+    run_builders: bool = False,
     force: bool = False,
     watch: Watch = UNWATCHED,
     kinds: Grammar | None = None,
@@ -121,6 +122,7 @@ def run_scene(
             study there is replaced, if nothing but its own files is in its folder.
         execution: who runs it and what is kept; the results are the same to the last bit for any.
         trust_parts: allow files outside the scene's folder.
+        run_builders: run the Python files that the scene names as builders of its parts.
         force: replace a run of another study too; one that holds more than its own files is moved aside.
         watch: callbacks while it goes on.
         kinds: what the scene may have; every mechanism's kinds if not given.
@@ -130,7 +132,7 @@ def run_scene(
         MechanismError: a mechanism of another package is at fault.
     """
     clock = Clock()
-    scene = load(scene, trust_parts=trust_parts, kinds=kinds)
+    scene = load(scene, trust_parts=trust_parts, run_builders=run_builders, kinds=kinds)
     simulation = simulation_of(scene, overrides)
     with faults_of(simulation.mechanism):
         return _run(_order(scene, simulation, execution, out, clock), watch, force=force)
@@ -242,11 +244,13 @@ def _temporary(scene: Scene) -> Path:
     return folder
 
 
-def load(scene: Scene | Path | str, *, trust_parts: bool = False, kinds: Grammar | None = None) -> Scene:
+def load(
+    scene: Scene | Path | str, *, trust_parts: bool = False, run_builders: bool = False, kinds: Grammar | None = None
+) -> Scene:
     """A scene from a path or a bundled name, or the scene itself; one made in Python is checked first."""
     if not isinstance(scene, Scene):
-        return load_scene(scene, kinds, trust_parts=trust_parts)
-    return scene if scene.text else scene_from_python(scene, trust_parts=trust_parts)
+        return load_scene(scene, kinds, trust_parts=trust_parts, run_builders=run_builders)
+    return scene if scene.text else scene_from_python(scene, trust_parts=trust_parts, run_builders=run_builders)
 
 
 def replay(run: Run | Path | str, trial: int, kinds: Grammar | None = None) -> Replay:

@@ -39,6 +39,7 @@ ASSEMBLY: Final = Mechanism(
     ),
     engines=("exact",),
     system="tol3d.assembly.system:assembly_system",
+    settle="tol3d.assembly.picking:settle",
     summary="tol3d.assembly.summary_types:SUMMARY_KINDS",
     presenter="tol3d.assembly.presenting",
 )

@@ -6,7 +6,7 @@ from typing import Annotated, Any
 
 import typer
 
-from tol3d.cli.arguments import EngineOption, SceneArgument, TrustParts, scene_path, trials_or_auto
+from tol3d.cli.arguments import EngineOption, RunBuilders, SceneArgument, TrustParts, scene_path, trials_or_auto
 from tol3d.cli.console import err_console, out_console, tell
 
 
@@ -47,6 +47,7 @@ def shim(
     engine: EngineOption = None,
     out: Annotated[Path | None, typer.Option(help="Write the scene with the chosen shims to this new file.")] = None,
     trust_parts: TrustParts = False,
+    run_builders: RunBuilders = False,
 ) -> None:
     """Find the thickness of shims with which a bevel pair has a wanted minimum of backlash."""
     from tol3d.analyses import ShimQuestion, length_of, shim_plan, stock_of
@@ -58,7 +59,7 @@ def shim(
     target = length_of("--target-min", target_min)
     question = ShimQuestion(target, measure, names, minimum.value, stock_of(stock), rounding.value)
     overrides = Overrides(trials=trials, engine=engine)
-    loaded = load(scene_path(scene), trust_parts=trust_parts)
+    loaded = load(scene_path(scene), trust_parts=trust_parts, run_builders=run_builders)
     with err_console.status("studies") as status:
         plan = shim_plan(loaded, question, overrides, tell=status.update)
     out_console.print(shim_report(plan))
@@ -79,6 +80,7 @@ def compensate(
     positions: Annotated[int, typer.Option(min=1, help="At how many a robot's own mean is taken.")] = 16,
     out: Annotated[Path | None, typer.Option(help="Draw the picture here.")] = None,
     trust_parts: TrustParts = False,
+    run_builders: RunBuilders = False,
 ) -> None:
     """Find the motor's correction for a load that changes side, and what it leaves of the lost motion."""
     from tol3d.analyses.compensation import CompensationQuestion, compensation
@@ -88,7 +90,8 @@ def compensate(
 
     question = CompensationQuestion(train, positions, trials)
     with err_console.status("robots"):
-        found = [compensation(load(scene_path(scene), trust_parts=trust_parts), question) for scene in scenes]
+        loaded = [load(scene_path(scene), trust_parts=trust_parts, run_builders=run_builders) for scene in scenes]
+        found = [compensation(each, question) for each in loaded]
     if out is not None:
         draw_compensation(found, out)
     out_console.print(compensation_report(found))

@@ -30,6 +30,9 @@ RunArgument = Annotated[Path, typer.Argument(metavar="RUN", help="The folder of 
 TrustParts = Annotated[
     bool, typer.Option("--trust-parts", help="Allow the scene to read files outside its own folder.")
 ]
+RunBuilders = Annotated[
+    bool, typer.Option("--run-builders", help="Run the Python files that the scene names as builders of its parts.")
+]
 
 
 class SamplerName(StrEnum):

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from tol3d.cli.arguments import RunArgument, SceneArgument, TrustParts, scene_path
+from tol3d.cli.arguments import RunArgument, RunBuilders, SceneArgument, TrustParts, scene_path
 from tol3d.cli.console import err_console, out_console, tell
 
 if TYPE_CHECKING:
@@ -22,12 +22,13 @@ class MeshFormat(StrEnum):
     STEP = "step"
 
 
-def check(scene: SceneArgument, trust_parts: TrustParts = False) -> None:
+def check(scene: SceneArgument, trust_parts: TrustParts = False, run_builders: RunBuilders = False) -> None:
     """Read a scene and show what it means: parts, moves, measures, contributors with their coefficients."""
     from tol3d.report import check_report
     from tol3d.simulate import load, simulation_of
 
-    out_console.print(check_report(simulation_of(load(scene_path(scene), trust_parts=trust_parts))))
+    loaded = load(scene_path(scene), trust_parts=trust_parts, run_builders=run_builders)
+    out_console.print(check_report(simulation_of(loaded)))
 
 
 def scenes(

@@ -13,6 +13,7 @@ import typer
 
 from tol3d.cli.arguments import (
     EngineOption,
+    RunBuilders,
     SceneArgument,
     TrustParts,
     scene_path,
@@ -67,6 +68,7 @@ def run(
     quiet: QuietOption = False,
     verbose: VerboseOption = False,
     trust_parts: TrustParts = False,
+    run_builders: RunBuilders = False,
 ) -> None:
     """Simulate a scene: analytic model and 3D simulation side by side."""
     _refuse(force and resume, "--resume goes on with what --force would replace; leave out one of them")
@@ -82,7 +84,7 @@ def run(
 
     path = scene_path(scene)
     overrides = Overrides(trials, seed, engine, sampler.value if sampler else None, witness)
-    loaded = load(path, trust_parts=trust_parts)
+    loaded = load(path, trust_parts=trust_parts, run_builders=run_builders)
     simulation = simulation_of(loaded, overrides)
     with faults_of(simulation.mechanism):
         for warning in simulation.warnings:

@@ -12,7 +12,7 @@ from tol3d.scene.nearest import hint
 
 def scene_lines(grammar: Grammar) -> tuple[str, ...]:
     """A line for each bundled scene: the name to run it by, its own name, its description."""
-    scenes = {name: read_scene(path, grammar) for name, path in bundled_scenes().items()}
+    scenes = {name: read_scene(path, grammar, settle=False) for name, path in bundled_scenes().items()}
     width = max(map(len, scenes))
     lines = {
         name: ": ".join(part for part in (scene.scene, scene.description) if part) for name, scene in scenes.items()
@@ -32,7 +32,7 @@ def copy_scene(name: str, folder: Path, grammar: Grammar) -> tuple[Path, ...]:
     scenes = bundled_scenes()
     if name not in scenes:
         raise InputError(f"expected the name of a bundled scene, got {name!r}{hint(name, scenes)}")
-    scene = read_scene(scenes[name], grammar)
+    scene = read_scene(scenes[name], grammar, settle=False)
     text = FileContent(scene.source, scene.source.read_bytes())
     copies = {folder / scenes[name].name: text} | {folder / own: file for own, file in scene.files.items()}
     there = next((path for path in copies if path.exists()), None)

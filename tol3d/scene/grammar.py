@@ -55,6 +55,8 @@ class Vocabulary:
         published: keys that columns of `published` may have besides measures: sections of summary.json.
         engines: words of study.engine, besides "analytic"; the first is taken where nothing is said.
         witness: the one of them that can check the others, if there is one.
+        settle: import path `package.module:name` of what finds out the numbers that a scene leaves to its solids, see
+            tol3d.scene.settling; "" where scenes say all themselves.
 
     Raises:
         InputError: a class stands where it is none of the section's kinds, or lacks a method that it must have.
@@ -73,6 +75,7 @@ class Vocabulary:
     published: type[PublishedFigures] | None = None
     engines: tuple[str, ...] = ("exact",)
     witness: str = ""
+    settle: str = ""
 
     def __post_init__(self) -> None:
         for section, base in BASES.items():

@@ -11,19 +11,33 @@ from tol3d.scene.bundled import scene_path
 from tol3d.scene.grammar import Grammar
 from tol3d.scene.place import Origin
 from tol3d.scene.problems import messages
-from tol3d.scene.references import loose_ends, refuse, unreadable_files
+from tol3d.scene.references import bad_names, loose_ends, refuse, unreadable_files
 from tol3d.scene.schema import Scene
+from tol3d.scene.settling import is_settled, settled
 from tol3d.scene.text import read_scene_text
 
 
-def read_scene(path: Path | str, grammar: Grammar, *, trust_parts: bool = False, files: Files | None = None) -> Scene:
-    """Read a scene and the files that it names; this runs none of it and builds no geometry.
+def read_scene(
+    path: Path | str,
+    grammar: Grammar,
+    *,
+    trust_parts: bool = False,
+    run_builders: bool = False,
+    files: Files | None = None,
+    settle: bool = True,
+) -> Scene:
+    """Read a scene and the files that it names.
+
+    Where it picks features from solids, these are built, unless that was done before; programs that it names are run
+    only where that is allowed.
 
     Args:
         path: the YAML file, or the name of a scene that tol3d brings along.
         grammar: the kinds of entry that it may have.
         trust_parts: whether the scene may name files outside its own folder.
-        files: the contents of the files that it names, where they are known; none is read then.
+        run_builders: whether programs that it names as builders of its parts may be run.
+        files: the contents of the files that it names, where they are known; none is read then, and nothing built.
+        settle: False leaves open what solids decide, for those that only list scenes.
 
     Raises:
         SceneError: one or several messages `file:line: place: what was expected, what came`.
@@ -33,10 +47,10 @@ def read_scene(path: Path | str, grammar: Grammar, *, trust_parts: bool = False,
         scene = grammar.scene.model_validate(data, context=origin)
     except ValidationError as error:
         raise SceneError(*messages(error, data, origin, grammar)) from None
-    return _with_files(scene, origin, trust_parts, files)
+    return _with_files(scene, origin, files, trust_parts=trust_parts, run_builders=run_builders, settle=settle)
 
 
-def scene_from_python(scene: Scene, *, trust_parts: bool = False) -> Scene:
+def scene_from_python(scene: Scene, *, trust_parts: bool = False, run_builders: bool = False) -> Scene:
     """A scene that was made in Python, checked as one from a file is; its text is JSON, which is YAML too.
 
     Raises:
@@ -44,13 +58,22 @@ def scene_from_python(scene: Scene, *, trust_parts: bool = False) -> Scene:
     """
     text = scene.model_dump_json(indent=1, exclude_unset=True, by_alias=True) + "\n"
     source = scene.source if scene.source != Origin().source else Path("scene.yaml")
-    return _with_files(scene, Origin(source, text), trust_parts, None)
+    origin = Origin(source, text)
+    return _with_files(scene, origin, None, trust_parts=trust_parts, run_builders=run_builders, settle=True)
 
 
-def _with_files(scene: Scene, origin: Origin, trust_parts: bool, files: Files | None) -> Scene:
+def _with_files(
+    scene: Scene, origin: Origin, known: Files | None, *, trust_parts: bool, run_builders: bool, settle: bool
+) -> Scene:
     scene = scene.read_from(origin)
-    problems = loose_ends(scene)
-    refuse(scene, problems if files is not None else [*problems, *unreadable_files(scene, trust_parts)])
+    open_ends = not is_settled(scene)
+    problems = bad_names(scene) if open_ends else loose_ends(scene)
+    refuse(scene, problems if known is not None else [*problems, *unreadable_files(scene, trust_parts)])
+    files = known
     if files is None:
         files = {name: read_file(scene.folder / name) for name in scene.file_names}
-    return scene.read_from(replace(origin, files=files))
+    scene = scene.read_from(replace(origin, files=files))
+    if open_ends and settle:
+        scene = settled(scene, run_builders=run_builders, known=known)
+        refuse(scene, loose_ends(scene))
+    return scene

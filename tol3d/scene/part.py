@@ -17,6 +17,11 @@ class PartSpec(Entry):
         default=None, description="coefficient of linear thermal expansion"
     )
 
+    @property
+    def has_solid(self) -> bool:
+        """Whether a solid has to be built before all that the scene says of it is known."""
+        return False
+
 
 class GrowingSpec(PartSpec):
     """A part that grows where it is warmer; kinds of part on whose size something depends are subclasses."""

@@ -32,10 +32,15 @@ def refuse(scene: Scene, problems: list[Problem]) -> None:
 
 def loose_ends(scene: Scene) -> list[Problem]:
     """What does not hold together in a scene that is right field by field: names first, then what they mean."""
-    problems = list(_repeated(scene)) or list(_unknown(scene))
+    problems = bad_names(scene)
     if not problems:
         problems = [*scene.grammar.problems(scene), *_contradicted(scene)]
     return [*problems, *_unpublished(scene), *_unstoppable(scene)]
+
+
+def bad_names(scene: Scene) -> list[Problem]:
+    """Names that stand twice; if there are none, those that entries use and that are not there."""
+    return list(_repeated(scene)) or list(_unknown(scene))
 
 
 def unreadable_files(scene: Scene, trust_parts: bool) -> list[Problem]:

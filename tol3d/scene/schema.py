@@ -216,6 +216,11 @@ class Scene(Strict):
             self._origin = context
 
     @property
+    def origin(self) -> Origin:
+        """The file it was read from, with its text and places, and the files that it names."""
+        return self._origin
+
+    @property
     def source(self) -> Path:
         """The file it was read from."""
         return self._origin.source

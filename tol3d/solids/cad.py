@@ -19,10 +19,12 @@ from tol3d.errors import unwritable
 from tol3d.gears import BevelGear, Gear, SpurGear
 from tol3d.parts import arm, bevel_gear, shaft, spur_gear
 from tol3d.parts.named_solid import NamedSolid, refuse_cut_step
-from tol3d.solids import bevel_cad, body_cad, spur_cad
+from tol3d.solids import bevel_cad, body_cad, picking, spur_cad
 from tol3d.solids.bodies import ArmBody, Body, ShaftBody
 from tol3d.solids.built_shape import BuiltShape
 from tol3d.solids.lazy import Arrays
+from tol3d.solids.own_program import run_program
+from tol3d.solids.picks import Pick, PickedFace
 from tol3d.solids.posed_gear import PosedPart
 
 Array = NDArray[np.float64]
@@ -74,6 +76,11 @@ solid_of.register(ArmBody, lambda body: arm.arm(body.points, body.diameter))
 solid_of.register(BuiltShape, lambda shape: _builder_of(shape)(shape))
 for kind in (ShaftBody, ArmBody, BuiltShape):
     tessellate.register(kind, lambda body, deflection: body_cad.tessellate(solid_of(body), deflection))
+
+
+def pick_faces(shape: BuiltShape, picks: Sequence[Pick]) -> Sequence[PickedFace]:
+    """See tol3d.solids.picks.picked."""
+    return tuple(picking.pick_faces(solid_of(shape), picks))
 
 
 def write_step(parts: Sequence[PosedPart], path: Path, colours: Sequence[str]) -> None:

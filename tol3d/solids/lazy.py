@@ -1,17 +1,21 @@
 """Lazy import of CadQuery: it costs seconds, so it is loaded only when a solid must be built."""
 
 import importlib
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Protocol, cast
+from typing import TYPE_CHECKING, Protocol, cast
 
 import numpy as np
 from numpy.typing import NDArray
 
+from tol3d.files import FileContent
 from tol3d.gears import Gear
 from tol3d.solids.bodies import Body
 from tol3d.solids.built_shape import BuiltShape
 from tol3d.solids.posed_gear import PosedPart
+
+if TYPE_CHECKING:
+    from tol3d.solids.picks import Pick, PickedFace
 
 CAD = "tol3d.solids.cad"
 
@@ -27,6 +31,16 @@ class Cad(Protocol):
 
     def tessellate(self, shape: Gear | Body | BuiltShape, deflection: float) -> Arrays:
         """Arrays of DisplayMesh."""
+        ...
+
+    def pick_faces(self, shape: BuiltShape, picks: "Sequence[Pick]") -> "Sequence[PickedFace]":
+        """The faces that picks mean."""
+        ...
+
+    def run_program(
+        self, file: FileContent, function: str, dimensions: Mapping[str, float]
+    ) -> tuple[bytes, tuple[str, ...]]:
+        """What a builder of the user makes: the solid as OCC writes it, names of its faces."""
         ...
 
     def write_step(self, parts: Sequence[PosedPart], path: Path, colours: Sequence[str]) -> None:

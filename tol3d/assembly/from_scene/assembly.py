@@ -16,6 +16,7 @@ from tol3d.assembly.from_scene.warming import Warming, warmed
 from tol3d.assembly.grammar.drawing import Drawing
 from tol3d.assembly.grammar.parts import SolidSpec
 from tol3d.assembly.model import Assembly, Part
+from tol3d.assembly.picking.shapes import shapes_of
 from tol3d.scene import Scene
 from tol3d.system.plain import PlainContributor, PlainMeasure
 
@@ -62,12 +63,14 @@ def assembly_of(scene: Scene, settled: Mapping[str, Array] | None = None, warmin
     moves = moves_of(scene, effects, TouchedPoints(features, poses))
     parents = {name: feature.parent for name, feature in features.items()}
     feature_order, frame_order, _ = in_order(parents, frames.made)  # rings are refused where the scene is checked
+    solids = shapes_of(scene)
     parts = tuple(
         Part(
             name,
             poses[name],
             tuple(features[own] for own in feature_order if features[own].part == name),
             tuple(frames.made[own] for own in frame_order if frames.made[own].part == name),
+            solids.get(name),
         )
         for name in scene.of(SolidSpec)
     )

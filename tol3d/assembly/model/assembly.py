@@ -3,6 +3,7 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,6 +12,9 @@ from tol3d.assembly.model.datum_frame import DatumFrame
 from tol3d.assembly.model.feature import Feature
 from tol3d.assembly.model.measures import Measured
 from tol3d.assembly.model.moves import Move
+
+if TYPE_CHECKING:
+    from tol3d.solids.built_shape import BuiltShape
 
 Array = NDArray[np.float64]
 
@@ -24,12 +28,14 @@ class Part:
         pose: nominal, in the world (4, 4); moves find the pose near it.
         features: in an order in which each comes after the datum frame it belongs to.
         datum_frames: in an order in which each comes after its features.
+        solid: its nominal solid, in its own frame; None where the scene says none.
     """
 
     name: str
     pose: Array
     features: tuple[Feature, ...]
     datum_frames: tuple[DatumFrame, ...]
+    solid: "BuiltShape | None" = None
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,31 +1,45 @@
 """What every kind of feature has in common."""
 
 from abc import abstractmethod
-from typing import ClassVar
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, ClassVar, Self, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import Field
+from pydantic import Field, model_validator
 
+from tol3d.assembly.grammar.features.face import FaceKind, FaceSpec
 from tol3d.assembly.model import Shape
-from tol3d.scene.vector import Vector
-from tol3d.strict import Strict
+from tol3d.scene.vector import Direction, Vector
+from tol3d.strict import Strict, refused
+from tol3d.units import Quantity
+
+if TYPE_CHECKING:
+    from tol3d.solids.picks import PickedFace
 
 Array = NDArray[np.float64]
+Known = TypeVar("Known")
+
+Found = Quantity | tuple[Quantity, ...] | tuple[float, float, float] | bool
+"""What a face says of a feature: a length, some lengths, a direction, or whether."""
 
 
 class FeatureSpec(Strict):
-    """A feature as a scene writes it by numbers, in the frame of its part."""
+    """A feature as a scene writes it, in the frame of its part: by numbers, or by a face of the part's solid."""
 
     words: ClassVar[str]
+    face_kinds: ClassVar[tuple[FaceKind, ...]]
+    """What its face may be; any kind where it is empty."""
+    numbers: ClassVar[tuple[str, ...]] = ("at",)
+    """Fields that it must have where it is by numbers."""
 
     kind: str
-    at: Vector = Field(description="the middle of it")
+    at: Vector | None = Field(default=None, description="the middle of it; that of its face if not given")
 
     @property
     def origin(self) -> Array:
         """Its middle (3,) [mm]."""
-        return np.array([coordinate.internal for coordinate in self.at])
+        return np.array([coordinate.internal for coordinate in known(self.at, "at")])
 
     @property
     @abstractmethod
@@ -36,3 +50,67 @@ class FeatureSpec(Strict):
     @abstractmethod
     def frame(self) -> Array:
         """Nominally, in its part's frame (4, 4)."""
+
+    @property
+    def faces_picked(self) -> Mapping[str, FaceSpec]:
+        """The faces that it is picked from, by their fields below it; none of one by numbers."""
+        return {}
+
+    @property
+    def x_picked(self) -> Direction | None:
+        """Which way x points on a flat face, where it says so."""
+        return None
+
+    @abstractmethod
+    def found(self, faces: "Sequence[PickedFace]") -> Mapping[str, Found]:
+        """Its fields as the faces have them.
+
+        Args:
+            faces: those of `faces_picked`.
+
+        Raises:
+            GeometryError: they are no such feature.
+        """
+
+    @model_validator(mode="after")
+    def _refuse_missing_numbers(self) -> Self:
+        for name in self.numbers if not self.faces_picked else ():
+            if getattr(self, name) is None:
+                raise refused(name, f'the key "{name}" here, or a face of the solid that it is', "neither")
+        return self
+
+    @model_validator(mode="after")
+    def _refuse_unfit_faces(self) -> Self:
+        for field, face in self.faces_picked.items():
+            if face.kind is not None and self.face_kinds and face.kind not in self.face_kinds:
+                raise refused(f"{field}.kind", " or ".join(self.face_kinds), repr(face.kind))
+        return self
+
+
+class OneFaceSpec(FeatureSpec):
+    """A feature that is one face."""
+
+    face: FaceSpec | None = Field(
+        default=None, description="the face of the part's solid that it is; numbers stated beside it are checked"
+    )
+
+    @property
+    def faces_picked(self) -> Mapping[str, FaceSpec]:
+        """See FeatureSpec."""
+        return {} if self.face is None else {"face": self.face}
+
+
+def known(value: Known | None, field: str) -> Known:
+    """A field of a feature whose numbers are known: stated, or found on its face.
+
+    Raises:
+        ValueError: it is not.
+    """
+    if value is None:
+        raise ValueError(f"{field} is that of a face that was not looked up")
+    return value
+
+
+def lengths(*values: float) -> tuple[Quantity, ...]:
+    """Lengths [mm] as a scene has them."""
+    return tuple(Quantity(value, "mm") for value in values)

@@ -1,21 +1,28 @@
 """A point."""
 
-from typing import ClassVar, Literal
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, ClassVar, Literal, Self
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import Field
+from pydantic import Field, model_validator
 
-from tol3d.assembly.grammar.features.feature_spec import FeatureSpec
+from tol3d.assembly.grammar.features.face import FaceKind
+from tol3d.assembly.grammar.features.feature_spec import Found, OneFaceSpec, lengths
 from tol3d.assembly.grammar.features.nominal_frame import frame
 from tol3d.assembly.model import Point
 from tol3d.scene.vector import Direction
+from tol3d.strict import refused
+
+if TYPE_CHECKING:
+    from tol3d.solids.picks import PickedFace
 
 
-class PointSpec(FeatureSpec):
+class PointSpec(OneFaceSpec):
     """A point of a surface, or the centre of something."""
 
     words: ClassVar[str] = "a point"
+    face_kinds: ClassVar[tuple[FaceKind, ...]] = ()
 
     kind: Literal["point"]
     normal: Direction | None = Field(default=None, description="out of the material, of a point of a surface")
@@ -29,3 +36,14 @@ class PointSpec(FeatureSpec):
     def frame(self) -> NDArray[np.float64]:
         """See FeatureSpec; z along the normal, or the part's z."""
         return frame(self.origin, self.normal or (0.0, 0.0, 1.0))
+
+    def found(self, faces: "Sequence[PickedFace]") -> Mapping[str, Found]:
+        """See FeatureSpec; the point of the face that is nearest to where the scene has it, and the normal there."""
+        (face,) = faces
+        return {"at": lengths(*face.nearest), "normal": face.normal}
+
+    @model_validator(mode="after")
+    def _refuse_contradictions(self) -> Self:
+        if self.face is not None and self.face.name is not None and self.at is None:
+            raise refused("at", f"which point of the face {self.face.name!r} is meant", "none")
+        return self

@@ -1,0 +1,100 @@
+"""What was picked, as the file features.json that a run keeps: a run is made again from it, without the CAD kernel."""
+
+import json
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Annotated, Any, Final
+
+from pydantic import Field, ValidationError
+
+from tol3d.assembly.grammar.features import FeatureUnion
+from tol3d.assembly.grammar.features.face import FaceKind
+from tol3d.errors import SceneError
+from tol3d.files import FileContent, Files
+from tol3d.solids.picks import PickedFace
+from tol3d.strict import Strict
+
+FEATURES: Final = "features.json"
+"""The name under which a run keeps it."""
+
+Triple = tuple[float, float, float]
+
+
+class KeptFace(Strict):
+    """A face as the file has it; see PickedFace."""
+
+    name: str
+    kind: FaceKind
+    at: Triple
+    direction: Triple
+    x: Triple
+    extent: tuple[float, float]
+    radius: Annotated[float, Field(ge=0.0)]
+    hole: bool
+    nearest: Triple
+    normal: Triple
+
+
+class KeptPicks(Strict):
+    """The file: lengths in mm, in the frames of the parts."""
+
+    picks: Mapping[str, Mapping[str, tuple[KeptFace, ...]]]
+    faces: Mapping[str, tuple[str, ...]]
+
+
+@dataclass(frozen=True)
+class Kept:
+    """What solids have at the faces that features are picked from.
+
+    Args:
+        picks: the faces, by part and feature.
+        faces: of parts that a program of the user built, the names of all faces in the order of the solid's.
+    """
+
+    picks: Mapping[str, Mapping[str, tuple[PickedFace, ...]]]
+    faces: Mapping[str, tuple[str, ...]]
+
+    def faces_of(self, part: str, feature: str, spec: FeatureUnion) -> tuple[PickedFace, ...]:
+        """The faces of a feature.
+
+        Raises:
+            SceneError: a run that is made again has not kept them.
+        """
+        found = self.picks.get(part, {}).get(feature, ())
+        if len(found) != len(spec.faces_picked):
+            raise SceneError(f"{FEATURES}: expected the faces of {part}.{feature}, found none; the run is damaged")
+        return found
+
+
+def file_of(kept: Kept) -> FileContent:
+    """What was picked as a file."""
+    plain: dict[str, Any] = {
+        "picks": {
+            part: {feature: [asdict(face) for face in faces] for feature, faces in own.items()}
+            for part, own in kept.picks.items()
+        },
+        "faces": {part: list(names) for part, names in kept.faces.items()},
+    }
+    return FileContent(Path(FEATURES), (json.dumps(plain, indent=1) + "\n").encode())
+
+
+def kept_in(files: Files, source: Path) -> Kept:
+    """What a run kept; a stranger may have written it.
+
+    Raises:
+        SceneError: there is no such file, or it is none.
+    """
+    if FEATURES not in files:
+        raise SceneError(f"{source}: expected {FEATURES} beside it, found none; run the scene again")
+    try:
+        found = KeptPicks.model_validate_json(files[FEATURES].content)
+    except ValidationError as error:
+        first = error.errors(include_url=False)[0]
+        place = ".".join(map(str, first["loc"]))
+        raise SceneError(f"{files[FEATURES].path}: {place}: {first['msg']}; the run is damaged") from None
+    picks = {
+        part: {feature: tuple(PickedFace(**dict(face)) for face in faces) for feature, faces in own.items()}
+        for part, own in found.picks.items()
+    }
+    return Kept(picks, found.faces)

@@ -1,0 +1,108 @@
+"""A scene with the numbers that it leaves to the solids of its parts."""
+
+from collections.abc import Iterator, Mapping
+from typing import Final
+
+from tol3d.assembly.grammar.features import FeatureUnion
+from tol3d.assembly.grammar.features.point import PointSpec
+from tol3d.assembly.grammar.parts import SolidSpec
+from tol3d.assembly.picking.agreement import disagreements
+from tol3d.assembly.picking.kept_picks import FEATURES, Kept, file_of, kept_in
+from tol3d.assembly.picking.shapes import built_shape, kept_solid, solid_file
+from tol3d.errors import GeometryError
+from tol3d.files import Files
+from tol3d.scene import Scene
+from tol3d.scene.place import KeyPath
+from tol3d.scene.references import Problem, refuse
+from tol3d.solids.kept_shape import KeptShape
+from tol3d.solids.picks import Pick, PickedFace, PickError, Triple, picked
+
+NO_FILES: Final[Files] = {}
+
+
+def settle(scene: Scene, *, run_builders: bool, known: Files | None) -> tuple[Scene, Files]:
+    """See tol3d.scene.settling.Settle."""
+    solids = {name: own for name, own in scene.of(SolidSpec).items() if own.builder is not None}
+    if not solids:
+        return scene, {}
+    if known is not None:
+        kept, files = kept_in(known, scene.source), NO_FILES
+    else:
+        kept, files = _looked_up(scene, solids, run_builders=run_builders)
+    problems: list[Problem] = []
+    parts = dict(scene.parts)
+    for name, own in solids.items():
+        features = {}
+        for feature, spec in own.features.items():
+            path = ("parts", name, "features", feature)
+            faces = kept.faces_of(name, feature, spec)
+            features[feature] = spec if not spec.faces_picked else _with_numbers(spec, faces, path, problems)
+        parts[name] = own.model_copy(update={"features": features})
+    refuse(scene, problems)
+    return scene.model_copy(update={"parts": parts}).read_from(scene.origin), files
+
+
+def _looked_up(scene: Scene, solids: Mapping[str, SolidSpec], *, run_builders: bool) -> tuple[Kept, Files]:
+    """What solids have at the faces that features are picked from.
+
+    Raises:
+        SceneError: a solid cannot be built, or a pick means no face or several.
+    """
+    picks: dict[str, dict[str, tuple[PickedFace, ...]]] = {}
+    names: dict[str, tuple[str, ...]] = {}
+    files = {}
+    problems: list[Problem] = []
+    for name, own in solids.items():
+        here: KeyPath = ("parts", name, "builder")
+        try:
+            shape = built_shape(scene, name, run_builders=run_builders)
+            if isinstance(shape, KeptShape):
+                files[solid_file(name)] = kept_solid(name, shape)
+                names[name] = shape.faces
+            asked = [(path, pick) for path, pick in _picks(name, own)]
+            found = picked(shape, [pick for _, pick in asked])
+        except PickError as error:
+            path, _ = asked[error.number]
+            problems.append(((*path, error.by), str(error)))
+            continue
+        except GeometryError as error:
+            problems.append((here, str(error)))
+            continue
+        by_feature: dict[str, tuple[PickedFace, ...]] = {}
+        for (path, _), face in zip(asked, found, strict=True):
+            feature = str(path[3])
+            by_feature[feature] = (*by_feature.get(feature, ()), face)
+        picks[name] = by_feature
+    refuse(scene, problems)
+    kept = Kept(picks, names)
+    return kept, {**files, FEATURES: file_of(kept)}
+
+
+def _picks(part: str, own: SolidSpec) -> Iterator[tuple[KeyPath, Pick]]:
+    """What the features of a part ask for, each with its place in the scene."""
+    for feature, spec in own.features.items():
+        for field, face in spec.faces_picked.items():
+            keys = (int(key) if key.isdecimal() else key for key in field.split("."))
+            near = None if face.near is None else _triple(face.near)
+            if isinstance(spec, PointSpec) and spec.at is not None:
+                near = _triple(spec.at)  # of a face that is named: which of its points
+            kinds = spec.face_kinds if face.kind is None else (face.kind,)
+            yield ("parts", part, "features", feature, *keys), Pick(face.name or "", near, kinds, spec.x_picked)
+
+
+def _triple(vector: object) -> Triple:
+    x, y, z = (own.internal for own in vector)  # type: ignore[attr-defined]
+    return x, y, z
+
+
+def _with_numbers(
+    spec: FeatureUnion, faces: tuple[PickedFace, ...], path: KeyPath, problems: list[Problem]
+) -> FeatureUnion:
+    """A feature with the numbers of its faces; where it states others these are problems."""
+    try:
+        found = spec.found(faces)
+    except GeometryError as error:
+        problems.append((path, str(error)))
+        return spec
+    problems += [((*path, field), sentence) for field, sentence in disagreements(spec, found)]
+    return spec.model_copy(update=dict(found))
