@@ -6,23 +6,26 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Annotated, Any, Final
 
-from pydantic import Field, ValidationError
+from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from tol3d.assembly.grammar.features import FeatureUnion
 from tol3d.assembly.grammar.features.face import FaceKind
 from tol3d.errors import SceneError
 from tol3d.files import FileContent, Files
 from tol3d.solids.picks import PickedFace
-from tol3d.strict import Strict
 
 FEATURES: Final = "features.json"
 """The name under which a run keeps it."""
 
+READ: Final = ConfigDict(extra="forbid", strict=True, allow_inf_nan=False)
+
 Triple = tuple[float, float, float]
 
 
-class KeptFace(Strict):
+class KeptFace(BaseModel):
     """A face as the file has it; see PickedFace."""
+
+    model_config = READ
 
     name: str
     kind: FaceKind
@@ -36,8 +39,10 @@ class KeptFace(Strict):
     normal: Triple
 
 
-class KeptPicks(Strict):
+class KeptPicks(BaseModel):
     """The file: lengths in mm, in the frames of the parts."""
+
+    model_config = READ
 
     picks: Mapping[str, Mapping[str, tuple[KeptFace, ...]]]
     faces: Mapping[str, tuple[str, ...]]
