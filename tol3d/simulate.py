@@ -37,6 +37,7 @@ read of single meshes. Spur and bevel pairs go the same way: `gears/pair.py` say
 
 Assemblies are another. Theirs:
 
+    picks        faces -> numbers           assembly/picking/           settle            (when the scene is read)
     drawing      tolerances, by feature     assembly/grammar/           Drawing
     assembly     parts, frames, moves       assembly/from_scene/        assembly_of       (model/: what they are)
     zones        uniforms -> deviations     assembly/zones/             Confined          (catalogue.py: all zones)

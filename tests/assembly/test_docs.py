@@ -2,16 +2,20 @@
 
 import re
 from collections.abc import Mapping
+from pathlib import Path
 from typing import Any, get_args
 
 import pytest
 from fixtures import Command
 from kinds_page import KindsPage, words
 from places import ROOT, SCENES
+from ruamel.yaml import YAML
 from said_fields import fields_said, fields_within, unsaid
 
 from tol3d import load_scene
+from tol3d.assembly.grammar.builders import OwnFileSpec
 from tol3d.assembly.grammar.datums import DatumSpec
+from tol3d.assembly.grammar.parts import SolidSpec
 from tol3d.assembly.grammar.zone import ZoneSpec
 from tol3d.assembly.mechanism import ASSEMBLY
 from tol3d.assembly.model.datum_frame import Simulator
@@ -65,6 +69,13 @@ FIELD_SCENES = (
 )
 """Between them every kind and every field."""
 
+BUILDERS_PAGE = (ROOT / "docs" / "builders.md").read_text("utf-8")
+OWN_PROGRAM, OWN_LINES = (
+    re.findall(rf"```{language}\n({start}.*?)```", BUILDERS_PAGE, re.DOTALL)[0]
+    for language, start in (("python", "import"), ("yaml", "builder:"))
+)
+OWN_BUILDER = OwnFileSpec.model_validate(YAML(typ="safe").load(OWN_LINES)["builder"])
+
 FEATURES, LAWS = union("SolidSpec", "features"), union("PositionSpec", "law")
 
 
@@ -87,11 +98,32 @@ def test_the_tables_of_the_example_are_those_of_the_run(tol3d: Command, tmp_path
 def test_the_scenes_use_every_field_of_every_kind() -> None:
     kinds = [spec for section in SECTIONS for spec in ASSEMBLY.specs(section)]
     known = {own for spec in kinds for own in fields_within(spec) if own[0].__module__.startswith("tol3d.assembly")}
-    beside = 25  # placement, datum, zone, force; 6 features, 3 laws, 5 pairs, 3 floats; plate, hole, slot, pin
+    # placement, datum, zone, force; 6 features, 3 laws, 5 pairs, 3 floats; plate, hole, slot, pin; face, own file
+    beside = 27
     assert len({model for model, _ in known}) == len(kinds) + beside
     said = {own for name in FIELD_SCENES for own in fields_said(load_scene(SCENES / f"{name}.yaml", KINDS))}
+    said |= set(fields_said(OWN_BUILDER))  # which runs only where the user says so: no scene that comes along has one
     assert unsaid(known, said) == set()
     assert set(kinds) <= {model for model, _ in said}
+
+
+def test_the_program_of_the_page_builds_what_it_says(tmp_path: Path) -> None:
+    (tmp_path / "my_part.py").write_text(OWN_PROGRAM, "utf-8")
+    lines = "".join(f"    {line}\n" for line in OWN_LINES.splitlines())
+    scene = (
+        "scene: own\nparts:\n  base:\n    kind: solid\n"
+        + lines
+        + (
+            "    features:\n      bottom: {kind: plane, face: {name: bottom}}\n"
+            "      rib: {kind: plane, face: {near: [0 mm, 0 mm, 31 mm]}}\n"
+            "moves: {ground: {kind: fix, part: base}}\n"
+            "measures: {height: {kind: gap, from: base.bottom, to: base.rib, along: [0, 0, 1]}}\n"
+        )
+    )
+    (tmp_path / "own.yaml").write_text(scene, "utf-8")
+    features = load_scene(tmp_path / "own.yaml", run_builders=True).of(SolidSpec)["base"].features
+    assert repr(features["bottom"].shape) == "Plane(extent=(120.0, 40.0))"
+    assert features["rib"].origin == pytest.approx((0.0, 0.0, 30.0), abs=1e-9)  # 20 mm and a rib of 10 mm
 
 
 # the tables --------------------------------------------------------------------------------------------------

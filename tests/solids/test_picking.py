@@ -115,12 +115,14 @@ def test_rounded_and_notched_outlines_have_the_rectangle_around_them() -> None:
 
 def test_ties_and_what_is_not_there_are_refused_with_what_is() -> None:
     solid = numbered(workpiece(100.0, 60.0, 20.0, 8.0, 8.0))
-    with pytest.raises(PickError, match=r"expected a point that one face is nearest to.*'face \d+', 'face \d+'") as tied:
+    with pytest.raises(
+        PickError, match=r"expected a point that one face is nearest to.*'face \d+', 'face \d+'"
+    ) as tied:
         one(solid, Pick(near=(50.0, 0.0, 10.0)))
     assert (tied.value.number, tied.value.by) == (0, "near")
     with pytest.raises(PickError, match="expected a cone of the solid, which has cylinder, plane, sphere only"):
         one(solid, Pick(near=(0, 0, 0), kinds=("cone",)))
-    with pytest.raises(PickError, match="expected a face of the solid, got 'face 99'.*did you mean") as missing:
+    with pytest.raises(PickError, match=r"expected a face of the solid, got 'face 99'.*did you mean") as missing:
         list(pick_faces(solid, [Pick(name="face 1"), Pick(name="face 99")]))
     assert (missing.value.number, missing.value.by) == (1, "name")
     flat = next(name for name, face in solid.faces.items() if face.geomType() == "PLANE")

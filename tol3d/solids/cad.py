@@ -6,7 +6,7 @@ A kind of gear registers here what its own file does; a BuiltShape, of whatever 
 import importlib
 import itertools
 import os
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from functools import singledispatch
 from pathlib import Path
 
@@ -16,14 +16,14 @@ from numpy.typing import NDArray
 from OCP.gp import gp_Trsf
 
 from tol3d.errors import unwritable
+from tol3d.files import FileContent
 from tol3d.gears import BevelGear, Gear, SpurGear
 from tol3d.parts import arm, bevel_gear, shaft, spur_gear
 from tol3d.parts.named_solid import NamedSolid, refuse_cut_step
-from tol3d.solids import bevel_cad, body_cad, picking, spur_cad
+from tol3d.solids import bevel_cad, body_cad, own_program, picking, spur_cad
 from tol3d.solids.bodies import ArmBody, Body, ShaftBody
 from tol3d.solids.built_shape import BuiltShape
 from tol3d.solids.lazy import Arrays
-from tol3d.solids.own_program import run_program
 from tol3d.solids.picks import Pick, PickedFace
 from tol3d.solids.posed_gear import PosedPart
 
@@ -81,6 +81,11 @@ for kind in (ShaftBody, ArmBody, BuiltShape):
 def pick_faces(shape: BuiltShape, picks: Sequence[Pick]) -> Sequence[PickedFace]:
     """See tol3d.solids.picks.picked."""
     return tuple(picking.pick_faces(solid_of(shape), picks))
+
+
+def run_program(file: FileContent, function: str, dimensions: Mapping[str, float]) -> tuple[bytes, tuple[str, ...]]:
+    """See tol3d.solids.kept_shape.run_program."""
+    return own_program.run_program(file, function, dimensions)
 
 
 def write_step(parts: Sequence[PosedPart], path: Path, colours: Sequence[str]) -> None:

@@ -7,12 +7,13 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field, model_validator
 
-from tol3d.assembly.grammar.builders import BuilderUnion
+from tol3d.assembly.grammar.builders import BuilderUnion, OwnFileSpec
 from tol3d.assembly.grammar.feature_name import OwnName
 from tol3d.assembly.grammar.features import FeatureUnion
 from tol3d.assembly.grammar.features.nominal_frame import frame, is_across
 from tol3d.scene.name import Name
 from tol3d.scene.part import GrowingSpec
+from tol3d.scene.place import KeyPath
 from tol3d.scene.reference import Contradiction, Reference
 from tol3d.scene.vector import Direction, Vector
 from tol3d.strict import Strict, refused
@@ -39,7 +40,7 @@ class Placement(Strict):
 
 
 class SolidSpec(GrowingSpec):
-    """A rigid part with features, by numbers."""
+    """A rigid part with features, by numbers or picked from its solid."""
 
     words: ClassVar[str] = "a solid part"
 
@@ -60,6 +61,23 @@ class SolidSpec(GrowingSpec):
         """A part that is like one that is like another."""
         if self.like is not None and parts[self.like].like is not None:
             yield Contradiction(("like",), "a part with features of its own", repr(self.like))
+
+    @property
+    def has_solid(self) -> bool:
+        """See PartSpec."""
+        return self.builder is not None
+
+    def file_names(self) -> Iterator[tuple[KeyPath, str]]:
+        """The program that builds it."""
+        if isinstance(self.builder, OwnFileSpec):
+            yield ("builder", "file"), self.builder.file
+
+    @model_validator(mode="after")
+    def _refuse_faces_of_nothing(self) -> Self:
+        for name, feature in self.features.items() if self.builder is None else ():
+            for field in feature.faces_picked:
+                raise refused(f"features.{name}.{field}", "a part with a builder, whose solid has faces", "none")
+        return self
 
     @model_validator(mode="after")
     def _refuse_contradictions(self) -> Self:
