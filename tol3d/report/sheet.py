@@ -99,10 +99,10 @@ class Sheet:
 
     def _widened(self, least: dict[int, int], width: int) -> dict[int, int]:
         """The widths when the room that is left goes to the column that lacks most."""
-        widths = dict(least)
+        widths, whole = dict(least), {index: self._whole(index) for index in least}
         for _ in range(width - sum(widths.values()) - GAP * (len(widths) - 1)):
-            neediest = max(widths, key=lambda index: self._whole(index) - widths[index])
-            widths[neediest] += self._whole(neediest) > widths[neediest]
+            neediest = max(widths, key=lambda index: whole[index] - widths[index])
+            widths[neediest] += whole[neediest] > widths[neediest]
         return widths
 
     def _part(self, widths: dict[int, int]) -> RichTable:
