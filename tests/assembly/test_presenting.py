@@ -17,7 +17,8 @@ from tol3d.assembly.model import Axis, Plane, Point, RoundPlane, Shape, Slot
 from tol3d.assembly.presenting import PRESENTER
 from tol3d.assembly.presenting.symbols import SIDES, rod, symbol
 from tol3d.assembly.summary_types import AssemblyMeasureSummary
-from tol3d.errors import GeometryError
+from tol3d.errors import InputError
+from tol3d.report import export_run
 from tol3d.report.page import page
 from tol3d.scene.entry import kind_of
 from tol3d.simulate import Overrides, load, run_scene, simulation_of
@@ -85,14 +86,15 @@ def test_features_lie_where_the_trial_has_them(tmp_path: Path, magnify: float) -
     shown = PRESENTER.display(run, 1, magnify=magnify)
     (world,) = shown.worlds
     places = world.points
-    assert places["plate.b1"] == pytest.approx((20, magnify * 0.3, 0), abs=1e-12)
+    assert places["plate.b1, 2nd datum"] == pytest.approx((20, magnify * 0.3, 0), abs=1e-12)
     assert places["plate.hole"] == pytest.approx((150 + magnify * 0.05, 60 - magnify * 0.1, 0), abs=1e-12)
     assert bool(shown.notes) == (magnify != 1.0)
     (body,) = world.bodies
     vertices, triangles = body.mesh
     assert trimesh.Trimesh(vertices, triangles, process=False).is_watertight
-    with pytest.raises(GeometryError, match="plate: its features are stated by numbers"):
-        body.posed()
+    with pytest.raises(InputError, match="trial-1: a STEP file holds solids, and plate has none: give"):
+        export_run(run, 1, "step", out=tmp_path / "files")
+    assert not (tmp_path / "files").exists()
 
 
 def test_check_lists_features_with_their_datum_frames_and_moves(tmp_path: Path) -> None:

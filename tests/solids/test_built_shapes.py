@@ -95,6 +95,7 @@ def test_round_faces_are_met_within_the_chord_error_that_is_stated() -> None:
 def test_it_stands_in_files_where_its_pose_says(tmp_path: Path) -> None:
     pose = np.array([[0.0, -1.0, 0.0, 3.0], [1.0, 0.0, 0.0, 4.0], [0.0, 0.0, 1.0, 5.0], [0.0, 0.0, 0.0, 1.0]])
     body = built_body("wedge", Wedge(4.0, 5.0, 6.0), pose, "#123456", deflection=0.1)
+    assert body.posed is not None
     export_step([body.posed(), PosedShape("tube", Tube(10.0, 7.0, 30.0), np.eye(4))], tmp_path / "both.step")
     solids = [of_kind(cq.Solid, own) for own in cq.importers.importStep(str(tmp_path / "both.step")).solids().vals()]
     wedge, tube = sorted(solids, key=lambda solid: solid.Volume())

@@ -22,24 +22,36 @@ class Body:
         world_from_part: its pose (4, 4), rotation and translation [mm].
         surface: its closed triangle mesh in its own frame: vertices (n, 3) [mm], triangles (m, 3); made when asked for.
         posed: the same part for STEP, with its deviations and growth in its numbers; raises GeometryError where such
-            a part cannot be made.
+            a part cannot be made. None: it has no solid.
         colour: "#RRGGBB".
         scale: thermal growth, 1 at the reference temperature; `surface` is without it.
         smooth: whether its facets stand for one round surface, as a cylinder's do.
+        opacity: of its surface in pictures, from 0 to 1; what is within it is seen where that is less.
+        details: a closed triangle mesh in its own frame that pictures show on it or within it, and no file holds.
     """
 
     name: str
     world_from_part: Array
     surface: Callable[[], Surface]
-    posed: Callable[[], PosedPart]
+    posed: Callable[[], PosedPart] | None
     colour: str
     scale: float = 1.0
     smooth: bool = False
+    opacity: float = 1.0
+    details: Callable[[], Surface] | None = None
 
     @cached_property
     def mesh(self) -> Surface:
         """Its closed triangle mesh in the world: vertices (n, 3) [mm], triangles (m, 3)."""
-        vertices, triangles = self.surface()
+        return self._in_world(self.surface())
+
+    @cached_property
+    def detail_mesh(self) -> Surface | None:
+        """Its details in the world, as `mesh`."""
+        return None if self.details is None else self._in_world(self.details())
+
+    def _in_world(self, surface: Surface) -> Surface:
+        vertices, triangles = surface
         rotation, translation = self.world_from_part[:3, :3], self.world_from_part[:3, 3]
         return self.scale * vertices @ rotation.T + translation, triangles
 

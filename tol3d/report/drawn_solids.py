@@ -34,6 +34,12 @@ def add_solid(plotter: pv.Plotter, mesh: pv.PolyData, colour: str) -> None:
     _add_edges(plotter, mesh)
 
 
+def add_translucent_solid(plotter: pv.Plotter, mesh: pv.PolyData, colour: str, opacity: float) -> None:
+    """A solid through which one sees, and its sharp edges."""
+    plotter.add_mesh(mesh, color=colour, opacity=opacity, smooth_shading=False, specular=0.1, ambient=0.3)
+    _add_edges(plotter, mesh)
+
+
 def add_section(plotter: pv.Plotter, outline: pv.PolyData, colour: str) -> None:
     """What a plane cuts of a solid, filled, and its outline."""
     filler = vtkContourTriangulator()

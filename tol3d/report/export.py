@@ -50,13 +50,15 @@ def export_run(
         run: a finished run.
         which: a trial, or "worst", "nominal", "mean".
         fmt: "stl" and "ply" write a file a part [mm], "glb" one scene a world [m], "step" one assembly a world [mm]
-            with the real perturbed solids. A world that is shown as one, such as a robot, is one file in any format.
+            with the real perturbed solids, and a note of parts that have none. A world that is shown as one, such as
+            a robot, is one file in any format.
         magnify: scales the deviations and simulates again.
         out: the folder; made if missing.
         presenter: import path of what shows the system; by default that of the run's measures.
 
     Raises:
-        InputError: an unknown format or build, no bodies, a STEP file magnified, or a folder that cannot be written.
+        InputError: an unknown format or build, no bodies, a STEP file magnified or without any solid, or a folder that
+            cannot be written.
     """
     if fmt not in FORMATS:
         raise InputError(f"format: expected one of {', '.join(FORMATS)}, got {fmt!r}")
@@ -64,12 +66,26 @@ def export_run(
         raise InputError("a STEP file holds the real parts: leave out --magnify, or choose stl, ply or glb")
     display = presenter_of(run.found, presenter).display(run, which, magnify=magnify)
     require_bodies(display)
+    missing = [body.name for world in display.worlds for body in world.bodies if body.posed is None]
+    if fmt == "step":
+        _refuse_no_solids(display, missing)
     try:
         out.mkdir(parents=True, exist_ok=True)
         files = list(_files(display, fmt, out))
     except OSError as error:
         raise unwritable(Path(error.filename or out), error, "choose another folder") from None
-    return Exported(tuple(files), display.notes)
+    notes = [f"no solid, so not in the STEP file: {', '.join(missing)}"] if fmt == "step" and missing else []
+    return Exported(tuple(files), (*display.notes, *notes))
+
+
+def _refuse_no_solids(display: Display, missing: Sequence[str]) -> None:
+    """Refuse STEP where nothing could be in its file."""
+    if all(body.posed is None for world in display.worlds for body in world.bodies):
+        have = "has" if len(missing) == 1 else "have"
+        raise InputError(
+            f"{display.label}: a STEP file holds solids, and {', '.join(missing)} {have} none: give parts a `builder` "
+            "in the scene, or choose stl, ply or glb, which show what there is"
+        )
 
 
 def part_meshes(display: Display) -> dict[str, trimesh.Trimesh]:
@@ -94,8 +110,10 @@ def _files(display: Display, fmt: str, out: Path) -> Iterator[Path]:
     for world in worlds:
         path = out / f"{display.label}{f'-{names[world.name]}' if len(worlds) > 1 else ''}.{fmt}"
         if fmt == "step":
-            export_step([body.posed() for body in world.bodies], path, [body.colour for body in world.bodies])
-            yield path
+            solids = [(body.posed(), body.colour) for body in world.bodies if body.posed is not None]
+            if solids:
+                export_step([posed for posed, _ in solids], path, [colour for _, colour in solids])
+                yield path
         elif fmt == "glb":
             yield _written(path, _glb(world))
         elif world.one_file:

@@ -16,7 +16,7 @@ from scipy import ndimage
 from scipy.optimize import isotonic_regression, linear_sum_assignment
 from vtkmodules.vtkRenderingCore import vtkWorldPointPicker
 
-from tol3d.report.body import World
+from tol3d.report.body import Body, World
 from tol3d.report.camera import look
 from tol3d.report.drawn_solids import (
     CONTACT_COLOUR,
@@ -25,6 +25,7 @@ from tol3d.report.drawn_solids import (
     add_label,
     add_round_solid,
     add_solid,
+    add_translucent_solid,
     arrow,
     poly_data,
     set_background,
@@ -46,6 +47,7 @@ MARK_SHARE: Final = 1 / 120  # the same at what is no part: a tip, a contact
 PROBE_HEIGHT: Final = 480  # pixels of the pictures that are only asked what is seen in them
 LARGE_COUNTS: Final = 1 / 4  # power; of two corners from which as much is seen, the one with the larger picture
 ALIKE: Final = 0.98  # of the best corner's score: near enough to it, so that trials of a run are seen from one corner
+PEELS: Final = 12  # faces one behind the other that are seen through
 INSIDE_SHARE: Final = 0.6  # of the largest distance to the edge of what is seen of a body: what a label may point at
 
 
@@ -117,7 +119,10 @@ def draw_whole(
     """
     set_background(plotter)
     for body in world.bodies:
-        (add_round_solid if body.smooth else add_solid)(plotter, poly_data(*body.mesh), body.colour)
+        _add_body(plotter, body)
+    if any(body.opacity < 1.0 for body in world.bodies):  # else faces hide each other in the order of drawing
+        plotter.renderer.SetUseDepthPeeling(True)
+        plotter.renderer.SetMaximumNumberOfPeels(PEELS)
     eye, anchors = _best_eye(world, width_by_height)
     frame = _frame(world, eye, width_by_height)
     labels = [Label(body.name, body.colour, EDGE_COLOUR, anchors[body.name]) for body in world.bodies]
@@ -128,6 +133,16 @@ def draw_whole(
         labels.append(Label(name, GAP_COLOUR, "white", shown.place + length * shown.direction))
     _look(plotter, eye, frame)
     (_label_beside if plotter.off_screen else _label_in_place)(plotter, Whole(eye, frame, tuple(labels)))
+
+
+def _add_body(plotter: pv.Plotter, body: Body) -> None:
+    mesh = poly_data(*body.mesh)
+    if body.opacity < 1.0:
+        add_translucent_solid(plotter, mesh, body.colour, body.opacity)
+    else:
+        (add_round_solid if body.smooth else add_solid)(plotter, mesh, body.colour)
+    if body.detail_mesh is not None:
+        add_solid(plotter, poly_data(*body.detail_mesh), body.colour)
 
 
 def _label_in_place(plotter: pv.Plotter, picture: Whole) -> None:
@@ -162,12 +177,15 @@ def _best_eye(world: World, width_by_height: float) -> tuple[Eye, Mapping[str, A
     plotter.renderer.set_background("black")
     plotter.disable_anti_aliasing()  # a pixel between two bodies would have the number of a third
     try:
-        for number, body in enumerate(world.bodies, 1):
+        actors = [
             plotter.add_mesh(poly_data(*body.mesh), color=f"#{number:06X}", lighting=False)
+            for number, body in enumerate(world.bodies, 1)
+        ]
+        clear = {number: actor for number, actor in enumerate(actors, 1) if world.bodies[number - 1].opacity < 1.0}
         found = []
         for eye in _corners(np.array(world.up)):
             _look(plotter, eye, _frame(world, eye, width_by_height))
-            found.append((eye, *_seen(plotter, world)))
+            found.append((eye, *_seen(plotter, world, clear)))
     finally:
         plotter.close()
     best = max(score for _, score, _ in found)
@@ -188,28 +206,34 @@ def _corners(up: Array) -> Iterator[Eye]:
         yield Eye(np.stack([right, np.cross(eye, right), eye]))
 
 
-def _seen(plotter: pv.Plotter, world: World) -> tuple[float, Mapping[str, Array]]:
+def _seen(plotter: pv.Plotter, world: World, clear: Mapping[int, pv.Actor]) -> tuple[float, Mapping[str, Array]]:
     """How much is seen of the bodies, each counting, and how large; and a point to be seen of each.
 
     Args:
         plotter: as it looks at the bodies, each in a colour that is its number in the world, from 1 on.
         world: its bodies.
+        clear: those that hide nothing, by their numbers.
     """
     pixel = 2 * plotter.camera.parallel_scale / PROBE_HEIGHT  # mm
-    plotter.render()
-    red, green, blue = np.moveaxis(np.asarray(plotter.screenshot(return_img=True), dtype=int), 2, 0)
-    numbers = (65536 * red + 256 * green + blue)[::-1]  # rows from the lower edge up, as VTK counts them
-    picker = vtkWorldPointPicker()
     score, anchors = 0.0, {}
-    for number, body in enumerate(world.bodies, 1):
-        shown = numbers == number
-        if not shown.any():
-            anchors[body.name] = body.mesh[0].mean(axis=0)
-            continue
-        score += math.sqrt(shown.sum() * pixel**2 / poly_data(*body.mesh).area)
-        x, y = _clear_place(shown)
-        picker.Pick(x, y, 0.0, plotter.renderer)
-        anchors[body.name] = np.array(picker.GetPickPosition())
+    for are_clear in (False, True) if clear else (False,):
+        for actor in clear.values():
+            actor.visibility = are_clear
+        plotter.render()
+        red, green, blue = np.moveaxis(np.asarray(plotter.screenshot(return_img=True), dtype=int), 2, 0)
+        numbers = (65536 * red + 256 * green + blue)[::-1]  # rows from the lower edge up, as VTK counts them
+        picker = vtkWorldPointPicker()
+        for number, body in enumerate(world.bodies, 1):
+            if (number in clear) != are_clear:
+                continue
+            shown = numbers == number
+            if not shown.any():
+                anchors[body.name] = body.mesh[0].mean(axis=0)
+                continue
+            score += math.sqrt(shown.sum() * pixel**2 / poly_data(*body.mesh).area)
+            x, y = _clear_place(shown)
+            picker.Pick(x, y, 0.0, plotter.renderer)
+            anchors[body.name] = np.array(picker.GetPickPosition())
     return score / pixel**LARGE_COUNTS, anchors
 
 

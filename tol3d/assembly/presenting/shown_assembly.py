@@ -1,8 +1,8 @@
 """Builds of assemblies as they are shown: each part's features where they lie in the trial."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
-from functools import partial
+from dataclasses import dataclass, replace
+from functools import cached_property, partial
 from typing import Final
 
 import numpy as np
@@ -10,15 +10,16 @@ from numpy.typing import NDArray
 
 from tol3d.assembly.model import Assembly, Feature
 from tol3d.assembly.placing import road as placing
-from tol3d.assembly.presenting.symbols import Surface, rod, symbol
+from tol3d.assembly.presenting.labels import labels, unnamed
+from tol3d.assembly.presenting.part_symbols import joined_symbols, marks_on_solid
 from tol3d.assembly.system import AssemblySystem
-from tol3d.errors import GeometryError, InputError, RunError
+from tol3d.errors import InputError, RunError
 from tol3d.report.body import Body, World
+from tol3d.report.built_body import built_body
 from tol3d.report.presenter import View, Which
 from tol3d.runs.run import Run
 from tol3d.runs.worst import worst_trial
 from tol3d.simulate import Replay, replay, replayed, simulation_again
-from tol3d.solids import PosedPart
 from tol3d.system.stated import mean_build, nominal_build
 
 Array = NDArray[np.float64]
@@ -26,8 +27,41 @@ Array = NDArray[np.float64]
 COLOURS: Final = ("#4682B4", "#CD853F", "#6B8E23", "#B22222", "#8470FF", "#2F8F8F", "#C71585", "#708090")
 THIN: Final = 1 / 120
 """Of the assembly's size: thickness of symbols; a sixth of it is the radius of the rods that join those of a part."""
-MOST_NAMED: Final = 16
-"""Features that a picture names."""
+DEFLECTION: Final = 0.05
+"""mm; how far triangles may lie off the faces of solids: the same in all trials, whose meshes are built once."""
+OPACITY: Final = 0.4
+"""Of solids, so that their features and what lies within them are seen."""
+RIGID: Final = "solids keep the shape that is drawn: what deviates on them is shown by the symbols of their features"
+
+
+@dataclass(frozen=True, eq=False)
+class Placed:
+    """An assembly in a trial.
+
+    Args:
+        assembly: which.
+        frames: of its features in the world (4, 4).
+        poses: of its parts in the world (4, 4).
+    """
+
+    assembly: Assembly
+    frames: Mapping[str, Array]
+    poses: Mapping[str, Array]
+
+    def seen_from(self, into: Array) -> "Placed":
+        """It in another world, into which a pose (4, 4) takes it."""
+        frames = {name: into @ frame for name, frame in self.frames.items()}
+        return Placed(self.assembly, frames, {name: into @ pose for name, pose in self.poses.items()})
+
+    @property
+    def has_solids(self) -> bool:
+        """Whether any part has a solid."""
+        return any(part.solid is not None for part in self.assembly.parts)
+
+    @property
+    def points(self) -> Mapping[str, Array]:
+        """Where features are that pictures name (3,) [mm], by what they are called."""
+        return {label: self.frames[name][:3, 3] for name, label in labels(self.assembly).items()}
 
 
 @dataclass(frozen=True)
@@ -36,27 +70,24 @@ class ShownAssembly:
 
     Args:
         label: what it is.
-        bodies: a body a part.
-        places: of the features that a drawing names (3,) [mm].
+        placed: what is shown.
         notes: what the user should know.
     """
 
     label: str
-    bodies: tuple[Body, ...]
-    places: Mapping[str, Array]
+    placed: Placed
     notes: tuple[str, ...] = ()
 
-    @property
+    @cached_property
     def worlds(self) -> tuple[World, ...]:
-        """One world; the features are named where they are few."""
-        points = self.places if len(self.places) <= MOST_NAMED else {}
-        return (World("assembly", self.bodies, points=points, up=(0.0, 0.0, 1.0)),)
+        """One world; the features that matter most are named."""
+        return (World("assembly", bodies(self.placed), points=self.placed.points, up=(0.0, 0.0, 1.0)),)
 
     def view(self, close_up: str | None) -> View:
         """The world, its parts named."""
         if close_up is not None:
             raise InputError(f"nothing of an assembly is shown close up, not {close_up}")
-        return View()
+        return View(notes=unnamed(self.placed.assembly))
 
 
 def display(run: Run, which: Which, *, magnify: float) -> ShownAssembly:
@@ -89,28 +120,40 @@ def replayed_display(seen: Replay, label: str, notes: tuple[str, ...] = ()) -> S
     """
     system = seen.simulation.system
     assert isinstance(system, AssemblySystem)
-    frames = placing.features_placed(system.assembly, seen.trials.deviations[:1])
-    if any(np.isnan(frame).any() for frame in frames.values()):
+    placed = placed_in(system.assembly, seen.trials.deviations[:1])
+    if placed is None:
         raise RunError(f"{label}: cannot be shown: {seen.status}")
-    here = {name: own[0] for name, own in frames.items()}
-    named = [own.name for own in system.assembly.features.values() if own.is_named]
-    return ShownAssembly(label, bodies(system.assembly, here), {name: here[name][:3, 3] for name in named}, notes)
+    return ShownAssembly(label, placed, (*notes, *([RIGID] if placed.has_solids else [])))
 
 
-def bodies(assembly: Assembly, frames: dict[str, Array]) -> tuple[Body, ...]:
-    """A body a part, of its features' symbols.
+def placed_in(assembly: Assembly, deviations: Array) -> Placed | None:
+    """An assembly in one trial (1, width); None where a move fails."""
+    frames = placing.features_placed(assembly, deviations)
+    poses = placing.placed(assembly, deviations)
+    if any(np.isnan(own).any() for own in (*frames.values(), *poses.values())):
+        return None
+    here, there = ({name: own[0] for name, own in found.items()} for found in (frames, poses))
+    return Placed(assembly, here, there)
 
-    Args:
-        assembly: whose.
-        frames: of the features in the world (4, 4).
-    """
+
+def bodies(placed: Placed) -> tuple[Body, ...]:
+    """A body a part: its solid with its features' symbols on it, or these alone where it has none."""
+    assembly, frames = placed.assembly, placed.frames
     places = np.array([frame[:3, 3] for frame in frames.values()])
     thickness = THIN * max(float(np.ptp(places, axis=0).max()), *(_extent(own) for own in assembly.features.values()))
     found = []
     for k, part in enumerate(assembly.parts):
+        colour = COLOURS[k % len(COLOURS)]
         named = [(own, frames[own.name]) for own in part.features if own.is_named]
-        surface = partial(_joined, tuple(named), thickness)
-        found.append(Body(part.name, np.eye(4), surface, partial(_no_solid, part.name), COLOURS[k % len(COLOURS)]))
+        if part.solid is None:
+            surface = partial(joined_symbols, tuple(named), thickness)
+            found.append(Body(part.name, np.eye(4), surface, None, colour))
+            continue
+        pose = placed.poses[part.name]
+        own_frames = [(own, np.linalg.inv(pose) @ frame) for own, frame in named]
+        body = built_body(part.name, part.solid, pose, colour, deflection=DEFLECTION)
+        details = partial(marks_on_solid, tuple(own_frames), thickness) if own_frames else None
+        found.append(replace(body, opacity=OPACITY, details=details))
     return tuple(found)
 
 
@@ -118,24 +161,3 @@ def _extent(feature: Feature) -> float:
     ends = getattr(feature.shape, "ends", None)
     radius = getattr(feature.shape, "radius", 0.0)
     return 2 * float(radius) if ends is None else float(np.ptp(ends, axis=0).max())
-
-
-def _joined(features: tuple[tuple[Feature, Array], ...], thickness: float) -> Surface:
-    """The symbols of several features, and rods from their middle to each, in the world."""
-    places = np.array([frame[:3, 3] for _, frame in features])
-    middle = places.mean(axis=0)
-    surfaces = [rod(middle, place, thickness / 6) for place in places if np.linalg.norm(place - middle) > thickness]
-    for feature, frame in features:
-        vertices, triangles = symbol(feature.shape, thickness)
-        surfaces.append((vertices @ frame[:3, :3].T + frame[:3, 3], triangles))
-    starts = np.cumsum([0, *(len(vertices) for vertices, _ in surfaces)])
-    return (
-        np.concatenate([vertices for vertices, _ in surfaces]),
-        np.concatenate([triangles + start for (_, triangles), start in zip(surfaces, starts, strict=False)]),
-    )
-
-
-def _no_solid(part: str) -> PosedPart:
-    raise GeometryError(
-        f"{part}: its features are stated by numbers, so that it has no solid; take a format of triangles"
-    )

@@ -12,6 +12,8 @@ Surface = tuple[Array, NDArray[np.int64]]
 
 SIDES = 48
 """Of a round surface."""
+WALL = 0.35
+"""Of the thickness of other symbols: how thick marks on solids are across the surface on which they lie."""
 
 
 def symbol(shape: Shape, thickness: float) -> Surface:
@@ -35,8 +37,7 @@ def symbol(shape: Shape, thickness: float) -> Surface:
             outline, half = np.array([(-a, -b), (a, -b), (a, b), (-a, b)]), shape.width / 2
             if not shape.inner:
                 return prism(outline, -half, half)
-            walls = prism(outline, half, half + thickness), prism(outline, -half - thickness, -half)
-            return np.concatenate([own for own, _ in walls]), np.concatenate([walls[0][1], walls[1][1] + 8])
+            return together([prism(outline, half, half + thickness), prism(outline, -half - thickness, -half)])
         case Plane():
             a, b = shape.reach
             outline = np.array([(-a, -b), (a, -b), (a, b), (-a, b)])
@@ -49,6 +50,54 @@ def symbol(shape: Shape, thickness: float) -> Surface:
             if shape.inner:
                 return ring(radius, radius + thickness, -half, half)
             return prism(circle(radius), -half, half)
+
+
+def mark(shape: Shape, thickness: float) -> Surface:
+    """What stands for a feature on the solid of its part, in its frame: thin, astride of where the feature is.
+
+    Args:
+        shape: a plane is a frame along its edges or a ring, a slot or a tab such frames on both walls, a hole a
+            tube, a pin a little thicker than it is; others are as `symbol` has them.
+        thickness: of a symbol [mm].
+    """
+    half = WALL * thickness / 2
+    match shape:
+        case Slot():
+            heights = -shape.width / 2, shape.width / 2
+            return together([edges(shape.reach, thickness, own - half, own + half) for own in heights])
+        case Plane():
+            return edges(shape.reach, thickness, -half, half)
+        case RoundPlane():
+            return ring(max(shape.radius - thickness, shape.radius / 2), shape.radius, -half, half)
+        case Axis(diameter=float(diameter)):
+            end = shape.length / 2
+            if not shape.inner:
+                return prism(circle(diameter / 2 + half), -end, end)
+            return ring(max(diameter / 2 - half, diameter / 4), diameter / 2 + half, -end, end)
+    return symbol(shape, thickness)
+
+
+def edges(reach: tuple[float, float], width: float, low: float, high: float) -> Surface:
+    """Four bars along the inside of a rectangle's edges, from one height to another [mm]."""
+    a, b = reach
+    wide, deep = min(width, a / 2), min(width, b / 2)
+    bars = (
+        (-a, a, b - deep, b),
+        (-a, a, -b, deep - b),
+        (a - wide, a, deep - b, b - deep),
+        (-a, wide - a, deep - b, b - deep),
+    )
+    outlines = [np.array([(left, near), (right, near), (right, far), (left, far)]) for left, right, near, far in bars]
+    return together([prism(outline, low, high) for outline in outlines])
+
+
+def together(surfaces: Sequence[Surface]) -> Surface:
+    """Several closed surfaces as one."""
+    starts = np.cumsum([0, *(len(vertices) for vertices, _ in surfaces)])
+    return (
+        np.concatenate([vertices for vertices, _ in surfaces]),
+        np.concatenate([triangles + start for (_, triangles), start in zip(surfaces, starts, strict=False)]),
+    )
 
 
 def circle(radius: float) -> Array:

@@ -1,14 +1,13 @@
 """Builds of gears in a housing as they are shown: seated gears, and the features of the parts around them."""
 
-from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.assembly.placing import road as placing
-from tol3d.assembly.presenting.shown_assembly import MOST_NAMED, bodies
+from tol3d.assembly.presenting.labels import unnamed
+from tol3d.assembly.presenting.shown_assembly import RIGID, Placed, bodies, placed_in
 from tol3d.errors import RunError
 from tol3d.gearbox.system import GearboxSystem
 from tol3d.gearing.display import replayed_build, replayed_of, seated_build
@@ -28,12 +27,12 @@ class ShownGearbox:
     Args:
         gears: at rest on the axes that the bores of the build give.
         system: whose build it is.
-        frames: of the features of the parts in their world (4, 4).
+        placed: the parts around them, in their own world.
     """
 
     gears: GearDisplay
     system: GearboxSystem
-    frames: Mapping[str, Array]
+    placed: Placed
 
     @property
     def label(self) -> str:
@@ -43,7 +42,7 @@ class ShownGearbox:
     @property
     def notes(self) -> tuple[str, ...]:
         """See Display."""
-        return self.gears.notes
+        return (*self.gears.notes, *([RIGID] if self.placed.has_solids else []))
 
     @cached_property
     def worlds(self) -> tuple[World, ...]:
@@ -54,12 +53,9 @@ class ShownGearbox:
         into = self._world_from_parts(world.name)
         if into is None:
             return world
-        assembly = self.system.drawn.assembly
-        parts = (replace(own, world_from_part=into) for own in bodies(assembly, dict(self.frames)))
-        named = [own.name for own in assembly.features.values() if own.is_named]
-        places = {name: (into @ self.frames[name])[:3, 3] for name in named}
-        points = {**world.points, **(places if len(places) <= MOST_NAMED else {})}
-        return replace(world, bodies=(*world.bodies, *parts), points=points, one_file=True)
+        placed = self.placed.seen_from(into)
+        points = {**world.points, **placed.points}
+        return replace(world, bodies=(*world.bodies, *bodies(placed)), points=points, one_file=True)
 
     def _world_from_parts(self, name: str) -> Array | None:
         """Where the world of the parts lies in that of a train, or of a mesh; None where the train has no bores."""
@@ -74,7 +70,9 @@ class ShownGearbox:
 
     def view(self, close_up: str | None) -> View:
         """The whole gearbox; with a mesh named, that mesh close up as in any train."""
-        return View() if close_up is None else self.gears.view(close_up)
+        if close_up is not None:
+            return self.gears.view(close_up)
+        return View(notes=unnamed(self.placed.assembly))
 
 
 def display(run: Run, which: Which, *, magnify: float) -> ShownGearbox:
@@ -101,7 +99,7 @@ def _shown(gears: GearDisplay, seen: Replay, label: str, magnify: float) -> Show
     system = seen.simulation.system
     assert isinstance(system, GearboxSystem)
     deviations = magnify * seen.trials.deviations[:1, system.assembly_places]
-    frames = placing.features_placed(system.drawn.assembly, deviations)
-    if any(np.isnan(frame).any() for frame in frames.values()):
+    placed = placed_in(system.drawn.assembly, deviations)
+    if placed is None:
         raise RunError(f"{label}: cannot be shown: {seen.status}")
-    return ShownGearbox(gears, system, {name: own[0] for name, own in frames.items()})
+    return ShownGearbox(gears, system, placed)
