@@ -1,7 +1,7 @@
 """Faces of a CAD solid by their names or places, and what each of them is."""
 
 from collections.abc import Iterator, Sequence
-from typing import Final
+from typing import Any, Final
 
 import cadquery as cq
 import numpy as np
@@ -197,12 +197,11 @@ def _x_of(z: Array, along: Triple | None) -> Array:
     return np.asarray(across / np.linalg.norm(across))
 
 
-def _triple(point: object) -> Triple:
+def _triple(point: Any) -> Triple:
     """Coordinates of OCC's and CadQuery's points and directions."""
     if isinstance(point, cq.Vector):
         return float(point.x), float(point.y), float(point.z)
-    x, y, z = point.X(), point.Y(), point.Z()  # type: ignore[attr-defined]
-    return float(x), float(y), float(z)
+    return float(point.X()), float(point.Y()), float(point.Z())
 
 
 def _floats(vector: Array) -> Triple:

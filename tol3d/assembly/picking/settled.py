@@ -16,6 +16,7 @@ from tol3d.scene.place import KeyPath
 from tol3d.scene.references import Problem, refuse
 from tol3d.solids.kept_shape import KeptShape
 from tol3d.solids.picks import Pick, PickedFace, PickError, Triple, picked
+from tol3d.units import Quantity
 
 NO_FILES: Final[Files] = {}
 
@@ -90,8 +91,8 @@ def _picks(part: str, own: SolidSpec) -> Iterator[tuple[KeyPath, Pick]]:
             yield ("parts", part, "features", feature, *keys), Pick(face.name or "", near, kinds, spec.x_picked)
 
 
-def _triple(vector: object) -> Triple:
-    x, y, z = (own.internal for own in vector)  # type: ignore[attr-defined]
+def _triple(vector: tuple[Quantity, Quantity, Quantity]) -> Triple:
+    x, y, z = (own.internal for own in vector)
     return x, y, z
 
 
