@@ -1,5 +1,6 @@
 """The solid of a box along the axes with its six faces named, and frames on them to cut into."""
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Final
@@ -39,7 +40,17 @@ TOP_IS_Z: Final[Mapping[str, Side]] = {
     "front": Side(1, -1),
     "back": Side(1, 1),
 }
-"""Sides of a part that lies flat: seen from the front with its top up, x points to the right."""
+"""Sides of a part whose top is at +z: seen from the front with its top up, x points to the right."""
+
+TOP_IS_Y: Final[Mapping[str, Side]] = {
+    "top": Side(1, 1),
+    "bottom": Side(1, -1),
+    "left": Side(0, -1),
+    "right": Side(0, 1),
+    "front": Side(2, 1),
+    "back": Side(2, -1),
+}
+"""Sides of a part whose top is at +y, seen in the same way."""
 
 
 @dataclass(frozen=True)
@@ -50,6 +61,16 @@ class Box:
     high: Point
     sides: Mapping[str, Side]
 
+    def side(self, name: str, words: str) -> Side:
+        """A side by its name.
+
+        Raises:
+            GeometryError: there is none; `words` says what is on it.
+        """
+        if name not in self.sides:
+            raise GeometryError(f"{words} is on the {name!r}; expected one of {', '.join(self.sides)}")
+        return self.sides[name]
+
     def level(self, side: Side) -> float:
         """Where the face of a side is along its axis [mm]."""
         return (self.high if side.sign > 0 else self.low)[side.axis]
@@ -58,23 +79,28 @@ class Box:
         """From a side to the opposite one [mm]."""
         return self.high[side.axis] - self.low[side.axis]
 
-    def refuse_outside(self, words: str, side: Side, at: Place, reach: Place) -> None:
-        """Raise unless what is round a place on a side lies within it.
+    def refuse_flat(self, words: str) -> None:
+        """Raise unless the box has a volume; `words` says what it is."""
+        sizes = [high - low for low, high in zip(self.low, self.high, strict=True)]
+        if not all(LEAST_WALL <= size < math.inf for size in sizes):
+            raise GeometryError(f"{words} of {' by '.join(f'{size:g} mm' for size in sizes)} has no volume")
+
+    def refuse_outside(self, words: str, face: str, at: Place, reach: Place) -> None:
+        """Raise unless what is round a place on a face lies within it.
 
         Args:
             words: what it is.
-            side: of the box.
+            face: of the box.
             at: the place [mm].
             reach: how far it reaches from there along both coordinates [mm].
         """
-        for axis, place, half in zip(side.across, at, reach, strict=True):
+        for axis, place, half in zip(self.sides[face].across, at, reach, strict=True):
             low, high = place - half, place + half
-            if low - self.low[axis] < LEAST_WALL or self.high[axis] - high < LEAST_WALL:
-                name = next(name for name, own in self.sides.items() if own == side)
-                room = f"{self.low[axis]:g} mm to {self.high[axis]:g} mm"
+            # not so turned round that NaN would pass
+            if not (low - self.low[axis] >= LEAST_WALL and self.high[axis] - high >= LEAST_WALL):
                 raise GeometryError(
-                    f"{words} leaves the {name}: along {'xyz'[axis]} it reaches from {low:g} mm to {high:g} mm, "
-                    f"the {name} from {room}"
+                    f"{words} leaves the {face}: along {'xyz'[axis]} it reaches from {low:g} mm to {high:g} mm, "
+                    f"the {face} from {self.low[axis]:g} mm to {self.high[axis]:g} mm"
                 )
 
     def solid(self) -> NamedSolid:

@@ -101,6 +101,87 @@ class Pin:
         return f"pin {self.name!r} (diameter {self.diameter:g} mm at {place_words(self.at)})"
 
 
+@dataclass(frozen=True)
+class Bore:
+    """A bore through an end wall of a housing, and through the boss that it lies in; its wall is the face "NAME".
+
+    Args:
+        name: its wall's.
+        at: x and y of its axis.
+        diameter: [mm].
+        wall: "front" (+z) or "back" (-z).
+    """
+
+    name: str
+    at: Place
+    diameter: float
+    wall: str
+
+    @property
+    def reach(self) -> Place:
+        """How far it reaches from its place along both coordinates [mm]."""
+        return self.diameter / 2, self.diameter / 2
+
+    @property
+    def words(self) -> str:
+        """For messages."""
+        return f"bore {self.name!r} (diameter {self.diameter:g} mm at {place_words(self.at)} of the {self.wall})"
+
+
+@dataclass(frozen=True)
+class Boss:
+    """A round boss on the outside of an end wall of a housing: its side is the face "NAME", its end "NAME end".
+
+    Args:
+        name: its side's.
+        at: x and y of its axis.
+        diameter: [mm].
+        height: above the wall [mm].
+        wall: "front" (+z) or "back" (-z).
+    """
+
+    name: str
+    at: Place
+    diameter: float
+    height: float
+    wall: str
+
+    @property
+    def reach(self) -> Place:
+        """How far it reaches from its place along both coordinates [mm]."""
+        return self.diameter / 2, self.diameter / 2
+
+    @property
+    def words(self) -> str:
+        """For messages."""
+        return f"boss {self.name!r} (diameter {self.diameter:g} mm at {place_words(self.at)} of the {self.wall})"
+
+
+@dataclass(frozen=True)
+class Spigot:
+    """A rectangular register below the seat of a cover, which reaches into an opening.
+
+    Args:
+        length, width, height: along x and y, and below the seat [mm].
+        at: its middle on the seat.
+    """
+
+    length: float
+    width: float
+    height: float
+    at: Place = (0.0, 0.0)
+
+    @property
+    def reach(self) -> Place:
+        """How far it reaches from its place along both coordinates [mm]."""
+        return self.length / 2, self.width / 2
+
+    @property
+    def words(self) -> str:
+        """For messages."""
+        return f"the spigot ({self.length:g} mm by {self.width:g} mm at {place_words(self.at)})"
+
+
 def place_words(at: Place) -> str:
     """A place for messages: [10, -5] mm."""
     return f"[{at[0]:g}, {at[1]:g}] mm"

@@ -13,7 +13,7 @@ from OCP.gp import gp_Ax2, gp_Ax3, gp_Dir, gp_Pnt, gp_Trsf, gp_Vec
 
 from tol3d.errors import GeometryError
 from tol3d.parts.box import LEAST_WALL, Box, Side
-from tol3d.parts.details import Hole, Pin, Place, Slot
+from tol3d.parts.details import Bore, Boss, Hole, Pin, Place, Slot
 from tol3d.parts.named_boolean import cut, fused
 from tol3d.parts.named_solid import BACK, FRONT, NamedEdge, NamedSolid, extruded
 
@@ -37,7 +37,7 @@ def machined(
     Raises:
         GeometryError: a detail without size, one that leaves its face, two that meet, a name that two faces have.
     """
-    standing = [(pin.words, _pin(box, pin)) for pin in pins]
+    standing = [(pin.words, standing_on(box, "top", pin)) for pin in pins]
     cutting = [(own.words, cutter(box, own)) for own in (*holes, *slots)]
     refuse_meeting([*standing, *cutting])
     whole = fused(box.solid(), [tool for _, tool in standing], words)
@@ -50,31 +50,45 @@ def cutter(box: Box, detail: Hole | Slot) -> NamedSolid:
     Raises:
         GeometryError: it has no size, is deeper than the material or leaves its face.
     """
-    side = box.sides[detail.face]
+    side = box.side(detail.face, detail.words)
     whole = box.depth(side)
     refuse_sizes(detail)
     if detail.depth is not None and detail.depth > whole - LEAST_WALL:
         raise GeometryError(
             f"{detail.words} is {detail.depth:g} mm deep in {whole:g} mm of material; leave its depth out to go through"
         )
-    box.refuse_outside(detail.words, side, detail.at, detail.reach)
+    box.refuse_outside(detail.words, detail.face, detail.at, detail.reach)
     end = whole + OVERSHOOT if detail.depth is None else detail.depth
     return tool(detail, side, box.level(side), end)
 
 
-def tool(detail: Hole | Slot, side: Side, level: float, end: float) -> NamedSolid:
-    """The solid of a hole or a slot from just above a level of its side down to `end` below it [mm]."""
+def tool(detail: Hole | Slot | Bore, side: Side, level: float, end: float) -> NamedSolid:
+    """The solid of a hole, a slot or a bore from just above a level of its side down to `end` below it [mm]."""
     place = point(side, detail.at, level - side.sign * end)
-    if isinstance(detail, Hole):
+    if not isinstance(detail, Slot):
         return cylinder(place, _outwards(side), detail.diameter, end + OVERSHOOT, detail.name, f"{detail.name} floor")
     return _slot(detail, side, place, end + OVERSHOOT)
 
 
-def refuse_sizes(detail: Hole | Slot) -> None:
-    """Raise unless a hole or a slot has a size."""
-    width = detail.diameter if isinstance(detail, Hole) else detail.width
-    deep = math.inf if detail.depth is None else detail.depth
-    if min(width, deep) < LEAST_WALL or not math.isfinite(width):
+def standing_on(box: Box, face: str, standing: Pin | Boss) -> NamedSolid:
+    """The solid of a pin or a boss that stands on a side.
+
+    Raises:
+        GeometryError: it has no size or leaves its face.
+    """
+    side = box.side(face, standing.words)
+    if not all(LEAST_WALL <= size < math.inf for size in (standing.diameter, standing.height)):
+        raise GeometryError(f"{standing.words} is {standing.height:g} mm high: it has no size")
+    box.refuse_outside(standing.words, face, standing.at, standing.reach)
+    foot = point(side, standing.at, box.level(side))
+    return cylinder(foot, _outwards(side), standing.diameter, standing.height, standing.name, f"{standing.name} foot")
+
+
+def refuse_sizes(detail: Hole | Slot | Bore) -> None:
+    """Raise unless a hole, a slot or a bore has a size."""
+    width = detail.width if isinstance(detail, Slot) else detail.diameter
+    deep = math.inf if isinstance(detail, Bore) or detail.depth is None else detail.depth
+    if not (LEAST_WALL <= width < math.inf and deep >= LEAST_WALL):
         raise GeometryError(f"{detail.words} has no size: its width and its depth must be {LEAST_WALL:g} mm or more")
     if isinstance(detail, Slot) and detail.length < detail.width + LEAST_WALL:
         raise GeometryError(f"{detail.words} is no longer than wide: make it a hole")
@@ -122,15 +136,6 @@ def _outwards(side: Side) -> Direction:
     return found[0], found[1], found[2]
 
 
-def _pin(box: Box, pin: Pin) -> NamedSolid:
-    side = box.sides["top"]
-    if min(pin.diameter, pin.height) < LEAST_WALL:
-        raise GeometryError(f"{pin.words} is {pin.height:g} mm high: it has no size")
-    box.refuse_outside(pin.words, side, pin.at, pin.reach)
-    foot = point(side, pin.at, box.level(side))
-    return cylinder(foot, _outwards(side), pin.diameter, pin.height, pin.name, f"{pin.name} foot")
-
-
 def _slot(slot: Slot, side: Side, bottom: Direction, height: float) -> NamedSolid:
     """What a slot takes away, from its bottom on."""
     swept = extruded(list(_stadium(slot, -height / 2)), [], height)
@@ -143,7 +148,7 @@ def _slot(slot: Slot, side: Side, bottom: Direction, height: float) -> NamedSoli
     lift.SetTranslation(gp_Vec(0.0, 0.0, height / 2))
     place.SetDisplacement(gp_Ax3(), gp_Ax3(gp_Pnt(*bottom), gp_Dir(*_outwards(side)), gp_Dir(*along)))
     location = cq.Location(place.Multiplied(lift))
-    return NamedSolid(swept.solid.moved(location), {name: face.moved(location) for name, face in faces.items()})
+    return NamedSolid(swept.solid, faces).moved(location)
 
 
 def _stadium(slot: Slot, level: float) -> Iterator[NamedEdge]:

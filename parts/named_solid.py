@@ -35,6 +35,10 @@ class NamedSolid:
     solid: cq.Solid
     faces: Mapping[str, cq.Face]
 
+    def moved(self, location: cq.Location) -> "NamedSolid":
+        """The same elsewhere."""
+        return NamedSolid(self.solid.moved(location), {name: face.moved(location) for name, face in self.faces.items()})
+
 
 def numbered(solid: cq.Solid) -> NamedSolid:
     """A solid whose faces nobody picks by name: "face 1" and so on, in its own order."""

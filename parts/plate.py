@@ -2,8 +2,7 @@
 
 from collections.abc import Sequence
 
-from tol3d.errors import GeometryError
-from tol3d.parts.box import LEAST_WALL, TOP_IS_Z, Box
+from tol3d.parts.box import TOP_IS_Z, Box
 from tol3d.parts.details import Hole, Pin, Slot
 from tol3d.parts.machining import machined
 from tol3d.parts.named_solid import NamedSolid
@@ -29,7 +28,6 @@ def plate(
     Raises:
         GeometryError: a plate without volume, or a detail that leaves it or meets another.
     """
-    if min(length, width, thickness) < LEAST_WALL:
-        raise GeometryError(f"a plate of {length:g} mm by {width:g} mm by {thickness:g} mm has no volume")
     box = Box((-length / 2, -width / 2, 0.0), (length / 2, width / 2, thickness), TOP_IS_Z)
+    box.refuse_flat("a plate")
     return machined(box, "the plate", holes, slots, pins)

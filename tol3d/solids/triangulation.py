@@ -103,10 +103,15 @@ def triangulated(part: NamedSolid, deflection: float) -> Triangulation:
 
 
 def _triangulation(face: cq.Face) -> tuple[Array, NDArray[np.int64]]:
-    """Nodes (n, 3) [mm] and triangles (m, 3) of a face, turned out of the solid."""
-    mesh, _ = mesh_of(face)
+    """Nodes (n, 3) [mm], where the face lies, and triangles (m, 3) of a face, turned out of the solid."""
+    mesh, place = mesh_of(face)
     corners = corners_of(mesh)
-    return nodes_of(mesh), corners[:, ::-1] if face.wrapped.Orientation() == TopAbs_REVERSED else corners
+    nodes = nodes_of(mesh)
+    if not place.IsIdentity():
+        matrix = place.Transformation()
+        solid_from_face = np.array([[matrix.Value(row, column) for column in range(1, 5)] for row in range(1, 4)])
+        nodes = nodes @ solid_from_face[:, :3].T + solid_from_face[:, 3]
+    return nodes, corners[:, ::-1] if face.wrapped.Orientation() == TopAbs_REVERSED else corners
 
 
 def _joined(points: Array) -> tuple[Array, NDArray[np.int64]]:

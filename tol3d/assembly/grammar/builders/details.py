@@ -31,15 +31,15 @@ class SlotSpec(Strict):
     length: Length = Field(description="from end to end")
     width: Length = Field(description="between its walls")
     turned: Annotated[Quantity, Of("angle")] | None = Field(
-        default=None, description="from x towards y; along x if not given"
+        default=None, description="from the face's first coordinate towards its second; along the first if not given"
     )
     depth: Length | None = Field(default=None, description="of a blind slot; it goes through if not given")
 
-    def named(self, name: str) -> Slot:
-        """The slot by its name."""
+    def named(self, name: str, face: str = "top") -> Slot:
+        """The slot by its name, in a face."""
         turned = 0.0 if self.turned is None else self.turned.internal
         depth = None if self.depth is None else self.depth.internal
-        return Slot(name, place(self.at), self.length.internal, self.width.internal, turned, depth)
+        return Slot(name, place(self.at), self.length.internal, self.width.internal, turned, depth, face)
 
 
 class PinSpec(Strict):

@@ -1,0 +1,131 @@
+"""Builders in scenes: what docs/builders.md says of them, what is refused, and the stacks of the scene by hand."""
+
+import math
+from pathlib import Path
+from typing import Any, get_args
+
+import pytest
+from kinds_page import words
+from places import ROOT, SCENES
+
+from tol3d import load_scene, run_scene
+from tol3d.assembly.grammar.builders import BuilderUnion
+from tol3d.errors import SceneError
+from tol3d.simulate import Overrides
+from tol3d.solids.cad import solid_of
+from tol3d.strict import Strict
+
+PAGE = (ROOT / "docs" / "builders.md").read_text("utf-8")
+TEXT = (SCENES / "machined_parts.yaml").read_text("utf-8")
+KINDS: dict[str, type[Strict]] = {
+    get_args(spec.model_fields["kind"].annotation)[0]: spec for spec in get_args(get_args(BuilderUnion)[0])
+}
+BY_DIMENSIONS = {"base": "plate", "housing": "housing", "cover": "cover", "block": "block", "bracket": "bracket"}
+
+
+def rows(head: str) -> dict[str, list[str]]:
+    """Of a table of the page, by the first cell."""
+    table = PAGE[PAGE.index(f"| {head} |") :].split("\n\n")[0].splitlines()[2:]
+    cells = [[cell.strip() for cell in row.strip("|").split("|")] for row in table]
+    return {row[0].strip("`"): row[1:] for row in cells}
+
+
+def test_the_page_has_a_row_with_every_field_of_every_builder() -> None:
+    table = rows("builder")
+    assert set(table) == set(KINDS) - {"file"} == set(BY_DIMENSIONS.values())
+    for kind, (dimensions, *_) in table.items():
+        known = set(KINDS[kind].model_fields) - {"kind"}
+        within = {"face", "spigot", "at", "length", "width", "height"}
+        assert known <= words(dimensions)
+        assert words(dimensions) <= known | within
+
+
+@pytest.mark.parametrize("part", BY_DIMENSIONS)
+def test_the_page_names_the_faces_that_the_solid_has(part: str) -> None:
+    """Those of holes, slots, pins, bores and bosses aside."""
+    built: Any = load_scene(SCENES / "machined_parts.yaml").parts[part]
+    shape: Any = built.builder.shape
+    own = [one.name for field in ("holes", "slots", "pins", "bores", "bosses") for one in getattr(shape, field, ())]
+    plain = {face for face in solid_of(shape).faces if not face.startswith(tuple(own)) or face in ("front", "back")}
+    said = rows("builder")[BY_DIMENSIONS[part]][2]
+    said = rows("builder")["plate"][2] if said == "as the plate" else said
+    named = {name.split(" (")[0].strip() for name in said.replace(";", ",").split(",") if name.strip()}
+    named = {name for name in named if not name.startswith("round")}
+    assert named == plain
+
+
+def refused(old: str, new: str, folder: Path) -> str:
+    assert TEXT.count(old) == 1, old
+    path = folder / "scene.yaml"
+    path.write_text(TEXT.replace(old, new), "utf-8")
+    with pytest.raises(SceneError) as caught:
+        load_scene(path)
+    return str(caught.value).removeprefix(f"{path}:")
+
+
+WRONG = {
+    "hole outside the plate": (
+        "screw 1: {at: [-120 mm, -60 mm], diameter: 9 mm}",
+        "screw 1: {at: [-120 mm, -66 mm], diameter: 9 mm}",
+        "parts.base.builder: hole 'screw 1' (diameter 9 mm at [-120, -66] mm) leaves the top: along y it reaches from "
+        "-70.5 mm to -61.5 mm, the top from -70 mm to 70 mm",
+    ),
+    "holes that overlap": (
+        "screw 2: {at: [120 mm, -60 mm], diameter: 9 mm}",
+        "screw 2: {at: [-115 mm, -60 mm], diameter: 9 mm}",
+        "parts.base.builder: hole 'screw 1' (diameter 9 mm at [-120, -60] mm) and hole 'screw 2' (diameter 9 mm at "
+        "[-115, -60] mm) overlap, or leave no wall between them",
+    ),
+    "bore that leaves its wall": (
+        "input:      {wall: front, at: [-22 mm, 2 mm]",
+        "input:      {wall: front, at: [-40 mm, 2 mm]",
+        "parts.housing.builder: bore 'input' (diameter 22 mm at [-40, 2] mm of the front) leaves the front: along x it "
+        "reaches from -51 mm to -29 mm, the front from -45 mm to 45 mm",
+    ),
+    "thick walls": (
+        "walls: 10 mm",
+        "walls: 45 mm",
+        "parts.housing.builder: walls of 45 mm leave nothing inside a housing of 90 mm along z",
+    ),
+    "no unit": ("thickness: 16 mm ", "thickness: 16 ", "parts.base.builder.thickness: expected a length"),
+    "no such face": (
+        "thread: {face: right,",
+        "thread: {face: east,",
+        "parts.block.builder.holes.thread.face: expected one of top",
+    ),
+    "unknown dimension": ("fillet: 6 mm", "filet: 6 mm", 'did you mean "fillet"?'),
+    "unknown builder": ("kind: bracket ", "kind: angle ", "parts.bracket.builder"),
+    "a dotted name": ("keyway: {face", "key.way: {face", "expected a name without ."),
+    "builder of a part like another": (
+        "    placed: {at: [35 mm, -20 mm, 56 mm]}\n",
+        "    like: block\n    placed: {at: [35 mm, -20 mm, 56 mm]}\n",
+        "parts.bracket",
+    ),
+}
+
+
+@pytest.mark.parametrize(("old", "new", "message"), WRONG.values(), ids=WRONG.keys())
+def test_a_wrong_builder_is_refused_where_it_stands(old: str, new: str, message: str, tmp_path: Path) -> None:
+    said = refused(old, new, tmp_path)
+    assert message in said
+    assert "\n" not in said
+
+
+@pytest.mark.slow
+def test_the_stacks_of_heights_follow_by_hand(tmp_path: Path) -> None:
+    """Base, housing and cover (or block and bracket): 20, 12 and 9 um in series; the step has no base in it."""
+    count = 20_000
+    found = run_scene(SCENES / "machined_parts.yaml", overrides=Overrides(trials=count), out=tmp_path / "run").summary
+    height = math.sqrt(20**2 + 12**2 + 9**2)
+    by_hand = {
+        "top of cover": ((16 + 70 + 8) * 1e3, height),
+        "top of bracket": ((16 + 40 + 60) * 1e3, height),
+        "step": (22e3, math.sqrt(2 * (12**2 + 9**2))),
+    }
+    for name, (mean, sigma) in by_hand.items():
+        closed = found["measures"][name]["analytic_closed_form"]
+        assert (closed["mean"], closed["sigma"]) == pytest.approx((mean, sigma), rel=1e-9)
+        for road in ("analytic", "geometric"):
+            own = found["measures"][name][road]
+            assert own["mean"] == pytest.approx(mean, abs=4 * sigma / math.sqrt(count))
+            assert own["sigma"] == pytest.approx(sigma, rel=4 / math.sqrt(2 * count))
