@@ -271,3 +271,12 @@ def test_a_run_with_other_picks_than_it_kept_is_refused(tmp_path: Path) -> None:
     kept.write_text(json.dumps(content), "utf-8")
     with pytest.raises(RunError, match="was changed since the run was made"):
         simulation_again(open_run(tmp_path / "run"))
+
+
+def test_check_names_the_faces(tmp_path: Path, tol3d: Command) -> None:
+    code, out, _ = tol3d("check", str(written(tmp_path, text_of(PICKED | {"top": STATED["top"]}))))
+    assert code == 0
+    rows = {line.split()[0]: line.split()[-1] for line in out.splitlines() if line.startswith("base.")}
+    assert rows["base.bore"] == "bore"
+    assert rows["base.left"] == "left"
+    assert rows["base.top"] == "–"

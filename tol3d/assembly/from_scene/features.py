@@ -12,6 +12,7 @@ from tol3d.assembly.grammar.drawing import Drawing
 from tol3d.assembly.grammar.feature_name import part_of
 from tol3d.assembly.grammar.parts import SolidSpec
 from tol3d.assembly.model import Axis, Contribution, Feature, Plane, Point, RoundPlane
+from tol3d.assembly.picking.kept_picks import face_names
 from tol3d.scene import Scene
 
 Array = NDArray[np.float64]
@@ -24,7 +25,7 @@ def poses_of(scene: Scene) -> Mapping[str, Array]:
 
 def features_of(drawing: Drawing, effects: Effects, frames: DatumFrames) -> dict[str, Feature]:
     """All features that a scene names."""
-    found = {}
+    found, faces = {}, face_names(drawing.scene)
     for name, datums in drawing.parents():
         own = drawing.kind(name)
         found[name] = Feature(
@@ -36,6 +37,7 @@ def features_of(drawing: Drawing, effects: Effects, frames: DatumFrames) -> dict
             tuple(effects.moved_by.get(name, ())),
             tuple(effects.size_by.get(name, ())),
             tuple(effects.grown_by.get(name, ())),
+            face=faces.get(name, ""),
         )
     return found
 

@@ -39,6 +39,7 @@ class Feature:
         size_by: contributions to its size (1, components of the contributor); positive is a larger diameter or width.
         grown_by: contributions to where its origin lies as its part grows (3, components), in its frame [mm].
         is_named: whether a drawing names it; a point that a move makes of one is not.
+        face: name of the face of its part's solid that it is; "" of one by numbers.
     """
 
     name: str
@@ -50,3 +51,4 @@ class Feature:
     size_by: tuple[Contribution, ...] = ()
     grown_by: tuple[Contribution, ...] = ()
     is_named: bool = True
+    face: str = ""

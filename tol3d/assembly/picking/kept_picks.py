@@ -10,8 +10,10 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from tol3d.assembly.grammar.features import FeatureUnion
 from tol3d.assembly.grammar.features.face import FaceKind
+from tol3d.assembly.grammar.parts import SolidSpec
 from tol3d.errors import SceneError
 from tol3d.files import FileContent, Files
+from tol3d.scene import Scene
 from tol3d.solids.picks import PickedFace
 
 FEATURES: Final = "features.json"
@@ -103,3 +105,20 @@ def kept_in(files: Files, source: Path) -> Kept:
         for part, own in found.picks.items()
     }
     return Kept(picks, found.faces)
+
+
+def face_names(scene: Scene) -> dict[str, str]:
+    """The faces that features are picked from, by the features' names with their parts; those by numbers are left out.
+
+    Raises:
+        SceneError: what the scene's run kept is damaged.
+    """
+    solids = scene.of(SolidSpec)
+    if not any(own.faces_picked for solid in solids.values() for own in solid.features.values()):
+        return {}
+    kept = kept_in(scene.files, scene.source)
+    return {
+        f"{name}.{feature}": " and ".join(face.name for face in faces)
+        for name, own in solids.items()
+        for feature, faces in kept.picks.get(own.like or name, {}).items()
+    }

@@ -1,6 +1,7 @@
 """What a scene of an assembly means, as tables: features with their datum frames, moves."""
 
 from collections.abc import Mapping, Sequence
+from typing import Final
 
 import numpy as np
 
@@ -15,6 +16,8 @@ from tol3d.report.page import Heading, PageItem, Row, Table, titled
 from tol3d.report.system_check import system_blocks
 from tol3d.study.simulation import Simulation
 
+PLACE: Final = "at [mm]"
+
 
 def check_blocks(simulation: Simulation) -> Sequence[PageItem]:
     """Features, moves, and what any system shows."""
@@ -25,13 +28,22 @@ def check_blocks(simulation: Simulation) -> Sequence[PageItem]:
 
 def drawing_blocks(system: AssemblySystem) -> Sequence[PageItem]:
     """Features and moves."""
+    named = [own for part in system.assembly.parts for own in part.features if own.is_named]
+    picked = any(own.face for own in named)
     rows = [
-        Row(own.name, (_shape(own) + _facing(system, own), _place(system, own), _frame(own)))
-        for part in system.assembly.parts
-        for own in part.features
-        if own.is_named
+        Row(
+            own.name,
+            (
+                _shape(own) + _facing(system, own),
+                _place(system, own),
+                _frame(own),
+                *((own.face or "–",) if picked else ()),
+            ),
+        )
+        for own in named
     ]
-    words = [Heading(word, words=True) for word in ("shape", "at [mm]", "lies in the frame of")]
+    columns = ("shape", PLACE, "lies in the frame of", *(("face",) if picked else ()))
+    words = [Heading(word, words=word != PLACE) for word in columns]
     features = titled("features, nominally in the world", Table("", words, rows))
     planned = placing.planned(system.assembly).moves
     moves = [Row(move.name, _move(move, plan)) for move, plan in zip(system.assembly.moves, planned, strict=True)]
