@@ -44,7 +44,7 @@ class Term:
         """Change of j_bn [mm], (rows,), for deviations (rows, components) at turns (driver, driven) [rad]."""
         if deviation.shape[1] == 1:
             return self.coefficient * deviation[:, 0]
-        turn = np.zeros(len(deviation)) if self.turns is None else angles[0 if self.turns == "driver" else 1]
+        turn = np.zeros(1) if self.turns is None else angles[0 if self.turns == "driver" else 1]
         azimuth = self.along - self.sense * turn
         return self.coefficient * (np.cos(azimuth) * deviation[:, 0] + np.sin(azimuth) * deviation[:, 1])
 
