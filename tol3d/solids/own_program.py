@@ -1,9 +1,12 @@
 """Builders of the user: programs that make the solid of a part, and what they made read again."""
 
+import hashlib
 import io
+import subprocess
+import sys
 import traceback
 from collections.abc import Mapping
-from typing import Any
+from typing import Any, Final
 
 import cadquery as cq
 
@@ -11,6 +14,13 @@ from tol3d.errors import GeometryError
 from tol3d.files import FileContent
 from tol3d.parts.named_solid import NamedSolid
 from tol3d.solids.kept_shape import KeptShape
+
+DAMAGED: Final = "the solid that was kept is damaged"
+PATIENCE: Final = 120.0
+"""s: in which what was kept is read by a process of its own."""
+
+made_here: set[str] = set()
+"""SHA-256 of solids that were made or tried by this process, and need not be tried again."""
 
 
 def run_program(file: FileContent, function: str, dimensions: Mapping[str, float]) -> tuple[bytes, tuple[str, ...]]:
@@ -46,19 +56,47 @@ def run_program(file: FileContent, function: str, dimensions: Mapping[str, float
         raise GeometryError(f"{file.path}: {words}; tag it after all cuts")
     stream = io.BytesIO()
     solid.exportBrep(stream)
+    made_here.add(hashlib.sha256(stream.getvalue()).hexdigest())
     return stream.getvalue(), called
 
 
 def read(shape: KeptShape) -> NamedSolid:
-    """The solid that was kept.
+    """The solid that was kept; of another process it is read in one of its own first, for it may be a stranger's.
 
     Raises:
-        GeometryError: it is none.
+        GeometryError: it is none, or what reads it crashes or hangs.
     """
-    solid = cq.Shape.importBrep(io.BytesIO(shape.brep))
-    if not isinstance(solid, cq.Solid) or len(solid.Faces()) != len(shape.faces):
-        raise GeometryError("the solid that was kept is damaged")
+    if shape.sha256 not in made_here:
+        _try_apart(shape.brep)
+        made_here.add(shape.sha256)
+    solid = _read(shape.brep)
+    if len(solid.Faces()) != len(shape.faces):
+        raise GeometryError(f"{DAMAGED}: expected {len(shape.faces)} faces, found {len(solid.Faces())}")
     return NamedSolid(solid, dict(zip(shape.faces, solid.Faces(), strict=True)))
+
+
+def _read(brep: bytes) -> cq.Solid:
+    try:
+        solid = cq.Shape.importBrep(io.BytesIO(brep))
+    except Exception as error:  # whatever CadQuery and OCC raise of a file that they do not understand
+        raise GeometryError(f"{DAMAGED}: {error}") from None
+    if not isinstance(solid, cq.Solid):
+        raise GeometryError(f"{DAMAGED}: expected one solid, found {type(solid).__name__}")
+    return solid
+
+
+def _try_apart(brep: bytes) -> None:
+    """Read a solid in a process of its own: one that crashes or hangs takes nothing with it."""
+    command = [sys.executable, "-c", f"import sys\nfrom {__name__} import _read\n_read(sys.stdin.buffer.read())"]
+    try:
+        found = subprocess.run(command, input=brep, capture_output=True, timeout=PATIENCE, check=False)
+    except subprocess.TimeoutExpired:
+        raise GeometryError(f"{DAMAGED}: it cannot be read within {PATIENCE:g} s") from None
+    if found.returncode != 0:
+        last = (found.stderr.decode(errors="replace").strip().splitlines() or [f"exit code {found.returncode}"])[-1]
+        raise GeometryError(
+            f"{DAMAGED}: {last.removeprefix('tol3d.errors.GeometryError: ').removeprefix(DAMAGED + ': ')}"
+        )
 
 
 def _solid_and_names(made: Any, file: FileContent) -> tuple[cq.Solid, Mapping[str, cq.Face]]:

@@ -1,0 +1,71 @@
+"""Solids that programs of the user made: kept as they were, damaged ones refused whatever they do to their reader."""
+
+import os
+from pathlib import Path
+
+import cadquery as cq
+import pytest
+
+from tol3d.errors import GeometryError
+from tol3d.files import FileContent
+from tol3d.solids import display_mesh, own_program
+from tol3d.solids.kept_shape import KeptShape, run_program
+
+PROGRAM = b"""
+import cadquery as cq
+
+def build(size):
+    return cq.Workplane().box(size, size, size).faces(">Z").tag("top").end()
+"""
+
+
+@pytest.fixture
+def cube() -> KeptShape:
+    return run_program(FileContent(Path("cube.py"), PROGRAM), "build", {"size": 20.0})
+
+
+def test_a_solid_is_read_as_it_was_made_in_another_process(cube: KeptShape, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(own_program, "made_here", set())
+    again = KeptShape.of(cube.brep, cube.faces)
+    assert again == cube
+    solid = own_program.read(again)
+    assert solid.solid.Volume() == pytest.approx(8000.0, rel=1e-12)
+    assert solid.faces["top"].Center().z == pytest.approx(10.0, abs=1e-9)
+    assert sorted(solid.faces) == sorted(["top", *(f"face {k}" for k in range(1, 7) if f"face {k}" in cube.faces)])
+
+
+def test_a_display_mesh_is_that_of_the_solid(cube: KeptShape) -> None:
+    mesh = display_mesh(cube, 0.1)
+    assert (mesh.vertices.min(), mesh.vertices.max()) == pytest.approx((-10.0, 10.0), abs=1e-9)
+
+
+@pytest.mark.parametrize("content", [b"", b"no solid", b"\x00" * 1000], ids=["empty", "text", "zeros"])
+def test_what_is_no_solid_is_refused(content: bytes) -> None:
+    with pytest.raises(GeometryError, match="the solid that was kept is damaged"):
+        own_program.read(KeptShape.of(content, ("top",)))
+
+
+def test_a_solid_of_other_faces_is_refused(cube: KeptShape) -> None:
+    with pytest.raises(GeometryError, match="damaged: expected 2 faces, found 6"):
+        own_program.read(KeptShape.of(cube.brep, ("top", "bottom")))
+
+
+def test_a_file_that_crashes_or_hangs_its_reader_is_a_message(
+    cube: KeptShape, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    monkeypatch.setattr(own_program, "made_here", set())
+    (tmp_path / "sitecustomize.py").write_text("import os, sys\nif '-c' in sys.argv: os.abort()", "utf-8")
+    monkeypatch.setenv("PYTHONPATH", os.pathsep.join([str(tmp_path), os.environ.get("PYTHONPATH", "")]))
+    with pytest.raises(GeometryError, match="damaged: "):
+        own_program.read(cube)
+    (tmp_path / "sitecustomize.py").write_text("import sys, time\nif '-c' in sys.argv: time.sleep(60)", "utf-8")
+    monkeypatch.setattr(own_program, "PATIENCE", 0.5)
+    with pytest.raises(GeometryError, match=r"damaged: it cannot be read within 0\.5 s"):
+        own_program.read(cube)
+
+
+def test_a_stream_of_another_shape_is_refused(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    path = tmp_path / "edge.brep"
+    cq.Edge.makeLine(cq.Vector(0, 0, 0), cq.Vector(1, 0, 0)).exportBrep(str(path))
+    with pytest.raises(GeometryError, match="expected one solid, found Edge"):
+        own_program.read(KeptShape.of(path.read_bytes(), ("top",)))
