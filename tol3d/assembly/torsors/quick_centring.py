@@ -1,9 +1,8 @@
 """The largest common slack of a part with play, trial by trial in a kernel, where its optimum is smooth.
 
 Newton's steps on the conditions of `meeting`, with z_k w_k = mu in place of w_k = 0 and mu that falls faster the nearer
-it is (Nocedal, Wright: Numerical Optimization, 19.3), show which places decide; else a barrier does (Boyd,
-Vandenberghe: Convex Optimization, 11.3). Where a place ends in the middle of its clearance u_k has no direction: such
-trials are left to `centring`, which takes cones.
+it is (Nocedal, Wright: Numerical Optimization, 19.3), show which places decide. Where a place ends in the middle of its
+clearance u_k has no direction: such trials, and the few that no start leads to, are left to `interior_points`.
 """
 
 from typing import Any, Final
@@ -17,8 +16,6 @@ STEPS: Final = 20
 """Of Newton, 6 to 10 in practice; what takes more is left."""
 UNDER: Final = 0.5, 0.2
 """How far it starts under the slack that there is, of the largest offset; one after the other until one leads to it."""
-SLOW: Final = 150
-"""Of the barrier, 20 to 40 in practice."""
 FALLS: Final = 0.1
 """Most of mu that is left by a step."""
 INSIDE: Final = 0.98
@@ -107,69 +104,6 @@ def sought(place: Any, trial: Any, under: float, q: Any, state: Any, system: Any
 
 
 @part
-def slowly(place: Any, trial: Any, q: Any, state: Any, system: Any, step: Any) -> bool:
-    """Whether the optimum is found by a barrier, which no start misses: of t s + sum log((c_k - s)^2 - |y_k|^2)."""
-    offsets, clearances = place
-    rows, counts, closed = trial
-    y, z, w = state[0], state[1], state[2]
-    size, count, s, scale = rows.shape[2], 0, 1e30, 0.0
-    q[:] = 0.0
-    lengths_of(place, trial, q, 0.0, state)
-    for k in range(rows.shape[0]):
-        if counts[k]:
-            length = np.sqrt(offsets[k, 0] * offsets[k, 0] + offsets[k, 1] * offsets[k, 1])
-            s, scale, count = min(s, clearances[k] - length), max(scale, clearances[k] + length), count + 1
-    s, t, near = s - 0.5 * scale, count / scale, 1e-4
-    for _ in range(SLOW):
-        for i in range(size + 1):
-            step[i] = 0.0
-            for j in range(i + 1):
-                system[i, j] = closed[i, j] if i < size else 0.0
-        step[size] = t
-        for k in range(rows.shape[0]):
-            if not counts[k]:
-                continue
-            y[k, 0], y[k, 1], front = offsets[k, 0], offsets[k, 1], clearances[k] - s
-            for i in range(size):
-                y[k, 0] += rows[k, 0, i] * q[i]
-                y[k, 1] += rows[k, 1, i] * q[i]
-            length = np.sqrt(y[k, 0] * y[k, 0] + y[k, 1] * y[k, 1])
-            w[k] = front - length
-            share = 2.0 / (w[k] * (front + length))
-            z[k] = share * front / t
-            for i in range(size):
-                own = y[k, 0] * rows[k, 0, i] + y[k, 1] * rows[k, 1, i]
-                step[i] -= share * own
-                system[size, i] += share * share * front * own
-                for j in range(i + 1):
-                    other = y[k, 0] * rows[k, 0, j] + y[k, 1] * rows[k, 1, j]
-                    system[i, j] += share * (share * own * other)
-                    system[i, j] += share * (rows[k, 0, i] * rows[k, 0, j] + rows[k, 1, i] * rows[k, 1, j])
-            step[size] -= share * front
-            system[size, size] += share * (share * front * front - 1.0)
-        pull = step.copy()
-        solved(system, step, size + 1)
-        square = 0.0
-        for i in range(size + 1):
-            square += pull[i] * step[i]
-        if square < 0.01 and count < near * scale * t:
-            kept, onward = q.copy(), step.copy()
-            if lengths_of(place, trial, q, s, state) and finished(place, trial, q, s, scale, state, system, step):
-                return True
-            near *= 0.01
-            for i in range(size):
-                q[i] = kept[i]
-            step[:] = onward
-        ahead = 1.0 / (1.0 + np.sqrt(max(square, 0.0))) if square > 0.05 else 1.0
-        s += ahead * step[size]
-        for i in range(size):
-            q[i] += ahead * step[i]
-        if square < 0.05:
-            t *= 6.0
-    return False
-
-
-@part
 def improved(place: Any, trial: Any, q: Any, state: Any, system: Any, step: Any) -> bool:
     """Whether the optimum is reached from q and multipliers that are near it."""
     clearances = place[1]
@@ -232,8 +166,6 @@ def quickly_centred(
                 found[n] = sought(place, trial, under, q, state, system, step)
                 if found[n]:
                     break
-            if not found[n]:
-                found[n] = slowly(place, trial, q, state, system, step)
         if found[n]:
             for i in range(size):
                 steps[i, n] = q[i]
