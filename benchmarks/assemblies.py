@@ -125,6 +125,9 @@ def systems(folder: Path) -> dict[str, Path]:
         "3-2-1 stack of three blocks, 20 contributors": blocks,
         "door": SCENES / "door.yaml",
         "two plates, two pins": SCENES / "two_plates.yaml",
+        "clutch": SCENES / "clutch.yaml",
+        "box with discs": SCENES / "box_with_discs.yaml",
+        "four pads": SCENES / "four_pads.yaml",
         "gears in a housing": SCENES / "housed_gears.yaml",
         "the same gears without": train,
     }
