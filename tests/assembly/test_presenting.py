@@ -111,7 +111,7 @@ def test_check_lists_features_with_their_datum_frames_and_moves(tmp_path: Path) 
 
 def test_check_shows_what_floats() -> None:
     shown = page(*PRESENTER.check(simulation_of(load(SCENES / "hole_and_slot.yaml"), Overrides()))).csv()
-    assert '"slot 10.06 mm wide, 14 × 8 mm, along y"' in shown
+    assert '"slot 10.06 mm wide, 14 × 8 mm, across y"' in shown
     assert '"base.pin 1 in plate.hole, base.pin 2 in plate.slot; 3 freedoms, random"' in shown
     assert "float of plate on the pins" in shown
 

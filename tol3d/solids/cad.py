@@ -83,6 +83,12 @@ def pick_faces(shape: BuiltShape, picks: Sequence[Pick]) -> Sequence[PickedFace]
     return tuple(picking.pick_faces(solid_of(shape), picks))
 
 
+def box_around(shape: BuiltShape) -> tuple[list[float], list[float]]:
+    """See tol3d.solids.bounding_box."""
+    box = solid_of(shape).solid.BoundingBox()
+    return [box.xmin, box.ymin, box.zmin], [box.xmax, box.ymax, box.zmax]
+
+
 def run_program(file: FileContent, function: str, dimensions: Mapping[str, float]) -> tuple[bytes, tuple[str, ...]]:
     """See tol3d.solids.kept_shape.run_program."""
     return own_program.run_program(file, function, dimensions)

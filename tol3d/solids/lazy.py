@@ -37,6 +37,10 @@ class Cad(Protocol):
         """The faces that picks mean."""
         ...
 
+    def box_around(self, shape: BuiltShape) -> tuple[list[float], list[float]]:
+        """Lowest and highest x, y, z of a solid."""
+        ...
+
     def run_program(
         self, file: FileContent, function: str, dimensions: Mapping[str, float]
     ) -> tuple[bytes, tuple[str, ...]]:

@@ -4,6 +4,7 @@ from collections.abc import Mapping, Sequence
 from typing import Final
 
 import numpy as np
+from numpy.typing import NDArray
 
 from tol3d.assembly.model import Axis, Engage, Feature, Locate, Move, Plane, Point, RoundPlane, Slot, Touch
 from tol3d.assembly.model.moves import BestFit, Mate, Rest, Weld
@@ -14,6 +15,8 @@ from tol3d.assembly.presenting.freedom_tables import datum_blocks, freedom_block
 from tol3d.assembly.system import AssemblySystem
 from tol3d.report.page import Heading, PageItem, Row, Table, titled
 from tol3d.report.system_check import system_blocks
+from tol3d.solids.bounding_box import bounding_box
+from tol3d.solids.kept_shape import KeptShape
 from tol3d.study.simulation import Simulation
 
 PLACE: Final = "at [mm]"
@@ -48,7 +51,24 @@ def drawing_blocks(system: AssemblySystem) -> Sequence[PageItem]:
     planned = placing.planned(system.assembly).moves
     moves = [Row(move.name, _move(move, plan)) for move, plan in zip(system.assembly.moves, planned, strict=True)]
     steps = titled("moves", Table("", [Heading(word, words=True) for word in ("kind", "part", "by")], moves))
-    return (*features, *datum_blocks(system.assembly), *steps, *freedom_blocks(system.assembly), *_rests(system))
+    frames, freedoms = datum_blocks(system.assembly), freedom_blocks(system.assembly)
+    return (*_solids(system), *features, *frames, *steps, *freedoms, *_rests(system))
+
+
+def _solids(system: AssemblySystem) -> Sequence[PageItem]:
+    """Solids of parts, by what builds them, and how large they are."""
+    rows = []
+    for part in system.assembly.parts:
+        if part.solid is not None:
+            low, high = bounding_box(part.solid)
+            builder = "file" if isinstance(part.solid, KeptShape) else type(part.solid).__name__.lower()
+            rows.append(Row(part.name, (builder, _listed(high - low, " × "), _listed(low, ", "), _listed(high, ", "))))
+    columns = [Heading("builder", words=True), *map(Heading, ("size x × y × z [mm]", "from [mm]", "to [mm]"))]
+    return titled("solids, in the frames of their parts", Table("", columns, rows)) if rows else ()
+
+
+def _listed(numbers: NDArray[np.float64], between: str) -> str:
+    return between.join(f"{number:g}" for number in numbers.round(4) + 0.0)
 
 
 def _rests(system: AssemblySystem) -> Sequence[PageItem]:
@@ -108,8 +128,9 @@ def _facing(system: AssemblySystem, feature: Feature) -> str:
     z = (system.assembly.part[feature.part].pose[:3, :3] @ feature.frame[:3, 2]).round(6) + 0.0
     named = f"{'-' if z.sum() < 0 else ''}{'xyz'[int(np.abs(z).argmax())]}"
     direction = named if np.abs(z).max() == 1 else "(" + ", ".join(f"{value:.4g}" for value in z) + ")"
-    is_flat = isinstance(feature.shape, Plane | RoundPlane) and not isinstance(feature.shape, Slot)
-    return f", facing {direction}" if is_flat else f", along {direction}"
+    if isinstance(feature.shape, Slot):
+        return f", across {direction}"
+    return f", along {direction}" if isinstance(feature.shape, Axis) else f", facing {direction}"
 
 
 def _frame(feature: Feature) -> str:
