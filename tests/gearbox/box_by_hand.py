@@ -57,9 +57,23 @@ class Box:
         return cls(YAML(typ="safe").load(path.read_text("utf-8")))
 
     def place(self, feature: str) -> Array:
-        """The middle of a feature nominally (3,)."""
+        """The middle of a bore, a hole or a dowel nominally (3,), in the world: the cover's frame."""
         part, name = feature.split(".")
-        return np.array([number(x) for x in self.said["parts"][part]["features"][name]["at"]])
+        own = self.said["parts"][part]
+        solid, at = own["builder"], own["features"][name].get("at")
+        if at is None:
+            hole = solid["holes"][name]
+            x, across = (number(own) for own in hole["at"])
+            if part == "cover":  # through the spigot too, where it is above that
+                spigot = solid["spigot"]
+                through = 2 * abs(x) < number(spigot["length"]) and 2 * abs(across) < number(spigot["width"])
+                depth = number(spigot["height"]) if through else 0.0
+                return np.array([x, across, (number(solid["thickness"]) - depth) / 2])
+            bottom = number(solid["corner"][1])
+            height = bottom + number(solid["floor"]) / 2 if "face" in hole else -number(hole["depth"]) / 2
+            return np.array([x, -across, height])
+        x, up, across = (number(own) for own in at)
+        return np.array([x, -across, up])
 
     def gear(self, name: str) -> Gear:
         """A gear."""
@@ -198,8 +212,8 @@ def met(box: Box, columns: Columns, stage: Stage, backlash: Array | float = 0.0)
     """From the columns of a run."""
     _, way = apart(box, stage)
     frame = np.array([way, [-way[1], way[0]]])
-    first = box.place("housing.input bore")[2] + 35.0  # where shafts have their origins
-    height = first + box.gear(stage.driver).along
+    middles = [box.place(f"{part}.input bore")[2] for part in ("housing", "cover")]
+    height = sum(middles) / 2 + box.gear(stage.driver).along  # shafts have their origins in the middle
     (one, slope), (other, its) = (axes(box, columns, shaft, height) for shaft in stage.shafts)
     off = (other - one) @ frame.T + wheel_off(box, columns, stage, backlash)
     thick = sum(columns[f"{gear} tooth thickness [um]"] for gear in (stage.driver, stage.driven)) / 1000
