@@ -66,3 +66,8 @@ class NearestPoints:
         result = fcl.DistanceResult()
         distance = fcl.distance(first, second, self._request, result)
         return Nearest(distance, result.nearest_points, (result.b1, result.b2))
+
+
+def overlapping(first: Surface, second: Surface) -> bool:
+    """Whether two surfaces meet where they stand; one wholly inside the other does not meet it."""
+    return bool(fcl.collide(first, second, fcl.CollisionRequest(), fcl.CollisionResult()))

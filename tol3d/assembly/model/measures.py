@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.assembly.model.bonus import GaugeRoom, MaterialBonus
+from tol3d.assembly.model.facing import Facing
 
 Array = NDArray[np.float64]
 
@@ -24,6 +25,7 @@ MeasureKind = Literal[
     "contact_angle",
     "surface_gap",
     "slack",
+    "clearance",
 ]
 """What is read, of features' origins and z directions as they are in the trial (p, z), in the world:
 
@@ -51,6 +53,7 @@ MeasureKind = Literal[
 - contact_angle: between the normal of such a contact, from the first feature's axis, centre or plane towards the
   second's, and the z of a third feature or a direction that is fixed as for gap [rad], 0 to pi.
 - slack: of the move `of_move`, an Engage; no features.
+- clearance: least distance of the solids of two parts as they stand, within a chord error; no features.
 """
 
 
@@ -80,6 +83,9 @@ class Measured:
         gauge: how a pattern's gauge finds its best pose in the frame.
         of_move: index of the move whose slack is read; -1 of other kinds.
         over_play: which value it has over the rooms of parts with play; None where the floats of the moves decide.
+        parts: of a clearance.
+        chord_error: of a clearance, how far its surfaces may be off [mm].
+        facing: of a clearance, where its parts may be nearest.
         minus: a second one that is subtracted in the same trial.
         rocking: which value it has where a part may rock on its contacts; None where it then has none. Not of `minus`.
     """
@@ -96,3 +102,6 @@ class Measured:
     minus: "Measured | None" = None
     rocking: Rocking | None = None
     over_play: OverPlay | None = None
+    parts: tuple[str, ...] = ()
+    chord_error: float = 0.0
+    facing: Facing | None = None

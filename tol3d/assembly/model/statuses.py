@@ -12,8 +12,14 @@ STATUSES: Final = Statuses(
 """By their codes: built; the pose is not unique and the measure varies with it; parts that should touch do not reach
 each other; the parts do not go together; the pose was not found, for the contacts have lost their rank."""
 
+WITH_CLEARANCES: Final = Statuses(
+    (*STATUSES.texts, "overlap"), frozenset({"overlap"}), {**STATUSES.words, "overlap": "overlap"}, STATUSES.states
+)
+"""The same, and parts that overlap, which no depth is known of: of assemblies with clearances of whole parts."""
+
 OK: Final = 0
 NOT_UNIQUE: Final = 1
 NO_CONTACT: Final = 2
 NO_BUILD: Final = 3
 SINGULAR: Final = 4
+OVERLAP: Final = 5
