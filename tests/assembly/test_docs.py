@@ -19,7 +19,7 @@ from tol3d.assembly.grammar.parts import SolidSpec
 from tol3d.assembly.grammar.zone import ZoneSpec
 from tol3d.assembly.mechanism import ASSEMBLY
 from tol3d.assembly.model.datum_frame import Simulator
-from tol3d.assembly.model.statuses import STATUSES
+from tol3d.assembly.model.statuses import WITH_CLEARANCES
 from tol3d.scene import Grammar
 from tol3d.scene.schema import SECTIONS
 from tol3d.units import FACTORS
@@ -65,6 +65,7 @@ FIELD_SCENES = (
     "clutch",
     "hole_and_slot",
     "two_plates",
+    "lid_by_a_wall",
     "machined_parts",
 )
 """Between them every kind and every field."""
@@ -154,7 +155,7 @@ def test_the_table_of_features_names_their_fields() -> None:
 
 @pytest.mark.parametrize(
     ("head", "expected"),
-    [("simulator", get_args(Simulator)), ("law", tuple(LAWS)), ("status", STATUSES.texts)],
+    [("simulator", get_args(Simulator)), ("law", tuple(LAWS)), ("status", WITH_CLEARANCES.texts)],
     ids=lambda own: own if isinstance(own, str) else "",
 )
 def test_small_tables_have_every_value(head: str, expected: tuple[str, ...]) -> None:
@@ -185,5 +186,5 @@ def test_every_word_of_the_page_that_looks_like_a_field_is_one() -> None:
     known = {*PAGE.vocabulary(SCHEMA), *SECTIONS, "study", "published", "feature", "kind"}
     known |= {kind for section in SECTIONS for kind in PAGE.kinds(section)} | set(FEATURES) | set(LAWS)
     known |= {unit for units in FACTORS.values() for unit in units}
-    known |= {"gauge", "ok", "singular", "exact", "analytic", "engine", "view", "export"}
+    known |= {"gauge", "ok", "singular", "overlap", "exact", "analytic", "engine", "view", "export"}
     assert words(PAGE.prose) - known == set()

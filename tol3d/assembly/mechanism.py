@@ -6,7 +6,13 @@ from tol3d.assembly.grammar import measures, moves, parts, tolerances
 from tol3d.assembly.grammar.boundary_checks import unfit_boundaries
 from tol3d.assembly.grammar.checks import unknown_features, unplaced_bodies
 from tol3d.assembly.grammar.drawing_checks import contradicting_tolerances
-from tol3d.assembly.grammar.measure_checks import mixed_dimensions, unfit_holes, unfit_patterns, unfit_points
+from tol3d.assembly.grammar.measure_checks import (
+    missing_solids,
+    mixed_dimensions,
+    unfit_holes,
+    unfit_patterns,
+    unfit_points,
+)
 from tol3d.assembly.grammar.modifier_checks import unfit_modifiers
 from tol3d.assembly.grammar.orientation_checks import unfit_orientations
 from tol3d.assembly.grammar.play_checks import idle_over_play, unfit_engagements
@@ -29,6 +35,7 @@ ASSEMBLY: Final = Mechanism(
         unfit_modifiers,
         unfit_boundaries,
         mixed_dimensions,
+        missing_solids,
         unfit_points,
         idle_rocking,
         unfit_holes,

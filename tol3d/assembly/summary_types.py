@@ -7,7 +7,7 @@ from pydantic import Field
 
 from tol3d.runs.summary.kinds import SummaryKinds
 from tol3d.runs.summary.measure import MeasureSummary
-from tol3d.runs.summary.values import LEFT_OUT, MOST_ENTRIES, Label, Maybe
+from tol3d.runs.summary.values import LEFT_OUT, MOST_ENTRIES, Label, Maybe, NotNegative
 
 PRESENTER: Final = "tol3d.assembly.presenting"
 
@@ -19,6 +19,7 @@ class AssemblyMeasureSummary(MeasureSummary):
 
     kind: Literal[
         "angle",
+        "clearance",
         "contact_angle",
         "difference",
         "distance",
@@ -38,6 +39,12 @@ class AssemblyMeasureSummary(MeasureSummary):
         default=LEFT_OUT, description="laws of zones that a size widens, and of those that only judge, by tolerance"
     )
     of: Annotated[list[Label], Field(min_length=1, max_length=MOST_ENTRIES)]
+    chord_error_um: Maybe[NotNegative] = Field(
+        default=LEFT_OUT, description="of a clearance: how far it may be off, as stated"
+    )
+    mesh_error_um: Maybe[NotNegative] = Field(
+        default=LEFT_OUT, description="of a clearance: chord errors of the meshes of both parts, together"
+    )
 
     @property
     def words(self) -> str:
@@ -51,8 +58,12 @@ class AssemblyMeasureSummary(MeasureSummary):
         'inspected size of base.bore'
         >>> AssemblyMeasureSummary.model_construct(kind="virtual_clearance", of=["base.hole", "lid.hole"]).words
         'virtual clearance of base.hole, lid.hole'
+        >>> AssemblyMeasureSummary.model_construct(kind="clearance", of=["lid", "box"], chord_error_um=2.0).words
+        'clearance from lid to box, within 2 um by their meshes'
         """
         kind = self.kind.replace("_", " ")
+        if self.kind == "clearance":
+            return f"clearance from {self.of[0]} to {self.of[1]}, within {self.chord_error_um:.3g} um by their meshes"
         if self.kind == "difference":
             return " less ".join(self.of)
         if len(self.of) == 2 and self.kind not in ("virtual_clearance", "inspected_pattern"):

@@ -8,11 +8,13 @@ from typing import Any, ClassVar, Final, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
+from tol3d.assembly.clearances.prepared import clearances_of, reader_of, solid_pairs, with_facing
 from tol3d.assembly.from_scene import Meant, Warming, assembly_of
 from tol3d.assembly.from_scene.datums import place_of
 from tol3d.assembly.model import Assembly
-from tol3d.assembly.model.statuses import OK, STATUSES
+from tol3d.assembly.model.statuses import OK, STATUSES, WITH_CLEARANCES
 from tol3d.assembly.placing import road as placing
+from tol3d.assembly.placing.world import SolidReader
 from tol3d.assembly.torsors import road as torsors
 from tol3d.assembly.torsors.slopes import Slopes
 from tol3d.assembly.zones import Process, Widened, ZoneDraw
@@ -25,7 +27,7 @@ from tol3d.system.draw import JointDraw
 from tol3d.system.measure import Measure
 from tol3d.system.plain import PlainSystem
 from tol3d.system.regressors import is_group
-from tol3d.system.road import ANALYTIC_ROAD, Answers, Road
+from tol3d.system.road import ANALYTIC_ROAD, Answers, Road, RoadKind
 from tol3d.system.stated import component_slices
 from tol3d.system.statuses import Statuses
 from tol3d.system.system import Columns, KeyPath
@@ -37,6 +39,9 @@ Words = NDArray[np.str_]
 
 SAME: Final = 1e-6
 """mm or rad: both roads read the same nominally to within this, or moves lay parts where they are not drawn."""
+
+MOTIONS: Final = 384
+"""At which it is asked where parts may be nearest; half of them twice as wide as trials are."""
 
 FRAME: Final = "datum frame "
 """How messages of the roads begin that are of a datum frame; others begin with a place in the scene."""
@@ -69,16 +74,22 @@ class TorsorRoad:
 
 @dataclass(frozen=True)
 class PlacingRoad:
-    """The exact road: parts are placed, move by move."""
+    """The exact road: parts are placed, move by move.
+
+    Args:
+        assembly: the model.
+        solids: reads clearances of whole parts; None where there are none.
+        chord_error: see Road.
+    """
 
     assembly: Assembly
-
-    chord_error: ClassVar[float] = 0.0
+    solids: SolidReader | None = None
+    chord_error: float = 0.0
 
     def answers(self, trials: Trials, measures: Sequence[Measure]) -> Answers:
         """See Road."""
         names = [measure.name for measure in measures]
-        found, carried, tightest = placing.answers(self.assembly, trials.deviations, names)
+        found, carried, tightest = placing.answers(self.assembly, trials.deviations, names, self.solids)
         return Answers(
             {name: own[:, None] for name, (own, _) in found.items()},
             details=details_of(carried, tightest),
@@ -104,6 +115,11 @@ class AssemblySystem(PlainSystem):
         """See System."""
         return TorsorRoad(self.assembly) if name == ANALYTIC_ROAD else PlacingRoad(self.assembly)
 
+    @property
+    def solids(self) -> SolidReader | None:
+        """Reads clearances, in this process; None where there are none."""
+        return None
+
     def describe(self, measure: Measure) -> Mapping[str, Any]:
         """Its kind, what it is of, and by which laws those zones vary that a size widens or that only judge."""
         acting = (own for own in self.acting(measure) if isinstance(own.draw, Widened | Process))
@@ -114,14 +130,16 @@ class AssemblySystem(PlainSystem):
         """Measures of the nominal assembly that the roads read differently, or not at all."""
         rest = np.zeros((1, self.assembly.width))
         names = [measure.name for measure in self.measures]
-        exact, linear = placing.values(self.assembly, rest, names), torsors.values(self.assembly, rest, names)
+        exact = placing.values(self.assembly, rest, names, self.solids)
+        linear = torsors.values(self.assembly, rest, names)
         for measure in self.measures:
             (value,), (code,) = exact[measure.name]
             if code != OK:
-                yield ("measures", measure.name), f"cannot be read even without deviations: {STATUSES.texts[code]}"
+                text = self.statuses.texts[code]
+                yield ("measures", measure.name), f"cannot be read even without deviations: {text}"
             elif self.assembly.measures[measure.name].over_play is not None:
                 continue  # at the end of a room, not where parts are `placed`: of second order apart
-            elif abs(value - linear[measure.name][0]) > SAME:
+            elif abs(value - linear[measure.name][0]) > SAME + self.assembly.measures[measure.name].chord_error:
                 off = abs(value - linear[measure.name][0]) * measure.per_internal
                 words = (
                     f"moves lay parts elsewhere than they are `placed`, and this reads {off:.3g} {measure.unit} else; "
@@ -195,6 +213,46 @@ class AssemblySystem(PlainSystem):
         return torsors.slopes(self.assembly, name, means, sigmas)
 
 
+class ClearanceSystem(AssemblySystem):
+    """An assembly with clearances of whole parts, whose solids are meshed once."""
+
+    statuses: ClassVar[Statuses] = WITH_CLEARANCES
+    roads: ClassVar[Mapping[str, RoadKind]] = {
+        ANALYTIC_ROAD: RoadKind("model"),
+        "exact": RoadKind("solids and their meshes", threads=False, contacts_per_minute=60_000),
+    }
+
+    def materials(self, road: str) -> Any:
+        """See System: of the exact road pairs of solids, by measure."""
+        return None if road == ANALYTIC_ROAD else solid_pairs(self.assembly)
+
+    def road(self, name: str, materials: Any) -> Road:
+        """See System."""
+        if name == ANALYTIC_ROAD:
+            return TorsorRoad(self.assembly)
+        error = max(pair.chord_error for pair in materials.values())
+        return PlacingRoad(self.assembly, reader_of(materials), error)
+
+    @property
+    def solids(self) -> SolidReader | None:
+        """See AssemblySystem."""
+        reader: SolidReader = reader_of(solid_pairs(self.assembly))
+        return reader
+
+    def describe(self, measure: Measure) -> Mapping[str, Any]:
+        """Also the chord error of a clearance that is stated, and that of its meshes."""
+        found = super().describe(measure)
+        pair = solid_pairs(self.assembly).get(measure.name)
+        if pair is None:
+            return found
+        stated = self.assembly.measures[measure.name].chord_error
+        return {**found, "chord_error_um": 1000 * stated, "mesh_error_um": 1000 * pair.chord_error}
+
+    def chord_bound(self, measure: Measure, chord_error: float) -> float:
+        """See System: what is stated, of a clearance."""
+        return self.assembly.measures[measure.name].chord_error * measure.per_internal
+
+
 def moments_of(contributor: Contributor) -> tuple[Array, Array]:
     """Mean (components,) and covariance (components, components) of a contributor [mm, K]."""
     draw = contributor.draw
@@ -217,12 +275,37 @@ def assembly_system(scene: Scene, warmings: Sequence[Warming] = ()) -> AssemblyS
         SceneError: what it says does not fit together, such as moves that leave a part free.
     """
     placed = _asked(scene, lambda: _settled(scene, warmings))
-    made = AssemblySystem(scene.scene, placed.contributors, placed.measures, placed.assembly, placed.named)
+    kind = ClearanceSystem if clearances_of(placed.assembly) else AssemblySystem
+    assembly = _asked(scene, lambda: _faced(placed))
+    made = kind(scene.scene, placed.contributors, placed.measures, assembly, placed.named)
     _asked(
         scene, lambda: torsors.values(made.assembly, np.zeros((1, made.assembly.width)), list(made.assembly.measures))
     )
     measures = _asked(scene, lambda: tuple(replace(own, adds_up=made.is_linear(own)) for own in made.measures))
     return replace(made, measures=measures)
+
+
+def _faced(placed: Meant) -> Assembly:
+    """The assembly, with where parts may be nearest whose clearance is asked."""
+    bare = replace(placed.assembly, measures={})
+
+    def motions(part: str, after: int) -> Array:
+        return torsors.displacements(bare, part, after, widely(placed.contributors))
+
+    return with_facing(placed.assembly, motions)
+
+
+def widely(contributors: Sequence[Contributor]) -> Array:
+    """Deviations (trials, columns) like those of trials and twice as wide, the same in every process [mm, K]."""
+    rng = np.random.default_rng(0)
+    columns = []
+    for own in contributors:
+        mean, covariance = moments_of(own)
+        sizes, axes = np.linalg.eigh(covariance)
+        normal = rng.normal(size=(MOTIONS, len(mean))) * np.sqrt(np.maximum(sizes, 0.0))
+        normal[::2] *= 2.0
+        columns.append(mean + normal @ axes.T)
+    return np.concatenate([np.zeros((MOTIONS, 0)), *columns], axis=1)
 
 
 def _settled(scene: Scene, warmings: Sequence[Warming]) -> Meant:

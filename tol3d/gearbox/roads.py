@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.assembly.placing import road as placing
+from tol3d.assembly.placing.world import SolidReader
 from tol3d.assembly.system import details_of
 from tol3d.assembly.torsors import road as torsors
 from tol3d.gearbox.joined import Joined
@@ -28,11 +29,13 @@ class GearboxRoad:
         system: whose.
         gears: the gears' own road.
         exact: whether parts are placed by finite poses; else by torsors.
+        solids: reads clearances of whole parts; None where there are none.
     """
 
     system: Joined
     gears: Road
     exact: bool
+    solids: SolidReader | None = None
 
     @property
     def chord_error(self) -> float:
@@ -73,7 +76,7 @@ class GearboxRoad:
         assembly, deviations = self.system.bores.assembly, trials.deviations[:, self.system.assembly_places]
         if not self.exact:
             return torsors.values(assembly, deviations, names), {}, {}
-        found, carried, tightest = placing.answers(assembly, deviations, names)
+        found, carried, tightest = placing.answers(assembly, deviations, names, self.solids)
         values = {name: own for name, (own, _) in found.items()}
         return values, {name: codes for name, (_, codes) in found.items()}, details_of(carried, tightest)
 

@@ -6,18 +6,27 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.assembly.model.statuses import STATUSES as OF_ASSEMBLIES
+from tol3d.assembly.model.statuses import WITH_CLEARANCES as OF_CLEARANCES
 from tol3d.gearing.statuses import STATUSES as OF_GEARS
 from tol3d.system.statuses import Statuses
 
-STATUSES: Final = Statuses(
-    (*OF_GEARS.texts, *(text for text in OF_ASSEMBLIES.texts if text not in OF_GEARS.texts)),
-    OF_GEARS.lacking | OF_ASSEMBLIES.lacking,
-    {**OF_ASSEMBLIES.words, **OF_GEARS.words},
-    {**OF_ASSEMBLIES.states, **OF_GEARS.states},
-)
+
+def _with_those_of(assemblies: Statuses) -> Statuses:
+    return Statuses(
+        (*OF_GEARS.texts, *(text for text in assemblies.texts if text not in OF_GEARS.texts)),
+        OF_GEARS.lacking | assemblies.lacking,
+        {**assemblies.words, **OF_GEARS.words},
+        {**assemblies.states, **OF_GEARS.states},
+    )
+
+
+STATUSES: Final = _with_those_of(OF_ASSEMBLIES)
 """Codes of gears are their own."""
 
+WITH_CLEARANCES: Final = _with_those_of(OF_CLEARANCES)
+"""The same, and parts that overlap: of gearboxes with clearances of whole parts."""
+
 FROM_ASSEMBLIES: Final[NDArray[np.int8]] = np.array(
-    [STATUSES.texts.index(text) for text in OF_ASSEMBLIES.texts], dtype=np.int8
+    [WITH_CLEARANCES.texts.index(text) for text in OF_CLEARANCES.texts], dtype=np.int8
 )
 """Their codes by those of assemblies."""

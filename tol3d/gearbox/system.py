@@ -8,21 +8,22 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.assembly.system import AssemblySystem
+from tol3d.assembly.clearances.prepared import reader_of
+from tol3d.assembly.system import AssemblySystem, ClearanceSystem
 from tol3d.gearbox.closed_form import closed_form
 from tol3d.gearbox.joined import Joined
 from tol3d.gearbox.regressors import regress_bores
 from tol3d.gearbox.roads import GearboxRoad
-from tol3d.gearbox.statuses import STATUSES
+from tol3d.gearbox.statuses import STATUSES, WITH_CLEARANCES
 from tol3d.gearing.model.measure import Measure as GearMeasure
-from tol3d.gearing.system import ROADS, GearSystem
+from tol3d.gearing.system import EXACT, ROADS, GearSystem
 from tol3d.system.breakdown import Breakdown
 from tol3d.system.closed_form import ClosedForm
 from tol3d.system.contributor import Contributor
 from tol3d.system.measure import Measure
 from tol3d.system.pooled import PooledTerms
 from tol3d.system.positions import Positions
-from tol3d.system.road import ANALYTIC_ROAD, Road
+from tol3d.system.road import ANALYTIC_ROAD, Road, RoadKind
 from tol3d.system.stated import component_slices
 from tol3d.system.statuses import Statuses
 from tol3d.system.system import Columns, KeyPath, Published, StreamKey
@@ -35,10 +36,22 @@ Array = NDArray[np.float64]
 class GearboxSystem(Joined):
     """Implements System."""
 
-    roads = ROADS
-    statuses: Statuses = STATUSES
-
     # what it is -------------------------------------------------------------------------------------
+
+    @property
+    def _is_clearing(self) -> bool:
+        """Whether clearances of whole parts are asked."""
+        return isinstance(self.drawn, ClearanceSystem)
+
+    @property
+    def statuses(self) -> Statuses:
+        """See System."""
+        return WITH_CLEARANCES if self._is_clearing else STATUSES
+
+    @property
+    def roads(self) -> Mapping[str, RoadKind]:
+        """See System: those of the gears, one process each where solids are read."""
+        return {**ROADS, EXACT: replace(ROADS[EXACT], threads=False)} if self._is_clearing else ROADS
 
     @property
     def breakdowns(self) -> Sequence[Breakdown]:
@@ -94,11 +107,16 @@ class GearboxSystem(Joined):
 
     def materials(self, road: str) -> Any:
         """See System."""
-        return self.gears.materials(road)
+        own = self.gears.materials(road)
+        return (own, self.drawn.materials(road)) if self._is_clearing and road != ANALYTIC_ROAD else own
 
     def road(self, name: str, materials: Any) -> Road:
         """See System: each system's own, gears by what the assembly's says of the bores."""
-        return GearboxRoad(self, self.gears.road(name, materials), exact=name != ANALYTIC_ROAD)
+        exact = name != ANALYTIC_ROAD
+        if not self._is_clearing or not exact:
+            return GearboxRoad(self, self.gears.road(name, materials), exact)
+        own, pairs = materials
+        return GearboxRoad(self, self.gears.road(name, own), exact, reader_of(pairs))
 
     def cost(self, measures: Sequence[Measure]) -> int:
         """See System."""

@@ -5,8 +5,7 @@ edges of flat faces over each other, one pair of smooth convex faces. Which pair
 poses that small displacements give; a pair is kept where it is nearer, to first order, than all that are known.
 """
 
-from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
@@ -17,7 +16,7 @@ from tol3d.assembly.clearances.meshes import SolidMesh
 from tol3d.assembly.clearances.pair import SolidPair, inverse, solid_pair
 from tol3d.assembly.model.facing import Facing
 from tol3d.numerics import frames
-from tol3d.solids.distance import NearestPoints, put
+from tol3d.solids.distance import Nearest, NearestPoints, put
 
 Array = NDArray[np.float64]
 
@@ -25,6 +24,8 @@ NEARER: Final = 0.1
 """Of the chord error: by how much a pair must be nearer than the known ones to be kept."""
 MOST_PAIRS: Final = 256
 """That are kept; more are of parts round each other, whose polygons are as fine as that."""
+SLANT: Final = 1e-6
+"""Sine of an angle between a face's normal and a direction that is the same."""
 HALVINGS: Final = 8
 """How often a displacement by which the parts overlap is made half as large."""
 
@@ -86,29 +87,34 @@ def facing(meshes: tuple[SolidMesh, SolidMesh], displaced: Displaced, distance: 
     search.ask(displaced.relative)
     for k in motions:
         search.along(k)
-    return Facing(np.array(search.starts), np.array(search.ends), reach)
+    kept = search.kept
+    starts, ends, normals = (np.array([getattr(own, side) for own in kept]) for side in ("start", "end", "normal"))
+    return Facing(starts, ends, normals, np.array([own.length for own in kept]), reach)
 
 
-@dataclass
+@dataclass(frozen=True)
+class _Kept:
+    """A pair of points; see Facing. And its distances in all motions, to first order (motions,) [mm]."""
+
+    start: Array
+    end: Array
+    normal: Array
+    length: float
+    moved: Array
+
+
 class _Search:
-    pair: SolidPair
-    displaced: Displaced
-    nearer: float
-    starts: list[Array] = field(default_factory=list)
-    ends: list[Array] = field(default_factory=list)
-    lengths: list[Array] = field(default_factory=list)
-
-    def __post_init__(self) -> None:
+    def __init__(self, pair: SolidPair, displaced: Displaced, nearer: float) -> None:
+        self.kept: list[_Kept] = []
+        self._pair, self._displaced, self._nearer = pair, displaced, nearer
         self._nearest = NearestPoints()
-        self._first, self._second = (
-            surface_of(mesh, faces)
-            for mesh, faces in ((self.pair.start, self.pair.start_faces), (self.pair.end, self.pair.end_faces))
-        )
+        self._first = surface_of(pair.start, pair.start_faces)
+        self._second = surface_of(pair.end, pair.end_faces)
 
     def along(self, motion: int) -> None:
         """Ask at a motion, or at the part of it by which the parts do not overlap yet."""
         for halving in range(HALVINGS):
-            if self.ask(self.displaced.posed(motion, 0.5**halving), motion):
+            if self.ask(self._displaced.posed(motion, 0.5**halving), motion):
                 return
 
     def ask(self, pose: Array, motion: int | None = None) -> bool:
@@ -117,23 +123,41 @@ class _Search:
         found = self._nearest.of(self._first, self._second)
         if found.distance <= 0.0:
             return False
-        start, end = found.points[0], pose[:3, :3].T @ (found.points[1] - pose[:3, 3])
-        length = self._to_first_order(start, end)
-        known = min((own[motion] for own in self.lengths), default=np.inf) if motion is not None else np.inf
-        if motion is None or (length[motion] < known - self.nearer and len(self.starts) < MOST_PAIRS):
-            self.starts.append(np.array(start))
-            self.ends.append(np.array(end))
-            self.lengths.append(length)
+        own = self._kept(found, pose)
+        known = min((each.moved[motion] for each in self.kept), default=np.inf) if motion is not None else np.inf
+        if motion is None or (own.moved[motion] < known - self._nearer and len(self.kept) < MOST_PAIRS):
+            self.kept.append(own)
         return True
 
-    def _to_first_order(self, start: Array, end: Array) -> Array:
-        """Distances of two points, in the frames of their parts, in all motions (motions,) [mm]."""
-        own, its = self.displaced.start, self.displaced.end
-        here, there = own[:3, :3] @ start + own[:3, 3], its[:3, :3] @ end + its[:3, 3]
-        length = float(np.linalg.norm(there - here))
-        normal = (there - here) / length
-        changes: Sequence[Array] = [
-            torsors[:, :3] @ normal + torsors[:, 3:] @ np.cross(point, normal)
-            for point, torsors in ((there, self.displaced.of_end), (here, self.displaced.of_start))
-        ]
-        return np.asarray(length + changes[0] - changes[1])
+    def _kept(self, found: Nearest, pose: Array) -> _Kept:
+        here, there = found.points
+        end = pose[:3, :3].T @ (there - pose[:3, 3])
+        relative = self._displaced.relative
+        normal = (there - here) / np.linalg.norm(there - here)
+        if self._is_of_a_face(pose[:3, :3].T @ normal, found.triangles[1]):
+            normal = (
+                relative[:3, :3] @ pose[:3, :3].T @ normal
+            )  # that of a face of the second part, which it turns with
+        apart = float(normal @ (relative[:3, :3] @ end + relative[:3, 3] - here))
+        length = max(apart, self.kept[0].length) if self.kept else apart
+        return _Kept(np.array(here), end, normal, length, length + self._closing(here, end, normal))
+
+    def _is_of_a_face(self, normal: Array, triangle: int) -> bool:
+        """Whether a direction in the frame of the second part is normal to one of its triangles."""
+        a, b, c = self._pair.end.corners[self._pair.end_faces[triangle]]
+        return float(np.linalg.norm(np.cross(normal, np.cross(b - a, c - a)))) < SLANT * np.linalg.norm(
+            np.cross(b - a, c - a)
+        )
+
+    def _closing(self, start: Array, end: Array, normal: Array) -> Array:
+        """Changes of the distance of two points along a normal, to first order, in all motions (motions,) [mm]."""
+        displaced = self._displaced
+        along = displaced.start[:3, :3] @ normal
+        changes = []
+        for pose, point, torsors in (
+            (displaced.start, start, displaced.of_start),
+            (displaced.end, end, displaced.of_end),
+        ):
+            at = pose[:3, :3] @ point + pose[:3, 3]
+            changes.append(torsors[:, :3] @ along + torsors[:, 3:] @ np.cross(at, along))
+        return np.asarray(changes[1] - changes[0])

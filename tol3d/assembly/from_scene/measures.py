@@ -13,12 +13,13 @@ from tol3d.assembly.grammar.features.nominal_frame import unit as unit_vector
 from tol3d.assembly.grammar.measure_checks import dimension_of
 from tol3d.assembly.grammar.measures import (
     AssemblyMeasureSpec,
+    ClearanceSpec,
     DifferenceSpec,
     InspectedPatternSpec,
     InspectedPositionSpec,
     SlackSpec,
 )
-from tol3d.assembly.grammar.measures.assembly_measure import FeatureMeasureSpec, OverPlaySpec
+from tol3d.assembly.grammar.measures.assembly_measure import FeatureMeasureSpec, OverPlaySpec, TimedSpec
 from tol3d.assembly.model import Feature, Measured
 from tol3d.assembly.model.bonus import MaterialBonus
 from tol3d.assembly.model.measures import MeasureKind
@@ -40,19 +41,28 @@ def _measured(scene: Scene, spec: AssemblyMeasureSpec, frames: DatumFrames) -> M
         return replace(own, minus=less, rocking=spec.rocking)
     if isinstance(spec, SlackSpec):
         return Measured("slack", (), of_move=list(scene.moves).index(spec.of))
+    after = _after(scene, spec)
+    if isinstance(spec, ClearanceSpec):
+        parts = (spec.from_, spec.to)
+        return Measured("clearance", (), after=after, rocking=spec.rocking, parts=parts, chord_error=spec.error)
     assert isinstance(spec, FeatureMeasureSpec)
     features = tuple(name for _, name, _ in spec.named())
     bonuses = _bonuses(scene, spec, features)
     if isinstance(spec, InspectedPositionSpec) and spec.projected is not None:
         features = (projected_name(spec.of, spec.projected.internal),)
     direction = None if spec.along is None else unit_vector(spec.along)
-    after = -1 if spec.after is None else list(scene.moves).index(spec.after)
     frame = frames.named(part_of(features[0]), spec.named_datums)
     room = room_of(scene, Drawing(scene), part_of(features[0]), spec.named_datums)
     gauge = spec.free if isinstance(spec, InspectedPatternSpec) else "shift"
     over = spec.over_play if isinstance(spec, OverPlaySpec) else None
     found = Measured(spec.reads, features, direction, frame, after, bonuses, gauge, room, rocking=spec.rocking)
     return replace(found, over_play=over)
+
+
+def _after(scene: Scene, spec: AssemblyMeasureSpec) -> int:
+    """Index of the move after which a measure is read; -1 for the end."""
+    named = spec.after if isinstance(spec, TimedSpec) else None
+    return -1 if named is None else list(scene.moves).index(named)
 
 
 def add_projected(scene: Scene, features: dict[str, Feature]) -> None:
@@ -98,6 +108,8 @@ def named_by(scene: Scene) -> dict[str, tuple[str, ...]]:
             found[name] = (spec.of, spec.minus)
         elif isinstance(spec, SlackSpec):
             found[name] = (spec.of,)
+        elif isinstance(spec, ClearanceSpec):
+            found[name] = (spec.from_, spec.to)
         elif isinstance(spec, FeatureMeasureSpec):
             found[name] = tuple(feature for _, feature, _ in spec.named())
     return found

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from tol3d.assembly.grammar.drawing import Drawing
 from tol3d.assembly.grammar.feature_name import Use, UsesFeatures, part_of
 from tol3d.assembly.grammar.features import FeatureUnion
-from tol3d.assembly.grammar.measures.assembly_measure import FeatureMeasureSpec
+from tol3d.assembly.grammar.measures.assembly_measure import TimedSpec
 from tol3d.assembly.grammar.moves import PlacingSpec, WeldSpec
 from tol3d.assembly.grammar.parts import SolidSpec
 from tol3d.scene import Scene
@@ -118,9 +118,9 @@ class Bodies:
 
 def _read_too_early(scene: Scene, bodies: Bodies) -> Iterator[Problem]:
     for name, measure in scene.measures.items():
-        if isinstance(measure, FeatureMeasureSpec) and measure.after is not None:
-            for _, feature, _ in measure.named():
-                if part_of(feature) not in bodies.by[measure.after]:
-                    words = f"expected a move by which {part_of(feature)!r} is placed, got {measure.after!r}"
+        if isinstance(measure, TimedSpec) and measure.after is not None:
+            for part in measure.parts_read:
+                if part not in bodies.by[measure.after]:
+                    words = f"expected a move by which {part!r} is placed, got {measure.after!r}"
                     yield ("measures", name, "after"), f"{words}; name a later one"
                     break

@@ -51,6 +51,11 @@ class Drawing:
         solids = self.scene.of(SolidSpec)
         return {name: (solids[own.like] if own.like else own).features for name, own in solids.items()}
 
+    def has_solid(self, part: str) -> bool:
+        """Whether a part has a builder, or is like one that has."""
+        solids = self.scene.of(SolidSpec)
+        return solids[solids[part].like or part].builder is not None
+
     @cached_property
     def stated(self) -> tuple[Stated | str, ...]:
         """Every tolerance, for each part that it holds for, in the scene's order; locators by their names."""

@@ -10,6 +10,7 @@ from tol3d.assembly.grammar.feature_name import part_of
 from tol3d.assembly.grammar.features.nominal_frame import unit
 from tol3d.assembly.grammar.measures import (
     AssemblyMeasureSpec,
+    ClearanceSpec,
     DifferenceSpec,
     InspectedFlatnessSpec,
     InspectedPatternSpec,
@@ -48,6 +49,17 @@ def mixed_dimensions(scene: Scene) -> Iterator[Problem]:
             limit = getattr(spec, field)
             if limit is not None and limit.dimension != own:
                 yield ("measures", name, field), f"expected {expectation(own)}, got {str(limit)!r}"
+
+
+def missing_solids(scene: Scene) -> Iterator[Problem]:
+    """Clearances of parts that are stated by their features alone."""
+    drawing = Drawing(scene)
+    for name, spec in scene.of(ClearanceSpec).items():
+        for field, part in (("from", spec.from_), ("to", spec.to)):
+            if not drawing.has_solid(part):
+                words = f"expected a part with a solid, got {part!r}, which is stated by its features alone"
+                advice = "give it a builder, such as {kind: plate, ...}, or measure a gap of its features"
+                yield ("measures", name, field), f"{words}; {advice}"
 
 
 def unfit_points(scene: Scene) -> Iterator[Problem]:

@@ -10,15 +10,20 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False)
 class Facing:
-    """Pairs of points of two parts whose distances the distance of the parts is the least of, to first order.
+    """Pairs of points of two parts; the distance of the parts is the least of theirs, to first order.
 
     Args:
         starts: in the frame of the first part (pairs, 3) [mm].
         ends: in the frame of the second (pairs, 3) [mm].
+        normals: directions along which they come nearer, from the first part to the second, nominally in the frame of
+            the first (pairs, 3).
+        lengths: distances along these, nominally (pairs,) [mm].
         reach: how far points of one part move against the other, about [mm]: what is farther off is not looked at
             first.
     """
 
     starts: Array
     ends: Array
+    normals: Array
+    lengths: Array
     reach: float

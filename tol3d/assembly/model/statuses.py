@@ -13,7 +13,10 @@ STATUSES: Final = Statuses(
 each other; the parts do not go together; the pose was not found, for the contacts have lost their rank."""
 
 WITH_CLEARANCES: Final = Statuses(
-    (*STATUSES.texts, "overlap"), frozenset({"overlap"}), {**STATUSES.words, "overlap": "overlap"}, STATUSES.states
+    (*STATUSES.texts, "overlap"),
+    frozenset({"overlap"}),
+    {**STATUSES.words, "overlap": "overlap"},
+    {**STATUSES.states, "overlap": "overlapping"},
 )
 """The same, and parts that overlap, which no depth is known of: of assemblies with clearances of whole parts."""
 

@@ -114,7 +114,7 @@ def _causes(measured: Measured, name: str, moments: tuple[Causes, ...]) -> froze
     causes = moments[-1] if measured.after < 0 else moments[measured.after + 1]
     found = causes.of_frame(measured.frame).union(*(causes.of_feature(feature) for feature in measured.features))
     if measured.kind not in ON_PART:
-        parts = {causes.assembly.features[feature].part for feature in measured.features}
+        parts = {*measured.parts, *(causes.assembly.features[feature].part for feature in measured.features)}
         found = found.union(*(causes.of_part(part, f"measures.{name}") for part in parts))
     return found | (_causes(measured.minus, name, moments) if measured.minus is not None else frozenset())
 

@@ -21,7 +21,7 @@ from tol3d.assembly.placing.poses import Codes, Pose
 from tol3d.assembly.placing.resting import Resting, resting
 from tol3d.assembly.placing.rocking import carrying, over_poses, slope_of, varying
 from tol3d.assembly.placing.touching import Touching, touching
-from tol3d.assembly.placing.world import World
+from tol3d.assembly.placing.world import SolidReader, World
 
 Array = NDArray[np.float64]
 
@@ -38,13 +38,16 @@ _MOVED: Codes = np.full(1, OK, dtype=np.int8)
 Placing = Fix | Weld | Locating | Mating | BestFitting | Resting | Touching | Engaging
 
 
-def values(assembly: Assembly, deviations: Array, names: Sequence[str]) -> dict[str, tuple[Array, Codes]]:
+def values(
+    assembly: Assembly, deviations: Array, names: Sequence[str], solids: SolidReader | None = None
+) -> dict[str, tuple[Array, Codes]]:
     """What measures read in each trial, and what became of it.
 
     Args:
         assembly: the model.
         deviations: (trials, width) [mm].
         names: of the measures.
+        solids: reads clearances, if there are some among them.
 
     Returns:
         By name: values (trials,) [mm or rad], not a number where the code is not OK, and codes (trials,): of the first
@@ -53,17 +56,17 @@ def values(assembly: Assembly, deviations: Array, names: Sequence[str]) -> dict[
     Raises:
         InputError: a move leaves a freedom or takes one twice; a part is not placed.
     """
-    return answers(assembly, deviations, names)[0]
+    return answers(assembly, deviations, names, solids)[0]
 
 
 def answers(
-    assembly: Assembly, deviations: Array, names: Sequence[str]
+    assembly: Assembly, deviations: Array, names: Sequence[str], solids: SolidReader | None = None
 ) -> tuple[dict[str, tuple[Array, Codes]], dict[str, NDArray[np.str_]], dict[str, NDArray[np.str_]]]:
     """What measures read, as `values`; and by move what decided in each trial (trials,).
 
     Of a rest which contacts carry, such as "1 3 4"; and of a move with play the pair that has the least slack.
     """
-    plan = planned(assembly)
+    plan = planned(assembly, solids)
     deviations = np.asarray(deviations, dtype=np.float64)
     found = {name: (np.empty(len(deviations)), np.empty(len(deviations), dtype=np.int8)) for name in names}
     carried, tightest = dict[str, list[NDArray[np.str_]]](), dict[str, list[NDArray[np.str_]]]()
@@ -146,12 +149,14 @@ class PlacingPlan:
         datum_seats: of each part its datum frames.
         moves: in order.
         causes: before the first move and after each, what may have failed.
+        solids: reads clearances.
     """
 
     assembly: Assembly
     datum_seats: Mapping[str, Mapping[str, DatumSeats]]
     moves: tuple[Placing, ...]
     causes: tuple[Causes, ...]
+    solids: SolidReader | None = None
 
     @cached_property
     def of_measures(self) -> Mapping[str, tuple[Cause, ...]]:
@@ -160,8 +165,12 @@ class PlacingPlan:
 
 
 @lru_cache(maxsize=8)
-def planned(assembly: Assembly) -> PlacingPlan:
+def planned(assembly: Assembly, solids: SolidReader | None = None) -> PlacingPlan:
     """What the nominal geometry decides.
+
+    Args:
+        assembly: the model.
+        solids: reads clearances.
 
     Raises:
         InputError: see `values`.
@@ -178,7 +187,7 @@ def planned(assembly: Assembly) -> PlacingPlan:
     for move in assembly.moves:
         moves.append(_planned(move, world))
         world, _ = _after(moves[-1], world)
-    return PlacingPlan(assembly, seats, tuple(moves), tuple(causes))
+    return PlacingPlan(assembly, seats, tuple(moves), tuple(causes), solids)
 
 
 def _planned(move: Move, nominal: World) -> Placing:
@@ -249,12 +258,28 @@ def _after(move: Placing, world: World) -> tuple[World, Codes]:
 
 def _read(plan: PlacingPlan, block: _Block, name: str, causes: Sequence[Cause]) -> tuple[Array, Codes]:
     """A measure's values and codes (n,)."""
+    if plan.assembly.measures[name].kind == "clearance":
+        return _apart(plan, block, name, block.first_of(causes))
     with np.errstate(all="ignore"):
         numbers = reading(plan.assembly.measures[name], block.worlds)
         first = block.first_of(causes)
     lost = SINGULAR if plan.assembly.measures[name].room is None else NO_BUILD  # a datum does not take its gauge
     first = np.where((first == OK) & ~np.isfinite(numbers), np.int8(lost), first)
     return np.where(first == OK, numbers, np.nan), first
+
+
+def _apart(plan: PlacingPlan, block: _Block, name: str, codes: Codes) -> tuple[Array, Codes]:
+    """Values and codes (n,) of a clearance, from codes of what placed its parts."""
+    if plan.solids is None:
+        raise ValueError(f"{name}: nothing reads the distances of solids")
+    measured = plan.assembly.measures[name]
+    world = block.worlds[-1] if measured.after < 0 else block.worlds[measured.after + 1]
+    poses = [world.poses[part].matrices(world.trials) for part in measured.parts]
+    lost = ~np.isfinite(poses).all(axis=(0, 2, 3))
+    codes = np.where((codes == OK) & lost, np.int8(SINGULAR), codes)
+    values, placed = np.full(len(codes), np.nan), codes == OK
+    values[placed], codes[placed] = plan.solids.read(name, poses[0][placed], poses[1][placed])
+    return values, codes
 
 
 def _over_rests(plan: PlacingPlan, block: _Block, name: str, deviations: Array) -> tuple[Array, Codes]:

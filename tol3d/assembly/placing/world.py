@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -9,9 +10,26 @@ from numpy.typing import NDArray
 from tol3d.assembly.model import Assembly
 from tol3d.assembly.placing.actual_feature import ActualFeature
 from tol3d.assembly.placing.part_features import PartFeatures
-from tol3d.assembly.placing.poses import Pose
+from tol3d.assembly.placing.poses import Codes, Pose
 
 Array = NDArray[np.float64]
+
+
+class SolidReader(Protocol):
+    """Reads how far the solids of parts are apart; made where trials are, for it may not pickle."""
+
+    def __hash__(self) -> int:
+        """Each is one of its own."""
+        ...
+
+    def read(self, name: str, start: Array, end: Array) -> tuple[Array, Codes]:
+        """Distances (n,) [mm], not a number where the code is not OK, and codes (n,).
+
+        Args:
+            name: of the measure.
+            start, end: poses of its parts in the world (n, 4, 4).
+        """
+        ...
 
 
 @dataclass(frozen=True, eq=False)

@@ -116,6 +116,20 @@ def first_order(assembly: Assembly) -> FirstOrder:
     return FirstOrder(assembly.width, tuple(columns.terms), rows)
 
 
+def displaced(assembly: Assembly, part: str, after: int) -> FirstOrder:
+    """What displaces a part, as six measures "0" to "5": its torsor, seen at the world's origin [mm, rad].
+
+    Args:
+        assembly: the model.
+        part: which.
+        after: index of the move after which it is asked; -1 for the end.
+    """
+    columns = Columns(assembly.width, _room(assembly))
+    worlds, _ = _moved(World(assembly, columns), {})
+    torsor = without_rounding(worlds[-1 if after < 0 else after + 1].parts[part])
+    return FirstOrder(assembly.width, tuple(columns.terms), {str(k): row for k, row in enumerate(torsor)})
+
+
 def _played(name: str, measured: Measured, row: Array, first: World, unknowns: Mapping[int, slice]) -> Array:
     """A measure's row (columns,) at its least or largest over the rooms of parts with play."""
     sign = 1.0 if measured.over_play == "largest" else -1.0

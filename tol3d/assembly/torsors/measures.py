@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from tol3d.assembly.model import Axis, Measured, Plane, Point, RoundPlane
 from tol3d.assembly.model.bonus import GaugeRoom, MaterialBonus
 from tol3d.assembly.model.shape import nominal_size
+from tol3d.assembly.torsors.clearance import clearance
 from tol3d.assembly.torsors.columns import without_rounding
 from tol3d.assembly.torsors.common_opening import CommonOpening, LeastInRoom, TurnedOpening
 from tol3d.assembly.torsors.flatness import balances
@@ -317,4 +318,5 @@ _READINGS = {
     "surface_gap": _surface_gap,
     "contact_angle": _contact_angle,
     "slack": _slack,
+    "clearance": clearance,
 }

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.assembly.model import Assembly
-from tol3d.assembly.torsors.first_order import FirstOrder, first_order
+from tol3d.assembly.torsors.first_order import FirstOrder, displaced, first_order
 from tol3d.assembly.torsors.slopes import Slopes
 
 Array = NDArray[np.float64]
@@ -36,6 +36,19 @@ def values(assembly: Assembly, deviations: Array, names: Sequence[str]) -> dict[
 def slopes(assembly: Assembly, name: str, means: Array, sigmas: Array) -> Slopes:
     """How a measure changes with each column of the deviations, at their means; see FirstOrder.slopes."""
     return _first_order(assembly).slopes(name, means, sigmas)
+
+
+def displacements(assembly: Assembly, part: str, after: int, deviations: Array) -> Array:
+    """Torsors (trials, 6) of a part, seen at the world's origin [mm, rad].
+
+    Args:
+        assembly: the model.
+        part: which.
+        after: index of the move after which it is asked; -1 for the end.
+        deviations: (trials, columns) [mm, rad].
+    """
+    found = displaced(assembly, part, after)
+    return np.stack([*found.values(deviations, list(found.rows)).values()], axis=1)
 
 
 def _first_order(assembly: Assembly) -> FirstOrder:

@@ -2,6 +2,7 @@
 
 from tol3d.assembly.grammar.measures.angle import AngleSpec
 from tol3d.assembly.grammar.measures.assembly_measure import AssemblyMeasureSpec
+from tol3d.assembly.grammar.measures.clearance import ClearanceSpec
 from tol3d.assembly.grammar.measures.contact import ContactAngleSpec, SurfaceGapSpec
 from tol3d.assembly.grammar.measures.difference import DifferenceSpec
 from tol3d.assembly.grammar.measures.gap import DistanceSpec, FlushSpec, GapSpec, PointPlaneSpec
@@ -18,6 +19,7 @@ from tol3d.assembly.grammar.measures.virtual_clearance import VirtualClearanceSp
 __all__ = [
     "AngleSpec",
     "AssemblyMeasureSpec",
+    "ClearanceSpec",
     "ContactAngleSpec",
     "DifferenceSpec",
     "DistanceSpec",

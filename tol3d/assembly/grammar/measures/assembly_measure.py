@@ -36,12 +36,26 @@ class AssemblyMeasureSpec(MeasureEntry):
     )
 
 
-class FeatureMeasureSpec(AssemblyMeasureSpec):
+class TimedSpec(AssemblyMeasureSpec):
+    """A measure of placed parts."""
+
+    after: Name | None = Field(default=None, description="the move after which it is read; the end if not given")
+
+    @property
+    @abstractmethod
+    def parts_read(self) -> Sequence[str]:
+        """The parts that it is of, which moves have placed by then."""
+
+    @property
+    def timing(self) -> tuple[Reference, ...]:
+        """The move after which it is read."""
+        return () if self.after is None else (Reference(("after",), self.after, (PlacingSpec, WeldSpec)),)
+
+
+class FeatureMeasureSpec(TimedSpec):
     """A measure of features."""
 
     reads: ClassVar[MeasureKind]
-
-    after: Name | None = Field(default=None, description="the move after which it is read; the end if not given")
 
     @property
     def along(self) -> Direction | None:
@@ -60,8 +74,12 @@ class FeatureMeasureSpec(AssemblyMeasureSpec):
     def references(self) -> tuple[Reference, ...]:
         """Parts, and the move after which it is read."""
         parts = tuple(Reference(path, part_of(name), (SolidSpec,)) for path, name, _ in self.named())
-        move = () if self.after is None else (Reference(("after",), self.after, (PlacingSpec, WeldSpec)),)
-        return (*parts, *move)
+        return (*parts, *self.timing)
+
+    @property
+    def parts_read(self) -> Sequence[str]:
+        """See TimedSpec."""
+        return [part_of(name) for _, name, _ in self.named()]
 
     def uses(self) -> Iterator[Use]:
         """The features, and the datums."""
