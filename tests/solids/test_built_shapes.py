@@ -28,6 +28,10 @@ from tol3d.parts.named_solid import NamedSolid, numbered
 def wedge(shape):
     return numbered(cq.Solid.makeWedge(shape.wide, shape.high, shape.deep, shape.wide, 0, shape.wide, shape.deep))
 
+def moved_cut(shape):
+    block = cq.Workplane().box(20, 20, shape.high).faces(">Z").workplane()
+    return numbered(block.rect(10, 10, forConstruction=True).vertices().hole(shape.wide).solids().vals()[0])
+
 def tube(shape):
     outer, inner = (cq.Solid.makeCylinder(radius, shape.length) for radius in (shape.outer, shape.inner))
     return numbered(outer.cut(inner).Solids()[0])
@@ -43,6 +47,16 @@ class Wedge(BuiltShape):
     wide: float
     high: float
     deep: float
+
+
+@dataclass(frozen=True)
+class Holed(BuiltShape):
+    """A square block with four holes, whose faces OCC keeps where they were before they were moved."""
+
+    builder: ClassVar[str] = "builders_of_shapes:moved_cut"
+
+    wide: float
+    high: float
 
 
 @dataclass(frozen=True)
@@ -90,6 +104,15 @@ def test_round_faces_are_met_within_the_chord_error_that_is_stated() -> None:
         assert abs(whole(mesh).volume - exact) < 2 * math.pi * 10.0 * error * 30.0
         radii = np.hypot(*mesh.vertices[:, :2].T)
         assert np.minimum(np.abs(radii - 10.0), np.abs(radii - 7.0)).max() < 1e-9
+
+
+def test_faces_that_a_builder_has_moved_lie_where_the_solid_has_them() -> None:
+    mesh = display_mesh(Holed(4.0, 6.0), 0.01)
+    assert whole(mesh).is_watertight
+    assert mesh.chord_error < 0.02
+    # each of four holes is a polygon on its circle: smaller, by less than the chord error all around
+    volume = (400.0 - 4 * math.pi * 4.0) * 6.0
+    assert 0.0 < whole(mesh).volume - volume < 4 * 2 * math.pi * 2.0 * mesh.chord_error * 6.0
 
 
 def test_it_stands_in_files_where_its_pose_says(tmp_path: Path) -> None:

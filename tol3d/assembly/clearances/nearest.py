@@ -145,9 +145,8 @@ class _Search:
     def _is_of_a_face(self, normal: Array, triangle: int) -> bool:
         """Whether a direction in the frame of the second part is normal to one of its triangles."""
         a, b, c = self._pair.end.corners[self._pair.end_faces[triangle]]
-        return float(np.linalg.norm(np.cross(normal, np.cross(b - a, c - a)))) < SLANT * np.linalg.norm(
-            np.cross(b - a, c - a)
-        )
+        across = np.cross(b - a, c - a)
+        return float(np.linalg.norm(np.cross(normal, across))) < SLANT * float(np.linalg.norm(across))
 
     def _closing(self, start: Array, end: Array, normal: Array) -> Array:
         """Changes of the distance of two points along a normal, to first order, in all motions (motions,) [mm]."""

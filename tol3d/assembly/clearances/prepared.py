@@ -65,7 +65,7 @@ def _touching(start: str, end: str, distance: float, chord_error: float) -> str:
         words = f"{words}, {1000 * distance:.3g} um apart by meshes that may be {1000 * chord_error:.3g} um off"
         return f"{words}; state a smaller chord_error"
     words = f"{words}, which touch or overlap as they are placed; the clearance of parts that lie on each other is 0"
-    return f"{words}: measure a gap of their features where they are apart, or split off the face that is"
+    return f"{words}: measure a gap of their features where they are apart, or a clearance to another part"
 
 
 def _meshes(assembly: Assembly, name: str, measured: Measured) -> tuple[SolidMesh, SolidMesh]:
