@@ -1,10 +1,11 @@
 """The solid of a cover: a plate that lies on a rim with its seat, and a spigot that reaches into the opening."""
 
+import math
 from collections.abc import Sequence
 
 from tol3d.errors import GeometryError
 from tol3d.parts.box import LEAST_WALL, TOP_IS_Z, Box
-from tol3d.parts.details import Hole, Spigot
+from tol3d.parts.details import Hole, Slot, Spigot
 from tol3d.parts.machining import cutter, refuse_meeting
 from tol3d.parts.named_boolean import cut, fused
 from tol3d.parts.named_solid import NamedSolid
@@ -15,26 +16,32 @@ SPIGOT = {f"spigot {'end' if name == 'bottom' else name}": side for name, side i
 
 
 def cover(
-    length: float, width: float, thickness: float, holes: Sequence[Hole] = (), spigot: Spigot | None = None
+    length: float,
+    width: float,
+    thickness: float,
+    holes: Sequence[Hole] = (),
+    spigot: Spigot | None = None,
+    slots: Sequence[Slot] = (),
 ) -> NamedSolid:
     """A plate about the middle of its seat, z = 0, which is the origin; its spigot is below, at negative z [mm].
 
     Faces: "seat" (z = 0, round the spigot), "top" (z = thickness), "left" (-x), "right" (+x), "front" (-y), "back"
-    (+y); "spigot end", "spigot left", "spigot right", "spigot front", "spigot back"; and those of its holes.
+    (+y); "spigot end", "spigot left", "spigot right", "spigot front", "spigot back"; and those of its holes and
+    slots.
 
     Args:
         length, width, thickness: along x, y and z.
-        holes: from the "top", each within the spigot, which it goes through as well, or clear of it.
+        holes, slots: from the "top", each within the spigot, which it goes through as well, or clear of it.
         spigot: none if not given.
 
     Raises:
-        GeometryError: a cover without volume, a spigot without size or that covers the seat, a hole that leaves it,
-            meets another or the side of the spigot.
+        GeometryError: a cover without volume, a spigot without size or that covers the seat, a hole or a slot
+            that leaves it, meets another or the side of the spigot.
     """
     box = Box((-length / 2, -width / 2, 0.0), (length / 2, width / 2, thickness), SIDES)
     box.refuse_flat("a cover")
     register = None if spigot is None else _register(box, spigot)
-    tools = [(hole.words, cutter(_depth(box, register, hole), hole)) for hole in holes]
+    tools = [(own.words, cutter(_depth(box, register, own), own)) for own in (*holes, *slots)]
     refuse_meeting(tools)
     whole = box.solid() if register is None else fused(box.solid(), [register.solid()], "the cover")
     return cut(whole, [tool for _, tool in tools], "the cover")
@@ -49,20 +56,26 @@ def _register(box: Box, spigot: Spigot) -> Box:
     return made
 
 
-def _depth(box: Box, register: Box | None, hole: Hole) -> Box:
-    """The material that a hole is drilled into: the cover's, down to the end of the spigot if it is above it."""
-    if hole.face != TOP:
-        raise GeometryError(f"{hole.words} is on the {hole.face!r}; expected the top")
+def _depth(box: Box, register: Box | None, detail: Hole | Slot) -> Box:
+    """The material that a hole or a slot goes into: the cover's, down to the end of the spigot if it is above it."""
+    if detail.face != TOP:
+        raise GeometryError(f"{detail.words} is on the {detail.face!r}; expected the top")
     if register is None:
         return box
-    (x, y), radius = hole.at, hole.diameter / 2
-    inwards = min(x - register.low[0], register.high[0] - x, y - register.low[1], register.high[1] - y)
-    if inwards >= radius + LEAST_WALL:
+    ends = [(register.low[axis], register.high[axis]) for axis in (0, 1)]
+    inwards = [
+        min(at - low, high - at) - half for at, half, (low, high) in zip(detail.at, detail.reach, ends, strict=True)
+    ]
+    if min(inwards) >= LEAST_WALL:
         return Box((*box.low[:2], register.low[2]), box.high, SIDES)
-    off = (max(register.low[0] - x, x - register.high[0], 0.0), max(register.low[1] - y, y - register.high[1], 0.0))
-    if not (off[0] ** 2 + off[1] ** 2) ** 0.5 >= radius + LEAST_WALL:
+    # a hole past a corner of the spigot is clear of it by its radius, a slot by the rectangle around it
+    round_ = detail.diameter / 2 if isinstance(detail, Hole) else 0.0
+    reach = (0.0, 0.0) if isinstance(detail, Hole) else detail.reach
+    off = [max(low - at, at - high, 0.0) for at, (low, high) in zip(detail.at, ends, strict=True)]
+    beside = [max(gap - half, 0.0) for gap, half in zip(off, reach, strict=True)]
+    if not math.hypot(*beside) >= round_ + LEAST_WALL:
         raise GeometryError(
-            f"{hole.words} meets the side of the spigot, which reaches from {register.low[0]:g} mm to "
+            f"{detail.words} meets the side of the spigot, which reaches from {register.low[0]:g} mm to "
             f"{register.high[0]:g} mm along x and from {register.low[1]:g} mm to {register.high[1]:g} mm along y"
         )
     return box

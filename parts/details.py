@@ -76,13 +76,13 @@ class Slot:
 
 @dataclass(frozen=True)
 class Pin:
-    """A round pin that stands on the top: its side is the face "NAME", its end "NAME end".
+    """A round pin that stands on the top, or on a rim: its side is the face "NAME", its end "NAME end".
 
     Args:
         name: its side's.
         at: its axis.
         diameter: [mm].
-        height: above the top [mm].
+        height: above what it stands on [mm].
     """
 
     name: str

@@ -1,18 +1,22 @@
-"""The solid of a gearbox's housing: a box open at its top, with bores in its end walls and holes in its rim."""
+"""The solid of a gearbox's housing: a box open at its top or its front, with bores for shafts along z."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Final
 
 from tol3d.errors import GeometryError
-from tol3d.parts.box import LEAST_WALL, TOP_IS_Y, Box, Point
-from tol3d.parts.details import Bore, Boss, Hole
-from tol3d.parts.machining import OVERSHOOT, Tool, cutter, refuse_meeting, refuse_sizes, standing_on, tool
+from tol3d.parts.box import LEAST_WALL, TOP_IS_Y, Box, Point, Side
+from tol3d.parts.details import Bore, Boss, Hole, Pin
+from tol3d.parts.machining import OVERSHOOT, Tool, refuse_depth, refuse_meeting, refuse_sizes, standing_on, tool
 from tol3d.parts.named_boolean import cut, fused
 from tol3d.parts.named_solid import NamedSolid
 
-RIM, BOTTOM = "rim", "bottom"
-OUTSIDE = {RIM if name == "top" else name: side for name, side in TOP_IS_Y.items()}
-INSIDE = {"floor" if name == BOTTOM else f"inside {name}": side for name, side in TOP_IS_Y.items()}
+RIM: Final = "rim"
+OPPOSITE: Final[Mapping[str, str]] = {"top": "bottom", "front": "back"}
+"""The side of the floor, by the side that is open."""
+
+END_WALLS: Final = ("front", "back")
 
 
 def housing(
@@ -23,99 +27,161 @@ def housing(
     bores: Sequence[Bore] = (),
     holes: Sequence[Hole] = (),
     bosses: Sequence[Boss] = (),
+    pins: Sequence[Pin] = (),
+    opening: str = "top",
 ) -> NamedSolid:
-    """A box for shafts along z: four walls on a floor, open towards +y, where the flat rim is [mm].
+    """A box for shafts along z, open at its top (+y) or its front (+z), where the flat rim is [mm].
 
-    Faces: "rim" (+y), "bottom" (-y), "left" (-x), "right" (+x), "front" (+z), "back" (-z), all outside; "floor",
-    "inside left", "inside right", "inside front", "inside back"; and those of bores, holes and bosses (see
-    tol3d.parts.details).
+    Faces: "rim" round the opening, "floor" opposite to it inside; outside the other five of "top" (+y), "bottom" (-y),
+    "left" (-x), "right" (+x), "front" (+z), "back" (-z), inside the other four as "inside left" and so on; and those of
+    bores, holes, bosses and pins (see tol3d.parts.details).
 
     Args:
-        corner: its least x, y and z, bosses aside.
+        corner: its least x, y and z, bosses and pins aside.
         size: along x, y and z.
-        walls: thickness of the four walls.
+        walls: thickness of the four walls round the opening.
         floor: thickness of the floor.
         bores: through the end walls, "front" and "back", within what they bound of the inside.
-        holes: in the "rim" (places x and z), clear of the opening; in the "bottom" below the inside.
+        holes: in the "rim", clear of the opening; in another face within what its wall bounds of the inside. One in an
+            end wall may lie in a boss, which it goes through as well.
         bosses: on the outside of the end walls; a bore lies in one of them or clear of it.
+        pins: on the rim, clear of the opening.
+        opening: the side that is open, "top" or "front".
 
     Raises:
         GeometryError: walls thicker than the box, a bore that leaves its wall, a detail that leaves its face or meets
             another.
     """
-    outer = Box(corner, _sum(corner, size), OUTSIDE)
-    outer.refuse_flat("a housing")
-    inner = _inside(outer, walls, floor)
-    standing = [(boss.words, standing_on(outer, boss.wall, boss)) for boss in bosses]
+    if opening not in OPPOSITE:
+        raise GeometryError(f"a housing opens at its top or its front, got {opening!r}")
+    box = _OpenBox(corner, size, walls, floor, opening)
+    standing = [(boss.words, _boss(box, boss)) for boss in bosses]
     refuse_meeting(standing)
-    cutting: list[Tool] = [(bore.words, _bore(outer, inner, bosses, bore)) for bore in bores]
-    cutting += [(hole.words, _hole(outer, inner, hole)) for hole in holes]
-    refuse_meeting(cutting)
-    whole = fused(outer.solid(), [made for _, made in standing], "the housing")
-    opened = Box(inner.low, (inner.high[0], inner.high[1] + OVERSHOOT, inner.high[2]), INSIDE)
-    return cut(whole, [opened.solid(), *(made for _, made in cutting)], "the housing")
+    cutting: list[Tool] = [(own.words, _bore_or_hole(box, bosses, own)) for own in (*bores, *holes)]
+    on_rim = [(pin.words, _pin(box, pin)) for pin in pins]
+    refuse_meeting([*cutting, *on_rim])
+    whole = fused(box.outer.solid(), [made for _, made in (*standing, *on_rim)], "the housing")
+    return cut(whole, [box.hollow, *(made for _, made in cutting)], "the housing")
 
 
-def _sum(corner: Point, size: Point) -> Point:
-    return corner[0] + size[0], corner[1] + size[1], corner[2] + size[2]
+@dataclass(frozen=True)
+class _OpenBox:
+    """A box with one side open. Arguments as of `housing`."""
+
+    corner: Point
+    size: Point
+    walls: float
+    floor: float
+    opening: str
+
+    def __post_init__(self) -> None:
+        self.outer.refuse_flat("a housing")
+        if not min(self.walls, self.floor) >= LEAST_WALL:
+            raise GeometryError(f"walls of {self.walls:g} mm and a floor of {self.floor:g} mm leave the housing open")
+        for axis in range(3):
+            if not self.inner.high[axis] - self.inner.low[axis] >= LEAST_WALL:
+                deep = axis == TOP_IS_Y[self.opening].axis
+                what = f"a floor of {self.floor:g} mm leaves" if deep else f"walls of {self.walls:g} mm leave"
+                whole = self.outer.high[axis] - self.outer.low[axis]
+                raise GeometryError(f"{what} nothing inside a housing of {whole:g} mm along {'xyz'[axis]}")
+
+    @property
+    def outer(self) -> Box:
+        """Its outside."""
+        sides = {RIM if name == self.opening else name: side for name, side in TOP_IS_Y.items()}
+        (x, y, z), (length, height, width) = self.corner, self.size
+        return Box(self.corner, (x + length, y + height, z + width), sides)
+
+    @property
+    def inner(self) -> Box:
+        """Its inside, up to the rim; its sides have the names of the outer ones."""
+        return self._inside(0.0)
+
+    @property
+    def hollow(self) -> NamedSolid:
+        """What is taken away inside."""
+        names = {
+            "floor" if name == OPPOSITE[self.opening] else f"inside {name}": side for name, side in TOP_IS_Y.items()
+        }
+        inside = self._inside(OVERSHOOT)
+        return Box(inside.low, inside.high, names).solid()
+
+    def _inside(self, over: float) -> Box:
+        """The inside, and so much over the rim [mm]."""
+        taken = dict.fromkeys(TOP_IS_Y, self.walls) | {self.opening: -over, OPPOSITE[self.opening]: self.floor}
+        low, high = list(self.outer.low), list(self.outer.high)
+        for name, side in TOP_IS_Y.items():
+            ends = high if side.sign > 0 else low
+            ends[side.axis] -= side.sign * taken[name]
+        return Box((low[0], low[1], low[2]), (high[0], high[1], high[2]), self.outer.sides)
+
+    def thickness(self, side: Side) -> float:
+        """Of the wall of a side, or of the whole box below the rim [mm]."""
+        whole: float = self.outer.depth(side)
+        between = abs(self.outer.level(side) - self.inner.level(side))
+        return between if between > 0.0 else whole
+
+    def refuse_over_opening(self, detail: Hole | Pin) -> None:
+        """Raise unless a detail on the rim lies within it, clear of the opening."""
+        self.outer.refuse_outside(detail.words, RIM, detail.at, detail.reach)
+        across = self.outer.sides[RIM].across
+        ends = [(self.inner.low[axis], self.inner.high[axis]) for axis in across]
+        off = [max(low - at, at - high, 0.0) for at, (low, high) in zip(detail.at, ends, strict=True)]
+        if not math.hypot(*off) - detail.diameter / 2 >= LEAST_WALL:
+            reaches = " and ".join(
+                f"from {low:g} mm to {high:g} mm along {'xyz'[axis]}"
+                for axis, (low, high) in zip(across, ends, strict=True)
+            )
+            raise GeometryError(
+                f"{detail.words} leaves the rim: its axis is {math.hypot(*off):g} mm from the opening, which reaches "
+                f"{reaches}"
+            )
 
 
-def _inside(outer: Box, walls: float, floor: float) -> Box:
-    """The hollow, up to the rim."""
-    if not min(walls, floor) >= LEAST_WALL:
-        raise GeometryError(f"walls of {walls:g} mm and a floor of {floor:g} mm leave the housing open")
-    low, high = outer.low, outer.high
-    for axis, taken in enumerate((2 * walls, floor, 2 * walls)):
-        whole = high[axis] - low[axis]
-        if not whole - taken >= LEAST_WALL:
-            what = f"a floor of {floor:g} mm leaves" if axis == 1 else f"walls of {walls:g} mm leave"
-            raise GeometryError(f"{what} nothing inside a housing of {whole:g} mm along {'xyz'[axis]}")
-    return Box((low[0] + walls, low[1] + floor, low[2] + walls), (high[0] - walls, high[1], high[2] - walls), OUTSIDE)
+def _refuse_no_end_wall(box: _OpenBox, detail: Bore | Boss) -> None:
+    walls = [wall for wall in END_WALLS if wall != box.opening]
+    if detail.wall not in walls:
+        raise GeometryError(f"{detail.words}: expected the {' or the '.join(walls)}, a wall that shafts go through")
 
 
-def _bore(outer: Box, inner: Box, bosses: Sequence[Boss], bore: Bore) -> NamedSolid:
-    refuse_sizes(bore)
-    if bore.wall not in ("front", "back"):
-        raise GeometryError(f"{bore.words}: expected the front or the back, the walls that shafts go through")
-    inner.refuse_outside(bore.words, bore.wall, bore.at, bore.reach)
-    side = outer.sides[bore.wall]
-    thick = abs(outer.level(side) - inner.level(side))
-    raised = sum(boss.height for boss in bosses if boss.wall == bore.wall and _lies_in(bore, boss))
-    return tool(bore, side, outer.level(side) + side.sign * raised, raised + thick + OVERSHOOT)
+def _boss(box: _OpenBox, boss: Boss) -> NamedSolid:
+    _refuse_no_end_wall(box, boss)
+    return standing_on(box.outer, boss.wall, boss)
 
 
-def _lies_in(bore: Bore, boss: Boss) -> bool:
-    """Whether a bore goes through a boss of its wall.
+def _pin(box: _OpenBox, pin: Pin) -> NamedSolid:
+    made = standing_on(box.outer, RIM, pin)
+    box.refuse_over_opening(pin)
+    return made
+
+
+def _bore_or_hole(box: _OpenBox, bosses: Sequence[Boss], detail: Bore | Hole) -> NamedSolid:
+    """What it takes away, from its boss or its face inwards."""
+    refuse_sizes(detail)
+    if isinstance(detail, Bore):
+        _refuse_no_end_wall(box, detail)
+    face = detail.wall if isinstance(detail, Bore) else detail.face
+    side = box.outer.side(face, detail.words)
+    if isinstance(detail, Hole) and face == RIM:
+        box.refuse_over_opening(detail)
+    else:
+        box.inner.refuse_outside(detail.words, face, detail.at, detail.reach)
+    raised = sum(boss.height for boss in bosses if boss.wall == face and _lies_in(detail, boss))
+    thick = raised + box.thickness(side)
+    refuse_depth(detail, thick)
+    end = thick + OVERSHOOT if isinstance(detail, Bore) or detail.depth is None else detail.depth
+    return tool(detail, side, box.outer.level(side) + side.sign * raised, end)
+
+
+def _lies_in(detail: Bore | Hole, boss: Boss) -> bool:
+    """Whether a bore or a hole goes through a boss of its wall.
 
     Raises:
         GeometryError: it does by a part of it only.
     """
-    apart = math.dist(bore.at, boss.at)
-    if apart >= (bore.diameter + boss.diameter) / 2 + LEAST_WALL:
+    apart = math.dist(detail.at, boss.at)
+    if apart >= (detail.diameter + boss.diameter) / 2 + LEAST_WALL:
         return False
-    if not apart + bore.diameter / 2 <= boss.diameter / 2 - LEAST_WALL:
-        raise GeometryError(f"{bore.words} lies neither in {boss.words} nor clear of it")
+    if not apart + detail.diameter / 2 <= boss.diameter / 2 - LEAST_WALL:
+        raise GeometryError(f"{detail.words} lies neither in {boss.words} nor clear of it")
     return True
-
-
-def _hole(outer: Box, inner: Box, hole: Hole) -> NamedSolid:
-    if hole.face == BOTTOM:
-        below = Box((inner.low[0], outer.low[1], inner.low[2]), (inner.high[0], inner.low[1], inner.high[2]), OUTSIDE)
-        return cutter(below, hole)
-    if hole.face != RIM:
-        raise GeometryError(f"{hole.words} is on the {hole.face!r}; expected the rim or the bottom")
-    made = cutter(outer, hole)
-    off = [
-        max(inner.low[axis] - place, place - inner.high[axis], 0.0)
-        for axis, place in zip(outer.sides[RIM].across, hole.at, strict=True)
-    ]
-    if not math.hypot(*off) - hole.diameter / 2 >= LEAST_WALL:
-        raise GeometryError(
-            f"{hole.words} leaves the rim: its axis is {math.hypot(*off):g} mm from the opening, which reaches from "
-            f"{_room(inner, 0)} along x and from {_room(inner, 2)} along z"
-        )
-    return made
-
-
-def _room(inner: Box, axis: int) -> str:
-    return f"{inner.low[axis]:g} mm to {inner.high[axis]:g} mm"

@@ -53,10 +53,7 @@ def cutter(box: Box, detail: Hole | Slot) -> NamedSolid:
     side = box.side(detail.face, detail.words)
     whole = box.depth(side)
     refuse_sizes(detail)
-    if detail.depth is not None and detail.depth > whole - LEAST_WALL:
-        raise GeometryError(
-            f"{detail.words} is {detail.depth:g} mm deep in {whole:g} mm of material; leave its depth out to go through"
-        )
+    refuse_depth(detail, whole)
     box.refuse_outside(detail.words, detail.face, detail.at, detail.reach)
     end = whole + OVERSHOOT if detail.depth is None else detail.depth
     return tool(detail, side, box.level(side), end)
@@ -92,6 +89,14 @@ def refuse_sizes(detail: Hole | Slot | Bore) -> None:
         raise GeometryError(f"{detail.words} has no size: its width and its depth must be {LEAST_WALL:g} mm or more")
     if isinstance(detail, Slot) and detail.length < detail.width + LEAST_WALL:
         raise GeometryError(f"{detail.words} is no longer than wide: make it a hole")
+
+
+def refuse_depth(detail: Hole | Slot | Bore, whole: float) -> None:
+    """Raise unless a blind hole or slot leaves a floor in so much material [mm]."""
+    if not isinstance(detail, Bore) and detail.depth is not None and not detail.depth <= whole - LEAST_WALL:
+        raise GeometryError(
+            f"{detail.words} is {detail.depth:g} mm deep in {whole:g} mm of material; leave its depth out to go through"
+        )
 
 
 def refuse_meeting(tools: Sequence[Tool]) -> None:

@@ -13,6 +13,7 @@ from tol3d.assembly.grammar.builders import BuilderUnion
 from tol3d.errors import SceneError
 from tol3d.simulate import Overrides
 from tol3d.solids.cad import solid_of
+from tol3d.solids.machined import Housing
 from tol3d.strict import Strict
 
 PAGE = (ROOT / "docs" / "builders.md").read_text("utf-8")
@@ -52,6 +53,16 @@ def test_the_page_names_the_faces_that_the_solid_has(part: str) -> None:
     named = {name.split(" (")[0].strip() for name in said.replace(";", ",").split(",") if name.strip()}
     named = {name for name in named if not name.startswith("round")}
     assert named == plain
+
+
+def test_a_housing_that_opens_at_its_front_has_the_faces_that_the_page_says() -> None:
+    top, front = (
+        set(solid_of(Housing((0.0, 0.0, 0.0), (90.0, 80.0, 70.0), 5.0, 5.0, opening=side)).faces)
+        for side in ("top", "front")
+    )
+    assert "it has a top (+y) and no front,\ninside top and inside bottom for inside front and inside back" in PAGE
+    assert front - top == {"top", "inside top", "inside bottom"}
+    assert top - front == {"front", "inside front", "inside back"}
 
 
 def refused(old: str, new: str, folder: Path) -> str:

@@ -7,7 +7,7 @@ import pytest
 
 from tol3d.errors import GeometryError
 from tol3d.parts.cover import cover
-from tol3d.parts.details import Hole, Spigot
+from tol3d.parts.details import Hole, Slot, Spigot
 
 
 def test_a_cover_is_a_plate_and_a_spigot_less_its_holes() -> None:
@@ -58,6 +58,22 @@ def test_a_cover_is_a_plate_and_a_spigot_less_its_holes() -> None:
     assert part.faces["seat"].Center().z == pytest.approx(0.0, abs=1e-9)
 
 
+def test_slots_of_a_cover_lie_in_the_spigot_or_clear_of_it() -> None:
+    """As for a dowel beside the spigot, and a window through it."""
+    slots = [
+        Slot("dowel", (-93.0, 0.0), 8.0, 5.0, math.pi / 2),
+        Slot("window", (20.0, 0.0), 40.0, 12.0),
+        Slot("pocket", (-40.0, 10.0), 30.0, 10.0, 0.5, 10.0),
+    ]
+    part = cover(200.0, 80.0, 8.0, [], Spigot(175.0, 55.0, 4.0), slots)
+    stadiums = [3 * 5 + math.pi * 2.5**2, 28 * 12 + math.pi * 6**2, 20 * 10 + math.pi * 5**2]
+    away = sum(area * deep for area, deep in zip(stadiums, (8, 12, 10), strict=True))
+    assert part.solid.Volume() == pytest.approx(200 * 80 * 8 + 175 * 55 * 4 - away, rel=1e-9)
+    assert part.faces["dowel left wall"].Center().toTuple() == pytest.approx((-95.5, 0, 4), abs=1e-9)
+    assert part.faces["window left wall"].Center().toTuple() == pytest.approx((20, 6, 2), abs=1e-9)
+    assert part.faces["seat"].Area() == pytest.approx(200 * 80 - 175 * 55 - stadiums[0], rel=1e-9)
+
+
 def test_a_cover_without_a_spigot_is_a_plate_on_its_seat() -> None:
     part = cover(50.0, 40.0, 6.0)
     assert set(part.faces) == {"seat", "top", "left", "right", "front", "back"}
@@ -69,6 +85,10 @@ REFUSED: dict[str, tuple[dict[str, Any], str]] = {
     "meets the spigot": (
         {"holes": [Hole("a", (-87.0, 0.0), 8.0)]},
         "hole 'a' .* meets the side of the spigot, which reaches from -87.5 mm to 87.5 mm along x",
+    ),
+    "slot meets the spigot": (
+        {"slots": [Slot("s", (-90.0, 0.0), 12.0, 5.0)]},
+        "slot 's' .* meets the side of the spigot",
     ),
     "corner of the spigot": ({"holes": [Hole("a", (-89.0, 29.0), 8.0)]}, "meets the side of the spigot"),
     "wide spigot": ({"spigot": Spigot(201.0, 50.0, 4.0)}, "the spigot .* leaves the seat: along x"),

@@ -9,7 +9,7 @@ from places import SCENES
 
 from tol3d import load_scene
 from tol3d.errors import GeometryError
-from tol3d.parts.details import Bore, Boss, Hole
+from tol3d.parts.details import Bore, Boss, Hole, Pin
 from tol3d.parts.housing import housing
 
 CORNER, SIZE = (-35.0, -60.0, -40.0), (200.0, 150.0, 80.0)  # round two stages of spur gears
@@ -112,6 +112,55 @@ def test_the_gears_of_the_scene_turn_inside_without_touching() -> None:
         assert np.abs(centres[name]) + half < min(hollow["front"].z, -hollow["back"].z)
 
 
+def test_a_cup_is_open_at_its_front_and_has_its_bores_in_its_floor() -> None:
+    """200 mm by 150 mm by 80 mm about (65, 15, 0), walls of 12 mm, a floor of 9 mm at the back."""
+    part = housing(
+        CORNER,
+        SIZE,
+        12.0,
+        9.0,
+        [Bore("bore", (20.0, 10.0), 30.0, "back"), Bore("small", (90.0, 10.0), 8.0, "back")],
+        [
+            Hole("screw", (-29.0, 0.0), 5.0, 18.0, "rim"),
+            Hole("drain", (80.0, 5.0), 7.0, None, "bottom"),
+            Hole("vent", (40.0, 5.0), 6.0, 4.0, "top"),
+            Hole("cap", (42.0, 10.0), 4.0, 11.0, "back"),
+        ],
+        [Boss("boss", (20.0, 10.0), 54.0, 7.0, "back")],
+        [Pin("dowel", (159.0, 40.0), 6.0, 11.0)],
+        "front",
+    )
+    away = math.pi * (15**2 * 16 + 4**2 * 9 + 2.5**2 * 18 + 3.5**2 * 12 + 3**2 * 4 + 2**2 * 11)
+    boxes = 200 * 150 * 80 - 176 * 126 * 71
+    assert part.solid.isValid()
+    assert part.solid.Volume() == pytest.approx(boxes - away + math.pi * (27**2 * 7 + 3**2 * 11), rel=1e-9)
+    assert set(part.faces.values()) == set(part.solid.Faces())
+    rim = 200 * 150 - 176 * 126 - math.pi * (2.5**2 + 3**2)
+    assert part.faces["rim"].Area() == pytest.approx(rim, rel=1e-9)
+    assert part.faces["rim"].Center().z == pytest.approx(40.0, abs=1e-9)
+    places = {
+        "left": ((-35, 15, 0), (-1, 0, 0)),
+        "right": ((165, 15, 0), (1, 0, 0)),
+        "inside left": ((-23, 15, 4.5), (1, 0, 0)),
+        "inside right": ((153, 15, 4.5), (-1, 0, 0)),
+        "vent floor": ((40, 86, 5), (0, 1, 0)),
+        "dowel end": ((159, 40, 51), (0, 0, 1)),
+        "screw floor": ((-29, 0, 22), (0, 0, 1)),
+        "cap floor": ((42, 10, -36), (0, 0, -1)),
+        "bore": ((20, 10, -39), None),
+        "small": ((90, 10, -35.5), None),
+        "drain": ((80, -54, 5), None),
+    }
+    for name, (place, normal) in places.items():
+        assert part.faces[name].Center().toTuple() == pytest.approx(place, abs=1e-9), name
+        assert normal is None or part.faces[name].normalAt().toTuple() == pytest.approx(normal, abs=1e-12), name
+    levels = {"top": (1, 90, 1), "bottom": (1, -60, -1), "back": (2, -40, -1), "floor": (2, -31, 1)}
+    levels |= {"inside top": (1, 78, -1), "inside bottom": (1, -48, 1), "rim": (2, 40, 1), "boss end": (2, -47, -1)}
+    for name, (axis, level, sign) in levels.items():
+        assert part.faces[name].Center().toTuple()[axis] == pytest.approx(level, abs=1e-9), name
+        assert part.faces[name].normalAt().toTuple()[axis] == pytest.approx(sign, abs=1e-12), name
+
+
 REFUSED: dict[str, tuple[dict[str, Any], str]] = {
     "bore leaves its wall": (
         {"bores": [Bore("a", (-20.0, 0.0), 22.0, "front")]},
@@ -142,7 +191,37 @@ REFUSED: dict[str, tuple[dict[str, Any], str]] = {
         {"bores": [Bore("a", (0.0, 60.0), 30.0, "back")], "holes": [Hole("s", (0.0, -34.0), 5.0, 20.0, "rim")]},
         "bore 'a' .* and hole 's' .* overlap",
     ),
-    "hole in no rim": ({"holes": [Hole("a", (0.0, 0.0), 5.0)]}, "expected the rim or the bottom"),
+    "hole in the opening's side": (
+        {"holes": [Hole("a", (0.0, 0.0), 5.0)]},
+        "'top'; expected one of rim, bottom, left, right, front, back",
+    ),
+    "hole in a side, over a wall": (
+        {"holes": [Hole("a", (85.0, 30.0), 5.0, None, "left")]},
+        "leaves the left: along z",
+    ),
+    "wall drilled too deep": ({"holes": [Hole("a", (50.0, 0.0), 5.0, 12.0, "right")]}, "12 mm deep in 12 mm"),
+    "half in a boss, a hole": (
+        {"holes": [Hole("a", (0.0, 0.0), 5.0, None, "back")], "bosses": [Boss("b", (15.0, 0.0), 30.0, 5.0, "back")]},
+        "hole 'a' .* lies neither in boss 'b' .* nor clear of it",
+    ),
+    "pin in the opening": ({"pins": [Pin("p", (-25.0, 0.0), 5.0, 9.0)]}, "pin 'p' .* leaves the rim: its axis is 2 mm"),
+    "pin on a screw": (
+        {"pins": [Pin("p", (-29.0, 30.0), 5.0, 9.0)], "holes": [SCREWS[3]]},
+        "hole 'screw 4' .* and pin 'p' .* overlap",
+    ),
+    "bore in the opening": (
+        {"opening": "front", "bores": [Bore("a", (0.0, 0.0), 22.0, "front")]},
+        "bore 'a' .*: expected the back, a wall",
+    ),
+    "boss on the opening": (
+        {"opening": "front", "bosses": [Boss("a", (0.0, 0.0), 22.0, 3.0, "front")]},
+        "boss 'a' .*: expected the back, a wall",
+    ),
+    "open elsewhere": ({"opening": "left"}, "opens at its top or its front, got 'left'"),
+    "floor of a cup": (
+        {"opening": "front", "floor": 80.0},
+        "a floor of 80 mm leaves nothing inside a housing of 80 mm along z",
+    ),
     "below a wall": ({"holes": [Hole("a", (-20.0, 0.0), 8.0, None, "bottom")]}, "leaves the bottom: along x"),
     "thick walls": ({"walls": 40.0}, "walls of 40 mm leave nothing inside a housing of 80 mm along z"),
     "thick floor": ({"floor": 151.0}, "a floor of 151 mm leaves nothing inside a housing of 150 mm along y"),

@@ -135,6 +135,33 @@ def random_housing(rng: Generator) -> tuple[Any, float, int]:
     return made, float(volume), faces
 
 
+def random_cup(rng: Generator) -> tuple[Any, float, int]:
+    """Open at its front: bores in its floor, pins and blind holes along the rim, holes through the sides."""
+    size, corner = rng.uniform(40, 400, 3), rng.uniform(-200, 200, 3)
+    walls, floor = rng.uniform(0.05, 0.3, 2) * size.min()
+    low, high = corner + np.array([walls, walls, floor]), corner + size - np.array([walls, walls, 0])
+    volume, faces = size.prod() - (high - low).prod(), 11
+    bores, holes, pins = [], [], []
+    columns, rows = int(rng.integers(1, 4)), int(rng.integers(1, 3))
+    room = 0.95 * min((high[0] - low[0]) / columns, (high[1] - low[1]) / rows)
+    for number, at in enumerate(cells(tuple(low[:2]), tuple(high[:2]), columns, rows)):
+        wide = room * rng.uniform(0.1, 1.0)
+        bores.append(Bore(f"bore {number}", at, wide, "back"))
+        volume, faces = volume - disc(wide) * floor, faces + 1
+    for number, x in enumerate(np.linspace(low[0], high[0], 4)):
+        wide = min(walls, (high[0] - low[0]) / 3) * rng.uniform(0.1, 0.9)
+        tall = size[2] * rng.uniform(0.05, 0.9)
+        holes.append(Hole(f"hole {number}", (float(x), (corner[1] + low[1]) / 2), wide, tall, "rim"))
+        pins.append(Pin(f"pin {number}", (float(x), (corner[1] + size[1] + high[1]) / 2), wide, tall))
+        faces += 4  # what one takes the other adds
+    for side in ("left", "right"):
+        wide = 0.9 * min(high[1] - low[1], high[2] - low[2]) * rng.uniform(0.1, 1.0)
+        holes.append(Hole(side + " window", ((low[1] + high[1]) / 2, (low[2] + high[2]) / 2), wide, None, side))
+        volume, faces = volume - disc(wide) * walls, faces + 1
+    made = housing(tuple(corner), tuple(size), walls, floor, bores, holes, (), pins, "front")
+    return made, float(volume), faces
+
+
 def random_cover(rng: Generator) -> tuple[Any, float, int]:
     length, width, thick = rng.uniform(30, 400), rng.uniform(30, 400), rng.uniform(1, 30)
     edge, rise = 0.15 * min(length, width), rng.uniform(0.5, 40)
@@ -150,7 +177,9 @@ def random_cover(rng: Generator) -> tuple[Any, float, int]:
     return cover(length, width, thick, holes, spigot), volume, 11 + 5 + bool(deep)
 
 
-MAKERS = {own.__name__: own for own in (random_plate, random_block, random_bracket, random_housing, random_cover)}
+MAKERS = {
+    own.__name__: own for own in (random_plate, random_block, random_bracket, random_housing, random_cup, random_cover)
+}
 
 
 def check(make: Callable[[Generator], tuple[Any, float, int]], seed: int) -> None:

@@ -40,7 +40,9 @@ def test_a_scene_s_dimensions_arrive_in_millimetres_and_radians() -> None:
     assert (housing.walls, housing.floor) == (10.0, 12.0)
     assert housing.bores[3] == Bore("far output", (22.0, 2.0), 26.0, "back")
     assert housing.bosses == (Boss("boss", (22.0, 2.0), 42.0, 6.0, "front"),)
-    assert [hole.face for hole in housing.holes] == ["rim"] * 4 + ["bottom"] * 2
+    assert [hole.face for hole in housing.holes] == ["rim"] * 2 + ["bottom"] * 2
+    assert [pin.name for pin in housing.pins] == ["dowel 1", "dowel 2"]
+    assert housing.opening == "top"
     assert of_kind(Cover, shapes()["cover"]).spigot == Spigot(89.6, 69.6, 5.0)
     assert of_kind(Bracket, shapes()["bracket"]).fillet == 6.0
     assert [hole.face for hole in of_kind(Bracket, shapes()["bracket"]).holes][2] == "upright inside"

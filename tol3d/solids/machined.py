@@ -64,6 +64,8 @@ class Housing(BuiltShape):
     bores: tuple[Bore, ...] = ()
     holes: tuple[Hole, ...] = ()
     bosses: tuple[Boss, ...] = ()
+    pins: tuple[Pin, ...] = ()
+    opening: str = "top"
 
 
 @dataclass(frozen=True)
@@ -77,3 +79,4 @@ class Cover(BuiltShape):
     thickness: float
     holes: tuple[Hole, ...] = ()
     spigot: Spigot | None = None
+    slots: tuple[Slot, ...] = ()

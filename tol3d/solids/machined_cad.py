@@ -26,9 +26,19 @@ def bracket_of(shape: Bracket) -> NamedSolid:
 
 def housing_of(shape: Housing) -> NamedSolid:
     """The solid of a housing."""
-    return housing(shape.corner, shape.size, shape.walls, shape.floor, shape.bores, shape.holes, shape.bosses)
+    return housing(
+        shape.corner,
+        shape.size,
+        shape.walls,
+        shape.floor,
+        shape.bores,
+        shape.holes,
+        shape.bosses,
+        shape.pins,
+        shape.opening,
+    )
 
 
 def cover_of(shape: Cover) -> NamedSolid:
     """The solid of a cover."""
-    return cover(shape.length, shape.width, shape.thickness, shape.holes, shape.spigot)
+    return cover(shape.length, shape.width, shape.thickness, shape.holes, shape.spigot, shape.slots)

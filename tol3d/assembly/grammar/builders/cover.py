@@ -6,7 +6,7 @@ from typing import ClassVar, Literal
 from pydantic import Field
 
 from tol3d.assembly.grammar.builders.builder_spec import BuilderSpec, Place, place
-from tol3d.assembly.grammar.builders.details import HoleSpec
+from tol3d.assembly.grammar.builders.details import HoleSpec, SlotSpec
 from tol3d.assembly.grammar.feature_name import OwnName
 from tol3d.parts.details import Spigot
 from tol3d.scene.part import Length
@@ -39,6 +39,7 @@ class CoverSpec(BuilderSpec):
     width: Length = Field(description="along y")
     thickness: Length = Field(description="along z, without the spigot")
     holes: Mapping[OwnName, HoleSpec] = Field(default_factory=dict, description="from its top")
+    slots: Mapping[OwnName, SlotSpec] = Field(default_factory=dict, description="from its top")
     spigot: SpigotSpec | None = Field(default=None, description="none if not given")
 
     @property
@@ -50,4 +51,5 @@ class CoverSpec(BuilderSpec):
             self.thickness.internal,
             tuple(hole.named(name) for name, hole in self.holes.items()),
             None if self.spigot is None else self.spigot.shape,
+            tuple(slot.named(name) for name, slot in self.slots.items()),
         )

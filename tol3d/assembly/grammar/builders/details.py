@@ -43,11 +43,11 @@ class SlotSpec(Strict):
 
 
 class PinSpec(Strict):
-    """A round pin that stands on the top."""
+    """A round pin that stands on the top, or on a rim."""
 
     at: Place = Field(description="its axis")
     diameter: Length
-    height: Length = Field(description="above the top")
+    height: Length = Field(description="above what it stands on")
 
     def named(self, name: str) -> Pin:
         """The pin by its name."""

@@ -1,4 +1,4 @@
-"""A gearbox's housing: a box open at its top, with bores in its end walls."""
+"""A gearbox's housing: a box open at its top or its front, with bores for shafts along z."""
 
 from collections.abc import Mapping
 from typing import Annotated, ClassVar, Literal
@@ -6,7 +6,7 @@ from typing import Annotated, ClassVar, Literal
 from pydantic import Field
 
 from tol3d.assembly.grammar.builders.builder_spec import BuilderSpec, Place, place
-from tol3d.assembly.grammar.builders.details import HoleSpec
+from tol3d.assembly.grammar.builders.details import HoleSpec, PinSpec
 from tol3d.assembly.grammar.feature_name import OwnName
 from tol3d.parts.details import Bore, Boss
 from tol3d.scene.part import Length
@@ -35,26 +35,30 @@ class BossSpec(Strict):
 
 
 class HousingHoleSpec(HoleSpec):
-    """A hole in the rim, or in the floor from below."""
+    """A hole in the rim, or in a wall from outside."""
 
-    face: Literal["rim", "bottom"] = Field(default="rim", description="that it is drilled into")
+    face: Literal["rim", "top", "bottom", "left", "right", "front", "back"] = Field(
+        default="rim", description="that it is drilled into"
+    )
 
 
 class HousingSpec(BuilderSpec):
-    """Four walls on a floor, for shafts along z; open towards +y, where the rim is."""
+    """Four walls on a floor, for shafts along z; the rim is round the opening."""
 
     words: ClassVar[str] = "a housing"
 
     kind: Literal["housing"]
-    corner: Vector = Field(description="its least x, y and z, bosses aside, in the frame of its part")
+    corner: Vector = Field(description="its least x, y and z, bosses and pins aside, in the frame of its part")
     size: Annotated[tuple[Length, Length, Length], three("three lengths, such as [200 mm, 150 mm, 80 mm]")] = Field(
         description="outside, along x, y and z"
     )
-    walls: Length = Field(description="thickness of all four")
+    opening: Literal["top", "front"] = Field(default="top", description="the top is at +y, the front at +z")
+    walls: Length = Field(description="thickness of the four round the opening")
     floor: Length | None = Field(default=None, description="thickness of the floor; that of the walls if not given")
     bores: Mapping[OwnName, BoreSpec] = Field(default_factory=dict, description="in its end walls")
     bosses: Mapping[OwnName, BossSpec] = Field(default_factory=dict, description="on its end walls")
-    holes: Mapping[OwnName, HousingHoleSpec] = Field(default_factory=dict, description="in its rim or its bottom")
+    holes: Mapping[OwnName, HousingHoleSpec] = Field(default_factory=dict, description="in its rim or its walls")
+    pins: Mapping[OwnName, PinSpec] = Field(default_factory=dict, description="on its rim")
 
     @property
     def shape(self) -> Housing:
@@ -71,4 +75,6 @@ class HousingSpec(BuilderSpec):
                 Boss(name, place(own.at), own.diameter.internal, own.height.internal, own.wall)
                 for name, own in self.bosses.items()
             ),
+            tuple(pin.named(name) for name, pin in self.pins.items()),
+            self.opening,
         )
