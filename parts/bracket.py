@@ -11,7 +11,7 @@ from OCP.gp import gp_Ax3, gp_Dir, gp_Pnt, gp_Trsf
 from tol3d.errors import GeometryError
 from tol3d.parts.box import LEAST_WALL, Box, Side
 from tol3d.parts.details import Hole
-from tol3d.parts.machining import cutter, refuse_meeting
+from tol3d.parts.machining import cutter, refuse_meeting, tools_of
 from tol3d.parts.named_boolean import cut
 from tol3d.parts.named_solid import NamedEdge, NamedSolid, extruded
 
@@ -52,7 +52,7 @@ def bracket(
             f"{thickness:g} mm and its fillet of {fillet:g} mm"
         )
     legs = _legs(length, height, width, thickness, reach)
-    tools = [(hole.words, cutter(_leg(legs, hole), hole)) for hole in holes]
+    tools = tools_of(holes, lambda hole: cutter(_leg(legs, hole), hole))
     refuse_meeting(tools)
     turned = gp_Trsf()
     turned.SetDisplacement(gp_Ax3(), gp_Ax3(gp_Pnt(0.0, 0.0, 0.0), gp_Dir(0.0, -1.0, 0.0), gp_Dir(1.0, 0.0, 0.0)))

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from tol3d.errors import GeometryError
 from tol3d.parts.box import LEAST_WALL, TOP_IS_Z, Box
 from tol3d.parts.details import Hole, Slot, Spigot
-from tol3d.parts.machining import cutter, refuse_meeting
+from tol3d.parts.machining import cutter, refuse_meeting, tools_of
 from tol3d.parts.named_boolean import cut, fused
 from tol3d.parts.named_solid import NamedSolid
 
@@ -41,7 +41,7 @@ def cover(
     box = Box((-length / 2, -width / 2, 0.0), (length / 2, width / 2, thickness), SIDES)
     box.refuse_flat("a cover")
     register = None if spigot is None else _register(box, spigot)
-    tools = [(own.words, cutter(_depth(box, register, own), own)) for own in (*holes, *slots)]
+    tools = tools_of((*holes, *slots), lambda detail: cutter(_depth(box, register, detail), detail))
     refuse_meeting(tools)
     whole = box.solid() if register is None else fused(box.solid(), [register.solid()], "the cover")
     return cut(whole, [tool for _, tool in tools], "the cover")

@@ -3,8 +3,23 @@
 import math
 from dataclasses import dataclass
 
+from tol3d.errors import GeometryError
+
 Place = tuple[float, float]
 """Two coordinates of the part [mm]: x, y and z in this order without the one that a face is square to."""
+
+
+class DetailError(GeometryError):
+    """A detail is at fault.
+
+    Args:
+        sentence: what is wrong with it.
+        name: its name.
+    """
+
+    def __init__(self, sentence: str, name: str) -> None:
+        super().__init__(sentence)
+        self.name = name
 
 
 @dataclass(frozen=True)
@@ -180,6 +195,9 @@ class Spigot:
     def words(self) -> str:
         """For messages."""
         return f"the spigot ({self.length:g} mm by {self.width:g} mm at {place_words(self.at)})"
+
+
+Detail = Hole | Slot | Pin | Bore | Boss
 
 
 def place_words(at: Place) -> str:

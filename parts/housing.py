@@ -8,7 +8,15 @@ from typing import Final
 from tol3d.errors import GeometryError
 from tol3d.parts.box import LEAST_WALL, TOP_IS_Y, Box, Point, Side
 from tol3d.parts.details import Bore, Boss, Hole, Pin
-from tol3d.parts.machining import OVERSHOOT, Tool, refuse_depth, refuse_meeting, refuse_sizes, standing_on, tool
+from tol3d.parts.machining import (
+    OVERSHOOT,
+    refuse_depth,
+    refuse_meeting,
+    refuse_sizes,
+    standing_on,
+    tool,
+    tools_of,
+)
 from tol3d.parts.named_boolean import cut, fused
 from tol3d.parts.named_solid import NamedSolid
 
@@ -55,10 +63,10 @@ def housing(
     if opening not in OPPOSITE:
         raise GeometryError(f"a housing opens at its top or its front, got {opening!r}")
     box = _OpenBox(corner, size, walls, floor, opening)
-    standing = [(boss.words, _boss(box, boss)) for boss in bosses]
+    standing = tools_of(bosses, lambda boss: _boss(box, boss))
     refuse_meeting(standing)
-    cutting: list[Tool] = [(own.words, _bore_or_hole(box, bosses, own)) for own in (*bores, *holes)]
-    on_rim = [(pin.words, _pin(box, pin)) for pin in pins]
+    cutting = tools_of((*bores, *holes), lambda detail: _bore_or_hole(box, bosses, detail))
+    on_rim = tools_of(pins, lambda pin: _pin(box, pin))
     refuse_meeting([*cutting, *on_rim])
     whole = fused(box.outer.solid(), [made for _, made in (*standing, *on_rim)], "the housing")
     return cut(whole, [box.hollow, *(made for _, made in cutting)], "the housing")

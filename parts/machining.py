@@ -1,8 +1,9 @@
 """Holes and slots cut into the faces of a box, pins stood on it: tools as named solids, and what they must keep to."""
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from itertools import combinations
+from typing import TypeVar
 
 import cadquery as cq
 from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeEdge, BRepBuilderAPI_MakeVertex
@@ -13,15 +14,17 @@ from OCP.gp import gp_Ax2, gp_Ax3, gp_Dir, gp_Pnt, gp_Trsf, gp_Vec
 
 from tol3d.errors import GeometryError
 from tol3d.parts.box import LEAST_WALL, Box, Side
-from tol3d.parts.details import Bore, Boss, Hole, Pin, Place, Slot
+from tol3d.parts.details import Bore, Boss, Detail, DetailError, Hole, Pin, Place, Slot
 from tol3d.parts.named_boolean import cut, fused
 from tol3d.parts.named_solid import BACK, FRONT, NamedEdge, NamedSolid, extruded
 
 OVERSHOOT = LEAST_WALL / 2  # mm; a tool ends so far outside the material that it opens
 
 Direction = tuple[float, float, float]
-Tool = tuple[str, NamedSolid]
-"""What a message calls it, and its solid."""
+Tool = tuple[Detail, NamedSolid]
+"""A detail and its solid, which is cut away or added."""
+
+Some = TypeVar("Some", bound=Detail)
 
 
 def machined(
@@ -37,11 +40,30 @@ def machined(
     Raises:
         GeometryError: a detail without size, one that leaves its face, two that meet, a name that two faces have.
     """
-    standing = [(pin.words, standing_on(box, "top", pin)) for pin in pins]
-    cutting = [(own.words, cutter(box, own)) for own in (*holes, *slots)]
+    standing = tools_of(pins, lambda pin: standing_on(box, "top", pin))
+    cutting = tools_of((*holes, *slots), lambda detail: cutter(box, detail))
     refuse_meeting([*standing, *cutting])
     whole = fused(box.solid(), [tool for _, tool in standing], words)
     return cut(whole, [tool for _, tool in cutting], words)
+
+
+def tools_of(details: Sequence[Some], made: Callable[[Some], NamedSolid]) -> list[Tool]:
+    """The tools of details.
+
+    Args:
+        details: in their order.
+        made: makes the solid of one, or raises a GeometryError.
+
+    Raises:
+        DetailError: one cannot be made.
+    """
+    tools: list[Tool] = []
+    for detail in details:
+        try:
+            tools.append((detail, made(detail)))
+        except GeometryError as error:
+            raise DetailError(str(error), detail.name) from error
+    return tools
 
 
 def cutter(box: Box, detail: Hole | Slot) -> NamedSolid:
@@ -100,14 +122,19 @@ def refuse_depth(detail: Hole | Slot | Bore, whole: float) -> None:
 
 
 def refuse_meeting(tools: Sequence[Tool]) -> None:
-    """Raise where two details meet or leave no wall between them."""
+    """Raise where two details meet or leave no wall between them.
+
+    Raises:
+        DetailError: two do; it has the name of the later one.
+    """
     boxes = [made.solid.BoundingBox() for _, made in tools]
     for one, other in combinations(range(len(tools)), 2):
         if not _apart(boxes[one], boxes[other]):
-            (words, first), (others, second) = tools[one], tools[other]
+            (detail, first), (near, second) = tools[one], tools[other]
             between = BRepExtrema_DistShapeShape(first.solid.wrapped, second.solid.wrapped).Value()
             if between < LEAST_WALL:
-                raise GeometryError(f"{words} and {others} overlap, or leave no wall between them")
+                what = f"{detail.words} and {near.words} overlap, or leave no wall between them"
+                raise DetailError(what, near.name)
 
 
 def cylinder(start: Direction, along: Direction, diameter: float, length: float, side: str, base: str) -> NamedSolid:

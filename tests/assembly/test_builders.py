@@ -78,20 +78,20 @@ WRONG = {
     "hole outside the plate": (
         "screw 1: {at: [-120 mm, -60 mm], diameter: 9 mm}",
         "screw 1: {at: [-120 mm, -66 mm], diameter: 9 mm}",
-        "parts.base.builder: hole 'screw 1' (diameter 9 mm at [-120, -66] mm) leaves the top: along y it reaches from "
-        "-70.5 mm to -61.5 mm, the top from -70 mm to 70 mm",
+        "15: parts.base.builder.holes.screw 1: hole 'screw 1' (diameter 9 mm at [-120, -66] mm) leaves the top: along "
+        "y it reaches from -70.5 mm to -61.5 mm, the top from -70 mm to 70 mm",
     ),
     "holes that overlap": (
         "screw 2: {at: [120 mm, -60 mm], diameter: 9 mm}",
         "screw 2: {at: [-115 mm, -60 mm], diameter: 9 mm}",
-        "parts.base.builder: hole 'screw 1' (diameter 9 mm at [-120, -60] mm) and hole 'screw 2' (diameter 9 mm at "
-        "[-115, -60] mm) overlap, or leave no wall between them",
+        "16: parts.base.builder.holes.screw 2: hole 'screw 1' (diameter 9 mm at [-120, -60] mm) and hole 'screw 2' "
+        "(diameter 9 mm at [-115, -60] mm) overlap, or leave no wall between them",
     ),
     "bore that leaves its wall": (
         "input:      {wall: front, at: [-22 mm, 2 mm]",
         "input:      {wall: front, at: [-40 mm, 2 mm]",
-        "parts.housing.builder: bore 'input' (diameter 22 mm at [-40, 2] mm of the front) leaves the front: along x it "
-        "reaches from -51 mm to -29 mm, the front from -45 mm to 45 mm",
+        "parts.housing.builder.bores.input: bore 'input' (diameter 22 mm at [-40, 2] mm of the front) leaves the "
+        "front: along x it reaches from -51 mm to -29 mm, the front from -45 mm to 45 mm",
     ),
     "thick walls": (
         "walls: 10 mm",

@@ -3,6 +3,7 @@
 from collections.abc import Iterator, Mapping
 from typing import Final
 
+from tol3d.assembly.grammar.builders.builder_spec import place_of
 from tol3d.assembly.grammar.features import FeatureUnion
 from tol3d.assembly.grammar.features.point import PointSpec
 from tol3d.assembly.grammar.parts import SolidSpec
@@ -11,6 +12,7 @@ from tol3d.assembly.picking.kept_picks import FEATURES, Kept, file_of, kept_in
 from tol3d.assembly.picking.shapes import built_shape, kept_solid, solid_file
 from tol3d.errors import GeometryError
 from tol3d.files import Files
+from tol3d.parts.details import DetailError
 from tol3d.scene import Scene
 from tol3d.scene.place import KeyPath
 from tol3d.scene.references import Problem, refuse
@@ -65,6 +67,10 @@ def _looked_up(scene: Scene, solids: Mapping[str, SolidSpec], *, run_builders: b
         except PickError as error:
             path, _ = asked[error.number]
             problems.append(((*path, error.by), str(error)))
+            continue
+        except DetailError as error:
+            assert own.builder is not None
+            problems.append(((*here, *place_of(own.builder, error.name)), str(error)))
             continue
         except GeometryError as error:
             problems.append((here, str(error)))
