@@ -1,6 +1,6 @@
 """Builds of assemblies as they are shown: each part's features where they lie in the trial."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
 from typing import Final
@@ -29,7 +29,7 @@ THIN: Final = 1 / 120
 """Of the assembly's size: thickness of symbols; a sixth of it is the radius of the rods that join those of a part."""
 DEFLECTION: Final = 0.05
 """mm; how far triangles may lie off the faces of solids: the same in all trials, whose meshes are built once."""
-OPACITY: Final = 0.4
+OPACITY: Final = 0.3
 """Of solids, so that their features and what lies within them are seen."""
 RIGID: Final = "solids keep the shape that is drawn: what deviates on them is shown by the symbols of their features"
 
@@ -136,14 +136,19 @@ def placed_in(assembly: Assembly, deviations: Array) -> Placed | None:
     return Placed(assembly, here, there)
 
 
-def bodies(placed: Placed) -> tuple[Body, ...]:
-    """A body a part: its solid with its features' symbols on it, or these alone where it has none."""
+def bodies(placed: Placed, colours: Sequence[str] = COLOURS) -> tuple[Body, ...]:
+    """A body a part: its solid with its features' symbols on it, or these alone where it has none.
+
+    Args:
+        placed: the parts.
+        colours: of them in order, "#RRGGBB"; begun again when there are more parts.
+    """
     assembly, frames = placed.assembly, placed.frames
     places = np.array([frame[:3, 3] for frame in frames.values()])
     thickness = THIN * max(float(np.ptp(places, axis=0).max()), *(_extent(own) for own in assembly.features.values()))
     found = []
     for k, part in enumerate(assembly.parts):
-        colour = COLOURS[k % len(COLOURS)]
+        colour = colours[k % len(colours)]
         named = [(own, frames[own.name]) for own in part.features if own.is_named]
         if part.solid is None:
             surface = partial(joined_symbols, tuple(named), thickness)

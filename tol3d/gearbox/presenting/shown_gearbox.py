@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,6 +19,9 @@ from tol3d.runs.run import Run
 from tol3d.simulate import Replay
 
 Array = NDArray[np.float64]
+
+COLOURS: Final = ("#9AA7B4", "#BFA58E", "#9DB5A6", "#B4A5BE")
+"""Of housings and other parts: greyer than those of shafts and their gears."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,7 +59,7 @@ class ShownGearbox:
             return world
         placed = self.placed.seen_from(into)
         points = {**world.points, **placed.points}
-        return replace(world, bodies=(*world.bodies, *bodies(placed)), points=points, one_file=True)
+        return replace(world, bodies=(*world.bodies, *bodies(placed, COLOURS)), points=points, one_file=True)
 
     def _world_from_parts(self, name: str) -> Array | None:
         """Where the world of the parts lies in that of a train, or of a mesh; None where the train has no bores."""
