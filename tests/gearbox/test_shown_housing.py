@@ -4,7 +4,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from housed import FOUR_BORES, housed_scene
+from gearbox.housed import FOUR_BORES, housed_scene
 
 from tol3d.gearbox.presenting import PRESENTER
 from tol3d.report.body import Body
