@@ -34,6 +34,8 @@ peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
 print(json.dumps({"rate": run.summary["timing"]["trials_per_s"], "cpu_rate": int(trials) / used, "mb": peak / 1000}))
 """
 
+IN_HOUSING = 74
+"""Drawn components of gearbox_in_housing.yaml."""
 CORNERS = ((0, 0), (100, 0), (0, 60))
 UNDER, OVER = ("under 1", "under 2", "under 3"), ("over 1", "over 2", "over 3")
 SIDES = ("side 1", "side 2", "end")
@@ -81,35 +83,33 @@ def stack() -> str:
     )
 
 
-BORES = ("input", "middle", "output")
+def without_housing(components: int) -> str:
+    """The gears of gearbox_in_housing.yaml on axes of their own, with as many drawn components, of their own kinds.
 
-
-def without_housing() -> str:
-    """The gears of housed_gears.yaml on axes of their own, with about as many contributors of their own kinds."""
-    text = (SCENES / "housed_gears.yaml").read_text("utf-8")
-    lines = [line for line in text.splitlines() if "bores apart" not in line]
+    Six bearings have 12, thicknesses 4, temperatures 2; the others are eccentricities, two each.
+    """
+    lines = (SCENES / "gearbox_in_housing.yaml").read_text("utf-8").splitlines()
     parts, tolerances = lines.index("parts:"), lines.index("tolerances:")
-    kept = [line for line in lines[parts:tolerances] if ": {kind: shaft" in line or ": {kind: spur_gear" in line]
-    random = "direction: random, distribution: {kind: uniform, lower: 5 um, upper: 15 um}"
-    bearings = [(f"{name} {end}", name, z) for name in BORES for end, z in (("near", -34), ("far", 34))]
-    kept += [f"  {bearing}: {{kind: bearing, shaft: {shaft}, at: {z} mm}}" for bearing, shaft, z in bearings]
-    own = [line for line in lines[tolerances:] if "tooth_thickness" in line or ": second wheel, dist" in line]
-    own += [f"  {bearing} play: {{kind: bearing_clearance, of: {bearing}, {random}}}" for bearing, _, _ in bearings]
-    own += [
-        f"  {gear} run: {{kind: eccentricity, of: {gear}, distribution: {{kind: rayleigh, scale: 5 um}}}}"
-        for gear in ("first pinion", "first wheel", "second pinion")
+    own = [": {kind: " + kind for kind in ("shaft", "bearing", "spur_gear")]
+    kept = [line for line in lines[parts:tolerances] if any(kind in line for kind in own)]
+    gears = [line.split(":")[0].strip() for line in kept if "spur_gear" in line]
+    drawn = [line for line in lines[tolerances:] if "bearing_clearance" in line or "tooth_thickness" in line]
+    drawn += [
+        f"  warm {gear}: {{kind: temperature, of: {gear}, distribution: {{kind: normal, mean: 25 K, sigma: 5 K}}}}"
+        for gear in gears[:2]
     ]
-    own += [
-        f"  {name}: {{kind: temperature, of: {gear}, distribution: {{kind: normal, mean: 25 K, sigma: 5 K}}}}"
-        for name, gear in (("warm pinion", "first pinion"), ("warm wheel", "first wheel"))
+    drawn += [
+        f"  eccentricity {k}: {{kind: eccentricity, of: {gears[k % len(gears)]}, "
+        "distribution: {kind: rayleigh, scale: 2 um}}"
+        for k in range((components - 18) // 2)
     ]
     moves = [
-        "  first stage: {kind: mesh, driver: first pinion, driven: first wheel, centre_distance: 52.5 mm}",
-        "  second stage: {kind: mesh, driver: second pinion, driven: second wheel, centre_distance: 63 mm}",
+        "  first stage: {kind: mesh, driver: first pinion, driven: first wheel, centre_distance: 60 mm}",
+        "  second stage: {kind: mesh, driver: second pinion, driven: second wheel, centre_distance: 76 mm}",
         "  gearbox: {kind: train, driven: input, output: output}",
     ]
     measures = [line for line in lines if "kind: normal_backlash" in line or "kind: lost_motion" in line]
-    sections = {"parts": kept, "tolerances": own, "moves": moves, "measures": measures}
+    sections = {"parts": kept, "tolerances": drawn, "moves": moves, "measures": measures}
     return "scene: without housing\n" + "".join(
         f"{name}:\n" + "".join(line + "\n" for line in own) for name, own in sections.items()
     )
@@ -120,7 +120,7 @@ def systems(folder: Path) -> dict[str, Path]:
     blocks = folder / "blocks.yaml"
     blocks.write_text(stack(), encoding="utf-8")
     train = folder / "train.yaml"
-    train.write_text(without_housing(), encoding="utf-8")
+    train.write_text(without_housing(IN_HOUSING), encoding="utf-8")
     return {
         "3-2-1 stack of three blocks, 20 contributors": blocks,
         "door": SCENES / "door.yaml",
@@ -128,8 +128,8 @@ def systems(folder: Path) -> dict[str, Path]:
         "clutch": SCENES / "clutch.yaml",
         "box with discs": SCENES / "box_with_discs.yaml",
         "four pads": SCENES / "four_pads.yaml",
-        "gears in a housing": SCENES / "housed_gears.yaml",
-        "the same gears without": train,
+        "gearbox in its housing": SCENES / "gearbox_in_housing.yaml",
+        "the same gears without, as many components": train,
     }
 
 

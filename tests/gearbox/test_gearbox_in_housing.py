@@ -127,7 +127,7 @@ def test_a_dowel_hole_that_stands_upright_lets_the_output_bores_meet(tmp_path: P
     line = "{kind: perpendicularity, of: housing.dowel hole 2, datums: [rim], zone: {diameter: 5 um}}"
     upright = drawn.replace("\ntolerances:\n", f"\ntolerances:\n  dowel hole 2 upright: {line}\n")
     lever = (BOX.place("cover.output bore") - BOX.place("housing.dowel 1"))[0] / 224
-    others = 2 * 12.5**2 / 8 + (lever**2 + (1 - lever) ** 2) * 5**2 / 8
+    others = 2 * 10**2 / 8 + (lever**2 + (1 - lever) ** 2) * 5**2 / 8
     # half the difference of both ends: of two points of a disc of 10 um; in a disc of 2.5 um, where the lens of what is
     # left for their middle shrinks by up to 0.3
     for text, half, within in ((drawn, 10**2 / 8, 1e-6), (upright, 2.5**2 / 4, 0.01)):
