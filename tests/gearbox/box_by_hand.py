@@ -57,23 +57,20 @@ class Box:
         return cls(YAML(typ="safe").load(path.read_text("utf-8")))
 
     def place(self, feature: str) -> Array:
-        """The middle of a bore, a hole or a dowel nominally (3,), in the world: the cover's frame."""
+        """The middle of a bore, a hole or a dowel nominally (3,); both parts have their frames in one place."""
         part, name = feature.split(".")
-        own = self.said["parts"][part]
-        solid, at = own["builder"], own["features"][name].get("at")
-        if at is None:
-            hole = solid["holes"][name]
-            x, across = (number(own) for own in hole["at"])
-            if part == "cover":  # through the spigot too, where it is above that
-                spigot = solid["spigot"]
-                through = 2 * abs(x) < number(spigot["length"]) and 2 * abs(across) < number(spigot["width"])
-                depth = number(spigot["height"]) if through else 0.0
-                return np.array([x, across, (number(solid["thickness"]) - depth) / 2])
-            bottom = number(solid["corner"][1])
-            height = bottom + number(solid["floor"]) / 2 if "face" in hole else -number(hole["depth"]) / 2
-            return np.array([x, -across, height])
-        x, up, across = (number(own) for own in at)
-        return np.array([x, -across, up])
+        solid, at = self.said["parts"][part]["builder"], self.said["parts"][part]["features"][name].get("at")
+        if at is not None:
+            return np.array([number(own) for own in at])
+        hole = next(solid[kind][name] for kind in ("bores", "pins", "holes") if name in solid.get(kind, ()))
+        x, y = (number(own) for own in hole["at"])
+        if part == "cover":  # through the spigot too, where it is above that
+            spigot, top = solid["spigot"], number(solid["thickness"])
+            above = 2 * abs(x) < number(spigot["length"]) and 2 * abs(y) < number(spigot["width"])
+            return np.array([x, y, (top - number(spigot["height"]) * above) / 2])
+        stands = name in solid["pins"]
+        bottom = number(solid["corner"][2]) + number(solid["floor"]) / 2
+        return np.array([x, y, number(hole["height"]) / 2 if stands else bottom])
 
     def gear(self, name: str) -> Gear:
         """A gear."""
@@ -123,7 +120,7 @@ def laid(box: Box, columns: Columns) -> Laid:
     """Holes of the cover on the dowels, which stand askew out of holes that lean."""
     first, second = box.place("housing.dowel 1"), box.place("housing.dowel 2")
     hole = box.place("housing.dowel hole 2")
-    depth = 2 * abs(hole[2])
+    depth = 2 * abs(hole[2])  # it begins in the rim
     shift = centre(columns, "dowel 1 seat")
     leaning = lean(columns, "dowel hole 2 position", depth) * (second - hole)[2]
     off = centre(columns, "dowel 2 seat") + leaning - shift
