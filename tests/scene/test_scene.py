@@ -27,10 +27,10 @@ from tol3d.gearing.grammar.moves.mesh import MeshSpec
 from tol3d.gearing.grammar.parts.gear import GearSpec
 from tol3d.gearing.grammar.parts.spur_gear import SpurGearSpec
 from tol3d.gearing.grammar.study import GearStudyOptions
-from tol3d.gearing.grammar.tolerances.temperature import TemperatureSpec
 from tol3d.gearing.mechanism import GEARING
 from tol3d.kinds import all_kinds
 from tol3d.scene import Grammar, read_scene
+from tol3d.scene.temperature import TemperatureSpec
 from tol3d.scene.text import core_value
 
 GEARS = Grammar((GEARING,))

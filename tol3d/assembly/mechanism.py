@@ -19,12 +19,13 @@ from tol3d.assembly.grammar.play_checks import idle_over_play, unfit_engagements
 from tol3d.assembly.grammar.rest_checks import idle_rocking
 from tol3d.assembly.grammar.surface_checks import unfit_pairs
 from tol3d.scene.grammar import specs_in
+from tol3d.scene.temperature import TemperatureSpec
 from tol3d.system.mechanism import Mechanism
 
 ASSEMBLY: Final = Mechanism(
     name="assembly",
     parts=specs_in(parts),
-    tolerances=specs_in(tolerances),
+    tolerances=(*specs_in(tolerances), TemperatureSpec),
     moves=specs_in(moves),
     measures=specs_in(measures),
     checks=(

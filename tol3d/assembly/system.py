@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.assembly.clearances.prepared import clearances_of, reader_of, solid_pairs, with_facing
-from tol3d.assembly.from_scene import Meant, Warming, assembly_of
+from tol3d.assembly.from_scene import Meant, assembly_of
 from tol3d.assembly.from_scene.datums import place_of
 from tol3d.assembly.model import Assembly
 from tol3d.assembly.model.statuses import OK, STATUSES, WITH_CLEARANCES
@@ -264,17 +264,16 @@ def moments_of(contributor: Contributor) -> tuple[Array, Array]:
     return mean, draw.sigma**2 * np.eye(len(mean))
 
 
-def assembly_system(scene: Scene, warmings: Sequence[Warming] = ()) -> AssemblySystem:
+def assembly_system(scene: Scene) -> AssemblySystem:
     """What a scene of an assembly means.
 
     Args:
         scene: the scene.
-        warmings: temperatures of its parts.
 
     Raises:
         SceneError: what it says does not fit together, such as moves that leave a part free.
     """
-    placed = _asked(scene, lambda: _settled(scene, warmings))
+    placed = _asked(scene, lambda: _settled(scene))
     kind = ClearanceSystem if clearances_of(placed.assembly) else AssemblySystem
     assembly = _asked(scene, lambda: _faced(placed))
     made = kind(scene.scene, placed.contributors, placed.measures, assembly, placed.named)
@@ -308,12 +307,12 @@ def widely(contributors: Sequence[Contributor]) -> Array:
     return np.concatenate([np.zeros((MOTIONS, 0)), *columns], axis=1)
 
 
-def _settled(scene: Scene, warmings: Sequence[Warming]) -> Meant:
+def _settled(scene: Scene) -> Meant:
     """What a scene means, parts at the poses in which its moves lay them without deviations."""
-    drawn = assembly_of(scene, warmings=warmings)
+    drawn = assembly_of(scene)
     poses = placing.placed(drawn.assembly, np.zeros((1, drawn.assembly.width)))
     settled = {name: np.asarray(pose[0]) for name, pose in poses.items()}
-    return assembly_of(scene, settled, warmings)
+    return assembly_of(scene, settled)
 
 
 def _asked(scene: Scene, ask: Callable[[], T]) -> T:

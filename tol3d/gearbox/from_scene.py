@@ -4,7 +4,6 @@ from collections.abc import Iterator
 from dataclasses import replace
 from typing import Any
 
-from tol3d.assembly.from_scene import Warming
 from tol3d.assembly.mechanism import ASSEMBLY
 from tol3d.assembly.system import AssemblySystem, assembly_system
 from tol3d.distributions.constant import Constant
@@ -13,17 +12,15 @@ from tol3d.gearbox.counted import refuse_counted_twice
 from tol3d.gearbox.nominal import HousedShaft, housed
 from tol3d.gearbox.system import GearboxSystem
 from tol3d.gearing.effects import NOTHING
-from tol3d.gearing.grammar.tolerances import TemperatureSpec
 from tol3d.gearing.grammar.tolerances.gearing_tolerance import together
 from tol3d.gearing.grammar.tolerances.lever import Lever
 from tol3d.gearing.mechanism import GEARING
 from tol3d.gearing.model import Contributor, Model
 from tol3d.gearing.system import GearSystem, gear_system
 from tol3d.scene import Scene, Vocabulary
-from tol3d.scene.part import GrowingSpec
 from tol3d.scene.schema import SECTIONS
-from tol3d.system.draw import Planar, Scalar
-from tol3d.system.plain import UNITS, PlainContributor
+from tol3d.scene.temperature import TemperatureSpec
+from tol3d.system.draw import Planar
 
 KIND = "shaft_in_bores"
 
@@ -34,7 +31,7 @@ def gearbox_system(scene: Scene) -> GearboxSystem:
     Raises:
         SceneError: what one of its parts does not allow, bores that do not fit the meshes, or what counts twice.
     """
-    drawn = assembly_system(_entries_of(scene, ASSEMBLY), tuple(_warmings(scene)))
+    drawn = assembly_system(_entries_of(scene, ASSEMBLY))
     place = housed(scene, _gears_of(scene), drawn.assembly)
     bores = bores_of(drawn.assembly, tuple(place.shafts.values()))
     gears = gear_system(place.scene)
@@ -76,17 +73,6 @@ def _gears_of(scene: Scene) -> Scene:
             tolerances[name] = spec.model_copy(update={"of": own})
     ordered = {name: tolerances[name] for name in scene.tolerances if name in tolerances}
     return gears.model_copy(update={"tolerances": ordered})
-
-
-def _warmings(scene: Scene) -> Iterator[Warming]:
-    """Temperatures of parts of the assembly."""
-    solids = _entries_of(scene, ASSEMBLY).of(GrowingSpec)
-    for name, spec in scene.of(TemperatureSpec).items():
-        expansions = {part: solids[part].expansion for part in spec.of if part in solids}
-        if expansions:
-            draw = Scalar(spec.distribution.resolve(scene.files))
-            contributor = PlainContributor(name, spec.kind, draw, *UNITS["temperature"], spec.description)
-            yield Warming(contributor, {part: own.internal for part, own in expansions.items() if own is not None})
 
 
 def _by_bores(model: Model, bores: Bores) -> Iterator[Contributor]:

@@ -7,12 +7,13 @@ from tol3d.gearing.grammar.checks import carried_again
 from tol3d.gearing.grammar.published import PublishedTrains
 from tol3d.gearing.grammar.study import GearStudyOptions
 from tol3d.scene.grammar import specs_in
+from tol3d.scene.temperature import TemperatureSpec
 from tol3d.system.mechanism import Mechanism
 
 GEARING: Final = Mechanism(
     name="gearing",
     parts=specs_in(parts),
-    tolerances=specs_in(tolerances),
+    tolerances=(*specs_in(tolerances), TemperatureSpec),
     moves=specs_in(moves),
     measures=specs_in(measures),
     checks=(carried_again,),

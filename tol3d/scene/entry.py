@@ -14,9 +14,11 @@ class Entry(Strict, ABC):
 
     A class whose `kind` is a literal is a kind, which a vocabulary registers; one without is what several kinds have
     in common. `words` says in messages what an entry is, and of a common class what its kinds are together.
+    `shared` lets several vocabularies have the kind, each with a meaning of its own.
     """
 
     words: ClassVar[str] = ""
+    shared: ClassVar[bool] = False
 
     kind: str
 

@@ -104,6 +104,8 @@ class Vocabulary:
 class Grammar:
     """What scenes may say: the kinds of several vocabularies. Equal where these are; pickles.
 
+    A shared kind is one of each vocabulary that has it.
+
     Raises:
         InputError: a kind stands for two things, or a section has none.
     """
@@ -112,7 +114,7 @@ class Grammar:
 
     def __post_init__(self) -> None:
         for section in SECTIONS:
-            words = {each.name: [str(kind_of(spec)) for spec in each.specs(section)] for each in self.vocabularies}
+            words = {each.name: [str(kind_of(own)) for own in self._first(each, section)] for each in self.vocabularies}
             if not any(words.values()):
                 raise InputError(f"expected kinds of {section} in one vocabulary at least, found none")
             _refuse_ambiguity(f"a kind of its own in {section}", {}, words)
@@ -202,11 +204,19 @@ class Grammar:
         return {name: value for each in values for name, value in each.items()}
 
     def _used(self, scene: Scene) -> Mapping[str, KeyPath]:
-        """The vocabularies whose kinds a scene has, each with its first entry."""
+        """The vocabularies whose kinds a scene has, each with its first entry.
+
+        A shared kind is one of those whose other kinds the scene has; where it has none, of the first that has it.
+        """
         used: dict[str, KeyPath] = {}
-        for section in SECTIONS:
-            for name, entry in scene.section(section).items():
-                used.setdefault(self._owner[type(entry)].name, (section, name))
+        entries = [
+            (self._owners[type(entry)], (section, name))
+            for section in SECTIONS
+            for name, entry in scene.section(section).items()
+        ]
+        for owners, path in sorted(entries, key=lambda entry: len(entry[0])):
+            if len(owners) == 1 or used.keys().isdisjoint(owners):
+                used.setdefault(owners[0], path)
         return used
 
     def _understood(self, vocabulary: Vocabulary) -> set[str]:
@@ -214,8 +224,20 @@ class Grammar:
         return {vocabulary.name, *vocabulary.includes, *extending}
 
     @cached_property
-    def _owner(self) -> Mapping[type[Entry], Vocabulary]:
-        return {spec: each for each in self.vocabularies for section in SECTIONS for spec in each.specs(section)}
+    def _owners(self) -> Mapping[type[Entry], Sequence[str]]:
+        """Names of the vocabularies that have a kind."""
+        found: dict[type[Entry], list[str]] = {}
+        for each in self.vocabularies:
+            for section in SECTIONS:
+                for spec in each.specs(section):
+                    found.setdefault(spec, []).append(each.name)
+        return found
+
+    def _first(self, vocabulary: Vocabulary, section: str) -> list[type[Entry]]:
+        """The kinds of a vocabulary, but shared ones that one before it has."""
+        before = self.vocabularies[: self.vocabularies.index(vocabulary)]
+        known = {spec for each in before for spec in each.specs(section) if spec.shared}
+        return [spec for spec in vocabulary.specs(section) if spec not in known]
 
 
 @lru_cache

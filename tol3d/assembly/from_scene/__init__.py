@@ -14,6 +14,5 @@ assembly      all of it together
 """
 
 from tol3d.assembly.from_scene.assembly import Meant, assembly_of
-from tol3d.assembly.from_scene.warming import Warming
 
-__all__ = ["Meant", "Warming", "assembly_of"]
+__all__ = ["Meant", "assembly_of"]

@@ -1,6 +1,6 @@
 """The assembly that a scene means, its contributors and its measures."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -12,7 +12,7 @@ from tol3d.assembly.from_scene.datums import DatumFrames, in_order
 from tol3d.assembly.from_scene.features import TouchedPoints, features_of, poses_of
 from tol3d.assembly.from_scene.measures import add_projected, measured_of, named_by, shown_measures
 from tol3d.assembly.from_scene.moves import moves_of
-from tol3d.assembly.from_scene.warming import Warming, warmed
+from tol3d.assembly.from_scene.warming import warmed
 from tol3d.assembly.grammar.drawing import Drawing
 from tol3d.assembly.grammar.parts import SolidSpec
 from tol3d.assembly.model import Assembly, Part
@@ -40,13 +40,12 @@ class Meant:
     named: Mapping[str, tuple[str, ...]]
 
 
-def assembly_of(scene: Scene, settled: Mapping[str, Array] | None = None, warmings: Sequence[Warming] = ()) -> Meant:
+def assembly_of(scene: Scene, settled: Mapping[str, Array] | None = None) -> Meant:
     """What a scene means.
 
     Args:
         scene: the scene.
         settled: nominal poses of its parts in the world (4, 4); as it says itself, if not given.
-        warmings: temperatures of its parts.
 
     Raises:
         SceneError: tolerances, zones or directions that do not fit what they are of.
@@ -54,7 +53,7 @@ def assembly_of(scene: Scene, settled: Mapping[str, Array] | None = None, warmin
     drawing = Drawing(scene)
     effects = effects_of(scene, drawing)
     frames = DatumFrames(drawing.features)
-    warmed(effects, drawing, frames, warmings)
+    warmed(effects, scene, drawing, frames)
     features = features_of(drawing, effects, frames)
     add_projected(scene, features)
     measured = measured_of(scene, frames)

@@ -4,8 +4,7 @@ A part grows about the origin of its frame, so that a feature at p is displaced 
 frame in which the feature lies has its share already, a shift: a part that grows evenly keeps its angles.
 """
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,9 +14,13 @@ from tol3d.assembly.from_scene.datums import DatumFrames
 from tol3d.assembly.grammar.drawing import Drawing
 from tol3d.assembly.grammar.feature_name import part_of
 from tol3d.assembly.grammar.features import FeatureUnion
+from tol3d.assembly.grammar.parts import SolidSpec
 from tol3d.assembly.model import Axis, Contribution, DatumFrame, Point
 from tol3d.assembly.model.shape import nominal_size
-from tol3d.system.plain import PlainContributor
+from tol3d.scene import Scene
+from tol3d.scene.temperature import TemperatureSpec
+from tol3d.system.draw import Scalar
+from tol3d.system.plain import UNITS, PlainContributor
 
 Array = NDArray[np.float64]
 
@@ -25,34 +28,27 @@ HELD = 1e-9
 """Length of what earlier datums leave of a direction that they hold already."""
 
 
-@dataclass(frozen=True)
-class Warming:
-    """A temperature of some parts above the reference.
-
-    Args:
-        contributor: of one component [K].
-        expansions: coefficient of expansion [1/K] by part.
-    """
-
-    contributor: PlainContributor
-    expansions: Mapping[str, float]
-
-
-def warmed(effects: Effects, drawing: Drawing, frames: DatumFrames, warmings: Sequence[Warming]) -> None:
-    """Add what temperatures do to features."""
-    for own in warmings:
-        columns = effects.added(own.contributor)
+def warmed(effects: Effects, scene: Scene, drawing: Drawing, frames: DatumFrames) -> None:
+    """Add what temperatures of solid parts do to their features."""
+    solids = scene.of(SolidSpec)
+    for entry, spec in scene.of(TemperatureSpec).items():
+        grown = {part: solids[part].expansion for part in spec.of if part in solids}
+        expansions = {part: own.internal for part, own in grown.items() if own is not None}
+        if not expansions:
+            continue
+        draw = Scalar(spec.distribution.resolve(scene.files))
+        columns = effects.added(PlainContributor(entry, spec.kind, draw, *UNITS["temperature"], spec.description))
         for name, datums in drawing.parents():
-            expansion = own.expansions.get(part_of(name), 0.0)
+            expansion = expansions.get(part_of(name), 0.0)
             if expansion == 0.0:
                 continue
             frame = frames.named(part_of(name), datums)
             shift = _shift(frames.made[frame], drawing) if frame else np.zeros(3)
             own_frame = drawing.kind(name).frame
             matrix = expansion * own_frame[:3, :3].T @ (own_frame[:3, 3] - shift)
-            effects.grown_by.setdefault(name, []).append(Contribution(own.contributor.name, columns, matrix[:, None]))
+            effects.grown_by.setdefault(name, []).append(Contribution(entry, columns, matrix[:, None]))
             if size := nominal_size(drawing.kind(name).shape):
-                larger = Contribution(own.contributor.name, columns, np.array([[expansion * size]]))
+                larger = Contribution(entry, columns, np.array([[expansion * size]]))
                 effects.size_by.setdefault(name, []).append(larger)
 
 

@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from tol3d.gearing.effects import NOTHING
+from tol3d.gearing.effects import NOTHING, Temperature
 from tol3d.gearing.grammar.moves import meshes_of
 from tol3d.gearing.grammar.tolerances.gearing_tolerance import GearingToleranceSpec
 from tol3d.gearing.model.contributor import Contributor
@@ -12,6 +12,7 @@ from tol3d.gearing.model.mesh import Mesh
 from tol3d.gearing.model.shafts import Carried
 from tol3d.gears import BevelPair
 from tol3d.scene import Scene
+from tol3d.scene.temperature import TemperatureSpec
 from tol3d.scene.tolerance import ToleranceSpec
 from tol3d.system.draw import Planar, Scalar
 
@@ -50,6 +51,8 @@ class Nominal:
         Raises:
             SceneError: of a shaft, or a bearing of one, on which no gear sits.
         """
+        if isinstance(spec, TemperatureSpec):
+            return self._warming(name, spec)
         if not isinstance(spec, GearingToleranceSpec):
             raise TypeError(f"{type(spec).__name__} is no tolerance of gears")
         meaning = spec.meaning(self)
@@ -70,3 +73,7 @@ class Nominal:
             description=spec.description,
             least=meaning.least,
         )
+
+    def _warming(self, name: str, spec: TemperatureSpec) -> Contributor:
+        law = spec.distribution.resolve(self.scene.files)
+        return Contributor(name, spec.kind, Temperature(spec.of), Scalar(law), "K", spec.description)

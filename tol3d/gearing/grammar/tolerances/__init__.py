@@ -13,8 +13,8 @@ from tol3d.gearing.grammar.tolerances.reducer_backlash import ReducerBacklashSpe
 from tol3d.gearing.grammar.tolerances.run_out import RunOutSpec
 from tol3d.gearing.grammar.tolerances.shaft_angle import ShaftAngleSpec
 from tol3d.gearing.grammar.tolerances.shim import ShimSpec
-from tol3d.gearing.grammar.tolerances.temperature import TemperatureSpec
 from tol3d.gearing.grammar.tolerances.tooth_thickness import ToothThicknessSpec
+from tol3d.scene.temperature import TemperatureSpec
 from tol3d.scene.tolerance import ToleranceSpec
 
 __all__ = [

@@ -1,21 +1,17 @@
-"""Uniform temperature of some parts."""
+"""Uniform temperature of some parts, a tolerance of every mechanism whose parts grow."""
 
 from collections.abc import Iterator, Mapping
-from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
+from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import BeforeValidator, Field, WithJsonSchema
 
-from tol3d.gearing.effects import Temperature
-from tol3d.gearing.grammar.moves import MoveSpec
-from tol3d.gearing.grammar.tolerances.gearing_tolerance import GearingToleranceSpec, Meaning
+from tol3d.scene.move import MoveSpec
 from tol3d.scene.name import LONGEST_NAME, Name
 from tol3d.scene.part import GrowingSpec, PartSpec
 from tol3d.scene.reference import Contradiction, Reference
+from tol3d.scene.tolerance import ToleranceSpec
 from tol3d.strict import refused
 from tol3d.units import Dimension, shown
-
-if TYPE_CHECKING:
-    from tol3d.gearing.model.nominal import Nominal
 
 NAME_SCHEMA = {"type": "string", "minLength": 1, "maxLength": LONGEST_NAME}
 
@@ -37,9 +33,10 @@ Parts = Annotated[
 ]
 
 
-class TemperatureSpec(GearingToleranceSpec):
+class TemperatureSpec(ToleranceSpec):
     """A temperature difference from 20 degC, the same throughout the parts; each grows by its own coefficient."""
 
+    shared: ClassVar[bool] = True
     dimensions: ClassVar[tuple[Dimension, ...]] = ("temperature",)
 
     kind: Literal["temperature"]
@@ -56,7 +53,3 @@ class TemperatureSpec(GearingToleranceSpec):
                 yield Contradiction(
                     ("of", index), "a part with its coefficient of expansion", f"{name!r} without expansion:"
                 )
-
-    def meaning(self, nominal: "Nominal") -> Meaning:
-        """The parts grow."""
-        return Meaning(Temperature(self.of))

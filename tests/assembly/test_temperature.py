@@ -1,0 +1,115 @@
+"""Warm parts of an assembly without gears: gaps, sizes and play by hand, where each length grows by alpha T."""
+
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+from places import SCENES
+
+from tol3d import Overrides, Run, load_scene, run_scene
+from tol3d.errors import SceneError
+
+STEEL, ALUMINIUM = 12e-6, 23e-6  # 1/K
+COUNT = 4000
+ROADS = {"analytic": "analytic", "exact": "geometric"}
+BAR = (SCENES / "warm_bar.yaml").read_text("utf-8")
+
+PLAY = """scene: a warm bush on a warm pin
+parts:
+  pin:
+    kind: solid
+    expansion: 12e-6 1/K
+    features:
+      face: {kind: plane, at: [0 mm, 0 mm, 0 mm], normal: [0, 0, 1], radius: 40 mm}
+      pin: {kind: cylinder, at: [7 mm, -5 mm, 10 mm], axis: [0, 0, 1], length: 20 mm, diameter: 29.9 mm}
+  bush:
+    kind: solid
+    expansion: 23e-6 1/K
+    features:
+      face: {kind: plane, at: [0 mm, 0 mm, 0 mm], normal: [0, 0, -1], radius: 40 mm}
+      hole: {kind: cylinder, at: [7 mm, -5 mm, 10 mm], axis: [0, 0, 1], length: 20 mm, diameter: 30 mm, hole: true}
+tolerances:
+  hot: {kind: temperature, of: [bush, pin], distribution: {kind: uniform, lower: -20 K, upper: 80 K}}
+  hole size: {kind: size, of: bush.hole, distribution: {kind: constant, value: 0 mm}}
+  pin size: {kind: size, of: pin.pin, distribution: {kind: constant, value: 0 mm}}
+  shaded: {kind: temperature, of: pin, distribution: {kind: normal, mean: -5 K, sigma: 2 K}}
+moves:
+  table: {kind: fix, part: pin}
+  bush on the pin:
+    kind: pin_and_hole
+    part: bush
+    relations: [{kind: coincident, from: bush.face, to: pin.face}]
+    pairs: [{from: bush.hole, to: pin.pin}]
+    float: {kind: centred}
+measures:
+  slack: {kind: slack, of: bush on the pin}
+study: {trials: 100, seed: 6}
+"""
+
+
+def run_of(text: str, folder: Path, trials: int = COUNT) -> Run:
+    path = folder / "scene.yaml"
+    path.write_text(text, "utf-8")
+    return run_scene(path, overrides=Overrides(trials=trials), out=folder / "run")
+
+
+def column(run: Run, name: str) -> NDArray[np.float64]:
+    return np.asarray(run.columns(name)[name], float)
+
+
+@pytest.mark.parametrize("road", ROADS)
+def test_a_warm_bar_takes_the_room_that_its_frame_leaves(road: str, tmp_path: Path) -> None:
+    """The wall at -150 mm (1 + s T), the bar's end 300 mm (1 + a (T + C)) and its length off further, the stop at 151.
+
+    Sums of a few numbers of 100 mm: 1e-9 um is far more than their rounding.
+    """
+    run = run_of(BAR, tmp_path)
+    oven, current, length = (
+        column(run, name) for name in ("oven [K]", "current [K]", "bar length [um]")
+    )
+    by_hand = 1000 * (301 * (1 + STEEL * oven) - 300 * (1 + ALUMINIUM * (oven + current))) - length
+    np.testing.assert_allclose(column(run, f"{ROADS[road]}:gap"), by_hand, atol=1e-8, rtol=0)
+    mean = 1000 + 1000 * ((301 * STEEL - 300 * ALUMINIUM) * 30 - 300 * ALUMINIUM * 10)
+    variances = (
+        (1000 * (301 * STEEL - 300 * ALUMINIUM) * 10) ** 2,
+        (1000 * 300 * ALUMINIUM * 20) ** 2 / 12,
+        (100 / 3) ** 2,
+    )
+    own = run.summary["measures"]["gap"]
+    assert own["mean_build"][ROADS[road]] == pytest.approx(mean, abs=1e-8)
+    assert own[ROADS[road]]["mean"] == pytest.approx(mean, abs=4 * math.sqrt(sum(variances) / COUNT))
+    assert own[ROADS[road]]["sigma"] == pytest.approx(math.sqrt(sum(variances)), rel=4 / math.sqrt(2 * COUNT))
+    form = own["analytic_closed_form"]
+    assert (form["mean"], form["sigma"]) == pytest.approx((mean, math.sqrt(sum(variances))), rel=1e-9)
+
+
+@pytest.mark.parametrize("road", ROADS)
+def test_a_bush_that_grows_more_than_its_pin_has_more_play(road: str, tmp_path: Path) -> None:
+    """Half the difference of the diameters, each grown by its own coefficient; both grow about the same origin, so that
+    their axes part by the difference of what 8.6 mm grow, which a part that is free to move does not mind."""
+    run = run_of(PLAY, tmp_path, 300)
+    hot, shaded = column(run, "hot [K]"), column(run, "shaded [K]")
+    by_hand = 500 * (30 * (1 + ALUMINIUM * hot) - 29.9 * (1 + STEEL * (hot + shaded)))
+    np.testing.assert_allclose(column(run, f"{ROADS[road]}:slack"), by_hand, atol=1e-6, rtol=0)
+
+
+def test_gears_and_solid_parts_have_one_temperature() -> None:
+    """The same word, of the mechanism whose other kinds the scene has."""
+    for name, mechanism in (("warm_bar", "assembly"), ("every_field", "gearing"), ("housed_gears", "gearbox")):
+        scene = load_scene(SCENES / f"{name}.yaml")
+        assert any(own.kind == "temperature" for own in scene.tolerances.values())
+        assert scene.grammar.vocabulary_of(scene).name == mechanism
+
+
+def test_a_part_that_does_not_grow_is_refused(tmp_path: Path) -> None:
+    path = tmp_path / "scene.yaml"
+    path.write_text(BAR.replace("    expansion: 23e-6 1/K\n", ""), "utf-8")
+    with pytest.raises(SceneError) as caught:
+        load_scene(path)
+    lines = [line for line in str(caught.value).splitlines() if "expansion" in line]
+    assert [line.partition(": ")[2] for line in lines] == [
+        "tolerances.oven.of[1]: expected a part with its coefficient of expansion, got 'bar' without expansion:",
+        "tolerances.current.of[0]: expected a part with its coefficient of expansion, got 'bar' without expansion:",
+    ]
