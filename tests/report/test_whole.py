@@ -1,6 +1,7 @@
 """Where the names of bodies stand in a picture, and what they point at."""
 
 import itertools
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -39,6 +40,17 @@ def test_a_body_within_another_is_seen_nowhere_not_even_at_an_edge() -> None:
     _, anchors = _best_eye(World("nested", (cube("inner", 2.0, middle), cube("outer", 20.0, middle))), 1.0)
     assert anchors["inner"] == pytest.approx([3.0, 4.0, 5.0])
     assert np.abs(anchors["outer"] - [3.0, 4.0, 5.0]).max() == pytest.approx(10.0, abs=0.1)  # mm, a pixel
+
+
+@renders
+@pytest.mark.parametrize("is_clear", [False, True])
+def test_what_is_within_a_clear_body_is_seen(is_clear: bool) -> None:
+    """The label of the inner cube points at its middle where nothing is seen of it, else at its surface."""
+    outer = replace(cube("outer", 20.0, (3.0, 4.0, 5.0)), opacity=0.3 if is_clear else 1.0)
+    _, anchors = _best_eye(World("nested", (cube("inner", 4.0, (3.0, 4.0, 5.0)), outer)), 1.0)
+    off = {name: float(np.abs(place - (3.0, 4.0, 5.0)).max()) for name, place in anchors.items()}
+    assert off["inner"] == pytest.approx(2.0 if is_clear else 0.0, abs=0.1)  # mm, a pixel
+    assert off["outer"] == pytest.approx(10.0, abs=0.1)
 
 
 def label_boxes(names: list[str], places: np.ndarray) -> dict[str, tuple[float, float, float, float]]:
