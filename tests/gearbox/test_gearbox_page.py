@@ -1,15 +1,46 @@
 """The page about gears in a housing says what its scene and the grammar say."""
 
+from pathlib import Path
+
+import pytest
+from fixtures import Command
 from places import ROOT, SCENES
 
+from tol3d import open_run, run_scene
 from tol3d.gearbox.grammar.shaft_in_bores import ShaftInBoresSpec
 
 PAGE = (ROOT / "docs" / "gearboxes.md").read_text("utf-8")
 
+ADDED = "{kind: perpendicularity, of: housing.dowel hole 2, datums: [rim], zone: {diameter: 5 um}}"
+UPRIGHT = (
+    (SCENES / "gearbox_in_housing.yaml")
+    .read_text("utf-8")
+    .replace("\ntolerances:\n", f"\ntolerances:\n  dowel hole 2 upright: {ADDED}\n")
+)
+"""With the line that the page adds."""
 
-def test_the_page_quotes_its_scene() -> None:
-    (quoted,) = (block.partition("```")[0] for block in PAGE.split("```yaml\n")[1:])
-    assert quoted in (SCENES / "housed_gears.yaml").read_text("utf-8")
+
+def test_the_page_quotes_its_scenes() -> None:
+    scenes = [(SCENES / f"{name}.yaml").read_text("utf-8") for name in ("housed_gears", "gearbox_in_housing")]
+    quoted = [block.partition("```")[0] for block in PAGE.split("```yaml\n")[1:]]
+    (changed,) = (own for own in quoted if own not in scenes[0] and own not in scenes[1])
+    assert changed in UPRIGHT
+
+
+@pytest.mark.slow
+def test_the_tables_and_the_remedy_are_those_of_runs(tol3d: Command, tmp_path: Path) -> None:
+    tables = [block.partition("```")[0] for block in PAGE.split("```text\n")[1:]]
+    code, out, _ = tol3d("run", "gearbox_in_housing", "-v", "--no-picture", "--out", str(tmp_path / "drawn"))
+    assert (code, len(tables)) == (0, 2)
+    for table in tables:
+        assert " ".join(table.split()) in " ".join(out.split())
+    scene = tmp_path / "upright.yaml"
+    scene.write_text(UPRIGHT, "utf-8")
+    found = [open_run(tmp_path / "drawn"), run_scene(scene, out=tmp_path / "upright")]
+    drawn, upright = (own.summary["measures"]["output bores aside"]["geometric"] for own in found)
+    for said, own in ((6.9, drawn), (5.5, upright)):
+        assert own["sigma"] == pytest.approx(said, abs=0.05)
+    assert [own["out_ppm"] for own in (drawn, upright)] == [8000, 1500]
 
 
 def test_the_page_has_a_row_for_every_key_of_the_move() -> None:
