@@ -188,5 +188,5 @@ def test_every_word_of_the_page_that_looks_like_a_field_is_one() -> None:
     known = {*PAGE.vocabulary(SCHEMA), *SECTIONS, "study", "published", "feature", "kind"}
     known |= {kind for section in SECTIONS for kind in PAGE.kinds(section)} | set(FEATURES) | set(LAWS)
     known |= {unit for units in FACTORS.values() for unit in units}
-    known |= {"gauge", "ok", "singular", "overlap", "exact", "analytic", "engine", "view", "export"}
+    known |= {"gauge", "ok", "singular", "overlap", "study", "witness", "exact", "analytic", "engine", "view", "export"}
     assert words(PAGE.prose) - known == set()

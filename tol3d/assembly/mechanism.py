@@ -46,6 +46,7 @@ ASSEMBLY: Final = Mechanism(
         unfit_pairs,
     ),
     engines=("exact",),
+    witness="fcl",
     system="tol3d.assembly.system:assembly_system",
     settle="tol3d.assembly.picking:settle",
     summary="tol3d.assembly.summary_types:SUMMARY_KINDS",

@@ -8,15 +8,17 @@ from typing import Any, ClassVar, Final, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.assembly.clearances.prepared import clearances_of, reader_of, solid_pairs, with_facing
+from tol3d.assembly.clearances.prepared import clearances_of, reader_of, solid_pairs, with_facing, witness_of
 from tol3d.assembly.from_scene import Meant, assembly_of
 from tol3d.assembly.from_scene.datums import place_of
 from tol3d.assembly.model import Assembly
 from tol3d.assembly.model.statuses import OK, STATUSES, WITH_CLEARANCES
 from tol3d.assembly.placing import road as placing
 from tol3d.assembly.placing.world import SolidReader
+from tol3d.assembly.roads import PlacingRoad, TorsorRoad
 from tol3d.assembly.torsors import road as torsors
 from tol3d.assembly.torsors.slopes import Slopes
+from tol3d.assembly.witnessed import reads
 from tol3d.assembly.zones import Process, Widened, ZoneDraw
 from tol3d.errors import InputError
 from tol3d.scene import Scene
@@ -27,11 +29,10 @@ from tol3d.system.draw import JointDraw
 from tol3d.system.measure import Measure
 from tol3d.system.plain import PlainSystem
 from tol3d.system.regressors import is_group
-from tol3d.system.road import ANALYTIC_ROAD, Answers, Road, RoadKind
+from tol3d.system.road import ANALYTIC_ROAD, Road, RoadKind
 from tol3d.system.stated import component_slices
 from tol3d.system.statuses import Statuses
 from tol3d.system.system import Columns, KeyPath
-from tol3d.system.trials import Trials
 
 Array = NDArray[np.float64]
 T = TypeVar("T")
@@ -39,6 +40,11 @@ Words = NDArray[np.str_]
 
 SAME: Final = 1e-6
 """mm or rad: both roads read the same nominally to within this, or moves lay parts where they are not drawn."""
+
+WITNESS: Final = "fcl"
+MESHED_WITNESS: Final = RoadKind("solids and their meshes", threads=False, witness=True, contacts_per_minute=60_000)
+FINER: Final = 0.25
+"""Of the chord error that is stated: what meshes of half the step have."""
 
 MOTIONS: Final = 384
 """At which it is asked where parts may be nearest; half of them twice as wide as trials are."""
@@ -48,53 +54,6 @@ FRAME: Final = "datum frame "
 
 FLAT: Final = 1e-6
 """Change of a measure per deviation that is none: both sides of the mean raise it alike."""
-
-
-def details_of(carried: Mapping[str, Words], tightest: Mapping[str, Words]) -> dict[str, NDArray[np.generic]]:
-    """Columns of words about moves: the contacts that carry, the pair with the least room."""
-    return {
-        **{f"carries:{move}": contacts for move, contacts in carried.items()},
-        **{f"tightest:{move}": pairs for move, pairs in tightest.items()},
-    }
-
-
-@dataclass(frozen=True)
-class TorsorRoad:
-    """The analytic road: small displacements."""
-
-    assembly: Assembly
-
-    chord_error: ClassVar[float] = 0.0
-
-    def answers(self, trials: Trials, measures: Sequence[Measure]) -> Answers:
-        """See Road; every trial is built."""
-        found = torsors.values(self.assembly, trials.deviations, [measure.name for measure in measures])
-        return Answers({name: own[:, None] for name, own in found.items()})
-
-
-@dataclass(frozen=True)
-class PlacingRoad:
-    """The exact road: parts are placed, move by move.
-
-    Args:
-        assembly: the model.
-        solids: reads clearances of whole parts; None where there are none.
-        chord_error: see Road.
-    """
-
-    assembly: Assembly
-    solids: SolidReader | None = None
-    chord_error: float = 0.0
-
-    def answers(self, trials: Trials, measures: Sequence[Measure]) -> Answers:
-        """See Road."""
-        names = [measure.name for measure in measures]
-        found, carried, tightest = placing.answers(self.assembly, trials.deviations, names, self.solids)
-        return Answers(
-            {name: own[:, None] for name, (own, _) in found.items()},
-            details=details_of(carried, tightest),
-            status={name: codes for name, (_, codes) in found.items()},
-        )
 
 
 @dataclass(frozen=True)
@@ -213,23 +172,38 @@ class AssemblySystem(PlainSystem):
         return torsors.slopes(self.assembly, name, means, sigmas)
 
 
-class ClearanceSystem(AssemblySystem):
+class WitnessedSystem(AssemblySystem):
+    """An assembly with measures that FCL reads too."""
+
+    roads: ClassVar[Mapping[str, RoadKind]] = {**PlainSystem.roads, WITNESS: MESHED_WITNESS}
+
+    def materials(self, road: str) -> Any:
+        """See System: of the witness pairs of solids by measure, and those of half the step."""
+        return (solid_pairs(self.assembly), solid_pairs(self.assembly, FINER)) if road == WITNESS else None
+
+    def road(self, name: str, materials: Any) -> Road:
+        """See System."""
+        return witness_of(self.assembly, *materials) if name == WITNESS else super().road(name, materials)
+
+
+class ClearanceSystem(WitnessedSystem):
     """An assembly with clearances of whole parts, whose solids are meshed once."""
 
     statuses: ClassVar[Statuses] = WITH_CLEARANCES
     roads: ClassVar[Mapping[str, RoadKind]] = {
         ANALYTIC_ROAD: RoadKind("model"),
-        "exact": RoadKind("solids and their meshes", threads=False, contacts_per_minute=60_000),
+        "exact": replace(MESHED_WITNESS, witness=False),
+        WITNESS: MESHED_WITNESS,
     }
 
     def materials(self, road: str) -> Any:
         """See System: of the exact road pairs of solids, by measure."""
-        return None if road == ANALYTIC_ROAD else solid_pairs(self.assembly)
+        return solid_pairs(self.assembly) if road == "exact" else super().materials(road)
 
     def road(self, name: str, materials: Any) -> Road:
         """See System."""
-        if name == ANALYTIC_ROAD:
-            return TorsorRoad(self.assembly)
+        if name != "exact":
+            return super().road(name, materials)
         error = max(pair.chord_error for pair in materials.values())
         return PlacingRoad(self.assembly, reader_of(materials), error)
 
@@ -274,7 +248,7 @@ def assembly_system(scene: Scene) -> AssemblySystem:
         SceneError: what it says does not fit together, such as moves that leave a part free.
     """
     placed = _asked(scene, lambda: _settled(scene))
-    kind = ClearanceSystem if clearances_of(placed.assembly) else AssemblySystem
+    kind = _kind_of(placed.assembly)
     assembly = _asked(scene, lambda: _faced(placed))
     made = kind(scene.scene, placed.contributors, placed.measures, assembly, placed.named)
     _asked(
@@ -282,6 +256,13 @@ def assembly_system(scene: Scene) -> AssemblySystem:
     )
     measures = _asked(scene, lambda: tuple(replace(own, adds_up=made.is_linear(own)) for own in made.measures))
     return replace(made, measures=measures)
+
+
+def _kind_of(assembly: Assembly) -> type[AssemblySystem]:
+    """By what FCL reads of it."""
+    if clearances_of(assembly):
+        return ClearanceSystem
+    return WitnessedSystem if any(reads(assembly, name) for name in assembly.measures) else AssemblySystem
 
 
 def _faced(placed: Meant) -> Assembly:

@@ -1,7 +1,7 @@
 """Both roads of gears in a housing: the assembly is placed, then the gears mesh on the axes that its bores give."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from tol3d.assembly.placing import road as placing
 from tol3d.assembly.placing.world import SolidReader
-from tol3d.assembly.system import details_of
+from tol3d.assembly.roads import details_of
 from tol3d.assembly.torsors import road as torsors
 from tol3d.gearbox.joined import Joined
 from tol3d.gearbox.statuses import FROM_ASSEMBLIES
@@ -30,22 +30,28 @@ class GearboxRoad:
         gears: the gears' own road.
         exact: whether parts are placed by finite poses; else by torsors.
         solids: reads clearances of whole parts; None where there are none.
+        chords: by clearance, what chord errors of a witness and of what it checks explain [mm]; else empty.
     """
 
     system: Joined
     gears: Road
     exact: bool
     solids: SolidReader | None = None
+    chords: Mapping[str, float] = field(default_factory=dict)
 
     @property
     def chord_error(self) -> float:
         """See Road."""
         return self.gears.chord_error
 
+    def reads(self, measure: Measure) -> bool:
+        """See WitnessRoad: every one."""
+        return True
+
     def bounds(self, measure: Measure) -> tuple[float, float]:
-        """See WitnessRoad; what is read of the assembly alone is read as the road reads it that is witnessed."""
+        """See WitnessRoad; of the assembly clearances alone are read otherwise than by the road that is witnessed."""
         if not isinstance(measure, GearMeasure):
-            return 0.0, 0.0
+            return self.chords.get(measure.name, 0.0) * measure.per_internal, 0.0
         witness: Any = self.gears
         found: tuple[float, float] = witness.bounds(measure)
         return found

@@ -115,8 +115,13 @@ class GearboxSystem(Joined):
         exact = name != ANALYTIC_ROAD
         if not self._is_clearing or not exact:
             return GearboxRoad(self, self.gears.road(name, materials), exact)
-        own, pairs = materials
-        return GearboxRoad(self, self.gears.road(name, own), exact, reader_of(pairs))
+        own, solids = materials
+        gears = self.gears.road(name, own)
+        if name == EXACT:
+            return GearboxRoad(self, gears, exact, reader_of(solids))
+        given, finer = solids
+        chords = {name: given[name].chord_error + pair.chord_error for name, pair in finer.items()}
+        return GearboxRoad(self, gears, exact, reader_of(finer), chords)
 
     def cost(self, measures: Sequence[Measure]) -> int:
         """See System."""

@@ -48,7 +48,8 @@ def witness_summary(simulation: Simulation, road: Road, trials: int) -> WitnessS
     chosen = witnessed_trials(study.seed, trials, study.witness)
     again = joined([drawn(simulation, trial, 1) for trial in chosen.tolist()])
     witness = cast(WitnessRoad, system.road(name, system.materials(name)))
-    seen, given = columns_of(system, witness, again), columns_of(system, road, again)
+    measures = [measure for measure in system.measures if witness.reads(measure)]
+    seen, given = (columns_of(system, each, again, measures) for each in (witness, road))
     return made(
         WitnessSummary,
         engine=name,
@@ -56,7 +57,7 @@ def witness_summary(simulation: Simulation, road: Road, trials: int) -> WitnessS
         chord_error_um=1000 * witness.chord_error,
         measures={
             measure.name: _witnessed(_difference(seen, given, measure), chosen, witness.bounds(measure))
-            for measure in system.measures
+            for measure in measures
         },
         status_differences=int(np.count_nonzero(seen["status"] != given["status"])),
     )

@@ -63,6 +63,10 @@ class Road(Protocol):
 class WitnessRoad(Road, Protocol):
     """A road that checks another one, and knows its own errors."""
 
+    def reads(self, measure: Measure) -> bool:
+        """Whether it can read a measure; those that it cannot are left out of what it finds."""
+        ...
+
     def bounds(self, measure: Measure) -> tuple[float, float]:
         """How far it may be off in a measure, in its unit: by its facets, and by all else."""
         ...

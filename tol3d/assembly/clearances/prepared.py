@@ -20,6 +20,8 @@ Torsors = Callable[[str, int], Array]
 
 FCL = "tol3d.assembly.clearances"
 """Whose `nearest` and `distances` load FCL: imported where there is a clearance to read."""
+WITNESS = "tol3d.assembly.witness"
+"""It loads FCL too."""
 
 
 def clearances_of(assembly: Assembly) -> Mapping[str, Measured]:
@@ -79,9 +81,17 @@ def _meshes(assembly: Assembly, name: str, measured: Measured) -> tuple[SolidMes
 
 
 @lru_cache(maxsize=4)
-def solid_pairs(assembly: Assembly) -> Mapping[str, SolidPair]:
-    """What a reader of distances is made of, by measure; it pickles."""
-    return {name: _pair(assembly, name, own) for name, own in clearances_of(assembly).items()}
+def solid_pairs(assembly: Assembly, share: float = 1.0) -> Mapping[str, SolidPair]:
+    """What a reader of distances is made of, by measure; it pickles.
+
+    Args:
+        assembly: with what is known nominally of its clearances.
+        share: of the chord errors that are stated, what its meshes have at most.
+    """
+    stated = clearances_of(assembly)
+    return {
+        name: _pair(assembly, name, replace(own, chord_error=share * own.chord_error)) for name, own in stated.items()
+    }
 
 
 def _pair(assembly: Assembly, name: str, measured: Measured) -> SolidPair:
@@ -89,6 +99,11 @@ def _pair(assembly: Assembly, name: str, measured: Measured) -> SolidPair:
     start, end = (assembly.part[part].pose for part in measured.parts)
     meshes, facing = _meshes(assembly, name, measured), measured.facing
     return solid_pair(meshes, relative_pose(start, end), float(facing.lengths.min()), facing.reach)
+
+
+def witness_of(assembly: Assembly, given: Mapping[str, SolidPair], finer: Mapping[str, SolidPair]) -> Any:
+    """Reads gaps and clearances by FCL, see FclWitness."""
+    return import_module(WITNESS).FclWitness(assembly, given, finer)
 
 
 def reader_of(pairs: Mapping[str, SolidPair]) -> Any:

@@ -116,12 +116,13 @@ def placed(assembly: Assembly, deviations: Array) -> dict[str, Array]:
     return found
 
 
-def features_placed(assembly: Assembly, deviations: Array) -> dict[str, Array]:
-    """Frames of all features of placed parts as they lie in each trial, after the last move.
+def features_placed(assembly: Assembly, deviations: Array, after: int = -1) -> dict[str, Array]:
+    """Frames of all features of placed parts as they lie in each trial.
 
     Args:
         assembly: the model.
         deviations: (trials, width) [mm].
+        after: index of the move after which they are asked; -1 for the end.
 
     Returns:
         By feature: frames in the world (trials, 4, 4), not a number where a move that placed its part failed.
@@ -131,11 +132,11 @@ def features_placed(assembly: Assembly, deviations: Array) -> dict[str, Array]:
     """
     plan = planned(assembly)
     block = _placed(plan, np.asarray(deviations, dtype=np.float64))
-    found = {}
-    for part, causes in plan.causes[-1].placed.items():
+    found, moment = {}, -1 if after < 0 else after + 1
+    for part, causes in plan.causes[moment].placed.items():
         failed = block.first_of(ordered(causes)) != OK
         for feature in assembly.part[part].features:
-            frames = block.worlds[-1].placed(feature.name).pose.matrices(len(deviations))
+            frames = block.worlds[moment].placed(feature.name).pose.matrices(len(deviations))
             found[feature.name] = np.where(np.broadcast_to(failed, len(deviations))[:, None, None], np.nan, frames)
     return found
 

@@ -34,6 +34,10 @@ class FclRoad(GeometricRoad):
 
     strips: Mapping[str, FlankStrips]
 
+    def reads(self, measure: system_measure.Measure) -> bool:
+        """See WitnessRoad: every one."""
+        return True
+
     def bounds(self, measure: system_measure.Measure) -> tuple[float, float]:
         """See WitnessRoad: by chords, and by all else."""
         chords = {

@@ -1,0 +1,65 @@
+"""Both roads of assemblies, as studies ask them."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tol3d.assembly.model import Assembly
+from tol3d.assembly.placing import road as placing
+from tol3d.assembly.placing.world import SolidReader
+from tol3d.assembly.torsors import road as torsors
+from tol3d.system.measure import Measure
+from tol3d.system.road import Answers
+from tol3d.system.trials import Trials
+
+Words = NDArray[np.str_]
+
+
+def details_of(carried: Mapping[str, Words], tightest: Mapping[str, Words]) -> dict[str, NDArray[np.generic]]:
+    """Columns of words about moves: the contacts that carry, the pair with the least room."""
+    return {
+        **{f"carries:{move}": contacts for move, contacts in carried.items()},
+        **{f"tightest:{move}": pairs for move, pairs in tightest.items()},
+    }
+
+
+@dataclass(frozen=True)
+class TorsorRoad:
+    """The analytic road: small displacements."""
+
+    assembly: Assembly
+
+    chord_error: ClassVar[float] = 0.0
+
+    def answers(self, trials: Trials, measures: Sequence[Measure]) -> Answers:
+        """See Road; every trial is built."""
+        found = torsors.values(self.assembly, trials.deviations, [measure.name for measure in measures])
+        return Answers({name: own[:, None] for name, own in found.items()})
+
+
+@dataclass(frozen=True)
+class PlacingRoad:
+    """The exact road: parts are placed, move by move.
+
+    Args:
+        assembly: the model.
+        solids: reads clearances of whole parts; None where there are none.
+        chord_error: see Road.
+    """
+
+    assembly: Assembly
+    solids: SolidReader | None = None
+    chord_error: float = 0.0
+
+    def answers(self, trials: Trials, measures: Sequence[Measure]) -> Answers:
+        """See Road."""
+        names = [measure.name for measure in measures]
+        found, carried, tightest = placing.answers(self.assembly, trials.deviations, names, self.solids)
+        return Answers(
+            {name: own[:, None] for name, (own, _) in found.items()},
+            details=details_of(carried, tightest),
+            status={name: codes for name, (_, codes) in found.items()},
+        )

@@ -1,0 +1,158 @@
+"""The witness of assemblies: gaps of round surfaces and clearances of parts by FCL, at the poses of the exact road.
+
+A round surface is a ball or a cylinder of FCL's, smaller than it is by a known amount that is taken off again: so
+surfaces that overlap by less than that have a gap below 0 as they should. Clearances are read of meshes of half the
+step.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tol3d.assembly.clearances.distances import SolidDistances
+from tol3d.assembly.clearances.pair import SolidPair
+from tol3d.assembly.model import Assembly, Feature, Measured
+from tol3d.assembly.model.shape import nominal_size
+from tol3d.assembly.placing import road as placing
+from tol3d.assembly.placing.actual_feature import actual_size
+from tol3d.assembly.placing.surfaces import PARALLEL, kind_of
+from tol3d.assembly.witnessed import reads
+from tol3d.solids.distance import NearestPoints, Surface, cylinder, mesh_surface, put, sphere
+from tol3d.system.measure import Measure
+from tol3d.system.road import Answers
+from tol3d.system.trials import Trials
+
+Array = NDArray[np.float64]
+
+CORE: Final = 0.5
+"""Of its nominal radius that a surface is made of; so much may overlap."""
+POINT: Final = 1e-3
+"""mm; radius of the ball that stands for a point."""
+FAR: Final = 1e4
+"""mm; length of a cylinder and size of a plane, which have no ends."""
+ALLOWANCE: Final = 1e-5
+"""mm; where FCL's iterations between bodies without triangles end, with room."""
+FEW: Final = 1e-9
+"""mm; rounding of distances of triangles."""
+
+
+@dataclass(frozen=True)
+class FclWitness:
+    """Implements WitnessRoad.
+
+    Args:
+        assembly: the model.
+        given: pairs of solids of the road that is witnessed, by measure.
+        finer: the same with meshes of half the step.
+    """
+
+    assembly: Assembly
+    given: Mapping[str, SolidPair]
+    finer: Mapping[str, SolidPair]
+
+    @property
+    def chord_error(self) -> float:
+        """See Road: that of the finer meshes."""
+        return max((pair.chord_error for pair in self.finer.values()), default=0.0)
+
+    def reads(self, measure: Measure) -> bool:
+        """See WitnessRoad."""
+        return reads(self.assembly, measure.name)
+
+    def bounds(self, measure: Measure) -> tuple[float, float]:
+        """See WitnessRoad: of a clearance the chord errors of both meshes, one of each road."""
+        if measure.name in self.finer:
+            chords = self.given[measure.name].chord_error + self.finer[measure.name].chord_error
+            return chords * measure.per_internal, FEW * measure.per_internal
+        return 0.0, ALLOWANCE * measure.per_internal
+
+    def answers(self, trials: Trials, measures: Sequence[Measure]) -> Answers:
+        """See Road; statuses of gaps are those of the moves."""
+        names = [measure.name for measure in measures]
+        read = placing.values(self.assembly, trials.deviations, names, SolidDistances(self.finer))
+        values, status = {}, {}
+        for name, (own, codes) in read.items():
+            measured = self.assembly.measures[name]
+            found = own if measured.kind == "clearance" else self._gaps(measured, trials.deviations)
+            values[name], status[name] = np.where(codes == 0, found, np.nan)[:, None], codes
+        return Answers(values, status=status)
+
+    def _gaps(self, measured: Measured, deviations: Array) -> Array:
+        """Of two surfaces (trials,) [mm]; not a number where their parts are not placed."""
+        start, end = (self.assembly.features[name] for name in measured.features)
+        frames = placing.features_placed(self.assembly, deviations, measured.after)
+        bodies = _bodies(self.assembly, start, end)
+        taken = np.zeros(len(deviations))
+        for own, body in zip((start, end), bodies, strict=True):
+            taken = taken + _radius(own, deviations) - body.radius
+        nearest, found = NearestPoints(), np.full(len(deviations), np.nan)
+        for k, (first, second) in enumerate(zip(frames[start.name], frames[end.name], strict=True)):
+            if np.isfinite(first).all() and np.isfinite(second).all():
+                put(bodies[0].surface, first[:3, :3], first[:3, 3])
+                put(bodies[1].surface, second[:3, :3], second[:3, 3])
+                distance = nearest.of(bodies[0].surface, bodies[1].surface).distance
+                found[k] = distance - taken[k] if distance > 0.0 else np.nan
+        return found
+
+
+def _bodies(assembly: Assembly, start: Feature, end: Feature) -> tuple["_Body", "_Body"]:
+    """What stands for two surfaces.
+
+    The middle alone counts of a cylinder beside a plane, and of the second of two that lie along each other. Of two
+    that cross the axes stand: between cylinders FCL iterates to some micrometres only.
+    """
+    match kind_of(start.shape), kind_of(end.shape):
+        case "plane", _:
+            return _plane(), _ball(end)
+        case _, "plane":
+            return _ball(start), _plane()
+        case "line", "line" if not _are_parallel(assembly, start, end):
+            return _line(), _line()
+        case "line", _:
+            return _cylinder(start), _ball(end)
+        case _, "line":
+            return _ball(start), _cylinder(end)
+    return _ball(start), _ball(end)
+
+
+def _are_parallel(assembly: Assembly, start: Feature, end: Feature) -> bool:
+    one, other = (assembly.part[own.part].pose[:3, :3] @ own.frame[:3, 2] for own in (start, end))
+    return bool(np.linalg.norm(np.cross(one, other)) < PARALLEL)
+
+
+def _radius(feature: Feature, deviations: Array) -> Array:
+    """In its trials (trials,) or (1,) [mm]; 0 of a plane and of a point."""
+    return np.asarray(actual_size(feature, deviations.T) / 2)
+
+
+@dataclass(frozen=True, eq=False)
+class _Body:
+    """What stands for a surface, and its radius [mm]."""
+
+    surface: Surface
+    radius: float
+
+
+def _plane() -> _Body:
+    corners = FAR * np.array([[-1.0, -1.0, 0.0], [1.0, -1.0, 0.0], [1.0, 1.0, 0.0], [-1.0, 1.0, 0.0]])
+    return _Body(mesh_surface(corners, np.array([[0, 1, 2], [0, 2, 3]])), 0.0)
+
+
+def _line() -> _Body:
+    points = FAR * np.array([[0.0, 0.0, -1.0], [0.0, 0.0, 1.0], [0.0, 0.0, 0.1]])
+    return _Body(mesh_surface(points, np.array([[0, 1, 2]])), 0.0)
+
+
+def _core(feature: Feature) -> float:
+    return max(CORE * (nominal_size(feature.shape) or 0.0) / 2, POINT)
+
+
+def _ball(feature: Feature) -> _Body:
+    return _Body(sphere(_core(feature)), _core(feature))
+
+
+def _cylinder(feature: Feature) -> _Body:
+    return _Body(cylinder(_core(feature), FAR), _core(feature))

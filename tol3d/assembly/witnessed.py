@@ -1,0 +1,15 @@
+"""Which measures of an assembly FCL can read too. Loads neither FCL nor solids."""
+
+from tol3d.assembly.model import Assembly
+from tol3d.assembly.model.touch import is_inner
+
+
+def reads(assembly: Assembly, name: str) -> bool:
+    """Whether FCL reads a measure: a clearance of parts, and a gap of surfaces of which neither is a hole or socket."""
+    measured = assembly.measures[name]
+    if measured.minus is not None or measured.rocking is not None or measured.over_play is not None:
+        return False
+    if measured.kind == "clearance":
+        return True
+    shapes = (assembly.features[feature].shape for feature in measured.features)
+    return measured.kind == "surface_gap" and not any(map(is_inner, shapes))
