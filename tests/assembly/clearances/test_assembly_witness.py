@@ -107,7 +107,7 @@ def test_trials_are_read_as_the_exact_road_reads_them(surfaces: Assembled) -> No
     found = witness.answers(trials, read).values
     for own in read:
         assert found[own.name][:, 0] == pytest.approx(exact[own.name], abs=1e-6), own.name
-        assert witness.bounds(own) == (0.0, pytest.approx(0.01))
+        assert witness.bounds(own) == pytest.approx((0.0, 0.01))
 
 
 def test_a_run_has_what_the_witness_read_and_leaves_out_what_it_cannot(tmp_path: Path) -> None:
