@@ -120,6 +120,13 @@ def test_features_on_solids_show_how_they_deviate(run: Run, magnify: float) -> N
     pin = vertices[(vertices[:, 2] > top + 3.5)]
     assert (pin[:, 0].min() + pin[:, 0].max()) / 2 == pytest.approx(30 + 0.2 * magnify, abs=1e-9)
     assert np.ptp(pin[:, 0]) == pytest.approx(10 + 2 * half, abs=1e-9)
+    # the cover and its hole go along, its hole's mark astride of it from its bottom to its top
+    cover = world.bodies[1]
+    assert cover.detail_mesh is not None
+    low, high = bounds(cover.detail_mesh)
+    assert (low[2], high[2]) == pytest.approx((top - half, top + 8), abs=1e-9)
+    tube = cover.detail_mesh[0][cover.detail_mesh[0][:, 2] > top + 1]
+    assert (tube.min(axis=0) + tube.max(axis=0))[:2] / 2 == pytest.approx((30 + 0.2 * magnify, 10), abs=1e-9)
     assert world.points["base.pin"] == pytest.approx((30 + 0.2 * magnify, 10, 24 + 0.3 * magnify), abs=1e-9)
     assert set(world.points) == {
         "base.top, 1st datum", "base.side, 2nd datum", "base.pin", "cover.under", "cover.hole", "gauge.tip",
