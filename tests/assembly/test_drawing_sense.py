@@ -73,11 +73,11 @@ def test_a_flat_zone_does_not_refine_a_round_one(tmp_path: Path) -> None:
     [
         (
             "{kind: perpendicularity, of: block.top, zone: {width: 1 um}, law: {kind: uniform}, datums: [floor]}",
-            "at 0 deg",
+            "square to 'floor', got one that is parallel to it; that is a parallelism, write kind: parallelism",
         ),
         (
             "{kind: parallelism, of: block.bore, zone: {diameter: 1 um}, law: {kind: uniform}, datums: [floor]}",
-            "at 90 deg",
+            "parallel to 'floor', got one that is square to it; that is a perpendicularity, write kind: perpend",
         ),
         (
             "{kind: coaxiality, of: block.bore, zone: {diameter: 1 um}, law: {kind: uniform}, datums: [floor]}",
@@ -88,6 +88,30 @@ def test_a_flat_zone_does_not_refine_a_round_one(tmp_path: Path) -> None:
 def test_orientations_that_the_nominal_part_does_not_have(tmp_path: Path, text: str, words: str) -> None:
     with pytest.raises(SceneError, match=words):
         assembled(BLOCK.format(tolerances=f"  own: {text}\n", measures=SEEN), tmp_path)
+
+
+CROSS = (
+    "      wall: {kind: plane, at: [0 mm, -30 mm, 15 mm], normal: [0, -1, 0], extent: [100 mm, 30 mm]}\n"
+    "      end: {kind: plane, at: [-50 mm, 0 mm, 15 mm], normal: [-1, 0, 0], extent: [60 mm, 30 mm]}\n"
+    "      cross: {kind: cylinder, at: [0 mm, 0 mm, 15 mm], axis: [0, 1, 0], length: 60 mm, diameter: 8 mm}\n"
+)
+LOCATED = (
+    "  position: {kind: position, of: block.cross, zone: {diameter: 0.2 mm}, law: {kind: uniform}, "
+    "datums: [floor, wall, end]}\n"
+)
+
+
+def test_squareness_to_a_later_datum_is_refused_with_the_words_that_limit_the_same(tmp_path: Path) -> None:
+    """The bore lies along the floor and square to the wall: parallel to the floor first, then square to the wall."""
+    square = "  square: {kind: perpendicularity, of: block.cross, zone: {diameter: 0.05 mm}, datums: [wall]}\n"
+    seen = "  lean: {kind: inspected_orientation, of: block.cross, datums: [wall]}\n"
+    text = BLOCK.format(tolerances=LOCATED + square, measures=seen).replace("tolerances:\n", f"{CROSS}tolerances:\n", 1)
+    advice = r"square\.datums: .*got wall; write kind: parallelism with datums: \[floor, wall\] as 'position' states"
+    with pytest.raises(SceneError, match=advice):
+        assembled(text, tmp_path)
+    heeded = text.replace("perpendicularity, of: block.cross", "parallelism, of: block.cross")
+    found = assembled(heeded.replace("0.05 mm}, datums: [wall]", "0.05 mm}, datums: [floor, wall]"), tmp_path)
+    assert found.drawn(5_000)["lean"].max() == pytest.approx(0.05, rel=0.02)
 
 
 def test_what_the_nominal_part_has_is_taken(tmp_path: Path) -> None:

@@ -48,16 +48,26 @@ def _elsewhere(drawing: Drawing, own: Stated) -> Iterator[Problem]:
         datums = located.spec.named_datums
         if datums[: len(spec.datums)] != spec.datums:
             here, there = (_words(each) or "those of its part" for each in (spec.datums, datums))
-            words = (
-                f"expected the first datums of {located.entry!r}, in whose frame it lies ({there}), got {here}; "
-                f"give {located.entry!r} datums that begin with {here}"
-            )
-            yield ("tolerances", own.entry, "datums"), words
+            words = f"expected the first datums of {located.entry!r}, in whose frame it lies ({there}), got {here}"
+            yield ("tolerances", own.entry, "datums"), f"{words}; {_instead(drawing, own, located)}"
         elif isinstance(located.spec, LocationSpec) and not _alike(located.spec.zone, spec.zone):
             words = (
                 f"expected a zone of the shape of {located.entry!r}, which it refines: a diameter, or a width `along`"
             )
             yield ("tolerances", own.entry, "zone"), words
+
+
+def _instead(drawing: Drawing, own: Stated, located: Stated) -> str:
+    """What limits the same turns in the frame in which a feature lies."""
+    spec, datums = own.spec, located.spec.named_datums
+    assert isinstance(spec, OrientationSpec)
+    known = [datum.features for datum in datums]
+    if not known or any(datum.features not in known for datum in spec.datums):
+        return f"give {located.entry!r} datums that begin with {_words(spec.datums)}"
+    first = datums[: 1 + max(known.index(datum.features) for datum in spec.datums)]
+    kind = _nominal_kind(drawing, own.feature, first[0]) or spec.kind
+    turns = f"which limits how {own.feature!r} leans in that frame"
+    return f"write kind: {kind} with datums: [{_words(first)}] as {located.entry!r} states them, {turns}"
 
 
 def _words(datums: tuple[DatumSpec, ...]) -> str:
@@ -76,19 +86,35 @@ def _other_angle(drawing: Drawing, own: Stated) -> Iterator[Problem]:
     spec = own.spec
     assert isinstance(spec, OrientationSpec)
     datum = spec.datums[0]
-    features = drawing.features[part_of(own.feature)]
-    if isinstance(spec, AngularitySpec) or len(datum.features) > 1:
+    kind = _nominal_kind(drawing, own.feature, datum)
+    if not kind or isinstance(spec, AngularitySpec) or kind == spec.kind:
         return
-    feature, other = drawing.kind(own.feature), features.get(datum.features[0])
-    if other is None or other is feature or {"point", "sphere"} & {other.kind, feature.kind}:
-        return  # unknown, a ring, of the wrong kind: said already
+    angle = _angle(drawing, own.feature, datum)
+    got = {"parallelism": "parallel", "perpendicularity": "square"}.get(kind, f"at {angle:.4g} deg")
+    wanted = "square" if isinstance(spec, PerpendicularitySpec) else "parallel"
+    words = f"expected a feature that is nominally {wanted} to {datum.features[0]!r}, got one that is {got} to it"
+    article = "an" if kind == "angularity" else "a"
+    yield ("tolerances", own.entry, "of"), f"{words}; that is {article} {kind}, write kind: {kind}"
+
+
+def _nominal_kind(drawing: Drawing, feature: str, datum: DatumSpec) -> str:
+    """The kind of orientation that a feature has nominally to a datum; "" where the two have no one angle."""
+    angle = _angle(drawing, feature, datum)
+    if angle is None:
+        return ""
+    near = np.degrees(SQUARE)
+    return "parallelism" if angle <= near else "perpendicularity" if angle >= 90.0 - near else "angularity"
+
+
+def _angle(drawing: Drawing, name: str, datum: DatumSpec) -> float | None:
+    """Of a feature to a datum nominally, 0 to 90 deg; None of rings, of points, and of what is unknown."""
+    feature, other = drawing.kind(name), drawing.features[part_of(name)].get(datum.features[0])
+    if len(datum.features) > 1 or other is None or other is feature or {"point", "sphere"} & {other.kind, feature.kind}:
+        return None  # unknown, a ring, of the wrong kind: said already
     along = abs(float(feature.frame[:3, 2] @ other.frame[:3, 2]))
     normals = (feature.kind in FLAT) == (other.kind in FLAT)  # else an axis and a normal: parallel is square
     angle = float(np.degrees(np.arccos(min(along, 1.0))))
-    angle = angle if normals else 90.0 - angle
-    if abs(angle - (90.0 if isinstance(spec, PerpendicularitySpec) else 0.0)) > np.degrees(SQUARE):
-        words = f"expected a feature that is nominally so to {datum.features[0]!r}, got one at {angle:.4g} deg to it"
-        yield ("tolerances", own.entry, "of"), f"{words}; that is an angularity"
+    return angle if normals else 90.0 - angle
 
 
 def _without_axis(drawing: Drawing, own: Stated) -> Iterator[Problem]:
