@@ -83,6 +83,14 @@ def test_a_flat_zone_does_not_refine_a_round_one(tmp_path: Path) -> None:
             "{kind: coaxiality, of: block.bore, zone: {diameter: 1 um}, law: {kind: uniform}, datums: [floor]}",
             "expected an axis among them",
         ),
+        (
+            "{kind: coaxiality, of: block.seat, zone: {diameter: 1 um}, law: {kind: uniform}, datums: [bore]}",
+            r"own\.of: expected a feature that is nominally on the axis of 'bore', got one 30 mm beside it",
+        ),
+        (
+            "{kind: total_run_out, of: block.seat, zone: {width: 1 um}, law: {kind: uniform}, datums: [bore]}",
+            "got one 30 mm beside it",
+        ),
     ],
 )
 def test_orientations_that_the_nominal_part_does_not_have(tmp_path: Path, text: str, words: str) -> None:

@@ -100,6 +100,12 @@ WRONG: dict[str, tuple[dict[str, str], str, str]] = {
         "moves.last in bores.in[1]",
         "expected an axis or cylinder, got 'housing.floor', which is a plane",
     ),
+    "a part that is placed later": (
+        {"tolerances": F, "fixed": "", "moves": LAID + "\n  base: {kind: fix, part: housing}"},
+        "moves.first in bores.in[0]",
+        "expected a bore of a part that is placed already, got 'housing.bore 1'; put the move 'base', which places it, "
+        "before this one",
+    ),
     "three bores": (
         {"tolerances": F, "moves": LAID.replace("housing.bore 2b]", "housing.bore 2b, housing.bore 1]")},
         "moves.last in bores.in",

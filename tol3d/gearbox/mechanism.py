@@ -2,14 +2,14 @@
 
 from typing import Final
 
-from tol3d.gearbox.grammar.checks import laid_twice
+from tol3d.gearbox.grammar.checks import laid_too_early, laid_twice
 from tol3d.gearbox.grammar.shaft_in_bores import ShaftInBoresSpec
 from tol3d.system.mechanism import Mechanism
 
 GEARBOX: Final = Mechanism(
     name="gearbox",
     moves=(ShaftInBoresSpec,),
-    checks=(laid_twice,),
+    checks=(laid_twice, laid_too_early),
     includes=("gearing", "assembly"),
     engines=("exact", "fcl"),
     system="tol3d.gearbox.from_scene:gearbox_system",

@@ -26,6 +26,7 @@ Problem = tuple[KeyPath, str]
 
 FLAT = ("plane", "slot")  # kinds with a normal, not an axis
 SQUARE = 1e-6  # cosine; directions nearer to a right angle are square to each other
+ON_AXIS = 1e-3  # mm; what a drawing rounds
 
 
 def unfit_orientations(scene: Scene) -> Iterator[Problem]:
@@ -39,6 +40,7 @@ def unfit_orientations(scene: Scene) -> Iterator[Problem]:
         for own in drawing.of(feature, LocationSpec):
             if own.name == own.entry and isinstance(own.spec, CoaxialitySpec | CircularRunOutSpec | TotalRunOutSpec):
                 yield from _without_axis(drawing, own)
+                yield from _beside(drawing, own)
 
 
 def _elsewhere(drawing: Drawing, own: Stated) -> Iterator[Problem]:
@@ -124,3 +126,17 @@ def _without_axis(drawing: Drawing, own: Stated) -> Iterator[Problem]:
         common = any(len(datum.features) == 2 for datum in own.spec.named_datums)
         if not common:
             yield ("tolerances", own.entry, "datums"), "expected an axis among them, such as a bore or a shaft's seat"
+
+
+def _beside(drawing: Drawing, own: Stated) -> Iterator[Problem]:
+    """A feature that is nominally not on the axis to which it is coaxial, or about which it runs out."""
+    features, feature = drawing.features[part_of(own.feature)], drawing.kind(own.feature)
+    names = [datum.features[0] for datum in own.spec.named_datums if len(datum.features) == 1]
+    axes = [name for name in names if name in features and features[name].kind in ("axis", "cylinder")]
+    if len(axes) != 1 or feature.kind not in ("axis", "cylinder"):
+        return  # of two it is on the line through both, if on any; a wrong kind is said already
+    frame, datum = feature.frame, features[axes[0]].frame
+    off = float(np.linalg.norm(np.cross(frame[:3, 3] - datum[:3, 3], datum[:3, 2])))
+    if off > ON_AXIS:
+        words = f"expected a feature that is nominally on the axis of {axes[0]!r}, got one {off:.4g} mm beside it"
+        yield ("tolerances", own.entry, "of"), f"{words}; that is a position"

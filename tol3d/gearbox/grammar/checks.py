@@ -2,6 +2,8 @@
 
 from collections.abc import Iterator
 
+from tol3d.assembly.grammar.feature_name import part_of
+from tol3d.assembly.grammar.moves import PlacingSpec
 from tol3d.gearbox.grammar.shaft_in_bores import ShaftInBoresSpec
 from tol3d.scene import Scene
 from tol3d.scene.place import KeyPath
@@ -25,3 +27,16 @@ def laid_twice(scene: Scene) -> Iterator[Problem]:
                 words = f"expected a bore without a shaft, got {bore!r}, in which {other!r} lays one"
                 yield ("moves", name, "in", k), words
             bores.setdefault(bore, name)
+
+
+def laid_too_early(scene: Scene) -> Iterator[Problem]:
+    """Shafts in bores of parts that a later move places; each part is said once."""
+    order = list(scene.moves)
+    placing = {move.part: name for name, move in reversed(list(scene.moves.items())) if isinstance(move, PlacingSpec)}
+    for name, move in scene.of(ShaftInBoresSpec).items():
+        for k, bore in enumerate(move.in_):
+            by = placing.get(part_of(bore), name)
+            if order.index(by) > order.index(name):
+                del placing[part_of(bore)]
+                words = f"expected a bore of a part that is placed already, got {bore!r}"
+                yield ("moves", name, "in", k), f"{words}; put the move {by!r}, which places it, before this one"
