@@ -125,7 +125,7 @@ def view(
     ] = None,
     screenshot: Annotated[Path | None, typer.Option(help="Write a picture instead of opening a window.")] = None,
 ) -> None:
-    """Show a trial in 3D, with its contact and gap marked."""
+    """Show a trial in 3D; of gears with contact and gap marked."""
     from tol3d.report.view import view_run
     from tol3d.runs.run import open_run
 
@@ -151,4 +151,4 @@ def _which(run: "Run", trial: int | None, *, worst: bool, nominal: bool, mean: b
     found = worst_trial(run)
     unnamed = "" if worst else "no build named: "
     err_console.print(f"{unnamed}trial {found}, the worst: {worst_words(run.found)}")
-    return found
+    return "worst"  # the presenter may have to pass over one that is not built

@@ -20,7 +20,7 @@ from tol3d.report.presenter import Which
 from tol3d.runs.run import Run
 from tol3d.runs.worst import worst_trial
 from tol3d.simulate import Replay, replay, replayed, simulation_again
-from tol3d.system.stated import mean_build, nominal_build
+from tol3d.system.stated import magnified, mean_build, nominal_build
 
 Array = NDArray[np.float64]
 
@@ -106,7 +106,7 @@ def _scaled(seen: Replay, factor: float) -> Replay:
     """The build with its deviations multiplied by a factor."""
     if factor == 1.0:
         return seen
-    return replayed(seen.simulation, seen.trials.scaled(factor))
+    return replayed(seen.simulation, magnified(seen.simulation.system, seen.trials, factor))
 
 
 def _model(seen: Replay) -> Model:

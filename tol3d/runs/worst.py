@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from tol3d.errors import RunError
 from tol3d.runs.summary.measure import MeasureSummary
 from tol3d.runs.summary.run import RunSummary
-from tol3d.system.outcome import outcome_of, status_column, value_column
+from tol3d.system.outcome import SEATED, outcome_of, status_column, value_column
 
 Array = NDArray[np.float64]
 
@@ -44,7 +44,7 @@ class KeptTrials(Protocol):
         ...
 
 
-def worst_trial(run: KeptTrials, measure: str | None = None) -> int:
+def worst_trial(run: KeptTrials, measure: str | None = None, *, seated_only: bool = False) -> int:
     """Index of the worst trial of a run.
 
     Where any trial lacks what is measured it is the one that lacks most; else, among those that seated, the one nearest
@@ -55,6 +55,7 @@ def worst_trial(run: KeptTrials, measure: str | None = None) -> int:
     Args:
         run: one that kept its trials.
         measure: the only one that is judged; all that have limits by default.
+        seated_only: leave out trials that lack what is measured.
 
     Raises:
         RunError: no such measure, or the run kept no trials.
@@ -65,7 +66,18 @@ def worst_trial(run: KeptTrials, measure: str | None = None) -> int:
     road = run.found.best_road
     limited = {name: own for name, own in measures.items() if own.has_limits}
     judged = {measure: measures[measure]} if measure else limited or dict([*measures.items()][:1])
-    return int(np.argmin(np.min([_margin(run, road, name, measure) for name, measure in judged.items()], axis=0)))
+    least = np.min([_margin(run, road, name, own) for name, own in judged.items()], axis=0)
+    if seated_only:
+        least = np.where(_seated(run), least, np.inf)
+    return int(np.argmin(least))
+
+
+def _seated(run: KeptTrials) -> NDArray[np.bool_]:
+    """Which trials have every measure (trials,)."""
+    seated = np.ones(run.trials, dtype=bool)
+    for column in {status_column(name) for name in run.found.measures} & {*run.column_names}:
+        seated &= run.columns(column)[column] == SEATED
+    return seated
 
 
 def _margin(run: KeptTrials, road: str, name: str, measure: MeasureSummary) -> Array:

@@ -1,7 +1,7 @@
 """Trials that nobody drew: stated deviations, every contributor at its mean, no deviation at all."""
 
 from collections.abc import Mapping, Sequence
-from typing import Protocol
+from typing import Final, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,6 +12,9 @@ from tol3d.system.positions import Positions
 from tol3d.system.trials import Trials
 
 Array = NDArray[np.float64]
+
+NO_UNIT: Final = "1"
+"""Unit of columns that are shares of what other deviations leave."""
 
 
 class Toleranced(Protocol):
@@ -53,6 +56,16 @@ def component_slices(system: Toleranced) -> Mapping[str, slice]:
 def component_count(system: Toleranced) -> int:
     """Columns of the deviations."""
     return sum(len(contributor.draw.components) for contributor in system.contributors)
+
+
+def magnified(system: Toleranced, trials: Trials, factor: float) -> Trials:
+    """Trials whose deviations are so many times as large; shares of a room, which have no unit, stay as they are."""
+    factors = np.full(component_count(system), factor)
+    slices = component_slices(system)
+    for own in system.contributors:
+        if own.unit == NO_UNIT:
+            factors[slices[own.name]] = 1.0
+    return trials.scaled(factors)
 
 
 def stated(system: Varying, deviations: Array) -> Trials:

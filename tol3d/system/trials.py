@@ -30,8 +30,8 @@ class Trials:
         positions = {name: values[first:end] for name, values in self.positions.items()}
         return replace(self, deviations=self.deviations[first:end], positions=positions)
 
-    def scaled(self, factor: float) -> Self:
-        """The same trials with all deviations multiplied by a factor."""
+    def scaled(self, factor: float | Array) -> Self:
+        """The same trials with all deviations multiplied by a factor, or each component by its own (components,)."""
         return replace(self, deviations=factor * self.deviations)
 
 

@@ -20,7 +20,7 @@ from tol3d.report.presenter import View, Which
 from tol3d.runs.run import Run
 from tol3d.runs.worst import worst_trial
 from tol3d.simulate import Replay, replay, replayed, simulation_again
-from tol3d.system.stated import mean_build, nominal_build
+from tol3d.system.stated import magnified, mean_build, nominal_build
 
 Array = NDArray[np.float64]
 
@@ -31,6 +31,8 @@ DEFLECTION: Final = 0.05
 """mm; how far triangles may lie off the faces of solids: the same in all trials, whose meshes are built once."""
 OPACITY: Final = 0.3
 """Of solids, so that their features and what lies within them are seen."""
+HALVINGS: Final = 10
+"""Of the range of magnifications: 1/1024 of it."""
 RIGID: Final = "solids keep the shape that is drawn: what deviates on them is shown by the symbols of their features"
 
 
@@ -97,8 +99,14 @@ def display(run: Run, which: Which, *, magnify: float) -> ShownAssembly:
         RunError: it is not built.
     """
     trial = worst_trial(run) if which == "worst" else which
+    notes: tuple[str, ...] = ()
     if isinstance(trial, int):
         seen = replay(run, trial)
+        if which == "worst" and placed_by(seen) is None:
+            failed, trial = trial, worst_trial(run, seated_only=True)
+            words = f"trial {failed} is worse, and cannot be shown: {seen.status}"
+            notes = (f"{words}; trial {trial} is the worst of those that are built",)
+            seen = replay(run, trial)
     else:
         simulation = simulation_again(run)
         system = simulation.system
@@ -107,9 +115,27 @@ def display(run: Run, which: Which, *, magnify: float) -> ShownAssembly:
         )
     label = f"trial-{trial}" if isinstance(trial, int) else str(trial)
     if magnify == 1.0:
-        return replayed_display(seen, label)
-    seen = replayed(seen.simulation, seen.trials.scaled(magnify))
-    return replayed_display(seen, label, (f"deviations {magnify:g} times as large; parts are placed by them",))
+        return replayed_display(seen, label, notes)
+    large, used = _as_large(seen, magnify)
+    beyond = "" if used == magnify else f", not {magnify:g}: beyond that they are not built"
+    notes += (f"deviations {used:.3g} times as large{beyond}; parts are placed by them",)
+    return replayed_display(large, label, notes)
+
+
+def _as_large(seen: Replay, wanted: float) -> tuple[Replay, float]:
+    """A build with its deviations magnified as far as it still goes together, up to a factor, and that factor."""
+
+    def times(factor: float) -> Replay:
+        return replayed(seen.simulation, magnified(seen.simulation.system, seen.trials, factor))
+
+    large = times(wanted)
+    if placed_by(large) is not None or wanted < 1.0 or placed_by(seen) is None:
+        return large, wanted
+    low, high = 1.0, wanted
+    for _ in range(HALVINGS):
+        middle = (low + high) / 2
+        low, high = (middle, high) if placed_by(times(middle)) is not None else (low, middle)
+    return times(low), low
 
 
 def replayed_display(seen: Replay, label: str, notes: tuple[str, ...] = ()) -> ShownAssembly:
@@ -118,12 +144,17 @@ def replayed_display(seen: Replay, label: str, notes: tuple[str, ...] = ()) -> S
     Raises:
         RunError: it is not built.
     """
+    placed = placed_by(seen)
+    if placed is None:
+        raise RunError(f"{label}: cannot be shown: {seen.status}; take another trial, or smaller deviations")
+    return ShownAssembly(label, placed, (*notes, *([RIGID] if placed.has_solids else [])))
+
+
+def placed_by(seen: Replay) -> Placed | None:
+    """The assembly of a trial that was replayed; None where a move fails."""
     system = seen.simulation.system
     assert isinstance(system, AssemblySystem)
-    placed = placed_in(system.assembly, seen.trials.deviations[:1])
-    if placed is None:
-        raise RunError(f"{label}: cannot be shown: {seen.status}")
-    return ShownAssembly(label, placed, (*notes, *([RIGID] if placed.has_solids else [])))
+    return placed_in(system.assembly, seen.trials.deviations[:1])
 
 
 def placed_in(assembly: Assembly, deviations: Array) -> Placed | None:

@@ -17,6 +17,7 @@ from tol3d.report.body import World
 from tol3d.report.presenter import View, Which
 from tol3d.runs.run import Run
 from tol3d.simulate import Replay
+from tol3d.system.stated import magnified
 
 Array = NDArray[np.float64]
 
@@ -102,7 +103,8 @@ def replayed(replay: Replay, label: str) -> ShownGearbox:
 def _shown(gears: GearDisplay, seen: Replay, label: str, magnify: float) -> ShownGearbox:
     system = seen.simulation.system
     assert isinstance(system, GearboxSystem)
-    deviations = magnify * seen.trials.deviations[:1, system.assembly_places]
+    trials = seen.trials if magnify == 1.0 else magnified(system, seen.trials, magnify)
+    deviations = trials.deviations[:1, system.assembly_places]
     placed = placed_in(system.drawn.assembly, deviations)
     if placed is None:
         raise RunError(f"{label}: cannot be shown: {seen.status}")
