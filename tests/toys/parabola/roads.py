@@ -136,6 +136,10 @@ def _told(values: Mapping[str, Array], status: Mapping[str, NDArray[np.int8]]) -
 class Chords(Exact):
     """The parabola's chords between knots, as a witness."""
 
+    def reads(self, measure: Measure) -> bool:
+        """Every one."""
+        return True
+
     def bounds(self, measure: Measure) -> tuple[float, float]:
         """By its chords, and by rounding [um]."""
         return 1e3 * self.chord_error, ROUNDING
