@@ -1,6 +1,7 @@
 """Parts at rest on one-sided contacts, against scipy's linear programmes and against all sets of contacts."""
 
 from contextlib import suppress
+from dataclasses import replace
 from itertools import combinations
 
 import numpy as np
@@ -9,54 +10,130 @@ from assembly.placing.built_by_numbers import posed
 from assembly.placing.one_sided_parts import Contacts, pads, programme, random_contacts, random_pads
 from assembly.placing.rigid_search import solved_pose
 from numpy.typing import NDArray
+from scipy.optimize import linprog
 
 from tol3d.assembly.model.moves import PointsOn
+from tol3d.assembly.model.statuses import NOT_HELD, OK, SINGULAR
 from tol3d.assembly.placing.road import answers, placed
 from tol3d.errors import InputError
 
 Array = NDArray[np.float64]
-Mask = NDArray[np.bool_]
 
 
-def relinearised(own: Contacts, heights: Array) -> tuple[Array, Mask, float]:
-    """The pose (4, 4) at rest, which contacts carry, and the least of what they do, by programmes about poses found."""
-    pose, foot = np.eye(4), own.points + heights[:, None] * own.normals
-    carry, least = np.zeros(len(heights), dtype=bool), 0.0
-    for _ in range(4):
-        arms = own.points @ pose[:3, :3].T
-        gaps = ((arms + pose[:3, 3] - foot) * own.normals).sum(axis=1)
-        # about the part's origin, which the arms are of
-        loads = programme(own, pose[:3, :3], arms, gaps)
-        assert loads is not None
-        carry, least = loads > 1e-7, float(loads[loads > 1e-7].min())
+def gaps_and_rows(own: Contacts, pose: Array, heights: Array) -> tuple[Array, Array, Array]:
+    """Gaps at a pose, how they change with a shift and a turn about the part's origin; what the force does there."""
+    arms = own.points @ pose[:3, :3].T
+    gaps = ((arms + pose[:3, 3] - own.points) * own.normals).sum(axis=1) - heights
+    rows = np.hstack([own.normals, np.cross(arms, own.normals) / 50])
+    return gaps, rows, np.concatenate([own.force, np.cross(pose[:3, :3] @ own.at, own.force) / 50])
 
-        def lacking(turn: Array, shift: Array, carry: Mask = carry) -> Array:
-            return np.asarray(((own.points @ turn.T + shift - foot) * own.normals).sum(axis=1)[carry])
 
+def vertices(own: Contacts, heights: Array) -> list[tuple[Array, tuple[int, ...]]]:
+    """All poses within 0.3 rad on six contacts which the force presses, and that pierce none: by trying all sixes."""
+    found = []
+    for chosen in combinations(range(len(heights)), 6):
+
+        def lacking(turn: Array, shift: Array, six: tuple[int, ...] = chosen) -> Array:
+            moved = own.points @ turn.T + shift - own.points
+            return np.asarray(((moved * own.normals).sum(axis=1) - heights)[list(six)])
+
+        if np.linalg.cond(gaps_and_rows(own, np.eye(4), heights)[1][list(chosen)]) > 1e6:
+            continue
         pose = solved_pose(lacking, np.eye(4))
-    return pose, carry, least
+        gaps, rows, pull = gaps_and_rows(own, pose, heights)
+        met = np.abs(gaps[list(chosen)]).max() < 1e-10 and gaps.min() > -1e-9
+        near = np.trace(pose[:3, :3]) > 1 + 2 * np.cos(0.3)
+        if met and near and np.linalg.solve(rows[list(chosen)].T, -pull).min() >= 0.0:
+            found.append((pose, chosen))
+    return found
 
 
-@pytest.mark.parametrize("seed", [*range(6), *(pytest.param(s, marks=pytest.mark.slow) for s in range(100, 600))])
-def test_a_part_on_contacts_on_all_sides_rests_where_highs_lays_it(seed: int) -> None:
+DEEP = [pytest.param(s, marks=pytest.mark.slow) for s in range(100, 500)]
+
+
+@pytest.mark.parametrize("spread", [0.1, 0.5, 2.0])
+@pytest.mark.parametrize("seed", [*range(6), *DEEP])
+def test_highs_finds_no_way_on_from_where_a_part_rests(seed: int, spread: float) -> None:
+    """No motion along the force that closes no gap further, at tilts up to 0.2; and HiGHS has the same loaded contacts.
+
+    Where a part does not rest, no six contacts hold it where all sixes are tried, but for a pose now and then that it
+    does not reach: seen in 0.6 % of trials with deviations of 1 mm. Of the slow ones 3 in 4872 are `singular`.
+    """
     rng = np.random.default_rng(seed)
     own = random_contacts(rng)
-    heights = rng.normal(0, 0.1, (2, len(own.points)))
-    model = own.rested()
-    poses = placed(model, heights)["part"]
-    carried = answers(model, heights, [])[1]["rest"]
-    for pose, row, carriers in zip(poses, heights, carried, strict=True):
-        if not np.abs(pose[:3, :3] - np.eye(3)).max() < 5e-3:
-            continue  # arms are those of the drawing: tilts like that may change which contacts carry
-        expected, carry, least = relinearised(own, row)
-        if least < 0.02:
-            continue  # and smaller ones may where a contact carries next to nothing
-        assert carriers == " ".join(map(str, np.flatnonzero(carry) + 1))
-        assert np.abs(pose - expected).max() < 1e-9
+    heights = rng.normal(0, spread, (4, len(own.points)))
+    model = own.rested(seen=[(np.zeros(3), np.eye(3)[2])])
+    found, carried, _ = answers(model, heights, ["0"])
+    for pose, row, code, carriers in zip(
+        placed(model, heights)["part"], heights, found["0"][1], carried["rest"], strict=True
+    ):
+        if code == OK:
+            gaps, rows, pull = gaps_and_rows(own, pose, row)
+            assert gaps.min() > -1e-10
+            best = linprog(-pull, A_ub=-rows, b_ub=gaps.clip(0), bounds=(None, None), method="highs")
+            assert best.status == 0
+            assert -best.fun < 1e-9
+            assert carriers == " ".join(map(str, np.flatnonzero(-best.ineqlin.marginals > 1e-7) + 1))
+        else:
+            assert code == NOT_HELD or (code == SINGULAR and seed >= 100)
+            assert spread > 0.1 or not vertices(own, row)
 
 
-def rests_on_three(places: Array, heights: Array, at: Array) -> Array:
-    """Height at the origin and slopes (3,) of the plane over pads that rests on three of them about a point."""
+@pytest.mark.parametrize("seed", [0, 1, *(pytest.param(s, marks=pytest.mark.slow) for s in range(100, 120))])
+def test_a_part_rests_where_brute_force_over_all_sixes_lays_it(seed: int) -> None:
+    """Deviations of 0.3 mm, tilts to 0.05; of trials in which just one six holds the part."""
+    rng = np.random.default_rng(seed)
+    own = random_contacts(rng)
+    heights = rng.normal(0, 0.3, (3, len(own.points)))
+    carried = answers(own.rested(), heights, [])[1]["rest"]
+    for pose, row, carriers in zip(placed(own.rested(), heights)["part"], heights, carried, strict=True):
+        if len(held := vertices(own, row)) == 1:
+            assert np.abs(pose - held[0][0]).max() < 1e-9
+            assert carriers == " ".join(str(k + 1) for k in held[0][1])
+        elif len(held) > 1:
+            assert min(np.abs(pose - each).max() for each, _ in held) < 1e-9
+        else:
+            assert len(carriers.split()) < 6
+
+
+def test_a_plate_whose_weight_hangs_below_its_pads_is_balanced_on_two() -> None:
+    """The pads' planes stand still and points ride on the plate; over two of them across, with its weight below.
+
+    Pads 1 and 3 at (-100, 0) and (100, 0), 2 and 4 at (0, -60) and (0, 60), weight at (0, e, -h): about the axis
+    through 1 and 3 the plate is a pendulum, balanced where tan(tilt) = e / h. Pads 2 and 4 lie lower by more than that.
+    """
+    places = np.array([[-100.0, 0.0], [0.0, -60.0], [100.0, 0.0], [0.0, 60.0]])
+    e, h = 0.4, 20.0
+    own = replace(pads(places), at=np.array([0.0, e, -h]))
+    heights = np.array([[0.0, -2.0, 0.0, -2.0], [0.01, -2.0, 0.01, -2.0], [0.0, -2.0, 0.0, -0.5]])
+    seen = [(np.array([0.0, 50.0, 0.0]), np.eye(3)[2])]
+    found, carried, _ = answers(own.rested(seen=seen), heights, ["0"])
+    assert carried["rest"].tolist() == ["1 3", "1 3", "1 3 4"]
+    values, codes = found["0"]
+    assert codes.tolist() == [OK] * 3
+    tilt = np.arctan(e / h)
+    assert values[:2] == pytest.approx(np.array([0.0, 0.01]) - 50 * np.sin(tilt), abs=1e-9)
+    assert values[2] == pytest.approx(-50 * 0.5 / 60, abs=1e-9)
+
+
+def test_a_part_that_a_tilt_takes_off_its_contacts_is_not_held() -> None:
+    """A weight 100 mm over three pads, 2 mm within their edge: from a tilt of 1.15 deg it falls over."""
+    places = np.array([[-60.0, -40.0], [60.0, -40.0], [0.0, 40.0]])
+    own = replace(pads(places), at=np.array([0.0, -38.0, 100.0]))
+    edge = 80.0 * np.tan(np.arctan2(2.0, 100.0))  # of the third pad, in mm, with pads 1 and 2 at 0
+    heights = np.zeros((4, 3))
+    heights[:, 2] = edge * np.array([0.0, 0.5, 0.98, 1.03])
+    model = own.rested(seen=[(np.zeros(3), np.eye(3)[2])])
+    assert answers(model, heights, ["0"])[0]["0"][1].tolist() == [OK, OK, OK, NOT_HELD]
+    assert np.isnan(placed(model, heights)["part"][3]).all()
+
+
+def on_three(places: Array, heights: Array, at: Array) -> list[Array]:
+    """Height at the origin and slopes (3,) of the plane over pads that rests on three of them about a point.
+
+    There are two where a tilt moves the weight across a line between pads: by its square, in shares of the weight.
+    """
+    found = []
     for chosen in combinations(range(len(places)), 3):
         own = np.column_stack([np.ones(3), places[list(chosen)]])
         if abs(np.linalg.det(own)) < 1e-6:
@@ -64,9 +141,9 @@ def rests_on_three(places: Array, heights: Array, at: Array) -> Array:
         plane = np.linalg.solve(own, heights[list(chosen)])
         shares = np.linalg.solve(own.T, np.array([1.0, *at]))
         above = plane[0] + places @ plane[1:] - heights
-        if shares.min() >= 0 and above.min() > -1e-9:
-            return np.asarray(plane)
-    raise AssertionError("some three pads carry")
+        if shares.min() >= -3 * float(np.square(plane[1:]).sum()) and above.min() > -1e-9:
+            found.append(np.asarray(plane))
+    return found
 
 
 @pytest.mark.parametrize("seed", [*range(10), *(pytest.param(s, marks=pytest.mark.slow) for s in range(100, 350))])
@@ -78,13 +155,23 @@ def test_a_plate_on_pads_rests_on_those_three_that_brute_force_finds(seed: int, 
     pose = posed(rng.normal(0, 1, 3), rng.uniform(-50, 50, 3))
     model = own.rested(pose, points_on)
     heights = rng.normal(0, 0.05, (5, len(own.points)))
-    for found, row in zip(placed(model, heights)["part"], heights, strict=True):
-        height, *slopes = rests_on_three(own.points[:, :2], row, own.at[:2])
+    carried = answers(model, heights, [])[1]["rest"]
+    for found, row, carriers in zip(placed(model, heights)["part"], heights, carried, strict=True):
         moved = found @ np.linalg.inv(pose)
+        # a plate that tilts about its origin moves aside: over pads that stand still its weight, too
+        at = moved[:2, :3] @ own.at + moved[:2, 3] if points_on == "fixture" else own.at[:2]
+        if len(both := [int(k) - 1 for k in carriers.split()]) == 2:  # balanced: the weight lies over their line
+            along = np.subtract(*own.points[both, :2])
+            aside = (at - own.points[both[0], :2]) @ [-along[1], along[0]] / np.linalg.norm(along)
+            assert abs(aside) < 100 * np.linalg.norm(moved[:2, 2])  # by what normals lean, times the origin's height
+            continue
+        planes = on_three(own.points[:, :2], row, at)
         z = moved[:3, 2] / moved[2, 2]
         seen = moved[:3, 3] @ z, *-z[:2]  # of the plate's plane at the origin
-        second_order = 200 * float(np.square(slopes).sum())  # mm; the pads lie up to 140 mm from the middle
-        assert seen == pytest.approx((height, *slopes), abs=1e-10 + (second_order if points_on == "part" else 0.0))
+        second_order = 200 * float(np.square(z[:2]).sum())  # mm; the pads lie up to 140 mm from the middle
+        exactly = pytest.approx(seen, abs=1e-10 + (second_order if points_on == "part" else 0.0))
+        assert len(planes) < 3
+        assert any(each == exactly for each in planes)
 
 
 def test_the_one_shot_of_four_pads() -> None:
@@ -139,10 +226,10 @@ def test_contacts_that_hold_a_part_barely_are_met_too(seed: int) -> None:
             poses, carried = placed(model, heights)["part"], answers(model, heights, [])[1]["rest"]
             break
     found = np.isfinite(poses[:, 0, 0])
+    codes = answers(own.rested(seen=[(np.zeros(3), np.eye(3)[2])]), heights, ["0"])[0]["0"][1]
     room = np.array([programme(own, np.eye(3), own.points, -row) is not None for row in heights])
     assert np.mean(found & ~room) <= 0.01  # what clashes to first order clashes
-    # turns of several degrees: lost where the drawing's lever arms and those of the pose want other contacts
-    assert np.mean(room & ~found) < (0.01 if seed < 100 else 0.2)
+    assert np.mean(codes == SINGULAR) <= 0.01
     for pose, row, carriers in zip(poses[found], heights[found], carried[found], strict=True):
         gaps = ((own.points @ pose[:3, :3].T + pose[:3, 3] - own.points) * normals).sum(axis=1) - row
         assert gaps.min() > -1e-10

@@ -128,9 +128,9 @@ class Mate:
 class Rest:
     """One-sided contacts of points on planes, without friction: the part goes as far along the force as they let it.
 
-    Which contacts carry follows from the lever arms as they are nominally; what a turn of the trial does to the arms is
-    of second order. Freedoms that no relation, contact or force sees stay as nominal (least rotation, about the part's
-    origin).
+    Which contacts carry follows from the lever arms of the pose; where nominally some carry nothing the part rocks,
+    whatever a tilt of the trial does to their arms. Freedoms that no relation, contact or force sees stay as nominal
+    (least rotation, about the part's origin).
 
     Args:
         name, part: of the move, and what it places.

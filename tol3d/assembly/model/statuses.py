@@ -5,12 +5,13 @@ from typing import Final
 from tol3d.system.statuses import Statuses
 
 STATUSES: Final = Statuses(
-    ("ok", "not unique", "no contact", "no build", "singular"),
+    ("ok", "not unique", "no contact", "no build", "singular", "not held"),
     words={"no build": "do not build"},
     states={"no contact": "without contact", "no build": "not built"},
 )
 """By their codes: built; the pose is not unique and the measure varies with it; parts that should touch do not reach
-each other; the parts do not go together; the pose was not found, for the contacts have lost their rank."""
+each other; the parts do not go together; the pose was not found, for the contacts have lost their rank; a part tips off
+its one-sided contacts."""
 
 WITH_CLEARANCES: Final = Statuses(
     (*STATUSES.texts, "overlap"),
@@ -25,4 +26,5 @@ NOT_UNIQUE: Final = 1
 NO_CONTACT: Final = 2
 NO_BUILD: Final = 3
 SINGULAR: Final = 4
-OVERLAP: Final = 5
+NOT_HELD: Final = 5
+OVERLAP: Final = 6

@@ -2,18 +2,22 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import linprog, nnls
 
 from tol3d.assembly.model import Pair, Rest
-from tol3d.assembly.model.statuses import NO_BUILD, OK, SINGULAR
+from tol3d.assembly.model.statuses import NO_BUILD, NOT_HELD, OK, SINGULAR
 from tol3d.assembly.placing.actual_feature import total
+from tol3d.assembly.placing.balances import balances_found
+from tol3d.assembly.placing.farthest_motion import TIED
 from tol3d.assembly.placing.free_motion import free_motions, in_words, seen_steps
 from tol3d.assembly.placing.kept_relations import NOTHING, KeptRelations, kept_motions, kept_relations, kept_rows
 from tol3d.assembly.placing.poses import Codes, Pose, column, dot
-from tol3d.assembly.placing.rests import TIED, rests_found
+from tol3d.assembly.placing.rests import BETWEEN, LOST, RESTS, rests_found
+from tol3d.assembly.placing.tilted_rests import tilted_rests_found
 from tol3d.assembly.placing.world import World
 from tol3d.errors import InputError
 
@@ -23,7 +27,7 @@ SLIGHT = 1e-5
 """Of the force: what is added to it to see which contacts would carry if it pointed a little aside."""
 MISSED = 1e-9
 """Part of a force that contacts leave over, of which none is left."""
-OUTCOMES: Codes = np.array([OK, NO_BUILD, SINGULAR], dtype=np.int8)
+OUTCOMES: Codes = np.array([OK, NO_BUILD, SINGULAR, NOT_HELD, SINGULAR], dtype=np.int8)
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,7 +68,6 @@ class Resting:
 
     def placed(self, world: World) -> tuple[World, Codes]:
         """The world after the move, and what became of it (n,)."""
-        points, normals, heights = _contacts(self.move, world, self.origin)
         trials = world.trials
         turn, shift = np.empty((3, 3, trials)), np.empty((3, trials))
         carried, outcomes = np.empty((len(self.rows), trials)), np.empty(trials, dtype=np.int8)
@@ -72,16 +75,39 @@ class Resting:
         if self.relations is not None:
             pose, before, kept = self.relations.met(world)
             start = _array(pose, self.origin)
-        rests_found(
-            points, normals, heights, self.move.points_on == "part", kept.vectors, kept.normals, kept.shifts, self.undo,
-            self.all_rows, self.rows, self.steps, self.basis, self.inverse, self.loads, start, self.reach, turn, shift,
-            carried, outcomes,
-        )  # fmt: skip
+        contacts = _contacts(self.move, world, self.origin)
+        self._found((*contacts, kept.vectors, kept.normals, start), kept.shifts, (turn, shift, carried, outcomes))
         if self.nudge is not None:
             turn, shift = self._moved_on(self.nudge, turn, shift)
         pose = Pose(turn, shift + self.origin)
         placed = world.with_part_at(self.move.part, pose).with_loads(self.move.name, carried)
         return placed, np.where(before == OK, OUTCOMES[outcomes], before).astype(np.int8)
+
+    def _found(self, given: Sequence[Array], kept_shifts: Array, results: Sequence[Array | Codes]) -> None:
+        """Fill in poses (3, 3, n) and (3, n), what contacts carry (contacts, n), and what became of it (n,).
+
+        Args:
+            given: points, normals and heights of contacts, what relations keep, and where the part begins; (..., n) or
+                (..., 1).
+            kept_shifts: see Kept.
+            results: filled in.
+        """
+        on_part, force = self.move.points_on == "part", (self.undo, self.move.force, self.move.at)
+        nominal = (self.all_rows, self.rows, self.steps, self.basis, self.inverse, self.loads)
+        *contacts, start = given
+        rests_found(
+            *contacts[:3], on_part, *contacts[3:], kept_shifts, *force, *nominal, start, self.reach, *results
+        )  # fmt: skip
+        for outcome, found in ((LOST, tilted_rests_found), (BETWEEN, balances_found)):
+            trials = np.flatnonzero(results[-1] == outcome)
+            if len(trials):
+                *own, begin = (each if each.shape[-1] == 1 else _of(each, trials) for each in given)
+                some = [_of(each, trials) for each in results]
+                found(*own[:3], on_part, *own[3:], kept_shifts, *force, self.steps, begin, self.reach, *some)
+                for each, its in zip(results, some, strict=True):
+                    each[..., trials] = its
+        for pose in results[:2]:
+            pose[..., results[-1] != RESTS] = np.nan
 
     def _moved_on(self, by: Array, turn: Array, shift: Array) -> tuple[Array, Array]:
         moved = self.steps @ by
@@ -145,6 +171,10 @@ def resting(move: Rest, nominal: World) -> Resting:
         move, column(origin), reach, start, relations, undo, np.ascontiguousarray(rows), np.ascontiguousarray(steps),
         own_rows, own_pull, basis, inverse, loads,
     )  # fmt: skip
+
+
+def _of(array: NDArray[Any], trials: NDArray[np.intp]) -> NDArray[Any]:
+    return np.ascontiguousarray(array[..., trials])
 
 
 def _array(pose: Pose, origin: Array) -> Array:

@@ -50,6 +50,8 @@ def slope_of(measured: Measured, index: int, move: Resting, read: Read, width: i
 def varying(slope: Array, move: Resting, carried: Array) -> NDArray[np.bool_]:
     """In which trials a measure changes with a motion that no contact which carries the force prevents (n,).
 
+    Contacts that do not carry the force in the nominal pose do so by the tilt that balances it: that is one pose.
+
     Args:
         slope: of the measure along the motions (motions,).
         move: the rest.
@@ -59,8 +61,9 @@ def varying(slope: Array, move: Resting, carried: Array) -> NDArray[np.bool_]:
     varies = []
     for contacts in sets:
         rows = move.rows[contacts]
-        left = slope - rows.T @ np.linalg.lstsq(rows.T, slope, rcond=None)[0]
-        varies.append(contacts.sum() < len(slope) and np.abs(left).max() > DEPENDS)
+        left, unheld = (own - rows.T @ np.linalg.lstsq(rows.T, own, rcond=None)[0] for own in (slope, move.pull))
+        rocks = contacts.sum() < len(slope) and np.abs(unheld).max() < DEPENDS
+        varies.append(rocks and np.abs(left).max() > DEPENDS)
     return np.array(varies, dtype=bool)[which]
 
 

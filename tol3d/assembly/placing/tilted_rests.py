@@ -1,0 +1,202 @@
+"""Parts on one-sided contacts under a force, trial by trial: the finite pose by the lever arms of the pose itself.
+
+The least potential of the force subject to gaps of 0 or more, by successive linear programmes about the pose reached:
+each motion stays in a box, as far as linear rows are true, and a gap below 0 costs more than any contact carries
+(an exact penalty, Fletcher and Sainz de la Maza 1989), so that the potential and the deepest gap together fall from
+step to step. Where contacts alone decide, the last steps are Newton's; the others, where a tilt balances the force on
+fewer contacts than freedoms, are left to `balances`.
+"""
+
+from typing import Any, Final
+
+import numpy as np
+
+from tol3d.assembly.placing.farthest_motion import TIED, farthest
+from tol3d.assembly.placing.one_sided_gaps import MET, gap_of, pull_at
+from tol3d.assembly.placing.rests import BETWEEN, CLASHES, LOST, RESTS, TIPS, begin, note
+from tol3d.assembly.placing.tilted_motions import motion_rows, shifted
+from tol3d.numerics.compiled import kernel, part
+
+STEPS: Final = 300
+SEARCH: Final = 0.05
+"""Of the reach: the largest box."""
+TRIES: Final = 2
+"""With ever smaller boxes, for in a large one a part may pass over where it is held."""
+NEAR: Final = 1e-5
+"""Of the reach: the box at which a side that still carries says that a balance is near."""
+FAR: Final = 0.5
+"""Turn [rad], and shift a mm of reach, from which a part is not held."""
+DEAR: Final = 10.0
+"""What a gap of -1 mm costs first, in forces times 1 mm."""
+DEAREST: Final = 1e5
+ROUNDING: Final = 1e-13
+"""Change of a cost, a mm of reach, under which it is none."""
+PIERCED: Final = 1e-10
+"""mm; a gap below minus that is one."""
+
+
+@part
+def cost_of(pose: Any, trial: Any, reach: float, dear: float, rooms: Any) -> Any:
+    """The potential of the force and the price of the deepest gap [mm], that gap as an amount, and gaps and pull."""
+    contacts, i, on_part, _, force, _ = trial
+    gaps, pull = rooms
+    deepest = 0.0
+    for k in range(gaps.shape[0]):
+        gaps[k] = gap_of(pose, contacts, k, i, on_part)
+        deepest = max(deepest, -gaps[k])
+    return dear * deepest - pull_at(pose, force, reach, pull), deepest
+
+
+@part
+def boxed_rows(rows: Any, contacts: int) -> None:
+    """Rows of a box, and of a last motion that opens all gaps, beside those of contacts."""
+    motions = rows.shape[1] - 1
+    for k in range(rows.shape[0]):
+        for j in range(motions + 1):
+            rows[k, j] = 0.0
+    for k in range(contacts):
+        rows[k, motions] = 1.0
+    for j in range(motions):
+        rows[contacts + 2 * j, j], rows[contacts + 2 * j + 1, j] = 1.0, -1.0
+    rows[contacts + 2 * motions, motions] = 1.0
+
+
+@part
+def boxed(programme: Any, gaps: Any, box: float, dear: float, begun: Any, own: Any) -> int:
+    """The best motion in a box, into the room of `farthest`; the exchanges made, below 0 if it is not found."""
+    rows, all_rows, _, pull = programme
+    basis, inverse, loads = begun
+    all_gaps, moves = own
+    count, motions = all_rows.shape[0], pull.shape[0]
+    for k in range(count):
+        all_gaps[k] = gaps[k]
+    for j in range(motions):
+        all_gaps[count + 2 * j], all_gaps[count + 2 * j + 1] = box, box
+        for b in range(motions + 1):
+            inverse[j, b], inverse[motions, b] = 0.0, 0.0
+    all_gaps[count + 2 * motions] = 0.0
+    for j in range(motions):
+        ahead = pull[j] > 0.0
+        basis[j] = count + 2 * j + (1 if ahead else 0)
+        inverse[j, j] = -1.0 if ahead else 1.0
+        loads[0, j], loads[1, j] = abs(pull[j]), 1.0 + j
+    basis[motions], inverse[motions, motions] = count + 2 * motions, 1.0
+    loads[0, motions], loads[1, motions] = dear, 1.0
+    return int(farthest(rows, all_gaps, basis, inverse, loads, moves, 0))
+
+
+@part
+def far_from(pose: Any, start: Any, reach: float) -> bool:
+    """Whether a pose has left another one for good."""
+    shift, trace = 0.0, 0.0
+    for r in range(3):
+        shift = max(shift, abs(pose[r, 3] - start[r, 3]))
+        for c in range(3):
+            trace += pose[r, c] * start[r, c]
+    return not (shift < FAR * reach and trace > 1.0 + 2.0 * np.cos(FAR))
+
+
+@part
+def boxed_in(basis: Any, loads: Any, contacts: int, motions: int) -> bool:
+    """Whether a side of the box carries."""
+    found = False
+    for b in range(basis.shape[0]):
+        found = found or (contacts <= basis[b] < contacts + 2 * motions and loads[0, b] > TIED)
+    return found
+
+
+@part
+def found_rest(
+    pose: Any, start: Any, trial: Any, reach: float, most: float, begun: Any, programme: Any, rooms: Any, own: Any
+) -> int:
+    """What becomes of a part that goes along the force from a pose by the arms of each pose."""
+    motions, contacts = programme[3].shape[0], programme[1].shape[0]
+    basis, _, loads = begun
+    boxed_rows(programme[0], contacts)
+    step, there, dear, box = np.empty(6), np.empty((3, 4)), DEAR, most
+    for _ in range(STEPS):
+        cost, deepest = cost_of(pose, trial, reach, dear, rooms)
+        motion_rows(pose, trial, reach, rooms[1], programme)
+        if boxed(programme, rooms[0], box, dear, begun, own) < 0:
+            return LOST
+        motion = own[1][0]
+        gain = dear * (deepest - motion[motions])
+        for j in range(motions):
+            gain += programme[3][j] * motion[j]
+        there[:] = pose
+        length = shifted(there, trial, reach, motion, programme[2], step)
+        bounded = boxed_in(basis, loads, contacts, motions)
+        if length <= MET and not bounded:
+            if deepest <= PIERCED:
+                return RESTS
+            if dear >= DEAREST:
+                return CLASHES
+            dear, box = 10.0 * dear, most
+            continue
+        its_cost, _ = cost_of(there, trial, reach, dear, rooms)
+        if cost - its_cost >= 0.1 * gain - ROUNDING * reach:
+            pose[:] = there
+            if bounded and cost - its_cost > 0.75 * gain:
+                box = min(2.0 * box, most)
+            if far_from(pose, start, reach):
+                return TIPS
+        else:
+            box = 0.5 * min(box, length * reach)
+        if bounded and box < NEAR * reach and deepest <= NEAR * reach:
+            return BETWEEN
+        if box < MET * reach:
+            return LOST if deepest <= PIERCED else CLASHES
+    return LOST
+
+
+@kernel(
+    arrays="float64[:,:,::1], float64[:,:,::1], float64[:,::1], boolean, float64[:,:,::1], float64[:,:,::1], "
+    "float64[::1], float64[:,::1], float64[::1], float64[::1], float64[:,::1], float64[:,:,::1], float64, "
+    "float64[:,:,::1], float64[:,::1], float64[:,::1], int8[::1]"
+)
+def tilted_rests_found(
+    points: Any,
+    normals: Any,
+    heights: Any,
+    on_part: bool,
+    kept_vectors: Any,
+    kept_normals: Any,
+    kept_shifts: Any,
+    kept_steps: Any,
+    force: Any,
+    at: Any,
+    steps: Any,
+    start: Any,
+    reach: float,
+    turns: Any,
+    shifts: Any,
+    carried: Any,
+    outcomes: Any,
+) -> None:
+    """Poses of parts at rest; see `rests_found`.
+
+    Args:
+        points, normals, heights, on_part, kept_vectors, kept_normals, kept_shifts, kept_steps, force, at, steps, start,
+            reach, turns, shifts, carried: as there.
+        outcomes: RESTS, CLASHES, TIPS, LOST, or BETWEEN of what is near a balance of those that carry (n,).
+    """
+    count, motions = points.shape[0], steps.shape[1]
+    pose, begin_at, first = np.empty((3, 4)), np.empty((3, 4)), np.empty(kept_shifts.shape[0])
+    kept = (kept_vectors, kept_normals, kept_shifts, kept_steps, first)
+    size, all_rows = motions + 1, count + 2 * motions + 1
+    begun = (np.empty(size, np.int64), np.empty((size, size)), np.empty((2, size)))
+    programme = (np.empty((all_rows, size)), np.empty((count, 6)), np.empty((6, motions)), np.empty(motions))
+    rooms, own = (np.empty(count), np.empty(6)), (np.empty(all_rows), (np.empty(size), np.empty(size)))
+    for i in range(outcomes.shape[0]):
+        trial, outcome, box = ((points, normals, heights), i, on_part, kept, (force, at), steps), TIPS, SEARCH * reach
+        for _ in range(TRIES):
+            if outcome == TIPS:
+                begin(pose, first, start, i, kept)
+                begin_at[:] = pose
+                outcome = found_rest(pose, begin_at, trial, reach, box, begun, programme, rooms, own)
+                box = box / 8.0
+        outcomes[i] = outcome
+        for b in range(size):
+            if begun[0][b] >= count:
+                begun[0][b], begun[2][0, b] = 0, 0.0
+        note(outcomes[i], pose, begun[0], begun[2], i, (turns, shifts, carried))
