@@ -66,9 +66,7 @@ def test_a_warm_bar_takes_the_room_that_its_frame_leaves(road: str, tmp_path: Pa
     Sums of a few numbers of 100 mm: 1e-9 um is far more than their rounding.
     """
     run = run_of(BAR, tmp_path)
-    oven, current, length = (
-        column(run, name) for name in ("oven [K]", "current [K]", "bar length [um]")
-    )
+    oven, current, length = (column(run, name) for name in ("oven [K]", "current [K]", "bar length [um]"))
     by_hand = 1000 * (301 * (1 + STEEL * oven) - 300 * (1 + ALUMINIUM * (oven + current))) - length
     np.testing.assert_allclose(column(run, f"{ROADS[road]}:gap"), by_hand, atol=1e-8, rtol=0)
     mean = 1000 + 1000 * ((301 * STEEL - 300 * ALUMINIUM) * 30 - 300 * ALUMINIUM * 10)

@@ -14,11 +14,13 @@ class Entry(Strict, ABC):
 
     A class whose `kind` is a literal is a kind, which a vocabulary registers; one without is what several kinds have
     in common. `words` says in messages what an entry is, and of a common class what its kinds are together.
-    `shared` lets several vocabularies have the kind, each with a meaning of its own.
+    `shared` lets several vocabularies have the kind, each with a meaning of its own. `requires` names distributions
+    whose versions decide the results of scenes with such an entry, beside those of its mechanism.
     """
 
     words: ClassVar[str] = ""
     shared: ClassVar[bool] = False
+    requires: ClassVar[tuple[str, ...]] = ()
 
     kind: str
 

@@ -68,9 +68,10 @@ def mechanism_of(scene: Scene) -> Mechanism:
 
 
 def requires_of(scene: Scene) -> tuple[str, ...]:
-    """The packages whose versions decide its results: of its mechanism, of what extends it, of laws that it states."""
+    """The packages whose versions decide its results: of its mechanism, of what extends it, of laws and entries."""
     own = mechanism_of(scene)
     used = (each for each in scene.grammar.vocabularies_of(scene) if own.name in each.extends)
     others = (*used, *scene.grammar.lawgivers_of(scene))
     extending = (each.requires for each in others if isinstance(each, Mechanism))
-    return tuple(dict.fromkeys(name for names in (own.requires, *extending) for name in names))
+    entries = (entry.requires for entry in scene.entries().values())
+    return tuple(dict.fromkeys(name for names in (own.requires, *extending, *entries) for name in names))

@@ -27,7 +27,7 @@ def posed(turns: Array, places: Array) -> Array:
 def whole(start: SolidMesh, end: SolidMesh) -> SolidPair:
     """A pair of which every triangle is asked, wherever it stands."""
     every = np.arange(len(start.triangles)), np.arange(len(end.triangles))
-    return SolidPair(start, end, np.eye(4), 0.0, np.inf, *every)
+    return SolidPair(start, end, np.eye(4), 0.0, np.inf, *every, *every)
 
 
 def read(pair: SolidPair, poses: Array) -> Array:

@@ -1,6 +1,7 @@
 """Distances of parts in their trials, by FCL. Made in the worker, for FCL's objects do not pickle."""
 
 from collections.abc import Mapping
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -8,7 +9,7 @@ from numpy.typing import NDArray
 from tol3d.assembly.clearances.meshes import SolidMesh
 from tol3d.assembly.clearances.pair import SolidPair, relative_pose
 from tol3d.assembly.model.statuses import OK, OVERLAP
-from tol3d.solids.distance import NearestPoints, Surface, mesh_surface, overlapping, put
+from tol3d.solids.distance import Integers, Nearest, NearestPoints, Surface, mesh_surface, overlapping, put
 
 Array = NDArray[np.float64]
 Codes = NDArray[np.int8]
@@ -43,8 +44,18 @@ class PairDistances:
     def __init__(self, pair: SolidPair) -> None:
         self._pair = pair
         self._nearest = NearestPoints()
-        self._faces = surface_of(pair.start, pair.start_faces), surface_of(pair.end, pair.end_faces)
-        self._whole: tuple[Surface, Surface] | None = None
+
+    @cached_property
+    def _close(self) -> "_Asked":
+        """For parts that have moved no farther than the reach."""
+        pair = self._pair
+        return _Asked(pair, (pair.start_faces, pair.end_faces), (pair.start_near, pair.end_near))
+
+    @cached_property
+    def _far(self) -> "_Asked":
+        """All triangles of both; made when the first parts have moved farther."""
+        every = np.arange(len(self._pair.start.triangles)), np.arange(len(self._pair.end.triangles))
+        return _Asked(self._pair, every, every)
 
     def of(self, relative: Array) -> tuple[Array, Codes]:
         """Distances and codes, see SolidDistances.read; of poses of the second part in the frame of the first."""
@@ -58,31 +69,79 @@ class PairDistances:
 
     def _distance(self, pose: Array, moved: float) -> float:
         """0 where the parts overlap."""
-        pair = self._pair
-        enough = moved <= pair.reach
-        if moved >= pair.distance and self._overlap(pose):
+        asked = self._close if moved <= self._pair.reach else self._far
+        found = asked.nearest(self._nearest, pose)
+        if found.distance <= 0.0:
             return 0.0
-        first, second = self._faces if enough else self._solids
-        put(second, pose[:3, :3], pose[:3, 3])
-        return max(self._nearest.of(first, second).distance, 0.0)
+        could_meet = moved >= self._pair.distance
+        if could_meet and not asked.has_between(found, pose) and (asked.meet(pose) or self._is_inside(pose)):
+            return 0.0
+        return found.distance
 
-    @property
-    def _solids(self) -> tuple[Surface, Surface]:
-        """All triangles of both: for parts that have moved far, and made when the first of them has."""
-        if self._whole is None:
-            self._whole = surface_of(self._pair.start), surface_of(self._pair.end)
-        return self._whole
-
-    def _overlap(self, pose: Array) -> bool:
-        """Whether the parts meet, or one lies in the other."""
-        first, second = self._solids
-        put(second, pose[:3, :3], pose[:3, 3])
-        if overlapping(first, second):
-            return True
+    def _is_inside(self, pose: Array) -> bool:
+        """Whether one of two parts that do not meet lies in the other."""
         start, end = self._pair.start, self._pair.end
         one = pose[:3, :3] @ end.vertices[0] + pose[:3, 3]
         other = pose[:3, :3].T @ (start.vertices[0] - pose[:3, 3])
         return turns_about(start.corners - one) > INSIDE or turns_about(end.corners - other) > INSIDE
+
+
+class _Asked:
+    """Triangles of two parts that can be nearest, and those that can meet.
+
+    Args:
+        pair: of which.
+        faces: that can be nearest, of the first part and of the second.
+        near: that can meet, likewise.
+    """
+
+    def __init__(self, pair: SolidPair, faces: tuple[Integers, Integers], near: tuple[Integers, Integers]) -> None:
+        self._meshes = pair.start, pair.end
+        self._surfaces = surface_of(pair.start, faces[0]), surface_of(pair.end, faces[1])
+        self._corners = pair.start.corners[faces[0]], pair.end.corners[faces[1]]
+        self._near = near
+
+    def nearest(self, query: NearestPoints, pose: Array) -> Nearest:
+        """Where the parts are nearest, the second one at a pose (4, 4) in the frame of the first."""
+        put(self._surfaces[1], pose[:3, :3], pose[:3, 3])
+        return query.of(*self._surfaces)
+
+    def has_between(self, found: Nearest, pose: Array) -> bool:
+        """Whether a plane is between all that can meet, and both nearest points look out of their parts to it.
+
+        Then no surface meets another, and neither part is in the other. Where it is not so, nothing is known.
+        """
+        (here, there), (one, other) = found.points, found.triangles
+        normal, turn = there - here, pose[:3, :3]
+        if _normal(self._corners[0][one]) @ normal <= 0.0 or turn @ _normal(self._corners[1][other]) @ normal >= 0.0:
+            return False
+        first, second = self._points
+        return bool(
+            (first @ normal).max(initial=-np.inf)
+            < (second @ (turn.T @ normal)).min(initial=np.inf) + pose[:3, 3] @ normal
+        )
+
+    @cached_property
+    def _points(self) -> tuple[Array, Array]:
+        """Vertices of what can meet, each in the frame of its part (n, 3) [mm]."""
+        first, second = (
+            mesh.vertices[np.unique(mesh.triangles[near])] for mesh, near in zip(self._meshes, self._near, strict=True)
+        )
+        return first, second
+
+    @cached_property
+    def _meeting(self) -> tuple[Surface, Surface]:
+        return surface_of(self._meshes[0], self._near[0]), surface_of(self._meshes[1], self._near[1])
+
+    def meet(self, pose: Array) -> bool:
+        """Whether surfaces meet."""
+        put(self._meeting[1], pose[:3, :3], pose[:3, 3])
+        return overlapping(*self._meeting)
+
+
+def _normal(corners: Array) -> Array:
+    """Of a triangle (3, 3), outwards; twice its area long."""
+    return np.cross(corners[1] - corners[0], corners[2] - corners[0])
 
 
 def turns_about(corners: Array) -> float:
@@ -99,8 +158,8 @@ def turns_about(corners: Array) -> float:
 
 
 def surface_of(mesh: SolidMesh, faces: NDArray[np.int64] | None = None) -> Surface:
-    """A mesh, or some of its triangles with no vertices but theirs."""
-    if faces is None:
+    """A mesh, or some of its triangles with no vertices but theirs; all where none are named, which FCL cannot hold."""
+    if faces is None or not len(faces):
         return mesh_surface(mesh.vertices, mesh.triangles)
     kept, numbers = np.unique(mesh.triangles[faces], return_inverse=True)
     return mesh_surface(mesh.vertices[kept], numbers.reshape(-1, 3))

@@ -70,6 +70,18 @@ def needed(vertices: Array, triangles: NDArray[np.int64], other: Array, height: 
     return wanted
 
 
+def nearby(own: Array, other: Array, reach: float) -> Bools:
+    """Which triangles (n, 3, 3) have one of the other part's within a reach [mm] of them, or may have (n,)."""
+    low, high = own.min(axis=1) - reach, own.max(axis=1) + reach
+    near = _boxes_meet(low, high, other)
+    near_other = Other(other[_boxes_meet(other.min(axis=1) - reach, other.max(axis=1) + reach, own)])
+    if near.any() and len(near_other.corners):
+        rows = np.flatnonzero(near)
+        none = np.zeros((len(rows), 0, 3)), np.zeros((len(rows), 0))
+        near[rows] = _reached(low[rows], high[rows], *none, near_other)
+    return near
+
+
 def _boxes_meet(low: Array, high: Array, other: Array) -> Bools:
     """Whether boxes (n, 3) meet the box about all of the other part (n,)."""
     ends = other.reshape(-1, 3)

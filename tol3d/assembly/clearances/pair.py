@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.assembly.clearances.faces import needed
+from tol3d.assembly.clearances.faces import nearby, needed
 from tol3d.assembly.clearances.meshes import SolidMesh, solid_mesh
 from tol3d.numerics import frames
 from tol3d.solids import BuiltShape
@@ -14,6 +14,9 @@ Array = NDArray[np.float64]
 
 SHARE = 0.5
 """Of the chord error that the first part may have; the second has what it leaves, which of a flat part is all."""
+
+ROUNDING = 1e-6
+"""mm; of distances of boxes about triangles."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -24,8 +27,9 @@ class SolidPair:
         start, end: their meshes, each in the frame of its part.
         nominal: pose of the second one in the frame of the first (4, 4).
         distance: nominally, by the meshes [mm].
-        reach: how far points of one part may move against the other [mm] for the next two to be enough.
+        reach: how far points of one part may move against the other [mm] for the next four to be enough.
         start_faces, end_faces: triangles that can be nearest then, numbers of their meshes'.
+        start_near, end_near: triangles that can meet the other part's then.
     """
 
     start: SolidMesh
@@ -35,6 +39,8 @@ class SolidPair:
     reach: float
     start_faces: NDArray[np.int64]
     end_faces: NDArray[np.int64]
+    start_near: NDArray[np.int64]
+    end_near: NDArray[np.int64]
 
     @property
     def chord_error(self) -> float:
@@ -91,10 +97,12 @@ def meshes_of(start: BuiltShape, end: BuiltShape, chord_error: float) -> tuple[S
 def solid_pair(meshes: tuple[SolidMesh, SolidMesh], nominal: Array, distance: float, reach: float) -> SolidPair:
     """A pair, for motions within a reach [mm]; see SolidPair."""
     start, end = meshes
-    height = distance + 2 * reach
+    slack = reach + ROUNDING
+    height = distance + 2 * slack
     there = end.corners @ nominal[:3, :3].T + nominal[:3, 3]
     back = inverse(nominal)
     here = start.corners @ back[:3, :3].T + back[:3, 3]
-    own = needed(start.vertices, start.triangles, there, height, reach)
-    its = needed(end.vertices, end.triangles, here, height, reach)
-    return SolidPair(start, end, nominal, distance, reach, np.flatnonzero(own), np.flatnonzero(its))
+    own = needed(start.vertices, start.triangles, there, height, slack)
+    its = needed(end.vertices, end.triangles, here, height, slack)
+    near = nearby(start.corners, there, slack), nearby(end.corners, here, slack)
+    return SolidPair(start, end, nominal, distance, reach, *map(np.flatnonzero, (own, its, *near)))

@@ -1,7 +1,7 @@
 """How far two parts are apart anywhere."""
 
 from collections.abc import Sequence
-from typing import Final, Literal, Self
+from typing import ClassVar, Final, Literal, Self
 
 from pydantic import Field, model_validator
 
@@ -18,6 +18,8 @@ CHORD_ERROR: Final = 2e-3
 
 class ClearanceSpec(TimedSpec):
     """The least distance of two parts as they stand, by their solids."""
+
+    requires: ClassVar[tuple[str, ...]] = ("python-fcl", "cadquery")
 
     kind: Literal["clearance"]
     from_: Name = Field(alias="from", description="a part with a solid")
