@@ -27,7 +27,7 @@ def posed(turns: Array, places: Array) -> Array:
 def whole(start: SolidMesh, end: SolidMesh) -> SolidPair:
     """A pair of which every triangle is asked, wherever it stands."""
     every = np.arange(len(start.triangles)), np.arange(len(end.triangles))
-    return SolidPair(start, end, np.eye(4), 0.0, np.inf, *every, *every)
+    return SolidPair(start, end, np.eye(4), 0.0, np.full((2, 3), np.inf), *every, *every)
 
 
 def read(pair: SolidPair, poses: Array) -> Array:
@@ -120,7 +120,7 @@ def test_the_triangles_that_are_needed_give_what_all_of_them_do(
     pair = solid_pair((start, end), pose, distance, reach)
     turns = rng.normal(size=(400, 3)) * 0.1 * reach / np.abs(start.vertices).max()
     poses = posed(turns, pose[:3, 3] + rng.normal(size=(400, 3)) * reach / 4)
-    poses = poses[pair.moved(poses) <= reach]
+    poses = poses[(pair.moved(poses) <= pair.reach).all(axis=(1, 2))]
     assert len(poses) > 200
     assert len(pair.start_faces) + len(pair.end_faces) < 0.8 * (len(start.triangles) + len(end.triangles))
     assert read(pair, poses) == pytest.approx(read(whole(start, end), poses), abs=1e-12)

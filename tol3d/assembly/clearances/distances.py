@@ -62,18 +62,18 @@ class PairDistances:
         moved = self._pair.moved(relative)
         values, codes = np.empty(len(relative)), np.full(len(relative), OK, dtype=np.int8)
         for k, pose in enumerate(relative):
-            distance = self._distance(pose, float(moved[k]))
+            distance = self._distance(pose, moved[k])
             values[k] = distance if distance > 0.0 else np.nan
             codes[k] = OK if distance > 0.0 else OVERLAP
         return values, codes
 
-    def _distance(self, pose: Array, moved: float) -> float:
+    def _distance(self, pose: Array, moved: Array) -> float:
         """0 where the parts overlap."""
-        asked = self._close if moved <= self._pair.reach else self._far
+        asked = self._close if (moved <= self._pair.reach).all() else self._far
         found = asked.nearest(self._nearest, pose)
         if found.distance <= 0.0:
             return 0.0
-        could_meet = moved >= self._pair.distance
+        could_meet = np.linalg.norm(moved, axis=1).min() >= self._pair.distance
         if could_meet and not asked.has_between(found, pose) and (asked.meet(pose) or self._is_inside(pose)):
             return 0.0
         return found.distance

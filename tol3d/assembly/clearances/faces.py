@@ -45,14 +45,14 @@ class Other:
         return np.asarray(self.corners.max(axis=1))
 
 
-def needed(vertices: Array, triangles: NDArray[np.int64], other: Array, height: float, slack: float) -> Bools:
+def needed(vertices: Array, triangles: NDArray[np.int64], other: Array, height: float, slack: Array) -> Bools:
     """Which triangles of a closed mesh are needed (n,).
 
     Args:
         vertices, triangles: of the mesh; where an edge has not two triangles, both are needed.
         other: corners of the other part's triangles in the same frame (m, 3, 3) [mm].
         height: how far the nearest points lie apart at most [mm].
-        slack: how far any point of the other part may move against this one [mm].
+        slack: how far any point of the other part may move against this one at most, along x, y and z (3,) [mm].
     """
     corners = vertices[triangles]
     reach = height + slack
@@ -70,8 +70,8 @@ def needed(vertices: Array, triangles: NDArray[np.int64], other: Array, height: 
     return wanted
 
 
-def nearby(own: Array, other: Array, reach: float) -> Bools:
-    """Which triangles (n, 3, 3) have one of the other part's within a reach [mm] of them, or may have (n,)."""
+def nearby(own: Array, other: Array, reach: Array) -> Bools:
+    """Which triangles (n, 3, 3) have one of the other part's within a reach along x, y and z (3,) [mm], or may (n,)."""
     low, high = own.min(axis=1) - reach, own.max(axis=1) + reach
     near = _boxes_meet(low, high, other)
     near_other = Other(other[_boxes_meet(other.min(axis=1) - reach, other.max(axis=1) + reach, own)])
@@ -98,7 +98,7 @@ def _units(vectors: Array) -> Array:
     return np.asarray(np.where(length > THIN, vectors / np.where(length > THIN, length, 1.0), 0.0))
 
 
-def _below_something(corners: Array, other: Other, height: float, slack: float) -> Bools:
+def _below_something(corners: Array, other: Other, height: float, slack: Array) -> Bools:
     """Whether something of the other part lies over triangles (n, 3, 3), within a height along their normals."""
     normals = _normals(corners)
     across = np.cross(np.roll(corners, -1, axis=1) - corners, normals[:, None])
@@ -106,12 +106,13 @@ def _below_something(corners: Array, other: Other, height: float, slack: float) 
     axes = np.concatenate([-normals[:, None], normals[:, None], across], axis=1)
     limits = np.stack(
         [
-            slack - np.einsum("nx,nx->n", normals, corners[:, 0]),
-            height + slack + np.einsum("nx,nx->n", normals, corners[:, 0]),
-            *(slack + np.einsum("nx,nx->n", across[:, k], corners[:, k]) for k in range(3)),
+            -np.einsum("nx,nx->n", normals, corners[:, 0]),
+            height + np.einsum("nx,nx->n", normals, corners[:, 0]),
+            *(np.einsum("nx,nx->n", across[:, k], corners[:, k]) for k in range(3)),
         ],
         axis=1,
     )
+    limits += np.abs(axes) @ slack
     lifted = corners + height * normals[:, None]
     both = np.concatenate([corners, lifted], axis=1)
     return _reached(both.min(axis=1) - slack, both.max(axis=1) + slack, axes, limits, other)
@@ -162,7 +163,7 @@ def _add_edges(
     of_triangle: NDArray[np.int64],
     other: Other,
     height: float,
-    slack: float,
+    slack: Array,
 ) -> None:
     """Add a triangle of each edge that is needed and has none yet."""
     open_edges = ~wanted[of_triangle].any(axis=1)
@@ -179,7 +180,7 @@ def _add_edges(
         middle = corners[of_triangle[:, k]].mean(axis=1) - start
         axes.append(_units(middle - np.einsum("nx,nx->n", middle, along)[:, None] * along))
         ends.append(start)
-    limits = [np.einsum("nx,nx->n", own, at) + slack for own, at in zip(axes, ends, strict=True)]
+    limits = [np.einsum("nx,nx->n", own, at) + np.abs(own) @ slack for own, at in zip(axes, ends, strict=True)]
     over = height * _between(_normals(corners[of_triangle[:, 0]]), _normals(corners[of_triangle[:, 1]]))
     low = np.minimum(start, end) + over.min(axis=1) - slack
     high = np.maximum(start, end) + over.max(axis=1) + slack
@@ -201,7 +202,7 @@ def _between(first: Array, second: Array) -> Array:
 
 
 def _add_vertices(
-    wanted: Bools, vertices: Array, triangles: NDArray[np.int64], other: Other, height: float, slack: float
+    wanted: Bools, vertices: Array, triangles: NDArray[np.int64], other: Other, height: float, slack: Array
 ) -> None:
     """Add a triangle of each vertex that is needed and has none yet."""
     covered = np.zeros(len(vertices), dtype=bool)
@@ -213,7 +214,7 @@ def _add_vertices(
         ends = np.unique(triangles[around])
         edges = vertices[ends[ends != vertex]] - vertices[vertex]
         axes = _units(edges)
-        limits = axes @ vertices[vertex] + slack
+        limits = axes @ vertices[vertex] + np.abs(axes) @ slack
         at = vertices[vertex][None]
         if _reached(at - reach, at + reach, axes[None], limits[None], other)[0]:
             wanted[around[0]] = True

@@ -80,9 +80,9 @@ def facing(meshes: tuple[SolidMesh, SolidMesh], displaced: Displaced, distance: 
         chord_error: that is stated [mm].
     """
     motions = range(len(displaced.of_start))
-    still = SolidPair(*meshes, displaced.relative, distance, 0.0, *(np.zeros(0, dtype=np.int64),) * 4)
+    still = SolidPair(*meshes, displaced.relative, distance, np.zeros((2, 3)), *(np.zeros(0, dtype=np.int64),) * 4)
     poses = np.array([displaced.posed(k, 1.0) for k in motions]).reshape(-1, 4, 4)
-    reach = float(still.moved(poses).max(initial=0.0))
+    reach = still.moved(poses).max(axis=0, initial=0.0)
     search = _Search(solid_pair(meshes, displaced.relative, distance, reach), displaced, NEARER * chord_error)
     search.ask(displaced.relative)
     for k in motions:

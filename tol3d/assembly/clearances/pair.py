@@ -27,7 +27,8 @@ class SolidPair:
         start, end: their meshes, each in the frame of its part.
         nominal: pose of the second one in the frame of the first (4, 4).
         distance: nominally, by the meshes [mm].
-        reach: how far points of one part may move against the other [mm] for the next four to be enough.
+        reach: how far points may move at most for the next four to be enough: of the second part along x, y and z of the
+            first, of the first along those of the second (2, 3) [mm].
         start_faces, end_faces: triangles that can be nearest then, numbers of their meshes'.
         start_near, end_near: triangles that can meet the other part's then.
     """
@@ -36,7 +37,7 @@ class SolidPair:
     end: SolidMesh
     nominal: Array
     distance: float
-    reach: float
+    reach: Array
     start_faces: NDArray[np.int64]
     end_faces: NDArray[np.int64]
     start_near: NDArray[np.int64]
@@ -48,15 +49,13 @@ class SolidPair:
         return self.start.chord_error + self.end.chord_error
 
     def moved(self, relative: Array) -> Array:
-        """How far any point of one part has moved at most against the other since it stood nominally (n,) [mm].
+        """How far any point has moved at most since parts stood nominally (n, 2, 3) [mm], see `reach`.
 
         Args:
             relative: poses of the second part in the frame of the first (n, 4, 4).
         """
-        return np.maximum(
-            _largest(relative, self.nominal, self.end.box),
-            _largest(inverse(relative), inverse(self.nominal), self.start.box),
-        )
+        there = _largest(relative, self.nominal, self.end.box)
+        return np.stack([there, _largest(inverse(relative), inverse(self.nominal), self.start.box)], axis=1)
 
 
 def inverse(pose: Array) -> Array:
@@ -74,13 +73,11 @@ def relative_pose(start: Array, end: Array) -> Array:
 
 
 def _largest(poses: Array, nominal: Array, box: Array) -> Array:
-    """The largest displacement of the corners of a box (8, 3) between poses (n, 4, 4) and a nominal one: (n,) [mm]."""
-    largest = np.zeros(poses.shape[:-2])
+    """The largest displacements of the corners of a box (8, 3) from a nominal pose to others (n, 4, 4): (n, 3) [mm]."""
+    largest = np.zeros((*poses.shape[:-2], 3))
     for corner in box:
         there = frames.apply(poses[..., :3, :3], np.broadcast_to(corner, (*poses.shape[:-2], 3))) + poses[..., :3, 3]
-        off = there - (nominal[:3, :3] @ corner + nominal[:3, 3])
-        square = off[..., 0] * off[..., 0] + off[..., 1] * off[..., 1] + off[..., 2] * off[..., 2]
-        largest = np.maximum(largest, np.sqrt(square))
+        largest = np.maximum(largest, np.abs(there - (nominal[:3, :3] @ corner + nominal[:3, 3])))
     return largest
 
 
@@ -94,15 +91,16 @@ def meshes_of(start: BuiltShape, end: BuiltShape, chord_error: float) -> tuple[S
     return first, solid_mesh(end, chord_error - first.chord_error)
 
 
-def solid_pair(meshes: tuple[SolidMesh, SolidMesh], nominal: Array, distance: float, reach: float) -> SolidPair:
-    """A pair, for motions within a reach [mm]; see SolidPair."""
+def solid_pair(meshes: tuple[SolidMesh, SolidMesh], nominal: Array, distance: float, reach: Array | float) -> SolidPair:
+    """A pair, for motions within a reach (2, 3) [mm]; see SolidPair."""
     start, end = meshes
+    reach = np.broadcast_to(reach, (2, 3))
     slack = reach + ROUNDING
-    height = distance + 2 * slack
+    height = distance + float(np.linalg.norm(slack, axis=1).max())
     there = end.corners @ nominal[:3, :3].T + nominal[:3, 3]
     back = inverse(nominal)
     here = start.corners @ back[:3, :3].T + back[:3, 3]
-    own = needed(start.vertices, start.triangles, there, height, slack)
-    its = needed(end.vertices, end.triangles, here, height, slack)
-    near = nearby(start.corners, there, slack), nearby(end.corners, here, slack)
+    own = needed(start.vertices, start.triangles, there, height, slack[0])
+    its = needed(end.vertices, end.triangles, here, height, slack[1])
+    near = nearby(start.corners, there, slack[0]), nearby(end.corners, here, slack[1])
     return SolidPair(start, end, nominal, distance, reach, *map(np.flatnonzero, (own, its, *near)))

@@ -18,12 +18,12 @@ class Facing:
         normals: directions along which they come nearer, from the first part to the second, nominally in the frame of
             the first (pairs, 3).
         lengths: distances along these, nominally (pairs,) [mm].
-        reach: how far points of one part move against the other, about [mm]: what is farther off is not looked at
-            first.
+        reach: how far points move, about: of the second part along x, y and z of the first, of the first along those of
+            the second (2, 3) [mm]. What moves no farther is read of fewer triangles.
     """
 
     starts: Array
     ends: Array
     normals: Array
     lengths: Array
-    reach: float
+    reach: Array
