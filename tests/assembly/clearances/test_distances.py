@@ -26,8 +26,7 @@ def posed(turns: Array, places: Array) -> Array:
 
 def whole(start: SolidMesh, end: SolidMesh) -> SolidPair:
     """A pair of which every triangle is asked, wherever it stands."""
-    every = np.arange(len(start.triangles)), np.arange(len(end.triangles))
-    return SolidPair(start, end, np.eye(4), 0.0, np.full((2, 3), np.inf), *every, *every)
+    return SolidPair(start, end, np.eye(4), 0.0)
 
 
 def read(pair: SolidPair, poses: Array) -> Array:
@@ -117,12 +116,13 @@ def test_the_triangles_that_are_needed_give_what_all_of_them_do(
     pose[:3, 3] = nominal
     distance = float(read(whole(start, end), pose[None])[0])
     reach = 0.4 * distance
-    pair = solid_pair((start, end), pose, distance, reach)
+    pair = solid_pair((start, end), pose, distance, np.full((2, 3), reach))
     turns = rng.normal(size=(400, 3)) * 0.1 * reach / np.abs(start.vertices).max()
     poses = posed(turns, pose[:3, 3] + rng.normal(size=(400, 3)) * reach / 4)
-    poses = poses[(pair.moved(poses) <= pair.reach).all(axis=(1, 2))]
+    poses = poses[(pair.moved(poses) <= reach).all(axis=(1, 2))]
     assert len(poses) > 200
-    assert len(pair.start_faces) + len(pair.end_faces) < 0.8 * (len(start.triangles) + len(end.triangles))
+    widest = sum(map(len, pair.levels[-1].faces))
+    assert sum(map(len, pair.levels[0].faces)) <= widest < 0.8 * (len(start.triangles) + len(end.triangles))
     assert read(pair, poses) == pytest.approx(read(whole(start, end), poses), abs=1e-12)
 
 
@@ -130,7 +130,7 @@ def test_parts_that_have_moved_farther_are_read_by_all_of_their_triangles() -> N
     start, end = block((20.0, 20.0, 20.0)), block((4.0, 4.0, 4.0))
     above = np.eye(4)
     above[2, 3] = 12.5
-    pair = solid_pair((start, end), above, 0.5, 0.1)
+    pair = solid_pair((start, end), above, 0.5, np.full((2, 3), 0.1))
     beside = posed(np.zeros((1, 3)), np.array([[13.0, 0.0, 0.0]]))
     assert read(pair, beside) == pytest.approx([1.0], abs=FOUND)
 
@@ -141,7 +141,7 @@ def test_overlap_has_no_value_but_a_status() -> None:
     above[2, 3] = 12.5
     poses = posed(np.zeros((4, 3)), np.array([[0, 0, 12.5], [0, 0, 11.9], [0.0, 0, 0], [0, 0, 12.01]]))
     for reach in (0.1, 20.0):
-        values, codes = PairDistances(solid_pair((start, end), above, 0.5, reach)).of(poses)
+        values, codes = PairDistances(solid_pair((start, end), above, 0.5, np.full((2, 3), reach))).of(poses)
         assert codes.tolist() == [OK, OVERLAP, OVERLAP, OK]  # cut by a face; wholly inside
         assert np.isnan(values[[1, 2]]).all()
         assert values[[0, 3]] == pytest.approx([0.5, 0.01], abs=FOUND)

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.assembly.clearances.meshes import SolidMesh
-from tol3d.assembly.clearances.pair import SolidPair, relative_pose
+from tol3d.assembly.clearances.pair import Level, SolidPair, relative_pose
 from tol3d.assembly.model.statuses import OK, OVERLAP
 from tol3d.solids.distance import Integers, Nearest, NearestPoints, Surface, mesh_surface, overlapping, put
 
@@ -44,18 +44,21 @@ class PairDistances:
     def __init__(self, pair: SolidPair) -> None:
         self._pair = pair
         self._nearest = NearestPoints()
+        self._asked: dict[int, Asked] = {}
 
-    @cached_property
-    def _close(self) -> "_Asked":
-        """For parts that have moved no farther than the reach."""
-        pair = self._pair
-        return _Asked(pair, (pair.start_faces, pair.end_faces), (pair.start_near, pair.end_near))
+    def asked(self, moved: Array) -> "Asked":
+        """What is asked where points have moved as far as that (2, 3) [mm], see Level.reach; made when first asked."""
+        levels = self._pair.levels
+        number = next((k for k, level in enumerate(levels) if (moved <= level.reach).all()), len(levels))
+        if number not in self._asked:
+            self._asked[number] = self._made(levels[number] if number < len(levels) else None)
+        return self._asked[number]
 
-    @cached_property
-    def _far(self) -> "_Asked":
-        """All triangles of both; made when the first parts have moved farther."""
+    def _made(self, level: Level | None) -> "Asked":
+        if level is not None:
+            return Asked(self._pair, level.faces, level.near)
         every = np.arange(len(self._pair.start.triangles)), np.arange(len(self._pair.end.triangles))
-        return _Asked(self._pair, every, every)
+        return Asked(self._pair, every, every)
 
     def of(self, relative: Array) -> tuple[Array, Codes]:
         """Distances and codes, see SolidDistances.read; of poses of the second part in the frame of the first."""
@@ -69,7 +72,7 @@ class PairDistances:
 
     def _distance(self, pose: Array, moved: Array) -> float:
         """0 where the parts overlap."""
-        asked = self._close if (moved <= self._pair.reach).all() else self._far
+        asked = self.asked(moved)
         found = asked.nearest(self._nearest, pose)
         if found.distance <= 0.0:
             return 0.0
@@ -86,7 +89,7 @@ class PairDistances:
         return turns_about(start.corners - one) > INSIDE or turns_about(end.corners - other) > INSIDE
 
 
-class _Asked:
+class Asked:
     """Triangles of two parts that can be nearest, and those that can meet.
 
     Args:
@@ -98,7 +101,7 @@ class _Asked:
     def __init__(self, pair: SolidPair, faces: tuple[Integers, Integers], near: tuple[Integers, Integers]) -> None:
         self._meshes = pair.start, pair.end
         self._surfaces = surface_of(pair.start, faces[0]), surface_of(pair.end, faces[1])
-        self._corners = pair.start.corners[faces[0]], pair.end.corners[faces[1]]
+        self.corners = pair.start.corners[faces[0]], pair.end.corners[faces[1]]
         self._near = near
 
     def nearest(self, query: NearestPoints, pose: Array) -> Nearest:
@@ -113,7 +116,7 @@ class _Asked:
         """
         (here, there), (one, other) = found.points, found.triangles
         normal, turn = there - here, pose[:3, :3]
-        if _normal(self._corners[0][one]) @ normal <= 0.0 or turn @ _normal(self._corners[1][other]) @ normal >= 0.0:
+        if _normal(self.corners[0][one]) @ normal <= 0.0 or turn @ _normal(self.corners[1][other]) @ normal >= 0.0:
             return False
         first, second = self._points
         return bool(

@@ -11,7 +11,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.assembly.clearances.distances import surface_of
+from tol3d.assembly.clearances.distances import PairDistances, surface_of
 from tol3d.assembly.clearances.meshes import SolidMesh
 from tol3d.assembly.clearances.pair import SolidPair, inverse, solid_pair
 from tol3d.assembly.model.facing import Facing
@@ -80,9 +80,8 @@ def facing(meshes: tuple[SolidMesh, SolidMesh], displaced: Displaced, distance: 
         chord_error: that is stated [mm].
     """
     motions = range(len(displaced.of_start))
-    still = SolidPair(*meshes, displaced.relative, distance, np.zeros((2, 3)), *(np.zeros(0, dtype=np.int64),) * 4)
     poses = np.array([displaced.posed(k, 1.0) for k in motions]).reshape(-1, 4, 4)
-    reach = still.moved(poses).max(axis=0, initial=0.0)
+    reach = SolidPair(*meshes, displaced.relative, distance).moved(poses).max(axis=0, initial=0.0)
     search = _Search(solid_pair(meshes, displaced.relative, distance, reach), displaced, NEARER * chord_error)
     search.ask(displaced.relative)
     for k in motions:
@@ -107,9 +106,7 @@ class _Search:
     def __init__(self, pair: SolidPair, displaced: Displaced, nearer: float) -> None:
         self.kept: list[_Kept] = []
         self._pair, self._displaced, self._nearer = pair, displaced, nearer
-        self._nearest = NearestPoints()
-        self._first = surface_of(pair.start, pair.start_faces)
-        self._second = surface_of(pair.end, pair.end_faces)
+        self._nearest, self._distances = NearestPoints(), PairDistances(pair)
 
     def along(self, motion: int) -> None:
         """Ask at a motion, or at the part of it by which the parts do not overlap yet."""
@@ -119,34 +116,28 @@ class _Search:
 
     def ask(self, pose: Array, motion: int | None = None) -> bool:
         """Keep the nearest points at a pose (4, 4), if no pair is as near; whether the parts are apart there."""
-        put(self._second, pose[:3, :3], pose[:3, 3])
-        found = self._nearest.of(self._first, self._second)
+        asked = self._distances.asked(self._pair.moved(pose[None])[0])
+        found = asked.nearest(self._nearest, pose)
         if found.distance <= 0.0:
             return False
-        own = self._kept(found, pose)
+        own = self._kept(found, pose, asked.corners[1][found.triangles[1]])
         known = min((each.moved[motion] for each in self.kept), default=np.inf) if motion is not None else np.inf
         if motion is None or (own.moved[motion] < known - self._nearer and len(self.kept) < MOST_PAIRS):
             self.kept.append(own)
         return True
 
-    def _kept(self, found: Nearest, pose: Array) -> _Kept:
+    def _kept(self, found: Nearest, pose: Array, corners: Array) -> _Kept:
         here, there = found.points
         end = pose[:3, :3].T @ (there - pose[:3, 3])
         relative = self._displaced.relative
         normal = (there - here) / np.linalg.norm(there - here)
-        if self._is_of_a_face(pose[:3, :3].T @ normal, found.triangles[1]):
+        if _is_of_a_face(pose[:3, :3].T @ normal, corners):
             normal = (
                 relative[:3, :3] @ pose[:3, :3].T @ normal
             )  # that of a face of the second part, which it turns with
         apart = float(normal @ (relative[:3, :3] @ end + relative[:3, 3] - here))
         length = max(apart, self.kept[0].length) if self.kept else apart
         return _Kept(np.array(here), end, normal, length, length + self._closing(here, end, normal))
-
-    def _is_of_a_face(self, normal: Array, triangle: int) -> bool:
-        """Whether a direction in the frame of the second part is normal to one of its triangles."""
-        a, b, c = self._pair.end.corners[self._pair.end_faces[triangle]]
-        across = np.cross(b - a, c - a)
-        return float(np.linalg.norm(np.cross(normal, across))) < SLANT * float(np.linalg.norm(across))
 
     def _closing(self, start: Array, end: Array, normal: Array) -> Array:
         """Changes of the distance of two points along a normal, to first order, in all motions (motions,) [mm]."""
@@ -160,3 +151,9 @@ class _Search:
             at = pose[:3, :3] @ point + pose[:3, 3]
             changes.append(torsors[:, :3] @ along + torsors[:, 3:] @ np.cross(at, along))
         return np.asarray(changes[1] - changes[0])
+
+
+def _is_of_a_face(normal: Array, corners: Array) -> bool:
+    """Whether a direction of unit length is normal to a triangle (3, 3)."""
+    across = np.cross(corners[1] - corners[0], corners[2] - corners[0])
+    return float(np.linalg.norm(np.cross(normal, across))) < SLANT * float(np.linalg.norm(across))

@@ -11,12 +11,31 @@ from tol3d.numerics import frames
 from tol3d.solids import BuiltShape
 
 Array = NDArray[np.float64]
+Integers = NDArray[np.int64]
 
-SHARE = 0.5
+SHARES = (0.25, 0.5, 1.0)
+"""Of the reach: the nearer parts are to where they stand nominally, the fewer triangles they need."""
+FIRST = 0.5
 """Of the chord error that the first part may have; the second has what it leaves, which of a flat part is all."""
 
 ROUNDING = 1e-6
 """mm; of distances of boxes about triangles."""
+
+
+@dataclass(frozen=True, eq=False)
+class Level:
+    """What is needed of two parts that have not moved far from where they stand nominally.
+
+    Args:
+        reach: how far points have moved at most: of the second part along x, y and z of the first, of the first along
+            those of the second (2, 3) [mm].
+        faces: triangles that can be nearest to the other part, numbers of the first mesh's and of the second's.
+        near: triangles that can meet the other part's, likewise.
+    """
+
+    reach: Array
+    faces: tuple[Integers, Integers]
+    near: tuple[Integers, Integers]
 
 
 @dataclass(frozen=True, eq=False)
@@ -27,21 +46,14 @@ class SolidPair:
         start, end: their meshes, each in the frame of its part.
         nominal: pose of the second one in the frame of the first (4, 4).
         distance: nominally, by the meshes [mm].
-        reach: how far points may move at most for the next four to be enough: of the second part along x, y and z of the
-            first, of the first along those of the second (2, 3) [mm].
-        start_faces, end_faces: triangles that can be nearest then, numbers of their meshes'.
-        start_near, end_near: triangles that can meet the other part's then.
+        levels: the nearest first; parts that have moved farther than all are read of all their triangles.
     """
 
     start: SolidMesh
     end: SolidMesh
     nominal: Array
     distance: float
-    reach: Array
-    start_faces: NDArray[np.int64]
-    end_faces: NDArray[np.int64]
-    start_near: NDArray[np.int64]
-    end_near: NDArray[np.int64]
+    levels: tuple[Level, ...] = ()
 
     @property
     def chord_error(self) -> float:
@@ -49,7 +61,7 @@ class SolidPair:
         return self.start.chord_error + self.end.chord_error
 
     def moved(self, relative: Array) -> Array:
-        """How far any point has moved at most since parts stood nominally (n, 2, 3) [mm], see `reach`.
+        """How far any point has moved at most since parts stood nominally (n, 2, 3) [mm], see Level.reach.
 
         Args:
             relative: poses of the second part in the frame of the first (n, 4, 4).
@@ -87,20 +99,23 @@ def meshes_of(start: BuiltShape, end: BuiltShape, chord_error: float) -> tuple[S
     Raises:
         GeometryError: that would take too many triangles.
     """
-    first = solid_mesh(start, SHARE * chord_error)
+    first = solid_mesh(start, FIRST * chord_error)
     return first, solid_mesh(end, chord_error - first.chord_error)
 
 
-def solid_pair(meshes: tuple[SolidMesh, SolidMesh], nominal: Array, distance: float, reach: Array | float) -> SolidPair:
-    """A pair, for motions within a reach (2, 3) [mm]; see SolidPair."""
+def solid_pair(meshes: tuple[SolidMesh, SolidMesh], nominal: Array, distance: float, reach: Array) -> SolidPair:
+    """A pair whose parts move mostly within a reach (2, 3) [mm]; see SolidPair and Level."""
     start, end = meshes
-    reach = np.broadcast_to(reach, (2, 3))
-    slack = reach + ROUNDING
-    height = distance + float(np.linalg.norm(slack, axis=1).max())
     there = end.corners @ nominal[:3, :3].T + nominal[:3, 3]
     back = inverse(nominal)
     here = start.corners @ back[:3, :3].T + back[:3, 3]
-    own = needed(start.vertices, start.triangles, there, height, slack[0])
-    its = needed(end.vertices, end.triangles, here, height, slack[1])
-    near = nearby(start.corners, there, slack[0]), nearby(end.corners, here, slack[1])
-    return SolidPair(start, end, nominal, distance, reach, *map(np.flatnonzero, (own, its, *near)))
+    levels = []
+    for share in SHARES:
+        slack = share * reach + ROUNDING
+        height = distance + float(np.linalg.norm(slack, axis=1).max())
+        own = needed(start.vertices, start.triangles, there, height, slack[0])
+        its = needed(end.vertices, end.triangles, here, height, slack[1])
+        near = nearby(start.corners, there, slack[0]), nearby(end.corners, here, slack[1])
+        faces = np.flatnonzero(own), np.flatnonzero(its)
+        levels.append(Level(share * reach, faces, (np.flatnonzero(near[0]), np.flatnonzero(near[1]))))
+    return SolidPair(start, end, nominal, distance, tuple(levels))
