@@ -116,7 +116,10 @@ class Asked:
         """
         (here, there), (one, other) = found.points, found.triangles
         normal, turn = there - here, pose[:3, :3]
-        if _normal(self.corners[0][one]) @ normal <= 0.0 or turn @ _normal(self.corners[1][other]) @ normal >= 0.0:
+        if (
+            unit_normal(self.corners[0][one]) @ normal <= 0.0
+            or turn @ unit_normal(self.corners[1][other]) @ normal >= 0.0
+        ):
             return False
         first, second = self._points
         return bool(
@@ -142,9 +145,10 @@ class Asked:
         return overlapping(*self._meeting)
 
 
-def _normal(corners: Array) -> Array:
-    """Of a triangle (3, 3), outwards; twice its area long."""
-    return np.cross(corners[1] - corners[0], corners[2] - corners[0])
+def unit_normal(corners: Array) -> Array:
+    """Of a triangle (3, 3), outwards; 0 of one without an area."""
+    across = np.cross(corners[1] - corners[0], corners[2] - corners[0])
+    return np.asarray(across / (np.linalg.norm(across) or 1.0))
 
 
 def turns_about(corners: Array) -> float:

@@ -11,7 +11,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.assembly.clearances.distances import PairDistances, surface_of
+from tol3d.assembly.clearances.distances import Asked, PairDistances, surface_of, unit_normal
 from tol3d.assembly.clearances.meshes import SolidMesh
 from tol3d.assembly.clearances.pair import SolidPair, inverse, solid_pair
 from tol3d.assembly.model.facing import Facing
@@ -25,7 +25,7 @@ NEARER: Final = 0.1
 MOST_PAIRS: Final = 256
 """That are kept; more are of parts round each other, whose polygons are as fine as that."""
 SLANT: Final = 1e-6
-"""Sine of an angle between a face's normal and a direction that is the same."""
+"""Angle [rad] between the normal of a face and a direction that is the same."""
 HALVINGS: Final = 8
 """How often a displacement by which the parts overlap is made half as large."""
 
@@ -120,24 +120,30 @@ class _Search:
         found = asked.nearest(self._nearest, pose)
         if found.distance <= 0.0:
             return False
-        own = self._kept(found, pose, asked.corners[1][found.triangles[1]])
+        own = self._kept(found, pose, asked)
         known = min((each.moved[motion] for each in self.kept), default=np.inf) if motion is not None else np.inf
         if motion is None or (own.moved[motion] < known - self._nearer and len(self.kept) < MOST_PAIRS):
             self.kept.append(own)
         return True
 
-    def _kept(self, found: Nearest, pose: Array, corners: Array) -> _Kept:
-        here, there = found.points
-        end = pose[:3, :3].T @ (there - pose[:3, 3])
-        relative = self._displaced.relative
-        normal = (there - here) / np.linalg.norm(there - here)
-        if _is_of_a_face(pose[:3, :3].T @ normal, corners):
-            normal = (
-                relative[:3, :3] @ pose[:3, :3].T @ normal
-            )  # that of a face of the second part, which it turns with
-        apart = float(normal @ (relative[:3, :3] @ end + relative[:3, 3] - here))
+    def _kept(self, found: Nearest, pose: Array, asked: Asked) -> _Kept:
+        """A pair that was found at a pose; of a point over a face the point nominally below it."""
+        relative, turn = self._displaced.relative, pose[:3, :3]
+        start, there = found.points
+        end = turn.T @ (there - pose[:3, 3])
+        across = [unit_normal(corners[number]) for corners, number in zip(asked.corners, found.triangles, strict=True)]
+        normal = (there - start) / np.linalg.norm(there - start)
+        at = relative[:3, :3] @ end + relative[:3, 3]  # nominally, in the frame of the first part
+        if np.linalg.norm(normal + turn @ across[1]) < SLANT:  # a face of the second part, which its normal turns with
+            normal = -relative[:3, :3] @ across[1]
+            end = relative[:3, :3].T @ (start + float(normal @ (at - start)) * normal - relative[:3, 3])
+        elif np.linalg.norm(normal - across[0]) < SLANT:
+            normal = across[0]
+            start = at - float(normal @ (at - start)) * normal
+        at = relative[:3, :3] @ end + relative[:3, 3]
+        apart = float(normal @ (at - start))
         length = max(apart, self.kept[0].length) if self.kept else apart
-        return _Kept(np.array(here), end, normal, length, length + self._closing(here, end, normal))
+        return _Kept(np.array(start), end, normal, length, length + self._closing(start, end, normal))
 
     def _closing(self, start: Array, end: Array, normal: Array) -> Array:
         """Changes of the distance of two points along a normal, to first order, in all motions (motions,) [mm]."""
@@ -151,9 +157,3 @@ class _Search:
             at = pose[:3, :3] @ point + pose[:3, 3]
             changes.append(torsors[:, :3] @ along + torsors[:, 3:] @ np.cross(at, along))
         return np.asarray(changes[1] - changes[0])
-
-
-def _is_of_a_face(normal: Array, corners: Array) -> bool:
-    """Whether a direction of unit length is normal to a triangle (3, 3)."""
-    across = np.cross(corners[1] - corners[0], corners[2] - corners[0])
-    return float(np.linalg.norm(np.cross(normal, across))) < SLANT * float(np.linalg.norm(across))
