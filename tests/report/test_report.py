@@ -113,7 +113,7 @@ def test_the_witness_is_told_below_each_measure_with_what_its_chords_explain(run
         largest, chords = (to_text(measures[name][key]) for key in ("max_abs_difference", "expected_at_most"))
         assert (
             f"witness: FCL measured 6 of these trials again: at most {largest} more or less "
-            f"(up to {chords} of that is the chord error of its meshes)"
+            f"(up to {chords} of that is the chord error of its triangles)"
         ) in text
     assert text.count("witness: FCL") == 3
 

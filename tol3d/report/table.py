@@ -191,7 +191,7 @@ def _witness_notes(name: str, measure: MeasureSummary, run: RunSummary) -> Itera
         return
     largest = difference_text(found.max_abs_difference, measure.unit)
     chords = difference_text(found.expected_at_most, measure.unit)
-    yield f"{again}: at most {largest} more or less (up to {chords} of that is the chord error of its meshes)"
+    yield f"{again}: at most {largest} more or less (up to {chords} of that is the chord error of its triangles)"
 
 
 def _curve_notes(measure: MeasureSummary, curve: CurveRoads) -> Iterator[str]:
