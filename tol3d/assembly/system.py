@@ -11,6 +11,8 @@ from numpy.typing import NDArray
 from tol3d.assembly.clearances.prepared import clearances_of, reader_of, solid_pairs, with_facing, witness_of
 from tol3d.assembly.from_scene import Meant, assembly_of
 from tol3d.assembly.from_scene.datums import place_of
+from tol3d.assembly.from_scene.idle import idle_forms
+from tol3d.assembly.grammar.drawing import Drawing
 from tol3d.assembly.model import Assembly
 from tol3d.assembly.model.statuses import OK, STATUSES, WITH_CLEARANCES
 from tol3d.assembly.placing import road as placing
@@ -63,16 +65,23 @@ class AssemblySystem(PlainSystem):
     Args:
         assembly: nominally, and by its drawings.
         named: by measure, the features that it names, or two measures.
+        idle: sentences on tolerances that act on nothing.
     """
 
     assembly: Assembly
     named: Mapping[str, tuple[str, ...]]
+    idle: tuple[str, ...] = ()
 
     statuses: ClassVar[Statuses] = STATUSES
 
     def road(self, name: str, materials: Any) -> Road:
         """See System."""
         return TorsorRoad(self.assembly) if name == ANALYTIC_ROAD else PlacingRoad(self.assembly)
+
+    @property
+    def warnings(self) -> Sequence[str]:  # type: ignore[override]
+        """See System."""
+        return self.idle
 
     @property
     def solids(self) -> SolidReader | None:
@@ -250,7 +259,8 @@ def assembly_system(scene: Scene) -> AssemblySystem:
     placed = _asked(scene, lambda: _settled(scene))
     kind = _kind_of(placed.assembly)
     assembly = _asked(scene, lambda: _faced(placed))
-    made = kind(scene.scene, placed.contributors, placed.measures, assembly, placed.named)
+    idle = tuple(idle_forms(Drawing(scene)))
+    made = kind(scene.scene, placed.contributors, placed.measures, assembly, placed.named, idle)
     _asked(
         scene, lambda: torsors.values(made.assembly, np.zeros((1, made.assembly.width)), list(made.assembly.measures))
     )

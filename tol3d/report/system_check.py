@@ -2,11 +2,11 @@
 
 import math
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 
 from tol3d.distributions import Distribution
 from tol3d.report.number import NOTHING, UNIT_SIGNS, given_text, measured_text, unit_suffix, unsigned_zero, value_text
-from tol3d.report.page import Heading, PageItem, Row, Shown, Table, note, titled
+from tol3d.report.page import Heading, PageItem, Row, Shown, Table, note, titled, warning
 from tol3d.study.first_order import FirstOrder, first_orders
 from tol3d.study.simulation import Simulation
 from tol3d.study.task import materials_of, road_of
@@ -20,6 +20,7 @@ SLOPES = (
 )
 SHARES = "RSS: share of the variance by root sum of squares; worst: share of the sum of all reaches from end to end"
 NO_SUM = "no sum of effects, so no RSS and no worst case: its slopes are means over two sigma; run draws its trials"
+BESIDE = 1e-6  # um or arcmin; a value that is nearer to a limit lies on it
 
 
 def system_blocks(simulation: Simulation) -> list[PageItem]:
@@ -87,7 +88,24 @@ def _measures(
         rows.append(Row(measure.name, (kinds[measure.name], _limits(measure), *values, unit)))
     words = [Heading(word, words=True) for word in ("kind", "limits")]
     numbers = [Heading(f"{build}, {name}") for build in ("nominal", "mean build") for name in headings.values()]
-    return titled("measures", Table("", [*words, *numbers, Heading("unit")], rows))
+    outside = [text for own in measures for text in _outside(own, found[own.name])]
+    return [*titled("measures", Table("", [*words, *numbers, Heading("unit")], rows)), *map(warning, outside)]
+
+
+def _outside(measure: Measure, found: Mapping[str, FirstOrder]) -> Iterator[str]:
+    """A mean build out of a measure's limits, by the first road that finds it so; its nominal value, if that is too."""
+    for own in found.values():
+        if _is_outside(measure, own.mean):
+            words, value = ("nominal", own.nominal) if _is_outside(measure, own.nominal) else ("mean build", own.mean)
+            text = f"{words} {measured_text(value, measure.unit)}"
+            yield f"{measure.name}: {text} is outside its limits {_limits(measure)}"
+            return
+
+
+def _is_outside(measure: Measure, value: float) -> bool:
+    """Whether a value [unit of the measure] is out of limits; what is not known is not."""
+    low, high, per = measure.lower_limit, measure.upper_limit, measure.per_internal
+    return (low is not None and value < low * per - BESIDE) or (high is not None and value > high * per + BESIDE)
 
 
 def _value(value: float | None, unit: str) -> Shown:

@@ -52,6 +52,14 @@ class Reference:
         """PartSpecs that such a reference may not name though their kind would do."""
         return {}
 
+    def advice(self, parts: Mapping[str, Any], moves: Mapping[str, Any]) -> str:
+        """What to do where the name is not there, besides taking another; "" where nothing more is known.
+
+        Args:
+            parts, moves: the scene's; names that they use may be missing.
+        """
+        return ""
+
 
 @dataclass(frozen=True)
 class Contradiction:

@@ -87,7 +87,8 @@ def _unknown(scene: Scene) -> Iterator[Problem]:
             got = f"{got}, {unfit[reference.name].why}"
         else:
             got = f"{got}, which {_found(scene, reference.name)}"
-        yield path, f"expected the name of {reference.expected}, got {got}{hint(reference.name, fitting)}"
+        advice = "" if reference.name in unfit else reference.advice(scene.parts, scene.moves)
+        yield path, f"expected the name of {reference.expected}, got {got}{hint(reference.name, fitting)}{advice}"
 
 
 def _found(scene: Scene, name: str) -> str:

@@ -147,8 +147,7 @@ class Effects:
         if not others and own.name != own.entry:
             return  # a part that is like the toleranced one, and touches nothing there
         if not others:
-            words = f"expected a feature that touches a point in a move, got {own.feature!r}; leave the law out"
-            raise self.scene.refuse(("tolerances", own.entry, "law"), words)
+            raise self.scene.refuse(("tolerances", own.entry, "law"), self._untouched(own))
         half = 0.5 * spec.zone.size
         match spec.law:
             case ProcessLawSpec():
@@ -163,6 +162,13 @@ class Effects:
             matrix[0, k] = 1.0
             for touch in touches:
                 self.heights.setdefault(touch, []).append(Contribution(own.name, columns, matrix))
+
+    def _untouched(self, own: Stated) -> str:
+        words = f"expected a feature that touches a point in a move, got {own.feature!r}"
+        lay = "lay it on points (kind: three_two_one, with points_on: fixture where its part is the one that is placed)"
+        located = self.drawing.of(own.feature, LocationSpec)
+        then = f"only narrows {located[0].entry!r}" if located else "acts on nothing"
+        return f"{words}; {lay}, or leave the law out, and the form {then}"
 
 
 SHIFT_AND_TURN = ("shift x", "shift y", "shift z", "turn x", "turn y", "turn z")

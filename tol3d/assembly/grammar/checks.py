@@ -8,6 +8,7 @@ from tol3d.assembly.grammar.feature_name import Use, UsesFeatures, part_of
 from tol3d.assembly.grammar.features import FeatureUnion
 from tol3d.assembly.grammar.measures.assembly_measure import TimedSpec
 from tol3d.assembly.grammar.moves import PlacingSpec, WeldSpec
+from tol3d.assembly.grammar.moves.forgotten import how_to_place
 from tol3d.assembly.grammar.parts import SolidSpec
 from tol3d.scene import Scene
 from tol3d.scene.nearest import hint
@@ -78,8 +79,8 @@ class Bodies:
             self.by[name] = {part for part, own in self.body.items() if own in self.placed}
         for part, own in self.body.items():
             if own not in self.placed:
-                words = f"expected a move that places {part!r}, got none; add one, such as {{kind: fix, part: {part}}}"
-                yield ("parts", part), words
+                words = f"expected a move that places {part!r}, got none"
+                yield ("parts", part), f"{words}; {how_to_place(part, self.scene.moves)}"
 
     def _welded(self, here: KeyPath, move: WeldSpec, moving: set[str]) -> Iterator[Problem]:
         joined = {self.body[move.part]}

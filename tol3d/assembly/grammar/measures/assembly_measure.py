@@ -8,6 +8,7 @@ from pydantic import Field
 
 from tol3d.assembly.grammar.datums import Datums, DatumSpec
 from tol3d.assembly.grammar.feature_name import FeatureName, Use, part_of
+from tol3d.assembly.grammar.moves.forgotten import MoveReference
 from tol3d.assembly.grammar.moves.placing_move import PlacingSpec
 from tol3d.assembly.grammar.moves.weld import WeldSpec
 from tol3d.assembly.grammar.parts import SolidSpec
@@ -49,7 +50,7 @@ class TimedSpec(AssemblyMeasureSpec):
     @property
     def timing(self) -> tuple[Reference, ...]:
         """The move after which it is read."""
-        return () if self.after is None else (Reference(("after",), self.after, (PlacingSpec, WeldSpec)),)
+        return () if self.after is None else (MoveReference(("after",), self.after, (PlacingSpec, WeldSpec)),)
 
 
 class FeatureMeasureSpec(TimedSpec):

@@ -7,6 +7,7 @@ from pydantic import Field
 
 from tol3d.assembly.grammar.feature_name import FeatureName
 from tol3d.assembly.grammar.measures.assembly_measure import AssemblyMeasureSpec
+from tol3d.assembly.grammar.moves.forgotten import MoveReference
 from tol3d.assembly.grammar.moves.play import PlaySpec
 from tol3d.scene.name import Name
 from tol3d.scene.place import KeyPath
@@ -23,7 +24,7 @@ class SlackSpec(AssemblyMeasureSpec):
 
     def references(self) -> tuple[Reference, ...]:
         """The move."""
-        return (Reference(("of",), self.of, (PlaySpec,)),)
+        return (MoveReference(("of",), self.of, (PlaySpec,)),)
 
     def named(self) -> Sequence[tuple[KeyPath, FeatureName, tuple[str, ...]]]:
         """None."""

@@ -1,0 +1,82 @@
+"""What messages advise: to heed it mends the scene, and nothing that a user wrote is dropped without a word."""
+
+from pathlib import Path
+
+import pytest
+from assembly_trials import assembled
+from fixtures import Command
+from places import SCENES
+
+from tol3d.errors import SceneError
+
+COVER = (SCENES / "cover_on_base.yaml").read_text("utf-8")
+TOLERANCES, MEASURES = "\ntolerances:\n", "\nmeasures:\n"
+FLOOR = "  form: {kind: flatness, of: base.floor, zone: {width: 0.05 mm}}\n"
+FACE = "      hole: "
+EDGE = "      edge: {kind: plane, at: [60 mm, 80 mm, 5 mm], normal: [0, 1, 0], radius: 4 mm}\n"
+EDGE_FORM = "  form: {kind: flatness, of: base.edge, zone: {width: 0.05 mm}}\n"
+SECOND = COVER[COVER.index("  cover on the base:\n") : COVER.index(MEASURES)]
+
+
+def added(section: str, text: str, scene: str = COVER) -> str:
+    return scene.replace(section, f"{section}{text}", 1)
+
+
+def refused(text: str, folder: Path) -> str:
+    with pytest.raises(SceneError) as caught:
+        assembled(text, folder)
+    return str(caught.value)
+
+
+def test_flatness_with_a_law_of_a_face_that_touches_nothing(tmp_path: Path) -> None:
+    text = added(
+        TOLERANCES, EDGE_FORM.replace("mm}}", "mm}, law: {kind: uniform}}"), COVER.replace(FACE, EDGE + FACE, 1)
+    )
+    found = refused(text, tmp_path)
+    assert "form.law: expected a feature that touches a point in a move, got 'base.edge'; lay it on points" in found
+    assert "or leave the law out, and the form acts on nothing" in found
+    zone = "  place: {kind: profile, of: base.edge, zone: {width: 0.2 mm}, law: {kind: uniform}}\n"
+    assert "or leave the law out, and the form only narrows 'place'" in refused(added(TOLERANCES, zone, text), tmp_path)
+
+
+def test_flatness_without_a_law_that_acts_on_nothing_is_shown(tol3d: Command, tmp_path: Path) -> None:
+    text = added(TOLERANCES, EDGE_FORM, COVER.replace(FACE, EDGE + FACE, 1))
+    (found,) = assembled(text, tmp_path).system.warnings
+    assert found.startswith("form: this flatness acts on nothing, for it has no law, and 'base.edge' has no location")
+    code, out, _ = tol3d("check", str(tmp_path / "assembly.yaml"))
+    assert (code, "warning: form: this flatness acts on nothing" in out) == (0, True)
+    zone = "  place: {kind: profile, of: base.edge, zone: {width: 0.2 mm}, law: {kind: uniform}}\n"
+    assert not assembled(added(TOLERANCES, zone, text), tmp_path).system.warnings
+    assert not assembled(
+        added(TOLERANCES, FLOOR.replace("mm}}", "mm}, law: {kind: uniform}}")), tmp_path
+    ).system.warnings
+
+
+def test_the_forgotten_move_of_a_second_part_is_no_fix(tmp_path: Path) -> None:
+    found = refused(COVER.replace(SECOND, ""), tmp_path)
+    assert (
+        "parts.cover: expected a move that places 'cover', got none; add one of part: cover, of kind three_tw" in found
+    )
+    assert "fix where it stays as it is `placed`" in found
+
+
+@pytest.mark.parametrize(
+    "measure",
+    ["{kind: slack, of: pins}", "{kind: gap, from: base.hole, to: cover.hole, along: [1, 0, 0], after: pins}"],
+)
+def test_a_measure_of_a_forgotten_move_names_the_part_that_it_would_place(measure: str, tmp_path: Path) -> None:
+    found = refused(added(MEASURES, f"  play: {measure}\n", COVER.replace(SECOND, "")), tmp_path)
+    assert "got 'pins', which is not in the scene" in found
+    assert "; no move places 'cover': add one of part: cover, of kind three_two_one" in found
+    placed = refused(added(MEASURES, f"  play: {measure}\n"), tmp_path)
+    assert "no move places" not in placed
+
+
+def test_a_nominal_out_of_limits_is_shown_by_check(tol3d: Command, tmp_path: Path) -> None:
+    path = tmp_path / "scene.yaml"
+    path.write_text(COVER.replace("lower_limit: -0.15 mm, upper_limit: 0.15 mm", "lower_limit: 54.85 mm", 1), "utf-8")
+    code, out, _ = tol3d("check", str(path))
+    assert code == 0
+    joined = " ".join(out.split())
+    assert "warning: hole offset: nominal 0.000 µm is outside its limits ≥ 54850 µm" in joined
+    assert "flush: nominal" not in joined
