@@ -80,3 +80,37 @@ def test_a_nominal_out_of_limits_is_shown_by_check(tol3d: Command, tmp_path: Pat
     joined = " ".join(out.split())
     assert "warning: hole offset: nominal 0.000 µm is outside its limits ≥ 54850 µm" in joined
     assert "flush: nominal" not in joined
+
+
+@pytest.mark.parametrize(
+    ("law", "words"),
+    [
+        (
+            "{kind: uniform, lower: 0 mm, upper: 27 mm}",
+            "smaller than the nominal 8 mm, got up to 27 mm; write how much",
+        ),
+        ("{kind: constant, value: 8 mm}", "smaller than the nominal 8 mm, got up to 8 mm; write how much larger"),
+    ],
+)
+def test_a_size_as_large_as_the_feature_is_refused(law: str, words: str, tmp_path: Path) -> None:
+    size = "  bore: {{kind: size, of: base.hole, distribution: {}}}\n"
+    found = refused(added(TOLERANCES, size.format(law)), tmp_path)
+    assert f"tolerances.bore.distribution: expected deviations {words}" in found
+    assembled(added(TOLERANCES, size.format(law.replace("7 mm", "7 um").replace("8 mm", "8 um"))), tmp_path)
+
+
+@pytest.mark.parametrize(
+    ("datums", "own", "got"),
+    [("base.floor", "floor", "base.floor"), ("base.back-base.left", "back-left", "base.back-base.left")],
+)
+def test_a_datum_with_its_part_is_answered_without_it(datums: str, own: str, got: str, tmp_path: Path) -> None:
+    found = refused(COVER.replace("datums: [floor]", f"datums: [{datums}]", 1), tmp_path)
+    assert f"datums[0]: expected {own}, without its part, for datums are of the same part as the" in found
+    assert f"got '{got}'" in found
+
+
+def test_a_move_with_play_without_a_float_is_answered_with_the_choices(tmp_path: Path) -> None:
+    pins = "  cover on pins: {kind: pin_and_hole, part: cover, pairs: [{from: cover.hole, to: base.hole}]}\n"
+    found = refused(COVER.replace(SECOND, pins), tmp_path)
+    assert "expected where in its room the part lies, which has no default: {kind: centred}, {kind: random}" in found
+    assert "moves.cover on pins.float" in found

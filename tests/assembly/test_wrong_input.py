@@ -177,7 +177,7 @@ WRONG: dict[str, tuple[Sequence[Edit], str, str]] = {
         [(f"    {BASE_HOLE}\n", f"    {BASE_HOLE}\n  second: {BASE_HOLE}\n")],
         "tolerances.second",
         "expected one tolerance of 'base.hole' for where it lies, got 'base hole position' too, "
-        "which would count twice",
+        "which would count twice; remove one; a tilt that it refines is an orientation tolerance beside the other",
     ),
     "zone narrower than its refinement": (
         [

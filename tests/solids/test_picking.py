@@ -125,6 +125,9 @@ def test_ties_and_what_is_not_there_are_refused_with_what_is() -> None:
     with pytest.raises(PickError, match=r"expected a face of the solid, got 'face 99'.*did you mean") as missing:
         list(pick_faces(solid, [Pick(name="face 1"), Pick(name="face 99")]))
     assert (missing.value.number, missing.value.by) == (1, "name")
+    known = [name for name, face in solid.faces.items() if face.geomType() == "CYLINDER"][:8]
+    with pytest.raises(PickError, match=rf"; faces of kind cylinder: {', '.join(known)}"):
+        one(solid, Pick(name="face 99", kinds=("cylinder",)))
     flat = next(name for name, face in solid.faces.items() if face.geomType() == "PLANE")
     with pytest.raises(PickError, match=f"expected a cylinder, got {flat!r}, which is a plane"):
         one(solid, Pick(name=flat, kinds=("cylinder",)))

@@ -13,7 +13,7 @@ from OCP.BRepTools import BRepTools
 from OCP.gp import gp_Ax1, gp_Pnt
 
 from tol3d.parts.named_solid import NamedSolid
-from tol3d.scene.nearest import hint
+from tol3d.scene.nearest import nearest
 from tol3d.solids.picks import FaceKind, Pick, PickedFace, PickError, Triple
 
 Array = NDArray[np.float64]
@@ -22,6 +22,7 @@ KINDS: Final[dict[str, FaceKind]] = {"PLANE": "plane", "CYLINDER": "cylinder", "
 SAME_DISTANCE: Final = 1e-6
 """mm: faces whose distances from a point differ by less are as near as each other."""
 MOST_SHOWN: Final = 6
+MOST_LISTED: Final = 8
 SAMPLES: Final = 721
 """Places on a curve that is neither line nor circle, of which the outline of a face takes the extremes."""
 ALONG: Final = 0.9
@@ -42,14 +43,23 @@ def pick_faces(solid: NamedSolid, picks: Sequence[Pick]) -> Iterator[PickedFace]
 def _by_name(solid: NamedSolid, pick: Pick, number: int) -> str:
     if pick.name not in solid.faces:
         fitting = [name for name, face in solid.faces.items() if _fits(face, pick)] or [*solid.faces]
-        words = f"expected a face of the solid, got {pick.name!r}, which it does not have{hint(pick.name, fitting)}"
-        raise PickError(words, number, "name")
+        words = f"expected a face of the solid, got {pick.name!r}, which it does not have"
+        raise PickError(f"{words}{_known(pick.name, fitting, pick)}", number, "name")
     face = solid.faces[pick.name]
     if not _fits(face, pick):
         fitting = [name for name, own in solid.faces.items() if _fits(own, pick)]
         got = f"got {pick.name!r}, which is {_article(_word(face))}"
-        raise PickError(f"expected a {' or '.join(pick.kinds)}, {got}{hint(pick.name, fitting)}", number, "name")
+        raise PickError(
+            f"expected a {' or '.join(pick.kinds)}, {got}{_known(pick.name, fitting, pick)}", number, "name"
+        )
     return pick.name
+
+
+def _known(name: str, fitting: Sequence[str], pick: Pick) -> str:
+    """The nearest face that will do, and the first few of all."""
+    listed = ", ".join(fitting[:MOST_LISTED]) + (", …" if len(fitting) > MOST_LISTED else "")
+    kinds = " or ".join(pick.kinds)
+    return f"{nearest(name, fitting)}; faces{f' of kind {kinds}' if kinds else ''}: {listed or 'none'}"
 
 
 def _by_place(solid: NamedSolid, pick: Pick, number: int) -> str:

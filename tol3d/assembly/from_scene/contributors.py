@@ -120,12 +120,18 @@ class Effects:
             self.moved_by.setdefault(own.feature, []).append(Contribution(own.name, columns, matrix))
 
     def _refuse_no_size(self, own: Stated, draw: Scalar) -> None:
-        """A law that leaves nothing of a diameter or width."""
+        """A law that leaves nothing of a diameter or width, or more than doubles it."""
         shape = self.drawing.kind(own.feature).shape
         nominal = nominal_size(shape)
         if nominal is not None and nominal + draw.distribution.low <= 0.0:
             words = f"expected sizes above 0, got down to {draw.distribution.low:g} mm on a nominal {nominal:g} mm"
             raise self.scene.refuse(("tolerances", own.entry, "distribution"), words)
+        if nominal is not None and draw.distribution.high >= nominal:
+            words = (
+                f"expected deviations smaller than the nominal {nominal:g} mm, got up to {draw.distribution.high:g} mm"
+            )
+            advice = "write how much larger it is than nominal, not the size, and look at the unit"
+            raise self.scene.refuse(("tolerances", own.entry, "distribution"), f"{words}; {advice}")
 
     def _along(self, feature: str, spec: PlusMinusSpec) -> Array:
         """What one mm along a dimension does to the components of a feature."""

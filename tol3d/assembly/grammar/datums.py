@@ -14,7 +14,12 @@ from tol3d.units import shown
 
 def _joined(value: Any) -> Any:
     """`floor` or `bore 1-bore 2` as names; of a list each is one."""
-    return [name.strip() for name in value.split("-")] if isinstance(value, str) else value
+    names = [name.strip() for name in value.split("-")] if isinstance(value, str) else value
+    if isinstance(names, list) and any(isinstance(name, str) and "." in name for name in names):
+        own = "-".join(str(name).rpartition(".")[2] for name in names)
+        got = shown(value if isinstance(value, str) else "-".join(map(str, names)))
+        raise refused("", f"{own}, without its part, for datums are of the same part as the feature", got)
+    return names
 
 
 class DatumSpec(Strict):

@@ -23,6 +23,7 @@ from tol3d.scene.place import KeyPath
 Problem = tuple[KeyPath, str]
 
 ROUNDING = 1e-9  # mm, of a sum of widths; cosine of a right angle
+REFINED = "a tilt that it refines is an orientation tolerance beside the other"
 
 
 def contradicting_tolerances(scene: Scene) -> Iterator[Problem]:
@@ -38,16 +39,16 @@ def contradicting_tolerances(scene: Scene) -> Iterator[Problem]:
 
 def _twice(drawing: Drawing, feature: str) -> Iterator[Problem]:
     located, dimensions = _counted_once(drawing, feature), drawing.of(feature, PlusMinusSpec)
-    for several, what in (
-        ((*located, *dimensions) if located else (), "where it lies"),
-        (drawing.of(feature, OrientationSpec), "how it is turned"),
-        (drawing.of(feature, SizeSpec), "its size"),
-        (drawing.of(feature, FormSpec), "its form"),
+    for several, what, instead in (
+        ((*located, *dimensions) if located else (), "where it lies", f"; {REFINED}"),
+        (drawing.of(feature, OrientationSpec), "how it is turned", ""),
+        (drawing.of(feature, SizeSpec), "its size", ""),
+        (drawing.of(feature, FormSpec), "its form", ""),
     ):
         if len(several) > 1 and _is_own(several[1]):
             first, second = several[0].entry, several[1].entry
             words = f"expected one tolerance of {feature!r} for {what}, got {first!r} too, which would count twice"
-            yield ("tolerances", second), words
+            yield ("tolerances", second), f"{words}; remove one{instead}"
 
 
 def _counted_once(drawing: Drawing, feature: str) -> tuple[Stated, ...]:

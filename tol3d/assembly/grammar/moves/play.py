@@ -4,7 +4,7 @@ from abc import abstractmethod
 from collections.abc import Iterator
 from typing import Annotated, Any, ClassVar, Literal
 
-from pydantic import BeforeValidator, Field
+from pydantic import BeforeValidator, Field, model_validator
 
 from tol3d.assembly.grammar.feature_name import FeatureName, Use, part_of
 from tol3d.assembly.grammar.moves.mate import RelationSpec
@@ -68,6 +68,14 @@ class PlaySpec(PlacingSpec):
         default=(), description="as of a mate: what holds it before its pins do, such as faces that lie on each other"
     )
     floating: FloatUnion = Field(alias="float")
+
+    @model_validator(mode="before")
+    @classmethod
+    def _refuse_no_float(cls, value: Any) -> Any:
+        if isinstance(value, dict) and "float" not in value:
+            choices = "{kind: centred}, {kind: random} or {kind: toward, along: …, at: …}"
+            raise refused("float", f"where in its room the part lies, which has no default: {choices}", "none")
+        return value
 
     @property
     @abstractmethod
