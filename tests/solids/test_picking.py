@@ -113,6 +113,28 @@ def test_rounded_and_notched_outlines_have_the_rectangle_around_them() -> None:
     assert slanted.extent == pytest.approx((reach, reach), abs=CLOSE)
 
 
+@pytest.mark.parametrize("degrees", [7.0, 20.0, 41.0])
+def test_a_cylinder_that_is_cut_askew_reaches_from_end_to_end(degrees: float) -> None:
+    slope = math.tan(math.radians(degrees))
+    pin = cq.Workplane().circle(6.0).extrude(40.0)
+    above = cq.Workplane().box(60, 60, 40).translate((0, 0, 20)).rotate((0, 0, 0), (0, 1, 0), -degrees)
+    (solid,) = pin.cut(above.translate((0, 0, 15.0))).solids().vals()
+    assert isinstance(solid, cq.Solid)
+    face = one(numbered(solid), Pick(near=(6.0, 0, 5.0), kinds=("cylinder",)))
+    length = 15.0 + 6.0 * slope
+    assert (face.extent[0], *face.at) == pytest.approx((length, 0, 0, length / 2), abs=1e-8)
+
+
+@pytest.mark.parametrize("turned", [0.0, 30.0, 77.0])
+def test_an_ellipse_has_the_rectangle_around_it(turned: float) -> None:
+    (solid,) = cq.Workplane().ellipse(50.0, 25.0).extrude(5.0).rotate((0, 0, 0), (0, 0, 1), turned).solids().vals()
+    assert isinstance(solid, cq.Solid)
+    top = one(numbered(solid), Pick(near=(0, 0, 6.0), kinds=("plane",)))
+    cos, sin = math.cos(math.radians(turned)), math.sin(math.radians(turned))
+    sides = 2 * math.hypot(50 * cos, 25 * sin), 2 * math.hypot(50 * sin, 25 * cos)
+    assert (*top.extent, *top.at) == pytest.approx((*sides, 0, 0, 5), abs=1e-8)
+
+
 def test_ties_and_what_is_not_there_are_refused_with_what_is() -> None:
     solid = numbered(workpiece(100.0, 60.0, 20.0, 8.0, 8.0))
     with pytest.raises(

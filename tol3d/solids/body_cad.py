@@ -9,7 +9,7 @@ from OCP.gp import gp_Pnt
 
 from tol3d.parts.named_solid import NamedSolid
 from tol3d.solids.lazy import Arrays
-from tol3d.solids.triangulation import SAGITTA_MARGIN, triangulated
+from tol3d.solids.triangulation import SAGITTA_MARGIN, edge_sagittas, triangulated
 
 Array = NDArray[np.float64]
 
@@ -27,7 +27,7 @@ def tessellate(part: NamedSolid, deflection: float) -> Arrays:
         "vertices": whole.vertices,
         "triangles": whole.triangles,
         "side": np.zeros(len(whole.vertices), dtype=np.int8),
-        "chord_error": np.array(max(distances)),
+        "chord_error": np.array(max(*distances, 0.0, *edge_sagittas(part))),
     }
 
 

@@ -1,12 +1,13 @@
 """What was picked, as the file features.json that a run keeps: a run is made again from it, without the CAD kernel."""
 
 import json
+import math
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Annotated, Any, Final
 
-from pydantic import BaseModel, ConfigDict, Field, ValidationError
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationError
 
 from tol3d.assembly.grammar.features import FeatureUnion
 from tol3d.assembly.grammar.features.face import FaceKind
@@ -14,14 +15,29 @@ from tol3d.assembly.grammar.parts import SolidSpec
 from tol3d.errors import SceneError
 from tol3d.files import FileContent, Files
 from tol3d.scene import Scene
-from tol3d.solids.picks import PickedFace
+from tol3d.solids.picks import PickedFace, Triple
+from tol3d.units import LARGEST
 
 FEATURES: Final = "features.json"
 """The name under which a run keeps it."""
 
+ROUNDING: Final = 1e-9
+
 READ: Final = ConfigDict(extra="forbid", strict=True, allow_inf_nan=False)
 
-Triple = tuple[float, float, float]
+Coordinate = Annotated[float, Field(ge=-LARGEST["length"], le=LARGEST["length"])]
+Size = Annotated[float, Field(ge=0.0, le=LARGEST["length"])]
+Cosine = Annotated[float, Field(ge=-1.0 - ROUNDING, le=1.0 + ROUNDING)]
+Place = tuple[Coordinate, Coordinate, Coordinate]
+
+
+def _unit(direction: Triple) -> Triple:
+    if abs(math.hypot(*direction) - 1.0) > ROUNDING:
+        raise ValueError("Input should be a direction of length 1")
+    return direction
+
+
+Unit = Annotated[tuple[Cosine, Cosine, Cosine], AfterValidator(_unit)]
 
 
 class KeptFace(BaseModel):
@@ -31,14 +47,14 @@ class KeptFace(BaseModel):
 
     name: str
     kind: FaceKind
-    at: Triple
-    direction: Triple
-    x: Triple
-    extent: tuple[float, float]
-    radius: Annotated[float, Field(ge=0.0)]
+    at: Place
+    direction: Unit
+    x: Unit
+    extent: tuple[Size, Size]
+    radius: Size
     hole: bool
-    nearest: Triple
-    normal: Triple
+    nearest: Place
+    normal: Unit
 
 
 class KeptPicks(BaseModel):
@@ -69,9 +85,22 @@ class Kept:
             SceneError: a run that is made again has not kept them.
         """
         found = self.picks.get(part, {}).get(feature, ())
-        if len(found) != len(spec.faces_picked):
-            raise SceneError(f"{FEATURES}: expected the faces of {part}.{feature}, found none; the run is damaged")
+        fits = all(face.kind in spec.face_kinds for face in found) if spec.face_kinds else True
+        if len(found) != len(spec.faces_picked) or not fits or not all(map(_has_size, found)):
+            raise SceneError(f"{FEATURES}: expected the faces of {part}.{feature}, found others; the run is damaged")
         return found
+
+
+def _has_size(face: PickedFace) -> bool:
+    """Whether a face is as large as its kind must be."""
+    match face.kind:
+        case "plane":
+            return min(face.extent) > 0.0
+        case "cylinder":
+            return face.extent[0] > 0.0 and face.radius > 0.0
+        case "cone":
+            return face.extent[0] > 0.0
+    return face.radius > 0.0
 
 
 def file_of(kept: Kept) -> FileContent:
