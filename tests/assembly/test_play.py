@@ -290,7 +290,8 @@ WRONG: dict[str, tuple[Sequence[tuple[str, str]], str]] = {
     ),
     "no float": (
         [("    float: {kind: random} ", "    # ")],
-        'moves.plate on the pins: expected the key "float" here, found none',
+        "moves.plate on the pins.float: expected where in its room the part lies, which has no default: "
+        "{kind: centred}, {kind: random} or {kind: toward, along: …, at: …}, got none",
     ),
     "float as a word": (
         [("float: {kind: random} ", "float: random ")],
