@@ -17,6 +17,8 @@ STATED: Final = {
     "measures.*.agreement.explanation.*": "what our own roads leave out",
     "study.until": "at which errors it was to stop",
     "study.profile_steps": "how finely our own witness measures",
+    "measures.*.chord_error_um": "how finely our own meshes measure",
+    "measures.*.mesh_error_um": "how finely our own meshes measure",
     "measures.*.lower_limit": "the scene states it",
     "measures.*.upper_limit": "the scene states it",
     "measures.*.load_changes_deg": "the scene states it",
