@@ -95,7 +95,9 @@ def tangents_at(pose: Any, kept: Any, i: int, steps: Any, reach: float, tangents
     tangents[:] = steps
     arm, normal, row = np.empty(3), np.empty(3), np.empty(6)
     change = np.empty((shifts.shape[0], steps.shape[1]))
-    for _ in range(TIMES if shifts.shape[0] else 0):
+    largest, before = 0.0 if shifts.shape[0] == 0 else 1.0, np.inf
+    while largest > MET and largest < before:  # what relations hold already is met as nearly as can be
+        before, largest = largest, 0.0
         for e in range(shifts.shape[0]):
             p, q = min(i, vectors.shape[2] - 1), min(i, normals.shape[2] - 1)
             for r in range(3):
@@ -106,6 +108,7 @@ def tangents_at(pose: Any, kept: Any, i: int, steps: Any, reach: float, tangents
                 change[e, j] = 0.0
                 for r in range(3):
                     change[e, j] += row[r] * tangents[r, j] + shifts[e] * row[3 + r] * tangents[3 + r, j]
+                largest = max(largest, abs(change[e, j]))
         for r in range(6):
             for j in range(steps.shape[1]):
                 for e in range(shifts.shape[0]):
