@@ -4,6 +4,7 @@ import os
 from pathlib import Path
 
 import cadquery as cq
+import numpy as np
 import pytest
 
 from tol3d.errors import GeometryError
@@ -69,3 +70,23 @@ def test_a_stream_of_another_shape_is_refused(monkeypatch: pytest.MonkeyPatch, t
     cq.Edge.makeLine(cq.Vector(0, 0, 0), cq.Vector(1, 0, 0)).exportBrep(str(path))
     with pytest.raises(GeometryError, match="expected one solid, found Edge"):
         own_program.read(KeptShape.of(path.read_bytes(), ("top",)))
+
+
+DISC = b"""
+import cadquery as cq
+
+def build(radius, height):
+    return cq.Solid.makeCone(radius, 0, height)
+"""
+
+
+@pytest.mark.parametrize("deflection", [0.5, 0.1, 0.02])
+def test_the_chord_error_counts_what_a_thin_edge_lacks(deflection: float) -> None:
+    disc = run_program(FileContent(Path("disc.py"), DISC), "build", {"radius": 20.0, "height": 0.7})
+    mesh = display_mesh(disc, deflection)
+    rim = mesh.vertices[np.abs(mesh.vertices[:, 2]) < 1e-9]
+    angles = np.sort(np.arctan2(rim[:, 1], rim[:, 0])[np.linalg.norm(rim[:, :2], axis=1) > 19.999])
+    widest = float(np.diff(angles, append=angles[0] + 2 * np.pi).max())
+    lacking = 20.0 * (1.0 - np.cos(widest / 2))  # of the rim, in the middle between two corners
+    assert mesh.chord_error >= lacking
+    assert mesh.chord_error < 1.05 * lacking + 1e-6

@@ -165,6 +165,10 @@ WRONG: dict[str, tuple[tuple[str, str], str]] = {
         "they are placed; the clearance of parts that lie on each other is 0: measure a gap of their features where "
         "they are apart, or a clearance to another part",
     ),
+    "one in the other": (
+        ("distance: 0.5 mm", "distance: -6 mm"),
+        "measures.apart: expected parts that are apart nominally, got 'lower' and 'upper', which touch or overlap as",
+    ),
     "nearer than the chord error": (
         ("distance: 0.5 mm", "distance: 1.5 um"),
         "measures.apart: expected parts that are apart nominally, got 'lower' and 'upper', 1.5 um apart by meshes that "

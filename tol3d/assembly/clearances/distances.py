@@ -77,16 +77,17 @@ class PairDistances:
         if found.distance <= 0.0:
             return 0.0
         could_meet = np.linalg.norm(moved, axis=1).min() >= self._pair.distance
-        if could_meet and not asked.has_between(found, pose) and (asked.meet(pose) or self._is_inside(pose)):
+        meshes = self._pair.start, self._pair.end
+        if could_meet and not asked.has_between(found, pose) and (asked.meet(pose) or is_inside(*meshes, pose)):
             return 0.0
         return found.distance
 
-    def _is_inside(self, pose: Array) -> bool:
-        """Whether one of two parts that do not meet lies in the other."""
-        start, end = self._pair.start, self._pair.end
-        one = pose[:3, :3] @ end.vertices[0] + pose[:3, 3]
-        other = pose[:3, :3].T @ (start.vertices[0] - pose[:3, 3])
-        return turns_about(start.corners - one) > INSIDE or turns_about(end.corners - other) > INSIDE
+
+def is_inside(start: SolidMesh, end: SolidMesh, pose: Array) -> bool:
+    """Whether one of two parts that do not meet lies in the other, the second at a pose in the frame of the first."""
+    one = pose[:3, :3] @ end.vertices[0] + pose[:3, 3]
+    other = pose[:3, :3].T @ (start.vertices[0] - pose[:3, 3])
+    return turns_about(start.corners - one) > INSIDE or turns_about(end.corners - other) > INSIDE
 
 
 class Asked:

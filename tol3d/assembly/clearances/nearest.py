@@ -11,7 +11,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.assembly.clearances.distances import Asked, PairDistances, surface_of, unit_normal
+from tol3d.assembly.clearances.distances import Asked, PairDistances, is_inside, surface_of, unit_normal
 from tol3d.assembly.clearances.meshes import SolidMesh
 from tol3d.assembly.clearances.pair import SolidPair, inverse, solid_pair
 from tol3d.assembly.model.facing import Facing
@@ -64,10 +64,11 @@ def _moved(pose: Array, torsor: Array) -> Array:
 
 
 def nominal_distance(meshes: tuple[SolidMesh, SolidMesh], relative: Array) -> float:
-    """Of two parts as they stand nominally [mm]; 0 where they overlap."""
+    """Of two parts as they stand nominally [mm]; 0 where they overlap, or one lies in the other."""
     first, second = (surface_of(mesh) for mesh in meshes)
     put(second, relative[:3, :3], relative[:3, 3])
-    return float(max(NearestPoints().of(first, second).distance, 0.0))
+    found = float(max(NearestPoints().of(first, second).distance, 0.0))
+    return 0.0 if found > 0.0 and is_inside(*meshes, relative) else found
 
 
 def facing(meshes: tuple[SolidMesh, SolidMesh], displaced: Displaced, distance: float, chord_error: float) -> Facing:
