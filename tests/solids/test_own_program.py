@@ -40,7 +40,15 @@ def test_a_display_mesh_is_that_of_the_solid(cube: KeptShape) -> None:
     assert (mesh.vertices.min(), mesh.vertices.max()) == pytest.approx((-10.0, 10.0), abs=1e-9)
 
 
-@pytest.mark.parametrize("content", [b"", b"no solid", b"\x00" * 1000], ids=["empty", "text", "zeros"])
+@pytest.mark.parametrize(
+    "content",
+    [
+        b"no solid",
+        pytest.param(b"", marks=pytest.mark.slow),
+        pytest.param(b"\x00" * 1000, marks=pytest.mark.slow),
+    ],
+    ids=["text", "empty", "zeros"],
+)
 def test_what_is_no_solid_is_refused(content: bytes) -> None:
     with pytest.raises(GeometryError, match="the solid that was kept is damaged"):
         own_program.read(KeptShape.of(content, ("top",)))
@@ -65,6 +73,7 @@ def test_a_file_that_crashes_or_hangs_its_reader_is_a_message(
         own_program.read(cube)
 
 
+@pytest.mark.slow
 def test_a_stream_of_another_shape_is_refused(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     path = tmp_path / "edge.brep"
     cq.Edge.makeLine(cq.Vector(0, 0, 0), cq.Vector(1, 0, 0)).exportBrep(str(path))

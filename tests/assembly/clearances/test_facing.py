@@ -56,6 +56,7 @@ def test_edges_that_cross_have_one_pair() -> None:
     assert len(found.lengths) == 1
 
 
+@pytest.mark.slow
 def test_a_ball_over_a_plate_has_one_pair() -> None:
     found = faced(block((60.0, 60.0, 10.0)), ball(6.0, 400), (1.0, 2.0, 11.5), (0.05, 1e-3))
     assert len(found.lengths) == 1
