@@ -4,14 +4,17 @@ from functools import cache
 
 from places import SCENES
 
-from tol3d import load_scene
 from tol3d.kinds import all_kinds
+from tol3d.scene import read_scene
 
 
 @cache
 def _mechanisms() -> dict[str, str]:
     """Of each scene."""
-    return {path.stem: all_kinds().vocabulary_of(load_scene(path)).name for path in sorted(SCENES.glob("*.yaml"))}
+    return {
+        path.stem: all_kinds().vocabulary_of(read_scene(path, all_kinds(), settle=False)).name
+        for path in sorted(SCENES.glob("*.yaml"))
+    }
 
 
 def shipped(mechanism: str) -> tuple[str, ...]:
