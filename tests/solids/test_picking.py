@@ -9,8 +9,8 @@ from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
 from tol3d.parts.named_solid import NamedSolid, numbered
+from tol3d.solids.pick import Pick, PickedFace, PickError
 from tol3d.solids.picking import pick_faces
-from tol3d.solids.picks import Pick, PickedFace, PickError
 
 Array = NDArray[np.float64]
 

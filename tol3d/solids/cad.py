@@ -24,7 +24,7 @@ from tol3d.solids import bevel_cad, body_cad, own_program, picking, spur_cad
 from tol3d.solids.bodies import ArmBody, Body, ShaftBody
 from tol3d.solids.built_shape import BuiltShape
 from tol3d.solids.lazy import Arrays
-from tol3d.solids.picks import Pick, PickedFace
+from tol3d.solids.pick import Pick, PickedFace
 from tol3d.solids.posed_gear import PosedPart
 
 Array = NDArray[np.float64]

@@ -15,7 +15,7 @@ from tol3d.solids.built_shape import BuiltShape
 from tol3d.solids.posed_gear import PosedPart
 
 if TYPE_CHECKING:
-    from tol3d.solids.picks import Pick, PickedFace
+    from tol3d.solids.pick import Pick, PickedFace
 
 CAD = "tol3d.solids.cad"
 

@@ -15,7 +15,7 @@ from scipy.optimize import minimize_scalar
 
 from tol3d.parts.named_solid import NamedSolid
 from tol3d.scene.nearest import nearest
-from tol3d.solids.picks import FaceKind, Pick, PickedFace, PickError, Triple
+from tol3d.solids.pick import FaceKind, Pick, PickedFace, PickError, Triple
 
 Array = NDArray[np.float64]
 

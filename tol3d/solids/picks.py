@@ -1,4 +1,4 @@
-"""Faces of solids that features are picked from: what a pick asks for, and what the face has.
+"""Faces of solids that features are picked from.
 
 Picking needs the CAD kernel; what was found is kept in the cache, so that the same scene opens without it.
 """
@@ -6,88 +6,14 @@ Picking needs the CAD kernel; what was found is kept in the cache, so that the s
 import hashlib
 import json
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass
-from typing import Literal
+from dataclasses import asdict
 
 import numpy as np
 
-from tol3d.errors import GeometryError
 from tol3d.solids.built_shape import BuiltShape
 from tol3d.solids.cache import cached
 from tol3d.solids.lazy import Arrays, cad
-
-Triple = tuple[float, float, float]
-FaceKind = Literal["plane", "cylinder", "cone", "sphere"]
-
-
-@dataclass(frozen=True)
-class Pick:
-    """Which face of a solid is meant.
-
-    Args:
-        name: its name; "" for the nearest one.
-        near: a point [mm] that no other face of these kinds is as near to; None of a pick by name.
-        kinds: what the face may be; all kinds where it is empty.
-        along: direction of x on a flat face, as near as may be; None for the part's x, or y where the normal is x.
-    """
-
-    name: str = ""
-    near: Triple | None = None
-    kinds: tuple[FaceKind, ...] = ()
-    along: Triple | None = None
-
-
-@dataclass(frozen=True)
-class PickedFace:
-    """A face of a solid in the frame of its part [mm].
-
-    Args:
-        name: of the face.
-        kind: what it is.
-        at: the middle: of a flat face of its bounding rectangle (or circle), of a round one of its axis, of a sphere
-            its centre.
-        direction: the normal out of the material of a flat face; the axis of a round one, towards +x, +y or +z,
-            whichever it is nearest to.
-        x: of a flat face, the direction of the first of its extents.
-        extent: of a flat face, of the rectangle around it along x and across; lengths from end to end of other ones
-            stand first.
-        radius: of a round face, or of a flat one whose edge is a circle; 0 of others.
-        hole: whether the material lies outside the radius.
-        nearest: the point of it that is nearest to where the pick asked.
-        normal: there, out of the material.
-    """
-
-    name: str
-    kind: FaceKind
-    at: Triple
-    direction: Triple
-    x: Triple
-    extent: tuple[float, float]
-    radius: float
-    hole: bool
-    nearest: Triple
-    normal: Triple
-
-    def axis(self, stated: Triple | None) -> Triple:
-        """The direction of a round face, on the side of a stated one."""
-        if stated is None or float(np.dot(self.direction, stated)) >= 0.0:
-            return self.direction
-        x, y, z = (0.0 - own for own in self.direction)
-        return x, y, z
-
-
-class PickError(GeometryError):
-    """No face is what a pick asks for, or several are.
-
-    Args:
-        sentence: what was expected and what there is.
-        number: which pick.
-        by: whether its name or its place is at fault.
-    """
-
-    def __init__(self, sentence: str, number: int, by: Literal["name", "near"]) -> None:
-        super().__init__(sentence)
-        self.number, self.by = number, by
+from tol3d.solids.pick import Pick, PickedFace
 
 
 def picked(shape: BuiltShape, picks: Sequence[Pick]) -> tuple[PickedFace, ...]:

@@ -15,7 +15,7 @@ from tol3d.assembly.grammar.parts import SolidSpec
 from tol3d.errors import SceneError
 from tol3d.files import FileContent, Files
 from tol3d.scene import Scene
-from tol3d.solids.picks import PickedFace, Triple
+from tol3d.solids.pick import PickedFace, Triple
 from tol3d.units import LARGEST
 
 FEATURES: Final = "features.json"

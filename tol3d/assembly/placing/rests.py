@@ -148,13 +148,11 @@ def rests_found(
         kept_vectors, kept_normals: of what stays as it begins, n . (R p + s t), p and n (kept, 3, n).
         kept_shifts: s (kept,).
         kept_steps: turn by reach and shift, that undo a change of it (6, kept).
-        force: direction (3,) in the world.
-        at: a point on its line (3,), in the part's frame [mm].
+        force, at: direction (3,) in the world; a point on its line (3,), in the part's frame [mm].
         all_rows: how nominal gaps change with turn by reach and shift (contacts, 6).
         rows: how nominal gaps change with the motions (contacts, motions) [mm/mm].
         steps: of the motions, turn by reach and shift (6, motions).
-        first_basis: contacts that would carry if all were touched, one for each motion.
-        first_inverse: of their rows (motions, motions).
+        first_basis, first_inverse: contacts that would carry if all were touched, one for each motion; of their rows.
         first_loads: on them, of the force and of the second direction (2, motions).
         start: the pose before contacts count (3, 4, n).
         reach: of the points about its origin [mm].
@@ -168,8 +166,7 @@ def rests_found(
     kept = (kept_vectors, kept_normals, kept_shifts, kept_steps, first)
     begun = (np.empty(motions, np.int64), np.empty((motions, motions)), np.empty((2, motions)))
     rooms = (np.empty(count), np.empty(6), (np.empty(motions), np.empty(motions)))
-    others = (np.empty((count, 6)), np.empty(6), np.empty((6, motions)), np.empty((motions, motions)))
-    there = (*others, np.empty(motions))
+    there = (np.empty((count, 6)), np.empty(6), np.empty((6, motions)), np.empty((motions, motions)), np.empty(motions))
     for i in range(outcomes.shape[0]):
         begin(pose, first, start, i, kept)
         begun[0][:], begun[1][:], begun[2][:] = first_basis, first_inverse, first_loads

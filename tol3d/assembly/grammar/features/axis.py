@@ -15,7 +15,7 @@ from tol3d.scene.part import Length
 from tol3d.scene.vector import Direction
 
 if TYPE_CHECKING:
-    from tol3d.solids.picks import PickedFace
+    from tol3d.solids.pick import PickedFace
 
 
 class AxisSpec(OneFaceSpec):

@@ -15,7 +15,7 @@ from tol3d.strict import Strict, refused
 from tol3d.units import Quantity
 
 if TYPE_CHECKING:
-    from tol3d.solids.picks import PickedFace
+    from tol3d.solids.pick import PickedFace
 
 Array = NDArray[np.float64]
 Known = TypeVar("Known")

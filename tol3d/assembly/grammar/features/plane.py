@@ -17,7 +17,7 @@ from tol3d.scene.vector import Direction
 from tol3d.strict import refused
 
 if TYPE_CHECKING:
-    from tol3d.solids.picks import PickedFace
+    from tol3d.solids.pick import PickedFace
 
 
 class PlaneSpec(OneFaceSpec):

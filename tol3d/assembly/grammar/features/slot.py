@@ -18,7 +18,7 @@ from tol3d.scene.vector import Direction
 from tol3d.strict import refused
 
 if TYPE_CHECKING:
-    from tol3d.solids.picks import PickedFace
+    from tol3d.solids.pick import PickedFace
 
 PARALLEL: Final = 1e-9
 """Sine between the walls of a slot, beyond which they are none."""

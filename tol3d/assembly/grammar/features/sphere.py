@@ -14,7 +14,7 @@ from tol3d.assembly.model import Point
 from tol3d.scene.part import Length
 
 if TYPE_CHECKING:
-    from tol3d.solids.picks import PickedFace
+    from tol3d.solids.pick import PickedFace
 
 
 class SphereSpec(OneFaceSpec):
