@@ -130,7 +130,9 @@ def test_two_dask_workers_give_the_bits_of_one_process(address: str, tmp_path: P
     assert statistics.summary["measures"] == alone.summary["measures"]
 
 
-@pytest.mark.parametrize(("engine", "blocks"), [("exact", 6), ("chords", 1)])  # whose pieces are a trial or two each
+@pytest.mark.parametrize(
+    ("engine", "blocks"), [("exact", 6), pytest.param("chords", 1, marks=pytest.mark.slow)]
+)  # whose pieces are a trial or two each
 def test_dask_workers_run_a_mechanism_from_outside(engine: str, blocks: int, address: str, tmp_path: Path) -> None:
     scene, study = TOYS / "parabola" / "spring.yaml", Overrides(trials=blocks * BLOCK + 77, engine=engine)
     alone = run_scene(scene, overrides=study, out=tmp_path / "alone")
@@ -199,6 +201,7 @@ def _scheduler_pid(address: str) -> int:
         return int(client.run_on_scheduler(os.getpid))
 
 
+@pytest.mark.slow
 def test_an_address_where_nobody_answers_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(execution_module, "ANSWER_S", 0.5)
     few = Overrides(trials=10, engine="analytic")

@@ -105,6 +105,7 @@ def test_a_benchmark_runs_and_prints_every_row(
     assert out.exists() == bool(more)
 
 
+@pytest.mark.slow
 def test_whole_gears_find_the_backlash_of_thinned_teeth() -> None:
     """(Δs1 + Δs2) cos α of the means (24.5 and 26.5 µm thinner) at the nominal centre distance.
 

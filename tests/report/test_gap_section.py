@@ -41,7 +41,7 @@ def distance(section: GapSection) -> float:
 
 
 @pytest.mark.parametrize("magnify", [1.0, 2.0])
-@pytest.mark.parametrize("trial", [0, 3])
+@pytest.mark.parametrize("trial", [0, pytest.param(3, marks=pytest.mark.slow)])
 def test_the_outlines_are_as_far_apart_as_the_gap_and_the_line_reaches_from_one_to_the_other(
     run: Run, trial: int, magnify: float
 ) -> None:

@@ -181,7 +181,7 @@ def test_the_bars_of_a_normal_measure_end_at_three_sigma() -> None:
 # names --------------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("count", [1, 2, 9, 10, 40])
+@pytest.mark.parametrize("count", [1, 2, 9, 10, pytest.param(40, marks=pytest.mark.slow)])
 def test_contributors_bear_their_whole_names_and_no_words_cover_each_other(count: int) -> None:
     names = tuple(long_name(f"no. {k}") for k in range(count))
     told = {long_name("a paper"): {"contributors": {names[0]: 30.0}, "mean": 50.0}}

@@ -381,6 +381,7 @@ moves:
   lone pair: {kind: mesh, driver: lone, driven: mate, centre_distance: 23.02 mm, working_flank: left}"""
 
 
+@pytest.mark.slow
 @renders
 def test_trees_of_shafts_that_nothing_connects_are_files_of_their_own(tmp_path: Path) -> None:
     (tmp_path / "two.yaml").write_text(SCENE.replace("\nmoves:", LONE_PAIR), encoding="utf-8")

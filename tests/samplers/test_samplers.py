@@ -238,7 +238,7 @@ def found(model: Model, sampler: Any, trials: int, seed: int) -> np.ndarray:
     return np.array([moments.mean - 1e3 * form.mean, moments.sigma - 1e3 * form.sigma, errors.mean_se, errors.sigma_se])
 
 
-@pytest.mark.parametrize("sampler", ["sobol", "latin_hypercube"])
+@pytest.mark.parametrize("sampler", ["sobol", pytest.param("latin_hypercube", marks=pytest.mark.slow)])
 def test_the_stated_standard_errors_are_the_true_spread(paper_model: Model, sampler: str) -> None:
     studies, replicates = 200, 16
     squares = np.mean([found(paper_model, sampler, 1024, seed) ** 2 for seed in range(studies)], axis=0)
