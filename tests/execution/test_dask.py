@@ -213,6 +213,7 @@ def test_an_address_where_nobody_answers_is_refused(tmp_path: Path, monkeypatch:
             run_scene(SPUR_PAIR, overrides=few, out=tmp_path / "run", execution=Execution(scheduler=address))
 
 
+@pytest.mark.slow
 def test_a_scheduler_without_workers_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     port = free_port()
     with processes() as started:

@@ -51,7 +51,11 @@ GEARS = {
     "coarse": BevelGear(24, 20.0, ALPHA, 60.0, 50 * DEG, profile_shift=-0.3, bore=100.0),
     "hardly any room round the bore": BevelGear(31, 3.5, ALPHA, 9.0, 45 * DEG, bore=90.0),
 }
-each_gear = pytest.mark.parametrize("gear", GEARS.values(), ids=GEARS.keys())
+SHORT = ("paper", "17 of 17/43 at 90 deg, root below base", "three teeth", "nearly a spur gear")
+each_gear = pytest.mark.parametrize(
+    "gear",
+    [pytest.param(gear, id=name, marks=() if name in SHORT else pytest.mark.slow) for name, gear in GEARS.items()],
+)
 
 
 def cone_angles(gear: BevelGear) -> tuple[float, float, float]:
