@@ -23,7 +23,21 @@ class DetailError(GeometryError):
 
 
 @dataclass(frozen=True)
-class Hole:
+class Round:
+    """What is round about an axis square to its face: a name, the place of the axis, a diameter [mm]."""
+
+    name: str
+    at: Place
+    diameter: float
+
+    @property
+    def reach(self) -> Place:
+        """How far it reaches from its place along both coordinates [mm]."""
+        return self.diameter / 2, self.diameter / 2
+
+
+@dataclass(frozen=True)
+class Hole(Round):
     """A drilled hole.
 
     Args:
@@ -34,16 +48,8 @@ class Hole:
         face: that it is drilled into.
     """
 
-    name: str
-    at: Place
-    diameter: float
     depth: float | None = None
     face: str = "top"
-
-    @property
-    def reach(self) -> Place:
-        """How far it reaches from its place along both coordinates [mm]."""
-        return self.diameter / 2, self.diameter / 2
 
     @property
     def words(self) -> str:
@@ -90,7 +96,7 @@ class Slot:
 
 
 @dataclass(frozen=True)
-class Pin:
+class Pin(Round):
     """A round pin that stands on the top, or on a rim: its side is the face "NAME", its end "NAME end".
 
     Args:
@@ -100,15 +106,7 @@ class Pin:
         height: above what it stands on [mm].
     """
 
-    name: str
-    at: Place
-    diameter: float
     height: float
-
-    @property
-    def reach(self) -> Place:
-        """How far it reaches from its place along both coordinates [mm]."""
-        return self.diameter / 2, self.diameter / 2
 
     @property
     def words(self) -> str:
@@ -117,7 +115,7 @@ class Pin:
 
 
 @dataclass(frozen=True)
-class Bore:
+class Bore(Round):
     """A bore through an end wall of a housing, and through the boss that it lies in; its wall is the face "NAME".
 
     Args:
@@ -127,15 +125,7 @@ class Bore:
         wall: "front" (+z) or "back" (-z).
     """
 
-    name: str
-    at: Place
-    diameter: float
     wall: str
-
-    @property
-    def reach(self) -> Place:
-        """How far it reaches from its place along both coordinates [mm]."""
-        return self.diameter / 2, self.diameter / 2
 
     @property
     def words(self) -> str:
@@ -144,7 +134,7 @@ class Bore:
 
 
 @dataclass(frozen=True)
-class Boss:
+class Boss(Round):
     """A round boss on the outside of an end wall of a housing: its side is the face "NAME", its end "NAME end".
 
     Args:
@@ -155,16 +145,8 @@ class Boss:
         wall: "front" (+z) or "back" (-z).
     """
 
-    name: str
-    at: Place
-    diameter: float
     height: float
     wall: str
-
-    @property
-    def reach(self) -> Place:
-        """How far it reaches from its place along both coordinates [mm]."""
-        return self.diameter / 2, self.diameter / 2
 
     @property
     def words(self) -> str:

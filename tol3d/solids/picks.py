@@ -5,15 +5,20 @@ Picking needs the CAD kernel; what was found is kept in the cache, so that the s
 
 import hashlib
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import asdict
+from typing import Final
 
 import numpy as np
+from pydantic import TypeAdapter
 
 from tol3d.solids.built_shape import BuiltShape
 from tol3d.solids.cache import cached
 from tol3d.solids.lazy import Arrays, cad
 from tol3d.solids.pick import Pick, PickedFace
+
+FACES: Final = TypeAdapter(tuple[PickedFace, ...])
+"""As they are kept."""
 
 
 def picked(shape: BuiltShape, picks: Sequence[Pick]) -> tuple[PickedFace, ...]:
@@ -27,13 +32,6 @@ def picked(shape: BuiltShape, picks: Sequence[Pick]) -> tuple[PickedFace, ...]:
     kind = f"faces-{hashlib.sha256(asked.encode()).hexdigest()[:16]}"
 
     def build() -> Arrays:
-        found = json.dumps([asdict(face) for face in cad().pick_faces(shape, picks)])
-        return {"faces": np.frombuffer(found.encode(), dtype=np.uint8)}
+        return {"faces": np.frombuffer(FACES.dump_json(tuple(cad().pick_faces(shape, picks))), dtype=np.uint8)}
 
-    kept = json.loads(cached(kind, shape, {}, build)["faces"].tobytes())
-    return tuple(face_from(values) for values in kept)
-
-
-def face_from(values: Mapping[str, object]) -> PickedFace:
-    """A face from its values as JSON has them, lists for tuples."""
-    return PickedFace(**{name: tuple(own) if isinstance(own, list) else own for name, own in values.items()})  # type: ignore[arg-type]
+    return FACES.validate_json(cached(kind, shape, {}, build)["faces"].tobytes())
