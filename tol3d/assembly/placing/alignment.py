@@ -73,6 +73,7 @@ class Seat:
         toward: the target's direction (3, n), of unit length; None of a point.
         height: over the target, along its direction (n,) [mm].
         outermost: a feature whose outermost point along the direction counts instead of `point`.
+        across: a slot or tab, whose place comes before its direction where one turn alone is left to it.
     """
 
     point: Array
@@ -81,6 +82,7 @@ class Seat:
     toward: Array | None = None
     height: Array | float = 0.0
     outermost: ActualFeature | None = None
+    across: ActualFeature | None = None
 
     @property
     def its_direction(self) -> Array:

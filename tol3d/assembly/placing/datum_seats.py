@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.assembly.model import Axis, Datum, DatumFrame, Feature, Part, Plane, RoundPlane
+from tol3d.assembly.model import Axis, Datum, DatumFrame, Feature, Part, Plane, RoundPlane, Slot
 from tol3d.assembly.placing.actual_feature import ActualFeature, actual
 from tol3d.assembly.placing.alignment import Alignment, Held, Seat, Tie, Turning
 from tol3d.assembly.placing.freedoms import aligned
@@ -112,8 +112,10 @@ def _single(datum: Datum, k: int, own: ActualFeature, simulator: ActualFeature) 
         for target in datum.targets:
             yield ("along", "none"), Seat(own.at(target), simulator.at(target), None, simulator.direction)
     else:
-        outermost = own if datum.simulator == "contact" and k > 0 else None
+        is_wide = isinstance(shape, Slot)
+        outermost = own if datum.simulator == "contact" and k > 0 and not is_wide else None
+        across = own if is_wide else None
         yield (
             ("along", "direction"),
-            Seat(own.origin, simulator.origin, own.direction, simulator.direction, outermost=outermost),
+            Seat(own.origin, simulator.origin, own.direction, simulator.direction, outermost=outermost, across=across),
         )

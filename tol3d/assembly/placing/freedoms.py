@@ -52,7 +52,9 @@ class _Freedoms:
     def take(self, index: int) -> bool:
         """Whether a tie takes anything of what is left, and what."""
         tie, before = self.ties[index], (len(self.turns), len(self.shifts), self.lying)
-        if tie.held == "along":
+        if self._by_place(index):
+            self._turn_by_point(index, taken_before=False)
+        elif tie.held == "along":
             self._turn_by_direction(index)
             if not self._shift(index):
                 self._turn_by_point(index, taken_before=(len(self.turns), self.lying) != (before[0], before[2]))
@@ -164,9 +166,7 @@ class _Freedoms:
         if isinstance(self.turning, str):
             self._aim_at(index)
             return
-        pose, axis = self._pose(), column(self.turning)
-        directions, _ = self.alignment.shift_directions(self.seats)
-        swung = (drift(pose, self.seats, directions, axis) + cross(axis, pose.point(seat.point)))[:, 0]
+        swung = self._swung(seat.point)
         around = tie.held == "across" and abs(self.turning @ seat.its_toward[:, 0]) > 1 - HELD**2
         if tie.held != "all":
             toward = seat.its_toward[:, 0]
@@ -176,6 +176,29 @@ class _Freedoms:
             step = Step("turn to", index, self.pivot) if turning else Step("swing", index)
             self._turn(step)
             self.turning = "none"
+
+    def _swung(self, point: Array) -> Array:
+        """How a point (3, 1) moves with the turn that is left, about what shifts leave in place (3,) [mm]."""
+        pose, axis = self._pose(), column(np.asarray(self.turning))
+        directions, _ = self.alignment.shift_directions(self.seats)
+        return np.asarray((drift(pose, self.seats, directions, axis) + cross(axis, pose.point(point)))[:, 0])
+
+    def _by_place(self, index: int) -> bool:
+        """Whether the one turn left moves the middle of a slot across it, and more than its ends against that.
+
+        Walls that close in on the slot about its nominal place turn it so that |middle| + |ends over it| is least:
+        whichever of both the turn moves more becomes 0.
+        """
+        seat = self.seats[index]
+        if seat.across is None or isinstance(self.turning, str):
+            return False
+        toward = seat.its_toward[:, 0]
+        if np.linalg.norm(self._free @ toward) > HELD:
+            return False
+        lever = abs(self._swung(seat.point) @ toward)
+        arms = [self._pose().turn[:, :, 0] @ span[:, 0] for span in seat.across.spans]
+        ends = sum(abs(np.cross(self.turning, arm) @ toward) for arm in arms)
+        return bool(lever > HELD and lever > ends - HELD)
 
     def _aim_at(self, index: int) -> None:
         """The line from a point that is held to another point takes two of three turns."""

@@ -5,13 +5,16 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.assembly.model import Axis, Datum, DatumFrame, Feature, Plane, Point, RoundPlane
+from tol3d.assembly.model import Axis, Datum, DatumFrame, Feature, Plane, Point, RoundPlane, Slot
 from tol3d.assembly.torsors.columns import Columns
 from tol3d.assembly.torsors.freedoms import Freedoms
 from tol3d.assembly.torsors.torsor import height_at, perpendicular, shift_at, torsor_of, turn_about
 from tol3d.errors import InputError
 
 Array = NDArray[np.float64]
+
+NEARER = 1e-6
+"""Lever [mm] that is none: a slot whose end lies on the axis of the turn is held by its place."""
 
 Displaced = tuple[Feature, Array]
 """A feature and its torsor (6, columns), in the part's frame."""
@@ -47,6 +50,8 @@ def _take(freedoms: Freedoms, datum: Datum, features: Sequence[Displaced], colum
         _take_line(freedoms, (feature, torsor), others[0])
         return
     match feature.shape:
+        case Slot() as slot:
+            _take_slot(freedoms, slot, feature.frame, torsor)
         case Plane() | RoundPlane():
             _take_plane(freedoms, datum, feature, torsor, columns)
         case Axis():
@@ -54,6 +59,23 @@ def _take(freedoms: Freedoms, datum: Datum, features: Sequence[Displaced], colum
         case Point():
             position = shift_at(feature.frame[:3, 3])
             freedoms.take(position, position @ torsor)
+
+
+def _take_slot(freedoms: Freedoms, slot: Slot, frame: Array, torsor: Array) -> None:
+    """The median plane of a slot or tab, on which walls close in about its nominal place.
+
+    They leave the smallest of |height of its middle| + |rise along x| + |rise along y|, that of its corners. Where one
+    motion alone is left, which moves all three in proportion, the one that it moves most becomes 0: the height, or the
+    rises together. Otherwise its direction is met by turns, then its height.
+    """
+    height = height_at(frame[:3, 3], frame[:3, 2])
+    turns = turn_about(frame[:3, :2].T)
+    moved = np.concatenate([height, turns]) @ freedoms.left
+    about_x, about_y = np.abs(moved[1:]).max(axis=1, initial=0.0)
+    by_place = np.abs(moved[0]).max(initial=0.0) > slot.reach[1] * about_x + slot.reach[0] * about_y - NEARER
+    order = (height, turns) if by_place and np.linalg.matrix_rank(moved, tol=NEARER) == 1 else (turns, height)
+    for equations in order:
+        freedoms.take(equations, equations @ torsor)
 
 
 def _take_plane(freedoms: Freedoms, datum: Datum, feature: Feature, torsor: Array, columns: Columns) -> None:
