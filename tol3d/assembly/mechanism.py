@@ -5,6 +5,7 @@ from typing import Final
 from tol3d.assembly.grammar import measures, moves, parts, tolerances
 from tol3d.assembly.grammar.boundary_checks import unfit_boundaries
 from tol3d.assembly.grammar.checks import unknown_features, unplaced_bodies
+from tol3d.assembly.grammar.contact_checks import round_contacts
 from tol3d.assembly.grammar.drawing_checks import contradicting_tolerances
 from tol3d.assembly.grammar.measure_checks import (
     missing_solids,
@@ -44,6 +45,7 @@ ASSEMBLY: Final = Mechanism(
         unfit_engagements,
         idle_over_play,
         unfit_pairs,
+        round_contacts,
     ),
     engines=("exact",),
     witness="fcl",

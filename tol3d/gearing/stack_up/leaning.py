@@ -61,7 +61,7 @@ def shares_by_net(change: Change, group: Sequence[AnyContributor]) -> list[Share
     """
     first, second = (_deviations(group, half) for half in _net(2 * sum(c.draw.uniforms for c in group)))
     value, other = change(first), change(second)
-    mean, variance = float(value.mean()), float(value.var())
+    mean, variance = _mean(value, first, group), float(value.var())
     alone, involved = np.zeros(len(group)), np.zeros(len(group))
     for k, contributor in enumerate(group):
         name = contributor.name
@@ -76,6 +76,18 @@ def shares_by_net(change: Change, group: Sequence[AnyContributor]) -> list[Share
         Share(contributor.name, _mean_slope(first[contributor.name], value), mean / len(group), float(own))
         for contributor, own in zip(group, variances, strict=True)
     ]
+
+
+def _mean(value: Array, deviations: Mapping[str, Array], group: Sequence[AnyContributor]) -> float:
+    """Mean of a measure over a net, with what the net is off in the means of the deviations taken off it.
+
+    Those means are known; the plane of least squares through the measure says what an error of each is worth.
+    """
+    off = np.concatenate(
+        [deviations[own.name] - np.array(own.draw.mean(turning=False)) for own in group], axis=1
+    )
+    plane = np.column_stack([np.ones(len(value)), off])
+    return float(np.linalg.lstsq(plane.T @ plane, plane.T @ value, rcond=None)[0][0])
 
 
 def change_of(parts: Sequence[tuple[float, Stack[GearPair]]], deviations: Mapping[str, Array]) -> Array:
