@@ -8,16 +8,18 @@ import subprocess
 import sys
 import tempfile
 import zipfile
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 import numpy as np
 import pytest
+from filelock import FileLock, Timeout
 from fixtures import Command
 from places import SPUR_PAIR
 
 from tol3d.gears import SpurGear
-from tol3d.numerics.cache_folder import CacheError, cache_folder, read_entry, write_entry
+from tol3d.numerics.cache_folder import CacheError, cache_folder, read_entry, sole_maker, write_entry
 from tol3d.numerics.compiled import Kernel
 from tol3d.samplers.monte_carlo import uniforms
 from tol3d.samplers.quick_uniforms import quick_uniforms
@@ -212,24 +214,143 @@ def test_a_pipe_in_the_place_of_an_entry_counts_as_none(folder: Path) -> None:
 
 # several processes ----------------------------------------------------------------------------------------------------
 
-TOGETHER = """
-import sys, pathlib, time
-from tol3d.samplers.quick_uniforms import quick_uniforms
+HANGS = 120.0  # s; a guard against waiting for ever, no claim
+
+MAKERS = """
+import os, sys, time, pathlib
+from tol3d.numerics.cache_folder import read_entry, sole_maker, write_entry
 mine, *others = (pathlib.Path(name) for name in sys.argv[1:])
 mine.touch()
 while not all(other.exists() for other in others):
     time.sleep(0.001)
-print(quick_uniforms(5, "a", "", 0, 40).tobytes().hex())
+with sole_maker("entry", 120.0):
+    made = read_entry("entry") is None
+    if made:
+        time.sleep(0.3)
+        write_entry("entry", b"made by " + str(os.getpid()).encode())
+print(os.getpid() if made else "")
+"""
+
+HOLDER = """
+import time
+from tol3d.numerics.cache_folder import sole_maker
+with sole_maker("entry", 120.0):
+    print("held", flush=True)
+    time.sleep(3600)
+"""
+
+
+@pytest.fixture
+def holder(folder: Path) -> Iterator[subprocess.Popen[str]]:
+    """A process that makes an entry and does not finish."""
+    with subprocess.Popen([sys.executable, "-c", HOLDER], stdout=subprocess.PIPE, text=True) as process:
+        assert process.stdout is not None
+        assert process.stdout.readline() == "held\n"
+        yield process
+        process.kill()
+
+
+def is_held(folder: Path) -> bool:
+    try:
+        with FileLock(folder / "entry.lock").acquire(timeout=0):
+            return False
+    except Timeout:
+        return True
+
+
+def started_together(script: str, count: int, tmp_path: Path) -> list[str]:
+    """What processes print that go on when all of them run."""
+    marks = [str(tmp_path / f"mark {number}") for number in range(count)]
+    commands = [[sys.executable, "-c", script, mark, *marks] for mark in marks]
+    runs = [subprocess.Popen(command, stdout=subprocess.PIPE, text=True) for command in commands]
+    return [run.communicate(timeout=300)[0].strip() for run in runs]
+
+
+def test_of_processes_that_want_an_entry_at_once_one_makes_it(folder: Path, tmp_path: Path) -> None:
+    (maker,) = filter(None, started_together(MAKERS, 3, tmp_path))
+    assert read_entry("entry") == b"made by " + maker.encode()
+    assert [entry.name for entry in folder.iterdir()] == ["entry"]  # no lock is left
+
+
+def test_a_maker_that_is_killed_is_not_waited_for(folder: Path, holder: subprocess.Popen[str]) -> None:
+    assert is_held(folder)
+    holder.kill()
+    holder.wait(HANGS)
+    assert not is_held(folder)
+    with sole_maker("entry", HANGS):
+        assert is_held(folder)
+    assert not any(folder.iterdir())
+
+
+def test_a_maker_that_takes_too_long_is_not_waited_for_either(folder: Path, holder: subprocess.Popen[str]) -> None:
+    made = []
+    with sole_maker("entry", 0.2):
+        made.append(holder.poll() is None and is_held(folder))
+    assert made == [True]
+    assert is_held(folder)  # it is still the other's
+    with sole_maker("another entry", HANGS):
+        assert sorted(path.name for path in folder.iterdir()) == ["another entry.lock", "entry.lock"]
+
+
+@pytest.mark.parametrize("error", [OSError("no locks here"), NotImplementedError(), RuntimeError("held")])
+def test_without_locks_everybody_makes_entries(folder: Path, error: Exception, monkeypatch: pytest.MonkeyPatch) -> None:
+    def refuse(lock: FileLock, **settings: float) -> None:
+        raise error
+
+    monkeypatch.setattr(FileLock, "acquire", refuse)
+    with sole_maker("entry", HANGS):
+        write_entry("entry", b"made")
+    assert read_entry("entry") == b"made"
+    with pytest.raises(KeyError, match="its own"), sole_maker("entry", HANGS):
+        raise KeyError("its own")
+
+
+def test_a_maker_s_own_error_gives_the_lock_back(folder: Path) -> None:
+    with pytest.raises(OSError, match="its own"), sole_maker("entry", HANGS):
+        raise OSError("its own")
+    assert not is_held(folder)
+
+
+def test_a_kernel_that_another_process_compiled_meanwhile_is_loaded(
+    folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    from tol3d.samplers import quick_uniforms as module
+
+    expected = drawn(fresh(module._draw))
+    name = module._draw.name
+    assert name is not None
+    good = read_entry(name)
+    assert good is not None
+    (folder / name).write_bytes(b"damaged")
+
+    @contextmanager
+    def waited_for(name: str, longest_wait: float) -> Iterator[None]:
+        write_entry(name, good)
+        yield
+
+    monkeypatch.setattr("tol3d.numerics.compiled.sole_maker", waited_for)
+    loaded = fresh(module._draw)
+    assert np.array_equal(drawn(loaded), expected)
+    assert sum(vars(loaded)["_compiled"].stats.cache_hits.values()) == 1
+
+
+COMPILERS = """
+import sys, pathlib, time
+from tol3d.samplers import quick_uniforms as module
+mine, *others = (pathlib.Path(name) for name in sys.argv[1:])
+mine.touch()
+while not all(other.exists() for other in others):
+    time.sleep(0.001)
+values = module.quick_uniforms(5, "a", "", 0, 40).tobytes().hex()
+print(sum(vars(module._draw)["_compiled"].stats.cache_hits.values()), values)
 """
 
 
 @pytest.mark.slow
-def test_processes_that_compile_at_once_end_with_one_whole_kernel(folder: Path, tmp_path: Path) -> None:
-    marks = [str(tmp_path / name) for name in "abc"]
-    commands = [[sys.executable, "-c", TOGETHER, mark, *marks] for mark in marks]
-    runs = [subprocess.Popen(command, stdout=subprocess.PIPE, text=True) for command in commands]
-    printed = [run.communicate(timeout=300)[0].strip() for run in runs]
-    assert printed == [uniforms(5, "a", "", 0, 40).tobytes().hex()] * 3
+def test_processes_that_want_a_kernel_at_once_compile_it_once(folder: Path, tmp_path: Path) -> None:
+    expected = uniforms(5, "a", "", 0, 40).tobytes().hex()
+    printed = started_together(COMPILERS, 3, tmp_path)
+    assert sorted(printed) == [f"0 {expected}", f"1 {expected}", f"1 {expected}"]
     assert [entry.suffix for entry in folder.iterdir()] == [".zip"]
     assert read_entry(next(folder.iterdir()).name)
 

@@ -2,8 +2,8 @@
 
 Compiled kernels are among them, and loading one runs it: who may write there may run what he likes as whoever starts
 tol3d next. An entry is a file, its bytes followed by their SHA-256: a torn or damaged one counts as none. It is written
-aside and renamed, so processes that make the same thing at once end with a whole one. The folder may be deleted at any
-time.
+aside and renamed, so processes that make the same thing at once end with a whole one; what takes long is made by one
+of them while the others wait. The folder may be deleted at any time.
 """
 
 import contextlib
@@ -11,9 +11,12 @@ import hashlib
 import os
 import stat
 import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 import platformdirs
+from filelock import FileLock
 
 from tol3d.errors import InputError
 
@@ -22,6 +25,7 @@ DIGEST_BYTES = 32
 PRIVATE = 0o700
 OTHERS_WRITE = stat.S_IWGRP | stat.S_IWOTH
 ROOT = 0  # may write anywhere, so a folder of its own is none the worse
+LOCK_POLL = 0.05  # s between attempts to take a lock
 
 
 class CacheError(InputError):
@@ -81,9 +85,7 @@ def write_entry(name: str, payload: bytes) -> None:
     Raises:
         OSError: it cannot be written.
     """
-    folder = cache_folder()
-    folder.parent.mkdir(parents=True, exist_ok=True)
-    folder.mkdir(mode=PRIVATE, exist_ok=True)
+    folder = _made_folder()
     handle, unfinished = tempfile.mkstemp(dir=folder, prefix=Path(name).stem, suffix=".partial")
     try:
         with os.fdopen(handle, "wb") as file:
@@ -93,3 +95,38 @@ def write_entry(name: str, payload: bytes) -> None:
         with contextlib.suppress(OSError):
             Path(unfinished).unlink()
         raise
+
+
+@contextmanager
+def sole_maker(name: str, longest_wait: float) -> Iterator[None]:
+    """Make an entry alone: while another process is making it, wait for that to finish, but not for ever.
+
+    It saves work and guards nothing: where no lock can be had (folder not writable, file system without locks) or the
+    wait ends, the caller goes on as if it were alone. A process that dies loses its lock.
+
+    Args:
+        name: of the entry.
+        longest_wait: [s].
+    """
+    with contextlib.ExitStack() as stack:
+        # Timeout is an OSError
+        with contextlib.suppress(OSError, NotImplementedError, RuntimeError):
+            path = _made_folder() / f"{name}.lock"
+            lock = FileLock(path)
+            stack.enter_context(lock.acquire(timeout=longest_wait, poll_interval=LOCK_POLL))
+            stack.callback(_deleted, path)
+        yield
+
+
+def _deleted(path: Path) -> None:
+    """Delete a lock's file before the lock is given back; where open files cannot be deleted it stays, empty."""
+    with contextlib.suppress(OSError):
+        path.unlink()
+
+
+def _made_folder() -> Path:
+    """The cache's folder, for this user alone if it was not there."""
+    folder = cache_folder()
+    folder.parent.mkdir(parents=True, exist_ok=True)
+    folder.mkdir(mode=PRIVATE, exist_ok=True)
+    return folder

@@ -2,7 +2,8 @@
 
 What was compiled is kept in the user's cache, under a name made of all that it is made of: the sources of the kernel's
 module and of all that they import (a kernel freezes the constants it finds there), the compiler, and the processor it
-compiles for. Studies of gears by other engines than the exact one compile nothing.
+compiles for. Processes that want the same kernel at once compile it once. Studies of gears by other engines than the
+exact one compile nothing.
 """
 
 import contextlib
@@ -27,7 +28,7 @@ from numba import types as numba_types
 from numba.core import sigutils as numba_signatures
 from numba.extending import intrinsic, overload
 
-from tol3d.numerics.cache_folder import read_entry, write_entry
+from tol3d.numerics.cache_folder import read_entry, sole_maker, write_entry
 from tol3d.numerics.processor import target
 from tol3d.numerics.sources import sources_of
 
@@ -35,6 +36,9 @@ Function = TypeVar("Function", bound=Callable[..., Any])
 
 # forced inlining keeps the tuples of numbers in registers: a third of the time; fused products round once, not twice
 SETTINGS: Any = {"error_model": "numpy", "nogil": True, "forceinline": True, "fastmath": {"contract"}}
+
+
+LONGEST_WAIT = 150.0  # s, while another process compiles a kernel; the largest takes 25 s on a core of its own
 
 
 def part(function: Function) -> Function:
@@ -130,11 +134,20 @@ class Kernel:
         arrays, _ = signatures.normalize_signature(f"void({self._arrays})")
         signature = (*numbers, *arrays)
         with _ONE_AT_A_TIME:
-            return self._loaded(signature) or self._compiled_now(signature)
+            kept = self._read()
+            return self._loaded(signature, kept) or self._compiled_once(signature, kept)
 
-    def _loaded(self, signature: tuple[Any, ...]) -> Callable[..., None] | None:
-        """It from the cache; None where that has none that can be used."""
-        content = self._read()
+    def _compiled_once(self, signature: tuple[Any, ...], useless: bytes | None) -> Callable[..., None]:
+        """It compiled, or loaded when another process has compiled it since the cache held something useless."""
+        if self.name is None:
+            return self._compiled_now(signature)
+        with sole_maker(self.name, LONGEST_WAIT):
+            kept = self._read()
+            made = self._loaded(signature, kept) if kept != useless else None
+            return made or self._compiled_now(signature)
+
+    def _loaded(self, signature: tuple[Any, ...], content: bytes | None) -> Callable[..., None] | None:
+        """It from an entry of the cache; None where that is none, or cannot be used."""
         if content is None:
             return None
         try:
