@@ -95,7 +95,11 @@ def test_a_corner_follows_its_locators_as_their_coefficients_say() -> None:
         np.testing.assert_allclose((up - down) / 2e-5, by_hand, atol=1e-9)
 
 
-def random_move(seed: int) -> tuple[Assembly, Array, Array]:
+NO_POSE = {(635, "fixture")}
+"""Of which scipy from 200 starts leaves 0.02 mm."""
+
+
+def random_move(seed: int, points_on: PointsOn = "part") -> tuple[Assembly, Array, Array]:
     """A part on six random contacts with two parts that are fixed at random poses; deviations; what scipy finds."""
     random = np.random.default_rng(seed)
     while True:
@@ -114,11 +118,11 @@ def random_move(seed: int) -> tuple[Assembly, Array, Array]:
         at = target_from_loose @ [*point, 1.0]
         features[holder].append(feature(f"{holder}.{k}", Point(), frame(at[:3]), [columns(count=3)]))
         features["loose"].append(feature(f"loose.{k}", Point(), frame(point), [columns(count=3)]))
-        pairs.append(
-            pair(f"loose.{k}", f"{holder}.{k}", target_from_loose[:3, :3] @ normal, [columns(np.ones((1, 1)))])
-        )
+        along = target_from_loose[:3, :3] @ normal if points_on == "part" else normal
+        locator = [columns(np.ones((1, 1)))]
+        pairs.append(pair(f"loose.{k}", f"{holder}.{k}", along, locator))
         seen.append(holder)
-    moves: list[Move] = [Fix("one", "one"), Fix("two", "two"), Locate("loose", "loose", tuple(pairs))]
+    moves: list[Move] = [Fix("one", "one"), Fix("two", "two"), Locate("loose", "loose", tuple(pairs), points_on)]
     made = assembly(columns, [part(name, features[name], pose=poses[name]) for name in poses], moves)
     deviations = random.normal(0, 0.1, columns.width)
 
@@ -130,35 +134,43 @@ def random_move(seed: int) -> tuple[Assembly, Array, Array]:
         used[holder] += 1
         turn, shift = poses[holder][:3, :3], poses[holder][:3, 3]
         feet.append(turn @ (base[:3, :3] @ own[:3] + base[:3, 3]) + shift)
-        normals_there.append(turn @ pairs[k].normal)
+        normals_there.append(turn @ pairs[k].normal if points_on == "part" else pairs[k].normal)
         its = features["loose"][k].frame
         riding.append(its[:3, :3] @ own[3:6] + its[:3, 3])
         up.append(own[6])
 
     def lacking(turn: Array, shift: Array) -> Array:
+        if points_on == "fixture":  # planes on the part, seen from it: a part that is lifted leaves its points behind
+            left = (np.array(feet) - shift) @ turn - np.array(riding)
+            return np.asarray(np.sum(left * np.array(normals_there), axis=1) + np.array(up))
         reached = np.array(riding) @ turn.T + shift - np.array(feet)
         return np.asarray(np.sum(reached * np.array(normals_there), axis=1) - up)
 
     expected = solved_pose(lacking, poses["loose"])
+    if (seed, points_on) in NO_POSE:
+        return made, deviations, np.full((4, 4), np.nan)
     np.testing.assert_allclose(lacking(expected[:3, :3], expected[:3, 3]), 0, atol=1e-11)
     return made, deviations, expected
 
 
-def agrees_with_scipy(seed: int) -> None:
-    made, deviations, expected = random_move(seed)
+def agrees_with_scipy(seed: int, points_on: PointsOn) -> None:
+    made, deviations, expected = random_move(seed, points_on)
     # condition 20 times rounding of scipy's 300 mm: 1e-12; a tenth of a picometre is asked for
-    np.testing.assert_allclose(placed(made, deviations[None])["loose"][0], expected, atol=1e-10, rtol=0)
+    found = placed(made, deviations[None])["loose"][0]
+    np.testing.assert_allclose(found[:3], expected[:3], atol=1e-10, rtol=0)
 
 
+@pytest.mark.parametrize("points_on", ["part", "fixture"])
 @pytest.mark.parametrize("seed", range(12))
-def test_random_contacts_agree_with_scipy(seed: int) -> None:
-    agrees_with_scipy(seed)
+def test_random_contacts_agree_with_scipy(seed: int, points_on: PointsOn) -> None:
+    agrees_with_scipy(seed, points_on)
 
 
 @pytest.mark.slow
+@pytest.mark.parametrize("points_on", ["part", "fixture"])
 @pytest.mark.parametrize("seed", range(100, 1100))
-def test_a_thousand_random_contacts_agree_with_scipy(seed: int) -> None:
-    agrees_with_scipy(seed)
+def test_a_thousand_random_contacts_agree_with_scipy(seed: int, points_on: PointsOn) -> None:
+    agrees_with_scipy(seed, points_on)
 
 
 def test_where_an_assembly_lies_changes_no_measure() -> None:

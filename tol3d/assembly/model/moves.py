@@ -46,7 +46,7 @@ class Fix:
 
 @dataclass(frozen=True, eq=False)
 class Locate:
-    """Six contacts of points on planes: three_two_one with normals made orthogonal in order, or six_plane.
+    """Six contacts of points on planes, met at once: three_two_one or six_plane.
 
     Args:
         name, part: of the move, and what it places.

@@ -43,7 +43,7 @@ class LocatingSpec(PlacingSpec):
 
 
 class ThreeTwoOneSpec(LocatingSpec):
-    """Three contacts, two, one: normals are made square to each other in this order."""
+    """Three contacts, two, one, each along its own normal: what slants is touched as it slants."""
 
     words: ClassVar[str] = "a 3-2-1 move"
 
