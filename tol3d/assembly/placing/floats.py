@@ -114,7 +114,8 @@ class Discs:
 
     Args:
         inverse: of what the hole sees: the middle of both ends, or one end after the other (freedoms, 2 or 4).
-        turn: the freedom that the slot has left (freedoms,); None without one.
+        turn: the freedom that the slot has left (freedoms,), by which what is seen of the pin across it falls; None
+            without one.
     """
 
     inverse: Array
@@ -168,7 +169,7 @@ def discs_of(move: Engage, rows: Array) -> Discs:
         held = rows[2:, 0] @ free.T
         if free.shape[0] != 1 or np.abs(held).min(initial=np.inf) < PART:
             raise InputError(f"moves.{move.name}: a random float needs a slot that holds the turn; take a pattern")
-        turn = free[0]
+        turn = -free[0] if held[0, 0] > 0.0 else free[0]
     return Discs(np.asarray(np.linalg.pinv(seen)), turn)
 
 

@@ -57,7 +57,8 @@ def by_pairs(cones: Cones, q: Array, drawn: Array) -> Array:
     Args:
         cones: the limits.
         q: centred (freedoms, trials).
-        drawn: points of the disc of radius 1: of both ends, or of the pin; then of -1 to 1 for the slot.
+        drawn: points of the disc of radius 1: of both ends, or of the pin; then of -1 to 1 for the slot, where positive
+            is against its normal.
     """
     both = len(drawn) - (len(cones.rows) > 2) == 4
     at = cones.at(q)
@@ -72,6 +73,8 @@ def by_pairs(cones: Cones, q: Array, drawn: Array) -> Array:
     if len(cones.rows) == 2:
         return q
     turn = np.linalg.svd(rows)[2][-1]
+    if float(cones.rows[2, 0] @ turn) > 0.0:
+        turn = -turn  # positive draws let the pin lie on the other side of its slot
     at, gain = cones.at(q)[2:, 0], cones.rows[2:, 0] @ turn
     ends = np.sort(np.stack([(sign * cones.clearances[2:] - at) / gain[:, None] for sign in (-1.0, 1.0)]), axis=0)
     low, high = ends[0].max(axis=0), ends[1].min(axis=0)
