@@ -5,10 +5,10 @@ from typing import Any
 
 import numpy as np
 
-from tol3d.gearing.model import Backlash, Measure, Model
+from tol3d.gearing.model import Backlash, Measure, Model, TransmissionError
 from tol3d.gearing.model.measure import Reading as ModelReading
 from tol3d.gearing.stack_up import per_normal_backlash
-from tol3d.gearing.summary_types import BacklashWords, FreeTurn, Reading, TrainMeasureWords
+from tol3d.gearing.summary_types import BacklashWords, FreeTurn, Reading, TrainMeasureWords, TransmissionErrorWords
 from tol3d.runs.summary.values import made
 
 
@@ -27,6 +27,8 @@ def description(model: Model, measure: Measure) -> Mapping[str, Any]:
             lost_motion=_free_turn(model, kind),
         )
         return dict(own.items())
+    if isinstance(kind, TransmissionError):
+        return _transmission_error(kind)
     words = made(
         TrainMeasureWords,
         kind=kind.quantity,
@@ -42,6 +44,19 @@ def description(model: Model, measure: Measure) -> Mapping[str, Any]:
         load_changes_deg=np.degrees(kind.changes).tolist(),
     )
     return dict(words.items())
+
+
+def _transmission_error(kind: TransmissionError) -> Mapping[str, Any]:
+    own = made(
+        TransmissionErrorWords,
+        kind="transmission_error",
+        of=kind.of,
+        gear=kind.gear,
+        flank=kind.flank,
+        reading=None,
+        readings={backlash.mesh: _reading(backlash.reading) for _, backlash in kind.backlashes},
+    )
+    return dict(own.items())
 
 
 def _reading(reading: ModelReading) -> Reading:

@@ -5,7 +5,7 @@ from collections.abc import Mapping
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.gearing.model import LostMotion, Measure, Model
+from tol3d.gearing.model import LostMotion, Measure, Model, TransmissionError
 from tol3d.gearing.play import seat_key
 from tol3d.gearing.seats import driver_angles
 from tol3d.gearing.stack_up import per_normal_backlash, stack_of
@@ -42,13 +42,23 @@ def _furthest(model: Model, stack: Stack[GearPair], neglect: Neglect, deviations
 
 
 def in_measure(measure: Measure) -> float:
-    """What a measure makes of one mm or rad that its backlashes add up to, in its unit; of a range at both its ends."""
+    """What a measure makes of one mm or rad that its backlashes add up to, in its unit; of a range at both its ends.
+
+    A transmission error is a difference of two positions, each of half of what changes the backlash.
+    """
     kind = measure.kind
+    if isinstance(kind, TransmissionError):
+        return measure.per_internal
     lever = kind.tip.lever if isinstance(kind, LostMotion) and kind.tip else 1.0
     return lever * (2.0 if measure.take == "range" else 1.0) * measure.per_internal
 
 
 def of_gaps(model: Model, measure: Measure, gap: float) -> float:
-    """What a measure makes of a normal backlash [mm] in each of its meshes, in its unit."""
+    """What a measure makes of a normal backlash [mm] in each of its meshes, in its unit.
+
+    Of what two flanks and two more are off, the two that touch move a transmission error, at either position one way.
+    """
+    if isinstance(measure.kind, TransmissionError):
+        gap /= 2
     free = sum(abs(factor) * gap * per_normal_backlash(model, backlash) for factor, backlash in measure.kind.backlashes)
     return free * in_measure(measure)

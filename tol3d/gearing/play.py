@@ -13,7 +13,7 @@ from tol3d.gearing.clocking import clocking
 from tol3d.gearing.linked import LinkLaw, link_trials
 from tol3d.gearing.links.stated_link import middle_of
 from tol3d.gearing.load_paths import LinearForm, Variable, free_form, value
-from tol3d.gearing.model import Backlash, LostMotion, Measure, Model, Reading
+from tol3d.gearing.model import Backlash, LostMotion, Measure, Model, Reading, TransmissionError
 from tol3d.gearing.model.measure import AnyStage, ParallelStage, Stage
 from tol3d.system.trials import Trials
 
@@ -68,6 +68,10 @@ class Play:
         if isinstance(kind, Backlash):
             yield kind.mesh, 1.0, self.read(kind, seat_key(self.model, self.measure, kind))
             return
+        if isinstance(kind, TransmissionError):
+            for factor, backlash in kind.backlashes:
+                yield backlash.mesh, factor, self.read(backlash, seat_key(self.model, self.measure, backlash))
+            return
         for stage in kind.stages:
             yield stage.link, stage.factor, self.of(stage)
 
@@ -76,7 +80,7 @@ class Play:
 
         That of a train which is jammed somewhere: the play of its other stages does not free it.
         """
-        if isinstance(self.measure.kind, Backlash):
+        if not isinstance(self.measure.kind, LostMotion):
             return np.minimum(self.free(), 0.0)
         stages = (stage for stage in self.measure.kind.stages if not _is_stated(stage))
         return np.asarray(sum(stage.factor * np.minimum(self.of(stage), 0.0) for stage in stages))

@@ -17,9 +17,9 @@ from numpy.typing import NDArray
 from tol3d.gearing.engines import OK, Engine, Gaps
 from tol3d.gearing.linked import link_trials
 from tol3d.gearing.load_paths import Variable
-from tol3d.gearing.measures import moved_rate
+from tol3d.gearing.measures import moved_rates
 from tol3d.gearing.meshing import Meshing, MeshSeat
-from tol3d.gearing.model import Backlash, Contributor, Measure, Model, Planar
+from tol3d.gearing.model import Backlash, Contributor, Measure, Model, Planar, TransmissionError
 from tol3d.gearing.play import seat_key
 from tol3d.gearing.rates import BuildRates, build_rates
 from tol3d.gearing.seats import Seats, geometric_values, play_of, seated
@@ -54,7 +54,7 @@ def _sensitivities(model: Model, engine: Engine, trials: Trials, measure: Measur
     seats, count = seated(alone, engine, trials), measure.positions.in_a_trial
     moves = build_rates(model, seats.build, trials.deviations).rows(np.repeat(np.arange(len(trials)), count))
     rates = _free_rates(alone, measure, moves, seats).reshape(len(trials), count, -1)
-    rates *= moved_rate(measure.kind, play_of(measure, seats).free())[..., None]
+    rates = moved_rates(measure.kind, play_of(measure, seats).free(), rates)
     return taken_rates(measure, geometric_values(measure, seats), rates)
 
 
@@ -65,6 +65,11 @@ def _free_rates(model: Model, measure: Measure, moves: BuildRates, seats: Seats)
         key = seat_key(model, measure, kind)
         return _rates(kind, seats.meshings[key], moves, seats.seats[key])
     total = np.zeros((len(moves.scale), model.component_count))
+    if isinstance(kind, TransmissionError):
+        for factor, backlash in kind.backlashes:
+            key = seat_key(model, measure, backlash)
+            total += factor * _rates(backlash, seats.meshings[key], moves, seats.seats[key])
+        return total
     play = play_of(measure, seats)
     for stage in kind.stages:
         for variable, weight in play.form(stage).items():
@@ -100,9 +105,7 @@ def _rates(backlash: Backlash, meshing: Meshing, moves: BuildRates, seat: MeshSe
     at_rest = (seat.driver_angle[good], seat.driven_angle[good])
     if backlash.quantity == "rest_angle":
         section = meshing.reading.contact == "section"
-        rates[good] = contacts.nearest(
-            meshing.mesh.working_flank, at_rest, seat.working.rows(good), section=section
-        ).driven_turn
+        rates[good] = contacts.nearest(meshing.flank, at_rest, seat.working.rows(good), section=section).driven_turn
         return rates
     if backlash.quantity == "normal_backlash":
         rates[good] = _of_gap(contacts, at_rest, seat.working.rows(good), seat.non_working.rows(good))

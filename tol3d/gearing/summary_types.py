@@ -62,6 +62,7 @@ TEETH_WORDS: Final[Mapping[str, str]] = {
     "driven": ", one driven tooth",
 }
 FLANKS_OF_A_BACKLASH: Final = 4  # two at the contact, two at the gap; each may miss the true flank by the chord error
+FLANKS_THAT_TOUCH: Final = 2
 LOST_MOTION_MEANS: Final = (
     "lost motion: the turn of the driven gear that a normal backlash leaves free, j_n over the arm of its flank"
 )
@@ -157,6 +158,50 @@ class BacklashSummary(BacklashWords, MeasureSummary):
     def chord_words(self, chord_error_um: float) -> str:
         """What the chords of measuring strips may explain."""
         return _chord_words(chord_error_um, "")
+
+
+class TransmissionErrorWords(Section):
+    """What a transmission error is."""
+
+    kind: Literal["transmission_error"]
+    of: Label = Field(description="the mesh or the train")
+    gear: Label = Field(description="the driven gear, or the train's output shaft")
+    flank: Literal["drive", "back"]
+    reading: None
+    readings: Mapping[Label, Reading] = Field(description="of each mesh")
+
+
+class TransmissionErrorSummary(TransmissionErrorWords, MeasureSummary):
+    """The transmission error of a mesh or a train; every value is in `unit`."""
+
+    presenter = PRESENTER
+
+    kind: Literal["transmission_error"]
+    over: Literal["turn", "long_period"]
+
+    @property
+    def words(self) -> str:
+        """Quantity, flank, mesh or train, and positions: `range of transmission error of gear pair, drive flank, …`."""
+        quantity = f"{TAKE_WORDS[self.take]}transmission error of {self.of}, {self.flank} flank"
+        return f"{quantity}, {OVER_WORDS[self.over]}{readings_words(self.readings)}"
+
+    @property
+    def position_word(self) -> str:
+        """Positions are those of the driver."""
+        return "driver"
+
+    @property
+    def identity(self) -> tuple[str | None, ...]:
+        """Kind, gear, flank, and where on the faces it is read."""
+        return self.kind, self.gear, self.flank, readings_words(self.readings)
+
+    def chord_words(self, chord_error_um: float) -> str:
+        """What the chords of measuring strips may explain."""
+        whole = FLANKS_THAT_TOUCH * chord_error_um
+        return (
+            f"up to {whole:.3f} µm along the line of action in each mesh may be chord error ({chord_error_um:.3f} µm "
+            f"on each of {FLANKS_THAT_TOUCH} flanks)"
+        )
 
 
 class TrainMeasureWords(Section):
@@ -319,4 +364,6 @@ class ProfileSteps(Section):
     profile_steps: Maybe[Annotated[int, Field(ge=FEWEST_PROFILE_STEPS, le=MOST_PROFILE_STEPS)]] = LEFT_OUT
 
 
-SUMMARY_KINDS: Final = SummaryKinds((BacklashSummary, TrainMeasureSummary), (TrainsOfRun,), options=(ProfileSteps,))
+SUMMARY_KINDS: Final = SummaryKinds(
+    (BacklashSummary, TransmissionErrorSummary, TrainMeasureSummary), (TrainsOfRun,), options=(ProfileSteps,)
+)

@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Literal
 
 Over = Literal["random", "at", "turn", "long_period", "swing"]
@@ -34,7 +35,7 @@ class Positions:
         """Whether the first position follows the last: the wheel is not back where it was after one driver turn."""
         return self.over == "long_period"
 
-    @property
+    @cached_property
     def fixed(self) -> tuple[float, ...] | None:
         """The angles [rad] that every trial shares; None for random ones."""
         if self.over == "random":

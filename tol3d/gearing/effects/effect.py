@@ -37,6 +37,10 @@ class Effect(ABC):
         """The gear with which the deviation turns; None where it rests."""
         return None
 
+    def deviates_teeth(self, gear: str) -> bool:
+        """Whether it makes the teeth of a gear differ from each other, so that curves have tooth-mesh orders."""
+        return False
+
     @property
     def mirrored(self) -> bool:
         """Whether the deviation's azimuths count against those of the gear with which it turns."""
@@ -65,6 +69,10 @@ class Together(Effect):
     def acts_on(self, link: str) -> bool:
         """See Effect."""
         return any(effect.acts_on(link) for effect in self.effects)
+
+    def deviates_teeth(self, gear: str) -> bool:
+        """See Effect."""
+        return any(effect.deviates_teeth(gear) for effect in self.effects)
 
     @property
     def turns_with(self) -> str | None:

@@ -109,7 +109,7 @@ class Engine(Protocol):
 
 @dataclass(frozen=True)
 class MeshReading:
-    """A mesh brought to contact and read, one row a build and position.
+    """A mesh brought to contact and read, one row a build and position; of rests all rows are (trials, positions).
 
     Args:
         driver_angle, driven_angle: turns of the gears at rest [rad], (rows,).
@@ -149,5 +149,15 @@ class ReadingEngine(Engine, Protocol):
             mesh, reading: which gears, and where on them.
             driver_angle: (rows,) [rad].
             turning: names of the gears whose free turn is wanted.
+        """
+        ...
+
+    def rests(self, build: Build, mesh: Mesh, reading: Reading, driver_angle: Array) -> tuple[MeshReading, MeshReading]:
+        """Where the driven gear rests on the drive and on the back side, by one contact each; gap and turns are nan.
+
+        Args:
+            build: virtual builds, one a trial.
+            mesh, reading: which gears, and where on them; its flank does not matter.
+            driver_angle: (positions,) [rad], the same of every trial; contacts are those of the first.
         """
         ...

@@ -64,9 +64,14 @@ class Meshing:
     build: Build
     reading: Reading
 
+    @property
+    def flank(self) -> Flank:
+        """The driver's flank that touches."""
+        return self.mesh.resting_flank(self.reading.flank)
+
     def seat(self, driver_angle: Array) -> MeshSeat:
-        """Hold the driver at its angles [rad] (rows,), turn the driven gear into contact on the working flank."""
-        flank = self.mesh.working_flank
+        """Hold the driver at its angles [rad] (rows,), turn the driven gear into contact on the reading's flank."""
+        flank = self.flank
         start = self.mesh.pair.touching_angle(driver_angle, flank, self._displaced(driver_angle))
         angles, working, touched = self.turn_to_contact(flank, (driver_angle, start), turn_driver=False)
         non_working = self.gaps_of(opposite(flank), angles, self.reading.gap == "section", touched)

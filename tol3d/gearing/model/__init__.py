@@ -15,7 +15,7 @@ from tol3d.gearing.effects import (
 from tol3d.gearing.links import Reducer, StatedLink
 from tol3d.gearing.model.contributor import Contributor
 from tol3d.gearing.model.layout import Layout
-from tol3d.gearing.model.measure import Backlash, Kind, LostMotion, Measure, Reading
+from tol3d.gearing.model.measure import Backlash, Kind, LostMotion, Measure, Reading, TransmissionError
 from tol3d.gearing.model.mesh import Mesh, Seat
 from tol3d.gearing.model.model import GearPart, Model
 from tol3d.gearing.model.shafts import Arm, Shaft, Train
@@ -53,6 +53,7 @@ __all__ = [
     "Together",
     "ToothThickness",
     "Train",
+    "TransmissionError",
     "TurningOffset",
     "model_from_scene",
 ]

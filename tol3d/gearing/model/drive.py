@@ -51,10 +51,10 @@ def drives_of(links: Sequence[Link], root_of: Mapping[str, str], periods: Mappin
         own = {name: period for name, period in periods.items() if name in names}
         if own:
             name = own_links[0].name if len(own_links) == 1 else root
-            yield Drive(root, name, _least_common(list(own.values())), tuple(own))
+            yield Drive(root, name, least_common(list(own.values())), tuple(own))
 
 
-def _least_common(periods: Sequence[Fraction]) -> Fraction:
+def least_common(periods: Sequence[Fraction]) -> Fraction:
     """The least common multiple of fractions."""
     numerators = math.lcm(*(period.numerator for period in periods))
     return Fraction(numerators, math.gcd(*(period.denominator for period in periods)))

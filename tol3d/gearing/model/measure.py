@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Literal
+from typing import ClassVar, Literal
 
 from tol3d.system import measure as system_measure
 from tol3d.system.measure import Worse
@@ -24,18 +24,21 @@ class Reading:
         gap: the other flanks' distance is the least over the whole face, or that in the section.
         teeth: "all" candidate pairs, or one tooth in its space, the driver's or the driven's next to the
             line of centres.
+        flank: the driver's flanks that touch: "drive", its working ones, or "back", the others.
     """
 
     contact: Literal["face", "section"] = "face"
     gap: Literal["face", "section"] = "face"
     teeth: Literal["all", "driver", "driven"] = "all"
+    flank: Literal["drive", "back"] = "drive"
 
 
 @dataclass(frozen=True)
 class Backlash:
     """A backlash of a mesh: normal and circumferential [mm], or angular [rad] of one gear, the other held.
 
-    Its rest angle [rad] is where the driven gear rests on the working flank, against the middle of a nominal space.
+    Its rest angle [rad] is where the driven gear rests on the flank of its reading, against the middle of a nominal
+    space.
     """
 
     quantity: BacklashQuantity
@@ -176,7 +179,39 @@ class LostMotion:
         return tuple((stage.factor, stage.link) for stage in self.singles if stage.backlash is None)
 
 
-Kind = Backlash | LostMotion
+@dataclass(frozen=True)
+class TransmissionError:
+    """How far a driven gear, or a train's output, leads its nominal position while one side of the teeth touches [rad].
+
+    Counted in the sense in which the working flank of the driver pushes it, from where it leads at the first position.
+
+    Args:
+        of: the mesh or the train.
+        gear: the driven gear, or the train's output shaft.
+        flank: the driver's flanks that touch, the working ones or the others.
+        backlashes: rest angles of the driven gears with their factors: turns of the output, in its sense, for a turn
+            of the driven gear about its own z.
+        train: whether it is a train's, whose positions are those of its first shaft.
+    """
+
+    of: str
+    gear: str
+    flank: Literal["drive", "back"]
+    backlashes: tuple[tuple[float, Backlash], ...]
+    train: bool = False
+
+    quantity: ClassVar[Literal["transmission_error"]] = "transmission_error"
+    is_angle: ClassVar[bool] = True
+    adds_up: ClassVar[bool] = True
+    links: ClassVar[tuple[tuple[float, str], ...]] = ()
+
+    @property
+    def meshes(self) -> tuple[str, ...]:
+        """Names of its meshes, from the input on."""
+        return tuple(backlash.mesh for _, backlash in self.backlashes)
+
+
+Kind = Backlash | LostMotion | TransmissionError
 
 
 def at_one_position(kind: Kind) -> Kind:
@@ -212,7 +247,7 @@ class Measure:
     @property
     def worse(self) -> Worse:
         """The smaller backlash, the larger lost motion or error of a tip."""
-        return "high" if isinstance(self.kind, LostMotion) else "low"
+        return "low" if isinstance(self.kind, Backlash) else "high"
 
     @property
     def adds_up(self) -> bool:

@@ -3,10 +3,12 @@
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
+from typing import Literal
 
 import numpy as np
 
 from tol3d.gears import Flank, Gear, GearPair
+from tol3d.gears.flank import opposite
 
 
 @dataclass(frozen=True)
@@ -29,6 +31,10 @@ class Mesh:
     def gear(self, name: str) -> Gear:
         """The driver or the driven gear, by its name."""
         return self.pair.pinion if name == self.driver else self.pair.wheel
+
+    def resting_flank(self, side: Literal["drive", "back"]) -> Flank:
+        """The driver's flank that touches on a side: the working one on the drive side."""
+        return self.working_flank if side == "drive" else opposite(self.working_flank)
 
     @cached_property
     def rate(self) -> Fraction:

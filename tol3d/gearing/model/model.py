@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 from fractions import Fraction
-from functools import cached_property
+from functools import cached_property, lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 from tol3d.gearing.links import StatedLink
 from tol3d.gearing.model.contributor import Contributor, gear_contributor
 from tol3d.gearing.model.drives import DRIVER_POSITION, driver_angles
-from tol3d.gearing.model.layout import Layout, layout_of
-from tol3d.gearing.model.measure import Backlash, Measure
+from tol3d.gearing.model.layout import Layout, Turning, layout_of
+from tol3d.gearing.model.measure import Backlash, Measure, TransmissionError
 from tol3d.gearing.model.mesh import Mesh, Seat
 from tol3d.gearing.model.shafts import Arm, Shaft, Train
 from tol3d.gears import Gear
@@ -20,6 +20,12 @@ from tol3d.system import contributor as system_contributor
 from tol3d.system.positions import Positions
 
 Array = NDArray[np.float64]
+
+
+@lru_cache(maxsize=64)
+def _turned(turning: Turning, positions: Positions) -> tuple[float, ...]:
+    """Angles [rad] at fixed positions of the first shaft."""
+    return tuple(turning.at(angle) for angle in positions.fixed or ())
 
 
 @dataclass(frozen=True)
@@ -107,10 +113,10 @@ class Model:
         A mesh's own positions are its driver's; those of a train are its first shaft's. Of another link whose play
         depends on the position likewise.
         """
-        fixed = measure.positions.fixed
-        if fixed is None or isinstance(measure.kind, Backlash):
+        fixed, kind = measure.positions.fixed, measure.kind
+        if fixed is None or isinstance(kind, Backlash) or (isinstance(kind, TransmissionError) and not kind.train):
             return fixed
-        return tuple(self.layout.mesh_turn[mesh].at(angle) for angle in fixed)
+        return _turned(self.layout.mesh_turn[mesh], measure.positions)
 
     # its trials -------------------------------------------------------------------------------------
 

@@ -4,7 +4,7 @@ import math
 from collections.abc import Mapping, Sequence
 from functools import singledispatch
 
-from tol3d.gearing.model import Backlash, Contributor, Measure, Model, Planar
+from tol3d.gearing.model import Backlash, Contributor, LostMotion, Measure, Model, Planar, TransmissionError
 from tol3d.gearing.presenting.coefficient_tables import coefficients_tables
 from tol3d.gearing.presenting.train_check import train_blocks
 from tol3d.gearing.summary_types import QUANTITY_WORDS, TAKE_WORDS, Reading, readings_words
@@ -163,19 +163,27 @@ def measures_table(model: Model) -> list[PageItem]:
 
 def _what(measure: Measure) -> str:
     kind = measure.kind
-    if not isinstance(kind, Backlash):
+    curve = " (curve)" if measure.take == "curve" else ""
+    if isinstance(kind, TransmissionError):
+        read = {backlash.mesh: _reading(backlash) for _, backlash in kind.backlashes}
+        meshes = f": {' + '.join(kind.meshes)}" if kind.train else ""
+        what = (
+            f"{TAKE_WORDS[measure.take]}transmission error of {kind.gear} on the {kind.flank} flank, {kind.of}{meshes}"
+        )
+        return what + curve + readings_words(read)
+    if isinstance(kind, LostMotion):
         stages = " + ".join(stage.link for stage in kind.stages)
         moves = f"{kind.tip.point} of {kind.tip.arm} ({kind.tip.lever:g} mm from the axis) by the " if kind.tip else ""
         read = {backlash.mesh: _reading(backlash) for _, backlash in kind.backlashes}
         return f"{moves}lost motion of {kind.shaft}, {kind.held} held: {stages}{readings_words(read)}"
     gear = f" of {kind.gear}" if kind.is_angle else ""
-    curve = " (curve)" if measure.take == "curve" else ""
     what = f"{TAKE_WORDS[measure.take]}{QUANTITY_WORDS[kind.quantity]}{gear}, {kind.mesh}"
     return what + curve + _reading(kind).words
 
 
 def _reading(backlash: Backlash) -> Reading:
-    return Reading.model_validate(vars(backlash.reading))
+    own = backlash.reading
+    return Reading.model_validate({"contact": own.contact, "gap": own.gap, "teeth": own.teeth})
 
 
 def _positions(measure: Measure) -> str:

@@ -8,11 +8,16 @@ from numpy.typing import NDArray
 
 from tol3d.gearing.breakdowns import staged_measures
 from tol3d.gearing.linked import by_theory
-from tol3d.gearing.model import Backlash, Measure, Model
+from tol3d.gearing.model import Backlash, Measure, Model, TransmissionError
 from tol3d.gearing.model.measure import gear_measures
 from tol3d.gearing.play import Play, SeatKey, seat_key
 from tol3d.gearing.seats import driver_angles
-from tol3d.gearing.stack_up import analytic_backlash, first_order, per_normal_backlash
+from tol3d.gearing.stack_up import (
+    analytic_backlash,
+    analytic_transmission_error,
+    first_order,
+    per_normal_backlash,
+)
 from tol3d.system import measure as system_measure
 from tol3d.system.road import Answers
 from tol3d.system.trials import Trials
@@ -33,7 +38,7 @@ class AnalyticRoad:
         stacks = _Stacks(self.model, trials)
         own = gear_measures(measures)
         plays = {measure.name: Play(self.model, measure, trials, stacks, by_theory) for measure in own}
-        values = {measure.name: first_order(measure.kind, plays[measure.name].free()) for measure in own}
+        values = {measure.name: _values(plays[measure.name]) for measure in own}
         terms = {
             (measure.name, link): values[:, 0]
             for measure in staged_measures(self.model)
@@ -50,13 +55,23 @@ def analytic_play(model: Model, measure: Measure, trials: Trials) -> Play:
 
 def analytic_values(model: Model, measure: Measure, trials: Trials) -> Array:
     """Values of a measure on the analytic road [mm or rad], (trials, positions)."""
-    return first_order(measure.kind, analytic_play(model, measure, trials).free())
+    return _values(analytic_play(model, measure, trials))
+
+
+def _values(play: Play) -> Array:
+    """Values of a measure: of its play, or of what turns in its meshes."""
+    kind = play.measure.kind
+    if not isinstance(kind, TransmissionError):
+        return first_order(kind, play.free())
+    angles = [np.array(play.model.driver_angles(play.measure, mesh) or (0.0,)) for mesh in kind.meshes]
+    return analytic_transmission_error(play.model, kind, play.trials.deviations, angles)
 
 
 def analytic_backlashes(model: Model, measure: Measure, trials: Trials) -> Iterator[tuple[Backlash, Array]]:
-    """The backlashes that a measure adds up, each with its values on the analytic road [mm or rad]."""
+    """The backlashes of the meshes that a measure reads, each with its values on the analytic road [mm or rad]."""
     stacks = _Stacks(model, trials)
-    for _, backlash in measure.kind.backlashes:
+    for _, read in measure.kind.backlashes:
+        backlash = replace(read, quantity="angular_backlash") if read.quantity == "rest_angle" else read
         yield backlash, stacks(backlash, seat_key(model, measure, backlash))
 
 

@@ -1,16 +1,18 @@
 """The geometric road: builds whose meshes an engine brings to contact and reads."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.gearing.breakdowns import staged_measures
+from tol3d.gearing.build import Build
 from tol3d.gearing.engines import INTERFERES, OK, OUT_OF_RANGE, Engine, MeshReading, ReadingEngine
 from tol3d.gearing.linked import as_built
 from tol3d.gearing.measures import measure_backlash, moved, read_backlash, turning_gear
-from tol3d.gearing.model import Backlash, Measure, Mesh, Model
+from tol3d.gearing.model import Backlash, Measure, Mesh, Model, TransmissionError
 from tol3d.gearing.model.measure import gear_measures
 from tol3d.gearing.play import Play, Read, SeatKey, seat_key, seat_keys
 from tol3d.gearing.seats import driver_angles, seated
@@ -50,9 +52,9 @@ class GeometricRoad:
         seats = seated(self.model, self.engine, trials, measures)
         contacts: Details = {}
         for mesh in self.model.meshes:
-            seat = next((seat for key, seat in seats.seats.items() if key[0] == mesh.name), None)
-            if seat is not None:
-                contacts |= _contact_columns(mesh, *seat.contact, len(trials))
+            key = min((key for key in seats.seats if key[0] == mesh.name), key=_side, default=None)
+            if key is not None:
+                contacts |= _contact_columns(mesh, *seats.seats[key].contact, len(trials))
         known: dict[tuple[Backlash, SeatKey], Array] = {}
 
         def read(backlash: Backlash, key: SeatKey) -> Array:
@@ -67,14 +69,20 @@ class GeometricRoad:
     def _by_readings(self, engine: ReadingEngine, trials: Trials, measures: Sequence[Measure]) -> Answers:
         made = engine.build(trials.deviations)
         readings: dict[SeatKey, MeshReading] = {}
+        wanted = self._backlashes_by_key(measures)
+        for key in filter(partial(_only_rests, wanted), wanted):
+            if key not in readings:
+                both = engine.rests(made, self.model.mesh(key[0]), key[2], np.array(key[1]))
+                sides = (replace(key[2], flank="drive"), replace(key[2], flank="back"))
+                readings |= {(*key[:2], side): own for side, own in zip(sides, both, strict=True)}
+        for key, backlashes in wanted.items():
+            if not _only_rests(wanted, key):
+                readings[key] = self._read(engine, made, trials, key, backlashes)
         contacts: Details = {}
-        for key, backlashes in self._backlashes_by_key(measures).items():
-            mesh = self.model.mesh(key[0])
-            angles = driver_angles(key, trials)
-            turning = frozenset(gear for backlash in backlashes if (gear := turning_gear(backlash, mesh)))
-            readings[key] = engine.read(made.repeated(angles.shape[1]), mesh, key[2], angles.ravel(), turning)
+        for key in sorted(wanted, key=_side):
+            mesh, own = self.model.mesh(key[0]), readings[key]
             if f"contact:{mesh.name}.tooth" not in contacts:
-                contacts |= _contact_columns(mesh, readings[key].contact, readings[key].tooth, len(trials))
+                contacts |= _contact_columns(mesh, own.contact, own.tooth, len(trials))
 
         def read(backlash: Backlash, key: SeatKey) -> Array:
             mesh = self.model.mesh(backlash.mesh)
@@ -82,6 +90,14 @@ class GeometricRoad:
 
         status = {key: reading.status for key, reading in readings.items()}
         return self._answers(trials, measures, read, contacts, status)
+
+    def _read(
+        self, engine: ReadingEngine, made: Build, trials: Trials, key: SeatKey, backlashes: Sequence[Backlash]
+    ) -> MeshReading:
+        """A mesh where some backlashes are read."""
+        mesh, angles = self.model.mesh(key[0]), driver_angles(key, trials)
+        turning = frozenset(gear for backlash in backlashes if (gear := turning_gear(backlash, mesh)))
+        return engine.read(made.repeated(angles.shape[1]), mesh, key[2], angles.ravel(), turning)
 
     def _backlashes_by_key(self, measures: Sequence[Measure]) -> dict[SeatKey, list[Backlash]]:
         """Every way of reading a mesh, with the backlashes that are wanted there."""
@@ -116,6 +132,16 @@ class GeometricRoad:
         return Answers(values, terms, contacts, status)
 
 
+def _only_rests(wanted: Mapping[SeatKey, Sequence[Backlash]], key: SeatKey) -> bool:
+    """Whether no more is wanted of a mesh than where it rests, at positions that all trials share."""
+    return key[1] is not None and all(backlash.quantity == "rest_angle" for backlash in wanted[key])
+
+
+def _side(key: SeatKey) -> bool:
+    """Orders ways of reading a mesh: by the drive side before those by the back side."""
+    return key[2].flank != "drive"
+
+
 def _codes(play: Play, seated_as: Mapping[SeatKey, Codes]) -> Codes:
     """What became of the meshes that a measure reads, the worst of them, (trials, positions)."""
     shape = (len(play.trials), play.measure.positions.in_a_trial)
@@ -128,11 +154,16 @@ def _codes(play: Play, seated_as: Mapping[SeatKey, Codes]) -> Codes:
 
 
 def _free_or_overlap(play: Play, codes: Codes) -> Array:
-    """What a measure's backlashes leave free; a train that is jammed at one stage is not free by the others' play."""
+    """What a measure's backlashes leave free; a train that is jammed at one stage is not free by the others' play.
+
+    A jammed mesh has no transmission error.
+    """
     free = play.free()
     jammed = codes == INTERFERES
     if isinstance(play.measure.kind, Backlash) or not jammed.any():
         return free
+    if isinstance(play.measure.kind, TransmissionError):
+        return np.where(jammed, np.nan, free)
     return np.where(jammed, play.overlap(), free)
 
 

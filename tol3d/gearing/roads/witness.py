@@ -10,7 +10,7 @@ from typing import Final
 
 import numpy as np
 
-from tol3d.gearing.model import Measure
+from tol3d.gearing.model import Measure, TransmissionError
 from tol3d.gearing.model.measure import gear_measure
 from tol3d.gearing.roads.geometric import GeometricRoad
 from tol3d.gearing.stack_up import first_order, per_normal_backlash
@@ -49,10 +49,15 @@ class FclRoad(GeometricRoad):
         return self._of_gaps(own, chords), self._of_gaps(own, others)
 
     def _of_gaps(self, measure: Measure, normal_backlash: Mapping[str, float]) -> float:
-        """What a measure makes of normal backlashes [mm], one of each mesh, in its unit."""
+        """What a measure makes of normal backlashes [mm], one of each mesh, in its unit.
+
+        A transmission error sees the two flanks that touch, each further off than at the first position or less.
+        """
         free = sum(
-            factor * normal_backlash[backlash.mesh] * per_normal_backlash(self.model, backlash)
+            abs(factor) * normal_backlash[backlash.mesh] * per_normal_backlash(self.model, backlash)
             for factor, backlash in measure.kind.backlashes
         )
+        if isinstance(measure.kind, TransmissionError):
+            return free / 2 * measure.per_internal
         positions = np.full((1, max(1, len(measure.positions.fixed or ()))), free)
         return float(first_order(measure.kind, positions).max()) * measure.per_internal

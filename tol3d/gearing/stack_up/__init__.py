@@ -4,11 +4,13 @@ from tol3d.gearing.stack_up.backlash import analytic_backlash, first_order, per_
 from tol3d.gearing.stack_up.closed_form import closed_form, reference_form
 from tol3d.gearing.stack_up.stack import Stack
 from tol3d.gearing.stack_up.term import Term
+from tol3d.gearing.stack_up.transmission_error import analytic_transmission_error
 
 __all__ = [
     "Stack",
     "Term",
     "analytic_backlash",
+    "analytic_transmission_error",
     "closed_form",
     "first_order",
     "per_normal_backlash",

@@ -15,7 +15,7 @@ from fractions import Fraction
 import numpy as np
 
 from tol3d.gearing.links import LinkSum
-from tol3d.gearing.model import Contributor, LostMotion, Measure, Model, Planar, Positions
+from tol3d.gearing.model import Contributor, LostMotion, Measure, Model, Planar, Positions, TransmissionError
 from tol3d.gearing.model.measure import at_one_position
 from tol3d.gearing.stack_up.backlash import per_normal_backlash, stack_of
 from tol3d.gearing.stack_up.leaning import leaning_groups, leaning_shares
@@ -61,7 +61,12 @@ def closed_form(model: Model, measure: Measure) -> ClosedForm | None:
 
 
 def reference_form(model: Model, measure: Measure) -> ClosedForm | None:
-    """Closed form of the measure, or of its value at a random position where it takes an extreme or a curve."""
+    """Closed form of the measure, or of its value at a random position where it takes an extreme or a curve.
+
+    None of a transmission error, which has no value at one position.
+    """
+    if isinstance(measure.kind, TransmissionError):
+        return None
     at_random = replace(measure, kind=at_one_position(measure.kind), positions=Positions("random", 1, 1), take="value")
     return closed_form(model, measure) or closed_form(model, at_random)
 

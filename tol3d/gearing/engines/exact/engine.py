@@ -11,13 +11,20 @@ from numpy.typing import NDArray
 from tol3d.gearing.build import Build
 from tol3d.gearing.engines.exact.bevel import BevelTooth
 from tol3d.gearing.engines.exact.compiled_displacements import compiled_displacements
-from tol3d.gearing.engines.exact.kernels import bevel_gaps, bevel_read, spur_gaps, spur_read
+from tol3d.gearing.engines.exact.kernels import (
+    bevel_gaps,
+    bevel_read,
+    bevel_rests,
+    spur_gaps,
+    spur_read,
+    spur_rests,
+)
 from tol3d.gearing.engines.exact.numbers import PairNumbers, Pose
 from tol3d.gearing.engines.exact.rows import CONTACT, DRIVEN_ANGLE, DRIVEN_TURN, DRIVER_TURN, GAP, READINGS
 from tol3d.gearing.engines.exact.seating import ALL_TEETH, DRIVEN_TOOTH, DRIVER_TOOTH
 from tol3d.gearing.engines.exact.spur import SpurTooth
 from tol3d.gearing.engines.gaps import Gaps, MeshReading
-from tol3d.gearing.model import Mesh, Model, Reading
+from tol3d.gearing.model import Mesh, Model, Reading, TransmissionError
 from tol3d.gears import BevelGear, BevelPair, Flank, GearPair, SpurGear, SpurPair
 from tol3d.gears.pair import CONTACT_MARGIN
 from tol3d.numerics.compiled import Kernel
@@ -36,12 +43,13 @@ class PairKernels:
 
     Args:
         numbers: pinion's teeth, wheel's, which of them may meet, where the wheel's shaft sees the pinion's.
-        read, gaps: see kernels.
+        read, gaps, rests: see kernels.
     """
 
     numbers: tuple[SpurTooth, SpurTooth, PairNumbers, Pose] | tuple[BevelTooth, BevelTooth, PairNumbers, Pose]
     read: Kernel
     gaps: Kernel
+    rests: Kernel
 
 
 class ExactEngine:
@@ -57,7 +65,8 @@ class ExactEngine:
     @property
     def kept(self) -> bool:
         """Whether this machine has compiled what its studies need."""
-        return all(pair.read.kept for pair in self._pairs.values())
+        rests = any(isinstance(measure.kind, TransmissionError) for measure in self._model.measures)
+        return all(pair.read.kept and (pair.rests.kept or not rests) for pair in self._pairs.values())
 
     def depth(self, mesh: Mesh) -> float:
         """1 mm: any overlap can be measured."""
@@ -118,7 +127,7 @@ class ExactEngine:
         turns = (mesh.driven in turning, mesh.driver in turning)
         pair.read(
             *pair.numbers,
-            np.array([*self._seats(mesh), mesh.working_flank, *how, *turns], dtype=np.int64),
+            np.array([*self._seats(mesh), mesh.resting_flank(reading.flank), *how, *turns], dtype=np.int64),
             *_arrays(build),
             _array(driver_angle),
             readings,
@@ -135,6 +144,38 @@ class ExactEngine:
             tooth=tooth,
             status=status,
         )
+
+    def rests(self, build: Build, mesh: Mesh, reading: Reading, driver_angle: Array) -> tuple[MeshReading, MeshReading]:
+        """See ReadingEngine.rests."""
+        pair, shape = self._pairs[mesh.name], (build.trials, len(driver_angle))
+        rests, status = np.empty((*shape, 2)), np.empty(shape, dtype=np.int8)
+        contact, tooth = np.empty((build.trials, 2, 3)), np.empty((build.trials, 2), dtype=np.int64)
+        how = (mesh.working_flank, WHICH_TEETH[reading.teeth], reading.contact == "section")
+        pair.rests(
+            *pair.numbers,
+            np.array([*self._seats(mesh), *how], dtype=np.int64),
+            *_arrays(build),
+            _array(driver_angle),
+            rests,
+            contact,
+            tooth,
+            status,
+        )
+        unread = np.broadcast_to(np.nan, shape)
+        drive, back = (
+            MeshReading(
+                driver_angle=driver_angle,
+                driven_angle=rests[..., side],
+                gap=unread,
+                driven_turn=unread,
+                driver_turn=unread,
+                contact=contact[:, side],
+                tooth=tooth[:, side],
+                status=status,
+            )
+            for side in range(2)
+        )
+        return drive, back
 
     def _seats(self, mesh: Mesh) -> tuple[int, int]:
         return self._model.seat_index[mesh.name, mesh.driver], self._model.seat_index[mesh.name, mesh.driven]
@@ -176,7 +217,9 @@ def _(pair: SpurPair) -> PairKernels:
         by_tilt_x=0.0,
         by_tilt_y=0.0,
     )
-    return PairKernels((_spur(pair.pinion), _spur(pair.wheel), numbers, _nominal(pair)), spur_read, spur_gaps)
+    return PairKernels(
+        (_spur(pair.pinion), _spur(pair.wheel), numbers, _nominal(pair)), spur_read, spur_gaps, spur_rests
+    )
 
 
 def _spur(gear: SpurGear) -> SpurTooth:
@@ -207,7 +250,7 @@ def _(pair: BevelPair) -> PairKernels:
         by_tilt_x=math.sin(azimuth) / whole,
         by_tilt_y=-math.cos(azimuth) / whole,
     )
-    return PairKernels((_bevel(pinion), _bevel(wheel), numbers, _nominal(pair)), bevel_read, bevel_gaps)
+    return PairKernels((_bevel(pinion), _bevel(wheel), numbers, _nominal(pair)), bevel_read, bevel_gaps, bevel_rests)
 
 
 def _bevel(gear: BevelGear) -> BevelTooth:

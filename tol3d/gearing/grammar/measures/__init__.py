@@ -10,6 +10,7 @@ from tol3d.gearing.grammar.measures.tip_displacement import TipDisplacementSpec
 from tol3d.gearing.grammar.measures.tip_error import TipErrorSpec
 from tol3d.gearing.grammar.measures.tip_measure import TipMeasureSpec
 from tol3d.gearing.grammar.measures.train_measure import TrainMeasureSpec
+from tol3d.gearing.grammar.measures.transmission_error import TransmissionErrorSpec
 
 __all__ = [
     "AngularBacklashSpec",
@@ -22,4 +23,5 @@ __all__ = [
     "TipErrorSpec",
     "TipMeasureSpec",
     "TrainMeasureSpec",
+    "TransmissionErrorSpec",
 ]

@@ -1,0 +1,443 @@
+"""Transmission error of both sides: the published reference case, an exact pair of its own, and the identity with play.
+
+Senses: an angle of the paper is positive in its gear's own sense of rotation, one of a scene about +z. With a left
+working flank the driver turns about +z and the driven gear against it: phi1 is the driver's angle, theta1 an azimuth,
+and theta2 becomes the azimuth -theta2 - 180 deg - 180 deg/z2, less half the play, by which the wheel rests beside its
+nominal place. With a right one all senses change.
+"""
+
+import math
+import tracemalloc
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from typing import Literal
+
+import numpy as np
+import pytest
+from fixtures import EngineOf
+from gear_trials import drawn_trials, gear_columns
+from oracles.random_scenes import random_scenes
+from oracles.two_sided import EccentricPair
+
+from tol3d import Scene
+from tol3d.gearing.engines import Engine
+from tol3d.gearing.engines.exact import ExactEngine
+from tol3d.gearing.model import Backlash, Kind, Measure, Model, TransmissionError, model_from_scene
+from tol3d.gearing.model.readings import default_reading
+from tol3d.gearing.sensitivity import sensitivities
+from tol3d.gears import LEFT, SpurPair
+from tol3d.system.positions import Positions
+from tol3d.system.stated import mean_build, stated
+from tol3d.system.trials import Trials
+
+ARCSEC = 3600 * 180 / math.pi
+REFERENCE = EccentricPair(
+    (27, 48), 2.0, math.radians(20.0), 75.0, 0.060, (0.018, 0.027), (math.radians(40), math.radians(-65))
+)
+SAMPLED = 256  # positions a turn, those of the reference: its extremes are of samples, 0.006" from the peaks
+SAME_TURN = 1e-9  # rad; LAST_STEP at 10 mm
+LAST_STEP = 1e-8  # mm; where the exact engine's steps end
+
+
+def um(value: float) -> str:
+    return f"{1e3 * value!r} um"
+
+
+def scene_of(pair: EccentricPair, flank: str = "left", *, half_play: bool = True) -> Scene:
+    """An eccentric pair as a scene of constant deviations, and its curves over the long period.
+
+    Args:
+        pair: in the paper's senses.
+        flank: the working one.
+        half_play: whether the phase of the wheel counts from where its drive flank rests, else from its nominal angle.
+    """
+    sense = 1.0 if flank == "left" else -1.0
+    thinner = -pair.play / math.cos(pair.alpha) / 2
+    rest = pair.play / 2 / pair.base[1] if half_play else 0.0
+    wheel = sense * (-pair.phase[1] - rest) - math.pi * (1 + 1 / pair.teeth[1])
+    phases = (sense * pair.phase[0], wheel)
+    gears = {
+        name: {"kind": "spur_gear", "teeth": teeth, "module": f"{pair.module} mm", "face_width": "20 mm"}
+        for name, teeth in zip(("pinion", "wheel"), pair.teeth, strict=True)
+    }
+    tolerances = {
+        f"{name} {kind}": {"kind": kind, "of": name, "distribution": {"kind": "constant", "value": um(value)}} | fields
+        for name, e, phase in zip(gears, pair.eccentricity, phases, strict=True)
+        for kind, value, fields in (
+            ("tooth_thickness", thinner, {}),
+            ("eccentricity", e, {"direction": {"at": f"{math.degrees(phase)!r} deg"}}),
+        )
+    }
+    curve = {"of": "pair", "over": "long_period", "take": "curve", "positions": SAMPLED}
+    fields = {
+        "scene": "eccentric pair",
+        "parts": gears,
+        "tolerances": tolerances,
+        "moves": {
+            "pair": {"kind": "mesh", "driver": "pinion", "driven": "wheel", "working_flank": flank}
+            | {"centre_distance": f"{pair.centre!r} mm"}
+        },
+        "measures": {
+            "drive": {"kind": "transmission_error", "flank": "drive", **curve},
+            "back": {"kind": "transmission_error", "flank": "back", **curve},
+            "play": {"kind": "angular_backlash", "gear": "wheel", **curve},
+        },
+    }
+    return Scene.model_validate(fields)
+
+
+@dataclass(frozen=True)
+class Curves:
+    """What a road finds at the driver's positions [rad], angles in rad."""
+
+    positions: np.ndarray
+    drive: np.ndarray
+    back: np.ndarray
+    play: np.ndarray
+
+
+def curves_of(model: Model, road: str = "geometric", engine: Engine | None = None) -> Curves:
+    trials = mean_build(model, model.measures[0])
+    columns = gear_columns(model, engine or ExactEngine(model), trials)
+    assert set(columns["status"]) == {"ok"}
+    per = math.radians(1 / 60)
+    found = [columns[f"{road}:{name}"][0] * per for name in ("drive", "back", "play")]
+    return Curves(np.array(model.measures[0].positions.fixed), *found)
+
+
+# the reference case -------------------------------------------------------------------------------
+
+
+@pytest.fixture(scope="module")
+def reference() -> Curves:
+    return curves_of(model_from_scene(scene_of(REFERENCE)))
+
+
+def test_the_exact_road_meets_the_reference_case_to_a_hundredth_of_an_arc_second(reference: Curves) -> None:
+    play = reference.play * ARCSEC
+    assert play[0] == pytest.approx(267.037, abs=0.01)
+    assert play.min() == pytest.approx(133.919, abs=0.01)
+    assert play.max() == pytest.approx(415.027, abs=0.01)
+    degrees = np.degrees(reference.positions)
+    assert degrees[play.argmin()] == pytest.approx(4279.2, abs=0.05)
+    assert degrees[play.argmax()] == pytest.approx(2664.8, abs=0.05)
+    assert np.ptp(reference.drive) * ARCSEC == pytest.approx(410.136, abs=0.01)
+    assert np.ptp(reference.back) * ARCSEC == pytest.approx(410.768, abs=0.01)
+
+
+def test_the_analytic_road_meets_the_reference_case_to_a_thousandth_of_an_arc_second() -> None:
+    play = curves_of(model_from_scene(scene_of(REFERENCE, half_play=False)), "analytic").play * ARCSEC
+    assert play[0] == pytest.approx(266.939, abs=0.001)
+    assert play.min() == pytest.approx(133.674, abs=0.001)
+    assert play.max() == pytest.approx(414.475, abs=0.001)
+
+
+@pytest.mark.parametrize("flank", ["left", "right"])
+@pytest.mark.parametrize(
+    "pair",
+    [
+        REFERENCE,
+        replace(REFERENCE, centre=75.6, play=0.31, eccentricity=(0.004, 0.09), phase=(2.0, -2.9)),
+        EccentricPair((31, 20), 1.5, math.radians(20.0), 38.4, 0.2, (0.05, 0.002), (-0.7, 1.1)),
+    ],
+    ids=["reference", "wide", "speeding up"],
+)
+def test_every_position_is_the_exact_eccentric_pair(pair: EccentricPair, flank: str) -> None:
+    """The play of the oracle is that at its own centre distance: the scene's is thinned by what that leaves of it."""
+    opened = 2 * sum(pair.base) * (involute(pair.working_alpha) - involute(pair.alpha))
+    scene = scene_of(replace(pair, play=pair.play - opened), flank, half_play=False)
+    turned = pair.play / 2 / pair.base[1]  # the oracle's wheel counts from its drive rest
+    seen = replace(pair, phase=(pair.phase[0], pair.phase[1] - turned))
+    model = model_from_scene(scene)
+    model = replace(model, measures=tuple(at_turns(measure, 5, 37) for measure in model.measures))
+    found = curves_of(model)
+    phi = found.positions if flank == "left" else -found.positions
+    for side, own in (("drive", found.drive), ("back", found.back)):
+        assert np.abs(own - seen.transmission_error(phi, side)).max() < SAME_TURN
+    assert np.abs(found.play - seen.backlash(phi)).max() < SAME_TURN
+
+
+def involute(angle: float) -> float:
+    return math.tan(angle) - angle
+
+
+def at_turns(measure: Measure, turns: int, count: int) -> Measure:
+    """A measure at `count` positions of some turns, to one beyond the last."""
+    return replace(measure, positions=Positions("turn", turns, turns * count))
+
+
+# first order --------------------------------------------------------------------------------------
+
+
+def test_the_analytic_road_is_the_published_formulas_of_either_side() -> None:
+    pair = replace(REFERENCE, centre=75.5, play=0.2)
+    opened = 2 * sum(pair.base) * (involute(pair.working_alpha) - involute(pair.alpha))
+    model = model_from_scene(scene_of(replace(pair, play=pair.play - opened), half_play=False))
+    found = curves_of(model, "analytic")
+    for side, own in (("drive", found.drive), ("back", found.back)):
+        assert own == pytest.approx(pair.first_order_error(found.positions, side), abs=1e-14)
+    assert found.play == pytest.approx(pair.first_order_backlash(found.positions), abs=1e-14)
+
+
+def test_the_pressure_angle_is_the_working_one() -> None:
+    """1 mm over the standard centre distance the standard angle is 32 arc seconds off at 50 um."""
+    pair = replace(REFERENCE, centre=76.0, play=0.2, eccentricity=(0.05, 0.05))
+    phi = np.arange(16 * SAMPLED) * 2 * math.pi / SAMPLED
+    exact = pair.backlash(phi)
+    right, wrong = pair.first_order_backlash(phi), pair.first_order_backlash(phi, pair.alpha)
+    assert np.abs(wrong - exact).max() * ARCSEC == pytest.approx(32, abs=1)
+    assert np.abs(right - exact).max() * ARCSEC < 3.5
+    opened = 2 * sum(pair.base) * (involute(pair.working_alpha) - involute(pair.alpha))
+    model = model_from_scene(scene_of(replace(pair, play=pair.play - opened), half_play=False))
+    assert curves_of(model, "analytic").play == pytest.approx(right, abs=1e-14)
+
+
+def test_the_centres_y_add_up_because_the_driven_gear_turns_against_the_driver(reference: Curves) -> None:
+    """The distance of the centres has (e1 sin psi1 + e2 sin psi2)^2: with a minus the involutes do not touch."""
+    phi, (e1, e2), (t1, t2), (r1, r2) = reference.positions, REFERENCE.eccentricity, REFERENCE.phase, REFERENCE.base
+    phi2 = phi * r1 / r2 + reference.drive + REFERENCE.rest(np.zeros(1), "drive")
+    x = REFERENCE.centre + e2 * np.cos(phi2 + t2) - e1 * np.cos(phi + t1)
+
+    def gap(sign: float) -> float:
+        """Of the drive flanks along their normals, mm."""
+        y = -e2 * np.sin(phi2 + t2) - e1 * np.sin(phi + t1)
+        beta, apart = np.arctan2(y, x), np.hypot(x, e1 * np.sin(phi + t1) + sign * e2 * np.sin(phi2 + t2))
+        alpha = np.arccos((r1 + r2) / apart)
+        unwound = (r1 + r2) * (np.tan(alpha) - alpha - involute(REFERENCE.alpha))
+        return float(np.abs(r2 * (phi2 + beta) - r1 * (phi - beta) + unwound).max())
+
+    assert gap(1.0) < r2 * SAME_TURN
+    assert gap(-1.0) > 90 * r2 * SAME_TURN
+
+
+@pytest.mark.parametrize(("e", "expected"), [(0.005, 0.06), (0.010, 0.15), (0.020, 0.46), (0.050, 2.3)])
+def test_the_first_order_backlash_errs_as_the_table_says(e: float, expected: float) -> None:
+    """Worst phases, the play as large as the eccentricities; each is the largest error over the long period."""
+    assert first_order_error(e) * ARCSEC == pytest.approx(expected, rel=0.35)
+
+
+def test_the_error_of_the_first_order_goes_with_the_square_of_the_eccentricity() -> None:
+    errors = [first_order_error(e, play=0.0) for e in (0.005, 0.010, 0.020, 0.040)]
+    orders = np.diff(np.log2(errors))
+    assert orders == pytest.approx(np.full(3, 2.0), abs=0.02)
+
+
+def first_order_error(e: float, play: float = 0.060) -> float:
+    """Largest error of the first-order backlash over a long period and phases [rad], e of both gears."""
+    phi = np.arange(16 * 90) * 2 * math.pi / 90
+    worst = 0.0
+    for phases in ((a, b) for a in np.arange(0, 6.2, 0.8) for b in np.arange(0, 6.2, 0.8)):
+        pair = replace(REFERENCE, play=play, eccentricity=(e, e), phase=phases)
+        worst = max(worst, float(np.abs(pair.first_order_backlash(phi) - pair.backlash(phi)).max()))
+    return worst
+
+
+# the identity, trial by trial ---------------------------------------------------------------------
+
+
+def with_curves(model: Model, positions: Positions) -> Model:
+    """A model of one mesh that measures both errors and the play at positions."""
+    mesh = model.meshes[0]
+    reading = default_reading(mesh)
+    push = float(mesh.working_flank)
+
+    def error(side: Literal["drive", "back"]) -> TransmissionError:
+        rest = Backlash("rest_angle", mesh.name, mesh.driven, replace(reading, flank=side))
+        return TransmissionError(mesh.name, mesh.driven, side, ((push, rest),))
+
+    play = Backlash("angular_backlash", mesh.name, mesh.driven, reading)
+    kinds: Mapping[str, Kind] = {"drive": error("drive"), "back": error("back"), "play": play}
+    return replace(model, measures=tuple(Measure(name, kind, positions, "curve") for name, kind in kinds.items()))
+
+
+def identity_breaks(columns: Mapping[str, np.ndarray], kept: np.ndarray) -> float:
+    """Largest of |TE_d + j - TE_b - j_0| [rad]."""
+    drive, back, play = (np.radians(columns[f"geometric:{name}"][kept] / 60) for name in ("drive", "back", "play"))
+    return float(np.abs(drive + play - back - play[:, :1]).max())
+
+
+def check_identity(kind: str, scenes: int, trials: int, seed: int) -> None:
+    seated = 0
+    for scene in random_scenes(kind, scenes, seed):
+        model = with_curves(model_from_scene(scene), Positions("turn", 2, 26))
+        columns = gear_columns(model, ExactEngine(model), drawn_trials(model, 3, 0, trials))
+        kept = columns["status"] == "ok"
+        seated += int(np.count_nonzero(kept))
+        if kept.any():
+            arm = model.meshes[0].pair.wheel.section_arm
+            assert identity_breaks(columns, kept) < 4 * LAST_STEP / arm, scene  # four rests, each on its own
+    assert seated > scenes * trials / 2
+
+
+@pytest.mark.parametrize("kind", ["spur", "bevel"])
+def test_error_and_play_of_one_side_are_those_of_the_other(kind: str) -> None:
+    """TE_d + j = TE_b + j_0, where each side and the play come to rest by turns of their own."""
+    check_identity(kind, 4, 20, 11)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("kind", ["spur", "bevel"])
+def test_error_and_play_agree_on_many_scenes(kind: str) -> None:
+    check_identity(kind, 60, 40, 12)
+
+
+# the witness, trains, what fails ------------------------------------------------------------------
+
+
+def test_fcl_errs_by_its_chords_along_the_whole_period(engine_of: EngineOf) -> None:
+    """The strips lie inside the teeth: either rest goes on by up to two chord errors, in its own sense."""
+    scene = scene_of(REFERENCE)
+    model = model_from_scene(scene)
+    model = replace(model, measures=tuple(at_turns(measure, 16, 7) for measure in model.measures[:2]))
+    engine = engine_of(model)
+    columns = {
+        road: gear_columns(model, own, mean_build(model, model.measures[0]))
+        for road, own in (("exact", ExactEngine(model)), ("fcl", engine))
+    }
+    bound = 2 * engine.chord_error / REFERENCE.base[1] * 180 / math.pi * 60
+    for side in ("drive", "back"):
+        exact, fcl = (columns[road][f"geometric:{side}"][0] for road in ("exact", "fcl"))
+        assert np.abs(fcl - exact).max() <= bound
+
+
+@pytest.mark.parametrize("flank", ["drive", "back"])
+def test_derivatives_are_difference_quotients(flank: str) -> None:
+    model = model_from_scene(Scene.model_validate(train_fields(flank)))
+    trials = drawn_trials(model, 5, 0, 2)
+    engine, measure = ExactEngine(model), model.measures[0]
+    found = sensitivities(model, engine, trials, measure)
+    step = 1e-4  # mm; moves an error by 1e-6 rad, and bends nothing
+    for component in range(model.component_count):
+        moved = np.zeros(model.component_count)
+        moved[component] = step
+        both = [
+            np.radians(values_of(model, engine, replace(trials, deviations=trials.deviations + sign * moved)) / 60)
+            for sign in (1, -1)
+        ]
+        quotient = (both[0] - both[1]) / (2 * step)
+        assert found[..., component] == pytest.approx(quotient, abs=2e-5)  # rad/mm; of up to 0.05
+
+
+def values_of(model: Model, engine: Engine | None, trials: Trials) -> np.ndarray:
+    measure = model.measures[0]
+    road = "analytic" if engine is None else "geometric"
+    return np.asarray(gear_columns(model, engine, trials, (measure,))[f"{road}:{measure.name}"])
+
+
+def train_fields(flank: str = "drive", second: str = "right", **measure: object) -> dict[str, object]:
+    """Two spur pairs in series; a left flank of the first pushes its wheel clockwise, that needs a right one there."""
+    teeth = {"a": 17, "b": 31, "c": 19, "d": 40}
+
+    def gear(name: str) -> dict[str, object]:
+        return {"kind": "spur_gear", "teeth": teeth[name], "module": "1.5 mm", "face_width": "12 mm"}
+
+    tolerances = {
+        f"{name} {kind}": {"kind": kind, "of": name, "distribution": {"kind": "normal", "lower": low, "upper": high}}
+        for name in teeth
+        for kind, low, high in (("tooth_thickness", "-60 um", "-40 um"), ("eccentricity", "5 um", "15 um"))
+    }
+    asked = {"kind": "transmission_error", "of": "train", "flank": flank, "take": "curve", "positions": 12} | measure
+    return {
+        "scene": "two pairs",
+        "parts": {
+            **{name: gear(name) for name in teeth},
+            "motor": {"kind": "shaft", "carries": {"a": {}}},
+            "middle": {"kind": "shaft", "carries": {"b": {}, "c": {"phase": "20 deg"}}},
+            "out": {"kind": "shaft", "carries": {"d": {}}},
+        },
+        "tolerances": tolerances,
+        "moves": {
+            "first": {
+                "kind": "mesh",
+                "driver": "a",
+                "driven": "b",
+                "centre_distance": "36 mm",
+                "working_flank": "left",
+            },
+            "second": {"kind": "mesh", "driver": "c", "driven": "d", "centre_distance": "44.25 mm"}
+            | {"working_flank": second, "azimuth": "50 deg"},
+            "train": {"kind": "train", "driven": "motor", "output": "out"},
+        },
+        "measures": {"error": {"over": "turn", **asked}},
+    }
+
+
+@pytest.mark.parametrize("road", ["analytic", "geometric"])
+@pytest.mark.parametrize("flank", ["drive", "back"])
+def test_a_train_adds_its_meshes_errors_up_over_the_ratios_behind_them(flank: str, road: str) -> None:
+    model = model_from_scene(Scene.model_validate(train_fields(flank)))
+    trials = drawn_trials(model, 2, 0, 5)
+    engine = None if road == "analytic" else ExactEngine(model)
+    whole = values_of(model, engine, trials)
+    total = np.zeros_like(whole)
+    kind = model.measures[0].kind
+    assert isinstance(kind, TransmissionError)
+    for (_, rest), ratio in zip(kind.backlashes, (19 / 40, 1.0), strict=True):
+        mesh = model.mesh(rest.mesh)
+        own = TransmissionError(mesh.name, mesh.driven, kind.flank, ((float(mesh.working_flank), rest),))
+        angles = model.driver_angles(model.measures[0], mesh.name)
+        assert angles is not None
+        swing = Positions("swing", 1, len(angles), angles=angles)
+        alone = replace(model, measures=(Measure("alone", own, swing, "curve"),))
+        total += ratio * values_of(alone, engine and ExactEngine(alone), trials)
+    assert whole == pytest.approx(total, abs=1e-8)
+    assert np.ptp(whole, axis=1).min() > 1.0  # arcmin
+
+
+def test_a_long_period_of_a_train_is_that_of_all_its_teeth() -> None:
+    """31 turns of the motor bring the first pair back, 31/17 x 40 the second: 31 x 40 bring both."""
+    model = model_from_scene(Scene.model_validate(train_fields(over="long_period", positions=4, take="range")))
+    assert model.measures[0].positions == Positions("long_period", 31 * 40, 31 * 40 * 4)
+    engine, trials = ExactEngine(model), drawn_trials(model, 4, 0, 1)
+    wave = replace(model.measures[0], take="curve", positions=Positions("turn", 31 * 40, 31 * 40 * 4))
+    around = values_of(replace(model, measures=(wave,)), engine, trials)[0]
+    assert around[-1] == pytest.approx(0.0, abs=1e-6)  # after it all stands as at first
+    assert abs(around[31 * 20 * 4]) > 0.1
+
+
+def test_a_jammed_build_has_no_transmission_error() -> None:
+    scene = scene_of(replace(REFERENCE, play=0.010))  # least where the eccentricities close the mesh
+    model = model_from_scene(scene)
+    trials = mean_build(model, model.measures[0])
+    columns = gear_columns(model, ExactEngine(model), trials)
+    assert [columns[f"status:{name}"][0] for name in ("drive", "back", "play")] == ["interferes"] * 3
+    jammed = columns["geometric:play"][0] < 0.0
+    assert 0 < np.count_nonzero(jammed) < jammed.size
+    for side in ("drive", "back"):
+        assert (np.isnan(columns[f"geometric:{side}"][0]) == jammed).all()
+
+
+# speed's price ------------------------------------------------------------------------------------
+
+
+def peak_of_range(model: Model, engine: Engine, trials: Trials) -> int:
+    """Bytes at most while ranges are taken."""
+    tracemalloc.start()
+    try:
+        values_of(model, engine, trials)
+        return tracemalloc.get_traced_memory()[1]
+    finally:
+        tracemalloc.stop()
+
+
+def test_a_range_holds_no_curve() -> None:
+    """Ten times as many trials take no more memory but for their own numbers; their curves would take 39 MB."""
+    model = model_from_scene(scene_of(REFERENCE))
+    ranges = replace(model.measures[0], take="range", positions=Positions("long_period", 16, 16 * 640))
+    model, engine = replace(model, measures=(ranges,)), ExactEngine(model)
+    few, many = (mean_rows(model, count) for count in (48, 480))
+    values_of(model, engine, few)
+    before, after = (peak_of_range(model, engine, trials) for trials in (few, many))
+    assert after - before < 2e6
+
+
+def mean_rows(model: Model, count: int) -> Trials:
+    mean = mean_build(model, model.measures[0]).deviations
+    return stated(model, np.repeat(mean, count, axis=0))
+
+
+def test_pairs_of_the_reference_have_the_working_radii_of_the_scene() -> None:
+    pair = model_from_scene(scene_of(REFERENCE)).meshes[0].pair
+    assert isinstance(pair, SpurPair)
+    assert pair.working_pressure_angle == pytest.approx(REFERENCE.working_alpha, abs=1e-12)
+    assert model_from_scene(scene_of(REFERENCE)).meshes[0].working_flank == LEFT

@@ -1,0 +1,87 @@
+"""The pair measured from both sides: its numbers beside it, and every trial by an exact pair that shares no code."""
+
+import math
+from collections.abc import Callable, Mapping
+
+import numpy as np
+import pytest
+from expected import expected
+from oracles.two_sided import EccentricPair
+
+from tol3d import Run
+
+PRINTED = 1e-5  # arcmin; the file gives that many digits
+SEEN = 1e-5  # arcmin; the parabola through samples of 5 deg misses a peak by 4e-7 of it, steps end at 4e-6
+ARCMIN = 60 * 180 / math.pi
+FINE = np.arange(16 * 1440) * 2 * math.pi / 1440  # driver positions over the long period [rad]
+THINNED = 2 * 31.925333 * math.cos(math.radians(20.0)) * 1e-3  # mm; nominal play of both gears together
+
+
+def pair_of(columns: Mapping[str, np.ndarray], trial: int) -> EccentricPair:
+    """A trial as the paper would say it: its wheel's phase counts from where its drive flank rests at first."""
+
+    def of(name: str) -> float:
+        return float(columns[name][trial]) * 1e-3
+
+    e1, e2 = (
+        math.hypot(of(f"{gear} eccentricity.x [um]"), of(f"{gear} eccentricity.y [um]")) for gear in ("pinion", "wheel")
+    )
+    base, centre = 75 * math.cos(math.radians(20.0)), 75 + of("centre distance [um]")
+    working = math.acos(base / centre)
+    opened = 2 * base * (math.tan(working) - working - math.tan(math.radians(20)) + math.radians(20))
+    thinner = of("pinion tooth thickness [um]") + of("wheel tooth thickness [um]")
+    play = opened - thinner * math.cos(math.radians(20.0))
+    turned = play / 2 / (base * 48 / 75)
+    phases = (math.radians(40.0), math.radians(118.788 - 180.0 - 3.75) - turned)
+    return EccentricPair((27, 48), 2.0, math.radians(20.0), centre, play, (e1, e2), phases)
+
+
+def extremes(pair: EccentricPair, *, exact: bool = True) -> dict[str, float]:
+    """What the scene measures of a pair [arcmin]."""
+    errors = pair.transmission_error if exact else pair.first_order_error
+    play = (pair.backlash if exact else pair.first_order_backlash)(FINE) * ARCMIN
+    found = {f"{side} TE": float(np.ptp(errors(FINE, side))) * ARCMIN for side in ("drive", "back")}
+    return found | {"least backlash": float(play.min()), "largest backlash": float(play.max())}
+
+
+def test_the_scene_meets_its_expected_numbers(run_of: Callable[[str], Run]) -> None:
+    run, wanted = run_of("two_sided_te"), expected("two_sided_te")
+    assert list(run.summary["measures"]) == [name for name in wanted if name != "trials"]
+    assert run.summary["status"]["ok"] == wanted["trials"]
+    for name, measure in run.summary["measures"].items():
+        own = wanted[name]
+        for road, bound in (("analytic", PRINTED), ("geometric", PRINTED + SEEN)):
+            if measure["take"] == "curve":
+                for key in ("mean", "sigma"):
+                    values = measure["curve"][road][key][:: 2 * 24]
+                    assert values == pytest.approx(own[road][key], abs=bound), name
+                continue
+            assert measure["nominal"][road] == pytest.approx(own["nominal"][road], abs=bound), name
+            assert measure["mean_build"][road] == pytest.approx(own["mean_build"][road], abs=bound), name
+            for key in ("mean", "sigma"):
+                assert measure[road][key] == pytest.approx(own[road][key], abs=bound), name
+
+
+def test_the_mean_build_is_the_reference_pair(run_of: Callable[[str], Run]) -> None:
+    """Peaks by an exact pair of 18 and 27 um at 40 and -65 deg with 60 um of play, in the paper's own senses."""
+    degrees = math.radians(40.0), math.radians(-65.0)
+    pair = EccentricPair((27, 48), 2.0, math.radians(20.0), 75.0, 0.060, (0.018, 0.027), degrees)
+    assert pytest.approx(0.060, abs=1e-7) == THINNED
+    measures = run_of("two_sided_te").summary["measures"]
+    for name, value in extremes(pair).items():
+        # 118.788 deg stands for 118.788108, 2e-6 of the wave
+        assert measures[name]["mean_build"]["geometric"] == pytest.approx(value, abs=2 * SEEN), name
+    arc_seconds = {"drive TE": 410.136, "back TE": 410.768, "least backlash": 133.919, "largest backlash": 415.027}
+    for name, value in arc_seconds.items():  # as printed, of samples
+        assert 60 * measures[name]["mean_build"]["geometric"] == pytest.approx(value, abs=0.01), name
+
+
+@pytest.mark.parametrize(("road", "exact"), [("geometric", True), ("analytic", False)])
+def test_every_trial_is_a_pair_of_its_own(road: str, exact: bool, run_of: Callable[[str], Run]) -> None:
+    columns = run_of("two_sided_te").columns()
+    for trial in range(0, expected("two_sided_te")["trials"], 4):
+        for name, value in extremes(pair_of(columns, trial), exact=exact).items():
+            # the first order counts the wheel's phase from its nominal angle, half the play off, and takes the nominal
+            # pressure angle: 15 um of centre distance are 5e-4 of the wave
+            bound = 2 * SEEN if exact else 0.01
+            assert columns[f"{road}:{name}"][trial] == pytest.approx(value, abs=bound), (trial, name)

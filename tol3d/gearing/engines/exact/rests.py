@@ -1,0 +1,86 @@
+"""Both rests of a mesh at many positions: one contact a side and position, every build made once for all of them.
+
+A position begins where the one before it came to rest: there the gears have hardly to turn.
+"""
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tol3d.gearing.engines.exact.numbers import PairNumbers, Pose
+from tol3d.gearing.engines.exact.rows import FREE, build_of, fault_of, within_reach
+from tol3d.gearing.engines.exact.seating import Look, closed, seen, standing
+from tol3d.gearing.engines.status import INTERFERES, OK, OUT_OF_RANGE
+
+Array = NDArray[np.float64]
+Integers = NDArray[np.int64]
+
+
+def rest_rows(
+    pinion: Any,
+    wheel: Any,
+    pair: PairNumbers,
+    nominal: Pose,
+    which: Integers,
+    shafts: Array,
+    centre: Array,
+    flank_turn: Array,
+    flank_offset: Array,
+    scale: Array,
+    driver_angles: Array,
+    rests: Array,
+    contact: Array,
+    teeth: Integers,
+    status: NDArray[np.int8],
+) -> None:
+    """Seat every build at every position on both sides.
+
+    Args:
+        pinion, wheel, pair, nominal, shafts ... scale: as in `read_rows`.
+        which: driver and driven in the arrays of the build; working flank; teeth; whether the contact is that of the
+            section.
+        driver_angles: (positions,) [rad].
+        rests: (trials, positions, 2), written: the driven gear's angle [rad] on the drive and on the back side.
+        contact: (trials, 2, 3), written: the first position's contacts on the driver, world [mm].
+        teeth: (trials, 2), written: the driver's teeth that touch there.
+        status: (trials, positions), written.
+    """
+    gears, sigma, in_section = (which[0], which[1]), float(which[2]), which[4] != 0
+    for row in range(len(shafts)):
+        build = build_of(pinion, wheel, pair, nominal, gears, shafts, centre, flank_turn, flank_offset, scale, row)
+        rests[row] = np.nan
+        contact[row] = np.nan
+        teeth[row] = 0
+        status[row] = OUT_OF_RANGE
+        if not within_reach(build, scale[row, gears[0]], scale[row, gears[1]]):
+            continue
+        opened = sigma * (build.driver_turn / pair.ratio + build.driven_turn)
+        ahead, behind = opened, -opened
+        for k in range(len(driver_angles)):
+            angle = driver_angles[k]
+            middle, arm, fault = pair.driven_start - angle / pair.ratio, 0.0, OK
+            for side in range(2):
+                look = Look(sigma if side == 0 else -sigma, which[3], in_section, 1.0)
+                start = standing(build, angle, middle + (ahead if side == 0 else behind))
+                at, touching = closed(seen(build, start, angle, look), build, start, look)
+                own = fault_of(touching)
+                fault = max(fault, own)
+                if own != OK:
+                    continue
+                rests[row, k, side] = at.driven
+                arm = abs(touching.ny * touching.x - touching.nx * touching.y)
+                if side == 0:
+                    ahead = at.driven - middle
+                else:
+                    behind = at.driven - middle
+                if k == 0:
+                    out, shaft = flank_offset[row, gears[0]], shafts[row, gears[1]]
+                    x, y = touching.x - out * touching.nx, touching.y - out * touching.ny
+                    z = touching.z - out * touching.nz
+                    for i in range(3):
+                        contact[row, side, i] = shaft[i, 0] * x + shaft[i, 1] * y + shaft[i, 2] * z + shaft[i, 3]
+                    teeth[row, side] = touching.tooth
+            if fault == OK and sigma * (behind - ahead) * arm < -FREE:
+                fault = INTERFERES
+            status[row, k] = fault
