@@ -286,15 +286,11 @@ WRONG: dict[str, tuple[Callable[[str], str], str, str]] = {
         "tolerances.one position.datums",
         "expected a tolerance of the size of 'plate.bore', which makes the gauge's room; add one of kind size",
     ),
-    "alone": (
-        lambda text: text.replace(f"[floor, {RANDOM}]", f"[{RANDOM}]", 1),
-        "tolerances.one position.datums",
-        "expected mmb at the second of two datums, a hole or pin square to a plane before it, got 'plate.bore'",
-    ),
     "no plane before it": (
         lambda text: text.replace("datums: [floor, {feature", "datums: [two, {feature", 1),
         "tolerances.one position.datums",
-        "expected mmb at the second of two datums, a hole or pin square to a plane before it, got 'plate.bore'",
+        "expected a zone of 'plate.bore' to two, which makes its virtual condition there; add a position to these "
+        "datums, or an orientation",
     ),
     "a bore that nothing orients": (
         lambda text: "".join(line for line in text.splitlines(True) if not line.startswith("  bore square")),
@@ -315,7 +311,7 @@ WRONG: dict[str, tuple[Callable[[str], str], str, str]] = {
     "of a plane": (
         lambda text: text.replace("datums: [floor, {feature: bore", "datums: [floor, {feature: floor", 1),
         "tolerances.one position.datums[1]",
-        "expected a cylinder, got 'plate.floor', which is a plane; did you mean \"plate.bore\"?",
+        "expected a cylinder or slot, got 'plate.floor', which is a plane; did you mean \"plate.bore\"?",
     ),
 }  # fmt: skip
 

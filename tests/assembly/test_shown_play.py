@@ -1,6 +1,5 @@
 """Builds with play as they are shown: floats stay shares of the room, and trials that do not build are passed over."""
 
-
 import numpy as np
 import pytest
 

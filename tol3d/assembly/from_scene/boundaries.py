@@ -1,19 +1,23 @@
 """Datums at their maximum material boundary: the gauge of virtual condition, and how it shifts the datum frame."""
 
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.assembly.from_scene.bonus import sized_by
-from tol3d.assembly.from_scene.contributors import Effects
+from tol3d.assembly.from_scene.contributors import SHIFT_AND_TURN, Effects
 from tol3d.assembly.from_scene.datums import DatumFrames
+from tol3d.assembly.grammar.boundary_checks import earlier_zone, is_square, shifts_alone
 from tol3d.assembly.grammar.datums import DatumSpec
 from tol3d.assembly.grammar.drawing import Drawing
+from tol3d.assembly.grammar.feature_name import part_of
 from tol3d.assembly.grammar.tolerances import FeatureTolerance, LocationSpec, OrientationSpec
-from tol3d.assembly.model import Axis, Contribution, DatumFrame
+from tol3d.assembly.model import Axis, Contribution, DatumFrame, Floating, Gauges, Slot
 from tol3d.assembly.model.bonus import GaugeRoom
 from tol3d.assembly.zones import Bonus, SizedBy, ZoneDraw, catalogue, uniform_in
+from tol3d.assembly.zones.float_draw import FloatDraw
 from tol3d.assembly.zones.gauge_shift import GaugeShift, Leaning
 from tol3d.scene import Scene
 from tol3d.system.plain import PlainContributor
@@ -48,6 +52,34 @@ def shift_frames(scene: Scene, drawing: Drawing, effects: Effects, frames: Datum
         if boundary.own.mmb == "random":
             frame = frames.made[name]
             frames.made[name] = replace(frame, shifted_by=(_shift(scene, drawing, effects, frame, boundary),))
+    drawn = dict.fromkeys(_named_by_tolerances(drawing, frames))
+    for name in dict.fromkeys((*drawn, *frames.made)):
+        frame, datums = frames.made[name], frames.specs[name]
+        if datums[-1].mmb is not None and (name not in drawn or not shifts_alone(drawing, frame.part, datums)):
+            rooms = rooms_of(scene, drawing, frame.part, datums)
+            floating = None if datums[-1].mmb == "least" else _floating(effects, frame, datums)
+            frames.made[name] = replace(frame, gauges=Gauges(rooms, floating))
+
+
+def _named_by_tolerances(drawing: Drawing, frames: DatumFrames) -> Iterator[str]:
+    """Datum frames in the order of the tolerances."""
+    for own in drawing.stated:
+        if not isinstance(own, str) and own.spec.named_datums:
+            yield frames.named(own.feature.partition(".")[0], own.spec.named_datums)
+
+
+def _floating(effects: Effects, frame: DatumFrame, datums: Sequence[DatumSpec]) -> Floating:
+    """Where the gauges of a frame lie in their room."""
+    if datums[-1].mmb != "random":
+        return Floating("centred")
+    own, to = (
+        ", ".join("-".join(each.features) for each in datums if (each.mmb is None) is earlier)
+        for earlier in (False, True)
+    )
+    draw = FloatDraw(("direction", "fraction"), (*SHIFT_AND_TURN, "fraction"))
+    name = f"shift of {frame.part}.{own}" + (f" to {to}" if to else "")
+    words = "of the gauges at the maximum material boundary of datums"
+    return Floating("random", effects.added(PlainContributor(name, "datum_shift", draw, "1", 1.0, words)))
 
 
 def _boundaries(drawing: Drawing, frames: DatumFrames) -> dict[str, Boundary]:
@@ -57,22 +89,47 @@ def _boundaries(drawing: Drawing, frames: DatumFrames) -> dict[str, Boundary]:
         if isinstance(own, str):
             continue
         datums = own.spec.named_datums
-        if datums and datums[-1].mmb is not None:
-            part = own.feature.partition(".")[0]
+        part = own.feature.partition(".")[0]
+        if shifts_alone(drawing, part, datums):
             feature = f"{part}.{datums[-1].features[0]}"
             found.setdefault(frames.named(part, datums), Boundary(feature, datums[:-1], datums[-1]))
     return found
 
 
-def room_of(scene: Scene, drawing: Drawing, part: str, datums: tuple[DatumSpec, ...]) -> GaugeRoom | None:
-    """Where the gauge of the last datum may lie in its feature; None where it is not at its boundary."""
-    if not datums or datums[-1].mmb is None:
+def rooms_of(scene: Scene, drawing: Drawing, part: str, datums: tuple[DatumSpec, ...]) -> tuple[GaugeRoom, ...]:
+    """Where the gauges of the datums at their boundary may lie in their features."""
+    found = []
+    for k, own in enumerate(datums):
+        if own.mmb is None:
+            continue
+        feature = f"{part}.{own.features[0]}"
+        shape, bonus = drawing.kind(feature).shape, sized_by(scene, drawing, feature, "mmc").bonus
+        assert isinstance(shape, Axis | Slot)
+        tolerance = (earlier_zone(drawing, feature, datums[:k]) or 0.0) if k else 0.0
+        virtual = bonus.low - tolerance if shape.inner else bonus.high + tolerance
+        nominal = shape.width if isinstance(shape, Slot) else shape.diameter or 0.0
+        found.append(GaugeRoom(feature, nominal + virtual, shape.inner))
+    return tuple(found)
+
+
+def room_of(scene: Scene, drawing: Drawing, of: str, datums: tuple[DatumSpec, ...]) -> GaugeRoom | None:
+    """Where the gauge of the last datum shifts in its feature, of a position along it; None where it does not alone."""
+    part = part_of(of)
+    if not shifts_alone(drawing, part, datums):
         return None
     boundary = Boundary(f"{part}.{datums[-1].features[0]}", datums[:-1], datums[-1])
+    measured = drawing.kind(of)
+    if measured.kind not in ("cylinder", "axis") or not is_square(*_axes(drawing, boundary.feature, of)):
+        return None
     shape = drawing.kind(boundary.feature).shape
     assert isinstance(shape, Axis)
     assert shape.diameter is not None
     return GaugeRoom(boundary.feature, shape.diameter + _virtual(scene, drawing, boundary), shape.inner)
+
+
+def _axes(drawing: Drawing, *features: str) -> tuple[Array, Array]:
+    first, second = (drawing.kind(own).frame[:3, 2] for own in features)
+    return first, second
 
 
 def _virtual(scene: Scene, drawing: Drawing, boundary: Boundary) -> float:

@@ -22,10 +22,13 @@ class DatumFrames:
 
     Args:
         features: specs by part and name.
+        made: by their names.
+        specs: the datums of each.
     """
 
     features: Mapping[str, Mapping[str, FeatureUnion]]
     made: dict[str, DatumFrame] = field(default_factory=dict)
+    specs: dict[str, tuple[DatumSpec, ...]] = field(default_factory=dict)
 
     def named(self, part: str, datums: Sequence[DatumSpec]) -> str:
         """The name of a part's frame on some datums; "" for none, which is the part's own frame."""
@@ -33,6 +36,7 @@ class DatumFrames:
             return ""
         name = "|".join((part, *(_letter(datum) for datum in datums)))
         if name not in self.made:
+            self.specs[name] = tuple(datums)
             self.made[name] = DatumFrame(name, part, tuple(self._datum(part, own) for own in datums))
         return name
 

@@ -52,11 +52,12 @@ def _measured(scene: Scene, spec: AssemblyMeasureSpec, frames: DatumFrames) -> M
         features = (projected_name(spec.of, spec.projected.internal),)
     direction = None if spec.along is None else unit_vector(spec.along)
     frame = frames.named(part_of(features[0]), spec.named_datums)
-    room = room_of(scene, Drawing(scene), part_of(features[0]), spec.named_datums)
+    room = room_of(scene, Drawing(scene), spec.named()[0][1], spec.named_datums)
+    over_gauges = room is None and any(own.mmb is not None for own in spec.named_datums)
     gauge = spec.free if isinstance(spec, InspectedPatternSpec) else "shift"
     over = spec.over_play if isinstance(spec, OverPlaySpec) else None
     found = Measured(spec.reads, features, direction, frame, after, bonuses, gauge, room, rocking=spec.rocking)
-    return replace(found, over_play=over)
+    return replace(found, over_play=over, over_gauges=over_gauges)
 
 
 def _after(scene: Scene, spec: AssemblyMeasureSpec) -> int:

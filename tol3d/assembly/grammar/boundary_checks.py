@@ -1,6 +1,6 @@
 """What must hold of datums at their maximum material boundary: what orients their gauge, and a size."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,7 +10,8 @@ from tol3d.assembly.grammar.drawing import Drawing
 from tol3d.assembly.grammar.feature_name import part_of
 from tol3d.assembly.grammar.measures import InspectedPositionSpec
 from tol3d.assembly.grammar.measures.assembly_measure import FeatureMeasureSpec
-from tol3d.assembly.grammar.tolerances import FeatureTolerance, PlusMinusSpec, SizeSpec
+from tol3d.assembly.grammar.tolerances import FeatureTolerance, LocationSpec, OrientationSpec, PlusMinusSpec, SizeSpec
+from tol3d.assembly.model import Plane
 from tol3d.scene import Scene
 from tol3d.scene.place import KeyPath
 
@@ -45,14 +46,17 @@ def _of_measure(drawing: Drawing, name: str, spec: FeatureMeasureSpec) -> Iterat
             yield place, "expected datums without mmb, or mmb: least of an inspected position"
             continue
         yield from _unfit(drawing, part_of(spec.of), spec.named_datums, k, place)
-        known = f"{part_of(spec.of)}.{datum.features[0]}"
-        if {known, spec.of} <= set(drawing.names):
-            frames = [drawing.kind(own).frame[:3, 2] for own in (known, spec.of)]
-            if drawing.kind(spec.of).kind not in ("cylinder", "axis") or not is_square(*frames):
-                yield (
-                    ("measures", name, "of"),
-                    f"expected a hole, pin or axis along {known!r}, in which the gauge shifts",
-                )
+        if spec.of in drawing.names and (wrong := _unread(drawing, spec)):
+            yield ("measures", name, "of"), wrong
+
+
+def _unread(drawing: Drawing, spec: InspectedPositionSpec) -> str | None:
+    """What a position over the places of gauges cannot be of, in words."""
+    kind = drawing.kind(spec.of)
+    flat = kind.kind == "plane" and isinstance(kind.shape, Plane)
+    if kind.kind in ("cylinder", "axis", "slot") or flat or (kind.kind == "point" and spec.across is not None):
+        return None
+    return f"expected a hole, pin, axis, slot, flat rectangle or a point with `across`, got {spec.of!r}"
 
 
 def is_square(normal: Array, axis: Array) -> bool:
@@ -60,18 +64,61 @@ def is_square(normal: Array, axis: Array) -> bool:
     return float(np.linalg.norm(np.cross(normal, axis))) < SQUARE
 
 
+def shifts_alone(drawing: Drawing, part: str, datums: Sequence[DatumSpec]) -> bool:
+    """Whether the gauge of the last datum only shifts: one in a hole or pin square to the plane that orients it."""
+    known = drawing.features[part]
+    if len(datums) != 2 or datums[0].mmb is not None or datums[1].mmb is None:
+        return False
+    plane, hole = (known.get(own.features[0]) for own in datums)
+    if plane is None or hole is None or (plane.kind, hole.kind) != ("plane", "cylinder"):
+        return False
+    return is_square(plane.frame[:3, 2], hole.frame[:3, 2])
+
+
+def earlier_zone(drawing: Drawing, feature: str, earlier: Sequence[DatumSpec]) -> float | None:
+    """Width of the zone of a datum feature at its precedence [mm]; None without one.
+
+    Of its location zone to just the datums before it, whatever their modifiers; where these only orient it, as a plane
+    does that it is square to, of its orientation zone to them rather.
+    """
+    names = [own.features for own in earlier]
+    location: tuple[type[FeatureTolerance], ...] = (LocationSpec,)
+    orientation: tuple[type[FeatureTolerance], ...] = (OrientationSpec,)
+    kinds = orientation + location if _orients_only(drawing, feature, earlier) else location
+    for kind in kinds:
+        for own in drawing.of(feature, kind):
+            spec = own.spec
+            if isinstance(spec, OrientationSpec | LocationSpec) and [d.features for d in spec.named_datums] == names:
+                return spec.zone.size
+    return None
+
+
+def _orients_only(drawing: Drawing, feature: str, earlier: Sequence[DatumSpec]) -> bool:
+    """Whether datums hold nothing of where a feature lies across itself: one plane to which it is square."""
+    plane, own = drawing.features[part_of(feature)].get(earlier[0].features[0]), drawing.kind(feature)
+    if len(earlier) != 1 or plane is None or plane.kind != "plane":
+        return False
+    normal, z = plane.frame[:3, 2], own.frame[:3, 2]
+    return is_square(normal, z) if own.kind == "cylinder" else abs(float(normal @ z)) < SQUARE
+
+
 def _unfit(drawing: Drawing, part: str, datums: tuple[DatumSpec, ...], k: int, place: KeyPath) -> Iterator[Problem]:
     own = f"{part}.{datums[k].features[0]}"
-    known = drawing.features[part]
-    if own not in drawing.names or drawing.kind(own).kind != "cylinder":
+    if own not in drawing.names or drawing.kind(own).kind not in ("cylinder", "slot"):
         return  # said already
-    first = known.get(datums[0].features[0])
-    axis = drawing.kind(own).frame[:3, 2]
-    square = first is not None and first.kind == "plane" and is_square(first.frame[:3, 2], axis)
-    if (k, len(datums)) != (1, 2) or not square:
-        yield place, f"expected mmb at the second of two datums, a hole or pin square to a plane before it, got {own!r}"
+    later = [later for later in datums[k + 1 :] if later.mmb is None]
+    to = ", ".join("-".join(earlier.features) for earlier in datums[:k])
+    if later:
+        words = f"expected datums at their maximum material boundary last, got {later[0].features[0]!r} after {own!r}"
+        yield place, f"{words}; give it mmb as well, or name it first"
+    elif len({before.mmb for before in datums[: k + 1] if before.mmb is not None}) > 1:
+        yield place, "expected one mmb for all datums of a frame, for their gauges are of one piece"
     elif not drawing.of(own, SizeSpec):
         yield place, f"expected a tolerance of the size of {own!r}, which makes the gauge's room; add one of kind size"
-    elif drawing.of(own, PlusMinusSpec) or drawing.datums(own)[:1] != datums[:1]:
-        words = f"expected a zone of {own!r} to {datums[0].features[0]!r} first, for that orients the gauge"
-        yield place, f"{words}; add a position or perpendicularity to it"
+    elif shifts_alone(drawing, part, datums):
+        if drawing.of(own, PlusMinusSpec) or drawing.datums(own)[:1] != datums[:1]:
+            words = f"expected a zone of {own!r} to {datums[0].features[0]!r} first, for that orients the gauge"
+            yield place, f"{words}; add a position or perpendicularity to it"
+    elif k > 0 and earlier_zone(drawing, own, datums[:k]) is None:
+        words = f"expected a zone of {own!r} to {to}, which makes its virtual condition there"
+        yield place, f"{words}; add a position to these datums, or an orientation"

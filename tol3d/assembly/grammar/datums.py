@@ -49,7 +49,7 @@ class DatumSpec(Strict):
         if len(self.features) > 1:
             return ("point", "sphere", "cylinder", "axis")
         if self.mmb is not None:
-            return ("cylinder",)
+            return ("cylinder", "slot")
         return ("plane",) if self.targets else ()
 
     @model_validator(mode="after")
@@ -59,7 +59,7 @@ class DatumSpec(Strict):
         if not self.targets and self.simulator == "targets":
             raise refused("targets", "the points that touch, such as [[10 mm, 0 mm, 5 mm]]", "none")
         if self.mmb is not None and (len(self.features) > 1 or self.simulator != "contact"):
-            raise refused("mmb", "it at a single hole or pin", "a common datum or a simulator of planes")
+            raise refused("mmb", "it at a single hole, pin, slot or tab", "a common datum or a simulator of planes")
         return self
 
 

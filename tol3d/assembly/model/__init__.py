@@ -4,7 +4,7 @@ Part frames, feature frames and poses are 4x4, lengths mm. Nominal poses of part
 """
 
 from tol3d.assembly.model.assembly import Assembly, Part
-from tol3d.assembly.model.datum_frame import Datum, DatumFrame
+from tol3d.assembly.model.datum_frame import Datum, DatumFrame, Gauges
 from tol3d.assembly.model.feature import Contribution, Feature
 from tol3d.assembly.model.measures import Measured
 from tol3d.assembly.model.moves import (
@@ -39,6 +39,7 @@ __all__ = [
     "Fit",
     "Fix",
     "Floating",
+    "Gauges",
     "Locate",
     "Mate",
     "Measured",

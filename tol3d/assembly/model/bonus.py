@@ -26,9 +26,9 @@ class GaugeRoom:
     """Where a gauge of virtual condition may lie in a datum feature: within ±(size - virtual) / 2 of its ends.
 
     Args:
-        feature: the hole or pin, with its part.
-        virtual: diameter of the gauge [mm].
-        grows: whether larger features leave more room: holes.
+        feature: the hole, pin, slot or tab, with its part.
+        virtual: diameter or width of the gauge [mm].
+        grows: whether larger features leave more room: holes and slots.
     """
 
     feature: str

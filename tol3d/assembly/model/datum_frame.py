@@ -6,7 +6,9 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from tol3d.assembly.model.bonus import GaugeRoom
 from tol3d.assembly.model.feature import Contribution
+from tol3d.assembly.model.moves import Floating
 
 Array = NDArray[np.float64]
 
@@ -31,6 +33,23 @@ class Datum:
 
 
 @dataclass(frozen=True, eq=False)
+class Gauges:
+    """Gauges of virtual condition, all of one piece, in (or on) the last datums of a frame.
+
+    What the datums before them leave free, and what they see of it, is their room: at both ends of a hole or pin and at
+    all corners of a slot or tab they lie within +-(size - virtual) / 2 of it.
+
+    Args:
+        rooms: one of each of these datums, in order.
+        floating: where in their common room they lie, which makes the frame; None where that is left to what is
+            measured: the frame is then that of the datums regardless of their sizes.
+    """
+
+    rooms: tuple[GaugeRoom, ...]
+    floating: Floating | None = None
+
+
+@dataclass(frozen=True, eq=False)
 class DatumFrame:
     """Datums in order: each takes only the freedoms that earlier ones left; those that none takes stay the part's.
 
@@ -49,9 +68,11 @@ class DatumFrame:
         datums: primary, secondary, tertiary.
         shifted_by: how a gauge lies off its datum feature, which shifts the frame (3, components), nominally in the
             part's frame.
+        gauges: of its last datums, where several, a first, a third one or a slot is at its maximum material boundary.
     """
 
     name: str
     part: str
     datums: tuple[Datum, ...]
     shifted_by: tuple[Contribution, ...] = ()
+    gauges: Gauges | None = None

@@ -80,6 +80,7 @@ class Measured:
         after: index of the move after which it is read; -1 for the end.
         bonuses: of a position and a pattern, what the size of each feature takes from it; () for nothing.
         room: of a position, in which the gauge of its last datum takes the shift that makes it least.
+        over_gauges: of a position, whether the gauges of its datum frame take the place that makes it least.
         gauge: how a pattern's gauge finds its best pose in the frame.
         of_move: index of the move whose slack is read; -1 of other kinds.
         over_play: which value it has over the rooms of parts with play; None where the floats of the moves decide.
@@ -98,6 +99,7 @@ class Measured:
     bonuses: tuple[MaterialBonus, ...] = ()
     gauge: Gauge = "shift"
     room: GaugeRoom | None = None
+    over_gauges: bool = False
     of_move: int = -1
     minus: "Measured | None" = None
     rocking: Rocking | None = None

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,7 +11,7 @@ from tol3d.assembly.model import Axis, Datum, DatumFrame, Feature, Part, Plane, 
 from tol3d.assembly.placing.actual_feature import ActualFeature, actual
 from tol3d.assembly.placing.alignment import Alignment, Held, Seat, Tie, Turning
 from tol3d.assembly.placing.freedoms import aligned
-from tol3d.assembly.placing.poses import IDENTITY, Pose, unit
+from tol3d.assembly.placing.poses import IDENTITY, Codes, Pose, unit
 from tol3d.errors import InputError
 
 Array = NDArray[np.float64]
@@ -22,6 +23,14 @@ Actual = Callable[[str], ActualFeature]
 Asks = tuple[Held, Turning]
 
 
+class OnGauges(Protocol):
+    """Where gauges of virtual condition lay a part."""
+
+    def placed(self, seats: Sequence[Seat], features: Sequence[ActualFeature], columns: Array) -> tuple[Pose, Codes]:
+        """See GaugedFrame."""
+        ...
+
+
 @dataclass(frozen=True, eq=False)
 class DatumSeats:
     """How a datum frame is found: its part's features are aligned with its simulators, and it is the inverse of that.
@@ -30,11 +39,22 @@ class DatumSeats:
         frame: which.
         alignment: of the ties, in order.
         nominal: the features of its datums as they are nominally.
+        datums: of each tie the number of its datum.
+        gauged: by which gauges it lies, if by any.
     """
 
     frame: DatumFrame
     alignment: Alignment
     nominal: Mapping[str, ActualFeature]
+    datums: tuple[int, ...]
+    gauged: OnGauges | None = None
+
+    def pose(self, features: Actual, columns: Array) -> tuple[Pose, Codes]:
+        """The part in its frame, and what became of it (n,) or (1,)."""
+        seats, gauges = self.of(features), self.frame.gauges
+        if self.gauged is None or gauges is None or gauges.floating is None:
+            return self.alignment.poses(seats, IDENTITY)
+        return self.gauged.placed(seats, [features(own.feature) for own in gauges.rooms], columns)
 
     def of(self, features: Actual) -> list[Seat]:
         """The seats of its ties in their trials."""
@@ -62,7 +82,7 @@ def _of(frame: DatumFrame, nominal: Mapping[str, ActualFeature]) -> DatumSeats:
                 f"datum frame {frame.name}: {'-'.join(datum.features)} takes no freedom: datums before it hold all "
                 "that it could take; leave it out"
             )
-    return DatumSeats(frame, alignment, nominal)
+    return DatumSeats(frame, alignment, nominal, tuple(datums))
 
 
 def _refuse_few_targets(frame: DatumFrame) -> None:

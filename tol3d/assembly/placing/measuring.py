@@ -12,6 +12,7 @@ from tol3d.assembly.model.measures import MeasureKind
 from tol3d.assembly.placing.actual_feature import ActualFeature, actual_size
 from tol3d.assembly.placing.datum_rooms import position_in_room
 from tol3d.assembly.placing.flatness import widths
+from tol3d.assembly.placing.gauged_positions import position_on_gauges
 from tol3d.assembly.placing.patterns import bonuses, pattern
 from tol3d.assembly.placing.poses import column, cross, dot, rotated
 from tol3d.assembly.placing.surfaces import PARALLEL, common_normal, surface_gap
@@ -113,6 +114,8 @@ def _position(measured: Measured, world: World) -> Array:
     if measured.room is not None:
         into = world.own[world.part_of(measured.features[0])].displacement(measured.frame).inverse
         return position_in_room(measured, world, actual, into, _bonus(measured, world))
+    if measured.over_gauges:
+        return position_on_gauges(measured, world, _bonus(measured, world))
     shape, z = actual.feature.shape, column(frame[:3, 2])
     if isinstance(shape, RoundPlane) and measured.direction is None:
         return 2.0 * (np.abs(dot(z, actual.origin - column(frame[:3, 3]))) + actual.rise(z))

@@ -41,6 +41,10 @@ class PartFeatures:
         """From where a datum frame is nominally to where it is; none of "", the part's frame."""
         return self._found(frame)[0] if frame else IDENTITY
 
+    def seats(self, frame: str) -> DatumSeats:
+        """How a datum frame is found."""
+        return self._datum_seats[frame]
+
     def codes(self, frame: str) -> Codes:
         """What became of a datum frame itself (n,) or (1,)."""
         return self._found(frame)[1]
@@ -48,7 +52,7 @@ class PartFeatures:
     def _found(self, name: str) -> tuple[Pose, Codes]:
         if name not in self._frames:
             seats = self._datum_seats[name]
-            aligned, codes = seats.alignment.poses(seats.of(self.feature), IDENTITY)
+            aligned, codes = seats.pose(self.feature, self._columns)
             displacement = aligned.inverse
             if seats.frame.shifted_by:
                 shift = np.stack(np.broadcast_arrays(*total(seats.frame.shifted_by, 3, self._columns)))

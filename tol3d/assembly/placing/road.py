@@ -13,6 +13,7 @@ from tol3d.assembly.placing.best_fitting import BestFitting, best_fitting
 from tol3d.assembly.placing.causes import Cause, Causes, causes_of, ordered
 from tol3d.assembly.placing.datum_seats import DatumSeats, datum_seats
 from tol3d.assembly.placing.engaging import Engaging, engaging
+from tol3d.assembly.placing.gauged_frames import with_gauges
 from tol3d.assembly.placing.locating import Locating, locating
 from tol3d.assembly.placing.mating import Mating, mating
 from tol3d.assembly.placing.measuring import reading
@@ -176,7 +177,7 @@ def planned(assembly: Assembly, solids: SolidReader | None = None) -> PlacingPla
     Raises:
         InputError: see `values`.
     """
-    seats = {part.name: datum_seats(part) for part in assembly.parts}
+    seats = {part.name: with_gauges(datum_seats(part)) for part in assembly.parts}
     bodies = {part.name: frozenset([part.name]) for part in assembly.parts}
     causes = [Causes(assembly, {}, bodies)]
     for index, move in enumerate(assembly.moves):
@@ -264,7 +265,8 @@ def _read(plan: PlacingPlan, block: _Block, name: str, causes: Sequence[Cause]) 
     with np.errstate(all="ignore"):
         numbers = reading(plan.assembly.measures[name], block.worlds)
         first = block.first_of(causes)
-    lost = SINGULAR if plan.assembly.measures[name].room is None else NO_BUILD  # a datum does not take its gauge
+    measured = plan.assembly.measures[name]  # where a gauge is asked, a datum does not take it
+    lost = SINGULAR if measured.room is None and not measured.over_gauges else NO_BUILD
     first = np.where((first == OK) & ~np.isfinite(numbers), np.int8(lost), first)
     return np.where(first == OK, numbers, np.nan), first
 

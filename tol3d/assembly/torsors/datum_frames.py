@@ -31,8 +31,7 @@ def displacement_of(frame: DatumFrame, datums: Sequence[Sequence[Displaced]], co
     Raises:
         InputError: a datum takes no freedom.
     """
-    centres = [feature.frame[:3, 3] for features in datums for feature, _ in features]
-    freedoms = Freedoms(np.zeros(3), centres, columns.count)
+    freedoms = _without_any(datums, columns)
     for datum, features in zip(frame.datums, datums, strict=True):
         before = freedoms.count
         _take(freedoms, datum, features, columns)
@@ -42,6 +41,19 @@ def displacement_of(frame: DatumFrame, datums: Sequence[Sequence[Displaced]], co
                 "that it asks; leave it out"
             )
     return freedoms.rest()
+
+
+def kept_by(frame: DatumFrame, datums: Sequence[Sequence[Displaced]], columns: Columns, count: int) -> Freedoms:
+    """What the first datums of a frame hold, and leave; see `displacement_of`."""
+    freedoms = _without_any(datums, columns)
+    for datum, features in zip(frame.datums[:count], datums[:count], strict=True):
+        _take(freedoms, datum, features, columns)
+    return freedoms
+
+
+def _without_any(datums: Sequence[Sequence[Displaced]], columns: Columns) -> Freedoms:
+    centres = [feature.frame[:3, 3] for features in datums for feature, _ in features]
+    return Freedoms(np.zeros(3), centres, columns.count)
 
 
 def _take(freedoms: Freedoms, datum: Datum, features: Sequence[Displaced], columns: Columns) -> None:

@@ -5,10 +5,11 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.assembly.model import Axis, Contribution, Part, Plane, Point, RoundPlane
+from tol3d.assembly.model import Axis, Contribution, DatumFrame, Part, Plane, Point, RoundPlane
 from tol3d.assembly.model.shape import Shape
 from tol3d.assembly.torsors.columns import Columns
-from tol3d.assembly.torsors.datum_frames import displacement_of
+from tol3d.assembly.torsors.datum_frames import Displaced, displacement_of, kept_by
+from tol3d.assembly.torsors.gauges import GaugesRoom, gauges_room
 from tol3d.assembly.torsors.torsor import seen_from
 
 Array = NDArray[np.float64]
@@ -28,6 +29,7 @@ class PartTorsors:
         self._frames = {frame.name: frame for frame in part.datum_frames}
         self._torsors: dict[str, Array] = {}
         self._displacements: dict[str, Array] = {}
+        self._rooms: dict[str, GaugesRoom] = {}
 
     def feature(self, name: str) -> Array:
         """The torsor (6, columns) of a feature: of the datum frame to which it is toleranced, and its own."""
@@ -46,11 +48,26 @@ class PartTorsors:
             return self._columns.zeros(6)
         if name not in self._displacements:
             frame = self._frames[name]
-            datums = [[(self._features[each], self.feature(each)) for each in datum.features] for datum in frame.datums]
-            found = displacement_of(frame, datums, self._columns)
+            found = displacement_of(frame, self._datums(frame), self._columns)
+            if frame.gauges is not None and frame.gauges.floating is not None:
+                found = self.gauges(name).displacement(frame.gauges.floating, self._columns)
             found[:3] += summed(frame.shifted_by, 3, self._columns)
             self._displacements[name] = found
         return self._displacements[name]
+
+    def gauges(self, name: str) -> GaugesRoom:
+        """The room of the gauges of a datum frame."""
+        if name not in self._rooms:
+            frame = self._frames[name]
+            assert frame.gauges is not None
+            rooms, datums = frame.gauges.rooms, self._datums(frame)
+            kept = kept_by(frame, datums, self._columns, len(datums) - len(rooms))
+            its = [(self._features[own.feature], self.feature(own.feature)) for own in rooms]
+            self._rooms[name] = gauges_room(rooms, its, kept, self.size, self._columns)
+        return self._rooms[name]
+
+    def _datums(self, frame: DatumFrame) -> list[list[Displaced]]:
+        return [[(self._features[each], self.feature(each)) for each in datum.features] for datum in frame.datums]
 
     def size(self, name: str) -> Array:
         """How much larger a feature is (columns,) [mm]."""

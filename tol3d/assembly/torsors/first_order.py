@@ -194,9 +194,13 @@ def _reads(rows: Array) -> NDArray[np.bool_]:
 def _room(assembly: Assembly) -> int:
     """How many columns terms may make: of a datum one, of a minimax fit or a rest six, of play seven, of a reading ten.
 
+    Datums of a frame with gauges are taken twice, and these have play.
+
     Moves are followed once, and twice more for each measure that is read at an end of what parts may rock.
     """
-    datums = sum(len(frame.datums) for frame in assembly.datum_frames.values())
+    frames = assembly.datum_frames.values()
+    datums = sum(len(own.datums) for own in frames)
+    datums += sum(len(own.datums) + 7 for own in frames if own.gauges is not None)
     fits = sum(isinstance(move, BestFit) and move.criterion == "minimax" for move in assembly.moves)
     rests = sum(isinstance(move, Rest) for move in assembly.moves)
     plays = sum(isinstance(move, Engage) for move in assembly.moves)

@@ -14,6 +14,7 @@ from tol3d.assembly.torsors.clearance import clearance
 from tol3d.assembly.torsors.columns import without_rounding
 from tol3d.assembly.torsors.common_opening import CommonOpening, LeastInRoom, TurnedOpening
 from tol3d.assembly.torsors.flatness import balances
+from tol3d.assembly.torsors.gauged_positions import position_on_gauges
 from tol3d.assembly.torsors.surfaces import Surfaces
 from tol3d.assembly.torsors.terms import Clipped, Width
 from tol3d.assembly.torsors.torsor import cross_matrix, height_at, perpendicular, shift_at
@@ -177,6 +178,10 @@ def _in_room(measured: Measured, room: GaugeRoom, world: World) -> Array:
 def _position(measured: Measured, world: World) -> Array:
     if measured.room is not None:
         return _in_room(measured, measured.room, world)
+    if measured.over_gauges:
+        (name,) = measured.features
+        own = _clipped(measured.bonuses[0], name, world) if measured.bonuses else _constant(world, 0.0)
+        return position_on_gauges(measured, world, own)
     feature = world.assembly.features[measured.features[0]]
     rotation = feature.frame[:3, :3]
     match feature.shape:

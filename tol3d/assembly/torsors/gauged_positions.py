@@ -1,0 +1,93 @@
+"""Positions in a frame of gauges, to first order: the least over all places of the gauges in their room."""
+
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tol3d.assembly.model import Axis, Measured, RoundPlane
+from tol3d.assembly.torsors.centring import Cones, largest_slack
+from tol3d.assembly.torsors.columns import without_rounding
+from tol3d.assembly.torsors.terms import Form
+from tol3d.assembly.torsors.torsor import perpendicular, shift_at
+from tol3d.assembly.torsors.world import World
+
+Array = NDArray[np.float64]
+
+STEPS: Final = 40
+"""Of Newton; in practice 2 to 8."""
+SHORT: Final = 1e-12
+"""Of such a step [mm], after which it is done."""
+FREE: Final = 1e-9
+"""Share of the ends in the multipliers, under which the room alone decides."""
+
+
+@dataclass(frozen=True, eq=False)
+class LeastOnGauges:
+    """Twice the least by which cones about ends grow until all cones have a place in common.
+
+    From below, for the largest common slack is concave in the growth. Where the room is empty: twice what the ends need
+    where it is least so.
+
+    Args:
+        forms: offsets (ends * 2), radius (1), offsets of the room (places * 2), its clearances (places).
+        rows: change of all offsets by the freedoms (ends + places, 2, freedoms).
+        ends: how many.
+    """
+
+    forms: Array
+    rows: Array
+    ends: int
+    form: Form = "least in a room"
+    count: int = 1
+
+    def values(self, read: Array) -> Array:
+        """(1, trials) [mm]."""
+        ends, trials, places = self.ends, read.shape[1], len(self.rows) - self.ends
+        own, radius, its, room = np.split(read, [2 * ends, 2 * ends + 1, 2 * ends + 1 + 2 * places])
+        offsets = np.concatenate([own, its]).reshape(-1, 2, trials)
+        clearances = np.concatenate([np.zeros((ends, trials)), room])
+        grown, steps, going = -radius[0], np.zeros((self.rows.shape[2], trials)), np.arange(trials)
+        closed = np.zeros((len(steps), len(steps), trials))
+        for _ in range(STEPS):
+            clearances[:ends] = radius[0] + grown
+            now = Cones(offsets[:, :, going], clearances[:, going], self.rows)
+            rows = self.rows[..., None] * np.ones(len(going))
+            counts = np.ones(now.clearances.shape, dtype=bool)
+            found, multipliers = largest_slack(now.offsets, now.clearances, rows, counts, closed[..., going])
+            steps[:, going] = found
+            share = multipliers[:ends].sum(axis=0)
+            step = np.where(share > FREE, np.maximum(-now.slack(found), 0.0) / np.where(share > FREE, share, 1.0), 0.0)
+            grown[going] += step
+            going = going[step > SHORT]
+            if not len(going):
+                break
+        at = Cones(offsets, clearances, self.rows).at(steps)[:ends]
+        far = np.sqrt(at[:, 0] ** 2 + at[:, 1] ** 2).max(axis=0) - radius[0]
+        return np.asarray(2.0 * np.maximum(grown, far)[None])
+
+
+def position_on_gauges(measured: Measured, world: World, bonus: Array) -> Array:
+    """As a row (columns,) [mm].
+
+    Args:
+        measured: what.
+        world: as it is read.
+        bonus: what the feature's size takes from it (columns,).
+    """
+    (name,) = measured.features
+    own, feature = world.own[world.part_of(name)], world.assembly.features[name]
+    gauges, shape = own.gauges(measured.frame), feature.shape
+    assert not isinstance(shape, RoundPlane)
+    if measured.direction is not None:
+        directions = perpendicular(measured.direction)
+    else:
+        directions = feature.frame[:3, :2].T if isinstance(shape, Axis) else feature.frame[:3, 2:3].T
+    directions = np.concatenate([directions, np.zeros((2 - len(directions), 3))])
+    torsor = own.feature(name) - gauges.rest
+    ways = [directions @ shift_at(feature.frame[:3, :3] @ end + feature.frame[:3, 3]) for end in shape.ends]
+    forms = [*(way @ torsor for way in ways), 0.5 * bonus[None], gauges.offsets, gauges.clearances]
+    rows = np.concatenate([np.array(ways) @ gauges.motions, gauges.rows])
+    row: Array = world.columns.made_by(LeastOnGauges(without_rounding(np.concatenate(forms)), rows, len(ways)))[0]
+    return row

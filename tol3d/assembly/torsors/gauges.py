@@ -1,0 +1,109 @@
+"""Gauges of virtual condition in the datum features of a frame, to first order: the room that they share."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tol3d.assembly.model import Axis, Feature, Floating, Slot
+from tol3d.assembly.model.bonus import GaugeRoom
+from tol3d.assembly.torsors.columns import Columns, without_rounding
+from tol3d.assembly.torsors.freedoms import Freedoms
+from tol3d.assembly.torsors.room import Room
+from tol3d.assembly.torsors.torsor import cross_matrix, shift_at
+
+Array = NDArray[np.float64]
+
+SEEN = 1e-6
+"""Change of all offsets by a freedom of length 1 [mm] that is none."""
+
+
+@dataclass(frozen=True, eq=False)
+class GaugesRoom:
+    """What gauges see of a part that the datums before them leave free.
+
+    Args:
+        rest: the frame's torsor (6, columns) by those datums, nothing else shifted or turned.
+        motions: the torsors of the part by its freedoms (6, freedoms), of which those are shift of the middle of all
+            places and turn times their largest distance from it.
+        directions: the freedoms in these (freedoms, 6).
+        offsets: of the datum features from the gauges (places * 2, columns) [mm].
+        clearances: (places, columns) [mm].
+        rows: change of the offsets by the freedoms (places, 2, freedoms).
+    """
+
+    rest: Array
+    motions: Array
+    directions: Array
+    offsets: Array
+    clearances: Array
+    rows: Array
+
+    def displacement(self, floating: Floating, columns: Columns) -> Array:
+        """The frame's torsor (6, columns) with the gauges somewhere in their room."""
+        drawn = np.eye(columns.count)[list(range(floating.columns.start, floating.columns.stop))]
+        forms = without_rounding(np.concatenate([self.offsets, self.clearances, drawn]))
+        still = np.zeros(self.rows.shape[2])
+        made = columns.made_by(Room(forms, self.rows, floating, self.directions, still))
+        return np.asarray(self.rest - self.motions @ made[:-1])
+
+
+def gauges_room(
+    rooms: Sequence[GaugeRoom],
+    datums: Sequence[tuple[Feature, Array]],
+    kept: Freedoms,
+    size: Callable[[str], Array],
+    columns: Columns,
+) -> GaugesRoom:
+    """The room of some gauges.
+
+    Args:
+        rooms: of each datum.
+        datums: the features at their boundary with their torsors (6, columns).
+        kept: what the datums before them hold.
+        size: how much larger a feature is than nominally (columns,) [mm].
+        columns: of the assembly.
+    """
+    left, rest = kept.left, kept.rest()
+    points = [feature.frame[:3, :3] @ end + feature.frame[:3, 3] for feature, _ in datums for end in _ends(feature)]
+    middle = np.mean(points, axis=0)
+    reach = max(1.0, *(float(np.linalg.norm(point - middle)) for point in points))
+    to_torsor = np.eye(6)
+    to_torsor[:3, 3:] = cross_matrix(middle) / reach
+    to_torsor[3:, 3:] /= reach
+    ways, offsets, clearances = [], [], []
+    for room, (feature, torsor) in zip(rooms, datums, strict=True):
+        shape = feature.shape
+        assert isinstance(shape, Axis | Slot)
+        round_ = isinstance(shape, Axis)
+        directions = feature.frame[:3, :2].T if round_ else np.array([feature.frame[:3, 2], np.zeros(3)])
+        nominal = (shape.diameter or 0.0) if isinstance(shape, Axis) else shape.width
+        over = size(room.feature) + columns.constants(np.array([nominal - room.virtual]))[0]
+        for end in _ends(feature):
+            rows = directions @ shift_at(feature.frame[:3, :3] @ end + feature.frame[:3, 3])
+            ways.append(rows @ to_torsor)
+            offsets.append(rows @ (torsor - rest))
+            clearances.append(0.5 * over if room.grows else -0.5 * over)
+    free = np.linalg.qr(np.linalg.solve(to_torsor, left))[0]
+    whole = np.array(ways) @ free
+    _, strengths, right = np.linalg.svd(whole.reshape(-1, free.shape[1]))
+    seen = right[: int(np.sum(strengths > SEEN))].T
+    motions = to_torsor @ _least(free @ seen, free @ right[seen.shape[1] :].T, to_torsor)
+    return GaugesRoom(rest, motions, (free @ seen).T, np.concatenate(offsets), np.array(clearances), whole @ seen)
+
+
+def _least(seen: Array, unseen: Array, to_torsor: Array) -> Array:
+    """Freedoms that are seen (6, freedoms), with so much of the others that the part turns and shifts least.
+
+    By one system of least squares in which turns [rad] count for so much more than shifts [mm] that these only decide
+    what turns leave open.
+    """
+    weights = np.array([1.0, 1.0, 1.0, 1e6, 1e6, 1e6])[:, None]
+    amounts = np.linalg.lstsq(weights * (to_torsor @ unseen), -weights * (to_torsor @ seen), rcond=None)[0]
+    return np.asarray(seen + unseen @ amounts, dtype=np.float64)
+
+
+def _ends(feature: Feature) -> Array:
+    assert isinstance(feature.shape, Axis | Slot)
+    return feature.shape.ends
