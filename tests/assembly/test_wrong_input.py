@@ -287,6 +287,18 @@ WRONG: dict[str, tuple[Sequence[Edit], str, str]] = {
         "measures.wavy.points",
         "expected points of one part, got points of 'base', 'cover'",
     ),
+    "a word that left the standard": (
+        [changed(BASE_HOLE, "kind: position", "kind: concentricity")],
+        "tolerances.base hole position.kind",
+        "expected a kind that is known here, got 'concentricity'; it left ASME Y14.5 in 2018: write coaxiality, of the "
+        "axis, as in ISO 1101",
+    ),
+    "a word of another kind of feature": (
+        [("      rim:   {kind: point", "      rim:   {kind: cone")],
+        "parts.base.features.rim.kind",
+        "expected a kind that is known here, got 'cone'; write axis, whose `face` may be a cone; how far in it is "
+        "seated is not there",
+    ),
     "gears and assemblies": (
         [added(PARTS, "pinion: {kind: spur_gear, teeth: 20, module: 1 mm, face_width: 10 mm}")],
         "parts.base",

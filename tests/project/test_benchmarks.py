@@ -23,7 +23,7 @@ FEW: Mapping[str, tuple[str, ...]] = {
     "assemblies": ("--trials", "1024", "--rounds", "1", "--systems", "stack"),
     "convergence": ("--studies", "2", "--largest", "1024"),
     "fcl_speed": ("--trials", "10", "--naive", "1", "--rounds", "1"),
-    "memory": ("--trials", "100"),
+    "memory": ("--trials", "100", "--scenes", "spur_pair", "cover_on_base"),
     "stages": ("--trials", "1024", "--rounds", "1"),
     "startup": ("--runs", "1", "--ways", "without both", "--packages", "colorsys", "no_such_package"),
     "studies": ("--naive", "1", "--rounds", "1", "--most", "100", "--warm", "--systems", "spur pair"),
@@ -49,7 +49,7 @@ ROWS: Mapping[str, tuple[str, ...]] = {
         rf"strips, mean section, one tooth +{NUMBER} trials/s",
         rf"strips, whole face, all teeth +{NUMBER} trials/s",
     ),
-    "memory": (rf"100 trials, exact: +{NUMBER} MB",),
+    "memory": tuple(rf"{own}, +100 trials, exact: +{NUMBER} MB" for own in ("spur_pair", "cover_on_base")),
     "stages": (rf"draws +│ +{NUMBER} │ +{NUMBER}", rf"statistics, regressors included +│ +{NUMBER} │ +{NUMBER}"),
     "startup": (
         rf"without both +{NUMBER} s",

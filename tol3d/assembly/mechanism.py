@@ -23,6 +23,22 @@ from tol3d.scene.grammar import specs_in
 from tol3d.scene.temperature import TemperatureSpec
 from tol3d.system.mechanism import Mechanism
 
+OTHER_WORDS: Final = (
+    ("concentricity", "it left ASME Y14.5 in 2018: write coaxiality, of the axis, as in ISO 1101"),
+    ("composite_position", "composite zones are not there: write the position, and refine its tilt by an orientation"),
+    ("axial_run_out", "of a round face about an axis it is the perpendicularity to that axis, in the same width"),
+    ("face_run_out", "of a round face about an axis it is the perpendicularity to that axis, in the same width"),
+    ("surface_profile", "write profile"),
+    ("circularity", "the form of round surfaces is not there: their size, straightness and position are"),
+    ("roundness", "the form of round surfaces is not there: their size, straightness and position are"),
+    ("cylindricity", "the form of round surfaces is not there: their size, straightness and position are"),
+    ("dimension", "write plus_minus for where a feature lies, size for a diameter or a width"),
+    ("diameter", "write size"),
+    ("width", "write size"),
+    ("cone", "write axis, whose `face` may be a cone; how far in it is seated is not there"),
+    ("line", "write axis"),
+)
+
 ASSEMBLY: Final = Mechanism(
     name="assembly",
     parts=specs_in(parts),
@@ -47,6 +63,7 @@ ASSEMBLY: Final = Mechanism(
         unfit_pairs,
         round_contacts,
     ),
+    other_words=OTHER_WORDS,
     engines=("exact",),
     witness="fcl",
     system="tol3d.assembly.system:assembly_system",

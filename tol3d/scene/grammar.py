@@ -57,6 +57,7 @@ class Vocabulary:
         witness: the one of them that can check the others, if there is one.
         settle: import path `package.module:name` of what finds out the numbers that a scene leaves to its solids, see
             tol3d.scene.settling; "" where scenes say all themselves.
+        other_words: words of the field that are no kind here, each with what to write instead.
 
     Raises:
         InputError: a class stands where it is none of the section's kinds, or lacks a method that it must have.
@@ -76,6 +77,7 @@ class Vocabulary:
     engines: tuple[str, ...] = ("exact",)
     witness: str = ""
     settle: str = ""
+    other_words: tuple[tuple[str, str], ...] = ()
 
     def __post_init__(self) -> None:
         for section, base in BASES.items():
@@ -131,6 +133,10 @@ class Grammar:
     def kinds(self, section: str) -> Mapping[str, type[Entry]]:
         """The kinds of a section by their words, in the order of registration."""
         return {str(kind_of(spec)): spec for each in self.vocabularies for spec in each.specs(section)}
+
+    def instead_of(self, word: object) -> str:
+        """What to write instead of a word that is no kind; "" of one that no vocabulary knows."""
+        return next((advice for each in self.vocabularies for own, advice in each.other_words if own == word), "")
 
     @property
     def laws(self) -> Laws:

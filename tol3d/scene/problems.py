@@ -35,6 +35,8 @@ def messages(error: ValidationError, data: Mapping[str, Any], origin: Origin, gr
             path = (*path, context["key"])
         elif details["type"] == "union_tag_invalid":
             path = (*path, "kind")
+            if instead := grammar.instead_of(_tag(details)):
+                sentence = f"expected a kind that is known here, got {shown(_tag(details))}; {instead}"
         elif context.get("field"):
             path = (*path, *str(context["field"]).split("."))
         found.setdefault(origin.message(path, sentence), origin.place(path).line)
@@ -118,10 +120,12 @@ def _missing_kind(details: ErrorDetails) -> str:
     return 'expected the key "kind" here, found none'
 
 
+def _tag(details: ErrorDetails) -> object:
+    return details["input"].get("kind") if isinstance(details["input"], dict) else details["ctx"]["tag"]
+
+
 def _unknown_kind(details: ErrorDetails) -> str:
-    known = QUOTED_WORD.findall(details["ctx"]["expected_tags"])
-    tag = details["input"].get("kind") if isinstance(details["input"], dict) else details["ctx"]["tag"]
-    return word_expected(tag, known)
+    return word_expected(_tag(details), QUOTED_WORD.findall(details["ctx"]["expected_tags"]))
 
 
 def _literal(details: ErrorDetails) -> str:
