@@ -14,11 +14,11 @@ from typing import Annotated, TextIO
 
 import typer
 
-from tol3d.cli import analyses, showing, studies
+from tol3d.cli import analyses, records, showing, studies
 from tol3d.cli.arguments import app
 from tol3d.cli.console import DONE, FAULT, INTERRUPTED, WRONG_INPUT, err_console, warn, write_plainly
 
-__all__ = ["analyses", "app", "main", "showing", "studies"]
+__all__ = ["analyses", "app", "main", "records", "showing", "studies"]
 
 COMMANDS = (
     studies.run,
@@ -27,6 +27,7 @@ COMMANDS = (
     showing.compare,
     analyses.shim,
     analyses.compensate,
+    records.identify,
     showing.export,
     showing.view,
     showing.schema,

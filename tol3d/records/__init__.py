@@ -1,0 +1,18 @@
+"""Measured data and what is identified from it: gears on a transmission error rig, and the rig itself, synthetic.
+
+    files        rows, block by block       csv_file.py                 blocks_of
+    reading      rows -> position bins      reading.py                  read_side
+    alignment    the long period            alignment.py                aligned
+    fit          both sides together        fit.py                      fitted
+    prediction   the whole long period      prediction.py               predicted
+    findings     all of it                  identify.py                 identify
+
+`exact_play.py` is the geometry, without the assumption of small eccentricities; `rig.py` makes measured files of it,
+`planning.py` predicts how well a rig of that kind identifies.
+"""
+
+from tol3d.records.identify import Identified, Settings, identify
+from tol3d.records.pair import RigPair, Specimen
+from tol3d.records.rig import Rig, measured
+
+__all__ = ["Identified", "Rig", "RigPair", "Settings", "Specimen", "identify", "measured"]

@@ -1,0 +1,113 @@
+"""Where in the long period each pass was measured.
+
+A driver's angle is known up to whole turns where an encoder counts within one turn, or was counted from another start.
+Both encoders together know more: a driver that is n turns further on leaves phi2 - phi1 z1/z2 larger by n z1/z2 turns,
+of which whole turns of the driven gear cannot be seen: n is known up to the long period, by steps of gcd(z1, z2)
+pitches of the driven gear. Transmission errors and backlash are far smaller than half such a step.
+"""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+
+from tol3d.records.bins import Bins
+from tol3d.records.pair import TURN, RigPair
+from tol3d.records.reading import Pass
+
+
+@dataclass(frozen=True, eq=False)
+class Aligned:
+    """A pass in its place.
+
+    Args:
+        path, repeat: whose it is.
+        turns: of the driver, by which its own count was shifted.
+        bins: its rows, shifted.
+        torques: see Pass.
+    """
+
+    path: Path
+    repeat: int
+    turns: int
+    bins: Bins
+    torques: tuple[float, float] | None
+
+
+def aligned(
+    pair: RigPair, drive: Sequence[Pass], back: Sequence[Pass], j0: float | None
+) -> tuple[tuple[Aligned, ...], tuple[Aligned, ...]]:
+    """Passes of both sides in one long period: that of the first pass of the drive side.
+
+    Args:
+        pair: nominal numbers.
+        drive, back: the passes.
+        j0: backlash [rad] where the encoders were set to zero between the sides: the back side then lies where its
+            own angles say, at any offset.
+    """
+    reference = mean_error(drive[0].bins)
+    if j0 is not None:
+        shift = reference + j0 - mean_error(back[0].bins)
+        back = [replace(own, bins=own.bins.shifted(pair, 0, shift)) for own in back]
+    return tuple(_placed(pair, own, reference) for own in drive), tuple(_placed(pair, own, reference) for own in back)
+
+
+def mean_error(bins: Bins) -> float:
+    """Mean of phi2 - phi1 z1/z2 over the rows [rad]."""
+    return float(np.average(bins.error, weights=bins.rows))
+
+
+def _placed(pair: RigPair, own: Pass, reference: float) -> Aligned:
+    step = TURN * pair.common_factor / pair.driven_teeth
+    steps = round((mean_error(own.bins) - reference) / step)
+    turns = steps * _inverse(pair) % pair.long_period_turns
+    return Aligned(own.path, own.repeat, turns, own.bins.shifted(pair, turns, -steps * step), own.torques)
+
+
+def _inverse(pair: RigPair) -> int:
+    """Turns of the driver that leave one step, whole turns of the driven gear aside."""
+    if pair.long_period_turns == 1:
+        return 0
+    return pow(pair.driver_teeth // pair.common_factor, -1, pair.long_period_turns)
+
+
+@dataclass(frozen=True)
+class HiddenShift:
+    """What the encoders' once-per-turn part would be if the back side lay elsewhere in the long period.
+
+    Args:
+        own: the part of the driven gear's turn as measured [rad].
+        turns: of the driver by which the back side would have to be shifted for the smallest such part.
+        least: that part [rad].
+        moved: by how much the backlash would change at most [rad].
+    """
+
+    own: float
+    turns: int
+    least: float
+    moved: float
+
+
+def hidden_shift(pair: RigPair, drive: complex, back: complex) -> HiddenShift:
+    """The shift that both encoders would not show, for they were counted from another start.
+
+    With the back side n turns off, its part of the driven gear's turn is turned by 2 pi n z1/z2; read as it stands,
+    that is an encoder's error on the driven shaft, and a large one.
+
+    Args:
+        pair: nominal numbers.
+        drive, back: of each side the part a in Im(a exp(i phi2)) [rad].
+    """
+    alpha = pair.working_angle
+
+    def parts(turns: int) -> tuple[complex, complex]:
+        there = back * np.exp(-1j * TURN * pair.rate * turns)
+        eccentric = (there - drive) / (2j * math.sin(alpha))
+        return eccentric, drive - eccentric * np.exp(-1j * alpha)
+
+    encoders = [abs(parts(turns)[1]) for turns in range(pair.long_period_turns)]
+    turns = int(np.argmin(encoders))
+    moved = 2 * math.sin(alpha) * abs(parts(turns)[0] - parts(0)[0])
+    return HiddenShift(encoders[0], turns, encoders[turns], moved)

@@ -1,0 +1,88 @@
+"""Rows gathered by position in the long period: all that a fit needs of them, however many there are."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tol3d.records.pair import TURN, RigPair
+
+Array = NDArray[np.float64]
+
+BINS_A_TOOTH = 32  # of the driver; a tooth's own harmonic is averaged by 0.2 % then
+FEWEST_BINS_A_TOOTH = 8
+MOST_BINS = 2**19  # 30 MB a file or repeat
+
+
+def bins_a_turn(pair: RigPair) -> int:
+    """Bins per turn of the driver: whole ones a tooth, fewer for pairs of a very long period."""
+    teeth = pair.driver_teeth * pair.long_period_turns
+    return pair.driver_teeth * max(FEWEST_BINS_A_TOOTH, min(BINS_A_TOOTH, MOST_BINS // teeth))
+
+
+@dataclass(frozen=True, eq=False)
+class Bins:
+    """Means of the rows of one pass in each bin that has any; arrays (bins,).
+
+    Args:
+        rows: how many, as floats.
+        phi1: driver's angle in the long period [rad].
+        travel: driver's angle as it was counted on [rad].
+        error: phi2 - phi1 z1/z2 [rad].
+        torque: [N m]; zeros where none was measured.
+        spread_phi1, spread_both, spread_error: sums of products of the deviations of phi1 and error from their means.
+    """
+
+    rows: Array
+    phi1: Array
+    travel: Array
+    error: Array
+    torque: Array
+    spread_phi1: Array
+    spread_both: Array
+    spread_error: Array
+
+    def shifted(self, pair: RigPair, turns: int, error: float) -> "Bins":
+        """The same rows so many turns of the driver further on in the long period, their errors shifted [rad]."""
+        return replace(self, phi1=np.mod(self.phi1 + TURN * turns, pair.long_period), error=self.error + error)
+
+
+class BinSums:
+    """Sums over rows, bin by bin, while they are read."""
+
+    def __init__(self, pair: RigPair) -> None:
+        self._per_turn = bins_a_turn(pair)
+        self._count = self._per_turn * pair.long_period_turns
+        self._period = pair.long_period
+        self._sums = np.zeros((8, self._count))
+
+    def add(self, phi1: Array, error: Array, torque: Array | None) -> None:
+        """Add rows: phi1 as it was counted on [rad], its error off a fixed value [rad]."""
+        within = np.mod(phi1, self._period)
+        index = np.minimum((within * (self._count / self._period)).astype(np.int64), self._count - 1)
+        off = within - (index + 0.5) * (self._period / self._count)
+        low = int(index.min())
+        index = index - low
+        high = int(index.max()) + 1
+        view = self._sums[:, low : low + high]
+        view[0] += np.bincount(index, minlength=high)
+        for k, weights in enumerate((off, phi1, error, off * off, off * error, error * error), 1):
+            view[k] += np.bincount(index, weights, minlength=high)
+        if torque is not None:
+            view[7] += np.bincount(index, torque, minlength=high)
+
+    def bins(self, error: float) -> Bins:
+        """Means of the bins that have rows; `error` [rad] is the value that errors were counted from."""
+        used = np.flatnonzero(self._sums[0])
+        rows, off, travel, own, off2, both, own2, torque = self._sums[:, used]
+        centre = (used + 0.5) * (self._period / self._count)
+        return Bins(
+            rows=rows,
+            phi1=centre + off / rows,
+            travel=travel / rows,
+            error=own / rows + error,
+            torque=torque / rows,
+            spread_phi1=np.maximum(off2 - off * off / rows, 0.0),
+            spread_both=both - off * own / rows,
+            spread_error=np.maximum(own2 - own * own / rows, 0.0),
+        )

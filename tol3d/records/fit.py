@@ -1,0 +1,231 @@
+"""Least squares of the transmission error: linear to first order, then refined on the exact geometry.
+
+The rows' own noise is taken as white and alike on all rows; tooth-mesh orders are fitted along where there are rows
+enough in a tooth, so that they are not taken for noise. What is left at low orders (below LOW_ORDERS turns, where
+eccentricities are read) may be stronger than white noise, for it may be drift or an oval shaft: the covariance is then
+larger in the same proportion.
+"""
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tol3d.records.alignment import Aligned
+from tol3d.records.exact_play import Side, driven_angle
+from tol3d.records.pair import RigPair, Specimen
+from tol3d.records.terms import ECCENTRIC, Points, Terms, columns
+
+Array = NDArray[np.float64]
+
+MOST_ROUNDS = 8  # of Gauss-Newton with first-order columns; each gains a factor e/a
+STEP_XTOL = 1e-12  # rad, of the fitted curve; a millionth of an arc second
+LOW_ORDERS = 6.0  # per turn of the driver
+FAR = 2.0  # standard errors from which low orders count as stronger than white noise
+
+
+@dataclass(frozen=True, eq=False)
+class Measured:
+    """Both sides as they are fitted: every pass's bins in one array a side.
+
+    Args:
+        pair: nominal numbers.
+        points: where, by side.
+        error: phi2 - phi1 z1/z2 [rad], by side.
+        rows: in each bin, by side.
+        spreads: within each bin, of phi1, of phi1 and error, of error; (3, n) by side.
+        turned: turns of the driver that a side covers.
+    """
+
+    pair: RigPair
+    points: Mapping[Side, Points]
+    error: Mapping[Side, Array]
+    rows: Mapping[Side, Array]
+    spreads: Mapping[Side, Array]
+    turned: Mapping[Side, float]
+
+    def count(self, sides: Sequence[Side]) -> float:
+        """Rows of some sides."""
+        return float(sum(self.rows[side].sum() for side in sides))
+
+
+def measured_of(pair: RigPair, sides: Mapping[Side, Sequence[Aligned]], turned: Mapping[Side, float]) -> Measured:
+    """Passes as they are fitted; travel counts from the middle of each pass."""
+    joined = {side: _joined(passes) for side, passes in sides.items()}
+    points = {
+        side: Points(own["phi1"], pair.rate * own["phi1"] + own["error"], own["travel"], own["torque"])
+        for side, own in joined.items()
+    }
+    spreads = {
+        side: np.stack([own["spread_phi1"], own["spread_both"], own["spread_error"]]) for side, own in joined.items()
+    }
+    return Measured(
+        pair,
+        points,
+        {side: own["error"] for side, own in joined.items()},
+        {side: own["rows"] for side, own in joined.items()},
+        spreads,
+        turned,
+    )
+
+
+def _joined(passes: Sequence[Aligned]) -> Mapping[str, Array]:
+    centred = [replace(own.bins, travel=_centred(own.bins.travel)) for own in passes]
+    return {name: np.concatenate([getattr(own, name) for own in centred]) for name in vars(centred[0])}
+
+
+def _centred(travel: Array) -> Array:
+    middle = (travel.min() + travel.max()) / 2
+    return np.asarray(travel - middle)
+
+
+@dataclass(frozen=True, eq=False)
+class Fit:
+    """What was fitted.
+
+    Args:
+        measured: to what.
+        terms: its columns.
+        values: of the terms (terms,) [mm or rad].
+        residual: what is left, by side (n,) [rad].
+        variance: of one row's noise [rad^2].
+        low_orders: strength of what is left at low orders over that of white noise; 1 where it is not stronger.
+        unscaled: inverse of the normal matrix (terms, terms).
+    """
+
+    measured: Measured
+    terms: Terms
+    values: Array
+    residual: Mapping[Side, Array]
+    variance: float
+    low_orders: float
+    unscaled: Array
+
+    @cached_property
+    def covariance(self) -> Array:
+        """Of the values (terms, terms)."""
+        return np.asarray(self.unscaled * (self.variance * self.low_orders))
+
+    def of(self, names: Sequence[str]) -> tuple[Array, Array]:
+        """Values of some terms and their covariance."""
+        index = self.terms.index(names)
+        return self.values[index], self.covariance[np.ix_(index, index)]
+
+    @property
+    def freedom(self) -> float:
+        """Degrees of freedom of the variance."""
+        return self.measured.count(self.terms.sides) - len(self.values)
+
+    def specimen(self, constant_part: float | None = None) -> Specimen:
+        """The pair with these eccentricities, and a constant part [rad] other than the fitted one if given."""
+        own = self._value("constant part") if constant_part is None else constant_part
+        return specimen_of(self.measured.pair, self.of(ECCENTRIC)[0], own, self._value("offset"))
+
+    def _value(self, name: str) -> float:
+        return float(self.values[self.terms.index([name])[0]])
+
+
+def specimen_of(pair: RigPair, eccentric: Array, constant_part: float, offset: float = 0.0) -> Specimen:
+    """A pair with x1, y1, x2, y2 [mm] and a constant part [rad].
+
+    theta2 counts from the driven encoder's zero in the fit, from the turn phi1 z1/z2 in the geometry; `offset` is what
+    the encoder reads more [rad].
+    """
+    x1, y1, x2, y2 = (float(value) for value in eccentric)
+    theta2 = math.atan2(y2, x2) + offset
+    arm = pair.driven_base_radius
+    return Specimen(pair, math.hypot(x1, y1), math.atan2(y1, x1), math.hypot(x2, y2), theta2, arm * constant_part)
+
+
+def fitted(measured: Measured, terms: Terms, *, constant_part: float | None = None) -> Fit:
+    """Fit the terms to what was measured.
+
+    Args:
+        measured: both sides.
+        terms: columns to fit.
+        constant_part: j_c [rad] of the geometry where it is not fitted, or is hidden by encoders set to zero.
+    """
+    sides = terms.sides
+    matrix = np.concatenate([columns(measured.pair, terms, side, measured.points[side]) for side in sides])
+    wanted = np.concatenate([measured.error[side] for side in sides])
+    weight = np.sqrt(np.concatenate([measured.rows[side] for side in sides]))
+    triangle = np.linalg.qr(matrix * weight[:, None], mode="reduced")
+
+    def solved(left: Array) -> Array:
+        return np.asarray(np.linalg.solve(triangle.R, triangle.Q.T @ (left * weight)))
+
+    values, model = solved(wanted), None
+    for _ in range(MOST_ROUNDS):
+        model = _model(measured, terms, values, matrix, constant_part)
+        step = solved(wanted - model)
+        values = values + step
+        if float(np.abs(matrix @ step).max()) < STEP_XTOL:
+            break
+    residual = wanted - _model(measured, terms, values, matrix, constant_part)
+    inverse = np.linalg.inv(triangle.R)
+    ends = np.cumsum([0, *(len(measured.error[side]) for side in sides)])
+    parts = {side: residual[low:high] for side, low, high in zip(sides, ends[:-1], ends[1:], strict=True)}
+    variance = _variance(measured, terms, values, parts)
+    return Fit(measured, terms, values, parts, variance, _low_orders(measured, parts, variance), inverse @ inverse.T)
+
+
+def _model(measured: Measured, terms: Terms, values: Array, matrix: Array, constant_part: float | None) -> Array:
+    """The curve [rad] by the exact geometry, with all that is no eccentricity as in the linear one."""
+    place = {name: index for index, name in enumerate(terms.names)}
+    offset = float(values[place["offset"]])
+    own = float(values[place["constant part"]]) if "constant part" in place else 0.0
+    fixed = own if constant_part is None else constant_part
+    if terms.sides == ("back",):
+        offset -= fixed  # it is what the encoder reads with the back flank in contact
+    specimen = specimen_of(measured.pair, values[:4], fixed, offset)
+    exact = []
+    for side in terms.sides:
+        phi1 = measured.points[side].phi1
+        ahead = 0.0 if side == "drive" else fixed
+        exact.append(driven_angle(specimen, phi1, side) - measured.pair.rate * phi1 - ahead)
+    return np.asarray(np.concatenate(exact) + matrix[:, 4:] @ values[4:])
+
+
+def _variance(measured: Measured, terms: Terms, values: Array, residual: Mapping[Side, Array]) -> float:
+    """Of one row's noise [rad^2]: between bins and within them, the curve's slope within a bin taken away."""
+    total = 0.0
+    for side in terms.sides:
+        at, rows = measured.points[side], measured.rows[side]
+        slope = _slope(measured.pair, terms, side, at, values)
+        phi1, both, error = measured.spreads[side]
+        total += float(np.sum(rows * residual[side] ** 2) + np.sum(error - 2 * slope * both + slope**2 * phi1))
+    return total / max(measured.count(terms.sides) - len(values), 1.0)
+
+
+def _slope(pair: RigPair, terms: Terms, side: Side, at: Points, values: Array) -> Array:
+    """Of the fitted curve over phi1 [rad/rad]."""
+    step = 1e-4  # rad, of a curve whose orders lie below a few hundred
+    ends = []
+    for sign in (-1.0, 1.0):
+        moved = replace(at, phi1=at.phi1 + sign * step, phi2=at.phi2 + sign * step * pair.rate)
+        ends.append(columns(pair, terms, side, moved) @ values)
+    return np.asarray((ends[1] - ends[0]) / (2 * step))
+
+
+def _low_orders(measured: Measured, residual: Mapping[Side, Array], variance: float) -> float:
+    """How much stronger than white noise the residual is below LOW_ORDERS; 1 where it may be white."""
+    powers = [_powers(measured, side, own, variance) for side, own in residual.items()]
+    power = np.concatenate(powers)
+    if not len(power) or variance <= 0.0:
+        return 1.0
+    mean, error = float(power.mean()), 1.0 / math.sqrt(len(power))
+    return mean if mean > 1.0 + FAR * error else 1.0
+
+
+def _powers(measured: Measured, side: Side, residual: Array, variance: float) -> Array:
+    """Of orders that are not fitted, over that of white noise: each of mean 1 and standard deviation 1."""
+    turns = measured.turned[side]
+    orders = np.arange(1, int(LOW_ORDERS * turns) + 1) / turns
+    fitted_orders = np.array([0.0, 1.0, measured.pair.rate])
+    free = np.abs(orders[:, None] - fitted_orders).min(axis=1) > 0.75 / turns
+    rows, phi1 = measured.rows[side], measured.points[side].phi1
+    power = [abs(np.sum(rows * residual * np.exp(-1j * order * phi1))) ** 2 for order in orders[free]]
+    return np.asarray(np.array(power, dtype=np.float64) / (rows.sum() * max(variance, 1e-300)))

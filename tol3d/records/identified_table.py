@@ -1,0 +1,101 @@
+"""What was identified as tables."""
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Final
+
+from tol3d.records.identify import Identified
+from tol3d.records.pair import ARCSEC, TURN
+from tol3d.records.prediction import Figure
+from tol3d.records.summary import UNITS, alone_figures
+from tol3d.report.number import NOTHING
+from tol3d.report.page import BLANK, Heading, Line, Page, PageItem, Row, Shown, Table, line, note, page, titled, warning
+
+WORDS: Final = {
+    "e1": "e1, eccentricity of the driver",
+    "theta1": "θ1, its phase",
+    "e2": "e2, eccentricity of the driven gear",
+    "theta2": "θ2, its phase",
+    "jc": "constant part of the backlash",
+    "j0": "backlash at φ1 = 0",
+    "jmin": "least backlash of the long period",
+    "jmin at": "  at φ1",
+    "jmax": "largest backlash of the long period",
+    "jmax at": "  at φ1",
+}
+SIGNS: Final = {"um": "µm", "deg": "°", "arcsec": "″"}
+DIGITS: Final = {"um": 3, "deg": 3, "arcsec": 3}
+
+
+def identified_report(found: Identified, scene: str, mesh: str) -> Page:
+    """Figures, encoders, what is left, warnings."""
+    blocks: list[PageItem] = [_title(found, scene, mesh), *_read_lines(found), BLANK, _figures(found)]
+    blocks += [
+        *map(note, _notes(found)),
+        *titled("what the fit leaves, by orders of the driver's turn", _orders(found)),
+    ]
+    return page(*blocks, *map(warning, found.warnings))
+
+
+def _title(found: Identified, scene: str, mesh: str) -> Line:
+    pair = found.pair
+    words = f" · {mesh} · z {pair.driver_teeth}/{pair.driven_teeth} · long period {pair.long_period_turns} turns"
+    return Line(((scene, "bold"), (words, "bold dim")))
+
+
+def _read_lines(found: Identified) -> Iterator[Line]:
+    for side, passes in found.read.items():
+        rows, turns = sum(own.rows for own in passes), max(own.travel for own in passes) / TURN
+        shifted = [own.turns for own in found.passes[side] if own.turns]
+        moved = f", shifted by {', '.join(map(str, shifted))} turns of the driver" if shifted else ""
+        several = f" in {len(passes)} passes" if len(passes) > 1 else ""
+        yield line(f"{side} side: {rows} rows{several}, {turns:.2f} turns of the driver{moved}", "dim")
+
+
+def _figures(found: Identified) -> Table:
+    headings = [Heading("both sides", "bold"), Heading("± 95 %"), Heading("drive alone"), Heading("back alone")]
+    alone = [alone_figures(own) for own in found.alone.values()]
+    rows = [
+        Row(f"{WORDS[name]} [{SIGNS[UNITS[name][0]]}]", [*_cells(name, own), *_alone(name, alone)], unit=UNITS[name][0])
+        for name, own in found.figures.items()
+    ]
+    for name, own in found.encoders.items():
+        cells = [*(Shown(f"{value / ARCSEC:.3f}", value / ARCSEC) for value in (own.value, own.half_width))]
+        rows.append(Row(f"{name}, once per turn [″]", [*cells, NOTHING, NOTHING], unit="arcsec"))
+    if found.winding is not None:
+        cells = [Shown(f"{x / ARCSEC:.3f}", x / ARCSEC) for x in (found.winding.value, found.winding.half_width)]
+        rows.append(Row("winding 1/k [″/(N m)]", [*cells, NOTHING, NOTHING], unit="arcsec/(N m)"))
+    return Table("", headings, rows)
+
+
+def _cells(name: str, own: Figure) -> list[Shown]:
+    unit, one = UNITS[name]
+    return [Shown(f"{value / one:.{DIGITS[unit]}f}", value / one) for value in (own.value, own.half_width)]
+
+
+def _alone(name: str, alone: Sequence[Mapping[str, Figure]]) -> list[str]:
+    unit, one = UNITS[name]
+    found: list[str] = []
+    for own in alone:
+        figure = own.get(name)
+        value = None if figure is None else figure.value / one
+        found.append(NOTHING if value is None else Shown(f"{value:.{DIGITS[unit]}f}", value))
+    return found
+
+
+def _notes(found: Identified) -> Iterator[str]:
+    sigma = math.sqrt(found.fit.variance) / ARCSEC
+    teeth = "; tooth mesh is fitted along" if found.fit.terms.teeth else "; too few rows in a tooth to fit tooth mesh"
+    yield f"one row scatters by {sigma:.3f}″ (standard deviation), taken as white noise{teeth}"
+    yield "angles count in each gear's own sense of rotation in the drive run, phases from the encoders' zeros"
+    if found.fit.terms.winding:
+        yield "backlash extrapolated to zero torque: B(T) = j + T/k"
+
+
+def _orders(found: Identified) -> Table:
+    sides = found.fit.terms.sides
+    rows = []
+    for own in found.spectrum.lines:
+        values = [*(own.amplitude[side] / ARCSEC for side in sides), max(own.noise.values()) / ARCSEC]
+        rows.append(Row(f"{own.order}: {own.words}", [Shown(f"{value:.3f}", value) for value in values]))
+    return Table("[″]", [Heading("drive"), Heading("back"), Heading("white noise below, 95 %")], rows)

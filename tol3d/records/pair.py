@@ -1,0 +1,94 @@
+"""A spur pair on a rig: what its scene says of it, and one specimen of it with its own eccentricities.
+
+Convention of every formula here: phi1 and phi2 are the turns of driver and driven gear, each positive in its OWN sense
+of rotation in the drive run, and theta1, theta2 the phases of the eccentricities in the same senses. The teeth's
+centres lie at C1 = e1 (cos, sin)(phi1 + theta1) and C2 = (a, 0) + e2 (cos, -sin)(phi2 + theta2), the driver's axis in
+the origin and the driven one at +x. Source: Wang, Zhou, Zou, "Measurement and prediction of backlash based on two-sided
+transmission error", Chinese J. Engineering 42(8), 2020, 1055-1064, whose formulas are of first order in e.
+"""
+
+import math
+from dataclasses import dataclass
+
+ARCSEC = math.pi / 648000  # rad
+TURN = 2 * math.pi  # rad
+
+
+@dataclass(frozen=True)
+class RigPair:
+    """Two spur gears on fixed axes.
+
+    Args:
+        driver_teeth, driven_teeth: z1, z2.
+        driver_base_radius, driven_base_radius: r_b1, r_b2 [mm].
+        centre_distance: a [mm], of the axes.
+
+    >>> pair = RigPair(27, 48, 27 * math.cos(math.radians(20)), 48 * math.cos(math.radians(20)), 75.0)
+    >>> pair.long_period_turns, round(math.degrees(pair.working_angle), 6)
+    (16, 20.0)
+    """
+
+    driver_teeth: int
+    driven_teeth: int
+    driver_base_radius: float
+    driven_base_radius: float
+    centre_distance: float
+
+    @property
+    def rate(self) -> float:
+        """z1/z2, turns of the driven gear per turn of the driver."""
+        return self.driver_teeth / self.driven_teeth
+
+    @property
+    def base_radii(self) -> float:
+        """r_b1 + r_b2 [mm]."""
+        return self.driver_base_radius + self.driven_base_radius
+
+    @property
+    def working_angle(self) -> float:
+        """alpha_w with cos alpha_w = (r_b1 + r_b2)/a [rad]."""
+        return math.acos(self.base_radii / self.centre_distance)
+
+    @property
+    def common_factor(self) -> int:
+        """Greatest common divisor of z1 and z2."""
+        return math.gcd(self.driver_teeth, self.driven_teeth)
+
+    @property
+    def long_period_turns(self) -> int:
+        """Turns of the driver until both eccentricities stand to each other as before: z2 / gcd(z1, z2)."""
+        return self.driven_teeth // self.common_factor
+
+    @property
+    def long_period(self) -> float:
+        """The same as an angle of the driver [rad]."""
+        return TURN * self.long_period_turns
+
+    @property
+    def driven_pitch(self) -> float:
+        """2 pi / z2 [rad]."""
+        return TURN / self.driven_teeth
+
+
+@dataclass(frozen=True)
+class Specimen:
+    """One pair as it was made and mounted.
+
+    Args:
+        pair: its nominal numbers.
+        e1, theta1: eccentricity of the driver [mm] and its phase [rad].
+        e2, theta2: of the driven gear.
+        normal_backlash: j_n [mm] that it would have without eccentricities.
+    """
+
+    pair: RigPair
+    e1: float
+    theta1: float
+    e2: float
+    theta2: float
+    normal_backlash: float
+
+    @property
+    def constant_part(self) -> float:
+        """j_c = j_n / r_b2 [rad], a turn of the driven gear."""
+        return self.normal_backlash / self.pair.driven_base_radius

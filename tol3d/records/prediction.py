@@ -1,0 +1,141 @@
+"""Backlash over the whole long period from a fit, with its 95 % intervals."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import stats
+
+from tol3d.records.exact_play import angular_backlash, driven_angle
+from tol3d.records.fit import specimen_of
+from tol3d.records.pair import TURN, RigPair
+from tol3d.records.terms import backlash_columns
+
+Array = NDArray[np.float64]
+
+CONFIDENCE = 0.95
+POSITIONS_A_TURN = 72  # of the driver; eccentricities alone have orders up to 1
+START_ROUNDS = 3  # each gains a factor e/a
+LEAST_BEND = 1e-9  # rad/rad^2; a curve flatter than that has no place of its extremes
+
+
+@dataclass(frozen=True)
+class Figure:
+    """A number with the half-width of its 95 % interval, both in mm or rad."""
+
+    value: float
+    half_width: float
+
+
+@dataclass(frozen=True)
+class Extreme:
+    """Smallest or largest backlash over the long period.
+
+    Args:
+        backlash: [rad].
+        place: phi1 [rad].
+    """
+
+    backlash: Figure
+    place: Figure
+
+
+@dataclass(frozen=True, eq=False)
+class BacklashModel:
+    """Backlash with all that is known of it.
+
+    Args:
+        pair: nominal numbers.
+        eccentric: x1, y1, x2, y2 [mm].
+        offset: see specimen_of.
+        constant_part: j_c [rad].
+        covariance: of x1, y1, x2, y2 and the constant part (5, 5).
+        quantile: half-widths over standard errors.
+        anchored: error [rad] of the backlash at phi1 = 0 where that was given, and the constant part with it.
+    """
+
+    pair: RigPair
+    eccentric: Array
+    offset: float
+    constant_part: float
+    covariance: Array
+    quantile: float
+    anchored: float | None = None
+
+    def starting_with(self, start: float) -> "BacklashModel":
+        """The same with another constant part, so that the backlash at phi1 = 0 is `start` [rad]."""
+        own = self
+        for _ in range(START_ROUNDS):
+            own = replace(own, constant_part=own.constant_part + start - float(own.backlash(np.zeros(1))[0]))
+        return own
+
+    def backlash(self, phi1: Array) -> Array:
+        """j [rad]."""
+        return angular_backlash(specimen_of(self.pair, self.eccentric, self.constant_part, self.offset), phi1)
+
+    def rates(self, phi1: Array) -> Array:
+        """Derivatives (n, 5) by x1, y1, x2, y2 and the constant part, to first order."""
+        specimen = specimen_of(self.pair, self.eccentric, self.constant_part, self.offset)
+        own = backlash_columns(self.pair, phi1, driven_angle(specimen, phi1, "drive") + self.offset)
+        if self.anchored is None:
+            return own
+        start = driven_angle(specimen, np.zeros(1), "drive") + self.offset
+        own[:, :4] -= backlash_columns(self.pair, np.zeros(1), start)[:, :4]
+        return own
+
+    def half_width(self, phi1: Array) -> Array:
+        """Of the 95 % interval at single positions [rad]."""
+        rates = self.rates(phi1)
+        return np.asarray(self.quantile * np.sqrt(np.einsum("ni,ij,nj->n", rates, self.covariance, rates)))
+
+    @property
+    def constant_half_width(self) -> float:
+        """Of the 95 % interval of the constant part [rad]."""
+        rates = np.array([0.0, 0.0, 0.0, 0.0, 1.0])
+        if self.anchored is not None:
+            rates[:4] = self.rates(np.zeros(1))[0, :4] - replace(self, anchored=None).rates(np.zeros(1))[0, :4]
+        return self.quantile * float(np.sqrt(max(float(rates @ self.covariance @ rates), 0.0)))
+
+    @property
+    def positions(self) -> Array:
+        """phi1 over the long period, its end included [rad]."""
+        return np.linspace(0.0, self.pair.long_period, POSITIONS_A_TURN * self.pair.long_period_turns + 1)
+
+    def extreme(self, sense: int) -> Extreme:
+        """The smallest (-1) or largest (+1) backlash over the long period."""
+        place = self._place(sense)
+        half_width = float(self.half_width(np.array([place]))[0])
+        step = TURN / 360
+        low, middle, high = self.backlash(place + step * np.array([-1.0, 0.0, 1.0])).tolist()
+        bend = (low - 2 * middle + high) / step**2
+        rates = (self.rates(np.array([place + step])) - self.rates(np.array([place - step])))[0] / (2 * step)
+        slack = self.quantile * float(np.sqrt(max(float(rates @ self.covariance @ rates), 0.0)))
+        wide = slack / abs(bend) if abs(bend) > LEAST_BEND else self.pair.long_period
+        return Extreme(Figure(middle, half_width), Figure(place, min(wide, self.pair.long_period)))
+
+    def _place(self, sense: int) -> float:
+        phi1 = self.positions[:-1]
+        step = float(phi1[1])
+        place = float(phi1[np.argmax(sense * self.backlash(phi1))])
+        for _ in range(3):
+            around = place + step * np.linspace(-1.0, 1.0, 21)
+            place = float(around[np.argmax(sense * self.backlash(around))])
+            step /= 10
+        return place % self.pair.long_period
+
+
+def quantile_of(freedom: float) -> float:
+    """Half-width of a 95 % interval over the standard error, by Student's law."""
+    return float(stats.t.ppf(0.5 + CONFIDENCE / 2, max(freedom, 1.0)))
+
+
+def length_and_phase(vector: Array, covariance: Array, quantile: float) -> tuple[Figure, Figure]:
+    """Of x, y: the length, and the phase [rad]; the phase is not known where the length may be zero."""
+    x, y = (float(value) for value in vector)
+    length = float(np.hypot(x, y))
+    if length == 0.0:
+        wide = quantile * float(np.sqrt(np.trace(covariance) / 2))
+        return Figure(0.0, wide), Figure(0.0, np.pi)
+    along, across = np.array([x, y]) / length, np.array([-y, x]) / length
+    first, second = (quantile * float(np.sqrt(max(float(u @ covariance @ u), 0.0))) for u in (along, across))
+    return Figure(length, first), Figure(float(np.arctan2(y, x)), min(second / length, np.pi))

@@ -1,0 +1,242 @@
+"""One side of a rig's measurement: files read row by row, angles counted on over turns, gathered by position."""
+
+import math
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, replace
+from itertools import pairwise
+from pathlib import Path
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tol3d.errors import InputError
+from tol3d.records.bins import Bins, BinSums
+from tol3d.records.csv_file import Block, blocks_of, line_of
+from tol3d.records.pair import TURN, RigPair
+
+Array = NDArray[np.float64]
+Progress = Callable[[int], None]
+
+MOST_REVERSED: Final = math.radians(1.0)  # of the driver; noise and a rig's own play stay below it
+SETTLED: Final = math.radians(1.0)  # travel of the driver from which its direction is known
+LEAST_TRAVEL: Final = math.radians(0.01)  # in the first block; far over an encoder's noise
+LONGEST_STEP: Final = 0.4 * TURN  # between rows; from half a turn on the way round cannot be known
+TRACE: Final = 20_000  # rows kept as they came, to tell degrees from radians
+
+
+@dataclass(frozen=True)
+class Senses:
+    """Sign of each encoder's count in its gear's own sense of rotation in the drive run."""
+
+    driver: int
+    driven: int
+
+
+@dataclass(frozen=True, eq=False)
+class Pass:
+    """Rows of one repeat in one file, with the driver turning one way.
+
+    Args:
+        path: the file.
+        repeat: its number there, 0 where there is no such column.
+        rows: how many.
+        travel: how far the driver turned [rad].
+        torques: smallest and largest torque [N m], magnitudes; None where none was measured.
+        first: error at the first row [rad] and the driver's angle there.
+        bins: the rows, gathered.
+        trace: phi1 and phi2 of the first rows, (2, n) [rad], counted on.
+        raw: the same as the file has them.
+    """
+
+    path: Path
+    repeat: int
+    rows: int
+    travel: float
+    torques: tuple[float, float] | None
+    first: tuple[float, float]
+    bins: Bins
+    trace: Array
+    raw: Array
+
+
+def senses_of(pair: RigPair, path: Path, unit: str | None) -> Senses:
+    """In which sense the encoders count, by the first rows of the drive run.
+
+    Raises:
+        InputError: the driver hardly turns in them.
+    """
+    block = next(blocks_of(path, unit))
+    same = slice(None) if block.repeat is None else block.repeat == block.repeat[0]
+    travel, driven = (_travel(values[same]) for values in (block.phi1, block.phi2))
+    if abs(travel) < LEAST_TRAVEL:
+        raise InputError(f"{path}: the driver does not turn: phi1 moves by {math.degrees(abs(travel)):.4f} deg")
+    with_it = driven * travel > 0.0
+    sense = 1 if travel > 0.0 else -1
+    return Senses(sense, sense if with_it else -sense)
+
+
+def _travel(values: Array) -> float:
+    steps = np.diff(values)
+    return float(np.sum(steps - TURN * turns_taken(steps)))
+
+
+def read_side(
+    pair: RigPair, paths: Sequence[Path], unit: str | None, senses: Senses, progress: Progress
+) -> tuple[Pass, ...]:
+    """All passes of one side.
+
+    Args:
+        pair: nominal numbers.
+        paths: its files.
+        unit: of angles without one.
+        senses: of the encoders.
+        progress: callback that gets the rows of each block.
+
+    Raises:
+        InputError: with file and line.
+    """
+    return tuple(own for path in paths for own in _passes(pair, path, unit, senses, progress))
+
+
+def _passes(pair: RigPair, path: Path, unit: str | None, senses: Senses, progress: Progress) -> Iterator[Pass]:
+    reader: PassReader | None = None
+    for block in blocks_of(path, unit):
+        for part, repeat in _by_repeat(block):
+            if reader is not None and reader.repeat != repeat:
+                yield reader.finished()
+                reader = None
+            if reader is None:
+                reader = PassReader(pair, path, repeat, senses)
+            reader.add(part)
+        progress(len(block.phi1))
+    if reader is not None:
+        yield reader.finished()
+
+
+def _by_repeat(block: Block) -> Iterator[tuple[Block, int]]:
+    """Its stretches of one repeat each."""
+    if block.repeat is None:
+        yield block, 0
+        return
+    starts = [0, *(np.flatnonzero(np.diff(block.repeat)) + 1).tolist(), len(block.repeat)]
+    for low, high in pairwise(starts):
+        torque = None if block.torque is None else block.torque[low:high]
+        part = replace(block, first=block.first + low, phi1=block.phi1[low:high], phi2=block.phi2[low:high])
+        yield replace(part, torque=torque), int(block.repeat[low])
+
+
+def turns_taken(steps: Array) -> Array:
+    """Whole turns by which an encoder's reading fell back in each step [rad], 0 in steps of up to half a turn."""
+    return np.where(np.abs(steps) > TURN / 2, np.round(steps / TURN), 0.0)
+
+
+class PassReader:
+    """Rows of one pass, block after block."""
+
+    def __init__(self, pair: RigPair, path: Path, repeat: int, senses: Senses) -> None:
+        self.repeat = repeat
+        self._pair, self._path, self._senses = pair, path, senses
+        self._sums = BinSums(pair)
+        self._rows = 0
+        self._ends: tuple[Array, Array] | None = None  # first and last (phi1, phi2)
+        self._raw: tuple[float, float] | None = None
+        self._offset = np.zeros(2)  # by which the count is ahead of the file's angles
+        self._farthest = 0.0
+        self._direction = 0
+        self._torques: tuple[float, float] | None = None
+        self._trace: list[Array] = []
+        self._untouched: list[Array] = []
+
+    def add(self, block: Block) -> None:
+        """Add rows.
+
+        Raises:
+            InputError: a jump, or the driver turns back.
+        """
+        both = np.stack([self._counted(0, block.phi1, block), self._counted(1, block.phi2, block)])
+        self._raw = float(block.phi1[-1]), float(block.phi2[-1])
+        both[0] *= self._senses.driver
+        both[1] *= self._senses.driven
+        start = both[:, 0] if self._ends is None else self._ends[0]
+        self._refuse_turning_back(both[0] - start[0], block)
+        error = (both[1] - start[1]) - self._pair.rate * (both[0] - start[0])
+        torque = None if block.torque is None else np.abs(block.torque)
+        self._sums.add(both[0], error, torque)
+        if torque is not None:
+            ends = (float(torque.min()), float(torque.max()), *(self._torques or ()))
+            self._torques = min(ends), max(ends)
+        if self._rows < TRACE:
+            wanted = slice(0, TRACE - self._rows)
+            self._trace.append(both[:, wanted])
+            self._untouched.append(np.stack([block.phi1[wanted], block.phi2[wanted]]))
+        self._rows += len(error)
+        self._ends = start, both[:, -1]
+
+    def finished(self) -> Pass:
+        """The pass."""
+        assert self._ends is not None
+        start, end = self._ends
+        first = float(start[1] - self._pair.rate * start[0])
+        return Pass(
+            path=self._path,
+            repeat=self.repeat,
+            rows=self._rows,
+            travel=abs(float(end[0] - start[0])),
+            torques=self._torques,
+            first=(first, float(start[0])),
+            bins=self._sums.bins(first),
+            trace=np.concatenate(self._trace, axis=1),
+            raw=np.concatenate(self._untouched, axis=1),
+        )
+
+    def _counted(self, which: int, values: Array, block: Block) -> Array:
+        """An encoder's angles [rad], counted on over whole turns."""
+        last = values[0] if self._raw is None else self._raw[which]
+        steps = np.diff(values, prepend=last)
+        longest = int(np.argmax(np.abs(steps)))
+        if abs(steps[longest]) <= LONGEST_STEP:
+            return np.asarray(values + self._offset[which])
+        self._refuse_jump(which, steps, longest, block)
+        turns = turns_taken(steps)
+        left = steps - TURN * turns
+        longest = int(np.argmax(np.abs(left)))
+        if abs(left[longest]) > LONGEST_STEP:
+            line = line_of(self._path, block.first + longest)
+            raise InputError(
+                f"{self._path}:{line}: phi{which + 1} moves by {math.degrees(steps[longest]):.1f} deg from one row to "
+                "the next; expected less than 0.4 of a turn, or turns cannot be counted"
+            )
+        offsets = self._offset[which] - TURN * np.cumsum(turns)
+        self._offset[which] = offsets[-1]
+        return np.asarray(values + offsets)
+
+    def _refuse_jump(self, which: int, steps: Array, longest: int, block: Block) -> None:
+        jump = float(steps[longest])
+        if abs(jump) > 1.5 * TURN:
+            like = " (a jump of 360: are these degrees?)" if abs(abs(jump) - 360.0) < 20.0 else ""
+            raise InputError(
+                f"{self._path}:{line_of(self._path, block.first + longest)}: phi{which + 1} jumps by {jump:.4g} rad; "
+                f"expected steps of less than a turn, or one back by 2 pi where an encoder begins anew{like}"
+            )
+
+    def _refuse_turning_back(self, moved: Array, block: Block) -> None:
+        if self._direction == 0:
+            settled = np.flatnonzero(np.abs(moved) > SETTLED)
+            if not len(settled):
+                return
+            self._direction = 1 if moved[settled[0]] > 0 else -1
+        onward = self._direction * moved
+        farthest = np.maximum.accumulate(np.maximum(onward, self._farthest))
+        back = farthest - onward
+        self._farthest = float(farthest[-1])
+        if float(back.max()) > MOST_REVERSED:
+            row = int(np.flatnonzero(back > MOST_REVERSED)[0])
+            jump = math.degrees(abs(float(np.diff(moved[max(row - 1, 0) : row + 1]).sum())))
+            hint = "; a step of 2 pi in degrees: are these radians?" if abs(jump - TURN) < 0.2 else ""
+            raise InputError(
+                f"{self._path}:{line_of(self._path, block.first + row)}: the driver turns back by "
+                f"{math.degrees(float(back[row])):.2f} deg, expected one way within "
+                f"{math.degrees(MOST_REVERSED):.0f} deg; mark passes by a column `repeat`, or put them in files of "
+                f"their own{hint}"
+            )

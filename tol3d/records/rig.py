@@ -1,0 +1,104 @@
+"""A synthetic rig: what encoders would read of a specimen, with the errors that rigs have."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tol3d.records.exact_play import Side, driven_angle
+from tol3d.records.pair import ARCSEC, TURN, Specimen
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Rig:
+    """How a rig measures and errs; angles of encoders in rad, amplitudes of sinusoids.
+
+    Args:
+        turns: of the driver on each side.
+        samples: per turn of the driver.
+        repeats: passes of each side.
+        noise: standard deviation of each encoder.
+        resolution: step of each encoder; 0 for none.
+        encoder1, encoder2: errors once per turn, each encoder's own.
+        tooth_mesh: amplitude of the tooth-mesh order of the transmission error, other phases on either side.
+        drift: of the driven encoder over one side.
+        torques: [N m] of the passes in turn; () where none is measured and none acts.
+        stiffness: k [N m/rad] of the backlash under load, B = j + T/k.
+        start: driver's angle at which each side begins.
+        hidden_turns: whole turns of the driver by which the back side lies further on, of which the encoders know
+            nothing.
+        zeroed: whether each side's encoders were set to zero where it begins.
+        seed: of all that is random.
+    """
+
+    turns: float = 16.0
+    samples: int = 720
+    repeats: int = 1
+    noise: float = 0.5 * ARCSEC
+    resolution: float = 0.0
+    encoder1: float = 0.0
+    encoder2: float = 0.0
+    tooth_mesh: float = 0.0
+    drift: float = 0.0
+    torques: tuple[float, ...] = ()
+    stiffness: float = math.inf
+    start: float = 0.0
+    hidden_turns: int = 0
+    zeroed: bool = False
+    seed: int = 1
+
+
+@dataclass(frozen=True, eq=False)
+class Readings:
+    """Rows of one side: encoder angles [rad], torque [N m] and repeat, each (rows,); None where there is none."""
+
+    phi1: Array
+    phi2: Array
+    torque: Array | None
+    repeat: Array | None
+
+
+def measured(specimen: Specimen, rig: Rig, side: Side) -> Readings:
+    """One side's rows. Sides differ in where between two steps they are sampled, and in their noise."""
+    random = np.random.Generator(np.random.Philox(key=[rig.seed, 0 if side == "drive" else 1]))
+    phases = np.random.Generator(np.random.Philox(key=[rig.seed, 2])).uniform(0.0, TURN, 6)
+    passes = [_pass(specimen, rig, side, repeat, random, phases) for repeat in range(rig.repeats)]
+    phi1, phi2 = (np.concatenate([own[k] for own in passes]) for k in (0, 1))
+    rows = len(passes[0][0])
+    torque = np.repeat([_torque(rig, repeat) for repeat in range(rig.repeats)], rows) if rig.torques else None
+    return Readings(phi1, phi2, torque, np.repeat(np.arange(1.0, rig.repeats + 1), rows) if rig.repeats > 1 else None)
+
+
+def _torque(rig: Rig, repeat: int) -> float:
+    return rig.torques[repeat % len(rig.torques)] if rig.torques else 0.0
+
+
+def _pass(
+    specimen: Specimen, rig: Rig, side: Side, repeat: int, random: np.random.Generator, phases: Array
+) -> tuple[Array, Array]:
+    rows = round(rig.turns * rig.samples)
+    along = np.arange(rows) / rig.samples * TURN
+    start = rig.start + (0.0 if side == "drive" or rig.zeroed else random.uniform(0.0, TURN / rig.samples))
+    phi1 = start + along
+    hidden = rig.hidden_turns if side == "back" else 0
+    pair, sense = specimen.pair, -1.0 if side == "drive" else 1.0
+    phi2 = driven_angle(specimen, phi1 + TURN * hidden, side) - pair.rate * TURN * hidden
+    phi2 = phi2 + sense * _torque(rig, repeat) / (2 * rig.stiffness)
+    phi2 = phi2 + rig.tooth_mesh * np.sin(pair.driver_teeth * phi1 + phases[4 if side == "drive" else 5])
+    phi2 = phi2 + rig.drift * (along / max(along[-1], 1e-12) + repeat)
+    turned = phi2 + pair.rate * TURN * hidden
+    read1 = phi1 + rig.encoder1 * np.sin(phi1 + phases[0])
+    read2 = phi2 + rig.encoder2 * np.sin(turned + phases[1])
+    read1, read2 = (_read(angle, rig, random) for angle in (read1, read2))
+    if rig.zeroed:
+        read1, read2 = read1 - read1[0], read2 - read2[0]
+    return read1, read2
+
+
+def _read(angle: Array, rig: Rig, random: np.random.Generator) -> Array:
+    """An encoder's angles: noise, then its steps."""
+    noisy = angle + random.normal(0.0, rig.noise, len(angle)) if rig.noise > 0.0 else angle
+    return np.asarray(np.round(noisy / rig.resolution) * rig.resolution if rig.resolution > 0.0 else noisy)

@@ -1,0 +1,41 @@
+"""Files of a synthetic rig, as `tol3d identify` reads them."""
+
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tol3d.errors import unwritable
+from tol3d.records.pair import TURN
+from tol3d.records.rig import Readings
+
+Array = NDArray[np.float64]
+
+DIGITS = 9  # of degrees: 4e-6 arc seconds
+
+
+def write_readings(readings: Readings, path: Path, *, wrapped: bool = False) -> None:
+    """Write one side as CSV, angles in degrees.
+
+    Args:
+        readings: of the side.
+        path: the file; one that is there is replaced.
+        wrapped: angles within one turn, as single-turn encoders give them.
+
+    Raises:
+        InputError: it cannot be written.
+    """
+    angles = [np.mod(own, TURN) if wrapped else own for own in (readings.phi1, readings.phi2)]
+    columns = {"phi1 [deg]": np.degrees(angles[0]), "phi2 [deg]": np.degrees(angles[1])}
+    formats = [f"%.{DIGITS}f"] * 2
+    if readings.torque is not None:
+        columns["torque [N m]"] = readings.torque
+        formats.append("%.6g")
+    if readings.repeat is not None:
+        columns["repeat"] = readings.repeat
+        formats.append("%d")
+    try:
+        table = np.stack(list(columns.values()), axis=1)
+        np.savetxt(path, table, fmt=formats, delimiter=",", header=",".join(columns), comments="", encoding="utf-8")
+    except OSError as error:
+        raise unwritable(path, error, "choose another folder") from None

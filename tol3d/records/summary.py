@@ -1,0 +1,186 @@
+"""What `identify` keeps as identified.json: documented keys with their units."""
+
+import math
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Literal
+
+from pydantic import BaseModel, ConfigDict, Field
+
+from tol3d.records.exact_play import Side
+from tol3d.records.identify import Identified
+from tol3d.records.one_sided import OneSided
+from tol3d.records.pair import ARCSEC, TURN
+from tol3d.records.prediction import Figure
+
+Unit = Literal["um", "deg", "arcsec", "arcsec/(N m)"]
+
+UNITS: Mapping[str, tuple[Unit, float]] = {
+    "e1": ("um", 1e-3),
+    "theta1": ("deg", math.pi / 180),
+    "e2": ("um", 1e-3),
+    "theta2": ("deg", math.pi / 180),
+    "jc": ("arcsec", ARCSEC),
+    "j0": ("arcsec", ARCSEC),
+    "jmin": ("arcsec", ARCSEC),
+    "jmin at": ("deg", math.pi / 180),
+    "jmax": ("arcsec", ARCSEC),
+    "jmax at": ("deg", math.pi / 180),
+}
+"""Unit of each figure, and what one of it is in mm or rad."""
+
+
+class Kept(BaseModel):
+    """A part of the file; no other keys."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+
+class FigureSummary(Kept):
+    """A number with its 95 % interval: value ± half_width."""
+
+    value: float
+    half_width: float
+    unit: Unit
+
+
+class PairSummary(Kept):
+    """The pair by its scene."""
+
+    scene: str
+    mesh: str
+    driver_teeth: int
+    driven_teeth: int
+    centre_distance_mm: float
+    working_pressure_angle_deg: float
+    long_period_turns: int = Field(description="of the driver")
+
+
+class PassSummary(Kept):
+    """One pass of a file."""
+
+    file: str
+    repeat: int = Field(description="0 where the file has no such column")
+    rows: int
+    turns: float = Field(description="of the driver")
+    shifted_by_turns: int = Field(description="of the driver, to lie where it belongs in the long period")
+    torque_least_n_m: float | None
+    torque_largest_n_m: float | None
+
+
+class SideSummary(Kept):
+    """One side, and what it alone would say."""
+
+    passes: list[PassSummary]
+    alone: dict[str, FigureSummary]
+    apart: float = Field(description="largest difference from the joint fit, in standard errors of the difference")
+    disagrees: bool = Field(description="by more than three of them")
+
+
+class OrderSummary(Kept):
+    """A line of the spectrum of what is left, tooth mesh included; amplitudes by side."""
+
+    order: str = Field(description="per turn of the driver, as a fraction")
+    words: str
+    amplitude_arcsec: dict[str, float]
+    noise_arcsec: float = Field(description="that white noise exceeds in one case of twenty")
+
+
+class ResidualSummary(Kept):
+    """What the fit leaves."""
+
+    sigma_arcsec: float = Field(description="standard deviation of one row")
+    low_orders: float = Field(description="strength at low orders over white noise; it widens all intervals")
+    tooth_orders_fitted: list[int]
+    drift_fitted: bool
+    orders: list[OrderSummary]
+
+
+class IdentifiedSummary(Kept):
+    """identified.json; angles of phi1, phi2, theta1, theta2 in each gear's own sense of rotation in the drive run."""
+
+    format: Literal["tol3d identified 1"] = "tol3d identified 1"
+    pair: PairSummary
+    encoder_senses: list[int] = Field(description="of encoders 1 and 2: +1 where they count in the gear's own sense")
+    figures: dict[str, FigureSummary] = Field(description="of both sides together: " + ", ".join(UNITS))
+    encoders: dict[str, FigureSummary] = Field(description="once per turn, in each encoder's own angle")
+    winding: FigureSummary | None = Field(description="1/k of B(T) = j + T/k; null where torque does not vary")
+    sides: dict[str, SideSummary]
+    residual: ResidualSummary
+    warnings: list[str]
+
+
+def summary_of(found: Identified, scene: str, mesh: str) -> IdentifiedSummary:
+    """What was found, as it is kept."""
+    pair = found.pair
+    return IdentifiedSummary(
+        pair=PairSummary(
+            scene=scene,
+            mesh=mesh,
+            driver_teeth=pair.driver_teeth,
+            driven_teeth=pair.driven_teeth,
+            centre_distance_mm=pair.centre_distance,
+            working_pressure_angle_deg=math.degrees(pair.working_angle),
+            long_period_turns=pair.long_period_turns,
+        ),
+        encoder_senses=[found.senses.driver, found.senses.driven],
+        figures={name: figure_summary(name, own) for name, own in found.figures.items()},
+        encoders={name: _arcsec(own) for name, own in found.encoders.items()},
+        winding=None if found.winding is None else _arcsec(found.winding, "arcsec/(N m)"),
+        sides={side: _side(found, side, own) for side, own in found.alone.items()},
+        residual=_residual(found),
+        warnings=list(found.warnings),
+    )
+
+
+def figure_summary(name: str, own: Figure) -> FigureSummary:
+    """A figure in its unit."""
+    unit, one = UNITS[name]
+    return FigureSummary(value=own.value / one, half_width=own.half_width / one, unit=unit)
+
+
+def alone_figures(own: OneSided) -> Mapping[str, Figure]:
+    """Figures of one side, by the names of the joint fit's."""
+    ends = {"jmin": own.least.backlash, "jmin at": own.least.place}
+    return {**own.figures, **ends, "jmax": own.largest.backlash, "jmax at": own.largest.place}
+
+
+def _arcsec(own: Figure, unit: Unit = "arcsec") -> FigureSummary:
+    return FigureSummary(value=own.value / ARCSEC, half_width=own.half_width / ARCSEC, unit=unit)
+
+
+def _side(found: Identified, side: Side, own: OneSided) -> SideSummary:
+    passes = [
+        PassSummary(
+            file=str(Path(read.path).name),
+            repeat=read.repeat,
+            rows=read.rows,
+            turns=read.travel / TURN,
+            shifted_by_turns=placed.turns,
+            torque_least_n_m=None if read.torques is None else read.torques[0],
+            torque_largest_n_m=None if read.torques is None else read.torques[1],
+        )
+        for read, placed in zip(found.read[side], found.passes[side], strict=True)
+    ]
+    alone = {name: figure_summary(name, figure) for name, figure in alone_figures(own).items()}
+    return SideSummary(passes=passes, alone=alone, apart=own.apart, disagrees=own.disagrees)
+
+
+def _residual(found: Identified) -> ResidualSummary:
+    fit = found.fit
+    orders = [
+        OrderSummary(
+            order=str(line.order),
+            words=line.words,
+            amplitude_arcsec={side: value / ARCSEC for side, value in line.amplitude.items()},
+            noise_arcsec=max(line.noise.values()) / ARCSEC,
+        )
+        for line in found.spectrum.lines
+    ]
+    return ResidualSummary(
+        sigma_arcsec=math.sqrt(fit.variance) / ARCSEC,
+        low_orders=fit.low_orders,
+        tooth_orders_fitted=list(fit.terms.teeth),
+        drift_fitted=fit.terms.drift,
+        orders=orders,
+    )
