@@ -122,9 +122,9 @@ def scene_text(specimen: Specimen, mesh: Mesh, name: str) -> str:
         *(f"  {part}: {_gear_text(gear)}" for part, gear in ((driver, spur.pinion), (driven, spur.wheel))),
         "",
         "tolerances:",
-        _eccentricity("e1", driver, specimen.e1, psi1),
-        _eccentricity("e2", driven, specimen.e2, psi2),
-        f"  backlash: {{kind: tooth_thickness, of: {driven}, distribution: {_constant(thicker)}}}",
+        _eccentricity("identified e1", driver, specimen.e1, psi1),
+        _eccentricity("identified e2", driven, specimen.e2, psi2),
+        f"  identified thickness: {{kind: tooth_thickness, of: {driven}, distribution: {_constant(thicker)}}}",
         "",
         "moves:",
         f"  {own}: {{kind: mesh, driver: {driver}, driven: {driven}, centre_distance: "

@@ -197,6 +197,8 @@ def identified(pair: RigPair, read: Mapping[Side, tuple[Pass, ...]], senses: Sen
     )
     least, largest = found.figures["jmin"], found.figures["jmax"]
     half_width = max(least.half_width, largest.half_width)
+    if model.constant_part < 0.0:
+        refuse_impossible_backlash(pair, least.value, largest.value, least.half_width, given=zeroed)
     warnings = _refuse_hidden_shift(found, settings, half_width)
     refuse_impossible_backlash(pair, least.value, largest.value, least.half_width, given=zeroed)
     return replace(found, warnings=(*warnings, *_warnings(found, settings)))

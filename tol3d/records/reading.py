@@ -1,7 +1,7 @@
 """One side of a rig's measurement: files read row by row, angles counted on over turns, gathered by position."""
 
 import math
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
 from pathlib import Path
@@ -100,8 +100,22 @@ def read_side(
 
 
 def _passes(pair: RigPair, path: Path, unit: str | None, senses: Senses, progress: Progress) -> Iterator[Pass]:
+    def counted() -> Iterator[Block]:
+        for block in blocks_of(path, unit):
+            yield block
+            progress(len(block.phi1))
+
+    yield from passes_of(pair, path, counted(), senses)
+
+
+def passes_of(pair: RigPair, path: Path, blocks: Iterable[Block], senses: Senses) -> Iterator[Pass]:
+    """The passes of consecutive blocks of rows; `path` names them in messages.
+
+    Raises:
+        InputError: a jump, or the driver turns back.
+    """
     reader: PassReader | None = None
-    for block in blocks_of(path, unit):
+    for block in blocks:
         for part, repeat in _by_repeat(block):
             if reader is not None and reader.repeat != repeat:
                 yield reader.finished()
@@ -109,7 +123,6 @@ def _passes(pair: RigPair, path: Path, unit: str | None, senses: Senses, progres
             if reader is None:
                 reader = PassReader(pair, path, repeat, senses)
             reader.add(part)
-        progress(len(block.phi1))
     if reader is not None:
         yield reader.finished()
 

@@ -1,0 +1,194 @@
+"""What is identified of synthetic measurements, whose truth is known."""
+
+import math
+from collections.abc import Mapping
+from dataclasses import replace
+from fractions import Fraction
+
+import numpy as np
+import pytest
+from records.rigged import LARGEST, LEAST, PAIR, REFERENCE, START, arcsec, ends_of, identified_by, passes, within
+
+from tol3d.errors import InputError
+from tol3d.records.curve import curve_of
+from tol3d.records.exact_play import Side, angular_backlash
+from tol3d.records.identify import Identified, Settings, identified
+from tol3d.records.pair import ARCSEC, RigPair, Specimen
+from tol3d.records.reading import Pass, Senses
+from tol3d.records.rig import Rig
+
+ENCODERS = Rig(samples=180, encoder1=6 * ARCSEC, encoder2=4 * ARCSEC, tooth_mesh=5 * ARCSEC)
+
+
+def test_the_reference_pair_is_recovered_from_clean_rows() -> None:
+    """Nothing errs: what is left is rounding, 1e-16 of 100 rad over arms of 45 mm."""
+    found = identified_by(REFERENCE, Rig(turns=4, noise=0.0, samples=180))
+    figures = found.figures
+    assert figures["e1"].value == pytest.approx(0.018, abs=1e-9)
+    assert figures["theta1"].value == pytest.approx(math.radians(40), abs=1e-7)
+    assert figures["e2"].value == pytest.approx(0.027, abs=1e-9)
+    assert figures["theta2"].value == pytest.approx(math.radians(-65), abs=1e-7)
+    assert arcsec(figures["jc"].value) == pytest.approx(274.378, abs=0.001)
+    assert arcsec(figures["j0"].value) == pytest.approx(START, abs=0.001)
+    assert arcsec(figures["jmin"].value) == pytest.approx(LEAST, abs=0.001)
+    assert arcsec(figures["jmax"].value) == pytest.approx(LARGEST, abs=0.001)
+    assert math.degrees(figures["jmin at"].value) == pytest.approx(4278.55, abs=0.05)
+    assert math.degrees(figures["jmax at"].value) == pytest.approx(2665.0, abs=0.05)
+    assert all(arcsec(own.value) < 1e-4 for own in found.encoders.values())
+
+
+def test_large_eccentricities_are_not_biased() -> None:
+    """First order alone errs by 2.3 arcsec at 50 um (the digest's table); the exact geometry does not."""
+    own = Specimen(PAIR, 0.050, 2.0, 0.050, 0.5, 0.15)
+    found = identified_by(own, Rig(turns=8, noise=0.0, samples=90))
+    least, largest = ends_of(own)
+    assert arcsec(found.figures["jmin"].value) == pytest.approx(arcsec(least), abs=0.002)
+    assert arcsec(found.figures["jmax"].value) == pytest.approx(arcsec(largest), abs=0.002)
+    assert found.figures["e1"].value == pytest.approx(0.050, abs=1e-8)
+
+
+def test_encoder_errors_spoil_one_side_and_not_both() -> None:
+    found = identified_by(REFERENCE, ENCODERS)
+    assert arcsec(found.figures["jmin"].value) == pytest.approx(LEAST, abs=1.5)
+    assert arcsec(found.figures["jmax"].value) == pytest.approx(LARGEST, abs=1.5)
+    assert arcsec(found.encoders["encoder 1"].value) == pytest.approx(6.0, abs=0.3)
+    assert arcsec(found.encoders["encoder 2"].value) == pytest.approx(4.0, abs=0.2)
+    for side, own in found.alone.items():
+        assert own.disagrees, side
+        assert max(abs(arcsec(own.least.backlash.value) - LEAST), abs(arcsec(own.largest.backlash.value) - LARGEST)) > 4
+    assert sum("alone disagrees" in text for text in found.warnings) == 2
+
+
+def test_good_encoders_raise_no_flag() -> None:
+    found = identified_by(REFERENCE, Rig(samples=180, seed=4))
+    assert found.warnings == ()
+    assert not any(own.disagrees for own in found.alone.values())
+
+
+def test_tooth_mesh_shows_in_the_spectrum_and_not_in_the_scatter() -> None:
+    found = identified_by(REFERENCE, ENCODERS)
+    lines = {line.order: line for line in found.spectrum.lines}
+    sides: tuple[Side, ...] = ("drive", "back")
+    for side in sides:
+        assert arcsec(lines[Fraction(27)].amplitude[side]) == pytest.approx(5.0, abs=0.05)
+        assert arcsec(lines[Fraction(1)].amplitude[side]) < 0.01
+    # 0.5 arcsec of encoder 2 and 27/48 of 0.5 of encoder 1
+    assert arcsec(math.sqrt(found.fit.variance)) == pytest.approx(0.5 * math.hypot(1, 27 / 48), rel=0.02)
+
+
+def test_torques_are_extrapolated_to_none() -> None:
+    rig = Rig(samples=180, torques=(1.0, 2.0, 3.0), repeats=3, stiffness=1 / (20 * ARCSEC), turns=4)
+    found = identified_by(REFERENCE, rig)
+    assert found.winding is not None
+    assert arcsec(found.winding.value) == pytest.approx(20.0, abs=3 * arcsec(found.winding.half_width))
+    assert arcsec(found.figures["j0"].value) == pytest.approx(START, abs=3 * arcsec(found.figures["j0"].half_width))
+
+
+def test_one_torque_is_not_extrapolated_and_said_so() -> None:
+    found = identified_by(REFERENCE, Rig(samples=180, torques=(2.0,), stiffness=1 / (20 * ARCSEC), turns=4))
+    assert found.winding is None
+    assert any("winding" in text for text in found.warnings)
+    assert arcsec(found.figures["j0"].value) == pytest.approx(START + 40.0, abs=0.5)
+
+
+def test_sides_are_put_in_one_long_period_by_both_encoders() -> None:
+    """The back side began 5 turns further on, with encoders that count within one turn: both together know."""
+    found = identified_by(REFERENCE, replace(ENCODERS, start=0.3))
+    shifted = _with_back_from(5)
+    assert [own.turns for own in shifted.passes["back"]] == [5]
+    assert arcsec(shifted.figures["jmin"].value) == pytest.approx(arcsec(found.figures["jmin"].value), abs=0.2)
+
+
+def _with_back_from(turns: int) -> Identified:
+    rig = replace(ENCODERS, start=0.3)
+    drive = passes(REFERENCE, rig, "drive")
+    further = passes(REFERENCE, replace(rig, start=0.3 + 2 * math.pi * turns), "back")
+    own = further[0]
+    lost = 2 * math.pi * turns
+    # phi1 counts from less by whole turns, phi2 is as it was: its errors are larger by z1/z2 of that
+    bins = replace(
+        own.bins, phi1=np.mod(own.bins.phi1 - lost, PAIR.long_period), error=own.bins.error + PAIR.rate * lost
+    )
+    return identified(PAIR, {"drive": drive, "back": (replace(own, bins=bins),)}, Senses(1, 1), Settings())
+
+
+@pytest.mark.parametrize("turns", range(1, 16))
+def test_a_hidden_shift_by_whole_turns_is_found(turns: int) -> None:
+    with pytest.raises(InputError, match=rf"may lie {turns} whole turns of the driver apart"):
+        identified_by(REFERENCE, replace(ENCODERS, hidden_turns=turns))
+
+
+def test_encoders_set_to_zero_between_the_sides_are_refused() -> None:
+    with pytest.raises(InputError, match=r"set to zero between the sides.*--j0"):
+        identified_by(REFERENCE, Rig(samples=180, zeroed=True))
+
+
+def test_a_given_backlash_at_the_start_stands_in() -> None:
+    found = identified_by(
+        REFERENCE, Rig(samples=180, zeroed=True), Settings(j0=START * ARCSEC, j0_half_width=0.2 * ARCSEC)
+    )
+    assert arcsec(found.figures["j0"].value) == pytest.approx(START, abs=1e-6)
+    assert arcsec(found.figures["jmin"].value) == pytest.approx(LEAST, abs=0.2)
+    assert arcsec(found.figures["jmin"].half_width) > 0.2
+
+
+def test_one_turn_is_refused_and_two_are_enough() -> None:
+    with pytest.raises(InputError, match=r"covers 1.00 turns .*condition number 19.*2 turns are enough"):
+        identified_by(REFERENCE, Rig(turns=1))
+    found = identified_by(REFERENCE, Rig(turns=2))
+    assert arcsec(found.figures["jmin"].value) == pytest.approx(LEAST, abs=0.64)
+
+
+def test_a_backlash_below_zero_is_refused() -> None:
+    """Drive and back interchanged: the backlash comes out negative."""
+    read: Mapping[Side, tuple[Pass, ...]] = {
+        "drive": passes(REFERENCE, Rig(samples=180), "back"),
+        "back": passes(REFERENCE, Rig(samples=180), "drive"),
+    }
+    with pytest.raises(InputError, match=r"the backlash would be -41\d.*interchanged"):
+        identified(PAIR, read, Senses(1, 1), Settings())
+
+
+def test_drift_is_seen_and_fitted_along() -> None:
+    rig = Rig(turns=8, samples=180, drift=3 * ARCSEC)
+    assert any("drifts by 3." in text for text in identified_by(REFERENCE, rig).warnings)
+    found = identified_by(REFERENCE, rig, Settings(drift=True))
+    assert not any("drifts" in text for text in found.warnings)
+    assert all(within(found, REFERENCE)[name] for name in ("e1", "theta1", "e2", "theta2"))
+
+
+def test_the_measured_curve_lies_over_the_true_one() -> None:
+    """Means of rows about each of 1152 positions: 10 rows a side, 0.57 arcsec each, five standard errors."""
+    curve = curve_of(identified_by(REFERENCE, Rig(encoder1=6 * ARCSEC, encoder2=4 * ARCSEC)))
+    true = angular_backlash(REFERENCE, curve.phi1)
+    assert np.abs(curve.predicted - true).max() < 0.1 * ARCSEC
+    assert np.abs(curve.measured - true).max() < 5 * 0.57 * math.sqrt(2 / 10) * ARCSEC
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("turns", "tooth_mesh"), [(16.0, 5 * ARCSEC), (3.0, 0.0)])
+def test_intervals_hold_the_truth_in_95_of_100_cases(turns: int, tooth_mesh: float) -> None:
+    """200 data sets: 90 to 98 % of each figure; a binomial of 200 and 0.95 leaves that in one case of 700."""
+    random = np.random.default_rng(14)
+    inside: dict[str, int] = {}
+    for seed in range(200):
+        e1, e2 = random.uniform(0.005, 0.03, 2)
+        theta1, theta2 = random.uniform(-math.pi, math.pi, 2)
+        own = Specimen(PAIR, e1, theta1, e2, theta2, 0.08)
+        rig = replace(ENCODERS, turns=turns, samples=216, tooth_mesh=tooth_mesh, resolution=0.2 * ARCSEC, seed=seed)
+        found = identified_by(own, rig)
+        least, largest = ends_of(own)
+        held = within(found, own)
+        held["jmin"] = abs(found.figures["jmin"].value - least) <= found.figures["jmin"].half_width
+        held["jmax"] = abs(found.figures["jmax"].value - largest) <= found.figures["jmax"].half_width
+        for name, own_held in held.items():
+            inside[name] = inside.get(name, 0) + own_held
+    assert all(180 <= count <= 196 for count in inside.values()), inside
+
+
+def test_a_pair_without_a_long_period_is_identified() -> None:
+    """z 20/40: both gears' parts repeat after two turns, and stay apart."""
+    pair = RigPair(20, 40, 20 * math.cos(math.radians(20)), 40 * math.cos(math.radians(20)), 60.0)
+    own = Specimen(pair, 0.01, 1.0, 0.02, -2.0, 0.06)
+    found = identified_by(own, Rig(turns=4))
+    assert all(within(found, own)[name] for name in ("e1", "e2"))
