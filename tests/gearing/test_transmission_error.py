@@ -16,16 +16,19 @@ import numpy as np
 import pytest
 from fixtures import EngineOf
 from gear_trials import drawn_trials, gear_columns
+from oracles.random_builds import Spread, random_builds
 from oracles.random_scenes import random_scenes
 from oracles.two_sided import EccentricPair
 
 from tol3d import Scene
-from tol3d.gearing.engines import Engine
+from tol3d.errors import SceneError
+from tol3d.gearing.engines import OK, Engine
 from tol3d.gearing.engines.exact import ExactEngine
 from tol3d.gearing.model import Backlash, Kind, Measure, Model, TransmissionError, model_from_scene
 from tol3d.gearing.model.readings import default_reading
 from tol3d.gearing.sensitivity import sensitivities
-from tol3d.gears import LEFT, SpurPair
+from tol3d.gears import LEFT, RIGHT, BevelGear, BevelPair, SpurGear, SpurPair
+from tol3d.gears.flank import Flank
 from tol3d.system.positions import Positions
 from tol3d.system.stated import mean_build, stated
 from tol3d.system.trials import Trials
@@ -281,6 +284,39 @@ def test_error_and_play_agree_on_many_scenes(kind: str) -> None:
     check_identity(kind, 60, 40, 12)
 
 
+# one contact a side -------------------------------------------------------------------------------
+
+PAIRS: Mapping[str, SpurPair | BevelPair] = {
+    "spur": SpurPair(SpurGear(17, 2.0, REFERENCE.alpha, 16.0), SpurGear(31, 2.0, REFERENCE.alpha, 14.0), 48.05),
+    "bevel": BevelPair(
+        BevelGear(17, 2.5, REFERENCE.alpha, 8.0, math.atan2(17, 31)),
+        BevelGear(31, 2.5, REFERENCE.alpha, 8.0, math.atan2(31, 17)),
+        math.pi / 2,
+    ),
+}
+SIDES: tuple[Literal["drive", "back"], ...] = ("drive", "back")
+
+
+@pytest.mark.parametrize("flank", [LEFT, RIGHT], ids=["left", "right"])
+@pytest.mark.parametrize("name", PAIRS)
+def test_rests_at_many_positions_are_those_of_single_ones(name: str, flank: Flank) -> None:
+    """The kernel goes on from the position before; reading each side for itself begins at the nominal one."""
+    spread = Spread(growth=1e-4 if name == "spur" else 0.0)
+    builds = random_builds(PAIRS[name], flank, 30, 8, spread=spread, thinner=0.12)
+    engine, mesh, reading = ExactEngine(builds.model), builds.mesh, default_reading(builds.mesh)
+    angles = np.linspace(0.0, 4.0, 23)
+    both = engine.rests(builds.made, mesh, reading, angles)
+    rows, each = builds.made.repeated(23), np.tile(angles, 30)
+    for side, found in zip(SIDES, both, strict=True):
+        alone = engine.read(rows, mesh, replace(reading, flank=side), each)
+        assert (alone.status == OK).all()
+        assert (found.status == OK).all()
+        turned = found.driven_angle.ravel() - alone.driven_angle
+        assert np.abs(turned).max() < 2 * LAST_STEP / mesh.pair.wheel.section_arm
+        assert found.contact == pytest.approx(alone.contact[::23], abs=1e-5)  # along a face it may lie anywhere near
+        assert (found.tooth == alone.tooth[::23]).all()
+
+
 # the witness, trains, what fails ------------------------------------------------------------------
 
 
@@ -382,6 +418,13 @@ def test_a_train_adds_its_meshes_errors_up_over_the_ratios_behind_them(flank: st
         total += ratio * values_of(alone, engine and ExactEngine(alone), trials)
     assert whole == pytest.approx(total, abs=1e-8)
     assert np.ptp(whole, axis=1).min() > 1.0  # arcmin
+
+
+def test_flanks_that_push_the_output_two_ways_are_refused() -> None:
+    with pytest.raises(SceneError) as caught:
+        model_from_scene(Scene.model_validate(train_fields(second="left")))
+    said = "expected working flanks that push 'out' one way, got those of 'first' and 'second', which push it two"
+    assert said in str(caught.value)
 
 
 def test_a_long_period_of_a_train_is_that_of_all_its_teeth() -> None:

@@ -1,7 +1,7 @@
 """The exact engine: contact of the mathematical flanks, in compiled kernels; no solid, no mesh, no chord error."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import singledispatch
 from typing import Any
 
@@ -43,13 +43,13 @@ class PairKernels:
 
     Args:
         numbers: pinion's teeth, wheel's, which of them may meet, where the wheel's shaft sees the pinion's.
-        read, gaps, rests: see kernels.
+        read, gaps, rests: see kernels; where it has no kernel of rests, each side is read for itself.
     """
 
     numbers: tuple[SpurTooth, SpurTooth, PairNumbers, Pose] | tuple[BevelTooth, BevelTooth, PairNumbers, Pose]
     read: Kernel
     gaps: Kernel
-    rests: Kernel
+    rests: Kernel | None = None
 
 
 class ExactEngine:
@@ -66,7 +66,9 @@ class ExactEngine:
     def kept(self) -> bool:
         """Whether this machine has compiled what its studies need."""
         rests = any(isinstance(measure.kind, TransmissionError) for measure in self._model.measures)
-        return all(pair.read.kept and (pair.rests.kept or not rests) for pair in self._pairs.values())
+        return all(
+            pair.read.kept and (not rests or pair.rests is None or pair.rests.kept) for pair in self._pairs.values()
+        )
 
     def depth(self, mesh: Mesh) -> float:
         """1 mm: any overlap can be measured."""
@@ -148,6 +150,13 @@ class ExactEngine:
     def rests(self, build: Build, mesh: Mesh, reading: Reading, driver_angle: Array) -> tuple[MeshReading, MeshReading]:
         """See ReadingEngine.rests."""
         pair, shape = self._pairs[mesh.name], (build.trials, len(driver_angle))
+        if pair.rests is None:
+            rows, angles = build.repeated(shape[1]), np.tile(driver_angle, build.trials)
+            one, other = (
+                _by_trial(self.read(rows, mesh, replace(reading, flank=side), angles), shape)
+                for side in ("drive", "back")
+            )
+            return one, other
         rests, status = np.empty((*shape, 2)), np.empty(shape, dtype=np.int8)
         contact, tooth = np.empty((build.trials, 2, 3)), np.empty((build.trials, 2), dtype=np.int64)
         how = (mesh.working_flank, WHICH_TEETH[reading.teeth], reading.contact == "section")
@@ -179,6 +188,12 @@ class ExactEngine:
 
     def _seats(self, mesh: Mesh) -> tuple[int, int]:
         return self._model.seat_index[mesh.name, mesh.driver], self._model.seat_index[mesh.name, mesh.driven]
+
+
+def _by_trial(reading: MeshReading, shape: tuple[int, int]) -> MeshReading:
+    """What was read of rows as of trials and positions, the first position's contacts."""
+    each = {name: values.reshape(*shape, *values.shape[1:]) for name, values in vars(reading).items()}
+    return MeshReading(**each | {name: each[name][:, 0] for name in ("contact", "tooth")})
 
 
 def _arrays(build: Build) -> tuple[Array, ...]:
