@@ -15,6 +15,7 @@ from tol3d.assembly.from_scene.idle import idle_forms
 from tol3d.assembly.grammar.drawing import Drawing
 from tol3d.assembly.model import Assembly
 from tol3d.assembly.model.statuses import OK, STATUSES, WITH_CLEARANCES
+from tol3d.assembly.nominal_relations import misses
 from tol3d.assembly.placing import road as placing
 from tol3d.assembly.placing.world import SolidReader
 from tol3d.assembly.roads import PlacingRoad, TorsorRoad
@@ -257,6 +258,8 @@ def assembly_system(scene: Scene) -> AssemblySystem:
         SceneError: what it says does not fit together, such as moves that leave a part free.
     """
     placed = _asked(scene, lambda: _settled(scene))
+    for miss in misses(placed.assembly):
+        raise scene.refuse(("moves", miss.move, "relations", miss.number), miss.sentence)
     kind = _kind_of(placed.assembly)
     assembly = _asked(scene, lambda: _faced(placed))
     idle = tuple(idle_forms(Drawing(scene)))

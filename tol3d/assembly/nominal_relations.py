@@ -1,0 +1,89 @@
+"""Relations that do not meet nominally: what earlier ones leave free does not bring both features together."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tol3d.assembly.model import Assembly, Axis, Feature, Plane, Point, Relation, RoundPlane
+from tol3d.assembly.model.shape import nominal_size
+from tol3d.assembly.placing.road import features_placed
+
+Array = NDArray[np.float64]
+
+MEETS: Final = 2e-3
+"""mm, by which features meet nominally: numbers that are rounded to a thousandth miss by as much."""
+
+
+@dataclass(frozen=True)
+class Miss:
+    """A relation that does not meet.
+
+    Args:
+        move: its move.
+        number: of the relation in it, from 0.
+        relation: which.
+        amount: by how much, at the end of the moving feature where that is most [mm].
+        at: that end, in the world (3,) [mm].
+    """
+
+    move: str
+    number: int
+    relation: Relation
+    amount: float
+    at: tuple[float, float, float]
+
+    @property
+    def sentence(self) -> str:
+        """What is expected, and what there is."""
+        own = self.relation
+        kinds = {"coincident": "meet", "coaxial": "be coaxial", "tangent": "touch", "distance": "lie so"}
+        place = ", ".join(f"{round(value, 4) + 0.0:g}" for value in self.at)
+        return (
+            f"expected {own.moving!r} and {own.target!r} to {kinds[own.kind]} without deviations, got "
+            f"{self.amount:.4g} mm between them at ({place}) mm, for what comes before leaves no freedom to close it; "
+            "make their places or directions agree, or ask with a relation only for what is left"
+        )
+
+
+def misses(assembly: Assembly) -> Iterator[Miss]:
+    """Relations of all moves that do not meet within MEETS, where each move lays its part without deviations."""
+    rest = np.zeros((1, assembly.width))
+    for index, move in enumerate(assembly.moves):
+        relations: tuple[Relation, ...] = getattr(move, "relations", ())
+        if not relations:
+            continue
+        frames = features_placed(assembly, rest, index)
+        for k, own in enumerate(relations):
+            moving, target = (assembly.features[name] for name in (own.moving, own.target))
+            amount, at = _missing(own, moving, target, frames[own.moving][0], frames[own.target][0])
+            if amount > MEETS:  # not where a move failed: not a number
+                yield Miss(move.name, k, own, amount, (float(at[0]), float(at[1]), float(at[2])))
+
+
+def _missing(own: Relation, moving: Feature, target: Feature, pose: Array, its: Array) -> tuple[float, Array]:
+    """The largest distance of a feature's ends from where a relation asks them, and that end (3,) [mm]."""
+    ends = _ends(moving) @ pose[:3, :3].T + pose[:3, 3]
+    normal, off = its[:3, 2], ends - its[:3, 3]
+    if isinstance(target.shape, Point):
+        missing = np.linalg.norm(off, axis=1)
+    elif isinstance(target.shape, Axis) and isinstance(moving.shape, Axis | Point):
+        missing = np.linalg.norm(off - np.outer(off @ normal, normal), axis=1)
+    elif isinstance(target.shape, Axis):  # a plane on a cylinder
+        ends = _ends(target) @ its[:3, :3].T + its[:3, 3]
+        missing = np.abs((ends - pose[:3, 3]) @ pose[:3, 2] - (nominal_size(target.shape) or 0.0) / 2)
+    else:
+        asked = (nominal_size(moving.shape) or 0.0) / 2 if own.kind == "tangent" else own.distance
+        missing = np.abs(off @ normal - asked)
+    worst = int(np.argmax(missing))
+    return float(missing[worst]), ends[worst]
+
+
+def _ends(feature: Feature) -> Array:
+    """Where it is judged, in its frame (ends, 3) [mm]."""
+    if isinstance(feature.shape, RoundPlane):
+        return feature.shape.radius * np.array([[1.0, 0, 0], [0, 1.0, 0], [-1.0, 0, 0], [0, -1.0, 0]])
+    shape: Axis | Plane | Point = feature.shape
+    return shape.ends
