@@ -135,3 +135,23 @@ def test_the_mean_of_a_process_offsets_a_face_and_does_not_tilt_it(tmp_path: Pat
     assert found["height"].mean() == pytest.approx(20.02, abs=error)
     assert B / 2 * found["about x"].mean() == pytest.approx(0.0, abs=error)
     assert B / 2 * found["about x"].std() == pytest.approx(0.005, rel=4 / math.sqrt(40_000))
+
+
+@pytest.mark.parametrize(("law", "words"), [("uniform", "uniform in its zone"), ("normal", "normal in its zone")])
+def test_a_result_names_the_law_of_every_zone_that_acts(tmp_path: Path, law: str, words: str) -> None:
+    scene = tmp_path / "scene.yaml"
+    scene.write_text(SCENE.format(law=f"{{kind: {law}}}", outward=""), encoding="utf-8")
+    measures = run_scene(scene, overrides=Overrides(trials=50), out=tmp_path / "run").summary["measures"]
+    zones = {"tilt": "position", "true position": "position"}
+    assert {name: own.get("laws") for name, own in measures.items()} == {
+        name: {zones.get(name, "profile"): words} for name in measures
+    }
+
+
+def test_a_scene_names_one_law_for_all_its_zones_by_an_anchor(tmp_path: Path) -> None:
+    text = SCENE.format(law="{kind: normal}", outward="")
+    both = text.replace("law: {kind: normal}", "law: &zones {kind: normal}", 1).replace(
+        "law: {kind: normal}", "law: *zones"
+    )
+    found, same = (assembled(own, tmp_path).drawn(20) for own in (both, text))
+    assert all(np.array_equal(found[name], same[name]) for name in same)

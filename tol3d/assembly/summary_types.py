@@ -36,7 +36,7 @@ class AssemblyMeasureSummary(MeasureSummary):
         "surface_gap",
     ]
     laws: Maybe[Mapping[Label, Label]] = Field(
-        default=LEFT_OUT, description="laws of zones that a size widens, and of those that only judge, by tolerance"
+        default=LEFT_OUT, description="laws of the zones that act on it, by tolerance"
     )
     of: Annotated[list[Label], Field(min_length=1, max_length=MOST_ENTRIES)]
     chord_error_um: Maybe[NotNegative] = Field(

@@ -22,7 +22,7 @@ from tol3d.assembly.roads import PlacingRoad, TorsorRoad
 from tol3d.assembly.torsors import road as torsors
 from tol3d.assembly.torsors.slopes import Slopes
 from tol3d.assembly.witnessed import reads
-from tol3d.assembly.zones import Process, Widened, ZoneDraw
+from tol3d.assembly.zones import ZoneDraw
 from tol3d.errors import InputError
 from tol3d.scene import Scene
 from tol3d.scene.schema import SECTIONS
@@ -90,9 +90,8 @@ class AssemblySystem(PlainSystem):
         return None
 
     def describe(self, measure: Measure) -> Mapping[str, Any]:
-        """Its kind, what it is of, and by which laws those zones vary that a size widens or that only judge."""
-        acting = (own for own in self.acting(measure) if isinstance(own.draw, Widened | Process))
-        laws = {own.name: own.draw.words for own in acting if isinstance(own.draw, ZoneDraw)}
+        """Its kind, what it is of, and by which laws deviations lie in the zones that act on it."""
+        laws = {own.name: own.draw.words for own in self.acting(measure) if isinstance(own.draw, ZoneDraw)}
         return {**super().describe(measure), "of": list(self.named[measure.name]), **({"laws": laws} if laws else {})}
 
     def problems(self) -> Iterator[tuple[KeyPath, str]]:

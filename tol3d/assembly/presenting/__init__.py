@@ -28,7 +28,7 @@ class AssemblyPresenter:
         return {}
 
     def sections(self, summary: RunSummary) -> "Sequence[PageItem]":
-        """By which laws those zones vary that a size widens, or that only judge."""
+        """By which laws deviations lie in their zones."""
         laws = {
             name: words
             for own in summary.measures.values()

@@ -1,5 +1,6 @@
 """What a scene of an assembly means, as tables: features with their datum frames, moves."""
 
+from collections import Counter
 from collections.abc import Mapping, Sequence
 from typing import Final
 
@@ -20,6 +21,8 @@ from tol3d.solids.kept_shape import KeptShape
 from tol3d.study.simulation import Simulation
 
 PLACE: Final = "at [mm]"
+MANY_ALIKE: Final = 3
+"""Zones of one law that are told in one row."""
 
 
 def check_blocks(simulation: Simulation) -> Sequence[PageItem]:
@@ -160,6 +163,10 @@ def _move(move: Move, plan: placing.Placing) -> tuple[str, str, str]:
 
 
 def law_blocks(laws: Mapping[str, str]) -> Sequence[PageItem]:
-    """The laws of tolerances, by their names."""
-    rows = [Row(name, (words,)) for name, words in laws.items()]
+    """The laws of tolerances, by their names; the commonest one in one row where it is of many."""
+    commonest, count = Counter(laws.values()).most_common(1)[0]
+    together = count >= MANY_ALIKE
+    rows = [Row(name, (words,)) for name, words in laws.items() if not (together and words == commonest)]
+    if together:
+        rows.append(Row(f"the other {count}" if rows else f"all {count}", (commonest,)))
     return titled("laws of zones", Table("", [Heading("law", words=True)], rows))
