@@ -3,19 +3,15 @@
 import os
 import sys
 
+import bytecode  # noqa: F401, first of all
 import hypothesis
 import pytest
 from fixtures import Command, EngineOf, strips_of
-from places import ROOT, SPUR_PAIR
+from places import SPUR_PAIR
 
 from tol3d import cli, load_scene
 from tol3d.gearing.engines.fcl import FclEngine
 from tol3d.gearing.model import Model, model_from_scene
-
-if sys.dont_write_bytecode:  # else every process that tests start would compile the same sources anew
-    sys.dont_write_bytecode, sys.pycache_prefix = False, str(ROOT / ".pytest_cache" / "bytecode")
-    os.environ["PYTHONPYCACHEPREFIX"] = sys.pycache_prefix
-    os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
 
 # shared machines stall for longer than any deadline and examples are the same;
 # HYPOTHESIS_PROFILE=search tries others

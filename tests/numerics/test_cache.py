@@ -113,7 +113,7 @@ def test_an_entry_cut_anywhere_counts_as_none(folder: Path) -> None:
 
 def fresh(like: Kernel) -> Kernel:
     """The same kernel as a process that starts has it."""
-    made = Kernel(like._function, like._tuples, like._arrays)
+    made = Kernel(like._function, like._tuples, like._arrays, level=like._level)
     made._settings = like._settings
     return made
 

@@ -38,7 +38,8 @@ Function = TypeVar("Function", bound=Callable[..., Any])
 SETTINGS: Any = {"error_model": "numpy", "nogil": True, "forceinline": True, "fastmath": {"contract"}}
 
 
-LONGEST_WAIT = 150.0  # s, while another process compiles a kernel; the largest takes 25 s on a core of its own
+FULL, QUICK = 3, 2  # LLVM's levels of optimization
+LONGEST_WAIT = 150.0  # s, while another process compiles a kernel; the largest takes 13 s on a core of its own
 
 
 def part(function: Function) -> Function:
@@ -97,14 +98,23 @@ class Kernel:
         arrays: types of the others in numba's words. It is compiled for these only.
         reassociated: whether sums may be taken in another order than they are written, for speed; on one machine that
             is always the same.
+        level: of LLVM's optimization, FULL or QUICK. FULL is worth it where most of the time goes into one long loop of
+            arithmetic; of many short loops it makes variants, which take twice as long to compile.
     """
 
     def __init__(
-        self, function: Callable[..., None], tuples: Sequence[Any], arrays: str, *, reassociated: bool = False
+        self,
+        function: Callable[..., None],
+        tuples: Sequence[Any],
+        arrays: str,
+        *,
+        reassociated: bool = False,
+        level: int = FULL,
     ) -> None:
         self._function = function
         self._tuples = tuples
         self._arrays = arrays
+        self._level = level
         self._settings = SETTINGS | {"fastmath": {"contract", "reassoc", "nsz"}} if reassociated else SETTINGS
 
     def __call__(self, *arguments: Any) -> None:
@@ -123,7 +133,8 @@ class Kernel:
             made_of = _made_of(self._function, self._tuples)
         except OSError:
             return None
-        made = json.dumps([made_of, self._arrays, self._settings], sort_keys=True, default=sorted)  # sets have no order
+        own = [self._arrays, self._settings, self._level]
+        made = json.dumps([made_of, own], sort_keys=True, default=sorted)  # sets have no order
         return f"kernel-{self._function.__name__}-{hashlib.sha256(made.encode()).hexdigest()[:32]}.zip"
 
     @cached_property
@@ -177,7 +188,8 @@ class Kernel:
         return read_entry(self.name) if self.name else None
 
     def _made(self, signature: tuple[Any, ...], *, cache: bool) -> Callable[..., None]:
-        made: Callable[..., None] = numba.njit(signature, cache=cache, **self._settings)(self._function)
+        with _optimizing(self._level):
+            made: Callable[..., None] = numba.njit(signature, cache=cache, **self._settings)(self._function)
         return made
 
 
@@ -206,9 +218,23 @@ def _packed(folder: Path, files: Sequence[Path]) -> bytes:
     return archive.getvalue()
 
 
-def kernel(*tuples: Any, arrays: str, reassociated: bool = False) -> Callable[[Callable[..., None]], Kernel]:
+def kernel(
+    *tuples: Any, arrays: str, reassociated: bool = False, level: int = QUICK
+) -> Callable[[Callable[..., None]], Kernel]:
     """Make a function a kernel; see Kernel."""
-    return lambda function: Kernel(function, tuples, arrays, reassociated=reassociated)
+    return lambda function: Kernel(function, tuples, arrays, reassociated=reassociated, level=level)
+
+
+@contextmanager
+def _optimizing(level: int) -> Iterator[None]:
+    """While it is open, what numba compiles is optimized so much."""
+    config: Any = numba.config
+    before = config.OPT
+    config.OPT = type(before)(level)  # an integer of numba's own
+    try:
+        yield
+    finally:
+        config.OPT = before
 
 
 @contextmanager

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.numerics.compiled import high_product, kernel, part
+from tol3d.numerics.compiled import FULL, high_product, kernel, part
 from tol3d.samplers.monte_carlo import DRAW_BITS, stream_key
 from tol3d.samplers.stream import Stream
 
@@ -56,7 +56,7 @@ def first_word(counter: Any, key: Any) -> Any:
     return a
 
 
-@kernel(arrays="uint64[::1], uint64[::1], float64[::1]")
+@kernel(arrays="uint64[::1], uint64[::1], float64[::1]", level=FULL)
 def _draw(key: Any, first: Any, values: Any) -> None:
     """Uniforms of consecutive counters from `first` on."""
     for i in range(len(values)):

@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.numerics.compiled import kernel
+from tol3d.numerics.compiled import FULL, kernel
 
 Array = NDArray[np.float64]
 
@@ -19,7 +19,7 @@ def quick_products(rows: Array) -> Array:
     return sums
 
 
-@kernel(arrays="float64[:, ::1], float64[:, ::1]", reassociated=True)
+@kernel(arrays="float64[:, ::1], float64[:, ::1]", reassociated=True, level=FULL)
 def _add_products(rows: Any, sums: Any) -> None:
     """Add the products of all pairs of rows, tile by tile; within one the order is the compiler's, always the same."""
     count, trials = rows.shape

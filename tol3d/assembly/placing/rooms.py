@@ -11,7 +11,7 @@ from typing import Any, Final
 import numpy as np
 
 from tol3d.assembly.placing.cones import climbed, ended
-from tol3d.numerics.compiled import kernel, part
+from tol3d.numerics.compiled import FULL, kernel, part
 
 HELD: Final = 1e-6
 """Multiplier (they sum to 1) over which a cone is tight."""
@@ -244,7 +244,8 @@ def new_rooms(cones: int, freedoms: int) -> Any:
 
 @kernel(
     arrays="float64[:,:,::1], float64[:,::1], float64[:,:,::1], float64[::1], boolean[::1], float64[:,::1], "
-    "float64[::1], int64[::1], boolean[::1], float64[:,::1], int64[:,::1]"
+    "float64[::1], int64[::1], boolean[::1], float64[:,::1], int64[:,::1]",
+    level=FULL,
 )
 def room_found(
     offsets: Any, clearances: Any, rows: Any, push: Any, asked: Any, steps: Any, slacks: Any, deciding: Any, found: Any,

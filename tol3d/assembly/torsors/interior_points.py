@@ -9,7 +9,7 @@ from typing import Any, Final
 import numpy as np
 
 from tol3d.assembly.torsors.meeting import solved
-from tol3d.numerics.compiled import kernel, part
+from tol3d.numerics.compiled import FULL, kernel, part
 
 GAP: Final = 1e-12
 """Of the largest room: by how much the slack may be better."""
@@ -153,7 +153,8 @@ def climb(cones: Any, trial: Any, goal: Any, lifts: int, state: Any, system: Any
 
 @kernel(
     arrays="float64[:,:,::1], float64[:,:,::1], float64[:,:,:,::1], boolean[:,::1], float64[:,:,::1], float64[:,::1], "
-    "int64, float64[:,::1], float64[:,::1]"
+    "int64, float64[:,::1], float64[:,::1]",
+    level=FULL,
 )
 def climbed(
     primal: Any, dual: Any, rows: Any, counts: Any, closed: Any, goal: Any, lifts: Any, steps: Any, multipliers: Any

@@ -10,7 +10,7 @@ from typing import Any, Final
 import numpy as np
 
 from tol3d.assembly.torsors.meeting import balance, equations, finished, lengths_of, solved
-from tol3d.numerics.compiled import kernel, part
+from tol3d.numerics.compiled import FULL, kernel, part
 
 STEPS: Final = 20
 """Of Newton, 6 to 10 in practice; what takes more is left."""
@@ -122,7 +122,8 @@ def improved(place: Any, trial: Any, q: Any, state: Any, system: Any, step: Any)
 
 @kernel(
     arrays="float64[:,:,::1], float64[:,::1], float64[:,:,:,::1], boolean[:,::1], float64[:,:,::1], float64[:,::1], "
-    "float64[:,::1], boolean[::1]"
+    "float64[:,::1], boolean[::1]",
+    level=FULL,
 )
 def quickly_centred(
     offsets: Any, clearances: Any, rows: Any, counts: Any, closed: Any, steps: Any, multipliers: Any, found: Any

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from tol3d.gearing.displacements.slots import CENTRE, FLANK_OFFSET, FLANK_TURN, TURN
 from tol3d.gearing.displacements.slots import SLOTS as DISPLACED
 from tol3d.gearing.engines.exact.small_angles import sine
-from tol3d.numerics.compiled import kernel, part
+from tol3d.numerics.compiled import FULL, kernel, part
 
 Array = NDArray[np.float64]
 
@@ -43,7 +43,7 @@ def rotate(shaft: Array, x: float, y: float, z: float) -> None:
         shaft[i, 2] = cosine * c + along * z + first * (a * y - b * x)
 
 
-@kernel(arrays=BUILD_ARRAYS)
+@kernel(arrays=BUILD_ARRAYS, level=FULL)
 def write_builds(
     deviations: Any,
     terms: Any,
