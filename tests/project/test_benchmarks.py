@@ -22,6 +22,7 @@ NUMBER = r"([\d,]*\.?\d+)"
 FEW: Mapping[str, tuple[str, ...]] = {
     "assemblies": ("--trials", "1024", "--rounds", "1", "--systems", "stack"),
     "convergence": ("--studies", "2", "--largest", "1024"),
+    "curves": ("--trials", "20", "--positions", "8", "--long", "16", "--rounds", "1", "--workers", "1"),
     "fcl_speed": ("--trials", "10", "--naive", "1", "--rounds", "1"),
     "memory": ("--trials", "100", "--scenes", "spur_pair", "cover_on_base"),
     "stages": ("--trials", "1024", "--rounds", "1"),
@@ -33,7 +34,7 @@ FEW: Mapping[str, tuple[str, ...]] = {
 }
 """Arguments with which each benchmark takes seconds."""
 
-LONG = ("fcl_speed", "memory", "startup", "structure", "studies", "trains")
+LONG = ("curves", "fcl_speed", "memory", "startup", "structure", "studies", "trains")
 """Those that take more than a few of them."""
 
 ROWS: Mapping[str, tuple[str, ...]] = {
@@ -41,6 +42,11 @@ ROWS: Mapping[str, tuple[str, ...]] = {
     "convergence": tuple(
         rf"sigma driver at one position +{sampler} +order -?[\d.]+ +at 1024: {NUMBER} um"
         for sampler in ("Monte Carlo", "Latin hypercube", "scrambled Sobol'")
+    ),
+    "curves": (
+        rf"curves of both sides +│ +128 │ +20 │ +1 │ +{NUMBER}",
+        rf"curve of the angular backlash +│ +128 │ +20 │ +1 │ +{NUMBER}",
+        rf"ranges of both sides, long +│ +256 │ +20 │ +1 │ +{NUMBER}",
     ),
     "fcl_speed": (
         rf"strips, normal backlash +{NUMBER} trials/s",
