@@ -25,6 +25,7 @@ FEW: Mapping[str, tuple[str, ...]] = {
     "curves": ("--trials", "20", "--positions", "8", "--long", "16", "--rounds", "1", "--workers", "1"),
     "fcl_speed": ("--trials", "10", "--naive", "1", "--rounds", "1"),
     "memory": ("--trials", "100", "--scenes", "spur_pair", "cover_on_base"),
+    "rig_records": ("--rows", "4000"),
     "stages": ("--trials", "1024", "--rounds", "1"),
     "startup": ("--runs", "1", "--ways", "without both", "--packages", "colorsys", "no_such_package"),
     "studies": ("--naive", "1", "--rounds", "1", "--most", "100", "--warm", "--systems", "spur pair"),
@@ -34,7 +35,7 @@ FEW: Mapping[str, tuple[str, ...]] = {
 }
 """Arguments with which each benchmark takes seconds."""
 
-LONG = ("curves", "fcl_speed", "memory", "startup", "structure", "studies", "trains")
+LONG = ("curves", "fcl_speed", "memory", "rig_records", "startup", "structure", "studies", "trains")
 """Those that take more than a few of them."""
 
 ROWS: Mapping[str, tuple[str, ...]] = {
@@ -57,6 +58,7 @@ ROWS: Mapping[str, tuple[str, ...]] = {
     ),
     "memory": tuple(rf"{own}, +100 trials, exact: +{NUMBER} MB" for own in ("spur_pair", "cover_on_base")),
     "stages": (rf"draws +│ +{NUMBER} │ +{NUMBER}", rf"statistics, regressors included +│ +{NUMBER} │ +{NUMBER}"),
+    "rig_records": (rf"4000 rows a side: +{NUMBER} s, +{NUMBER} s of a processor, the fit +{NUMBER} s",),
     "startup": (
         rf"without both +{NUMBER} s",
         rf"tol3d --help +{NUMBER} s",

@@ -77,7 +77,7 @@ def test_tooth_mesh_shows_in_the_spectrum_and_not_in_the_scatter() -> None:
 
 
 def test_torques_are_extrapolated_to_none() -> None:
-    rig = Rig(samples=180, torques=(1.0, 2.0, 3.0), repeats=3, stiffness=1 / (20 * ARCSEC), turns=4)
+    rig = Rig(samples=180, torques=(1.0, 2.0, 3.0), repeats=3, winding=20 * ARCSEC, turns=4)
     found = identified_by(REFERENCE, rig)
     assert found.winding is not None
     assert arcsec(found.winding.value) == pytest.approx(20.0, abs=3 * arcsec(found.winding.half_width))
@@ -85,7 +85,7 @@ def test_torques_are_extrapolated_to_none() -> None:
 
 
 def test_one_torque_is_not_extrapolated_and_said_so() -> None:
-    found = identified_by(REFERENCE, Rig(samples=180, torques=(2.0,), stiffness=1 / (20 * ARCSEC), turns=4))
+    found = identified_by(REFERENCE, Rig(samples=180, torques=(2.0,), winding=20 * ARCSEC, turns=4))
     assert found.winding is None
     assert any("winding" in text for text in found.warnings)
     assert arcsec(found.figures["j0"].value) == pytest.approx(START + 40.0, abs=0.5)

@@ -28,6 +28,8 @@ COMMANDS = (
     analyses.shim,
     analyses.compensate,
     records.identify,
+    records.rig,
+    records.plan_rig,
     showing.export,
     showing.view,
     showing.schema,

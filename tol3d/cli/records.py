@@ -1,20 +1,39 @@
 """Commands on measured data: what a rig read, what a synthetic one would read, and how well it would identify."""
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, NamedTuple
 
 import typer
 
-from tol3d.cli.arguments import RunBuilders, TrustParts, scene_path
+from tol3d.cli.arguments import RunBuilders, SceneArgument, TrustParts, scene_path
 from tol3d.cli.console import err_console, out_console, tell
 
 if TYPE_CHECKING:
     from tol3d.gearing.model import Model
+    from tol3d.records.pair import Specimen
+    from tol3d.records.quantity import Kind
 
 SceneOption = Annotated[
     str, typer.Option(metavar="SCENE", help="The pair's scene: a file, or the name of one that tol3d brings along.")
 ]
 MeshOption = Annotated[str | None, typer.Option(metavar="NAME", help="Which mesh was on the rig; the only one.")]
+
+
+TurnsOption = Annotated[float, typer.Option(min=0.1, max=1e4, help="Of the driver on each side.")]
+SamplesOption = Annotated[int, typer.Option(min=4, max=10**7, help="Rows per turn of the driver.")]
+RepeatsOption = Annotated[int, typer.Option(min=1, max=1000, help="Passes of each side.")]
+NoiseOption = Annotated[str, typer.Option(metavar="ANGLE", help="Standard deviation of each encoder.")]
+ResolutionOption = Annotated[str, typer.Option(metavar="ANGLE", help="Step of each encoder.")]
+Eccentricity1 = Annotated[str | None, typer.Option("--e1", metavar="LENGTH", help="Of the driver; the scene's mean.")]
+Phase1 = Annotated[str | None, typer.Option("--theta1", metavar="ANGLE", help="Its phase, in its sense of rotation.")]
+Eccentricity2 = Annotated[
+    str | None, typer.Option("--e2", metavar="LENGTH", help="Of the driven gear; the scene's mean.")
+]
+Phase2 = Annotated[str | None, typer.Option("--theta2", metavar="ANGLE", help="Its phase, in its sense of rotation.")]
+BacklashOption = Annotated[
+    str | None,
+    typer.Option("--backlash", metavar="LENGTH", help="Normal one without eccentricities; the scene's mean."),
+]
 
 
 def identify(
@@ -63,6 +82,140 @@ def identify(
     out_console.print(report)
     for file in written:
         tell(str(file))
+
+
+def rig(
+    scene: SceneArgument,
+    mesh: MeshOption = None,
+    turns: TurnsOption = 16.0,
+    samples: SamplesOption = 720,
+    repeats: RepeatsOption = 1,
+    noise: NoiseOption = "0.5 arcsec",
+    resolution: ResolutionOption = "0 arcsec",
+    encoder1: Annotated[str, typer.Option("--encoder1", metavar="ANGLE", help="Its error once per turn.")] = "0 arcsec",
+    encoder2: Annotated[str, typer.Option("--encoder2", metavar="ANGLE", help="Its error once per turn.")] = "0 arcsec",
+    tooth_mesh: Annotated[
+        str, typer.Option(metavar="ANGLE", help="Amplitude of the transmission error at tooth mesh.")
+    ] = "0 arcsec",
+    drift: Annotated[str, typer.Option(metavar="ANGLE", help="Of the driven encoder over one pass.")] = "0 arcsec",
+    torque: Annotated[
+        list[str] | None, typer.Option(metavar="TORQUE", help="Of the passes in turn; several repeat it.")
+    ] = None,
+    winding: Annotated[str, typer.Option(metavar="ANGLE", help="Of the shafts, per N m of torque.")] = "0 arcsec",
+    hidden_turns: Annotated[
+        int, typer.Option(help="Turns of the driver by which the back side lies further on, unknown to the encoders.")
+    ] = 0,
+    zeroed: Annotated[bool, typer.Option("--zeroed", help="Set the encoders to zero before each side.")] = False,
+    wrapped: Annotated[bool, typer.Option("--wrapped", help="Angles within one turn.")] = False,
+    seed: Annotated[int, typer.Option(min=0, max=2**63, help="Of all that is random.")] = 1,
+    e1: Eccentricity1 = None,
+    theta1: Phase1 = None,
+    e2: Eccentricity2 = None,
+    theta2: Phase2 = None,
+    backlash: BacklashOption = None,
+    out: Annotated[Path, typer.Option(help="Folder for drive.csv and back.csv.")] = Path(),
+    trust_parts: TrustParts = False,
+    run_builders: RunBuilders = False,
+) -> None:
+    """Write what a synthetic transmission error rig would measure of a scene's pair: drive.csv and back.csv."""
+    from tol3d.records.quantity import stated
+    from tol3d.records.rig import Rig
+    from tol3d.records.rig_files import write_both
+
+    path = scene_path(scene)
+    model = _model(path, trust_parts=trust_parts, run_builders=run_builders)
+    own = Rig(
+        turns=turns,
+        samples=samples,
+        repeats=repeats,
+        noise=stated("--noise", noise, "angle"),
+        resolution=stated("--resolution", resolution, "angle"),
+        encoder1=stated("--encoder1", encoder1, "angle"),
+        encoder2=stated("--encoder2", encoder2, "angle"),
+        tooth_mesh=stated("--tooth-mesh", tooth_mesh, "angle"),
+        drift=stated("--drift", drift, "angle"),
+        torques=tuple(stated("--torque", each, "torque") for each in torque or ()),
+        winding=stated("--winding", winding, "angle"),
+        hidden_turns=hidden_turns,
+        zeroed=zeroed,
+        seed=seed,
+    )
+    specimen = _specimen(model, mesh, _Stated(e1, theta1, e2, theta2, backlash))
+    with err_console.status("rig"):
+        written = write_both(specimen, own, out, wrapped=wrapped)
+    for file in written:
+        tell(str(file))
+
+
+def plan_rig(
+    scene: SceneArgument,
+    mesh: MeshOption = None,
+    turns: Annotated[str, typer.Option(metavar="N,...", help="Of the driver on each side.")] = "1,2,4,8,16",
+    samples: SamplesOption = 720,
+    repeats: RepeatsOption = 1,
+    noise: NoiseOption = "0.5 arcsec",
+    resolution: ResolutionOption = "0 arcsec",
+    drift: Annotated[bool, typer.Option("--drift", help="A linear drift of each side is fitted along.")] = False,
+    e1: Eccentricity1 = None,
+    theta1: Phase1 = None,
+    e2: Eccentricity2 = None,
+    theta2: Phase2 = None,
+    backlash: BacklashOption = None,
+    out: Annotated[Path | None, typer.Option(help="Write the table to this CSV file.")] = None,
+    trust_parts: TrustParts = False,
+    run_builders: RunBuilders = False,
+) -> None:
+    """Predict the 95 % intervals that a rig would find, over its turns, rows and encoders: before it is built."""
+    from tol3d.records.folder import write_texts
+    from tol3d.records.plan_table import plan_report, plan_table
+    from tol3d.records.planning import plan_rig as planned
+    from tol3d.records.quantity import numbers, stated
+    from tol3d.records.rig import Rig
+
+    own = Rig(
+        samples=samples,
+        repeats=repeats,
+        noise=stated("--noise", noise, "angle"),
+        resolution=stated("--resolution", resolution, "angle"),
+    )
+    path = scene_path(scene)
+    model = _model(path, trust_parts=trust_parts, run_builders=run_builders)
+    specimen = _specimen(model, mesh, _Stated(e1, theta1, e2, theta2, backlash))
+    plans = planned(specimen, own, numbers("--turns", turns), drift=drift)
+    out_console.print(plan_report(plans, specimen, own, model.name))
+    if out is not None:
+        write_texts({out.name: plan_table(plans).csv()}, out.parent)
+        tell(str(out))
+
+
+class _Stated(NamedTuple):
+    """What options say of the pair instead of the scene."""
+
+    e1: str | None
+    theta1: str | None
+    e2: str | None
+    theta2: str | None
+    backlash: str | None
+
+
+def _specimen(model: "Model", mesh: str | None, options: _Stated) -> "Specimen":
+    """The scene's mean build, with what options say otherwise."""
+    from tol3d.records.from_scene import mesh_of, specimen_of_scene
+    from tol3d.records.pair import Specimen
+    from tol3d.records.quantity import stated
+
+    def said(option: str, text: str | None, kind: "Kind", otherwise: float) -> float:
+        return otherwise if text is None else stated(option, text, kind)
+
+    own = specimen_of_scene(model, mesh_of(model, mesh))
+    return Specimen(
+        own.pair,
+        said("--e1", options.e1, "length", own.e1),
+        said("--theta1", options.theta1, "angle", own.theta1),
+        said("--e2", options.e2, "length", own.e2),
+        said("--theta2", options.theta2, "angle", own.theta2),
+        said("--backlash", options.backlash, "length", own.normal_backlash),
+    )
 
 
 def _model(path: Path, *, trust_parts: bool, run_builders: bool) -> "Model":

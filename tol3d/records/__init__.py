@@ -13,6 +13,7 @@
 
 from tol3d.records.identify import Identified, Settings, identify
 from tol3d.records.pair import RigPair, Specimen
+from tol3d.records.planning import RigPlan, plan_rig
 from tol3d.records.rig import Rig, measured
 
-__all__ = ["Identified", "Rig", "RigPair", "Settings", "Specimen", "identify", "measured"]
+__all__ = ["Identified", "Rig", "RigPair", "RigPlan", "Settings", "Specimen", "identify", "measured", "plan_rig"]

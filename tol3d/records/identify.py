@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from tol3d.errors import InputError
 from tol3d.records.alignment import Aligned, HiddenShift, aligned, hidden_shift
 from tol3d.records.exact_play import Side
-from tol3d.records.fit import Fit, Measured, fitted, measured_of
+from tol3d.records.fit import Fit, Measured, fitted, measured_of, with_drift
 from tol3d.records.one_sided import OneSided, one_sided
 from tol3d.records.pair import ARCSEC, TURN, RigPair, Specimen
 from tol3d.records.prediction import BacklashModel, Extreme, Figure, length_and_phase, quantile_of
@@ -312,17 +312,11 @@ def _torque_warnings(found: Identified) -> tuple[str, ...]:
 def _drift_warnings(found: Identified, settings: Settings) -> tuple[str, ...]:
     if settings.drift:
         return ()
-    fit = found.fit
-    with_it = fitted(
-        fit.measured,
-        Terms(fit.terms.sides, fit.terms.encoders, fit.terms.winding, True, fit.terms.teeth),
-        constant_part=settings.j0,
-    )
-    words = []
-    for side in fit.terms.sides:
-        value, covariance = with_it.of((f"drift {side}",))
-        over = abs(float(value[0])) * TURN * fit.measured.turned[side]
-        if abs(float(value[0])) > FAR * math.sqrt(float(covariance[0, 0])) and over > found.least.backlash.half_width:
+    fit, words = found.fit, []
+    values, errors = with_drift(fit)
+    for side, value, error in zip(fit.terms.sides, values, errors, strict=True):
+        over = abs(float(value)) * TURN * fit.measured.turned[side]
+        if abs(value) > FAR * error and over > found.least.backlash.half_width:
             words.append(
                 f"the {side} side drifts by {over / ARCSEC:.2f}″ while it is measured; --drift fits that along"
             )

@@ -1,11 +1,10 @@
 """The folder that `identify` writes: findings, curve, tables, pictures and the identified pair as a scene."""
 
-from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from tol3d.errors import InputError, unwritable
 from tol3d.records.curve import curve_of
+from tol3d.records.folder import write_texts
 from tol3d.records.from_scene import scene_text
 from tol3d.records.identified_picture import draw_backlash, draw_residual
 from tol3d.records.identify import Identified
@@ -41,33 +40,3 @@ def write_identified(found: Identified, report: Page, mesh: "Mesh", scene: str, 
     draw_backlash(found, curve, pictures[0])
     draw_residual(found, pictures[1])
     return *written, *pictures
-
-
-def write_texts(texts: Mapping[str, str], folder: Path) -> tuple[Path, ...]:
-    """Write files into a folder, which is made if it is not there.
-
-    Raises:
-        InputError: they cannot be written.
-    """
-    place = made_folder(folder)
-    for name, text in texts.items():
-        try:
-            (place / name).write_text(text, encoding="utf-8")
-        except OSError as error:
-            raise unwritable(place / name, error, "choose another folder") from None
-    return tuple(place / name for name in texts)
-
-
-def made_folder(folder: Path) -> Path:
-    """The folder, made if it is not there.
-
-    Raises:
-        InputError: it cannot be, or is a file.
-    """
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-    except FileExistsError:
-        raise InputError(f"{folder}: expected a folder, got a file") from None
-    except OSError as error:
-        raise unwritable(folder, error, "choose another folder") from None
-    return folder

@@ -27,6 +27,8 @@ LENGTHS: Final[Mapping[str, float]] = {"mm": 1.0, "um": 1e-3, "µm": 1e-3, "nm":
 UNITS: Final[Mapping[Kind, Mapping[str, float]]] = {"angle": ANGLES, "torque": TORQUES, "length": LENGTHS}
 EXAMPLES: Final[Mapping[Kind, str]] = {"angle": "6 arcsec", "torque": "2 N m", "length": "18 um"}
 
+MOST_NUMBERS: Final = 20
+PLAIN: Final = re.compile(r"\d{1,5}\.?\d{0,9}|\.\d{1,9}")
 STATED: Final = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*([^\d\s].*?)\s*")
 
 
@@ -36,13 +38,28 @@ def stated(option: str, text: str, kind: Kind) -> float:
     Raises:
         InputError: it says something else.
 
-    >>> stated("--e1", "18 um", "length")
+    >>> round(stated("--e1", "18 um", "length"), 9)
     0.018
     """
     match = STATED.fullmatch(text[:100])
     if match is None or match[2] not in UNITS[kind]:
+        article, units = "an" if kind == "angle" else "a", ", ".join(UNITS[kind])
         raise InputError(
-            f'{option}: expected a {kind} with its unit ({", ".join(UNITS[kind])}), such as "{EXAMPLES[kind]}", '
-            f"got {text!r}"
+            f'{option}: expected {article} {kind} with its unit ({units}), such as "{EXAMPLES[kind]}", got {text!r}'
         )
     return float(match[1]) * UNITS[kind][match[2]]
+
+
+def numbers(option: str, text: str) -> tuple[float, ...]:
+    """Positive numbers between commas, as an option gives them, in rising order.
+
+    Raises:
+        InputError: it says something else.
+
+    >>> numbers("--turns", "4, 2,16")
+    (2.0, 4.0, 16.0)
+    """
+    cells = [cell.strip() for cell in text.split(",")]
+    if len(cells) > MOST_NUMBERS or not all(PLAIN.fullmatch(cell) and 0.1 <= float(cell) <= 1e4 for cell in cells):
+        raise InputError(f"{option}: expected numbers from 0.1 to 10000 between commas, such as 2,4,16, got {text!r}")
+    return tuple(sorted(set(map(float, cells))))

@@ -1,6 +1,5 @@
 """A synthetic rig: what encoders would read of a specimen, with the errors that rigs have."""
 
-import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -26,7 +25,7 @@ class Rig:
         tooth_mesh: amplitude of the tooth-mesh order of the transmission error, other phases on either side.
         drift: of the driven encoder over one side.
         torques: [N m] of the passes in turn; () where none is measured and none acts.
-        stiffness: k [N m/rad] of the backlash under load, B = j + T/k.
+        winding: 1/k [rad/(N m)] of the backlash under load, B = j + T/k.
         start: driver's angle at which each side begins.
         hidden_turns: whole turns of the driver by which the back side lies further on, of which the encoders know
             nothing.
@@ -44,7 +43,7 @@ class Rig:
     tooth_mesh: float = 0.0
     drift: float = 0.0
     torques: tuple[float, ...] = ()
-    stiffness: float = math.inf
+    winding: float = 0.0
     start: float = 0.0
     hidden_turns: int = 0
     zeroed: bool = False
@@ -86,7 +85,7 @@ def _pass(
     hidden = rig.hidden_turns if side == "back" else 0
     pair, sense = specimen.pair, -1.0 if side == "drive" else 1.0
     phi2 = driven_angle(specimen, phi1 + TURN * hidden, side) - pair.rate * TURN * hidden
-    phi2 = phi2 + sense * _torque(rig, repeat) / (2 * rig.stiffness)
+    phi2 = phi2 + sense * _torque(rig, repeat) * rig.winding / 2
     phi2 = phi2 + rig.tooth_mesh * np.sin(pair.driver_teeth * phi1 + phases[4 if side == "drive" else 5])
     phi2 = phi2 + rig.drift * (along / max(along[-1], 1e-12) + repeat)
     turned = phi2 + pair.rate * TURN * hidden

@@ -1,0 +1,65 @@
+"""The example of docs/records.md does what the page shows."""
+
+import re
+import shlex
+from pathlib import Path
+
+import pytest
+from fixtures import Command
+from places import ROOT
+from records.rigged import LARGEST, LEAST
+
+from tol3d import run_scene
+
+PAGE = (ROOT / "docs" / "records.md").read_text("utf-8")
+WIDTH = "100"
+
+
+def fences(kind: str) -> list[str]:
+    return re.findall(rf"^```{kind}\n(.*?)^```", PAGE, re.MULTILINE | re.DOTALL)
+
+
+def commands() -> list[list[str]]:
+    """Of the example and the plan, without tol3d."""
+    lines = "\n".join(fences("sh")[1:]).replace("\\\n", " ").splitlines()
+    return [shlex.split(line)[1:] for line in lines if line.strip()]
+
+
+def plain(said: str) -> str:
+    return "\n".join(line.rstrip() for line in said.splitlines())
+
+
+def played(tol3d: Command, folder: Path, monkeypatch: pytest.MonkeyPatch) -> str:
+    """What the commands print, but for the run."""
+    monkeypatch.chdir(folder)
+    monkeypatch.setenv("COLUMNS", WIDTH)
+    (folder / "pair.yaml").write_text(fences("yaml")[0], encoding="utf-8")
+    printed = ""
+    for arguments in commands():
+        if arguments[0] != "run":
+            code, out, err = tol3d(*arguments)
+            assert (code, err) == (0, ""), arguments
+            printed += plain(out) + "\n"
+    return printed
+
+
+def test_the_example_prints_what_the_page_shows(
+    tol3d: Command, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    printed = played(tol3d, tmp_path, monkeypatch)
+    assert [arguments[0] for arguments in commands()] == ["rig", "identify", "run", "plan-rig"]
+    for shown in fences("text"):
+        assert plain(shown) in printed
+
+
+@pytest.mark.slow
+def test_the_identified_scene_of_the_example_runs(
+    tol3d: Command, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    played(tol3d, tmp_path, monkeypatch)
+    found = run_scene("identified/identified.yaml", out="run").found.measures
+    for name, true in (("least backlash", LEAST), ("largest backlash", LARGEST)):
+        geometric = found[name].geometric
+        assert geometric is not None
+        assert geometric.mean is not None
+        assert 60 * geometric.mean == pytest.approx(true, abs=0.1)

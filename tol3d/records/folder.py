@@ -1,0 +1,36 @@
+"""Folders that commands write into."""
+
+from collections.abc import Mapping
+from pathlib import Path
+
+from tol3d.errors import InputError, unwritable
+
+
+def write_texts(texts: Mapping[str, str], folder: Path) -> tuple[Path, ...]:
+    """Write files into a folder, which is made if it is not there.
+
+    Raises:
+        InputError: they cannot be written.
+    """
+    place = made_folder(folder)
+    for name, text in texts.items():
+        try:
+            (place / name).write_text(text, encoding="utf-8")
+        except OSError as error:
+            raise unwritable(place / name, error, "choose another folder") from None
+    return tuple(place / name for name in texts)
+
+
+def made_folder(folder: Path) -> Path:
+    """The folder, made if it is not there.
+
+    Raises:
+        InputError: it cannot be, or is a file.
+    """
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except FileExistsError:
+        raise InputError(f"{folder}: expected a folder, got a file") from None
+    except OSError as error:
+        raise unwritable(folder, error, "choose another folder") from None
+    return folder
