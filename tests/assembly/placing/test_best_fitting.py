@@ -86,11 +86,11 @@ def random_points(random: np.random.Generator) -> tuple[Array, Array]:
 def test_least_squares_in_space_agree_with_kabsch(seed: int) -> None:
     random = np.random.default_rng(seed)
     points, pose = random_points(random)
-    weights, offsets = random.uniform(0.5, 2.0, len(points)), random.normal(0, 0.5, (3, len(points), 3))
+    weights, offsets = random.uniform(0.5, 2.0, len(points)), random.normal(0, 0.5, (5, len(points), 3))
     made = fitted(points, "squares", np.eye(3), weights, pose)
     own = (points - pose[:3, 3]) @ pose[:3, :3]
     expected = [kabsch(own, points + each, weights) for each in offsets]
-    np.testing.assert_allclose(placed(made, offsets.reshape(3, -1))["plate"], expected, atol=2e-11, rtol=0)
+    np.testing.assert_allclose(placed(made, offsets.reshape(5, -1))["plate"], expected, atol=2e-11, rtol=0)
 
 
 @pytest.mark.parametrize("seed", seeds(10))
