@@ -17,7 +17,7 @@ from tol3d.assembly.model.statuses import NO_BUILD
 from tol3d.assembly.placing import road as placing
 from tol3d.assembly.torsors import road as torsors
 from tol3d.errors import SceneError
-from tol3d.simulate import Overrides, load, simulation_of
+from tol3d.simulate import Overrides, load, run_scene, simulation_of
 from tol3d.study.draws import drawn
 
 Array = NDArray[np.float64]
@@ -251,10 +251,27 @@ def test_the_pair_that_does_not_go_in_is_named(tmp_path: Path) -> None:
     rows = np.zeros((2, made.system.assembly.width))
     sizes = {contributor.name: own.start for contributor, own in made.slices if contributor.kind == "size"}
     rows[1, sizes["hole 2 size"]] = -0.3
-    found, _, columns = placing.answers(made.system.assembly, rows, ["slack", "x"])
-    assert columns["together"][1] == "lower.pin 2 in upper.hole 2"
+    found, columns = placing.answers(made.system.assembly, rows, ["slack", "x"])
+    assert columns["tightest:together"][1] == "lower.pin 2 in upper.hole 2"
+    assert columns["reason:x"].tolist() == ["", "lower.pin 2 in upper.hole 2"]
+    assert "reason:slack" not in columns  # it has its value all the same
     assert found["slack"][0] == pytest.approx([0.1, -0.05], abs=1e-9)
     assert np.isnan(found["x"][0]).tolist() == [False, True]
+
+
+def test_a_run_names_the_pair_that_most_often_does_not_go_in(tmp_path: Path) -> None:
+    """In its warning, with its share of the builds that failed; all pairs with their counts in its summary."""
+    run = run_scene(SCENES / "two_plates.yaml", overrides=Overrides(trials=2000), out=tmp_path / "run")
+    columns, found = run.columns("reason:edge", "status:edge"), run.summary
+    failed = columns["status:edge"] == "no build"
+    names, counts = np.unique(columns["reason:edge"][failed], return_counts=True)
+    summary = found["measures"]["edge"]
+    assert summary["reasons"] == dict(zip(names.tolist(), counts.tolist(), strict=True))
+    assert (columns["reason:edge"][~failed] == "").all()
+    assert counts.sum() == failed.sum() == summary["status"]["no build"] > 50
+    (warning,) = (own for own in found["warnings"] if own.startswith("edge: of 2000 builds"))
+    most = f"{100 * counts.max() / counts.sum():.3g} % of them by {names[counts.argmax()]}"
+    assert f"% failed, {most}; mean" in warning
 
 
 FIXED = "  set 1: {kind: fix, part: plate}\n  set 2: {kind: fix, part: key}\n"

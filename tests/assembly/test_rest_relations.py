@@ -48,7 +48,7 @@ def test_a_point_stays_on_a_leaning_pin_while_the_plate_comes_to_lie_on_its_pads
     rng = np.random.default_rng(1)
     trials = rng.normal(0, 0.1, (40, model.width))
     poses = placing.placed(model, trials)["plate"]
-    carried = placing.answers(model, trials, [])[1]["rest"]
+    carried = placing.answers(model, trials, [])[1]["carries:rest"]
     for pose, row, carriers in zip(poses, trials, carried, strict=True):
         pads = PADS + row[:4, None] * Z
         over = (pose[:3, 3] - pads) @ pose[:3, 2]  # of the plate's plane, along its own normal
@@ -65,7 +65,7 @@ def test_a_bore_stays_on_its_pin_while_the_plate_slides_down_to_the_highest_pad(
     model = on_pads((Relation("coaxial", "plate.bore", "base.pin"),))
     trials = np.random.default_rng(2).normal(0, 0.1, (40, model.width))
     poses = placing.placed(model, trials)["plate"]
-    carried = placing.answers(model, trials, [])[1]["rest"]
+    carried = placing.answers(model, trials, [])[1]["carries:rest"]
     for pose, row, carriers in zip(poses, trials, carried, strict=True):
         pin = [np.array([30.0 + row[4 + 2 * k], 20.0 + row[5 + 2 * k], z]) for k, z in enumerate((-10.0, 30.0))]
         bore = [np.array([30.0 + row[14 + 2 * k], 20.0 + row[15 + 2 * k], z]) for k, z in enumerate((0.0, 20.0))]
@@ -92,7 +92,7 @@ def test_both_roads_differ_by_terms_of_second_order(relations: tuple[Relation, .
         exact = placing.values(model, scale * trials, ["x", "y", "z"])
         linear = torsors.values(model, scale * trials, ["x", "y", "z"])
         off.append(np.max([np.abs(exact[name][0] - linear[name]) for name in "xyz"], axis=0))
-    same = [placing.answers(model, scale * trials, [])[1]["rest"] for scale in (1.0, 0.25)]
+    same = [placing.answers(model, scale * trials, [])[1]["carries:rest"] for scale in (1.0, 0.25)]
     assert np.median((off[0] / off[1])[same[0] == same[1]]) == pytest.approx(4.0, rel=0.1)
     assert np.median((off[1] / off[2])[same[0] == same[1]]) == pytest.approx(4.0, rel=0.1)
 

@@ -54,7 +54,7 @@ def test_both_roads_differ_by_terms_of_second_order_away_from_switches(seed: int
     model = random_contacts(rng).rested(seen=SEEN)
     heights = rng.normal(0, 0.2, (30, model.width))
     off = [np.abs(exact(model, s * heights)[0] - linear(model, s * heights)).max(axis=0) for s in (1.0, 0.5, 0.25)]
-    carried = [placing.answers(model, s * heights, [])[1]["rest"] for s in (1.0, 0.25)]
+    carried = [placing.answers(model, s * heights, [])[1]["carries:rest"] for s in (1.0, 0.25)]
     same = carried[0] == carried[1]
     assert same.mean() > 0.8
     for coarse, fine in pairwise(off):

@@ -90,7 +90,8 @@ def test_a_limit_on_the_size_of_files_is_told_and_the_same_command_goes_on(tmp_p
     command = [sys.executable, "-m", "tol3d.cli", "run", str(SPUR_PAIR), "--engine", "analytic", "--trials", "2000"]
     command += ["--no-picture", "--out", str(tmp_path / "run")]
     limited = ["bash", "-c", f'ulimit -f {LARGEST}; exec "$@"', "bash", *command]
-    told = subprocess.run(limited, capture_output=True, text=True)
+    unwritten = {**os.environ, "PYTHONDONTWRITEBYTECODE": "1"}  # bytecode that is cut short would break later tests
+    told = subprocess.run(limited, capture_output=True, text=True, env=unwritten)
     assert told.returncode == 2, told.stderr
     block = tmp_path / "run.partial" / "trials" / "block-000000.parquet"
     assert f"{block}: cannot be written (File too large): 0 of 2000 trials are kept" in told.stderr

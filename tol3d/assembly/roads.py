@@ -1,11 +1,8 @@
 """Both roads of assemblies, as studies ask them."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import ClassVar
-
-import numpy as np
-from numpy.typing import NDArray
 
 from tol3d.assembly.model import Assembly
 from tol3d.assembly.placing import road as placing
@@ -14,16 +11,6 @@ from tol3d.assembly.torsors import road as torsors
 from tol3d.system.measure import Measure
 from tol3d.system.road import Answers
 from tol3d.system.trials import Trials
-
-Words = NDArray[np.str_]
-
-
-def details_of(carried: Mapping[str, Words], tightest: Mapping[str, Words]) -> dict[str, NDArray[np.generic]]:
-    """Columns of words about moves: the contacts that carry, the pair with the least room."""
-    return {
-        **{f"carries:{move}": contacts for move, contacts in carried.items()},
-        **{f"tightest:{move}": pairs for move, pairs in tightest.items()},
-    }
 
 
 @dataclass(frozen=True)
@@ -57,9 +44,9 @@ class PlacingRoad:
     def answers(self, trials: Trials, measures: Sequence[Measure]) -> Answers:
         """See Road."""
         names = [measure.name for measure in measures]
-        found, carried, tightest = placing.answers(self.assembly, trials.deviations, names, self.solids)
+        found, decided = placing.answers(self.assembly, trials.deviations, names, self.solids)
         return Answers(
             {name: own[:, None] for name, (own, _) in found.items()},
-            details=details_of(carried, tightest),
+            details=decided,
             status={name: codes for name, (_, codes) in found.items()},
         )

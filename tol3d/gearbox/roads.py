@@ -9,12 +9,12 @@ from numpy.typing import NDArray
 
 from tol3d.assembly.placing import road as placing
 from tol3d.assembly.placing.world import SolidReader
-from tol3d.assembly.roads import details_of
 from tol3d.assembly.torsors import road as torsors
 from tol3d.gearbox.joined import Joined
 from tol3d.gearbox.statuses import FROM_ASSEMBLIES
 from tol3d.gearing.model.measure import Measure as GearMeasure
 from tol3d.system.measure import Measure
+from tol3d.system.outcome import reason_column
 from tol3d.system.road import Answers, Codes, Road
 from tol3d.system.trials import Trials
 
@@ -61,8 +61,10 @@ class GearboxRoad:
         of_gears = [measure for measure in measures if isinstance(measure, GearMeasure)]
         others = [measure.name for measure in measures if not isinstance(measure, GearMeasure)]
         values, codes, details = self._read(trials, (*self.system.bores.names, *others) if of_gears else others)
+        hidden = {reason_column(name) for name in self.system.bores.names}
+        shown = {name: own for name, own in details.items() if name not in hidden}
         own = Answers(
-            {name: values[name][:, None] for name in others}, details=details, status=self._status(codes, others)
+            {name: values[name][:, None] for name in others}, details=shown, status=self._status(codes, others)
         )
         if not of_gears:
             return own
@@ -82,9 +84,9 @@ class GearboxRoad:
         assembly, deviations = self.system.bores.assembly, trials.deviations[:, self.system.assembly_places]
         if not self.exact:
             return torsors.values(assembly, deviations, names), {}, {}
-        found, carried, tightest = placing.answers(assembly, deviations, names, self.solids)
+        found, decided = placing.answers(assembly, deviations, names, self.solids)
         values = {name: own for name, (own, _) in found.items()}
-        return values, {name: codes for name, (_, codes) in found.items()}, details_of(carried, tightest)
+        return values, {name: codes for name, (_, codes) in found.items()}, decided
 
     def _seen(
         self, trials: Trials, values: Mapping[str, Array], codes: Mapping[str, Codes]

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.system.measure import Measure
-from tol3d.system.outcome import ANALYTIC, Columns, status_column, value_column
+from tol3d.system.outcome import ANALYTIC, Columns, reason_column, status_column, value_column
 from tol3d.system.statuses import Statuses
 
 Counts = Mapping[str, int]
@@ -24,6 +24,20 @@ def counted(statuses: Statuses, status: NDArray[np.generic] | None, trials: int)
     if seated == trials:
         return {statuses.seated: trials, **dict.fromkeys(statuses.failed, 0)}
     return {statuses.seated: seated, **{text: int(np.count_nonzero(status == text)) for text in statuses.failed}}
+
+
+def reason_counts(columns: Columns, measure: Measure) -> dict[str, int]:
+    """Trials of a block that failed, by what decided it; none where the road does not say."""
+    reasons = columns.get(reason_column(measure.name))
+    if reasons is None or not (said := reasons != "").any():
+        return {}
+    words, counts = np.unique(np.asarray(reasons[said], dtype=np.str_), return_counts=True)
+    return dict(zip(words.tolist(), counts.tolist(), strict=True))
+
+
+def gathered(mine: Counts, its: Counts) -> dict[str, int]:
+    """Both counts as one, of whatever names."""
+    return {name: mine.get(name, 0) + its.get(name, 0) for name in sorted(mine.keys() | its.keys())}
 
 
 def added(mine: Counts, its: Counts) -> dict[str, int]:

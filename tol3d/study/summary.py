@@ -91,20 +91,38 @@ def _asked(study: Study) -> StudySummary:
 
 def failures(simulation: Simulation, tally: Tally) -> Iterator[str]:
     """A sentence for measures of which more trials failed than may be passed over; one for those that failed alike."""
-    alike: dict[tuple[tuple[str, int], ...], list[str]] = {}
+    alike: dict[tuple[tuple[tuple[str, int], ...], str], list[str]] = {}
     for measure in simulation.system.measures:
         status = _status(measure, tally)
-        if tally.trials - status[simulation.system.statuses.seated] > FAILURES_NAMED * tally.trials:
-            alike.setdefault(tuple(status.items()), []).append(measure.name)
+        failed = tally.trials - status[simulation.system.statuses.seated]
+        if failed > FAILURES_NAMED * tally.trials:
+            mostly = _mostly(_reasons(measure, tally), failed)
+            alike.setdefault((tuple(status.items()), mostly), []).append(measure.name)
     words = simulation.system.statuses.words
-    for ends, names in alike.items():
+    for (ends, mostly), names in alike.items():
         counts = dict(ends)
         seated = counts.pop(simulation.system.statuses.seated)
         how = ", ".join(f"{count} {words.get(text, text)}" for text, count in counts.items() if count)
         yield (
             f"{', '.join(names)}: of {tally.trials} builds {how}: {100 * sum(counts.values()) / tally.trials:.3g} % "
-            f"failed; mean, sigma and shares are of the {seated} that seated, what is out of limits is counted of all"
+            f"failed{mostly}; mean, sigma and shares are of the {seated} that seated, what is out of limits is "
+            "counted of all"
         )
+
+
+def _mostly(reasons: Mapping[str, int], failed: int) -> str:
+    """What decided most of the trials that failed, for a sentence; "" where nothing is known of it."""
+    if not reasons:
+        return ""
+    reason, count = max(reasons.items(), key=lambda own: own[1])
+    return f", {'all' if count == failed else f'{100 * count / failed:.3g} %'} of them by {reason}"
+
+
+def _reasons(measure: Measure, tally: Tally) -> Mapping[str, int]:
+    """How many trials of a measure failed by what, the most first."""
+    if measure.take == "curve":
+        return {}
+    return dict(sorted(tally.measures[measure.name].reasons.items(), key=lambda own: -own[1]))
 
 
 def _status(measure: Measure, tally: Tally) -> Mapping[str, int]:
@@ -153,6 +171,7 @@ def _measure(
         lower_limit=in_unit(measure, measure.lower_limit),
         upper_limit=in_unit(measure, measure.upper_limit),
         status=_status(measure, tally),
+        reasons=_reasons(measure, tally) or None,
         nominal=_single(simulation, road, measure, nominal_build(system)),
         mean_build=_single(simulation, road, measure, mean_build(system, measure)),
         analytic=sample_summary(measure, own.analytic) if own else None,

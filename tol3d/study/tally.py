@@ -20,7 +20,7 @@ from tol3d.study.sample import Sample
 from tol3d.study.simulation import Simulation
 from tol3d.study.spectrum_tally import BINS as ORDER_BINS
 from tol3d.study.spectrum_tally import amplitudes_of, grid_name
-from tol3d.study.status_counts import added, counted, status_counts
+from tol3d.study.status_counts import added, counted, gathered, reason_counts, status_counts
 from tol3d.system.closed_form import ClosedForm
 from tol3d.system.dependent import DependentlyJudged
 from tol3d.system.draw import JudgedDraw
@@ -85,9 +85,13 @@ def _grid(system: System, measure: Measure, form: ClosedForm | None, pilot: Colu
 
 @dataclass(frozen=True)
 class MeasureTally:
-    """All that is kept of one measure; `status` counts what became of its trials on the geometric road."""
+    """All that is kept of one measure.
+
+    `status` counts what became of its trials on the geometric road, `reasons` what decided it where they failed.
+    """
 
     status: Mapping[str, int]
+    reasons: Mapping[str, int]
     analytic: Sample
     geometric: Sample | None
     agreement: Agreement | None
@@ -99,6 +103,7 @@ class MeasureTally:
         """Both tallies as one."""
         return MeasureTally(
             added(self.status, other.status),
+            gathered(self.reasons, other.reasons),
             self.analytic.merge(other.analytic),
             self.geometric.merge(other.geometric) if self.geometric and other.geometric else None,
             self.agreement.merge(other.agreement) if self.agreement and other.agreement else None,
@@ -148,6 +153,7 @@ class _Block:
             empty = grids[measure.name]
             tallies[measure.name] = MeasureTally(
                 status_counts(statuses, self.columns, measure),
+                reason_counts(self.columns, measure),
                 Sample.of(measure, analytic, empty, self.rows),
                 Sample.of(measure, geometric, empty, self.rows) if geometric else None,
                 Agreement.of(geometric.values, analytic.values) if geometric else None,

@@ -33,6 +33,14 @@ def status_column(measure: str) -> str:
     return f"status:{measure}"
 
 
+def reason_column(measure: str) -> str:
+    """Name of the column of what decided that a trial of a measure failed, in words of its system.
+
+    One of the details of a road, "" where nothing decided it; not every measure has it.
+    """
+    return f"reason:{measure}"
+
+
 @dataclass(frozen=True, eq=False)
 class Outcome:
     """A road's values of a measure in some trials.

@@ -63,9 +63,9 @@ def test_highs_finds_no_way_on_from_where_a_part_rests(seed: int, spread: float)
     own = random_contacts(rng)
     heights = rng.normal(0, spread, (4, len(own.points)))
     model = own.rested(seen=[(np.zeros(3), np.eye(3)[2])])
-    found, carried, _ = answers(model, heights, ["0"])
+    found, decided = answers(model, heights, ["0"])
     for pose, row, code, carriers in zip(
-        placed(model, heights)["part"], heights, found["0"][1], carried["rest"], strict=True
+        placed(model, heights)["part"], heights, found["0"][1], decided["carries:rest"], strict=True
     ):
         if code == OK:
             gaps, rows, pull = gaps_and_rows(own, pose, row)
@@ -85,7 +85,7 @@ def test_a_part_rests_where_brute_force_over_all_sixes_lays_it(seed: int) -> Non
     rng = np.random.default_rng(seed)
     own = random_contacts(rng)
     heights = rng.normal(0, 0.3, (3, len(own.points)))
-    carried = answers(own.rested(), heights, [])[1]["rest"]
+    carried = answers(own.rested(), heights, [])[1]["carries:rest"]
     for pose, row, carriers in zip(placed(own.rested(), heights)["part"], heights, carried, strict=True):
         if len(held := vertices(own, row)) == 1:
             assert np.abs(pose - held[0][0]).max() < 1e-9
@@ -108,8 +108,8 @@ def test_a_plate_whose_weight_hangs_below_its_pads_is_balanced_on_two() -> None:
     own = replace(pads(places), at=np.array([0.0, e, -h]))
     heights = np.array([[0.0, -2.0, 0.0, -2.0], [0.01, -2.0, 0.01, -2.0], [0.0, -2.0, 0.0, -0.5]])
     seen = [(np.array([0.0, 50.0, 0.0]), np.eye(3)[2])]
-    found, carried, _ = answers(own.rested(seen=seen), heights, ["0"])
-    assert carried["rest"].tolist() == ["1 3", "1 3", "1 3 4"]
+    found, decided = answers(own.rested(seen=seen), heights, ["0"])
+    assert decided["carries:rest"].tolist() == ["1 3", "1 3", "1 3 4"]
     values, codes = found["0"]
     assert codes.tolist() == [OK] * 3
     tilt = np.arctan(e / h)
@@ -157,7 +157,7 @@ def test_a_plate_on_pads_rests_on_those_three_that_brute_force_finds(seed: int, 
     pose = posed(rng.normal(0, 1, 3), rng.uniform(-50, 50, 3))
     model = own.rested(pose, points_on)
     heights = rng.normal(0, 0.05, (5, len(own.points)))
-    carried = answers(model, heights, [])[1]["rest"]
+    carried = answers(model, heights, [])[1]["carries:rest"]
     for found, row, carriers in zip(placed(model, heights)["part"], heights, carried, strict=True):
         moved = found @ np.linalg.inv(pose)
         # a plate that tilts about its origin moves aside: over pads that stand still its weight, too
@@ -186,7 +186,7 @@ def test_the_one_shot_of_four_pads() -> None:
     assert plane == pytest.approx((0.08, -0.0007, 0.05 / 60), abs=1e-7)
     assert plane @ (1, -100, 60) - 0.02 == pytest.approx(0.18, abs=1e-5)
     assert plane @ (1, 0, -20) == pytest.approx(0.19 / 3, abs=1e-6)
-    assert answers(own.rested(points_on="fixture"), heights, [])[1]["rest"].tolist() == ["1 2 3"]
+    assert answers(own.rested(points_on="fixture"), heights, [])[1]["carries:rest"].tolist() == ["1 2 3"]
 
 
 @pytest.mark.slow
@@ -206,7 +206,7 @@ def test_one_sided_contacts_are_not_pierced() -> None:
         own = random_contacts(rng)
         heights = rng.normal(0, 0.5, (40, len(own.points)))
         model = own.rested()
-        poses, carried = placed(model, heights)["part"], answers(model, heights, [])[1]["rest"]
+        poses, carried = placed(model, heights)["part"], answers(model, heights, [])[1]["carries:rest"]
         for pose, row, carriers in zip(poses, heights, carried, strict=True):
             moved = own.points @ pose[:3, :3].T + pose[:3, 3]
             gaps = ((moved - own.points) * own.normals).sum(axis=1) - row
@@ -227,7 +227,7 @@ def test_contacts_that_hold_a_part_barely_are_met_too(seed: int) -> None:
         with suppress(InputError):
             model = own.rested()
             heights = rng.normal(0, 0.3, (100, len(normals)))
-            poses, carried = placed(model, heights)["part"], answers(model, heights, [])[1]["rest"]
+            poses, carried = placed(model, heights)["part"], answers(model, heights, [])[1]["carries:rest"]
             break
     found = np.isfinite(poses[:, 0, 0])
     codes = answers(own.rested(seen=[(np.zeros(3), np.eye(3)[2])]), heights, ["0"])[0]["0"][1]

@@ -12,6 +12,7 @@ from tol3d.assembly.model.statuses import NO_BUILD, OK, SINGULAR
 from tol3d.assembly.placing.best_fitting import BestFitting, best_fitting
 from tol3d.assembly.placing.causes import Cause, Causes, causes_of, ordered
 from tol3d.assembly.placing.datum_seats import DatumSeats, datum_seats
+from tol3d.assembly.placing.decided import decided
 from tol3d.assembly.placing.engaging import Engaging, engaging
 from tol3d.assembly.placing.gauged_frames import with_gauges
 from tol3d.assembly.placing.locating import Locating, locating
@@ -20,7 +21,7 @@ from tol3d.assembly.placing.measuring import reading
 from tol3d.assembly.placing.part_features import PartFeatures
 from tol3d.assembly.placing.poses import Codes, Pose
 from tol3d.assembly.placing.resting import Resting, resting
-from tol3d.assembly.placing.rocking import carrying, over_poses, slope_of, varying
+from tol3d.assembly.placing.rocking import over_poses, slope_of, varying
 from tol3d.assembly.placing.touching import Touching, touching
 from tol3d.assembly.placing.world import SolidReader, World
 
@@ -62,31 +63,21 @@ def values(
 
 def answers(
     assembly: Assembly, deviations: Array, names: Sequence[str], solids: SolidReader | None = None
-) -> tuple[dict[str, tuple[Array, Codes]], dict[str, NDArray[np.str_]], dict[str, NDArray[np.str_]]]:
-    """What measures read, as `values`; and by move what decided in each trial (trials,).
-
-    Of a rest which contacts carry, such as "1 3 4"; and of a move with play the pair that has the least slack.
-    """
+) -> tuple[dict[str, tuple[Array, Codes]], dict[str, NDArray[np.str_]]]:
+    """What measures read, as `values`; and columns of what decided in each trial (trials,), see `decided`."""
     plan = planned(assembly, solids)
     deviations = np.asarray(deviations, dtype=np.float64)
     found = {name: (np.empty(len(deviations)), np.empty(len(deviations), dtype=np.int8)) for name in names}
-    carried, tightest = dict[str, list[NDArray[np.str_]]](), dict[str, list[NDArray[np.str_]]]()
+    words, on_the_way = dict[str, list[NDArray[np.str_]]](), {name: plan.of_measures[name] for name in names}
     for start in range(0, len(deviations), BLOCK):
         rows = slice(start, start + BLOCK)
         block = _placed(plan, deviations[rows])
         for name, (numbers, codes) in found.items():
             numbers[rows], codes[rows] = _over_rests(plan, block, name, deviations[rows])
-        for name, loads in block.worlds[-1].loads.items():
-            sets, which = carrying(loads)
-            words = np.array([" ".join(map(str, np.flatnonzero(each) + 1)) for each in sets])
-            carried.setdefault(name, []).append(words[which])
-        for name, pairs in block.worlds[-1].tightest.items():
-            tightest.setdefault(name, []).append(pairs)
-    return found, _joined(carried), _joined(tightest)
-
-
-def _joined(pieces: Mapping[str, Sequence[NDArray[np.str_]]]) -> dict[str, NDArray[np.str_]]:
-    return {name: np.concatenate(own) for name, own in pieces.items()}
+        codes_here = {name: codes[rows] for name, (_, codes) in found.items()}
+        for name, column in decided(assembly, block.worlds[-1], on_the_way, codes_here):
+            words.setdefault(name, []).append(column)
+    return found, {name: np.concatenate(own) for name, own in words.items()}
 
 
 def placed(assembly: Assembly, deviations: Array) -> dict[str, Array]:

@@ -92,6 +92,9 @@ class MeasureSummary(Section):
     lower_limit: Known
     upper_limit: Known
     status: Mapping[Label, Count] = Field(description="how many trials ended how")
+    reasons: Maybe[Mapping[Label, Count]] = Field(
+        default=LEFT_OUT, description="what decided how many trials that failed, in words of the system; the most first"
+    )
     nominal: Roads
     mean_build: Roads
     analytic: Maybe[Sample] = LEFT_OUT
