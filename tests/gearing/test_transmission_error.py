@@ -465,11 +465,11 @@ def peak_of_range(model: Model, engine: Engine, trials: Trials) -> int:
 
 
 def test_a_range_holds_no_curve() -> None:
-    """Ten times as many trials take no more memory but for their own numbers; their curves would take 39 MB."""
+    """Five times as many trials take no more memory but for their own numbers; their curves would take 8 MB."""
     model = model_from_scene(scene_of(REFERENCE))
-    ranges = replace(model.measures[0], take="range", positions=Positions("long_period", 16, 16 * 640))
+    ranges = replace(model.measures[0], take="range", positions=Positions("long_period", 16, 16 * 320))
     model, engine = replace(model, measures=(ranges,)), ExactEngine(model)
-    few, many = (mean_rows(model, count) for count in (48, 480))
+    few, many = (mean_rows(model, count) for count in (48, 240))
     values_of(model, engine, few)
     before, after = (peak_of_range(model, engine, trials) for trials in (few, many))
     assert after - before < 2e6
