@@ -290,13 +290,29 @@ WRONG: dict[str, tuple[Sequence[Edit], str, str]] = {
     "a word that left the standard": (
         [changed(BASE_HOLE, "kind: position", "kind: concentricity")],
         "tolerances.base hole position.kind",
-        "expected a kind that is known here, got 'concentricity'; it left ASME Y14.5 in 2018: write coaxiality, of the "
+        "expected another word here, got 'concentricity'; it left ASME Y14.5 in 2018: write coaxiality, of the "
         "axis, as in ISO 1101",
+    ),
+    "a key of what is not there": (
+        [changed(BASE_HOLE, "[floor,", "[{feature: floor, translation: true},")],
+        "tolerances.base hole position.datums[0].translation",
+        "expected another word here, got 'translation'; datums that may shift (a triangle) are not there: leave the "
+        "datum out, or name it with `mmb`",
+    ),
+    "a modifier that is not there": (
+        [changed(BASE_HOLE, "kind: position", "kind: position, modifier: st")],
+        "tolerances.base hole position.modifier",
+        "expected another word here, got 'st'; statistical tolerances (ST) are not there: name the law of the process",
+    ),
+    "a key that is a word elsewhere": (
+        [changed(BASE_HOLE, "kind: position", "kind: position, width: 1 mm")],
+        "tolerances.base hole position.width",
+        'unknown key "width"; known here: kind, description, of, zone, law, datums, modifier',
     ),
     "a word of another kind of feature": (
         [("      rim:   {kind: point", "      rim:   {kind: cone")],
         "parts.base.features.rim.kind",
-        "expected a kind that is known here, got 'cone'; write axis, whose `face` may be a cone; how far in it is "
+        "expected another word here, got 'cone'; write axis, whose `face` may be a cone; how far in it is "
         "seated is not there",
     ),
     "gears and assemblies": (

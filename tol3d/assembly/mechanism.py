@@ -23,7 +23,7 @@ from tol3d.scene.grammar import specs_in
 from tol3d.scene.temperature import TemperatureSpec
 from tol3d.system.mechanism import Mechanism
 
-OTHER_WORDS: Final = (
+OTHER_KINDS: Final = (
     ("concentricity", "it left ASME Y14.5 in 2018: write coaxiality, of the axis, as in ISO 1101"),
     ("composite_position", "composite zones are not there: write the position, and refine its tilt by an orientation"),
     ("axial_run_out", "of a round face about an axis it is the perpendicularity to that axis, in the same width"),
@@ -37,6 +37,17 @@ OTHER_WORDS: Final = (
     ("width", "write size"),
     ("cone", "write axis, whose `face` may be a cone; how far in it is seated is not there"),
     ("line", "write axis"),
+    ("statistical", "statistical tolerances (ST) are not there: name the law of the process"),
+)
+OTHER_KEYS: Final = (
+    ("tangent_plane", "tangent planes (circled T) are not there: a face is judged by its own plane"),
+    ("tangent", "tangent planes (circled T) are not there: a face is judged by its own plane"),
+    ("translation", "datums that may shift (a triangle) are not there: leave the datum out, or name it with `mmb`"),
+    ("freedoms", "customised datum freedoms are not there: each datum takes what earlier ones leave"),
+    ("statistical", "statistical tolerances (ST) are not there: name the law of the process"),
+    ("st", "statistical tolerances (ST) are not there: name the law of the process"),
+    ("non_uniform", "non-uniform profiles are not there: `outward` makes one unequal"),
+    ("envelope", "the envelope of a size (Rule #1) does not limit its form here: write straightness or flatness"),
 )
 
 ASSEMBLY: Final = Mechanism(
@@ -63,7 +74,8 @@ ASSEMBLY: Final = Mechanism(
         unfit_pairs,
         round_contacts,
     ),
-    other_words=OTHER_WORDS,
+    other_kinds=OTHER_KINDS,
+    other_keys=OTHER_KEYS,
     engines=("exact",),
     witness="fcl",
     system="tol3d.assembly.system:assembly_system",

@@ -1,7 +1,7 @@
 """The kinds of entry that scenes may have, and the class of such scenes."""
 
 import pkgutil
-from collections.abc import Callable, Iterator, Mapping, Sequence, Set
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence, Set
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
 from importlib import import_module
@@ -57,7 +57,8 @@ class Vocabulary:
         witness: the one of them that can check the others, if there is one.
         settle: import path `package.module:name` of what finds out the numbers that a scene leaves to its solids, see
             tol3d.scene.settling; "" where scenes say all themselves.
-        other_words: words of the field that are no kind here, each with what to write instead.
+        other_kinds: words of the field that are no kind here, each with what to write instead.
+        other_keys: the same of keys and choices.
 
     Raises:
         InputError: a class stands where it is none of the section's kinds, or lacks a method that it must have.
@@ -77,7 +78,8 @@ class Vocabulary:
     engines: tuple[str, ...] = ("exact",)
     witness: str = ""
     settle: str = ""
-    other_words: tuple[tuple[str, str], ...] = ()
+    other_kinds: tuple[tuple[str, str], ...] = ()
+    other_keys: tuple[tuple[str, str], ...] = ()
 
     def __post_init__(self) -> None:
         for section, base in BASES.items():
@@ -134,9 +136,13 @@ class Grammar:
         """The kinds of a section by their words, in the order of registration."""
         return {str(kind_of(spec)): spec for each in self.vocabularies for spec in each.specs(section)}
 
-    def instead_of(self, word: object) -> str:
-        """What to write instead of a word that is no kind; "" of one that no vocabulary knows."""
-        return next((advice for each in self.vocabularies for own, advice in each.other_words if own == word), "")
+    def instead_of_kind(self, word: object) -> str:
+        """What to write instead of a kind that is not known; "" where no vocabulary says it."""
+        return _said_of(word, (each.other_kinds for each in self.vocabularies))
+
+    def instead_of_key(self, word: object) -> str:
+        """The same of a key or a choice."""
+        return _said_of(word, (each.other_keys for each in self.vocabularies))
 
     @property
     def laws(self) -> Laws:
@@ -259,6 +265,10 @@ def _scene_class(grammar: Grammar) -> type[Scene]:
     made = create_model("Scene", __base__=Scene, __module__=Scene.__module__, __doc__=Scene.__doc__, **sections)
     made.grammar, made.laws = grammar, grammar.laws
     return made
+
+
+def _said_of(word: object, pairs: Iterable[tuple[tuple[str, str], ...]]) -> str:
+    return next((advice for own in pairs for other, advice in own if other == word), "")
 
 
 def _laws_in(value: Any) -> Iterator[DistributionSpec]:

@@ -35,9 +35,8 @@ def messages(error: ValidationError, data: Mapping[str, Any], origin: Origin, gr
             path = (*path, context["key"])
         elif details["type"] == "union_tag_invalid":
             path = (*path, "kind")
-            if instead := grammar.instead_of(_tag(details)):
-                sentence = f"expected a kind that is known here, got {shown(_tag(details))}; {instead}"
-        elif context.get("field"):
+        sentence = _other_word(details, grammar) or sentence
+        if context.get("field"):
             path = (*path, *str(context["field"]).split("."))
         found.setdefault(origin.message(path, sentence), origin.place(path).line)
     ordered = sorted(found, key=lambda message: found[message])
@@ -118,6 +117,23 @@ def _missing(details: ErrorDetails) -> str:
 
 def _missing_kind(details: ErrorDetails) -> str:
     return 'expected the key "kind" here, found none'
+
+
+def _other_word(details: ErrorDetails, grammar: Grammar) -> str:
+    """The sentence of a word of the field that is said otherwise here, or not at all; "" of other findings."""
+    match details["type"]:
+        case "union_tag_invalid":
+            word = _tag(details)
+            instead = grammar.instead_of_kind(word)
+        case "unknown_key":
+            word = details["ctx"]["key"]
+            instead = grammar.instead_of_key(word)
+        case "literal_error":
+            word = details["input"]
+            instead = grammar.instead_of_key(word)
+        case _:
+            return ""
+    return f"expected another word here, got {shown(word)}; {instead}" if instead else ""
 
 
 def _tag(details: ErrorDetails) -> object:
