@@ -4,12 +4,14 @@ A Build knows nothing of positions: the poses at a turn come from `world_from_ge
 """
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.gearing.displacements import Displacement, Growth, PivotShift, displacements
+from tol3d.gearing.displacements import AnyDisplacement, Displacement, FlankOffsets, Growth, PivotShift, displacements
 from tol3d.gearing.displacements.slots import CENTRE, FLANK_OFFSET, FLANK_TURN, OFFSET, SLOTS, TURN
+from tol3d.gearing.flank_offsets import FlankDeviations, FlankPlaces
 from tol3d.gearing.model import Model
 from tol3d.numerics import frames
 
@@ -29,6 +31,7 @@ class Build:
         flank_turn: (trials, seats) [rad], by which each flank is turned out of its tooth; positive is thicker.
         flank_offset: (trials, seats) [mm], by which each flank lies outside that, along its normal.
         scale: (trials, seats), thermal growth of the whole gear, 1 at the reference temperature.
+        flanks: offsets of single flanks besides; None where all flanks of a gear are alike.
     """
 
     world_from_shaft: Array
@@ -37,6 +40,7 @@ class Build:
     flank_turn: Array
     flank_offset: Array
     scale: Array
+    flanks: FlankDeviations | None = None
 
     @property
     def trials(self) -> int:
@@ -51,7 +55,8 @@ class Build:
 
     def rows(self, rows: NDArray[np.intp] | NDArray[np.bool_]) -> "Build":
         """The builds of some rows."""
-        return Build(**{name: values[rows] for name, values in vars(self).items()})
+        parts: dict[str, Any] = {name: values[rows] for name, values in vars(self).items() if values is not None}
+        return Build(**parts)
 
     def axis(self, seat: int) -> tuple[Array, Array]:
         """Rotation axis of a gear in the world: a point on it and its unit direction, each (trials, 3)."""
@@ -116,8 +121,8 @@ def summed(model: Model, deviations: Array) -> Sums:
     return sums
 
 
-def _add(term: Displacement | PivotShift | Growth, columns: Array, sums: Sums) -> None:
-    """Add what deviations (trials, components) displace."""
+def _add(term: AnyDisplacement, columns: Array, sums: Sums) -> None:
+    """Add what deviations (trials, components) displace; single flanks are none of a seat's sums."""
     match term:
         case Displacement():
             sums.seats[:, term.seat, term.slots] += term.change(columns)
@@ -127,6 +132,8 @@ def _add(term: Displacement | PivotShift | Growth, columns: Array, sums: Sums) -
             sums.seats[:, term.seat, OFFSET : OFFSET + 3] += pivot - turned
         case Growth():
             sums.temperature[term.part] = sums.temperature.get(term.part, 0.0) + columns[:, 0]
+        case FlankOffsets():
+            pass
 
 
 def build(model: Model, deviations: Array) -> Build:
@@ -165,4 +172,5 @@ def build(model: Model, deviations: Array) -> Build:
         flank_turn=sums.seats[..., FLANK_TURN].copy(),
         flank_offset=sums.seats[..., FLANK_OFFSET].copy(),
         scale=scale,
+        flanks=FlankPlaces.of(model).made(deviations),
     )

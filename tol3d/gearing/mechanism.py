@@ -3,7 +3,7 @@
 from typing import Final
 
 from tol3d.gearing.grammar import measures, moves, parts, tolerances
-from tol3d.gearing.grammar.checks import carried_again
+from tol3d.gearing.grammar.checks import carried_again, forms_of_two_shapes
 from tol3d.gearing.grammar.published import PublishedTrains
 from tol3d.gearing.grammar.study import GearStudyOptions
 from tol3d.scene.grammar import specs_in
@@ -16,7 +16,7 @@ GEARING: Final = Mechanism(
     tolerances=(*specs_in(tolerances), TemperatureSpec),
     moves=specs_in(moves),
     measures=specs_in(measures),
-    checks=(carried_again,),
+    checks=(carried_again, forms_of_two_shapes),
     options=GearStudyOptions,
     published=PublishedTrains,
     engines=("exact", "fcl"),

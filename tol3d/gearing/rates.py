@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.gearing.build import Build
-from tol3d.gearing.displacements import Displacement, Growth, PivotShift, displacements
+from tol3d.gearing.displacements import Displacement, FlankOffsets, Growth, PivotShift, displacements
 from tol3d.gearing.displacements.slots import CENTRE, FLANK_OFFSET, FLANK_TURN, OFFSET, SLOTS, TURN
 from tol3d.gearing.model import Model
 from tol3d.numerics import frames
@@ -26,6 +26,8 @@ class BuildRates:
         turn: (trials, seats, components, 3), angular velocity of the shaft's frame about it [rad], in the world.
         centre: (trials, seats, components, 2), of the gear's centre off its axis [mm], in the gear's frame.
         flank_turn, flank_offset, scale: (trials, seats, components), of the same fields of the Build.
+
+    Offsets of single flanks go with the components as FlankPlaces has it, in every build alike.
     """
 
     origin: Array
@@ -91,6 +93,8 @@ def _summed(model: Model, deviations: Array) -> tuple[Array, dict[str, Array]]:
                         seats[:, term.seat, own, OFFSET : OFFSET + 3] += _shift_rate(term, columns)[:, None]
                     case Growth():
                         temperature.setdefault(term.part, np.zeros(model.component_count))[own] += 1.0
+                    case FlankOffsets():
+                        pass
     return seats, temperature
 
 

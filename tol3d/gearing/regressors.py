@@ -12,7 +12,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.gearing.model import Contributor, Effect, Measure, Mesh, Model, Planar
-from tol3d.system.regressors import regress_plainly
+from tol3d.gearing.roads.analytic import analytic_values
+from tol3d.system.regressors import is_group, regress_plainly, regress_term
+from tol3d.system.stated import mean_deviations, stated
+from tol3d.system.taken import taken
+from tol3d.system.trials import Trials
 
 Array = NDArray[np.float64]
 Columns = Mapping[str, NDArray[Any]]
@@ -47,8 +51,30 @@ def regress(
     """Write contributors' rows (2, trials) from the columns of their components, over each one's sigma."""
     turning = _Turning(_angles(model, measure, columns) if measure.take == "value" else {})
     for contributor in contributors:
+        if is_group(contributor):
+            regress_term(rows[contributor.name], *_group_term(model, measure, contributor, columns))
+            continue
         values = [np.asarray(columns[name], dtype=np.float64) * contributor.per_unit for name in contributor.columns]
         _regress(rows[contributor.name], contributor, values, turning)
+
+
+def _group_term(model: Model, measure: Measure, contributor: Contributor, columns: Columns) -> tuple[Array, float]:
+    """What a group of many components does to a measure by the stack-up (trials,) [mm or rad], and a size of that.
+
+    All others are at their means. Of a curve what it does at the first position.
+    """
+    means = mean_deviations(model, measure.positions)
+    own = [np.asarray(columns[name], dtype=np.float64) * contributor.per_unit for name in contributor.columns]
+    deviations = np.repeat(means, len(own[0]), axis=0)
+    deviations[:, model.component_slices[contributor.name]] = np.stack(own, axis=-1)
+    positions = {name: np.zeros(len(deviations)) for name in stated(model, means).positions}
+    for name in positions:
+        if (column := position_column(name)) in columns:
+            positions[name] = np.radians(np.asarray(columns[column], dtype=np.float64))
+    values = analytic_values(model, measure, Trials(deviations, positions))
+    found = values[:, 0] if measure.take == "curve" else taken(measure, values)
+    arm = model.mesh(measure.kind.backlashes[0][1].mesh).pair.wheel.base_radius if measure.kind.is_angle else 1.0
+    return found, contributor.draw.sigma / arm
 
 
 def _angles(model: Model, measure: Measure, columns: Columns) -> Mapping[str, Array]:

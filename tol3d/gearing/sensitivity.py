@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.gearing.engines import OK, Engine, Gaps
+from tol3d.gearing.flank_offsets import FlankPlaces
 from tol3d.gearing.linked import link_trials
 from tol3d.gearing.load_paths import Variable
 from tol3d.gearing.measures import moved_rates
@@ -179,7 +180,21 @@ class _Contacts:
         turns = [gap.per_turn(*meshing.build.axis(gear), of_driver=gear == driver)[:, 0] for gear in (driver, driven)]
         behind = self._along(driver, angles[0], flank, gap.driver_point[:, 0], -normal)
         before = self._along(driven, angles[1], flank, gap.driven_point[:, 0], normal)
+        if meshing.build.flanks is not None:
+            behind -= self._standing_out(driver, angles[0], flank, gap.driver_point[:, 0], teeth[:, 0])
+            mating = mesh.pair.mating_teeth(teeth[:, 0], flank)
+            before -= self._standing_out(driven, angles[1], flank, gap.driven_point[:, 0], mating)
         return _GapRates(behind + before, (turns[0], turns[1]))
+
+    def _standing_out(self, seat: int, angle: Array, flank: Flank, point: Array, teeth: NDArray[np.int64]) -> Array:
+        """How fast single flanks of a gear stand out further [mm] at a point, (rows, components)."""
+        made, model = self.meshing.build, self.meshing.model
+        arm = (point - made.centre_of(seat, angle)) / made.scale[:, seat, None]
+        height = _dot(arm, made.axis(seat)[1])
+        across = _dot(arm, arm) - height * height
+        base = model.gear(model.seats[seat].gear).gear.base_radius
+        roll = np.sqrt(np.maximum(across / base**2 - 1.0, 0.0))
+        return FlankPlaces.of(model).rates(model, seat, flank, teeth, (roll, height))
 
     def _along(self, gear: int, angle: Array, flank: Flank, point: Array, normal: Array) -> Array:
         """How fast a gear's flank recedes [mm] at a point, (rows, components); the normal points into the gear.
@@ -264,7 +279,7 @@ class ContributorSensitivity:
     Args:
         name: the contributor's.
         value: (trials,), or (trials, positions) for a curve [mm or rad per mm, rad, K]; of a deviation with a
-            direction per length in its worst direction, never negative.
+            direction, or of many components, per length in its worst direction, never negative.
         direction: that direction, of the largest increase [rad], the same shape; None for a deviation without.
     """
 
@@ -284,6 +299,7 @@ def by_contributor(model: Model, rates: Array) -> tuple[ContributorSensitivity, 
 
 def _grouped(contributor: Contributor, own: Array) -> ContributorSensitivity:
     if not isinstance(contributor.draw, Planar):
-        return ContributorSensitivity(contributor.name, own[..., 0])
+        size = own[..., 0] if own.shape[-1] == 1 else np.sqrt((own * own).sum(axis=-1))
+        return ContributorSensitivity(contributor.name, size)
     x, y = own[..., 0], own[..., 1]
     return ContributorSensitivity(contributor.name, np.hypot(x, y), np.arctan2(y, x))

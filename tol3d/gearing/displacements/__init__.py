@@ -6,9 +6,16 @@ Each file of this folder is imported and registers its effect; so does one from 
 from importlib import import_module
 from pkgutil import iter_modules
 
-from tol3d.gearing.displacements.displacement import Displacement, Growth, PivotShift, displacements
+from tol3d.gearing.displacements.displacement import (
+    AnyDisplacement,
+    Displacement,
+    FlankOffsets,
+    Growth,
+    PivotShift,
+    displacements,
+)
 
 for _file in iter_modules(__path__):
     import_module(f"{__name__}.{_file.name}")
 
-__all__ = ["Displacement", "Growth", "PivotShift", "displacements"]
+__all__ = ["AnyDisplacement", "Displacement", "FlankOffsets", "Growth", "PivotShift", "displacements"]

@@ -7,7 +7,7 @@ from functools import singledispatch
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.gearing.effects import Effect
+from tol3d.gearing.effects import Effect, FlankDeviation
 from tol3d.gearing.model import Model
 
 Array = NDArray[np.float64]
@@ -69,7 +69,17 @@ class Growth:
     part: str
 
 
+@dataclass(frozen=True)
+class FlankOffsets:
+    """Offsets of single flanks of a gear, in all of its meshes: what the effect says."""
+
+    effect: FlankDeviation
+
+
+AnyDisplacement = Displacement | PivotShift | Growth | FlankOffsets
+
+
 @singledispatch
-def displacements(effect: Effect, model: Model, components: int) -> Iterator[Displacement | PivotShift | Growth]:
+def displacements(effect: Effect, model: Model, components: int) -> Iterator[AnyDisplacement]:
     """What a deviation of so many components displaces in a model; each file of this folder registers one effect."""
     raise TypeError(f"displacements/ has no file for the effect {type(effect).__name__}")

@@ -11,7 +11,7 @@ of it is 0.0073 um a millimetre of module at delta = 0.46 rad.
 All lengths here go with the module, so that gears that are alike in all but their size read alike.
 """
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 
@@ -19,7 +19,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.gearing.build import Build
+from tol3d.gearing.engines.deviated_strips import DeviatedStrips, Numbers
 from tol3d.gearing.engines.gaps import Array, Gaps, Teeth
+from tol3d.gearing.flank_offsets import FlankPlaces
 from tol3d.gearing.model import Mesh, Model
 from tol3d.gears import Flank
 from tol3d.numerics import frames
@@ -27,7 +29,7 @@ from tol3d.solids import WHOLE_FACE, FlankStrips, PulledStrip, Span
 from tol3d.solids.distance import NearestPoints, Surface, mesh_surface, put
 
 SLACK = 0.012  # modules a flank; deep enough for any start of the turn, small against the curvature radius
-MESHES_KEPT = 64  # grown strips kept for reuse; a constant temperature needs one a flank
+MESHES_KEPT = 64  # strips kept for reuse; a constant temperature needs one a flank, flanks of their own some a turn
 SECTION_WIDTH = 0.8e-3  # modules along the face; a gap that grows with it by 1 um a mm is read 0.001 um off at 2.5 mm
 LAST_STEP = 0.2e-3  # modules; the gap is linear in the turn to 0.4e-6 modules over it
 OUT_OF_REACH = 0.4e-3  # modules; a distance below this has lost its normal: the overlap is as deep as the slack
@@ -46,6 +48,7 @@ class FclEngine:
     def __init__(self, model: Model, strips: Mapping[str, FlankStrips]) -> None:
         self._model = model
         self._strips = strips
+        self._deviated = DeviatedStrips(model, strips, FlankPlaces.of(model))
         self._nearest = NearestPoints()
         # apart: a gear between two others is held in one mesh and moved in the other, and an object keeps its place
         self._held = lru_cache(maxsize=MESHES_KEPT)(self._make_object)
@@ -64,11 +67,12 @@ class FclEngine:
         """Largest sagitta [mm] of a strip's steps; a pair's gap is at most the sum of two too large."""
         return max(strips.chord_error for strips in self._strips.values())
 
-    def _make_object(self, gear: str, flank: Flank, scale: float, span: Span) -> Surface:
-        return mesh_surface(*self._strip(gear, flank, span).mesh(scale))
+    def _make_object(self, gear: str, flank: Flank, scale: float, span: Span, numbers: Numbers = ()) -> Surface:
+        return mesh_surface(*self._strip(gear, flank, span, numbers).mesh(scale))
 
-    def _strip(self, gear: str, flank: Flank, span: Span) -> PulledStrip:
-        return PulledStrip(self._strips[gear], flank, SLACK * self._model.gear(gear).gear.module, span)
+    def _strip(self, gear: str, flank: Flank, span: Span, numbers: Numbers = ()) -> PulledStrip:
+        slack = SLACK * self._model.gear(gear).gear.module
+        return PulledStrip(self._deviated.of(gear, flank, numbers), flank, slack, span)
 
     def gaps(
         self,
@@ -96,24 +100,35 @@ class FclEngine:
         nearest = self._nearest.of
         scales = build.scale
         span = self._section(mesh) if section else WHOLE_FACE
-        for row, pair in zip(*np.nonzero(wanted), strict=True):
-            fixed = self._held(mesh.driver, flank, scales[row, driver], span)
-            moved = self._moved(mesh.driven, flank, scales[row, driven], WHOLE_FACE)
+        at = np.nonzero(wanted)
+        shapes = (
+            self._shapes(build, driver, at[0], driver_teeth[at], flank),
+            self._shapes(build, driven, at[0], driven_teeth[at], flank),
+        )
+        for row, pair, own, its in zip(*at, *shapes, strict=True):
+            fixed = self._held(mesh.driver, flank, scales[row, driver], span, own)
+            moved = self._moved(mesh.driven, flank, scales[row, driven], WHOLE_FACE, its)
             put(moved, rotation[row, pair], translation[row, pair])
             distance[row, pair], points[row, pair], triangles[row, pair] = nearest(fixed, moved)
-        at = np.nonzero(wanted)
         back, curvature = np.full(points.shape, np.nan), np.full((*wanted.shape, 2), np.nan)
         at_end = np.zeros(wanted.shape, dtype=bool)
         poses = ((np.eye(3), np.zeros(3)), (rotation[at], translation[at]))
-        strips = (self._strip(mesh.driver, flank, span), self._strip(mesh.driven, flank, WHOLE_FACE))
-        for side, (strip, seat, (turn, shift)) in enumerate(zip(strips, (driver, driven), poses, strict=True)):
+        gears = ((mesh.driver, driver, span), (mesh.driven, driven, WHOLE_FACE))
+        for side, ((gear, seat, width), (turn, shift), each) in enumerate(zip(gears, poses, shapes, strict=True)):
             scale, triangle = scales[at[0], seat], triangles[..., side][at]
             own = frames.apply(frames.transposed(turn), points[..., side, :][at] - shift)
-            back[..., side, :][at] = frames.apply(turn, strip.put_back(scale, triangle, own))
-            curvature[..., side][at] = strip.curvature(scale, triangle)
-            at_end[at] |= strip.at_end(scale, own)
+            strips = [(self._strip(gear, flank, width, shape), rows) for shape, rows in _alike(each)]
+            put_back, bent, ends = _read_strips(strips, scale, triangle, own)
+            back[..., side, :][at] = frames.apply(turn, put_back)
+            curvature[..., side][at] = bent
+            at_end[at] |= ends
         found = _Found(distance, points, back, curvature, distance < OUT_OF_REACH * _module(mesh), at_end)
         return found.gaps(build.flank_offset[:, [driver, driven]], (driver_rotation, driver_origin), driver_teeth)
+
+    def _shapes(self, build: Build, seat: int, rows: Teeth, teeth: Teeth, flank: Flank) -> list[Numbers]:
+        """How flanks of a gear deviate one by one, of the pairs (pairs,) that are asked for."""
+        pairs = zip(rows.tolist(), teeth.tolist(), strict=True)
+        return [self._deviated.numbers(build, seat, row, tooth, flank) for row, tooth in pairs]
 
     def _section(self, mesh: Mesh) -> Span:
         """A strip of the driver's face, SECTION_WIDTH modules wide, in the middle of the common face."""
@@ -174,6 +189,32 @@ class _Found:
             normal=in_world,
             driver_teeth=driver_teeth,
         )
+
+
+def _alike(shapes: Sequence[Numbers]) -> Iterator[tuple[Numbers, NDArray[np.intp]]]:
+    """Each shape of flanks, and at which places it stands."""
+    places: dict[Numbers, list[int]] = {}
+    for place, shape in enumerate(shapes):
+        places.setdefault(shape, []).append(place)
+    for shape, own in places.items():
+        yield shape, np.array(own, dtype=np.intp)
+
+
+def _read_strips(
+    strips: Sequence[tuple[PulledStrip, NDArray[np.intp]]], scale: Array, triangle: Teeth, point: Array
+) -> tuple[Array, Array, NDArray[np.bool_]]:
+    """What puts points (n, 3) back onto their flanks, curvatures there (n,), and which are ends of them (n,).
+
+    Args:
+        strips: with the points that lie on each.
+        scale, triangle, point: as in PulledStrip.
+    """
+    back, curvature, at_end = np.empty_like(point), np.empty_like(scale), np.empty(scale.shape, dtype=bool)
+    for strip, own in strips:
+        back[own] = strip.put_back(scale[own], triangle[own], point[own])
+        curvature[own] = strip.curvature(scale[own], triangle[own])
+        at_end[own] = strip.at_end(scale[own], point[own])
+    return back, curvature, at_end
 
 
 def _module(mesh: Mesh) -> float:

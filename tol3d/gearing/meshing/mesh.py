@@ -7,9 +7,11 @@ from numpy.typing import NDArray
 
 from tol3d.gearing.build import Build
 from tol3d.gearing.engines import INTERFERES, NO_CONTACT, OK, OUT_OF_RANGE, Engine, Gaps
+from tol3d.gearing.flank_offsets import DEVIATED_MARGIN, deviates
 from tol3d.gearing.model import Mesh, Model, Reading
 from tol3d.gears import Displaced, Flank, driver_teeth_at_one_tooth
 from tol3d.gears.flank import opposite
+from tol3d.gears.pair import candidate_teeth
 
 Array = NDArray[np.float64]
 Status = NDArray[np.int8]
@@ -99,9 +101,13 @@ class Meshing:
         return self.engine.gaps(self.build, self.mesh, flank, angles, teeth, near & wanted[:, None], section=section)
 
     def _teeth(self, driver_angle: Array, flank: Flank) -> tuple[NDArray[np.int64], NDArray[np.bool_]]:
+        pitch = self.mesh.pair.pinion.angular_pitch
+        if self.reading.teeth == "all" and deviates(self.model, self.mesh):
+            lowest, highest = self.mesh.pair.touching_azimuths
+            beyond = DEVIATED_MARGIN * pitch
+            return candidate_teeth((lowest - beyond, highest + beyond), pitch, driver_angle, flank)
         if self.reading.teeth == "all":
             return self.mesh.pair.candidate_teeth(driver_angle, flank)
-        pitch = self.mesh.pair.pinion.angular_pitch
         teeth = driver_teeth_at_one_tooth(driver_angle, pitch, flank, self.reading.teeth)
         return teeth, np.ones(teeth.shape, dtype=bool)
 

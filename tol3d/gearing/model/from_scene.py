@@ -59,7 +59,7 @@ def model_from_scene(scene: Scene) -> Model:
             for name, part in scene.parts.items()
             if isinstance(part, HousingSpec)
         ),
-        contributors=tuple(nominal.contributor(name, spec) for name, spec in scene.distributed.items()),
+        contributors=tuple(nominal.contributor(str(name), spec) for name, spec in scene.tolerances.items()),
         meshes=meshes,
         measures=(),
         profile_steps=scene.options(GearStudyOptions).profile_steps,

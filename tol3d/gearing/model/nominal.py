@@ -3,17 +3,19 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 
+from tol3d.errors import GeometryError
 from tol3d.gearing.effects import NOTHING, Temperature
 from tol3d.gearing.grammar.moves import meshes_of
+from tol3d.gearing.grammar.tolerances.flank_tolerance import FlankToleranceSpec
 from tol3d.gearing.grammar.tolerances.gearing_tolerance import GearingToleranceSpec
 from tol3d.gearing.model.contributor import Contributor
 from tol3d.gearing.model.layout import Layout
 from tol3d.gearing.model.mesh import Mesh
 from tol3d.gearing.model.shafts import Carried
-from tol3d.gears import BevelPair
+from tol3d.gears import BevelPair, SpurGear
 from tol3d.scene import Scene
 from tol3d.scene.temperature import TemperatureSpec
-from tol3d.scene.tolerance import ToleranceSpec
+from tol3d.scene.tolerance import ToleranceEntry
 from tol3d.system.draw import Planar, Scalar
 
 
@@ -45,12 +47,14 @@ class Nominal:
         """The gears on a shaft."""
         return [own for name, own in self.layout.carrying.values() if name == shaft]
 
-    def contributor(self, name: str, spec: ToleranceSpec) -> Contributor:
+    def contributor(self, name: str, spec: ToleranceEntry) -> Contributor:
         """A tolerance as the simulation sees it.
 
         Raises:
-            SceneError: of a shaft, or a bearing of one, on which no gear sits.
+            SceneError: of a shaft, or a bearing of one, on which no gear sits; limits that do not go with their gear.
         """
+        if isinstance(spec, FlankToleranceSpec):
+            return self._of_flanks(name, spec)
         if isinstance(spec, TemperatureSpec):
             return self._warming(name, spec)
         if not isinstance(spec, GearingToleranceSpec):
@@ -77,3 +81,13 @@ class Nominal:
     def _warming(self, name: str, spec: TemperatureSpec) -> Contributor:
         law = spec.distribution.resolve(self.scene.files)
         return Contributor(name, spec.kind, Temperature(spec.of), Scalar(law), "K", spec.description)
+
+    def _of_flanks(self, name: str, spec: FlankToleranceSpec) -> Contributor:
+        gear = self.mesh_of(spec.of).gear(spec.of)
+        if not isinstance(gear, SpurGear):
+            raise TypeError(f"{spec.of} is no spur gear")
+        try:
+            draw = spec.draw(gear, self.scene.files)
+            return Contributor(name, spec.kind, spec.effect(gear), draw, spec.unit, spec.description)
+        except GeometryError as error:
+            raise self.scene.refuse(("tolerances", name), str(error)) from error

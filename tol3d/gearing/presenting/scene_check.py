@@ -13,6 +13,7 @@ from tol3d.gears import RIGHT, BevelGear, BevelPair, Gear, GearPair, SpurGear, S
 from tol3d.report.number import NOTHING, UNIT_SIGNS, degrees_text, given_text, unsigned_zero, value_text
 from tol3d.report.page import Heading, Line, PageItem, Row, Table, line, titled
 from tol3d.report.system_check import law_name
+from tol3d.system.draw import JointDraw
 from tol3d.system.system import System
 from tol3d.units import angle_text
 
@@ -226,6 +227,8 @@ def contributors_table(model: Model) -> list[PageItem]:
 
 def distribution_words(contributor: Contributor) -> str:
     """The law of a contributor and the direction of its deviation."""
+    if isinstance(contributor.draw, JointDraw):
+        return contributor.draw.words
     law = law_name(contributor.distribution)
     if not isinstance(contributor.draw, Planar):
         return law

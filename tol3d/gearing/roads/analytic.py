@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.gearing.breakdowns import staged_measures
+from tol3d.gearing.flank_offsets import deviates
 from tol3d.gearing.linked import by_theory
 from tol3d.gearing.model import Backlash, Measure, Model, TransmissionError
 from tol3d.gearing.model.measure import gear_measures
@@ -18,6 +19,7 @@ from tol3d.gearing.stack_up import (
     first_order,
     per_normal_backlash,
 )
+from tol3d.gearing.stack_up.tooth_pairs import pieces
 from tol3d.system import measure as system_measure
 from tol3d.system.road import Answers
 from tol3d.system.trials import Trials
@@ -81,10 +83,13 @@ class _Stacks:
     def __init__(self, model: Model, trials: Trials) -> None:
         self._model, self._trials = model, trials
         self._known: dict[SeatKey, Array] = {}
+        self._of_flanks: dict[tuple[Backlash, SeatKey], Array] = {}
 
     def __call__(self, backlash: Backlash, key: SeatKey) -> Array:
         """See Read."""
         angles = driver_angles(key, self._trials)
+        if deviates(self._model, self._model.mesh(backlash.mesh)):
+            return self._by_flanks(backlash, key, angles)
         if key not in self._known:
             self._known[key] = self._asked(replace(backlash, quantity="normal_backlash"), angles)
         if backlash.quantity != "rest_angle":
@@ -92,7 +97,21 @@ class _Stacks:
         play = self._known[key] * per_normal_backlash(self._model, backlash)
         return self._asked(backlash, angles) - self._model.mesh(backlash.mesh).working_flank * play / 2
 
-    def _asked(self, backlash: Backlash, angles: Array) -> Array:
-        rows, positions = self._trials.deviations, angles.shape[1]
+    def _by_flanks(self, backlash: Backlash, key: SeatKey, angles: Array) -> Array:
+        """Of a mesh whose flanks deviate one by one: gaps at rest and turns are stacks of their own."""
+        if (backlash, key) not in self._of_flanks:
+            count, positions = angles.shape
+            found = np.empty(angles.shape)
+            for own in pieces(count, positions, self._trials.deviations.shape[1]):
+                found[own] = self._asked(backlash, angles[own], own)
+            if backlash.quantity == "rest_angle":
+                mesh = self._model.mesh(backlash.mesh)
+                play = self._by_flanks(replace(backlash, quantity="angular_backlash", gear=mesh.driven), key, angles)
+                found = found - mesh.working_flank * play / 2
+            self._of_flanks[backlash, key] = found
+        return self._of_flanks[backlash, key]
+
+    def _asked(self, backlash: Backlash, angles: Array, trials: slice = slice(None)) -> Array:
+        rows, positions = self._trials.deviations[trials], angles.shape[1]
         repeated = rows if positions == 1 else np.repeat(rows, positions, axis=0)
         return analytic_backlash(self._model, backlash, repeated, angles.ravel()).reshape(angles.shape)

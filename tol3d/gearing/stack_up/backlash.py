@@ -9,6 +9,7 @@ from tol3d.gearing.model import Backlash, Kind, LostMotion, Mesh, Model, Reading
 from tol3d.gearing.stack_up.bevel_stack import BevelStack
 from tol3d.gearing.stack_up.spur_stack import SpurStack
 from tol3d.gearing.stack_up.stack import Stack
+from tol3d.gearing.stack_up.term import Role
 from tol3d.gears import BevelPair, GearPair, SpurPair
 
 Array = NDArray[np.float64]
@@ -34,7 +35,10 @@ def analytic_backlash(model: Model, kind: Backlash, deviations: Array, driver_an
     per = per_normal_backlash(model, kind)
     if kind.quantity == "rest_angle":
         return stack.aside(deviations, driver_angle) * per
-    return stack.normal_backlash(deviations, driver_angle) * per
+    turns: Role | None = None
+    if kind.quantity != "normal_backlash":
+        turns = "driver" if kind.is_angle and kind.gear == stack.mesh.driver else "driven"
+    return stack.normal_backlash(deviations, driver_angle, turns) * per
 
 
 def per_normal_backlash(model: Model, kind: Backlash) -> float:

@@ -30,12 +30,14 @@ TILT_NODES = 2000  # midpoint rule in u, a plane; its error on |x| of a normal i
 def closed_form(model: Model, measure: Measure) -> ClosedForm | None:
     """Closed form of a measure read at one position.
 
-    None for extremes over a turn, parallel load paths, and links whose theory is no sum.
+    None for extremes over a turn, parallel load paths, links whose theory is no sum, and single flanks that deviate.
     """
     sums = _link_sums(model, measure)
     if measure.take != "value" or not measure.kind.adds_up or sums is None:
         return None
     parts = tuple(_parts(model, measure))
+    if any(part.stack.teeth for part in parts):
+        return None
     terms = [term for part in parts for term in part.terms]
     groups = leaning_groups([part.stack for part in parts])
     alike = all(part.stack.both_sides_alike for part in parts)

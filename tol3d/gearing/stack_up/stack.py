@@ -5,13 +5,17 @@ Source: Jiang et al., J. Zhejiang Univ. (Eng. Sci.) 58(8), 2024, 1533-1542, sect
 alpha_w = alpha and delta = 45 deg.
 """
 
+from collections.abc import Mapping
+
 import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.gearing.model import Mesh, Model, Reading
 from tol3d.gearing.stack_up.neglect import Neglect
 from tol3d.gearing.stack_up.nominal_mesh import NominalMesh, Pair
+from tol3d.gearing.stack_up.term import Role
 from tol3d.gearing.stack_up.terms import contribution
+from tol3d.gearing.stack_up.tooth_pairs import ToothPairs, tooth_pairs
 
 Array = NDArray[np.float64]
 
@@ -27,6 +31,7 @@ class Stack(NominalMesh[Pair]):
             for effect in contributor.effect.singles
         )
         self.terms = tuple(own.opening for own in self.contributions if own.opening)
+        self.teeth = tooth_pairs(model, mesh, reading)
         self.sideways = tuple(own.aside for own in self.contributions if own.aside)
 
     @property
@@ -34,12 +39,17 @@ class Stack(NominalMesh[Pair]):
         """j_bn of the nominal pair [mm], exact."""
         return self.pair.normal_backlash
 
-    def normal_backlash(self, deviations: Array, driver_angle: Array) -> Array:
-        """j_bn [mm], (rows,), of deviations (rows, components) at the driver's turns [rad] (rows,)."""
+    def normal_backlash(self, deviations: Array, driver_angle: Array, turns: Role | None = None) -> Array:
+        """j_bn [mm], (rows,), of deviations (rows, components) at the driver's turns [rad] (rows,).
+
+        Where single flanks deviate it is another as the gap of gears at rest, and as what a gear that turns takes up.
+        """
         angles = (driver_angle, self.pair.driven_angle(driver_angle))
         total = np.full(len(deviations), self.nominal)
         for term in (term for term in self.terms if term.tilts is None):
             total = total + term.change(deviations[:, self.model.component_slices[term.contributor.name]], angles)
+        if self.teeth:
+            return total - self._lost_by_teeth(self.teeth, deviations, driver_angle, total, turns)
         return total - self.lost(*self._lost_by_tilts(deviations))
 
     @property
@@ -73,6 +83,27 @@ class Stack(NominalMesh[Pair]):
                     across = across + by_across * column
         return in_plane, across
 
+    def _lost_by_teeth(
+        self, teeth: ToothPairs, deviations: Array, driver_angle: Array, whole: Array, turns: Role | None
+    ) -> Array:
+        """What single flanks and tilts together take from a normal backlash `whole` [mm], (rows,)."""
+        leans, work = self._leans(deviations), self.mesh.resting_flank(self.reading.flank)
+        working = teeth.taken(work, deviations, driver_angle, leans[work])
+        apart = np.maximum(whole - working, 0.0)
+        return working + teeth.taken(-work, deviations, driver_angle, leans[-work], turns, apart)
+
+    def turned_by_teeth(self, side: int, deviations: Array, driver_angle: Array) -> Array:
+        """Turn of the driven gear about its z [mm at its arm], (rows,), by single flanks where a side touches."""
+        if self.teeth is None:
+            return np.zeros(len(driver_angle))
+        return side * self.teeth.taken(side, deviations, driver_angle, self._leans(deviations)[side])
+
+    def _leans(self, deviations: Array) -> Mapping[int, Array]:
+        """What tilts take at the upper end of the face where the driver's right and left flanks touch [mm], (rows,)."""
+        in_plane, across = self._lost_by_tilts(deviations)
+        half = 2.0 if self.both_sides_alike else 1.0  # tilts count both flank sides, or the one that reads the face
+        return {side: (in_plane + side * across) / half for side in (1, -1)}
+
     def aside(self, deviations: Array, driver_angle: Array) -> Array:
         """Shift [mm], (rows,), of the middle of the driven gear's play, along the flanks' normals.
 
@@ -83,7 +114,11 @@ class Stack(NominalMesh[Pair]):
         """
         angles = (driver_angle, self.pair.driven_angle(driver_angle))
         in_plane, across = self._lost_by_tilts(deviations)
-        if self.both_sides_alike:
+        if self.teeth:
+            leans = self._leans(deviations)
+            right, left = (self.teeth.taken(side, deviations, driver_angle, leans[side]) for side in (1, -1))
+            total = (right - left) / 2
+        elif self.both_sides_alike:
             total = (np.abs(in_plane + across) - np.abs(in_plane - across)) / 4
         else:
             total = self.mesh.working_flank * self.lost(in_plane, across) / 2

@@ -12,7 +12,8 @@ Source: Wang, Zhou, Zou, Chinese J. Engineering 42(8), 2020, 1055-1064, equation
 deviation takes from the normal backlash (-2 e1 sin(alpha) cos(psi1) ...) and the shift of the middle of the play
 (e1 cos(alpha) sin(psi1) ...) of every effect that turns, of any pair; sin(psi) cos(alpha) + cos(psi) sin(alpha) is the
 sine of the sum. What rests drops out: tooth thickness, centre distance, bearing clearance, tilt, temperature. They come
-back in products with what turns only, and where base pitches differ, which is left out here as in all stack-ups.
+back in products with what turns only, and where base pitches differ, which is left out here as in all stack-ups. Single
+flanks that deviate add what the pair that touches first stands out by, see tooth_pairs.py.
 """
 
 from collections.abc import Iterator, Sequence
@@ -20,10 +21,12 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from tol3d.gearing.flank_offsets import deviates
 from tol3d.gearing.model import Backlash, Model, TransmissionError
 from tol3d.gearing.stack_up.backlash import per_normal_backlash, stack_of
 from tol3d.gearing.stack_up.stack import Stack
 from tol3d.gearing.stack_up.term import Term
+from tol3d.gearing.stack_up.tooth_pairs import pieces
 from tol3d.gears import GearPair
 
 Array = NDArray[np.float64]
@@ -44,7 +47,22 @@ def analytic_transmission_error(
         for columns, wave in _waves(model, backlash, driver):
             for column, own in zip(columns, wave, strict=True):
                 total += np.multiply.outer(deviations[:, column], factor * (own - own[0]))
+        if deviates(model, model.mesh(backlash.mesh)):
+            turned = _turned_by_teeth(model, backlash, deviations, driver)
+            total += factor * (turned - turned[:, :1])
     return total
+
+
+def _turned_by_teeth(model: Model, backlash: Backlash, deviations: Array, driver: Array) -> Array:
+    """Turn of the driven gear about its z [rad], (trials, positions), by single flanks that deviate."""
+    mesh = model.mesh(backlash.mesh)
+    stack, side = stack_of(model, mesh, backlash.reading), mesh.resting_flank(backlash.reading.flank)
+    found = np.empty((len(deviations), len(driver)))
+    for trials in pieces(len(deviations), len(driver), deviations.shape[1]):
+        rows = np.repeat(deviations[trials], len(driver), axis=0)
+        angles = np.tile(driver, trials.stop - trials.start)
+        found[trials] = stack.turned_by_teeth(side, rows, angles).reshape(-1, len(driver))
+    return found * per_normal_backlash(model, backlash)
 
 
 def _waves(model: Model, backlash: Backlash, driver: Array) -> Iterator[tuple[range, Array]]:

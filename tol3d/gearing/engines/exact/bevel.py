@@ -8,7 +8,7 @@ turns by (q - q_f)/sin(beta). See gears/spherical_involute.py for the plane and 
 import math
 from typing import NamedTuple
 
-from tol3d.gearing.engines.exact.foot import PER_TURN, TURN, foot, grown, line_of_action, section, turn_to
+from tol3d.gearing.engines.exact.foot import PER_TURN, TURN, flank_of, foot, grown, line_of_action, section, turn_to
 from tol3d.gearing.engines.exact.numbers import NOWHERE, Foot, Nearest, Pose
 from tol3d.gearing.engines.exact.small_angles import arcsine, sine
 from tol3d.numerics.compiled import inlined, variant
@@ -45,6 +45,12 @@ def bevel_grown(tooth: BevelTooth, scale: float) -> BevelTooth:
     return BevelTooth(
         tooth.base, tooth.cosine, tooth.per_base, tooth.per_cosine, tooth.half, tooth.begin, tooth.end, low, high
     )
+
+
+@variant(flank_of, BevelTooth)
+def bevel_flank(tooth: BevelTooth, flanks: float, gear: int, place: float, sigma: float) -> BevelTooth:
+    """All flanks are alike."""
+    return tooth
 
 
 @variant(section, BevelTooth)

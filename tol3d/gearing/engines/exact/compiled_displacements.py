@@ -3,14 +3,15 @@
 A turn about a point off the gear's origin is the exception, worked out in sums.py.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.gearing.build import Build
-from tol3d.gearing.displacements import Displacement, Growth, PivotShift, displacements
+from tol3d.gearing.displacements import Displacement, FlankOffsets, Growth, PivotShift, displacements
 from tol3d.gearing.engines.exact.sums import SCALE, SLOTS, write_builds
+from tol3d.gearing.flank_offsets import FlankPlaces
 from tol3d.gearing.model import Model
 
 Array = NDArray[np.float64]
@@ -26,6 +27,7 @@ class CompiledDisplacements:
         pivots: (pivots, 2), component and seat of turns about a point off the gear's origin.
         levers: (pivots, 4), rotation vector per deviation in the seat's frame at rest, and the point's z there [mm].
         rest: (seats, 16), rotation of each seat's frame at rest row by row, its origin [mm], its mesh or -1; padded.
+        flanks: offsets of single flanks.
     """
 
     terms: NDArray[np.int64]
@@ -33,6 +35,7 @@ class CompiledDisplacements:
     pivots: NDArray[np.int64]
     levers: Array
     rest: Array
+    flanks: FlankPlaces
 
     def build(self, deviations: Array) -> Build:
         """Builds of the trials with these deviations, (trials, components): build.build to the last few bits."""
@@ -52,9 +55,9 @@ class CompiledDisplacements:
             self.pivots,
             self.levers,
             self.rest,
-            *vars(made).values(),
+            *(values for values in vars(made).values() if values is not None),
         )
-        return made
+        return replace(made, flanks=self.flanks.made(deviations))
 
 
 def compiled_displacements(model: Model) -> CompiledDisplacements:
@@ -74,6 +77,8 @@ def compiled_displacements(model: Model) -> CompiledDisplacements:
                         levers.append((*term.turn, term.pivot))
                     case Growth():
                         totals[:, _growing(model, term.part)] += model.expansions[term.part]
+                    case FlankOffsets():
+                        pass
         terms += [(first + component, slot) for component, slot in np.argwhere(totals)]
         coefficients += totals[totals != 0.0].tolist()
     return CompiledDisplacements(
@@ -82,6 +87,7 @@ def compiled_displacements(model: Model) -> CompiledDisplacements:
         np.array(pivots, dtype=np.int64).reshape(-1, 2),
         np.array(levers, dtype=float).reshape(-1, 4),
         _rest(model),
+        FlankPlaces.of(model),
     )
 
 

@@ -11,10 +11,13 @@ from numpy.typing import NDArray
 from tol3d.gearing.build import Build
 from tol3d.gearing.engines.exact.bevel import BevelTooth
 from tol3d.gearing.engines.exact.compiled_displacements import compiled_displacements
+from tol3d.gearing.engines.exact.deviated import DeviatedTooth
 from tol3d.gearing.engines.exact.kernels import (
     bevel_gaps,
     bevel_read,
     bevel_rests,
+    deviated_gaps,
+    deviated_read,
     spur_gaps,
     spur_read,
     spur_rests,
@@ -24,6 +27,8 @@ from tol3d.gearing.engines.exact.rows import CONTACT, DRIVEN_ANGLE, DRIVEN_TURN,
 from tol3d.gearing.engines.exact.seating import ALL_TEETH, DRIVEN_TOOTH, DRIVER_TOOTH
 from tol3d.gearing.engines.exact.spur import SpurTooth
 from tol3d.gearing.engines.gaps import Gaps, MeshReading
+from tol3d.gearing.engines.status import OUT_OF_RANGE
+from tol3d.gearing.flank_offsets import DEVIATED_MARGIN, FlankPlaces, standing_out
 from tol3d.gearing.model import Mesh, Model, Reading, TransmissionError
 from tol3d.gears import BevelGear, BevelPair, Flank, GearPair, SpurGear, SpurPair
 from tol3d.gears.pair import CONTACT_MARGIN
@@ -44,12 +49,14 @@ class PairKernels:
     Args:
         numbers: pinion's teeth, wheel's, which of them may meet, where the wheel's shaft sees the pinion's.
         read, gaps, rests: see kernels; where it has no kernel of rests, each side is read for itself.
+        flanks: where offsets of single flanks lie, of a pair that has any.
     """
 
-    numbers: tuple[SpurTooth, SpurTooth, PairNumbers, Pose] | tuple[BevelTooth, BevelTooth, PairNumbers, Pose]
+    numbers: tuple[Any, Any, PairNumbers, Pose]
     read: Kernel
     gaps: Kernel
     rests: Kernel | None = None
+    flanks: NDArray[np.int64] | None = None
 
 
 class ExactEngine:
@@ -59,8 +66,8 @@ class ExactEngine:
 
     def __init__(self, model: Model) -> None:
         self._model = model
-        self._pairs = {mesh.name: kernels_of(mesh.pair) for mesh in model.meshes}
         self._displacements = compiled_displacements(model)
+        self._pairs = {mesh.name: kernels_in(model, mesh, self._displacements.flanks) for mesh in model.meshes}
 
     @property
     def kept(self) -> bool:
@@ -101,7 +108,7 @@ class ExactEngine:
         pair.gaps(
             *pair.numbers,
             np.array([*self._seats(mesh), flank, section], dtype=np.int64),
-            *_arrays(build),
+            *_arrays(build, pair),
             *(_array(values) for values in (*angles, driver_teeth, wanted)),
             value,
             vectors,
@@ -130,12 +137,13 @@ class ExactEngine:
         pair.read(
             *pair.numbers,
             np.array([*self._seats(mesh), mesh.resting_flank(reading.flank), *how, *turns], dtype=np.int64),
-            *_arrays(build),
+            *_arrays(build, pair),
             _array(driver_angle),
             readings,
             tooth,
             status,
         )
+        self._refuse_far(build, mesh, readings, status)
         return MeshReading(
             driver_angle=driver_angle,
             driven_angle=readings[:, DRIVEN_ANGLE],
@@ -163,7 +171,7 @@ class ExactEngine:
         pair.rests(
             *pair.numbers,
             np.array([*self._seats(mesh), *how], dtype=np.int64),
-            *_arrays(build),
+            *_arrays(build, pair),
             _array(driver_angle),
             rests,
             contact,
@@ -186,6 +194,16 @@ class ExactEngine:
         )
         return drive, back
 
+    def _refuse_far(self, build: Build, mesh: Mesh, readings: Array, status: NDArray[np.int8]) -> None:
+        """Mark rows in which a flank stands out so far that teeth beyond the candidates might touch first."""
+        places = self._displacements.flanks
+        if build.flanks is None or not places.acts_in(mesh.driver, mesh.driven):
+            return
+        out = places.reach(build.flanks, self._model, mesh.driver, mesh.driven) > standing_out(mesh.pair)
+        if out.any():
+            far = out[build.flanks.row]
+            readings[far], status[far] = np.nan, OUT_OF_RANGE
+
     def _seats(self, mesh: Mesh) -> tuple[int, int]:
         return self._model.seat_index[mesh.name, mesh.driver], self._model.seat_index[mesh.name, mesh.driven]
 
@@ -196,8 +214,16 @@ def _by_trial(reading: MeshReading, shape: tuple[int, int]) -> MeshReading:
     return MeshReading(**each | {name: each[name][:, 0] for name in ("contact", "tooth")})
 
 
-def _arrays(build: Build) -> tuple[Array, ...]:
-    each = (build.world_from_shaft, build.centre, build.flank_turn, build.flank_offset, build.scale)
+def _arrays(build: Build, pair: PairKernels) -> tuple[NDArray[Any], ...]:
+    each: tuple[NDArray[Any], ...] = (
+        build.world_from_shaft,
+        build.centre,
+        build.flank_turn,
+        build.flank_offset,
+        build.scale,
+    )
+    if pair.flanks is not None and build.flanks is not None:
+        each += (build.flanks.values, build.flanks.row, pair.flanks)
     return tuple(_array(values) for values in each)
 
 
@@ -207,6 +233,29 @@ def _array(values: NDArray[Any]) -> NDArray[Any]:
 
 
 # pairs as kernels know them: one function a kind ------------------------------------------------------
+
+
+def kernels_in(model: Model, mesh: Mesh, flanks: FlankPlaces) -> PairKernels:
+    """Numbers and kernels of the pair of a mesh; of spur gears whose flanks deviate one by one their own variant."""
+    alike = kernels_of(mesh.pair)
+    if not flanks.acts_in(mesh.driver, mesh.driven):
+        return alike
+    pinion, wheel, numbers, nominal = alike.numbers
+    gears: tuple[tuple[str, SpurTooth], ...] = ((mesh.driver, pinion), (mesh.driven, wheel))
+    places: list[int] = []
+    teeth: list[DeviatedTooth] = []
+    for name, own in gears:
+        gear, seat = mesh.gear(name), model.seats[model.seat_index[mesh.name, name]]
+        places += [flanks.starts.get(name, -1), gear.teeth, round(seat.ahead / gear.angular_pitch)]
+        span = own.end - own.begin
+        shape = ((own.begin + own.end) / 2, 1.0 / span, 1.0 / gear.face_width, flanks.waves.get(name, 0.0))
+        each: tuple[float, ...] = (*own, 1.0, *shape, 0.0, 0.0, 0.0, 0.0)
+        teeth.append(DeviatedTooth(*each))
+    beyond = DEVIATED_MARGIN * mesh.pair.pinion.angular_pitch
+    numbers = numbers._replace(lowest=numbers.lowest - beyond, highest=numbers.highest + beyond)
+    return PairKernels(
+        (teeth[0], teeth[1], numbers, nominal), deviated_read, deviated_gaps, flanks=np.array(places, dtype=np.int64)
+    )
 
 
 @singledispatch

@@ -69,3 +69,16 @@ def line_of_action(
 ) -> Nearest:
     """The nearest points of two flanks where they are known in closed form; NOWHERE in general. One variant a kind."""
     raise NotImplementedError
+
+
+def flank_of(tooth: Any, flanks: Any, gear: int, place: float, sigma: float) -> Any:
+    """The teeth of a gear as one flank of them is; one variant a kind.
+
+    Args:
+        tooth: the gear's teeth.
+        flanks: offsets of single flanks of both gears, or 0 where all are alike.
+        gear: 0 the driver, 1 the driven.
+        place: which tooth, as the mesh counts.
+        sigma: side of the driver's flank.
+    """
+    raise NotImplementedError

@@ -83,6 +83,7 @@ def build_of(
         flank_turn[row, driver],
         flank_turn[row, driven],
         flank_offset[row, driver] + flank_offset[row, driven],
+        0.0,
     )
 
 
@@ -168,6 +169,90 @@ def write_contact(readings: Array, row: int, side: Side, shaft: Array, out: floa
         readings[row, CONTACT + k] = shaft[k, 0] * x + shaft[k, 1] * y + shaft[k, 2] * z + shaft[k, 3]
 
 
+@part
+def read_row(
+    build: MeshBuild,
+    which: Integers,
+    looks: Looks,
+    shafts: Array,
+    flank_offset: Array,
+    scale: Array,
+    row: int,
+    angle: float,
+    readings: Array,
+    teeth: Integers,
+    status: NDArray[np.int8],
+) -> None:
+    """Seat a row and read it; arguments as in `read_rows`, the row's build and its driver's angle [rad]."""
+    gears, pair, sigma = (which[0], which[1]), build.pair, looks.working.sigma
+    readings[row, :] = np.nan
+    teeth[row], status[row] = 0, OUT_OF_RANGE
+    if not within_reach(build, scale[row, gears[0]], scale[row, gears[1]]):
+        return
+    opened = build.driver_turn / pair.ratio + build.driven_turn
+    start = standing(build, angle, pair.driven_start - angle / pair.ratio + sigma * opened)
+    at, side = closed(seen(build, start, angle, looks.working), build, start, looks.working)
+    status[row] = fault_of(side)
+    if status[row] != OK:
+        return
+    other = seen(build, at, angle, looks.gap)
+    status[row] = fault_of(other)
+    if status[row] != OK:
+        return
+    status[row] = INTERFERES if other.gap < -FREE else OK
+    readings[row, DRIVEN_ANGLE] = at.driven
+    readings[row, GAP] = other.gap
+    write_contact(readings, row, side, shafts[row, gears[1]], flank_offset[row, gears[0]])
+    teeth[row] = side.tooth
+    if which[6]:
+        readings[row, DRIVEN_TURN] = free_turn(build, at, other, angle, looks)
+    if which[7]:
+        readings[row, DRIVER_TURN] = sigma * driver_turn(build, at, looks.of_driver)
+
+
+@part
+def gap_row(
+    build: MeshBuild,
+    which: Integers,
+    shafts: Array,
+    flank_offset: Array,
+    row: int,
+    angles: tuple[float, float],
+    driver_teeth: Integers,
+    wanted: NDArray[np.bool_],
+    value: Array,
+    vectors: Array,
+    at_end: NDArray[np.bool_],
+) -> None:
+    """Gaps of the tooth pairs of a row; arguments as in `gap_rows`, the row's build and its gears' angles [rad]."""
+    gears, sigma = (which[0], which[1]), float(which[2])
+    at = standing(build, angles[0], angles[1])
+    pose = pose_at(build, at)
+    middle = section(build.driver, build.pair.section)
+    own = middle if which[3] else build.driver
+    shaft = shafts[row, gears[1]]
+    for k in range(driver_teeth.shape[1]):
+        value[row, k] = np.nan
+        vectors[row, k] = np.nan
+        at_end[row, k] = False
+        if not wanted[row, k]:
+            continue
+        tooth = float(driver_teeth[row, k])
+        near = pair_nearest(build, at, sigma, tooth, pose, own, middle.low, 0.0, SHARP_FALL)
+        value[row, k] = near.gap
+        if near.gap == math.inf:
+            continue
+        at_end[row, k] = near.at_end
+        ahead, back = flank_offset[row, gears[0]], near.gap + flank_offset[row, gears[0]]
+        x, y = near.x + at.fx, near.y + at.fy
+        for i in range(3):
+            normal = shaft[i, 0] * near.nx + shaft[i, 1] * near.ny + shaft[i, 2] * near.nz
+            point = shaft[i, 0] * x + shaft[i, 1] * y + shaft[i, 2] * near.z + shaft[i, 3]
+            vectors[row, k, 0, i] = point - ahead * normal
+            vectors[row, k, 1, i] = point - back * normal
+            vectors[row, k, 2, i] = -normal
+
+
 def read_rows(
     pinion: Any,
     wheel: Any,
@@ -201,33 +286,9 @@ def read_rows(
         status: (rows,), written.
     """
     gears, looks = (which[0], which[1]), looks_of(pair, which)
-    sigma = looks.working.sigma
     for row in range(len(driver_angles)):
         build = build_of(pinion, wheel, pair, nominal, gears, shafts, centre, flank_turn, flank_offset, scale, row)
-        angle = driver_angles[row]
-        readings[row, :] = np.nan
-        teeth[row], status[row] = 0, OUT_OF_RANGE
-        if not within_reach(build, scale[row, gears[0]], scale[row, gears[1]]):
-            continue
-        opened = build.driver_turn / pair.ratio + build.driven_turn
-        start = standing(build, angle, pair.driven_start - angle / pair.ratio + sigma * opened)
-        at, side = closed(seen(build, start, angle, looks.working), build, start, looks.working)
-        status[row] = fault_of(side)
-        if status[row] != OK:
-            continue
-        other = seen(build, at, angle, looks.gap)
-        status[row] = fault_of(other)
-        if status[row] != OK:
-            continue
-        status[row] = INTERFERES if other.gap < -FREE else OK
-        readings[row, DRIVEN_ANGLE] = at.driven
-        readings[row, GAP] = other.gap
-        write_contact(readings, row, side, shafts[row, gears[1]], flank_offset[row, gears[0]])
-        teeth[row] = side.tooth
-        if which[6]:
-            readings[row, DRIVEN_TURN] = free_turn(build, at, other, angle, looks)
-        if which[7]:
-            readings[row, DRIVER_TURN] = sigma * driver_turn(build, at, looks.of_driver)
+        read_row(build, which, looks, shafts, flank_offset, scale, row, driver_angles[row], readings, teeth, status)
 
 
 def gap_rows(
@@ -260,31 +321,7 @@ def gap_rows(
         at_end: (rows, pairs), written: whether either flank ends there.
     """
     gears = (which[0], which[1])
-    sigma = float(which[2])
     for row in range(len(driver_angles)):
         build = build_of(pinion, wheel, pair, nominal, gears, shafts, centre, flank_turn, flank_offset, scale, row)
-        at = standing(build, driver_angles[row], driven_angles[row])
-        pose = pose_at(build, at)
-        middle = section(build.driver, pair.section)
-        own = middle if which[3] else build.driver
-        shaft = shafts[row, gears[1]]
-        for k in range(driver_teeth.shape[1]):
-            value[row, k] = np.nan
-            vectors[row, k] = np.nan
-            at_end[row, k] = False
-            if not wanted[row, k]:
-                continue
-            tooth = float(driver_teeth[row, k])
-            near = pair_nearest(build, at, sigma, tooth, pose, own, middle.low, 0.0, SHARP_FALL)
-            value[row, k] = near.gap
-            if near.gap == math.inf:
-                continue
-            at_end[row, k] = near.at_end
-            ahead, back = flank_offset[row, gears[0]], near.gap + flank_offset[row, gears[0]]
-            x, y = near.x + at.fx, near.y + at.fy
-            for i in range(3):
-                normal = shaft[i, 0] * near.nx + shaft[i, 1] * near.ny + shaft[i, 2] * near.nz
-                point = shaft[i, 0] * x + shaft[i, 1] * y + shaft[i, 2] * near.z + shaft[i, 3]
-                vectors[row, k, 0, i] = point - ahead * normal
-                vectors[row, k, 1, i] = point - back * normal
-                vectors[row, k, 2, i] = -normal
+        angles = (driver_angles[row], driven_angles[row])
+        gap_row(build, which, shafts, flank_offset, row, angles, driver_teeth, wanted, value, vectors, at_end)

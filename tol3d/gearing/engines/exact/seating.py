@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from tol3d.gearing.engines.exact.foot import section
+from tol3d.gearing.engines.exact.foot import flank_of, section
 from tol3d.gearing.engines.exact.nearest import QUICK_FALL, nearest
 from tol3d.gearing.engines.exact.numbers import ALIKE, AT_EDGE, BEYOND, CLOSED, Nearest, PairNumbers, Pose
 from tol3d.gearing.engines.exact.small_angles import turned
@@ -37,6 +37,7 @@ class MeshBuild(NamedTuple):
         driver_x, driver_y, driven_x, driven_y: centres off the axes, in the gears' frames [mm].
         driver_turn, driven_turn: of the flanks out of their teeth [rad].
         offset: of both flanks along their normals, together [mm].
+        flanks: offsets of single flanks of both gears; 0 where all flanks of a gear are alike.
     """
 
     driver: Any
@@ -51,6 +52,7 @@ class MeshBuild(NamedTuple):
     driver_turn: float
     driven_turn: float
     offset: float
+    flanks: Any
 
 
 class Turn(NamedTuple):
@@ -165,9 +167,15 @@ def middle_first(step: int, first: float, count: int, middle: float) -> float:
 
 
 @part
+def mating_tooth(tooth: float, sigma: float) -> float:
+    """The driven gear's tooth that a driver's meets."""
+    return -tooth if sigma > 0.0 else -tooth - 1.0
+
+
+@part
 def azimuths(build: MeshBuild, at: Turn, sigma: float, tooth: float) -> tuple[float, float]:
     """Azimuths [rad] of a tooth of the driver and of the driven's that it meets, their flanks' turns included."""
-    mating = -tooth if sigma > 0.0 else -tooth - 1.0
+    mating = mating_tooth(tooth, sigma)
     driver = at.driver + build.pair.driver_pitch * tooth - sigma * build.driver_turn
     return driver, at.driven + build.pair.driven_pitch * mating - sigma * build.driven_turn
 
@@ -219,8 +227,8 @@ def pair_nearest(
     own_azimuth, mate_azimuth = azimuths(build, at, sigma, tooth)
     start = start_on(build, pose, sigma, own_azimuth)
     return nearest(
-        own,
-        build.driven,
+        flank_of(own, build.flanks, 0, tooth, sigma),
+        flank_of(build.driven, build.flanks, 1, mating_tooth(tooth, sigma), sigma),
         pose,
         own_azimuth,
         mate_azimuth,

@@ -8,7 +8,7 @@ t = sigma (psi - azimuth) + eta_b its roll: the gap is s - r_b t, and it closes 
 import math
 from typing import NamedTuple
 
-from tol3d.gearing.engines.exact.foot import PER_TURN, TURN, foot, grown, line_of_action, section, turn_to
+from tol3d.gearing.engines.exact.foot import PER_TURN, TURN, flank_of, foot, grown, line_of_action, section, turn_to
 from tol3d.gearing.engines.exact.numbers import ALIKE, NOWHERE, Foot, Nearest, Pose
 from tol3d.numerics.compiled import variant
 
@@ -39,6 +39,12 @@ def spur_grown(tooth: SpurTooth, scale: float) -> SpurTooth:
     """Every length grows."""
     base, low, high = tooth.base * scale, tooth.low * scale, tooth.high * scale
     return SpurTooth(base, 1.0 / base, tooth.half, tooth.begin, tooth.end, low, high)
+
+
+@variant(flank_of, SpurTooth)
+def spur_flank(tooth: SpurTooth, flanks: float, gear: int, place: float, sigma: float) -> SpurTooth:
+    """All flanks are alike."""
+    return tooth
 
 
 @variant(section, SpurTooth)

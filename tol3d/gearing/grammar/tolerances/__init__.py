@@ -8,7 +8,12 @@ from tol3d.gearing.grammar.tolerances.bearing_clearance import BearingClearanceS
 from tol3d.gearing.grammar.tolerances.centre_distance import CentreDistanceSpec
 from tol3d.gearing.grammar.tolerances.clocking import ClockingSpec
 from tol3d.gearing.grammar.tolerances.eccentricity import EccentricitySpec
+from tol3d.gearing.grammar.tolerances.flank_tolerance import FlankToleranceSpec
+from tol3d.gearing.grammar.tolerances.helix_slope import HelixSlopeSpec
 from tol3d.gearing.grammar.tolerances.mounting_face import MountingFaceSpec
+from tol3d.gearing.grammar.tolerances.pitch_deviation import PitchDeviationSpec
+from tol3d.gearing.grammar.tolerances.profile_form import ProfileFormSpec
+from tol3d.gearing.grammar.tolerances.profile_slope import ProfileSlopeSpec
 from tol3d.gearing.grammar.tolerances.reducer_backlash import ReducerBacklashSpec
 from tol3d.gearing.grammar.tolerances.run_out import RunOutSpec
 from tol3d.gearing.grammar.tolerances.shaft_angle import ShaftAngleSpec
@@ -26,7 +31,12 @@ __all__ = [
     "CentreDistanceSpec",
     "ClockingSpec",
     "EccentricitySpec",
+    "FlankToleranceSpec",
+    "HelixSlopeSpec",
     "MountingFaceSpec",
+    "PitchDeviationSpec",
+    "ProfileFormSpec",
+    "ProfileSlopeSpec",
     "ReducerBacklashSpec",
     "RunOutSpec",
     "ShaftAngleSpec",

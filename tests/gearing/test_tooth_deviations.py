@@ -1,0 +1,250 @@
+"""Flanks that deviate tooth by tooth: exact engine, stack-up and FCL against dense points of deviated surfaces."""
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+from oracles.deviated_flanks import DeviatedGear, DeviatedPair
+
+from tol3d import load_scene
+from tol3d.gearing.engines import OUT_OF_RANGE
+from tol3d.gearing.engines.exact import ExactEngine
+from tol3d.gearing.engines.fcl import FclEngine
+from tol3d.gearing.meshing import Meshing
+from tol3d.gearing.model import Mesh, Model, Reading, model_from_scene
+from tol3d.gearing.sensitivity import sensitivities
+from tol3d.gearing.stack_up import stack_of
+from tol3d.gearing.system import strips_of
+from tol3d.system.trials import Trials
+
+Array = NDArray[np.float64]
+
+TEETH = (20, 30)
+CENTRE_DISTANCE = 50.2  # mm; 20 and 30 teeth of 2 mm stand at 50 mm without play
+FACES = (12.0, 10.0)  # mm
+COS = math.cos(math.radians(20))
+BASES = (20 * COS, 30 * COS)
+TURN = 2 * math.pi
+
+SCENE = """
+scene: teeth
+parts:
+  pinion: {{kind: spur_gear, teeth: 20, module: 2 mm, face_width: 12 mm}}
+  wheel: {{kind: spur_gear, teeth: 30, module: 2 mm, face_width: 10 mm}}
+tolerances:
+{tolerances}
+moves:
+  pair: {{kind: mesh, driver: pinion, driven: wheel, centre_distance: 50.2 mm}}
+measures:
+  play: {{kind: normal_backlash, of: pair}}
+"""
+
+WALK = "limits: {iso_class: 7}, law: {kind: random_walk, fill: [0.7, 1]}"
+FREE = "each: tooth, limits: {iso_class: 7}, law: {kind: uniform}"
+PITCH = (
+    f"  pinion pitch: {{kind: pitch_deviation, of: pinion, flanks: each, {WALK}}}\n"
+    "  wheel pitch: {kind: pitch_deviation, of: wheel, flanks: together, limits: {iso_class: 7}, "
+    "law: {kind: run_out_and_random, run_out: 0.5, fill: [0.7, 1]}}"
+)
+SHAPES = "\n".join(
+    f"  {gear} {kind}: {{kind: {kind}, of: {gear}, flanks: each, {FREE}{more}}}"
+    for gear, waves in (("pinion", ", shape: wave, waves: 1"), ("wheel", ", shape: barrel"))
+    for kind, more in (("profile_slope", ""), ("helix_slope", ""), ("profile_form", waves))
+)
+
+
+@cache
+def model_of(tolerances: str, folder: Path) -> Model:
+    path = folder / "teeth.yaml"
+    path.write_text(SCENE.format(tolerances=tolerances), "utf-8")
+    return model_from_scene(load_scene(path))
+
+
+@dataclass(frozen=True)
+class Builds:
+    """Builds of a scene, with the exact engine's readings at random positions of the long period."""
+
+    model: Model
+    deviations: Array
+    angle: Array
+
+    @property
+    def mesh(self) -> Mesh:
+        return self.model.meshes[0]
+
+    @property
+    def engine(self) -> ExactEngine:
+        return ExactEngine(self.model)
+
+    def read(self, deviations: Array | None = None) -> Any:
+        made = self.engine.build(self.deviations if deviations is None else deviations)
+        return self.engine.read(made, self.mesh, Reading(), self.angle, frozenset(("pinion", "wheel")))
+
+    def of(self, name: str) -> Array:
+        """Components of a contributor (builds, components) [mm]."""
+        return self.deviations[:, self.model.component_slices[name]]
+
+
+def drawn(tolerances: str, folder: Path, count: int, seed: int = 1) -> Builds:
+    model, generator = model_of(tolerances, folder), np.random.default_rng(seed)
+    columns = [
+        np.stack(np.broadcast_arrays(*own.draw.deviations(*uniforms), np.zeros(count))[:-1], axis=-1)
+        for own in model.contributors
+        for uniforms in [generator.random((own.draw.uniforms, count))]
+    ]
+    return Builds(model, np.concatenate(columns, axis=1), generator.uniform(0.0, 3 * TURN, count))
+
+
+def dense(builds: Builds, row: int, heights: tuple[float, ...] = (0.0,)) -> DeviatedPair:
+    """The oracle's gears of a build, from the components as the scene's words have them."""
+    names = [own.name for own in builds.model.contributors]
+
+    def component(name: str, tooth: int, flank: int, teeth: int, alike: bool) -> float:
+        if name not in names:
+            return 0.0
+        return float(builds.of(name)[row, tooth + (0 if alike or flank == 1 else teeth)])
+
+    def of_gear(gear: str, teeth: int, face: float, form: Callable[[Array], Array]) -> DeviatedGear:
+        own: Any = builds.mesh.gear(gear)
+        first = math.sqrt((own.form_radius / own.base_radius) ** 2 - 1)
+        last = math.sqrt((own.tip_radius / own.base_radius) ** 2 - 1)
+
+        def deviation(tooth: int, flank: int, roll: Array, z: float) -> Array:
+            part = (roll - first) / (last - first) - 0.5
+            ahead = component(f"{gear} pitch", tooth, flank, teeth, gear == "wheel")
+            slope = component(f"{gear} profile_slope", tooth, flank, teeth, False)
+            helix = component(f"{gear} helix_slope", tooth, flank, teeth, False)
+            shape = component(f"{gear} profile_form", tooth, flank, teeth, False)
+            return -flank * ahead * COS + slope * part + helix * z / face + shape * form(part)
+
+        return DeviatedGear(teeth, 2.0, first, deviation)
+
+    pinion = of_gear("pinion", 20, FACES[0], lambda part: 0.5 * np.cos(TURN * part))
+    wheel = of_gear("wheel", 30, FACES[1], lambda part: 1 / 3 - 4 * part**2)
+    return DeviatedPair(pinion, wheel, CENTRE_DISTANCE, heights)
+
+
+# exact against dense points -------------------------------------------------------------------------------------
+
+BRUTE = 1e-5  # um; dense points of 6 mm of flank lie 0.5 um apart, their sagitta is 3e-9 um; the rest is the spline's
+
+
+@pytest.mark.parametrize("seed", [1, pytest.param(2, marks=pytest.mark.slow)])
+def test_pitches_touch_and_stand_apart_as_dense_points_of_them(seed: int, tmp_path: Path) -> None:
+    check_against_points(drawn(PITCH, tmp_path, 3, seed), (0.0,), BRUTE)
+
+
+def test_slopes_and_forms_touch_and_stand_apart_as_dense_points_of_them(tmp_path: Path) -> None:
+    """Squares of slopes are left out: (7.5 um/5 mm)^2/2 of a gap of 140 um is 2e-4 um."""
+    check_against_points(drawn(SHAPES, tmp_path, 3), (-5.0, 5.0), 1e-3)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("tolerances", [PITCH, f"{PITCH}\n{SHAPES}"])
+def test_thirty_builds_of_class_7_are_within_a_hundredth_um_of_dense_points(tolerances: str, tmp_path: Path) -> None:
+    check_against_points(drawn(tolerances, tmp_path, 30, 3), (-5.0, 5.0), 0.01)
+
+
+def check_against_points(builds: Builds, heights: tuple[float, ...], bound_um: float) -> None:
+    found = builds.read()
+    assert (found.status == 0).all()
+    for row, (driver, driven) in enumerate(zip(builds.angle, found.driven_angle, strict=True)):
+        pair = dense(builds, row, heights)
+        assert 1e3 * BASES[1] * pair.turn_to_touch(1, driver, driven) == pytest.approx(0.0, abs=bound_um)
+        turn = pair.turn_to_touch(-1, driver, driven)
+        assert 1e3 * BASES[1] * (turn - found.driven_turn[row]) == pytest.approx(0.0, abs=bound_um)
+        assert 1e3 * (pair.gap(-1, driver, driven) - found.gap[row]) == pytest.approx(0.0, abs=bound_um)
+
+
+EVEN = "{{kind: {kind}, of: {gear}, flanks: each, {more}law: {{kind: given, right: [{zeros}], left: [{zeros}]}}}}"
+
+
+def test_flanks_without_deviations_are_those_of_gears_without_the_tolerance(tmp_path: Path) -> None:
+    """The variant for single flanks, all of them where they should be, against the kernels of gears without."""
+    thickness = "  thickness: {kind: tooth_thickness, of: wheel, distribution: {kind: constant, value: 0 um}}"
+    zeros = [EVEN.format(kind="pitch_deviation", gear=g, more="", zeros=", ".join(["0 um"] * z)) for g, z in
+             zip(("pinion", "wheel"), TEETH, strict=True)]  # fmt: skip
+    deviated = drawn(f"  first: {zeros[0]}\n  second: {zeros[1]}\n{thickness}", tmp_path, 200)
+    (tmp_path / "plain").mkdir()
+    plain = replace(drawn(thickness, tmp_path / "plain", 200), angle=deviated.angle)
+    ours, theirs = deviated.read(), plain.read()
+    for name in ("gap", "driven_turn", "driver_turn", "driven_angle"):
+        arm = 1.0 if name == "gap" else BASES[1]
+        assert np.abs(arm * (getattr(ours, name) - getattr(theirs, name))).max() < 1e-12
+    assert (ours.status == theirs.status).all()
+
+
+# both roads, and the witness ------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("tolerances", "bound_um"),
+    [
+        (PITCH, 0.03),  # an edge moves along its own normal: 12 um less 0.08^2/2 of them
+        (f"{PITCH}\n{SHAPES}", 0.2),  # what goes with the curvature of forms, near the base circle most
+    ],
+)
+def test_the_stack_up_agrees_trial_by_trial_to_the_second_order(
+    tolerances: str, bound_um: float, tmp_path: Path
+) -> None:
+    builds = drawn(tolerances, tmp_path, 300)
+    found, stack = builds.read(), stack_of(builds.model, builds.mesh, Reading())
+    assert (found.status == 0).all()
+    for turns, values in (
+        (None, found.gap),
+        ("driven", BASES[1] * found.driven_turn),
+        ("driver", BASES[0] * found.driver_turn),
+    ):
+        off = stack.normal_backlash(builds.deviations, builds.angle, turns) - values  # type: ignore[arg-type]
+        assert 1e3 * np.abs(off).max() < bound_um
+    assert 1e3 * found.gap.std() > 3.0  # um: what both roads follow
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("tolerances", [PITCH, f"{PITCH}\n{SHAPES}"])
+def test_fcl_on_strips_of_each_flank_sees_what_the_exact_engine_sees_within_chord_errors(
+    tolerances: str, tmp_path: Path
+) -> None:
+    builds = drawn(tolerances, tmp_path, 60)
+    fcl, made = FclEngine(builds.model, strips_of(builds.model)), builds.engine.build(builds.deviations)
+    seat = Meshing(fcl, builds.model, builds.mesh, made, Reading()).seat(builds.angle)
+    off = 1e3 * (seat.non_working.smallest() - builds.read().gap)
+    chords = 4e3 * fcl.chord_error
+    assert off.min() > -0.02  # um; strips lie inside their teeth
+    assert off.max() < chords + 0.02
+
+
+@pytest.mark.parametrize(
+    ("tolerances", "bound"),
+    [(PITCH, 1e-6), (f"{PITCH}\n{SHAPES}", 5e-3)],  # normals of the engine are those of involutes: off by a slope
+)
+def test_derivatives_by_every_flank_are_differences_of_the_exact_engine(
+    tolerances: str, bound: float, tmp_path: Path
+) -> None:
+    builds = drawn(tolerances, tmp_path, 4)
+    rates = sensitivities(
+        builds.model, builds.engine, Trials(builds.deviations, {"pair": builds.angle}), builds.model.measures[0]
+    )
+    touched = np.flatnonzero(np.abs(rates).max(axis=0) > 0.0)
+    assert len(touched) >= 8
+    assert 0.9 < np.abs(rates).max() < 1.1
+    step = 1e-6  # mm; the bow of a gap over it is 1e-9 of it
+    for k in touched:
+        aside = np.zeros(builds.deviations.shape[1])
+        aside[k] = step
+        ends = [builds.read(builds.deviations + sign * aside).gap for sign in (1.0, -1.0)]
+        assert (ends[0] - ends[1]) / (2 * step) == pytest.approx(rates[:, k], abs=bound)
+
+
+def test_flanks_that_stand_out_beyond_the_teeth_that_are_looked_at_are_out_of_range(tmp_path: Path) -> None:
+    """A tooth of 0.3 mm too much would touch half a pitch before its path of contact."""
+    arcs = ", ".join(["300 um"] + ["0 um"] * 19)
+    law = f"law: {{kind: given, right: [{arcs}]}}"
+    builds = drawn(f"  pitch: {{kind: pitch_deviation, of: pinion, flanks: right, {law}}}", tmp_path, 3)
+    assert (builds.read().status == OUT_OF_RANGE).all()

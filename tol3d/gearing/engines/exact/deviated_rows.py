@@ -1,0 +1,100 @@
+"""Rows of builds whose flanks deviate tooth by tooth: as in rows.py, each with the offsets of its build."""
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tol3d.gearing.engines.exact.deviated import FlankOffsets
+from tol3d.gearing.engines.exact.numbers import PairNumbers, Pose
+from tol3d.gearing.engines.exact.rows import build_of, gap_row, looks_of, read_row
+from tol3d.gearing.engines.exact.seating import MeshBuild
+from tol3d.numerics.compiled import part
+
+Array = NDArray[np.float64]
+Integers = NDArray[np.int64]
+
+
+@part
+def with_flanks(build: MeshBuild, offsets: Array, places: Integers) -> MeshBuild:
+    """A build with the offsets of single flanks."""
+    return MeshBuild(
+        build.driver,
+        build.driven,
+        build.pair,
+        build.pose,
+        build.nominal,
+        build.driver_x,
+        build.driver_y,
+        build.driven_x,
+        build.driven_y,
+        build.driver_turn,
+        build.driven_turn,
+        build.offset,
+        FlankOffsets(offsets, places),
+    )
+
+
+def read_deviated_rows(
+    pinion: Any,
+    wheel: Any,
+    pair: PairNumbers,
+    nominal: Pose,
+    which: Integers,
+    shafts: Array,
+    centre: Array,
+    flank_turn: Array,
+    flank_offset: Array,
+    scale: Array,
+    offsets: Array,
+    builds: Integers,
+    places: Integers,
+    driver_angles: Array,
+    readings: Array,
+    teeth: Integers,
+    status: NDArray[np.int8],
+) -> None:
+    """Seat every row and read it.
+
+    Args:
+        pinion ... scale: as in rows.read_rows.
+        offsets, builds: of FlankDeviations, its values and rows.
+        places: of driver and driven, see deviated.FlankOffsets.
+        driver_angles ... status: as in rows.read_rows.
+    """
+    gears, looks = (which[0], which[1]), looks_of(pair, which)
+    for row in range(len(driver_angles)):
+        alike = build_of(pinion, wheel, pair, nominal, gears, shafts, centre, flank_turn, flank_offset, scale, row)
+        build = with_flanks(alike, offsets[builds[row]], places)
+        read_row(build, which, looks, shafts, flank_offset, scale, row, driver_angles[row], readings, teeth, status)
+
+
+def gap_deviated_rows(
+    pinion: Any,
+    wheel: Any,
+    pair: PairNumbers,
+    nominal: Pose,
+    which: Integers,
+    shafts: Array,
+    centre: Array,
+    flank_turn: Array,
+    flank_offset: Array,
+    scale: Array,
+    offsets: Array,
+    builds: Integers,
+    places: Integers,
+    driver_angles: Array,
+    driven_angles: Array,
+    driver_teeth: Integers,
+    wanted: NDArray[np.bool_],
+    value: Array,
+    vectors: Array,
+    at_end: NDArray[np.bool_],
+) -> None:
+    """Gaps of the tooth pairs that are asked for; arguments as in rows.gap_rows and above."""
+    gears = (which[0], which[1])
+    for row in range(len(driver_angles)):
+        alike = build_of(pinion, wheel, pair, nominal, gears, shafts, centre, flank_turn, flank_offset, scale, row)
+        build = with_flanks(alike, offsets[builds[row]], places)
+        angles = (driver_angles[row], driven_angles[row])
+        gap_row(build, which, shafts, flank_offset, row, angles, driver_teeth, wanted, value, vectors, at_end)

@@ -1,0 +1,172 @@
+"""Offsets of single flanks of gears: one row a build, shared by all positions at which the build is read.
+
+Coefficients of a flank lie together: what it is offset everywhere [mm], and by how much along profile, form and face,
+see effects/flank_deviation.py. A gear that no deviation of single flanks acts on has none.
+"""
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any, Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tol3d.gearing.displacements import FlankOffsets, displacements
+from tol3d.gearing.effects import FORM, SHAPES, FlankDeviation
+from tol3d.gearing.model import Mesh, Model
+from tol3d.gears import GearPair, SpurGear
+from tol3d.gears.flank import RIGHT, Flank
+
+Array = NDArray[np.float64]
+Integers = NDArray[np.int64]
+
+
+DEVIATED_MARGIN: Final = 0.35
+"""Pitches beyond CONTACT_MARGIN in which a flank that stands out of its neighbours may touch before them."""
+
+
+def deviates(model: Model, mesh: Mesh) -> bool:
+    """Whether single flanks of a mesh's gears deviate."""
+    effects = (effect for contributor in model.contributors for effect in contributor.effect.singles)
+    return any(isinstance(effect, FlankDeviation) and effect.acts_in(mesh) for effect in effects)
+
+
+def standing_out(pair: GearPair) -> float:
+    """By how much a flank may stand out of its neighbours [mm] so that it touches nowhere beyond DEVIATED_MARGIN.
+
+    Where the path of contact ends, a tip edge leaves its mate by s^2 rho T/(2 r_b^2 rho_m), s the arc on the base
+    circle by which the gears have turned on, rho and rho_m the radii of curvature of tip and mate, T = rho + rho_m.
+    """
+    tangent = sum(pair.working_radii) * math.sin(pair.working_pressure_angle)
+    turned = DEVIATED_MARGIN * pair.pinion.base_pitch
+    found = math.inf
+    for gear in (pair.pinion, pair.wheel):
+        if not isinstance(gear, SpurGear):
+            raise TypeError("single flanks deviate of spur gears only")
+        tip = gear.base_radius * gear.tip_roll
+        found = min(found, turned**2 * tip * tangent / (2 * gear.base_radius**2 * (tangent - tip)))
+    return found
+
+
+def flank_slot(teeth: int, tooth: Integers | int, flank: Flank) -> Any:
+    """Where the coefficients of a gear's flanks begin among those of the gear; teeth count round the gear."""
+    return SHAPES * (2 * np.mod(tooth, teeth) + (flank != RIGHT))
+
+
+@dataclass(frozen=True, eq=False)
+class FlankPlaces:
+    """Where coefficients lie, and what deviations add to them.
+
+    Args:
+        starts: of each gear that has any, by name.
+        waves: of the form of its flanks, by name; see FlankDeviation.
+        components, slots, factors: (terms,), each adds a factor times a component of the deviations to a slot.
+        count: of all coefficients.
+    """
+
+    starts: Mapping[str, int]
+    waves: Mapping[str, float]
+    components: Integers
+    slots: Integers
+    factors: Array
+    count: int
+
+    @classmethod
+    def of(cls, model: Model) -> "FlankPlaces":
+        """Those of a model."""
+        acting = [
+            (model.component_slices[contributor.name].start, term.effect)
+            for contributor in model.contributors
+            for effect in contributor.effect.singles
+            for term in displacements(effect, model, len(contributor.draw.components))
+            if isinstance(term, FlankOffsets)
+        ]
+        starts: dict[str, int] = {}
+        waves: dict[str, float] = {}
+        terms: list[tuple[int, int]] = []
+        factors: list[float] = []
+        count = 0
+        for first, effect in acting:
+            teeth = model.gear(effect.part).gear.teeth
+            if effect.part not in starts:
+                starts[effect.part], waves[effect.part] = count, 0.0
+                count += 2 * SHAPES * teeth
+            if effect.shape == FORM:
+                waves[effect.part] = effect.waves
+            for component, places in enumerate(effect.places):
+                for place in places:
+                    slot = starts[effect.part] + int(flank_slot(teeth, place.tooth, place.flank)) + effect.shape
+                    terms.append((first + component, slot))
+                    factors.append(place.factor)
+        each = np.array(terms, dtype=np.int64).reshape(-1, 2)
+        return cls(starts, waves, each[:, 0], each[:, 1], np.array(factors, dtype=float), count)
+
+    def made(self, deviations: Array) -> "FlankDeviations | None":
+        """The offsets of builds with these deviations (trials, components); None where no gear has any."""
+        if not self.count:
+            return None
+        values = np.zeros((self.count, len(deviations)))
+        for component, slot, factor in zip(self.components, self.slots, self.factors, strict=True):
+            values[slot] += factor * deviations[:, component]
+        return FlankDeviations(np.ascontiguousarray(values.T), np.arange(len(deviations)))
+
+    def rates(self, model: Model, seat: int, flank: Flank, teeth: Integers, place: tuple[Array, Array]) -> Array:
+        """By how much points of flanks move out along the normal per component, (rows, components).
+
+        Args:
+            model, seat: whose flanks.
+            flank, teeth: which side, and which teeth (rows,) as the mesh counts.
+            place: roll [rad] and height over the middle of the face [mm], (rows,) each, of the gear not grown.
+        """
+        own = model.seats[seat]
+        gear = model.gear(own.gear).gear
+        matrix = np.zeros((self.count, model.component_count))
+        np.add.at(matrix, (self.slots, self.components), self.factors)
+        if own.gear not in self.starts or not isinstance(gear, SpurGear):
+            return np.zeros((len(teeth), model.component_count))
+        roll, height = place
+        u = (roll - (gear.form_roll + gear.tip_roll) / 2) / (gear.tip_roll - gear.form_roll)
+        waves = self.waves[own.gear]
+        form = np.cos(2 * math.pi * waves * u) / 2 if waves else 1 / 3 - 4 * u * u
+        shapes = np.stack([np.ones_like(u), u, form, height / gear.face_width], axis=-1)
+        ahead = round(own.ahead / gear.angular_pitch)
+        first = self.starts[own.gear] + flank_slot(gear.teeth, teeth - ahead, flank)
+        return np.asarray((shapes[:, :, None] * matrix[first[:, None] + np.arange(SHAPES)]).sum(axis=1))
+
+    def acts_in(self, *gears: str) -> bool:
+        """Whether any of some gears has coefficients."""
+        return any(gear in self.starts for gear in gears)
+
+    def reach(self, made: "FlankDeviations", model: Model, *gears: str) -> Array:
+        """By how much more than its neighbours a flank of some gears may stand out, at most, (builds,) [mm]."""
+        total = np.zeros(len(made.values))
+        for gear in gears:
+            if gear in self.starts:
+                teeth = model.gear(gear).gear.teeth
+                own = made.values[:, self.starts[gear] :][:, : 2 * SHAPES * teeth].reshape(-1, teeth, 2, SHAPES)
+                steps = np.abs(own[..., 0] - np.roll(own[..., 0], 1, axis=1)).max(axis=(1, 2))
+                total += steps + 2.0 * np.abs(own[..., 1:]).max(axis=(1, 2)).sum(axis=-1)
+        return total
+
+
+@dataclass(frozen=True, eq=False)
+class FlankDeviations:
+    """Offsets of single flanks of some builds.
+
+    Args:
+        values: (builds, coefficients) [mm].
+        row: (rows,), the build of each row.
+    """
+
+    values: Array
+    row: Integers
+
+    def __getitem__(self, rows: Any) -> "FlankDeviations":
+        """Those of some rows."""
+        return FlankDeviations(self.values, self.row[rows])
+
+    @property
+    def of_rows(self) -> Array:
+        """Coefficients of each row, (rows, coefficients)."""
+        return self.values[self.row]

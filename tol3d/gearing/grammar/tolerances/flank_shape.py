@@ -1,0 +1,151 @@
+"""What deviations of the shape of a gear's single flanks have in common: slopes and forms, each drawn for itself."""
+
+from abc import abstractmethod
+from typing import Annotated, Literal, Self
+
+from pydantic import Field, model_validator
+
+from tol3d.distributions import Distribution, Normal, StatedDistribution, Uniform
+from tol3d.errors import GeometryError
+from tol3d.files import Files
+from tol3d.gearing.effects import FlankDeviation, Place
+from tol3d.gearing.grammar.tolerances.flank_tolerance import FlankToleranceSpec, IsoClass, limits_of_class, no_word
+from tol3d.gearing.pitch_draw import GivenDraw, tooth_names
+from tol3d.gears import SpurGear
+from tol3d.gears.iso1328 import FlankTolerances
+from tol3d.scene.listed import listed
+from tol3d.scene.part import Length
+from tol3d.strict import Strict, refused
+from tol3d.system.draw import Draw, Each, Scalar
+from tol3d.units import Of, Quantity, refuse_dimension
+
+Lengths = Annotated[tuple[Annotated[Quantity, Of("length")], ...], listed("lengths", 1)]
+
+
+class ShapeLimitsSpec(Strict):
+    """The largest size of a deviation, by a class or as it is."""
+
+    iso_class: IsoClass | None = Field(default=None, description="flank tolerance class of ISO 1328-1:2013, 1 to 11")
+    size: Length | None = Field(default=None, description="the largest size of a deviation")
+
+    @model_validator(mode="after")
+    def _refuse_both(self) -> Self:
+        if (self.iso_class is None) == (self.size is None):
+            raise refused("", "either iso_class or size", "neither" if self.size is None else "both")
+        return self
+
+
+class UniformShapeSpec(Strict):
+    """Any deviation within the limits is as likely as any other."""
+
+    kind: Literal["uniform"]
+
+
+class NormalShapeSpec(Strict):
+    """Normal about no deviation, 3 cpk sigma at the limits, which draws may exceed."""
+
+    kind: Literal["normal"]
+    cpk: float = Field(gt=0.0, description="how far the process fills the limits, as ISO 22514-2 has it")
+
+
+class StatedShapeSpec(Strict):
+    """A stated law; no limits beside it."""
+
+    kind: Literal["stated"]
+    distribution: StatedDistribution = Field(description="the law of one flank's deviation, a length")
+
+    @model_validator(mode="after")
+    def _refuse_other_dimensions(self) -> Self:
+        for field, quantity in self.distribution.quantities().items():
+            refuse_dimension(quantity, ("length",), f"distribution.{field}")
+        return self
+
+
+class GivenShapeSpec(Strict):
+    """Deviations of a gear that was measured, from tooth 0 on, in every trial the same."""
+
+    kind: Literal["given"]
+    right: Lengths | None = Field(default=None, description="of the right flanks, or of whole teeth")
+    left: Lengths | None = Field(default=None, description="of the left flanks")
+
+
+ShapeLaw = Annotated[
+    UniformShapeSpec | NormalShapeSpec | StatedShapeSpec | GivenShapeSpec,
+    Field(discriminator="kind", description="how deviations fill the limits: uniform or normal; or stated, or given"),
+    no_word("a law such as {kind: uniform}"),
+]
+
+
+class FlankShapeSpec(FlankToleranceSpec):
+    """A deviation of the shape of single flanks of a spur gear."""
+
+    each: Literal["tooth", "gear"] = Field(
+        description="tooth: every tooth has a deviation of its own; gear: all teeth of the gear have the same"
+    )
+    limits: Annotated[ShapeLimitsSpec, no_word("limits such as {iso_class: 7}")] | None = Field(
+        default=None, description="of a law that is uniform or normal"
+    )
+    law: ShapeLaw
+
+    @model_validator(mode="after")
+    def _refuse_misfits(self) -> Self:
+        fills = isinstance(self.law, UniformShapeSpec | NormalShapeSpec)
+        if fills and self.limits is None:
+            raise refused("limits", "limits such as {iso_class: 7}, which the law fills", "none")
+        if not fills and self.limits is not None:
+            raise refused("limits", f"none beside a law that is {self.law.kind}", "limits")
+        if isinstance(self.law, GivenShapeSpec):
+            wanted = {"right": ["right"], "left": ["left"], "each": ["right", "left"], "together": ["right"]}
+            given = [side for side in ("right", "left") if getattr(self.law, side) is not None]
+            if given != wanted[self.flanks]:
+                expected = f"{' and '.join(wanted[self.flanks])} for flanks {self.flanks}"
+                raise refused("law", expected, " and ".join(given) or "none")
+        return self
+
+    @abstractmethod
+    def of_class(self, limits: FlankTolerances) -> float:
+        """The limit that a class states for this deviation [mm]."""
+
+    def _names(self, gear: SpurGear) -> tuple[str, ...]:
+        return tooth_names(gear.teeth, self.sides) if self.each == "tooth" else self.sides
+
+    def draw(self, gear: SpurGear, files: Files) -> Draw:
+        """See FlankToleranceSpec."""
+        names = self._names(gear)
+        if isinstance(self.law, GivenShapeSpec):
+            return self._given(self.law, names)
+        law = self._distribution(gear, files)
+        return Scalar(law) if names == ("",) else Each(law, names)
+
+    def _distribution(self, gear: SpurGear, files: Files) -> Distribution:
+        if isinstance(self.law, StatedShapeSpec):
+            return self.law.distribution.resolve(files)
+        if self.limits is None:
+            raise TypeError("a law that fills limits has some")
+        size = self.limits.size.internal if self.limits.size else 0.0
+        if self.limits.iso_class:
+            size = self.of_class(limits_of_class(self.limits.iso_class, gear))
+        if isinstance(self.law, NormalShapeSpec):
+            return Normal(0.0, size / (3 * self.law.cpk), (-size, size))
+        return Uniform(-size, size)
+
+    def _given(self, law: GivenShapeSpec, names: tuple[str, ...]) -> GivenDraw:
+        found: list[float] = []
+        count = len(names) // len(self.sides)
+        for side in self.sides:
+            lengths = getattr(law, side or "right")
+            if len(lengths) != count:
+                raise GeometryError(f"law.{side or 'right'}: expected {count} lengths, got {len(lengths)}")
+            found += [length.internal for length in lengths]
+        return GivenDraw(names, tuple(found))
+
+    def deviation(self, gear: SpurGear, shape: int, waves: float = 0.0) -> FlankDeviation:
+        """Its components on their flanks."""
+        teeth = range(gear.teeth)
+        groups = [[tooth] for tooth in teeth] if self.each == "tooth" else [list(teeth)]
+        places = [
+            tuple(Place(tooth, flank, 1.0) for tooth in group for flank in self.flanks_of(side))
+            for side in self.sides
+            for group in groups
+        ]
+        return FlankDeviation(self.of, shape, tuple(places), waves)

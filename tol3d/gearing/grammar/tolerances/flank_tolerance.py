@@ -1,0 +1,98 @@
+"""What every tolerance of a gear's single flanks has in common."""
+
+from abc import abstractmethod
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
+
+from pydantic import BeforeValidator, Field
+
+from tol3d.files import Files
+from tol3d.gearing.effects import Effect
+from tol3d.gearing.grammar.parts.spur_gear import SpurGearSpec
+from tol3d.gears import SpurGear
+from tol3d.gears.flank import LEFT, RIGHT, Flank
+from tol3d.gears.iso1328 import CLASSES, FlankTolerances, flank_tolerances
+from tol3d.scene.entry import Entry
+from tol3d.scene.name import Name
+from tol3d.scene.reference import Reference
+from tol3d.scene.tolerance import ToleranceEntry
+from tol3d.strict import refused
+from tol3d.system.draw import Draw
+from tol3d.units import shown
+
+if TYPE_CHECKING:
+    from tol3d.gearing.model.contributor import Unit
+
+SIDES: Mapping[str, Flank] = {"right": RIGHT, "left": LEFT}
+
+Flanks = Literal["right", "left", "each", "together"]
+
+
+IsoClass = Annotated[int, Field(ge=CLASSES[0], le=CLASSES[1])]
+"""Flank tolerance class of ISO 1328-1:2013."""
+
+
+class FlankToleranceSpec(ToleranceEntry):
+    """A tolerance of single flanks of a spur gear, each tooth with deviations of its own."""
+
+    applies_to: ClassVar[tuple[type[Entry], ...]] = (SpurGearSpec,)
+
+    of: Name = Field(description="the gear, a spur gear")
+    flanks: Flanks = Field(
+        description="right or left: that side of the teeth; each: both, drawn each for itself; together: whole teeth"
+    )
+
+    def references(self) -> tuple[Reference, ...]:
+        """The gear."""
+        return (Reference(("of",), self.of, self.applies_to),)
+
+    @property
+    def unit(self) -> "Unit":
+        """Unit of its columns in results."""
+        return "um"
+
+    @property
+    def sides(self) -> tuple[str, ...]:
+        """Names of the flank sides that are drawn each for itself; "" where one draw is for whole teeth."""
+        if self.flanks == "together":
+            return ("",)
+        return tuple(SIDES) if self.flanks == "each" else (self.flanks,)
+
+    def flanks_of(self, side: str) -> tuple[Flank, ...]:
+        """The flanks that one of the sides stands for."""
+        return (SIDES[side],) if side else tuple(SIDES.values())
+
+    @abstractmethod
+    def draw(self, gear: SpurGear, files: Files) -> Draw:
+        """How its components are drawn; `files` holds what its law reads.
+
+        Raises:
+            GeometryError: the tolerance does not go with the gear.
+        """
+
+    @abstractmethod
+    def effect(self, gear: SpurGear) -> Effect:
+        """What its components do."""
+
+
+def limits_of_class(iso_class: int, gear: SpurGear) -> FlankTolerances:
+    """The limits that a class states for a gear.
+
+    Raises:
+        GeometryError: it states none.
+    """
+    return flank_tolerances(iso_class, gear.teeth, gear.module, gear.face_width)
+
+
+def no_word(example: str) -> BeforeValidator:
+    """Refuses a word where a law or limits with their numbers are meant, such as `example`."""
+
+    def checked(value: Any) -> Any:
+        if isinstance(value, str | int | float):
+            raise refused("", example, shown(value))
+        return value
+
+    return BeforeValidator(checked)
+
+
+Share = Annotated[float, Field(gt=0.0, le=1.0)]

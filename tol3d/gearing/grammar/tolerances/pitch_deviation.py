@@ -1,0 +1,180 @@
+"""Pitch deviations of a spur gear's teeth."""
+
+import math
+from typing import Annotated, Literal, Self
+
+from pydantic import Field, model_validator
+
+from tol3d.errors import GeometryError
+from tol3d.files import Files
+from tol3d.gearing.effects import UNIFORM, FlankDeviation, Place
+from tol3d.gearing.grammar.tolerances.flank_tolerance import (
+    FlankToleranceSpec,
+    IsoClass,
+    Share,
+    limits_of_class,
+    no_word,
+)
+from tol3d.gearing.pitch_draw import (
+    GivenDraw,
+    Pattern,
+    PitchDraw,
+    PitchLimits,
+    RandomWalk,
+    RunOutAndRandom,
+    tooth_names,
+)
+from tol3d.gears import SpurGear
+from tol3d.scene.listed import listed
+from tol3d.scene.part import Length
+from tol3d.strict import Strict, refused
+from tol3d.system.draw import Draw
+from tol3d.units import Of, Quantity
+
+Arcs = Annotated[tuple[Annotated[Quantity, Of("length")], ...], listed("lengths", 3)]
+
+
+class PitchLimitsSpec(Strict):
+    """Limits of pitch deviations, by a class or as they are."""
+
+    iso_class: IsoClass | None = Field(default=None, description="flank tolerance class of ISO 1328-1:2013, 1 to 11")
+    single: Length | None = Field(default=None, description="f_p: of the size of each single pitch deviation")
+    cumulative: Length | None = Field(
+        default=None, description="F_p: of the largest index deviation of a flank side less the smallest"
+    )
+
+    @model_validator(mode="after")
+    def _refuse_half_limits(self) -> Self:
+        given = [name for name in ("iso_class", "single", "cumulative") if getattr(self, name) is not None]
+        if given not in (["iso_class"], ["single", "cumulative"]):
+            raise refused("", "either iso_class, or single and cumulative", " and ".join(given) or "none of them")
+        return self
+
+    def of(self, gear: SpurGear) -> PitchLimits:
+        """The limits of a gear [mm].
+
+        Raises:
+            GeometryError: the class states none for it.
+        """
+        if self.single is not None and self.cumulative is not None:
+            return PitchLimits(self.single.internal, self.cumulative.internal)
+        limits = limits_of_class(self.iso_class or 0, gear)
+        return PitchLimits(limits.single_pitch, limits.cumulative_pitch)
+
+
+class FilledSpec(Strict):
+    """A pattern round the gear whose size follows from how much of the limits it takes up."""
+
+    fill: Annotated[tuple[Share, Share], listed("shares", 2, 2)] = Field(
+        description="least and most of the limits that a flank side takes up, uniform in between; 1 reaches one of them"
+    )
+
+    @model_validator(mode="after")
+    def _refuse_disorder(self) -> Self:
+        least, most = self.fill
+        if least > most:
+            raise refused("fill", "the least share before the most", f"[{least:g}, {most:g}]")
+        return self
+
+
+class RandomWalkSpec(FilledSpec):
+    """Single pitches are independent normals on condition that they sum to zero."""
+
+    kind: Literal["random_walk"]
+
+    @property
+    def pattern(self) -> Pattern:
+        """How deviations go round."""
+        return RandomWalk()
+
+
+class RunOutAndRandomSpec(FilledSpec):
+    """Index deviations are one wave round the gear, of any phase, and independent normals."""
+
+    kind: Literal["run_out_and_random"]
+    run_out: float = Field(ge=0.0, le=1.0, description="the wave's part of the variance")
+
+    @property
+    def pattern(self) -> Pattern:
+        """How deviations go round."""
+        return RunOutAndRandom(self.run_out)
+
+
+class GivenSpec(Strict):
+    """Index deviations of a gear that was measured, from tooth 0 on, in every trial the same."""
+
+    kind: Literal["given"]
+    right: Arcs | None = Field(default=None, description="of the right flanks, or of whole teeth")
+    left: Arcs | None = Field(default=None, description="of the left flanks")
+
+
+Law = Annotated[
+    RandomWalkSpec | RunOutAndRandomSpec | GivenSpec,
+    Field(discriminator="kind", description="how deviations go round the gear, and how far they fill the limits"),
+    no_word("a law such as {kind: random_walk, fill: [0.7, 1]}"),
+]
+
+
+class PitchDeviationSpec(FlankToleranceSpec):
+    """Index deviations F of the flanks, arcs at the reference circle, positive counter-clockwise about the gear's z.
+
+    Single pitch deviations are their differences from tooth to tooth and sum to zero. What all flanks of a side have
+    in common is taken out: it is tooth thickness.
+    """
+
+    kind: Literal["pitch_deviation"]
+    limits: Annotated[PitchLimitsSpec, no_word("limits such as {iso_class: 5}")] | None = Field(
+        default=None, description="f_p and F_p: a class, or stated; of every law but what is given"
+    )
+    law: Law
+
+    @model_validator(mode="after")
+    def _refuse_misfits(self) -> Self:
+        if not isinstance(self.law, GivenSpec):
+            if self.limits is None:
+                raise refused("limits", "limits such as {iso_class: 5}, which the law fills", "none")
+            return self
+        if self.limits is not None:
+            raise refused("limits", "none beside a law that is given", "limits")
+        wanted = {"right": ["right"], "left": ["left"], "each": ["right", "left"], "together": ["right"]}[self.flanks]
+        given = [side for side in ("right", "left") if getattr(self.law, side) is not None]
+        if given != wanted:
+            got = " and ".join(given) or "none"
+            raise refused("law", f"{' and '.join(wanted)} for flanks {self.flanks}", got)
+        return self
+
+    def draw(self, gear: SpurGear, files: Files) -> Draw:
+        """See FlankToleranceSpec."""
+        if isinstance(self.law, GivenSpec):
+            return self._given(self.law, gear)
+        limits = PitchLimitsSpec.of(self._limits, gear)
+        return PitchDraw(gear.teeth, self.sides, self.law.pattern, limits, self.law.fill)
+
+    @property
+    def _limits(self) -> PitchLimitsSpec:
+        if self.limits is None:
+            raise TypeError("a law that fills limits has some")
+        return self.limits
+
+    def _given(self, law: GivenSpec, gear: SpurGear) -> GivenDraw:
+        found: list[float] = []
+        for side in self.sides:
+            arcs = [arc.internal for arc in getattr(law, side or "right")]
+            if len(arcs) != gear.teeth:
+                raise GeometryError(f"law.{side or 'right'}: expected {gear.teeth} lengths, got {len(arcs)}")
+            mean = math.fsum(arcs) / gear.teeth
+            found += [arc - mean for arc in arcs]
+        return GivenDraw(tooth_names(gear.teeth, self.sides), tuple(found))
+
+    def effect(self, gear: SpurGear) -> FlankDeviation:
+        """A flank that lies F ahead lies F cos(alpha) out of its tooth on the left side, so much inside on the right.
+
+        Exact: involutes that are turned by F/r lie r_b F/r apart along their normals.
+        """
+        cosine = math.cos(gear.pressure_angle)
+        places = [
+            tuple(Place(tooth, flank, -flank * cosine) for flank in self.flanks_of(side))
+            for side in self.sides
+            for tooth in range(gear.teeth)
+        ]
+        return FlankDeviation(self.of, UNIFORM, tuple(places))
