@@ -28,7 +28,9 @@ from tol3d import Run, load_scene
 from tol3d.gearing.model import model_from_scene
 from tol3d.gears.flank import Flank
 
-ELSEWHERE = re.compile("bevel|robot|train|two_sided")  # test_*_scenes.py, test_compensation.py, test_two_sided_te.py
+ELSEWHERE = re.compile(
+    "bevel|robot|train|two_sided|tooth_deviations"
+)  # in files of their own, and test_compensation.py
 SCENES = [name for name in shipped("gearing") if not ELSEWHERE.search(name)]
 ALPHA = math.radians(20.0)
 ARCMIN = 10800 / math.pi / 1000  # one um at a radius of one mm

@@ -238,9 +238,19 @@ def taken_rates(measure: Measure, values: Array, rates: Array) -> Array:
     if measure.take == "value":
         return rates[:, 0]
     closed = measure.positions.closed
-    highest, lowest = peak_weights(values, closed=closed), peak_weights(-values, closed=closed)
+    highest, lowest = (
+        sample_weights(own) if measure.positions.jumps else peak_weights(own, closed=closed)
+        for own in (values, -values)
+    )
     weights = {"max": highest, "min": lowest, "range": highest - lowest}[measure.take]
     return np.asarray((weights[:, :, None] * rates).sum(axis=1))
+
+
+def sample_weights(values: Array) -> Array:
+    """Weights of the samples (trials, positions) in the highest of them."""
+    weights = np.zeros_like(values)
+    weights[np.arange(len(values)), np.argmax(values, axis=1)] = 1.0
+    return weights
 
 
 def peak_weights(values: Array, *, closed: bool) -> Array:

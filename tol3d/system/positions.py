@@ -21,6 +21,7 @@ class Positions:
         angle: the angle for "at" [rad].
         angles: for "swing" [rad].
         shown: the angles that a reader knows these positions by [rad], such as those of the output.
+        jumps: whether values may jump from one position to the next: extremes are then those of the positions alone.
     """
 
     over: Over
@@ -29,6 +30,7 @@ class Positions:
     angle: float = 0.0
     angles: tuple[float, ...] = ()
     shown: tuple[float, ...] = ()
+    jumps: bool = False
 
     @property
     def closed(self) -> bool:

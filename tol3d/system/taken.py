@@ -14,16 +14,20 @@ def taken(measure: Measure, values: Array) -> Array:
     """What a measure takes of its values (trials, positions): (trials,), or all of them for a curve.
 
     Extremes are those of a parabola through the extreme sample and its neighbours, on a closed period those
-    round its end too: 1.1e-4 of the once-per-turn part at 24 positions a turn, where the sample is 9e-3 off.
+    round its end too: 1.1e-4 of the once-per-turn part at 24 positions a turn, where the sample is 9e-3 off. Of values
+    that jump they are those of the samples: a parabola beside a jump would lie above both.
     """
     if measure.take == "curve":
         return values
     if measure.take == "value":
         return values[:, 0]
-    closed = measure.positions.closed
-    highest = _parabola_peak(values, closed=closed)
-    lowest = -_parabola_peak(-values, closed=closed)
-    return {"max": highest, "min": lowest, "range": highest - lowest}[measure.take]
+    if measure.positions.jumps:
+        highest, lowest = np.asarray(values.max(axis=1)), np.asarray(values.min(axis=1))
+    else:
+        closed = measure.positions.closed
+        highest = _parabola_peak(values, closed=closed)
+        lowest = -_parabola_peak(-values, closed=closed)
+    return np.asarray({"max": highest, "min": lowest, "range": highest - lowest}[measure.take])
 
 
 def _parabola_peak(values: Array, *, closed: bool) -> Array:

@@ -49,3 +49,7 @@ class FlankDeviation(Effect):
     def acts_in(self, mesh: "Mesh") -> bool:
         """In every mesh of the gear."""
         return self.part in (mesh.driver, mesh.driven)
+
+    def deviates_teeth(self, gear: str) -> bool:
+        """See Effect."""
+        return gear == self.part

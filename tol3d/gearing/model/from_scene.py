@@ -9,6 +9,7 @@ from tol3d.gearing.grammar.parts import GearSpec, HousingSpec
 from tol3d.gearing.grammar.study import GearStudyOptions
 from tol3d.gearing.model.layout import Layout, layout_of
 from tol3d.gearing.model.links import links_between_shafts, links_of
+from tol3d.gearing.model.measure import Measure
 from tol3d.gearing.model.measures import measure_of
 from tol3d.gearing.model.mesh import Mesh
 from tol3d.gearing.model.model import GearPart, Housing, Model
@@ -69,7 +70,15 @@ def model_from_scene(scene: Scene) -> Model:
         arms=arms,
         trains=trains,
     )
-    return replace(model, measures=tuple(measure_of(scene, name, model) for name in scene.measures))
+    return replace(model, measures=tuple(_jumping(model, measure_of(scene, name, model)) for name in scene.measures))
+
+
+def _jumping(model: Model, measure: Measure) -> Measure:
+    """The measure; where single teeth deviate it jumps from position to position, as they come to touch."""
+    meshes = [model.mesh(backlash.mesh) for _, backlash in measure.kind.backlashes]
+    gears = {gear for mesh in meshes for gear in (mesh.driver, mesh.driven)}
+    jumps = any(own.effect.deviates_teeth(gear) for own in model.contributors for gear in gears)
+    return replace(measure, positions=replace(measure.positions, jumps=True)) if jumps else measure
 
 
 def meshes_of_scene(scene: Scene) -> tuple[tuple[Mesh, ...], Layout]:

@@ -7,7 +7,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.gearing.breakdowns import staged_measures
-from tol3d.gearing.flank_offsets import deviates
 from tol3d.gearing.linked import by_theory
 from tol3d.gearing.model import Backlash, Measure, Model, TransmissionError
 from tol3d.gearing.model.measure import gear_measures
@@ -19,7 +18,7 @@ from tol3d.gearing.stack_up import (
     first_order,
     per_normal_backlash,
 )
-from tol3d.gearing.stack_up.tooth_pairs import pieces
+from tol3d.gearing.stack_up.tooth_pairs import pieces, teeth_deviate
 from tol3d.system import measure as system_measure
 from tol3d.system.road import Answers
 from tol3d.system.trials import Trials
@@ -88,7 +87,7 @@ class _Stacks:
     def __call__(self, backlash: Backlash, key: SeatKey) -> Array:
         """See Read."""
         angles = driver_angles(key, self._trials)
-        if deviates(self._model, self._model.mesh(backlash.mesh)):
+        if teeth_deviate(self._model, self._model.mesh(backlash.mesh)):
             return self._by_flanks(backlash, key, angles)
         if key not in self._known:
             self._known[key] = self._asked(replace(backlash, quantity="normal_backlash"), angles)

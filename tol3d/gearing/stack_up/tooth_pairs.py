@@ -237,6 +237,12 @@ def tooth_pairs(model: Model, mesh: Mesh, reading: Reading) -> ToothPairs | None
     return ToothPairs(mesh.pair, reading, mesh.resting_flank(reading.flank), driver, driven)
 
 
+def teeth_deviate(model: Model, mesh: Mesh) -> bool:
+    """Whether single flanks of a mesh's gears deviate."""
+    gears = (mesh.driver, mesh.driven)
+    return any(own.effect.deviates_teeth(gear) for own in model.contributors for gear in gears)
+
+
 def pieces(trials: int, positions: int, components: int) -> Iterator[slice]:
     """Trials in pieces whose rows of deviations, repeated for each position, stay small."""
     size = max(1, NUMBERS_AT_ONCE // max(1, positions * components))

@@ -21,12 +21,11 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.gearing.flank_offsets import deviates
 from tol3d.gearing.model import Backlash, Model, TransmissionError
 from tol3d.gearing.stack_up.backlash import per_normal_backlash, stack_of
 from tol3d.gearing.stack_up.stack import Stack
 from tol3d.gearing.stack_up.term import Term
-from tol3d.gearing.stack_up.tooth_pairs import pieces
+from tol3d.gearing.stack_up.tooth_pairs import pieces, teeth_deviate
 from tol3d.gears import GearPair
 
 Array = NDArray[np.float64]
@@ -47,7 +46,7 @@ def analytic_transmission_error(
         for columns, wave in _waves(model, backlash, driver):
             for column, own in zip(columns, wave, strict=True):
                 total += np.multiply.outer(deviations[:, column], factor * (own - own[0]))
-        if deviates(model, model.mesh(backlash.mesh)):
+        if teeth_deviate(model, model.mesh(backlash.mesh)):
             turned = _turned_by_teeth(model, backlash, deviations, driver)
             total += factor * (turned - turned[:, :1])
     return total
