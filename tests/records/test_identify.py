@@ -4,18 +4,20 @@ import math
 from collections.abc import Mapping
 from dataclasses import replace
 from fractions import Fraction
+from pathlib import Path
 
 import numpy as np
 import pytest
 from records.rigged import LARGEST, LEAST, PAIR, REFERENCE, START, arcsec, ends_of, identified_by, passes, within
 
 from tol3d.errors import InputError
+from tol3d.records.csv_file import Block
 from tol3d.records.curve import curve_of
 from tol3d.records.exact_play import Side, angular_backlash
 from tol3d.records.identify import Identified, Settings, identified
 from tol3d.records.pair import ARCSEC, RigPair, Specimen
-from tol3d.records.reading import Pass, Senses
-from tol3d.records.rig import Rig
+from tol3d.records.reading import Pass, Senses, passes_of
+from tol3d.records.rig import Rig, measured
 
 ENCODERS = Rig(samples=180, encoder1=6 * ARCSEC, encoder2=4 * ARCSEC, tooth_mesh=5 * ARCSEC)
 
@@ -116,6 +118,30 @@ def _with_back_from(turns: int) -> Identified:
 def test_a_hidden_shift_by_whole_turns_is_found(turns: int) -> None:
     with pytest.raises(InputError, match=rf"may lie {turns} whole turns of the driver apart"):
         identified_by(REFERENCE, replace(ENCODERS, hidden_turns=turns))
+
+
+@pytest.mark.parametrize("turns", [1, 5])
+def test_a_hidden_shift_that_an_encoder_may_explain_is_warned_of(turns: int) -> None:
+    """At e2 = 1.5 um a shift is as good as an encoder's error of some seconds; it moves the backlash by seconds."""
+    own = replace(REFERENCE, e2=0.0015)
+    found = identified_by(own, replace(ENCODERS, encoder1=0.0, encoder2=0.0, hidden_turns=turns))
+    assert any(f"may lie {turns} whole turns of the driver apart" in text for text in found.warnings)
+    assert not any("may lie" in text for text in identified_by(own, replace(ENCODERS, encoder2=0.0)).warnings)
+
+
+def test_rows_at_any_distance_give_the_same() -> None:
+    """One row in four, at random, other ones on either side."""
+    random = np.random.default_rng(3)
+
+    def thinned(side: Side) -> tuple[Pass, ...]:
+        rows = measured(REFERENCE, replace(ENCODERS, samples=720, tooth_mesh=0.0), side)
+        kept = np.sort(random.choice(len(rows.phi1), len(rows.phi1) // 4, replace=False))
+        block = Block(0, rows.phi1[kept], rows.phi2[kept], None, None)
+        return tuple(passes_of(PAIR, Path(f"{side}.csv"), [block], Senses(1, 1)))
+
+    found = identified(PAIR, {"drive": thinned("drive"), "back": thinned("back")}, Senses(1, 1), Settings())
+    assert arcsec(found.figures["jmin"].value) == pytest.approx(LEAST, abs=0.2)
+    assert arcsec(found.figures["jmax"].value) == pytest.approx(LARGEST, abs=0.2)
 
 
 def test_encoders_set_to_zero_between_the_sides_are_refused() -> None:

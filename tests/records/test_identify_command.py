@@ -14,7 +14,7 @@ from records.rigged import LARGEST, LEAST, PAIR, REFERENCE, scene_in
 from tol3d import load_scene, run_scene
 from tol3d.gearing.model import model_from_scene
 from tol3d.records import csv_file
-from tol3d.records.exact_play import Side
+from tol3d.records.exact_play import Side, transmission_error
 from tol3d.records.from_scene import mesh_of, scene_text, specimen_of_scene
 from tol3d.records.identify import Settings, identify
 from tol3d.records.pair import ARCSEC, RigPair, Specimen
@@ -83,6 +83,16 @@ def test_the_identified_scene_simulated_lies_over_the_true_curve(tol3d: Command,
         assert geometric is not None
         assert geometric.mean is not None
         assert 60 * geometric.mean == pytest.approx(true, abs=2 * half_width + 0.01)
+    sense = 1 if flank == "left" else -1  # of the driver's azimuth in its own sense of rotation
+    for side in SIDES:
+        measure = found[f"{side} TE curve"]
+        assert measure.curve is not None
+        assert measure.curve.geometric is not None
+        phi1 = sense * np.radians(np.array(measure.position_deg))
+        error = transmission_error(REFERENCE, phi1, side) / ARCSEC
+        expected = error - error[0]
+        simulated = 60 * np.array(measure.curve.geometric.mean)
+        assert np.abs(simulated - expected).max() < 4 * half_width + 0.01
 
 
 def test_the_mean_build_of_any_scene_is_the_specimen(tmp_path: Path) -> None:
@@ -93,6 +103,30 @@ def test_the_mean_build_of_any_scene_is_the_specimen(tmp_path: Path) -> None:
     assert (found.e1, found.e2) == (0.0, 0.0)
     assert found.pair.centre_distance == pytest.approx(75.0, abs=1e-12)
     assert found.pair.driven_base_radius == pytest.approx(PAIR.driven_base_radius)
+
+
+def test_the_bundled_scene_means_the_reference_pair() -> None:
+    """Its author derived the wheel's direction from the paper's theta2 by himself, to 0.001 deg."""
+    model = model_from_scene(load_scene("two_sided_te"))
+    found = specimen_of_scene(model, mesh_of(model, None))
+    assert found.e1 == pytest.approx(REFERENCE.e1, abs=1e-12)
+    assert found.e2 == pytest.approx(REFERENCE.e2, abs=1e-12)
+    assert math.degrees(math.remainder(found.theta1 - REFERENCE.theta1, 2 * math.pi)) == pytest.approx(0.0, abs=1e-9)
+    assert math.degrees(math.remainder(found.theta2 - REFERENCE.theta2, 2 * math.pi)) == pytest.approx(0.0, abs=0.001)
+    assert found.normal_backlash == pytest.approx(REFERENCE.normal_backlash, abs=1e-8)
+
+
+@pytest.mark.parametrize(
+    ("scene", "words"),
+    [
+        ("bevel_pair", "expected a mesh of two spur gears, got none"),
+        pytest.param("door", "expected a scene of gears", marks=pytest.mark.slow),  # its kernels take 10 s to load
+    ],
+)
+def test_a_scene_without_a_spur_pair_is_refused(tol3d: Command, tmp_path: Path, scene: str, words: str) -> None:
+    code, _, err = tol3d(*written(tmp_path)[:-1], scene)
+    assert code == 2
+    assert words in err
 
 
 # files --------------------------------------------------------------------------------------------

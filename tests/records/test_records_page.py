@@ -1,9 +1,11 @@
 """The example of docs/records.md does what the page shows."""
 
+import json
 import re
 import shlex
 from pathlib import Path
 
+import jsonschema
 import pytest
 from fixtures import Command
 from places import ROOT
@@ -47,9 +49,20 @@ def test_the_example_prints_what_the_page_shows(
     tol3d: Command, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     printed = played(tol3d, tmp_path, monkeypatch)
+    names = {"identified.json", "identified.csv", "identified.yaml", "backlash.csv", "backlash.png", "residual.png"}
+    assert {path.name for path in (tmp_path / "identified").iterdir()} == names
     assert [arguments[0] for arguments in commands()] == ["rig", "identify", "run", "plan-rig"]
     for shown in fences("text"):
         assert plain(shown) in printed
+
+
+def test_the_json_is_as_its_schema_says(tol3d: Command, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    played(tol3d, tmp_path, monkeypatch)
+    code, schema, _ = tol3d("schema", "--identified")
+    assert code == 0
+    kept = json.loads((tmp_path / "identified" / "identified.json").read_text("utf-8"))
+    jsonschema.validate(kept, json.loads(schema))
+    assert kept["figures"]["jmin"]["unit"] == "arcsec"
 
 
 @pytest.mark.slow

@@ -7,33 +7,35 @@ import typer
 
 from tol3d.cli.arguments import RunBuilders, SceneArgument, TrustParts, scene_path
 from tol3d.cli.console import err_console, out_console, tell
+from tol3d.cli.rig_options import (
+    BacklashOption,
+    DriftOption,
+    Eccentricity1,
+    Eccentricity2,
+    Encoder1,
+    Encoder2,
+    HiddenTurns,
+    MeshOption,
+    NoiseOption,
+    Phase1,
+    Phase2,
+    RepeatsOption,
+    ResolutionOption,
+    RigSeed,
+    SamplesOption,
+    SceneOption,
+    ToothMesh,
+    TorqueOption,
+    TurnsOption,
+    WindingOption,
+    Wrapped,
+    Zeroed,
+)
 
 if TYPE_CHECKING:
     from tol3d.gearing.model import Model
     from tol3d.records.pair import Specimen
     from tol3d.records.quantity import Kind
-
-SceneOption = Annotated[
-    str, typer.Option(metavar="SCENE", help="The pair's scene: a file, or the name of one that tol3d brings along.")
-]
-MeshOption = Annotated[str | None, typer.Option(metavar="NAME", help="Which mesh was on the rig; the only one.")]
-
-
-TurnsOption = Annotated[float, typer.Option(min=0.1, max=1e4, help="Of the driver on each side.")]
-SamplesOption = Annotated[int, typer.Option(min=4, max=10**7, help="Rows per turn of the driver.")]
-RepeatsOption = Annotated[int, typer.Option(min=1, max=1000, help="Passes of each side.")]
-NoiseOption = Annotated[str, typer.Option(metavar="ANGLE", help="Standard deviation of each encoder.")]
-ResolutionOption = Annotated[str, typer.Option(metavar="ANGLE", help="Step of each encoder.")]
-Eccentricity1 = Annotated[str | None, typer.Option("--e1", metavar="LENGTH", help="Of the driver; the scene's mean.")]
-Phase1 = Annotated[str | None, typer.Option("--theta1", metavar="ANGLE", help="Its phase, in its sense of rotation.")]
-Eccentricity2 = Annotated[
-    str | None, typer.Option("--e2", metavar="LENGTH", help="Of the driven gear; the scene's mean.")
-]
-Phase2 = Annotated[str | None, typer.Option("--theta2", metavar="ANGLE", help="Its phase, in its sense of rotation.")]
-BacklashOption = Annotated[
-    str | None,
-    typer.Option("--backlash", metavar="LENGTH", help="Normal one without eccentricities; the scene's mean."),
-]
 
 
 def identify(
@@ -92,22 +94,16 @@ def rig(
     repeats: RepeatsOption = 1,
     noise: NoiseOption = "0.5 arcsec",
     resolution: ResolutionOption = "0 arcsec",
-    encoder1: Annotated[str, typer.Option("--encoder1", metavar="ANGLE", help="Its error once per turn.")] = "0 arcsec",
-    encoder2: Annotated[str, typer.Option("--encoder2", metavar="ANGLE", help="Its error once per turn.")] = "0 arcsec",
-    tooth_mesh: Annotated[
-        str, typer.Option(metavar="ANGLE", help="Amplitude of the transmission error at tooth mesh.")
-    ] = "0 arcsec",
-    drift: Annotated[str, typer.Option(metavar="ANGLE", help="Of the driven encoder over one pass.")] = "0 arcsec",
-    torque: Annotated[
-        list[str] | None, typer.Option(metavar="TORQUE", help="Of the passes in turn; several repeat it.")
-    ] = None,
-    winding: Annotated[str, typer.Option(metavar="ANGLE", help="Of the shafts, per N m of torque.")] = "0 arcsec",
-    hidden_turns: Annotated[
-        int, typer.Option(help="Turns of the driver by which the back side lies further on, unknown to the encoders.")
-    ] = 0,
-    zeroed: Annotated[bool, typer.Option("--zeroed", help="Set the encoders to zero before each side.")] = False,
-    wrapped: Annotated[bool, typer.Option("--wrapped", help="Angles within one turn.")] = False,
-    seed: Annotated[int, typer.Option(min=0, max=2**63, help="Of all that is random.")] = 1,
+    encoder1: Encoder1 = "0 arcsec",
+    encoder2: Encoder2 = "0 arcsec",
+    tooth_mesh: ToothMesh = "0 arcsec",
+    drift: DriftOption = "0 arcsec",
+    torque: TorqueOption = None,
+    winding: WindingOption = "0 arcsec",
+    hidden_turns: HiddenTurns = 0,
+    zeroed: Zeroed = False,
+    wrapped: Wrapped = False,
+    seed: RigSeed = 1,
     e1: Eccentricity1 = None,
     theta1: Phase1 = None,
     e2: Eccentricity2 = None,

@@ -49,14 +49,19 @@ def scenes(
 
 def schema(
     summary: Annotated[bool, typer.Option("--summary", help="That of a run's summary.json instead.")] = False,
+    identified: Annotated[bool, typer.Option("--identified", help="That of identified.json instead.")] = False,
 ) -> None:
-    """Print the JSON Schema of scenes, for editors; or that of summary.json, for programs that read runs."""
+    """Print the JSON Schema of scenes, for editors; or those of summary.json and identified.json, for programs."""
     import json
 
     from pydantic import BaseModel
 
     described: type[BaseModel]
-    if summary:
+    if identified:
+        from tol3d.records.summary import IdentifiedSummary
+
+        described = IdentifiedSummary
+    elif summary:
         from tol3d.runs.summary.kinds import default_kinds
 
         described = default_kinds().run

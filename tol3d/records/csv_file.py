@@ -17,7 +17,7 @@ from tol3d.records.quantity import ANGLES, TORQUES
 Array = NDArray[np.float64]
 
 NAMED: Final = re.compile(r"\s*(?P<name>[^\[\]()]+?)\s*(?:[\[(]\s*(?P<unit>[^\])]*?)\s*[\])])?\s*")
-BLOCK_BYTES: Final = 2**23  # 300 000 rows of two angles; a few tens of MB of memory
+BLOCK_BYTES: Final = 2**21  # 75 000 rows of two angles; pyarrow reads up to 32 blocks ahead
 LONGEST_HEADER: Final = 2**16  # bytes
 MOST_ROWS: Final = 10**8
 WANTED: Final = ("phi1", "phi2")

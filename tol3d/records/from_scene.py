@@ -142,7 +142,11 @@ def scene_text(specimen: Specimen, mesh: Mesh, name: str) -> str:
 def _measures(mesh: str, driven: str) -> list[str]:
     own = f"kind: angular_backlash, of: {mesh}, gear: {driven}, over: long_period"
     takes = {"backlash curve": "curve", "least backlash": "min", "largest backlash": "max"}
-    return [f"  {name}: {{{own}, take: {take}, positions: {POSITIONS}}}" for name, take in takes.items()]
+    lines = [f"  {name}: {{{own}, take: {take}, positions: {POSITIONS}}}" for name, take in takes.items()]
+    error = f"kind: transmission_error, of: {mesh}, over: long_period, positions: {POSITIONS}"
+    for side in ("drive", "back"):
+        lines += [f"  {side} TE curve: {{{error}, flank: {side}, take: curve}}"]
+    return lines
 
 
 def _gear_text(gear: "SpurGear") -> str:
