@@ -5,10 +5,11 @@ from typing import Any
 
 import numpy as np
 
+from tol3d.gearing.measure_words import Reading
 from tol3d.gearing.model import Backlash, Measure, Model, TransmissionError
 from tol3d.gearing.model.measure import Reading as ModelReading
 from tol3d.gearing.stack_up import per_normal_backlash
-from tol3d.gearing.summary_types import BacklashWords, FreeTurn, Reading, TrainMeasureWords, TransmissionErrorWords
+from tol3d.gearing.summary_types import BacklashWords, FreeTurn, TrainMeasureWords, TransmissionErrorWords
 from tol3d.runs.summary.values import made
 
 

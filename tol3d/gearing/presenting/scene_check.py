@@ -4,10 +4,10 @@ import math
 from collections.abc import Mapping, Sequence
 from functools import singledispatch
 
+from tol3d.gearing.measure_words import QUANTITY_WORDS, TAKE_WORDS, Reading, readings_words
 from tol3d.gearing.model import Backlash, Contributor, LostMotion, Measure, Model, Planar, TransmissionError
 from tol3d.gearing.presenting.coefficient_tables import coefficients_tables
 from tol3d.gearing.presenting.train_check import train_blocks
-from tol3d.gearing.summary_types import QUANTITY_WORDS, TAKE_WORDS, Reading, readings_words
 from tol3d.gearing.system import gear_model
 from tol3d.gears import RIGHT, BevelGear, BevelPair, Gear, GearPair, SpurGear, SpurPair
 from tol3d.report.number import NOTHING, UNIT_SIGNS, degrees_text, given_text, unsigned_zero, value_text

@@ -10,11 +10,20 @@ from numpy.typing import NDArray
 
 from tol3d.gearing.engines.exact.numbers import PairNumbers, Pose
 from tol3d.gearing.engines.exact.rows import FREE, build_of, fault_of, within_reach
-from tol3d.gearing.engines.exact.seating import Look, closed, seen, standing
+from tol3d.gearing.engines.exact.seating import Look, Side, closed, seen, standing
 from tol3d.gearing.engines.status import INTERFERES, OK, OUT_OF_RANGE
+from tol3d.numerics.compiled import part
 
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
+
+
+@part
+def write_first(contact: Array, side: Side, shaft: Array, out: float) -> None:
+    """Write a contact (3,) in the world, on the driver's flank, which its offset [mm] brings `out` of its tooth."""
+    x, y, z = side.x - out * side.nx, side.y - out * side.ny, side.z - out * side.nz
+    for i in range(3):
+        contact[i] = shaft[i, 0] * x + shaft[i, 1] * y + shaft[i, 2] * z + shaft[i, 3]
 
 
 def rest_rows(
@@ -75,11 +84,7 @@ def rest_rows(
                 else:
                     behind = at.driven - middle
                 if k == 0:
-                    out, shaft = flank_offset[row, gears[0]], shafts[row, gears[1]]
-                    x, y = touching.x - out * touching.nx, touching.y - out * touching.ny
-                    z = touching.z - out * touching.nz
-                    for i in range(3):
-                        contact[row, side, i] = shaft[i, 0] * x + shaft[i, 1] * y + shaft[i, 2] * z + shaft[i, 3]
+                    write_first(contact[row, side], touching, shafts[row, gears[1]], flank_offset[row, gears[0]])
                     teeth[row, side] = touching.tooth
             if fault == OK and sigma * (behind - ahead) * arm < -FREE:
                 fault = INTERFERES
