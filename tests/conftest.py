@@ -1,5 +1,6 @@
 """Shared ground: the paper's spur pair as a model, engines on the strips of real solids, the command line."""
 
+import gc
 import os
 import sys
 
@@ -18,6 +19,15 @@ from tol3d.gearing.model import Model, model_from_scene
 hypothesis.settings.register_profile("tol3d", deadline=None, derandomize=True)
 hypothesis.settings.register_profile("search", deadline=None)
 hypothesis.settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE", "tol3d"))
+
+
+gc.disable()  # what is collected stays until the end: looking through it again and again takes a tenth of the time
+
+
+def pytest_collection_finish() -> None:
+    """Whatever is there by now is never looked through for garbage."""
+    gc.freeze()
+    gc.enable()
 
 
 @pytest.fixture(scope="session")

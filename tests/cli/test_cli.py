@@ -118,11 +118,9 @@ def test_threads_are_as_many_as_blocks_and_processes_are_not_started_for_seconds
 
 
 def test_no_trials_keeps_the_statistics_only(tol3d: Command, tmp_path: Path) -> None:
-    arguments = ("--trials", "200", "--engine", "analytic", "--no-trials", "--out", str(tmp_path / "bare"))
-    assert tol3d("run", SPUR, *arguments)[0] == 0
-    assert {path.name for path in (tmp_path / "bare").iterdir()} == {
-        *("SHA256SUMS", "summary.json", "scene.yaml", "histogram.png")
-    }
+    study = ("--trials", "200", "--engine", "analytic", "--no-trials", *PLAIN)
+    assert tol3d("run", SPUR, *study, "--out", str(tmp_path / "bare"))[0] == 0
+    assert {path.name for path in (tmp_path / "bare").iterdir()} == {*("SHA256SUMS", "summary.json", "scene.yaml")}
     code, _, err = tol3d("export", str(tmp_path / "bare"), "--worst", "--out", str(tmp_path))
     assert code == 2
     assert "this run kept its statistics only" in err
@@ -337,7 +335,7 @@ def test_a_warning_of_ours_is_one_line_without_its_place_in_the_code(
 
 def test_ctrl_c_means_after_a_run_what_it_meant_before(tol3d: Command, tmp_path: Path) -> None:
     before = signal.getsignal(signal.SIGINT)
-    assert tol3d("run", SPUR, "--trials", "30", "--engine", "analytic", "--out", str(tmp_path / "run"))[0] == 0
+    assert tol3d("run", SPUR, "--trials", "30", "--engine", "analytic", *PLAIN, "--out", str(tmp_path / "run"))[0] == 0
     assert signal.getsignal(signal.SIGINT) is before
 
 
@@ -388,14 +386,14 @@ def test_view_refuses_a_mesh_that_is_not_there(tol3d: Command, tmp_path: Path) -
 
 def test_run_names_every_picture_that_it_drew(tol3d: Command, tmp_path: Path) -> None:
     arguments = ("--trials", "5", "--engine", "analytic", "--out")
-    for scene, pictures in (("spur_pair", "picture: {0}/histogram.png"), ("robot_shoulder", ROBOTS_PICTURES)):
+    for scene, pictures in (("spur_pair", "picture: {0}/histogram.png"), ("three_stage_train", TRAINS_PICTURES)):
         folder = tmp_path / scene
         code, out, _ = tol3d("run", str(SCENES / f"{scene}.yaml"), *arguments, str(folder))
         assert code == 0
         assert out.splitlines()[-1] == f"run: {folder}    {pictures.format(folder)}"
 
 
-ROBOTS_PICTURES = "pictures: {0}/histogram.png, {0}/chain.png, {0}/histogram-*.png"
+TRAINS_PICTURES = "pictures: {0}/histogram.png, {0}/chain.png, {0}/histogram-*.png"
 
 
 HANGS = 120  # s; a guard against waiting for ever, no claim

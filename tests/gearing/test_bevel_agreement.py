@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from covering import covering
 from fixtures import EngineOf
 from gear_trials import gear_columns
 from of_kind import of_kind
@@ -256,8 +257,7 @@ def check_poses(name: str, count: int, seed: int, read_at: str, flank: Flank, en
     assert error.min() >= -0.01  # strips lie inside the teeth; FCL's own rounding and the oracle's zooms
 
 
-@pytest.mark.parametrize("read_at", READINGS)
-@pytest.mark.parametrize("name", CASES)
+@covering(name=CASES, read_at=READINGS)
 def test_displaced_gears_agree_with_brute_force_to_0_08_um(name: str, read_at: str, engine_of: EngineOf) -> None:
     flank = LEFT if name in ("published", "60 deg") else RIGHT
     check_poses(name, 2, 5, read_at, flank, engine_of)

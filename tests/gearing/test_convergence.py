@@ -136,7 +136,9 @@ def dense_extremes(model: Model, block: Trials, turns: int, count: int) -> tuple
     return exact.min(axis=1), exact.max(axis=1)
 
 
-@pytest.mark.parametrize(("over", "turns", "scan"), [("turn", 1, 721), ("long_period", 55, 4000)])
+@pytest.mark.parametrize(
+    ("over", "turns", "scan"), [("turn", 1, 721), pytest.param("long_period", 55, 4000, marks=pytest.mark.slow)]
+)
 def test_extremes_over_positions_agree_with_a_dense_scan(
     over: Over, turns: int, scan: int, paper_model: Model, engine_of: EngineOf
 ) -> None:

@@ -16,6 +16,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from covering import covering
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from numba import njit
@@ -69,7 +70,8 @@ PAIRS = {
         SpurGear(14, 2.0, ALPHA, 12.0, profile_shift=0.4), SpurGear(31, 2.0, ALPHA, 20.0, profile_shift=-0.1), 0.05
     ),
 }
-FLANKS = pytest.mark.parametrize("flank", [RIGHT, LEFT], ids=["right", "left"])
+BOTH_FLANKS = (pytest.param(RIGHT, id="right"), pytest.param(LEFT, id="left"))
+FLANKS = pytest.mark.parametrize("flank", BOTH_FLANKS)
 
 
 ROOM = 0.5  # modules along the line of action; shifts and growth move the ends of the path of contact by a tenth
@@ -255,9 +257,7 @@ def check_against_search(builds: Builds) -> None:
     assert np.abs(searched(builds, driver - other * seen.driver_turn, driven, other)).max() <= SEARCH_BOUND
 
 
-@pytest.mark.parametrize("spread", SPREADS)
-@FLANKS
-@pytest.mark.parametrize("name", PAIRS)
+@covering(name=PAIRS, flank=BOTH_FLANKS, spread=SPREADS)
 def test_seats_gaps_and_free_turns_agree_with_a_search_of_the_surfaces(name: str, flank: Flank, spread: str) -> None:
     builds = random_builds(PAIRS[name], flank, 8, 3, spread=SPREADS[spread], thinner=0.12)
     assert (read(builds).status == OK).all()
@@ -296,6 +296,7 @@ def replace_scalars(mesh: brute_force.Mesh) -> brute_force.Mesh:
     return replace(mesh, **plain)
 
 
+@pytest.mark.slow
 def test_the_search_s_own_zooms_have_converged_to_1e_9_mm() -> None:
     builds = random_builds(PAIRS["wide"], RIGHT, 6, 5, spread=SPREADS["tilted"], thinner=0.12)
     driven = builds.mesh.pair.driven_angle(builds.driver_angle)
@@ -504,16 +505,14 @@ def test_beyond_reach_there_is_a_status_and_no_number_and_within_it_the_right_on
     assert_nothing_is_told(tilted, np.arange(12))
 
 
-@pytest.mark.parametrize(
-    "spread",
-    [
-        Spread(0.0, 0.0, centre=0.6, turned=0.0, offset=0.0),
-        Spread(0.0, 0.0, centre=0.0, growth=0.003, turned=0.0, offset=0.0),
-        Spread(0.0, 0.0, centre=0.0, growth=0.01, turned=0.0, offset=0.0),
+@covering(
+    name=["paper", "shifted"],
+    spread=[
+        pytest.param(Spread(0.0, 0.0, centre=0.6, turned=0.0, offset=0.0), id="eccentric"),
+        pytest.param(Spread(0.0, 0.0, centre=0.0, growth=0.003, turned=0.0, offset=0.0), id="warm"),
+        pytest.param(Spread(0.0, 0.0, centre=0.0, growth=0.01, turned=0.0, offset=0.0), id="hot"),
     ],
-    ids=["eccentric", "warm", "hot"],
 )
-@pytest.mark.parametrize("name", ["paper", "shifted"])
 def test_gears_far_out_of_shape_have_a_status_or_the_right_number(name: str, spread: Spread) -> None:
     thinner = 0.1 + 60 * spread.growth + spread.centre
     builds = random_builds(PAIRS[name], RIGHT, 40, 1, spread=spread, thinner=thinner)

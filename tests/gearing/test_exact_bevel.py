@@ -7,6 +7,7 @@ from typing import Literal
 
 import numpy as np
 import pytest
+from covering import covering
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from of_kind import of_kind
@@ -37,7 +38,8 @@ READINGS = {
     "face": Reading("face", "face"),
 }
 TEETH = ("all", "driver", "driven")
-FLANKS = pytest.mark.parametrize("flank", [RIGHT, LEFT], ids=["right", "left"])
+BOTH_FLANKS = (pytest.param(RIGHT, id="right"), pytest.param(LEFT, id="left"))
+FLANKS = pytest.mark.parametrize("flank", BOTH_FLANKS)
 BOTH_GEARS = frozenset(("pinion", "wheel"))
 
 
@@ -122,9 +124,7 @@ def check_against_search(builds: Builds, reading: Reading) -> None:
     assert np.abs(turned).max(initial=0.0) <= TIE_BOUND
 
 
-@pytest.mark.parametrize("reading", READINGS)
-@pytest.mark.parametrize("spread", SPREADS)
-@pytest.mark.parametrize("name", PAIRS)
+@covering(name=PAIRS, spread=SPREADS, reading=READINGS)
 def test_seats_gaps_and_free_turns_agree_with_a_search_of_the_surfaces(name: str, spread: str, reading: str) -> None:
     for flank in (RIGHT, LEFT):
         builds = random_builds(PAIRS[name], flank, 2, 11, spread=SPREADS[spread], thinner=THINNER)
@@ -312,8 +312,7 @@ def test_gears_far_off_their_axes_have_a_status_or_the_right_number(centre: floa
     assert np.abs(found).max(initial=0.0) <= SEARCH_BOUND
 
 
-@pytest.mark.parametrize("name", PAIRS)
-@FLANKS
+@covering(flank=BOTH_FLANKS, name=PAIRS)
 def test_every_candidate_pair_s_gap_is_that_of_the_search(name: str, flank: Flank) -> None:
     pair = PAIRS[name]
     builds = in_range(

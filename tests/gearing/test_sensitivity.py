@@ -6,6 +6,7 @@ from typing import Literal
 
 import numpy as np
 import pytest
+from covering import covering
 from of_kind import known, of_kind
 from oracles.far_builds import PAIRS, Acting, contributors, far_block, far_model, model_of, pair_of
 from scipy.spatial.transform import Rotation
@@ -94,9 +95,7 @@ FACE_BOUND = 0.03
 SMOOTH = 9
 
 
-@pytest.mark.parametrize("flank", [LEFT, RIGHT], ids=["left", "right"])
-@pytest.mark.parametrize("kind", KINDS)
-@pytest.mark.parametrize("name", PAIRS)
+@covering(name=PAIRS, kind=KINDS, flank=[pytest.param(LEFT, id="left"), pytest.param(RIGHT, id="right")])
 def test_derivatives_far_from_nominal_are_those_of_central_differences(name: str, kind: str, flank: Flank) -> None:
     model, engine = far_model(name, flank)
     measure = Measure("play", KINDS[kind], AT_RANDOM, "value")
@@ -104,8 +103,7 @@ def test_derivatives_far_from_nominal_are_those_of_central_differences(name: str
     assert worst_error(model, engine, far_block(model, 5, SMOOTH), measure) <= bound
 
 
-@pytest.mark.parametrize("kind", KINDS)
-@pytest.mark.parametrize("name", PAIRS)
+@covering(name=PAIRS, kind=KINDS)
 def test_derivatives_of_any_builds_keep_within_the_bound_of_faces(name: str, kind: str) -> None:
     """Edges and all; in steps of 0.01 um, which no kink comes near here."""
     model, engine = far_model(name, LEFT)

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from covering import covering
 from fixtures import strips_of
 from gear_trials import drawn_trials, gear_columns, simulated
 from oracles import brute_force
@@ -98,11 +99,11 @@ def both(model: Model, module: float, trials: int = 40) -> Both:
     return Both(values(columns[0]), values(columns[1]), engine.chord_error / module)
 
 
-@pytest.mark.parametrize("module", MODULES)
-@pytest.mark.parametrize(("text", "teeth"), [(SPUR, (12, 20)), (SPUR, (28, 110)), (BEVEL, (14, 25))])
+@covering(pair=[(SPUR, (12, 20)), (SPUR, (28, 110)), (BEVEL, (14, 25))], module=MODULES)
 def test_chords_explain_what_fcl_reads_of_gears_of_any_size(
-    tmp_path: Path, text: str, teeth: tuple[int, int], module: float
+    tmp_path: Path, pair: tuple[str, tuple[int, int]], module: float
 ) -> None:
+    text, teeth = pair
     seen = both(model_of(tmp_path, text, module, teeth, module), module)
     for name in ("backlash", "whole") if text == BEVEL else ("backlash",):
         error = seen.fcl[name] - seen.exact[name]

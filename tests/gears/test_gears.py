@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from covering import covering
 from hypothesis import assume, example, given, settings
 from hypothesis import strategies as st
 from oracles import brute_force, outline
@@ -21,7 +22,8 @@ from tol3d.gears.flank import Flank
 
 ALPHA = math.radians(20.0)
 EXACT = 1e-9  # mm; what the closed forms must keep of each other over all sizes here
-FLANKS = pytest.mark.parametrize("flank", [RIGHT, LEFT], ids=["right", "left"])
+BOTH_FLANKS = (pytest.param(RIGHT, id="right"), pytest.param(LEFT, id="left"))
+FLANKS = pytest.mark.parametrize("flank", BOTH_FLANKS)
 
 
 def plain(gear: SpurGear, face_width: float | None = None) -> InvoluteGear:
@@ -414,9 +416,7 @@ PAIRS = {
 TOUCHING = 1e-6  # mm
 
 
-@FLANKS
-@pytest.mark.parametrize("shifted", [-0.05, 0.0, 0.05])
-@pytest.mark.parametrize("name", PAIRS)
+@covering(name=PAIRS, shifted=[-0.05, 0.0, 0.05], flank=BOTH_FLANKS)
 def test_candidate_teeth_hold_every_pair_that_a_scan_finds_touching(name: str, shifted: float, flank: Flank) -> None:
     """At random positions, also with the axes nearer or further by a twentieth of a module than the pair's."""
     pair = PAIRS[name]

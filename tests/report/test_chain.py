@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from covering import covering
 from hypothesis import given
 from hypothesis import strategies as st
 from loose_summaries import typed_measure, typed_run, valid
@@ -455,8 +456,7 @@ def assert_labels_apart(figure: Figure, least: int) -> None:
         assert apart, (text, other)
 
 
-@pytest.mark.parametrize("lever", [LEVER, None])
-@pytest.mark.parametrize("count", [1, 2, 3, 4, 5, 6, 7, 9, 12])
+@covering(count=[1, 2, 3, 4, 5, 6, 7, 9, 12], lever=[LEVER, None])
 def test_no_two_labels_overlap_and_none_leaves_the_picture(count: int, lever: float) -> None:
     assert_labels_apart(chain_figure(typed_run(long_train(count, lever)), "shoulder swing"), 12 * count)
 
@@ -481,9 +481,7 @@ def test_a_long_title_and_many_published_names_stand_apart_and_every_one_is_name
     assert "2000 trials, seed 7" in " ".join(texts).replace("\n", " ")
 
 
-@pytest.mark.parametrize("teeth", [(31, 31), (20, 40), (40, 20)])
-@pytest.mark.parametrize("lever", [LEVER, None])
-@pytest.mark.parametrize("count", [1, 3, 4, 5, 6, 8])
+@covering(count=[1, 3, 4, 5, 6, 8], lever=[LEVER, None], teeth=[(31, 31), (20, 40), (40, 20)])
 def test_no_cone_reaches_under_a_shaft(count: int, lever: float | None, teeth: tuple[int, int]) -> None:
     summary = long_train(count, lever)
     for each in summary["trains"]["shoulder swing"]["stages"]:

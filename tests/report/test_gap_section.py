@@ -16,10 +16,11 @@ from tol3d.runs.run import Run
 from tol3d.simulate import Overrides, run_scene
 
 ABOUT = 0.5  # mm; about the gap, of the outlines that are held against each other
+SLOW_CONES = pytest.param("every_bevel_field", marks=pytest.mark.slow)
 STEPS = 200  # places on each segment of an outline
 
 
-@pytest.fixture(scope="module", params=["bevel_pair", "every_bevel_field", "every_field"])
+@pytest.fixture(scope="module", params=["bevel_pair", SLOW_CONES, "every_field"])
 def run(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Run:
     """Equal and unequal cones, and a spur pair whose axes lean and whose faces are not equally wide."""
     overrides = Overrides(trials=4, engine="exact", witness=0)

@@ -5,7 +5,6 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import cadquery as cq
-import jsonschema
 import numpy as np
 import pytest
 import trimesh
@@ -14,6 +13,7 @@ from matplotlib.image import imread
 from of_kind import known as known_value
 from of_kind import of_kind
 from rendering import renders
+from schemas import validate
 from toys.parabola import PARABOLA
 from toys.parabola.showing import SIDE
 from toys.registered import TOYS, known
@@ -100,7 +100,7 @@ def test_check_tells_of_the_spring(tol3d: Command) -> None:
 
 def test_the_command_prints_the_schema_that_its_summary_keeps(tol3d: Command, run: Run) -> None:
     schema = json.loads(tol3d("schema", "--summary")[1])
-    jsonschema.validate(json.loads((run.path / "summary.json").read_text("utf-8")), schema)
+    validate(json.loads((run.path / "summary.json").read_text("utf-8")), schema)
     scenes = json.loads(tol3d("schema")[1])
     assert "chords" in scenes["$defs"]["Study"]["properties"]["engine"]["enum"]
 

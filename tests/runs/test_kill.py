@@ -13,6 +13,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from fixtures import Command
 from places import SPUR_PAIR
 
 from tol3d import InputError, Overrides, Run, RunError, open_run, replay, run_scene
@@ -154,9 +155,10 @@ def test_killed_at_twenty_moments_a_run_ends_with_the_same_bits(kind: str, tmp_p
 
 
 @pytest.mark.parametrize("kind", ["exact", pytest.param("exact, statistics only", marks=pytest.mark.slow)])
-def test_killed_at_two_files_a_run_ends_with_the_same_bits(kind: str, tmp_path: Path) -> None:
+@pytest.mark.usefixtures("small_blocks")
+def test_killed_at_two_files_a_run_ends_with_the_same_bits(kind: str, tol3d: Command, tmp_path: Path) -> None:
     more = (*KINDS[kind], "--no-picture")
-    subprocess.run(command(tmp_path / "whole", *more), check=True, capture_output=True, timeout=HANGS)
+    assert tol3d("run", str(SPUR_PAIR), "--out", str(tmp_path / "whole"), *more)[0] == 0
     resumed = killed_while_writing_and_resumed(tmp_path / "killed", 2, 3, *more)
     assert_same_run(open_run(tmp_path / "whole"), resumed)
 

@@ -89,7 +89,7 @@ def test_every_run_of_2_to_the_k_scrambled_points_has_one_in_each_2_to_the_kth(d
 
 
 @given(seed=st.integers(0, 2**63 - 1), bits=st.integers(0, 10), replicate=st.integers(0, 5))
-@settings(max_examples=30)
+@settings(max_examples=15)
 def test_the_first_two_dimensions_fill_every_elementary_rectangle_once(seed: int, bits: int, replicate: int) -> None:
     # the first two of Sobol's dimensions are a (0, m, 2)-net in base 2, which the scramble keeps
     count = 2**bits

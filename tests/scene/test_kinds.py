@@ -12,6 +12,7 @@ import jsonschema
 import pytest
 from places import ROOT, SPUR_PAIR
 from ruamel.yaml import YAML
+from schemas import validate
 from springs import SPRINGS, LonelyPressSpec, SpringSpec
 
 import tol3d
@@ -179,12 +180,12 @@ def test_without_the_mechanism_its_kinds_are_unknown(tmp_path: Path) -> None:
 
 def test_the_json_schema_knows_registered_kinds_and_no_others(tmp_path: Path, grammar: Grammar) -> None:
     data = YAML(typ="safe", pure=True).load(TEXT)
-    jsonschema.validate(data, grammar.scene.model_json_schema())
+    validate(data, grammar.scene.model_json_schema())
     with pytest.raises(jsonschema.ValidationError):
-        jsonschema.validate(data, tol3d.Scene.model_json_schema())
+        validate(data, tol3d.Scene.model_json_schema())
     wrong = YAML(typ="safe", pure=True).load(TEXT.replace("length: 12 mm", "length: 12 deg"))
     with pytest.raises(jsonschema.ValidationError):
-        jsonschema.validate(wrong, grammar.scene.model_json_schema())
+        validate(wrong, grammar.scene.model_json_schema())
 
 
 # registration -------------------------------------------------------------------------------------
@@ -235,7 +236,7 @@ def test_the_command_line_knows_a_mechanism_that_a_package_offers(tmp_path: Path
     installed(tmp_path, "springs:SPRINGS")
     done = in_a_process(tmp_path, "sys.argv = ['tol3d', 'schema']\nfrom tol3d import cli\ncli.main()")
     schema = json.loads(done.stdout)
-    jsonschema.validate(YAML(typ="safe", pure=True).load(TEXT), schema)
+    validate(YAML(typ="safe", pure=True).load(TEXT), schema)
 
 
 @pytest.mark.parametrize(

@@ -5,10 +5,10 @@ from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-import jsonschema
 import numpy as np
 import pytest
 from numpy.typing import NDArray
+from schemas import validate
 from scipy import stats
 from toys.parabola import PARABOLA
 from toys.registered import TOYS, known
@@ -246,7 +246,7 @@ def refused(place: str, words: str) -> Exception:
 
 
 def test_it_is_in_the_schema_and_reads_back(run: Run) -> None:
-    jsonschema.validate(run.summary, default_kinds().run.model_json_schema())
+    validate(run.summary, default_kinds().run.model_json_schema())
     joint = open_run(run.path).found.joint
     assert joint is not None
     assert joint.correlations is not None

@@ -78,29 +78,29 @@ def test_statistics_of_many_tolerances_grow_with_their_number_at_most(tmp_path: 
 
 
 def test_the_largest_contributors_have_shares_and_the_others_are_told_to_have_none(tmp_path: Path) -> None:
-    run = run_scene(scene_of(tmp_path, 400, trials=4000), out=tmp_path / "run", execution=Execution(keep_trials=False))
-    model = model_of(tmp_path, 400)
+    run = run_scene(scene_of(tmp_path, 320, trials=2000), out=tmp_path / "run", execution=Execution(keep_trials=False))
+    model = model_of(tmp_path, 320)
     measure = model.measures[0]
     system = GearSystem(model)
-    assert len(system.acting(measure)) == 401
+    assert len(system.acting(measure)) == 321
     chosen = [contributor.name for contributor in regressed(system, measure)]
     assert len(chosen) == len(regressor_groups(system, measure)) == MOST_REGRESSED
     assert {"thick", "t7", "t107", "t207", "t307"} <= set(chosen)
     told = {each["name"]: each for each in run.summary["measures"]["normal backlash"]["contributors"]}
-    assert len(told) == 401
+    assert len(told) == 321
     assert {name for name, each in told.items() if each["geometric_percent"] is not None} == set(chosen)
     # by hand: thickness 11 um / 6 cos 20 deg; centre distances 6 um / 6 and 0.4 um / 6, times 2 sin 20 deg
     thick, large, small = ((11 / 6 * math.cos(0.349066)) ** 2, (2 * 0.34202) ** 2, (0.4 / 6 * 2 * 0.34202) ** 2)
     turning = (2 * 0.34202 * 0.1) ** 2
-    counts = {"turning": sum(k % 3 == 0 and k % 100 != 7 for k in range(400))}
-    counts["small"] = 400 - 4 - counts["turning"]
+    counts = {"turning": sum(k % 3 == 0 and k % 100 != 7 for k in range(320))}
+    counts["small"] = 320 - 4 - counts["turning"]
     total = thick + 4 * large + counts["small"] * small + counts["turning"] * turning
     for name, own in (("thick", thick), ("t107", large)):
         assert told[name]["analytic_percent"] == pytest.approx(100 * own / total, rel=0.01)
-        # standard errors of 4000 trials
+        # standard errors of 2000 trials
         found, error = told[name]["geometric_percent"], told[name]["geometric_percent_se"]
         assert abs(found - 100 * own / total) < 5 * error
-    assert any("401 tolerances act" in warning for warning in run.summary["warnings"])
+    assert any("321 tolerances act" in warning for warning in run.summary["warnings"])
 
 
 def test_few_contributors_are_all_regressed_on(paper_model: Model) -> None:

@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 from places import TESTS
 from printing import printed
 from runs.test_kill import HANGS, SMALL_BLOCKS
+from schemas import validate
 from scipy import integrate, stats
 from toys.parabola import PARABOLA, roads
 from toys.parabola.cumulants import Cumulants, parabola, uniform
@@ -423,14 +424,14 @@ def test_columns_are_what_the_formula_says(run: Run) -> None:
 
 def test_the_summary_is_the_schemas_and_reads_back(run: Run) -> None:
     kinds = default_kinds()
-    jsonschema.validate(run.summary, kinds.run.model_json_schema())
+    validate(run.summary, kinds.run.model_json_schema())
     again = open_run(run.path).found
     assert again.measures["height"].words == "value of the height of lift"
     assert again.measures["room"].kind == "room"
     broken = {**run.summary, "measures": {**run.summary["measures"], "room": dict(run.summary["measures"]["room"])}}
     del broken["measures"]["room"]["room_um"]
     with pytest.raises(jsonschema.ValidationError):
-        jsonschema.validate(broken, kinds.run.model_json_schema())
+        validate(broken, kinds.run.model_json_schema())
 
 
 def test_a_published_column_stands_beside_ours(run: Run) -> None:

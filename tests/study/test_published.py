@@ -16,6 +16,7 @@ from matplotlib.patches import StepPatch
 from places import SCENES
 from printing import printed
 from pydantic import ValidationError
+from schemas import validate
 
 from tol3d import Run, load_scene
 from tol3d.analyses.compensation import CompensationQuestion, compensation
@@ -219,7 +220,7 @@ def test_any_number_of_a_measure_is_kept_in_its_unit(whole: Run) -> None:
         "timing": {"trials_per_s": 0.5},
     }
     schema = default_kinds().run.model_json_schema()
-    jsonschema.validate(json.loads((whole.path / "summary.json").read_text("utf-8")), schema)
+    validate(json.loads((whole.path / "summary.json").read_text("utf-8")), schema)
 
 
 def test_each_stands_beside_ours_in_print(whole: Run) -> None:
@@ -324,7 +325,7 @@ def test_a_measure_of_the_name_of_a_key_is_meant_where_it_may_be(tmp_path: Path)
     assert again.published == scene.published
     assert pickle.loads(pickle.dumps(scene)).published == scene.published
     schema = type(scene).model_json_schema()
-    jsonschema.validate({"published": {"a": {"joint": {"mean": "5 um"}}}}, {**schema, "required": []})
+    validate({"published": {"a": {"joint": {"mean": "5 um"}}}}, {**schema, "required": []})
     refused: list[dict[str, Any]] = [
         {"joint": {"yelds": {}}},
         {"trials": "many"},
@@ -332,7 +333,7 @@ def test_a_measure_of_the_name_of_a_key_is_meant_where_it_may_be(tmp_path: Path)
     ]
     for wrong in refused:
         with pytest.raises(jsonschema.ValidationError):
-            jsonschema.validate({"published": {"a": wrong}}, {**schema, "required": []})
+            validate({"published": {"a": wrong}}, {**schema, "required": []})
 
 
 REFUSED = {

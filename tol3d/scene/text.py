@@ -5,12 +5,14 @@ that no input costs more than the limits below, and every key keeps its line. Pl
 the core schema of YAML 1.2.2, 10.3.2 (ruamel's own also takes `1_000` and dates).
 """
 
+import copy
 import difflib
 import os
 import re
 import unicodedata
 from collections.abc import Iterator
 from dataclasses import dataclass, field
+from functools import lru_cache
 from pathlib import Path
 from typing import Any, Final, NoReturn
 
@@ -36,6 +38,7 @@ from tol3d.units import shown
 MAX_BYTES: Final = 1_000_000  # thirty times a scene of a hundred parts; parses in seconds
 MAX_DEPTH: Final = 40  # levels; the grammar needs nine, and pydantic and JSON would recurse
 MAX_NODES: Final = 20_000  # values with every alias written out; a scene of a hundred parts has some 3000
+KEPT_TEXTS: Final = 16  # whose values are kept; scanning one takes fifty times as long as copying them
 MAX_DIGITS: Final = 300  # a longer number is kept as text and refused by the field
 
 BRACKETS: Final = re.compile(rf"(?:[\[{{]\s*){{{MAX_DEPTH + 1}}}")  # the scanner's work grows with their square
@@ -78,12 +81,12 @@ def read_scene_text(path: Path) -> tuple[dict[str, Any], Origin]:
     if brackets := BRACKETS.search(text):
         place = Place(text.count("\n", 0, brackets.start()) + 1, 1)
         raise origin.error((), f"expected at most {MAX_DEPTH} levels of brackets and indents, got more", place)
-    top = _Composer(origin, _events(origin, text)).document()
+    top = _composed(_Source(text, origin))
     if not isinstance(top.value, dict):
         raise origin.error((), f"expected keys such as scene:, parts:, moves:, measures:, got {shown(top.value)}")
     places: dict[KeyPath, Place] = {}
     _collect_places(top, (), places)
-    return top.value, Origin(path, text, places)
+    return copy.deepcopy(top.value), Origin(path, text, places)
 
 
 # the file ---------------------------------------------------------------------------------------
@@ -167,6 +170,20 @@ def _events(origin: Origin, text: str) -> Iterator[Event]:
         raise origin.error((), f"not YAML: {problem} (column {place.column}){advice}", place) from None
     except (ValueError, OverflowError) as error:  # escapes beyond Unicode, such as "\UFFFFFFFF"
         raise origin.error((), f"not YAML: {error}") from None
+
+
+@dataclass(frozen=True)
+class _Source:
+    """A text, the same wherever it lies."""
+
+    text: str
+    origin: Origin = field(compare=False)
+
+
+@lru_cache(maxsize=KEPT_TEXTS)
+def _composed(source: _Source) -> _Node:
+    """The document of a text, not to be changed: a scene is read again by each replay and comparison."""
+    return _Composer(source.origin, _events(source.origin, source.text)).document()
 
 
 @dataclass
