@@ -114,7 +114,9 @@ def _with_back_from(turns: int) -> Identified:
     return identified(PAIR, {"drive": drive, "back": (replace(own, bins=bins),)}, Senses(1, 1), Settings())
 
 
-@pytest.mark.parametrize("turns", range(1, 16))
+@pytest.mark.parametrize(
+    "turns", [pytest.param(own, marks=() if own in (1, 7) else pytest.mark.slow) for own in range(1, 16)]
+)
 def test_a_hidden_shift_by_whole_turns_is_found(turns: int) -> None:
     with pytest.raises(InputError, match=rf"may lie {turns} whole turns of the driver apart"):
         identified_by(REFERENCE, replace(ENCODERS, hidden_turns=turns))

@@ -12,6 +12,7 @@ from fixtures import Command
 from records.rigged import LARGEST, LEAST, PAIR, REFERENCE, scene_in
 
 from tol3d import load_scene, run_scene
+from tol3d.errors import InputError
 from tol3d.gearing.model import model_from_scene
 from tol3d.records import csv_file
 from tol3d.records.exact_play import Side, transmission_error
@@ -281,6 +282,16 @@ def test_a_wrong_option_gets_one_message(tol3d: Command, tmp_path: Path, option:
     assert code == 2
     assert f"{option[0]}: expected" in err
     assert f"got '{option[1]}'" in err
+
+
+@pytest.mark.slow
+def test_degrees_are_told_from_radians_in_dense_files_too(tmp_path: Path) -> None:
+    """90 000 rows over four turns, so that one block of a file is less than a turn."""
+    written(tmp_path, Rig(turns=4, samples=22_500))
+    for name in ("drive", "back"):
+        changed(tmp_path, ["phi1 [rad],phi2 [rad]", *rows(tmp_path, name)[1:]], name)
+    with pytest.raises(InputError, match="read as radians, but repeat once per turn only as degrees"):
+        identify(PAIR, [tmp_path / "drive.csv"], [tmp_path / "back.csv"], Settings())
 
 
 # the same angles in other words ---------------------------------------------------------------------

@@ -141,6 +141,22 @@ def specimen_of(pair: RigPair, eccentric: Array, constant_part: float, offset: f
     return Specimen(pair, math.hypot(x1, y1), math.atan2(y1, x1), math.hypot(x2, y2), theta2, arm * constant_part)
 
 
+def inverse_normal(matrix: Array) -> Array:
+    """Inverse of the normal matrix (terms, terms) of weighted columns (n, terms), by columns of length one.
+
+    These have condition numbers of ten or so (refusals.py refuses others), whose square costs two digits. By einsum:
+    for a few columns BLAS spends more on its threads than on the product.
+    """
+    lengths = np.sqrt(np.einsum("ni,ni->i", matrix, matrix))
+    own = matrix / lengths
+    return np.asarray(np.linalg.inv(np.einsum("ni,nj->ij", own, own)) / np.outer(lengths, lengths))
+
+
+def times(matrix: Array, vector: Array) -> Array:
+    """Product of a matrix (n, m) and a vector (m,), likewise."""
+    return np.asarray(np.einsum("nm,m->n", matrix, vector))
+
+
 def with_drift(fit: Fit) -> tuple[Array, Array]:
     """Linear drift of each side [rad per rad of the driver] and its standard error, from what a fit leaves.
 
@@ -151,10 +167,10 @@ def with_drift(fit: Fit) -> tuple[Array, Array]:
     matrix = np.concatenate([columns(measured.pair, terms, side, measured.points[side]) for side in sides])
     weight = np.sqrt(np.concatenate([measured.rows[side] for side in sides]))
     left = np.concatenate([fit.residual[side] for side in sides])
-    normal = np.linalg.inv((matrix * (weight**2)[:, None]).T @ matrix)
-    values = normal @ (matrix.T @ (left * weight**2))
+    inverse = inverse_normal(matrix * weight[:, None])
+    values = inverse @ times(matrix.T, left * weight**2)
     index = terms.index([f"drift {side}" for side in sides])
-    return np.asarray(values[index]), np.sqrt(np.diagonal(normal)[index] * fit.variance * fit.low_orders)
+    return np.asarray(values[index]), np.sqrt(np.diagonal(inverse)[index] * fit.variance * fit.low_orders)
 
 
 def fitted(measured: Measured, terms: Terms, *, constant_part: float | None = None) -> Fit:
@@ -169,24 +185,23 @@ def fitted(measured: Measured, terms: Terms, *, constant_part: float | None = No
     matrix = np.concatenate([columns(measured.pair, terms, side, measured.points[side]) for side in sides])
     wanted = np.concatenate([measured.error[side] for side in sides])
     weight = np.sqrt(np.concatenate([measured.rows[side] for side in sides]))
-    triangle = np.linalg.qr(matrix * weight[:, None], mode="reduced")
+    inverse = inverse_normal(matrix * weight[:, None])
 
     def solved(left: Array) -> Array:
-        return np.asarray(np.linalg.solve(triangle.R, triangle.Q.T @ (left * weight)))
+        return np.asarray(inverse @ times(matrix.T, left * weight**2))
 
     values, model = solved(wanted), None
     for _ in range(MOST_ROUNDS):
         model = _model(measured, terms, values, matrix, constant_part)
         step = solved(wanted - model)
         values = values + step
-        if float(np.abs(matrix @ step).max()) < STEP_XTOL:
+        if float(np.abs(times(matrix, step)).max()) < STEP_XTOL:
             break
     residual = wanted - _model(measured, terms, values, matrix, constant_part)
-    inverse = np.linalg.inv(triangle.R)
     ends = np.cumsum([0, *(len(measured.error[side]) for side in sides)])
     parts = {side: residual[low:high] for side, low, high in zip(sides, ends[:-1], ends[1:], strict=True)}
     variance = _variance(measured, terms, values, parts)
-    return Fit(measured, terms, values, parts, variance, _low_orders(measured, parts, variance), inverse @ inverse.T)
+    return Fit(measured, terms, values, parts, variance, _low_orders(measured, parts, variance), inverse)
 
 
 def _model(measured: Measured, terms: Terms, values: Array, matrix: Array, constant_part: float | None) -> Array:
@@ -203,7 +218,7 @@ def _model(measured: Measured, terms: Terms, values: Array, matrix: Array, const
         phi1 = measured.points[side].phi1
         ahead = 0.0 if side == "drive" else fixed
         exact.append(driven_angle(specimen, phi1, side) - measured.pair.rate * phi1 - ahead)
-    return np.asarray(np.concatenate(exact) + matrix[:, 4:] @ values[4:])
+    return np.asarray(np.concatenate(exact) + times(matrix[:, 4:], values[4:]))
 
 
 def _variance(measured: Measured, terms: Terms, values: Array, residual: Mapping[Side, Array]) -> float:
@@ -223,7 +238,7 @@ def _slope(pair: RigPair, terms: Terms, side: Side, at: Points, values: Array) -
     ends = []
     for sign in (-1.0, 1.0):
         moved = replace(at, phi1=at.phi1 + sign * step, phi2=at.phi2 + sign * step * pair.rate)
-        ends.append(columns(pair, terms, side, moved) @ values)
+        ends.append(times(columns(pair, terms, side, moved), values))
     return np.asarray((ends[1] - ends[0]) / (2 * step))
 
 
@@ -247,5 +262,5 @@ def _powers(measured: Measured, side: Side, residual: Array, variance: float) ->
     index = (phi1 * (COARSE / TURN)).astype(np.int64)
     total = np.bincount(index, rows * residual)
     middles = (np.arange(len(total)) + 0.5) * (TURN / COARSE)
-    power = np.abs(np.exp(-1j * orders[free][:, None] * middles) @ total) ** 2
+    power = np.abs(np.einsum("on,n->o", np.exp(-1j * orders[free][:, None] * middles), total)) ** 2
     return np.asarray(power / (rows.sum() * max(variance, 1e-300)))

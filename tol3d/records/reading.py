@@ -22,7 +22,7 @@ MOST_REVERSED: Final = math.radians(1.0)  # of the driver; noise and a rig's own
 SETTLED: Final = math.radians(1.0)  # travel of the driver from which its direction is known
 LEAST_TRAVEL: Final = math.radians(0.01)  # in the first block; far over an encoder's noise
 LONGEST_STEP: Final = 0.4 * TURN  # between rows; from half a turn on the way round cannot be known
-TRACE: Final = 20_000  # rows kept as they came, to tell degrees from radians
+TRACED: Final = 500  # rows of a block kept as they came, to tell degrees from radians
 
 
 @dataclass(frozen=True)
@@ -45,7 +45,7 @@ class Pass:
         torques: smallest and largest torque [N m], magnitudes; None where none was measured.
         first: error at the first row [rad] and the driver's angle there.
         bins: the rows, gathered.
-        trace: phi1 and phi2 of the first rows, (2, n) [rad], counted on.
+        trace: phi1 and phi2 of some rows of every block, (2, n) [rad], counted on.
         raw: the same as the file has them.
     """
 
@@ -179,10 +179,9 @@ class PassReader:
         if torque is not None:
             ends = (float(torque.min()), float(torque.max()), *(self._torques or ()))
             self._torques = min(ends), max(ends)
-        if self._rows < TRACE:
-            wanted = slice(0, TRACE - self._rows)
-            self._trace.append(both[:, wanted])
-            self._untouched.append(np.stack([block.phi1[wanted], block.phi2[wanted]]))
+        some = slice(None, None, -(-len(error) // TRACED))
+        self._trace.append(both[:, some].copy())
+        self._untouched.append(np.stack([block.phi1[some], block.phi2[some]]))
         self._rows += len(error)
         self._ends = start, both[:, -1]
 
