@@ -3,6 +3,8 @@
 import gc
 import os
 import sys
+from collections.abc import Generator
+from typing import Any
 
 import bytecode  # noqa: F401, first of all
 import hypothesis
@@ -21,13 +23,15 @@ hypothesis.settings.register_profile("search", deadline=None)
 hypothesis.settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE", "tol3d"))
 
 
-gc.disable()  # what is collected stays until the end: looking through it again and again takes a tenth of the time
-
-
-def pytest_collection_finish() -> None:
-    """Whatever is there by now is never looked through for garbage."""
-    gc.freeze()
-    gc.enable()
+@pytest.hookimpl(wrapper=True)
+def pytest_collection() -> Generator[None, Any, Any]:
+    """Collect without looking for garbage: tests stay until the end, going through them again and again takes long."""
+    gc.disable()
+    try:
+        return (yield)
+    finally:
+        gc.freeze()  # nor is what is there by now looked through later
+        gc.enable()
 
 
 @pytest.fixture(scope="session")
