@@ -74,6 +74,29 @@ def test_a_normal_fit_of_the_linear_clutch_misses_the_share_out_of_limits() -> N
     assert 2e6 * norm.sf(0.6 / 0.2192924) == pytest.approx(6218, abs=0.5)
 
 
+# problem 7 ---------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("road", ROADS)
+def test_four_pads_are_parallel_to_their_ground_within_the_range_of_four_normals(tmp_path: Path, road: str) -> None:
+    """Mean 2.05875 s, against |D| / 2 of their flatness, whose plane may tilt: 0.797885 s."""
+    text = (SCENES / "four_pads.yaml").read_text("utf-8")
+    pads = [f"table.pad {k}" for k in (1, 2, 3, 4)]
+    measures = "".join(f"  {own[6:]}: {{kind: point_plane, from: {own}, to: table.ground}}\n" for own in pads)
+    flatness = f"  flatness: {{kind: inspected_flatness, points: [{', '.join(pads)}], normal: [0, 0, 1]}}\n"
+    parts, moves = text[: text.index("  plate:\n")], "moves:\n  set up: {kind: fix, part: table}\n"
+    tolerances = text[text.index("tolerances:\n") : text.index("moves:\n")]
+    made = assembled(f"{parts}{tolerances}{moves}measures:\n{measures}{flatness}", tmp_path)
+    found, count, sigma = made.drawn(100_000, road), 100_000, 0.05
+    heights = np.stack([found[own[6:]] for own in pads])
+    expected = quad(lambda x: 1 - norm.cdf(x) ** 4 - norm.sf(x) ** 4, -9, 9)[0]
+    assert expected == pytest.approx(2.05875, abs=5e-6)
+    spread = 0.88 * sigma  # standard deviation of the range of four
+    assert np.ptp(heights, axis=0).mean() == pytest.approx(expected * sigma, abs=4 * spread / math.sqrt(count))
+    flat = sigma * math.sqrt(2 / math.pi)
+    assert found["flatness"].mean() == pytest.approx(flat, abs=4 * 0.61 * sigma / math.sqrt(count))
+
+
 # problem 9 ---------------------------------------------------------------------------------------------------
 
 
