@@ -67,6 +67,15 @@ def test_good_encoders_raise_no_flag() -> None:
     assert not any(own.disagrees for own in found.alone.values())
 
 
+def test_an_encoder_that_is_too_bad_is_warned_of() -> None:
+    bad = replace(ENCODERS, encoder1=40 * ARCSEC)
+    texts = identified_by(REFERENCE, bad).warnings
+    assert [text for text in texts if "encoder 1 would be wrong by 4" in text]
+    assert not [text for text in texts if "encoder 2 would" in text]
+    allowed = identified_by(REFERENCE, bad, Settings(encoder_error=60 * ARCSEC)).warnings
+    assert not [text for text in allowed if "would be wrong" in text]
+
+
 def test_tooth_mesh_shows_in_the_spectrum_and_not_in_the_scatter() -> None:
     found = identified_by(REFERENCE, ENCODERS)
     lines = {line.order: line for line in found.spectrum.lines}

@@ -52,7 +52,7 @@ def identify(
     ] = None,
     j0_half_width: Annotated[str, typer.Option(metavar="ANGLE", help="Of its 95 % interval.")] = "0 arcsec",
     encoder_error: Annotated[
-        str, typer.Option(metavar="ANGLE", help="Once per turn, that is believed of the driven encoder.")
+        str, typer.Option(metavar="ANGLE", help="Once per turn, that is believed of either encoder.")
     ] = "20 arcsec",
     drift: Annotated[bool, typer.Option("--drift", help="Fit a linear drift of each side along.")] = False,
     out: Annotated[Path | None, typer.Option(help="Folder for tables, curve, pictures and the unit's scene.")] = None,

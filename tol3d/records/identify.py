@@ -45,7 +45,7 @@ class Settings:
         unit: of angles whose column has none.
         j0: backlash at phi1 = 0 [rad], where encoders were set to zero between the sides.
         j0_half_width: of its 95 % interval [rad].
-        encoder_error: once per turn, that is believed of the encoders [rad of the driven gear].
+        encoder_error: once per turn, that is believed of either encoder [rad].
         drift: fit a linear drift of each side along.
     """
 
@@ -291,6 +291,12 @@ def _warnings(found: Identified, settings: Settings) -> tuple[str, ...]:
     for name in ("1", "2"):
         if found.figures[f"e{name}"].value < found.figures[f"e{name}"].half_width:
             words.append(f"e{name} is not told from zero, and theta{name} not known")
+    for name, part in found.encoders.items():
+        if part.value - part.half_width > settings.encoder_error:
+            words.append(
+                f"{name} would be wrong by {part.value / ARCSEC:.1f}″ once per turn, more than is believed of it "
+                f"({settings.encoder_error / ARCSEC:g}″, --encoder-error): do both sides share its zero?"
+            )
     if found.fit.low_orders > 1.0:
         words.append(
             f"what is left at low orders is {found.fit.low_orders:.1f} times as strong as white noise (drift, oval "
