@@ -1,7 +1,7 @@
 """The exact engine: contact of the mathematical flanks, in compiled kernels; no solid, no mesh, no chord error."""
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import singledispatch
 from typing import Any
 
@@ -18,6 +18,7 @@ from tol3d.gearing.engines.exact.kernels import (
     bevel_rests,
     deviated_gaps,
     deviated_read,
+    deviated_rests,
     spur_gaps,
     spur_read,
     spur_rests,
@@ -48,14 +49,14 @@ class PairKernels:
 
     Args:
         numbers: pinion's teeth, wheel's, which of them may meet, where the wheel's shaft sees the pinion's.
-        read, gaps, rests: see kernels; where it has no kernel of rests, each side is read for itself.
+        read, gaps, rests: see kernels.
         flanks: where offsets of single flanks lie, of a pair that has any.
     """
 
     numbers: tuple[Any, Any, PairNumbers, Pose]
     read: Kernel
     gaps: Kernel
-    rests: Kernel | None = None
+    rests: Kernel
     flanks: NDArray[np.int64] | None = None
 
 
@@ -73,9 +74,7 @@ class ExactEngine:
     def kept(self) -> bool:
         """Whether this machine has compiled what its studies need."""
         rests = any(isinstance(measure.kind, TransmissionError) for measure in self._model.measures)
-        return all(
-            pair.read.kept and (not rests or pair.rests is None or pair.rests.kept) for pair in self._pairs.values()
-        )
+        return all(pair.read.kept and (pair.rests.kept or not rests) for pair in self._pairs.values())
 
     def depth(self, mesh: Mesh) -> float:
         """1 mm: any overlap can be measured."""
@@ -158,13 +157,6 @@ class ExactEngine:
     def rests(self, build: Build, mesh: Mesh, reading: Reading, driver_angle: Array) -> tuple[MeshReading, MeshReading]:
         """See ReadingEngine.rests."""
         pair, shape = self._pairs[mesh.name], (build.trials, len(driver_angle))
-        if pair.rests is None:
-            rows, angles = build.repeated(shape[1]), np.tile(driver_angle, build.trials)
-            one, other = (
-                _by_trial(self.read(rows, mesh, replace(reading, flank=side), angles), shape)
-                for side in ("drive", "back")
-            )
-            return one, other
         rests, status = np.empty((*shape, 2)), np.empty(shape, dtype=np.int8)
         contact, tooth = np.empty((build.trials, 2, 3)), np.empty((build.trials, 2), dtype=np.int64)
         how = (mesh.working_flank, WHICH_TEETH[reading.teeth], reading.contact == "section")
@@ -178,6 +170,7 @@ class ExactEngine:
             tooth,
             status,
         )
+        self._refuse_far(build, mesh, rests, status)
         unread = np.broadcast_to(np.nan, shape)
         drive, back = (
             MeshReading(
@@ -206,12 +199,6 @@ class ExactEngine:
 
     def _seats(self, mesh: Mesh) -> tuple[int, int]:
         return self._model.seat_index[mesh.name, mesh.driver], self._model.seat_index[mesh.name, mesh.driven]
-
-
-def _by_trial(reading: MeshReading, shape: tuple[int, int]) -> MeshReading:
-    """What was read of rows as of trials and positions, the first position's contacts."""
-    each = {name: values.reshape(*shape, *values.shape[1:]) for name, values in vars(reading).items()}
-    return MeshReading(**each | {name: each[name][:, 0] for name in ("contact", "tooth")})
 
 
 def _arrays(build: Build, pair: PairKernels) -> tuple[NDArray[Any], ...]:
@@ -254,7 +241,11 @@ def kernels_in(model: Model, mesh: Mesh, flanks: FlankPlaces) -> PairKernels:
     beyond = DEVIATED_MARGIN * mesh.pair.pinion.angular_pitch
     numbers = numbers._replace(lowest=numbers.lowest - beyond, highest=numbers.highest + beyond)
     return PairKernels(
-        (teeth[0], teeth[1], numbers, nominal), deviated_read, deviated_gaps, flanks=np.array(places, dtype=np.int64)
+        (teeth[0], teeth[1], numbers, nominal),
+        deviated_read,
+        deviated_gaps,
+        deviated_rests,
+        np.array(places, dtype=np.int64),
     )
 
 

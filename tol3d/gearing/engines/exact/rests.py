@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from tol3d.gearing.engines.exact.numbers import PairNumbers, Pose
 from tol3d.gearing.engines.exact.rows import FREE, build_of, fault_of, within_reach
-from tol3d.gearing.engines.exact.seating import Look, Side, closed, seen, standing
+from tol3d.gearing.engines.exact.seating import Look, MeshBuild, Side, closed, seen, standing
 from tol3d.gearing.engines.status import INTERFERES, OK, OUT_OF_RANGE
 from tol3d.numerics.compiled import part
 
@@ -24,6 +24,55 @@ def write_first(contact: Array, side: Side, shaft: Array, out: float) -> None:
     x, y, z = side.x - out * side.nx, side.y - out * side.ny, side.z - out * side.nz
     for i in range(3):
         contact[i] = shaft[i, 0] * x + shaft[i, 1] * y + shaft[i, 2] * z + shaft[i, 3]
+
+
+@part
+def rest_row(
+    build: MeshBuild,
+    which: Integers,
+    shafts: Array,
+    flank_offset: Array,
+    scale: Array,
+    row: int,
+    driver_angles: Array,
+    rests: Array,
+    contact: Array,
+    teeth: Integers,
+    status: NDArray[np.int8],
+) -> None:
+    """Seat a build at every position on both sides; arguments as in `rest_rows`, and the row's build."""
+    gears, pair, sigma = (which[0], which[1]), build.pair, float(which[2])
+    rests[row] = np.nan
+    contact[row] = np.nan
+    teeth[row] = 0
+    status[row] = OUT_OF_RANGE
+    if not within_reach(build, scale[row, gears[0]], scale[row, gears[1]]):
+        return
+    opened = sigma * (build.driver_turn / pair.ratio + build.driven_turn)
+    ahead, behind = opened, -opened
+    for k in range(len(driver_angles)):
+        angle = driver_angles[k]
+        middle, arm, fault = pair.driven_start - angle / pair.ratio, 0.0, OK
+        for side in range(2):
+            look = Look(sigma if side == 0 else -sigma, which[3], which[4] != 0, 1.0)
+            start = standing(build, angle, middle + (ahead if side == 0 else behind))
+            at, touching = closed(seen(build, start, angle, look), build, start, look)
+            own = fault_of(touching)
+            fault = max(fault, own)
+            if own != OK:
+                continue
+            rests[row, k, side] = at.driven
+            arm = abs(touching.ny * touching.x - touching.nx * touching.y)
+            if side == 0:
+                ahead = at.driven - middle
+            else:
+                behind = at.driven - middle
+            if k == 0:
+                write_first(contact[row, side], touching, shafts[row, gears[1]], flank_offset[row, gears[0]])
+                teeth[row, side] = touching.tooth
+        if fault == OK and sigma * (behind - ahead) * arm < -FREE:
+            fault = INTERFERES
+        status[row, k] = fault
 
 
 def rest_rows(
@@ -55,37 +104,7 @@ def rest_rows(
         teeth: (trials, 2), written: the driver's teeth that touch there.
         status: (trials, positions), written.
     """
-    gears, sigma, in_section = (which[0], which[1]), float(which[2]), which[4] != 0
+    gears = (which[0], which[1])
     for row in range(len(shafts)):
         build = build_of(pinion, wheel, pair, nominal, gears, shafts, centre, flank_turn, flank_offset, scale, row)
-        rests[row] = np.nan
-        contact[row] = np.nan
-        teeth[row] = 0
-        status[row] = OUT_OF_RANGE
-        if not within_reach(build, scale[row, gears[0]], scale[row, gears[1]]):
-            continue
-        opened = sigma * (build.driver_turn / pair.ratio + build.driven_turn)
-        ahead, behind = opened, -opened
-        for k in range(len(driver_angles)):
-            angle = driver_angles[k]
-            middle, arm, fault = pair.driven_start - angle / pair.ratio, 0.0, OK
-            for side in range(2):
-                look = Look(sigma if side == 0 else -sigma, which[3], in_section, 1.0)
-                start = standing(build, angle, middle + (ahead if side == 0 else behind))
-                at, touching = closed(seen(build, start, angle, look), build, start, look)
-                own = fault_of(touching)
-                fault = max(fault, own)
-                if own != OK:
-                    continue
-                rests[row, k, side] = at.driven
-                arm = abs(touching.ny * touching.x - touching.nx * touching.y)
-                if side == 0:
-                    ahead = at.driven - middle
-                else:
-                    behind = at.driven - middle
-                if k == 0:
-                    write_first(contact[row, side], touching, shafts[row, gears[1]], flank_offset[row, gears[0]])
-                    teeth[row, side] = touching.tooth
-            if fault == OK and sigma * (behind - ahead) * arm < -FREE:
-                fault = INTERFERES
-            status[row, k] = fault
+        rest_row(build, which, shafts, flank_offset, scale, row, driver_angles, rests, contact, teeth, status)
