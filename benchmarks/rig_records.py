@@ -77,7 +77,7 @@ def timed(folder: Path) -> Timed:
     found = identify(PAIR, drive, back, Settings())
     least = found.figures["jmin"].value / ARCSEC
     seconds, processor = time.perf_counter() - start, time.process_time() - busy
-    senses = senses_of(PAIR, drive[0], None)
+    senses = senses_of(drive[0], None)
     read = {
         side: read_side(PAIR, own, None, senses, lambda rows: None)
         for side, own in zip(SIDES, (drive, back), strict=True)

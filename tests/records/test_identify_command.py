@@ -328,6 +328,27 @@ def backwards(folder: Path, name: str) -> None:
     changed(folder, [lines[0], *(reversed(lines[1:]) if name == "back" else lines[1:])], name)
 
 
+def test_blocks_of_a_file_add_up_and_a_standstill_before_the_run_is_none(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Blocks of 20 rows of single-turn encoders, turning backward, after 60 rows in which nothing turns."""
+    written(tmp_path)
+    plain = figures(tmp_path)
+    for name in ("drive", "back"):
+        within_one_turn(tmp_path, name)
+        lines = rows(tmp_path, name)
+        cells = [[360 - float(cell) for cell in line.split(",")] for line in lines[1:]]
+        still = [cells[0]] * 60 if name == "drive" else []
+        changed(tmp_path, [lines[0], *(f"{a:.12f},{b:.12f}" for a, b in [*still, *cells])], name)
+    monkeypatch.setattr(csv_file, "BLOCK_BYTES", 600)
+    found = figures(tmp_path)
+    assert found["jmin"] == pytest.approx(plain["jmin"], abs=0.3 * ARCSEC)  # the first row counts sixty times
+    assert found["e2"] == pytest.approx(plain["e2"], abs=1e-4)
+    changed(tmp_path, rows(tmp_path)[:50])
+    with pytest.raises(InputError, match="the driver does not turn"):
+        figures(tmp_path)
+
+
 @pytest.mark.parametrize("other", [semicolons, in_turns, within_one_turn, the_other_way, backwards])
 def test_the_same_angles_otherwise_written_give_the_same(tmp_path: Path, other: SideChange) -> None:
     written(tmp_path)

@@ -149,7 +149,7 @@ def identify(
     Raises:
         InputError: a file cannot be read, or cannot be what it is said to be; with file and row or reason.
     """
-    senses = senses_of(pair, drive[0], settings.unit)
+    senses = senses_of(drive[0], settings.unit)
     rows = 0
 
     def progress(more: int) -> None:

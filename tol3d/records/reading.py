@@ -20,7 +20,7 @@ Progress = Callable[[int], None]
 
 MOST_REVERSED: Final = math.radians(1.0)  # of the driver; noise and a rig's own play stay below it
 SETTLED: Final = math.radians(1.0)  # travel of the driver from which its direction is known
-LEAST_TRAVEL: Final = math.radians(0.01)  # in the first block; far over an encoder's noise
+LEAST_TRAVEL: Final = math.radians(0.01)  # of a file; far over an encoder's noise
 LONGEST_STEP: Final = 0.4 * TURN  # between rows; from half a turn on the way round cannot be known
 TRACED: Final = 500  # rows of a block kept as they came, to tell degrees from radians
 
@@ -60,20 +60,21 @@ class Pass:
     raw: Array
 
 
-def senses_of(pair: RigPair, path: Path, unit: str | None) -> Senses:
-    """In which sense the encoders count, by the first rows of the drive run.
+def senses_of(path: Path, unit: str | None) -> Senses:
+    """In which sense the encoders count, by the first degree that the driver turns in the drive run.
 
     Raises:
-        InputError: the driver hardly turns in them.
+        InputError: it does not turn.
     """
-    block = next(blocks_of(path, unit))
-    same = slice(None) if block.repeat is None else block.repeat == block.repeat[0]
-    travel, driven = (_travel(values[same]) for values in (block.phi1, block.phi2))
+    travel = driven = 0.0
+    for block in blocks_of(path, unit):
+        travel, driven = travel + _travel(block.phi1), driven + _travel(block.phi2)
+        if abs(travel) > SETTLED:
+            break
     if abs(travel) < LEAST_TRAVEL:
         raise InputError(f"{path}: the driver does not turn: phi1 moves by {math.degrees(abs(travel)):.4f} deg")
-    with_it = driven * travel > 0.0
     sense = 1 if travel > 0.0 else -1
-    return Senses(sense, sense if with_it else -sense)
+    return Senses(sense, sense if driven * travel > 0.0 else -sense)
 
 
 def _travel(values: Array) -> float:
