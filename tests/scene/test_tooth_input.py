@@ -39,7 +39,7 @@ def refused(folder: Path, tolerances: str, gears: str = SPUR) -> str:
     ("entry", "words"),
     [
         (f"{PITCH}, {WALK}", "limits: expected limits such as {iso_class: 5}, which the law fills, got none"),
-        (f"{PITCH}, limits: {{iso_class: 5}}", "law: missing"),
+        (f"{PITCH}, limits: {{iso_class: 5}}", 'expected the key "law" here, found none'),
         (f"{PITCH}, limits: {{iso_class: 12}}, {WALK}", "iso_class: expected"),
         (
             f"{PITCH}, limits: {{single: 5 um}}, {WALK}",
@@ -72,7 +72,10 @@ def refused(folder: Path, tolerances: str, gears: str = SPUR) -> str:
         (f"{SLOPE}, law: {{kind: stated, distribution: {{kind: constant, value: 1 deg}}}}", "expected a length"),
         (f"{FORM}, shape: wave", "waves: expected a number of waves, got none"),
         (f"{FORM}, shape: barrel, waves: 2", "waves: expected none of a barrel, got waves"),
-        ("kind: pitch_deviation, of: pair, flanks: each, limits: {iso_class: 5}, " + WALK, "expected a spur gear"),
+        (
+            "kind: pitch_deviation, of: pair, flanks: each, limits: {iso_class: 5}, " + WALK,
+            "expected the name of a spur gear, got 'pair'",
+        ),
     ],
 )
 def test_what_is_wrong_is_said_with_what_would_do(entry: str, words: str, tmp_path: Path) -> None:
@@ -83,7 +86,7 @@ def test_what_is_wrong_is_said_with_what_would_do(entry: str, words: str, tmp_pa
 
 def test_single_flanks_of_bevel_gears_are_refused(tmp_path: Path) -> None:
     message = refused(tmp_path, f"  teeth: {{{PITCH}, limits: {{iso_class: 5}}, {WALK}}}", BEVEL)
-    assert "tolerances.teeth.of: expected a spur gear, got 'pinion', a bevel gear" in message
+    assert "tolerances.teeth.of: expected the name of a spur gear, got 'pinion', which is a bevel gear" in message
 
 
 def test_classes_are_refused_for_gears_beyond_their_ranges(tmp_path: Path) -> None:

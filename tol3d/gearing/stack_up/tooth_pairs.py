@@ -31,6 +31,9 @@ BEYOND: Final = 0.5
 NUMBERS_AT_ONCE: Final = 4_000_000
 """Deviations of rows that are held at once: 32 MB."""
 
+FAR: Final = 0.1
+"""mm; a pair that takes so much less than the first one does not come before it by another look."""
+
 LOOKS: Final = 3
 """At pairs; a look moves what an edge takes by a twentieth of what the look before did."""
 
@@ -69,8 +72,9 @@ class ToothFlanks:
         t_form, t_tip = self.gear.form_roll, self.gear.tip_roll
         u = (np.clip(roll, t_form, t_tip) - (t_form + t_tip) / 2) / (t_tip - t_form)
         waves = self.waves()
-        shape = 1 / 3 - 4 * u**2 if waves == 0 else np.cos(2 * math.pi * waves * u) / 2
-        out = numbers[..., UNIFORM] + numbers[..., SLOPE] * u + numbers[..., FORM] * shape
+        out = numbers[..., UNIFORM] + numbers[..., SLOPE] * u
+        if numbers[..., FORM].any():
+            out += numbers[..., FORM] * (1 / 3 - 4 * u**2 if waves == 0 else np.cos(2 * math.pi * waves * u) / 2)
         return out, numbers[..., HELIX] / self.gear.face_width
 
     def slope(self, numbers: Array, roll: Array) -> Array:
@@ -124,12 +128,26 @@ class ToothPairs:
         mate_roll = (self._tangent - first.base_radius * roll) / second.base_radius
         half = min(first.face_width, second.face_width) / 2 if self._reads_face(side) else 0.0
         open_by = np.zeros((len(teeth), 1)) if apart is None else apart[:, None]
-        found = np.zeros(teeth.shape)
+        leans, stands = np.broadcast_to(lean[:, None], teeth.shape), np.broadcast_to(open_by, teeth.shape)
+        found, pairs = np.zeros(teeth.shape), np.ones(teeth.shape, dtype=bool)
         for _ in range(LOOKS):  # a gear that has turned by what its pair takes stands at another roll
-            back = found if turns == "driven" else open_by
-            on = roll + (open_by - found) / first.base_radius if turns == "driver" else roll
-            found = self._out(numbers, (on, mate_roll - back / second.base_radius), half, lean[:, None])
+            rolls = [roll[pairs], mate_roll[pairs]]
+            rolls[1] = rolls[1] - (found[pairs] if turns == "driven" else stands[pairs]) / second.base_radius
+            if turns == "driver":
+                rolls[0] = rolls[0] + (stands[pairs] - found[pairs]) / first.base_radius
+            own = [each[pairs] for each in numbers]
+            found[pairs] = self._out(own, (rolls[0], rolls[1]), half, leans[pairs])
+            pairs[pairs] = self._changes(own, rolls[0], rolls[1])
+            pairs &= found > found.max(axis=1, keepdims=True) - FAR
+            if not pairs.any():
+                break
         return np.asarray(found.max(axis=1))
+
+    def _changes(self, numbers: Sequence[Array], roll: Array, mate_roll: Array) -> NDArray[np.bool_]:
+        """Which pairs take another length at another roll: they slope, or touch at an edge."""
+        edges = (roll > self.driver.gear.tip_roll) | (mate_roll > self.driven.gear.tip_roll)
+        sloped = [(own[..., SLOPE] != 0.0) | (own[..., FORM] != 0.0) for own in numbers]
+        return np.asarray(edges | sloped[0] | sloped[1])
 
     def _out(self, numbers: Sequence[Array], rolls: tuple[Array, Array], half: float, lean: Array) -> Array:
         """What each pair takes [mm] that touches at some rolls [rad], less what its edges have left their mates."""
@@ -163,6 +181,8 @@ class ToothPairs:
         away by b dt^2/2, b = rho_1^2 (1/rho_1 + 1/rho_2): of a slope g they touch g/b on and take g^2/(2 b) more, or
         less where a flank ends before.
         """
+        if not any(own[..., [SLOPE, FORM]].any() for own in numbers):
+            return np.zeros(rolls[0].shape)
         first, second = self.driver.gear, self.driven.gear
         inside = [np.clip(at, max(f.form_roll, 1e-3), f.tip_roll) for f, at in zip((first, second), rolls, strict=True)]
         rho, mate_rho = first.base_radius * inside[0], second.base_radius * inside[1]
@@ -213,14 +233,15 @@ def _gone(gear: SpurGear, mate: SpurGear, roll: Array, tangent: float) -> Array:
     touches the own one, n along that tangent, turned by d = t - t_tip. Its own tangent to the mate's base circle is L
     long and touches that th further on, so that the mate's flank is L - r_bm (t_m - th) away.
     """
-    beyond = np.maximum(roll - gear.tip_roll, 0.0)
+    found, passed = np.zeros(roll.shape), roll > gear.tip_roll
+    beyond = roll[passed] - gear.tip_roll
     own, other = gear.base_radius, mate.base_radius
     x = own + other - own * (np.cos(beyond) - gear.tip_roll * np.sin(beyond))
     y = tangent - own * (np.sin(beyond) + gear.tip_roll * np.cos(beyond))
     length = np.sqrt(np.maximum(x * x + y * y - other * other, 0.0))
     further = np.arctan2(y, x) - np.arctan2(length, other)
-    left = length - (tangent - own * (gear.tip_roll + beyond)) + other * further
-    return np.where(beyond > 0.0, left, 0.0)
+    found[passed] = length - (tangent - own * (gear.tip_roll + beyond)) + other * further
+    return found
 
 
 def tooth_pairs(model: Model, mesh: Mesh, reading: Reading) -> ToothPairs | None:
