@@ -136,3 +136,11 @@ def test_a_dowel_hole_that_stands_upright_lets_the_output_bores_meet(tmp_path: P
         assert form is not None
         sigma = math.sqrt(others + (lever * 13 / 14) ** 2 * 4 * half)
         assert 1000 * form.sigma == pytest.approx(sigma, rel=within)
+
+
+def test_a_run_names_the_laws_of_the_zones_that_move_a_gear(run: Run) -> None:
+    """Both bores of all shafts and the dowels; not the walls."""
+    laws = run.summary["measures"]["first normal backlash"]["laws"]
+    assert set(laws.values()) == {"uniform in its zone"}
+    assert {"input bore position", "cover output bore position", "dowel 2 seat"} <= set(laws)
+    assert not {"inside profile", "edge profile"} & set(laws)

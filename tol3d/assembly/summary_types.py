@@ -1,6 +1,5 @@
 """What summary.json holds of assemblies: of which features each measure is."""
 
-from collections.abc import Mapping
 from typing import Annotated, Final, Literal
 
 from pydantic import Field
@@ -35,9 +34,6 @@ class AssemblyMeasureSummary(MeasureSummary):
         "virtual_clearance",
         "surface_gap",
     ]
-    laws: Maybe[Mapping[Label, Label]] = Field(
-        default=LEFT_OUT, description="laws of the zones that act on it, by tolerance"
-    )
     of: Annotated[list[Label], Field(min_length=1, max_length=MOST_ENTRIES)]
     chord_error_um: Maybe[NotNegative] = Field(
         default=LEFT_OUT, description="of a clearance: how far it may be off, as stated"

@@ -20,6 +20,7 @@ from tol3d.gearing.system import EXACT, ROADS, GearSystem
 from tol3d.system.breakdown import Breakdown
 from tol3d.system.closed_form import ClosedForm
 from tol3d.system.contributor import Contributor
+from tol3d.system.draw import JointDraw
 from tol3d.system.measure import Measure
 from tol3d.system.pooled import PooledTerms
 from tol3d.system.positions import Positions
@@ -69,8 +70,14 @@ class GearboxSystem(Joined):
         yield from self.gears.problems()
 
     def describe(self, measure: Measure) -> Mapping[str, Any]:
-        """See System."""
-        return self._owner(measure).describe(measure)
+        """See System: of gears also by which laws the bores lie in their zones."""
+        found = self._owner(measure).describe(measure)
+        if not isinstance(measure, GearMeasure):
+            return found
+        slices = component_slices(self.drawn)
+        moving = (own for own in self.drawn.contributors if self.displacing[:, slices[own.name]].any())
+        laws = {own.name: own.draw.words for own in moving if isinstance(own.draw, JointDraw)}
+        return {**found, "laws": laws} if laws else found
 
     def _owner(self, measure: Measure) -> GearSystem | AssemblySystem:
         return self.gears if isinstance(measure, GearMeasure) else self.assembly

@@ -4,18 +4,24 @@ from collections.abc import Sequence
 from importlib import import_module
 from typing import TYPE_CHECKING, Any, Final
 
+from tol3d.assembly.presenting import PRESENTER as ASSEMBLIES
 from tol3d.gearing.presenting import GearPresenter
 
 if TYPE_CHECKING:
     from tol3d.report.page import PageItem
     from tol3d.report.presenter import Display, Which
     from tol3d.runs.run import Run
+    from tol3d.runs.summary.run import RunSummary
     from tol3d.simulate import Replay
     from tol3d.study.simulation import Simulation
 
 
 class GearboxPresenter(GearPresenter):
     """The presenter of gears in a housing; see `tol3d.report.presenter.Presenter`."""
+
+    def sections(self, summary: "RunSummary") -> "Sequence[PageItem]":
+        """Tables of every train, and the laws of the zones of bores and other features."""
+        return (*super().sections(summary), *ASSEMBLIES.sections(summary))
 
     def check(self, simulation: "Simulation") -> "Sequence[PageItem]":
         """Features and moves of the parts, gears, meshes, trains, and what any system shows."""

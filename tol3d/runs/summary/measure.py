@@ -95,6 +95,9 @@ class MeasureSummary(Section):
     reasons: Maybe[Mapping[Label, Count]] = Field(
         default=LEFT_OUT, description="what decided how many trials that failed, in words of the system; the most first"
     )
+    laws: Maybe[Mapping[Label, Label]] = Field(
+        default=LEFT_OUT, description="laws of the zones that act on it, by tolerance"
+    )
     nominal: Roads
     mean_build: Roads
     analytic: Maybe[Sample] = LEFT_OUT
