@@ -24,6 +24,7 @@ STATED: Final = {
     "measures.*.load_changes_deg": "the scene states it",
     "measures.*.lever_mm": "the scene states it",
     "measures.*.lost_motion.arcmin_per_um": "the scene states it",
+    "measures.*.reasons.*": "counts of words of this program: which pair decided what failed",
     "trains.*.stages.*.teeth": "the scene states it",
     "trains.*.stages.*.ways": "the scene states it",
     "joint.correlations.*": "matrices; published by both names",
