@@ -80,10 +80,10 @@ def scaled(name: str, factor: float) -> Callable[..., Any]:
     """The stack-up with another coefficient of one contributor."""
 
     def make(right: Callable[..., Any]) -> Callable[..., Any]:
-        def wrong(self: Stack[Any], deviations: np.ndarray, driver_angle: np.ndarray) -> np.ndarray:
+        def wrong(self: Stack[Any], deviations: np.ndarray, driver_angle: np.ndarray, *turns: Any) -> np.ndarray:
             other = deviations.copy()
             other[:, self.model.component_slices[name]] *= factor
-            return right(self, other, driver_angle)
+            return right(self, other, driver_angle, *turns)
 
         return wrong
 
@@ -115,7 +115,7 @@ def test_half_a_pitch_of_the_wheel_is_named_by_its_eccentricity(monkeypatch: pyt
     """pi/110 rad of 2 sin 20 deg times 31/6 um: 0.101 um; 2.86 % of its own effect, whatever the sample."""
 
     def make(right: Callable[..., Any]) -> Callable[..., Any]:
-        def wrong(self: Stack[Any], deviations: np.ndarray, driver_angle: np.ndarray) -> np.ndarray:
+        def wrong(self: Stack[Any], deviations: np.ndarray, driver_angle: np.ndarray, *turns: Any) -> np.ndarray:
             angles = (driver_angle, self.pair.driven_angle(driver_angle) - math.pi / self.pair.wheel.teeth)
             slices = self.model.component_slices
             changes = [term.change(deviations[:, slices[term.contributor.name]], angles) for term in self.terms]
