@@ -30,12 +30,13 @@ FEW: Mapping[str, tuple[str, ...]] = {
     "startup": ("--runs", "1", "--ways", "without both", "--packages", "colorsys", "no_such_package"),
     "studies": ("--naive", "1", "--rounds", "1", "--most", "100", "--warm", "--systems", "spur pair"),
     "structure": ("--trials", "16", "--route"),
+    "tooth_curves": ("--trials", "10", "--rounds", "1", "--workers", "1"),
     "trains": ("--rounds", "1", "--contacts", "400", "--trains", "split torque"),
     "zones": ("--trials", "1024", "--rounds", "1"),
 }
 """Arguments with which each benchmark takes seconds."""
 
-LONG = ("curves", "fcl_speed", "memory", "rig_records", "startup", "structure", "studies", "trains")
+LONG = ("curves", "fcl_speed", "memory", "rig_records", "startup", "structure", "studies", "tooth_curves", "trains")
 """Those that take more than a few of them."""
 
 ROWS: Mapping[str, tuple[str, ...]] = {
@@ -81,6 +82,11 @@ ROWS: Mapping[str, tuple[str, ...]] = {
         rf"largest file \(lines\) +│ +[\w/.]+ \({NUMBER}\)",
         rf"run_scene: returns to a room left before +│ +{NUMBER}",
         "run_scene calls .*runs > .*execution",
+    ),
+    "tooth_curves": tuple(
+        rf"{own} +│ {take} +│ +10 │ +1 │ +{NUMBER}"
+        for own in ("pitches", "pitches, slopes and forms")
+        for take in ("curve", "range")
     ),
     "trains": (rf"split torque │ +100 │ +1 │ +{NUMBER}", rf"split torque │ +200 │ +2 │ +{NUMBER}"),
     "zones": tuple(
