@@ -1,9 +1,4 @@
-"""Parts that engage with play: offsets of pins, tabs, holes and slots, and the pose in their room, trial by trial.
-
-The programme of `rooms` is one of small displacements: offsets as they are at a pose, their changes as they are
-nominally. Its steps are made as finite motions, relations are met again, offsets are read anew, until nothing moves:
-the pose at which the programme, with the offsets of that pose, stays where it is.
-"""
+"""Parts that engage with play: offsets of pins, tabs, holes and slots, and the pose in their room, trial by trial."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -13,21 +8,24 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.assembly.model import Axis, Engage, Engagement, Mate
+from tol3d.assembly.model import Axis, Engage, Mate
 from tol3d.assembly.model.statuses import NO_BUILD, OK, SINGULAR
-from tol3d.assembly.placing.actual_feature import ActualFeature, actual_size
+from tol3d.assembly.placing.actual_feature import ActualFeature
+from tol3d.assembly.placing.alignment import Seat
+from tol3d.assembly.placing.engaged_arrays import at_places, engaged_arrays
+from tol3d.assembly.placing.engaged_poses import engaged_poses_found
 from tol3d.assembly.placing.floats import Floats, floats_of
+from tol3d.assembly.placing.kept_relations import KeptRelations, kept_motions, kept_of
 from tol3d.assembly.placing.mating import Mating, mating
-from tol3d.assembly.placing.poses import Codes, Pose, column, cross, dot, product, rotated
-from tol3d.assembly.placing.rooms import room_found
+from tol3d.assembly.placing.poses import Codes, Pose, column, cross, dot, product, rotated, rotated_back
 from tol3d.assembly.placing.world import World
 from tol3d.errors import InputError
 
 Array = NDArray[np.float64]
 
-ROUNDS: Final = 12
-"""How often a pose is corrected; each time leaves a turn's share, 1e-3 or less, of what it corrects."""
-MET: Final = 3e-8
+ROUNDS: Final = 20
+"""How often a pin is brought nearer to where it is drawn; each time leaves a turn's share of what it corrects."""
+MET: Final = 1e-9
 """Step [mm] after which a trial is done."""
 LOST: Final = 1e-6
 """Step [mm] at which it is not found, if that is still left after all rounds."""
@@ -46,9 +44,12 @@ class Engaging:
         mating: of its relations.
         middle: of all places, nominally in the world (3,) [mm].
         reach: of them about it [mm].
+        origin: the middle in the part's frame (3,) [mm].
         freedoms: motions that relations leave and offsets see: shift of the middle, turn times reach (6, freedoms).
         rows: change of each offset by them (cones, 2, freedoms).
         floats: where in its room the part lies.
+        relations: that are kept.
+        undo: steps, turn times reach and shift, that undo a change of what they keep (6, kept).
         nudge: a step (freedoms,) [mm] from where relations lay it that is all that the part does; None for its float.
     """
 
@@ -56,16 +57,17 @@ class Engaging:
     mating: Mating
     middle: Array
     reach: float
+    origin: Array
     freedoms: Array
     rows: Array
     floats: Floats
+    relations: KeptRelations
+    undo: Array
     nudge: Array | None = None
 
     def pushed(self, push: Array) -> "Engaging":
         """It with the part as far along a direction of its freedoms (freedoms,) as its room goes; centred along 0."""
-        size = float(np.linalg.norm(push))
-        along = np.ascontiguousarray(push / size if size > 0.0 else push)
-        return replace(self, floats=Floats(self.move, self.freedoms, along, is_pushed=True))
+        return replace(self, floats=self.floats.pushed(push))
 
     def placed(self, world: World) -> tuple[World, Codes]:
         """The world after the move, and what became of it (n,)."""
@@ -75,28 +77,56 @@ class Engaging:
         if self.nudge is not None:
             pose, _ = self.mating.poses(world, seats, self._moved(pose, self.nudge[:, None] * np.ones(count)))
             return world.with_part_at(self.move.part, pose), codes
-        steps, slacks = np.zeros((self.freedoms.shape[1], count)), np.zeros(count)
-        asked, found, lacking = np.ones(count, dtype=bool), np.ones(count, dtype=bool), np.full(count, np.inf)
-        deciding, places = np.zeros(count, dtype=np.int64), len(self.rows)
-        before = np.zeros((places, count)), np.zeros((places, count), dtype=np.int64)
+        pose, slacks, deciding, found = self._found(world, seats, pose)
+        codes = np.where(codes == OK, np.where(slacks < 0.0, NO_BUILD, OK), codes)
+        if self.floats.by_pairs is not None:
+            pose, met = self._by_pairs(world, seats, pose, found & (slacks > 0.0))
+            found = found & met
+        codes = np.where((codes == OK) & ~found, SINGULAR, codes).astype(np.int8)
+        slacks = np.where(found, slacks, np.nan)
+        world = world.with_part_at(self.move.part, pose)
+        return world.with_slack(self.move.name, slacks, self._pairs[deciding]), codes
+
+    def _found(
+        self, world: World, seats: Sequence[Seat], start: Pose
+    ) -> tuple[Pose, Array, NDArray[np.int64], NDArray[np.bool_]]:
+        """Poses in the room, slacks (n,), cones that have them (n,), and whether they are found (n,)."""
+        count, origin = world.trials, column(self.origin)
+        begin = np.empty((3, 4, count))
+        begin[:, :3], begin[:, 3] = start.turn, start.point(origin) - column(self.middle)
+        kept = self.relations.kept_by(seats)
+        vectors = kept.vectors - kept.shifts[:, None, None] * origin
+        turns, shifts = np.empty((3, 3, count)), np.empty((3, count))
+        slacks, deciding, found = np.empty(count), np.empty(count, dtype=np.int64), np.empty(count, dtype=np.bool_)
+        engaged_poses_found(
+            *engaged_arrays(self.move, world, self.origin, self.middle), vectors, kept.normals, kept.shifts, self.undo,
+            self.steps, self.rows, begin, self.reach, *self.floats.given(world, self.origin),
+            turns, shifts, slacks, deciding, found,
+        )  # fmt: skip
+        return Pose(turns, shifts + column(self.middle) - rotated(turns, origin)), slacks, deciding, found
+
+    def _by_pairs(
+        self, world: World, seats: Sequence[Seat], pose: Pose, asked: NDArray[np.bool_]
+    ) -> tuple[Pose, NDArray[np.bool_]]:
+        """Poses where what is drawn of a float by pairs lays each pin, and whether they are found (n,)."""
+        assert self.floats.by_pairs is not None
+        drawn, lacking = world.columns[self.move.floating.columns], np.zeros(world.trials)
         targets = [world.placed(own) for own in self._targets(world)]
         for _ in range(ROUNDS):
             offsets, clearances = self._offsets(world, pose, targets)
-            push = self.floats.push
-            room_found(offsets, clearances, self.rows, push, asked, steps, slacks, deciding, found, *before)
-            whole = self.floats.steps(offsets, clearances, self.rows, steps, slacks, world.columns)
-            lacking = np.where(asked, np.abs(whole).max(axis=0, initial=0.0), lacking)
-            moved, _ = self.mating.poses(world, seats, self._moved(pose, whole))
+            steps = self.floats.by_pairs.steps(offsets, clearances, self.rows, drawn)
+            lacking = np.where(asked, np.abs(steps).max(axis=0), lacking)
+            moved, _ = self.mating.poses(world, seats, self._moved(pose, steps))
             pose = Pose(np.where(asked, moved.turn, pose.turn), np.where(asked, moved.shift, pose.shift))
-            asked = asked & (lacking > MET)
+            asked = asked & ~(lacking < MET)
             if not asked.any():
                 break
-        codes = np.where(codes == OK, np.where(slacks < 0.0, NO_BUILD, OK), codes)
-        lost = ~(found & (lacking < LOST))
-        codes = np.where((codes == OK) & lost, SINGULAR, codes).astype(np.int8)
-        slacks = np.where(lost, np.nan, slacks)
-        world = world.with_part_at(self.move.part, pose)
-        return world.with_slack(self.move.name, slacks, self._pairs[deciding]), codes
+        return pose, lacking < LOST
+
+    @cached_property
+    def steps(self) -> Array:
+        """The freedoms as turn times reach and shift (6, freedoms)."""
+        return np.ascontiguousarray(np.roll(self.freedoms, 3, axis=0))
 
     @cached_property
     def _pairs(self) -> NDArray[np.str_]:
@@ -116,7 +146,7 @@ class Engaging:
             moving_name = own.inner if target.feature.name == own.outer else own.outer
             moving = world.on_body(moving_name, self.move.part).moved(pose)
             inner, outer = (moving, target) if moving_name == own.inner else (target, moving)
-            for k, (own_offsets, clearance) in enumerate(_at_places(own, inner, outer, world.columns)):
+            for k, (own_offsets, clearance) in enumerate(at_places(own, inner, outer, world.columns)):
                 for r, offset in enumerate(own_offsets):
                     offsets[start + k, r] = offset
                 clearances[start + k] = clearance
@@ -148,26 +178,6 @@ def _full(pose: Pose, trials: int) -> Pose:
     return Pose(
         np.array(np.broadcast_to(pose.turn, (3, 3, trials))), np.array(np.broadcast_to(pose.shift, (3, trials)))
     )
-
-
-def _at_places(
-    own: Engagement, inner: ActualFeature, outer: ActualFeature, columns: Array
-) -> list[tuple[list[Array], Array]]:
-    """Offsets (one or two) and clearance at each place (n,) or (1,)."""
-    inside, outside = actual_size(inner.feature, columns), actual_size(outer.feature, columns)
-    found = []
-    if isinstance(inner.feature.shape, Axis):
-        x, y = inner.pose.turn[:, 0], inner.pose.turn[:, 1]
-        for place, its in zip(own.places, own.outer_places, strict=True):
-            apart = outer.at(its) - inner.at(place)
-            found.append(([dot(x, apart), dot(y, apart)], (inside - outside) / 2))
-        return found
-    along = dot(inner.direction, outer.direction)
-    leaning = np.sqrt(np.maximum(1.0 - along * along, 0.0)) if isinstance(outer.feature.shape, Axis) else np.abs(along)
-    for its in own.outer_places:
-        apart = outer.at(its) - inner.origin
-        found.append(([dot(inner.direction, apart)], (inside - outside * leaning) / 2))
-    return found
 
 
 def engaging(move: Engage, nominal: World) -> Engaging:
@@ -203,7 +213,13 @@ def engaging(move: Engage, nominal: World) -> Engaging:
     if not freedoms.shape[1]:
         raise InputError(f"moves.{move.name}: its relations leave nothing free where its pins engage: take a mate")
     rows = np.ascontiguousarray(whole @ freedoms)
-    return Engaging(move, mate, middle, reach, freedoms, rows, floats_of(move, world, freedoms, rows, middle, reach))
+    origin = rotated_back(start.turn, column(middle) - start.shift)[:, 0]
+    relations = kept_of(mate, nominal, reach)
+    kept = relations.kept_by(mate.seats(nominal))
+    kept = replace(kept, vectors=kept.vectors - kept.shifts[:, None, None] * column(origin))
+    _, undo = kept_motions(kept, start.turn[:, :, 0], reach, np.eye(6))
+    floats = floats_of(move, world, freedoms, rows, middle, reach)
+    return Engaging(move, mate, middle, reach, origin, freedoms, rows, floats, relations, undo)
 
 
 def _free(mate: Mating, world: World, start: Pose, middle: Array, reach: float) -> Array:

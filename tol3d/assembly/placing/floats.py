@@ -8,6 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.assembly.model import Engage
+from tol3d.assembly.placing.actual_feature import ActualFeature
+from tol3d.assembly.placing.poses import Pose, column
 from tol3d.assembly.placing.world import World
 from tol3d.errors import InputError
 
@@ -26,58 +28,56 @@ class Floats:
     Args:
         move: which.
         freedoms: (6, freedoms), orthonormal.
-        push: the direction in which the part goes as far as it can (freedoms,); 0 where it does not.
+        along: the direction in the world in which its point goes as far as it can (3,); 0 where it does not.
+        push: a direction of the freedoms, instead of all else (freedoms,); None where there is none.
         by_pairs: of a random float, pin by pin.
-        is_pushed: whether `push` counts, not the float of the move.
     """
 
     move: Engage
     freedoms: Array
-    push: Array
+    along: Array
+    push: Array | None = None
     by_pairs: "Discs | None" = None
-    is_pushed: bool = False
 
-    def steps(
-        self, offsets: Array, clearances: Array, rows: Array, centred: Array, slacks: Array, columns: Array
-    ) -> Array:
-        """Steps (freedoms, n) from offsets o_k to where the part lies.
+    def pushed(self, push: Array) -> "Floats":
+        """As far along a direction of the freedoms (freedoms,) as the room goes; centred along 0."""
+        return Floats(self.move, self.freedoms, np.zeros(3), np.ascontiguousarray(push))
+
+    def given(self, world: World, origin: Array) -> tuple[bool, Array, Array, Array, Array]:
+        """What `engaged_poses_found` reads of it: whether, whither and how far it pushes, and what is drawn.
 
         Args:
-            offsets, clearances, rows: o_k (cones, 2, n), c_k (cones, n) [mm], B_k (cones, 2, freedoms).
-            centred: steps to the centred pose (freedoms, n), or as far as it goes along `push`.
-            slacks: of the centred pose (n,) [mm].
-            columns: the deviations (width, n).
+            world: before the move.
+            origin: the middle of all places in the part's frame (3,) [mm].
         """
-        floating = self.move.floating
-        if floating.kind != "random" or self.is_pushed:
-            return centred
-        drawn = columns[floating.columns]
-        if self.by_pairs is not None:
-            return np.where(slacks > 0.0, self.by_pairs.steps(offsets, clearances, rows, centred, drawn), centred)
-        along = np.stack([sum(self.freedoms[r, f] * drawn[r] for r in range(6)) for f in range(len(centred))])
-        size = np.sqrt(sum(own * own for own in along))
-        along = along / np.where(size > 0.0, size, 1.0)
-        way = self._way(offsets, clearances, rows, centred, along)
-        share = drawn[6] ** (1.0 / len(centred)) * way
-        return np.asarray(centred + np.where((slacks > 0.0) & (size > 0.0), share, 0.0) * along)
+        kind, nothing = self.move.floating.kind, np.zeros((0, 0))
+        push, point = np.zeros(self.freedoms.shape[1]), np.zeros((3, 1))
+        if self.push is not None:
+            return bool(self.push.any()), self.push, point, self.along, nothing
+        if kind == "toward":
+            point = np.ascontiguousarray(_pushed_point(self.move, world).origin - column(origin))
+        elif kind == "random" and self.by_pairs is None:
+            return False, push, point, self.along, self._rays(world.columns[self.move.floating.columns])
+        return kind == "toward", push, point, self.along, nothing
 
-    def _way(self, offsets: Array, clearances: Array, rows: Array, centred: Array, along: Array) -> Array:
-        """How far the room goes from the centred pose (n,) [mm]."""
-        way = np.full(offsets.shape[2], np.inf)
-        for own, clearance, row in zip(offsets, clearances, rows, strict=True):
-            at = [own[r] + sum(row[r, f] * centred[f] for f in range(len(centred))) for r in (0, 1)]
-            gone = [sum(row[r, f] * along[f] for f in range(len(centred))) for r in (0, 1)]
-            # |at + t gone| = clearance
-            square = gone[0] * gone[0] + gone[1] * gone[1]
-            slope = at[0] * gone[0] + at[1] * gone[1]
-            room = clearance * clearance - at[0] * at[0] - at[1] * at[1]
-            root = np.sqrt(np.maximum(slope * slope + square * room, 0.0))
-            away = slope > 0.0
-            ahead = np.where(away, room, root - slope) / np.where(
-                away, slope + root, np.where(square > 0.0, square, 1.0)
-            )
-            way = np.where(square > 0.0, np.minimum(way, np.maximum(ahead, 0.0)), way)
-        return np.where(np.isfinite(way), way, 0.0)
+    def _rays(self, drawn: Array) -> Array:
+        """Directions of the freedoms, of unit length, and shares of the way along them (freedoms + 1, n)."""
+        found = np.empty((self.freedoms.shape[1] + 1, drawn.shape[1]))
+        along = found[:-1]
+        for f, own in enumerate(self.freedoms.T):
+            along[f] = sum(own[r] * drawn[r] for r in range(6))
+        size = np.sqrt(sum(own * own for own in along))
+        along /= np.where(size > 0.0, size, 1.0)
+        found[-1] = drawn[6] ** (1.0 / len(along))
+        return found
+
+
+def _pushed_point(move: Engage, world: World) -> ActualFeature:
+    """The feature that goes along a direction, in the part's frame; as it lies nominally if it is of no such part."""
+    at, part = move.floating.at, move.part
+    if world.part_of(at) in world.bodies[part]:
+        return world.on_body(at, part)
+    return world.placed(at).moved(Pose.of(world.assembly.part[part].pose).inverse)
 
 
 def floats_of(move: Engage, world: World, freedoms: Array, rows: Array, middle: Array, reach: float) -> Floats:
@@ -94,18 +94,15 @@ def floats_of(move: Engage, world: World, freedoms: Array, rows: Array, middle: 
     Raises:
         InputError: a direction in which nothing is free.
     """
-    push = np.zeros(freedoms.shape[1])
-    floating = move.floating
+    floating, along = move.floating, np.zeros(3)
     if floating.kind == "toward":
         assert floating.along is not None
-        direction = world.poses[world.part_of(floating.at)].turn[:, :, 0] @ floating.along
+        along = np.ascontiguousarray(world.poses[world.part_of(floating.at)].turn[:, :, 0] @ floating.along)
         arm = world.placed(floating.at).origin[:, 0] - middle
-        push = np.concatenate([direction, np.cross(arm, direction) / reach]) @ freedoms
-        if np.abs(push).max() < PART:
+        if np.abs(np.concatenate([along, np.cross(arm, along) / reach]) @ freedoms).max() < PART:
             raise InputError(f"moves.{move.name}: {floating.at} does not move along its direction: it is held there")
-        push = np.ascontiguousarray(push / np.linalg.norm(push))
     discs = discs_of(move, rows) if floating.kind == "random" and floating.by_pairs else None
-    return Floats(move, freedoms, push, discs)
+    return Floats(move, freedoms, along, None, discs)
 
 
 @dataclass(frozen=True, eq=False)
@@ -121,16 +118,22 @@ class Discs:
     inverse: Array
     turn: Array | None
 
-    def steps(self, offsets: Array, clearances: Array, rows: Array, centred: Array, drawn: Array) -> Array:
-        """See Floats."""
-        at = [[offsets[k, r] + _along(rows[k, r], centred) for r in (0, 1)] for k in range(len(rows))]
+    def steps(self, offsets: Array, clearances: Array, rows: Array, drawn: Array) -> Array:
+        """Steps (freedoms, n) from a pose to where pins are drawn.
+
+        Args:
+            offsets, clearances: o_k (cones, 2, n), c_k (cones, n) of the pose [mm].
+            rows: B_k (cones, 2, freedoms).
+            drawn: (draws, n).
+        """
+        at = offsets
         if self.inverse.shape[1] == 4:
             lacking = [clearances[k] * drawn[2 * k + r] - at[k][r] for k in (0, 1) for r in (0, 1)]
         else:
             apart = [(at[0][r] - at[1][r]) / 2 for r in (0, 1)]
             goal = in_lens(apart[0], apart[1], clearances[0], drawn[0], drawn[1])
             lacking = [goal[r] - (at[0][r] + at[1][r]) / 2 for r in (0, 1)]
-        found = centred + np.stack([_along(own, lacking) for own in self.inverse])
+        found = np.stack([_along(own, lacking) for own in self.inverse])
         if self.turn is None:
             return found
         low, high = np.full(offsets.shape[2], -np.inf), np.full(offsets.shape[2], np.inf)

@@ -17,9 +17,9 @@ from tol3d.assembly.model.statuses import NO_BUILD, OK, SINGULAR
 from tol3d.assembly.placing.actual_feature import ActualFeature, actual_size
 from tol3d.assembly.placing.alignment import Alignment, Seat, Tie
 from tol3d.assembly.placing.datum_seats import DatumSeats
-from tol3d.assembly.placing.engaging import LOST, MET, ROUNDS, SEEN, moved_about
-from tol3d.assembly.placing.floats import Floats
+from tol3d.assembly.placing.engaging import SEEN, moved_about
 from tol3d.assembly.placing.freedoms import aligned
+from tol3d.assembly.placing.gauge_floats import LOST, MET, ROUNDS, GaugeFloats
 from tol3d.assembly.placing.poses import IDENTITY, Codes, Pose, column, dot
 from tol3d.assembly.placing.rooms import room_found
 
@@ -57,7 +57,7 @@ class GaugedFrame:
     freedoms: Array
     motions: Array
     rows: Array
-    floats: Floats
+    floats: GaugeFloats
 
     def placed(self, seats: Sequence[Seat], features: Sequence[ActualFeature], columns: Array) -> tuple[Pose, Codes]:
         """The part in the frame of its gauges, and what became of it (n,).
@@ -146,7 +146,7 @@ def _gauged(seats: DatumSeats, gauges: Gauges) -> GaugedFrame:
     freedoms = free @ right[:rank].T
     motions = _least_motions(freedoms, free @ right[rank:].T, middle, reach)
     floating = gauges.floating or Floating("centred")
-    floats = Floats(Engage(frame.name, frame.part, (), (), floating), freedoms, np.zeros(freedoms.shape[1]))
+    floats = GaugeFloats(Engage(frame.name, frame.part, (), (), floating), freedoms, np.zeros(freedoms.shape[1]))
     rows, kept = np.ascontiguousarray(ways @ freedoms), aligned(ties, its, IDENTITY)
     return GaugedFrame(gauges, kept, len(ties), tuple(nominal), middle, reach, freedoms, motions, rows, floats)
 

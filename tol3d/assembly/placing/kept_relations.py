@@ -1,4 +1,4 @@
-"""Relations that a part at rest keeps while a force moves it: what stays as they have laid it."""
+"""Relations that a part keeps while it moves on, at rest or with play: what stays as they have laid it."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -39,7 +39,7 @@ NOTHING = Kept(np.zeros((0, 3, 1)), np.zeros((0, 3, 1)), np.zeros(0), ())
 
 @dataclass(frozen=True, eq=False)
 class KeptRelations:
-    """Relations of a part at rest.
+    """Relations that a part keeps.
 
     Args:
         mating: that meets them.
@@ -55,9 +55,10 @@ class KeptRelations:
         """Poses that meet them, what became of it, and what they keep."""
         seats = self.mating.seats(world)
         pose, codes = self.mating.poses(world, seats)
-        return pose, codes, self._kept_by(seats)
+        return pose, codes, self.kept_by(seats)
 
-    def _kept_by(self, seats: Sequence[Seat]) -> Kept:
+    def kept_by(self, seats: Sequence[Seat]) -> Kept:
+        """What they keep in their trials."""
         rows: list[tuple[Array, Array, float]] = []
         groups = []
         for tie, seat, toward in zip(self.mating.alignment.ties, seats, self.toward, strict=True):
@@ -73,6 +74,8 @@ class KeptRelations:
             elif tie.turning == "direction":
                 rows += [(seat.its_direction, self.length * across, 0.0) for across in _across(toward, seat.its_toward)]
             groups.append(len(rows) - before)
+        if not rows:
+            return NOTHING
         return Kept(
             _stacked([vector for vector, _, _ in rows]),
             _stacked([normal for _, normal, _ in rows]),
@@ -89,7 +92,17 @@ def kept_relations(move: Rest, nominal: World, length: float) -> KeptRelations |
     """
     if not move.relations:
         return None
-    found = mating(Mate(move.name, move.part, move.relations), nominal)
+    return kept_of(mating(Mate(move.name, move.part, move.relations), nominal), nominal, length)
+
+
+def kept_of(found: Mating, nominal: World, length: float) -> KeptRelations:
+    """Relations that are met, as what they keep.
+
+    Args:
+        found: that meets them.
+        nominal: the world before, without deviations.
+        length: by which directions count [mm].
+    """
     toward = tuple(np.zeros(3) if own.toward is None else own.toward[:, 0] for own in found.seats(nominal))
     return KeptRelations(found, length, toward)
 

@@ -177,6 +177,8 @@ def again(cones: Any, size: int, before: Any, turn: int, found: Any, rooms: Any)
 def lain(place: Any, push: Any, strength: float, before: Any, basis: Any, done: Any, q: Any, rooms: Any) -> Any:
     """Find the step q of a trial: whether it is found, the least slack of the centred pose, a cone that has it.
 
+    Last of what it returns is how many freedoms the first round (of a push, that one) leaves open.
+
     Args:
         place: o_k (cones, 2), c_k (cones,), B_k (cones, 2, freedoms).
         push: (freedoms,).
@@ -188,7 +190,7 @@ def lain(place: Any, push: Any, strength: float, before: Any, basis: Any, done: 
     """
     seen, used, y, z, found, held, inner = rooms
     rows = place[2]
-    slack, which, pushes, turn = 0.0, 0, 0, 0  # it pushes: then 1, and 2 after it
+    slack, which, pushes, turn, left = 0.0, 0, 0, 0, -1  # it pushes: then 1, and 2 after it
     size = opened(basis, done)
     q[:] = 0.0
     while True:
@@ -196,10 +198,10 @@ def lain(place: Any, push: Any, strength: float, before: Any, basis: Any, done: 
         count = seeing(seen, used, done, size)
         if count == 0:
             if pushes > 0:
-                return True, slack, which
+                return True, slack, which, left
             slack, which = least_slack(place, q)
             if strength == 0.0 or not slack > 0.0:
-                return True, slack, which
+                return True, slack, which, left
             pushes, size = 1, opened(basis, done)
             continue
         lifts = 0 if pushes == 1 else 1
@@ -208,7 +210,7 @@ def lain(place: Any, push: Any, strength: float, before: Any, basis: Any, done: 
         cones, turn = (y, z, seen, used), turn + 1
         met = lifts > 0 and again(cones, size, before, turn, found, inner)
         if not met and not climbed(cones, size, lifts, push, found, inner):
-            return False, slack, which
+            return False, slack, which, left
         for j in range(rows.shape[2]):
             for s in range(size):
                 q[j] += basis[j, s] * found[s]
@@ -220,6 +222,8 @@ def lain(place: Any, push: Any, strength: float, before: Any, basis: Any, done: 
             elif before[1][k] == turn:
                 before[1][k] = 0
         size = narrowed(seen, used, basis, size, held)
+        if pushes == 1 or left < 0:
+            left = size
         pushes = 2 if pushes == 1 else pushes
 
 
@@ -279,7 +283,7 @@ def room_found(
         for k in range(cones):
             own[k, 0], own[k, 1], clear[k] = offsets[k, 0, i], offsets[k, 1, i], clearances[k, i]
             before[0][k], before[1][k] = multipliers[k, i], programmes[k, i]
-        found[i], slacks[i], deciding[i] = lain((own, clear, rows), push, strength, before, basis, done, q, rooms)
+        found[i], slacks[i], deciding[i], _ = lain((own, clear, rows), push, strength, before, basis, done, q, rooms)
         for k in range(cones):
             multipliers[k, i], programmes[k, i] = before[0][k], before[1][k]
         for j in range(freedoms):

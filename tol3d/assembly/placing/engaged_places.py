@@ -1,0 +1,134 @@
+"""Offsets and clearances where a part engages, and how both change with its pose, in kernels.
+
+Poses are about the middle of all places: R p + t with p from the middle in the part, t from where that lies nominally.
+"""
+
+from typing import Any, Final
+
+import numpy as np
+
+from tol3d.assembly.placing.one_sided_gaps import wrench
+from tol3d.numerics.compiled import part
+
+PIN_IN_HOLE: Final = 0
+PIN_IN_SLOT: Final = 1
+TAB_IN_SLOT: Final = 2
+LEFT: Final = 1e-9
+"""Of a motion, that relations may see: what rows have of it is of second order in the slack."""
+
+
+@part
+def taken(pose: Any, moves: bool, vector: Any, i: int, found: Any) -> None:
+    """A direction (3, n) in the world (3,): turned with the part if it is of the one that moves."""
+    for r in range(3):
+        found[r] = vector[r, i]
+    if moves:
+        for r in range(3):
+            found[r] = pose[r, 0] * vector[0, i] + pose[r, 1] * vector[1, i] + pose[r, 2] * vector[2, i]
+
+
+@part
+def places_at(pose: Any, engaged: Any, i: int, reach: float, place: Any, all_rows: Any, nominal: bool) -> None:
+    """Offsets and clearances at a pose; where rows are not nominal, how they change with turn by reach and shift."""
+    moving, fixed, axes, _, halves, inner_moves, kinds = engaged
+    offsets, clearances, _, (apart, arm, normal, _, _, _) = place
+    for k in range(kinds.shape[0]):
+        sign = -1.0 if inner_moves[k] else 1.0  # an offset is of the outer one
+        for r in range(3):
+            turned = pose[r, 0] * moving[k, 0, i] + pose[r, 1] * moving[k, 1, i] + pose[r, 2] * moving[k, 2, i]
+            apart[r] = sign * (turned + pose[r, 3] - fixed[k, r, i])
+            arm[r] = fixed[k, r, i] - pose[r, 3] if inner_moves[k] else turned
+        clearances[k] = halves[k, 0, i] - halves[k, 1, i]
+        for c in range(2):
+            offsets[k, c] = 0.0
+            if c == 1 and kinds[k] != PIN_IN_HOLE:
+                all_rows[k, c, :] = 0.0
+                continue
+            taken(pose, inner_moves[k], axes[k, c], i, normal)
+            for r in range(3):
+                offsets[k, c] += normal[r] * apart[r]
+                normal[r] *= sign
+            if not nominal:
+                wrench(arm, normal, reach, all_rows[k, c])
+        if kinds[k] != PIN_IN_HOLE:
+            leaning(pose, engaged, k, i, reach, place, all_rows[k, 0])
+
+
+@part
+def leaning(pose: Any, engaged: Any, k: int, i: int, reach: float, place: Any, row: Any) -> None:
+    """The clearance of what leans in a slot, and its change, which joins the row of the side that is near.
+
+    |o + B q| <= c + C q is on the side of o the same as |o + (B - C o / |o|) q| <= c.
+    """
+    _, _, axes, others, halves, inner_moves, kinds = engaged
+    offsets, clearances, _, (_, _, normal, other, _, _) = place
+    taken(pose, inner_moves[k], axes[k, 0], i, normal)
+    taken(pose, not inner_moves[k], others[k], i, other)
+    along = normal[0] * other[0] + normal[1] * other[1] + normal[2] * other[2]
+    if kinds[k] == PIN_IN_SLOT:
+        share = np.sqrt(max(1.0 - along * along, 0.0))
+        slope = -along / share if share > 0.0 else 0.0
+    else:
+        share, slope = abs(along), 1.0 if along > 0.0 else -1.0
+    clearances[k] = halves[k, 0, i] - halves[k, 1, i] * share
+    gain = -halves[k, 1, i] * slope / reach  # of the clearance by `along`
+    if inner_moves[k] != (offsets[k, 0] < 0.0):
+        gain = -gain
+    for r in range(3):  # a turn w of the one that moves changes `along` by w . (other x normal), or by less that
+        s, t = (r + 1) % 3, (r + 2) % 3
+        row[r] -= gain * (other[s] * normal[t] - other[t] * normal[s])
+
+
+@part
+def kept_tangents(pose: Any, kept: Any, i: int, steps: Any, reach: float, tangents: Any, rooms: Any) -> None:
+    """Motions (6, freedoms) that change nothing of what is kept, to LEFT; as `one_sided_gaps.tangents_at`."""
+    vectors, normals, shifts, undo, _ = kept
+    _, arm, normal, _, row, change = rooms
+    tangents[:] = steps
+    largest, before = 0.0 if shifts.shape[0] == 0 else 1.0, np.inf
+    while largest > LEFT and largest < before:
+        before, largest = largest, 0.0
+        for e in range(shifts.shape[0]):
+            p, q = min(i, vectors.shape[2] - 1), min(i, normals.shape[2] - 1)
+            for r in range(3):
+                normal[r] = normals[e, r, q]
+                arm[r] = pose[r, 0] * vectors[e, 0, p] + pose[r, 1] * vectors[e, 1, p] + pose[r, 2] * vectors[e, 2, p]
+            wrench(arm, normal, reach, row)
+            for f in range(steps.shape[1]):
+                total = 0.0
+                for r in range(3):
+                    total += row[r] * tangents[r, f] + shifts[e] * row[3 + r] * tangents[3 + r, f]
+                change[e, f] = total
+                largest = max(largest, abs(total))
+        for r in range(6):
+            for f in range(steps.shape[1]):
+                for e in range(shifts.shape[0]):
+                    tangents[r, f] -= undo[r, e] * change[e, f]
+
+
+@part
+def rows_here(
+    pose: Any, trial: Any, reach: float, place: Any, all_rows: Any, tangents: Any, nominal: bool, turned: bool
+) -> None:
+    """Offsets, clearances and rows B of the motions that keep what is kept, at a pose.
+
+    Args:
+        pose, trial, reach, place, all_rows: of what; to work in.
+        tangents: those motions (6, freedoms); changed where it has turned enough.
+        nominal: whether rows and motions are as they are nominally.
+        turned: whether it has.
+    """
+    engaged, i, kept, steps, nominal_rows = trial
+    rows = place[2]
+    places_at(pose, engaged, i, reach, place, all_rows, nominal)
+    if nominal:
+        tangents[:] = steps
+    elif turned:
+        kept_tangents(pose, kept, i, steps, reach, tangents, place[3])
+    for k in range(rows.shape[0]):
+        for c in range(2):
+            for f in range(rows.shape[2]):
+                rows[k, c, f] = nominal_rows[k, c, f] if nominal else 0.0
+                if not nominal:
+                    for r in range(6):
+                        rows[k, c, f] += all_rows[k, c, r] * tangents[r, f]

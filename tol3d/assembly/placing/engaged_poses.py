@@ -1,0 +1,226 @@
+"""Finite poses of parts with play, trial by trial, by the lever arms of the pose itself, in a kernel.
+
+The programme of `rooms` is one of small displacements. Its step is made as a finite motion, relations are met again,
+and offsets, clearances and their changes are found anew, until nothing moves: there the conditions of the programme's
+optimum are those of the finite one.
+"""
+
+from typing import Any, Final
+
+import numpy as np
+
+from tol3d.assembly.placing.engaged_places import rows_here
+from tol3d.assembly.placing.one_sided_gaps import restored, wrench
+from tol3d.assembly.placing.pose_steps import stepped
+from tol3d.assembly.placing.rests import begin
+from tol3d.assembly.placing.rooms import lain, new_rooms
+from tol3d.numerics.compiled import kernel, part
+
+ROUNDS: Final = 40
+"""How often a pose is corrected, 2 or 3 in practice; each time leaves a turn's share of what it corrects."""
+MET: Final = 1e-10
+"""What a step [mm] is expected to leave, by how much shorter it is than the one before, after which a trial is done."""
+TURNED: Final = 1e-5
+"""Step, a mm of reach, after which motions that keep what relations hold are found anew."""
+LOST: Final = 1e-6
+"""Step [mm] at which it is not found, if that is still left after all rounds."""
+CENTRED: Final = 0
+PUSHED: Final = 1
+STRAYED: Final = 2
+DONE: Final = 3
+NO_WAY: Final = 1e300
+"""Where nothing is in the way."""
+NONE: Final = 1e-300
+"""Step before the first."""
+
+
+@part
+def moved_on(pose: Any, trial: Any, reach: float, q: Any, tangents: Any, step: Any) -> None:
+    """Make a step (freedoms,) as a finite motion that keeps what is kept."""
+    _, i, kept, _, _ = trial
+    for r in range(6):
+        step[r] = 0.0
+        for f in range(q.shape[0]):
+            step[r] += tangents[r, f] * q[f]
+    stepped(pose, step, reach)
+    restored(pose, kept, i, reach, step)
+
+
+@part
+def way_of(x: float, y: float, a: float, b: float, square_room: float) -> Any:
+    """How far an offset (x, y) may go on by (a, b) until its square is so much; NO_WAY if it does not go."""
+    square, slope, room = a * a + b * b, x * a + y * b, square_room - x * x - y * y
+    if not square > 0.0:
+        return NO_WAY
+    root = np.sqrt(max(slope * slope + square * room, 0.0))
+    return room / (slope + root) if slope > 0.0 else (root - slope) / square
+
+
+@part
+def goal_at(pose: Any, goal: Any, i: int, reach: float, tangents: Any, push: Any) -> float:
+    """The direction of the freedoms in which a part goes as far as it can (freedoms,), its largest component."""
+    _, given, point, along, _ = goal
+    arm, pull, square, largest = np.empty(3), np.empty(6), 0.0, 0.0
+    p = min(i, point.shape[1] - 1)
+    for r in range(3):
+        arm[r] = pose[r, 0] * point[0, p] + pose[r, 1] * point[1, p] + pose[r, 2] * point[2, p]
+    wrench(arm, along, reach, pull)
+    for f in range(push.shape[0]):
+        push[f] = given[f]
+        for r in range(6):
+            push[f] += pull[r] * tangents[r, f]
+        square += push[f] * push[f]
+    for f in range(push.shape[0]):
+        push[f] *= 1.0 / np.sqrt(square) if square > 0.0 else 1.0
+        largest = max(largest, abs(push[f]))
+    return largest
+
+
+@part
+def way_along(place: Any, drawn: Any, i: int) -> Any:
+    """How far a part may go on along a direction (freedoms,) until an offset is as long as its clearance."""
+    offsets, clearances, rows = place
+    way = NO_WAY
+    for k in range(rows.shape[0]):
+        a, b = 0.0, 0.0
+        for f in range(rows.shape[2]):
+            a += rows[k, 0, f] * drawn[f, i]
+            b += rows[k, 1, f] * drawn[f, i]
+        way = min(way, way_of(offsets[k, 0], offsets[k, 1], a, b, clearances[k] * clearances[k]))
+    return way if way < NO_WAY else 0.0
+
+
+@part
+def stays(pose: Any, start: Any, mode: int, trial: Any, reach: float, goal: Any, rooms: Any) -> Any:
+    """Whether a pose is found at which nothing moves, the slack of the centred one, a cone that has it.
+
+    Where the first round of the nominal programme leaves freedoms open, rows stay nominal: what those of the pose would
+    gain along them is of second order, and a part would swing through its room for it.
+
+    Args:
+        pose: changed, from one near by.
+        start: that one.
+        mode: CENTRED, PUSHED or STRAYED.
+        trial, reach: of what.
+        goal: whither it goes.
+        rooms: to work in.
+    """
+    place, all_rows, tangents, q, push, step, before, basis, done, inner, _ = rooms
+    i, drawn, freedoms = trial[1], goal[4], tangents.shape[1]
+    previous, gone, slack, which, left, nominal = NONE, 0.0, 0.0, 0, 0, mode != STRAYED
+    for n in range(ROUNDS):
+        turned = n == 0 or (mode != STRAYED and (n == 1 or previous > TURNED * reach))
+        rows_here(pose, trial, reach, place, all_rows, tangents, nominal, turned)
+        if mode == STRAYED:
+            more = way_along(place[:3], drawn, i)
+            gone += more
+            size = abs(more)
+        else:
+            strength = goal_at(pose, goal, i, reach, tangents, push) if mode == PUSHED else 0.0
+            found, slack, which, left = lain(place[:3], push, strength, before, basis, done, q, inner)
+            if not found:
+                return False, slack, which
+            size = 0.0
+            for f in range(freedoms):
+                size = max(size, abs(q[f]))
+        ends = size * min(1.0, size / previous) <= MET
+        if mode == STRAYED:
+            for f in range(freedoms):
+                q[f] = gone * drawn[f, i] * (drawn[freedoms, i] if ends else 1.0)
+            pose[:] = start
+        moved_on(pose, trial, reach, q, tangents, step)
+        if ends:
+            return True, slack, which
+        previous, nominal = max(size, NONE), nominal and (n > 0 or left > 0)
+    return previous < LOST, slack, which
+
+
+@part
+def lies(pose: Any, trial: Any, reach: float, goal: Any, rooms: Any) -> Any:
+    """Whether a pose is found, the least slack of the centred one, a cone that has it."""
+    mode, slack, which, start = CENTRED, 0.0, 0, rooms[10]
+    pushes, drawn = goal[0], goal[4]
+    while mode != DONE:
+        start[:] = pose
+        found, least, decides = stays(pose, start, mode, trial, reach, goal, rooms)
+        if not found:
+            return False, slack, which
+        if mode == CENTRED:
+            slack, which = least, decides
+        strays = not pushes and drawn.shape[1] > 0
+        goes = mode == CENTRED and slack > 0.0 and (pushes or strays)
+        mode = DONE if not goes else STRAYED if strays else PUSHED
+    return True, slack, which
+
+
+@part
+def work_rooms(cones: int, freedoms: int, kept: int) -> Any:
+    """What a trial works with."""
+    vectors = (np.empty(3), np.empty(3), np.empty(3), np.empty(3), np.empty(6), np.empty((kept, freedoms)))
+    place = (np.empty((cones, 2)), np.empty(cones), np.empty((cones, 2, freedoms)), vectors)
+    return (
+        place,
+        np.empty((cones, 2, 6)),
+        np.empty((6, freedoms)),
+        np.empty(freedoms),
+        np.zeros(freedoms),
+        np.empty(6),
+        (np.empty(cones), np.empty(cones, dtype=np.int64)),
+        np.empty((freedoms, freedoms)),
+        np.empty(cones, dtype=np.bool_),
+        new_rooms(cones, freedoms),
+        np.empty((3, 4)),
+    )
+
+
+@kernel(
+    arrays="float64[:,:,::1], float64[:,:,::1], float64[:,:,:,::1], float64[:,:,::1], float64[:,:,::1], boolean[::1], "
+    "int64[::1], float64[:,:,::1], float64[:,:,::1], float64[::1], float64[:,::1], float64[:,::1], float64[:,:,::1], "
+    "float64[:,:,::1], float64, boolean, float64[::1], float64[:,::1], float64[::1], float64[:,::1], "
+    "float64[:,:,::1], float64[:,::1], "
+    "float64[::1], int64[::1], boolean[::1]"
+)
+def engaged_poses_found(
+    moving: Any, fixed: Any, axes: Any, others: Any, halves: Any, inner_moves: Any, kinds: Any,
+    kept_vectors: Any, kept_normals: Any, kept_shifts: Any, kept_steps: Any, steps: Any, rows: Any, start: Any,
+    reach: float, pushes: bool, push: Any, point: Any, along: Any, drawn: Any,
+    turns: Any, shifts: Any, slacks: Any, deciding: Any, found: Any,
+) -> None:  # fmt: skip
+    """Poses of parts in their rooms.
+
+    Args:
+        moving: points of what engages, of the part (cones, 3, n), from the middle in its frame [mm].
+        fixed: those of what it engages (cones, 3, n), from the middle in the world [mm].
+        axes: of offsets (cones, 2, 3, n), in the frame of the inner one: of the part, or of the world.
+        others: direction of the outer one, the same way (cones, 3, n).
+        halves: sizes / 2 of the inner and of the outer one (cones, 2, n) [mm].
+        inner_moves: whether the inner one is of the part (cones,).
+        kinds: PIN_IN_HOLE, PIN_IN_SLOT or TAB_IN_SLOT (cones,).
+        kept_vectors, kept_normals, kept_shifts, kept_steps: what relations keep, and which steps undo a change of it,
+            as in `tilted_rests_found`.
+        steps: the freedoms, turn times reach and shift (6, freedoms).
+        rows: nominal change of offsets by them (cones, 2, freedoms).
+        start: poses where relations lay the part (3, 4, n).
+        reach: of all places about their middle [mm].
+        pushes: whether it goes as far as it can along `push` (freedoms,), or its point (3, n) along a direction (3,);
+            the one that does not count is 0.
+        drawn: directions of the freedoms, and shares of the way to go along them (freedoms + 1, n); (0, 0) if not.
+        turns, shifts: found (3, 3, n), (3, n) [mm].
+        slacks: the least slack of the centred pose (n,) [mm].
+        deciding: a cone that has that slack (n,).
+        found: whether all is found (n,).
+    """
+    cones, freedoms = kinds.shape[0], steps.shape[1]
+    engaged = (moving, fixed, axes, others, halves, inner_moves, kinds)
+    pose, first = np.empty((3, 4)), np.empty(kept_shifts.shape[0])
+    rooms = work_rooms(cones, freedoms, len(first))
+    kept = (kept_vectors, kept_normals, kept_shifts, kept_steps, first)
+    goal = (pushes, push, point, along, drawn)
+    for i in range(found.shape[0]):
+        begin(pose, first, start, i, kept)
+        rooms[6][1][:], rooms[4][:] = 0, 0.0
+        found[i], slacks[i], deciding[i] = lies(pose, (engaged, i, kept, steps, rows), reach, goal, rooms)
+        for r in range(3):
+            shifts[r, i] = pose[r, 3]
+            for c in range(3):
+                turns[r, c, i] = pose[r, c]
