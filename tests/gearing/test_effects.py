@@ -57,7 +57,7 @@ def mesh_of(name: str, driver: str, driven: str, housing: str | None = None) -> 
 
 
 def test_every_effect_is_among_those_that_are_tried_here() -> None:
-    """But deviations of single flanks, which have roads of their own: tests/gearing/test_single_flanks.py tries them."""
+    """But deviations of single flanks, which have roads of their own: test_single_flanks.py tries them."""
     assert {*(type(effect) for effect in ALL), effects.FlankDeviation} == set(SINGLE)
 
 
