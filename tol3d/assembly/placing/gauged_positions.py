@@ -11,7 +11,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.assembly.model import Axis, Measured
+from tol3d.assembly.model import Axis, Measured, RoundPlane
 from tol3d.assembly.placing.actual_feature import ActualFeature
 from tol3d.assembly.placing.gauge_floats import MET, ROUNDS
 from tol3d.assembly.placing.gauged_frames import GaugedFrame, full, point_row
@@ -95,11 +95,12 @@ def inspected(measured: Measured, world: World) -> Inspected:
     assert isinstance(gauged, GaugedFrame)
     feature = world.assembly.features[name]
     frame, shape = feature.frame, feature.shape
+    assert not isinstance(shape, RoundPlane)  # across a round face nothing is located
     if measured.direction is not None:
         directions = np.linalg.svd(measured.direction[None])[2][1:]
     else:
         directions = frame[:3, :2].T if isinstance(shape, Axis) else frame[:3, 2:3].T
-    places = shape.ends @ frame[:3, :3].T + frame[:3, 3]  # type: ignore[union-attr]
+    places = shape.ends @ frame[:3, :3].T + frame[:3, 3]
     rows = np.zeros((len(places), 2, gauged.freedoms.shape[1]))
     for k, place in enumerate(places):
         for r, direction in enumerate(directions):
