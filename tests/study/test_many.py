@@ -114,6 +114,9 @@ def test_displacements_found_one_contributor_at_a_time_build_as_build_does(tmp_p
         block = drawn_trials(model, 3, 0, 50)
         made, expected = compiled_displacements(model).build(block.deviations), build(model, block.deviations)
         for name, values in vars(expected).items():
+            if values is None:  # what these gears do not have
+                assert vars(made)[name] is None, name
+                continue
             assert np.abs(vars(made)[name] - values).max() < 1e-12, name
 
 
