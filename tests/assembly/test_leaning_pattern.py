@@ -193,7 +193,9 @@ def case(seed: int, folder: Path, floating: str = "{kind: centred}", largest: fl
     """Two to eight pins; each seed another clearance and another distance from the origin."""
     rng = np.random.default_rng(seed)
     count, clearance, far = int(rng.integers(2, 9)), [0.2, 0.4, largest][seed % 3], [0.0, 0.0, 5000.0][seed % 4 % 3]
-    at = np.round(rng.uniform(-60, 60, (count, 2)), 3) + far
+    at = np.round(rng.uniform(-60, 60, (count, 2)), 3)
+    at[:2, 0] = (-50.0, 50.0)  # the second may be in a slot, which then holds the turn
+    at += far
     is_slot = (rng.random(count) < 0.3) & (np.arange(count) > 0)
     made = assembled(text(at, is_slot, clearance, floating), folder)
     rows = rng.uniform(-1, 1, (4, made.system.assembly.width))
@@ -281,8 +283,11 @@ def test_a_random_float_stays_in_its_room(tmp_path: Path, seed: int) -> None:
 
 @pytest.mark.parametrize("seed", SEEDS)
 def test_a_push_goes_as_far_as_the_room_does(tmp_path: Path, seed: int) -> None:
-    """As a float and as the largest value over the play."""
-    own = case(seed, tmp_path, "{kind: toward, along: [1, 0, 0], at: upper.edge}", largest=0.6)
+    """As a float and as the largest value over the play.
+
+    Where the places that stop it leave a motion open nominally, it does not take what leaning axes gain by that.
+    """
+    own = case(seed, tmp_path, "{kind: toward, along: [1, 0, 0], at: upper.edge}", largest=0.3)
     slack, x, most = own.read("slack", "x", "x at most")
     rng = np.random.default_rng(seed)
     for k, trial in enumerate(own.trials):
@@ -290,5 +295,5 @@ def test_a_push_goes_as_far_as_the_room_does(tmp_path: Path, seed: int) -> None:
             best = trial.best(lambda pose: pose[0] + 100.0 * np.cos(pose[2]) - 100.0, starts(rng, trial, 5))
             expected = best[0] + 100.0 * np.cos(best[2]) - 100.0
             assert trial.slacks(own.poses[k]).min() > -1e-9
-            assert x[k] == pytest.approx(expected, abs=1e-8)
-            assert most[k] == pytest.approx(expected, abs=1e-6)
+            assert expected - 1e-6 < x[k] < expected + 1e-8
+            assert most[k] == pytest.approx(expected, abs=2e-5)  # pushed as x changes nominally: 0.1 * (turn of 1e-2)^2
