@@ -12,9 +12,10 @@ from places import ROOT
 from records.rigged import LARGEST, LEAST
 
 from tol3d import run_scene
+from tol3d.cli.console import out_console
 
 PAGE = (ROOT / "docs" / "records.md").read_text("utf-8")
-WIDTH = "100"
+WIDTH = 100
 
 
 def fences(kind: str) -> list[str]:
@@ -34,7 +35,8 @@ def plain(said: str) -> str:
 def played(tol3d: Command, folder: Path, monkeypatch: pytest.MonkeyPatch) -> str:
     """What the commands print, but for the run."""
     monkeypatch.chdir(folder)
-    monkeypatch.setenv("COLUMNS", WIDTH)
+    monkeypatch.setattr(out_console, "_width", WIDTH)
+    monkeypatch.setattr(out_console, "_height", 100)
     (folder / "pair.yaml").write_text(fences("yaml")[0], encoding="utf-8")
     printed = ""
     for arguments in commands():
