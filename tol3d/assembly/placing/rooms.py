@@ -15,6 +15,8 @@ from tol3d.numerics.compiled import FULL, kernel, part
 
 HELD: Final = 1e-6
 """Multiplier (they sum to 1) over which a cone is tight."""
+STARTS: Final = 1.0, 0.1, 0.01
+"""Multipliers from which a programme starts, of those that balance its goal, until it ends."""
 UNSEEN: Final = 1e-6
 """Change of an offset by a freedom, as a share of how far that moves what is farthest, that is none."""
 
@@ -174,6 +176,25 @@ def again(cones: Any, size: int, before: Any, turn: int, found: Any, rooms: Any)
 
 
 @part
+def reached(
+    place: Any, q: Any, cones: Any, size: int, lifts: int, weight: float, push: Any, found: Any, rooms: Any
+) -> bool:
+    """Whether a programme's optimum is found: where interior points stall, anew with smaller multipliers.
+
+    Args:
+        place, q, weight: as in `lain`: what it starts from.
+        cones, size, lifts, push, found, rooms: as in `climbed`, started.
+    """
+    y, z, _, used = cones
+    for share in STARTS:
+        if share < 1.0:
+            started(place, q, used, y, z, used.sum(), lifts, share * weight)
+        if climbed(cones, size, lifts, push, found, rooms):
+            return True
+    return False
+
+
+@part
 def lain(place: Any, push: Any, strength: float, before: Any, basis: Any, done: Any, q: Any, rooms: Any) -> Any:
     """Find the step q of a trial: whether it is found, the least slack of the centred pose, a cone that has it.
 
@@ -209,7 +230,7 @@ def lain(place: Any, push: Any, strength: float, before: Any, basis: Any, done: 
         started(place, q, used, y, z, count, lifts, weight)
         cones, turn = (y, z, seen, used), turn + 1
         met = lifts > 0 and again(cones, size, before, turn, found, inner)
-        if not met and not climbed(cones, size, lifts, push, found, inner):
+        if not met and not reached(place, q, cones, size, lifts, weight, push, found, inner):
             return False, slack, which, left
         for j in range(rows.shape[2]):
             for s in range(size):
