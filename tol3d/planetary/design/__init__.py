@@ -1,0 +1,1 @@
+"""Finding planetary sets and their efficiencies, before anything is built."""
