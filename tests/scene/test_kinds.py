@@ -118,8 +118,8 @@ def test_a_scene_of_kinds_from_outside_is_pickled_with_its_class(tmp_path: Path,
 CHANGES = {
     "unknown kind": (
         ("kind: spring,", "kind: sprig,"),
-        "3: parts.spring.kind: expected one of arm, bearing, bevel_gear, housing, shaft, spur_gear, solid, spring, "
-        "got 'sprig'; "
+        "3: parts.spring.kind: expected one of arm, bearing, bevel_gear, housing, internal_gear, shaft, spur_gear, "
+        "solid, spring, got 'sprig'; "
         'did you mean "spring"?',
     ),
     "unknown key": (

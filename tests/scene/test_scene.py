@@ -116,6 +116,10 @@ def test_every_field_uses_every_field_of_every_kind(tmp_path: Path) -> None:
     said = {use for scene in scenes for use in fields_said(load_scene(scene, GEARS))}
     plain = SMALL.replace("  play:", "  normal backlash:")
     said |= {use for study in STUDIES for use in fields_said(load(tmp_path, plain + study, GEARS))}
+    ring = (
+        "{kind: internal_gear, teeth: 60, module: 1 mm, face_width: 9 mm, root_fillet: 0.2 mm, outer_diameter: 70 mm}"
+    )
+    said |= set(fields_said(load(tmp_path, SMALL.replace("moves:", f"  ring: {ring}\nmoves:"), GEARS)))
     arcs = ", ".join(["1 um"] * 20)
     law = f"{{kind: given, right: [{arcs}], left: [{arcs}]}}"
     measured = f"tolerances: {{pitch: {{kind: pitch_deviation, of: a, flanks: each, law: {law}}}}}"

@@ -16,7 +16,7 @@ class BevelMeshSpec(GearMeshSpec):
     """
 
     words: ClassVar[str] = "a bevel mesh"
-    gear_spec: ClassVar[type[GearSpec]] = BevelGearSpec
+    gear_specs: ClassVar[tuple[type[GearSpec], ...]] = (BevelGearSpec,)
 
     kind: Literal["bevel_mesh"]
     shaft_angle: Annotated[Quantity, Of("angle"), Positive()] = Field(

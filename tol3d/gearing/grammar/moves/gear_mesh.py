@@ -21,7 +21,7 @@ class GearMeshSpec(MoveSpec):
     """
 
     words: ClassVar[str] = "a mesh move"
-    gear_spec: ClassVar[type[GearSpec]]
+    gear_specs: ClassVar[tuple[type[GearSpec], ...]]
 
     driver: Name = Field(description="the gear that is held")
     driven: Name = Field(description="the gear that turns into contact")
@@ -54,7 +54,7 @@ class GearMeshSpec(MoveSpec):
 
     def _gears(self) -> Iterator[Reference]:
         for field in ("driver", "driven"):
-            yield Reference((field,), getattr(self, field), (self.gear_spec,))
+            yield Reference((field,), getattr(self, field), self.gear_specs)
 
 
 def meshes_of(gear: str, moves: Mapping[str, MoveSpec]) -> tuple[str, ...]:

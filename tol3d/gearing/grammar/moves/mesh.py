@@ -15,7 +15,7 @@ class MeshSpec(GearMeshSpec):
     """A mesh: its world has the driver's axis as z and the driven axis at +x, at the centre distance."""
 
     words: ClassVar[str] = "a mesh of spur gears"
-    gear_spec: ClassVar[type[GearSpec]] = SpurGearSpec
+    gear_specs: ClassVar[tuple[type[GearSpec], ...]] = (SpurGearSpec,)
 
     kind: Literal["mesh"]
     centre_distance: Annotated[Quantity, Of("length"), Positive()] | None = Field(

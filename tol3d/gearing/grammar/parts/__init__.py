@@ -5,6 +5,7 @@ from tol3d.gearing.grammar.parts.bearing import BearingSpec
 from tol3d.gearing.grammar.parts.bevel_gear import BevelGearSpec
 from tol3d.gearing.grammar.parts.gear import GearSpec
 from tol3d.gearing.grammar.parts.housing import HousingSpec
+from tol3d.gearing.grammar.parts.internal_gear import InternalGearSpec
 from tol3d.gearing.grammar.parts.shaft import CarriedSpec, ShaftSpec, carried, gears_on
 from tol3d.gearing.grammar.parts.spur_gear import SpurGearSpec
 from tol3d.scene.part import PartSpec
@@ -16,6 +17,7 @@ __all__ = [
     "CarriedSpec",
     "GearSpec",
     "HousingSpec",
+    "InternalGearSpec",
     "PartSpec",
     "ShaftSpec",
     "SpurGearSpec",

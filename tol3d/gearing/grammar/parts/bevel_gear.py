@@ -4,11 +4,11 @@ from typing import Annotated, ClassVar, Literal
 
 from pydantic import Field
 
-from tol3d.gearing.grammar.parts.gear import GearSpec
+from tol3d.gearing.grammar.parts.gear import BoredGearSpec
 from tol3d.units import Of, Positive, Quantity
 
 
-class BevelGearSpec(GearSpec):
+class BevelGearSpec(BoredGearSpec):
     """A straight bevel gear by the words of ISO 23509; its depth and thickness taper towards the apex."""
 
     words: ClassVar[str] = "a bevel gear"

@@ -26,4 +26,9 @@ class GearSpec(PartSpec):
     profile_shift: float = Field(default=0.0, description="profile shift coefficient x; positive is a thicker tooth")
     addendum: float = Field(default=1.0, gt=0.0, description="addendum factor, in modules")
     dedendum: float = Field(default=1.25, gt=0.0, description="dedendum factor, in modules")
+
+
+class BoredGearSpec(GearSpec):
+    """A gear that sits around its shaft."""
+
     bore: Length | None = Field(default=None, description="diameter of the bore; none if not given")

@@ -4,11 +4,11 @@ from typing import ClassVar, Literal
 
 from pydantic import Field
 
-from tol3d.gearing.grammar.parts.gear import GearSpec
+from tol3d.gearing.grammar.parts.gear import BoredGearSpec
 from tol3d.scene.part import GrowingSpec, Length
 
 
-class SpurGearSpec(GearSpec, GrowingSpec):
+class SpurGearSpec(BoredGearSpec, GrowingSpec):
     """A spur gear; its tooth thickness is an arc at the reference circle."""
 
     words: ClassVar[str] = "a spur gear"
