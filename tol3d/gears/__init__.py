@@ -3,6 +3,8 @@
 from tol3d.gears.bevel_gear import BevelGear
 from tol3d.gears.bevel_pair import BevelPair
 from tol3d.gears.flank import LEFT, RIGHT, Flank
+from tol3d.gears.internal_gear import InternalGear
+from tol3d.gears.internal_pair import InternalPair
 from tol3d.gears.involute import inverse_involute, involute
 from tol3d.gears.one_tooth import driver_teeth_at_one_tooth, one_tooth_acts, one_tooth_share
 from tol3d.gears.pair import Displaced, Gear, GearPair
@@ -20,6 +22,8 @@ __all__ = [
     "Flank",
     "Gear",
     "GearPair",
+    "InternalGear",
+    "InternalPair",
     "SpurGear",
     "SpurPair",
     "driver_teeth_at_one_tooth",

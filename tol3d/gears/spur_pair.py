@@ -1,28 +1,25 @@
-"""Two spur gears on parallel axes: working pressure angle, backlash, path of contact.
+"""Two external spur gears on parallel axes: their world, positions, interference.
 
 Exact for rigid involute teeth. Sources: ISO 21771-1:2024, 5.3 (pair geometry) and 5.6 (backlash).
 """
 
 import math
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.errors import GeometryError
+from tol3d.gears.cylindrical_pair import CylindricalPair
 from tol3d.gears.flank import Flank
-from tol3d.gears.involute import inverse_involute, involute
-from tol3d.gears.pair import CONTACT_MARGIN, Displaced, candidate_teeth
+from tol3d.gears.pair import Displaced
 from tol3d.gears.spur_gear import SpurGear
 
 Array = NDArray[np.float64]
 
-SAME_LENGTH = 1e-9  # relative; two modules written alike are equal in this sense
-
 
 @dataclass(frozen=True)
-class SpurPair:
+class SpurPair(CylindricalPair):
     """Pinion (driver) and wheel (driven) at a centre distance [mm].
 
     Raises:
@@ -38,15 +35,9 @@ class SpurPair:
 
     pinion: SpurGear
     wheel: SpurGear
-    centre_distance: float
 
     def __post_init__(self) -> None:
-        for name, unit in (("module", "mm"), ("pressure_angle", "rad")):
-            first, second = getattr(self.pinion, name), getattr(self.wheel, name)
-            if not math.isclose(first, second, rel_tol=SAME_LENGTH):
-                raise GeometryError(
-                    f"the gears of a pair need the same {name}, got {first:g} {unit} and {second:g} {unit}"
-                )
+        self._refuse_unlike()
         if self.centre_distance <= self.base_radii:
             raise GeometryError(
                 f"centre distance {self.centre_distance:g} mm: the teeth interfere, the base circles alone "
@@ -54,37 +45,11 @@ class SpurPair:
             )
 
     @property
-    def base_radii(self) -> float:
-        """r_b1 + r_b2 [mm]."""
-        return self.pinion.base_radius + self.wheel.base_radius
-
-    @property
-    def ratio(self) -> float:
-        """z2 / z1."""
-        return self.wheel.teeth / self.pinion.teeth
-
-    @property
-    def long_period_turns(self) -> int:
-        """Turns of the pinion until the same teeth meet again in the same places: z2 / gcd(z1, z2)."""
-        return self.wheel.teeth // math.gcd(self.pinion.teeth, self.wheel.teeth)
-
-    @cached_property
-    def working_pressure_angle(self) -> float:
-        """alpha_w with cos alpha_w = (r_b1 + r_b2)/a [rad]."""
-        return math.acos(self.base_radii / self.centre_distance)
-
-    @property
-    def working_radii(self) -> tuple[float, float]:
-        """r_w of pinion and wheel [mm]: r_b / cos alpha_w."""
-        cos = math.cos(self.working_pressure_angle)
-        return self.pinion.base_radius / cos, self.wheel.base_radius / cos
+    def iso_sign(self) -> int:
+        """+1."""
+        return 1
 
     # world --------------------------------------------------------------------------------------
-
-    @property
-    def world_from_wheel(self) -> Array:
-        """Rotation (3, 3) of the wheel's frame at rest: none."""
-        return np.eye(3)
 
     @property
     def wheel_origin(self) -> Array:
@@ -95,21 +60,6 @@ class SpurPair:
     def mesh_azimuths(self) -> tuple[float, float]:
         """The pinion sees the mesh at +x, the wheel at -x [rad]."""
         return 0.0, math.pi
-
-    @property
-    def pinion_section(self) -> float:
-        """The middle: the face centres lie in one plane."""
-        return 0.5
-
-    @property
-    def arm_spread(self) -> float:
-        """0: the arm of a turn is r_b over the whole face."""
-        return 0.0
-
-    @property
-    def view_from_world(self) -> Array:
-        """None (3, 3): one looks against z."""
-        return np.eye(3)
 
     def tip_clearance(self, origins: Array, scale: tuple[float, float]) -> float:
         """Smaller free distance [mm] between a tip circle and the mate's root circle, axes where they are."""
@@ -125,62 +75,6 @@ class SpurPair:
             f"zero backlash needs a centre distance of {self.zero_backlash_centre_distance:.4f} mm for the nominal "
             "teeth. Open the centre distance or thin the teeth"
         )
-
-    # backlash -----------------------------------------------------------------------------------
-
-    @cached_property
-    def zero_backlash_involute(self) -> float:
-        """inv alpha_w at which the teeth would touch on both flanks.
-
-        From tooth + tooth = pitch on the working circle:
-        inv alpha + [s1 + s2 - pi m] cos alpha / (2 (r_b1 + r_b2)).
-        """
-        alpha = self.pinion.pressure_angle
-        thicker = self.pinion.tooth_thickness + self.wheel.tooth_thickness - math.pi * self.pinion.module
-        return involute(alpha) + thicker * math.cos(alpha) / (2 * self.base_radii)
-
-    @property
-    def zero_backlash_centre_distance(self) -> float:
-        """Centre distance [mm] without backlash; nan where even touching base circles leave some."""
-        if self.zero_backlash_involute < 0.0:
-            return math.nan
-        return self.base_radii / math.cos(inverse_involute(self.zero_backlash_involute))
-
-    @property
-    def normal_backlash(self) -> float:
-        """j_bn [mm], shortest distance of the non-working flanks; negative: the teeth interfere.
-
-        2 (r_b1 + r_b2)(inv alpha_w - inv alpha_w0), exact for parallel axes.
-        """
-        return 2 * self.base_radii * (involute(self.working_pressure_angle) - self.zero_backlash_involute)
-
-    @property
-    def circumferential_backlash(self) -> float:
-        """j_wt = j_bn / cos alpha_w, free arc on the working pitch circles [mm]."""
-        return self.normal_backlash / math.cos(self.working_pressure_angle)
-
-    @property
-    def radial_backlash(self) -> float:
-        """j_r [mm]: how far the axes may approach until both flanks touch; exact, not j_wt/(2 tan alpha_w)."""
-        return self.centre_distance - self.zero_backlash_centre_distance
-
-    @property
-    def angular_backlash(self) -> tuple[float, float]:
-        """Free turn of the pinion (wheel held) and of the wheel (pinion held) [rad]: j_bn / r_b."""
-        return self.normal_backlash / self.pinion.base_radius, self.normal_backlash / self.wheel.base_radius
-
-    # path of contact ------------------------------------------------------------------------------
-
-    @property
-    def start_roll(self) -> float:
-        """Roll [rad] of the pinion's flank where the wheel's tip circle begins the path of contact."""
-        along = self.centre_distance * math.sin(self.working_pressure_angle)
-        return (along - self.wheel.base_radius * self.wheel.tip_roll) / self.pinion.base_radius
-
-    @property
-    def contact_ratio(self) -> float:
-        """epsilon_alpha: length of the path of contact over the base pitch."""
-        return (self.pinion.tip_roll - self.start_roll) / self.pinion.angular_pitch
 
     def refuse_interference(self) -> None:
         """Raise unless tips clear roots and the path of contact stays on both involutes.
@@ -249,22 +143,9 @@ class SpurPair:
             math.pi + direction + mate * self.wheel.angular_pitch + turned / self.wheel.base_radius, dtype=np.float64
         )
 
-    @property
-    def active_azimuths(self) -> tuple[float, float]:
-        """A tooth at azimuth psi touches at the roll t = alpha_w + eta_b - sigma psi."""
-        at_pitch = self.working_pressure_angle + self.pinion.base_half_angle
-        return at_pitch - self.pinion.tip_roll, at_pitch - self.start_roll
-
-    @property
-    def touching_azimuths(self) -> tuple[float, float]:
-        """The path of contact, and CONTACT_MARGIN."""
-        lowest, highest = self.active_azimuths
-        margin = CONTACT_MARGIN * self.pinion.angular_pitch
-        return lowest - margin, highest + margin
-
-    def candidate_teeth(self, driver_angle: Array, flank: Flank) -> tuple[NDArray[np.int64], NDArray[np.bool_]]:
-        """Pinion teeth that may touch on that flank: see gears.pair."""
-        return candidate_teeth(self.touching_azimuths, self.pinion.angular_pitch, driver_angle, flank)
+    def mating_flank(self, flank: Flank) -> Flank:
+        """Which flank of the wheel that side of the pinion meets: the same."""
+        return flank
 
     def mating_teeth(self, driver_teeth: NDArray[np.int64], flank: Flank) -> NDArray[np.int64]:
         """The wheel's tooth that each of those pinion flanks meets: -k on the right flank, -k - 1 on the left."""
@@ -276,4 +157,8 @@ class SpurPair:
         The driver's right flank faces -y at the mesh: the driven tooth there leaves it by turning
         counter-clockwise, and so does the driver.
         """
+        return flank
+
+    def driven_opening_sense(self, flank: Flank) -> Flank:
+        """Sense in which the driven gear's turn opens it: the same."""
         return flank

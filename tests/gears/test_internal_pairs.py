@@ -1,0 +1,93 @@
+"""Internal pairs against outlines of ring and pinion in polar form."""
+
+import math
+
+import numpy as np
+import pytest
+from oracles.ring_and_pinion import Toothed, free_turn
+
+from tol3d.gears import LEFT, RIGHT, Displaced, Flank, InternalGear, InternalPair, SpurGear
+
+ALPHA = math.radians(20)
+FLANKS: tuple[Flank, Flank] = (RIGHT, LEFT)
+
+
+def toothed(gear: SpurGear | InternalGear) -> Toothed:
+    inside = isinstance(gear, InternalGear)
+    nominal = gear.module * (math.pi / 2 + 2 * gear.profile_shift * math.tan(gear.pressure_angle))
+    return Toothed(
+        teeth=gear.teeth,
+        module=gear.module,
+        alpha=gear.pressure_angle,
+        thickness=nominal + gear.tooth_thickness_deviation,
+        first=gear.tip_radius if inside else gear.form_radius,
+        last=gear.form_radius if inside else gear.tip_radius,
+        inside=inside,
+    )
+
+
+def random_pair(rng: np.random.Generator, ring_drives: bool) -> InternalPair:
+    alpha = math.radians(rng.uniform(18, 26))
+    module = rng.uniform(0.5, 3.0)
+    pinion = SpurGear(
+        int(rng.integers(18, 40)),
+        module,
+        alpha,
+        10.0,
+        profile_shift=rng.uniform(0.0, 0.3),
+        addendum=0.9,
+        tooth_thickness_deviation=-rng.uniform(0.0, 0.05) * module,
+    )
+    ring = InternalGear(
+        pinion.teeth + int(rng.integers(20, 60)),
+        module,
+        alpha,
+        10.0,
+        profile_shift=rng.uniform(-0.3, 0.0),
+        addendum=0.8,
+        tooth_thickness_deviation=-rng.uniform(0.01, 0.05) * module,
+    )
+    touching = InternalPair(pinion, ring, module * (ring.teeth - pinion.teeth) / 2).zero_backlash_centre_distance
+    distance = touching - rng.uniform(0.005, 0.05) * module
+    return InternalPair(ring, pinion, distance) if ring_drives else InternalPair(pinion, ring, distance)
+
+
+@pytest.mark.parametrize("ring_drives", [False, True])
+def test_backlash_is_the_free_turn_of_the_ring_times_its_base_radius(ring_drives: bool) -> None:
+    """1e-7 mm: dense points miss the touching one by (step/2)^2 (1/rho_1 - 1/rho_2)/2, step 1e-4 m, 1/rho < 1/(2 m)."""
+    rng = np.random.default_rng(1)
+    for _ in range(4):
+        pair = random_pair(rng, ring_drives)
+        sign = 1.0 if ring_drives else -1.0
+        assert pair.wheel_origin.tolist() == [sign * pair.centre_distance, 0.0, 0.0]
+        theta = np.array([rng.uniform(0, 2 * math.pi)])
+        driven = float(pair.driven_angle(theta)[0])
+        turns = (theta[0], driven) if ring_drives else (driven, theta[0])
+        free = [
+            free_turn(toothed(pair.ring), toothed(pair.inner), np.array([pair.centre_distance, 0.0]), turns, side)
+            for side in FLANKS
+        ]
+        assert free[0] == pytest.approx(free[1], abs=1e-7 / pair.ring.base_radius)  # centred
+        assert sum(free) * pair.ring.base_radius == pytest.approx(pair.normal_backlash, abs=1e-7)
+
+
+@pytest.mark.parametrize("ring_drives", [False, True])
+def test_flanks_touch_at_the_touching_angle_wherever_the_centres_lie(ring_drives: bool) -> None:
+    rng = np.random.default_rng(2)
+    for _ in range(4):
+        pair = random_pair(rng, ring_drives)
+        theta = rng.uniform(0, 2 * math.pi)
+        origin = np.stack([np.zeros(3), pair.wheel_origin])
+        origin[:, :2] += rng.uniform(-0.01, 0.01, (2, 2)) * pair.ring.module
+        flank_turn = rng.uniform(-1e-4, 1e-4, 2)
+        displaced = Displaced(origin[None], np.zeros((1, 2, 3)), flank_turn[None])
+        ring_index = 0 if ring_drives else 1
+        ring = toothed(pair.ring.perturbed(flank_turn[ring_index], 1.0))
+        inner = toothed(pair.inner.perturbed(flank_turn[1 - ring_index], 1.0))
+        offset = (origin[1 - ring_index] - origin[ring_index])[:2]
+        for flank in FLANKS:
+            driven = float(pair.touching_angle(np.array([theta]), flank, displaced)[0])
+            assert abs(driven - float(pair.driven_angle(np.array([theta]))[0])) < 0.2 * pair.wheel.angular_pitch
+            turns = (theta, driven) if ring_drives else (driven, theta)
+            side = pair.mating_flank(flank) if ring_drives else flank
+            assert abs(free_turn(ring, inner, offset, turns, side)) * pair.ring.base_radius < 1e-7

@@ -1,0 +1,269 @@
+"""What external and internal involute spur gears share: circles, tooth thickness, flanks.
+
+Formulas are those of ISO 21771-1 with the sign of the number of teeth written out: +1 outside, -1 inside. Users and
+properties have positive numbers.
+"""
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tol3d.errors import GeometryError
+from tol3d.gears.flank import Flank
+from tol3d.gears.involute import involute
+
+Array = NDArray[np.float64]
+
+ISO53_ROOT_FILLET: Final = 0.38  # of the module; fillet of the standard basic rack, ISO 53:1998, profile A
+FULL_ROUND_MARGIN: Final = 1e-9  # mm; two fillets of a space may touch, not overlap
+
+
+@dataclass(frozen=True)
+class CylindricalGear:
+    """A spur gear, external or internal; arguments as there. Lengths in mm, angles in rad."""
+
+    teeth: int
+    module: float
+    pressure_angle: float
+    face_width: float
+    profile_shift: float = 0.0
+    addendum: float = 1.0
+    dedendum: float = 1.25
+    root_fillet: float | None = None
+
+    @property
+    def tooth_thickness_deviation(self) -> float:
+        """Added to the nominal arc at the reference circle [mm]."""
+        raise NotImplementedError
+
+    @property
+    def iso_sign(self) -> int:
+        """Sign of the number of teeth, of all radii and of the centre distance in ISO 21771: -1 inside."""
+        raise NotImplementedError
+
+    def _refuse_sizes(self) -> None:
+        if self.teeth < 3:
+            raise GeometryError(f"teeth: expected at least 3, got {self.teeth}")
+        for name in ("module", "face_width"):
+            if not getattr(self, name) > 0.0:
+                raise GeometryError(f"{name}: expected more than 0 mm, got {getattr(self, name):g} mm")
+        if not math.radians(5) <= self.pressure_angle <= math.radians(45):
+            degrees = math.degrees(self.pressure_angle)
+            raise GeometryError(f"pressure_angle: expected 5 to 45 deg, got {degrees:g} deg")
+
+    def _refuse_fillet(self) -> None:
+        if self.root_fillet is not None and not 0.0 < self.root_fillet <= self.full_round_fillet + FULL_ROUND_MARGIN:
+            raise GeometryError(
+                f"root_fillet: expected more than 0 and at most {self.full_round_fillet:.4f} mm "
+                f"(the full round of the space), got {self.root_fillet:g} mm"
+            )
+
+    # circles ----------------------------------------------------------------------------------
+
+    @property
+    def reference_radius(self) -> float:
+        """r = m z / 2 [mm]."""
+        return self.module * self.teeth / 2
+
+    @property
+    def reference_diameter(self) -> float:
+        """d = m z [mm]."""
+        return self.module * self.teeth
+
+    @cached_property
+    def base_radius(self) -> float:
+        """r_b = r cos alpha [mm]."""
+        return self.reference_radius * math.cos(self.pressure_angle)
+
+    @property
+    def section_arm(self) -> float:
+        """r_b [mm], the same in every section."""
+        return self.base_radius
+
+    @property
+    def thickness_radius(self) -> float:
+        """r [mm]: the tooth thickness is an arc at the reference circle."""
+        return self.reference_radius
+
+    @property
+    def pitch_angle(self) -> float:
+        """0 [rad]: a spur gear is a cylinder."""
+        return 0.0
+
+    @property
+    def base_diameter(self) -> float:
+        """d_b [mm]."""
+        return 2 * self.base_radius
+
+    @property
+    def tip_radius(self) -> float:
+        """r_a = r + m (h_a* + x) [mm], inside r - m (h_a* + x)."""
+        return self.reference_radius + self.iso_sign * self.module * (self.addendum + self.profile_shift)
+
+    @property
+    def tip_diameter(self) -> float:
+        """d_a [mm]."""
+        return 2 * self.tip_radius
+
+    @property
+    def root_radius(self) -> float:
+        """r_f = r - m (h_f* - x) [mm], inside r + m (h_f* - x)."""
+        return self.reference_radius - self.iso_sign * self.module * (self.dedendum - self.profile_shift)
+
+    @property
+    def root_diameter(self) -> float:
+        """d_f [mm]."""
+        return 2 * self.root_radius
+
+    @property
+    def base_pitch(self) -> float:
+        """p_b = pi m cos alpha [mm]."""
+        return math.pi * self.module * math.cos(self.pressure_angle)
+
+    @property
+    def angular_pitch(self) -> float:
+        """2 pi / z [rad]."""
+        return 2 * math.pi / self.teeth
+
+    # tooth thickness ----------------------------------------------------------------------------
+
+    @property
+    def tooth_thickness(self) -> float:
+        """s = m (pi/2 + 2 x tan alpha) + deviation, arc at the reference circle [mm]."""
+        nominal = self.module * (math.pi / 2 + 2 * self.profile_shift * math.tan(self.pressure_angle))
+        return nominal + self.tooth_thickness_deviation
+
+    @cached_property
+    def base_half_angle(self) -> float:
+        """Half the angle [rad] that a tooth takes at the base circle: s/(2 r) + inv alpha, inside s/(2 r) - inv alpha.
+
+        Flanks of an internal gear may meet before that: it is less than 0 then.
+        """
+        return self.tooth_thickness / (2 * self.reference_radius) + self.iso_sign * involute(self.pressure_angle)
+
+    def pressure_angle_at(self, radius: float) -> float:
+        """alpha_y with cos alpha_y = r_b / radius [rad]; 0 at and below the base circle."""
+        return math.acos(min(1.0, self.base_radius / radius))
+
+    def thickness_at(self, radius: float) -> float:
+        """Tooth thickness as an arc [mm] on the circle of that radius (radial flank below the base)."""
+        return 2 * radius * (self.base_half_angle - self.iso_sign * involute(self.pressure_angle_at(radius)))
+
+    def space_at(self, radius: float) -> float:
+        """Space width as an arc [mm] on the circle of that radius."""
+        return radius * self.angular_pitch - self.thickness_at(radius)
+
+    @property
+    def tip_thickness(self) -> float:
+        """s_a, arc at the tip circle [mm]."""
+        return self.thickness_at(self.tip_radius)
+
+    # roll -----------------------------------------------------------------------------------------
+
+    def roll_at(self, radius: float) -> float:
+        """Roll angle t = tan alpha_y [rad] of the flank at a radius; 0 at the base circle."""
+        return math.tan(self.pressure_angle_at(radius))
+
+    @cached_property
+    def tip_roll(self) -> float:
+        """Roll angle at the tip circle [rad]."""
+        return self.roll_at(self.tip_radius)
+
+    @property
+    def form_roll(self) -> float:
+        """Roll angle [rad] at which the fillet takes the involute over."""
+        raise NotImplementedError
+
+    @property
+    def form_radius(self) -> float:
+        """Radius [mm] at which the fillet takes the involute over."""
+        return self.base_radius * math.hypot(1.0, self.form_roll)
+
+    def _beta(self, roll: Array, flank: Flank) -> Array:
+        """Azimuth [rad] at which the string touches the base circle."""
+        return self.iso_sign * flank * (roll - self.iso_sign * self.base_half_angle)
+
+    def flank_points(self, roll: Array, flank: Flank) -> Array:
+        """Points of a flank of tooth 0 in the transverse plane, gear frame.
+
+        Args:
+            roll: roll angles [rad], shape (n,), 0 at the base circle.
+            flank: RIGHT or LEFT.
+
+        Returns:
+            (n, 2) [mm]. P = r_b [(cos beta, sin beta) + sigma t (sin beta, -cos beta)],
+            beta = sigma (t - eta_b): the string unwound from the base circle. Inside, sigma is that of the flank of
+            the space, the other one, and eta_b counts negative.
+        """
+        beta, side = self._beta(roll, flank), self.iso_sign * flank
+        cos, sin = np.cos(beta), np.sin(beta)
+        return self.base_radius * np.stack([cos + side * roll * sin, sin - side * roll * cos], axis=-1)
+
+    def flank_normals(self, roll: Array, flank: Flank) -> Array:
+        """Unit normals out of the tooth at those points, shape (n, 2): sigma (sin beta, -cos beta)."""
+        beta = self._beta(roll, flank)
+        return np.stack([flank * np.sin(beta), -flank * np.cos(beta)], axis=-1)
+
+    # root -----------------------------------------------------------------------------------------
+
+    @property
+    def full_round_fillet(self) -> float:
+        """Largest fillet radius [mm]: one arc from flank to flank, touching the root circle."""
+        raise NotImplementedError
+
+    @cached_property
+    def fillet_radius(self) -> float:
+        """The fillet in use [mm]: the stated one, or ISO 53's, or the full round where that is smaller."""
+        if self.root_fillet is not None:
+            return self.root_fillet
+        return min(ISO53_ROOT_FILLET * self.module, self.full_round_fillet)
+
+    def _fillet_azimuth(self, radius: float) -> float:
+        """Azimuth [rad] of the fillet's centre off the tooth's middle, for an arc of that radius."""
+        raise NotImplementedError
+
+    def fillet_centre(self, flank: Flank) -> tuple[float, float]:
+        """Centre (x, y) [mm] of the fillet arc below a flank of tooth 0."""
+        centre = self.root_radius + self.iso_sign * self.fillet_radius
+        azimuth = -flank * self._fillet_azimuth(self.fillet_radius)
+        return centre * math.cos(azimuth), centre * math.sin(azimuth)
+
+    def fillet_top(self, flank: Flank) -> tuple[float, float]:
+        """Where the fillet leaves the flank, (x, y) [mm]."""
+        x, y = self.flank_points(np.array([self.form_roll]), flank)[0]
+        return float(x), float(y)
+
+    def fillet_bottom(self, flank: Flank) -> tuple[float, float]:
+        """Where the fillet meets the root circle, (x, y) [mm]."""
+        azimuth = -flank * self._fillet_azimuth(self.fillet_radius)
+        return self.root_radius * math.cos(azimuth), self.root_radius * math.sin(azimuth)
+
+    @property
+    def root_arc(self) -> float:
+        """Arc [mm] of the root circle between the two fillets of a space; 0 at the full round."""
+        return 2 * self.root_radius * max(0.0, math.pi / self.teeth - self._fillet_azimuth(self.fillet_radius))
+
+    @cached_property
+    def outline_area(self) -> float:
+        """Area [mm^2] within the outline of the teeth: exact, by Green's theorem.
+
+        Half the sum of x dy - y dx along tip arc, involute, radial line, fillet and root arc; the
+        involute's share is r_b^2 (t_a^3 - t_f^3)/6 for each flank.
+        """
+        tip_half = self.base_half_angle - self.iso_sign * (self.tip_roll - math.atan(self.tip_roll))
+        tip_arc = self.tip_radius**2 * 2 * tip_half / 2
+        flanks = 2 * self.base_radius**2 * self.iso_sign * (self.tip_roll**3 - self.form_roll**3) / 6
+        root = self.root_radius * self.root_arc / 2
+        return self.teeth * (tip_arc + flanks + root + 2 * self._fillet_sector())
+
+    def _fillet_sector(self) -> float:
+        """1/2 of the integral of x dy - y dx [mm^2] along the fillet of a left flank, from flank to root."""
+        (cx, cy), radius = self.fillet_centre(-1), self.fillet_radius
+        (ax, ay), (bx, by) = self.fillet_top(-1), self.fillet_bottom(-1)
+        start = math.atan2(ay - cy, ax - cx)
+        turn = math.remainder(math.atan2(by - cy, bx - cx) - start, 2 * math.pi)
+        return (radius**2 * turn + cx * (by - ay) - cy * (bx - ax)) / 2

@@ -1,0 +1,177 @@
+"""What two spur gears on parallel axes share, be one of them internal or not: angles, backlash, path of contact.
+
+Exact for rigid involute teeth. Sources: ISO 21771-1:2024, 5.3 (pair geometry) and 5.6 (backlash), whose formulas hold
+for internal gears with their teeth, radii and centre distance counted negative.
+"""
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tol3d.errors import GeometryError
+from tol3d.gears.cylindrical_gear import CylindricalGear
+from tol3d.gears.flank import Flank
+from tol3d.gears.involute import inverse_involute, involute
+from tol3d.gears.pair import CONTACT_MARGIN, candidate_teeth
+
+Array = NDArray[np.float64]
+
+SAME_LENGTH: Final = 1e-9  # relative; two modules written alike are equal in this sense
+
+
+@dataclass(frozen=True)
+class CylindricalPair:
+    """Pinion (driver) and wheel (driven) at a centre distance [mm], which is positive."""
+
+    pinion: CylindricalGear
+    wheel: CylindricalGear
+    centre_distance: float
+
+    def _refuse_unlike(self) -> None:
+        for name, unit in (("module", "mm"), ("pressure_angle", "rad")):
+            first, second = getattr(self.pinion, name), getattr(self.wheel, name)
+            if not math.isclose(first, second, rel_tol=SAME_LENGTH):
+                raise GeometryError(
+                    f"the gears of a pair need the same {name}, got {first:g} {unit} and {second:g} {unit}"
+                )
+
+    @property
+    def iso_sign(self) -> int:
+        """Sign of the centre distance in ISO 21771: -1 inside."""
+        raise NotImplementedError
+
+    @property
+    def base_radii(self) -> float:
+        """r_b1 + r_b2 [mm], an internal gear's counted negative."""
+        return self.pinion.iso_sign * self.pinion.base_radius + self.wheel.iso_sign * self.wheel.base_radius
+
+    @property
+    def ratio(self) -> float:
+        """z2 / z1."""
+        return self.wheel.teeth / self.pinion.teeth
+
+    @property
+    def long_period_turns(self) -> int:
+        """Turns of the pinion until the same teeth meet again in the same places: z2 / gcd(z1, z2)."""
+        return self.wheel.teeth // math.gcd(self.pinion.teeth, self.wheel.teeth)
+
+    @cached_property
+    def working_pressure_angle(self) -> float:
+        """alpha_w with cos alpha_w = (r_b1 + r_b2)/a [rad]."""
+        return math.acos(self.iso_sign * self.base_radii / self.centre_distance)
+
+    @property
+    def working_radii(self) -> tuple[float, float]:
+        """r_w of pinion and wheel [mm]: r_b / cos alpha_w."""
+        cos = math.cos(self.working_pressure_angle)
+        return self.pinion.base_radius / cos, self.wheel.base_radius / cos
+
+    # world --------------------------------------------------------------------------------------
+
+    @property
+    def world_from_wheel(self) -> Array:
+        """Rotation (3, 3) of the wheel's frame at rest: none."""
+        return np.eye(3)
+
+    @property
+    def pinion_section(self) -> float:
+        """The middle: the face centres lie in one plane."""
+        return 0.5
+
+    @property
+    def arm_spread(self) -> float:
+        """0: the arm of a turn is r_b over the whole face."""
+        return 0.0
+
+    @property
+    def view_from_world(self) -> Array:
+        """None (3, 3): one looks against z."""
+        return np.eye(3)
+
+    # backlash -----------------------------------------------------------------------------------
+
+    @cached_property
+    def zero_backlash_involute(self) -> float:
+        """inv alpha_w at which the teeth would touch on both flanks.
+
+        From tooth + tooth = pitch on the working circle:
+        inv alpha + [s1 + s2 - pi m] cos alpha / (2 (r_b1 + r_b2)).
+        """
+        alpha = self.pinion.pressure_angle
+        thicker = self.pinion.tooth_thickness + self.wheel.tooth_thickness - math.pi * self.pinion.module
+        return involute(alpha) + thicker * math.cos(alpha) / (2 * self.base_radii)
+
+    @property
+    def zero_backlash_centre_distance(self) -> float:
+        """Centre distance [mm] without backlash; nan where there is none.
+
+        External teeth may leave some even where the base circles touch, internal ones interfere at any distance then.
+        """
+        if self.zero_backlash_involute < 0.0:
+            return math.nan
+        return self.iso_sign * self.base_radii / math.cos(inverse_involute(self.zero_backlash_involute))
+
+    @property
+    def normal_backlash(self) -> float:
+        """j_bn [mm], shortest distance of the non-working flanks; negative: the teeth interfere.
+
+        2 (r_b1 + r_b2)(inv alpha_w - inv alpha_w0), exact for parallel axes.
+        """
+        return 2 * self.base_radii * (involute(self.working_pressure_angle) - self.zero_backlash_involute)
+
+    @property
+    def circumferential_backlash(self) -> float:
+        """j_wt = j_bn / cos alpha_w, free arc on the working pitch circles [mm]."""
+        return self.normal_backlash / math.cos(self.working_pressure_angle)
+
+    @property
+    def radial_backlash(self) -> float:
+        """j_r [mm]: how far the gears may go towards each other until both flanks touch; not j_wt/(2 tan alpha_w).
+
+        External gears do so as the centre distance shrinks, internal ones as it grows.
+        """
+        return self.iso_sign * (self.centre_distance - self.zero_backlash_centre_distance)
+
+    @property
+    def angular_backlash(self) -> tuple[float, float]:
+        """Free turn of the pinion (wheel held) and of the wheel (pinion held) [rad]: j_bn / r_b."""
+        return self.normal_backlash / self.pinion.base_radius, self.normal_backlash / self.wheel.base_radius
+
+    # path of contact ------------------------------------------------------------------------------
+
+    @property
+    def start_roll(self) -> float:
+        """Roll [rad] of the pinion's flank where the wheel's tip circle ends the path of contact on its root's side."""
+        along = self.iso_sign * self.centre_distance * math.sin(self.working_pressure_angle)
+        wheel = self.wheel.iso_sign * self.wheel.base_radius * self.wheel.tip_roll
+        return (along - wheel) / (self.pinion.iso_sign * self.pinion.base_radius)
+
+    @property
+    def contact_ratio(self) -> float:
+        """epsilon_alpha: length of the path of contact over the base pitch."""
+        return self.pinion.iso_sign * (self.pinion.tip_roll - self.start_roll) / self.pinion.angular_pitch
+
+    @property
+    def active_azimuths(self) -> tuple[float, float]:
+        """A tooth at azimuth psi touches at the roll t = alpha_w + eta_b - sigma psi.
+
+        Of a driving ring it is alpha_w - eta_b + sigma psi.
+        """
+        sign = self.pinion.iso_sign
+        at_pitch = sign * self.working_pressure_angle + self.pinion.base_half_angle
+        return at_pitch - sign * self.pinion.tip_roll, at_pitch - sign * self.start_roll
+
+    @property
+    def touching_azimuths(self) -> tuple[float, float]:
+        """The path of contact, and CONTACT_MARGIN."""
+        lowest, highest = self.active_azimuths
+        margin = CONTACT_MARGIN * self.pinion.angular_pitch
+        return lowest - margin, highest + margin
+
+    def candidate_teeth(self, driver_angle: Array, flank: Flank) -> tuple[NDArray[np.int64], NDArray[np.bool_]]:
+        """Pinion teeth that may touch on that flank: see gears.pair."""
+        return candidate_teeth(self.touching_azimuths, self.pinion.angular_pitch, driver_angle, flank)

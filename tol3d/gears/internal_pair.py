@@ -1,0 +1,171 @@
+"""An external spur gear in an internal one, on parallel axes; either may drive.
+
+World: the driver's axis is z. The teeth meet at azimuth 0 of both gears, and both turn in the same sense: a driven
+ring's axis lies at -x by the centre distance, a driven gear's inside a driving ring at +x.
+"""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tol3d.errors import GeometryError
+from tol3d.gears.cylindrical_pair import CylindricalPair
+from tol3d.gears.flank import Flank, opposite
+from tol3d.gears.internal_gear import InternalGear
+from tol3d.gears.pair import Displaced
+from tol3d.gears.spur_gear import SpurGear
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class InternalPair(CylindricalPair):
+    """Pinion (driver) and wheel (driven), of which one is an InternalGear, at a centre distance [mm] above 0.
+
+    As the centre distance grows the teeth come closer: its backlash shrinks.
+
+    Raises:
+        GeometryError: not one gear is internal; modules or pressure angles differ; or the ring's base circle does not
+            contain the other at that distance.
+
+    >>> alpha = math.radians(20)
+    >>> planet, ring = SpurGear(27, 1.0, alpha, 10.0), InternalGear(79, 1.0, alpha, 10.0)
+    >>> pair = InternalPair(planet, ring, 26.0)
+    >>> abs(pair.normal_backlash) < 1e-12, round(pair.contact_ratio, 4)
+    (True, 1.9281)
+    """
+
+    pinion: SpurGear | InternalGear
+    wheel: SpurGear | InternalGear
+
+    def __post_init__(self) -> None:
+        if isinstance(self.pinion, InternalGear) == isinstance(self.wheel, InternalGear):
+            count = "two" if isinstance(self.wheel, InternalGear) else "none"
+            raise GeometryError(f"an internal pair needs one internal gear and one external, got {count} of the first")
+        self._refuse_unlike()
+        if self.ring.teeth <= self.inner.teeth:
+            raise GeometryError(
+                f"the internal gear needs more teeth than the gear inside it: got {self.ring.teeth} and "
+                f"{self.inner.teeth}"
+            )
+        if self.centre_distance <= -self.base_radii:
+            raise GeometryError(
+                f"centre distance {self.centre_distance:g} mm: the base circles have no common tangent, an internal "
+                f"pair of {self.inner.teeth} and {self.ring.teeth} teeth needs more than {-self.base_radii:.4f} mm"
+            )
+
+    @property
+    def ring(self) -> InternalGear:
+        """The internal gear."""
+        found = self.wheel if isinstance(self.wheel, InternalGear) else self.pinion
+        if not isinstance(found, InternalGear):
+            raise TypeError("no gear of the pair is internal")
+        return found
+
+    @property
+    def inner(self) -> SpurGear:
+        """The external gear inside it."""
+        found = self.wheel if isinstance(self.wheel, SpurGear) else self.pinion
+        if not isinstance(found, SpurGear):
+            raise TypeError("no gear of the pair is external")
+        return found
+
+    @property
+    def ring_drives(self) -> bool:
+        """Whether the internal gear is the driver."""
+        return isinstance(self.pinion, InternalGear)
+
+    @property
+    def iso_sign(self) -> int:
+        """-1."""
+        return -1
+
+    # world --------------------------------------------------------------------------------------
+
+    @property
+    def wheel_origin(self) -> Array:
+        """The face centre of the wheel, (3,) [mm]: at +x by the centre distance in a driving ring, else at -x."""
+        return np.array([self.centre_distance if self.ring_drives else -self.centre_distance, 0.0, 0.0])
+
+    @property
+    def mesh_azimuths(self) -> tuple[float, float]:
+        """Both see the mesh at +x [rad]."""
+        return 0.0, 0.0
+
+    def tip_clearance(self, origins: Array, scale: tuple[float, float]) -> float:
+        """Smaller free distance [mm] between a tip circle and the mate's root circle, axes where they are."""
+        ring, inner = scale if self.ring_drives else scale[::-1]
+        between = origins[1, :2] - origins[0, :2]
+        distance = math.hypot(*between)
+        outside = ring * self.ring.root_radius - distance - inner * self.inner.tip_radius
+        inside = ring * self.ring.tip_radius - distance - inner * self.inner.root_radius
+        return min(outside, inside)
+
+    @property
+    def remedy(self) -> str:
+        """What zero backlash needs."""
+        nearest = self.zero_backlash_centre_distance
+        if math.isnan(nearest):
+            return "no centre distance leaves backlash: the teeth are too thick together. Thin the teeth"
+        return (
+            f"zero backlash needs a centre distance of {nearest:.4f} mm for the nominal "
+            "teeth. Close the centre distance or thin the teeth"
+        )
+
+    def refuse_interference(self) -> None:
+        """Raise unless the gears run without interference.
+
+        Raises:
+            GeometryError: with the radii and what to change.
+        """
+
+    # positions --------------------------------------------------------------------------------------
+
+    def driven_angle(self, driver_angle: Array) -> Array:
+        """Wheel's turn [rad] with its space centred on the pinion's tooth: pi/z2 + (z1/z2) theta_1."""
+        return math.pi / self.wheel.teeth + driver_angle / self.ratio
+
+    def touching_angle(self, driver_angle: Array, flank: Flank, displaced: Displaced) -> Array:
+        """Wheel's turn [rad] at which the flanks of that side touch, were the axes parallel.
+
+        From the line of action, r_b1 t_1 + r_b2 t_2 = (r_b1 + r_b2) tan alpha_w with the ring's radius negative and the
+        rolls t = alpha_w + eta_b - sigma (azimuth off the mesh), of the ring alpha_w - eta_b + sigma (azimuth).
+
+        Args:
+            driver_angle: pinion's turn [rad], (trials,).
+            flank: the pinion's flank.
+            displaced: where the gears' centres lie, and their flanks; turns of the axes are left out.
+        """
+        away = displaced.origin[:, 1] - displaced.origin[:, 0]
+        to_mesh = away if self.ring_drives else -away
+        direction = np.arctan2(to_mesh[:, 1], to_mesh[:, 0])
+        distance = np.sqrt(to_mesh[:, 0] ** 2 + to_mesh[:, 1] ** 2)
+        working = np.arccos(np.minimum(-self.base_radii / distance, 1.0))
+        half_angles = sum(
+            gear.base_radius * (gear.base_half_angle + displaced.flank_turn[:, k])
+            for k, gear in enumerate((self.pinion, self.wheel))
+        )
+        along = half_angles - self.base_radii * (np.tan(working) - working)
+        turned = self.pinion.base_radius * (driver_angle - direction) - flank * along
+        mate = 1 if flank == 1 else 0
+        return np.asarray(
+            direction + mate * self.wheel.angular_pitch + turned / self.wheel.base_radius, dtype=np.float64
+        )
+
+    def mating_flank(self, flank: Flank) -> Flank:
+        """Which flank of the wheel that side of the pinion meets: the other, by azimuth."""
+        return opposite(flank)
+
+    def mating_teeth(self, driver_teeth: NDArray[np.int64], flank: Flank) -> NDArray[np.int64]:
+        """The wheel's tooth that each of those pinion flanks meets: k - 1 on the right flank, k on the left."""
+        return driver_teeth - (1 if flank == 1 else 0)
+
+    def opening_sense(self, flank: Flank) -> Flank:
+        """Sense in which the driver's turn opens that flank side: sigma."""
+        return flank
+
+    def driven_opening_sense(self, flank: Flank) -> Flank:
+        """Sense in which the driven gear's turn opens it: -sigma, for both turn in the same sense."""
+        return opposite(flank)
