@@ -40,6 +40,7 @@ EVERY_FIELD = ROOT / "scenes" / "every_field.yaml"
 EVERY_BEVEL_FIELD = ROOT / "scenes" / "every_bevel_field.yaml"
 TWO_SIDED_TE = ROOT / "scenes" / "two_sided_te.yaml"
 TOOTH_DEVIATIONS = ROOT / "scenes" / "tooth_deviations.yaml"
+MEASURED_TEETH = ROOT / "scenes" / "measured_teeth.yaml"
 SCENES = sorted((ROOT / "scenes").glob("*.yaml"))
 DOCUMENT = (ROOT / "docs" / "scene.md").read_text(encoding="utf-8")
 QUOTED = re.findall(r"```yaml\n(.*?)```", DOCUMENT, re.DOTALL)
@@ -112,7 +113,7 @@ def shoulders() -> tuple[str, str]:
 def test_every_field_uses_every_field_of_every_kind(tmp_path: Path) -> None:
     known = fields_within(Geared)
     assert len({model for model, _ in known}) >= 24  # scene, study, 2 parts, 9 tolerances, 7 laws, mesh, 3 measures, …
-    scenes = (EVERY_FIELD, EVERY_BEVEL_FIELD, TWO_SIDED_TE, TOOTH_DEVIATIONS)
+    scenes = (EVERY_FIELD, EVERY_BEVEL_FIELD, TWO_SIDED_TE, TOOTH_DEVIATIONS, MEASURED_TEETH)
     said = {use for scene in scenes for use in fields_said(load_scene(scene, GEARS))}
     plain = SMALL.replace("  play:", "  normal backlash:")
     said |= {use for study in STUDIES for use in fields_said(load(tmp_path, plain + study, GEARS))}

@@ -215,10 +215,12 @@ class GivenDraw:
     Args:
         names: of the components.
         given: each of them [mm].
+        whence: where from, in words.
     """
 
     names: tuple[str, ...]
     given: tuple[float, ...]
+    whence: str = "given"
 
     uniforms = 0
     sigma = 0.0
@@ -226,7 +228,7 @@ class GivenDraw:
     @property
     def words(self) -> str:
         """See JointDraw."""
-        return f"given, each of {len(self.names)}"
+        return f"{self.whence}, each of {len(self.names)}"
 
     @property
     def components(self) -> tuple[str, ...]:

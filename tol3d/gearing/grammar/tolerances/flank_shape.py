@@ -1,6 +1,8 @@
 """What deviations of the shape of a gear's single flanks have in common: slopes and forms, each drawn for itself."""
 
+import math
 from abc import abstractmethod
+from collections.abc import Iterator
 from typing import Annotated, Literal, Self
 
 from pydantic import Field, model_validator
@@ -10,11 +12,13 @@ from tol3d.errors import GeometryError
 from tol3d.files import Files
 from tol3d.gearing.effects import FlankDeviation, Place
 from tol3d.gearing.grammar.tolerances.flank_tolerance import FlankToleranceSpec, IsoClass, limits_of_class, no_word
+from tol3d.gearing.grammar.tolerances.record_law import RecordSpec
 from tol3d.gearing.pitch_draw import GivenDraw, tooth_names
 from tol3d.gears import SpurGear
 from tol3d.gears.iso1328 import FlankTolerances
 from tol3d.scene.listed import listed
 from tol3d.scene.part import Length
+from tol3d.scene.place import KeyPath
 from tol3d.strict import Strict, refused
 from tol3d.system.draw import Draw, Each, Scalar
 from tol3d.units import Of, Quantity, refuse_dimension
@@ -70,8 +74,11 @@ class GivenShapeSpec(Strict):
 
 
 ShapeLaw = Annotated[
-    UniformShapeSpec | NormalShapeSpec | StatedShapeSpec | GivenShapeSpec,
-    Field(discriminator="kind", description="how deviations fill the limits: uniform or normal; or stated, or given"),
+    UniformShapeSpec | NormalShapeSpec | StatedShapeSpec | GivenShapeSpec | RecordSpec,
+    Field(
+        discriminator="kind",
+        description="how deviations fill the limits: uniform or normal; or stated, given, or measured in a record",
+    ),
     no_word("a law such as {kind: uniform}"),
 ]
 
@@ -102,6 +109,13 @@ class FlankShapeSpec(FlankToleranceSpec):
                 raise refused("law", expected, " and ".join(given) or "none")
         return self
 
+    def file_names(self) -> Iterator[tuple[KeyPath, str]]:
+        """Those that its law reads."""
+        if isinstance(self.law, RecordSpec):
+            yield from self.law.file_names()
+        if isinstance(self.law, StatedShapeSpec):
+            yield from ((("law", "distribution", field), name) for field, name in self.law.distribution.file_names())
+
     @abstractmethod
     def of_class(self, limits: FlankTolerances) -> float:
         """The limit that a class states for this deviation [mm]."""
@@ -114,6 +128,8 @@ class FlankShapeSpec(FlankToleranceSpec):
         names = self._names(gear)
         if isinstance(self.law, GivenShapeSpec):
             return self._given(self.law, names)
+        if isinstance(self.law, RecordSpec):
+            return self._measured(self.law, gear.teeth, files)
         law = self._distribution(gear, files)
         return Scalar(law) if names == ("",) else Each(law, names)
 
@@ -138,6 +154,18 @@ class FlankShapeSpec(FlankToleranceSpec):
                 raise GeometryError(f"law.{side or 'right'}: expected {count} lengths, got {len(lengths)}")
             found += [length.internal for length in lengths]
         return GivenDraw(names, tuple(found))
+
+    def _measured(self, law: RecordSpec, teeth: int, files: Files) -> GivenDraw:
+        """Of each tooth, or of all teeth the mean of those that were measured."""
+        found: list[float] = []
+        for values in law.record(teeth, files).measured(self.sides, gaps=self.each == "gear").values():
+            own = [value for value in values if value is not None]
+            if self.each == "gear":
+                found.append(math.fsum(own) / len(own))
+            else:
+                found += [own[law.placed(tooth, teeth)] for tooth in range(teeth)]
+        names = tooth_names(teeth, self.sides) if self.each == "tooth" else self.sides
+        return GivenDraw(names, tuple(found), f"measured in {law.file}")
 
     def deviation(self, gear: SpurGear, shape: int, waves: float = 0.0) -> FlankDeviation:
         """Its components on their flanks."""

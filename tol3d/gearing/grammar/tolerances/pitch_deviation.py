@@ -1,11 +1,13 @@
 """Pitch deviations of a spur gear's teeth."""
 
 import math
+from collections.abc import Iterator, Sequence
+from itertools import accumulate, chain
 from typing import Annotated, Literal, Self
 
 from pydantic import Field, model_validator
 
-from tol3d.errors import GeometryError
+from tol3d.errors import GeometryError, SceneError
 from tol3d.files import Files
 from tol3d.gearing.effects import UNIFORM, FlankDeviation, Place
 from tol3d.gearing.grammar.tolerances.flank_tolerance import (
@@ -15,6 +17,7 @@ from tol3d.gearing.grammar.tolerances.flank_tolerance import (
     limits_of_class,
     no_word,
 )
+from tol3d.gearing.grammar.tolerances.record_law import RecordSpec
 from tol3d.gearing.pitch_draw import (
     GivenDraw,
     Pattern,
@@ -27,6 +30,7 @@ from tol3d.gearing.pitch_draw import (
 from tol3d.gears import SpurGear
 from tol3d.scene.listed import listed
 from tol3d.scene.part import Length
+from tol3d.scene.place import KeyPath
 from tol3d.strict import Strict, refused
 from tol3d.system.draw import Draw
 from tol3d.units import Of, Quantity
@@ -108,8 +112,39 @@ class GivenSpec(Strict):
     left: Arcs | None = Field(default=None, description="of the left flanks")
 
 
+class PitchRecordSpec(RecordSpec):
+    """Pitch deviations as a measuring centre wrote them, positive the way it counts the teeth."""
+
+    deviation: Literal["index", "single"] = Field(
+        description="index: F_p, how far each flank lies ahead; single: f_p, from the flank before to this one"
+    )
+
+    def index(self, teeth: int, sides: Sequence[str], files: Files) -> dict[str, list[float]]:
+        """Index deviations of each side [mm], counter-clockwise from the gear's tooth 0 on, less their mean.
+
+        Raises:
+            SceneError: the file lacks some, or single pitch deviations do not sum to zero within their last digits.
+        """
+        record, found = self.record(teeth, files), dict[str, list[float]]()
+        sense = 1.0 if self.counted == "counter_clockwise" else -1.0
+        for side, values in record.measured(sides, gaps=False).items():
+            index = [value for value in values if value is not None]
+            if self.deviation == "single":
+                over = math.fsum(index)
+                if abs(over) > teeth * record.grain() / 2:
+                    raise SceneError(
+                        f"{record.table.path}: column {self.column!r}: expected single pitch deviations that sum to "
+                        f"zero{f' over the {side} flanks' if side else ''}, got {1e3 * over:g} um; index deviations "
+                        "are `deviation: index`"
+                    )
+                index = [value - over * (k + 1) / teeth for k, value in enumerate(accumulate(index))]
+            mean = math.fsum(index) / teeth
+            found[side] = [sense * (index[self.placed(tooth, teeth)] - mean) for tooth in range(teeth)]
+        return found
+
+
 Law = Annotated[
-    RandomWalkSpec | RunOutAndRandomSpec | GivenSpec,
+    RandomWalkSpec | RunOutAndRandomSpec | GivenSpec | PitchRecordSpec,
     Field(discriminator="kind", description="how deviations go round the gear, and how far they fill the limits"),
     no_word("a law such as {kind: random_walk, fill: [0.7, 1]}"),
 ]
@@ -130,12 +165,14 @@ class PitchDeviationSpec(FlankToleranceSpec):
 
     @model_validator(mode="after")
     def _refuse_misfits(self) -> Self:
-        if not isinstance(self.law, GivenSpec):
+        if not isinstance(self.law, GivenSpec | PitchRecordSpec):
             if self.limits is None:
                 raise refused("limits", "limits such as {iso_class: 5}, which the law fills", "none")
             return self
         if self.limits is not None:
-            raise refused("limits", "none beside a law that is given", "limits")
+            raise refused("limits", f"none beside a law that is {self.law.kind}", "limits")
+        if isinstance(self.law, PitchRecordSpec):
+            return self
         wanted = {"right": ["right"], "left": ["left"], "each": ["right", "left"], "together": ["right"]}[self.flanks]
         given = [side for side in ("right", "left") if getattr(self.law, side) is not None]
         if given != wanted:
@@ -147,8 +184,16 @@ class PitchDeviationSpec(FlankToleranceSpec):
         """See FlankToleranceSpec."""
         if isinstance(self.law, GivenSpec):
             return self._given(self.law, gear)
+        if isinstance(self.law, PitchRecordSpec):
+            arcs = self.law.index(gear.teeth, self.sides, files).values()
+            names = tooth_names(gear.teeth, self.sides)
+            return GivenDraw(names, tuple(chain.from_iterable(arcs)), f"measured in {self.law.file}")
         limits = PitchLimitsSpec.of(self._limits, gear)
         return PitchDraw(gear.teeth, self.sides, self.law.pattern, limits, self.law.fill)
+
+    def file_names(self) -> Iterator[tuple[KeyPath, str]]:
+        """Those that its law reads."""
+        return self.law.file_names() if isinstance(self.law, PitchRecordSpec) else iter(())
 
     @property
     def _limits(self) -> PitchLimitsSpec:
