@@ -5,8 +5,9 @@ see effects/flank_deviation.py. A gear that no deviation of single flanks acts o
 """
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any, Final
 
 import numpy as np
@@ -106,10 +107,20 @@ class FlankPlaces:
         """The offsets of builds with these deviations (trials, components); None where no gear has any."""
         if not self.count:
             return None
-        values = np.zeros((self.count, len(deviations)))
-        for component, slot, factor in zip(self.components, self.slots, self.factors, strict=True):
-            values[slot] += factor * deviations[:, component]
-        return FlankDeviations(np.ascontiguousarray(values.T), np.arange(len(deviations)))
+        values = np.zeros((len(deviations), self.count))
+        for terms in self._one_a_slot:
+            values[:, self.slots[terms]] += self.factors[terms] * deviations[:, self.components[terms]]
+        return FlankDeviations(values, np.arange(len(deviations)))
+
+    @cached_property
+    def _one_a_slot(self) -> Sequence[Integers]:
+        """All terms in parts, in none of which two add to one slot; each slot has them in their order."""
+        before = np.zeros(self.count, dtype=np.int64)
+        part = np.empty(len(self.slots), dtype=np.int64)
+        for term, slot in enumerate(self.slots):
+            part[term] = before[slot]
+            before[slot] += 1
+        return [np.flatnonzero(part == own) for own in range(before.max(initial=0))]
 
     def rates(self, model: Model, seat: int, flank: Flank, teeth: Integers, place: tuple[Array, Array]) -> Array:
         """By how much points of flanks move out along the normal per component, (rows, components).

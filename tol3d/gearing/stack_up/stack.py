@@ -15,7 +15,7 @@ from tol3d.gearing.stack_up.neglect import Neglect
 from tol3d.gearing.stack_up.nominal_mesh import NominalMesh, Pair
 from tol3d.gearing.stack_up.term import Role
 from tol3d.gearing.stack_up.terms import contribution
-from tol3d.gearing.stack_up.tooth_pairs import ToothPairs, tooth_pairs
+from tol3d.gearing.stack_up.tooth_pairs import ToothPairs, distinct, tooth_pairs
 
 Array = NDArray[np.float64]
 
@@ -87,16 +87,30 @@ class Stack(NominalMesh[Pair]):
         self, teeth: ToothPairs, deviations: Array, driver_angle: Array, whole: Array, turns: Role | None
     ) -> Array:
         """What single flanks and tilts together take from a normal backlash `whole` [mm], (rows,)."""
-        leans, work = self._leans(deviations), self.mesh.resting_flank(self.reading.flank)
-        working = teeth.taken(work, deviations, driver_angle, leans[work])
+        builds, trial = distinct(deviations)
+        leans, built = self._leans(builds), teeth.built(builds, trial)
+        work = self.mesh.resting_flank(self.reading.flank)
+        working = teeth.taken(work, built, driver_angle, leans[work])
         apart = np.maximum(whole - working, 0.0)
-        return working + teeth.taken(-work, deviations, driver_angle, leans[-work], turns, apart)
+        return working + teeth.taken(-work, built, driver_angle, leans[-work], turns, apart)
 
     def turned_by_teeth(self, side: int, deviations: Array, driver_angle: Array) -> Array:
-        """Turn of the driven gear about its z [mm at its arm], (rows,), by single flanks where a side touches."""
+        """Turn of the driven gear about its z [mm at its arm] by single flanks where a side touches.
+
+        Args:
+            side: 1 where the driver's right flanks touch, -1 where its left ones do.
+            deviations: (trials, components).
+            driver_angle: (positions,) [rad].
+
+        Returns:
+            (trials, positions).
+        """
+        count, positions = len(deviations), len(driver_angle)
         if self.teeth is None:
-            return np.zeros(len(driver_angle))
-        return side * self.teeth.taken(side, deviations, driver_angle, self._leans(deviations)[side])
+            return np.zeros((count, positions))
+        built = self.teeth.built(deviations, np.repeat(np.arange(count), positions))
+        taken = self.teeth.taken(side, built, np.tile(driver_angle, count), self._leans(deviations)[side])
+        return side * taken.reshape(count, positions)
 
     def _leans(self, deviations: Array) -> Mapping[int, Array]:
         """What tilts take at the upper end of the face where the driver's right and left flanks touch [mm], (rows,)."""
@@ -115,8 +129,9 @@ class Stack(NominalMesh[Pair]):
         angles = (driver_angle, self.pair.driven_angle(driver_angle))
         in_plane, across = self._lost_by_tilts(deviations)
         if self.teeth:
-            leans = self._leans(deviations)
-            right, left = (self.teeth.taken(side, deviations, driver_angle, leans[side]) for side in (1, -1))
+            builds, trial = distinct(deviations)
+            leans, built = self._leans(builds), self.teeth.built(builds, trial)
+            right, left = (self.teeth.taken(side, built, driver_angle, leans[side]) for side in (1, -1))
             total = (right - left) / 2
         elif self.both_sides_alike:
             total = (np.abs(in_plane + across) - np.abs(in_plane - across)) / 4

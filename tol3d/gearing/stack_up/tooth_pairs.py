@@ -9,18 +9,21 @@ more than the edge has left the mate's flank.
 Neglected: what goes with the curvature of a deviation, and that deviations move the path of contact.
 """
 
+import importlib
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.gearing.effects import FORM, HELIX, SHAPES, SLOPE, UNIFORM, FlankDeviation
+from tol3d.gearing.effects import FORM, SHAPES, FlankDeviation
 from tol3d.gearing.model import Contributor, Mesh, Model, Reading
 from tol3d.gearing.stack_up.term import Role
 from tol3d.gears import SpurGear, SpurPair
+from tol3d.gears.flank import RIGHT
 
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
@@ -31,11 +34,11 @@ BEYOND: Final = 0.5
 NUMBERS_AT_ONCE: Final = 4_000_000
 """Deviations of rows that are held at once: 32 MB."""
 
-FAR: Final = 0.1
-"""mm; a pair that takes so much less than the first one does not come before it by another look."""
+KERNELS: Final = "tol3d.gearing.stack_up.tooth_kernels"
+"""Imported where it is used: it loads the compiler of kernels, which stack-ups of other gears do without."""
 
-LOOKS: Final = 3
-"""At pairs; a look moves what an edge takes by a twentieth of what the look before did."""
+WHO_TURNS: Final[Mapping[Role | None, int]] = {None: 0, "driven": 1, "driver": 2}
+"""In the words of tooth_kernels."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,37 +56,51 @@ class ToothFlanks:
     acting: Sequence[tuple[slice, FlankDeviation]]
 
     def numbers(self, deviations: Array) -> Array:
-        """Of trials (trials, components): (trials, teeth, 2, SHAPES) [mm], right flanks first."""
-        found = np.zeros((self.gear.teeth, 2, SHAPES, len(deviations)))
+        """Of trials (trials, components): (trials, teeth x 2 x SHAPES) [mm], of each tooth right flanks first.
+
+        No columns where no flank deviates.
+        """
+        found = np.zeros((len(deviations), 2 * SHAPES * self.gear.teeth if self.acting else 0))
+        for columns, slots, factors in self._sums:
+            found[:, slots] += factors * deviations[:, columns]
+        return found
+
+    @cached_property
+    def _sums(self) -> Sequence[tuple[Integers, Integers, Array]]:
+        """Columns of the deviations, each times a factor a summand of a slot of its own."""
+        found = []
         for columns, effect in self.acting:
-            own = deviations[:, columns]
-            for component, places in enumerate(effect.places):
+            summands: dict[int, list[tuple[int, int, float]]] = {}
+            before: dict[int, int] = {}
+            for component, places in enumerate(effect.places, columns.start):
                 for place in places:
-                    side = 0 if place.flank == 1 else 1
-                    found[place.tooth, side, effect.shape] += place.factor * own[:, component]
-        return np.moveaxis(found, -1, 0)
+                    slot = SHAPES * (2 * place.tooth + (place.flank != RIGHT)) + effect.shape
+                    before[slot] = before.get(slot, -1) + 1
+                    summands.setdefault(before[slot], []).append((component, slot, place.factor))
+            for own in summands.values():
+                each = np.array(own)
+                found.append((each[:, 0].astype(np.int64), each[:, 1].astype(np.int64), each[:, 2]))
+        return found
 
-    def waves(self) -> float:
-        """Of the form of its flanks."""
-        return next((effect.waves for _, effect in self.acting if effect.shape == FORM), 0.0)
+    @property
+    def measures(self) -> tuple[float, ...]:
+        """As tooth_kernels.GearTeeth has them."""
+        waves = next((effect.waves for _, effect in self.acting if effect.shape == FORM), 0.0)
+        return self.gear.base_radius, self.gear.form_roll, self.gear.tip_roll, self.gear.face_width, waves
 
-    def along(self, numbers: Array, roll: Array) -> tuple[Array, Array]:
-        """What flanks stand out by in the middle of the face, and more at its upper end [mm], at rolls [rad]."""
-        t_form, t_tip = self.gear.form_roll, self.gear.tip_roll
-        u = (np.clip(roll, t_form, t_tip) - (t_form + t_tip) / 2) / (t_tip - t_form)
-        waves = self.waves()
-        out = numbers[..., UNIFORM] + numbers[..., SLOPE] * u
-        if numbers[..., FORM].any():
-            out += numbers[..., FORM] * (1 / 3 - 4 * u**2 if waves == 0 else np.cos(2 * math.pi * waves * u) / 2)
-        return out, numbers[..., HELIX] / self.gear.face_width
 
-    def slope(self, numbers: Array, roll: Array) -> Array:
-        """Change of what flanks stand out by per roll [mm/rad], at rolls [rad]."""
-        length = self.gear.tip_roll - self.gear.form_roll
-        u = (np.clip(roll, self.gear.form_roll, self.gear.tip_roll) - self.gear.form_roll) / length - 0.5
-        waves = 2 * math.pi * self.waves()
-        shape = -8 * u if waves == 0 else -waves * np.sin(waves * u) / 2
-        return np.asarray((numbers[..., SLOPE] + numbers[..., FORM] * shape) / length)
+@dataclass(frozen=True, eq=False)
+class BuiltTeeth:
+    """Flanks of a mesh in some trials.
+
+    Args:
+        driver, driven: as ToothFlanks.numbers has them.
+        trial: that of each row, (rows,).
+    """
+
+    driver: Array
+    driven: Array
+    trial: Integers
 
 
 @dataclass(frozen=True, eq=False)
@@ -96,10 +113,14 @@ class ToothPairs:
     driver: ToothFlanks
     driven: ToothFlanks
 
+    def built(self, deviations: Array, trial: Integers) -> BuiltTeeth:
+        """The flanks of trials (trials, components), and which of them each row (rows,) is."""
+        return BuiltTeeth(self.driver.numbers(deviations), self.driven.numbers(deviations), trial)
+
     def taken(
         self,
         side: int,
-        deviations: Array,
+        built: BuiltTeeth,
         driver_angle: Array,
         lean: Array,
         turns: Role | None = "driven",
@@ -109,92 +130,24 @@ class ToothPairs:
 
         Args:
             side: 1 where the driver's right flanks touch, -1 where its left ones do.
-            deviations: (rows, components); rows of one trial lie together.
+            built: their trials.
             driver_angle: (rows,) [rad].
-            lean: (rows,), what leaning axes take at the upper end of the common face, signed [mm].
+            lean: (trials,), what leaning axes take at the upper end of the common face, signed [mm].
             turns: the gear that turns until the side touches; None reads its gap as the gears stand.
             apart: by which the side stands open before [mm], (rows,), where anything but the driven gear turns.
         """
-        rows, trial = _trials(deviations)
-        teeth = self._teeth(side, driver_angle)
-        mating = -teeth - (0 if side == 1 else 1)
         first, second = self.driver.gear, self.driven.gear
-        numbers = [
-            flanks.numbers(rows)[trial[:, None], (own - flanks.ahead) % flanks.gear.teeth, 0 if side == 1 else 1]
-            for flanks, own in ((self.driver, teeth), (self.driven, mating))
-        ]
-        psi = side * (driver_angle[:, None] + teeth * first.angular_pitch)
-        roll = self.pair.working_pressure_angle + first.base_half_angle - psi
-        mate_roll = (self._tangent - first.base_radius * roll) / second.base_radius
         half = min(first.face_width, second.face_width) / 2 if self._reads_face(side) else 0.0
-        open_by = np.zeros((len(teeth), 1)) if apart is None else apart[:, None]
-        leans, stands = np.broadcast_to(lean[:, None], teeth.shape), np.broadcast_to(open_by, teeth.shape)
-        found, pairs = np.zeros(teeth.shape), np.ones(teeth.shape, dtype=bool)
-        for _ in range(LOOKS):  # a gear that has turned by what its pair takes stands at another roll
-            rolls = [roll[pairs], mate_roll[pairs]]
-            rolls[1] = rolls[1] - (found[pairs] if turns == "driven" else stands[pairs]) / second.base_radius
-            if turns == "driver":
-                rolls[0] = rolls[0] + (stands[pairs] - found[pairs]) / first.base_radius
-            own = [each[pairs] for each in numbers]
-            found[pairs] = self._out(own, (rolls[0], rolls[1]), half, leans[pairs])
-            pairs[pairs] = self._changes(own, rolls[0], rolls[1])
-            pairs &= found > found.max(axis=1, keepdims=True) - FAR
-            if not pairs.any():
-                break
-        return np.asarray(found.max(axis=1))
-
-    def _changes(self, numbers: Sequence[Array], roll: Array, mate_roll: Array) -> NDArray[np.bool_]:
-        """Which pairs take another length at another roll: they slope, or touch at an edge."""
-        edges = (roll > self.driver.gear.tip_roll) | (mate_roll > self.driven.gear.tip_roll)
-        sloped = [(own[..., SLOPE] != 0.0) | (own[..., FORM] != 0.0) for own in numbers]
-        return np.asarray(edges | sloped[0] | sloped[1])
-
-    def _out(self, numbers: Sequence[Array], rolls: tuple[Array, Array], half: float, lean: Array) -> Array:
-        """What each pair takes [mm] that touches at some rolls [rad], less what its edges have left their mates."""
-        first, second = self.driver.gear, self.driven.gear
-        (out, rising), (mate_out, mate_rising) = (
-            flanks.along(own, at)
-            for flanks, own, at in zip((self.driver, self.driven), numbers, self._touched(rolls), strict=True)
+        start = self.pair.working_pressure_angle + first.base_half_angle
+        teeth, count = self._teeth(side, driver_angle)
+        places = (self.driver.ahead, self.driven.ahead, first.teeth, second.teeth)
+        found: Array = importlib.import_module(KERNELS).taken(
+            (self.driver.measures, self.driven.measures, (self._tangent, start, first.angular_pitch, half)),
+            (side, WHO_TURNS[turns], count, *places),
+            (built.driver, built.driven, built.trial),
+            (teeth, driver_angle, lean, np.zeros(0) if apart is None else apart),
         )
-        gone = _gone(first, second, rolls[0], self._tangent) + _gone(second, first, rolls[1], self._tangent)
-        at_end = np.abs((rising + mate_rising) * half + lean) if half else 0.0
-        return np.asarray(out + mate_out + at_end + self._aside(numbers, rolls) - gone)
-
-    def _touched(self, rolls: tuple[Array, Array]) -> tuple[Array, Array]:
-        """Rolls at which flanks touch [rad]: a tip edge that has passed its end by d meets its mate rho d further on.
-
-        From roll t on an arc v of an involute ends at the roll sqrt(t^2 + 2 v/r_b).
-        """
-        gears = (self.driver.gear, self.driven.gear)
-        passed = [np.maximum(at - gear.tip_roll, 0.0) for gear, at in zip(gears, rolls, strict=True)]
-        arcs = [gear.base_radius * gear.tip_roll * own for gear, own in zip(gears, passed, strict=True)]
-        on = [
-            np.sqrt(np.maximum(at, 0.0) ** 2 + 2 * arc / gear.base_radius)
-            for gear, at, arc in zip(gears, rolls, reversed(arcs), strict=True)
-        ]
-        return on[0], on[1]
-
-    def _aside(self, numbers: Sequence[Array], rolls: tuple[Array, Array]) -> Array:
-        """What pairs take more where they touch beside the line of action, for flanks that slope there [mm].
-
-        As the driver's point rolls on by dt, the foot on the mate rolls back by rho_1/rho_2 dt, and both flanks curve
-        away by b dt^2/2, b = rho_1^2 (1/rho_1 + 1/rho_2): of a slope g they touch g/b on and take g^2/(2 b) more, or
-        less where a flank ends before.
-        """
-        if not any(own[..., [SLOPE, FORM]].any() for own in numbers):
-            return np.zeros(rolls[0].shape)
-        first, second = self.driver.gear, self.driven.gear
-        inside = [np.clip(at, max(f.form_roll, 1e-3), f.tip_roll) for f, at in zip((first, second), rolls, strict=True)]
-        rho, mate_rho = first.base_radius * inside[0], second.base_radius * inside[1]
-        back, bend = rho / mate_rho, rho * (rho + mate_rho) / mate_rho
-        steep = self.driver.slope(numbers[0], rolls[0]) - self.driven.slope(numbers[1], rolls[1]) * back
-        # beyond the path of contact both edges have come from where they would have touched
-        beyond = np.maximum(rolls[0] - first.tip_roll, 0.0) - np.maximum(rolls[1] - second.tip_roll, 0.0) / back
-        steep = np.where(steep == 0.0, 0.0, steep + bend * beyond)
-        low = np.maximum(first.form_roll - inside[0], (inside[1] - second.tip_roll) / back)
-        high = np.minimum(first.tip_roll - inside[0], (inside[1] - second.form_roll) / back)
-        on = np.clip(steep / bend, low, high)
-        return np.asarray(steep * on - bend * on * on / 2)
+        return found
 
     @property
     def _tangent(self) -> float:
@@ -205,43 +158,27 @@ class ToothPairs:
     def _reads_face(self, side: int) -> bool:
         return (self.reading.contact if side == self.working_flank else self.reading.gap) == "face"
 
-    def _teeth(self, side: int, driver_angle: Array) -> Integers:
-        """Teeth of the driver (rows, teeth) that may touch, as the mesh counts."""
+    def _teeth(self, side: int, driver_angle: Array) -> tuple[Integers, int]:
+        """The first of the driver's teeth (rows,) that may touch, as the mesh counts, and how many follow it.
+
+        Each next one stands a tooth further back on the driver's right flanks, and further on on its left ones.
+        """
         gear, place = self.driver.gear, driver_angle / self.driver.gear.angular_pitch
         if self.reading.teeth == "driver":
-            return -np.rint(place).astype(np.int64)[:, None]
+            return -np.rint(place).astype(np.int64), 1
         if self.reading.teeth == "driven":
-            return (side == 1) - np.rint(place + 0.5).astype(np.int64)[:, None]
+            return (side == 1) - np.rint(place + 0.5).astype(np.int64), 1
         working = self.pair.working_pressure_angle
         last_psi = working + gear.base_half_angle - self._start_roll + BEYOND * gear.angular_pitch
         length = gear.tip_roll - self._start_roll
         count = math.floor(length / gear.angular_pitch + 2 * BEYOND) + 1
-        last = np.floor(last_psi / gear.angular_pitch - side * place).astype(np.int64)
-        return side * (last[:, None] - np.arange(count))
+        return side * np.floor(last_psi / gear.angular_pitch - side * place).astype(np.int64), count
 
     @property
     def _start_roll(self) -> float:
         """Roll of the driver where the driven gear's tip touches."""
         second = self.driven.gear
         return (self._tangent - second.base_radius * second.tip_roll) / self.driver.gear.base_radius
-
-
-def _gone(gear: SpurGear, mate: SpurGear, roll: Array, tangent: float) -> Array:
-    """By how much the tip edge of a gear has left its mate [mm] where its pair lies beyond the path of contact.
-
-    The edge lies r_b (e(d) + t_tip n(d)) off its gear's axis, e the direction to where the tangent of both base circles
-    touches the own one, n along that tangent, turned by d = t - t_tip. Its own tangent to the mate's base circle is L
-    long and touches that th further on, so that the mate's flank is L - r_bm (t_m - th) away.
-    """
-    found, passed = np.zeros(roll.shape), roll > gear.tip_roll
-    beyond = roll[passed] - gear.tip_roll
-    own, other = gear.base_radius, mate.base_radius
-    x = own + other - own * (np.cos(beyond) - gear.tip_roll * np.sin(beyond))
-    y = tangent - own * (np.sin(beyond) + gear.tip_roll * np.cos(beyond))
-    length = np.sqrt(np.maximum(x * x + y * y - other * other, 0.0))
-    further = np.arctan2(y, x) - np.arctan2(length, other)
-    found[passed] = length - (tangent - own * (gear.tip_roll + beyond)) + other * further
-    return found
 
 
 def tooth_pairs(model: Model, mesh: Mesh, reading: Reading) -> ToothPairs | None:
@@ -279,7 +216,7 @@ def _flanks(model: Model, mesh: Mesh, name: str, acting: Sequence[tuple[Contribu
     return ToothFlanks(gear, round(seat.ahead / gear.angular_pitch), own)
 
 
-def _trials(deviations: Array) -> tuple[Array, Integers]:
+def distinct(deviations: Array) -> tuple[Array, Integers]:
     """Rows of deviations without those that repeat the row before, and which of them each row is."""
     new = np.ones(len(deviations), dtype=bool)
     new[1:] = (deviations[1:] != deviations[:-1]).any(axis=1)

@@ -25,7 +25,7 @@ from tol3d.gearing.model import Backlash, Model, TransmissionError
 from tol3d.gearing.stack_up.backlash import per_normal_backlash, stack_of
 from tol3d.gearing.stack_up.stack import Stack
 from tol3d.gearing.stack_up.term import Term
-from tol3d.gearing.stack_up.tooth_pairs import pieces, teeth_deviate
+from tol3d.gearing.stack_up.tooth_pairs import teeth_deviate
 from tol3d.gears import GearPair
 
 Array = NDArray[np.float64]
@@ -56,12 +56,7 @@ def _turned_by_teeth(model: Model, backlash: Backlash, deviations: Array, driver
     """Turn of the driven gear about its z [rad], (trials, positions), by single flanks that deviate."""
     mesh = model.mesh(backlash.mesh)
     stack, side = stack_of(model, mesh, backlash.reading), mesh.resting_flank(backlash.reading.flank)
-    found = np.empty((len(deviations), len(driver)))
-    for trials in pieces(len(deviations), len(driver), deviations.shape[1]):
-        rows = np.repeat(deviations[trials], len(driver), axis=0)
-        angles = np.tile(driver, trials.stop - trials.start)
-        found[trials] = stack.turned_by_teeth(side, rows, angles).reshape(-1, len(driver))
-    return found * per_normal_backlash(model, backlash)
+    return stack.turned_by_teeth(side, deviations, driver) * per_normal_backlash(model, backlash)
 
 
 def _waves(model: Model, backlash: Backlash, driver: Array) -> Iterator[tuple[range, Array]]:

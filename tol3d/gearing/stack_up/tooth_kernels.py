@@ -1,0 +1,296 @@
+"""The compiled half of tooth_pairs.py: what the pairs of flanks of a mesh take, row by row.
+
+Formulas are those of the stack-up; nothing here sees a pose or a kernel of the exact engine.
+"""
+
+import math
+from collections.abc import Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tol3d.gearing.effects import FORM, HELIX, SHAPES, SLOPE, UNIFORM
+from tol3d.numerics.compiled import QUICK, kernel, part
+
+Array = NDArray[np.float64]
+Integers = NDArray[np.int64]
+
+FAR = 0.1  # mm; a pair that takes so much less than the first one does not come before it by another look
+AGAIN = 2.0  # times what a look moved a pair by: all other looks together move it by less
+LOOKS = 3  # at pairs; a look moves what an edge takes by a twentieth of what the look before did
+LEAST_ROLL = 1e-3  # rad; nearer to its base circle an involute is too sharp for a radius of curvature
+BY_NONE, BY_DRIVEN, BY_DRIVER = 0, 1, 2  # which gear turns until a side touches: none, its gap is read
+
+
+class GearTeeth(NamedTuple):
+    """Flanks of a gear.
+
+    Args:
+        base: base radius [mm].
+        form, tip: rolls at which they begin and end [rad].
+        face: width of the face [mm].
+        waves: of their form, see effects/flank_deviation.py.
+    """
+
+    base: float
+    form: float
+    tip: float
+    face: float
+    waves: float
+
+
+class LineOfContact(NamedTuple):
+    """Where the pairs of a mesh touch.
+
+    Args:
+        tangent: length of the tangent of both base circles [mm].
+        start: roll of a tooth of the driver that stands on the line of centres [rad].
+        pitch: angle from tooth to tooth of the driver [rad].
+        half: half of the face that is read [mm]; 0 where a section is.
+    """
+
+    tangent: float
+    start: float
+    pitch: float
+    half: float
+
+
+class Flank(NamedTuple):
+    """Deviations of a flank [mm]: alike everywhere, along the profile, in its form, along the face."""
+
+    uniform: float
+    slope: float
+    form: float
+    helix: float
+
+
+def taken(
+    mesh: tuple[Sequence[float], Sequence[float], Sequence[float]],
+    how: Sequence[int],
+    built: tuple[Array, Array, Integers],
+    rows: tuple[Integers, Array, Array, Array],
+) -> Array:
+    """What flanks take from a flank side [mm], (rows,); see `take` for driver, driven and line, and for all others."""
+    first, angles, lean, apart = (np.require(each, requirements=["C", "W"]) for each in rows)
+    found = np.empty(len(angles))
+    driver, driven, line = GearTeeth(*mesh[0]), GearTeeth(*mesh[1]), LineOfContact(*mesh[2])
+    take(driver, driven, line, np.array(how), *built, first, angles, lean, apart, found)
+    return found
+
+
+@part
+def flank_in(numbers: Array, trial: int, tooth: int, teeth: int, side: int) -> Flank:
+    """A flank of a gear in a trial, of its deviations (trials, coefficients); a gear without any has no columns.
+
+    The tooth lies less than a turn off those from 0 to `teeth`.
+    """
+    if numbers.shape[1] == 0:
+        return Flank(0.0, 0.0, 0.0, 0.0)
+    place = tooth + teeth if tooth < 0 else (tooth - teeth if tooth >= teeth else tooth)
+    slot = SHAPES * (2 * place + side)
+    own = numbers[trial]
+    return Flank(own[slot + UNIFORM], own[slot + SLOPE], own[slot + FORM], own[slot + HELIX])
+
+
+@part
+def profile_at(gear: GearTeeth, flank: Flank, roll: float) -> tuple[float, float]:
+    """What a flank stands out by in the middle of the face [mm] at a roll [rad], and its change per roll [mm/rad]."""
+    if flank.slope == 0.0 and flank.form == 0.0:
+        return flank.uniform, 0.0
+    length = gear.tip - gear.form
+    u = (min(max(roll, gear.form), gear.tip) - 0.5 * (gear.form + gear.tip)) / length
+    out, by_place = flank.uniform + flank.slope * u, flank.slope
+    if flank.form != 0.0:
+        if gear.waves == 0.0:
+            out += flank.form * (1.0 / 3.0 - 4.0 * u * u)
+            by_place -= 8.0 * flank.form * u
+        else:
+            rate = 2.0 * math.pi * gear.waves
+            out += 0.5 * flank.form * math.cos(rate * u)
+            by_place -= 0.5 * flank.form * rate * math.sin(rate * u)
+    return out, by_place / length
+
+
+@part
+def met(gear: GearTeeth, mate: GearTeeth, roll: float, mate_roll: float) -> float:
+    """Roll at which a flank meets a tip edge that has passed its end by d [rad]: rho d further on.
+
+    From roll t on an arc v of an involute ends at the roll sqrt(t^2 + 2 v/r_b).
+    """
+    arc, begin = mate.base * mate.tip * (mate_roll - mate.tip), max(roll, 0.0)
+    return math.sqrt(begin * begin + 2.0 * arc / gear.base)
+
+
+@part
+def gone(gear: GearTeeth, mate: GearTeeth, roll: float, tangent: float) -> float:
+    """By how much the tip edge of a gear has left its mate [mm] where its pair lies beyond the path of contact.
+
+    The edge lies r_b (e(d) + t_tip n(d)) off its gear's axis, e the direction to where the tangent of both base circles
+    touches the own one, n along that tangent, turned by d = t - t_tip. Its own tangent to the mate's base circle is L
+    long and touches that th further on, so that the mate's flank is L - r_bm (t_m - th) away.
+    """
+    beyond, own, other = roll - gear.tip, gear.base, mate.base
+    cos, sin = math.cos(beyond), math.sin(beyond)
+    x = own + other - own * (cos - gear.tip * sin)
+    y = tangent - own * (sin + gear.tip * cos)
+    length = math.sqrt(max(x * x + y * y - other * other, 0.0))
+    further = math.atan2(y * other - x * length, x * other + y * length)
+    return length - (tangent - own * (gear.tip + beyond)) + other * further
+
+
+@part
+def aside(
+    driver: GearTeeth, driven: GearTeeth, slope: float, mate_slope: float, roll: float, mate_roll: float
+) -> float:
+    """What a pair takes more where it touches beside the line of action, of flanks that slope there [mm; mm/rad].
+
+    As the driver's point rolls on by dt, the foot on the mate rolls back by rho_1/rho_2 dt, and both flanks curve away
+    by b dt^2/2, b = rho_1^2 (1/rho_1 + 1/rho_2): of a slope g they touch g/b on and take g^2/(2 b) more, or less where
+    a flank ends before. Beyond the path of contact both edges have come from where they would have touched.
+    """
+    if slope == 0.0 and mate_slope == 0.0:
+        return 0.0
+    inside = min(max(roll, driver.form, LEAST_ROLL), driver.tip)
+    mate_inside = min(max(mate_roll, driven.form, LEAST_ROLL), driven.tip)
+    rho, mate_rho = driver.base * inside, driven.base * mate_inside
+    back, bend = rho / mate_rho, rho * (rho + mate_rho) / mate_rho
+    steep = slope - mate_slope * back
+    if steep == 0.0:
+        return 0.0
+    steep += bend * (max(roll - driver.tip, 0.0) - max(mate_roll - driven.tip, 0.0) / back)
+    low = max(driver.form - inside, (mate_inside - driven.tip) / back)
+    high = min(driver.tip - inside, (mate_inside - driven.form) / back)
+    on = min(max(steep / bend, low), high)
+    return steep * on - 0.5 * bend * on * on
+
+
+@part
+def taken_by(
+    driver: GearTeeth,
+    driven: GearTeeth,
+    line: LineOfContact,
+    flank: Flank,
+    mating: Flank,
+    rolls: tuple[float, float],
+    lean: float,
+) -> float:
+    """What a pair takes [mm] that touches at some rolls [rad], less what its edges have left their mates."""
+    roll, mate_roll = rolls
+    out, slope = profile_at(driver, flank, roll)
+    mate_out, mate_slope = profile_at(driven, mating, mate_roll)
+    more = aside(driver, driven, slope, mate_slope, roll, mate_roll)
+    if line.half > 0.0:
+        more += abs((flank.helix / driver.face + mating.helix / driven.face) * line.half + lean)
+    if mate_roll > driven.tip:
+        out, _ = profile_at(driver, flank, met(driver, driven, roll, mate_roll))
+        more -= gone(driven, driver, mate_roll, line.tangent)
+    if roll > driver.tip:
+        mate_out, _ = profile_at(driven, mating, met(driven, driver, mate_roll, roll))
+        more -= gone(driver, driven, roll, line.tangent)
+    return out + mate_out + more
+
+
+@part
+def changes(driver: GearTeeth, driven: GearTeeth, flank: Flank, mating: Flank, rolls: tuple[float, float]) -> bool:
+    """Whether a pair takes another length at another roll: it slopes, or touches at an edge."""
+    if flank.slope != 0.0 or flank.form != 0.0 or mating.slope != 0.0 or mating.form != 0.0:
+        return True
+    return rolls[0] > driver.tip or rolls[1] > driven.tip
+
+
+@part
+def look_at(
+    driver: GearTeeth,
+    driven: GearTeeth,
+    line: LineOfContact,
+    which: Integers,
+    pair: tuple[Flank, Flank],
+    azimuth: float,
+    apart: float,
+    lean: float,
+    took: float,
+) -> tuple[float, bool]:
+    """What a pair takes [mm] once the gear that turns has turned by what it `took`, and whether another look helps.
+
+    Args:
+        driver, driven, line, which: as in `take`.
+        pair: flanks of driver and driven.
+        azimuth: of the driver's tooth [rad].
+        apart, lean: as in `take`, of the row.
+        took: what it took by the look before [mm]; 0 before the first.
+    """
+    roll = line.start - which[0] * azimuth
+    mate_roll = (line.tangent - driver.base * roll) / driven.base
+    if which[1] == BY_DRIVEN:
+        mate_roll -= took / driven.base
+    else:
+        mate_roll -= apart / driven.base
+        if which[1] == BY_DRIVER:
+            roll += (apart - took) / driver.base
+    rolls = (roll, mate_roll)
+    now = taken_by(driver, driven, line, pair[0], pair[1], rolls, lean)
+    return now, changes(driver, driven, pair[0], pair[1], rolls)
+
+
+@kernel(
+    GearTeeth,
+    GearTeeth,
+    LineOfContact,
+    arrays="int64[::1], float64[:, ::1], float64[:, ::1], int64[::1], int64[::1], float64[::1], float64[::1], "
+    "float64[::1], float64[::1]",
+    level=QUICK,
+)
+def take(
+    driver: Any,
+    driven: Any,
+    line: Any,
+    which: Integers,
+    numbers: Array,
+    mating_numbers: Array,
+    trial: Integers,
+    first: Integers,
+    angles: Array,
+    lean: Array,
+    apart: Array,
+    found: Array,
+) -> None:
+    """What flanks take from a flank side.
+
+    Args:
+        driver, driven, line: the mesh.
+        which: side, 1 where the driver's right flanks touch, -1 where its left ones do; which gear turns, see BY_NONE;
+            how many pairs may touch; by how many teeth tooth 0 of driver and driven stands ahead of the one that the
+            mesh counts as such; how many teeth they have.
+        numbers, mating_numbers: deviations of the flanks of driver and driven, (trials, teeth x 2 x SHAPES) [mm], of
+            each tooth right flanks first; no columns where none deviates.
+        trial: (rows,), that of each row.
+        first: (rows,), the driver's first tooth that may touch, as the mesh counts; the others follow against `side`.
+        angles: (rows,), of the driver [rad].
+        lean: (trials,), what leaning axes take at the upper end of the common face, signed [mm].
+        apart: (rows,), by which the side stands open before [mm]; no rows where it touches already.
+        found: (rows,) [mm], written; positive where the side touches earlier.
+    """
+    side, count, right = which[0], which[2], 0 if which[0] == 1 else 1
+    took, moved, again = np.empty(count), np.empty(count), np.empty(count, dtype=np.bool_)
+    for row in range(len(found)):
+        own, open_by, most = trial[row], apart[row] if len(apart) else 0.0, 0.0
+        place, mate_place = (first[row] - which[3]) % which[5], (-first[row] - right - which[4]) % which[6]
+        again[:] = True
+        took[:] = 0.0
+        for _ in range(LOOKS):  # a gear that has turned by what its pair takes stands at another roll
+            for k in range(count):
+                if again[k]:
+                    flank = flank_in(numbers, own, place - side * k, which[5], right)
+                    mating = flank_in(mating_numbers, own, mate_place + side * k, which[6], right)
+                    azimuth = angles[row] + (first[row] - side * k) * line.pitch
+                    pair, before = (flank, mating), took[k]
+                    took[k], again[k] = look_at(driver, driven, line, which, pair, azimuth, open_by, lean[own], before)
+                    moved[k] = min(AGAIN * abs(took[k] - before), FAR)
+            most, looks = took.max(), False
+            for k in range(count):
+                again[k] = again[k] and took[k] > most - moved[k]
+                looks = looks or again[k]
+            if not looks:
+                break
+        found[row] = most
