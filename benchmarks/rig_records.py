@@ -1,10 +1,11 @@
 """Identifying from large files: time, and peak memory, which must not grow with the rows.
 
-    python benchmarks/rig_records.py [--rows 1000000 10000000]
+    python benchmarks/rig_records.py [--rows 1000000 100000000] [--disk /data]
 
-Each size is a process of its own; its files are written before and not counted. Rows are of the reference pair of
-docs/records.md over its long period of 16 turns, so many on each side. The fit is timed by itself: what is left once
-rows are gathered by position.
+Each size is read by a process of its own, its files written by another one before and deleted after: 52 bytes a row of
+both sides, so 5.2 GB at 10^8 rows a side, the most that a file may have. Rows are of the reference pair of
+docs/records.md over its long period of 16 turns. The fit is timed by itself: what is left once rows are gathered by
+position.
 """
 
 import argparse
@@ -33,7 +34,7 @@ COS = math.cos(math.radians(20))
 PAIR = RigPair(27, 48, 27 * COS, 48 * COS, 75.0)
 SPECIMEN = Specimen(PAIR, 0.018, math.radians(40), 0.027, math.radians(-65), 0.060)
 TURNS = 16
-CHUNKS = 16  # a long file is made turn by turn
+MOST_AT_ONCE = 2**20  # rows; a long file is made piece by piece
 SIDES: tuple[Side, ...] = ("drive", "back")
 
 
@@ -58,12 +59,13 @@ class Timed:
 
 def write(folder: Path, rows: int) -> None:
     """Files of both sides."""
+    chunks = TURNS * 2 ** max(0, math.ceil(math.log2(rows / TURNS / MOST_AT_ONCE)))
     for side in SIDES:
         with (folder / f"{side}.csv").open("wb") as file:
             file.write(b"phi1 [deg],phi2 [deg]\n")
-            for chunk in range(CHUNKS):
-                start = 2 * math.pi * chunk * TURNS / CHUNKS
-                rig = Rig(turns=TURNS / CHUNKS, samples=rows // TURNS, noise=0.5 * ARCSEC, start=start, seed=chunk)
+            for chunk in range(chunks):
+                start = 2 * math.pi * chunk * TURNS / chunks
+                rig = Rig(turns=TURNS / chunks, samples=rows // TURNS, noise=0.5 * ARCSEC, start=start, seed=chunk)
                 made = measured(SPECIMEN, rig, side)
                 columns = [np.round(np.degrees(own), 8) for own in (made.phi1, made.phi2)]
                 table = pa.table(dict(zip("ab", map(pa.array, columns), strict=True)))
@@ -79,7 +81,7 @@ def timed(folder: Path) -> Timed:
     seconds, processor = time.perf_counter() - start, time.process_time() - busy
     senses = senses_of(drive[0], None)
     read = {
-        side: read_side(PAIR, own, None, senses, lambda rows: None)
+        side: tuple(read_side(PAIR, own, None, senses, lambda rows: None))
         for side, own in zip(SIDES, (drive, back), strict=True)
     }
     busy = time.process_time()
@@ -92,20 +94,32 @@ def main(arguments: Sequence[str] | None = None) -> None:
     """Measure and print."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--rows", type=int, nargs="+", default=[10**5, 10**6, 10**7])
-    parser.add_argument("--folder", type=Path, help=argparse.SUPPRESS)  # time the files there
+    parser.add_argument("--disk", type=Path, help="folder with room for the files; the system's temporary one")
+    parser.add_argument("--write", type=Path, help=argparse.SUPPRESS)  # files of the first size there
+    parser.add_argument("--time", type=Path, help=argparse.SUPPRESS)  # the files there
     given = parser.parse_args(arguments)
-    if given.folder:
-        print(json.dumps(asdict(timed(given.folder))))
-        return
-    for rows in given.rows:
-        with tempfile.TemporaryDirectory() as folder:
-            write(Path(folder), rows)
-            words = [sys.executable, str(Path(__file__).resolve()), "--folder", folder]
-            done = subprocess.run(words, stdout=subprocess.PIPE, text=True, check=True)
-            own = Timed(**json.loads(done.stdout))
-        time_words = f"{own.seconds:6.2f} s, {own.processor:6.2f} s of a processor, the fit {own.fit:5.2f} s of it"
-        found = f"{own.peak_mb:5.0f} MB at the peak; least backlash {own.least:.3f} arcsec"
-        print(f"{rows:>10} rows a side: {time_words}; {found}")
+    if given.write:
+        write(given.write, given.rows[0])
+    elif given.time:
+        print(json.dumps(asdict(timed(given.time))))
+    else:
+        for rows in given.rows:
+            with tempfile.TemporaryDirectory(dir=given.disk) as folder:
+                _by_another_process("--write", folder, "--rows", str(rows))
+                own = Timed(**json.loads(_by_another_process("--time", folder)))
+            _show(rows, own)
+
+
+def _by_another_process(*arguments: str) -> str:
+    """What it prints; a process begins with the peak memory of the one that starts it, so this one stays small."""
+    words = [sys.executable, str(Path(__file__).resolve()), *arguments]
+    return subprocess.run(words, stdout=subprocess.PIPE, text=True, check=True).stdout
+
+
+def _show(rows: int, own: Timed) -> None:
+    time_words = f"{own.seconds:6.2f} s, {own.processor:6.2f} s of a processor, the fit {own.fit:5.2f} s of it"
+    found = f"{own.peak_mb:5.0f} MB at the peak; least backlash {own.least:.3f} arcsec"
+    print(f"{rows:>10} rows a side: {time_words}; {found}")
 
 
 if __name__ == "__main__":

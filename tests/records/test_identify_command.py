@@ -54,6 +54,22 @@ def test_it_prints_the_figures_and_writes_the_folder(tol3d: Command, tmp_path: P
     assert min(float(row["predicted [arcsec]"]) for row in rows) == pytest.approx(LEAST, abs=0.3)
 
 
+def test_files_of_others_are_not_replaced(tol3d: Command, tmp_path: Path) -> None:
+    """Files of its names without findings of its own beside them are somebody's."""
+    arguments, out = written(tmp_path), tmp_path / "out"
+    out.mkdir()
+    (out / "backlash.csv").write_text("mine", encoding="utf-8")
+    code, said, err = tol3d(*arguments, "--out", str(out))
+    assert (code, said) == (2, "")
+    assert "out: holds backlash.csv, not written by `tol3d identify`" in err
+    assert [path.name for path in out.iterdir()] == ["backlash.csv"]
+    (out / "identified.json").write_text('{"format": "another"}', encoding="utf-8")
+    assert tol3d(*arguments, "--out", str(out))[0] == 2
+    (out / "identified.json").write_text('{\n  "format": "tol3d identified 1"\n}', encoding="utf-8")
+    assert tol3d(*arguments, "--out", str(out))[0] == 0
+    assert (out / "backlash.csv").read_text("utf-8").startswith("phi1 [deg]")
+
+
 @pytest.mark.parametrize("flank", ["left", "right"])
 def test_a_scene_of_constants_is_read_as_the_rig_counts_and_written_back(tmp_path: Path, flank: str) -> None:
     """theta1 = -sigma psi1, theta2 = sigma (psi2 + pi + pi/z2) - j_c/2: there and back again."""

@@ -115,11 +115,28 @@ def test_the_rig_s_files_are_identified(tol3d: Command, tmp_path: Path) -> None:
     assert (code, err) == (0, "")
     files = [tmp_path / "rig" / f"{side}.csv" for side in ("drive", "back")]
     assert out.split() == [str(path) for path in files]
-    assert files[0].read_text("utf-8").splitlines()[0] == "phi1 [deg],phi2 [deg],torque [N m],repeat"
+    first, header = files[0].read_text("utf-8").splitlines()[:2]
+    assert first == "# synthetic: written by tol3d rig, seed 1"
+    assert header == "phi1 [deg],phi2 [deg],torque [N m],repeat"
     code, out, _ = tol3d("identify", "--drive", str(files[0]), "--back", str(files[1]), "--scene", scene)
     assert code == 0
     assert "540 rows in 2 passes, 2.99 turns" in out
     assert "winding" in out
+
+
+@pytest.mark.parametrize("name", ["drive.csv", "back.csv"])
+def test_measured_files_are_not_replaced_by_synthetic_ones(tol3d: Command, tmp_path: Path, name: str) -> None:
+    scene, out = str(scene_in(tmp_path)), tmp_path / "rig"
+    arguments = ("rig", scene, "--turns", "1", "--samples", "20", "--backlash", "60 um", "--out", str(out))
+    assert [tol3d(*arguments)[0] for _ in range(2)] == [0, 0]  # its own are
+    other = "back.csv" if name == "drive.csv" else "drive.csv"
+    (out / name).write_text("phi1 [deg],phi2 [deg]\n0,0\n", encoding="utf-8")
+    before = (out / other).read_bytes()
+    code, said, err = tol3d(*arguments, "--seed", "2")
+    assert (code, said) == (2, "")
+    assert f"{name}: is there and not written by `tol3d rig`" in err
+    assert (out / name).read_text("utf-8") == "phi1 [deg],phi2 [deg]\n0,0\n"
+    assert (out / other).read_bytes() == before
 
 
 def test_the_plan_is_printed_and_written(tol3d: Command, tmp_path: Path) -> None:

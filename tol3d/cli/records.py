@@ -14,6 +14,7 @@ from tol3d.cli.rig_options import (
     Eccentricity2,
     Encoder1,
     Encoder2,
+    EngineOption,
     HiddenTurns,
     MeshOption,
     NoiseOption,
@@ -21,11 +22,13 @@ from tol3d.cli.rig_options import (
     Phase2,
     RepeatsOption,
     ResolutionOption,
+    RigEngine,
     RigSeed,
     SamplesOption,
     SceneOption,
     ToothMesh,
     TorqueOption,
+    TrialOption,
     TurnsOption,
     WindingOption,
     Wrapped,
@@ -33,9 +36,10 @@ from tol3d.cli.rig_options import (
 )
 
 if TYPE_CHECKING:
-    from tol3d.gearing.model import Model
+    from tol3d.records.exact_play import Unit
     from tol3d.records.pair import Specimen
     from tol3d.records.quantity import Kind
+    from tol3d.study.simulation import Simulation
 
 
 def identify(
@@ -60,12 +64,12 @@ def identify(
     run_builders: RunBuilders = False,
 ) -> None:
     """Identify eccentricities, play and the backlash of the whole long period from two-sided transmission error."""
-    from tol3d.records.from_scene import mesh_of, rig_of
     from tol3d.records.identified_table import identified_report
     from tol3d.records.identify import Settings
     from tol3d.records.identify import identify as identified
-    from tol3d.records.output import write_identified
+    from tol3d.records.output import refuse_others, write_identified
     from tol3d.records.quantity import stated
+    from tol3d.records.scene_mesh import SceneMesh
 
     settings = Settings(
         unit=unit,
@@ -74,13 +78,15 @@ def identify(
         encoder_error=stated("--encoder-error", encoder_error, "angle"),
         drift=drift,
     )
-    path = scene_path(scene)
-    model = _model(path, trust_parts=trust_parts, run_builders=run_builders)
-    own = mesh_of(model, mesh)
+    if out is not None:
+        refuse_others(out)
+    simulation = _simulation(scene_path(scene), trust_parts=trust_parts, run_builders=run_builders)
+    own = SceneMesh.of(simulation, mesh)
+    pair = own.specimen().pair
     with err_console.status("reading") as status:
-        found = identified(rig_of(model, own), drive, back, settings, tell=status.update)
-        report = identified_report(found, model.name, own.name)
-        written = write_identified(found, report, own, model.name, out) if out is not None else ()
+        found = identified(pair, drive, back, settings, tell=status.update)
+        report = identified_report(found, own)
+        written = write_identified(found, report, own, out) if out is not None else ()
     out_console.print(report)
     for file in written:
         tell(str(file))
@@ -104,6 +110,8 @@ def rig(
     zeroed: Zeroed = False,
     wrapped: Wrapped = False,
     seed: RigSeed = 1,
+    engine: EngineOption = RigEngine.CLOSED_FORM,
+    trial: TrialOption = None,
     e1: Eccentricity1 = None,
     theta1: Phase1 = None,
     e2: Eccentricity2 = None,
@@ -118,8 +126,7 @@ def rig(
     from tol3d.records.rig import Rig
     from tol3d.records.rig_files import write_both
 
-    path = scene_path(scene)
-    model = _model(path, trust_parts=trust_parts, run_builders=run_builders)
+    simulation = _simulation(scene_path(scene), trust_parts=trust_parts, run_builders=run_builders)
     own = Rig(
         turns=turns,
         samples=samples,
@@ -136,9 +143,10 @@ def rig(
         zeroed=zeroed,
         seed=seed,
     )
-    specimen = _specimen(model, mesh, _Stated(e1, theta1, e2, theta2, backlash))
+    stated_by_options = _Stated(e1, theta1, e2, theta2, backlash)
     with err_console.status("rig"):
-        written = write_both(specimen, own, out, wrapped=wrapped)
+        unit = _unit(simulation, mesh, trial, engine, stated_by_options)
+        written = write_both(unit, own, out, wrapped=wrapped)
     for file in written:
         tell(str(file))
 
@@ -174,11 +182,10 @@ def plan_rig(
         noise=stated("--noise", noise, "angle"),
         resolution=stated("--resolution", resolution, "angle"),
     )
-    path = scene_path(scene)
-    model = _model(path, trust_parts=trust_parts, run_builders=run_builders)
-    specimen = _specimen(model, mesh, _Stated(e1, theta1, e2, theta2, backlash))
+    simulation = _simulation(scene_path(scene), trust_parts=trust_parts, run_builders=run_builders)
+    specimen = _specimen(simulation, mesh, None, _Stated(e1, theta1, e2, theta2, backlash))
     plans = planned(specimen, own, numbers("--turns", turns), drift=drift)
-    out_console.print(plan_report(plans, specimen, own, model.name))
+    out_console.print(plan_report(plans, specimen, own, simulation.system.name))
     if out is not None:
         write_texts({out.name: plan_table(plans).csv()}, out.parent)
         tell(str(out))
@@ -194,16 +201,33 @@ class _Stated(NamedTuple):
     backlash: str | None
 
 
-def _specimen(model: "Model", mesh: str | None, options: _Stated) -> "Specimen":
-    """The scene's mean build, with what options say otherwise."""
-    from tol3d.records.from_scene import mesh_of, specimen_of_scene
+def _unit(
+    simulation: "Simulation", mesh: str | None, trial: int | None, engine: RigEngine, options: _Stated
+) -> "Specimen | Unit":
+    """What is measured: by closed form as options say, or by the exact engine as the scene says."""
+    from tol3d.errors import InputError
+    from tol3d.records.scene_mesh import SceneMesh
+
+    if engine is RigEngine.CLOSED_FORM:
+        return _specimen(simulation, mesh, trial, options)
+    if given := [f"--{name}" for name, text in options._asdict().items() if text is not None]:
+        raise InputError(
+            f"{', '.join(given)}: of --engine closed_form only; the exact engine takes all from the scene, where "
+            "tolerances of constant distributions state a unit"
+        )
+    return SceneMesh.of(simulation, mesh).unit(trial)
+
+
+def _specimen(simulation: "Simulation", mesh: str | None, trial: int | None, options: _Stated) -> "Specimen":
+    """A trial or the mean build by closed form, with what options say otherwise."""
     from tol3d.records.pair import Specimen
     from tol3d.records.quantity import stated
+    from tol3d.records.scene_mesh import SceneMesh
 
     def said(option: str, text: str | None, kind: "Kind", otherwise: float) -> float:
         return otherwise if text is None else stated(option, text, kind)
 
-    own = specimen_of_scene(model, mesh_of(model, mesh))
+    own = SceneMesh.of(simulation, mesh).specimen(trial)
     return Specimen(
         own.pair,
         said("--e1", options.e1, "length", own.e1),
@@ -214,8 +238,7 @@ def _specimen(model: "Model", mesh: str | None, options: _Stated) -> "Specimen":
     )
 
 
-def _model(path: Path, *, trust_parts: bool, run_builders: bool) -> "Model":
-    from tol3d.records.from_scene import gears_of
+def _simulation(path: Path, *, trust_parts: bool, run_builders: bool) -> "Simulation":
     from tol3d.simulate import load, simulation_of
 
-    return gears_of(simulation_of(load(path, trust_parts=trust_parts, run_builders=run_builders)).system)
+    return simulation_of(load(path, trust_parts=trust_parts, run_builders=run_builders))

@@ -1,5 +1,6 @@
 """Options of `tol3d identify`, `rig` and `plan-rig`."""
 
+from enum import StrEnum
 from typing import Annotated
 
 import typer
@@ -10,6 +11,25 @@ SceneOption = Annotated[
 MeshOption = Annotated[str | None, typer.Option(metavar="NAME", help="Which mesh was on the rig; the only one.")]
 
 
+class RigEngine(StrEnum):
+    """By what a rig knows where flanks touch."""
+
+    CLOSED_FORM = "closed_form"
+    EXACT = "exact"
+
+
+EngineOption = Annotated[
+    RigEngine,
+    typer.Option(
+        "--engine",
+        help="closed_form: eccentricities, tooth thickness and the distance of the axes; exact: the scene's exact "
+        "engine, with all that its tolerances do.",
+    ),
+]
+TrialOption = Annotated[
+    int | None,
+    typer.Option(metavar="N", min=0, help="Trial of the scene's study that is measured; the mean build if not given."),
+]
 TurnsOption = Annotated[float, typer.Option(min=0.1, max=1e4, help="Of the driver on each side.")]
 SamplesOption = Annotated[int, typer.Option(min=4, max=10**7, help="Rows per turn of the driver.")]
 RepeatsOption = Annotated[int, typer.Option(min=1, max=1000, help="Passes of each side.")]

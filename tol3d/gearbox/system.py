@@ -24,7 +24,7 @@ from tol3d.system.draw import JointDraw
 from tol3d.system.measure import Measure
 from tol3d.system.pooled import PooledTerms
 from tol3d.system.positions import Positions
-from tol3d.system.road import ANALYTIC_ROAD, Road, RoadKind
+from tol3d.system.road import ANALYTIC_ROAD, Codes, Road, RoadKind
 from tol3d.system.stated import component_slices
 from tol3d.system.statuses import Statuses
 from tol3d.system.system import Columns, KeyPath, Published, StreamKey
@@ -105,6 +105,10 @@ class GearboxSystem(Joined):
     def _of_gears(self) -> frozenset[str]:
         """Contributors that act on gears themselves."""
         return frozenset(own.name for own in self.drawn_by_gears)
+
+    def seen_by_gears(self, trials: Trials) -> tuple[Trials, Mapping[str, Codes]]:
+        """Trials as the gears see them, on the axes that placed bores give; and what became of these (trials,)."""
+        return GearboxRoad(self, self.gears.road(ANALYTIC_ROAD, {}), exact=True).gear_trials(trials)
 
     # its roads --------------------------------------------------------------------------------------
 

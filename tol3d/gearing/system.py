@@ -34,7 +34,7 @@ from tol3d.system.breakdown import Breakdown
 from tol3d.system.closed_form import ClosedForm
 from tol3d.system.pooled import PooledTerms
 from tol3d.system.positions import Positions
-from tol3d.system.road import ANALYTIC_ROAD, Road, RoadKind
+from tol3d.system.road import ANALYTIC_ROAD, Codes, Road, RoadKind
 from tol3d.system.statuses import Statuses
 from tol3d.system.system import Columns, KeyPath, Published, StreamKey, System
 from tol3d.system.trials import Trials
@@ -116,6 +116,10 @@ class GearSystem:
     def turns_at_random(self, contributor: system_contributor.Contributor, positions: Positions) -> bool:
         """See System."""
         return self.model.turns_at_random(contributor, positions)
+
+    def seen_by_gears(self, trials: Trials) -> tuple[Trials, Mapping[str, Codes]]:
+        """Trials as the gears see them, and by shaft what became of what holds it: as they are, nothing does."""
+        return trials, {}
 
     # its roads --------------------------------------------------------------------------------------
 

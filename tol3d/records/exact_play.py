@@ -10,17 +10,47 @@ with K_d = (r_b1 + r_b2) inv alpha_w and K_d + K_b = j_n: on the drive flank phi
 on the back flank the driven gear is ahead by j_n/r_b2. C2 turns with phi2, so phi2 is found by iteration.
 """
 
-from typing import Literal
+from dataclasses import dataclass
+from typing import Literal, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.records.pair import Specimen
+from tol3d.records.pair import RigPair, Specimen
 
 Array = NDArray[np.float64]
 Side = Literal["drive", "back"]
 
 ROUNDS = 6  # each gains a factor e2/a, 1e-3 or less for any gear that runs
+
+
+class Unit(Protocol):
+    """A pair whose flanks can be found touching, at any angle of the driver."""
+
+    @property
+    def pair(self) -> RigPair:
+        """Its nominal numbers."""
+        ...
+
+    def driven_angle(self, phi1: Array, side: Side) -> Array:
+        """phi2 [rad] at which the flank of that side touches, for phi1 [rad] of any shape."""
+        ...
+
+
+@dataclass(frozen=True)
+class ClosedForm:
+    """A specimen as a Unit."""
+
+    specimen: Specimen
+
+    @property
+    def pair(self) -> RigPair:
+        """See Unit."""
+        return self.specimen.pair
+
+    def driven_angle(self, phi1: Array, side: Side) -> Array:
+        """See Unit."""
+        return driven_angle(self.specimen, phi1, side)
 
 
 def driven_angle(specimen: Specimen, phi1: Array, side: Side) -> Array:

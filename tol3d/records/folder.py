@@ -1,6 +1,8 @@
 """Folders that commands write into."""
 
-from collections.abc import Mapping
+import os
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from pathlib import Path
 
 from tol3d.errors import InputError, unwritable
@@ -15,7 +17,8 @@ def write_texts(texts: Mapping[str, str], folder: Path) -> tuple[Path, ...]:
     place = made_folder(folder)
     for name, text in texts.items():
         try:
-            (place / name).write_text(text, encoding="utf-8")
+            with whole(place / name) as beside:
+                beside.write_text(text, encoding="utf-8")
         except OSError as error:
             raise unwritable(place / name, error, "choose another folder") from None
     return tuple(place / name for name in texts)
@@ -34,3 +37,23 @@ def made_folder(folder: Path) -> Path:
     except OSError as error:
         raise unwritable(folder, error, "choose another folder") from None
     return folder
+
+
+@contextmanager
+def whole(path: Path) -> Iterator[Path]:
+    """A file beside `path` that takes its place once all is written; nothing is left of a failure."""
+    beside = path.with_name(f"{path.name}.{os.getpid()}.partial")
+    try:
+        yield beside
+        beside.replace(path)
+    finally:
+        beside.unlink(missing_ok=True)
+
+
+def begins_with(path: Path, text: str) -> bool:
+    """Whether a file does."""
+    try:
+        with path.open("rb") as file:
+            return path.is_file() and file.read(len(text.encode())) == text.encode()
+    except OSError:
+        return False

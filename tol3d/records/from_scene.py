@@ -14,6 +14,7 @@ import math
 from typing import TYPE_CHECKING, Final, cast
 
 import numpy as np
+from numpy.typing import NDArray
 
 from tol3d.errors import InputError
 from tol3d.gearing.build import build
@@ -26,19 +27,27 @@ if TYPE_CHECKING:
     from tol3d.gears import SpurGear, SpurPair
     from tol3d.system.system import System
 
+Array = NDArray[np.float64]
+
 DIGITS: Final = 15  # of numbers in a written scene
 POSITIONS: Final = 72  # a turn of the driver, in a written scene
 
 
 def gears_of(system: "System") -> Model:
-    """The gears of a system.
+    """The gears of a system, in a housing or not.
 
     Raises:
-        InputError: it has none of its own.
+        InputError: it has none.
     """
-    if not isinstance(system, GearSystem):
+    found = getattr(system, "gears", system)
+    if not isinstance(found, GearSystem) or not hasattr(system, "seen_by_gears"):
         raise InputError("expected a scene of gears, got one of another system")
-    return system.model
+    return found.model
+
+
+def mean_row(system: "System | Model") -> Array:
+    """Every contributor at its mean (1, components); random directions have none."""
+    return np.array([[mean for own in system.contributors for mean in own.draw.mean(turning=False)]])
 
 
 def mesh_of(model: Model, name: str | None) -> Mesh:
@@ -58,18 +67,24 @@ def mesh_of(model: Model, name: str | None) -> Mesh:
     return spur[name] if name is not None else next(iter(spur.values()))
 
 
-def rig_of(model: Model, mesh: Mesh) -> RigPair:
-    """A mesh's numbers, its axes as far apart as they are with every contributor at its mean."""
-    return specimen_of_scene(model, mesh).pair
-
-
 def specimen_of_scene(model: Model, mesh: Mesh) -> Specimen:
     """The pair with every contributor at its mean; random directions have none, and no eccentricity is left of them.
 
-    Axes' tilts and temperatures are left out.
+    Where shafts lie in the bores of a housing, these are nominal.
     """
-    means = np.array([[mean for own in model.contributors for mean in own.draw.mean(turning=False)]])
-    made = build(model, means)
+    return specimen_of_build(model, mesh, mean_row(model))
+
+
+def specimen_of_build(model: Model, mesh: Mesh, deviations: Array) -> Specimen:
+    """The pair of one build, its axes as far apart as there.
+
+    Axes' tilts, temperatures and what single flanks deviate by are left out.
+
+    Args:
+        model, mesh: which gears.
+        deviations: (1, components) [mm, rad, K].
+    """
+    made = build(model, deviations)
     seats = [model.seat_index[mesh.name, gear] for gear in (mesh.driver, mesh.driven)]
     origins = [made.world_from_shaft[0, seat, :2, 3] for seat in seats]
     pair = rig_pair(mesh, float(np.hypot(*(origins[1] - origins[0]))))

@@ -7,6 +7,7 @@ from typing import Final
 from tol3d.records.identify import Identified
 from tol3d.records.pair import ARCSEC, TURN
 from tol3d.records.prediction import Figure
+from tol3d.records.scene_mesh import SceneMesh
 from tol3d.records.summary import UNITS, alone_figures
 from tol3d.report.number import NOTHING
 from tol3d.report.page import BLANK, Heading, Line, Page, PageItem, Row, Shown, Table, line, note, page, titled, warning
@@ -27,11 +28,12 @@ SIGNS: Final = {"um": "µm", "deg": "°", "arcsec": "″"}
 DIGITS: Final = {"um": 3, "deg": 3, "arcsec": 3}
 
 
-def identified_report(found: Identified, scene: str, mesh: str) -> Page:
-    """Figures, encoders, what is left, warnings."""
-    blocks: list[PageItem] = [_title(found, scene, mesh), *_read_lines(found), BLANK, _figures(found)]
+def identified_report(found: Identified, own: SceneMesh) -> Page:
+    """Figures, encoders, what is held as the scene has it, what is left, warnings."""
+    title = _title(found, own.model.name, own.mesh.name)
+    blocks: list[PageItem] = [title, *_read_lines(found), BLANK, _figures(found)]
     blocks += [
-        *map(note, _notes(found)),
+        *map(note, [*_notes(found), *_held(found, own)]),
         *titled("what the fit leaves, by orders of the driver's turn", _orders(found)),
     ]
     return page(*blocks, *map(warning, found.warnings))
@@ -90,6 +92,19 @@ def _notes(found: Identified) -> Iterator[str]:
     yield "angles count in each gear's own sense of rotation in the drive run, phases from the encoders' zeros"
     if found.fit.terms.winding:
         yield "backlash extrapolated to zero torque: B(T) = j + T/k"
+
+
+def _held(found: Identified, own: SceneMesh) -> Iterator[str]:
+    pair = found.pair
+    yield (
+        f"held as the scene has it: base radii, axes parallel and {pair.centre_distance:.4f} mm apart, which makes a "
+        f"working angle of {math.degrees(pair.working_angle):.3f}°"
+    )
+    if own.in_bores:
+        yield (
+            f"{', '.join(own.in_bores)}: in bores, which are held at the means of their tolerances; how far apart they "
+            "lie in this unit is read as constant backlash"
+        )
 
 
 def _orders(found: Identified) -> Table:

@@ -157,15 +157,20 @@ def identify(
         rows += more
         tell(f"{rows} rows")
 
+    files: Mapping[Side, Sequence[Path]] = {"drive": drive, "back": back}
     read: Mapping[Side, tuple[Pass, ...]] = {
-        "drive": read_side(pair, drive, settings.unit, senses, progress),
-        "back": read_side(pair, back, settings.unit, senses, progress),
+        side: tuple(_checked(own, pair) for own in read_side(pair, paths, settings.unit, senses, progress))
+        for side, paths in files.items()
     }
-    for own in (*read["drive"], *read["back"]):
-        refuse_wrong_units(own, pair)
-        refuse_other_gear(own, pair)
     tell("fit")
     return identified(pair, read, senses, settings)
+
+
+def _checked(own: Pass, pair: RigPair) -> Pass:
+    """A pass that is of this pair, in the unit that was said; the rows that show it are not kept on."""
+    refuse_wrong_units(own, pair)
+    refuse_other_gear(own, pair)
+    return own.without_trace()
 
 
 def identified(pair: RigPair, read: Mapping[Side, tuple[Pass, ...]], senses: Senses, settings: Settings) -> Identified:
@@ -295,12 +300,13 @@ def _warnings(found: Identified, settings: Settings) -> tuple[str, ...]:
         if part.value - part.half_width > settings.encoder_error:
             words.append(
                 f"{name} would be wrong by {part.value / ARCSEC:.1f}″ once per turn, more than is believed of it "
-                f"({settings.encoder_error / ARCSEC:g}″, --encoder-error): do both sides share its zero?"
+                f"({settings.encoder_error / ARCSEC:g}″, --encoder-error): do both sides share its zero? Pitches that "
+                "deviate once per turn on one flank otherwise than on the other look alike"
             )
     if found.fit.low_orders > 1.0:
         words.append(
-            f"what is left at low orders is {found.fit.low_orders:.1f} times as strong as white noise (drift, oval "
-            "shafts, run-out of bearings); intervals are wider for it"
+            f"what is left at low orders is {found.fit.low_orders:.1f} times as strong as white noise (drift, "
+            "cumulative pitch, oval shafts, run-out of bearings); intervals are wider for it"
         )
     return (*words, *_torque_warnings(found), *_drift_warnings(found, settings))
 

@@ -1,28 +1,48 @@
 """The folder that `identify` writes: findings, curve, tables, pictures and the identified pair as a scene."""
 
+import os
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import Final
 
+from tol3d.errors import InputError
 from tol3d.records.curve import curve_of
-from tol3d.records.folder import write_texts
+from tol3d.records.folder import begins_with, write_texts
 from tol3d.records.from_scene import scene_text
 from tol3d.records.identified_picture import draw_backlash, draw_residual
 from tol3d.records.identify import Identified
-from tol3d.records.summary import summary_of
+from tol3d.records.scene_mesh import SceneMesh
+from tol3d.records.summary import IdentifiedSummary, summary_of
 from tol3d.report.page import Page
 
-if TYPE_CHECKING:
-    from tol3d.gearing.model.mesh import Mesh
+NAMES: Final = ("identified.json", "identified.csv", "backlash.csv", "identified.yaml", "backlash.png", "residual.png")
 
 
-def write_identified(found: Identified, report: Page, mesh: "Mesh", scene: str, folder: Path) -> tuple[Path, ...]:
+def refuse_others(folder: Path) -> None:
+    """Refuse a folder that has files of these names without findings of ours: they are somebody's.
+
+    Raises:
+        InputError: it names them.
+    """
+    there = [name for name in NAMES if os.path.lexists(folder / name)]
+    if not there or _is_ours(folder / NAMES[0]):
+        return
+    raise InputError(
+        f"{folder}: holds {', '.join(there)}, not written by `tol3d identify`, which replaces files of its own only; "
+        "choose another folder: --out"
+    )
+
+
+def _is_ours(path: Path) -> bool:
+    return begins_with(path, f'{{\n  "format": "{IdentifiedSummary.model_fields["format"].default}"')
+
+
+def write_identified(found: Identified, report: Page, own: SceneMesh, folder: Path) -> tuple[Path, ...]:
     """Write what was identified; files of an earlier time are replaced.
 
     Args:
         found: what was identified.
         report: its tables.
-        mesh: of which gears.
-        scene: the scene's name.
+        own: of which gears.
         folder: where to; made if it is not there.
 
     Raises:
@@ -30,10 +50,10 @@ def write_identified(found: Identified, report: Page, mesh: "Mesh", scene: str, 
     """
     curve = curve_of(found)
     texts = {
-        "identified.json": summary_of(found, scene, mesh.name).model_dump_json(indent=2) + "\n",
+        "identified.json": summary_of(found, own).model_dump_json(indent=2) + "\n",
         "identified.csv": report.csv(),
         "backlash.csv": curve.csv(),
-        "identified.yaml": scene_text(found.specimen, mesh, f"{scene}, as identified"),
+        "identified.yaml": scene_text(found.specimen, own.mesh, f"{own.model.name}, as identified"),
     }
     written = write_texts(texts, folder)
     pictures = folder / "backlash.png", folder / "residual.png"

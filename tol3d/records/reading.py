@@ -22,7 +22,8 @@ MOST_REVERSED: Final = math.radians(1.0)  # of the driver; noise and a rig's own
 SETTLED: Final = math.radians(1.0)  # travel of the driver from which its direction is known
 LEAST_TRAVEL: Final = math.radians(0.01)  # of a file; far over an encoder's noise
 LONGEST_STEP: Final = 0.4 * TURN  # between rows; from half a turn on the way round cannot be known
-TRACED: Final = 500  # rows of a block kept as they came, to tell degrees from radians
+TRACE_STEP: Final = math.radians(0.5)  # of both gears together between rows kept to tell degrees from radians, as read
+TRACED: Final = 3 * 360.0  # rad of the driver, as read, over which they are kept: three turns if they are degrees
 
 
 @dataclass(frozen=True)
@@ -45,7 +46,7 @@ class Pass:
         torques: smallest and largest torque [N m], magnitudes; None where none was measured.
         first: error at the first row [rad] and the driver's angle there.
         bins: the rows, gathered.
-        trace: phi1 and phi2 of some rows of every block, (2, n) [rad], counted on.
+        trace: phi1 and phi2 of some rows, (2, n) [rad], counted on; their number does not grow with that of all rows.
         raw: the same as the file has them.
     """
 
@@ -58,6 +59,11 @@ class Pass:
     bins: Bins
     trace: Array
     raw: Array
+
+    def without_trace(self) -> "Pass":
+        """The same without the rows that were kept as they came."""
+        nothing = np.zeros((2, 0))
+        return replace(self, trace=nothing, raw=nothing)
 
 
 def senses_of(path: Path, unit: str | None) -> Senses:
@@ -84,8 +90,8 @@ def _travel(values: Array) -> float:
 
 def read_side(
     pair: RigPair, paths: Sequence[Path], unit: str | None, senses: Senses, progress: Progress
-) -> tuple[Pass, ...]:
-    """All passes of one side.
+) -> Iterator[Pass]:
+    """All passes of one side, each when its rows are read.
 
     Args:
         pair: nominal numbers.
@@ -97,7 +103,8 @@ def read_side(
     Raises:
         InputError: with file and line.
     """
-    return tuple(own for path in paths for own in _passes(pair, path, unit, senses, progress))
+    for path in paths:
+        yield from _passes(pair, path, unit, senses, progress)
 
 
 def _passes(pair: RigPair, path: Path, unit: str | None, senses: Senses, progress: Progress) -> Iterator[Pass]:
@@ -161,6 +168,7 @@ class PassReader:
         self._torques: tuple[float, float] | None = None
         self._trace: list[Array] = []
         self._untouched: list[Array] = []
+        self._traced = -1.0  # steps up to the last row that was kept
 
     def add(self, block: Block) -> None:
         """Add rows.
@@ -180,11 +188,17 @@ class PassReader:
         if torque is not None:
             ends = (float(torque.min()), float(torque.max()), *(self._torques or ()))
             self._torques = min(ends), max(ends)
-        some = slice(None, None, -(-len(error) // TRACED))
-        self._trace.append(both[:, some].copy())
-        self._untouched.append(np.stack([block.phi1[some], block.phi2[some]]))
+        self._keep_some(both, np.abs(both - start[:, None]), block)
         self._rows += len(error)
-        self._ends = start, both[:, -1]
+        self._ends = start.copy(), both[:, -1].copy()
+
+    def _keep_some(self, both: Array, moved: Array, block: Block) -> None:
+        """Keep rows as they came, of which none is nearer than TRACE_STEP to the next."""
+        steps = np.maximum.accumulate(np.floor(moved.sum(axis=0) / TRACE_STEP))
+        kept = (np.diff(steps, prepend=self._traced) > 0) & (steps > self._traced) & (moved[0] < TRACED)
+        self._traced = max(self._traced, float(steps[-1]))
+        self._trace.append(both[:, kept])
+        self._untouched.append(np.stack([block.phi1[kept], block.phi2[kept]]))
 
     def finished(self) -> Pass:
         """The pass."""

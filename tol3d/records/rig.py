@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.records.exact_play import Side, driven_angle
+from tol3d.records.exact_play import ClosedForm, Side, Unit
 from tol3d.records.pair import ARCSEC, TURN, Specimen
 
 Array = NDArray[np.float64]
@@ -60,12 +60,22 @@ class Readings:
     repeat: Array | None
 
 
-def measured(specimen: Specimen, rig: Rig, side: Side) -> Readings:
-    """One side's rows. Sides differ in where between two steps they are sampled, and in their noise."""
+def measured(unit: Specimen | Unit, rig: Rig, side: Side) -> Readings:
+    """One side's rows. Sides differ in where between two steps they are sampled, and in their noise.
+
+    Args:
+        unit: what is measured; of a specimen the flanks touch by closed form.
+        rig: how.
+        side: which flanks touch.
+
+    Raises:
+        InputError: the unit cannot be turned.
+    """
+    own = ClosedForm(unit) if isinstance(unit, Specimen) else unit
     random = np.random.Generator(np.random.Philox(key=[rig.seed, 0 if side == "drive" else 1]))
     phases = np.random.Generator(np.random.Philox(key=[rig.seed, 2])).uniform(0.0, TURN, 6)
-    passes = [_pass(specimen, rig, side, repeat, random, phases) for repeat in range(rig.repeats)]
-    phi1, phi2 = (np.concatenate([own[k] for own in passes]) for k in (0, 1))
+    passes = [_pass(own, rig, side, repeat, random, phases) for repeat in range(rig.repeats)]
+    phi1, phi2 = (np.concatenate([each[k] for each in passes]) for k in (0, 1))
     rows = len(passes[0][0])
     torque = np.repeat([_torque(rig, repeat) for repeat in range(rig.repeats)], rows) if rig.torques else None
     return Readings(phi1, phi2, torque, np.repeat(np.arange(1.0, rig.repeats + 1), rows) if rig.repeats > 1 else None)
@@ -76,15 +86,15 @@ def _torque(rig: Rig, repeat: int) -> float:
 
 
 def _pass(
-    specimen: Specimen, rig: Rig, side: Side, repeat: int, random: np.random.Generator, phases: Array
+    unit: Unit, rig: Rig, side: Side, repeat: int, random: np.random.Generator, phases: Array
 ) -> tuple[Array, Array]:
     rows = round(rig.turns * rig.samples)
     along = np.arange(rows) / rig.samples * TURN
     start = rig.start + (0.0 if side == "drive" or rig.zeroed else random.uniform(0.0, TURN / rig.samples))
     phi1 = start + along
     hidden = rig.hidden_turns if side == "back" else 0
-    pair, sense = specimen.pair, -1.0 if side == "drive" else 1.0
-    phi2 = driven_angle(specimen, phi1 + TURN * hidden, side) - pair.rate * TURN * hidden
+    pair, sense = unit.pair, -1.0 if side == "drive" else 1.0
+    phi2 = unit.driven_angle(phi1 + TURN * hidden, side) - pair.rate * TURN * hidden
     phi2 = phi2 + sense * _torque(rig, repeat) * rig.winding / 2
     phi2 = phi2 + rig.tooth_mesh * np.sin(pair.driver_teeth * phi1 + phases[4 if side == "drive" else 5])
     phi2 = phi2 + rig.drift * (along / max(along[-1], 1e-12) + repeat)

@@ -12,6 +12,7 @@ from tol3d.records.identify import Identified
 from tol3d.records.one_sided import OneSided
 from tol3d.records.pair import ARCSEC, TURN
 from tol3d.records.prediction import Figure
+from tol3d.records.scene_mesh import SceneMesh
 
 Unit = Literal["um", "deg", "arcsec", "arcsec/(N m)"]
 
@@ -51,9 +52,10 @@ class PairSummary(Kept):
     mesh: str
     driver_teeth: int
     driven_teeth: int
-    centre_distance_mm: float
+    centre_distance_mm: float = Field(description="held at the mean of the scene's tolerances, as all of the pair is")
     working_pressure_angle_deg: float
     long_period_turns: int = Field(description="of the driver")
+    in_bores: list[str] = Field(description="its shafts that lie in the bores of a housing, at the means of these")
 
 
 class PassSummary(Kept):
@@ -110,18 +112,19 @@ class IdentifiedSummary(Kept):
     warnings: list[str]
 
 
-def summary_of(found: Identified, scene: str, mesh: str) -> IdentifiedSummary:
+def summary_of(found: Identified, own: SceneMesh) -> IdentifiedSummary:
     """What was found, as it is kept."""
     pair = found.pair
     return IdentifiedSummary(
         pair=PairSummary(
-            scene=scene,
-            mesh=mesh,
+            scene=own.model.name,
+            mesh=own.mesh.name,
             driver_teeth=pair.driver_teeth,
             driven_teeth=pair.driven_teeth,
             centre_distance_mm=pair.centre_distance,
             working_pressure_angle_deg=math.degrees(pair.working_angle),
             long_period_turns=pair.long_period_turns,
+            in_bores=list(own.in_bores),
         ),
         encoder_senses=[found.senses.driver, found.senses.driven],
         figures={name: figure_summary(name, own) for name, own in found.figures.items()},

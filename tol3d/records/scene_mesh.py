@@ -1,0 +1,95 @@
+"""A mesh of a scene that is on a rig: its builds, by closed form and by the exact engine."""
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tol3d.errors import InputError
+from tol3d.gearing.engines import OK
+from tol3d.gearing.engines.lazy import exact_engine
+from tol3d.records.from_scene import gears_of, mean_row, mesh_of, specimen_of_build
+from tol3d.records.pair import Specimen
+from tol3d.records.simulated_unit import SimulatedUnit
+from tol3d.study.draws import drawn
+from tol3d.system.trials import Trials
+
+if TYPE_CHECKING:
+    from tol3d.gearing.model import Mesh, Model
+    from tol3d.study.simulation import Simulation
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class SceneMesh:
+    """Two spur gears of a scene, in a housing or not.
+
+    Args:
+        simulation: of the scene.
+        model: its gears.
+        mesh: which of them.
+    """
+
+    simulation: "Simulation"
+    model: "Model"
+    mesh: "Mesh"
+
+    @classmethod
+    def of(cls, simulation: "Simulation", name: str | None) -> "SceneMesh":
+        """The mesh of that name, or the only one of two spur gears.
+
+        Raises:
+            InputError: there is none, or several and no name.
+        """
+        model = gears_of(simulation.system)
+        return cls(simulation, model, mesh_of(model, name))
+
+    @cached_property
+    def in_bores(self) -> tuple[str, ...]:
+        """Its shafts that lie in the bores of a housing."""
+        holding: Any = self.simulation.system
+        _, held = holding.seen_by_gears(Trials(mean_row(self.simulation.system), {}))
+        return tuple(shaft for shaft in self._shafts if shaft in held)
+
+    @property
+    def _shafts(self) -> tuple[str, ...]:
+        carrying = self.model.layout.carrying
+        return tuple(carrying[gear][0] for gear in (self.mesh.driver, self.mesh.driven))
+
+    def specimen(self, trial: int | None = None) -> Specimen:
+        """A build by closed form: eccentricities, tooth thickness and the distance of the axes.
+
+        Args:
+            trial: of the scene's study, from 0 on; None for the build with every contributor at its mean.
+
+        Raises:
+            InputError: there is no such trial, or its shafts' bores cannot be placed.
+        """
+        return specimen_of_build(self.model, self.mesh, self._deviations(trial))
+
+    def unit(self, trial: int | None = None) -> SimulatedUnit:
+        """The same build by the exact engine, with all that the scene's tolerances do.
+
+        Raises:
+            InputError: see specimen.
+        """
+        deviations, engine = self._deviations(trial), exact_engine(self.model)
+        specimen = specimen_of_build(self.model, self.mesh, deviations)
+        return SimulatedUnit(specimen, self.mesh, engine.build(deviations), engine)
+
+    def _deviations(self, trial: int | None) -> Array:
+        """Of the gears (1, components) [mm, rad, K]."""
+        system, trials = self.simulation.system, self.simulation.study.trials
+        if trial is not None and not 0 <= trial < trials:
+            raise InputError(f"--trial: expected 0 … {trials - 1}, which the scene's study has, got {trial}")
+        made = Trials(mean_row(system), {}) if trial is None else drawn(self.simulation, trial, 1)
+        holding: Any = system
+        seen, held = holding.seen_by_gears(made)
+        for shaft in self._shafts:
+            if shaft in held and held[shaft][0] != OK:
+                text = system.statuses.by_code[held[shaft][0]]
+                raise InputError(f"{self.mesh.name}: the bores of {shaft!r} cannot be placed in this build: {text}")
+        return np.asarray(seen.deviations)
