@@ -22,9 +22,9 @@ def fences(kind: str) -> list[str]:
     return re.findall(rf"^```{kind}\n(.*?)^```", PAGE, re.MULTILINE | re.DOTALL)
 
 
-def commands() -> list[list[str]]:
-    """Of the example and the plan, without tol3d."""
-    lines = "\n".join(fences("sh")[1:]).replace("\\\n", " ").splitlines()
+def commands(first: int = 1, last: int = 3) -> list[list[str]]:
+    """Of some of the page's fences, without tol3d: of the example and the plan."""
+    lines = "\n".join(fences("sh")[first:last]).replace("\\\n", " ").splitlines()
     return [shlex.split(line)[1:] for line in lines if line.strip()]
 
 
@@ -78,3 +78,16 @@ def test_the_identified_scene_of_the_example_runs(
         assert geometric is not None
         assert geometric.mean is not None
         assert 60 * geometric.mean == pytest.approx(true, abs=0.1)
+
+
+@pytest.mark.slow
+def test_the_rigs_of_the_exact_engine_on_the_page_measure(
+    tol3d: Command, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    shown = commands(3, 4)
+    assert [arguments[:2] for arguments in shown] == [["rig", "tooth_deviations"], ["rig", "housed_gears"]]
+    for arguments in shown:
+        code, out, err = tol3d(*arguments)
+        assert (code, err) == (0, "")
+        assert out.split() == ["measured/drive.csv", "measured/back.csv"]
