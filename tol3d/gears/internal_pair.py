@@ -14,6 +14,8 @@ from tol3d.errors import GeometryError
 from tol3d.gears.cylindrical_pair import CylindricalPair
 from tol3d.gears.flank import Flank, opposite
 from tol3d.gears.internal_gear import InternalGear
+from tol3d.gears.internal_interference import interference, interferes
+from tol3d.gears.internal_mesh import InternalMesh
 from tol3d.gears.pair import Displaced
 from tol3d.gears.spur_gear import SpurGear
 
@@ -114,12 +116,29 @@ class InternalPair(CylindricalPair):
             "teeth. Close the centre distance or thin the teeth"
         )
 
+    @property
+    def interference(self) -> str:
+        """The condition of interference that fails, its numbers and what would do; or nothing."""
+        return interference(InternalMesh(self.ring, self.inner, self.centre_distance))
+
+    @property
+    def interferes(self) -> bool:
+        """Whether some condition of interference fails: quicker than the words."""
+        return interferes(InternalMesh(self.ring, self.inner, self.centre_distance))
+
     def refuse_interference(self) -> None:
         """Raise unless the gears run without interference.
 
         Raises:
-            GeometryError: with the radii and what to change.
+            GeometryError: with the condition that fails, its numbers and what to change.
         """
+        if self.interference:
+            raise GeometryError(self.interference)
+        if self.contact_ratio < 1.0:
+            raise GeometryError(
+                f"contact ratio {self.contact_ratio:.4f} is below 1 at centre distance "
+                f"{self.centre_distance:g} mm: the teeth lose touch"
+            )
 
     # positions --------------------------------------------------------------------------------------
 
@@ -163,9 +182,5 @@ class InternalPair(CylindricalPair):
         return driver_teeth - (1 if flank == 1 else 0)
 
     def opening_sense(self, flank: Flank) -> Flank:
-        """Sense in which the driver's turn opens that flank side: sigma."""
+        """Sense in which the driver's turn opens that flank side: sigma; the driven gear's opens it by the other."""
         return flank
-
-    def driven_opening_sense(self, flank: Flank) -> Flank:
-        """Sense in which the driven gear's turn opens it: -sigma, for both turn in the same sense."""
-        return opposite(flank)

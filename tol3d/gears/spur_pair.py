@@ -158,7 +158,3 @@ class SpurPair(CylindricalPair):
         counter-clockwise, and so does the driver.
         """
         return flank
-
-    def driven_opening_sense(self, flank: Flank) -> Flank:
-        """Sense in which the driven gear's turn opens it: the same."""
-        return flank

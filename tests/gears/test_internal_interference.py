@@ -1,0 +1,140 @@
+"""Interference of internal pairs: each condition against the overlap of both outlines over a whole pitch of turning."""
+
+import math
+import re
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from oracles.ring_overlap import Outline, overlap
+
+from tol3d.errors import GeometryError
+from tol3d.gears import LEFT, RIGHT, Displaced, Flank, InternalGear, InternalPair, SpurGear
+
+CLEAR = 1e-6  # mm; flanks in contact, interpolated between 1500 points: h^2/(8 rho) = (2 mm/1500)^2 / 16 = 1e-7
+SEEN = 1e-5  # mm; an overlap that a sampled position does not miss
+
+
+def outline(gear: SpurGear | InternalGear) -> Outline:
+    nominal = gear.module * (math.pi / 2 + 2 * gear.profile_shift * math.tan(gear.pressure_angle))
+    return Outline(
+        teeth=gear.teeth,
+        module=gear.module,
+        alpha=gear.pressure_angle,
+        thickness=nominal + gear.tooth_thickness_deviation,
+        tip=gear.tip_radius,
+        root=gear.root_radius,
+        fillet=gear.fillet_radius,
+        inside=isinstance(gear, InternalGear),
+    )
+
+
+def random_pair(rng: np.random.Generator) -> InternalPair | None:
+    """One that can be made, with a backlash of at most 20 um; half of them with some interference."""
+    alpha, teeth = math.radians(rng.uniform(18, 30)), int(rng.integers(14, 45))
+    fillets = (None if rng.random() < 0.5 else rng.uniform(0.05, 0.3) for _ in range(2))
+    try:
+        inner = SpurGear(
+            teeth,
+            1.0,
+            alpha,
+            5.0,
+            profile_shift=rng.uniform(-0.2, 0.7),
+            addendum=rng.uniform(0.6, 1.25),
+            dedendum=rng.uniform(1.0, 1.4),
+            root_fillet=next(fillets),
+        )
+        ring = InternalGear(
+            teeth + int(rng.choice([2, 3, 4, 5, 6, 8, 10, 14, 25, 50])),
+            1.0,
+            alpha,
+            5.0,
+            profile_shift=rng.uniform(-1.6, 0.3),
+            addendum=rng.uniform(0.6, 1.0),
+            dedendum=rng.uniform(1.0, 1.4),
+            root_fillet=next(fillets),
+        )
+        touching = InternalPair(inner, ring, 1.0001 * (ring.base_radius - inner.base_radius))
+        distance = touching.zero_backlash_centre_distance - rng.uniform(0.0, 0.03)
+        return None if math.isnan(distance) else InternalPair(inner, ring, distance)
+    except GeometryError:
+        return None
+
+
+def most_overlap(pair: InternalPair, flank: Flank) -> float:
+    """Over a pitch, with that flank in touch: tip corners at 600 positions, whole outlines at 15."""
+    turn = np.linspace(0.0, pair.inner.angular_pitch, 600)
+    origin = np.tile(np.stack([np.zeros(3), pair.wheel_origin]), (len(turn), 1, 1))
+    displaced = Displaced(origin, np.zeros((len(turn), 2, 3)), np.zeros((len(turn), 2)))
+    turns = np.stack([pair.touching_angle(turn, flank, displaced), turn], axis=1)
+    gears = outline(pair.ring), outline(pair.inner), pair.centre_distance
+    return max(overlap(*gears, turns, corners_only=True), overlap(*gears, turns[::40], corners_only=False))
+
+
+def compare(seed: int, count: int) -> dict[str, int]:
+    """Pairs refused and not, by the first two words of why."""
+    rng, found = np.random.default_rng(seed), dict[str, int]()
+    while sum(found.values()) < count:
+        pair = random_pair(rng)
+        if pair is None:
+            continue
+        why = pair.interference
+        assert pair.interferes == bool(why)
+        deepest = most_overlap(pair, RIGHT if rng.random() < 0.5 else LEFT)
+        assert deepest > SEEN if why else deepest < CLEAR, (pair, why, deepest)
+        kind = " ".join(why.split()[:2])
+        found[kind] = found.get(kind, 0) + 1
+    return found
+
+
+def spur(teeth: int, alpha: float, **factors: float) -> SpurGear:
+    return SpurGear(teeth, 1.0, math.radians(alpha), 5.0, **factors)
+
+
+def internal(teeth: int, alpha: float, **factors: float) -> InternalGear:
+    return InternalGear(teeth, 1.0, math.radians(alpha), 5.0, **factors)
+
+
+CASES = (
+    (spur(17, 20), internal(40, 20), 11.5, "involute interference: the internal gear's tip"),
+    (spur(30, 20), internal(36, 20), 3.0, "trimming interference"),
+    (
+        spur(25, 22, addendum=1.15),
+        internal(60, 22, dedendum=1.2, root_fillet=0.38),
+        17.5,
+        "involute interference: the inner gear's tip",
+    ),
+    (
+        spur(25, 22, addendum=1.19),
+        internal(60, 22, dedendum=1.2, root_fillet=0.2),
+        17.5,
+        "tip interference: the inner gear's tip corner overlaps the root fillet of the internal gear",
+    ),
+)
+
+
+@pytest.mark.parametrize(("inner", "ring", "distance", "why"), CASES)
+def test_teeth_overlap_where_they_are_refused_and_not_with_the_addenda_that_are_advised(
+    inner: SpurGear, ring: InternalGear, distance: float, why: str
+) -> None:
+    pair = InternalPair(inner, ring, distance)
+    assert pair.interference.startswith(why)
+    assert most_overlap(pair, RIGHT) > SEEN
+    with pytest.raises(GeometryError, match=why):
+        pair.refuse_interference()
+    most = float(re.findall(r"of at most ([\d.]+)", pair.interference)[0])
+    for addendum, overlaps in ((most, False), (most + 0.02, True)):
+        other = InternalPair(
+            replace(inner, addendum=min(addendum, inner.addendum)),
+            replace(ring, addendum=min(addendum, ring.addendum)),
+            distance,
+        )
+        assert bool(other.interference) == other.interferes == overlaps
+        assert (most_overlap(other, LEFT) > CLEAR) == overlaps
+
+
+@pytest.mark.slow
+def test_outlines_of_many_pairs_overlap_exactly_where_they_are_refused() -> None:
+    found = compare(10, 60)
+    kinds = ("", "involute interference:", "trimming interference:", "tip interference", "tip interference:")
+    assert set(found) == set(kinds)
