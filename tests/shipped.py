@@ -18,5 +18,12 @@ def _mechanisms() -> dict[str, str]:
 
 
 def shipped(mechanism: str) -> tuple[str, ...]:
-    """Names of the scenes that a mechanism understands."""
-    return tuple(scene for scene, its in _mechanisms().items() if its == mechanism)
+    """Names of the scenes that a mechanism understands.
+
+    Raises:
+        LookupError: there are none, so that a test of all of them would test nothing.
+    """
+    found = tuple(scene for scene, its in _mechanisms().items() if its == mechanism)
+    if not found:
+        raise LookupError(f"no scene of {mechanism!r}; mechanisms are {sorted(set(_mechanisms().values()))}")
+    return found

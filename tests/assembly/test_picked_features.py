@@ -240,6 +240,10 @@ FAILING = {
     "no such function": (PROGRAM.replace("def build", "def make"), "expected a function 'build', found: make"),
     "an argument that it has not": (PROGRAM.replace("wall, holes", "wall"), "TypeError: build() got an unexpected"),
     "an error": (PROGRAM.replace("    plate = cq.Work", "    1 / 0\n    plate = cq.Work", 1), ":5: ZeroDivisionError"),
+    "an exit": (
+        PROGRAM.replace("    plate = cq.Work", "    raise SystemExit(3)\n    plate = cq.Work", 1),
+        ":5: SystemExit: 3",
+    ),
     "no syntax": (PROGRAM.replace("def build(", "def build"), ":4: SyntaxError"),
     "no solid": (PROGRAM.replace("return plate", "return 3 #"), "expected one solid (NamedSolid, cadquery"),
     "two solids": (

@@ -3,6 +3,7 @@
 import csv
 import json
 import math
+import os
 from collections.abc import Callable, Mapping
 from pathlib import Path
 
@@ -232,6 +233,24 @@ def binary(folder: Path) -> None:
     (folder / "drive.csv").write_bytes(bytes(range(128, 256)) * 9)
 
 
+def pipe(folder: Path) -> None:
+    absent(folder)
+    os.mkfifo(folder / "drive.csv")
+
+
+def device(folder: Path) -> None:
+    absent(folder)
+    (folder / "drive.csv").symlink_to("/dev/zero")
+
+
+def many_columns(folder: Path) -> None:
+    changed(folder, [",".join(f"column {k}" for k in range(6000)), *rows(folder)[1:]])
+
+
+def long_line(folder: Path) -> None:
+    changed(folder, [*rows(folder), "1" * (3 * csv_file.BLOCK_BYTES)])
+
+
 Change = Callable[[Path], None]
 SideChange = Callable[[Path, str], None]
 
@@ -249,6 +268,10 @@ WRONG: Mapping[Change, str] = {
     other_gear: "drive.csv: other gears: the driven gear turns by 0.5743",
     absent: "drive.csv: cannot be read (No such file or directory)",
     binary: "drive.csv:1: expected a CSV file in UTF-8, got other bytes",
+    pipe: "drive.csv: expected a file, got a pipe or a device",
+    device: "drive.csv: expected a file, got a pipe or a device",
+    many_columns: "drive.csv: missing column 'phi1': expected `phi1 [deg]` in the header, got 'column 0', 'column 1', ",
+    long_line: "drive.csv: cannot be read as CSV: a line is longer than 2 MB",
 }
 
 
@@ -260,6 +283,7 @@ def test_a_wrong_file_gets_one_message_and_exit_code_2(tol3d: Command, tmp_path:
     assert (code, out) == (2, "")
     assert WRONG[wrong] in err
     assert err.count("\n") == 1
+    assert len(err) < 600 + 2 * len(str(tmp_path))
     assert not (tmp_path / "out").exists()
 
 

@@ -2,13 +2,16 @@
 
 import math
 from collections.abc import Callable, Mapping
+from pathlib import Path
 
 import numpy as np
 import pytest
 from expected import expected
 from oracles.two_sided import EccentricPair
+from places import SCENES
 
-from tol3d import Run
+from tol3d import Overrides, Run, run_scene
+from tol3d.report.comparison_picture import comparison_figure
 
 PRINTED = 1e-5  # arcmin; the file gives that many digits
 SEEN = 1e-5  # arcmin; the parabola through samples of 5 deg misses a peak by 4e-7 of it, steps end at 4e-6
@@ -85,3 +88,14 @@ def test_every_trial_is_a_pair_of_its_own(road: str, exact: bool, run_of: Callab
             # pressure angle: 15 um of centre distance are 5e-4 of the wave
             bound = 2 * SEEN if exact else 0.01
             assert columns[f"{road}:{name}"][trial] == pytest.approx(value, abs=bound), (trial, name)
+
+
+def test_a_comparison_counts_the_positions_of_a_long_period_on_and_those_of_a_turn_within_it(tmp_path: Path) -> None:
+    text = (SCENES / "two_sided_te.yaml").read_text("utf-8")
+    turn = "measures:\n  turn: {kind: normal_backlash, of: gear pair, over: turn, take: curve, positions: 8}\n"
+    (tmp_path / "pair.yaml").write_text(text.replace("measures:\n", turn), encoding="utf-8")
+    run = run_scene(tmp_path / "pair.yaml", overrides=Overrides(trials=5, witness=0), out=tmp_path / "run")
+    axes = comparison_figure([run]).axes
+    titles = [each.get_title(loc="left") for each in axes]
+    words = {name: axes[titles.index(name) + 2].get_xlabel() for name in ("turn", "drive TE curve")}
+    assert words == {"turn": "driver position within its turn [deg]", "drive TE curve": "driver position [deg]"}

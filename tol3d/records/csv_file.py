@@ -1,6 +1,7 @@
 """CSV files of a rig, read block by block: they may be larger than memory. The only place here that knows pyarrow."""
 
 import re
+import stat
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -25,6 +26,9 @@ OPTIONAL: Final = ("torque", "repeat")
 ROW_OF_ERROR: Final = re.compile(r"Row #(\d+)")
 BAD_CELL: Final = re.compile(r"invalid value '(.*)'")
 BAD_WIDTH: Final = re.compile(r"Expected (\d+) columns, got (\d+)")
+LONG_LINE: Final = "straddl"  # pyarrow's word for a line that ends in none of two blocks
+MOST_NAMED: Final = 12  # columns that a message names
+SHOWN: Final = 60  # characters of what a file holds that a message repeats
 
 
 @dataclass(frozen=True)
@@ -151,6 +155,8 @@ def _header(path: Path, unit: str | None) -> Header:
 def _first_lines(path: Path) -> tuple[int, str, str]:
     """How many comments a file begins with, its header, and the line below."""
     try:
+        if not stat.S_ISREG(path.stat().st_mode) and not path.is_dir():  # a pipe would be waited for
+            raise InputError(f"{path}: expected a file, got a pipe or a device; the file is read more than once")
         with path.open("rb") as file:
             lines = file.read(LONGEST_HEADER).splitlines()
     except OSError as error:
@@ -177,7 +183,9 @@ def _factors(path: Path, names: tuple[str, ...], unit: str | None) -> dict[str, 
         found[name] = index, 1.0 if name == "repeat" else _factor(path, name, match["unit"], unit)
     for name in WANTED:
         if name not in found:
-            got = ", ".join(repr(text) for text in names)
+            got = ", ".join(repr(text[:SHOWN]) for text in names[:MOST_NAMED]) + (
+                " …" if len(names) > MOST_NAMED else ""
+            )
             raise InputError(f"{path}: missing column {name!r}: expected `{name} [deg]` in the header, got {got}")
     return found
 
@@ -189,7 +197,7 @@ def _factor(path: Path, name: str, stated: str | None, unit: str | None) -> floa
         also = " or --unit" if name != "torque" else ""
         raise InputError(f"{path}: column {name!r} has no unit: expected `{name} [{example}]` in the header{also}")
     if own not in table:
-        raise InputError(f"{path}: column {name!r}: unknown unit {own!r}; expected one of {', '.join(table)}")
+        raise InputError(f"{path}: column {name!r}: unknown unit {own[:SHOWN]!r}; expected one of {', '.join(table)}")
     return table[own]
 
 
@@ -200,9 +208,11 @@ def _refused(header: Header, text: str) -> InputError:
     path, row = header.path, ROW_OF_ERROR.search(text)
     line = header.comments + 2 if row is None else line_of(path, int(row[1]) - header.comments - 2)
     if cell := BAD_CELL.search(text):
-        return InputError(f"{path}:{line}: expected a number, got {cell[1][:60]!r}")
+        return InputError(f"{path}:{line}: expected a number, got {cell[1][:SHOWN]!r}")
     if width := BAD_WIDTH.search(text):
         return InputError(f"{path}:{line}: expected {width[1]} cells, as in the header, got {width[2]}")
     if "Empty CSV" in text:
         return InputError(f"{path}: no rows of data below the header")
+    if LONG_LINE in text:
+        return InputError(f"{path}: cannot be read as CSV: a line is longer than {BLOCK_BYTES // 2**20} MB")
     return InputError(f"{path}: cannot be read as CSV: {text.splitlines()[0][:200]}")

@@ -48,6 +48,7 @@ LEGEND_MARK: Final = 0.6  # inch, in front of a legend's words
 LEGEND_SIZE: Final = 8.5  # points
 HEAD_SIZE: Final = 12.0
 DIFFERENCE_UNITS: Final = {"um": ("µm", 1.0), "mm": ("µm", 1000.0), "arcmin": ("″", 60.0)}
+FULL_TURN: Final = 360.0  # deg
 """Unit of small differences, and how many of it are one of the measure's unit."""
 
 
@@ -242,7 +243,8 @@ def _draw_by_position(axes: Axes, measure: Compared, known: Known) -> None:
         )
     axes.axhline(0, color=BLACK, linewidth=0.8)
     if by_position:
-        turn = " within its turn" if turning == "driver" else ""
+        within = all(found.at.max(initial=0.0) <= FULL_TURN for _, found in known)
+        turn = " within its turn" if turning == "driver" and within else ""
         axes.set_xlabel(f"{turning} position{turn} [deg]", fontsize=10)
     else:
         label_angles(axes.xaxis, measure.unit)

@@ -41,7 +41,7 @@ def run_program(file: FileContent, function: str, dimensions: Mapping[str, float
         made = names[function](**dimensions)
     except GeometryError:
         raise
-    except Exception as error:
+    except (Exception, SystemExit) as error:  # one that ends itself would end the study without a word
         raise GeometryError(f"{_line(error, file)}: {type(error).__name__}: {error}") from None
     solid, named = _solid_and_names(made, file)
     if not solid.isValid():
@@ -115,7 +115,7 @@ def _solid_and_names(made: Any, file: FileContent) -> tuple[cq.Solid, Mapping[st
     return solids[0], named
 
 
-def _line(error: Exception, file: FileContent) -> str:
+def _line(error: BaseException, file: FileContent) -> str:
     """Where in the file an error came up."""
     if isinstance(error, SyntaxError):
         return f"{file.path}:{error.lineno}"
