@@ -18,7 +18,7 @@ from scipy.interpolate import BSpline, make_interp_spline
 from tol3d.gears import BevelGear, Flank
 from tol3d.parts.bevel_cones import ENDS, End, EndCone
 from tol3d.parts.named_solid import NamedSolid
-from tol3d.parts.spur_gear import CUBIC_SPLINE_CONSTANT, FEWEST_INTERVALS, flank_name
+from tol3d.parts.tooth_edges import CUBIC_SPLINE_CONSTANT, FEWEST_INTERVALS, flank_name
 
 FLANK_ERROR = 1e-7  # mm; how far a spline flank may leave the involute, a hundredth of the 0.01 um asked for
 VANISHING = 1e-6  # rad, |dS/du| over |d2S/du2|: nearer to the base cone the direction is the second's

@@ -24,7 +24,7 @@ from tol3d.gears import LEFT, RIGHT, BevelGear, Flank
 from tol3d.parts.bevel_cones import ENDS, HEEL, TOE, End, EndCone, across, apex_cone, falling, level, ray, upright
 from tol3d.parts.bevel_flank import curve, flank_splines, greville, ruled, trace
 from tol3d.parts.named_solid import NamedSolid
-from tol3d.parts.spur_gear import SHORTEST_EDGE, SIDES, flank_name
+from tol3d.parts.tooth_edges import SHORTEST_EDGE, SIDES, flank_name
 
 EDGE_TOLERANCE = 1e-6  # mm; what the ends of flanks, splines on three surfaces at once, may differ by
 FRONT_FACE, MOUNTING_FACE, BORE = "front face", "mounting face", "bore"

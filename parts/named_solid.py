@@ -4,6 +4,7 @@ import errno
 import os
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from itertools import chain
 from pathlib import Path
 
 import cadquery as cq
@@ -45,7 +46,7 @@ def numbered(solid: cq.Solid) -> NamedSolid:
     return NamedSolid(solid, {f"face {number}": face for number, face in enumerate(solid.Faces(), 1)})
 
 
-def extruded(outline: Sequence[NamedEdge], holes: Sequence[NamedEdge], width: float) -> NamedSolid:
+def extruded(outline: Sequence[NamedEdge], holes: Sequence[Sequence[NamedEdge]], width: float) -> NamedSolid:
     """Sweep an outline along +z, from its plane z = -width/2 to +width/2 [mm].
 
     Names come from the sweep's own history, not from positions. The end at +z is the face "front"
@@ -53,7 +54,7 @@ def extruded(outline: Sequence[NamedEdge], holes: Sequence[NamedEdge], width: fl
 
     Args:
         outline: edges in order, counter-clockwise seen from +z, sharing their vertices.
-        holes: closed edges, clockwise; one hole each.
+        holes: edges of each hole in order, clockwise, sharing their vertices.
         width: along z [mm].
 
     Raises:
@@ -62,14 +63,16 @@ def extruded(outline: Sequence[NamedEdge], holes: Sequence[NamedEdge], width: fl
     plane = gp_Pln(gp_Pnt(0.0, 0.0, -width / 2), gp_Dir(0.0, 0.0, 1.0))
     face = BRepBuilderAPI_MakeFace(plane, wire_of(outline), True)
     for hole in holes:
-        face.Add(wire_of([hole]))
+        face.Add(wire_of(hole))
     if not face.IsDone():
         raise GeometryError("the outline of the part does not close into one face")
     prism = BRepPrimAPI_MakePrism(face.Face(), gp_Vec(0.0, 0.0, width))
     solid = cq.Solid(prism.Shape())
     if not solid.isValid():
         raise GeometryError("the outline of the part crosses itself: its solid is not valid")
-    swept = {named.name: cq.Face(next(iter(prism.Generated(named.edge.wrapped)))) for named in (*outline, *holes)}
+    swept = {
+        named.name: cq.Face(next(iter(prism.Generated(named.edge.wrapped)))) for named in (*outline, *chain(*holes))
+    }
     ends = {FRONT: cq.Face(prism.LastShape()), BACK: cq.Face(prism.FirstShape())}
     # history returns each face as it was made; the solid holds the same face turned outwards
     outward = {face: face for face in solid.Faces()}

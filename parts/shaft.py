@@ -11,7 +11,7 @@ from OCP.gp import gp_Ax1, gp_Dir, gp_Pln, gp_Pnt
 
 from tol3d.errors import GeometryError
 from tol3d.parts.named_solid import BACK, FRONT, NamedEdge, NamedSolid, wire_of
-from tol3d.parts.spur_gear import SHORTEST_EDGE
+from tol3d.parts.tooth_edges import SHORTEST_EDGE
 
 CHAMFER_SHARE: Final = 1 / 20  # of the diameter; a turned shaft's usual edge
 CHAMFER_OF_LENGTH: Final = 1 / 4  # at most, of the length of that diameter: two chamfers leave half of it

@@ -24,7 +24,7 @@ from tol3d.parts.bevel_cones import BACK_RIM, FRONT_RIM, RIM_SHARE
 from tol3d.parts.bevel_flank import FLANK_ERROR, flank_intervals, sample_flank
 from tol3d.parts.bevel_gear import build
 from tol3d.parts.named_solid import to_step
-from tol3d.parts.spur_gear import flank_name
+from tol3d.parts.tooth_edges import flank_name
 
 DEG = math.pi / 180
 ALPHA = 20 * DEG

@@ -16,7 +16,8 @@ from tol3d.errors import GeometryError
 from tol3d.gears import LEFT, RIGHT, SpurGear
 from tol3d.gears.flank import Flank
 from tol3d.parts.named_solid import NamedEdge, extruded, to_step
-from tol3d.parts.spur_gear import FLANK_ERROR, build, flank_intervals, flank_name
+from tol3d.parts.spur_gear import build
+from tol3d.parts.tooth_edges import FLANK_ERROR, flank_intervals, flank_name
 
 DEG = math.pi / 180
 FLANK_BOUND = 1e-5  # mm; 0.01 um, what measuring strips are allowed

@@ -6,7 +6,7 @@ from numpy.typing import NDArray
 from tol3d.gears import LEFT, RIGHT, BevelGear, Flank
 from tol3d.parts.bevel_flank import sample_flank
 from tol3d.parts.bevel_gear import build
-from tol3d.parts.spur_gear import SIDES
+from tol3d.parts.tooth_edges import SIDES
 from tol3d.solids.lazy import Arrays
 from tol3d.solids.triangulation import Curve, Triangulation, edge_sagittas, largest_sagitta, triangulated
 

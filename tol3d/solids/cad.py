@@ -17,8 +17,8 @@ from OCP.gp import gp_Trsf
 
 from tol3d.errors import unwritable
 from tol3d.files import FileContent
-from tol3d.gears import BevelGear, Gear, SpurGear
-from tol3d.parts import arm, bevel_gear, shaft, spur_gear
+from tol3d.gears import BevelGear, Gear, InternalGear, SpurGear
+from tol3d.parts import arm, bevel_gear, shaft
 from tol3d.parts.named_solid import NamedSolid, refuse_cut_step
 from tol3d.solids import bevel_cad, body_cad, own_program, picking, spur_cad
 from tol3d.solids.bodies import ArmBody, Body, ShaftBody
@@ -63,9 +63,10 @@ def _builder_of(shape: BuiltShape) -> Callable[[BuiltShape], NamedSolid]:
     return found
 
 
-solid_of.register(SpurGear, spur_gear.build)
-sample_flanks.register(SpurGear, spur_cad.sample_flanks)
-tessellate.register(SpurGear, spur_cad.tessellate)
+for gear in (SpurGear, InternalGear):
+    solid_of.register(gear, spur_cad.build)
+    sample_flanks.register(gear, spur_cad.sample_flanks)
+    tessellate.register(gear, spur_cad.tessellate)
 
 solid_of.register(BevelGear, bevel_gear.build)
 sample_flanks.register(BevelGear, bevel_cad.sample_flanks)

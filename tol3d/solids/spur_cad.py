@@ -1,4 +1,4 @@
-"""What is read off the solid of a spur gear: flanks swept along z, and one end with its rim."""
+"""What is read off the solid of a spur gear, external or internal: flanks swept along z, one end with its rims."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -12,9 +12,10 @@ from OCP.BRepMesh import BRepMesh_IncrementalMesh
 from OCP.gp import gp_Pnt, gp_Vec
 from OCP.TopAbs import TopAbs_REVERSED
 
-from tol3d.gears import LEFT, RIGHT, SpurGear
+from tol3d.gears import LEFT, RIGHT, InternalGear, SpurGear
+from tol3d.parts import internal_gear, spur_gear
 from tol3d.parts.named_solid import BACK, NamedSolid
-from tol3d.parts.spur_gear import SIDES, build, build_tooth, flank_name
+from tol3d.parts.tooth_edges import SIDES, flank_name, roll_span
 from tol3d.solids.lazy import Arrays
 from tol3d.solids.triangulation import DISPLAY_ANGLE, corners_of, edge_curve, largest_sagitta, mesh_of, nodes_of
 
@@ -27,11 +28,12 @@ VANISHING = 1e-6  # rad, |dS/du| over |d2S/du2|: the roll; nearer to the base ci
 # measuring strips -----------------------------------------------------------------------------------
 
 
-def sample_flanks(gear: SpurGear, steps: int) -> Arrays:
+def sample_flanks(gear: SpurGear | InternalGear, steps: int) -> Arrays:
     """See cad.sample_flanks."""
-    part = build(gear) if gear.teeth <= MOST_TEETH else build_tooth(gear)
-    roll = np.linspace(gear.form_roll**1.5, gear.tip_roll**1.5, steps + 1) ** (2 / 3)
-    roll[[0, -1]] = gear.form_roll, gear.tip_roll
+    part = build(gear) if gear.teeth <= MOST_TEETH else _build_tooth(gear)
+    first, last = roll_span(gear)
+    roll = np.linspace(first**1.5, last**1.5, steps + 1) ** (2 / 3)
+    roll[[0, -1]] = first, last
     faces = {flank: _Ruled(part.faces[flank_name(0, flank)]) for flank in (RIGHT, LEFT)}
     profile = np.stack([face.profile(roll) for face in faces.values()])
     involute = np.stack([gear.flank_points(roll, flank) for flank in faces])
@@ -44,6 +46,15 @@ def sample_flanks(gear: SpurGear, steps: int) -> Arrays:
         "chord_error": np.array(max(largest_sagitta(face.profile, roll) for face in faces.values())),
         "flank_error": np.array(np.hypot(*(profile - involute).T).max()),
     }
+
+
+def build(gear: SpurGear | InternalGear) -> NamedSolid:
+    """The whole gear."""
+    return internal_gear.build(gear) if isinstance(gear, InternalGear) else spur_gear.build(gear)
+
+
+def _build_tooth(gear: SpurGear | InternalGear) -> NamedSolid:
+    return internal_gear.build_tooth(gear) if isinstance(gear, InternalGear) else spur_gear.build_tooth(gear)
 
 
 def _at_height(plane: Array, z: float) -> Array:
@@ -82,7 +93,7 @@ class _Ruled:
 # display mesh ---------------------------------------------------------------------------------------
 
 
-def tessellate(gear: SpurGear, deflection: float) -> Arrays:
+def tessellate(gear: SpurGear | InternalGear, deflection: float) -> Arrays:
     """OCC's triangulation of one end, and its rim swept to the other end.
 
     OCC meshes flank faces many times finer than asked for and slowly, though they are ruled along z
