@@ -14,11 +14,11 @@ from typing import Annotated, TextIO
 
 import typer
 
-from tol3d.cli import analyses, records, showing, studies
+from tol3d.cli import analyses, design, records, showing, studies
 from tol3d.cli.arguments import app
 from tol3d.cli.console import DONE, FAULT, INTERRUPTED, WRONG_INPUT, err_console, warn, write_plainly
 
-__all__ = ["analyses", "app", "main", "records", "showing", "studies"]
+__all__ = ["analyses", "app", "design", "main", "records", "showing", "studies"]
 
 COMMANDS = (
     studies.run,
@@ -30,6 +30,7 @@ COMMANDS = (
     records.identify,
     records.rig,
     records.plan_rig,
+    design.design,
     showing.export,
     showing.view,
     showing.schema,

@@ -1,0 +1,141 @@
+"""The search for sets against every set there is, tooth by tooth; what wishes that cannot be met are told."""
+
+import math
+from fractions import Fraction
+from itertools import product
+
+import numpy as np
+import pytest
+from oracles.placed_planets import placed
+
+from tol3d.errors import GeometryError
+from tol3d.planetary import ToothSet, simple, wolfrom
+from tol3d.planetary.design.families import Simple, Teeth, Wolfrom
+from tol3d.planetary.design.search import Found, Wish, find, teeth_text
+from tol3d.planetary.design.shifted_set import Limits
+
+EVERY = 1000
+LOOSE = Limits(tip_thickness=0.05, contact_ratio=1.0, tip_clearance=0.05, planet_gap=0.5, shift=3.0)
+
+
+def teeth_of(found: Found) -> set[str]:
+    return {teeth_text(own.own.teeth) for own in found.candidates}
+
+
+def room(teeth: ToothSet, planets: int, gap: float) -> bool:
+    """Whether circles of tips without shift, laid out around the mean centre distance, stay apart."""
+    distance = sum(mesh.tooth_sum for mesh in teeth.meshes) / len(teeth.meshes) / 2
+    places = [distance * np.exp(2j * math.pi * k / planets) for k in range(planets)]
+    tip = max(teeth.steps) / 2 + 1
+    return all(abs(p - q) - 2 * tip >= gap for k, p in enumerate(places) for q in places[:k])
+
+
+def every_3k(ratio: float, tolerance: float, planets: int, teeth: Teeth) -> set[str]:
+    """All sets with their teeth placed one by one, no condition of divisibility."""
+    found = set()
+    counts, d = range(teeth.least, teeth.largest + 1), teeth.sum_difference
+    for sun, p1, p2 in product(counts, repeat=3):
+        if sun + 2 * p1 - d > teeth.largest or sun + p1 + p2 - d > teeth.largest:
+            continue
+        for r1, r2 in product(
+            range(sun + 2 * p1 - d, sun + 2 * p1 + d + 1), range(sun + p1 + p2 - d, sun + p1 + p2 + d + 1)
+        ):
+            sums = (sun + p1, r1 - p1, r2 - p2)
+            if max(r1, r2) > teeth.largest or max(sums) - min(sums) > d or r1 * p2 == r2 * p1:
+                continue
+            own = (1 + Fraction(r1, sun)) / (1 - Fraction(r1 * p2, r2 * p1))
+            if abs(own - Fraction(ratio)) > Fraction(tolerance) * Fraction(1 + 10**-9):
+                continue
+            teeth_set = wolfrom(sun, p1, r1, p2, r2)
+            if room(teeth_set, planets, 0.5) and placed(teeth_set, planets):
+                found.add(teeth_text(teeth_set))
+    return found
+
+
+@pytest.mark.parametrize(("ratio", "planets"), [(60.0, 3), (-45.0, 4)])
+def test_it_finds_every_set_there_is(ratio: float, planets: int) -> None:
+    """Those whose teeth cannot run together are counted: found and left out are all."""
+    teeth = Teeth(12, 66, 1)
+    expected = every_3k(ratio, 1.0, planets, teeth)
+    found = find(Wish(Wolfrom(), ratio, 1.0, planets, teeth, limits=LOOSE), EVERY)
+    fallen = sum(own.count for own in found.fallen if own.condition == "teeth that run together")
+    assert teeth_of(found) <= expected
+    assert len(expected) == len(found.candidates) + fallen
+    assert len(found.candidates) > 5
+
+
+def test_the_ratio_of_the_paper_leaves_exactly_one_set() -> None:
+    """Tooth sums within 2, four identical planets, adjacency: 25/27/79/24/76, all sums 52."""
+    found = find(Wish(Wolfrom(), 54.72, planets=4), EVERY)
+    assert teeth_of(found) == {"25/27/79/24/76"}
+    assert found.left == 0
+    (own,) = found.candidates
+    assert own.own.centre_distance == 26.0
+    assert set(own.own.shifts.values()) == {0.0}
+    assert (round(own.forward, 5), round(own.backward, 5)) == (0.85163, 0.82856)
+    assert own.own.planet_gap(4) == pytest.approx(26 * math.sqrt(2) - 29, abs=1e-12)
+
+
+def test_the_smallest_sets_come_first_and_the_rest_is_counted() -> None:
+    wish = Wish(Simple(), 4.5, planets=3)
+    every, few = find(wish, EVERY), find(wish, 4)
+    fallen = sum(own.count for own in few.fallen if own.condition == "teeth that run together")
+    whole = sum(own.count for own in every.fallen if own.condition == "teeth that run together")
+    assert [own.own.teeth for own in few.candidates] == [own.own.teeth for own in every.candidates[:4]]
+    assert few.left + 4 + fallen == len(every.candidates) + whole
+    rings = [own.own.teeth.mesh("ring").teeth for own in every.candidates]
+    assert rings == sorted(rings)
+
+
+def test_simple_sets_are_all_there() -> None:
+    expected = {
+        teeth_text(own)
+        for sun, planet, ring in product(range(12, 61), repeat=3)
+        if abs(sun + planet - (ring - planet)) <= 2 and ring > planet and abs(1 + ring / sun - 4.0) <= 0.01 + 1e-12
+        for own in [simple(sun, planet, ring)]
+        if placed(own, 3) and room(own, 3, 0.5)
+    }
+    found = find(Wish(Simple(), 4.0, 0.01, 3, Teeth(12, 60, 2), limits=LOOSE), EVERY)
+    fallen = sum(own.count for own in found.fallen if own.condition == "teeth that run together")
+    assert teeth_of(found) <= expected
+    assert len(expected) == len(found.candidates) + fallen
+
+
+@pytest.mark.parametrize(
+    ("wish", "expected"),
+    [
+        (
+            Wish(Wolfrom(), 54.72, planets=8),
+            "no 3K set is left of 44 with that ratio:\n  assembly: 44 fail; 16/27/70/24/69: 8 identical planets at "
+            "equal angles do not assemble between sun and ring 1: 86 is not divisible by 8",
+        ),
+        (
+            Wish(Simple(), 12.0, planets=4),
+            "adjacency: 6 fail; 12/59/132: tips of neighbouring planets overlap by 10.088 mm at a centre distance of "
+            "36 mm, 0.5 mm needed",
+        ),
+        (
+            Wish(Wolfrom(), 54.72, tolerance=0.0, planets=4, limits=Limits(tip_clearance=0.26), centre_distance=26.0),
+            "teeth that run together: 1 fail; 25/27/79/24/76: no profile shifts keep the limits; closest fails by "
+            "clearance",
+        ),
+        (
+            Wish(Wolfrom(), 54.72, planets=4, centre_distance=40.0),
+            "25/27/79/24/76: 40 mm does not suit tooth sums of 52, 52, 52: working pressure angles of 12 to 32 deg "
+            "need at least 24.9778 mm and at most 28.8097 mm",
+        ),
+        (
+            Wish(Wolfrom(), 54.72, teeth=Teeth(12, 40, 2)),
+            "ratio: no 3K set with sun and planets of at least 12 teeth, rings of at most 40 and tooth sums within 2 "
+            "has a ratio within 0.005 of 54.72; the nearest, 12/13/39/12/39, has 55.25",
+        ),
+        (
+            Wish(Simple(), 4.0, teeth=Teeth(40, 60, 2)),
+            "ratio: there is no simple planetary set with sun and planets of",
+        ),
+    ],
+)
+def test_wishes_that_cannot_be_met_say_which_condition_fails(wish: Wish, expected: str) -> None:
+    with pytest.raises(GeometryError) as refused:
+        find(wish)
+    assert expected in str(refused.value)

@@ -1,0 +1,163 @@
+"""Profile shifts of a set within limits: the smallest ones, or those that waste least.
+
+Free are the centre distance and the shift of each step of the planets; the shifts of sun and rings follow from no
+backlash. The problem has few variables, smooth objectives and margins: SLSQP from several starts, its answer kept only
+where every margin is.
+"""
+
+import math
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from enum import StrEnum
+from itertools import product
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import minimize
+
+from tol3d.errors import GeometryError
+from tol3d.planetary.design.basic_rack import BasicRack
+from tol3d.planetary.design.shifted_set import Limits, Margin, ShiftedSet
+from tol3d.planetary.design.torque_balance import Drive, efficiency
+from tol3d.planetary.tooth_set import ToothSet
+
+Array = NDArray[np.float64]
+
+LEAST_WORKING_ANGLE: Final = math.radians(12)  # below it paths of contact leave the involutes of any usual gear
+LARGEST_WORKING_ANGLE: Final = math.radians(32)
+KEPT: Final = 1e-7  # modules or less; by so much a margin may fall short, under a nanometre of a gear of module 5
+STARTS: Final = (-0.25, 0.25)  # modules, shifts of each step from which programmes start, beside the smallest ones
+FTOL: Final = 1e-12
+
+
+class Goal(StrEnum):
+    """What shifts are chosen for."""
+
+    SMALLEST = "smallest"
+    FORWARD = "forward"
+    BACKWARD = "backward"
+
+
+@dataclass(frozen=True)
+class Task:
+    """A set whose shifts are sought.
+
+    Args:
+        teeth, rack: of the set.
+        drive: its input, output and held member.
+        planets: how many.
+        limits: what the teeth must keep.
+        friction: coefficient in the meshes.
+        centre_distance: stated [mm], or None where it is free.
+    """
+
+    teeth: ToothSet
+    rack: BasicRack
+    drive: Drive
+    planets: int
+    limits: Limits
+    friction: float
+    centre_distance: float | None = None
+
+    def efficiency(self, own: ShiftedSet, drive: Drive) -> float:
+        """In the sense of a drive, with losses by the published formula of each mesh."""
+        return efficiency(self.teeth, own.mesh_efficiencies(self.friction), drive)
+
+    def shifted(self, values: Array) -> ShiftedSet:
+        """Of the variables: centre distance over the module, shifts of the planets' steps."""
+        return ShiftedSet(self.teeth, self.rack, float(values[0]) * self.rack.module, tuple(map(float, values[1:])))
+
+    @property
+    def distances(self) -> tuple[float, float]:
+        """Ends of the centre distance [modules] between which working pressure angles are usual.
+
+        Raises:
+            GeometryError: no distance, or not the stated one, suits all meshes.
+        """
+        cos, sums = math.cos(self.rack.pressure_angle), [mesh.tooth_sum / 2 for mesh in self.teeth.meshes]
+        low = max(sums) * cos / math.cos(LEAST_WORKING_ANGLE)
+        high = min(sums) * cos / math.cos(LARGEST_WORKING_ANGLE)
+        if self.centre_distance is not None:
+            stated = self.centre_distance / self.rack.module
+            if not low <= stated <= high:
+                raise GeometryError(self._unreachable(f"{self.centre_distance:g} mm", low, high))
+            return stated, stated
+        if low > high:
+            raise GeometryError(self._unreachable("one centre distance", low, high))
+        return low, high
+
+    def _unreachable(self, what: str, low: float, high: float) -> str:
+        m, sums = self.rack.module, ", ".join(str(mesh.tooth_sum) for mesh in self.teeth.meshes)
+        return (
+            f"{what} does not suit tooth sums of {sums}: working pressure angles of "
+            f"{math.degrees(LEAST_WORKING_ANGLE):g} to {math.degrees(LARGEST_WORKING_ANGLE):g} deg need at least "
+            f"{low * m:.4f} mm and at most {high * m:.4f} mm"
+        )
+
+
+def best_shifts(task: Task, goal: Goal) -> ShiftedSet:
+    """The set with its shifts.
+
+    Raises:
+        GeometryError: no shifts keep the limits; with the margin that fails where they fail least.
+    """
+    smallest = _smallest(task)
+    if goal is Goal.SMALLEST:
+        return _kept(task, smallest)
+    drive = task.drive if goal is Goal.FORWARD else task.drive.reversed
+    found = [
+        _solved(task, start, lambda values: -task.efficiency(task.shifted(values), drive))
+        for start in _starts(task, smallest)
+    ]
+    kept = [task.shifted(values) for values in found if _fault(task, values) is None]
+    if not kept:
+        return _kept(task, smallest)
+    return max(kept, key=lambda own: task.efficiency(own, drive))
+
+
+def _smallest(task: Task) -> Array:
+    """Least sum of squares of all shifts: none at all where tooth sums are alike and the teeth allow it."""
+    low, high = task.distances
+    steps = len(task.teeth.steps)
+    middle = float(np.median([mesh.tooth_sum / 2 for mesh in task.teeth.meshes]))
+    plain = np.array([min(max(middle, low), high), *[0.0] * steps])
+    if max(map(abs, task.shifted(plain).shifts.values())) < KEPT and _fault(task, plain) is None:
+        return plain
+    return _solved(task, plain, lambda values: sum(x * x for x in task.shifted(values).shifts.values()))
+
+
+def _starts(task: Task, smallest: Array) -> Iterator[Array]:
+    low, high = task.distances
+    yield smallest
+    for shifts in product(STARTS, repeat=len(task.teeth.steps)):
+        yield np.array([low + 0.5 * (high - low), *shifts])
+
+
+def _solved(task: Task, start: Array, objective: Callable[[Array], float]) -> Array:
+    low, high = task.distances
+    most = task.limits.shift
+    bounds = [(low, high), *[(-most, most)] * len(task.teeth.steps)]
+    margins = {"type": "ineq", "fun": lambda values: _margins(task, values)}
+    found = minimize(
+        objective, start, method="SLSQP", bounds=bounds, constraints=margins, options={"ftol": FTOL, "maxiter": 200}
+    )
+    return np.clip(np.asarray(found.x, dtype=np.float64), [b[0] for b in bounds], [b[1] for b in bounds])
+
+
+def _margins(task: Task, values: Array) -> Array:
+    own = task.shifted(values)
+    return np.array([margin.kept for margin in own.margins(task.limits, task.planets)])
+
+
+def _fault(task: Task, values: Array) -> Margin | None:
+    """The margin that fails most, if any does."""
+    worst = task.shifted(values).worst(task.limits, task.planets)
+    return worst if worst.kept < -KEPT else None
+
+
+def _kept(task: Task, values: Array) -> ShiftedSet:
+    fault = _fault(task, values)
+    if fault is not None:
+        raise GeometryError(f"no profile shifts keep the limits; closest fails by {fault.words}")
+    return task.shifted(values)

@@ -1,0 +1,210 @@
+"""Sets for a wished ratio, condition by condition; where none is left, the condition that fails and its numbers."""
+
+import math
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+
+from tol3d.errors import GeometryError
+from tol3d.planetary.design.adjacency import tip_gap
+from tol3d.planetary.design.basic_rack import BasicRack
+from tol3d.planetary.design.families import Family, Teeth
+from tol3d.planetary.design.made_gears import refuse_interference
+from tol3d.planetary.design.optimum import Goal, Task, best_shifts
+from tol3d.planetary.design.shifted_set import Limits, ShiftedSet, step_name
+from tol3d.planetary.tooth_set import ToothSet
+
+
+@dataclass(frozen=True)
+class Wish:
+    """What a set is wanted for.
+
+    Args:
+        family: kind of set.
+        ratio: speed of the input over that of the output; negative where they turn in opposite senses.
+        tolerance: of the ratio, either way.
+        planets: how many, alike and at equal angles.
+        teeth: numbers of teeth allowed.
+        rack: of all gears.
+        limits: what the teeth must keep.
+        goal: what profile shifts are chosen for.
+        friction: coefficient in the meshes.
+        centre_distance: stated [mm], or None.
+
+    Raises:
+        GeometryError: the ratio is 0 or no number.
+    """
+
+    family: Family
+    ratio: float
+    tolerance: float = 0.005
+    planets: int = 3
+    teeth: Teeth = field(default_factory=Teeth)
+    rack: BasicRack = field(default_factory=BasicRack)
+    limits: Limits = field(default_factory=Limits)
+    goal: Goal = Goal.SMALLEST
+    friction: float = 0.08
+    centre_distance: float | None = None
+
+    def __post_init__(self) -> None:
+        if not math.isfinite(self.ratio) or self.ratio == 0.0:
+            raise GeometryError(f"ratio: expected a number other than 0, got {self.ratio:g}")
+
+    def task(self, teeth: ToothSet) -> Task:
+        """The same for one set."""
+        return Task(teeth, self.rack, self.family.drive, self.planets, self.limits, self.friction, self.centre_distance)
+
+
+@dataclass(frozen=True)
+class Candidate:
+    """A set that keeps every condition, with its task."""
+
+    own: ShiftedSet
+    task: Task
+
+    @property
+    def ratio(self) -> float:
+        """Speed of the input over that of the output."""
+        return self.task.drive.ratio(self.own.teeth)
+
+    @property
+    def forward(self) -> float:
+        """Efficiency in the sense of the drive."""
+        return self.task.efficiency(self.own, self.task.drive)
+
+    @property
+    def backward(self) -> float:
+        """Driven at the output; at most 0: it locks itself."""
+        return self.task.efficiency(self.own, self.task.drive.reversed)
+
+
+@dataclass(frozen=True)
+class Fallen:
+    """Sets that fail one condition: how many, and why one of them does, the nearest to it."""
+
+    condition: str
+    count: int
+    nearest: str
+
+
+@dataclass(frozen=True)
+class Found:
+    """Candidates, nearest ratio first and small before large; what fell before them; how many were not looked at."""
+
+    candidates: tuple[Candidate, ...]
+    fallen: tuple[Fallen, ...]
+    left: int
+
+
+def find(wish: Wish, most: int = 10) -> Found:
+    """Candidates for a wish.
+
+    Args:
+        wish: what is wanted.
+        most: so many candidates are found at most.
+
+    Raises:
+        GeometryError: none; with each condition in turn, how many sets it left out, and the nearest one's numbers.
+    """
+    with_ratio, nearest = wish.family.near(wish.ratio, wish.tolerance, wish.teeth)
+    if not with_ratio:
+        raise GeometryError(_no_ratio(wish, nearest))
+    assembled, not_assembled = _assembled(wish, with_ratio)
+    apart, touching = _apart(wish, assembled)
+    ordered = sorted(apart, key=lambda own: (round(abs(_ratio(wish, own) - wish.ratio), 9), _size(own)))
+    candidates: list[Candidate] = []
+    failed: list[str] = []
+    for teeth in ordered:
+        if len(candidates) == most:
+            break
+        try:
+            own = best_shifts(wish.task(teeth), wish.goal)
+            refuse_interference(own)
+        except GeometryError as error:
+            failed.append(f"{teeth_text(teeth)}: {error}")
+            continue
+        candidates.append(Candidate(own, wish.task(teeth)))
+    interfering = (Fallen("teeth that run together", len(failed), failed[0]),) if failed else ()
+    fallen = (*not_assembled, *touching, *interfering)
+    if not candidates:
+        raise GeometryError(_none_left(wish, len(with_ratio), fallen))
+    return Found(tuple(candidates), fallen, len(ordered) - len(candidates) - len(failed))
+
+
+def teeth_text(teeth: ToothSet) -> str:
+    """Teeth of a set in the order of its family: 25/27/79/24/76.
+
+    >>> from tol3d.planetary.tooth_set import wolfrom
+    >>> teeth_text(wolfrom(25, 27, 79, 24, 76))
+    '25/27/79/24/76'
+    """
+    planets = {step_name(teeth, step): count for step, count in enumerate(teeth.steps)}
+    return "/".join(map(str, in_order(teeth, planets | {mesh.central: mesh.teeth for mesh in teeth.meshes})))
+
+
+def in_order(teeth: ToothSet, of_gears: Mapping[str, float]) -> tuple[float, ...]:
+    """What gears have, by their names, in the order in which a family writes them: a sun, its planets, their rings."""
+    names: list[str] = []
+    for mesh in teeth.meshes:
+        planet = step_name(teeth, mesh.step)
+        names += [planet, mesh.central] if mesh.internal else [mesh.central, planet]
+    return tuple(of_gears[name] for name in dict.fromkeys(names))
+
+
+def _ratio(wish: Wish, teeth: ToothSet) -> float:
+    return wish.family.drive.ratio(teeth)
+
+
+def _size(teeth: ToothSet) -> int:
+    return max(mesh.teeth for mesh in teeth.meshes)
+
+
+def _assembled(wish: Wish, sets: Iterable[ToothSet]) -> tuple[list[ToothSet], tuple[Fallen, ...]]:
+    kept, failed = list[ToothSet](), list[str]()
+    for teeth in sorted(sets, key=_size):
+        faults = teeth.assembly_faults(wish.planets)
+        if faults:
+            failed.append(f"{teeth_text(teeth)}: {faults[0].words}")
+        else:
+            kept.append(teeth)
+    return kept, (Fallen("assembly", len(failed), failed[0]),) if failed else ()
+
+
+def _apart(wish: Wish, sets: Iterable[ToothSet]) -> tuple[list[ToothSet], tuple[Fallen, ...]]:
+    """By the tips of gears without shift, at the mean of the meshes' reference centre distances or the stated one."""
+    kept, failed = list[ToothSet](), list[tuple[float, str]]()
+    for teeth in sets:
+        sums = [mesh.tooth_sum for mesh in teeth.meshes]
+        distance = wish.centre_distance or wish.rack.module * sum(sums) / len(sums) / 2
+        tip = wish.rack.module * (max(teeth.steps) / 2 + wish.rack.addendum)
+        gap = tip_gap(distance, wish.planets, tip)
+        if gap >= wish.limits.planet_gap:
+            kept.append(teeth)
+            continue
+        state = f"{gap:.3f} mm apart" if gap >= 0 else f"overlap by {-gap:.3f} mm"
+        failed.append(
+            (
+                -gap,
+                f"{teeth_text(teeth)}: tips of neighbouring planets {state} at a centre distance of {distance:g} mm, "
+                f"{wish.limits.planet_gap:g} mm needed",
+            )
+        )
+    return kept, (Fallen("adjacency", len(failed), min(failed)[1]),) if failed else ()
+
+
+def _no_ratio(wish: Wish, nearest: ToothSet | None) -> str:
+    teeth = wish.teeth
+    among = (
+        f"with sun and planets of at least {teeth.least} teeth, rings of at most {teeth.largest} and tooth sums within "
+        f"{teeth.sum_difference}"
+    )
+    if nearest is None:
+        return f"ratio: there is no {wish.family.words} {among}"
+    return (
+        f"ratio: no {wish.family.words} {among} has a ratio within {wish.tolerance:g} of {wish.ratio:g}; the nearest, "
+        f"{teeth_text(nearest)}, has {_ratio(wish, nearest):.6g}"
+    )
+
+
+def _none_left(wish: Wish, count: int, fallen: Iterable[Fallen]) -> str:
+    lines = [f"  {own.condition}: {own.count} fail; {own.nearest}" for own in fallen]
+    return "\n".join([f"no {wish.family.words} is left of {count} with that ratio:", *lines])
