@@ -49,6 +49,10 @@ def test_it_prints_the_figures_and_writes_the_folder(tol3d: Command, tmp_path: P
     kept = IdentifiedSummary.model_validate_json((out / "identified.json").read_text("utf-8"))
     assert kept.figures["jmin"].value == pytest.approx(LEAST, abs=0.2)
     assert kept.figures["jmax"].unit == "arcsec"
+    assert set(kept.closure) == {"drive", "back", "backlash"}
+    shown = next(line.split() for line in said.splitlines() if line.startswith("closure of the backlash"))
+    assert float(shown[5]) == pytest.approx(kept.closure["backlash"].value, abs=6e-4)
+    assert float(shown[6]) == pytest.approx(kept.closure["backlash"].half_width, abs=6e-4)
     with (out / "backlash.csv").open(encoding="utf-8") as file:
         rows = list(csv.DictReader(file))
     assert len(rows) == 16 * 72 + 1

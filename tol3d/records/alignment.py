@@ -14,6 +14,7 @@ from pathlib import Path
 import numpy as np
 
 from tol3d.records.bins import Bins
+from tol3d.records.ends import Ends
 from tol3d.records.pair import TURN, RigPair
 from tol3d.records.reading import Pass
 
@@ -26,6 +27,7 @@ class Aligned:
         path, repeat: whose it is.
         turns: of the driver, by which its own count was shifted.
         bins: its rows, shifted.
+        ends: likewise, see Pass.
         torques: see Pass.
     """
 
@@ -33,6 +35,7 @@ class Aligned:
     repeat: int
     turns: int
     bins: Bins
+    ends: Ends | None
     torques: tuple[float, float] | None
 
 
@@ -63,7 +66,9 @@ def _placed(pair: RigPair, own: Pass, reference: float) -> Aligned:
     step = TURN * pair.common_factor / pair.driven_teeth
     steps = round((mean_error(own.bins) - reference) / step)
     turns = steps * _inverse(pair) % pair.long_period_turns
-    return Aligned(own.path, own.repeat, turns, own.bins.shifted(pair, turns, -steps * step), own.torques)
+    bins = own.bins.shifted(pair, turns, -steps * step)
+    ends = None if own.ends is None else own.ends.shifted(pair, turns, -steps * step)
+    return Aligned(own.path, own.repeat, turns, bins, ends, own.torques)
 
 
 def _inverse(pair: RigPair) -> int:

@@ -46,6 +46,10 @@ class Bins:
         """The same rows so many turns of the driver further on in the long period, their errors shifted [rad]."""
         return replace(self, phi1=np.mod(self.phi1 + TURN * turns, pair.long_period), error=self.error + error)
 
+    def where(self, kept: NDArray[np.bool_]) -> "Bins":
+        """Some of the bins."""
+        return Bins(**{name: values[kept] for name, values in vars(self).items()})
+
 
 class BinSums:
     """Sums over rows, bin by bin, while they are read."""

@@ -64,6 +64,10 @@ def _figures(found: Identified) -> Table:
     for name, own in found.encoders.items():
         cells = [*(Shown(f"{value / ARCSEC:.3f}", value / ARCSEC) for value in (own.value, own.half_width))]
         rows.append(Row(f"{name}, once per turn [″]", [*cells, NOTHING, NOTHING], unit="arcsec"))
+    for closing, own in found.closure.items():
+        what = "backlash" if closing == "backlash" else f"{closing} side"
+        cells = [Shown(f"{value / ARCSEC:.3f}", value / ARCSEC) for value in (own.value, own.half_width)]
+        rows.append(Row(f"closure of the {what} [″]", [*cells, NOTHING, NOTHING], unit="arcsec"))
     if found.winding is not None:
         cells = [Shown(f"{x / ARCSEC:.3f}", x / ARCSEC) for x in (found.winding.value, found.winding.half_width)]
         rows.append(Row("winding 1/k [″/(N m)]", [*cells, NOTHING, NOTHING], unit="arcsec/(N m)"))
@@ -90,6 +94,9 @@ def _notes(found: Identified) -> Iterator[str]:
     teeth = "; tooth mesh is fitted along" if found.fit.terms.teeth else "; too few rows in a tooth to fit tooth mesh"
     yield f"one row scatters by {sigma:.3f}″ (standard deviation), taken as white noise{teeth}"
     yield "angles count in each gear's own sense of rotation in the drive run, phases from the encoders' zeros"
+    if found.closure:
+        turns = found.pair.long_period_turns
+        yield f"closure: change from the first quarter turn to that after the long period of {turns} turns, or its last"
     if found.fit.terms.winding:
         yield "backlash extrapolated to zero torque: B(T) = j + T/k"
 

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from tol3d.errors import InputError
 from tol3d.records.alignment import Aligned, HiddenShift, aligned, hidden_shift
+from tol3d.records.closure import Closing, closures, what_is_open
 from tol3d.records.exact_play import Side
 from tol3d.records.fit import Fit, Measured, fitted, measured_of, with_drift
 from tol3d.records.one_sided import OneSided, one_sided
@@ -121,6 +122,11 @@ class Identified:
         driven, _ = length_and_phase(vector[2:], covariance[2:, 2:], self.model.quantile)
         gain = 1 / self.pair.rate
         return {"encoder 1": Figure(gain * driver.value, gain * driver.half_width), "encoder 2": driven}
+
+    @cached_property
+    def closure(self) -> Mapping[Closing, Figure]:
+        """Change of transmission errors and of the backlash over the long period [rad], where one is reached."""
+        return closures(self.fit, self.specimen, self.passes)
 
     @property
     def winding(self) -> Figure | None:
@@ -308,7 +314,14 @@ def _warnings(found: Identified, settings: Settings) -> tuple[str, ...]:
             f"what is left at low orders is {found.fit.low_orders:.1f} times as strong as white noise (drift, "
             "cumulative pitch, oval shafts, run-out of bearings); intervals are wider for it"
         )
-    return (*words, *_torque_warnings(found), *_drift_warnings(found, settings))
+    return (*words, *_torque_warnings(found), *_drift_warnings(found, settings), *_closure_warnings(found, settings))
+
+
+def _closure_warnings(found: Identified, settings: Settings) -> tuple[str, ...]:
+    """Of what a linear drift, where one is fitted along, does not explain."""
+    if not settings.drift:
+        return tuple(what_is_open(found.closure, found.fit))
+    return tuple(what_is_open(closures(found.fit, found.specimen, found.passes, but_drift=True), found.fit))
 
 
 def _torque_warnings(found: Identified) -> tuple[str, ...]:

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from tol3d.errors import InputError
 from tol3d.records.bins import Bins, BinSums
 from tol3d.records.csv_file import Block, blocks_of, line_of
+from tol3d.records.ends import Ends, EndSums
 from tol3d.records.pair import TURN, RigPair
 
 Array = NDArray[np.float64]
@@ -46,6 +47,7 @@ class Pass:
         torques: smallest and largest torque [N m], magnitudes; None where none was measured.
         first: error at the first row [rad] and the driver's angle there.
         bins: the rows, gathered.
+        ends: those of the start and of a long period later; None of a shorter pass.
         trace: phi1 and phi2 of some rows, (2, n) [rad], counted on; their number does not grow with that of all rows.
         raw: the same as the file has them.
     """
@@ -57,6 +59,7 @@ class Pass:
     torques: tuple[float, float] | None
     first: tuple[float, float]
     bins: Bins
+    ends: Ends | None
     trace: Array
     raw: Array
 
@@ -158,7 +161,7 @@ class PassReader:
     def __init__(self, pair: RigPair, path: Path, repeat: int, senses: Senses) -> None:
         self.repeat = repeat
         self._pair, self._path, self._senses = pair, path, senses
-        self._sums = BinSums(pair)
+        self._sums, self._end_sums = BinSums(pair), EndSums(pair)
         self._rows = 0
         self._ends: tuple[Array, Array] | None = None  # first and last (phi1, phi2)
         self._raw: tuple[float, float] | None = None
@@ -185,6 +188,7 @@ class PassReader:
         error = (both[1] - start[1]) - self._pair.rate * (both[0] - start[0])
         torque = None if block.torque is None else np.abs(block.torque)
         self._sums.add(both[0], error, torque)
+        self._end_sums.add(np.abs(both[0] - start[0]), both[0], error, torque)
         if torque is not None:
             ends = (float(torque.min()), float(torque.max()), *(self._torques or ()))
             self._torques = min(ends), max(ends)
@@ -204,15 +208,16 @@ class PassReader:
         """The pass."""
         assert self._ends is not None
         start, end = self._ends
-        first = float(start[1] - self._pair.rate * start[0])
+        first, travel = float(start[1] - self._pair.rate * start[0]), abs(float(end[0] - start[0]))
         return Pass(
             path=self._path,
             repeat=self.repeat,
             rows=self._rows,
-            travel=abs(float(end[0] - start[0])),
+            travel=travel,
             torques=self._torques,
             first=(first, float(start[0])),
             bins=self._sums.bins(first),
+            ends=self._end_sums.ends(float(start[0]), travel, first),
             trace=np.concatenate(self._trace, axis=1),
             raw=np.concatenate(self._untouched, axis=1),
         )

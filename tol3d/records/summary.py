@@ -106,6 +106,10 @@ class IdentifiedSummary(Kept):
     encoder_senses: list[int] = Field(description="of encoders 1 and 2: +1 where they count in the gear's own sense")
     figures: dict[str, FigureSummary] = Field(description="of both sides together: " + ", ".join(UNITS))
     encoders: dict[str, FigureSummary] = Field(description="once per turn, in each encoder's own angle")
+    closure: dict[str, FigureSummary] = Field(
+        description="change over the long period of the transmission error of drive and back, and of the backlash; "
+        "empty where a side is shorter"
+    )
     winding: FigureSummary | None = Field(description="1/k of B(T) = j + T/k; null where torque does not vary")
     sides: dict[str, SideSummary]
     residual: ResidualSummary
@@ -129,6 +133,7 @@ def summary_of(found: Identified, own: SceneMesh) -> IdentifiedSummary:
         encoder_senses=[found.senses.driver, found.senses.driven],
         figures={name: figure_summary(name, own) for name, own in found.figures.items()},
         encoders={name: _arcsec(own) for name, own in found.encoders.items()},
+        closure={name: _arcsec(own) for name, own in found.closure.items()},
         winding=None if found.winding is None else _arcsec(found.winding, "arcsec/(N m)"),
         sides={side: _side(found, side, own) for side, own in found.alone.items()},
         residual=_residual(found),
