@@ -4,6 +4,10 @@ import math
 
 import numpy as np
 import pytest
+from oracles import internal_brute_force as searched
+from oracles.internal_brute_force import InternalBuilds, Ring
+from oracles.involute_gear import InvoluteGear
+from oracles.poses import pose
 from oracles.ring_and_pinion import Toothed, free_turn
 
 from tol3d.gears import LEFT, RIGHT, Displaced, Flank, InternalGear, InternalPair, SpurGear
@@ -91,3 +95,65 @@ def test_flanks_touch_at_the_touching_angle_wherever_the_centres_lie(ring_drives
             turns = (theta, driven) if ring_drives else (driven, theta)
             side = pair.mating_flank(flank) if ring_drives else flank
             assert abs(free_turn(ring, inner, offset, turns, side)) * pair.ring.base_radius < 1e-7
+
+
+def plain(gear: SpurGear | InternalGear) -> InvoluteGear | Ring:
+    """The plain numbers of a gear for the search."""
+    if isinstance(gear, SpurGear):
+        return InvoluteGear(
+            teeth=gear.teeth,
+            module=gear.module,
+            pressure_angle=gear.pressure_angle,
+            face_width=gear.face_width,
+            profile_shift=gear.profile_shift,
+            addendum=gear.addendum,
+            thickness_deviation=gear.tooth_thickness_deviation,
+        )
+    return Ring(
+        teeth=gear.teeth,
+        module=gear.module,
+        pressure_angle=gear.pressure_angle,
+        face_width=gear.face_width,
+        last_radius=gear.form_radius,
+        profile_shift=gear.profile_shift,
+        addendum=gear.addendum,
+        thickness_deviation=gear.tooth_thickness_deviation,
+    )
+
+
+@pytest.mark.parametrize("ring_drives", [False, True])
+def test_the_search_of_surfaces_finds_the_closed_backlash_with_eccentric_centres(ring_drives: bool) -> None:
+    """2 (r_b2 - r_b1)(inv alpha_w0 - inv alpha_w') at the distance of the centres, wherever they have turned to."""
+    rng = np.random.default_rng(3)
+    pair = random_pair(rng, ring_drives)
+    rows, theta = 3, rng.uniform(0, 2 * math.pi, 3)
+    centres = rng.uniform(-0.01, 0.01, (2, rows, 2)) * pair.ring.module
+    shafts = [np.tile(pose(np.zeros(3), at), (rows, 1, 1)) for at in (np.zeros(3), pair.wheel_origin)]
+    builds = InternalBuilds(plain(pair.pinion), plain(pair.wheel), *shafts, *centres)
+    for flank in FLANKS:
+        driven = searched.turn_until_contact(builds, theta, searched.tooth_in_space(builds, theta), flank)[1]
+        found = searched.normal_backlash(builds, theta, flank)
+        for row in range(rows):
+            frames = [
+                shafts[k][row] @ pose([0, 0, turn], np.zeros(3)) @ pose(np.zeros(3), [*centres[k][row], 0])
+                for k, turn in enumerate((theta[row], driven[row]))
+            ]
+            apart = float(np.hypot(*(frames[1] - frames[0])[:2, 3]))
+            closed = InternalPair(pair.pinion, pair.wheel, apart).normal_backlash
+            assert found[row] == pytest.approx(closed, abs=3e-6)  # a zoom keeps 4 nm of profile, no more of its height
+
+
+def test_signed_distances_to_a_ring_are_those_to_its_dense_points() -> None:
+    rng = np.random.default_rng(4)
+    ring = Ring(60, 1.0, ALPHA, 4.0, 30.9)
+    strings, heights = np.meshgrid(np.linspace(*ring.strings, 1201), np.linspace(-2.0, 2.0, 401), indexing="ij")
+    for flank in FLANKS:
+        surface = ring.flank_points(strings, heights, np.array(5.0), flank).reshape(-1, 3)
+        radius, z = rng.uniform(28.8, 30.8, 10), rng.uniform(-2.2, 2.2, 10)
+        middle = 5 * ring.pitch - flank * ring.pitch / 2
+        azimuth = middle + flank * rng.uniform(0.0, 0.5, 10) * (ring.pitch / 2 - ring.half_angle(radius))
+        points = np.stack([radius * np.cos(azimuth), radius * np.sin(azimuth), z], axis=1)
+        dense = np.linalg.norm(points[:, None] - surface, axis=2).min(axis=1)
+        found = ring.signed_distance(points, np.array(5.0), flank)
+        # steps of 3 um and 10 um: the nearest point is off its foot by at most half of both, at 0.1 mm or more
+        assert np.abs(found - dense).max() < (0.002**2 + 0.005**2) / (2 * found.min())
