@@ -15,7 +15,7 @@ from tol3d.planetary.design.search import Found, Wish, find, teeth_text
 from tol3d.planetary.design.shifted_set import Limits
 
 EVERY = 1000
-LOOSE = Limits(tip_thickness=0.05, contact_ratio=1.0, tip_clearance=0.05, planet_gap=0.5, shift=3.0)
+LOOSE = Limits(shift=3.0)
 
 
 def teeth_of(found: Found) -> set[str]:

@@ -13,6 +13,7 @@ from tol3d.planetary.design.mesh_loss import Sharing, mesh_efficiency
 from tol3d.planetary.design.working_mesh import WorkingMesh, shift_sum
 from tol3d.planetary.tooth_set import ToothSet
 
+APART = 1e-3  # modules; a micrometre of a module of 1 mm, so that nothing touches by rounding alone
 NO_CONTACT = 1.0  # rad; a margin that stands for tips whose circles do not cross
 
 
@@ -139,12 +140,12 @@ class ShiftedSet:
                 yield Margin(f"tip thickness of {gear}", thick / m, limits.tip_thickness, "modules")
                 yield Margin(f"clearance of the tip of {gear} in {mate}", clear / m, limits.tip_clearance, "modules")
                 yield Margin(
-                    f"contact of {gear} with {mate} off its fillet, along the path", involute / m, 0.0, "modules"
+                    f"contact of {gear} with {mate} off its fillet, along the path", involute / m, APART, "modules"
                 )
             yield Margin(f"contact ratio of {name} and {planet}", own.contact_ratio, limits.contact_ratio, "")
             if own.mesh.internal:
                 apart = min(own.tip_interference_margin, NO_CONTACT) * own.mesh.teeth / 2
-                yield Margin(f"tips of {planet} past those of {name}, as they leave", apart, 0.0, "modules")
+                yield Margin(f"tips of {planet} past those of {name}, as they leave", apart, APART, "modules")
 
     def worst(self, limits: Limits, planets: int) -> Margin:
         """The margin kept least."""
