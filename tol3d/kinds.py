@@ -28,6 +28,7 @@ SHIPPED: Final = (
     "tol3d.gearing.mechanism:GEARING",
     "tol3d.assembly.mechanism:ASSEMBLY",
     "tol3d.gearbox.mechanism:GEARBOX",
+    "tol3d.planetary.mechanism:PLANETARY",
 )
 
 GROUP: Final = "tol3d.mechanisms"

@@ -25,6 +25,7 @@ FEW: Mapping[str, tuple[str, ...]] = {
     "curves": ("--trials", "20", "--positions", "8", "--long", "16", "--rounds", "1", "--workers", "1"),
     "fcl_speed": ("--trials", "10", "--naive", "1", "--rounds", "1"),
     "memory": ("--trials", "100", "--scenes", "spur_pair", "cover_on_base"),
+    "planetary": ("--trials", "1000", "--rounds", "1", "--workers", "1"),
     "rig_records": ("--rows", "4000"),
     "stages": ("--trials", "1024", "--rounds", "1"),
     "startup": ("--runs", "1", "--ways", "without both", "--packages", "colorsys", "no_such_package"),
@@ -58,6 +59,11 @@ ROWS: Mapping[str, tuple[str, ...]] = {
         rf"strips, whole face, all teeth +{NUMBER} trials/s",
     ),
     "memory": tuple(rf"{own}, +100 trials, exact: +{NUMBER} MB" for own in ("spur_pair", "cover_on_base")),
+    "planetary": (
+        rf"programme, first order +│ +1 │ +{NUMBER} │ +{NUMBER}",
+        rf"programme, placed gears +│ +1 │ +{NUMBER} │ +{NUMBER}",
+        rf"whole study, both roads +│ +1 │ +{NUMBER} │ +{NUMBER}",
+    ),
     "stages": (rf"draws +│ +{NUMBER} │ +{NUMBER}", rf"statistics, regressors included +│ +{NUMBER} │ +{NUMBER}"),
     "rig_records": (rf"4000 rows a side: +{NUMBER} s, +{NUMBER} s of a processor, the fit +{NUMBER} s",),
     "startup": (

@@ -93,6 +93,7 @@ class PlainMeasure:
         keeps_overlap: whether a trial whose parts overlap has the depth of the overlap as its value, a negative number
             that continues the gap smoothly through 0; False where its value is on another scale or means nothing.
         pooled_statistics: of all trials together, besides those that every sample has.
+        positions, take, spectrum: see Measure; a mechanism whose roads know positions states others.
     """
 
     name: str
@@ -105,10 +106,9 @@ class PlainMeasure:
     adds_up: bool = True
     keeps_overlap: bool = False
     pooled_statistics: tuple[PooledStatistic, ...] = ()
-
-    positions: ClassVar[Positions] = AT_RANDOM
-    take: ClassVar[Take] = "value"
-    spectrum: ClassVar[Spectrum | None] = None
+    positions: Positions = AT_RANDOM
+    take: Take = "value"
+    spectrum: Spectrum | None = None
 
 
 def contributors_of(scene: Scene, draws: Mapping[type[ToleranceSpec], Drawn]) -> tuple[PlainContributor, ...]:
@@ -206,7 +206,6 @@ class PlainSystem:
     statuses: ClassVar[Statuses] = Statuses(("ok",))
     breakdowns: ClassVar[Sequence[Breakdown]] = ()
     warnings: ClassVar[Sequence[str]] = ()
-    streams: ClassVar[Sequence[StreamKey]] = ()
 
     def analytic(self, trials: Trials, measure: Measure) -> Array:
         """Values (trials,) [mm or rad] by theory."""
@@ -227,6 +226,11 @@ class PlainSystem:
     def describe(self, measure: Measure) -> Mapping[str, Any]:
         """Its kind."""
         return {"kind": next(own.kind for own in self.measures if own.name == measure.name)}
+
+    @property
+    def streams(self) -> Sequence[StreamKey]:
+        """None."""
+        return ()
 
     def positions(self, uniforms: Mapping[StreamKey, Array]) -> Mapping[str, Array]:
         """None."""

@@ -1,0 +1,77 @@
+"""How many planetary reducers a second: free turns of placed gears, of first-order gaps, and whole studies.
+
+    python benchmarks/planetary.py [--trials 200000] [--rounds 3] [--workers 2]
+
+By the clock and by the processor's own time, least of several rounds. A train of `reducer_3k` has 24 flanks; both ends
+of the output's turn are two linear programmes over six turns. The study draws 45 deviations, goes both roads of both
+measures, and takes its statistics.
+"""
+
+import argparse
+import resource
+import tempfile
+import time
+from collections.abc import Callable, Sequence
+from pathlib import Path
+
+import numpy as np
+from rich.console import Console
+from rich.table import Table
+
+from tol3d import Overrides, load_scene, run_scene
+from tol3d.execution.pools import Execution
+from tol3d.planetary.contact import Contact
+from tol3d.planetary.from_scene import planetary_system
+from tol3d.planetary.stack_up import StackUp
+from tol3d.study.draws import drawn
+from tol3d.study.overrides import simulation_of
+
+SCENE = Path(__file__).resolve().parent.parent / "scenes" / "reducer_3k.yaml"
+
+
+def least(rounds: int, what: Callable[[], object]) -> tuple[float, float]:
+    """Seconds by the clock and of the processor."""
+    what()  # compiles
+    found = []
+    for _ in range(rounds):
+        clock, used = time.perf_counter(), sum(resource.getrusage(resource.RUSAGE_SELF)[:2])
+        what()
+        spent = sum(resource.getrusage(resource.RUSAGE_SELF)[:2]) - used
+        found.append((time.perf_counter() - clock, spent))
+    return min(clock for clock, _ in found), min(used for _, used in found)
+
+
+def main(arguments: Sequence[str] | None = None) -> None:
+    """Measure and print."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--trials", type=int, default=200_000)
+    parser.add_argument("--rounds", type=int, default=3)
+    parser.add_argument("--workers", type=int, default=2)
+    given = parser.parse_args(arguments)
+    scene = load_scene(SCENE)
+    system = planetary_system(scene)
+    trials = drawn(simulation_of(scene, Overrides(trials=given.trials)), 0, given.trials)
+    deviated, turns = system.deviated(trials), trials.positions[system.own.name]
+    table = Table(title=f"{given.trials} trials of reducer_3k: trains a second")
+    for heading in ("what", "workers", "by the clock", "of a processor"):
+        table.add_column(heading, justify="left" if heading == "what" else "right", no_wrap=True)
+    own = system.own
+    for name, turning in (("programme, first order", StackUp(own)), ("programme, placed gears", Contact(own))):
+        clock, used = least(given.rounds, lambda: turning.free(deviated, turns, own.output, own.input))  # noqa: B023
+        table.add_row(name, "1", f"{given.trials / clock:,.0f}", f"{given.trials / used:,.0f}")
+
+    def study() -> None:
+        with tempfile.TemporaryDirectory() as out:
+            execution = Execution(workers=given.workers, keep_trials=False)
+            run_scene(SCENE, out=Path(out) / "run", overrides=Overrides(trials=given.trials), execution=execution)
+
+    clock, used = least(given.rounds, study)
+    table.add_row(
+        "whole study, both roads", str(given.workers), f"{given.trials / clock:,.0f}", f"{given.trials / used:,.0f}"
+    )
+    Console().print(table)
+
+
+if __name__ == "__main__":
+    np.seterr(all="raise", under="ignore")
+    main()

@@ -1,0 +1,152 @@
+"""Scenes of planetary sets: what is refused, with its numbers, and what becomes of trials."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from places import SCENES
+
+from tol3d import Overrides, SceneError, load_scene, replay, run_scene
+from tol3d.planetary.from_scene import planetary_system
+from tol3d.planetary.stack_up import StackUp
+from tol3d.planetary.system import PlanetarySystem
+from tol3d.system.stated import mean_build
+
+TEXT = (SCENES / "reducer_3k.yaml").read_text("utf-8")
+SHIFTED = ("teeth: 25, module: 1 mm,", "teeth: 25, module: 1 mm, profile_shift: 0.2,")
+REFUSED = {
+    "three planets": (
+        ("planets: 4", "planets: 3"),
+        "moves.reducer.planets: 3 identical planets at equal angles do not assemble between sun and ring 1: 104 is not "
+        "divisible by 3",
+    ),
+    "compound planets": (
+        ("teeth: 76", "teeth: 74"),
+        "moves.reducer.planets: 4 identical planets at equal angles do not assemble between sun and ring 2",
+    ),
+    "touching planets": (
+        ("teeth: 27, module: 1 mm,", "teeth: 27, module: 1 mm, addendum: 5,"),
+        "moves.reducer.planets: neighbouring planets touch: expected pins further apart than the tip circle of 'P1', "
+        "37.0000 mm, got 36.7696 mm; take fewer planets",
+    ),
+    "no common centre distance": (
+        ("teeth: 79", "teeth: 83"),
+        "moves.reducer.meshes.ring 1: expected a centre distance of more than 26.3114 mm, which the base circles of "
+        "ring 1–P1 need, got 26.0000 mm; the tooth numbers are not coaxial, or state another one",
+    ),
+    "a small ring": (
+        ("teeth: 79", "teeth: 27"),
+        "moves.reducer.meshes.ring 1: expected a ring with more teeth than its planets, got 27 and 27",
+    ),
+    "interfering teeth": (
+        SHIFTED,
+        "moves.reducer.meshes.sun: the teeth interfere at the mean build: sun–P1 has a normal backlash of -66.",
+    ),
+    "another module": (
+        ("sun: {kind: spur_gear, teeth: 25, module: 1 mm", "sun: {kind: spur_gear, teeth: 25, module: 1.1 mm"),
+        "moves.reducer.meshes.sun: expected gears of the same module, got 1.1 mm and 1 mm",
+    ),
+    "two roles": (
+        ("output: ring 2", "output: sun"),
+        "moves.reducer.output: expected another shaft than the one that is input, got 'sun' twice",
+    ),
+    "no shaft": (
+        ("output: ring 2", "output: P1"),
+        "moves.reducer.output: expected one of sun, ring 1, ring 2, carrier",
+    ),
+    "a gear of no planet": (
+        ("ring 2: P2}", "ring 2: sun}"),
+        "moves.reducer.meshes.ring 2: expected a gear of 'planet': P1, P2, got 'sun'",
+    ),
+    "another tolerance": (
+        ("{kind: eccentricity, of: sun,", "{kind: run_out, of: sun,"),
+        "tolerances.sun eccentricity.kind: expected of planetary sets tooth_thickness, eccentricity, clocking, "
+        "planet_pin, got run_out",
+    ),
+    "another measure": (
+        ("lost motion: {kind: planetary_lost_motion, of: reducer}", "lost motion: {kind: lost_motion, of: reducer}"),
+        "measures.lost motion.of: expected the name of a train, got 'reducer', which is a planetary set",
+    ),
+    "a long period": (
+        (
+            "lost motion: {kind: planetary_lost_motion, of: reducer}",
+            "error: {kind: planetary_transmission_error, of: reducer, over: long_period}",
+        ),
+        "measures.error.over: expected turn, got long_period: the same teeth meet again as they did after 37525 turns "
+        "of the planets on their pins",
+    ),
+    "an idle part": (
+        ("  carrier: {kind: planet_carrier}", "  carrier: {kind: planet_carrier}\n  other: {kind: planet_carrier}"),
+        "parts.other: 'other' takes part in no move; name it in 'reducer' or take it out",
+    ),
+}
+
+
+def system_of(folder: Path, text: str) -> PlanetarySystem:
+    path = folder / "scene.yaml"
+    path.write_text(text, "utf-8")
+    return planetary_system(load_scene(path))
+
+
+@pytest.mark.parametrize(("change", "said"), REFUSED.values(), ids=REFUSED.keys())
+def test_what_nobody_can_build_is_refused_with_its_numbers(change: tuple[str, str], said: str, tmp_path: Path) -> None:
+    path = tmp_path / "scene.yaml"
+    assert TEXT.count(change[0]) >= 1
+    path.write_text(TEXT[: TEXT.index("published:")].replace(*change, 1), "utf-8")
+    with pytest.raises(SceneError) as caught:
+        run_scene(path, overrides=Overrides(trials=10), out=tmp_path / "run")
+    assert said in str(caught.value)
+
+
+def test_planets_alike_out_of_phase_only_turn_the_output(tmp_path: Path) -> None:
+    """Clocking of all planets' P2 by 10 mrad moves the output by 10 mrad z_P2/z_R2 and takes nothing of its play."""
+    text = TEXT.replace("lower: -0.33333333 mrad, upper: 0.33333333 mrad", "lower: 9.999 mrad, upper: 10.001 mrad")
+    ends = []
+    for own in (TEXT, text):
+        system = system_of(tmp_path, own)
+        assert not list(system.problems())
+        deviated = system.deviated(mean_build(system, system.measures[0]))
+        ends.append(StackUp(system.own).free(deviated, np.zeros(1), "ring 2", "sun").ends[0])
+    np.testing.assert_allclose(ends[1] - ends[0], 0.010 * 24 / 76, rtol=1e-9)
+
+
+def test_an_eccentric_ring_that_binds_the_planets_at_the_mean_build_is_refused(tmp_path: Path) -> None:
+    """90 um off: 31 um of the 35 um of one planet, and 85 um across for the planets beside it."""
+    law = "distribution: {kind: uniform, lower: 0 um, upper: 8 um}"
+    fixed = "direction: {at: 30 deg}, distribution: {kind: uniform, lower: 89 um, upper: 91 um}"
+    text = TEXT.replace(f"of: ring 2, {law}", f"of: ring 2, {fixed}")
+    text = text.replace(
+        "lost motion: {kind: planetary_lost_motion, of: reducer}",
+        "lost motion: {kind: planetary_lost_motion, of: reducer, over: {at: 0 deg}}",
+    )
+    ((path, said),) = system_of(tmp_path, text).problems()
+    assert path == ("moves", "reducer")
+    assert said.startswith("the planets bind at the mean build: no turn of planet ")
+
+
+def test_trials_that_bind_keep_their_rows(tmp_path: Path) -> None:
+    """Pins that lie 60 um off at random bind some planets of most trials, and a column says by how much."""
+    path = tmp_path / "scene.yaml"
+    path.write_text(TEXT.replace("lower: -6 um, upper: 6 um", "lower: -60 um, upper: 60 um"), "utf-8")
+    run = run_scene(path, overrides=Overrides(trials=300), out=tmp_path / "run")
+    counts = run.summary["status"]
+    assert counts["ok"] + counts["interferes"] == 300
+    assert counts["interferes"] > 100
+    own = run.summary["measures"]["lost motion"]
+    assert own["geometric"]["mean"] > 0.0
+    frame = run.frame()
+    jammed = np.asarray(frame["status"]) == "interferes"
+    assert jammed.sum() == counts["interferes"]
+    lacking = np.asarray(frame["lost motion: overlap [um]"])
+    assert (lacking[jammed] > 0.0).all()
+    assert (lacking[~jammed] == 0.0).all()
+
+
+def test_a_trial_replayed_alone_has_its_bits(tmp_path: Path) -> None:
+    run = run_scene(SCENES / "reducer_3k.yaml", overrides=Overrides(trials=64), out=tmp_path / "run")
+    row = run.frame()
+    for trial in (0, 41):
+        seen = replay(run, trial)
+        column = seen.simulation.system.road("exact", None).answers(seen.trials, seen.simulation.system.measures)
+        value = column.values["lost motion"][0, 0] * seen.simulation.system.measures[0].per_internal
+        assert float(np.asarray(row["geometric:lost motion"])[trial]) == pytest.approx(value, rel=0, abs=0)

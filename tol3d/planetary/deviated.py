@@ -1,0 +1,94 @@
+"""What the gears, planets and pins of a set deviate by in some trials, as both roads get it."""
+
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tol3d.planetary.planetary_set import PlanetarySet
+
+Array = NDArray[np.float64]
+
+Effect = Literal["thickness", "offset", "clocking", "pin"]
+
+
+@dataclass(frozen=True)
+class Acts:
+    """What a contributor acts on.
+
+    Args:
+        effect: thickness and clocking of a gear, offset of its teeth from its axis, or of pins from their places.
+        gear: the gear's name; "" of pins.
+        direction: of pins, "radial" or "tangential" where the deviation is one of them alone.
+        factor: what the deviation counts for, such as 1/cos(alpha) of a thickness along the normals.
+    """
+
+    effect: Effect
+    gear: str = ""
+    direction: Literal["radial", "tangential", ""] = ""
+    factor: float = 1.0
+
+
+@dataclass(frozen=True)
+class Deviated:
+    """Deviations of a set (trials, ...).
+
+    Args:
+        central_thickness: arc at the reference circle (trials, centrals) [mm], positive is thicker.
+        planet_thickness: of the gears of planets (trials, gears, planets).
+        central_offset: centre of the teeth off the axis, in the gear's frame (trials, centrals, 2) [mm].
+        planet_offset: the same of planets (trials, gears, planets, 2), off the pin.
+        central_clocking, planet_clocking: turn of the teeth on what carries them [rad].
+        pins: outwards and counter-clockwise off their places (trials, planets, 2) [mm].
+    """
+
+    central_thickness: Array
+    planet_thickness: Array
+    central_offset: Array
+    planet_offset: Array
+    central_clocking: Array
+    planet_clocking: Array
+    pins: Array
+
+    @classmethod
+    def nothing(cls, own: PlanetarySet, trials: int) -> "Deviated":
+        """No deviations."""
+        centrals, gears, planets = len(own.meshes), len(own.gears), own.planets
+        return cls(
+            np.zeros((trials, centrals)),
+            np.zeros((trials, gears, planets)),
+            np.zeros((trials, centrals, 2)),
+            np.zeros((trials, gears, planets, 2)),
+            np.zeros((trials, centrals)),
+            np.zeros((trials, gears, planets)),
+            np.zeros((trials, planets, 2)),
+        )
+
+    def add(self, own: PlanetarySet, acts: Acts, components: Array) -> None:
+        """Add what a contributor does.
+
+        Args:
+            own: the set.
+            acts: on what.
+            components: of the contributor (trials, components) [mm or rad]; of planets x and y of one after the other.
+        """
+        if acts.effect == "pin":
+            if acts.direction:
+                self.pins[:, :, int(acts.direction == "tangential")] += components
+            else:
+                self.pins[...] += components.reshape(self.pins.shape)
+            return
+        centrals = [mesh.central.name for mesh in own.meshes]
+        of_planets = acts.gear not in centrals
+        place = [gear.name for gear in own.gears].index(acts.gear) if of_planets else centrals.index(acts.gear)
+        into = self._array(acts.effect, of_planets)[:, place]
+        into += acts.factor * components.reshape(into.shape)
+
+    def _array(self, effect: Effect, of_planets: bool) -> Array:
+        arrays = {
+            "thickness": (self.central_thickness, self.planet_thickness),
+            "offset": (self.central_offset, self.planet_offset),
+            "clocking": (self.central_clocking, self.planet_clocking),
+        }
+        return arrays[effect][of_planets]

@@ -1,0 +1,1 @@
+"""What scenes say of planetary sets besides the kinds of gears."""

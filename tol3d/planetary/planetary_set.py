@@ -1,0 +1,270 @@
+"""A planetary set as it is meant: gears, planets round the axis, meshes, and which of its shafts is held or drives.
+
+Sets with one, two (3K, Wolfrom) or more rings, with suns or without, differ by their meshes alone.
+"""
+
+import math
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import cached_property
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tol3d.gears.involute import inverse_involute, involute
+from tol3d.planetary.programme import first_basis
+from tol3d.planetary.tooth_set import CentralMesh, ToothSet
+
+Array = NDArray[np.float64]
+
+EXTERNAL: Final = 1
+INTERNAL: Final = -1
+
+
+@dataclass(frozen=True)
+class SetGear:
+    """A gear of a set; of a ring the radii are positive and the tooth points inwards.
+
+    Args:
+        name: as in the scene.
+        teeth: number of teeth.
+        module: [mm].
+        pressure_angle: at the reference circle [rad].
+        profile_shift: in modules; positive is a thicker tooth, of rings too.
+        addendum: in modules.
+        is_ring: whether it is an internal gear.
+    """
+
+    name: str
+    teeth: int
+    module: float
+    pressure_angle: float
+    profile_shift: float = 0.0
+    addendum: float = 1.0
+    is_ring: bool = False
+
+    @property
+    def base_radius(self) -> float:
+        """r_b [mm]."""
+        return self.module * self.teeth * math.cos(self.pressure_angle) / 2
+
+    @property
+    def tip_radius(self) -> float:
+        """r_a [mm]."""
+        outwards = -1.0 if self.is_ring else 1.0
+        return self.module * (self.teeth / 2 + outwards * (self.addendum + self.profile_shift))
+
+
+@dataclass(frozen=True)
+class SetMesh:
+    """A central gear and a gear of the planets; every planet has such a mesh.
+
+    Args:
+        central: sun or ring.
+        planet: a gear of the planets.
+        centre_distance: [mm].
+    """
+
+    central: SetGear
+    planet: SetGear
+    centre_distance: float
+
+    @property
+    def name(self) -> str:
+        """Of both gears."""
+        return f"{self.central.name}–{self.planet.name}"
+
+    @property
+    def sense(self) -> int:
+        """EXTERNAL or INTERNAL."""
+        return INTERNAL if self.central.is_ring else EXTERNAL
+
+    @property
+    def base_radii(self) -> float:
+        """r_b of the central gear plus that of the planet, of a ring less [mm]; more than 0."""
+        return self.central.base_radius + self.sense * self.planet.base_radius
+
+    @cached_property
+    def working_pressure_angle(self) -> float:
+        """alpha_w with cos alpha_w = base radii / a [rad]; ISO 21771-1:2024, 5.3."""
+        return math.acos(self.base_radii / self.centre_distance)
+
+    @property
+    def clearance(self) -> float:
+        """Half the nominal normal backlash: what each flank of a tooth in the middle of its space leaves [mm].
+
+        j/2 = s (r_bC + s r_bP)(inv alpha_w - inv alpha_0) with s = 1 of a sun, -1 of a ring, and tooth + tooth = pitch
+        at alpha_0: inv alpha_0 = inv alpha + 2 s tan alpha (x_C + x_P)/(z_C + s z_P).
+        """
+        alpha = self.central.pressure_angle
+        shifts = self.central.profile_shift + self.planet.profile_shift
+        teeth = self.central.teeth + self.sense * self.planet.teeth
+        tight = involute(alpha) + self.sense * 2 * math.tan(alpha) * shifts / teeth
+        return self.sense * self.base_radii * (involute(self.working_pressure_angle) - tight)
+
+    @property
+    def tight_centre_distance(self) -> float:
+        """Centre distance without backlash [mm]: the least of a sun, the largest of a ring."""
+        tight = involute(self.working_pressure_angle) - self.sense * self.clearance / self.base_radii
+        return self.base_radii / math.cos(inverse_involute(tight)) if tight > 0.0 else self.base_radii
+
+
+@dataclass(frozen=True)
+class PlanetarySet:
+    """Central gears, planets on a carrier, and the meshes between them.
+
+    Its shafts are the central gears and the carrier; planets turn on pins of the carrier. Angles are counter-clockwise
+    about the common axis.
+
+    Args:
+        name: of the move.
+        meshes: central gears in their order; each has one mesh with every planet.
+        planets: how many there are.
+        gears: of a planet, which turn as one.
+        carrier: the name of the carrier.
+        held, input, output: names of shafts.
+        azimuths: of the planets [rad].
+    """
+
+    name: str
+    meshes: tuple[SetMesh, ...]
+    planets: int
+    gears: tuple[SetGear, ...]
+    carrier: str
+    held: str
+    input: str
+    output: str
+    azimuths: tuple[float, ...]
+
+    @property
+    def shafts(self) -> tuple[str, ...]:
+        """Central gears, then the carrier."""
+        return (*(mesh.central.name for mesh in self.meshes), self.carrier)
+
+    @property
+    def centre_distance(self) -> float:
+        """Of all meshes [mm]."""
+        return self.meshes[0].centre_distance
+
+    def arm(self, shaft: str) -> float:
+        """Base radius of a central gear, of the carrier the centre distance [mm]."""
+        radii = {mesh.central.name: mesh.central.base_radius for mesh in self.meshes}
+        return radii.get(shaft, self.centre_distance)
+
+    def gear_of(self, mesh: SetMesh) -> int:
+        """Which of a planet's gears a mesh has."""
+        return [own.name for own in self.gears].index(mesh.planet.name)
+
+    @cached_property
+    def teeth(self) -> ToothSet:
+        """Its tooth numbers."""
+        return ToothSet(
+            tuple(
+                CentralMesh(
+                    mesh.central.name, mesh.central.teeth, mesh.planet.teeth, mesh.central.is_ring, self.gear_of(mesh)
+                )
+                for mesh in self.meshes
+            )
+        )
+
+    # turns ------------------------------------------------------------------------------------------
+
+    def turn(self, shaft: str) -> Fraction:
+        """Turns of a shaft a turn of the planets on their pins, both seen from the carrier."""
+        return Fraction(0) if shaft == self.carrier else self.teeth.mesh(shaft).turn
+
+    @property
+    def ratio(self) -> Fraction:
+        """Turns of the input a turn of the output; negative where they turn against each other.
+
+        Raises:
+            ZeroDivisionError: the output does not turn.
+        """
+        return (self.turn(self.input) - self.turn(self.held)) / (self.turn(self.output) - self.turn(self.held))
+
+    @property
+    def planet_turns(self) -> Fraction:
+        """Turns of a planet on its pin a turn of the output."""
+        return 1 / (self.turn(self.output) - self.turn(self.held))
+
+    @property
+    def period_planet_turns(self) -> int:
+        """Turns of a planet on its pin until all teeth meet again as they did."""
+        return math.lcm(*(mesh.turn.denominator for mesh in self.teeth.meshes))
+
+    @property
+    def period(self) -> Fraction:
+        """Turns of the output in that time."""
+        return abs(self.period_planet_turns / self.planet_turns)
+
+    # how it is assembled --------------------------------------------------------------------------
+
+    def phase(self, planet: int) -> float:
+        """Azimuth of x of a planet's gears, off the line to its pin [rad], where the first planet's lies on it.
+
+        All planets are alike; where they cannot be put in so (see ToothSet.assembly_faults), the nearest one.
+        """
+        teeth = self.gears[0].teeth
+        return min(
+            ((self._lag(planet) + 2 * math.pi * tooth) / teeth for tooth in range(teeth)),
+            key=lambda phase: (round(self._off(planet, phase), 9), phase),
+        )
+
+    def _lag(self, planet: int) -> float:
+        """What the first mesh asks of z times the phase of the first gear [rad]."""
+        first = next(mesh for mesh in self.meshes if mesh.planet.name == self.gears[0].name)
+        return first.sense * first.central.teeth * self.azimuths[planet]
+
+    def _off(self, planet: int, phase: float) -> float:
+        """Largest distance from a space, of all meshes, in pitches."""
+        pitches = (
+            (mesh.planet.teeth * phase - mesh.sense * mesh.central.teeth * self.azimuths[planet]) / (2 * math.pi)
+            for mesh in self.meshes
+        )
+        return max(abs(own - round(own)) for own in pitches)
+
+    # the programme --------------------------------------------------------------------------------
+
+    def unknowns(self, stands: str) -> tuple[int, ...]:
+        """Coordinates that are free while the held shaft and another one stand: places among shafts and planets."""
+        return tuple(
+            place
+            for place in range(len(self.shafts) + self.planets)
+            if place >= len(self.shafts) or self.shafts[place] not in (self.held, stands)
+        )
+
+    @cached_property
+    def all_rows(self) -> Array:
+        """Change of n of each mesh of each planet by the turns of shafts and planets (meshes x planets, coordinates).
+
+        n = r_bP (psi - h) + s r_bC (theta - h) [mm], along the line of action; psi, theta and h are the turns of
+        planet, central gear and carrier. In the middle of the backlash n = 0; it is held by the two flanks.
+        """
+        centrals = len(self.meshes)
+        rows = np.zeros((centrals * self.planets, centrals + 1 + self.planets))
+        for planet in range(self.planets):
+            for place, mesh in enumerate(self.meshes):
+                row = rows[planet * centrals + place]
+                own = mesh.sense * mesh.central.base_radius
+                row[place] += own
+                row[centrals] -= own + mesh.planet.base_radius
+                row[centrals + 1 + planet] += mesh.planet.base_radius
+        return rows
+
+    def rows(self, stands: str) -> Array:
+        """The same of what is free while the held shaft and another one stand."""
+        return np.ascontiguousarray(self.all_rows[:, self.unknowns(stands)])
+
+    def objective(self, stands: str, shaft: str) -> Array:
+        """The turn of a shaft among those unknowns."""
+        return np.array([float(place == self.shafts.index(shaft)) for place in self.unknowns(stands)])
+
+    def opposite(self, shaft: str) -> str:
+        """What stands while a shaft is turned: the input, for the input the output."""
+        return self.output if shaft == self.input else self.input
+
+    def begun(self, stands: str) -> NDArray[np.int64]:
+        """First bases (2, unknowns) of the programme; fewer columns where something is not held."""
+        basis = first_basis(self.rows(stands))
+        return np.ascontiguousarray(np.stack([basis, basis]))

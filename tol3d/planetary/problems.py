@@ -1,0 +1,56 @@
+"""Why a set cannot be studied: its mean build jams."""
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from tol3d.planetary.planetary_set import PlanetarySet, SetMesh
+from tol3d.planetary.stack_up import StackUp
+from tol3d.system.stated import mean_build
+from tol3d.system.system import KeyPath
+
+if TYPE_CHECKING:
+    from tol3d.planetary.system import PlanetarySystem
+
+ROUNDING = 1e-9  # mm; no clearance is legal, and rounds to 1e-14
+
+
+def problems_of(system: "PlanetarySystem") -> Iterator[tuple[KeyPath, str]]:
+    """Meshes that overlap with every contributor at its mean, then load paths of several planets that do."""
+    own = system.own
+    jams = False
+    for measure in system.measures[:1]:
+        deviated = system.deviated(mean_build(system, measure))
+        lower, upper = StackUp(own).sides(deviated, np.zeros(1))
+        room = (upper - lower).reshape(own.planets, -1).min(axis=0)
+        for mesh, backlash in zip(own.meshes, room, strict=True):
+            if backlash < -ROUNDING:
+                jams = True
+                yield ("moves", own.name, "meshes", mesh.central.name), _interfering(mesh, float(backlash))
+        if not jams:
+            yield from _bound(system, own)
+
+
+def _interfering(mesh: SetMesh, backlash: float) -> str:
+    side = "least" if mesh.sense > 0 else "largest"
+    return (
+        f"the teeth interfere at the mean build: {mesh.name} has a normal backlash of {1e3 * backlash:.3f} um there "
+        f"(nominal {2e3 * mesh.clearance:.3f} um); the {side} centre distance of the nominal teeth is "
+        f"{mesh.tight_centre_distance:.4f} mm, got {mesh.centre_distance:.4f} mm. Change it or the profile shifts, or "
+        "thin the teeth"
+    )
+
+
+def _bound(system: "PlanetarySystem", own: PlanetarySet) -> Iterator[tuple[KeyPath, str]]:
+    measure = next(iter(system.planetary_measures.values()))
+    deviated = system.deviated(mean_build(system, measure))
+    free = StackUp(own).free(deviated, np.zeros(1), measure.shaft, own.opposite(measure.shaft))
+    if free.status[0] == 1 and free.lacking[0] > ROUNDING:
+        planet, place = divmod(int(free.row[0]), len(own.meshes))
+        yield (
+            ("moves", own.name),
+            f"the planets bind at the mean build: no turn of planet {planet + 1} fits {own.meshes[place].name} and the "
+            f"meshes that close a loop with it; each of them lacks {1e3 * free.lacking[0]:.3f} um along the line of "
+            "action. Thin the teeth, or bring pins and clocking nearer their nominal places",
+        )

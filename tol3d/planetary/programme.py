@@ -1,0 +1,215 @@
+"""How far one coordinate can go where contacts hold it: a linear programme a trial, by a compiled dual simplex method.
+
+Every contact pair is a row of two sides, lower <= row @ x <= upper: the flanks of one mesh. As each row has both sides,
+any independent rows can be the first basis: the sign of its multiplier says at which side a row is met. Of the rows
+that are not kept the worst enters, and the dual ratio test says which one leaves; where nothing may leave, the rows
+contradict each other: there is no room. All trials start with the same basis, so that a trial has the same bits alone
+and among thousands. Source: the dual simplex method for bounded rows (Lemke 1954; Bland's rule where it stalls).
+"""
+
+from typing import Any, Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tol3d.numerics.compiled import kernel, part
+
+Array = NDArray[np.float64]
+Rows = NDArray[np.int64]
+
+OK: Final = 0
+NO_ROOM: Final = 1
+"""Rows contradict each other."""
+STALLED: Final = 2
+"""Neither an end nor a contradiction was found: rows that depend on each other, to rounding."""
+
+KEPT: Final = 1e-12  # mm; a row is kept that is exceeded by less: rounding of 50 mm is 1e-14
+SMALLEST_PIVOT: Final = 1e-9  # of rows in mm a turn, whose entries are some mm
+TIED: Final = 1e-12  # rad/mm; a multiplier of less is none: rounding of 1 rad over 10 mm is 1e-17
+MOST_PIVOTS: Final = 400
+PATIENT: Final = 60  # pivots until the first row that is not kept enters instead of the worst
+
+
+@part
+def inverted(rows: Any, basis: Any, matrix: Any, inverse: Any) -> bool:
+    """Write the inverse of the basis' rows; False where they depend on each other. Gauss and Jordan, with pivots."""
+    count = basis.shape[0]
+    for i in range(count):
+        for j in range(count):
+            matrix[i, j] = rows[basis[i], j]
+            inverse[i, j] = 1.0 if i == j else 0.0
+    for k in range(count):
+        best = k
+        for i in range(k + 1, count):
+            if abs(matrix[i, k]) > abs(matrix[best, k]):
+                best = i
+        if not abs(matrix[best, k]) > SMALLEST_PIVOT:
+            return False
+        for j in range(count):
+            matrix[k, j], matrix[best, j] = matrix[best, j], matrix[k, j]
+            inverse[k, j], inverse[best, j] = inverse[best, j], inverse[k, j]
+        scale = 1.0 / matrix[k, k]
+        for j in range(count):
+            matrix[k, j] *= scale
+            inverse[k, j] *= scale
+        for i in range(count):
+            factor = matrix[i, k]
+            if i != k and factor != 0.0:
+                for j in range(count):
+                    matrix[i, j] -= factor * matrix[k, j]
+                    inverse[i, j] -= factor * inverse[k, j]
+    return True
+
+
+@part
+def met(lower: Any, upper: Any, basis: Any, inverse: Any, sides: Any, x: Any) -> None:
+    """Write the point at which the basis' rows are met at their sides."""
+    count = basis.shape[0]
+    for i in range(count):
+        x[i] = 0.0
+        for j in range(count):
+            x[i] += inverse[i, j] * (upper[basis[j]] if sides[j] > 0.0 else lower[basis[j]])
+
+
+@part
+def entering(rows: Any, lower: Any, upper: Any, x: Any, first: bool) -> tuple[int, float]:
+    """The row that is exceeded most, or the first one; by how much, above 0 beyond its upper side; -1 where none is."""
+    found, excess = -1, KEPT
+    beyond = 0.0
+    for r in range(rows.shape[0]):
+        value = 0.0
+        for j in range(rows.shape[1]):
+            value += rows[r, j] * x[j]
+        over = max(value - upper[r], lower[r] - value)
+        if over > excess:
+            found, excess = r, over
+            beyond = value - upper[r] if value - upper[r] > lower[r] - value else value - lower[r]
+            if first:
+                break
+    return found, beyond
+
+
+@part
+def leaving(basis: Any, sides: Any, loads: Any, shares: Any, sense: float) -> int:
+    """The place in the basis that becomes free: the first whose multiplier would change its sign; -1 for none."""
+    found, least = -1, np.inf
+    for j in range(basis.shape[0]):
+        rate = sides[j] * sense * shares[j]
+        if rate > SMALLEST_PIVOT:
+            ratio = max(0.0, sides[j] * loads[j]) / rate
+            if ratio < least or (ratio == least and basis[j] < basis[found]):
+                found, least = j, ratio
+    return found
+
+
+@part
+def farthest(
+    rows: Any, lower: Any, upper: Any, objective: Any, sense: float, basis: Any, rooms: Any, x: Any
+) -> tuple[int, int, float]:
+    """Write the point that goes farthest along an objective.
+
+    Args:
+        rows, lower, upper: of the contacts.
+        objective, sense: what is made largest, and 1 or -1 for its opposite.
+        basis: rows that are met; from those of the start to those of the end.
+        rooms: matrix, inverse, sides, loads, shares to write in; where no multiplier says at which side a row of the
+            basis is met, it is the one that stands in sides.
+        x: the point.
+
+    Returns:
+        What became of it, the last row that was not kept, and by how much the rows that contradict it would have to
+        give way, each as much.
+    """
+    matrix, inverse, sides, loads, shares = rooms
+    count = basis.shape[0]
+    if not inverted(rows, basis, matrix, inverse):
+        return STALLED, -1, 0.0
+    for j in range(count):
+        loads[j] = 0.0
+        for i in range(count):
+            loads[j] += sense * objective[i] * inverse[i, j]
+        if abs(loads[j]) > TIED:
+            sides[j] = 1.0 if loads[j] > 0.0 else -1.0
+    for pivot in range(MOST_PIVOTS):
+        met(lower, upper, basis, inverse, sides, x)
+        row, beyond = entering(rows, lower, upper, x, pivot > PATIENT)
+        if row < 0:
+            return OK, -1, 0.0
+        side = 1.0 if beyond > 0.0 else -1.0
+        together = 1.0
+        for j in range(count):
+            shares[j] = 0.0
+            for i in range(count):
+                shares[j] += rows[row, i] * inverse[i, j]
+            together += abs(shares[j])
+        place = leaving(basis, sides, loads, shares, side)
+        if place < 0:
+            return NO_ROOM, row, abs(beyond) / together
+        step = 1.0 / shares[place]
+        load = loads[place] * step
+        for i in range(count):
+            inverse[i, place] *= step
+        for j in range(count):
+            if j != place:
+                loads[j] -= shares[j] * load
+                for i in range(count):
+                    inverse[i, j] -= shares[j] * inverse[i, place]
+        loads[place] = load
+        basis[place] = row
+        sides[place] = side
+    return STALLED, -1, 0.0
+
+
+@kernel(arrays="f8[:,::1], f8[:,::1], f8[:,::1], f8[::1], i8[:,::1], f8[:,::1], i1[::1], i8[::1], f8[::1]")
+def ranges(
+    rows: Any, lower: Any, upper: Any, objective: Any, begun: Any, ends: Any, status: Any, decided: Any, amount: Any
+) -> None:
+    """Both ends of one coordinate in trials.
+
+    Args:
+        rows: of the contacts (rows, unknowns), the same in all trials [mm a rad].
+        lower, upper: of the rows (trials, rows) [mm].
+        objective: the coordinate (unknowns,).
+        begun: rows of the first basis (2, unknowns), of the largest and the smallest value.
+        ends: smallest and largest value (trials, 2), written.
+        status: what became of each trial (trials,), written.
+        decided, amount: the row that contradicts others (trials,), -1 for none, and by how much [mm]; written.
+    """
+    count = rows.shape[1]
+    rooms = (
+        np.empty((count, count)), np.empty((count, count)), np.empty(count), np.empty(count), np.empty(count)
+    )  # fmt: skip
+    x, basis = np.empty(count), np.empty(count, np.int64)
+    for i in range(lower.shape[0]):
+        status[i], decided[i], amount[i] = OK, -1, 0.0
+        for end in range(2):
+            for j in range(count):
+                basis[j], rooms[2][j] = begun[end, j], 1.0
+            sense = 1.0 if end == 0 else -1.0
+            found, row, lacking = farthest(rows, lower[i], upper[i], objective, sense, basis, rooms, x)
+            if found != OK:
+                status[i], decided[i], amount[i] = found, row, lacking
+                ends[i, 0] = ends[i, 1] = np.nan
+                break
+            value = 0.0
+            for j in range(count):
+                value += objective[j] * x[j]
+            ends[i, 1 - end] = value
+
+
+def first_basis(rows: Array) -> Rows:
+    """Independent rows (unknowns,) among some (rows, unknowns); fewer where there are not so many.
+
+    Each is the one that lies farthest off the span of those before it.
+    """
+    rest = np.array(rows, dtype=np.float64)
+    chosen: list[int] = []
+    for _ in range(rows.shape[1]):
+        sizes = np.sqrt((rest * rest).sum(axis=1))
+        best = int(np.argmax(sizes))
+        if sizes[best] <= SMALLEST_PIVOT:
+            break
+        chosen.append(best)
+        along = rest[best] / sizes[best]
+        rest = rest - np.outer(rest @ along, along)
+    return np.array(chosen, dtype=np.int64)

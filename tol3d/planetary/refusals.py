@@ -1,0 +1,152 @@
+"""The set that a scene means, or why nobody can build it: conditions with their numbers."""
+
+import math
+from typing import Any
+
+from tol3d.errors import GeometryError
+from tol3d.gearing.grammar.parts.gear import GearSpec
+from tol3d.gearing.grammar.parts.internal_gear import InternalGearSpec
+from tol3d.planetary.grammar.moves.planetary import PlanetarySpec
+from tol3d.planetary.grammar.parts.planet import PlanetSpec
+from tol3d.planetary.planetary_set import PlanetarySet, SetGear, SetMesh
+from tol3d.scene import Scene
+
+
+def planetary_set(scene: Scene) -> PlanetarySet:
+    """The set of a scene.
+
+    Raises:
+        SceneError: not one set and nothing else, or one that cannot be put together.
+    """
+    sets = scene.of(PlanetarySpec)
+    others = [name for name in scene.moves if name not in sets]
+    if len(sets) != 1 or others:
+        name = [*others, *sets][-1 if not others else 0]
+        raise scene.refuse(
+            ("moves", name), f"expected one planetary set and no other move, got {len(scene.moves)} moves"
+        )
+    ((name, spec),) = sets.items()
+    own = _set(scene, name, spec)
+    for part in scene.parts:
+        if part not in {*own.shafts, *(gear.name for gear in own.gears), spec.planet}:
+            raise scene.refuse(("parts", part), f"{part!r} takes part in no move; name it in {name!r} or take it out")
+    _refuse_roles(scene, own)
+    _refuse_unbuildable(scene, own)
+    return own
+
+
+def _gear(scene: Scene, name: str) -> SetGear:
+    spec: Any = scene.parts[name]
+    assert isinstance(spec, GearSpec)
+    return SetGear(
+        name, spec.teeth, spec.module.internal, spec.pressure_angle.internal, spec.profile_shift, spec.addendum,
+        isinstance(spec, InternalGearSpec),
+    )  # fmt: skip
+
+
+def _set(scene: Scene, name: str, spec: PlanetarySpec) -> PlanetarySet:
+    planet = scene.parts[spec.planet]
+    assert isinstance(planet, PlanetSpec)
+    for k, gear in enumerate(planet.gears):
+        if scene.parts[gear].kind != "spur_gear":
+            raise scene.refuse(("parts", spec.planet, "gears", k), f"expected spur gears, got {gear!r}")
+    _refuse_misnamed(scene, name, spec, planet)
+    pairs = [(_gear(scene, central), _gear(scene, gear)) for central, gear in spec.meshes.items()]
+    for central, own in pairs:
+        _refuse_unlike(scene, name, central, own)
+    if spec.centre_distance is not None:
+        distance = spec.centre_distance.internal
+    else:
+        central, own = pairs[0]
+        distance = central.module * (central.teeth + (-1 if central.is_ring else 1) * own.teeth) / 2
+    for central, own in pairs:
+        _refuse_no_mesh(scene, name, SetMesh(central, own, distance))
+    return PlanetarySet(
+        name=name,
+        meshes=tuple(SetMesh(central, own, distance) for central, own in pairs),
+        planets=spec.planets,
+        gears=tuple(_gear(scene, gear) for gear in planet.gears),
+        carrier=spec.carrier,
+        held=spec.held,
+        input=spec.input,
+        output=spec.output,
+        azimuths=tuple(2 * math.pi * k / spec.planets for k in range(spec.planets)),
+    )
+
+
+def _refuse_misnamed(scene: Scene, name: str, spec: PlanetarySpec, planet: PlanetSpec) -> None:
+    """Refuse meshes that name gears of other parts, or none of a gear."""
+    for central, gear in spec.meshes.items():
+        if gear not in planet.gears:
+            words = f"expected a gear of {spec.planet!r}: {', '.join(planet.gears)}, got {gear!r}"
+            raise scene.refuse(("moves", name, "meshes", central), words)
+        if central in planet.gears or scene.parts[central].kind not in ("spur_gear", "internal_gear"):
+            words = f"expected a spur gear or an internal gear that is none of the planet's, got {central!r}"
+            raise scene.refuse(("moves", name, "meshes", central), words)
+    for gear in planet.gears:
+        if gear not in spec.meshes.values():
+            raise scene.refuse(("moves", name, "meshes"), f"expected a mesh of {gear!r}, a gear of {spec.planet!r}")
+
+
+def _refuse_unlike(scene: Scene, name: str, central: SetGear, own: SetGear) -> None:
+    """Refuse a mesh of gears that do not roll on each other."""
+    for field in ("module", "pressure_angle"):
+        one, other = (getattr(scene.parts[gear.name], field) for gear in (central, own))
+        if not math.isclose(one.internal, other.internal, rel_tol=1e-9):
+            raise scene.refuse(
+                ("moves", name, "meshes", central.name),
+                f"expected gears of the same {field}, got {one} and {other}",
+            )
+
+
+def _refuse_no_mesh(scene: Scene, name: str, mesh: SetMesh) -> None:
+    """Refuse a ring that is not larger than its planets, and base circles that leave no room."""
+    path = ("moves", name, "meshes", mesh.central.name)
+    if mesh.base_radii <= 0.0:
+        teeth = f"{mesh.central.teeth} and {mesh.planet.teeth}"
+        raise scene.refuse(path, f"expected a ring with more teeth than its planets, got {teeth}")
+    if mesh.base_radii >= mesh.centre_distance:
+        raise scene.refuse(
+            path,
+            f"expected a centre distance of more than {mesh.base_radii:.4f} mm, which the base circles of {mesh.name} "
+            f"need, got {mesh.centre_distance:.4f} mm; the tooth numbers are not coaxial, or state another one",
+        )
+
+
+def _refuse_roles(scene: Scene, own: PlanetarySet) -> None:
+    """Refuse shafts that are none of the set's, or have two roles, and sets whose output is not driven."""
+    roles = {"held": own.held, "input": own.input, "output": own.output}
+    for role, shaft in roles.items():
+        if shaft not in own.shafts:
+            words = f"expected one of {', '.join(own.shafts)}, got {shaft!r}"
+            raise scene.refuse(("moves", own.name, role), words)
+    for role, other in (("input", "held"), ("output", "held"), ("output", "input")):
+        if roles[role] == roles[other]:
+            words = f"expected another shaft than the one that is {other}, got {roles[role]!r} twice"
+            raise scene.refuse(("moves", own.name, role), words)
+    at_rest = own.turn(own.held)
+    for role in ("output", "input"):
+        if own.turn(roles[role]) == at_rest:
+            words = (
+                f"{roles[role]!r} does not turn while {own.held!r} is held: their teeth over their planets' are alike"
+            )
+            raise scene.refuse(("moves", own.name, role), f"expected a shaft that turns: {words}")
+
+
+def _refuse_unbuildable(scene: Scene, own: PlanetarySet) -> None:
+    """Refuse planets that cannot be put in at equal angles, or touch each other."""
+    try:
+        faults = own.teeth.assembly_faults(own.planets)
+    except GeometryError as error:
+        raise scene.refuse(("moves", own.name, "meshes"), str(error)) from None
+    for fault in faults:
+        raise scene.refuse(("moves", own.name, "planets"), fault.words)
+    if own.planets > 1:
+        apart = 2 * own.centre_distance * math.sin(math.pi / own.planets)
+        gear = max(own.gears, key=lambda gear: gear.tip_radius)
+        if apart <= 2 * gear.tip_radius:
+            raise scene.refuse(
+                ("moves", own.name, "planets"),
+                f"neighbouring planets touch: expected pins further apart than the tip circle of {gear.name!r}, "
+                f"{2 * gear.tip_radius:.4f} mm, got {apart:.4f} mm; take fewer planets",
+            )
