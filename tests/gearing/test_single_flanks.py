@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 from numpy.typing import NDArray
-from oracles.deviated_flanks import DeviatedGear, DeviatedPair
+from oracles.deviated_flanks import DeviatedGear, DeviatedPair, active_rolls, parts
 
 from tol3d import load_scene
 from tol3d.gearing.engines import OUT_OF_RANGE
@@ -113,15 +113,15 @@ def dense(builds: Builds, row: int, heights: tuple[float, ...] = (0.0,)) -> Devi
     def of_gear(gear: str, teeth: int, face: float, form: Callable[[Array], Array]) -> DeviatedGear:
         own: Any = builds.mesh.gear(gear)
         first = math.sqrt((own.form_radius / own.base_radius) ** 2 - 1)
-        last = math.sqrt((own.tip_radius / own.base_radius) ** 2 - 1)
+        active = active_rolls(teeth, sum(TEETH) - teeth, 2.0, CENTRE_DISTANCE)
 
         def deviation(tooth: int, flank: int, roll: Array, z: float) -> Array:
-            part = (roll - first) / (last - first) - 0.5
+            part, part_of_form = parts(roll, active)
             ahead = component(f"{gear} pitch", tooth, flank, teeth, gear == "wheel")
             slope = component(f"{gear} profile_slope", tooth, flank, teeth, False)
             helix = component(f"{gear} helix_slope", tooth, flank, teeth, False)
             shape = component(f"{gear} profile_form", tooth, flank, teeth, False)
-            return -flank * ahead * COS + slope * part + helix * z / face + shape * form(part)
+            return -flank * ahead * COS + slope * part + helix * z / face + shape * form(part_of_form)
 
         return DeviatedGear(teeth, 2.0, first, deviation)
 

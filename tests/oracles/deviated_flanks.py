@@ -21,6 +21,29 @@ Deviation = Callable[[int, int, Array, float], Array]
 POINTS = 6_001
 
 
+FORM_SHARE = 0.95  # of the active profile, from its begin on, in which forms count
+
+
+def active_rolls(teeth: int, mate: int, module: float, apart: float) -> tuple[float, float]:
+    """Rolls at which the active profile of a gear of addendum 1 begins and ends: its mate's tip, and its own."""
+    base, other = (z * module / 2 * math.cos(math.radians(20)) for z in (teeth, mate))
+    tip, other_tip = (math.sqrt(((z + 2) * module / 2) ** 2 - own**2) for z, own in ((teeth, base), (mate, other)))
+    return (math.sqrt(apart**2 - (base + other) ** 2) - other_tip) / base, tip / base
+
+
+def parts(roll: Array, active: tuple[float, float]) -> tuple[Array, Array]:
+    """Where rolls lie in the ranges of slopes and of forms, -1/2 to 1/2 from end to end."""
+    first, last = active
+    return (roll - first) / (last - first) - 0.5, (roll - first) / (FORM_SHARE * (last - first)) - 0.5
+
+
+def between(roll: Array, teeth: int, module: float, diameters: tuple[float, float]) -> Array:
+    """Where rolls lie between two diameters, -1/2 to 1/2 from end to end."""
+    base = teeth * module * math.cos(math.radians(20))
+    first, last = (math.sqrt((own / base) ** 2 - 1) for own in diameters)
+    return (roll - first) / (last - first) - 0.5
+
+
 @dataclass(frozen=True)
 class DeviatedGear:
     """A gear without profile shift of addendum 1, its pressure angle 20 deg.

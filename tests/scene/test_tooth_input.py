@@ -23,6 +23,7 @@ moves:
 REST = "measures:\n  play: {kind: normal_backlash, of: pair}\ntolerances:\n"
 WALK = "law: {kind: random_walk, fill: [0.7, 1]}"
 PITCH = "kind: pitch_deviation, of: pinion, flanks: each"
+UNIFORM = "limits: {size: 3 um}, law: {kind: uniform}"
 SLOPE = "kind: profile_slope, of: pinion, flanks: each, each: tooth"
 FORM = "kind: profile_form, of: pinion, flanks: each, each: tooth, limits: {iso_class: 5}, law: {kind: uniform}"
 
@@ -70,6 +71,17 @@ def refused(folder: Path, tolerances: str, gears: str = SPUR) -> str:
             "none beside a law that is stated, got limits",
         ),
         (f"{SLOPE}, law: {{kind: stated, distribution: {{kind: constant, value: 1 deg}}}}", "expected a length"),
+        (f"{SLOPE}, {UNIFORM}, range: [38 mm]", "range: expected a list of 2 lengths, got a list of 1"),
+        (f"{SLOPE}, {UNIFORM}, range: [38 mm, 2 deg]", "range"),
+        (
+            f"{SLOPE}, {UNIFORM}, range: [38 mm, 45 mm]",
+            "range: expected two diameters from 37.5877 mm, where the involute begins, to 44.0000 mm, its tip, got",
+        ),
+        (f"{FORM}, shape: barrel, range: [43 mm, 40 mm]", "range: expected two diameters"),
+        (
+            f"{SLOPE.replace('profile_slope', 'helix_slope')}, {UNIFORM}, range: [0 mm, 12.1 mm]",
+            "range: expected two heights from 0 mm, the lower end of the face, to 12 mm, its upper end, got 0 mm and",
+        ),
         (f"{FORM}, shape: wave", "waves: expected a number of waves, got none"),
         (f"{FORM}, shape: barrel, waves: 2", "waves: expected none of a barrel, got waves"),
         (

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from expected import expected
 from numpy.typing import NDArray
-from oracles.deviated_flanks import DeviatedGear, DeviatedPair
+from oracles.deviated_flanks import DeviatedGear, DeviatedPair, active_rolls, between, parts
 from places import SCENES
 
 from tol3d import Run, load_scene
@@ -90,12 +90,14 @@ def test_trials_are_dense_points_of_the_measured_flanks(run_of: Callable[[str], 
     def gear_of(gear: SpurGear, name: str, face: float, thicker: float) -> DeviatedGear:
         def deviation(tooth: int, flank: int, roll: Array, z: float) -> Array:
             side = 0 if flank == 1 else 1
-            part = (roll - roll[0]) / (roll[-1] - roll[0]) - 0.5
+            part, _ = parts(roll, active_rolls(36, 24, 2.0, 60.03))
+            if name == "pinion":
+                part = between(roll, 24, 2.0, (46.4, 51.6))
             slopes = own[f"{name} profile slope"][side]
             slope = slopes[tooth] if len(slopes) > 1 else slopes[0]
             helix = own["pinion helix slope"][side][tooth] if name == "pinion" else 0.0
             return np.asarray(
-                1e-3 * (-flank * own[f"{name} pitch"][side][tooth] * COS + slope * part + helix * z / face)
+                1e-3 * (-flank * own[f"{name} pitch"][side][tooth] * COS + slope * part + helix * z / 14.4)
             )
 
         first = math.sqrt(max((gear.form_radius / gear.base_radius) ** 2 - 1, 0.0))

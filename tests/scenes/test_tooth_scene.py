@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from expected import expected
 from numpy.typing import NDArray
-from oracles.deviated_flanks import DeviatedGear, DeviatedPair
+from oracles.deviated_flanks import DeviatedGear, DeviatedPair, active_rolls, between, parts
 from places import SCENES
 
 from tol3d import Overrides, Run, load_scene, run_scene
@@ -72,19 +72,20 @@ def pair_of(columns: Mapping[str, Array], trial: int, roll_at: Callable[[int], f
 
     def pinion(tooth: int, flank: int, roll: Array, z: float) -> Array:
         side = "right" if flank == 1 else "left"
-        part = (roll - roll[0]) / (roll[-1] - roll[0]) - 0.5
+        part, part_of_form = parts(roll, active_rolls(24, 36, 2.0, CENTRE_DISTANCE))
         slope, form = of(f"pinion profile slope.{side}"), of("pinion profile form")
         helix = {1: 3e-3, -1: -2e-3}[flank]
         ahead = of(f"pinion pitch.{side} {tooth:02d}")
-        return -flank * ahead * COS + slope * part + form * (1 / 3 - 4 * part**2) + helix * z / 16
+        return -flank * ahead * COS + slope * part + form * (1 / 3 - 4 * part_of_form**2) + helix * z / 16
 
     def wheel(tooth: int, flank: int, roll: Array, z: float) -> Array:
         side = "right" if flank == 1 else "left"
-        part = (roll - roll[0]) / (roll[-1] - roll[0]) - 0.5
+        part, _ = parts(roll, active_rolls(36, 24, 2.0, CENTRE_DISTANCE))
+        part_of_form = between(roll, 36, 2.0, (69.6, 75.6))
         slope = of(f"wheel profile slope.right {tooth:02d}") if flank == 1 else 0.0
         form, helix = of(f"wheel profile form.{side} {tooth:02d}"), of(f"wheel helix slope.{side} {tooth:02d}")
         ahead = of(f"wheel pitch.{tooth:02d}")
-        return -flank * ahead * COS + slope * part + form * np.cos(2 * math.pi * part) / 2 + helix * z / 14
+        return -flank * ahead * COS + slope * part + form * np.cos(2 * math.pi * part_of_form) / 2 + helix * z / 14
 
     gears = (DeviatedGear(24, 2.0, roll_at(24), pinion), DeviatedGear(36, 2.0, roll_at(36), wheel))
     return DeviatedPair(*gears, CENTRE_DISTANCE, (-HALF_FACE, HALF_FACE))

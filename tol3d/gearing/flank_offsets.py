@@ -5,7 +5,7 @@ see effects/flank_deviation.py. A gear that no deviation of single flanks acts o
 """
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, Final
@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.gearing.displacements import FlankOffsets, displacements
-from tol3d.gearing.effects import FORM, SHAPES, FlankDeviation
+from tol3d.gearing.effects import FORM, SHAPES, SLOPE, UNIFORM, FlankDeviation
 from tol3d.gearing.model import Mesh, Model
 from tol3d.gears import GearPair, SpurGear
 from tol3d.gears.flank import RIGHT, Flank
@@ -62,12 +62,14 @@ class FlankPlaces:
     Args:
         starts: of each gear that has any, by name.
         waves: of the form of its flanks, by name; see FlankDeviation.
+        spans: rolls between which u goes from -1/2 to 1/2 [rad], by name: of its waves, or of the whole involute.
         components, slots, factors: (terms,), each adds a factor times a component of the deviations to a slot.
         count: of all coefficients.
     """
 
     starts: Mapping[str, int]
     waves: Mapping[str, float]
+    spans: Mapping[str, tuple[float, float]]
     components: Integers
     slots: Integers
     factors: Array
@@ -85,23 +87,28 @@ class FlankPlaces:
         ]
         starts: dict[str, int] = {}
         waves: dict[str, float] = {}
-        terms: list[tuple[int, int]] = []
-        factors: list[float] = []
+        spans: dict[str, tuple[float, float]] = {}
         count = 0
-        for first, effect in acting:
-            teeth = model.gear(effect.part).gear.teeth
+        for _, effect in acting:
+            gear = _spur_gear(model, effect.part)
             if effect.part not in starts:
                 starts[effect.part], waves[effect.part] = count, 0.0
-                count += 2 * SHAPES * teeth
+                spans[effect.part] = gear.form_roll, gear.tip_roll
+                count += 2 * SHAPES * gear.teeth
             if effect.shape == FORM:
                 waves[effect.part] = effect.waves
-            for component, places in enumerate(effect.places):
-                for place in places:
-                    slot = starts[effect.part] + int(flank_slot(teeth, place.tooth, place.flank)) + effect.shape
-                    terms.append((first + component, slot))
-                    factors.append(place.factor)
+                spans[effect.part] = effect.span or spans[effect.part]
+        terms: list[tuple[int, int]] = []
+        factors: list[float] = []
+        for first, effect in acting:
+            gear, start = _spur_gear(model, effect.part), starts[effect.part]
+            for component, place, shape, factor in effect.terms:
+                slot = start + int(flank_slot(gear.teeth, place.tooth, place.flank))
+                for own, share in _over(spans[effect.part], gear, shape):
+                    terms.append((first + component, slot + own))
+                    factors.append(factor * share)
         each = np.array(terms, dtype=np.int64).reshape(-1, 2)
-        return cls(starts, waves, each[:, 0], each[:, 1], np.array(factors, dtype=float), count)
+        return cls(starts, waves, spans, each[:, 0], each[:, 1], np.array(factors, dtype=float), count)
 
     def made(self, deviations: Array) -> "FlankDeviations | None":
         """The offsets of builds with these deviations (trials, components); None where no gear has any."""
@@ -137,7 +144,8 @@ class FlankPlaces:
         if own.gear not in self.starts or not isinstance(gear, SpurGear):
             return np.zeros((len(teeth), model.component_count))
         roll, height = place
-        u = (roll - (gear.form_roll + gear.tip_roll) / 2) / (gear.tip_roll - gear.form_roll)
+        begin, end = self.spans[own.gear]
+        u = (roll - (begin + end) / 2) / (end - begin)
         waves = self.waves[own.gear]
         form = np.cos(2 * math.pi * waves * u) / 2 if waves else 1 / 3 - 4 * u * u
         shapes = np.stack([np.ones_like(u), u, form, height / gear.face_width], axis=-1)
@@ -154,11 +162,42 @@ class FlankPlaces:
         total = np.zeros(len(made.values))
         for gear in gears:
             if gear in self.starts:
-                teeth = model.gear(gear).gear.teeth
+                teeth = _spur_gear(model, gear).teeth
                 own = made.values[:, self.starts[gear] :][:, : 2 * SHAPES * teeth].reshape(-1, teeth, 2, SHAPES)
-                steps = np.abs(own[..., 0] - np.roll(own[..., 0], 1, axis=1)).max(axis=(1, 2))
-                total += steps + 2.0 * np.abs(own[..., 1:]).max(axis=(1, 2)).sum(axis=-1)
+                least, most = self._extremes(_spur_gear(model, gear), gear, own)
+                steps = [(most - np.roll(least, by, axis=1)).max(axis=(1, 2)) for by in (1, -1)]
+                total += np.maximum(*steps)
         return total
+
+    def _extremes(self, gear: SpurGear, name: str, own: Array) -> tuple[Array, Array]:
+        """The least and the most that flanks (…, SHAPES) stand out by anywhere [mm], at least so far."""
+        begin, end = self.spans[name]
+        ends = [(roll - (begin + end) / 2) / (end - begin) for roll in (gear.form_roll, gear.tip_roll)]
+        level, slope, form, helix = np.moveaxis(own, -1, 0)
+        rows, beside = [level + slope * u for u in ends], np.abs(helix) / 2
+        if self.waves[name]:
+            beside = beside + np.abs(form) / 2
+        elif form.any():
+            found = np.divide(slope, 8 * form, out=np.zeros_like(form), where=form != 0.0)
+            vertex = np.clip(found, ends[0], ends[1])
+            rows = [level + slope * u + form * (1 / 3 - 4 * u * u) for u in (*ends, vertex)]
+        return np.minimum.reduce(rows) - beside, np.maximum.reduce(rows) + beside
+
+
+def _spur_gear(model: Model, name: str) -> SpurGear:
+    gear = model.gear(name).gear
+    if not isinstance(gear, SpurGear):
+        raise TypeError(f"{name} is no spur gear")
+    return gear
+
+
+def _over(span: tuple[float, float], gear: SpurGear, shape: int) -> Iterator[tuple[int, float]]:
+    """A shape over the whole involute by those over a span of it: u of one is a share of the other's, and a level."""
+    whole, begin, end = gear.tip_roll - gear.form_roll, *span
+    yield shape, (end - begin) / whole if shape == SLOPE else 1.0
+    off = (begin - gear.form_roll + end - gear.tip_roll) / 2
+    if shape == SLOPE and off:
+        yield UNIFORM, off / whole
 
 
 @dataclass(frozen=True, eq=False)

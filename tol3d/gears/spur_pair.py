@@ -82,8 +82,7 @@ class SpurPair(CylindricalPair):
         Raises:
             GeometryError: with the radii and what to change.
         """
-        mirrored = SpurPair(self.wheel, self.pinion, self.centre_distance)
-        for pair, name, mate in ((self, "driver", "driven"), (mirrored, "driven", "driver")):
+        for pair, name, mate in ((self, "driver", "driven"), (self.mirrored, "driven", "driver")):
             gear, other = pair.pinion, pair.wheel
             clearance = self.centre_distance - gear.root_radius - other.tip_radius
             if clearance <= 0.0:
@@ -110,6 +109,11 @@ class SpurPair(CylindricalPair):
                 f"contact ratio {self.contact_ratio:.4f} is below 1 at centre distance "
                 f"{self.centre_distance:g} mm: the teeth lose touch"
             )
+
+    @property
+    def mirrored(self) -> "SpurPair":
+        """The wheel as the driver."""
+        return SpurPair(self.wheel, self.pinion, self.centre_distance)
 
     # positions --------------------------------------------------------------------------------------
 

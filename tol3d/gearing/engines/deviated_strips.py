@@ -53,7 +53,8 @@ class DeviatedStrips:
         if not any(numbers):
             return strips
         roll = strips.parameter
-        u = (roll - (roll[0] + roll[-1]) / 2) / (roll[-1] - roll[0])
+        begin, end = self.places.spans[gear]
+        u = (roll - (begin + end) / 2) / (end - begin)
         waves = self.places.waves[gear]
         form = np.cos(2 * math.pi * waves * u) / 2 if waves else 1 / 3 - 4 * u * u
         level = numbers[UNIFORM] + numbers[SLOPE] * u + numbers[FORM] * form

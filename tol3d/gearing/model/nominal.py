@@ -12,7 +12,7 @@ from tol3d.gearing.model.contributor import Contributor
 from tol3d.gearing.model.layout import Layout
 from tol3d.gearing.model.mesh import Mesh
 from tol3d.gearing.model.shafts import Carried
-from tol3d.gears import BevelPair, SpurGear
+from tol3d.gears import BevelPair, SpurGear, SpurPair
 from tol3d.scene import Scene
 from tol3d.scene.temperature import TemperatureSpec
 from tol3d.scene.tolerance import ToleranceEntry
@@ -88,6 +88,16 @@ class Nominal:
             raise TypeError(f"{spec.of} is no spur gear")
         try:
             draw = spec.draw(gear, self.scene.files)
-            return Contributor(name, spec.kind, spec.effect(gear), draw, spec.unit, spec.description)
+            effect = spec.effect(gear, self._active_roll(spec.of, gear))
+            return Contributor(name, spec.kind, effect, draw, spec.unit, spec.description)
         except GeometryError as error:
             raise self.scene.refuse(("tolerances", name), str(error)) from error
+
+    def _active_roll(self, name: str, gear: SpurGear) -> float:
+        """Where the active profile of a gear begins: the least roll at which a mate's nominal tip touches it [rad]."""
+        found = []
+        for mesh in (self.meshes[own] for own in meshes_of(name, self.scene.moves)):
+            pair = mesh.pair
+            if isinstance(pair, SpurPair):
+                found.append((pair if name == mesh.driver else pair.mirrored).start_roll)
+        return max(gear.form_roll, min(found, default=gear.form_roll))

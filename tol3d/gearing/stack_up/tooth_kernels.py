@@ -30,14 +30,16 @@ class GearTeeth(NamedTuple):
         base: base radius [mm].
         form, tip: rolls at which they begin and end [rad].
         face: width of the face [mm].
-        waves: of their form, see effects/flank_deviation.py.
+        wave_rate, wave_middle: phase of the waves of their form per roll, and the roll at which it is 0 [1; rad]; a
+            rate of 0 is a barrel, see effects/flank_deviation.py.
     """
 
     base: float
     form: float
     tip: float
     face: float
-    waves: float
+    wave_rate: float
+    wave_middle: float
 
 
 class LineOfContact(NamedTuple):
@@ -99,16 +101,17 @@ def profile_at(gear: GearTeeth, flank: Flank, roll: float) -> tuple[float, float
     if flank.slope == 0.0 and flank.form == 0.0:
         return flank.uniform, 0.0
     length = gear.tip - gear.form
-    u = (min(max(roll, gear.form), gear.tip) - 0.5 * (gear.form + gear.tip)) / length
+    inside = min(max(roll, gear.form), gear.tip)
+    u = (inside - 0.5 * (gear.form + gear.tip)) / length
     out, by_place = flank.uniform + flank.slope * u, flank.slope
     if flank.form != 0.0:
-        if gear.waves == 0.0:
+        if gear.wave_rate == 0.0:
             out += flank.form * (1.0 / 3.0 - 4.0 * u * u)
             by_place -= 8.0 * flank.form * u
         else:
-            rate = 2.0 * math.pi * gear.waves
-            out += 0.5 * flank.form * math.cos(rate * u)
-            by_place -= 0.5 * flank.form * rate * math.sin(rate * u)
+            phase = gear.wave_rate * (inside - gear.wave_middle)
+            out += 0.5 * flank.form * math.cos(phase)
+            by_place -= 0.5 * flank.form * gear.wave_rate * length * math.sin(phase)
     return out, by_place / length
 
 

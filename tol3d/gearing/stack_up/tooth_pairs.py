@@ -72,11 +72,10 @@ class ToothFlanks:
         for columns, effect in self.acting:
             summands: dict[int, list[tuple[int, int, float]]] = {}
             before: dict[int, int] = {}
-            for component, places in enumerate(effect.places, columns.start):
-                for place in places:
-                    slot = SHAPES * (2 * place.tooth + (place.flank != RIGHT)) + effect.shape
-                    before[slot] = before.get(slot, -1) + 1
-                    summands.setdefault(before[slot], []).append((component, slot, place.factor))
+            for component, place, shape, factor in effect.terms:
+                slot = SHAPES * (2 * place.tooth + (place.flank != RIGHT)) + shape
+                before[slot] = before.get(slot, -1) + 1
+                summands.setdefault(before[slot], []).append((columns.start + component, slot, factor))
             for own in summands.values():
                 each = np.array(own)
                 found.append((each[:, 0].astype(np.int64), each[:, 1].astype(np.int64), each[:, 2]))
@@ -85,8 +84,11 @@ class ToothFlanks:
     @property
     def measures(self) -> tuple[float, ...]:
         """As tooth_kernels.GearTeeth has them."""
-        waves = next((effect.waves for _, effect in self.acting if effect.shape == FORM), 0.0)
-        return self.gear.base_radius, self.gear.form_roll, self.gear.tip_roll, self.gear.face_width, waves
+        begin, end = self.gear.form_roll, self.gear.tip_roll
+        waves, span = next(((own.waves, own.span) for _, own in self.acting if own.shape == FORM), (0.0, None))
+        first, last = span or (begin, end)
+        wave = 2 * math.pi * waves / (last - first), (first + last) / 2
+        return self.gear.base_radius, begin, end, self.gear.face_width, *wave
 
 
 @dataclass(frozen=True, eq=False)

@@ -220,11 +220,18 @@ def deviated_foot(
 
 @variant(turn_to, DeviatedTooth)
 def deviated_turn(mate: DeviatedTooth, gap: float, offset: float, at: Foot) -> float:
-    """As flanks of SpurTooth; on the way the foot comes to where the mate stands out by another length."""
+    """As flanks of SpurTooth; on the way the foot comes to where the mate stands out by another length.
+
+    The way along the line of action is not shortened by the slope that shortens the gap.
+    """
     turn = gap * mate.per_base
     if is_level(mate):
         return turn
-    here = offset_at(mate, at.profile, at.face).value
+    first = offset_at(mate, at.profile, at.face)
+    here = first.value
+    if at.profile > 0.0:
+        slope = first.by_roll / (mate.base * at.profile)
+        gap += 0.5 * slope * slope * (gap + offset)
     for _ in range(2):
         turn = (gap + here - offset_at(mate, at.profile + turn, at.face).value) * mate.per_base
     return turn

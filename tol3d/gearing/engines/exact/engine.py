@@ -234,8 +234,8 @@ def kernels_in(model: Model, mesh: Mesh, flanks: FlankPlaces) -> PairKernels:
     for name, own in gears:
         gear, seat = mesh.gear(name), model.seats[model.seat_index[mesh.name, name]]
         places += [flanks.starts.get(name, -1), gear.teeth, round(seat.ahead / gear.angular_pitch)]
-        span = own.end - own.begin
-        shape = ((own.begin + own.end) / 2, 1.0 / span, 1.0 / gear.face_width, flanks.waves.get(name, 0.0))
+        begin, end = flanks.spans.get(name, (own.begin, own.end))
+        shape = ((begin + end) / 2, 1.0 / (end - begin), 1.0 / gear.face_width, flanks.waves.get(name, 0.0))
         each: tuple[float, ...] = (*own, 1.0, *shape, 0.0, 0.0, 0.0, 0.0)
         teeth.append(DeviatedTooth(*each))
     beyond = DEVIATED_MARGIN * mesh.pair.pinion.angular_pitch

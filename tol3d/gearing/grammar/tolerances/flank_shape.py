@@ -10,7 +10,7 @@ from pydantic import Field, model_validator
 from tol3d.distributions import Distribution, Normal, StatedDistribution, Uniform
 from tol3d.errors import GeometryError
 from tol3d.files import Files
-from tol3d.gearing.effects import FlankDeviation, Place
+from tol3d.gearing.effects import Place
 from tol3d.gearing.grammar.tolerances.flank_tolerance import FlankToleranceSpec, IsoClass, limits_of_class, no_word
 from tol3d.gearing.grammar.tolerances.record_law import RecordSpec
 from tol3d.gearing.pitch_draw import GivenDraw, tooth_names
@@ -167,13 +167,12 @@ class FlankShapeSpec(FlankToleranceSpec):
         names = tooth_names(teeth, self.sides) if self.each == "tooth" else self.sides
         return GivenDraw(names, tuple(found), f"measured in {law.file}")
 
-    def deviation(self, gear: SpurGear, shape: int, waves: float = 0.0) -> FlankDeviation:
-        """Its components on their flanks."""
+    def places(self, gear: SpurGear) -> tuple[tuple[Place, ...], ...]:
+        """The flanks that each of its components moves."""
         teeth = range(gear.teeth)
         groups = [[tooth] for tooth in teeth] if self.each == "tooth" else [list(teeth)]
-        places = [
+        return tuple(
             tuple(Place(tooth, flank, 1.0) for tooth in group for flank in self.flanks_of(side))
             for side in self.sides
             for group in groups
-        ]
-        return FlankDeviation(self.of, shape, tuple(places), waves)
+        )

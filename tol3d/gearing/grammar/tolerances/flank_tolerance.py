@@ -71,8 +71,12 @@ class FlankToleranceSpec(ToleranceEntry):
         """
 
     @abstractmethod
-    def effect(self, gear: SpurGear) -> Effect:
-        """What its components do."""
+    def effect(self, gear: SpurGear, active_roll: float) -> Effect:
+        """What its components do to a gear whose active profile begins at a roll [rad].
+
+        Raises:
+            GeometryError: the tolerance does not go with the gear.
+        """
 
 
 def limits_of_class(iso_class: int, gear: SpurGear) -> FlankTolerances:

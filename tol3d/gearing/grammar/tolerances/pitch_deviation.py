@@ -211,7 +211,7 @@ class PitchDeviationSpec(FlankToleranceSpec):
             found += [arc - mean for arc in arcs]
         return GivenDraw(tooth_names(gear.teeth, self.sides), tuple(found))
 
-    def effect(self, gear: SpurGear) -> FlankDeviation:
+    def effect(self, gear: SpurGear, active_roll: float) -> FlankDeviation:
         """A flank that lies F ahead lies F cos(alpha) out of its tooth on the left side, so much inside on the right.
 
         Exact: involutes that are turned by F/r lie r_b F/r apart along their normals.
