@@ -17,6 +17,7 @@ from tol3d.gears.internal_gear import InternalGear
 from tol3d.gears.internal_interference import interference, interferes
 from tol3d.gears.internal_mesh import InternalMesh
 from tol3d.gears.pair import Displaced
+from tol3d.gears.radial_assembly import radially_assembled
 from tol3d.gears.spur_gear import SpurGear
 
 Array = NDArray[np.float64]
@@ -125,6 +126,11 @@ class InternalPair(CylindricalPair):
     def interferes(self) -> bool:
         """Whether some condition of interference fails: quicker than the words."""
         return interferes(InternalMesh(self.ring, self.inner, self.centre_distance))
+
+    @property
+    def radially_assembled(self) -> bool:
+        """Whether the inner gear can be put in along the line of centres; else only along its axis."""
+        return radially_assembled(InternalMesh(self.ring, self.inner, self.centre_distance))
 
     def refuse_interference(self) -> None:
         """Raise unless the gears run without interference.
