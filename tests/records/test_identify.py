@@ -14,7 +14,8 @@ from tol3d.errors import InputError
 from tol3d.records.csv_file import Block
 from tol3d.records.curve import curve_of
 from tol3d.records.exact_play import Side, angular_backlash
-from tol3d.records.identify import Identified, Settings, identified
+from tol3d.records.findings import Identified, Settings
+from tol3d.records.identify import identified
 from tol3d.records.pair import ARCSEC, RigPair, Specimen
 from tol3d.records.reading import Pass, Senses, passes_of
 from tol3d.records.rig import Rig, measured
@@ -120,7 +121,7 @@ def _with_back_from(turns: int) -> Identified:
     bins = replace(
         own.bins, phi1=np.mod(own.bins.phi1 - lost, PAIR.long_period), error=own.bins.error + PAIR.rate * lost
     )
-    return identified(PAIR, {"drive": drive, "back": (replace(own, bins=bins),)}, Senses(1, 1), Settings())
+    return identified(PAIR, {"drive": drive, "back": (replace(own, bins=bins, ends=None),)}, Senses(1, 1), Settings())
 
 
 @pytest.mark.parametrize(
@@ -158,6 +159,55 @@ def test_rows_at_any_distance_give_the_same() -> None:
 def test_encoders_set_to_zero_between_the_sides_are_refused() -> None:
     with pytest.raises(InputError, match=r"set to zero between the sides.*--j0"):
         identified_by(REFERENCE, Rig(samples=180, zeroed=True))
+
+
+def test_encoders_that_were_set_to_zero_and_then_read_with_noise_are_refused_too() -> None:
+    """Where the backlash is least at the start nothing else shows it: what is left of it is above zero everywhere."""
+    rig = Rig(samples=180, zeroed=True, start=math.radians(4278.55))
+    read: dict[Side, tuple[Pass, ...]] = {}
+    offsets: tuple[tuple[Side, float], ...] = (("drive", 0.0), ("back", 0.4 * ARCSEC))
+    for side, off in offsets:
+        rows = measured(REFERENCE, rig, side)
+        block = Block(0, rows.phi1 - off, rows.phi2 + off, None, None)
+        read[side] = tuple(passes_of(PAIR, Path(f"{side}.csv"), [block], Senses(1, 1)))
+    with pytest.raises(InputError, match=r"back.csv: both sides begin at the same angles.*--j0"):
+        identified(PAIR, read, Senses(1, 1), Settings())
+
+
+def test_a_row_that_is_wrong_is_warned_of_with_its_place() -> None:
+    """The last row of a file that was cut off within a number: 0.5 deg less of phi2."""
+    rows = measured(REFERENCE, ENCODERS, "drive")
+    phi2 = rows.phi2.copy()
+    phi2[-1] -= math.radians(0.5)
+    drive = tuple(passes_of(PAIR, Path("drive.csv"), [Block(0, rows.phi1, phi2, None, None)], Senses(1, 1)))
+    found = identified(PAIR, {"drive": drive, "back": passes(REFERENCE, ENCODERS, "back")}, Senses(1, 1), Settings())
+    text = next(text for text in found.warnings if "a file that was cut off" in text)
+    at = math.degrees(rows.phi1[-1])
+    assert text.startswith(f"the drive side has a row at phi1 = {at:.2f}°")
+    assert float(text.split("several, ")[1].split("″")[0]) == pytest.approx(-1800, abs=10)
+    assert not [text for text in identified_by(REFERENCE, ENCODERS).warnings if "cut off" in text]
+
+
+def test_repeats_are_pooled_by_torque_and_count_as_rows() -> None:
+    """Nine passes at three torques: a third of one pass's intervals where the winding is not fitted; no more bins."""
+    rig = replace(ENCODERS, turns=4.0, noise=0.8 * ARCSEC)
+    one, nine = identified_by(REFERENCE, rig), identified_by(REFERENCE, replace(rig, repeats=9))
+    for name in ("e1", "theta1", "e2", "theta2", "jmin", "jmax"):
+        ratio = one.figures[name].half_width / nine.figures[name].half_width
+        assert ratio == pytest.approx(3.0, rel=0.1), name
+        assert abs(nine.figures[name].value - one.figures[name].value) < 2 * one.figures[name].half_width
+    assert arcsec(nine.figures["jmin"].value) == pytest.approx(LEAST, abs=2 * arcsec(nine.figures["jmin"].half_width))
+    wound = replace(rig, repeats=9, torques=(1.0, 2.0, 3.0), winding=20 * ARCSEC)
+    found = identified_by(REFERENCE, wound)
+    assert found.winding is not None
+    assert arcsec(found.winding.value) == pytest.approx(20.0, abs=2 * arcsec(found.winding.half_width))
+    bins = 4 * 27 * 32  # of the turns that were measured
+    sides: tuple[Side, ...] = ("drive", "back")
+    for side in sides:
+        assert nine.fit.measured.count([side]) == 9 * 4 * 180
+        assert len(nine.fit.measured.rows[side]) <= bins
+        assert len(found.fit.measured.rows[side]) <= 3 * bins
+        assert [own.rows for own in nine.read[side]] == 9 * [4 * 180]
 
 
 def test_a_given_backlash_at_the_start_stands_in() -> None:

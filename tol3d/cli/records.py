@@ -64,8 +64,8 @@ def identify(
     run_builders: RunBuilders = False,
 ) -> None:
     """Identify eccentricities, play and the backlash of the whole long period from two-sided transmission error."""
+    from tol3d.records.findings import Settings
     from tol3d.records.identified_table import identified_report
-    from tol3d.records.identify import Settings
     from tol3d.records.identify import identify as identified
     from tol3d.records.output import refuse_others, write_identified
     from tol3d.records.quantity import stated

@@ -5,13 +5,15 @@
     alignment    the long period            alignment.py                aligned
     fit          both sides together        fit.py                      fitted
     prediction   the whole long period      prediction.py               predicted
-    findings     all of it                  identify.py                 identify
+    findings     all of it                  identify.py                 identify         (findings.py: Identified)
+    cautions     what may spoil them        cautions.py                 cautions
 
 `exact_play.py` is the geometry, without the assumption of small eccentricities; `rig.py` makes measured files of it,
 `planning.py` predicts how well a rig of that kind identifies.
 """
 
-from tol3d.records.identify import Identified, Settings, identify
+from tol3d.records.findings import Identified, Settings
+from tol3d.records.identify import identify
 from tol3d.records.pair import RigPair, Specimen
 from tol3d.records.planning import RigPlan, plan_rig
 from tol3d.records.rig import Rig, measured

@@ -7,14 +7,14 @@ pitches of the driven gear. Transmission errors and backlash are far smaller tha
 """
 
 import math
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
 from tol3d.records.bins import Bins
 from tol3d.records.ends import Ends
+from tol3d.records.exact_play import Side
 from tol3d.records.pair import TURN, RigPair
 from tol3d.records.reading import Pass
 
@@ -26,49 +26,50 @@ class Aligned:
     Args:
         path, repeat: whose it is.
         turns: of the driver, by which its own count was shifted.
-        bins: its rows, shifted.
-        ends: likewise, see Pass.
+        ends: see Pass, shifted by these turns; errors off a constant.
         torques: see Pass.
     """
 
     path: Path
     repeat: int
     turns: int
-    bins: Bins
     ends: Ends | None
     torques: tuple[float, float] | None
 
 
-def aligned(
-    pair: RigPair, drive: Sequence[Pass], back: Sequence[Pass], j0: float | None
-) -> tuple[tuple[Aligned, ...], tuple[Aligned, ...]]:
-    """Passes of both sides in one long period: that of the first pass of the drive side.
+class Alignment:
+    """Places of passes in one long period: that of the first pass of the drive side.
 
     Args:
         pair: nominal numbers.
-        drive, back: the passes.
         j0: backlash [rad] where the encoders were set to zero between the sides: the back side then lies where its
             own angles say, at any offset.
     """
-    reference = mean_error(drive[0].bins)
-    if j0 is not None:
-        shift = reference + j0 - mean_error(back[0].bins)
-        back = [replace(own, bins=own.bins.shifted(pair, 0, shift)) for own in back]
-    return tuple(_placed(pair, own, reference) for own in drive), tuple(_placed(pair, own, reference) for own in back)
+
+    def __init__(self, pair: RigPair, j0: float | None) -> None:
+        self._pair, self._j0 = pair, j0
+        self._reference: float | None = None
+        self._back: float | None = None  # by which errors of the back side are shifted
+
+    def placed(self, side: Side, own: Pass) -> tuple[Aligned, Bins]:
+        """A pass in its place, and its rows."""
+        bins, mean = own.bins, mean_error(own.bins)
+        if self._reference is None:
+            self._reference = mean
+        if side == "back" and self._j0 is not None:
+            self._back = self._reference + self._j0 - mean if self._back is None else self._back
+            bins = bins.shifted(self._pair, 0, self._back)
+        pair, step = self._pair, TURN * self._pair.common_factor / self._pair.driven_teeth
+        steps = round((mean_error(bins) - self._reference) / step)
+        turns = steps * _inverse(pair) % pair.long_period_turns
+        ends = None if own.ends is None else own.ends.shifted(pair, turns, 0.0)
+        placed = Aligned(own.path, own.repeat, turns, ends, own.torques)
+        return placed, bins.shifted(pair, turns, -steps * step)
 
 
 def mean_error(bins: Bins) -> float:
     """Mean of phi2 - phi1 z1/z2 over the rows [rad]."""
     return float(np.average(bins.error, weights=bins.rows))
-
-
-def _placed(pair: RigPair, own: Pass, reference: float) -> Aligned:
-    step = TURN * pair.common_factor / pair.driven_teeth
-    steps = round((mean_error(own.bins) - reference) / step)
-    turns = steps * _inverse(pair) % pair.long_period_turns
-    bins = own.bins.shifted(pair, turns, -steps * step)
-    ends = None if own.ends is None else own.ends.shifted(pair, turns, -steps * step)
-    return Aligned(own.path, own.repeat, turns, bins, ends, own.torques)
 
 
 def _inverse(pair: RigPair) -> int:

@@ -75,6 +75,24 @@ class BinSums:
         if torque is not None:
             view[7] += np.bincount(index, torque, minlength=high)
 
+    def add_bins(self, bins: Bins, error: float) -> None:
+        """Add rows that are gathered already; `error` [rad] is the value that errors here are counted from."""
+        index = np.minimum((bins.phi1 * (self._count / self._period)).astype(np.int64), self._count - 1)
+        off = bins.phi1 - (index + 0.5) * (self._period / self._count)
+        rows, own = bins.rows, bins.error - error
+        parts = (
+            rows,
+            rows * off,
+            rows * bins.travel,
+            rows * own,
+            bins.spread_phi1 + rows * off * off,
+            bins.spread_both + rows * off * own,
+            bins.spread_error + rows * own * own,
+            rows * bins.torque,
+        )
+        for sums, part in zip(self._sums, parts, strict=True):
+            np.add.at(sums, index, part)
+
     def bins(self, error: float) -> Bins:
         """Means of the bins that have rows; `error` [rad] is the value that errors were counted from."""
         used = np.flatnonzero(self._sums[0])

@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.records.exact_play import Side
+from tol3d.records.findings import Identified
 from tol3d.records.fit import Fit
-from tol3d.records.identify import Identified
 from tol3d.records.pair import ARCSEC
 
 Array = NDArray[np.float64]

@@ -14,7 +14,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.records.alignment import Aligned
+from tol3d.records.bins import Bins
 from tol3d.records.exact_play import Side, driven_angle
 from tol3d.records.pair import TURN, RigPair, Specimen
 from tol3d.records.terms import ECCENTRIC, Points, Terms, columns
@@ -53,9 +53,9 @@ class Measured:
         return float(sum(self.rows[side].sum() for side in sides))
 
 
-def measured_of(pair: RigPair, sides: Mapping[Side, Sequence[Aligned]], turned: Mapping[Side, float]) -> Measured:
-    """Passes as they are fitted; travel counts from the middle of each pass."""
-    joined = {side: _joined(passes) for side, passes in sides.items()}
+def measured_of(pair: RigPair, sides: Mapping[Side, Sequence[Bins]], turned: Mapping[Side, float]) -> Measured:
+    """Rows as they are fitted; travel counts from the middle of each pass."""
+    joined = {side: _joined(bins) for side, bins in sides.items()}
     points = {
         side: Points(own["phi1"], pair.rate * own["phi1"] + own["error"], own["travel"], own["torque"])
         for side, own in joined.items()
@@ -73,14 +73,8 @@ def measured_of(pair: RigPair, sides: Mapping[Side, Sequence[Aligned]], turned: 
     )
 
 
-def _joined(passes: Sequence[Aligned]) -> Mapping[str, Array]:
-    centred = [replace(own.bins, travel=_centred(own.bins.travel)) for own in passes]
-    return {name: np.concatenate([getattr(own, name) for own in centred]) for name in vars(centred[0])}
-
-
-def _centred(travel: Array) -> Array:
-    middle = (travel.min() + travel.max()) / 2
-    return np.asarray(travel - middle)
+def _joined(bins: Sequence[Bins]) -> Mapping[str, Array]:
+    return {name: np.concatenate([getattr(own, name) for own in bins]) for name in vars(bins[0])}
 
 
 @dataclass(frozen=True, eq=False)

@@ -7,7 +7,7 @@ import numpy as np
 from matplotlib.axes import Axes
 
 from tol3d.records.curve import BacklashCurve
-from tol3d.records.identify import Identified
+from tol3d.records.findings import Identified
 from tol3d.records.pair import ARCSEC, TURN
 from tol3d.report.canvas import BLACK, BLUE, GREY, ORANGE, VERMILLION, legend_below, new_figure, plain_axes, save_figure
 

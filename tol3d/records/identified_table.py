@@ -4,7 +4,7 @@ import math
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Final
 
-from tol3d.records.identify import Identified
+from tol3d.records.findings import Identified
 from tol3d.records.pair import ARCSEC, TURN
 from tol3d.records.prediction import Figure
 from tol3d.records.scene_mesh import SceneMesh

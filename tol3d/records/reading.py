@@ -63,10 +63,12 @@ class Pass:
     trace: Array
     raw: Array
 
-    def without_trace(self) -> "Pass":
-        """The same without the rows that were kept as they came."""
+    def without_rows(self) -> "Pass":
+        """The same without its rows, of which others keep what they need."""
         nothing = np.zeros((2, 0))
-        return replace(self, trace=nothing, raw=nothing)
+        return replace(
+            self, bins=self.bins.where(np.zeros(len(self.bins.rows), dtype=bool)), ends=None, trace=nothing, raw=nothing
+        )
 
 
 def senses_of(path: Path, unit: str | None) -> Senses:

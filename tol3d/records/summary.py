@@ -8,7 +8,7 @@ from typing import Literal
 from pydantic import BaseModel, ConfigDict, Field
 
 from tol3d.records.exact_play import Side
-from tol3d.records.identify import Identified
+from tol3d.records.findings import Identified
 from tol3d.records.one_sided import OneSided
 from tol3d.records.pair import ARCSEC, TURN
 from tol3d.records.prediction import Figure

@@ -1,0 +1,124 @@
+"""What is found of a measured pair, and how its measurement is read."""
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tol3d.records.alignment import Aligned, HiddenShift
+from tol3d.records.closure import Closing, closures
+from tol3d.records.exact_play import Side
+from tol3d.records.fit import Fit
+from tol3d.records.one_sided import OneSided
+from tol3d.records.pair import ARCSEC, RigPair, Specimen
+from tol3d.records.prediction import BacklashModel, Extreme, Figure, length_and_phase
+from tol3d.records.reading import Pass, Senses
+from tol3d.records.spectrum import Spectrum
+from tol3d.records.terms import ECCENTRIC, ENCODERS
+
+Array = NDArray[np.float64]
+
+ENCODER_ERROR: Final = 20 * ARCSEC  # once per turn, that a rig's encoders and couplings may have
+
+
+@dataclass(frozen=True)
+class Settings:
+    """How a measurement is read.
+
+    Args:
+        unit: of angles whose column has none.
+        j0: backlash at phi1 = 0 [rad], where encoders were set to zero between the sides.
+        j0_half_width: of its 95 % interval [rad].
+        encoder_error: once per turn, that is believed of either encoder [rad].
+        drift: fit a linear drift of each side along.
+    """
+
+    unit: str | None = None
+    j0: float | None = None
+    j0_half_width: float = 0.0
+    encoder_error: float = ENCODER_ERROR
+    drift: bool = False
+
+
+@dataclass(frozen=True, eq=False)
+class Identified:
+    """What was found.
+
+    Args:
+        pair: nominal numbers.
+        senses: of the encoders.
+        passes: as they were aligned, by side.
+        read: the same as they were read, by side.
+        fit: of both sides together.
+        model: the backlash.
+        alone: of each side.
+        shift: where the back side might lie instead.
+        spectrum: of what is left.
+        warnings: what may spoil it.
+    """
+
+    pair: RigPair
+    senses: Senses
+    passes: Mapping[Side, tuple[Aligned, ...]]
+    read: Mapping[Side, tuple[Pass, ...]]
+    fit: Fit
+    model: BacklashModel
+    alone: Mapping[Side, OneSided]
+    shift: HiddenShift | None
+    spectrum: Spectrum
+    warnings: tuple[str, ...] = ()
+
+    @property
+    def specimen(self) -> Specimen:
+        """The pair that was found, theta2 counted as the exact geometry counts it."""
+        return self.fit.specimen(self.model.constant_part)
+
+    @cached_property
+    def figures(self) -> Mapping[str, Figure]:
+        """e1, theta1, e2, theta2 [mm, rad]; jc, j0 and the backlash's ends jmin, jmax with their places [rad]."""
+        vector, covariance = self.fit.of(ECCENTRIC)
+        quantile = self.model.quantile
+        found = dict(zip(("e1", "theta1"), length_and_phase(vector[:2], covariance[:2, :2], quantile), strict=True))
+        found |= zip(("e2", "theta2"), length_and_phase(vector[2:], covariance[2:, 2:], quantile), strict=True)
+        start = np.zeros(1)
+        found["jc"] = Figure(self.model.constant_part, self.model.constant_half_width)
+        found["j0"] = Figure(float(self.model.backlash(start)[0]), float(self.model.half_width(start)[0]))
+        for name, own in (("jmin", self.least), ("jmax", self.largest)):
+            found[name], found[f"{name} at"] = own.backlash, own.place
+        return found
+
+    @cached_property
+    def least(self) -> Extreme:
+        """The smallest backlash over the long period."""
+        return self.model.extreme(-1)
+
+    @cached_property
+    def largest(self) -> Extreme:
+        """The largest."""
+        return self.model.extreme(+1)
+
+    @cached_property
+    def encoders(self) -> Mapping[str, Figure]:
+        """Parts common to both sides, once per turn [rad]: of encoder 1 in its own angle, of encoder 2."""
+        vector, covariance = self.fit.of(ENCODERS)
+        driver, _ = length_and_phase(vector[:2], covariance[:2, :2], self.model.quantile)
+        driven, _ = length_and_phase(vector[2:], covariance[2:, 2:], self.model.quantile)
+        gain = 1 / self.pair.rate
+        return {"encoder 1": Figure(gain * driver.value, gain * driver.half_width), "encoder 2": driven}
+
+    @cached_property
+    def closure(self) -> Mapping[Closing, Figure]:
+        """Change of transmission errors and of the backlash over the long period [rad], where one is reached."""
+        return closures(self.fit, self.specimen, self.passes)
+
+    @property
+    def winding(self) -> Figure | None:
+        """1/k of B_0(T) = j_0 + T/k [rad/(N m)]; None where torques tell nothing of it."""
+        if not self.fit.terms.winding:
+            return None
+        value, covariance = self.fit.of(("winding",))
+        return Figure(2 * float(value[0]), 2 * self.model.quantile * math.sqrt(float(covariance[0, 0])))
