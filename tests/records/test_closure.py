@@ -101,10 +101,10 @@ def test_of_a_short_long_period_a_slip_shows_whole_where_the_run_goes_on() -> No
 
 @pytest.mark.slow
 def test_closures_lie_inside_their_intervals_in_95_of_100_cases() -> None:
-    """200 data sets: 90 to 98 % of each."""
+    """150 data sets: 133 to 149 of each; a binomial of 150 and 0.95 leaves that in one case of 500."""
     inside = {"drive": 0, "back": 0, "backlash": 0}
-    for seed in range(200):
+    for seed in range(150):
         found = identified_by(REFERENCE, replace(RUN, turns=16.0 + seed % 3, samples=216, seed=seed))
         for name, own in found.closure.items():
             inside[name] += abs(own.value) <= own.half_width
-    assert all(180 <= count <= 196 for count in inside.values()), inside
+    assert all(133 <= count <= 149 for count in inside.values()), inside
