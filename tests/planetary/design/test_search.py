@@ -58,7 +58,7 @@ def test_it_finds_every_set_there_is(ratio: float, planets: int) -> None:
     teeth = Teeth(12, 66, 1)
     expected = every_3k(ratio, 1.0, planets, teeth)
     found = find(Wish(Wolfrom(), ratio, 1.0, planets, teeth, limits=LOOSE), EVERY)
-    fallen = sum(own.count for own in found.fallen if own.condition == "teeth that run together")
+    fallen = sum(own.count for own in found.fallen if own.condition == "limits of the teeth")
     assert teeth_of(found) <= expected
     assert len(expected) == len(found.candidates) + fallen
     assert len(found.candidates) > 5
@@ -79,8 +79,8 @@ def test_the_ratio_of_the_paper_leaves_exactly_one_set() -> None:
 def test_the_smallest_sets_come_first_and_the_rest_is_counted() -> None:
     wish = Wish(Simple(), 4.5, planets=3)
     every, few = find(wish, EVERY), find(wish, 4)
-    fallen = sum(own.count for own in few.fallen if own.condition == "teeth that run together")
-    whole = sum(own.count for own in every.fallen if own.condition == "teeth that run together")
+    fallen = sum(own.count for own in few.fallen if own.condition == "limits of the teeth")
+    whole = sum(own.count for own in every.fallen if own.condition == "limits of the teeth")
     assert [own.own.teeth for own in few.candidates] == [own.own.teeth for own in every.candidates[:4]]
     assert few.left + 4 + fallen == len(every.candidates) + whole
     rings = [own.own.teeth.mesh("ring").teeth for own in every.candidates]
@@ -96,7 +96,7 @@ def test_simple_sets_are_all_there() -> None:
         if placed(own, 3) and room(own, 3, 0.5)
     }
     found = find(Wish(Simple(), 4.0, 0.01, 3, Teeth(12, 60, 2), limits=LOOSE), EVERY)
-    fallen = sum(own.count for own in found.fallen if own.condition == "teeth that run together")
+    fallen = sum(own.count for own in found.fallen if own.condition == "limits of the teeth")
     assert teeth_of(found) <= expected
     assert len(expected) == len(found.candidates) + fallen
 
@@ -116,7 +116,7 @@ def test_simple_sets_are_all_there() -> None:
         ),
         (
             Wish(Wolfrom(), 54.72, tolerance=0.0, planets=4, limits=Limits(tip_clearance=0.26), centre_distance=26.0),
-            "teeth that run together: 1 fail; 25/27/79/24/76: no profile shifts keep the limits; closest fails by "
+            "limits of the teeth: 1 fail; 25/27/79/24/76: no profile shifts keep the limits; closest fails by "
             "clearance",
         ),
         (

@@ -7,11 +7,14 @@ from typing import ClassVar, Final, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from tol3d.errors import GeometryError
 from tol3d.planetary.design.torque_balance import Drive
 from tol3d.planetary.tooth_set import CARRIER, ToothSet, simple, wolfrom
 
 Counts = NDArray[np.int64]
 RATIO_RTOL: Final = 1e-12  # a ratio at the very end of its tolerance counts, however its decimals are rounded
+
+MOST_SETS: Final = 20_000  # with one ratio; they are judged one by one
 
 
 @dataclass(frozen=True)
@@ -37,7 +40,11 @@ class Family(Protocol):
     drive: ClassVar[Drive]
 
     def near(self, ratio: float, tolerance: float, teeth: Teeth) -> tuple[tuple[ToothSet, ...], ToothSet | None]:
-        """Sets whose ratio lies within a tolerance of that wished, and of all the nearest."""
+        """Sets whose ratio lies within a tolerance of that wished, and of all the nearest.
+
+        Raises:
+            GeometryError: more than MOST_SETS.
+        """
         ...
 
 
@@ -61,8 +68,9 @@ class Wolfrom:
             slip = planet_1 * ring_2 - planet_2 * ring_1
             with np.errstate(divide="ignore"):
                 off = np.abs(planet_1 * ring_2 * (sun + ring_1) / (sun * slip.astype(np.float64)) - ratio)
-            for k in np.flatnonzero(off <= tolerance + RATIO_RTOL * abs(ratio)):
-                found.append((sun, *map(int, counts[:, k])))
+            within = np.flatnonzero(off <= tolerance + RATIO_RTOL * abs(ratio))
+            _refuse_too_many(len(found) + len(within), self.words, ratio, tolerance)
+            found += [(sun, *map(int, counts[:, k])) for k in within]
             best = int(np.argmin(off))
             if off[best] < off_nearest:
                 nearest, off_nearest = (sun, *map(int, counts[:, best])), off[best]
@@ -97,8 +105,9 @@ class Simple:
         """See Family; ratio = 1 + z_R/z_S."""
         every = sorted(self._every(teeth), key=lambda own: abs(1 + own[2] / own[0] - ratio))
         reach = tolerance + RATIO_RTOL * abs(ratio)
-        found = (simple(*own) for own in every if abs(1 + own[2] / own[0] - ratio) <= reach)
-        return tuple(found), simple(*every[0]) if every else None
+        found = [own for own in every if abs(1 + own[2] / own[0] - ratio) <= reach]
+        _refuse_too_many(len(found), self.words, ratio, tolerance)
+        return tuple(simple(*own) for own in found), simple(*every[0]) if every else None
 
     @staticmethod
     def _every(teeth: Teeth) -> Iterator[tuple[int, int, int]]:
@@ -107,6 +116,14 @@ class Simple:
             for planet in range(teeth.least, (teeth.largest - sun + d) // 2 + 1):
                 for ring in range(sun + 2 * planet - d, min(sun + 2 * planet + d, teeth.largest) + 1):
                     yield sun, planet, ring
+
+
+def _refuse_too_many(count: int, words: str, ratio: float, tolerance: float) -> None:
+    if count > MOST_SETS:
+        raise GeometryError(
+            f"ratio: more than {MOST_SETS} {words}s have a ratio within {tolerance:g} of {ratio:g}: expected a smaller "
+            "tolerance, or fewer teeth"
+        )
 
 
 FAMILIES: Final[Mapping[str, Family]] = {"3k": Wolfrom(), "simple": Simple()}

@@ -123,7 +123,7 @@ def find(wish: Wish, most: int = 10) -> Found:
             failed.append(f"{teeth_text(teeth)}: {error}")
             continue
         candidates.append(Candidate(own, wish.task(teeth)))
-    interfering = (Fallen("teeth that run together", len(failed), failed[0]),) if failed else ()
+    interfering = (Fallen("limits of the teeth", len(failed), failed[0]),) if failed else ()
     fallen = (*not_assembled, *touching, *interfering)
     if not candidates:
         raise GeometryError(_none_left(wish, len(with_ratio), fallen))
