@@ -1,6 +1,8 @@
 """Internal pairs against outlines of ring and pinion in polar form."""
 
 import math
+from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -10,6 +12,7 @@ from oracles.involute_gear import InvoluteGear
 from oracles.poses import pose
 from oracles.ring_and_pinion import Toothed, free_turn
 
+from tol3d.errors import GeometryError
 from tol3d.gears import LEFT, RIGHT, Displaced, Flank, InternalGear, InternalPair, SpurGear
 
 ALPHA = math.radians(20)
@@ -73,6 +76,88 @@ def test_backlash_is_the_free_turn_of_the_ring_times_its_base_radius(ring_drives
         ]
         assert free[0] == pytest.approx(free[1], abs=1e-7 / pair.ring.base_radius)  # centred
         assert sum(free) * pair.ring.base_radius == pytest.approx(pair.normal_backlash, abs=1e-7)
+
+
+@pytest.mark.parametrize("ring_drives", [False, True])
+def test_backlash_is_what_both_teeth_leave_of_a_pitch_on_the_working_circles(ring_drives: bool) -> None:
+    rng = np.random.default_rng(5)
+    for _ in range(200):
+        pair = random_pair(rng, ring_drives)
+        ratio = pair.inner.teeth / pair.ring.teeth
+        ring_radius = pair.centre_distance / (1 - ratio)  # circles that roll in one another, a apart
+        inner_radius = ring_radius * ratio
+        assert pair.working_radii == pytest.approx(
+            (ring_radius, inner_radius) if ring_drives else (inner_radius, ring_radius), rel=1e-14
+        )
+        teeth = sum(
+            2 * radius * float(toothed(gear).half_angle(np.array(radius)))
+            for gear, radius in ((pair.ring, ring_radius), (pair.inner, inner_radius))
+        )
+        left = 2 * math.pi * ring_radius / pair.ring.teeth - teeth
+        assert pair.circumferential_backlash == pytest.approx(left, abs=1e-10)
+        assert pair.normal_backlash == pytest.approx(left * pair.ring.base_radius / ring_radius, abs=1e-10)
+        turns = pair.normal_backlash / pair.pinion.base_radius, pair.normal_backlash / pair.wheel.base_radius
+        assert pair.angular_backlash == pytest.approx(turns, rel=1e-14)
+        nearest = replace(pair, centre_distance=pair.centre_distance + pair.radial_backlash)
+        assert nearest.normal_backlash == pytest.approx(0.0, abs=1e-10)
+
+
+def test_opening_the_centre_distance_closes_an_internal_pair_by_two_sin_alpha_per_mm() -> None:
+    pair = random_pair(np.random.default_rng(6), ring_drives=False)
+    slopes = []
+    for step in (1e-3, 5e-4):
+        more, less = (replace(pair, centre_distance=pair.centre_distance + sign * step) for sign in (1, -1))
+        slopes.append((more.normal_backlash - less.normal_backlash) / (2 * step))
+    expected = -2 * math.sin(pair.working_pressure_angle)
+    assert (4 * slopes[1] - slopes[0]) / 3 == pytest.approx(expected, abs=1e-9)
+
+
+def test_working_pressure_angle_without_backlash_is_that_of_the_profile_shifts() -> None:
+    """inv alpha_w = inv alpha + 2 tan alpha (x_1 + x_2)/(z_1 - z_2), z_2 the ring's and x_2 > 0 inwards."""
+    planet = SpurGear(24, 1.0, ALPHA, 10.0, profile_shift=0.31)
+    ring = InternalGear(76, 1.0, ALPHA, 10.0, profile_shift=-0.12)
+    pair = InternalPair(planet, ring, InternalPair(planet, ring, 25.9).zero_backlash_centre_distance)
+    working = pair.working_pressure_angle
+    shifts = 2 * math.tan(ALPHA) * (0.31 - 0.12) / (24 - 76)
+    assert math.tan(working) - working == pytest.approx(math.tan(ALPHA) - ALPHA + shifts, abs=1e-14)
+
+
+@pytest.mark.parametrize(
+    ("pinion", "wheel", "distance", "why"),
+    [
+        (InternalGear(40, 1.0, ALPHA, 5.0), InternalGear(60, 1.0, ALPHA, 5.0), 10.0, "one internal gear.*got two"),
+        (SpurGear(20, 1.0, ALPHA, 5.0), SpurGear(20, 1.0, ALPHA, 5.0), 20.0, "one internal gear.*got none"),
+        (SpurGear(40, 1.0, ALPHA, 5.0), InternalGear(40, 1.0, ALPHA, 5.0), 1.0, "more teeth than the gear inside"),
+        (
+            SpurGear(20, 1.0, ALPHA, 5.0),
+            InternalGear(60, 1.5, ALPHA, 5.0),
+            20.0,
+            "the same module, got 1 mm and 1.5 mm",
+        ),
+        (SpurGear(20, 1.0, ALPHA, 5.0), InternalGear(60, 1.0, ALPHA, 5.0), 18.0, "needs more than 18.7939 mm"),
+    ],
+)
+def test_gears_that_are_no_internal_pair_are_refused(
+    pinion: SpurGear | InternalGear, wheel: SpurGear | InternalGear, distance: float, why: str
+) -> None:
+    with pytest.raises(GeometryError, match=why):
+        InternalPair(pinion, wheel, distance)
+
+
+@pytest.mark.parametrize(
+    ("change", "why"),
+    [
+        ({"teeth": 30}, r"tip circle \(28.0000 mm\).*base circle \(28.1908 mm\).*addendum below 0.9046"),
+        ({"outer_diameter": 80.0}, r"outer_diameter: expected more than the root circle \(81.5000 mm\), got 80 mm"),
+        ({"root_fillet": 0.5}, "root_fillet: expected more than 0 and at most 0.4415 mm"),
+        ({"addendum": -1.5}, "must lie inside the root circle"),
+        ({"tooth_thickness_deviation": -0.95}, r"pointed teeth: .*lower addendum below 0\."),
+        ({"tooth_thickness_deviation": 1.2}, "no tooth space is left"),
+    ],
+)
+def test_rings_that_cannot_be_made_are_refused_with_their_numbers(change: dict[str, Any], why: str) -> None:
+    with pytest.raises(GeometryError, match=why):
+        replace(InternalGear(79, 1.0, ALPHA, 10.0), **change)
 
 
 @pytest.mark.parametrize("ring_drives", [False, True])
