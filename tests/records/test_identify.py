@@ -240,8 +240,19 @@ def test_drift_is_seen_and_fitted_along() -> None:
     rig = Rig(turns=8, samples=180, drift=3 * ARCSEC)
     assert any("drifts by 3." in text for text in identified_by(REFERENCE, rig).warnings)
     found = identified_by(REFERENCE, rig, Settings(drift=True))
-    assert not any("drifts" in text for text in found.warnings)
+    assert not any("drifts" in text or "alone disagrees" in text for text in found.warnings)
     assert all(within(found, REFERENCE)[name] for name in ("e1", "theta1", "e2", "theta2"))
+
+
+def test_either_side_alone_fits_a_drift_along_too_and_encoders_are_flagged_beside_it() -> None:
+    """Alone each side is wrong by the encoders, 4 arcsec or more, not by the drift; r_b2 6 arcsec are 1.3 um."""
+    found = identified_by(REFERENCE, replace(ENCODERS, drift=5 * ARCSEC), Settings(drift=True))
+    still = identified_by(REFERENCE, ENCODERS)
+    assert sum("alone disagrees" in text for text in found.warnings) == 2
+    for side, own in found.alone.items():
+        assert own.disagrees, side
+        for name in ("e1", "e2"):
+            assert own.figures[name].value == pytest.approx(still.alone[side].figures[name].value, abs=2e-5)
 
 
 def test_the_measured_curve_lies_over_the_true_one() -> None:

@@ -46,7 +46,7 @@ def one_sided(side: Side, fit: Fit, model: BacklashModel) -> OneSided:
         fit: the joint one.
         model: the joint fit's backlash.
     """
-    terms = Terms((side,), encoders=False, drift=False, teeth=fit.terms.teeth)
+    terms = Terms((side,), encoders=False, drift=fit.terms.drift, teeth=fit.terms.teeth)
     own = fitted(fit.measured, terms, constant_part=model.constant_part)
     vector, covariance = own.of(ECCENTRIC)
     start = float(model.backlash(np.zeros(1))[0])

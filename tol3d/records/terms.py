@@ -50,7 +50,7 @@ class Terms:
         names = [*ECCENTRIC, *(CONSTANTS if both else CONSTANTS[:1])]
         names += ENCODERS if self.encoders else ()
         names += WINDING if self.winding else ()
-        names += DRIFTS if self.drift else ()
+        names += [name for name in DRIFTS if self.drift and name.removeprefix("drift ") in self.sides]
         names += [name for side in self.sides for order in self.teeth for name in tooth_names(side, order)]
         return tuple(names)
 
