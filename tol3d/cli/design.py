@@ -48,11 +48,13 @@ def design(
     friction: Annotated[float, typer.Option(min=0.0, max=0.3, help="Coefficient in the meshes.")] = 0.08,
     most: Annotated[int, typer.Option(min=1, max=200, help="Candidates shown at most.")] = 10,
     detail: Annotated[int, typer.Option(min=1, metavar="N", help="Candidate shown mesh by mesh.")] = 1,
+    scene: Annotated[int | None, typer.Option(min=1, metavar="N", help="Print candidate N as a scene instead.")] = None,
     out: Annotated[Path | None, typer.Option(help="Write the candidates to this CSV file.")] = None,
 ) -> None:
     """Find tooth numbers, profile shifts and efficiencies of planetary sets that have a ratio and can be assembled."""
     from tol3d.errors import InputError
     from tol3d.planetary.design.basic_rack import BasicRack
+    from tol3d.planetary.design.candidate_scene import scene_text
     from tol3d.planetary.design.candidate_table import candidate_table, design_report
     from tol3d.planetary.design.families import FAMILIES, Teeth
     from tol3d.planetary.design.optimum import Goal
@@ -76,9 +78,13 @@ def design(
         centre_distance=None if centre_distance is None else stated("--centre-distance", centre_distance, "length"),
     )
     found = find(wish, most)
-    if detail > len(found.candidates):
-        raise InputError(f"--detail: expected a candidate from 1 to {len(found.candidates)}, got {detail}")
-    out_console.print(design_report(found, wish, detail))
+    for option, asked in (("--detail", detail), ("--scene", scene)):
+        if asked is not None and asked > len(found.candidates):
+            raise InputError(f"{option}: expected a candidate from 1 to {len(found.candidates)}, got {asked}")
+    if scene is not None:
+        typer.echo(scene_text(found.candidates[scene - 1], wish.family), nl=False)
+    else:
+        out_console.print(design_report(found, wish, detail))
     if out is not None:
         write_texts({out.name: candidate_table(found, wish.family).csv()}, out.parent)
         tell(str(out))

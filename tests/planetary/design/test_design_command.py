@@ -1,10 +1,14 @@
 """`tol3d design` as a user meets it."""
 
 import csv
+import math
+import re
 from pathlib import Path
 
 import pytest
 from fixtures import Command
+
+from tol3d import run_scene
 
 PAPER = ("design", "3k", "--ratio", "54.72", "--module", "1 mm", "--planets", "4")
 
@@ -46,11 +50,37 @@ def test_sets_turn_backwards_and_simple_ones_are_found(tol3d: Command) -> None:
     assert "candidate 2:" in said
 
 
+THIN = -0.04  # mm along the normal, every tooth
+
+
+@pytest.mark.parametrize(
+    ("wish", "free"),
+    [
+        # all gaps alike, c = 0.04 mm along the normal on either side of each tooth: 4 c / r_R2 by base radii
+        (PAPER[1:], 4 * 0.04 / (38 * math.cos(math.radians(20)))),
+        ((*PAPER[1:], "--optimise", "forward"), 4 * 0.04 / (38 * math.cos(math.radians(20)))),
+        # carrier over a held ring and a standing sun: both gaps, 2 c each way, over the sum of base radii
+        (("simple", "--ratio", "4.5"), 2 * (0.04 + 0.04) / ((12 + 42) / 2 * math.cos(math.radians(20)))),
+    ],
+)
+def test_a_candidate_is_a_scene_that_runs(tol3d: Command, tmp_path: Path, wish: tuple[str, ...], free: float) -> None:
+    """With all teeth thinned alike the lost motion is the closed form, whatever the profile shifts."""
+    code, said, err = tol3d("design", *wish, "--scene", "1")
+    assert (code, err) == (0, "")
+    alike = re.sub(r"distribution: \{.*?\}", f"distribution: {{kind: constant, value: {THIN} mm}}", said)
+    (tmp_path / "set.yaml").write_text(alike.replace("trials: 20000", "trials: 20"), encoding="utf-8")
+    run = run_scene(tmp_path / "set.yaml", out=tmp_path / "run")
+    found = run.summary["measures"]["lost motion"]
+    for road in ("analytic", "geometric"):
+        assert found[road]["mean"] == pytest.approx(math.degrees(free) * 60, abs=2e-4)
+
+
 @pytest.mark.parametrize(
     ("arguments", "expected"),
     [
         (("--ratio", "54.72", "--planets", "8"), "86 is not divisible by 8"),
         (("--ratio", "54.72", "--planets", "4", "--detail", "2"), "--detail: expected a candidate from 1 to 1, got 2"),
+        (("--ratio", "54.72", "--planets", "4", "--scene", "2"), "--scene: expected a candidate from 1 to 1, got 2"),
         (("--ratio", "54.72", "--module", "1"), "--module: expected a length with its unit"),
         (("--ratio", "54.72", "--module", "0 mm"), "module: expected more than 0 mm, got 0 mm"),
         (("--ratio", "54.72", "--pressure-angle", "60 deg"), "pressure angle: expected 5 to 45 deg, got 60 deg"),
