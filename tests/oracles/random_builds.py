@@ -10,7 +10,7 @@ from oracles.brute_force import Mesh as SearchedSpurs
 from oracles.involute_gear import InvoluteGear
 from tol3d.gearing.build import Build
 from tol3d.gearing.model import GearPart, Mesh, Model
-from tol3d.gears import BevelGear, BevelPair, SpurGear, SpurPair
+from tol3d.gears import BevelGear, BevelPair, InternalPair, SpurGear, SpurPair
 from tol3d.gears.flank import Flank
 
 
@@ -53,14 +53,14 @@ class Builds:
         return len(self.driver_angle)
 
 
-def model_of(pair: SpurPair | BevelPair, flank: Flank) -> Model:
+def model_of(pair: SpurPair | InternalPair | BevelPair, flank: Flank) -> Model:
     """A model that is one mesh, nothing deviating."""
     mesh = Mesh("mesh", "pinion", "wheel", pair, flank)
     return Model("posed", (GearPart("pinion", pair.pinion), GearPart("wheel", pair.wheel)), (), (), (mesh,), ())
 
 
 def random_builds(
-    pair: SpurPair | BevelPair, flank: Flank, count: int, seed: int, *, spread: Spread, thinner: float
+    pair: SpurPair | InternalPair | BevelPair, flank: Flank, count: int, seed: int, *, spread: Spread, thinner: float
 ) -> Builds:
     """Builds of a pair.
 

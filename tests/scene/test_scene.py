@@ -39,6 +39,7 @@ SPUR_PAIR = ROOT / "scenes" / "spur_pair.yaml"
 EVERY_FIELD = ROOT / "scenes" / "every_field.yaml"
 EVERY_BEVEL_FIELD = ROOT / "scenes" / "every_bevel_field.yaml"
 TWO_SIDED_TE = ROOT / "scenes" / "two_sided_te.yaml"
+INTERNAL_PAIR = ROOT / "scenes" / "internal_pair.yaml"
 TOOTH_DEVIATIONS = ROOT / "scenes" / "tooth_deviations.yaml"
 MEASURED_TEETH = ROOT / "scenes" / "measured_teeth.yaml"
 SCENES = sorted((ROOT / "scenes").glob("*.yaml"))
@@ -113,14 +114,10 @@ def shoulders() -> tuple[str, str]:
 def test_every_field_uses_every_field_of_every_kind(tmp_path: Path) -> None:
     known = fields_within(Geared)
     assert len({model for model, _ in known}) >= 24  # scene, study, 2 parts, 9 tolerances, 7 laws, mesh, 3 measures, …
-    scenes = (EVERY_FIELD, EVERY_BEVEL_FIELD, TWO_SIDED_TE, TOOTH_DEVIATIONS, MEASURED_TEETH)
+    scenes = (EVERY_FIELD, EVERY_BEVEL_FIELD, INTERNAL_PAIR, TWO_SIDED_TE, TOOTH_DEVIATIONS, MEASURED_TEETH)
     said = {use for scene in scenes for use in fields_said(load_scene(scene, GEARS))}
     plain = SMALL.replace("  play:", "  normal backlash:")
     said |= {use for study in STUDIES for use in fields_said(load(tmp_path, plain + study, GEARS))}
-    ring = (
-        "{kind: internal_gear, teeth: 60, module: 1 mm, face_width: 9 mm, root_fillet: 0.2 mm, outer_diameter: 70 mm}"
-    )
-    said |= set(fields_said(load(tmp_path, SMALL.replace("moves:", f"  ring: {ring}\nmoves:"), GEARS)))
     arcs = ", ".join(["1 um"] * 20)
     law = f"{{kind: given, right: [{arcs}], left: [{arcs}]}}"
     measured = f"tolerances: {{pitch: {{kind: pitch_deviation, of: a, flanks: each, law: {law}}}}}"
@@ -132,6 +129,8 @@ def test_every_field_uses_every_field_of_every_kind(tmp_path: Path) -> None:
 def test_the_document_quotes_that_scene_and_names_every_field() -> None:
     assert QUOTED[:2] == [scene.read_text(encoding="utf-8") for scene in (EVERY_FIELD, EVERY_BEVEL_FIELD)]
     teeth = (ROOT / "docs" / "tooth_deviations.md").read_text(encoding="utf-8")
+    rings = (ROOT / "docs" / "internal_gears.md").read_text(encoding="utf-8")
+    assert re.findall(r"```yaml\n(.*?)```", rings, re.DOTALL) == [INTERNAL_PAIR.read_text(encoding="utf-8")]
     explained = re.sub("```.*?```", "", DOCUMENT + teeth, flags=re.DOTALL)
     kinds = {get_args(m.model_fields["kind"].annotation)[0] for m in models_within(Geared) if "kind" in m.model_fields}
     names = {field.alias or name for model in models_within(Geared) for name, field in model.model_fields.items()}

@@ -259,7 +259,8 @@ CHANGES = {
     ),
     "a mesh of shafts": (
         ("driver: pinion", "driver: reducer output"),
-        "moves.spur pair.driver: expected the name of a spur gear, got 'reducer output', which is a shaft",
+        "moves.spur pair.driver: expected the name of a spur gear or an internal gear, "
+        "got 'reducer output', which is a shaft",
     ),
     "azimuth without unit": (
         ("azimuth: 90 deg", "azimuth: 90"),

@@ -29,7 +29,7 @@ from tol3d.gearing.model import model_from_scene
 from tol3d.gears.flank import Flank
 
 ELSEWHERE = re.compile(
-    "bevel|robot|train|two_sided|tooth_deviations|measured_teeth"
+    "bevel|robot|train|two_sided|tooth_deviations|measured_teeth|internal_pair"
 )  # in files of their own, and test_compensation.py
 SCENES = [name for name in shipped("gearing") if not ELSEWHERE.search(name)]
 ALPHA = math.radians(20.0)

@@ -235,7 +235,7 @@ def _with_azimuth(gears: Scene, mesh: Mesh, bores: tuple[Bore, Bore], world: Arr
     shaft, _ = layout.carrying[mesh.driver]
     frame = world @ layout.world_from_shaft[shaft] @ layout.shaft_from_gear[mesh.driver]
     x, y, _ = frame[:3, :3].T @ (bores[0].place - frame[:3, 3])
-    follows = math.atan2(y, x)
+    follows = math.atan2(y, x) - math.atan2(*mesh.pair.wheel_origin[1::-1])
     if "azimuth" in move.model_fields_set:
         off = math.remainder(move.azimuth.internal - follows, 2 * math.pi)
         said = math.degrees(follows + off)

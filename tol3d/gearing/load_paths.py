@@ -26,7 +26,7 @@ LinearForm = Mapping[Variable, Array]
 """Weights of the stages' plays and rests, each (trials, positions) or a scalar."""
 
 WorkingFlank = Callable[[Stage], int | None]
-"""The driver's flank that works in a stage; None for a link that is no mesh."""
+"""The driven gear's flank that works in a stage; None for a link that is no mesh."""
 
 
 def value(form: LinearForm, read: VariableValues) -> Array:

@@ -124,7 +124,7 @@ class Play:
         return len(self.trials), self.measure.positions.in_a_trial
 
     def _flank(self, stage: Stage) -> int | None:
-        return None if stage.backlash is None else self.model.mesh(stage.backlash.mesh).working_flank
+        return None if stage.backlash is None else self.model.mesh(stage.backlash.mesh).driven_flank
 
 
 def _is_stated(stage: AnyStage) -> bool:

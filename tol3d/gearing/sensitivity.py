@@ -179,11 +179,12 @@ class _Contacts:
         normal = gap.normal[:, 0]
         turns = [gap.per_turn(*meshing.build.axis(gear), of_driver=gear == driver)[:, 0] for gear in (driver, driven)]
         behind = self._along(driver, angles[0], flank, gap.driver_point[:, 0], -normal)
-        before = self._along(driven, angles[1], flank, gap.driven_point[:, 0], normal)
+        mating = mesh.pair.mating_flank(flank)
+        before = self._along(driven, angles[1], mating, gap.driven_point[:, 0], normal)
         if meshing.build.flanks is not None:
             behind -= self._standing_out(driver, angles[0], flank, gap.driver_point[:, 0], teeth[:, 0])
-            mating = mesh.pair.mating_teeth(teeth[:, 0], flank)
-            before -= self._standing_out(driven, angles[1], flank, gap.driven_point[:, 0], mating)
+            mates = mesh.pair.mating_teeth(teeth[:, 0], flank)
+            before -= self._standing_out(driven, angles[1], mating, gap.driven_point[:, 0], mates)
         return _GapRates(behind + before, (turns[0], turns[1]))
 
     def _standing_out(self, seat: int, angle: Array, flank: Flank, point: Array, teeth: NDArray[np.int64]) -> Array:
@@ -199,8 +200,8 @@ class _Contacts:
     def _along(self, gear: int, angle: Array, flank: Flank, point: Array, normal: Array) -> Array:
         """How fast a gear's flank recedes [mm] at a point, (rows, components); the normal points into the gear.
 
-        A flank that is turned out of its tooth turns about the gear's own centre, against the sign of the driver's
-        flank on both gears. Growth moves the flank that has no offset yet.
+        A flank that is turned out of its tooth turns about the gear's own centre, against its own sign. Growth moves
+        the flank that has no offset yet.
         """
         made, moves = self.meshing.build, self.moves
         shaft, (origin, axis) = made.world_from_shaft[:, gear, :3, :3], made.axis(gear)

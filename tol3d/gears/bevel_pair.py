@@ -177,6 +177,11 @@ class BevelPair:
         return 0.0, 0.0
 
     @property
+    def opening_off_mesh(self) -> tuple[float, float]:
+        """Away from the mate, both [rad]."""
+        return math.pi, math.pi
+
+    @property
     def pinion_section(self) -> float:
         """Where the middle of the common face lies on the pinion's, from toe (0) to heel (1)."""
         return (self.mean_cone_distance - self.pinion.inner_cone_distance) / self.pinion.face_width
@@ -300,12 +305,8 @@ class BevelPair:
         """The wheel's tooth that each of those pinion flanks meets: -k on the right flank, -k - 1 on the left."""
         return -driver_teeth - (0 if flank == 1 else 1)
 
-    def opening_sense(self, flank: Flank) -> Flank:
-        """Sense about its own axis in which either gear's turn opens that flank side: sigma.
-
-        The driver's right flank faces -y at the mesh. The driven tooth there leaves it towards -y, which for
-        the wheel, whose y points the other way, is counter-clockwise; and so does the driver, towards +y.
-        """
+    def mating_flank(self, flank: Flank) -> Flank:
+        """Of the same side: at the mesh the driver's right flank faces -y, where the wheel's y points the other way."""
         return flank
 
 

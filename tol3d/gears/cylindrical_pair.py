@@ -78,6 +78,12 @@ class CylindricalPair:
         return np.eye(3)
 
     @property
+    def opening_off_mesh(self) -> tuple[float, float]:
+        """Away from the mate [rad]; the teeth of a ring leave it on the other side of them."""
+        pinion, wheel = (math.pi if gear.iso_sign > 0 else 0.0 for gear in (self.pinion, self.wheel))
+        return pinion, wheel
+
+    @property
     def pinion_section(self) -> float:
         """The middle: the face centres lie in one plane."""
         return 0.5

@@ -186,7 +186,3 @@ class InternalPair(CylindricalPair):
     def mating_teeth(self, driver_teeth: NDArray[np.int64], flank: Flank) -> NDArray[np.int64]:
         """The wheel's tooth that each of those pinion flanks meets: k - 1 on the right flank, k on the left."""
         return driver_teeth - (1 if flank == 1 else 0)
-
-    def opening_sense(self, flank: Flank) -> Flank:
-        """Sense in which the driver's turn opens that flank side: sigma; the driven gear's opens it by the other."""
-        return flank

@@ -149,6 +149,11 @@ class GearPair(Protocol):
         ...
 
     @property
+    def opening_off_mesh(self) -> tuple[float, float]:
+        """Azimuth off the mesh [rad] in which a shift of the axis opens: pi, away from the mate; of a ring 0."""
+        ...
+
+    @property
     def pinion_section(self) -> float:
         """Where on the pinion's face, from 0 to 1 along its z, the middle of the common face lies."""
         ...
@@ -207,8 +212,11 @@ class GearPair(Protocol):
         """The wheel's tooth that each of those pinion flanks meets."""
         ...
 
-    def opening_sense(self, flank: Flank) -> Flank:
-        """Sense in which either gear's turn about its own axis opens that flank side."""
+    def mating_flank(self, flank: Flank) -> Flank:
+        """Which flank of the wheel that side of the pinion meets.
+
+        A gear leaves its mate on its own right flanks by a turn in the positive sense, on its left ones by one back.
+        """
         ...
 
 

@@ -154,11 +154,3 @@ class SpurPair(CylindricalPair):
     def mating_teeth(self, driver_teeth: NDArray[np.int64], flank: Flank) -> NDArray[np.int64]:
         """The wheel's tooth that each of those pinion flanks meets: -k on the right flank, -k - 1 on the left."""
         return -driver_teeth - (0 if flank == 1 else 1)
-
-    def opening_sense(self, flank: Flank) -> Flank:
-        """Sense in which either gear's turn opens that flank side: sigma, for external gears.
-
-        The driver's right flank faces -y at the mesh: the driven tooth there leaves it by turning
-        counter-clockwise, and so does the driver.
-        """
-        return flank

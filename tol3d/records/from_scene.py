@@ -56,15 +56,19 @@ def mesh_of(model: Model, name: str | None) -> Mesh:
     Raises:
         InputError: there is none, or several and no name, or other gears.
     """
-    spur = {mesh.name: mesh for mesh in model.meshes if mesh.pair.arm_spread == 0.0}
+    spur = {mesh.name: mesh for mesh in model.meshes if _is_external(mesh)}
     names = ", ".join(repr(own) for own in spur)
     if not spur:
-        raise InputError(f"{model.name}: expected a mesh of two spur gears, got none")
+        raise InputError(f"{model.name}: expected a mesh of two external spur gears, got none")
     if name is None and len(spur) > 1:
         raise InputError(f"--mesh: which of {names} was on the rig?")
     if name is not None and name not in spur:
-        raise InputError(f"--mesh: expected a mesh of two spur gears ({names}), got {name!r}")
+        raise InputError(f"--mesh: expected a mesh of two external spur gears ({names}), got {name!r}")
     return spur[name] if name is not None else next(iter(spur.values()))
+
+
+def _is_external(mesh: Mesh) -> bool:
+    return mesh.pair.arm_spread == 0.0 and mesh.driven_flank == mesh.working_flank
 
 
 def specimen_of_scene(model: Model, mesh: Mesh) -> Specimen:

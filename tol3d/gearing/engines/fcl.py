@@ -87,9 +87,9 @@ class FclEngine:
     ) -> Gaps:
         """See Engine.gaps."""
         driver, driven = (self._model.seat_index[mesh.name, gear] for gear in (mesh.driver, mesh.driven))
-        driven_teeth = mesh.pair.mating_teeth(driver_teeth, flank)
+        driven_teeth, mating = mesh.pair.mating_teeth(driver_teeth, flank), mesh.pair.mating_flank(flank)
         driver_rotation, driver_origin = self._flank_poses(build, driver, angles[0], driver_teeth, flank)
-        driven_rotation, driven_origin = self._flank_poses(build, driven, angles[1], driven_teeth, flank)
+        driven_rotation, driven_origin = self._flank_poses(build, driven, angles[1], driven_teeth, mating)
         world_to_driver = frames.transposed(driver_rotation)
         rotation = frames.matmul(world_to_driver, driven_rotation)
         translation = frames.apply(world_to_driver, (driven_origin - driver_origin)[:, None])
@@ -103,21 +103,23 @@ class FclEngine:
         at = np.nonzero(wanted)
         shapes = (
             self._shapes(build, driver, at[0], driver_teeth[at], flank),
-            self._shapes(build, driven, at[0], driven_teeth[at], flank),
+            self._shapes(build, driven, at[0], driven_teeth[at], mating),
         )
         for row, pair, own, its in zip(*at, *shapes, strict=True):
             fixed = self._held(mesh.driver, flank, scales[row, driver], span, own)
-            moved = self._moved(mesh.driven, flank, scales[row, driven], WHOLE_FACE, its)
+            moved = self._moved(mesh.driven, mating, scales[row, driven], WHOLE_FACE, its)
             put(moved, rotation[row, pair], translation[row, pair])
             distance[row, pair], points[row, pair], triangles[row, pair] = nearest(fixed, moved)
         back, curvature = np.full(points.shape, np.nan), np.full((*wanted.shape, 2), np.nan)
         at_end = np.zeros(wanted.shape, dtype=bool)
         poses = ((np.eye(3), np.zeros(3)), (rotation[at], translation[at]))
-        gears = ((mesh.driver, driver, span), (mesh.driven, driven, WHOLE_FACE))
-        for side, ((gear, seat, width), (turn, shift), each) in enumerate(zip(gears, poses, shapes, strict=True)):
+        gears = ((mesh.driver, driver, span, flank), (mesh.driven, driven, WHOLE_FACE, mating))
+        for side, ((gear, seat, width, own_flank), (turn, shift), each) in enumerate(
+            zip(gears, poses, shapes, strict=True)
+        ):
             scale, triangle = scales[at[0], seat], triangles[..., side][at]
             own = frames.apply(frames.transposed(turn), points[..., side, :][at] - shift)
-            strips = [(self._strip(gear, flank, width, shape), rows) for shape, rows in _alike(each)]
+            strips = [(self._strip(gear, own_flank, width, shape), rows) for shape, rows in _alike(each)]
             put_back, bent, ends = _read_strips(strips, scale, triangle, own)
             back[..., side, :][at] = frames.apply(turn, put_back)
             curvature[..., side][at] = bent

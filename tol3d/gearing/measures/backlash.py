@@ -36,7 +36,7 @@ def measure_backlash(kind: Backlash, meshing: Meshing, seat: MeshSeat) -> Array:
     )
     mover = 0 if turn_driver else 1
     turn = np.full(len(known), np.nan)
-    closing = -mesh.pair.opening_sense(flank) * (angles[mover] - start[mover])
+    closing = -(flank if turn_driver else mesh.pair.mating_flank(flank)) * (angles[mover] - start[mover])
     turn[rows] = np.where(touched, closing, np.nan)
     if kind.quantity == "circumferential_backlash":
         return turn * mesh.pair.working_radii[1]

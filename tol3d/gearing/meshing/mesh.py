@@ -147,7 +147,7 @@ class Meshing:
         if pair.arm_spread:
             last_step = min(last_step, LAST_ERROR * pair.pinion.module / pair.arm_spread)
         axis_point, axis = self.build.axis(seat)
-        opening = float(pair.opening_sense(flank))
+        opening = float(flank if turn_driver else pair.mating_flank(flank))
         section = self.reading.contact == "section"
         teeth, wanted = self._teeth(angles[0], flank)
         turned = [angles[0].copy(), angles[1].copy()]

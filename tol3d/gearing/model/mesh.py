@@ -15,8 +15,8 @@ from tol3d.gears.flank import opposite
 class Mesh:
     """The move that turns the driven gear until the working flanks touch.
 
-    World of the mesh: the frame of the driver at rest, turned so that its mate lies at +x; the pair knows where the
-    driven gear's frame lies in it. `working_flank` is the driver's; `azimuth` [rad] is where the mate lies about the
+    World of the mesh: the frame of the driver at rest, turned so that the teeth meet at +x; the pair knows where the
+    driven gear's frame lies in it. `working_flank` is the driver's; `azimuth` [rad] is where the teeth meet about the
     driver's axis, in the driver's frame at rest on its shaft.
     """
 
@@ -31,6 +31,11 @@ class Mesh:
     def gear(self, name: str) -> Gear:
         """The driver or the driven gear, by its name."""
         return self.pair.pinion if name == self.driver else self.pair.wheel
+
+    @property
+    def driven_flank(self) -> Flank:
+        """The driven gear's flank that works."""
+        return self.pair.mating_flank(self.working_flank)
 
     def resting_flank(self, side: Literal["drive", "back"]) -> Flank:
         """The driver's flank that touches on a side: the working one on the drive side."""

@@ -9,7 +9,7 @@ from tol3d.gearing.model import Backlash, Contributor, LostMotion, Measure, Mode
 from tol3d.gearing.presenting.coefficient_tables import coefficients_tables
 from tol3d.gearing.presenting.train_check import train_blocks
 from tol3d.gearing.system import gear_model
-from tol3d.gears import RIGHT, BevelGear, BevelPair, Gear, GearPair, SpurGear, SpurPair
+from tol3d.gears import RIGHT, BevelGear, BevelPair, Gear, GearPair, InternalGear, InternalPair, SpurGear, SpurPair
 from tol3d.report.number import NOTHING, UNIT_SIGNS, degrees_text, given_text, unsigned_zero, value_text
 from tol3d.report.page import Heading, Line, PageItem, Row, Table, line, titled
 from tol3d.report.system_check import law_name
@@ -82,6 +82,27 @@ def _(gear: SpurGear) -> dict[str, str]:
 
 
 @gear_rows.register
+def _(gear: InternalGear) -> dict[str, str]:
+    return {
+        "teeth z": f"{gear.teeth}, inside",
+        "module m [mm]": f"{gear.module:g}",
+        "pressure angle α [°]": degrees_text(gear.pressure_angle),
+        "face width b [mm]": f"{gear.face_width:g}",
+        "profile shift x": f"{gear.profile_shift:g}",
+        "addendum, dedendum [m]": f"{gear.addendum:g}, {gear.dedendum:g}",
+        "reference diameter d [mm]": f"{gear.reference_diameter:.4f}",
+        "tip diameter d_a [mm]": f"{gear.tip_diameter:.4f}",
+        "base diameter d_b [mm]": f"{gear.base_diameter:.4f}",
+        "root diameter d_f [mm]": f"{gear.root_diameter:.4f}",
+        "involute from diameter [mm]": f"{2 * gear.form_radius:.4f}",
+        "root fillet [mm]": f"{gear.fillet_radius:.4f}",
+        "tooth thickness s [mm]": f"{gear.tooth_thickness:.4f}",
+        "thickness at the tip s_a [mm]": f"{gear.tip_thickness:.4f}",
+        "outer diameter [mm]": f"{gear.rim_diameter:.4f}",
+    }
+
+
+@gear_rows.register
 def _(gear: BevelGear) -> dict[str, str]:
     cones = {"pitch": gear.pitch_angle, "tip": gear.tip_angle, "base": gear.base_angle, "root": gear.root_angle}
     distances = (gear.outer_cone_distance, gear.mean_cone_distance, gear.inner_cone_distance)
@@ -127,8 +148,9 @@ def pair_rows(pair: GearPair) -> dict[str, str]:
     raise TypeError(f"there are no rows of {type(pair).__name__}")
 
 
-@pair_rows.register
-def _(pair: SpurPair) -> dict[str, str]:
+@pair_rows.register(SpurPair)
+@pair_rows.register(InternalPair)
+def _(pair: SpurPair | InternalPair) -> dict[str, str]:
     driver, driven = pair.angular_backlash
     return {
         "centre distance a [mm]": f"{pair.centre_distance:.4f}",

@@ -94,7 +94,7 @@ class _Stacks:
         if backlash.quantity != "rest_angle":
             return self._known[key] * per_normal_backlash(self._model, backlash)
         play = self._known[key] * per_normal_backlash(self._model, backlash)
-        return self._asked(backlash, angles) - self._model.mesh(backlash.mesh).working_flank * play / 2
+        return self._asked(backlash, angles) - self._model.mesh(backlash.mesh).driven_flank * play / 2
 
     def _by_flanks(self, backlash: Backlash, key: SeatKey, angles: Array) -> Array:
         """Of a mesh whose flanks deviate one by one: gaps at rest and turns are stacks of their own."""
@@ -106,7 +106,7 @@ class _Stacks:
             if backlash.quantity == "rest_angle":
                 mesh = self._model.mesh(backlash.mesh)
                 play = self._by_flanks(replace(backlash, quantity="angular_backlash", gear=mesh.driven), key, angles)
-                found = found - mesh.working_flank * play / 2
+                found = found - mesh.driven_flank * play / 2
             self._of_flanks[backlash, key] = found
         return self._of_flanks[backlash, key]
 

@@ -10,7 +10,7 @@ from tol3d.gearing.stack_up.bevel_stack import BevelStack
 from tol3d.gearing.stack_up.spur_stack import SpurStack
 from tol3d.gearing.stack_up.stack import Stack
 from tol3d.gearing.stack_up.term import Role
-from tol3d.gears import BevelPair, GearPair, SpurPair
+from tol3d.gears import BevelPair, GearPair, InternalPair, SpurPair
 
 Array = NDArray[np.float64]
 
@@ -18,7 +18,7 @@ Array = NDArray[np.float64]
 def stack_of(model: Model, mesh: Mesh, reading: Reading) -> Stack[GearPair]:
     """The stack-up of a mesh for one of its readings."""
     pair = mesh.pair
-    if isinstance(pair, SpurPair):
+    if isinstance(pair, SpurPair | InternalPair):
         return SpurStack(model, mesh, pair, reading)
     if isinstance(pair, BevelPair):
         return BevelStack(model, mesh, pair, reading)

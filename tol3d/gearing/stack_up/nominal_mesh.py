@@ -11,13 +11,16 @@ import numpy as np
 from tol3d.gearing.effects import Plane
 from tol3d.gearing.model import Mesh, Model, Reading, Seat
 from tol3d.gearing.stack_up.term import Role
-from tol3d.gears import Gear, GearPair
+from tol3d.gears import RIGHT, Gear, GearPair
 
 Pair = TypeVar("Pair", bound=GearPair, covariant=True)
 
 
 class NominalMesh(Generic[Pair]):
-    """One mesh of a model, for one of its readings; `pair` is the mesh's."""
+    """One mesh of a model, for one of its readings; `pair` is the mesh's.
+
+    `sense` is that in which the driven gear turns to leave the driver's right flanks: 1, of an internal pair -1.
+    """
 
     def __init__(self, model: Model, mesh: Mesh, pair: Pair, reading: Reading) -> None:
         self.model = model
@@ -26,6 +29,7 @@ class NominalMesh(Generic[Pair]):
         self.reading = reading
         self.sin = math.sin(pair.working_pressure_angle)
         self.cos = math.cos(pair.working_pressure_angle)
+        self.sense = float(pair.mating_flank(RIGHT))
 
     def role(self, part: str, mesh: str | None = None) -> Role | None:
         """What the part is in this mesh; None where it is in others only, or is meant to act in another one."""
@@ -43,7 +47,7 @@ class NominalMesh(Generic[Pair]):
         return self.model.seats[self.model.seat_index[self.mesh.name, gear]]
 
     def across(self, role: Role) -> float:
-        """Opening by a shift of the axis away from the mesh: 2 sin(alpha_w) cos(delta)."""
+        """Opening by a shift of the axis away from the mesh, of a ring's towards it: 2 sin(alpha_w) cos(delta)."""
         return 2 * self.sin * math.cos(self.gear(role).pitch_angle)
 
     def along(self, role: Role) -> float:
@@ -51,8 +55,9 @@ class NominalMesh(Generic[Pair]):
         return 2 * self.sin * math.sin(self.gear(role).pitch_angle)
 
     def azimuth_away(self, role: Role) -> float:
-        """Azimuth [rad], in the gear's frame at rest in the mesh, in which its axis leaves the mesh."""
-        return (self.pair.mesh_azimuths[0 if role == "driver" else 1] + math.pi) % (2 * math.pi)
+        """Azimuth [rad], in the gear's frame at rest in the mesh, in which a shift of its axis opens."""
+        own = 0 if role == "driver" else 1
+        return (self.pair.mesh_azimuths[own] + self.pair.opening_off_mesh[own]) % (2 * math.pi)
 
     def azimuth_onwards(self, role: Role) -> float:
         """Azimuth [rad], in the gear's frame at rest in the mesh, of a shift that turns the driven gear positively.

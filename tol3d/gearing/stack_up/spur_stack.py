@@ -10,11 +10,11 @@ import math
 from tol3d.gearing.stack_up.neglect import Bound, Neglect
 from tol3d.gearing.stack_up.stack import Stack
 from tol3d.gearing.stack_up.term import Term
-from tol3d.gears import SpurPair
+from tol3d.gears import InternalPair, SpurPair
 
 
-class SpurStack(Stack[SpurPair]):
-    """The stack-up of a spur pair."""
+class SpurStack(Stack[SpurPair | InternalPair]):
+    """The stack-up of two spur gears, of which one may be internal."""
 
     @property
     def neglects(self) -> tuple[Neglect, ...]:
@@ -42,6 +42,6 @@ class SpurStack(Stack[SpurPair]):
 
     @property
     def _longest_path(self) -> float:
-        """Longer part of the path of contact, from pitch point to tip [mm]: r_b (tan alpha_a - tan alpha_w)."""
+        """Longer part of the path of contact, from pitch point to tip [mm]: r_b |tan alpha_a - tan alpha_w|."""
         at_pitch = math.tan(self.pair.working_pressure_angle)
-        return max(gear.base_radius * (gear.tip_roll - at_pitch) for gear in (self.pair.pinion, self.pair.wheel))
+        return max(gear.base_radius * abs(gear.tip_roll - at_pitch) for gear in (self.pair.pinion, self.pair.wheel))

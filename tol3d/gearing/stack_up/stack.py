@@ -134,9 +134,9 @@ class Stack(NominalMesh[Pair]):
             right, left = (self.teeth.taken(side, built, driver_angle, leans[side]) for side in (1, -1))
             total = (right - left) / 2
         elif self.both_sides_alike:
-            total = (np.abs(in_plane + across) - np.abs(in_plane - across)) / 4
+            total = self.sense * (np.abs(in_plane + across) - np.abs(in_plane - across)) / 4
         else:
-            total = self.mesh.working_flank * self.lost(in_plane, across) / 2
+            total = self.mesh.driven_flank * self.lost(in_plane, across) / 2
         for term in self.sideways:
             total = total + term.change(deviations[:, self.model.component_slices[term.contributor.name]], angles)
         return total

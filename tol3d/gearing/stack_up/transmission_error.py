@@ -63,7 +63,7 @@ def _waves(model: Model, backlash: Backlash, driver: Array) -> Iterator[tuple[ra
     """Columns of what turns, and what one mm of each turns the driven gear about its z: (components, positions)."""
     mesh = model.mesh(backlash.mesh)
     stack = stack_of(model, mesh, backlash.reading)
-    side = mesh.resting_flank(backlash.reading.flank)
+    side = mesh.pair.mating_flank(mesh.resting_flank(backlash.reading.flank))
     per = per_normal_backlash(model, backlash)
     for own in stack.contributions:
         for term, share in ((own.aside, 1.0), (own.opening, -side / 2)):

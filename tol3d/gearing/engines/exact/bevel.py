@@ -8,6 +8,7 @@ turns by (q - q_f)/sin(beta). See gears/spherical_involute.py for the plane and 
 import math
 from typing import NamedTuple
 
+from tol3d.gearing.engines.exact.external import external
 from tol3d.gearing.engines.exact.foot import PER_TURN, TURN, flank_of, foot, grown, line_of_action, section, turn_to
 from tol3d.gearing.engines.exact.numbers import NOWHERE, Foot, Nearest, Pose
 from tol3d.gearing.engines.exact.small_angles import arcsine, sine
@@ -36,6 +37,9 @@ class BevelTooth(NamedTuple):
     end: float
     low: float
     high: float
+
+
+external(BevelTooth)
 
 
 @variant(grown, BevelTooth)

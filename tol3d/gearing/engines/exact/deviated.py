@@ -7,6 +7,7 @@ millimetres. What is left out is of the order of (its slope)^2 times itself, 1e-
 import math
 from typing import Any, NamedTuple
 
+from tol3d.gearing.engines.exact.external import external
 from tol3d.gearing.engines.exact.foot import flank_of, foot, grown, line_of_action, section, turn_to
 from tol3d.gearing.engines.exact.numbers import CLOSED, NOWHERE, Foot, Nearest, Pose
 from tol3d.gearing.engines.exact.spur import SpurTooth
@@ -123,6 +124,9 @@ def offset_at(tooth: DeviatedTooth, roll: float, z: float) -> Offset:
             bend = -rate * rate * wave
     length = tooth.per_length
     return Offset(value, by_roll * length, tooth.helix * tooth.per_face, bend * length * length)
+
+
+external(DeviatedTooth)
 
 
 @variant(grown, DeviatedTooth)

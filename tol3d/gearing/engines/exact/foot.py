@@ -82,3 +82,23 @@ def flank_of(tooth: Any, flanks: Any, gear: int, place: float, sigma: float) -> 
         sigma: side of the driver's flank.
     """
     raise NotImplementedError
+
+
+def opening(driven: Any) -> float:
+    """Sense in which the driven gear turns to leave the driver's right flanks: 1 of two external gears; by its kind."""
+    raise NotImplementedError
+
+
+def handed(driver: Any, sigma: float) -> float:
+    """Side on which the flanks that meet unwind from their base circles, by the driver's flank; one variant a kind."""
+    raise NotImplementedError
+
+
+def widest(driver: Any, driven: Any, tangent: float) -> float:
+    """Largest relative radius of curvature [mm] of flanks that touch; one variant a kind.
+
+    Args:
+        driver, driven: the gears' teeth.
+        tangent: length of the tangent of both base circles [mm].
+    """
+    raise NotImplementedError

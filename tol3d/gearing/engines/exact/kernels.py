@@ -3,6 +3,7 @@
 from tol3d.gearing.engines.exact.bevel import BevelTooth
 from tol3d.gearing.engines.exact.deviated import DeviatedTooth
 from tol3d.gearing.engines.exact.deviated_rows import gap_deviated_rows, read_deviated_rows, rest_deviated_rows
+from tol3d.gearing.engines.exact.internal import InternalTooth
 from tol3d.gearing.engines.exact.numbers import PairNumbers, Pose
 from tol3d.gearing.engines.exact.rests import rest_rows
 from tol3d.gearing.engines.exact.rows import gap_rows, read_rows
@@ -24,11 +25,14 @@ READ_DEVIATED, GAPS_DEVIATED, REST_DEVIATED = (
 
 SPUR = (SpurTooth, SpurTooth, PairNumbers, Pose)
 DEVIATED = (DeviatedTooth, DeviatedTooth, PairNumbers, Pose)
+INTERNAL = (InternalTooth, InternalTooth, PairNumbers, Pose)
 BEVEL = (BevelTooth, BevelTooth, PairNumbers, Pose)
 
 spur_read, spur_gaps = Kernel(read_rows, SPUR, READ), Kernel(gap_rows, SPUR, GAPS)
 bevel_read, bevel_gaps = Kernel(read_rows, BEVEL, READ), Kernel(gap_rows, BEVEL, GAPS)
 spur_rests, bevel_rests = Kernel(rest_rows, SPUR, REST), Kernel(rest_rows, BEVEL, REST)
+internal_read, internal_gaps = Kernel(read_rows, INTERNAL, READ), Kernel(gap_rows, INTERNAL, GAPS)
+internal_rests = Kernel(rest_rows, INTERNAL, REST)
 deviated_read = Kernel(read_deviated_rows, DEVIATED, READ_DEVIATED)
 deviated_gaps = Kernel(gap_deviated_rows, DEVIATED, GAPS_DEVIATED)
 deviated_rests = Kernel(rest_deviated_rows, DEVIATED, REST_DEVIATED)

@@ -8,8 +8,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from tol3d.gearing.engines.exact.foot import opening
 from tol3d.gearing.engines.exact.numbers import PairNumbers, Pose
-from tol3d.gearing.engines.exact.rows import FREE, build_of, fault_of, within_reach
+from tol3d.gearing.engines.exact.reach import within_reach
+from tol3d.gearing.engines.exact.rows import FREE, build_of, fault_of
 from tol3d.gearing.engines.exact.seating import Look, MeshBuild, Side, closed, seen, standing
 from tol3d.gearing.engines.status import INTERFERES, OK, OUT_OF_RANGE
 from tol3d.numerics.compiled import part
@@ -70,7 +72,7 @@ def rest_row(
             if k == 0:
                 write_first(contact[row, side], touching, shafts[row, gears[1]], flank_offset[row, gears[0]])
                 teeth[row, side] = touching.tooth
-        if fault == OK and sigma * (behind - ahead) * arm < -FREE:
+        if fault == OK and sigma * opening(build.driven) * (behind - ahead) * arm < -FREE:
             fault = INTERFERES
         status[row, k] = fault
 

@@ -6,9 +6,10 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.gearing.engines.exact.foot import grown, section
+from tol3d.gearing.engines.exact.foot import grown, opening, section
 from tol3d.gearing.engines.exact.nearest import SHARP_FALL
 from tol3d.gearing.engines.exact.numbers import PairNumbers, Pose
+from tol3d.gearing.engines.exact.reach import within_reach
 from tol3d.gearing.engines.exact.seating import (
     Look,
     MeshBuild,
@@ -81,35 +82,10 @@ def build_of(
         centre[row, driven, 0],
         centre[row, driven, 1],
         flank_turn[row, driver],
-        flank_turn[row, driven],
+        opening(wheel) * flank_turn[row, driven],
         flank_offset[row, driver] + flank_offset[row, driven],
         0.0,
     )
-
-
-@part
-def within_reach(build: MeshBuild, driver_scale: float, driven_scale: float) -> bool:
-    """Whether the candidate teeth are those of the nominal pose still.
-
-    Gears that grow with their housing are the nominal ones at another scale. Where base pitches differ by d a tip
-    touches sqrt(2 rho d) before the path of contact begins, rho the relative radius of curvature, at most a quarter
-    of the tangent of both base circles.
-    """
-    pair, rest, p = build.pair, build.nominal, build.pose
-    square = (p.xx - rest.xx) ** 2 + (p.xy - rest.xy) ** 2 + (p.xz - rest.xz) ** 2
-    square += (p.yx - rest.yx) ** 2 + (p.yy - rest.yy) ** 2 + (p.yz - rest.yz) ** 2
-    square += (p.zx - rest.zx) ** 2 + (p.zy - rest.zy) ** 2 + (p.zz - rest.zz) ** 2
-    mean = 0.5 * (driver_scale + driven_scale)
-    dx, dy, dz = p.x - mean * rest.x, p.y - mean * rest.y, pair.along * (p.z - rest.z)
-    moved = math.sqrt(dx * dx + dy * dy + dz * dz) + math.sqrt(square / 2.0) * pair.lever
-    moved += math.sqrt(build.driver_x * build.driver_x + build.driver_y * build.driver_y)
-    moved += math.sqrt(build.driven_x * build.driven_x + build.driven_y * build.driven_y)
-    if pair.along == 0.0 and driver_scale != driven_scale:
-        apart, bases = math.hypot(rest.x, rest.y), build.driver.base + build.driven.base
-        tangent = math.sqrt(max(apart * apart - bases * bases, 0.0))
-        pitches = abs(build.driven.base * pair.driven_pitch - build.driver.base * pair.driver_pitch)
-        moved += 0.5 * abs(driver_scale - driven_scale) * apart + math.sqrt(0.5 * tangent * pitches) * tangent / apart
-    return moved <= pair.reach
 
 
 class Looks(NamedTuple):
@@ -145,12 +121,12 @@ def looks_of(pair: PairNumbers, which: Integers) -> Looks:
 @part
 def free_turn(build: MeshBuild, at: Turn, other: Side, angle: float, looks: Looks) -> float:
     """Turn of the driven gear [rad] until the non-working flanks touch; nan where it cannot be known."""
-    sigma, near_at, near = looks.working.sigma, at, other
+    sense, near_at, near = looks.working.sigma * opening(build.driven), at, other
     if not looks.gap_closes:  # the smallest gap shows nearly by how much
-        near_at = driven_on(at, sigma * other.turn)
+        near_at = driven_on(at, sense * other.turn)
         near = seen(build, near_at, angle, looks.closing)
     end, last = closed(near, build, near_at, looks.closing)
-    return sigma * (end.driven - at.driven) if last.known and last.acts and last.gap < math.inf else math.nan
+    return sense * (end.driven - at.driven) if last.known and last.acts and last.gap < math.inf else math.nan
 
 
 @part

@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from tol3d.gearing.engines.exact.foot import flank_of, section
+from tol3d.gearing.engines.exact.foot import flank_of, handed, opening, section
 from tol3d.gearing.engines.exact.nearest import QUICK_FALL, nearest
 from tol3d.gearing.engines.exact.numbers import ALIKE, AT_EDGE, BEYOND, CLOSED, Nearest, PairNumbers, Pose
 from tol3d.gearing.engines.exact.small_angles import turned
@@ -35,7 +35,8 @@ class MeshBuild(NamedTuple):
         pose: driven shaft from driver shaft, both at rest.
         nominal: the same of the nominal pair.
         driver_x, driver_y, driven_x, driven_y: centres off the axes, in the gears' frames [mm].
-        driver_turn, driven_turn: of the flanks out of their teeth [rad].
+        driver_turn: of the flanks out of their teeth [rad].
+        driven_turn: the same, times the sense in which it opens.
         offset: of both flanks along their normals, together [mm].
         flanks: offsets of single flanks of both gears; 0 where all flanks of a gear are alike.
     """
@@ -167,15 +168,17 @@ def middle_first(step: int, first: float, count: int, middle: float) -> float:
 
 
 @part
-def mating_tooth(tooth: float, sigma: float) -> float:
+def mating_tooth(driven: Any, tooth: float, sigma: float) -> float:
     """The driven gear's tooth that a driver's meets."""
+    if opening(driven) < 0.0:
+        return tooth - 1.0 if sigma > 0.0 else tooth
     return -tooth if sigma > 0.0 else -tooth - 1.0
 
 
 @part
 def azimuths(build: MeshBuild, at: Turn, sigma: float, tooth: float) -> tuple[float, float]:
     """Azimuths [rad] of a tooth of the driver and of the driven's that it meets, their flanks' turns included."""
-    mating = mating_tooth(tooth, sigma)
+    mating = mating_tooth(build.driven, tooth, sigma)
     driver = at.driver + build.pair.driver_pitch * tooth - sigma * build.driver_turn
     return driver, at.driven + build.pair.driven_pitch * mating - sigma * build.driven_turn
 
@@ -228,11 +231,11 @@ def pair_nearest(
     start = start_on(build, pose, sigma, own_azimuth)
     return nearest(
         flank_of(own, build.flanks, 0, tooth, sigma),
-        flank_of(build.driven, build.flanks, 1, mating_tooth(tooth, sigma), sigma),
+        flank_of(build.driven, build.flanks, 1, mating_tooth(build.driven, tooth, sigma), sigma),
         pose,
         own_azimuth,
         mate_azimuth,
-        sigma,
+        handed(own, sigma),
         build.offset,
         start,
         face,
@@ -259,6 +262,7 @@ def seen(build: MeshBuild, at: Turn, seen_at: float, look: Look) -> Side:
         look: which side, and where.
     """
     pair, sigma = build.pair, look.sigma
+    sense = sigma * opening(build.driven)
     pose = pose_at(build, at)
     first, count = first_tooth(pair, seen_at, sigma, look.teeth)
     middle = section(build.driver, pair.section)
@@ -286,7 +290,7 @@ def seen(build: MeshBuild, at: Turn, seen_at: float, look: Look) -> Side:
         if eccentricity > 0.0:
             arm = abs(near.ny * near.x - near.nx * near.y)
             for _ in range(2):
-                its_turn = near.turn + aside(at, -sigma * its_turn, near) / arm
+                its_turn = near.turn + aside(at, -sense * its_turn, near) / arm
         gap, turn = min(gap, near.gap), min(turn, its_turn)
         if near.how == AT_EDGE and abs(near.gap) > CLOSE:
             edge_turn = min(edge_turn, its_turn - EDGE_SHARE * abs(its_turn))
@@ -312,7 +316,7 @@ def closed(side: Side, build: MeshBuild, at: Turn, look: Look) -> tuple[Turn, Si
     for _ in range(LOOKS):
         if side.gap == math.inf or not side.known:
             break
-        at = driven_on(at, -look.sigma * side.turn)
+        at = driven_on(at, -look.sigma * opening(build.driven) * side.turn)
         if side.settled:
             break
         side = seen(build, at, at.driver, look)

@@ -27,7 +27,7 @@ class GearMeshSpec(MoveSpec):
     driven: Name = Field(description="the gear that turns into contact")
     azimuth: Annotated[Quantity, Of("angle")] = Field(
         default=Quantity(0.0, "deg"),
-        description="where the driven gear lies about the driver's axis, in the frame of the driver's shaft",
+        description="where the teeth meet about the driver's axis, in the frame of the driver's shaft",
         json_schema_extra={"default": "0 deg"},
     )
     ratio: float | None = Field(

@@ -29,7 +29,7 @@ WORDS = ("apart", "random", "tooth_force")
 class BearingClearanceSpec(GearToleranceSpec):
     """Delta b, a length on the diameter: the axis of the gear, or of the bearing's shaft, moves by Delta b / 2.
 
-    `apart` moves it away from the mate along the line of centres (positive opens), `tooth_force` along
+    `apart` moves it along the line of centres so that positive opens, away from the mate, `tooth_force` along
     the force on its working flank, `{at: angle}` at an azimuth of the frame of gear or shaft at rest, `random`
     anywhere. Of a bearing, the first two are those of the gear on its shaft that the mesh is of.
     """
@@ -115,16 +115,19 @@ class BearingClearanceSpec(GearToleranceSpec):
         if isinstance(self.direction, At):
             return self.direction.at.internal
         mesh = nominal.mesh_of(gear, self.mesh)
-        towards = mesh.pair.mesh_azimuths[0 if gear == mesh.driver else 1]
+        role = 0 if gear == mesh.driver else 1
+        towards, opening = mesh.pair.mesh_azimuths[role], mesh.pair.opening_off_mesh[role]
         towards += mesh.azimuth if gear == mesh.driver else nominal.layout.seating(mesh.name).azimuth
-        return towards + (math.pi if self.direction == "apart" else _force_azimuth(mesh, gear))
+        return towards + (opening if self.direction == "apart" else _force_azimuth(mesh, gear))
 
 
 def _force_azimuth(mesh: "Mesh", gear: str) -> float:
     """Azimuth off the mesh [rad] of the radial part of the force on a gear by its mate's working flank.
 
     With the mesh at azimuth 0 the normal force is (-sin(alpha_w) cos(delta), sigma cos(alpha_w)) across the axis,
-    sigma the driver's flank, for both gears: each sees the other push it away and around.
+    sigma the gear's own flank: each sees the other push it away and around. A ring is pulled towards the mesh.
     """
-    alpha, flank = mesh.pair.working_pressure_angle, float(mesh.working_flank)
-    return math.atan2(flank * math.cos(alpha), -math.sin(alpha) * math.cos(mesh.gear(gear).pitch_angle))
+    alpha, driver = mesh.pair.working_pressure_angle, gear == mesh.driver
+    flank = float(mesh.working_flank if driver else mesh.driven_flank)
+    away = math.cos(mesh.pair.opening_off_mesh[0 if driver else 1])
+    return math.atan2(flank * math.cos(alpha), away * math.sin(alpha) * math.cos(mesh.gear(gear).pitch_angle))

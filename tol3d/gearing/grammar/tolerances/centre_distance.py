@@ -11,10 +11,12 @@ if TYPE_CHECKING:
 
 
 class CentreDistanceSpec(MeshToleranceSpec):
-    """f_a, a length: added to the centre distance, positive opens."""
+    """f_a, a length: added to the centre distance; positive opens, but closes a pair with an internal gear."""
 
     kind: Literal["centre_distance"]
 
     def meaning(self, nominal: "Nominal") -> Meaning:
-        """The driven axis lies further along +x of the mesh."""
-        return Meaning(AxisOffset(nominal.meshes[self.of].driven, (1.0, 0.0, 0.0), mesh=self.of))
+        """The driven axis lies further from the driver's."""
+        mesh = nominal.meshes[self.of]
+        onwards = 1.0 if mesh.pair.wheel_origin[0] > 0.0 else -1.0
+        return Meaning(AxisOffset(mesh.driven, (onwards, 0.0, 0.0), mesh=self.of))

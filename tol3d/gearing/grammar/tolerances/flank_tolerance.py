@@ -1,20 +1,24 @@
 """What every tolerance of a gear's single flanks has in common."""
 
 from abc import abstractmethod
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 
 from pydantic import BeforeValidator, Field
 
 from tol3d.files import Files
 from tol3d.gearing.effects import Effect
+from tol3d.gearing.grammar.moves import GearMeshSpec, meshes_of
+from tol3d.gearing.grammar.parts.internal_gear import InternalGearSpec
 from tol3d.gearing.grammar.parts.spur_gear import SpurGearSpec
 from tol3d.gears import SpurGear
 from tol3d.gears.flank import LEFT, RIGHT, Flank
 from tol3d.gears.iso1328 import CLASSES, FlankTolerances, flank_tolerances
 from tol3d.scene.entry import Entry
+from tol3d.scene.move import MoveSpec
 from tol3d.scene.name import Name
-from tol3d.scene.reference import Reference
+from tol3d.scene.part import PartSpec
+from tol3d.scene.reference import Contradiction, Reference
 from tol3d.scene.tolerance import ToleranceEntry
 from tol3d.strict import refused
 from tol3d.system.draw import Draw
@@ -45,6 +49,16 @@ class FlankToleranceSpec(ToleranceEntry):
     def references(self) -> tuple[Reference, ...]:
         """The gear."""
         return (Reference(("of",), self.of, self.applies_to),)
+
+    def contradictions(self, parts: Mapping[str, PartSpec], moves: Mapping[str, MoveSpec]) -> Iterator[Contradiction]:
+        """The gear meshes with external gears only."""
+        for mesh in meshes_of(self.of, moves):
+            move = moves[mesh]
+            mates = move.gears if isinstance(move, GearMeshSpec) else ()
+            ring = next((name for name in mates if isinstance(parts.get(name), InternalGearSpec)), None)
+            if ring is not None:
+                words = f"{self.of!r}, which meshes with the internal gear {ring!r} in {mesh!r}"
+                yield Contradiction(("of",), "a gear that meshes with external gears only", words)
 
     @property
     def unit(self) -> "Unit":

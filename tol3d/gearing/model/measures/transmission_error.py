@@ -45,8 +45,8 @@ def _rest(spec: TransmissionErrorSpec, mesh: Mesh) -> Backlash:
 
 
 def _pushed(mesh: Mesh) -> float:
-    """The sense about its z in which the driver's working flank pushes the driven gear: a left one backwards."""
-    return float(mesh.working_flank)
+    """The sense about its z in which the driver pushes the driven gear: off its right flanks, forwards."""
+    return float(mesh.driven_flank)
 
 
 def _of_train(spec: TransmissionErrorSpec, scene: Scene, name: str, model: Model) -> TransmissionError:

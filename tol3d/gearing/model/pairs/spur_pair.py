@@ -1,45 +1,77 @@
-"""Spur gears on parallel axes."""
+"""Spur gears on parallel axes, of which one may be internal."""
 
 from tol3d.errors import GeometryError
 from tol3d.gearing.grammar.moves import MeshSpec
-from tol3d.gearing.grammar.parts import SpurGearSpec
+from tol3d.gearing.grammar.parts import InternalGearSpec, SpurGearSpec
 from tol3d.gearing.model.pairs.pair import internal, pair_of, undercut_warning
-from tol3d.gears import GearPair, SpurGear, SpurPair
+from tol3d.gears import GearPair, InternalGear, InternalPair, SpurGear, SpurPair
 from tol3d.scene import Scene
 
 
 @pair_of.register
 def _(move: MeshSpec, name: str, scene: Scene) -> GearPair:
-    pinion, wheel = (_spur_gear(scene, gear) for gear in move.gears)
+    driver, driven = move.gears
+    pinion, wheel = _gear(scene, driver), _gear(scene, driven)
+    if isinstance(pinion, InternalGear) and isinstance(wheel, InternalGear):
+        words = f"expected one internal gear at most, got {driver!r} and {driven!r}: rings do not mesh with each other"
+        raise scene.refuse(("moves", name, "driven"), words)
     if move.centre_distance is None:
         words = "expected the centre_distance of the axes, got none; it follows only where both shafts lie in bores"
         raise scene.refuse(("moves", name), words)
     try:
-        pair = SpurPair(pinion, wheel, move.centre_distance.internal)
+        pair = _pair(pinion, wheel, move.centre_distance.internal)
         pair.refuse_interference()
     except GeometryError as error:
         raise scene.refuse(("moves", name, "centre_distance"), str(error)) from None
     return pair
 
 
-def _spur_gear(scene: Scene, name: str) -> SpurGear:
+def _pair(
+    pinion: SpurGear | InternalGear, wheel: SpurGear | InternalGear, centre_distance: float
+) -> SpurPair | InternalPair:
+    if isinstance(pinion, SpurGear) and isinstance(wheel, SpurGear):
+        return SpurPair(pinion, wheel, centre_distance)
+    return InternalPair(pinion, wheel, centre_distance)
+
+
+def _gear(scene: Scene, name: str) -> SpurGear | InternalGear:
     spec = scene.parts[name]
-    if not isinstance(spec, SpurGearSpec):
-        raise TypeError(f"{name} is no spur gear")
     try:
-        return SpurGear(
-            teeth=spec.teeth,
-            module=spec.module.internal,
-            pressure_angle=spec.pressure_angle.internal,
-            face_width=spec.face_width.internal,
-            profile_shift=spec.profile_shift,
-            addendum=spec.addendum,
-            dedendum=spec.dedendum,
-            root_fillet=None if spec.root_fillet is None else spec.root_fillet.internal,
-            bore=internal(spec.bore),
-        )
+        if isinstance(spec, SpurGearSpec):
+            return _spur_gear(spec)
+        if isinstance(spec, InternalGearSpec):
+            return _internal_gear(spec)
     except GeometryError as error:
         raise scene.refuse(("parts", name), str(error)) from None
+    raise TypeError(f"{name} is no spur gear")
+
+
+def _spur_gear(spec: SpurGearSpec) -> SpurGear:
+    return SpurGear(
+        teeth=spec.teeth,
+        module=spec.module.internal,
+        pressure_angle=spec.pressure_angle.internal,
+        face_width=spec.face_width.internal,
+        profile_shift=spec.profile_shift,
+        addendum=spec.addendum,
+        dedendum=spec.dedendum,
+        root_fillet=None if spec.root_fillet is None else spec.root_fillet.internal,
+        bore=internal(spec.bore),
+    )
+
+
+def _internal_gear(spec: InternalGearSpec) -> InternalGear:
+    return InternalGear(
+        teeth=spec.teeth,
+        module=spec.module.internal,
+        pressure_angle=spec.pressure_angle.internal,
+        face_width=spec.face_width.internal,
+        profile_shift=spec.profile_shift,
+        addendum=spec.addendum,
+        dedendum=spec.dedendum,
+        root_fillet=None if spec.root_fillet is None else spec.root_fillet.internal,
+        outer_diameter=None if spec.outer_diameter is None else spec.outer_diameter.internal,
+    )
 
 
 @undercut_warning.register

@@ -10,28 +10,19 @@ from tol3d.gearing.model import Contributor
 from tol3d.gearing.stack_up.nominal_mesh import NominalMesh
 from tol3d.gearing.stack_up.term import Role, Term
 from tol3d.gearing.stack_up.terms.contribution import NOTHING, Contribution, contributes
-from tol3d.gears import BevelPair, GearPair, SpurPair
+from tol3d.gears import BevelPair, GearPair, InternalPair, SpurPair
 
 Array = NDArray[np.float64]
 
 
 @contributes(AxisTilt, SpurPair)
 def _(effect: AxisTilt, mesh: NominalMesh[SpurPair], contributor: Contributor) -> Contribution:
-    """The tighter end of the face loses b/2 times the tilt on each flank side.
+    return _leaning(effect, mesh, contributor)
 
-    In plane (about y): b sin(alpha_w); out of plane (about x): b cos(alpha_w); b the smaller face width. `Stack.lost`
-    decides which ends are the tighter ones; the loss is one-sided and shifts the mean. A flank side that is read in
-    the middle of the face loses nothing, nor do gears that lean alike: a driver's lean counts against its mate's.
-    """
-    if (role := mesh.role(effect.part, effect.mesh)) is None:
-        return NOTHING
-    sides = [mesh.reading.contact, mesh.reading.gap].count("face")
-    half_width = min(mesh.pair.pinion.face_width, mesh.pair.wheel.face_width) / 2
-    per_tilt = sides * half_width * (-1 if role == "driver" else 1)
-    x, y = _turns(effect, mesh, contributor, role)
-    in_plane, across = per_tilt * mesh.sin * y, per_tilt * mesh.cos * x
-    largest = float(np.abs([in_plane, across]).max())
-    return Contribution(Term(contributor, largest, tilts=(tuple(in_plane.tolist()), tuple(across.tolist()))))
+
+@contributes(AxisTilt, InternalPair)
+def _(effect: AxisTilt, mesh: NominalMesh[InternalPair], contributor: Contributor) -> Contribution:
+    return _leaning(effect, mesh, contributor)
 
 
 @contributes(AxisTilt, BevelPair)
@@ -59,6 +50,25 @@ def _(effect: AxisTilt, mesh: NominalMesh[BevelPair], contributor: Contributor) 
         aside_by_turns=_turned(contributor, turns, per_x=mesh.cos * effect.pivot),
         along_line=_turned(contributor, turns, per_y=-sense * math.sin(delta) * effect.pivot),
     )
+
+
+def _leaning(effect: AxisTilt, mesh: NominalMesh[SpurPair | InternalPair], contributor: Contributor) -> Contribution:
+    """The tighter end of the face loses b/2 times the tilt on each flank side.
+
+    In plane (about y): b sin(alpha_w); out of plane (about x): b cos(alpha_w); b the smaller face width. `Stack.lost`
+    decides which ends are the tighter ones; the loss is one-sided and shifts the mean. A flank side that is read in
+    the middle of the face loses nothing, nor do gears that lean alike: a driver's lean counts against its mate's.
+    """
+    if (role := mesh.role(effect.part, effect.mesh)) is None:
+        return NOTHING
+    sides = [mesh.reading.contact, mesh.reading.gap].count("face")
+    half_width = min(mesh.pair.pinion.face_width, mesh.pair.wheel.face_width) / 2
+    per_tilt = sides * half_width * (-1 if role == "driver" else 1)
+    x, y = _turns(effect, mesh, contributor, role)
+    away = math.cos(mesh.azimuth_away("driven"))  # -1 where the driven axis at +x lies nearer to the ring's teeth
+    in_plane, across = per_tilt * away * mesh.sin * y, per_tilt * mesh.cos * x
+    largest = float(np.abs([in_plane, across]).max())
+    return Contribution(Term(contributor, largest, tilts=(tuple(in_plane.tolist()), tuple(across.tolist()))))
 
 
 def _turns(effect: AxisTilt, mesh: NominalMesh[GearPair], contributor: Contributor, role: Role) -> tuple[Array, Array]:

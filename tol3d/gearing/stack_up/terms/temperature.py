@@ -5,7 +5,7 @@ from tol3d.gearing.model import Contributor
 from tol3d.gearing.stack_up.nominal_mesh import NominalMesh
 from tol3d.gearing.stack_up.term import Term
 from tol3d.gearing.stack_up.terms.contribution import NOTHING, Contribution, contributes
-from tol3d.gears import GearPair, SpurPair
+from tol3d.gears import GearPair, InternalPair, SpurPair
 
 
 @contributes(Temperature)
@@ -15,14 +15,26 @@ def _(effect: Temperature, mesh: NominalMesh[GearPair], contributor: Contributor
 
 @contributes(Temperature, SpurPair)
 def _(effect: Temperature, mesh: NominalMesh[SpurPair], contributor: Contributor) -> Contribution:
+    return _growing(effect, mesh, contributor)
+
+
+@contributes(Temperature, InternalPair)
+def _(effect: Temperature, mesh: NominalMesh[InternalPair], contributor: Contributor) -> Contribution:
+    return _growing(effect, mesh, contributor)
+
+
+def _growing(effect: Temperature, mesh: NominalMesh[SpurPair | InternalPair], contributor: Contributor) -> Contribution:
     """A growing housing opens by 2 a sin(alpha_w), a growing gear closes by 2 r_w sin(alpha_w), per strain.
 
-    Taken at the pitch point: two gears of one material with the housing only scale, to first order.
+    Inside a ring the housing closes, and the ring opens. Taken at the pitch point: two gears of one material with the
+    housing only scale, to first order.
     """
     gears = (mesh.mesh.driver, mesh.mesh.driven)
-    strain = {part: -length for part, length in zip(gears, mesh.pair.working_radii, strict=True)}
+    pair = mesh.pair
+    signs = [gear.iso_sign for gear in (pair.pinion, pair.wheel)]
+    strain = {part: -sign * r for part, sign, r in zip(gears, signs, pair.working_radii, strict=True)}
     if mesh.mesh.housing:
-        strain[mesh.mesh.housing] = mesh.pair.centre_distance
+        strain[mesh.mesh.housing] = pair.iso_sign * pair.centre_distance
     touched = [part for part in effect.parts if part in strain]
     if not touched:
         return NOTHING

@@ -1,0 +1,204 @@
+"""Involute flanks of internal pairs: an external pinion inside a ring, whose flanks are concave.
+
+The flank of a ring is the involute of an external tooth, its space, with the material on the other side; it touches a
+pinion's flank that unwinds the same way. With s = 1 of the pinion and -1 of the ring a point at the distance rho from
+the mate's axis has the gap s (sqrt(rho^2 - r_b^2) - r_b t) from the mate's flank: as of spur gears, see spur.py, but
+what lies outside a space is inside its tooth. Along a flank counts s t, the roll of a ring backwards: it grows from
+root to tip on both.
+"""
+
+import math
+from typing import NamedTuple
+
+from tol3d.gearing.engines.exact.foot import (
+    PER_TURN,
+    TURN,
+    flank_of,
+    foot,
+    grown,
+    handed,
+    line_of_action,
+    opening,
+    section,
+    turn_to,
+    widest,
+)
+from tol3d.gearing.engines.exact.numbers import ALIKE, NOWHERE, Foot, Nearest, Pose
+from tol3d.numerics.compiled import variant
+
+SHORTEST_TANGENT = 1e-9  # mm; a point within the base circle has none
+
+
+class InternalTooth(NamedTuple):
+    """Flanks of one gear of an internal pair.
+
+    Args:
+        base, per_base: base radius [mm] and one over it.
+        half: half the angle [rad] that the involutes' own tooth takes at its base: of a ring the space, about the
+            middle of the ring's tooth, which is less by half a pitch.
+        begin, end: roll times sense [rad] where the flank begins at the root, and at the tip.
+        low, high: ends of the face [mm], along the axis.
+        sense: 1 of the pinion, -1 of the ring.
+    """
+
+    base: float
+    per_base: float
+    half: float
+    begin: float
+    end: float
+    low: float
+    high: float
+    sense: float
+
+
+@variant(grown, InternalTooth)
+def internal_grown(tooth: InternalTooth, scale: float) -> InternalTooth:
+    """Every length grows."""
+    base, low, high = tooth.base * scale, tooth.low * scale, tooth.high * scale
+    return InternalTooth(base, 1.0 / base, tooth.half, tooth.begin, tooth.end, low, high, tooth.sense)
+
+
+@variant(flank_of, InternalTooth)
+def internal_flank(tooth: InternalTooth, flanks: float, gear: int, place: float, sigma: float) -> InternalTooth:
+    """All flanks are alike."""
+    return tooth
+
+
+@variant(section, InternalTooth)
+def internal_section(tooth: InternalTooth, share: float) -> InternalTooth:
+    """One height."""
+    at = tooth.low + share * (tooth.high - tooth.low)
+    return InternalTooth(tooth.base, tooth.per_base, tooth.half, tooth.begin, tooth.end, at, at, tooth.sense)
+
+
+@variant(opening, InternalTooth)
+def internal_opening(driven: InternalTooth) -> float:
+    """The driven gear's flank lies on the other side of its tooth than the driver's."""
+    return -1.0
+
+
+@variant(handed, InternalTooth)
+def internal_side(driver: InternalTooth, sigma: float) -> float:
+    """As the pinion's flank does."""
+    return sigma * driver.sense
+
+
+@variant(widest, InternalTooth)
+def internal_radius(driver: InternalTooth, driven: InternalTooth, tangent: float) -> float:
+    """r_1 r_2/(r_2 - r_1), where r_2 - r_1 is the tangent, grows up to the pinion's tip."""
+    largest = driver.base * driver.end if driver.sense > 0.0 else driven.base * driven.end
+    return largest * (largest + tangent) / tangent
+
+
+@variant(foot, InternalTooth)
+def internal_foot(
+    own: InternalTooth,
+    mate: InternalTooth,
+    pose: Pose,
+    own_azimuth: float,
+    mate_azimuth: float,
+    sigma: float,
+    offset: float,
+    profile: float,
+    z: float,
+) -> Foot:
+    """See foot.foot: the point at a roll times sense [rad] and a height [mm]; sigma is the side of unwinding."""
+    roll = own.sense * profile
+    beta = sigma * (roll - own.half) + own_azimuth
+    cos, sin = math.cos(beta), math.sin(beta)
+    px = own.base * (cos + sigma * roll * sin)
+    py = own.base * (sin - sigma * roll * cos)
+    x = pose.xx * px + pose.xy * py + pose.xz * z + pose.x
+    y = pose.yx * px + pose.yy * py + pose.yz * z + pose.y
+    height = pose.zx * px + pose.zy * py + pose.zz * z + pose.z
+    square = x * x + y * y
+    tangent = math.sqrt(max(square - mate.base * mate.base, SHORTEST_TANGENT * SHORTEST_TANGENT))
+    ux = x * mate.base - sigma * y * tangent
+    uy = y * mate.base + sigma * x * tangent
+    angle = sigma * (math.atan2(uy, ux) - mate_azimuth) + mate.half
+    foot_roll = angle - TURN * math.floor(angle * PER_TURN + 0.5)
+    scale = 1.0 / square
+    ux *= scale
+    uy *= scale
+    out = mate.sense * sigma
+    nx, ny = out * uy, -out * ux
+    # the point moves along (cos, sin) as it rolls, across it as that turns
+    vx, vy = pose.xx * cos + pose.xy * sin, pose.yx * cos + pose.yy * sin
+    wx, wy = pose.xy * cos - pose.xx * sin, pose.yy * cos - pose.yx * sin
+    towards = nx * vx + ny * vy
+    across = own.base * roll * (ux * vx + uy * vy)
+    sideways = ux * pose.xz + uy * pose.yz
+    curvature = mate.sense / tangent
+    return Foot(
+        mate.sense * (tangent - mate.base * foot_roll) - offset,
+        mate.sense * foot_roll,
+        height,
+        (mate.sense * tangent - offset) * mate.per_base,
+        x,
+        y,
+        height,
+        nx,
+        ny,
+        0.0,
+        own.sense * own.base * roll * towards,
+        nx * pose.xz + ny * pose.yz,
+        own.base * (towards + sigma * roll * (nx * wx + ny * wy)) + across * across * curvature,
+        own.sense * across * sideways * curvature,
+        sideways * sideways * curvature,
+        0.0,
+    )
+
+
+@variant(turn_to, InternalTooth)
+def internal_turn(mate: InternalTooth, gap: float, offset: float, at: Foot) -> float:
+    """Flanks of one tooth that stand a turn apart lie the base radius times that apart."""
+    return gap * mate.per_base
+
+
+@variant(line_of_action, InternalTooth)
+def internal_line_of_action(
+    own: InternalTooth,
+    mate: InternalTooth,
+    pose: Pose,
+    own_azimuth: float,
+    mate_azimuth: float,
+    sigma: float,
+    offset: float,
+    face: float,
+) -> Nearest:
+    """On parallel axes flanks touch on the line that touches both base circles, whose ends are T apart.
+
+    From these the flanks stand r_b t away, t = alpha_w + half - sigma (azimuth off the line of centres): the gap is
+    r_b t of the ring less that of the pinion and T, the same for every pair of one base pitch.
+    """
+    nowhere = Nearest(0.0, 0.0, NOWHERE, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, False, 0.0)
+    square, bases = pose.x * pose.x + pose.y * pose.y, -own.sense * own.base - mate.sense * mate.base
+    if pose.xz != 0.0 or pose.yz != 0.0 or square <= bases * bases:
+        return nowhere
+    low, high = max(own.low, mate.low - pose.z), min(own.high, mate.high - pose.z)
+    if low > high:
+        return nowhere
+    tangent = math.sqrt(square - bases * bases)
+    working = math.atan2(tangent, bases)
+    # the teeth meet beyond the pinion's axis, seen from the ring's
+    cx, cy = -mate.sense * pose.x, -mate.sense * pose.y
+    centres = math.atan2(cy, cx)
+    # turned about z against each other, the gears see one direction at different azimuths
+    twist = math.atan2(pose.yx, pose.xx) if pose.yx != 0.0 else 0.0
+    angle = working + own.half - sigma * (own_azimuth + twist - centres)
+    roll = angle - TURN * math.floor(angle * PER_TURN + 0.5)
+    angle = working + mate.half - sigma * (mate_azimuth - centres)
+    mate_roll = angle - TURN * math.floor(angle * PER_TURN + 0.5)
+    gap = -own.sense * own.base * roll - mate.sense * mate.base * mate_roll - tangent - offset
+    profile, foot_at = own.sense * roll, mate.sense * mate_roll
+    touching = foot_at + gap * mate.per_base
+    if not (own.begin <= profile <= own.end and mate.begin <= foot_at <= mate.end and touching <= mate.end):
+        return nowhere
+    scale = 1.0 / square
+    ux, uy = scale * (cx * bases - sigma * cy * tangent), scale * (cy * bases + sigma * cx * tangent)
+    out = mate.sense * sigma
+    nx, ny = out * uy, -out * ux
+    along = mate.sense * mate.base * mate_roll + gap + offset
+    at = min(max(face, low), high)
+    x, y = mate.base * ux + along * nx, mate.base * uy + along * ny
+    return Nearest(gap, gap * mate.per_base, ALIKE, profile, at, x, y, at + pose.z, nx, ny, 0.0, False, 0.0)
