@@ -339,6 +339,30 @@ def test_degrees_are_told_from_radians_in_dense_files_too(tmp_path: Path) -> Non
         identify(PAIR, [tmp_path / "drive.csv"], [tmp_path / "back.csv"], Settings())
 
 
+def test_an_interrupted_command_says_so_and_leaves_nothing_half_written(
+    tol3d: Command, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    arguments, out = written(tmp_path), tmp_path / "out"
+
+    def interrupted(*_: object, **__: object) -> None:
+        raise KeyboardInterrupt
+
+    with monkeypatch.context() as own:
+        own.setattr("tol3d.records.reading.blocks_of", interrupted)
+        assert tol3d(*arguments, "--out", str(out)) == (130, "", "stopped\n")
+    assert not out.exists()
+    before = {path.name: path.read_bytes() for path in tmp_path.iterdir()}
+
+    def half_written(path: Path, *_: object, **__: object) -> None:
+        path.write_text("phi1 [deg],phi2 [deg]\n0,", encoding="utf-8")
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(np, "savetxt", half_written)
+    assert tol3d("rig", arguments[-1], "--turns", "1", "--out", str(out)) == (130, "", "stopped\n")
+    assert list(out.iterdir()) == []
+    assert {path.name: path.read_bytes() for path in tmp_path.iterdir() if path.is_file()} == before
+
+
 # the same angles in other words ---------------------------------------------------------------------
 
 

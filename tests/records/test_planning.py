@@ -15,7 +15,7 @@ from tol3d.records.pair import ARCSEC, RigPair, Specimen
 from tol3d.records.planning import plan_rig, row_variance
 from tol3d.records.rig import Rig, measured
 
-FIGURES = ("e1", "theta1", "e2", "theta2", "jc", "j0", "jmin", "jmax")
+FIGURES = ("e1", "theta1", "e2", "theta2", "jc", "j0", "jmin", "jmax", "jmin at", "jmax at")
 RIG = Rig(samples=100, noise=0.5 * ARCSEC, encoder1=6 * ARCSEC, encoder2=4 * ARCSEC)
 
 
@@ -26,6 +26,8 @@ def test_the_plan_is_what_identifying_finds() -> None:
         found = identified_by(REFERENCE, replace(RIG, turns=turns))
         for name in FIGURES:
             assert found.figures[name].half_width == pytest.approx(plan.figures[name].half_width, rel=0.14), name
+        for name, own in found.encoders.items():  # whatever its phase: within the two axes of its ellipse
+            assert own.half_width == pytest.approx(plan.figures[name].half_width, rel=0.4), name
 
 
 @pytest.mark.slow

@@ -96,6 +96,10 @@ def _exit_codes() -> Iterator[None]:
     except KeyboardInterrupt:
         err_console.print("stopped")
         sys.exit(INTERRUPTED)
+    except SystemExit as ended:
+        if ended.__context__ is not None and isinstance(ended.__context__.__cause__, KeyboardInterrupt):
+            err_console.print("stopped")  # typer ends an interrupted command without a word
+        raise
     except BrokenPipeError:
         sys.exit(DONE)
     except Exception as error:

@@ -30,9 +30,10 @@ def plan_table(plans: Sequence[RigPlan]) -> Table:
         Row("condition number", [Shown(f"{own.condition:.3g}", own.condition) for own in plans], unit="1"),
     ]
     for name in names:
-        unit, one = UNITS[name]
+        unit, one = UNITS.get(name, ("arcsec", ARCSEC))
+        words = WORDS.get(name, f"{name}, once per turn")
         cells = [_cell(own, name, one) for own in plans]
-        rows.append(Row(f"{WORDS[name]} [±{SIGNS[unit]}]", cells, "bold" if name in ("jmin", "jmax") else "", unit))
+        rows.append(Row(f"{words} [±{SIGNS[unit]}]", cells, "bold" if name in ("jmin", "jmax") else "", unit))
     return Table("half-width of the 95 % interval", headings, rows)
 
 

@@ -17,7 +17,7 @@ from tol3d.records.pair import TURN, RigPair, Specimen
 from tol3d.records.prediction import BacklashModel, Figure, length_and_phase, quantile_of
 from tol3d.records.refusals import LARGEST_CONDITION, condition_of
 from tol3d.records.rig import Rig
-from tol3d.records.terms import ECCENTRIC, Points, Terms, columns
+from tol3d.records.terms import ECCENTRIC, ENCODERS, Points, Terms, columns
 
 Array = NDArray[np.float64]
 
@@ -33,8 +33,8 @@ class RigPlan:
         turns: of the driver on each side.
         rows: of both sides together.
         condition: number of the columns once per turn of either gear and the constant.
-        figures: e1, theta1, e2, theta2, jc, j0, jmin, jmax with half-widths [mm, rad]; none where turns do not
-            suffice.
+        figures: e1, theta1, e2, theta2, jc, j0, jmin, jmax, the places of these two and the encoders' parts once per
+            turn, with half-widths [mm, rad]; none where turns do not suffice.
     """
 
     turns: float
@@ -101,5 +101,10 @@ def _figures(specimen: Specimen, terms: Terms, covariance: Array, rows: int) -> 
     start = np.zeros(1)
     found["j0"] = Figure(float(model.backlash(start)[0]), float(model.half_width(start)[0]))
     for name, sense in (("jmin", -1), ("jmax", +1)):
-        found[name] = model.extreme(sense).backlash
+        end = model.extreme(sense)
+        found |= {name: end.backlash, f"{name} at": end.place}
+    index = terms.index(ENCODERS)
+    for name, own, gain in (("encoder 1", index[:2], 1 / specimen.pair.rate), ("encoder 2", index[2:], 1.0)):
+        anywhere, _ = length_and_phase(np.zeros(2), covariance[np.ix_(own, own)], quantile)
+        found[name] = Figure(0.0, gain * anywhere.half_width)
     return found
