@@ -103,8 +103,8 @@ def _figures(specimen: Specimen, terms: Terms, covariance: Array, rows: int) -> 
     for name, sense in (("jmin", -1), ("jmax", +1)):
         end = model.extreme(sense)
         found |= {name: end.backlash, f"{name} at": end.place}
-    index = terms.index(ENCODERS)
-    for name, own, gain in (("encoder 1", index[:2], 1 / specimen.pair.rate), ("encoder 2", index[2:], 1.0)):
-        anywhere, _ = length_and_phase(np.zeros(2), covariance[np.ix_(own, own)], quantile)
+    parts = terms.index(ENCODERS)
+    for name, part, gain in (("encoder 1", parts[:2], 1 / specimen.pair.rate), ("encoder 2", parts[2:], 1.0)):
+        anywhere, _ = length_and_phase(np.zeros(2), covariance[np.ix_(part, part)], quantile)
         found[name] = Figure(0.0, gain * anywhere.half_width)
     return found
