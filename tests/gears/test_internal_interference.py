@@ -88,6 +88,14 @@ def test_teeth_overlap_where_they_are_refused_and_not_with_the_addenda_that_are_
         assert (most_overlap(other, LEFT) > CLEAR) == overlaps
 
 
+def test_undercut_that_reaches_the_flank_in_use_is_refused() -> None:
+    inner, ring = spur(12, 20), internal(40, 20, addendum=0.6)
+    pair = InternalPair(inner, ring, 14.0)
+    assert not pair.interferes
+    with pytest.raises(GeometryError, match=r"cuts the inner gear's .* at least 0.2981 \(it has 0\)"):
+        pair.refuse_interference()
+
+
 @pytest.mark.slow
 def test_outlines_of_many_pairs_overlap_exactly_where_they_are_refused() -> None:
     found = compare(10, 60)

@@ -133,13 +133,16 @@ class InternalPair(CylindricalPair):
         return radially_assembled(InternalMesh(self.ring, self.inner, self.centre_distance))
 
     def refuse_interference(self) -> None:
-        """Raise unless the gears run without interference.
+        """Raise unless the gears run without interference, contact keeps off undercut, and the next pair takes over.
 
         Raises:
             GeometryError: with the condition that fails, its numbers and what to change.
         """
         if self.interference:
             raise GeometryError(self.interference)
+        mesh = InternalMesh(self.ring, self.inner, self.centre_distance)
+        start = self.inner.base_radius * math.hypot(1.0, mesh.inner_roll(self.ring.tip_roll))
+        self.inner.refuse_undercut(start, "inner", f"at {2 * start:.4f} mm")
         if self.contact_ratio < 1.0:
             raise GeometryError(
                 f"contact ratio {self.contact_ratio:.4f} is below 1 at centre distance "

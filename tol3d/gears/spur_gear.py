@@ -155,3 +155,21 @@ class SpurGear(CylindricalGear):
         depth = self.module * (RACK_ADDENDUM - self.profile_shift)
         ends = (self.base_radius, self.tip_radius)
         return rack_undercut_radius(self.pressure_angle, self.reference_radius, depth, ends, self.pressure_angle_at)
+
+    def refuse_undercut(self, start: float, name: str, where: str) -> None:
+        """Raise where a rack of addendum 1 would cut into the flank in use.
+
+        Args:
+            start: radius [mm] at which contact begins.
+            name: of the gear, in words.
+            where: contact begins, in words.
+
+        Raises:
+            GeometryError: with the radii and the profile shift that would do.
+        """
+        if start < self.undercut_radius:
+            raise GeometryError(
+                f"undercut reaches the flank in use: a rack of addendum 1 cuts the {name} gear's involute up to "
+                f"{2 * self.undercut_radius:.4f} mm, contact begins {where}; give "
+                f"profile_shift of at least {self.undercut_limit_shift:.4f} (it has {self.profile_shift:g})"
+            )

@@ -92,12 +92,7 @@ class SpurPair(CylindricalPair):
                 )
             start = gear.base_radius * math.hypot(1.0, max(pair.start_roll, 0.0))
             where = f"at {2 * start:.4f} mm" if pair.start_roll > 0 else "below the base circle"
-            if start < gear.undercut_radius:
-                raise GeometryError(
-                    f"undercut reaches the flank in use: a rack of addendum 1 cuts the {name} gear's involute up to "
-                    f"{2 * gear.undercut_radius:.4f} mm, contact begins {where}; give "
-                    f"profile_shift of at least {gear.undercut_limit_shift:.4f} (it has {gear.profile_shift:g})"
-                )
+            gear.refuse_undercut(start, name, where)
             if pair.start_roll < gear.form_roll:
                 raise GeometryError(
                     f"the teeth interfere: the {mate} gear's tip would touch the {name} gear {where}, "
