@@ -14,6 +14,7 @@ class FamilyName(StrEnum):
 
     THREE_K = "3k"
     SIMPLE = "simple"
+    COMPOUND = "compound"
 
 
 class GoalName(StrEnum):
@@ -25,7 +26,7 @@ class GoalName(StrEnum):
 
 
 def design(
-    family: Annotated[FamilyName, typer.Argument(metavar="3k|simple", help="Kind of planetary set.")],
+    family: Annotated[FamilyName, typer.Argument(metavar="3k|simple|compound", help="Kind of planetary set.")],
     ratio: Annotated[float, typer.Option(help="Speed of the input over the output's; negative: opposite senses.")],
     tolerance: Annotated[float, typer.Option(min=0.0, help="Of the ratio, either way.")] = 0.005,
     planets: Annotated[int, typer.Option(min=1, max=12, help="Alike, at equal angles.")] = 3,

@@ -61,6 +61,11 @@ THIN = -0.04  # mm along the normal, every tooth
         ((*PAPER[1:], "--optimise", "forward"), 4 * 0.04 / (38 * math.cos(math.radians(20)))),
         # carrier over a held ring and a standing sun: both gaps, 2 c each way, over the sum of base radii
         (("simple", "--ratio", "4.5"), 2 * (0.04 + 0.04) / ((12 + 42) / 2 * math.cos(math.radians(20)))),
+        # 12/24/12/48: gaps of the sun's mesh are seen by the ring's in the ratio of the planets' steps, 1/2
+        (
+            ("compound", "--ratio", "9", "--tolerance", "0"),
+            2 * 0.04 * (1 + 1 / 2) / ((24 + 6 / 2) * math.cos(math.radians(20))),
+        ),
     ],
 )
 def test_a_candidate_is_a_scene_that_runs(tol3d: Command, tmp_path: Path, wish: tuple[str, ...], free: float) -> None:

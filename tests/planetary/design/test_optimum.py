@@ -6,6 +6,7 @@ from functools import cache
 
 import numpy as np
 import pytest
+from scipy.optimize import differential_evolution
 
 from tol3d.errors import GeometryError
 from tol3d.planetary import CARRIER, ToothSet, simple, wolfrom
@@ -132,6 +133,23 @@ def test_no_point_of_a_grid_is_better_than_the_best_shifts() -> None:
         best = own.efficiency(shifted(BUILT, goal), drive)
         assert values.max() <= best + 1e-9
         assert values.max() > best - 0.005
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("teeth", SETS)
+def test_a_search_of_another_kind_finds_nothing_better(teeth: ToothSet) -> None:
+    """Differential evolution under the same limits."""
+    own = task(teeth)
+
+    def wasted(values: np.ndarray) -> float:
+        failed = -sum(min(margin.kept, 0.0) for margin in own.shifted(values).margins(own.limits, own.planets))
+        return 1.0 + failed if failed > 0 else 1.0 - own.efficiency(own.shifted(values), REDUCER)
+
+    bounds = [own.distances, (-1.0, 1.0), (-1.0, 1.0)]
+    found = differential_evolution(wasted, bounds, maxiter=60, popsize=12, seed=1, tol=1e-10, polish=False)
+    best = 1.0 - own.efficiency(shifted(teeth, Goal.FORWARD), REDUCER)
+    assert best <= found.fun + 1e-7
+    assert best > found.fun - 1e-3
 
 
 @pytest.mark.parametrize("teeth", SETS)

@@ -9,8 +9,8 @@ import pytest
 from oracles.placed_planets import placed
 
 from tol3d.errors import GeometryError
-from tol3d.planetary import ToothSet, simple, wolfrom
-from tol3d.planetary.design.families import Simple, Teeth, Wolfrom
+from tol3d.planetary import ToothSet, compound, simple, wolfrom
+from tol3d.planetary.design.families import Compound, Simple, Teeth, Wolfrom
 from tol3d.planetary.design.search import Found, Wish, find, teeth_text
 from tol3d.planetary.design.shifted_set import Limits
 
@@ -87,8 +87,13 @@ def test_the_smallest_sets_come_first_and_the_rest_is_counted() -> None:
     assert rings == sorted(rings)
 
 
-def test_simple_sets_are_all_there() -> None:
-    expected = {
+def found_whole(found: Found) -> int:
+    """Sets with the ratio that assemble and have room, whether their teeth can run together or not."""
+    return len(found.candidates) + sum(own.count for own in found.fallen if own.condition == "limits of the teeth")
+
+
+def test_simple_and_compound_sets_are_all_there() -> None:
+    simple_ones = {
         teeth_text(own)
         for sun, planet, ring in product(range(12, 61), repeat=3)
         if abs(sun + planet - (ring - planet)) <= 2 and ring > planet and abs(1 + ring / sun - 4.0) <= 0.01 + 1e-12
@@ -96,9 +101,20 @@ def test_simple_sets_are_all_there() -> None:
         if placed(own, 3) and room(own, 3, 0.5)
     }
     found = find(Wish(Simple(), 4.0, 0.01, 3, Teeth(12, 60, 2), limits=LOOSE), EVERY)
-    fallen = sum(own.count for own in found.fallen if own.condition == "limits of the teeth")
-    assert teeth_of(found) <= expected
-    assert len(expected) == len(found.candidates) + fallen
+    assert teeth_of(found) <= simple_ones
+    assert len(simple_ones) == found_whole(found)
+    compound_ones = {
+        teeth_text(own)
+        for sun, p1, p2 in product(range(12, 60), repeat=3)
+        for ring in range(sun + p1 + p2 - 1, min(sun + p1 + p2 + 1, 60) + 1)
+        if abs(1 + ring * p1 / (sun * p2) - 9.0) <= 0.05 + 1e-12
+        for own in [compound(sun, p1, p2, ring)]
+        if placed(own, 3) and room(own, 3, 0.5)
+    }
+    found = find(Wish(Compound(), 9.0, 0.05, 3, Teeth(12, 60, 1), limits=LOOSE), EVERY)
+    assert teeth_of(found) <= compound_ones
+    assert len(compound_ones) == found_whole(found)
+    assert len(found.candidates) > 1
 
 
 @pytest.mark.parametrize(

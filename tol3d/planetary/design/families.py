@@ -1,19 +1,20 @@
 """Families of sets in which tooth numbers are sought: every one with a ratio, within teeth and tooth sums allowed."""
 
-from collections.abc import Iterator, Mapping
+from abc import ABC, abstractmethod
+from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import ClassVar, Final, Protocol
+from typing import ClassVar, Final
 
 import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.errors import GeometryError
 from tol3d.planetary.design.torque_balance import Drive
-from tol3d.planetary.tooth_set import CARRIER, ToothSet, simple, wolfrom
+from tol3d.planetary.tooth_set import CARRIER, ToothSet, compound, simple, wolfrom
 
 Counts = NDArray[np.int64]
+Ratios = NDArray[np.float64]
 RATIO_RTOL: Final = 1e-12  # a ratio at the very end of its tolerance counts, however its decimals are rounded
-
 MOST_SETS: Final = 20_000  # with one ratio; they are judged one by one
 
 
@@ -32,12 +33,21 @@ class Teeth:
     sum_difference: int = 2
 
 
-class Family(Protocol):
+@dataclass(frozen=True)
+class Family(ABC):
     """One kind of set, the order in which its teeth are written, and how it is driven."""
 
     words: ClassVar[str]
     order: ClassVar[str]
     drive: ClassVar[Drive]
+
+    @abstractmethod
+    def beside(self, sun: int, teeth: Teeth) -> tuple[Counts, Ratios]:
+        """Teeth of the other gears of each set with that sun, (gears, sets) in the family's order; ratios, (sets,)."""
+
+    @abstractmethod
+    def made(self, *counts: int) -> ToothSet:
+        """The set of these teeth, the sun's first."""
 
     def near(self, ratio: float, tolerance: float, teeth: Teeth) -> tuple[tuple[ToothSet, ...], ToothSet | None]:
         """Sets whose ratio lies within a tolerance of that wished, and of all the nearest.
@@ -45,86 +55,104 @@ class Family(Protocol):
         Raises:
             GeometryError: more than MOST_SETS.
         """
-        ...
+        found: list[tuple[int, ...]] = []
+        nearest, least = None, np.inf
+        for sun in range(teeth.least, teeth.largest):
+            counts, ratios = self.beside(sun, teeth)
+            if not ratios.size:
+                continue
+            off = np.abs(ratios - ratio)
+            within = np.flatnonzero(off <= tolerance + RATIO_RTOL * abs(ratio))
+            self._refuse_too_many(len(found) + len(within), ratio, tolerance)
+            found += [(sun, *map(int, counts[:, k])) for k in within]
+            best = int(np.argmin(off))
+            if off[best] < least:
+                nearest, least = (sun, *map(int, counts[:, best])), off[best]
+        return tuple(self.made(*own) for own in found), None if nearest is None else self.made(*nearest)
+
+    def _refuse_too_many(self, count: int, ratio: float, tolerance: float) -> None:
+        if count > MOST_SETS:
+            raise GeometryError(
+                f"ratio: more than {MOST_SETS} {self.words}s have a ratio within {tolerance:g} of {ratio:g}: expected "
+                "a smaller tolerance, or fewer teeth"
+            )
 
 
 @dataclass(frozen=True)
-class Wolfrom:
+class Wolfrom(Family):
     """3K sets: driven at the sun, ring 1 held, ring 2 the output, the carrier free."""
 
     words: ClassVar[str] = "3K set"
     order: ClassVar[str] = "S/P1/R1/P2/R2"
     drive: ClassVar[Drive] = Drive("sun", "ring 2", "ring 1")
 
-    def near(self, ratio: float, tolerance: float, teeth: Teeth) -> tuple[tuple[ToothSet, ...], ToothSet | None]:
-        """See Family; ratio = z_P1 z_R2 (z_S + z_R1) / (z_S (z_P1 z_R2 - z_P2 z_R1))."""
-        found: list[tuple[int, ...]] = []
-        nearest, off_nearest = None, np.inf
-        for sun in range(teeth.least, teeth.largest):
-            counts = self._counts(sun, teeth)
-            if not counts.size:
-                continue
-            planet_1, ring_1, planet_2, ring_2 = counts
-            slip = planet_1 * ring_2 - planet_2 * ring_1
-            with np.errstate(divide="ignore"):
-                off = np.abs(planet_1 * ring_2 * (sun + ring_1) / (sun * slip.astype(np.float64)) - ratio)
-            within = np.flatnonzero(off <= tolerance + RATIO_RTOL * abs(ratio))
-            _refuse_too_many(len(found) + len(within), self.words, ratio, tolerance)
-            found += [(sun, *map(int, counts[:, k])) for k in within]
-            best = int(np.argmin(off))
-            if off[best] < off_nearest:
-                nearest, off_nearest = (sun, *map(int, counts[:, best])), off[best]
-        return tuple(wolfrom(*own) for own in found), None if nearest is None else wolfrom(*nearest)
-
-    @staticmethod
-    def _counts(sun: int, teeth: Teeth) -> Counts:
-        """Teeth of planet 1, ring 1, planet 2, ring 2 beside a sun, (4, sets); none whose ring 2 stands still."""
+    def beside(self, sun: int, teeth: Teeth) -> tuple[Counts, Ratios]:
+        """Ratio z_P1 z_R2 (z_S + z_R1) / (z_S (z_P1 z_R2 - z_P2 z_R1)); none whose ring 2 stands still."""
         d = teeth.sum_difference
-        planets = np.arange(teeth.least, teeth.largest)
-        more = np.arange(-d, d + 1)
-        planet_1, more_1, planet_2, more_2 = np.meshgrid(
-            planets[2 * planets + sun - d <= teeth.largest], more, planets, more, indexing="ij", sparse=True
-        )
-        ring_1 = sun + 2 * planet_1 + more_1
-        ring_2 = sun + planet_1 + planet_2 + more_2
+        planets, more = np.arange(teeth.least, teeth.largest), np.arange(-d, d + 1)
+        first = planets[2 * planets + sun - d <= teeth.largest]
+        planet_1, more_1, planet_2, more_2 = np.meshgrid(first, more, planets, more, indexing="ij", sparse=True)
+        ring_1, ring_2 = sun + 2 * planet_1 + more_1, sun + planet_1 + planet_2 + more_2
         right = (ring_1 <= teeth.largest) & (ring_2 <= teeth.largest) & (abs(more_1 - more_2) <= d)
         right = right & (planet_1 * ring_2 != planet_2 * ring_1)
-        every = np.broadcast_arrays(planet_1, ring_1, planet_2, ring_2)
-        return np.stack([own[right] for own in every])
+        counts = _chosen(right, planet_1, ring_1, planet_2, ring_2)
+        planet_1, ring_1, planet_2, ring_2 = counts
+        slip = (planet_1 * ring_2 - planet_2 * ring_1).astype(np.float64)
+        return counts, planet_1 * ring_2 * (sun + ring_1) / (sun * slip)
+
+    def made(self, *counts: int) -> ToothSet:
+        """A 3K set."""
+        return wolfrom(*counts)
 
 
 @dataclass(frozen=True)
-class Simple:
+class Simple(Family):
     """Sun, planets, ring: driven at the sun, the ring held, the carrier the output."""
 
     words: ClassVar[str] = "simple planetary set"
     order: ClassVar[str] = "S/P/R"
     drive: ClassVar[Drive] = Drive("sun", CARRIER, "ring")
 
-    def near(self, ratio: float, tolerance: float, teeth: Teeth) -> tuple[tuple[ToothSet, ...], ToothSet | None]:
-        """See Family; ratio = 1 + z_R/z_S."""
-        every = sorted(self._every(teeth), key=lambda own: abs(1 + own[2] / own[0] - ratio))
-        reach = tolerance + RATIO_RTOL * abs(ratio)
-        found = [own for own in every if abs(1 + own[2] / own[0] - ratio) <= reach]
-        _refuse_too_many(len(found), self.words, ratio, tolerance)
-        return tuple(simple(*own) for own in found), simple(*every[0]) if every else None
-
-    @staticmethod
-    def _every(teeth: Teeth) -> Iterator[tuple[int, int, int]]:
+    def beside(self, sun: int, teeth: Teeth) -> tuple[Counts, Ratios]:
+        """Ratio 1 + z_R/z_S."""
         d = teeth.sum_difference
-        for sun in range(teeth.least, teeth.largest):
-            for planet in range(teeth.least, (teeth.largest - sun + d) // 2 + 1):
-                for ring in range(sun + 2 * planet - d, min(sun + 2 * planet + d, teeth.largest) + 1):
-                    yield sun, planet, ring
+        planets, more = np.arange(teeth.least, teeth.largest), np.arange(-d, d + 1)
+        planet, more_1 = np.meshgrid(planets, more, indexing="ij", sparse=True)
+        ring = sun + 2 * planet + more_1
+        counts = _chosen(ring <= teeth.largest, planet, ring)
+        return counts, 1 + counts[1] / sun
+
+    def made(self, *counts: int) -> ToothSet:
+        """A simple set."""
+        return simple(*counts)
 
 
-def _refuse_too_many(count: int, words: str, ratio: float, tolerance: float) -> None:
-    if count > MOST_SETS:
-        raise GeometryError(
-            f"ratio: more than {MOST_SETS} {words}s have a ratio within {tolerance:g} of {ratio:g}: expected a smaller "
-            "tolerance, or fewer teeth"
-        )
+@dataclass(frozen=True)
+class Compound(Family):
+    """A sun on step 1 of the planets, a ring on step 2: driven at the sun, the ring held, the carrier the output."""
+
+    words: ClassVar[str] = "compound planetary set"
+    order: ClassVar[str] = "S/P1/P2/R"
+    drive: ClassVar[Drive] = Drive("sun", CARRIER, "ring")
+
+    def beside(self, sun: int, teeth: Teeth) -> tuple[Counts, Ratios]:
+        """Ratio 1 + z_R z_P1/(z_S z_P2)."""
+        d = teeth.sum_difference
+        planets, more = np.arange(teeth.least, teeth.largest), np.arange(-d, d + 1)
+        planet_1, planet_2, more_2 = np.meshgrid(planets, planets, more, indexing="ij", sparse=True)
+        ring = sun + planet_1 + planet_2 + more_2
+        counts = _chosen(ring <= teeth.largest, planet_1, planet_2, ring)
+        return counts, 1 + counts[2] * counts[0] / (sun * counts[1])
+
+    def made(self, *counts: int) -> ToothSet:
+        """A compound set."""
+        return compound(*counts)
 
 
-FAMILIES: Final[Mapping[str, Family]] = {"3k": Wolfrom(), "simple": Simple()}
+def _chosen(right: NDArray[np.bool_], *counts: Counts) -> Counts:
+    """Those of a grid that are right, (gears, sets)."""
+    return np.stack([own[right] for own in np.broadcast_arrays(*counts)])
+
+
+FAMILIES: Final[Mapping[str, Family]] = {"3k": Wolfrom(), "simple": Simple(), "compound": Compound()}
 """By their names on the command line."""
