@@ -11,6 +11,7 @@ from oracles.ring_overlap import overlap
 
 from tol3d.errors import GeometryError
 from tol3d.gears import LEFT, RIGHT, Displaced, Flank, InternalGear, InternalPair, SpurGear
+from tol3d.gears.internal_mesh import InternalMesh
 
 CLEAR = 1e-6  # mm; flanks in contact, interpolated between 1500 points: h^2/(8 rho) = (2 mm/1500)^2 / 16 = 1e-7
 SEEN = 1e-5  # mm; an overlap that a sampled position does not miss
@@ -86,6 +87,24 @@ def test_teeth_overlap_where_they_are_refused_and_not_with_the_addenda_that_are_
         )
         assert bool(other.interference) == other.interferes == overlaps
         assert (most_overlap(other, LEFT) > CLEAR) == overlaps
+
+
+def test_trimming_is_judged_by_the_published_sum_at_the_crossing_of_the_tip_circles() -> None:
+    """z1 (inv alpha_a1 + delta_1) + (z2 - z1) inv alpha_w - z2 (inv alpha_a2 + delta_2), of the ring's turn."""
+
+    def inv(angle: float) -> float:
+        return math.tan(angle) - angle
+
+    for teeth, distance in ((34, 2.0), (36, 3.0), (40, 5.0), (79, 24.5)):
+        inner, ring = spur(30, 20, addendum=0.8), internal(teeth, 20, addendum=0.8)
+        tip, ring_tip = 15.8, teeth / 2 - 0.8
+        first = math.acos((ring_tip**2 - tip**2 - distance**2) / (2 * distance * tip))
+        second = math.acos((ring_tip**2 - tip**2 + distance**2) / (2 * distance * ring_tip))
+        own = inv(math.acos(15 * math.cos(math.radians(20)) / tip)) + first
+        mate = inv(math.acos(teeth / 2 * math.cos(math.radians(20)) / ring_tip)) + second
+        total = 30 * own + (teeth - 30) * inv(math.radians(20)) - teeth * mate
+        found = InternalMesh(ring, inner, distance).trimming_gap
+        assert found == pytest.approx(total / teeth * ring_tip, abs=1e-12)
 
 
 def test_undercut_that_reaches_the_flank_in_use_is_refused() -> None:
