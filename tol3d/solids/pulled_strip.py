@@ -58,13 +58,14 @@ class PulledStrip:
         return found
 
     def curvature(self, scale: Array, triangle: Triangles) -> Array:
-        """Of the flank along its profile where triangles lie, in the middle of the span: (n,) [1/mm]."""
+        """Of the flank along its profile where triangles lie, in the middle of the span: (n,) [1/mm]; a ring: < 0."""
         normals = self.strips.normals[self.flank]
         step = triangle % (len(normals) - 1)
         middle = np.full(step.shape, sum(self.span) / 2)
         chord = self._points(middle, step + 1) - self._points(middle, step)
         turned = normals[step + 1] - normals[step]
-        return np.asarray(np.sqrt((turned * turned).sum(axis=-1) / (chord * chord).sum(axis=-1)) / scale)
+        bent = np.sqrt((turned * turned).sum(axis=-1) / (chord * chord).sum(axis=-1)) / scale
+        return np.asarray(np.copysign(bent, (turned * chord).sum(axis=-1)))
 
     def _points(self, at: Array, step: Triangles) -> Array:
         """Points of the flank at some shares of the face's width, not grown."""
