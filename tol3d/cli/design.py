@@ -1,55 +1,57 @@
 """Commands that design gears before a scene is written: planetary sets for a wished ratio."""
 
-from enum import StrEnum
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
 from tol3d.cli.console import out_console, tell
-
-
-class FamilyName(StrEnum):
-    """Kinds of set that are sought."""
-
-    THREE_K = "3k"
-    SIMPLE = "simple"
-    COMPOUND = "compound"
-
-
-class GoalName(StrEnum):
-    """What profile shifts are chosen for."""
-
-    SMALLEST = "smallest"
-    FORWARD = "forward"
-    BACKWARD = "backward"
+from tol3d.cli.design_options import (
+    CentreDistance,
+    ContactRatio,
+    DetailOption,
+    FamilyArgument,
+    FrictionOption,
+    GoalName,
+    LargestRing,
+    LargestShift,
+    LeastTeeth,
+    ModuleOption,
+    MostOption,
+    OptimiseOption,
+    PlanetGap,
+    PlanetsOption,
+    PressureAngle,
+    RatioOption,
+    SceneNumber,
+    SumDifference,
+    TipClearance,
+    TipThickness,
+    ToleranceOption,
+)
 
 
 def design(
-    family: Annotated[FamilyName, typer.Argument(metavar="3k|simple|compound", help="Kind of planetary set.")],
-    ratio: Annotated[float, typer.Option(help="Speed of the input over the output's; negative: opposite senses.")],
-    tolerance: Annotated[float, typer.Option(min=0.0, help="Of the ratio, either way.")] = 0.005,
-    planets: Annotated[int, typer.Option(min=1, max=12, help="Alike, at equal angles.")] = 3,
-    module: Annotated[str, typer.Option(metavar="LENGTH", help="Of all gears.")] = "1 mm",
-    pressure_angle: Annotated[str, typer.Option(metavar="ANGLE", help="At the reference circle.")] = "20 deg",
-    centre_distance: Annotated[str | None, typer.Option(metavar="LENGTH", help="Stated; otherwise it is free.")] = None,
-    least_teeth: Annotated[int, typer.Option(min=3, max=200, help="Of sun and planets.")] = 12,
-    largest_ring: Annotated[int, typer.Option(min=10, max=300, help="Teeth of rings.")] = 150,
-    sum_difference: Annotated[int, typer.Option(min=0, max=10, help="Of the tooth sums of two meshes.")] = 2,
-    planet_gap: Annotated[str, typer.Option(metavar="LENGTH", help="Least, between neighbours' tips.")] = "0.5 mm",
-    tip_thickness: Annotated[float, typer.Option(min=0.0, max=1.0, help="Least, in modules.")] = 0.2,
-    tip_clearance: Annotated[
-        float, typer.Option(min=0.0, max=0.5, help="Least, from the mate's root, in modules.")
-    ] = 0.15,
-    contact_ratio: Annotated[float, typer.Option(min=1.0, max=3.0, help="Least of each mesh.")] = 1.2,
-    largest_shift: Annotated[float, typer.Option(min=0.0, max=5.0, help="Of any gear either way, in modules.")] = 1.0,
-    optimise: Annotated[
-        GoalName, typer.Option(help="Profile shifts: the smallest, or for efficiency forward or backward.")
-    ] = GoalName.SMALLEST,
-    friction: Annotated[float, typer.Option(min=0.0, max=0.3, help="Coefficient in the meshes.")] = 0.08,
-    most: Annotated[int, typer.Option(min=1, max=200, help="Candidates shown at most.")] = 10,
-    detail: Annotated[int, typer.Option(min=1, metavar="N", help="Candidate shown mesh by mesh.")] = 1,
-    scene: Annotated[int | None, typer.Option(min=1, metavar="N", help="Print candidate N as a scene instead.")] = None,
+    family: FamilyArgument,
+    ratio: RatioOption,
+    tolerance: ToleranceOption = 0.005,
+    planets: PlanetsOption = 3,
+    module: ModuleOption = "1 mm",
+    pressure_angle: PressureAngle = "20 deg",
+    centre_distance: CentreDistance = None,
+    least_teeth: LeastTeeth = 12,
+    largest_ring: LargestRing = 150,
+    sum_difference: SumDifference = 2,
+    planet_gap: PlanetGap = "0.5 mm",
+    tip_thickness: TipThickness = 0.2,
+    tip_clearance: TipClearance = 0.15,
+    contact_ratio: ContactRatio = 1.2,
+    largest_shift: LargestShift = 1.0,
+    optimise: OptimiseOption = GoalName.SMALLEST,
+    friction: FrictionOption = 0.08,
+    most: MostOption = 10,
+    detail: DetailOption = 1,
+    scene: SceneNumber = None,
     out: Annotated[Path | None, typer.Option(help="Write the candidates to this CSV file.")] = None,
 ) -> None:
     """Find tooth numbers, profile shifts and efficiencies of planetary sets that have a ratio and can be assembled."""
