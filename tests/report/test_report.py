@@ -317,6 +317,14 @@ def test_check_names_the_measures_whose_shares_no_closed_form_tells(run: Run, tm
     assert "no shares" not in one_line(check_report(simulation_again(run)))
 
 
+def test_check_says_of_which_measures_the_shares_are_of_one_position() -> None:
+    """Of the least backlash of two_sided_te 50 % are the centre distance's, at a random position 4.4 %."""
+    text = one_line(check_report(simulation_of(load_scene(SCENES / "two_sided_te.yaml"))))
+    assert " shares of least backlash, largest backlash: of the value at a random position; run gives those of" in text
+    plain = one_line(check_report(simulation_of(load_scene(SCENES / "spur_pair.yaml"))))
+    assert "shares of" not in plain
+
+
 def test_check_marks_coefficients_on_which_geometry_and_stack_up_disagree() -> None:
     text = printed(check_report(simulation_of(load_scene(SCENES / "bevel_pair.yaml"))), 80)
     # by an exact solver 0.5311 and 0.4358 where the stack-up has their mean, and nothing for axes that pass each other

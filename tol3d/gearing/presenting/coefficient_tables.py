@@ -8,6 +8,7 @@ from tol3d.report.number import degrees_text, percent_cell
 from tol3d.report.page import Heading, PageItem, Row, Table, line, titled
 
 OTHER = "≠"
+AT_ONE_POSITION = "of the value at a random position; run gives those of what is taken of all positions"
 NO_SUM = "the tighter load path counts, which is no sum; run gives the shares of its trials"
 
 
@@ -17,9 +18,10 @@ def coefficients_tables(model: Model) -> list[PageItem]:
     for measure in model.measures:
         names.setdefault(of_one_value(measure), []).append(measure.name)
     headings = [Heading(word) for word in ("unit", "stack-up", "3D", "share [%]")]
+    found = coefficients_by_value(model)
     tables = [
         block
-        for measure, rows in coefficients_by_value(model).items()
+        for measure, rows in found.items()
         if rows
         for block in titled(
             f"{', '.join(names[measure])}: change by each deviation, {_where(model, measure)}",
@@ -27,7 +29,9 @@ def coefficients_tables(model: Model) -> list[PageItem]:
         )
     ]
     formless = [name for measure, of in names.items() if not measure.kind.adds_up for name in of]
-    return [*tables, *(line(f" {note}", "dim") for note in _notes(model, formless))]
+    shown = {name for measure, of in names.items() if found[measure] and measure.kind.adds_up for name in of}
+    elsewhere = [own.name for own in model.measures if own.take != "value" and own.name in shown]
+    return [*tables, *(line(f" {note}", "dim") for note in _notes(model, formless, elsewhere))]
 
 
 def _row(own: Coefficient) -> Row:
@@ -43,7 +47,8 @@ def _where(model: Model, measure: Measure) -> str:
     return f"{what} at {degrees_text(measure.positions.angle)}°"
 
 
-def _notes(model: Model, formless: Sequence[str]) -> list[str]:
+def _notes(model: Model, formless: Sequence[str], elsewhere: Sequence[str]) -> list[str]:
+    """Below the tables, of measures without shares and of those whose shares are of one position."""
     notes = [
         "stack-up and 3D: at the mean build, per unit of the deviation; of one with a direction per length in its "
         "worst direction; a/b: below and above the mean, where they differ; "
@@ -55,4 +60,6 @@ def _notes(model: Model, formless: Sequence[str]) -> list[str]:
         notes.append(f"{', '.join(tilts)}: a tilt closes the gap whichever way it goes{more}")
     if formless:
         notes.append(f"no shares of {', '.join(formless)}: {NO_SUM}")
+    if elsewhere:
+        notes.append(f"shares of {', '.join(elsewhere)}: {AT_ONE_POSITION}")
     return notes
