@@ -106,8 +106,18 @@ def is_level(tooth: DeviatedTooth) -> bool:
 
 
 @part
-def offset_at(tooth: DeviatedTooth, roll: float, z: float) -> Offset:
-    """What a flank stands out by at a roll [rad] and a height [mm]."""
+def wave_at(tooth: DeviatedTooth, roll: float) -> tuple[float, float]:
+    """Cosine and sine of a flank's waves at a roll [rad]; (1, 0) where it has none."""
+    if tooth.form == 0.0 or tooth.waves == 0.0:
+        return 1.0, 0.0
+    u = (roll - tooth.middle) * tooth.per_length
+    phase = TURN * tooth.waves * u
+    return math.cos(phase), math.sin(phase)
+
+
+@part
+def offset_of(tooth: DeviatedTooth, roll: float, z: float, cos: float, sin: float) -> Offset:
+    """What a flank stands out by at a roll [rad] and a height [mm], of its waves there."""
     u = (roll - tooth.middle) * tooth.per_length
     value = tooth.level + tooth.slope * u + tooth.helix * tooth.per_face * z
     by_roll, bend = tooth.slope, 0.0
@@ -118,12 +128,19 @@ def offset_at(tooth: DeviatedTooth, roll: float, z: float) -> Offset:
             bend = -8.0 * tooth.form
         else:
             rate = TURN * tooth.waves
-            wave = 0.5 * tooth.form * math.cos(rate * u)
+            wave = 0.5 * tooth.form * cos
             value += wave
-            by_roll -= 0.5 * tooth.form * rate * math.sin(rate * u)
+            by_roll -= 0.5 * tooth.form * rate * sin
             bend = -rate * rate * wave
     length = tooth.per_length
     return Offset(value, by_roll * length, tooth.helix * tooth.per_face, bend * length * length)
+
+
+@part
+def offset_at(tooth: DeviatedTooth, roll: float, z: float) -> Offset:
+    """What a flank stands out by at a roll [rad] and a height [mm]."""
+    cos, sin = wave_at(tooth, roll)
+    return offset_of(tooth, roll, z, cos, sin)
 
 
 external(DeviatedTooth)

@@ -7,7 +7,6 @@ from numpy.typing import NDArray
 
 from tol3d.gearing.engines.exact.deviated import FlankOffsets
 from tol3d.gearing.engines.exact.numbers import PairNumbers, Pose
-from tol3d.gearing.engines.exact.rests import rest_row
 from tol3d.gearing.engines.exact.rows import build_of, gap_row, looks_of, read_row
 from tol3d.gearing.engines.exact.seating import MeshBuild
 from tol3d.numerics.compiled import part
@@ -99,31 +98,3 @@ def gap_deviated_rows(
         build = with_flanks(alike, offsets[builds[row]], places)
         angles = (driver_angles[row], driven_angles[row])
         gap_row(build, which, shafts, flank_offset, row, angles, driver_teeth, wanted, value, vectors, at_end)
-
-
-def rest_deviated_rows(
-    pinion: Any,
-    wheel: Any,
-    pair: PairNumbers,
-    nominal: Pose,
-    which: Integers,
-    shafts: Array,
-    centre: Array,
-    flank_turn: Array,
-    flank_offset: Array,
-    scale: Array,
-    offsets: Array,
-    builds: Integers,
-    places: Integers,
-    driver_angles: Array,
-    rests: Array,
-    contact: Array,
-    teeth: Integers,
-    status: NDArray[np.int8],
-) -> None:
-    """Seat every build at every position on both sides; arguments as in rests.rest_rows and above."""
-    gears = (which[0], which[1])
-    for row in range(len(shafts)):
-        alike = build_of(pinion, wheel, pair, nominal, gears, shafts, centre, flank_turn, flank_offset, scale, row)
-        build = with_flanks(alike, offsets[builds[row]], places)
-        rest_row(build, which, shafts, flank_offset, scale, row, driver_angles, rests, contact, teeth, status)

@@ -1,0 +1,208 @@
+"""Contact of two deviated flanks of spur gears with parallel axes, from the line of action of their involutes.
+
+In general Newton seeks it from foot to foot, see nearest.py, and each foot takes sines and arcs. Here all pairs share
+the line of action, and what lies beside it takes a root. A point of own flank that lies d of roll short of that line
+moves by s = rho_1 - r_1 d per roll, at an angle d to it. Its foot on the mate has gone th round the mate's axis, and a
+string L long leads to it, so that the involutes' gap has grown by L - rho_2 + r_2 th, per roll by s sin(d - th), and th
+changes by -(s/L) cos(d - th).
+"""
+
+import math
+from typing import NamedTuple
+
+from tol3d.gearing.engines.exact.deviated import DeviatedTooth, Offset, is_level, offset_of, wave_at
+from tol3d.gearing.engines.exact.foot import PER_TURN, TURN
+from tol3d.gearing.engines.exact.numbers import Pose
+from tol3d.gearing.engines.exact.small_angles import SMALL, arcsine, sine
+from tol3d.numerics.compiled import part
+
+STEPS = 4  # of Newton's; two do nearly always
+LAST_FALL = 1e-9  # mm; a step that lowers the gap by less is the last
+SHORTEST = 0.1  # mm; near to its base circle an involute is too sharp to be a parabola
+EDGE_SHARE = 0.5  # of b d^2/2 by which a tip edge has left its mate at least, see edge_gap
+
+
+class Sight(NamedTuple):
+    """One flank side of gears with parallel axes, as they stand.
+
+    Args:
+        clear: whether they are, and their faces overlap.
+        tangent: length of the tangent of both base circles [mm].
+        own, mate: rolls of teeth whose azimuth is 0 where they touch on it [rad].
+        low, high: ends of the common face on own gear [mm].
+        nx, ny: direction of the tangent, from mate to own flank.
+    """
+
+    clear: bool
+    tangent: float
+    own: float
+    mate: float
+    low: float
+    high: float
+    nx: float
+    ny: float
+
+
+class Touch(NamedTuple):
+    """A pair of flanks.
+
+    Args:
+        known: whether it touches well within both flanks, and all below holds.
+        gap: [mm], along the normal of the mate's involute.
+        turn: of the mate until it is closed [rad].
+        along: by how much the normal there has turned from the line of action [rad].
+    """
+
+    known: bool
+    gap: float
+    turn: float
+    along: float
+
+
+@part
+def sight(own: DeviatedTooth, mate: DeviatedTooth, pose: Pose, sigma: float) -> Sight:
+    """One side of two gears; see spur.spur_line_of_action."""
+    square, bases = pose.x * pose.x + pose.y * pose.y, own.base + mate.base
+    low, high = max(own.low, mate.low - pose.z), min(own.high, mate.high - pose.z)
+    parallel = pose.xz == 0.0 and pose.yz == 0.0 and pose.zz > 0.0
+    if not parallel or square <= bases * bases or low > high:
+        return Sight(False, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+    tangent = math.sqrt(square - bases * bases)
+    working, centres = math.atan2(tangent, bases), math.atan2(pose.y, pose.x)
+    twist = math.atan2(pose.yx, pose.xx) if pose.yx != 0.0 else 0.0
+    first = working + own.half + sigma * (centres + math.pi - twist)
+    second = working + mate.half + sigma * centres
+    ux, uy = pose.x * bases - sigma * pose.y * tangent, pose.y * bases + sigma * pose.x * tangent
+    return Sight(True, tangent, first, second, low, high, sigma * uy / square, -sigma * ux / square)
+
+
+@part
+def wrapped(angle: float) -> float:
+    """An angle between minus half a turn and half a turn [rad]."""
+    return angle - TURN * math.floor(angle * PER_TURN + 0.5)
+
+
+@part
+def beside(base: float, mate_base: float, rho: float, mate_rho: float, d: float) -> tuple[float, float, float]:
+    """By what a point d [rad] of roll beside the line of action is further from the mate, its string, the foot's way.
+
+    [mm; mm; rad], of an involute whose point on that line has radii of curvature rho and mate_rho to either side.
+    """
+    sin = sine(d)
+    cos = math.sqrt(1.0 - sin * sin)
+    short = rho - base * d
+    x = mate_base + base * sin * sin / (1.0 + cos) + short * sin
+    y = mate_rho + rho - base * sin - short * cos
+    square = x * x + y * y
+    string = math.sqrt(square - mate_base * mate_base)
+    theta = arcsine((y * mate_base - x * string) / square)
+    return string - mate_rho + mate_base * theta, string, theta
+
+
+@part
+def near_offset(tooth: DeviatedTooth, roll: float, z: float, cos: float, sin: float, by: float) -> Offset:
+    """What a flank stands out by at a roll [rad], of its waves at a roll that is `by` less."""
+    if tooth.form == 0.0 or tooth.waves == 0.0:
+        return offset_of(tooth, roll, z, 1.0, 0.0)
+    across = sine(TURN * tooth.waves * by * tooth.per_length)
+    along = math.sqrt(1.0 - across * across)
+    return offset_of(tooth, roll, z, cos * along - sin * across, sin * along + cos * across)
+
+
+@part
+def most_out(tooth: DeviatedTooth) -> float:
+    """The most that a flank stands out by anywhere, once as it is and twice more by its shapes [mm]."""
+    return tooth.level + 3.0 * (0.5 * abs(tooth.slope) + abs(tooth.form) + 0.5 * abs(tooth.helix))
+
+
+@part
+def edge_gap(own: DeviatedTooth, mate: DeviatedTooth, tangent: float, beyond: float) -> float:
+    """The least by which own tip edge has left the mate [mm] where its pair is so far beyond the path of contact [rad].
+
+    Just beyond it is b d^2/2, b = rho T/(T - rho) with the edge's radius of curvature rho: the mate's, T - rho, grows
+    by less than the arc r_b d on the way.
+    """
+    radius = own.base * own.end
+    mating = max(tangent - radius, 0.0) + own.base * beyond
+    return EDGE_SHARE * 0.5 * radius * tangent / mating * beyond * beyond
+
+
+@part
+def level_touch(own: DeviatedTooth, mate: DeviatedTooth, gap: float, mate_roll: float) -> Touch:
+    """Of parallel involutes within both flanks, the plain ones a gap [mm] apart and the mate's at a roll [rad]."""
+    gap -= own.level + mate.level
+    turn = gap * mate.per_base
+    return Touch(mate_roll + turn <= mate.end, gap, turn, 0.0)
+
+
+@part
+def height(own: DeviatedTooth, mate: DeviatedTooth, low: float, high: float, face: float) -> float:
+    """Where on own face flanks stand out most together [mm], between two ends; where they do not lean, at `face`."""
+    lean = own.helix * own.per_face + mate.helix * mate.per_face
+    return high if lean > 0.0 else (low if lean < 0.0 else min(max(face, low), high))
+
+
+@part
+def touch(
+    own: DeviatedTooth,
+    mate: DeviatedTooth,
+    tangent: float,
+    gap: float,
+    rolls: tuple[float, float],
+    heights: tuple[float, float],
+) -> Touch:
+    """Of two flanks whose involutes are a gap [mm] apart on the line of action; own tip edge may be what touches.
+
+    Args:
+        own, mate: the flanks.
+        tangent: length of the tangent of both base circles [mm].
+        gap: of the involutes that all teeth have.
+        rolls: at which those would touch there, of own and mate [rad].
+        heights: at which flanks are looked at, of own and mate [mm].
+    """
+    unknown = Touch(False, 0.0, 0.0, 0.0)
+    roll, least = rolls[0], rolls[0] - own.end
+    rho, mate_rho = own.base * roll, tangent - own.base * roll
+    if roll < own.begin or rho < SHORTEST or mate_rho < SHORTEST:
+        return unknown
+    if least <= 0.0 and mate.begin <= rolls[1] <= mate.end and is_level(own) and is_level(mate):
+        return level_touch(own, mate, gap, rolls[1])
+    start = max(least, 0.0)
+    d, grown, theta = start, 0.0, 0.0
+    cos, sin = wave_at(own, roll - start)
+    first = offset_of(own, roll - start, heights[0], cos, sin)
+    string = mate_rho - first.value
+    if start > 0.0:
+        grown, string, theta = beside(own.base, mate.base, rho + first.value, string, start)
+    begin = theta
+    mate_roll = rolls[1] - begin
+    mate_cos, mate_sin = wave_at(mate, mate_roll)
+    second = offset_of(mate, mate_roll, heights[1], mate_cos, mate_sin)
+    fall = math.inf
+    for _ in range(STEPS):
+        speed = rho + first.value - own.base * d
+        ratio = speed / string
+        by_d = speed * sine(d - theta) + first.by_roll - second.by_roll * ratio
+        bend = speed * (1.0 + ratio) - first.bend - second.bend * ratio * ratio
+        on = max(d - by_d / bend, least)
+        fall = 0.5 * by_d * by_d / bend if on > least else 0.0
+        if on == d or (on > least and fall < LAST_FALL):
+            break
+        d, own_roll, fall = on, roll - on, math.inf
+        if own_roll <= own.begin or d - start > SMALL:
+            return unknown
+        first = near_offset(own, own_roll, heights[0], cos, sin, start - d)
+        grown, string, theta = beside(own.base, mate.base, rho + first.value, mate_rho - first.value, d)
+        mate_roll = rolls[1] - theta
+        second = near_offset(mate, mate_roll, heights[1], mate_cos, mate_sin, begin - theta)
+    if fall >= LAST_FALL or not mate.begin <= mate_roll <= mate.end:
+        return unknown
+    found = gap - first.value + grown - second.value - fall
+    turn = found * mate.per_base
+    if not mate.begin <= mate_roll + turn <= mate.end:
+        return unknown
+    if not is_level(mate):
+        for _ in range(2):
+            there = near_offset(mate, mate_roll + turn, heights[1], mate_cos, mate_sin, turn + begin - theta)
+            turn = (found + second.value - there.value) * mate.per_base
+    return Touch(abs(turn + begin - theta) < SMALL, found, turn, theta)
