@@ -1,0 +1,104 @@
+"""Rests of deviated teeth at many positions, taken from the line of action, against dense points and Newton's feet."""
+
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+from gearing.test_single_flanks import BASES, PITCH, SHAPES, TURN, Builds, dense, drawn
+from numpy.typing import NDArray
+
+from tol3d.gearing.engines.exact.deviated import DeviatedTooth
+from tol3d.gearing.engines.exact.tooth_contact import beside, edge_gap
+from tol3d.gearing.model import Reading
+
+Array = NDArray[np.float64]
+
+POSITIONS = 320  # a turn of the driver, 16 a tooth
+ALL = f"{PITCH}\n{SHAPES}"
+ECCENTRIC = "  {gear} run-out: {{kind: eccentricity, of: {gear}, distribution: {{kind: rayleigh, scale: 8 um}}}}"
+DENSE_UM = 2e-3  # dense points lie a um apart, and squares of slopes are left out: see test_single_flanks
+
+
+def rests(builds: Builds, angles: Array) -> Array:
+    """The driven gear's angles [rad] at rest, (builds, positions, 2): drive side, back side."""
+    made = builds.engine.build(builds.deviations)
+    found = builds.engine.rests(made, builds.mesh, Reading(), angles)
+    assert all((side.status == 0).all() for side in found)
+    return np.stack([side.driven_angle for side in found], axis=-1)
+
+
+@pytest.mark.parametrize(("tolerances", "heights"), [(PITCH, (0.0,)), (ALL, (-5.0, 5.0))])
+def test_at_each_rest_dense_points_touch(tolerances: str, heights: tuple[float, ...], tmp_path: Path) -> None:
+    """A position every seventh, so that all places of the path of contact and both gears' edges have their turn."""
+    builds, angles = drawn(tolerances, tmp_path, 2, 5), np.arange(POSITIONS) * TURN / POSITIONS
+    found = rests(builds, angles)
+    for row in range(2):
+        pair = dense(builds, row, heights)
+        for k in range(1, POSITIONS, 29):
+            for side, flank in enumerate((1, -1)):
+                off = pair.turn_to_touch(flank, angles[k], found[row, k, side])
+                assert 1e3 * BASES[1] * off == pytest.approx(0.0, abs=DENSE_UM)
+
+
+@pytest.mark.parametrize("more", ["", "\n".join(ECCENTRIC.format(gear=gear) for gear in ("pinion", "wheel"))])
+def test_each_rest_is_where_newton_finds_it_alone(more: str, tmp_path: Path) -> None:
+    """The reading of one position seeks feet on both flanks, from the middle of the play on."""
+    builds, angles = drawn(f"{ALL}\n{more}", tmp_path, 20, 7), np.arange(0, 960, 7) * TURN / POSITIONS
+    found = rests(builds, angles)
+    for k, angle in enumerate(angles):
+        alone = Builds(builds.model, builds.deviations, np.full(20, angle)).read()
+        assert 1e3 * BASES[1] * np.abs(alone.driven_angle - found[:, k, 0]).max() < 1e-3
+        assert 1e3 * BASES[1] * np.abs(alone.driven_angle + alone.driven_turn - found[:, k, 1]).max() < 1e-3
+
+
+# beside the line of action --------------------------------------------------------------------------------------
+
+
+def tooth(teeth: int, pressure_angle: float, tip_radius: float) -> DeviatedTooth:
+    base = 0.5 * teeth * math.cos(pressure_angle)
+    end = math.sqrt(tip_radius**2 - base**2) / base
+    zeros = dict.fromkeys(set(DeviatedTooth._fields) - {"base", "end"}, 0.0)
+    return DeviatedTooth(base=base, end=end, **zeros)
+
+
+def apart(own: float, mate: float, centre_distance: float, roll: float, beyond: float) -> float:
+    """By how much a point of an involute at a roll has left its mate [mm] that touched `beyond` of roll before.
+
+    Both gears stand where the point's tooth would touch at the roll `roll + beyond`. The point is turned back by that
+    from where it touches itself; the mate's flank through any point is found by the length of its string.
+    """
+    working = math.acos((own + mate) / centre_distance)
+    tangent = centre_distance * math.sin(working)
+    towards = working - beyond  # azimuth at which the point's string leaves own base circle, from the line of centres
+    x = own * math.cos(towards) + own * roll * math.sin(towards)
+    y = own * math.sin(towards) - own * roll * math.cos(towards)
+    x, y = centre_distance - x, -y  # from the mate's centre, its axis towards own gear
+    string = math.sqrt(x * x + y * y - mate * mate)
+    rolled = string / mate  # of the mate's involute through the point; it begins at:
+    begins = math.atan2(y, x) + math.atan2(string, mate) - rolled
+    mate_string = tangent - own * (roll + beyond)
+    stands = working - mate_string / mate
+    return mate * (stands - begins)
+
+
+def test_tip_edges_leave_their_mates_by_as_much_as_is_worked_out_and_more_than_the_bound() -> None:
+    generator, checked = np.random.default_rng(3), 0
+    while checked < 2000:
+        z, mate_z = (int(own) for own in generator.integers(8, 150, 2))
+        pressure = math.radians(generator.uniform(14.5, 30.0))
+        own = tooth(z, pressure, 0.5 * z + generator.uniform(0.6, 1.4))
+        mate = tooth(mate_z, pressure, 0.5 * mate_z + 1.0)
+        centre_distance = 0.5 * (z + mate_z) * generator.uniform(0.99, 1.05)
+        bases, beyond = own.base + mate.base, generator.uniform(0.0, 1.2) * TURN / z
+        if centre_distance <= bases:
+            continue
+        tangent = math.sqrt(centre_distance**2 - bases**2)
+        if own.base * (own.end + beyond) > 0.98 * tangent:
+            continue
+        checked += 1
+        left = apart(own.base, mate.base, centre_distance, own.end, beyond)
+        rho = own.base * (own.end + beyond)
+        found, _, _ = beside.py_func(own.base, mate.base, rho, tangent - rho, beyond)
+        assert found == pytest.approx(left, abs=1e-11)
+        assert edge_gap.py_func(own, mate, tangent, beyond) <= left
