@@ -2,6 +2,7 @@
 
 import math
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -11,12 +12,16 @@ from numpy.typing import NDArray
 from tol3d.gearing.engines.exact.deviated import DeviatedTooth
 from tol3d.gearing.engines.exact.tooth_contact import beside, edge_gap
 from tol3d.gearing.model import Reading
+from tol3d.gears.flank import LEFT, RIGHT
 
 Array = NDArray[np.float64]
 
+WORKED_OUT: Any = beside.py_func  # type: ignore[attr-defined]
+BOUND: Any = edge_gap.py_func  # type: ignore[attr-defined]
 POSITIONS = 320  # a turn of the driver, 16 a tooth
 ALL = f"{PITCH}\n{SHAPES}"
 ECCENTRIC = "  {gear} run-out: {{kind: eccentricity, of: {gear}, distribution: {{kind: rayleigh, scale: 8 um}}}}"
+NEWTON_UM = 5e-4  # squares of slopes, of gaps that are sought from the edge where a face ends
 DENSE_UM = 2e-3  # dense points lie a um apart, and squares of slopes are left out: see test_single_flanks
 
 
@@ -42,14 +47,19 @@ def test_at_each_rest_dense_points_touch(tolerances: str, heights: tuple[float, 
 
 
 @pytest.mark.parametrize("more", ["", "\n".join(ECCENTRIC.format(gear=gear) for gear in ("pinion", "wheel"))])
-def test_each_rest_is_where_newton_finds_it_alone(more: str, tmp_path: Path) -> None:
-    """The reading of one position seeks feet on both flanks, from the middle of the play on."""
-    builds, angles = drawn(f"{ALL}\n{more}", tmp_path, 20, 7), np.arange(0, 960, 7) * TURN / POSITIONS
-    found = rests(builds, angles)
+def test_at_each_rest_newton_finds_no_gap_and_no_overlap(more: str, tmp_path: Path) -> None:
+    """Gaps of single positions are sought foot by foot on both flanks."""
+    count = 20
+    builds, angles = drawn(f"{ALL}\n{more}", tmp_path, count, 7), np.arange(0, 960, 7) * TURN / POSITIONS
+    found, made = rests(builds, angles), builds.engine.build(builds.deviations)
     for k, angle in enumerate(angles):
-        alone = Builds(builds.model, builds.deviations, np.full(20, angle)).read()
-        assert 1e3 * BASES[1] * np.abs(alone.driven_angle - found[:, k, 0]).max() < 1e-3
-        assert 1e3 * BASES[1] * np.abs(alone.driven_angle + alone.driven_turn - found[:, k, 1]).max() < 1e-3
+        teeth = np.tile(np.arange(-2, 3) - round(angle / (TURN / 20)), (count, 1))
+        for side, flank in enumerate((RIGHT, LEFT)):
+            stand = (np.full(count, angle), found[:, k, side])
+            gaps = builds.engine.gaps(made, builds.mesh, flank, stand, teeth, np.ones(teeth.shape, dtype=bool))
+            within = np.where(gaps.at_end, np.inf, gaps.value)  # beyond both ends a gap is no more than a bound
+            assert 1e3 * np.abs(gaps.value).min(axis=1).max() < NEWTON_UM
+            assert 1e3 * within.min() > -NEWTON_UM
 
 
 # beside the line of action --------------------------------------------------------------------------------------
@@ -99,6 +109,6 @@ def test_tip_edges_leave_their_mates_by_as_much_as_is_worked_out_and_more_than_t
         checked += 1
         left = apart(own.base, mate.base, centre_distance, own.end, beyond)
         rho = own.base * (own.end + beyond)
-        found, _, _ = beside.py_func(own.base, mate.base, rho, tangent - rho, beyond)
+        found, _, _ = WORKED_OUT(own.base, mate.base, rho, tangent - rho, beyond)
         assert found == pytest.approx(left, abs=1e-11)
-        assert edge_gap.py_func(own, mate, tangent, beyond) <= left
+        assert BOUND(own, mate, tangent, beyond) <= left

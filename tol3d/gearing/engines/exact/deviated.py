@@ -17,6 +17,9 @@ TURN = 2.0 * math.pi
 START, TEETH, AHEAD = 0, 1, 2  # of a gear's places: where its coefficients begin, -1 without; its teeth; their count
 PLACES = 3
 SHAPES = 4  # coefficients of a flank
+LEAST_BEND = (
+    0.05  # of the base radius; towards a base circle the gap bends less, then the other way: Newton would climb
+)
 
 
 class DeviatedTooth(NamedTuple):
@@ -232,7 +235,7 @@ def deviated_foot(
         at.nz,
         at.by_profile - first.by_roll - second.by_roll * back,
         at.by_face - first.by_face - second.by_face * pose.zz - second.by_roll * lean,
-        at.bend - first.bend - second.bend * back * back,
+        max(at.bend - first.bend - second.bend * back * back, LEAST_BEND * own.base),
         at.twist,
         at.bow,
         0.0,

@@ -10,7 +10,7 @@ changes by -(s/L) cos(d - th).
 import math
 from typing import NamedTuple
 
-from tol3d.gearing.engines.exact.deviated import DeviatedTooth, Offset, is_level, offset_of, wave_at
+from tol3d.gearing.engines.exact.deviated import LEAST_BEND, DeviatedTooth, Offset, is_level, offset_of, wave_at
 from tol3d.gearing.engines.exact.foot import PER_TURN, TURN
 from tol3d.gearing.engines.exact.numbers import Pose
 from tol3d.gearing.engines.exact.small_angles import SMALL, arcsine, sine
@@ -112,7 +112,10 @@ def near_offset(tooth: DeviatedTooth, roll: float, z: float, cos: float, sin: fl
 @part
 def most_out(tooth: DeviatedTooth) -> float:
     """The most that a flank stands out by anywhere, once as it is and twice more by its shapes [mm]."""
-    return tooth.level + 3.0 * (0.5 * abs(tooth.slope) + abs(tooth.form) + 0.5 * abs(tooth.helix))
+    u = max(abs(tooth.begin - tooth.middle), abs(tooth.end - tooth.middle)) * tooth.per_length
+    form = 0.5 if tooth.waves != 0.0 else 1.0 / 3.0 + 4.0 * u * u
+    z = max(abs(tooth.low), abs(tooth.high)) * tooth.per_face
+    return tooth.level + 3.0 * (abs(tooth.slope) * u + abs(tooth.form) * form + abs(tooth.helix) * z)
 
 
 @part
@@ -184,6 +187,7 @@ def touch(
         ratio = speed / string
         by_d = speed * sine(d - theta) + first.by_roll - second.by_roll * ratio
         bend = speed * (1.0 + ratio) - first.bend - second.bend * ratio * ratio
+        bend = max(bend, LEAST_BEND * own.base)
         on = max(d - by_d / bend, least)
         fall = 0.5 * by_d * by_d / bend if on > least else 0.0
         if on == d or (on > least and fall < LAST_FALL):
