@@ -14,8 +14,9 @@ from tol3d.gearing.engines.exact.deviated import DeviatedTooth
 from tol3d.gearing.engines.exact.deviated_rows import with_flanks
 from tol3d.gearing.engines.exact.foot import flank_of, section
 from tol3d.gearing.engines.exact.numbers import PairNumbers, Pose
+from tol3d.gearing.engines.exact.reach import within_reach
 from tol3d.gearing.engines.exact.rests import write_first
-from tol3d.gearing.engines.exact.rows import FREE, build_of, fault_of, within_reach
+from tol3d.gearing.engines.exact.rows import FREE, build_of, fault_of
 from tol3d.gearing.engines.exact.seating import (
     ALL_TEETH,
     Look,
@@ -94,7 +95,7 @@ def quick_turn(build: MeshBuild, at: Turn, look: Look) -> tuple[bool, float]:
             if edges != (rolls[0] > own.end or rolls[1] > mate.end):
                 continue
             flank = flank_of(own, build.flanks, 0, tooth, sigma)
-            mating = flank_of(mate, build.flanks, 1, mating_tooth(tooth, sigma), sigma)
+            mating = flank_of(mate, build.flanks, 1, mating_tooth(mate, tooth, sigma), sigma)
             gap = line.tangent - own.base * rolls[0] - mate.base * rolls[1] - build.offset
             if edges and turns_later(mate, far_beyond(flank, mating, line.tangent, gap, rolls), best):
                 continue
