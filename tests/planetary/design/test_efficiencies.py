@@ -235,6 +235,27 @@ def test_a_set_of_a_large_ratio_locks_itself_and_still_drives_forward() -> None:
     assert jammed.efficiency < 0
 
 
+def test_at_most_one_equilibrium_of_any_drive_delivers_power() -> None:
+    """Of 1000 sets with any three members as input, output and held: a second one is jammed, by self-locking."""
+    rng, jammed = random.Random(7), 0
+    for _ in range(1000):
+        sun, p1, p2 = (rng.randint(12, 50) for _ in range(3))
+        own = rng.choice((random_set(rng), simple(sun, p1, sun + 2 * p1), compound(sun, p1, p2, sun + p1 + p2)))
+        each = {mesh.central: rng.uniform(0.7, 1.0) for mesh in own.meshes}
+        drive = Drive(*rng.sample(own.members, 3))
+        if own.turn(drive.held) in (own.turn(drive.input), own.turn(drive.output)):
+            continue
+        found = balances(own, each, drive)
+        assert [balance.efficiency > 0 for balance in found] in ([True], [False], [True, False])
+        assert all(
+            abs(sum(balance.torques.values())) < 1e-9 * max(map(abs, balance.torques.values())) for balance in found
+        )
+        if len(found) == 2:
+            jammed += 1
+            assert efficiency(own, each, drive.reversed) <= 0
+    assert jammed > 10
+
+
 # what was published --------------------------------------------------------------------------------------
 
 

@@ -188,7 +188,8 @@ def test_simple_sets_have_a_best_too() -> None:
 
 def test_limits_that_no_shift_keeps_are_said_with_their_numbers() -> None:
     with pytest.raises(
-        GeometryError, match=r"no profile shifts keep the limits; closest fails by .*, at least .* needed"
+        GeometryError,
+        match=r"no profile shifts were found that keep the limits; the nearest fail by .*, at least .* needed",
     ):
         best_shifts(replace(task(), limits=Limits(contact_ratio=2.5)), Goal.SMALLEST)
 

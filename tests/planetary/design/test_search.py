@@ -132,8 +132,8 @@ def test_simple_and_compound_sets_are_all_there() -> None:
         ),
         (
             Wish(Wolfrom(), 54.72, tolerance=0.0, planets=4, limits=Limits(tip_clearance=0.26), centre_distance=26.0),
-            "limits of the teeth: 1 fail; 25/27/79/24/76: no profile shifts keep the limits; closest fails by "
-            "clearance",
+            "limits of the teeth: 1 fail; 25/27/79/24/76: no profile shifts were found that keep the limits; the "
+            "nearest fail by clearance",
         ),
         (
             Wish(Wolfrom(), 54.72, planets=4, centre_distance=40.0),

@@ -69,7 +69,8 @@ def efficiency(teeth: ToothSet, efficiencies: Mapping[str, float], drive: Drive)
 
 
 def _equilibria(teeth: ToothSet, efficiencies: Mapping[str, float], drive: Drive) -> Iterator[Balance]:
-    central = [mesh.central for mesh in teeth.meshes]
+    loaded = (drive.input, drive.output, drive.held)
+    central = [mesh.central for mesh in teeth.meshes if mesh.central in loaded]
     planet_speed = 1 / (teeth.turn(drive.input) - teeth.turn(drive.held))  # with the input turning by 1
     output_speed = float((teeth.turn(drive.output) - teeth.turn(drive.held)) * planet_speed)
     for driving in product((True, False), repeat=len(central)):
@@ -77,7 +78,7 @@ def _equilibria(teeth: ToothSet, efficiencies: Mapping[str, float], drive: Drive
         torques = _torques(teeth, efficiencies, drive, by_centre)
         if torques is None:
             continue
-        powers = {name: torques.get(name, 0.0) * float(teeth.turn(name) * planet_speed) for name in central}
+        powers = {name: torques[name] * float(teeth.turn(name) * planet_speed) for name in central}
         if all(power == 0.0 or (power > 0.0) == by_centre[name] for name, power in powers.items()):
             own = {name: by_centre[name] for name in central if powers[name] != 0.0}
             yield Balance(torques, own, -torques[drive.output] * output_speed)
