@@ -34,13 +34,16 @@ def slipped(specimen: Specimen, rig: Rig, at: float, by: float) -> Identified:
 
 
 def test_a_run_of_the_long_period_closes_within_its_interval() -> None:
-    """Two means of 90 rows a side: 1.96 sigma sqrt(2/90), for the backlash that of two sides."""
+    """Two means of 90 rows a side: 1.96 sigma sqrt(2/90), for the backlash that of two sides.
+
+    The scatter is that of 45 pairs of places, or of 126 steps in the median: known to 11 %; three times that.
+    """
     for turns in (16.0, 18.0):
         found = identified_by(REFERENCE, replace(RUN, turns=turns))
         assert set(found.closure) == {"drive", "back", "backlash"}
         for name, own in found.closure.items():
             expected = 1.96 * SIGMA * math.sqrt(2 / ROWS) * (math.sqrt(2) if name == "backlash" else 1.0)
-            assert arcsec(own.half_width) == pytest.approx(expected, rel=0.05), name
+            assert arcsec(own.half_width) == pytest.approx(expected, rel=0.33), name
             assert abs(own.value) < 1.6 * own.half_width, name
         assert not [text for text in found.warnings if "close" in text]
 
@@ -73,8 +76,8 @@ def test_an_encoder_that_slips_shows_in_its_side_and_in_the_backlash(turns: floa
     assert arcsec(found.closure["backlash"].value) == pytest.approx(5.0, abs=0.25)
     texts = [text for text in found.warnings if "does not close" in text]
     assert "the back side does not close: after the long period of 16 turns it has changed by" in texts[0]
-    # across the end of the period the fit's residual, in which the slip is, widens the intervals
-    assert len(texts) == (1 if turns == 16.0 else 2)
+    assert texts[1].startswith("the backlash does not close")
+    assert all(arcsec(own.half_width) < 0.25 for own in found.closure.values())  # a single slip widens none
 
 
 def test_teeth_that_deviate_do_not_open_a_run_that_goes_on_after_the_long_period() -> None:
@@ -89,6 +92,7 @@ def test_teeth_that_deviate_do_not_open_a_run_that_goes_on_after_the_long_period
     found = identified(PAIR, {"drive": passes("drive"), "back": passes("back")}, Senses(1, 1), Settings())
     for name, own in found.closure.items():
         assert abs(arcsec(own.value)) < 4 * SIGMA * math.sqrt(4 / ROWS), name
+        assert arcsec(own.half_width) < 3 * SIGMA * math.sqrt(4 / ROWS), name
 
 
 def test_of_a_short_long_period_a_slip_shows_whole_where_the_run_goes_on() -> None:

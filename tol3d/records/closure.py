@@ -1,8 +1,8 @@
 """Whether a side closes: its transmission error a long period later, where the same teeth touch as at its start.
 
 Gears cannot differ by then; what does is drift, or an encoder or coupling that has slipped. The rows of the quarter
-turn after the long period lie where those of the first one do, so that their difference knows no model. Where a pass
-ends with the long period, the last quarter turn stands in: the fit, its drift aside, bridges both.
+turn after the long period lie where those of the first one do, so that their difference, place by place, knows no
+model. Where a pass ends with the long period, the last quarter turn stands in: the fit, its drift aside, bridges both.
 """
 
 import math
@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from tol3d.records.alignment import Aligned
 from tol3d.records.bins import Bins
+from tol3d.records.ends import WINDOW, Ends
 from tol3d.records.exact_play import Side, driven_angle
 from tol3d.records.fit import Fit
 from tol3d.records.pair import ARCSEC, Specimen
@@ -25,7 +26,9 @@ Closing = Literal["drive", "back", "backlash"]
 
 OPEN: Final = 3.0  # standard errors from which on a side does not close
 LEAST: Final = 1e-3 * ARCSEC  # that matters, where nothing scatters
-FEWEST: Final = 10  # degrees of freedom of windows whose own scatter is their noise
+FEWEST: Final = 10  # pairs of places, or steps between quarter turns, whose scatter says that of one
+MOST_CELLS: Final = 64  # of a quarter turn, at each of which rows are compared
+MAD: Final = 1.4826  # standard deviation of normal values over their median magnitude
 
 
 def closures(
@@ -68,45 +71,75 @@ def what_is_open(closures: Mapping[Closing, Figure], fit: Fit) -> Iterator[str]:
 
 def _closure(fit: Fit, specimen: Specimen, side: Side, passes: Sequence[Aligned], *, but_drift: bool) -> Figure | None:
     """Mean over the passes that reach it, each with the weight of its error."""
-    changes, weights = [], []
-    for ends in (own.ends for own in passes):
-        if ends is None or not len(ends.start.rows) or not len(ends.end.rows):
-            continue
-        both = [_window(each, _left(fit, specimen, side, each, but_drift=but_drift)) for each in (ends.start, ends.end)]
-        changes.append(both[1].mean - both[0].mean)
-        weights.append(1.0 / max(_variance(fit, both, same_places=ends.same_places), 1e-300))
-    if not changes:
+    reaching = [
+        own.ends for own in passes if own.ends is not None and len(own.ends.start.rows) and len(own.ends.end.rows)
+    ]
+    if not reaching:
         return None
+    found = []
+    for ends in reaching:
+        left = [_left(fit, specimen, side, own, but_drift=but_drift) for own in (ends.start, ends.end)]
+        change = _at_the_same_places(ends, left, fit.measured.pair.long_period) if ends.same_places else None
+        found.append(change or _across_the_end(fit, ends, left, len(reaching)))
+    weights = [1.0 / max(own.variance, 1e-300) for own in found]
     half_width = quantile_of(fit.freedom) / math.sqrt(sum(weights))
-    return Figure(float(np.average(changes, weights=weights)), half_width)
+    return Figure(float(np.average([own.value for own in found], weights=weights)), half_width)
 
 
-class _Window(NamedTuple):
-    """Mean of what is left in a window [rad], its rows and bins, and the squares about the mean [rad^2]."""
+class _Change(NamedTuple):
+    """From one window to the other [rad], and its variance [rad^2]."""
 
-    mean: float
-    rows: float
-    bins: int
-    squares: float
+    value: float
+    variance: float
 
 
-def _window(bins: Bins, left: Array) -> _Window:
-    rows = float(bins.rows.sum())
-    mean = float(bins.rows @ left) / rows
-    return _Window(mean, rows, len(left), float(bins.rows @ (left - mean) ** 2))
+def _at_the_same_places(ends: Ends, left: Sequence[Array], period: float) -> _Change | None:
+    """By pairs of rows at the same places, so that no shape of the curve is in it; None where there are too few."""
+    windows = (ends.start, ends.end)
+    cells = min(MOST_CELLS, int(min(own.rows.sum() for own in windows)) // 2)
+    if cells <= FEWEST:
+        return None
+    turned = 2 * math.pi / period
+    middle = float(np.angle(np.exp(1j * turned * ends.start.phi1).mean())) / turned
+    sums = []
+    for own, each in zip(windows, left, strict=True):
+        off = np.mod(own.phi1 - middle + period / 2, period) - period / 2
+        index = np.clip(((off / WINDOW + 0.5) * cells).astype(np.int64), 0, cells - 1)
+        sums.append((np.bincount(index, own.rows, cells), np.bincount(index, own.rows * each, cells)))
+    (first, at_first), (last, at_last) = sums
+    both = (first > 0) & (last > 0)
+    if both.sum() <= FEWEST:
+        return None
+    weights = 1.0 / (1.0 / first[both] + 1.0 / last[both])
+    changes = at_last[both] / last[both] - at_first[both] / first[both]
+    mean = float(np.average(changes, weights=weights))
+    one_row = float(weights @ (changes - mean) ** 2) / (both.sum() - 1)
+    return _Change(mean, one_row / float(weights.sum()))
 
 
-def _variance(fit: Fit, windows: Sequence[_Window], *, same_places: bool) -> float:
-    """Of the difference of two windows' means [rad^2].
+def _across_the_end(fit: Fit, ends: Ends, left: Sequence[Array], passes: int) -> _Change:
+    """By the means of windows beside each other, as far apart as those of other quarter turns are in the median.
 
-    At the same places noise alone tells them apart, and the scatter within them is that or more. Elsewhere the fit's
-    lack at low orders does too. What has drifted or slipped is in the scatter of the whole, not in theirs.
+    That has noise and the fit's lack in it, and nothing of a single slip. Passes share it.
     """
-    freedom = sum(own.bins for own in windows) - len(windows)
-    one_row = fit.variance * fit.low_orders
-    if same_places and freedom >= FEWEST:
-        one_row = sum(own.squares for own in windows) / freedom
-    return one_row * sum(1.0 / own.rows for own in windows)
+    (first, start), (last, end) = (
+        (float(own.rows.sum()), float(own.rows @ each) / float(own.rows.sum()))
+        for own, each in zip((ends.start, ends.end), left, strict=True)
+    )
+    steps = np.concatenate([_steps(fit, side) for side in fit.terms.sides])
+    if len(steps) > FEWEST:
+        return _Change(end - start, passes * (MAD * float(np.median(steps))) ** 2)
+    return _Change(end - start, fit.variance * fit.low_orders * (1.0 / first + 1.0 / last))
+
+
+def _steps(fit: Fit, side: Side) -> Array:
+    """Magnitudes of the steps of what is left from one quarter turn of a side to the next [rad]."""
+    rows = fit.measured.rows[side]
+    index = (fit.measured.points[side].phi1 / WINDOW).astype(np.int64)
+    count = np.bincount(index, rows)
+    means = np.bincount(index, rows * fit.residual[side]) / np.where(count > 0, count, np.nan)
+    steps = np.abs(np.diff(means))
+    return np.asarray(steps[np.isfinite(steps)])
 
 
 def _left(fit: Fit, specimen: Specimen, side: Side, bins: Bins, *, but_drift: bool) -> Array:

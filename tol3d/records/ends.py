@@ -12,12 +12,12 @@ from tol3d.records.pair import TURN, RigPair
 Array = NDArray[np.float64]
 
 WINDOW: Final = TURN / 4  # of the driver: some teeth, so that single ones matter little, and little of any drift
-SHORT: Final = WINDOW / 2  # by which a pass may fall short of the long period and still be read as one
+SHORT: Final = WINDOW / 2  # by which a pass may fall short of the long period; from which over it places are compared
 
 
 @dataclass(frozen=True, eq=False)
 class Ends:
-    """Rows of a quarter turn each.
+    """Rows of a quarter turn each, or of less.
 
     Args:
         start: of the first one.
@@ -54,7 +54,7 @@ class EndSums:
                 sums.add(phi1[own], error[own], None if torque is None else torque[own])
 
     def ends(self, start: float, travel: float, error: float) -> Ends | None:
-        """Of all rows.
+        """Of all rows; windows are shorter where the pass ends within a quarter turn after the long period.
 
         Args:
             start: driver's angle at the first row [rad].
@@ -67,6 +67,9 @@ class EndSums:
         if travel < self._period - SHORT:
             return None
         first, last = self._start.bins(error), self._end.bins(error)
-        until = min(travel, self._period + WINDOW)
-        moved = np.abs(last.travel - start)
-        return Ends(first, last.where((moved > until - WINDOW) & (moved <= until)), until < travel)
+        at_start, at_end, over = (*(np.abs(own.travel - start) for own in (first, last)), travel - self._period)
+        if over >= SHORT:
+            after = at_end - self._period
+            return Ends(first.where(at_start <= over), last.where((after >= 0.0) & (after <= over)), True)
+        until = min(travel, self._period)
+        return Ends(first, last.where((at_end > until - WINDOW) & (at_end <= until)), False)
