@@ -9,12 +9,15 @@ import pytest
 from scipy.optimize import differential_evolution
 
 from tol3d.errors import GeometryError
-from tol3d.planetary import CARRIER, ToothSet, simple, wolfrom
+from tol3d.gears import InternalPair
+from tol3d.gears.internal_mesh import InternalMesh
+from tol3d.planetary import CARRIER, CentralMesh, ToothSet, simple, wolfrom
 from tol3d.planetary.design.basic_rack import BasicRack
 from tol3d.planetary.design.made_gears import made_pair, refuse_interference
 from tol3d.planetary.design.optimum import Goal, Task, best_shifts
 from tol3d.planetary.design.shifted_set import Limits, ShiftedSet
 from tol3d.planetary.design.torque_balance import Drive
+from tol3d.planetary.design.working_mesh import WorkingMesh
 
 REDUCER = Drive("sun", "ring 2", "ring 1")
 BUILT = wolfrom(25, 27, 79, 24, 76)
@@ -58,6 +61,20 @@ def test_every_limit_is_kept_by_every_goal(teeth: ToothSet) -> None:
         assert own.worst(limits, 3).kept > -1e-6
         sun = made_pair(own.meshes[0])
         assert sun.pinion.profile_shift >= 1 - sun.pinion.teeth * math.sin(math.radians(20)) ** 2 / 2 - 1e-6
+
+
+@pytest.mark.parametrize("shift", [0.0, 0.3])
+def test_tips_pass_each_other_by_what_the_gears_say(shift: float) -> None:
+    """Where tip circles cross, for tooth differences on both sides of trimming: the ring's arc is the gap."""
+    signs = set()
+    for teeth in range(26, 37):
+        own = WorkingMesh(CentralMesh("ring", 40, teeth, True), BasicRack(), (40 - teeth) / 2, -shift, shift)
+        pair = made_pair(own)
+        assert isinstance(pair, InternalPair)
+        gap = InternalMesh(pair.ring, pair.inner, pair.centre_distance).trimming_gap
+        assert own.tip_interference_margin * own.tip_radii[0] == pytest.approx(gap, abs=1e-10)
+        signs.add(gap > 0)
+    assert signs == {True, False}
 
 
 def test_no_shift_is_taken_where_none_is_needed() -> None:

@@ -167,11 +167,11 @@ class WorkingMesh:
 
     @property
     def tip_interference_margin(self) -> float:
-        """How far [rad of the ring] a planet's tip corner stays off the ring's as it leaves its space; inf outside.
+        """How far [rad of the ring] tip corners miss each other as a planet's tooth leaves its space; inf outside.
 
-        (inv alpha_a - alpha_...) of the tips where their circles cross: z_p (inv alpha_ap + delta_p) - z (inv alpha_a +
-        delta) + (z - z_p) inv alpha_w >= 0 over z, with delta_p, delta the azimuths of the crossing off the line of
-        centres. Source: Niemann/Winter, Maschinenelemente II, 22.4 (internal gears).
+        Where the tip circles cross, at the azimuths delta_p, delta of planet and ring off the line of centres:
+        [z_p (inv alpha_ap + delta_p) - z (inv alpha_a + delta) + (z - z_p) inv alpha_w] / z. Negative: trimming
+        interference.
         """
         if not self.mesh.internal:
             return math.inf
