@@ -142,7 +142,7 @@ def test_the_bundled_scene_means_the_reference_pair() -> None:
 @pytest.mark.parametrize(
     ("scene", "words"),
     [
-        ("bevel_pair", "expected a mesh of two spur gears, got none"),
+        ("bevel_pair", "expected a mesh of two external spur gears, got none"),
         pytest.param("door", "expected a scene of gears", marks=pytest.mark.slow),  # its kernels take 10 s to load
     ],
 )

@@ -190,6 +190,18 @@ def test_what_cannot_be_measured_is_refused(tol3d: Command, tmp_path: Path) -> N
         assert not out.exists()
 
 
+def test_the_closed_form_says_that_it_leaves_teeth_out(tol3d: Command, tmp_path: Path) -> None:
+    for more, said in (
+        ("", ""),
+        (PITCHES, "warning: single teeth deviate, which the closed form leaves out; --engine"),
+    ):
+        scene = str(scene_file(tmp_path, PAIR, more=more))
+        code, _, err = tol3d("rig", scene, "--turns", "1", "--out", str(tmp_path / "out"))
+        assert code == 0
+        assert err.startswith(said)
+        assert bool(err) == bool(said)
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize(("more", "positions"), [("", 1), (PITCHES, 72)], ids=["eccentric", "with pitch deviations"])
 def test_the_scene_of_an_identified_unit_lies_over_the_measured_curve(

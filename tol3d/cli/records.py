@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated, NamedTuple
 import typer
 
 from tol3d.cli.arguments import RunBuilders, SceneArgument, TrustParts, scene_path
-from tol3d.cli.console import err_console, out_console, tell
+from tol3d.cli.console import err_console, out_console, tell, warn
 from tol3d.cli.rig_options import (
     BacklashOption,
     DriftOption,
@@ -209,6 +209,8 @@ def _unit(
     from tol3d.records.scene_mesh import SceneMesh
 
     if engine is RigEngine.CLOSED_FORM:
+        if SceneMesh.of(simulation, mesh).teeth_deviate:
+            warn("single teeth deviate, which the closed form leaves out; --engine exact has them")
         return _specimen(simulation, mesh, trial, options)
     if given := [f"--{name}" for name, text in options._asdict().items() if text is not None]:
         raise InputError(

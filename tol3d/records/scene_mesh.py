@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from tol3d.errors import InputError
 from tol3d.gearing.engines import OK
 from tol3d.gearing.engines.lazy import exact_engine
+from tol3d.gearing.flank_offsets import deviates
 from tol3d.records.from_scene import gears_of, mean_row, mesh_of, specimen_of_build
 from tol3d.records.pair import Specimen
 from tol3d.records.simulated_unit import SimulatedUnit
@@ -53,6 +54,11 @@ class SceneMesh:
         holding: Any = self.simulation.system
         _, held = holding.seen_by_gears(Trials(mean_row(self.simulation.system), {}))
         return tuple(shaft for shaft in self._shafts if shaft in held)
+
+    @property
+    def teeth_deviate(self) -> bool:
+        """Whether single flanks of its gears deviate, which the closed form does not know."""
+        return deviates(self.model, self.mesh)
 
     @property
     def _shafts(self) -> tuple[str, ...]:
