@@ -14,7 +14,7 @@ from tol3d.gearing.model.measures import measure_of
 from tol3d.gearing.model.mesh import Mesh
 from tol3d.gearing.model.model import GearPart, Housing, Model
 from tol3d.gearing.model.nominal import Nominal
-from tol3d.gearing.model.pairs import internal, pair_of, undercut_warning
+from tol3d.gearing.model.pairs import assembly_warning, internal, pair_of, undercut_warning
 from tol3d.gearing.model.shaft_trees import refuse_no_trees, refuse_revolving
 from tol3d.gearing.model.shafts import Arm, Train
 from tol3d.gearing.model.trains import (
@@ -153,3 +153,5 @@ def _warnings(meshes: tuple[Mesh, ...]) -> Iterator[str]:
         for name in (mesh.driver, mesh.driven):
             if warning := undercut_warning(mesh.gear(name)):
                 yield f"{name}: {warning}"
+        if warning := assembly_warning(mesh.pair):
+            yield f"{mesh.name}: {warning}"

@@ -6,9 +6,9 @@ Each file of this folder is imported and registers its kinds; so does one from e
 from importlib import import_module
 from pkgutil import iter_modules
 
-from tol3d.gearing.model.pairs.pair import internal, pair_of, undercut_warning
+from tol3d.gearing.model.pairs.pair import assembly_warning, internal, pair_of, undercut_warning
 
 for _file in iter_modules(__path__):
     import_module(f"{__name__}.{_file.name}")
 
-__all__ = ["internal", "pair_of", "undercut_warning"]
+__all__ = ["assembly_warning", "internal", "pair_of", "undercut_warning"]

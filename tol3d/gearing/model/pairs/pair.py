@@ -29,6 +29,12 @@ def undercut_warning(gear: Gear) -> str:
     return ""
 
 
+@singledispatch
+def assembly_warning(pair: GearPair) -> str:
+    """How the gears of a pair cannot be put together though they run together; or nothing."""
+    return ""
+
+
 def internal(quantity: Quantity | None, otherwise: float = 0.0) -> float:
     """A quantity in mm, rad, K or 1/K; `otherwise` where none was given."""
     return otherwise if quantity is None else quantity.internal
