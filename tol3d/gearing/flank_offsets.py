@@ -158,16 +158,15 @@ class FlankPlaces:
         return any(gear in self.starts for gear in gears)
 
     def reach(self, made: "FlankDeviations", model: Model, *gears: str) -> Array:
-        """By how much more than its neighbours a flank of some gears may stand out, at most, (builds,) [mm]."""
-        total = np.zeros(len(made.values))
+        """By how much more than its neighbours a pair of flanks of some gears may stand out, at most, (builds,) [mm]."""
+        total = np.zeros((len(made.values), 2))  # of right and left flanks
         for gear in gears:
             if gear in self.starts:
                 teeth = _spur_gear(model, gear).teeth
                 own = made.values[:, self.starts[gear] :][:, : 2 * SHAPES * teeth].reshape(-1, teeth, 2, SHAPES)
                 least, most = self._extremes(_spur_gear(model, gear), gear, own)
-                steps = [(most - np.roll(least, by, axis=1)).max(axis=(1, 2)) for by in (1, -1)]
-                total += np.maximum(*steps)
-        return total
+                total += np.maximum(*((most - np.roll(least, by, axis=1)).max(axis=1) for by in (1, -1)))
+        return np.asarray(total.max(axis=1))
 
     def _extremes(self, gear: SpurGear, name: str, own: Array) -> tuple[Array, Array]:
         """The least and the most that flanks (…, SHAPES) stand out by anywhere [mm], at least so far."""
