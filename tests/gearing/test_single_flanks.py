@@ -151,6 +151,21 @@ def test_thirty_builds_of_class_7_are_within_a_hundredth_um_of_dense_points(tole
     check_against_points(drawn(tolerances, tmp_path, 30, 3), (-5.0, 5.0), 0.01)
 
 
+@pytest.mark.slow
+def test_coarse_teeth_touch_further_beyond_the_path_of_contact(tmp_path: Path) -> None:
+    """Class 9 of module 2: squares of slopes are four times those of class 7."""
+    builds = drawn(f"{PITCH}\n{SHAPES}".replace("iso_class: 7", "iso_class: 9"), tmp_path, 12, 5)
+    check_against_points(builds, (-5.0, 5.0), 0.04)
+
+
+def test_gears_of_coarse_classes_are_in_range(tmp_path: Path) -> None:
+    builds = drawn(f"{PITCH}\n{SHAPES}".replace("iso_class: 7", "iso_class: 8"), tmp_path, 300)
+    found = builds.read()
+    assert (found.status == 0).all()
+    by_theory = stack_of(builds.model, builds.mesh, Reading()).normal_backlash(builds.deviations, builds.angle, None)
+    assert 1e3 * np.abs(by_theory - found.gap).max() < 1.0  # 0.2 um at class 7, and more than squares near base circles
+
+
 def check_against_points(builds: Builds, heights: tuple[float, ...], bound_um: float) -> None:
     found = builds.read()
     assert (found.status == 0).all()
@@ -243,8 +258,8 @@ def test_derivatives_by_every_flank_are_differences_of_the_exact_engine(
 
 
 def test_flanks_that_stand_out_beyond_the_teeth_that_are_looked_at_are_out_of_range(tmp_path: Path) -> None:
-    """A tooth of 0.3 mm too much would touch half a pitch before its path of contact."""
-    arcs = ", ".join(["300 um"] + ["0 um"] * 19)
+    """A tooth of 1.5 mm too much would touch a pitch before its path of contact."""
+    arcs = ", ".join(["1500 um"] + ["0 um"] * 19)
     law = f"law: {{kind: given, right: [{arcs}]}}"
     builds = drawn(f"  pitch: {{kind: pitch_deviation, of: pinion, flanks: right, {law}}}", tmp_path, 3)
     assert (builds.read().status == OUT_OF_RANGE).all()

@@ -8,7 +8,7 @@ import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, Final
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,38 +16,17 @@ from numpy.typing import NDArray
 from tol3d.gearing.displacements import FlankOffsets, displacements
 from tol3d.gearing.effects import FORM, SHAPES, SLOPE, UNIFORM, FlankDeviation
 from tol3d.gearing.model import Mesh, Model
-from tol3d.gears import GearPair, SpurGear
+from tol3d.gears import SpurGear
 from tol3d.gears.flank import RIGHT, Flank
 
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
 
-DEVIATED_MARGIN: Final = 0.35
-"""Pitches beyond CONTACT_MARGIN in which a flank that stands out of its neighbours may touch before them."""
-
-
 def deviates(model: Model, mesh: Mesh) -> bool:
     """Whether single flanks of a mesh's gears deviate."""
     effects = (effect for contributor in model.contributors for effect in contributor.effect.singles)
     return any(isinstance(effect, FlankDeviation) and effect.acts_in(mesh) for effect in effects)
-
-
-def standing_out(pair: GearPair) -> float:
-    """By how much a flank may stand out of its neighbours [mm] so that it touches nowhere beyond DEVIATED_MARGIN.
-
-    Where the path of contact ends, a tip edge leaves its mate by s^2 rho T/(2 r_b^2 rho_m), s the arc on the base
-    circle by which the gears have turned on, rho and rho_m the radii of curvature of tip and mate, T = rho + rho_m.
-    """
-    tangent = sum(pair.working_radii) * math.sin(pair.working_pressure_angle)
-    turned = DEVIATED_MARGIN * pair.pinion.base_pitch
-    found = math.inf
-    for gear in (pair.pinion, pair.wheel):
-        if not isinstance(gear, SpurGear):
-            raise TypeError("single flanks deviate of spur gears only")
-        tip = gear.base_radius * gear.tip_roll
-        found = min(found, turned**2 * tip * tangent / (2 * gear.base_radius**2 * (tangent - tip)))
-    return found
 
 
 def flank_slot(teeth: int, tooth: Integers | int, flank: Flank) -> Any:
@@ -158,7 +137,7 @@ class FlankPlaces:
         return any(gear in self.starts for gear in gears)
 
     def reach(self, made: "FlankDeviations", model: Model, *gears: str) -> Array:
-        """By how much more than its neighbours a pair of flanks of some gears may stand out, at most, (builds,) [mm]."""
+        """By how much more than its neighbours a pair of flanks of some gears may stand out at most, (builds,) [mm]."""
         total = np.zeros((len(made.values), 2))  # of right and left flanks
         for gear in gears:
             if gear in self.starts:

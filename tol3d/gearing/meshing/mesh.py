@@ -7,7 +7,8 @@ from numpy.typing import NDArray
 
 from tol3d.gearing.build import Build
 from tol3d.gearing.engines import INTERFERES, NO_CONTACT, OK, OUT_OF_RANGE, Engine, Gaps
-from tol3d.gearing.flank_offsets import DEVIATED_MARGIN, deviates
+from tol3d.gearing.flank_margin import margin_of
+from tol3d.gearing.flank_offsets import deviates
 from tol3d.gearing.model import Mesh, Model, Reading
 from tol3d.gears import Displaced, Flank, driver_teeth_at_one_tooth
 from tol3d.gears.flank import opposite
@@ -104,7 +105,7 @@ class Meshing:
         pitch = self.mesh.pair.pinion.angular_pitch
         if self.reading.teeth == "all" and deviates(self.model, self.mesh):
             lowest, highest = self.mesh.pair.touching_azimuths
-            beyond = DEVIATED_MARGIN * pitch
+            beyond = margin_of(self.model, self.mesh) * pitch
             return candidate_teeth((lowest - beyond, highest + beyond), pitch, driver_angle, flank)
         if self.reading.teeth == "all":
             return self.mesh.pair.candidate_teeth(driver_angle, flank)

@@ -20,16 +20,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.gearing.effects import FORM, SHAPES, FlankDeviation
+from tol3d.gearing.flank_margin import margin_of
 from tol3d.gearing.model import Contributor, Mesh, Model, Reading
 from tol3d.gearing.stack_up.term import Role
 from tol3d.gears import SpurGear, SpurPair
 from tol3d.gears.flank import RIGHT
+from tol3d.gears.pair import CONTACT_MARGIN
 
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
-
-BEYOND: Final = 0.5
-"""Pitches beyond the path of contact in which pairs are looked at."""
 
 NUMBERS_AT_ONCE: Final = 4_000_000
 """Deviations of rows that are held at once: 32 MB."""
@@ -107,13 +106,17 @@ class BuiltTeeth:
 
 @dataclass(frozen=True, eq=False)
 class ToothPairs:
-    """The pairs of flanks of a mesh of spur gears, at least one of which has flanks that deviate one by one."""
+    """The pairs of flanks of a mesh of spur gears, at least one of which has flanks that deviate one by one.
+
+    `beyond` is how far beyond the path of contact pairs are looked at [pitches].
+    """
 
     pair: SpurPair
     reading: Reading
     working_flank: int
     driver: ToothFlanks
     driven: ToothFlanks
+    beyond: float
 
     def built(self, deviations: Array, trial: Integers) -> BuiltTeeth:
         """The flanks of trials (trials, components), and which of them each row (rows,) is."""
@@ -171,9 +174,9 @@ class ToothPairs:
         if self.reading.teeth == "driven":
             return (side == 1) - np.rint(place + 0.5).astype(np.int64), 1
         working = self.pair.working_pressure_angle
-        last_psi = working + gear.base_half_angle - self._start_roll + BEYOND * gear.angular_pitch
+        last_psi = working + gear.base_half_angle - self._start_roll + self.beyond * gear.angular_pitch
         length = gear.tip_roll - self._start_roll
-        count = math.floor(length / gear.angular_pitch + 2 * BEYOND) + 1
+        count = math.floor(length / gear.angular_pitch + 2 * self.beyond) + 1
         return side * np.floor(last_psi / gear.angular_pitch - side * place).astype(np.int64), count
 
     @property
@@ -194,7 +197,8 @@ def tooth_pairs(model: Model, mesh: Mesh, reading: Reading) -> ToothPairs | None
     if not acting or not isinstance(mesh.pair, SpurPair):
         return None
     driver, driven = (_flanks(model, mesh, name, acting) for name in (mesh.driver, mesh.driven))
-    return ToothPairs(mesh.pair, reading, mesh.resting_flank(reading.flank), driver, driven)
+    beyond = CONTACT_MARGIN + margin_of(model, mesh)
+    return ToothPairs(mesh.pair, reading, mesh.resting_flank(reading.flank), driver, driven, beyond)
 
 
 def teeth_deviate(model: Model, mesh: Mesh) -> bool:

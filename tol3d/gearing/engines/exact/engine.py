@@ -15,7 +15,8 @@ from tol3d.gearing.engines.exact.seating import ALL_TEETH, DRIVEN_TOOTH, DRIVER_
 from tol3d.gearing.engines.exact.spur import SpurTooth
 from tol3d.gearing.engines.gaps import Gaps, MeshReading
 from tol3d.gearing.engines.status import OUT_OF_RANGE
-from tol3d.gearing.flank_offsets import DEVIATED_MARGIN, FlankPlaces, standing_out
+from tol3d.gearing.flank_margin import margin_of, standing_out
+from tol3d.gearing.flank_offsets import FlankPlaces
 from tol3d.gearing.model import Mesh, Model, Reading, TransmissionError
 from tol3d.gears import Flank
 
@@ -159,7 +160,8 @@ class ExactEngine:
         places = self._displacements.flanks
         if build.flanks is None or not places.acts_in(mesh.driver, mesh.driven):
             return
-        out = places.reach(build.flanks, self._model, mesh.driver, mesh.driven) > standing_out(mesh.pair)
+        reach = places.reach(build.flanks, self._model, mesh.driver, mesh.driven)
+        out = reach > self._pairs[mesh.name].standing_out
         if out.any():
             far = out[build.flanks.row]
             readings[far], status[far] = np.nan, OUT_OF_RANGE
@@ -205,7 +207,8 @@ def kernels_in(model: Model, mesh: Mesh, flanks: FlankPlaces) -> PairKernels:
         shape = ((begin + end) / 2, 1.0 / (end - begin), 1.0 / gear.face_width, flanks.waves.get(name, 0.0))
         each: tuple[float, ...] = (*own, 1.0, *shape, 0.0, 0.0, 0.0, 0.0)
         teeth.append(DeviatedTooth(*each))
-    beyond = DEVIATED_MARGIN * mesh.pair.pinion.angular_pitch
+    margin = margin_of(model, mesh)
+    beyond = margin * mesh.pair.pinion.angular_pitch
     numbers = numbers._replace(lowest=numbers.lowest - beyond, highest=numbers.highest + beyond)
     return PairKernels(
         (teeth[0], teeth[1], numbers, nominal),
@@ -213,4 +216,5 @@ def kernels_in(model: Model, mesh: Mesh, flanks: FlankPlaces) -> PairKernels:
         deviated_gaps,
         deviated_rests,
         np.array(places, dtype=np.int64),
+        standing_out(mesh.pair, margin),
     )
