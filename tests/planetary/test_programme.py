@@ -18,7 +18,8 @@ def ends_of(rows: Array, lower: Array, upper: Array, objective: Array) -> tuple[
     count = len(lower)
     ends, status = np.empty((count, 2)), np.empty(count, np.int8)
     decided, lacking = np.empty(count, np.int64), np.empty(count)
-    ranges(rows, lower, upper, objective, np.stack([basis, basis]), ends, status, decided, lacking)
+    wanted = np.stack([-objective, objective])
+    ranges(rows, lower, upper, objective, wanted, basis, ends, status, decided, lacking)
     return ends, status, lacking
 
 

@@ -119,7 +119,7 @@ CHANGES = {
     "unknown kind": (
         ("kind: spring,", "kind: sprig,"),
         "3: parts.spring.kind: expected one of arm, bearing, bevel_gear, housing, internal_gear, shaft, spur_gear, "
-        "solid, planet, planet_carrier, spring, got 'sprig'; "
+        "solid, flexible_carrier, planet, planet_carrier, spring, got 'sprig'; "
         'did you mean "spring"?',
     ),
     "unknown key": (

@@ -34,23 +34,27 @@ MOST_STEPS: Final = 25
 
 
 @part
-def gaps_at(meshes: Any, places: Any, planets: Any, given: Any, turns: Any, rows: Any, lower: Any, upper: Any) -> bool:
+def gaps_at(shape: Any, given: Any, turns: Any, rows: Any, lower: Any, upper: Any) -> bool:
     """Write the rows of a trial at some turns, and their sides against those turns; False where base circles overlap.
 
     Args:
-        meshes: of each mesh r_bC, r_bP, s, inv alpha_w (meshes, 4).
-        places: of each mesh the gear of the planets (meshes,).
-        planets: cosine and sine of each azimuth (planets, 2).
+        shape: of each mesh r_bC, r_bP, s, inv alpha_w (meshes, 4) and the gear of the planets (meshes,); cosine and
+            sine of each planet's azimuth (planets, 2); how springs push each planet (planets, springs); the radius of
+            the pins' circle [mm].
         given: of the trial, before these turns: centres of central gears off the axis (meshes, 2), of planets' gears
             off their pins (gears, planets, 2), places of pins (planets, 2); what thinning leaves each flank, nominal
             clearance included, and what clocking moves n by (planets, meshes).
-        turns: of central gears, carrier, planets.
+        turns: of central gears, carrier, planets; then displacements by springs [mm].
     """
-    count = meshes.shape[0]
+    meshes, places, planets, senses, distance = shape
     central, planet, pin, room, middle = given
-    turn = turns[count]
-    cos_h, sin_h = np.cos(turn), np.sin(turn)
-    for k in range(planets.shape[0]):
+    count = meshes.shape[0]
+    number = planets.shape[0]
+    for k in range(number):
+        turn = turns[count]
+        for j in range(senses.shape[1]):
+            turn += senses[k, j] * turns[count + 1 + number + j] / distance
+        cos_h, sin_h = np.cos(turn), np.sin(turn)
         pin_x, pin_y = cos_h * pin[k, 0] - sin_h * pin[k, 1], sin_h * pin[k, 0] + cos_h * pin[k, 1]
         psi = turns[count + 1 + k]
         cos_p, sin_p = np.cos(psi), np.sin(psi)
@@ -82,63 +86,90 @@ def gaps_at(meshes: Any, places: Any, planets: Any, given: Any, turns: Any, rows
             rows[r, m] = s * r_c - s * cos * (-own_x * along_x - own_y * along_y)
             rows[r, count] = -s * cos * (pin_x * along_x + pin_y * along_y)
             rows[r, count + 1 + k] = r_p - s * cos * (off_x * along_x + off_y * along_y)
+            for j in range(senses.shape[1]):
+                rows[r, count + 1 + number + j] = senses[k, j] * rows[r, count] / distance
             upper[r] = opened - n
             lower[r] = -opened - n
     return True
 
 
+@part
+def seated(
+    shape: Any, given: Any, pushed: Any, unknowns: Any, objective: Any, basis: Any, rooms: Any, turns: Any
+) -> tuple[int, int, float]:  # fmt: skip
+    """Turn as far along an objective as contacts let; like programme.farthest, again and again from where that leads.
+
+    Args:
+        shape, given: see gaps_at.
+        pushed: least and largest displacement by each spring (2, springs) [mm].
+        unknowns: places of the programme's unknowns among the turns.
+        objective, basis: see programme.farthest.
+        rooms: those of programme.farthest; slopes, rows, lower, upper and x to write in.
+        turns: zeros; written.
+    """
+    solving, slopes, rows, lower, upper, x = rooms
+    springs = pushed.shape[1]
+    contacts = slopes.shape[0]
+    found, row, lacking = STALLED, -1, 0.0
+    for _ in range(MOST_STEPS):
+        if not gaps_at(shape, given, turns, slopes, lower, upper):
+            return STALLED, -1, 0.0
+        for r in range(contacts):
+            for j in range(unknowns.shape[0]):
+                rows[r, j] = slopes[r, unknowns[j]]
+        for spring in range(springs):
+            place = turns.shape[0] - springs + spring
+            for j in range(unknowns.shape[0]):
+                rows[contacts + spring, j] = 1.0 if unknowns[j] == place else 0.0
+            lower[contacts + spring] = pushed[0, spring] - turns[place]
+            upper[contacts + spring] = pushed[1, spring] - turns[place]
+        found, row, lacking = farthest(rows, lower, upper, objective, basis, solving, x)
+        if found != OK:
+            return found, row, lacking
+        moved = 0.0
+        for j in range(unknowns.shape[0]):
+            turns[unknowns[j]] += x[j]
+            moved = max(moved, abs(x[j]))
+        if moved < STILL:
+            return OK, -1, 0.0
+    return STALLED, -1, 0.0
+
+
 @kernel(
-    arrays="f8[:,::1], i8[::1], f8[:,::1], f8[:,:,::1], f8[:,:,:,::1], f8[:,:,::1], f8[:,:,::1], f8[:,:,::1], i8[::1], "
-    "f8[::1], i8[:,::1], f8[:,::1], i1[::1], i8[::1], f8[::1]"
+    arrays="f8[:,::1], i8[::1], f8[:,::1], f8[:,::1], f8, f8[:,:,::1], f8[:,:,:,::1], f8[:,:,::1], f8[:,:,::1], "
+    "f8[:,:,::1], f8[:,::1], i8[::1], f8[::1], f8[:,::1], i8[::1], f8[:,::1], i1[::1], i8[::1], f8[::1]"
 )
 def seated_ranges(
-    meshes: Any, places: Any, planets: Any, central: Any, planet: Any, pin: Any, room: Any, middle: Any,
-    unknowns: Any, objective: Any, begun: Any, ends: Any, status: Any, decided: Any, amount: Any,
+    meshes: Any, places: Any, planets: Any, senses: Any, distance: float,
+    central: Any, planet: Any, pin: Any, room: Any, middle: Any,
+    pushed: Any, unknowns: Any, turn: Any, wanted: Any, begun: Any,
+    ends: Any, status: Any, decided: Any, amount: Any,
 ) -> None:  # fmt: skip
-    """Both ends of one coordinate in trials; see gaps_at and programme.ranges."""
-    count = unknowns.shape[0]
-    coordinates = meshes.shape[0] + 1 + planets.shape[0]
+    """Both ends of one coordinate in trials; see seated and programme.ranges."""
+    count, springs = unknowns.shape[0], senses.shape[1]
     contacts = meshes.shape[0] * planets.shape[0]
-    rooms = (
+    solving = (
         np.empty((count, count)), np.empty((count, count)), np.empty(count), np.empty(count), np.empty(count)
     )  # fmt: skip
-    x, basis, turns = np.empty(count), np.empty(count, np.int64), np.empty(coordinates)
-    slopes, rows = np.empty((contacts, coordinates)), np.empty((contacts, count))
-    lower, upper = np.empty(contacts), np.empty(contacts)
+    basis, turns = np.empty(count, np.int64), np.empty(meshes.shape[0] + 1 + planets.shape[0] + springs)
+    slopes, rows = np.empty((contacts, turns.shape[0])), np.empty((contacts + springs, count))
+    rooms = (solving, slopes, rows, np.empty(contacts + springs), np.empty(contacts + springs), np.empty(count))
+    shape = (meshes, places, planets, senses, distance)
     for i in range(central.shape[0]):
         status[i], decided[i], amount[i] = OK, -1, 0.0
+        given = (central[i], planet[i], pin[i], room[i], middle[i])
         for end in range(2):
-            sense = 1.0 if end == 0 else -1.0
             turns[:] = 0.0
             for j in range(count):
-                basis[j], rooms[2][j] = begun[end, j], 1.0
-            found, row, lacking = STALLED, -1, 0.0
-            for _ in range(MOST_STEPS):
-                given = (central[i], planet[i], pin[i], room[i], middle[i])
-                if not gaps_at(meshes, places, planets, given, turns, slopes, lower, upper):
-                    found = STALLED
-                    break
-                for r in range(contacts):
-                    for j in range(count):
-                        rows[r, j] = slopes[r, unknowns[j]]
-                found, row, lacking = farthest(rows, lower, upper, objective, sense, basis, rooms, x)
-                if found != OK:
-                    break
-                moved = 0.0
-                for j in range(count):
-                    turns[unknowns[j]] += x[j]
-                    moved = max(moved, abs(x[j]))
-                if moved < STILL:
-                    break
-                found = STALLED
+                basis[j], solving[2][j] = begun[j], 1.0
+            found, row, lacking = seated(shape, given, pushed, unknowns, wanted[end], basis, rooms, turns)
             if found != OK:
                 status[i], decided[i], amount[i] = found, row, lacking
                 ends[i, 0] = ends[i, 1] = np.nan
                 break
-            value = 0.0
+            ends[i, end] = 0.0
             for j in range(count):
-                value += objective[j] * turns[unknowns[j]]
-            ends[i, 1 - end] = value
+                ends[i, end] += turn[j] * turns[unknowns[j]]
 
 
 @dataclass(frozen=True)
@@ -172,11 +203,15 @@ class Contact:
             meshes,
             places,
             directions,
+            own.senses,
+            own.centre_distance,
             *self._placed(deviated, turns, directions),
             np.ascontiguousarray(room - thicker * cosines / 2),
             np.ascontiguousarray(middle),
+            np.stack(own.pushed),
             np.array(own.unknowns(stands)),
             own.objective(stands, shaft),
+            own.wanted(stands, shaft),
             own.begun(stands),
             found.ends,
             found.status,

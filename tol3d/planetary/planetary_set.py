@@ -20,6 +20,9 @@ Array = NDArray[np.float64]
 
 EXTERNAL: Final = 1
 INTERNAL: Final = -1
+SMALL_TORQUE: Final = 1.0  # N mm a N of the first spring's force, at the output
+WEAKER: Final = 0.25  # each spring than the one before; of equal ones nothing would say which gives way
+MOST_PUSH: Final = 10.0  # mm; no mesh leaves a planet so much
 
 
 @dataclass(frozen=True)
@@ -111,6 +114,30 @@ class SetMesh:
 
 
 @dataclass(frozen=True)
+class Spring:
+    """What turns some planets on the carrier against others, about the common axis.
+
+    Args:
+        forward, backward: planets that it pushes counter-clockwise and clockwise, counted from 0.
+        displacement: of each of them along the circle of the pins [mm], as it is set; None where the spring pushes them
+            as far as their meshes let it.
+    """
+
+    forward: tuple[int, ...]
+    backward: tuple[int, ...]
+    displacement: float | None = None
+
+    @property
+    def pushes(self) -> bool:
+        """Whether it pushes, rather than being set."""
+        return self.displacement is None
+
+    def sense(self, planet: int) -> float:
+        """1 of a planet that it pushes forward, -1 backward, 0 of others."""
+        return float(planet in self.forward) - float(planet in self.backward)
+
+
+@dataclass(frozen=True)
 class PlanetarySet:
     """Central gears, planets on a carrier, and the meshes between them.
 
@@ -125,6 +152,7 @@ class PlanetarySet:
         carrier: the name of the carrier.
         held, input, output: names of shafts.
         azimuths: of the planets [rad].
+        springs: of a flexible carrier; none of a rigid one.
     """
 
     name: str
@@ -136,6 +164,7 @@ class PlanetarySet:
     input: str
     output: str
     azimuths: tuple[float, ...]
+    springs: tuple[Spring, ...] = ()
 
     @property
     def shafts(self) -> tuple[str, ...]:
@@ -227,22 +256,30 @@ class PlanetarySet:
     # the programme --------------------------------------------------------------------------------
 
     def unknowns(self, stands: str) -> tuple[int, ...]:
-        """Coordinates that are free while the held shaft and another one stand: places among shafts and planets."""
+        """Coordinates that are free while the held shaft and another one stand: of shafts, planets and springs."""
         return tuple(
             place
-            for place in range(len(self.shafts) + self.planets)
+            for place in range(len(self.shafts) + self.planets + len(self.springs))
             if place >= len(self.shafts) or self.shafts[place] not in (self.held, stands)
         )
 
     @cached_property
+    def senses(self) -> Array:
+        """How each spring pushes each planet (planets, springs)."""
+        own = [[spring.sense(planet) for spring in self.springs] for planet in range(self.planets)]
+        return np.array(own).reshape(self.planets, len(self.springs))
+
+    @cached_property
     def all_rows(self) -> Array:
-        """Change of n of each mesh of each planet by the turns of shafts and planets (meshes x planets, coordinates).
+        """Change of n of each mesh of each planet by the coordinates (meshes x planets + springs, coordinates).
 
         n = r_bP (psi - h) + s r_bC (theta - h) [mm], along the line of action; psi, theta and h are the turns of
-        planet, central gear and carrier. In the middle of the backlash n = 0; it is held by the two flanks.
+        planet, central gear and carrier. In the middle of the backlash n = 0; it is held by the two flanks. A spring
+        that displaces a planet's pin by its coordinate [mm] is a turn of the carrier for that planet; the last rows are
+        the springs' coordinates themselves.
         """
-        centrals = len(self.meshes)
-        rows = np.zeros((centrals * self.planets, centrals + 1 + self.planets))
+        centrals, pushes = len(self.meshes), len(self.springs)
+        rows = np.zeros((centrals * self.planets + pushes, centrals + 1 + self.planets + pushes))
         for planet in range(self.planets):
             for place, mesh in enumerate(self.meshes):
                 row = rows[planet * centrals + place]
@@ -250,7 +287,31 @@ class PlanetarySet:
                 row[place] += own
                 row[centrals] -= own + mesh.planet.base_radius
                 row[centrals + 1 + planet] += mesh.planet.base_radius
+                row[centrals + 1 + self.planets :] = row[centrals] / self.centre_distance * self.senses[planet]
+        for spring in range(pushes):
+            rows[centrals * self.planets + spring, centrals + 1 + self.planets + spring] = 1.0
         return rows
+
+    @property
+    def pushed(self) -> tuple[Array, Array]:
+        """Least and largest coordinate of each spring [mm]: as it is set, or as far as meshes may let it."""
+        set_at = [spring.displacement for spring in self.springs]
+        least = np.array([-MOST_PUSH if own is None else own for own in set_at])
+        return least, np.array([MOST_PUSH if own is None else own for own in set_at])
+
+    def wanted(self, stands: str, shaft: str) -> Array:
+        """What is made largest (2, unknowns) where a shaft's turn is smallest, and where it is largest.
+
+        Where springs push, their work and that of a small torque on the shaft: it rests where both is largest. The
+        torque is far less than what moves a spring (12 N mm a N of force at the output of a 3K set with planets of 12
+        mm), and far more than what eccentric gears make of the spring's force.
+        """
+        first = len(self.shafts) + self.planets
+        force = {first + k: 1.0 / (1.0 + WEAKER * k) for k in range(len(self.springs)) if self.springs[k].pushes}
+        push = np.array([force.get(place, 0.0) for place in self.unknowns(stands)])
+        torque = SMALL_TORQUE / (abs(float(self.ratio)) if shaft == self.input else 1.0)
+        turn = self.objective(stands, shaft) * (torque if force else 1.0)
+        return np.stack([push - turn, push + turn])
 
     def rows(self, stands: str) -> Array:
         """The same of what is free while the held shaft and another one stand."""
@@ -265,6 +326,5 @@ class PlanetarySet:
         return self.output if shaft == self.input else self.input
 
     def begun(self, stands: str) -> NDArray[np.int64]:
-        """First bases (2, unknowns) of the programme; fewer columns where something is not held."""
-        basis = first_basis(self.rows(stands))
-        return np.ascontiguousarray(np.stack([basis, basis]))
+        """Rows of the first basis (unknowns,) of the programme; fewer where something is not held."""
+        return first_basis(self.rows(stands))

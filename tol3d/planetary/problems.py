@@ -48,6 +48,13 @@ def _bound(system: "PlanetarySystem", own: PlanetarySet) -> Iterator[tuple[KeyPa
     free = StackUp(own).free(deviated, np.zeros(1), measure.shaft, own.opposite(measure.shaft))
     if free.status[0] == 1 and free.lacking[0] > ROUNDING:
         planet, place = divmod(int(free.row[0]), len(own.meshes))
+        if any(not spring.pushes for spring in own.springs):
+            words = f"each contact that stops them lacks {1e3 * free.lacking[0]:.3f} um. Lessen the adjustment"
+            yield (
+                ("parts", own.carrier, "adjustment"),
+                f"the planets cannot be displaced so far at the mean build: {words}",
+            )
+            return
         yield (
             ("moves", own.name),
             f"the planets bind at the mean build: no turn of planet {planet + 1} fits {own.meshes[place].name} and the "

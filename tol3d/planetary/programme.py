@@ -104,13 +104,13 @@ def leaving(basis: Any, sides: Any, loads: Any, shares: Any, sense: float) -> in
 
 @part
 def farthest(
-    rows: Any, lower: Any, upper: Any, objective: Any, sense: float, basis: Any, rooms: Any, x: Any
+    rows: Any, lower: Any, upper: Any, objective: Any, basis: Any, rooms: Any, x: Any
 ) -> tuple[int, int, float]:
     """Write the point that goes farthest along an objective.
 
     Args:
         rows, lower, upper: of the contacts.
-        objective, sense: what is made largest, and 1 or -1 for its opposite.
+        objective: what is made largest.
         basis: rows that are met; from those of the start to those of the end.
         rooms: matrix, inverse, sides, loads, shares to write in; where no multiplier says at which side a row of the
             basis is met, it is the one that stands in sides.
@@ -127,7 +127,7 @@ def farthest(
     for j in range(count):
         loads[j] = 0.0
         for i in range(count):
-            loads[j] += sense * objective[i] * inverse[i, j]
+            loads[j] += objective[i] * inverse[i, j]
         if abs(loads[j]) > TIED:
             sides[j] = 1.0 if loads[j] > 0.0 else -1.0
     for pivot in range(MOST_PIVOTS):
@@ -160,17 +160,19 @@ def farthest(
     return STALLED, -1, 0.0
 
 
-@kernel(arrays="f8[:,::1], f8[:,::1], f8[:,::1], f8[::1], i8[:,::1], f8[:,::1], i1[::1], i8[::1], f8[::1]")
+@kernel(arrays="f8[:,::1], f8[:,::1], f8[:,::1], f8[::1], f8[:,::1], i8[::1], f8[:,::1], i1[::1], i8[::1], f8[::1]")
 def ranges(
-    rows: Any, lower: Any, upper: Any, objective: Any, begun: Any, ends: Any, status: Any, decided: Any, amount: Any
-) -> None:
+    rows: Any, lower: Any, upper: Any, turn: Any, wanted: Any, begun: Any,
+    ends: Any, status: Any, decided: Any, amount: Any,
+) -> None:  # fmt: skip
     """Both ends of one coordinate in trials.
 
     Args:
         rows: of the contacts (rows, unknowns), the same in all trials [mm a rad].
         lower, upper: of the rows (trials, rows) [mm].
-        objective: the coordinate (unknowns,).
-        begun: rows of the first basis (2, unknowns), of the largest and the smallest value.
+        turn: the coordinate (unknowns,).
+        wanted: what is made largest (2, unknowns) where the coordinate is smallest, and where it is largest.
+        begun: rows of the first basis (unknowns,).
         ends: smallest and largest value (trials, 2), written.
         status: what became of each trial (trials,), written.
         decided, amount: the row that contradicts others (trials,), -1 for none, and by how much [mm]; written.
@@ -184,17 +186,15 @@ def ranges(
         status[i], decided[i], amount[i] = OK, -1, 0.0
         for end in range(2):
             for j in range(count):
-                basis[j], rooms[2][j] = begun[end, j], 1.0
-            sense = 1.0 if end == 0 else -1.0
-            found, row, lacking = farthest(rows, lower[i], upper[i], objective, sense, basis, rooms, x)
+                basis[j], rooms[2][j] = begun[j], 1.0
+            found, row, lacking = farthest(rows, lower[i], upper[i], wanted[end], basis, rooms, x)
             if found != OK:
                 status[i], decided[i], amount[i] = found, row, lacking
                 ends[i, 0] = ends[i, 1] = np.nan
                 break
-            value = 0.0
+            ends[i, end] = 0.0
             for j in range(count):
-                value += objective[j] * x[j]
-            ends[i, 1 - end] = value
+                ends[i, end] += turn[j] * x[j]
 
 
 def first_basis(rows: Array) -> Rows:

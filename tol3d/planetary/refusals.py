@@ -7,8 +7,9 @@ from tol3d.errors import GeometryError
 from tol3d.gearing.grammar.parts.gear import GearSpec
 from tol3d.gearing.grammar.parts.internal_gear import InternalGearSpec
 from tol3d.planetary.grammar.moves.planetary import PlanetarySpec
+from tol3d.planetary.grammar.parts.flexible_carrier import FlexibleCarrierSpec
 from tol3d.planetary.grammar.parts.planet import PlanetSpec
-from tol3d.planetary.planetary_set import PlanetarySet, SetGear, SetMesh
+from tol3d.planetary.planetary_set import PlanetarySet, SetGear, SetMesh, Spring
 from tol3d.scene import Scene
 
 
@@ -71,6 +72,7 @@ def _set(scene: Scene, name: str, spec: PlanetarySpec) -> PlanetarySet:
         input=spec.input,
         output=spec.output,
         azimuths=tuple(2 * math.pi * k / spec.planets for k in range(spec.planets)),
+        springs=_springs(scene, spec),
     )
 
 
@@ -97,6 +99,21 @@ def _refuse_unlike(scene: Scene, name: str, central: SetGear, own: SetGear) -> N
                 ("moves", name, "meshes", central.name),
                 f"expected gears of the same {field}, got {one} and {other}",
             )
+
+
+def _springs(scene: Scene, spec: PlanetarySpec) -> tuple[Spring, ...]:
+    """Those of a flexible carrier."""
+    carrier = scene.parts[spec.carrier]
+    if not isinstance(carrier, FlexibleCarrierSpec):
+        return ()
+    for k, pair in enumerate(carrier.pairs):
+        for planet in pair:
+            if not 1 <= planet <= spec.planets:
+                words = f"expected planets 1 to {spec.planets}, got {planet}"
+                raise scene.refuse(("parts", spec.carrier, "pairs", k), words)
+    set_at = None if carrier.adjustment is None else carrier.adjustment.internal * carrier.displacement
+    groups = [carrier.pairs] if carrier.springs == "one" else [(pair,) for pair in carrier.pairs]
+    return tuple(Spring(tuple(one - 1 for one, _ in own), tuple(two - 1 for _, two in own), set_at) for own in groups)
 
 
 def _refuse_no_mesh(scene: Scene, name: str, mesh: SetMesh) -> None:

@@ -59,11 +59,19 @@ class StackUp:
 
     def free(self, deviated: Deviated, turns: Array, shaft: str, stands: str) -> Free:
         """How far a shaft turns while another one and the held one stand."""
-        lower, upper = self.sides(deviated, turns)
-        found = Free.of(len(turns))
-        own = self.own
-        rows, objective = own.rows(stands), own.objective(stands, shaft)
+        own, found = self.own, Free.of(len(turns))
+        sides = zip(self.sides(deviated, turns), own.pushed, strict=True)
+        lower, upper = (np.hstack([side, np.tile(push, (len(turns), 1))]) for side, push in sides)
         ranges(
-            rows, lower, upper, objective, own.begun(stands), found.ends, found.status, found.row, found.lacking
-        )  # fmt: skip
+            own.rows(stands),
+            lower,
+            upper,
+            own.objective(stands, shaft),
+            own.wanted(stands, shaft),
+            own.begun(stands),
+            found.ends,
+            found.status,
+            found.row,
+            found.lacking,
+        )
         return found

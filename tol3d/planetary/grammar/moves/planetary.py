@@ -6,8 +6,8 @@ from typing import ClassVar, Literal
 from pydantic import Field
 
 from tol3d.gearing.grammar.parts.gear import GearSpec
+from tol3d.planetary.grammar.parts.carrier import CarrierSpec
 from tol3d.planetary.grammar.parts.planet import PlanetSpec
-from tol3d.planetary.grammar.parts.planet_carrier import PlanetCarrierSpec
 from tol3d.scene.move import MoveSpec
 from tol3d.scene.name import Name
 from tol3d.scene.part import Length
@@ -40,10 +40,10 @@ class PlanetarySpec(MoveSpec):
 
     def references(self) -> tuple[Reference, ...]:
         """The planet, the carrier, the gears."""
-        shafts = (GearSpec, PlanetCarrierSpec)
+        shafts = (GearSpec, CarrierSpec)
         return (
             Reference(("planet",), self.planet, (PlanetSpec,)),
-            Reference(("carrier",), self.carrier, (PlanetCarrierSpec,)),
+            Reference(("carrier",), self.carrier, (CarrierSpec,)),
             *(Reference(("meshes", own), own, (GearSpec,)) for own in self.meshes),
             *(Reference(("meshes", own), gear, (GearSpec,)) for own, gear in self.meshes.items()),
             *(Reference((role,), getattr(self, role), shafts) for role in ("held", "input", "output")),

@@ -1,13 +1,11 @@
-"""What holds the pins of planets."""
+"""A rigid carrier of planets."""
 
-from typing import ClassVar, Literal
+from typing import Literal
 
-from tol3d.scene.part import PartSpec
+from tol3d.planetary.grammar.parts.carrier import CarrierSpec
 
 
-class PlanetCarrierSpec(PartSpec):
-    """A rigid carrier: it turns about the common axis and holds the pins of the planets."""
-
-    words: ClassVar[str] = "a planet carrier"
+class PlanetCarrierSpec(CarrierSpec):
+    """A rigid carrier."""
 
     kind: Literal["planet_carrier"]

@@ -4,7 +4,7 @@ from typing import ClassVar, Literal
 
 from pydantic import Field
 
-from tol3d.planetary.grammar.parts.planet_carrier import PlanetCarrierSpec
+from tol3d.planetary.grammar.parts.carrier import CarrierSpec
 from tol3d.scene.name import Name
 from tol3d.scene.reference import Reference
 from tol3d.scene.tolerance import ToleranceSpec
@@ -26,4 +26,4 @@ class PlanetPinSpec(ToleranceSpec):
 
     def references(self) -> tuple[Reference, ...]:
         """The carrier."""
-        return (Reference(("of",), self.of, (PlanetCarrierSpec,)),)
+        return (Reference(("of",), self.of, (CarrierSpec,)),)

@@ -1,0 +1,41 @@
+"""A carrier that turns planets apart, so that they touch opposite flanks."""
+
+from typing import Annotated, Literal, Self
+
+from pydantic import Field, model_validator
+
+from tol3d.planetary.grammar.parts.carrier import CarrierSpec
+from tol3d.scene.listed import listed
+from tol3d.scene.part import Length
+from tol3d.strict import refused
+
+Pair = Annotated[tuple[int, int], listed("planets", 2, 2)]
+
+
+class FlexibleCarrierSpec(CarrierSpec):
+    """A carrier of parts between which springs turn planets apart about the common axis.
+
+    Of each pair the first planet is pushed counter-clockwise and the second clockwise, along the circle of the pins. A
+    spring pushes as far as the meshes let it, or planets are displaced as an adjustment sets them.
+    """
+
+    kind: Literal["flexible_carrier"]
+    pairs: Annotated[tuple[Pair, ...], listed("pairs")] = Field(
+        description="planets that are pushed apart, such as [1, 2]; counted counter-clockwise from 1"
+    )
+    springs: Literal["one", "each"] = Field(
+        default="one", description="one: one spring moves all pairs alike; each: every pair has its own"
+    )
+    adjustment: Length | None = Field(
+        default=None, description="of the screw; the springs push as far as they can if not given"
+    )
+    displacement: float = Field(
+        default=1.0, gt=0.0, description="how far each planet moves a unit of the adjustment, such as 0.54"
+    )
+
+    @model_validator(mode="after")
+    def _refuse_repeated_planets(self) -> Self:
+        known = [planet for pair in self.pairs for planet in pair]
+        if len(set(known)) < len(known):
+            raise refused("pairs", "every planet once at most", known)
+        return self
