@@ -203,17 +203,22 @@ def test_the_closed_form_says_that_it_leaves_teeth_out(tol3d: Command, tmp_path:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("more", "positions"), [("", 1), (PITCHES, 72)], ids=["eccentric", "with pitch deviations"])
+@pytest.mark.parametrize(
+    ("more", "positions", "flank"),
+    [("", 1, "left"), ("", 1, "right"), (PITCHES, 72, "left")],
+    ids=["eccentric", "right flank", "with pitch deviations"],
+)
 def test_the_scene_of_an_identified_unit_lies_over_the_measured_curve(
-    tol3d: Command, tmp_path: Path, more: str, positions: int
+    tol3d: Command, tmp_path: Path, more: str, positions: int, flank: str
 ) -> None:
     """A trial by the exact engine, read by encoders of 6 and 4 arcsec; identified; simulated.
 
     Ten rows a side lie about each position: a mean of both scatters by sigma sqrt(2/10), of 1152 positions by less than
-    five times that. The written scene has no teeth that deviate: where the driver's pitches do, the curves part tooth
-    by tooth, and lie over each other on the mean of a turn.
+    five times that. Positions of a scene count about +z, those of the curve in the driver's own sense. The written
+    scene has no teeth that deviate: where the driver's pitches do, the curves part tooth by tooth, and lie over each
+    other on the mean of a turn.
     """
-    scene = str(scene_file(tmp_path, PAIR, more=more))
+    scene = str(scene_file(tmp_path, PAIR, more=more, flank=flank))
     errors = ("--encoder1", "6 arcsec", "--encoder2", "4 arcsec", "--engine", "exact", "--trial", "1")
     assert tol3d("rig", scene, *errors, "--out", str(tmp_path))[0] == 0
     files = ("--drive", str(tmp_path / "drive.csv"), "--back", str(tmp_path / "back.csv"))
@@ -224,6 +229,8 @@ def test_the_scene_of_an_identified_unit_lies_over_the_measured_curve(
     seen = np.array([float(row["measured [arcsec]"]) for row in rows])
     run = run_scene(out / "identified.yaml", out=tmp_path / "run")
     simulated = 60 * run.columns("geometric:backlash curve")["geometric:backlash curve"][0]
+    if flank == "right":
+        simulated = simulated[-np.arange(len(simulated))]  # at -phi1 about +z
     kept = json.loads((out / "identified.json").read_text("utf-8"))
     apart = (simulated - seen).reshape(-1, positions).mean(axis=1)
     sigma = math.hypot(1, 27 / 48) * 0.5  # of a row, by both encoders' noise

@@ -135,7 +135,8 @@ def scene_text(specimen: Specimen, mesh: Mesh, name: str) -> str:
     driver, driven, own = (json.dumps(text, ensure_ascii=False) for text in (mesh.driver, mesh.driven, mesh.name))
     lines = [
         f"scene: {json.dumps(name, ensure_ascii=False)}",
-        "description: identified from two-sided transmission error; every deviation is a constant",
+        "description: identified from two-sided transmission error; every deviation is a constant; the driver's angle "
+        f"about +z is {'-' if sigma == 1 else ''}phi1",
         "",
         "parts:",
         *(f"  {part}: {_gear_text(gear)}" for part, gear in ((driver, spur.pinion), (driven, spur.wheel))),
