@@ -2,9 +2,11 @@
 
 import math
 from dataclasses import replace
+from typing import Literal
 
 import numpy as np
 import pytest
+from fixtures import EngineOf
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from oracles import ring_search
@@ -12,13 +14,13 @@ from oracles.random_builds import Builds, Spread, random_builds
 from oracles.ring_pairs import RingPair
 
 from tol3d.errors import GeometryError
-from tol3d.gearing.engines import INTERFERES, OK, OUT_OF_RANGE
+from tol3d.gearing.engines import INTERFERES, NO_CONTACT, OK, OUT_OF_RANGE
 from tol3d.gearing.engines.exact import ExactEngine
 from tol3d.gearing.engines.gaps import MeshReading
 from tol3d.gearing.measures.backlash import measure_backlash, read_backlash
 from tol3d.gearing.meshing import Meshing
 from tol3d.gearing.model import Backlash, Reading
-from tol3d.gears import LEFT, RIGHT, Flank, InternalGear, InternalPair, SpurGear
+from tol3d.gears import LEFT, RIGHT, Flank, InternalGear, InternalPair, SpurGear, one_tooth_share
 
 ALPHA = math.radians(20)
 CLOSED_FORM_BOUND = 1e-9  # mm; seen: 1e-12 but for eccentric gears, whose turn is followed to 1e-11
@@ -56,6 +58,14 @@ PAIRS = {
     ),
     "wide": pair_of(SpurGear(40, 2.0, ALPHA, 50.0), InternalGear(60, 2.0, ALPHA, 60.0, addendum=0.7)),
 }
+
+
+def covering_slowly(quick: str) -> pytest.MarkDecorator:
+    """All pairs, those but one as slow tests."""
+    slow = [pytest.param(name, marks=() if name == quick else pytest.mark.slow) for name in PAIRS]
+    return pytest.mark.parametrize("name", slow)
+
+
 FLANKS = pytest.mark.parametrize("flank", [pytest.param(RIGHT, id="right"), pytest.param(LEFT, id="left")])
 
 
@@ -235,7 +245,7 @@ def check_against_search(builds: Builds) -> None:
             assert searched(builds, int(row), turns, flank) == pytest.approx(gaps[row], abs=SEARCH_BOUND)
 
 
-@pytest.mark.parametrize("name", PAIRS)
+@covering_slowly("driving ring")
 def test_gaps_agree_with_a_search_of_the_surfaces_of_all_teeth(name: str) -> None:
     spread = SPREADS["warm" if name == "driving ring" else "tilted"]
     builds = random_builds(PAIRS[name], RIGHT, 1, 3, spread=spread, thinner=0.15)
@@ -276,3 +286,51 @@ def test_reading_at_once_equals_reading_by_gaps(name: str, flank: Flank, reading
         arm = 1.0 if kind.quantity == "normal_backlash" else arms[kind.gear]
         # across partly overlapping faces the normal at the end of a face is not the flank's
         assert np.abs(at_once - by_gaps)[in_range].max() * arm <= (2e-8 if reading.contact == "section" else 1e-6)
+
+
+# FCL, statuses, readings of one tooth ---------------------------------------------------------------------------------
+
+
+@covering_slowly("driving ring")
+def test_fcl_finds_the_same_within_its_chord_error(name: str, engine_of: EngineOf) -> None:
+    builds = random_builds(PAIRS[name], LEFT, 6, 3, spread=SPREADS["warm"], thinner=0.12)
+    engine, seen = engine_of(builds.model), read(builds)
+    seat = Meshing(engine, builds.model, builds.mesh, builds.made, Reading()).seat(builds.driver_angle)
+    assert np.array_equal(seat.status, seen.status)
+    # chords lie in the gear's tooth and out of the ring's: a sagitta of each at most at the contact, and at the gap
+    bound = 4 * engine.chord_error
+    assert np.abs(seat.non_working.smallest() - seen.gap).max() <= bound
+    arm = builds.mesh.pair.wheel.base_radius
+    assert np.abs(seat.driven_angle - seen.driven_angle).max() * arm <= bound / 2
+
+
+def test_builds_that_fail_say_how() -> None:
+    pair = PAIRS["planet"]
+    builds = random_builds(pair, RIGHT, 4, 1, spread=Spread(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0), thinner=0.02)
+    shafts, turn = builds.made.world_from_shaft.copy(), builds.made.flank_turn.copy()
+    turn[1] = 0.02 / (2 * pair.inner.reference_radius)  # teeth too thick for their spaces
+    shafts[2, 1, 2, 3] = 9.6  # faces beside each other
+    shafts[3, 1, 1, 3] = 0.3  # farther than candidate teeth are known
+    made = replace(builds.made, world_from_shaft=shafts, flank_turn=turn)
+    seen = read(replace(builds, made=made))
+    assert seen.status.tolist() == [OK, INTERFERES, NO_CONTACT, OUT_OF_RANGE]
+    assert np.isnan(seen.gap).tolist() == [False, False, True, True]
+    assert seen.gap[1] < 0.0
+
+
+SMALL = Spread(tilt=0.0, shift=0.01, centre=0.005, turned=0.01, offset=0.0)
+
+
+@pytest.mark.parametrize("name", PAIRS)
+@pytest.mark.parametrize("teeth", ["driver", "driven"])
+def test_one_tooth_in_its_space_has_the_closed_form_where_it_acts(
+    name: str, teeth: Literal["driver", "driven"]
+) -> None:
+    pair, reading = PAIRS[name], Reading(teeth=teeth)
+    builds = random_builds(pair, RIGHT, 300, 6, spread=SMALL, thinner=0.1)
+    seen, (_, expected) = read(builds, reading), closed_form(builds)
+    share = one_tooth_share(pair, teeth)
+    acts = seen.status == OK
+    # a share of positions, four standard errors; deviations move the ends of the path by 0.02 mm/sin(alpha) each
+    assert abs(acts.mean() - share) <= 4 * math.sqrt(max(share * (1 - share), 0.003) / 300) + 0.05
+    assert np.abs(seen.gap - expected)[acts].max(initial=0.0) <= CLOSED_FORM_BOUND

@@ -250,7 +250,9 @@ class StageSummary(Section):
     """A link of a train."""
 
     link: Label
-    kind: Label = Field(description="mesh, bevel_mesh, parallel, or the kind of another link, such as reducer")
+    kind: Label = Field(
+        description="mesh, internal_mesh, bevel_mesh, parallel, or the kind of another link, such as reducer"
+    )
     driver: Label
     driven: Label
     gears: Annotated[list[Label], Field(min_length=2, max_length=2)] | None

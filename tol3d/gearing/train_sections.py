@@ -117,7 +117,9 @@ def _kind(model: Model, stage: AnyStage, mesh: Mesh | None) -> str:
         return "parallel"
     if mesh is None:
         return model.link(stage.link).kind
-    return "bevel_mesh" if mesh.pair.arm_spread else "mesh"
+    if mesh.pair.arm_spread:
+        return "bevel_mesh"
+    return "mesh" if mesh.driven_flank == mesh.working_flank else "internal_mesh"
 
 
 def _of_road(stages: Sequence[AnyStage], tallied: PooledTerms) -> ByLink:

@@ -1,4 +1,4 @@
-"""Signs for the links of a train, of shapes that matplotlib has: two gears, two cones, a reducer; lengths in inches."""
+"""Signs for the links of a train, of shapes that matplotlib has: gears, a ring, cones, a reducer; lengths in inches."""
 
 import math
 from collections.abc import Callable, Mapping
@@ -16,6 +16,7 @@ OTHER_COLOUR: Final = SKY
 LINK_COLOURS: Final[Mapping[str, str]] = {
     "reducer": ORANGE,
     "mesh": BLUE,
+    "internal_mesh": BLUE,
     "bevel_mesh": GREEN,
     "parallel": PURPLE,
 }
@@ -26,6 +27,9 @@ LEAST_SHARE, MOST_SHARE = 0.4, 0.6  # of the two gears' width; the smaller one h
 MOST_WIDTH: Final = 1.3
 SMALL: Final = 9.0  # points
 PLANETS: Final = 3
+RING_HALF: Final = 0.44  # inch; radius of a ring
+LEAST_INSIDE: Final = 0.5  # of a ring; the gear in it has room for its number
+RIM: Final = 0.13  # of that, from its teeth to its outside
 CONES_HALF: Final = 0.42  # inch; half the side of the square that the cones of a pair of equal gears fill
 LEAST_LINE: Final = 0.06  # inch; of a shaft's line before the cones, and between them and the line to the driven shaft
 LINE_AFTER: Final = 0.12  # inch; from the line that comes down from the driven cone's top to its shaft
@@ -81,6 +85,23 @@ def _gear_outline(
     angle = 2 * math.pi * (tooth + places + 0.5 * meshing) / count + math.pi * meshing
     reach = np.broadcast_to(radius + heights, angle.shape)
     return np.column_stack([(x + reach * np.cos(angle)).ravel(), (y + reach * np.sin(angle)).ravel()])
+
+
+def _ring(axes: Axes, stage: ShownStage, x: float, width: float, ends: tuple[float, float]) -> None:
+    """A ring with the other gear inside, on the side of the driven shaft."""
+    inner, ring = sorted(stage.teeth or (1, 2))
+    outside = min(RING_HALF, width / 2)
+    pitch = (1 - RIM) * outside - TOOTH_HEIGHT / 2
+    radius = min(max(inner / ring, LEAST_INSIDE), MOST_SHARE) * pitch
+    centre = x + pitch - radius
+    _line(axes, (ends[0], 0), (ends[1], 0))
+    _fill(axes, Circle((x, 0), outside), link_colour(stage.kind))
+    space = Polygon(_gear_outline(x, 0, pitch, meshing=0))
+    space.set(facecolor="white", edgecolor=link_colour(stage.kind), linewidth=1.3, zorder=2)
+    axes.add_patch(space)
+    _fill(axes, Polygon(_gear_outline(centre, 0, radius, meshing=0)), link_colour(stage.kind))
+    draw_text(axes, centre, 0, str(inner))
+    draw_text(axes, (x - pitch + centre - radius) / 2, 0, str(ring))
 
 
 def _cones(axes: Axes, stage: ShownStage, x: float, width: float, ends: tuple[float, float]) -> None:
@@ -146,6 +167,7 @@ Symbol = Callable[[Axes, ShownStage, float, float, tuple[float, float]], None]
 SYMBOLS: Final[Mapping[str, Symbol]] = {
     "reducer": _reducer,
     "mesh": _gears,
+    "internal_mesh": _ring,
     "bevel_mesh": _cones,
     "parallel": _parallel,
 }

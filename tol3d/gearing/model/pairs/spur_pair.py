@@ -2,7 +2,7 @@
 
 from tol3d.errors import GeometryError
 from tol3d.gearing.grammar.moves import MeshSpec
-from tol3d.gearing.grammar.parts import InternalGearSpec, SpurGearSpec
+from tol3d.gearing.grammar.parts import GearSpec, InternalGearSpec, SpurGearSpec
 from tol3d.gearing.model.pairs.pair import internal, pair_of, undercut_warning
 from tol3d.gears import GearPair, InternalGear, InternalPair, SpurGear, SpurPair
 from tol3d.scene import Scene
@@ -10,11 +10,8 @@ from tol3d.scene import Scene
 
 @pair_of.register
 def _(move: MeshSpec, name: str, scene: Scene) -> GearPair:
-    driver, driven = move.gears
-    pinion, wheel = _gear(scene, driver), _gear(scene, driven)
-    if isinstance(pinion, InternalGear) and isinstance(wheel, InternalGear):
-        words = f"expected one internal gear at most, got {driver!r} and {driven!r}: rings do not mesh with each other"
-        raise scene.refuse(("moves", name, "driven"), words)
+    _refuse_rings(move, name, scene)
+    pinion, wheel = (_gear(scene, gear) for gear in move.gears)
     if move.centre_distance is None:
         words = "expected the centre_distance of the axes, got none; it follows only where both shafts lie in bores"
         raise scene.refuse(("moves", name), words)
@@ -24,6 +21,21 @@ def _(move: MeshSpec, name: str, scene: Scene) -> GearPair:
     except GeometryError as error:
         raise scene.refuse(("moves", name, "centre_distance"), str(error)) from None
     return pair
+
+
+def _refuse_rings(move: MeshSpec, name: str, scene: Scene) -> None:
+    """Refuse two rings, and one that is no larger than its mate, before their teeth are found impossible."""
+    driver, driven = move.gears
+    specs = {gear: spec for gear in move.gears if isinstance(spec := scene.parts[gear], GearSpec)}
+    rings = [gear for gear, spec in specs.items() if isinstance(spec, InternalGearSpec)]
+    if len(rings) == 2:
+        words = f"expected one internal gear at most, got {driver!r} and {driven!r}: rings do not mesh with each other"
+        raise scene.refuse(("moves", name, "driven"), words)
+    for ring in rings:
+        inner = driven if ring == driver else driver
+        if specs[ring].teeth <= specs[inner].teeth:
+            words = f"expected more teeth than the {specs[inner].teeth} of {inner!r}, which is inside it"
+            raise scene.refuse(("parts", ring, "teeth"), f"{words}, got {specs[ring].teeth}")
 
 
 def _pair(
