@@ -1,22 +1,19 @@
 """Why a set cannot be studied: its mean build jams."""
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from tol3d.planetary.planetary_set import PlanetarySet, SetMesh
+from tol3d.planetary.set_trials import SetTrials
 from tol3d.planetary.stack_up import StackUp
 from tol3d.system.stated import mean_build
 from tol3d.system.system import KeyPath
 
-if TYPE_CHECKING:
-    from tol3d.planetary.system import PlanetarySystem
-
 ROUNDING = 1e-9  # mm; no clearance is legal, and rounds to 1e-14
 
 
-def problems_of(system: "PlanetarySystem") -> Iterator[tuple[KeyPath, str]]:
+def problems_of(system: SetTrials) -> Iterator[tuple[KeyPath, str]]:
     """Meshes that overlap with every contributor at its mean, then load paths of several planets that do."""
     own = system.own
     jams = False
@@ -42,7 +39,7 @@ def _interfering(mesh: SetMesh, backlash: float) -> str:
     )
 
 
-def _bound(system: "PlanetarySystem", own: PlanetarySet) -> Iterator[tuple[KeyPath, str]]:
+def _bound(system: SetTrials, own: PlanetarySet) -> Iterator[tuple[KeyPath, str]]:
     measure = next(iter(system.planetary_measures.values()))
     deviated = system.deviated(mean_build(system, measure))
     free = StackUp(own).free(deviated, np.zeros(1), measure.shaft, own.opposite(measure.shaft))

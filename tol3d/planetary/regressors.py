@@ -1,25 +1,22 @@
 """What a measure of a set sees of contributors: each component, offsets of gears as they lie seen from the carrier."""
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.planetary.free import turned
 from tol3d.planetary.measure import PlanetaryMeasure
+from tol3d.planetary.set_trials import SetTrials
 from tol3d.system.contributor import Contributor
 from tol3d.system.regressors import is_group, regress_plainly, regress_term
 from tol3d.system.system import Columns
-
-if TYPE_CHECKING:
-    from tol3d.planetary.system import PlanetarySystem
 
 Array = NDArray[np.float64]
 
 
 def regress(
-    system: "PlanetarySystem",
+    system: SetTrials,
     measure: PlanetaryMeasure,
     contributors: Sequence[Contributor],
     columns: Columns,
@@ -42,11 +39,11 @@ def regress(
             regress_plainly(rows[own.name], own, values)
 
 
-def _turns(system: "PlanetarySystem", contributor: Contributor, measure: PlanetaryMeasure) -> bool:
+def _turns(system: SetTrials, contributor: Contributor, measure: PlanetaryMeasure) -> bool:
     return system.turns_at_random(contributor, measure.positions)
 
 
-def _seen(system: "PlanetarySystem", gear: str, values: Sequence[Array], columns: Columns) -> list[Array]:
+def _seen(system: SetTrials, gear: str, values: Sequence[Array], columns: Columns) -> list[Array]:
     """Components x and y, one after the other, of offsets turned with their gear against the carrier."""
     own = system.own
     mesh = next((mesh for mesh in own.teeth.meshes if mesh.central == gear), None)

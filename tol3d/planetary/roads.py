@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, ClassVar, Protocol
+from typing import ClassVar, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,12 +11,10 @@ from tol3d.planetary.deviated import Deviated
 from tol3d.planetary.free import Free
 from tol3d.planetary.measure import PlanetaryMeasure
 from tol3d.planetary.programme import NO_ROOM, STALLED
+from tol3d.planetary.set_trials import SetTrials
 from tol3d.system.measure import Measure
 from tol3d.system.road import Answers
 from tol3d.system.trials import Trials
-
-if TYPE_CHECKING:
-    from tol3d.planetary.system import PlanetarySystem
 
 Array = NDArray[np.float64]
 
@@ -33,7 +31,7 @@ class Turning(Protocol):
 class PlanetaryRoad:
     """Implements Road."""
 
-    system: "PlanetarySystem"
+    system: SetTrials
     turning: Turning
 
     chord_error: ClassVar[float] = 0.0
