@@ -418,6 +418,13 @@ def test_blocks_of_a_file_add_up_and_a_standstill_before_the_run_is_none(
         figures(tmp_path)
 
 
+@pytest.mark.parametrize("start", [-1e-4, -0.6, 0.0, 1e-4])
+def test_single_turn_encoders_that_begin_just_below_zero_have_it_in_the_first_row(tmp_path: Path, start: float) -> None:
+    """359.9999 deg and then 1: phi1 = 0 is the zero that is passed, not the one a turn before, where j is 227.5."""
+    written(tmp_path, Rig(turns=2, samples=180, noise=0.0, start=math.radians(start)), wrapped=True)
+    assert figures(tmp_path)["j0"] / ARCSEC == pytest.approx(267.037, abs=0.001)
+
+
 @pytest.mark.parametrize("other", [semicolons, in_turns, within_one_turn, the_other_way, backwards])
 def test_the_same_angles_otherwise_written_give_the_same(tmp_path: Path, other: SideChange) -> None:
     written(tmp_path)

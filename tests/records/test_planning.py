@@ -126,6 +126,13 @@ def test_the_rig_s_files_are_identified(tol3d: Command, tmp_path: Path) -> None:
     assert "winding" in out
 
 
+def test_a_torque_without_a_pass_is_refused(tol3d: Command, tmp_path: Path) -> None:
+    torques = ("--torque", "1 N m", "--torque", "2 N m")
+    code, said, err = tol3d("rig", str(scene_in(tmp_path)), *torques, "--out", str(tmp_path / "out"))
+    assert (code, said) == (2, "")
+    assert err == "--repeats: expected at least 2, one pass for each --torque, got 1\n"
+
+
 @pytest.mark.parametrize("name", ["drive.csv", "back.csv"])
 def test_measured_files_are_not_replaced_by_synthetic_ones(tol3d: Command, tmp_path: Path, name: str) -> None:
     scene, out = str(scene_in(tmp_path)), tmp_path / "rig"

@@ -157,6 +157,12 @@ def turns_taken(steps: Array) -> Array:
     return np.where(np.abs(steps) > TURN / 2, np.round(steps / TURN), 0.0)
 
 
+def _begins_below_zero(values: Array, turns: Array) -> bool:
+    """Whether an encoder that begins anew each turn stands less than a degree before that: its first row is below 0."""
+    begun = np.flatnonzero(turns)
+    return bool(len(begun) and turns[begun[0]] < 0 and values[0] > TURN - SETTLED)
+
+
 class PassReader:
     """Rows of one pass, block after block."""
 
@@ -241,6 +247,8 @@ class PassReader:
                 f"{self._path}:{line}: phi{which + 1} moves by {math.degrees(steps[longest]):.1f} deg from one row to "
                 "the next; expected less than 0.4 of a turn, or turns cannot be counted"
             )
+        if self._raw is None and _begins_below_zero(values, turns):
+            self._offset[which] -= TURN
         offsets = self._offset[which] - TURN * np.cumsum(turns)
         self._offset[which] = offsets[-1]
         return np.asarray(values + offsets)

@@ -23,10 +23,14 @@ def write_both(unit: Specimen | Unit, rig: Rig, folder: Path, *, wrapped: bool =
     """Write drive.csv and back.csv of a unit on a rig into a folder.
 
     Raises:
-        InputError: more rows than a file may have, files of these names that no rig wrote, the unit cannot be turned,
-            or they cannot be written.
+        InputError: more torques than passes, more rows than a file may have, files of these names that no rig wrote,
+            the unit cannot be turned, or they cannot be written.
     """
     refuse_measured(folder)
+    if len(rig.torques) > rig.repeats:
+        raise InputError(
+            f"--repeats: expected at least {len(rig.torques)}, one pass for each --torque, got {rig.repeats}"
+        )
     rows = rig.turns * rig.samples * rig.repeats
     if rows > MOST_ROWS:
         raise InputError(f"--samples: expected at most {MOST_ROWS:.0e} rows a side, got {rows:.3g}")
