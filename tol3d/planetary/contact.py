@@ -137,15 +137,15 @@ def seated(
 
 @kernel(
     arrays="f8[:,::1], i8[::1], f8[:,::1], f8[:,::1], f8, f8[:,:,::1], f8[:,:,:,::1], f8[:,:,::1], f8[:,:,::1], "
-    "f8[:,:,::1], f8[:,::1], i8[::1], f8[::1], f8[:,::1], i8[::1], f8[:,::1], i1[::1], i8[::1], f8[::1]"
+    "f8[:,:,::1], f8[:,::1], i8[::1], f8[::1], f8[:,::1], i8[::1], f8[:,::1], f8[:,:,::1], i1[::1], i8[::1], f8[::1]"
 )
 def seated_ranges(
     meshes: Any, places: Any, planets: Any, senses: Any, distance: float,
     central: Any, planet: Any, pin: Any, room: Any, middle: Any,
     pushed: Any, unknowns: Any, turn: Any, wanted: Any, begun: Any,
-    ends: Any, status: Any, decided: Any, amount: Any,
+    ends: Any, reached: Any, status: Any, decided: Any, amount: Any,
 ) -> None:  # fmt: skip
-    """Both ends of one coordinate in trials; see seated and programme.ranges."""
+    """Both ends of one coordinate in trials, and all turns there; see seated and programme.ranges."""
     count, springs = unknowns.shape[0], senses.shape[1]
     contacts = meshes.shape[0] * planets.shape[0]
     solving = (
@@ -166,7 +166,9 @@ def seated_ranges(
             if found != OK:
                 status[i], decided[i], amount[i] = found, row, lacking
                 ends[i, 0] = ends[i, 1] = np.nan
+                reached[i] = np.nan
                 break
+            reached[i, end] = turns
             ends[i, end] = 0.0
             for j in range(count):
                 ends[i, end] += turn[j] * turns[unknowns[j]]
@@ -190,7 +192,15 @@ class Contact:
 
     def free(self, deviated: Deviated, turns: Array, shaft: str, stands: str) -> Free:
         """How far a shaft turns while another one and the held one stand, at turns (trials,) of the output."""
+        return self.seated(deviated, turns, shaft, stands)[0]
+
+    def seated(self, deviated: Deviated, turns: Array, shaft: str, stands: str) -> tuple[Free, Array]:
+        """The same, and the turns [rad] of shafts and planets, and displacements by springs [mm], at both ends.
+
+        Those are (trials, 2, shafts + planets + springs), beyond where no backlash would have them.
+        """
         own, found = self.own, Free.of(len(turns))
+        reached = np.empty((len(turns), 2, own.all_rows.shape[1]))
         directions = np.stack([np.cos(own.azimuths), np.sin(own.azimuths)], axis=-1)
         places = np.array([own.gear_of(mesh) for mesh in own.meshes])
         room = np.array([mesh.clearance for mesh in own.meshes]) + np.zeros((len(turns), own.planets, len(places)))
@@ -214,11 +224,12 @@ class Contact:
             own.wanted(stands, shaft),
             own.begun(stands),
             found.ends,
+            reached,
             found.status,
             found.row,
             found.lacking,
         )
-        return found
+        return found, reached
 
     def _placed(self, deviated: Deviated, turns: Array, directions: Array) -> tuple[Array, Array, Array]:
         """Centres of central gears (trials, meshes, 2), of planets' gears off pins (trials, gears, planets, 2), pins.
@@ -227,9 +238,10 @@ class Contact:
         """
         own, planet_turns = self.own, float(self.own.planet_turns)
         rates = np.array([float(mesh.turn * self.own.planet_turns) for mesh in own.teeth.meshes])
-        central = turned(deviated.central_offset, turns[:, None] * rates)
+        clocked = deviated.central_clocking / (2 * np.pi), deviated.planet_clocking / (2 * np.pi)
+        central = turned(deviated.central_offset, turns[:, None] * rates + clocked[0])
         phases = np.array([own.phase(planet) + own.azimuths[planet] for planet in range(own.planets)]) / (2 * np.pi)
-        planet = turned(deviated.planet_offset, planet_turns * turns[:, None, None] + phases)
+        planet = turned(deviated.planet_offset, planet_turns * turns[:, None, None] + phases + clocked[1])
         radial = own.centre_distance + deviated.pins[..., :1]
         across = np.stack([-directions[:, 1], directions[:, 0]], axis=-1)
         pins = radial * directions + deviated.pins[..., 1:] * across
