@@ -135,3 +135,54 @@ def test_single_flanks_are_refused_beside_a_ring(tmp_path: Path) -> None:
         tolerance = f"tolerances:\n  teeth: {{kind: pitch_deviation, of: {gear}, flanks: each, {walk}}}\n"
         with pytest.raises(SceneError, match=words):
             model_of(tmp_path, PARTS + MESH + tolerance + MEASURES)
+
+
+STAR = """
+scene: a star of two idlers in a ring
+parts:
+  sun: {kind: spur_gear, teeth: 24, module: 1 mm, face_width: 10 mm}
+  first: {kind: spur_gear, teeth: 24, module: 1 mm, face_width: 10 mm}
+  second: {kind: spur_gear, teeth: 24, module: 1 mm, face_width: 10 mm}
+  inner: {kind: spur_gear, teeth: 24, module: 1 mm, face_width: 10 mm}
+  shaft: {kind: shaft, carries: {second: {}, inner: {}}}  # one gear in two, so that they may be clocked
+  ring: {kind: internal_gear, teeth: 72, module: 1 mm, face_width: 10 mm, addendum: 0.8}
+tolerances:
+  sun thickness: {kind: tooth_thickness, of: sun, distribution: {kind: normal, lower: -50 um, upper: -30 um}}
+  first thickness: {kind: tooth_thickness, of: first, distribution: {kind: normal, lower: -50 um, upper: -30 um}}
+  second thickness: {kind: tooth_thickness, of: second, distribution: {kind: normal, lower: -50 um, upper: -30 um}}
+  inner thickness: {kind: tooth_thickness, of: inner, distribution: {kind: normal, lower: -50 um, upper: -30 um}}
+  ring thickness: {kind: tooth_thickness, of: ring, distribution: {kind: normal, lower: -70 um, upper: -40 um}}
+  clocking: {kind: clocking, of: second, distribution: {kind: normal, lower: -6 arcmin, upper: 6 arcmin}}
+moves:
+  sun first: {kind: mesh, driver: sun, driven: first, centre_distance: 24 mm, working_flank: either}
+  sun second: {kind: mesh, driver: sun, driven: second, centre_distance: 24 mm, azimuth: 120 deg, working_flank: either}
+  first ring: {kind: mesh, driver: first, driven: ring, centre_distance: 24 mm, working_flank: either}
+  second ring: {kind: mesh, driver: inner, driven: ring, centre_distance: 24 mm, working_flank: either}
+  star: {kind: train, driven: sun, output: ring, turns: TURNS}
+measures:
+  lost motion: {kind: lost_motion, of: star}
+"""
+
+
+NAMES = ("sun", "first", "second", "inner", "ring")
+
+
+@pytest.mark.parametrize("turns", ["clockwise", "counter_clockwise"])
+def test_load_paths_through_a_ring_meet_in_the_intersection_of_their_plays(tmp_path: Path, turns: str) -> None:
+    model = model_of(tmp_path, STAR.replace("TURNS", turns))
+    assert model.layout.ratio("sun", "ring") == -3
+    columns = gear_columns(model, ExactEngine(model), drawn_trials(model, 5, 0, 60))
+    cos = np.cos(np.radians(20))
+    thin = {name: -1e-3 * cos * columns[f"{name} thickness [um]"] for name in NAMES}
+    idler, ring = 12 * cos, 36 * cos  # mm; the teeth of the scene leave no backlash, what is taken off them leaves it
+    plays = [
+        (thin["sun"] + thin[one]) / idler / 3 + (thin[other] + thin["ring"]) / ring
+        for one, other in (("first", "first"), ("second", "inner"))
+    ]
+    # thinner teeth leave play on both sides alike; a clocked idler turns its own by a third at the ring
+    aside = columns["clocking [arcmin]"] / 60 * np.pi / 180 / 3
+    ends = [np.minimum(plays[0] / 2, plays[1] / 2 + sign * aside) for sign in (1, -1)]
+    expected = np.degrees(sum(ends)) * 60
+    assert (np.abs(aside) > np.abs(plays[1] - plays[0]) / 2).sum() > 10  # some are cut by the other path
+    for road in ("geometric", "analytic"):
+        assert np.abs(columns[f"{road}:lost motion"] - expected).max() < 1e-6
