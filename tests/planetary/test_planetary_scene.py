@@ -29,6 +29,19 @@ REFUSED = {
         "moves.reducer.planets: neighbouring planets touch: expected pins further apart than the tip circle of 'P1', "
         "37.0000 mm, got 36.7696 mm; take fewer planets",
     ),
+    "a ring whose tips dig in": (
+        ("teeth: 79, module: 1 mm,", "teeth: 79, module: 1 mm, addendum: 1.6,"),
+        "moves.reducer.meshes.ring 1: tip interference at centre distance 26 mm: the internal gear's tip circle digs "
+        "0.3500 mm into the root of the inner gear",
+    ),
+    "planets whose tips dig in": (
+        ("teeth: 27, module: 1 mm,", "teeth: 27, module: 1 mm, addendum: 1.5,"),
+        "moves.reducer.meshes.sun: the teeth interfere at centre distance 26 mm: ",
+    ),
+    "a gear that cannot be made": (
+        ("teeth: 25, module: 1 mm,", "teeth: 25, module: 1 mm, addendum: 3,"),
+        "parts.sun: pointed teeth: the tooth thickness at the tip circle (31.0000 mm) is -2.2447 mm",
+    ),
     "no common centre distance": (
         ("teeth: 79", "teeth: 83"),
         "moves.reducer.meshes.ring 1: expected a centre distance of more than 26.3114 mm, which the base circles of "

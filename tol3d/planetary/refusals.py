@@ -6,6 +6,7 @@ from typing import Any
 from tol3d.errors import GeometryError
 from tol3d.gearing.grammar.parts.gear import GearSpec
 from tol3d.gearing.grammar.parts.internal_gear import InternalGearSpec
+from tol3d.gearing.model.pairs.spur_pair import cylindrical_gear, cylindrical_pair
 from tol3d.planetary.grammar.moves.planetary import PlanetarySpec
 from tol3d.planetary.grammar.parts.flexible_carrier import FlexibleCarrierSpec
 from tol3d.planetary.grammar.parts.planet import PlanetSpec
@@ -33,7 +34,18 @@ def planetary_set(scene: Scene) -> PlanetarySet:
             raise scene.refuse(("parts", part), f"{part!r} takes part in no move; name it in {name!r} or take it out")
     _refuse_roles(scene, own)
     _refuse_unbuildable(scene, own)
+    _refuse_interference(scene, own)
     return own
+
+
+def _refuse_interference(scene: Scene, own: PlanetarySet) -> None:
+    """Refuse gears that cannot be made, and meshes whose tips, involutes or fillets interfere."""
+    for mesh in own.meshes:
+        central, planet = (cylindrical_gear(scene, gear.name) for gear in (mesh.central, mesh.planet))
+        try:
+            cylindrical_pair(central, planet, mesh.centre_distance).refuse_interference()
+        except GeometryError as error:
+            raise scene.refuse(("moves", own.name, "meshes", mesh.central.name), str(error)) from None
 
 
 def _gear(scene: Scene, name: str) -> SetGear:

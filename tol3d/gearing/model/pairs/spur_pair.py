@@ -11,12 +11,12 @@ from tol3d.scene import Scene
 @pair_of.register
 def _(move: MeshSpec, name: str, scene: Scene) -> GearPair:
     _refuse_rings(move, name, scene)
-    pinion, wheel = (_gear(scene, gear) for gear in move.gears)
+    pinion, wheel = (cylindrical_gear(scene, gear) for gear in move.gears)
     if move.centre_distance is None:
         words = "expected the centre_distance of the axes, got none; it follows only where both shafts lie in bores"
         raise scene.refuse(("moves", name), words)
     try:
-        pair = _pair(pinion, wheel, move.centre_distance.internal)
+        pair = cylindrical_pair(pinion, wheel, move.centre_distance.internal)
         pair.refuse_interference()
     except GeometryError as error:
         raise scene.refuse(("moves", name, "centre_distance"), str(error)) from None
@@ -38,15 +38,25 @@ def _refuse_rings(move: MeshSpec, name: str, scene: Scene) -> None:
             raise scene.refuse(("parts", ring, "teeth"), f"{words}, got {specs[ring].teeth}")
 
 
-def _pair(
+def cylindrical_pair(
     pinion: SpurGear | InternalGear, wheel: SpurGear | InternalGear, centre_distance: float
 ) -> SpurPair | InternalPair:
+    """Two gears at a centre distance [mm], of which one may be a ring.
+
+    Raises:
+        GeometryError: they do not mesh.
+    """
     if isinstance(pinion, SpurGear) and isinstance(wheel, SpurGear):
         return SpurPair(pinion, wheel, centre_distance)
     return InternalPair(pinion, wheel, centre_distance)
 
 
-def _gear(scene: Scene, name: str) -> SpurGear | InternalGear:
+def cylindrical_gear(scene: Scene, name: str) -> SpurGear | InternalGear:
+    """A spur gear or a ring of a scene.
+
+    Raises:
+        SceneError: it cannot be made.
+    """
     spec = scene.parts[name]
     try:
         if isinstance(spec, SpurGearSpec):
