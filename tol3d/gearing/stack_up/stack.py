@@ -33,6 +33,9 @@ class Stack(NominalMesh[Pair]):
         self.terms = tuple(own.opening for own in self.contributions if own.opening)
         self.teeth = tooth_pairs(model, mesh, reading)
         self.sideways = tuple(own.aside for own in self.contributions if own.aside)
+        self._apart = tuple(
+            own.opening for own in self.contributions if own.opening and (own.along_line or own.strains)
+        )  # shifts of axes, and parts that grow
 
     @property
     def nominal(self) -> float:
@@ -90,9 +93,10 @@ class Stack(NominalMesh[Pair]):
         builds, trial = distinct(deviations)
         leans, built = self._leans(builds), teeth.built(builds, trial)
         work = self.mesh.resting_flank(self.reading.flank)
-        working = teeth.taken(work, built, driver_angle, leans[work])
+        moved = self._moved(deviations, driver_angle)
+        working = teeth.taken(work, built, driver_angle, leans[work], moved)
         apart = np.maximum(whole - working, 0.0)
-        return working + teeth.taken(-work, built, driver_angle, leans[-work], turns, apart)
+        return working + teeth.taken(-work, built, driver_angle, leans[-work], moved, turns, apart)
 
     def turned_by_teeth(self, side: int, deviations: Array, driver_angle: Array) -> Array:
         """Turn of the driven gear about its z [mm at its arm] by single flanks where a side touches.
@@ -108,15 +112,36 @@ class Stack(NominalMesh[Pair]):
         count, positions = len(deviations), len(driver_angle)
         if self.teeth is None:
             return np.zeros((count, positions))
-        built = self.teeth.built(deviations, np.repeat(np.arange(count), positions))
-        taken = self.teeth.taken(side, built, np.tile(driver_angle, count), self._leans(deviations)[side])
+        trial, angles = np.repeat(np.arange(count), positions), np.tile(driver_angle, count)
+        built, moved = self.teeth.built(deviations, trial), self._moved(deviations, angles, trial)
+        taken = self.teeth.taken(side, built, angles, self._leans(deviations)[side], moved)
         return side * taken.reshape(count, positions)
+
+    def _moved(
+        self, deviations: Array, driver_angle: Array, trial: NDArray[np.int64] | None = None
+    ) -> tuple[Array, Array] | None:
+        """How much further apart the axes stand and how much further aside the driven one, (rows,) [mm] each.
+
+        Args:
+            deviations: (rows, components), or (trials, components) where `trial` says which of them each row is.
+            driver_angle: (rows,) [rad].
+            trial: (rows,).
+        """
+        if not (self._apart or self.sideways):
+            return None
+        angles = (driver_angle, self.pair.driven_angle(driver_angle))
+        apart, aside = np.zeros(len(driver_angle)), np.zeros(len(driver_angle))
+        for total, terms, by in ((apart, self._apart, 2 * self.sin), (aside, self.sideways, self.cos)):
+            for term in terms:
+                own = deviations[:, self.model.component_slices[term.contributor.name]]
+                total += term.change(own if trial is None else own[trial], angles) / by
+        return apart, aside
 
     def _leans(self, deviations: Array) -> Mapping[int, Array]:
         """What tilts take at the upper end of the face where the driver's right and left flanks touch [mm], (rows,)."""
         in_plane, across = self._lost_by_tilts(deviations)
         half = 2.0 if self.both_sides_alike else 1.0  # tilts count both flank sides, or the one that reads the face
-        return {side: (in_plane + side * across) / half for side in (1, -1)}
+        return {side: -(in_plane + side * across) / half for side in (1, -1)}
 
     def aside(self, deviations: Array, driver_angle: Array) -> Array:
         """Shift [mm], (rows,), of the middle of the driven gear's play, along the flanks' normals.
@@ -131,7 +156,8 @@ class Stack(NominalMesh[Pair]):
         if self.teeth:
             builds, trial = distinct(deviations)
             leans, built = self._leans(builds), self.teeth.built(builds, trial)
-            right, left = (self.teeth.taken(side, built, driver_angle, leans[side]) for side in (1, -1))
+            moved = self._moved(deviations, driver_angle)
+            right, left = (self.teeth.taken(side, built, driver_angle, leans[side], moved) for side in (1, -1))
             total = (right - left) / 2
         elif self.both_sides_alike:
             total = self.sense * (np.abs(in_plane + across) - np.abs(in_plane - across)) / 4

@@ -71,13 +71,13 @@ def taken(
     mesh: tuple[Sequence[float], Sequence[float], Sequence[float]],
     how: Sequence[int],
     built: tuple[Array, Array, Integers],
-    rows: tuple[Integers, Array, Array, Array],
+    rows: tuple[Integers, Array, Array, Array, Array],
 ) -> Array:
     """What flanks take from a flank side [mm], (rows,); see `take` for driver, driven and line, and for all others."""
-    first, angles, lean, apart = (np.require(each, requirements=["C", "W"]) for each in rows)
+    first, angles, lean, apart, shifts = (np.require(each, requirements=["C", "W"]) for each in rows)
     found = np.empty(len(angles))
     driver, driven, line = GearTeeth(*mesh[0]), GearTeeth(*mesh[1]), LineOfContact(*mesh[2])
-    take(driver, driven, line, np.array(how), *built, first, angles, lean, apart, found)
+    take(driver, driven, line, np.array(how), *built, first, angles, lean, apart, shifts, found)
     return found
 
 
@@ -241,7 +241,7 @@ def look_at(
     GearTeeth,
     LineOfContact,
     arrays="int64[::1], float64[:, ::1], float64[:, ::1], int64[::1], int64[::1], float64[::1], float64[::1], "
-    "float64[::1], float64[::1]",
+    "float64[::1], float64[:, ::1], float64[::1]",
     level=QUICK,
 )
 def take(
@@ -256,6 +256,7 @@ def take(
     angles: Array,
     lean: Array,
     apart: Array,
+    shifts: Array,
     found: Array,
 ) -> None:
     """What flanks take from a flank side.
@@ -272,6 +273,8 @@ def take(
         angles: (rows,), of the driver [rad].
         lean: (trials,), what leaning axes take at the upper end of the common face, signed [mm].
         apart: (rows,), by which the side stands open before [mm]; no rows where it touches already.
+        shifts: (rows, 2), by how much more roll a driver's tooth has on the line of centres [rad], and how much longer
+            the tangent of both base circles is [mm]; no rows where axes stand where they should.
         found: (rows,) [mm], written; positive where the side touches earlier.
     """
     side, count, right = which[0], which[2], 0 if which[0] == 1 else 1
@@ -281,6 +284,9 @@ def take(
         place, mate_place = (first[row] - which[3]) % which[5], (-first[row] - right - which[4]) % which[6]
         again[:] = True
         took[:] = 0.0
+        here = line
+        if len(shifts):
+            here = LineOfContact(line.tangent + shifts[row, 1], line.start + shifts[row, 0], line.pitch, line.half)
         for _ in range(LOOKS):  # a gear that has turned by what its pair takes stands at another roll
             for k in range(count):
                 if again[k]:
@@ -288,7 +294,7 @@ def take(
                     mating = flank_in(mating_numbers, own, mate_place + side * k, which[6], right)
                     azimuth = angles[row] + (first[row] - side * k) * line.pitch
                     pair, before = (flank, mating), took[k]
-                    took[k], again[k] = look_at(driver, driven, line, which, pair, azimuth, open_by, lean[own], before)
+                    took[k], again[k] = look_at(driver, driven, here, which, pair, azimuth, open_by, lean[own], before)
                     moved[k] = min(AGAIN * abs(took[k] - before), FAR)
             most, looks = took.max(), False
             for k in range(count):

@@ -6,7 +6,7 @@ loses what both flanks stand out by there, and a pair with parallel axes loses i
 that is more. Beyond the path of contact the tip edge of one gear may still touch first, where its pair stands out by
 more than the edge has left the mate's flank.
 
-Neglected: what goes with the curvature of a deviation, and that deviations move the path of contact.
+Neglected: what goes with the curvature of a deviation. Axes that move take the path of contact along, to first order.
 """
 
 import importlib
@@ -128,6 +128,7 @@ class ToothPairs:
         built: BuiltTeeth,
         driver_angle: Array,
         lean: Array,
+        moved: tuple[Array, Array] | None,
         turns: Role | None = "driven",
         apart: Array | None = None,
     ) -> Array:
@@ -138,6 +139,8 @@ class ToothPairs:
             built: their trials.
             driver_angle: (rows,) [rad].
             lean: (trials,), what leaning axes take at the upper end of the common face, signed [mm].
+            moved: how much further apart the axes stand, and how much further the driven one in the world's +y,
+                (rows,) [mm] each; None where they stand where they should.
             turns: the gear that turns until the side touches; None reads its gap as the gears stand.
             apart: by which the side stands open before [mm], (rows,), where anything but the driven gear turns.
         """
@@ -150,9 +153,22 @@ class ToothPairs:
             (self.driver.measures, self.driven.measures, (self._tangent, start, first.angular_pitch, half)),
             (side, WHO_TURNS[turns], count, *places),
             (built.driver, built.driven, built.trial),
-            (teeth, driver_angle, lean, np.zeros(0) if apart is None else apart),
+            (teeth, driver_angle, lean, np.zeros(0) if apart is None else apart, self._shifts(side, moved)),
         )
         return found
+
+    def _shifts(self, side: int, moved: tuple[Array, Array] | None) -> Array:
+        """What moved axes add to a tooth's roll on the line of centres [rad] and to the common tangent [mm], (rows, 2).
+
+        Axes that stand dx further apart touch at a pressure angle that is dx/(a tan alpha_w) larger, along a tangent
+        that is dx/sin(alpha_w) longer; a line of centres that turns by dy/a takes the path of contact along.
+        """
+        if moved is None:
+            return np.zeros((0, 2))
+        apart, aside = moved
+        alpha, distance = self.pair.working_pressure_angle, self.pair.centre_distance
+        rolls = (apart / math.tan(alpha) + side * aside) / distance
+        return np.stack([rolls, apart / math.sin(alpha)], axis=-1)
 
     @property
     def _tangent(self) -> float:
