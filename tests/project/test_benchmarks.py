@@ -25,6 +25,7 @@ FEW: Mapping[str, tuple[str, ...]] = {
     "curves": ("--trials", "20", "--positions", "8", "--long", "16", "--rounds", "1", "--workers", "1"),
     "fcl_speed": ("--trials", "10", "--naive", "1", "--rounds", "1"),
     "memory": ("--trials", "100", "--scenes", "spur_pair", "cover_on_base"),
+    "pairs": ("--trials", "500", "--rounds", "1"),
     "planetary": ("--trials", "1000", "--rounds", "1", "--workers", "1"),
     "rig_records": ("--rows", "4000"),
     "stages": ("--trials", "1024", "--rounds", "1"),
@@ -59,6 +60,9 @@ ROWS: Mapping[str, tuple[str, ...]] = {
         rf"strips, whole face, all teeth +{NUMBER} trials/s",
     ),
     "memory": tuple(rf"{own}, +100 trials, exact: +{NUMBER} MB" for own in ("spur_pair", "cover_on_base")),
+    "pairs": tuple(
+        rf"{own} +│ +{NUMBER} │ +{NUMBER}" for own in ("external", "internal, driving pinion", "internal, driving ring")
+    ),
     "planetary": (
         rf"programme, first order +│ +1 │ +{NUMBER} │ +{NUMBER}",
         rf"programme, placed gears +│ +1 │ +{NUMBER} │ +{NUMBER}",
