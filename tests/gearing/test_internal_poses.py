@@ -2,13 +2,14 @@
 
 import math
 
+import numpy as np
 import pytest
 from oracles import internal_brute_force as search
 from oracles.internal_brute_force import InternalBuilds, Ring
 from oracles.involute_gear import InvoluteGear
 from oracles.random_builds import Builds, Spread, random_builds
 
-from tol3d.gearing.engines import OK
+from tol3d.gearing.engines import OK, OUT_OF_RANGE
 from tol3d.gearing.engines.exact import ExactEngine
 from tol3d.gearing.model import Reading
 from tol3d.gears import LEFT, RIGHT, Flank, InternalGear, InternalPair, SpurGear
@@ -22,6 +23,9 @@ PAIRS = {
         InternalGear(66, 1.5, ALPHA, 12.0, profile_shift=-0.25, addendum=0.9),
         SpurGear(22, 1.5, ALPHA, 14.0, profile_shift=0.3),
         32.9,
+    ),
+    "few teeth of difference": InternalPair(
+        SpurGear(40, 1.5, ALPHA, 14.0, addendum=0.6), InternalGear(46, 1.5, ALPHA, 12.0, addendum=0.6), 4.48
     ),
     "wide": InternalPair(SpurGear(40, 2.0, ALPHA, 50.0), InternalGear(60, 2.0, ALPHA, 60.0, addendum=0.7), 20.0),
 }
@@ -58,8 +62,10 @@ def check(name: str, spread: str, flank: Flank, count: int, seed: int) -> None:
     builds = random_builds(pair, flank, count, seed, spread=SPREADS[spread], thinner=0.15)
     engine = ExactEngine(builds.model)
     seen = engine.read(builds.made, builds.mesh, Reading(), builds.driver_angle, frozenset({"pinion", "wheel"}))
-    assert (seen.status == OK).all()
-    for row in range(count):
+    assert set(seen.status) <= {OK, OUT_OF_RANGE}
+    rows = np.flatnonzero(seen.status == OK)
+    assert 2 * len(rows) > count
+    for row in rows.tolist():
         one, angle = as_searched(builds, row), builds.driver_angle[row : row + 1]
         rest = search.turn_until_contact(one, angle, search.tooth_in_space(one, angle), flank)
         assert seen.driven_angle[row] * pair.wheel.base_radius == pytest.approx(

@@ -16,7 +16,7 @@ from tol3d.gears.flank import Flank, opposite
 from tol3d.gears.internal_gear import InternalGear
 from tol3d.gears.internal_interference import interference, interferes
 from tol3d.gears.internal_mesh import InternalMesh
-from tol3d.gears.pair import Displaced
+from tol3d.gears.pair import CONTACT_MARGIN, Displaced
 from tol3d.gears.radial_assembly import radially_assembled
 from tol3d.gears.spur_gear import SpurGear
 
@@ -148,6 +148,17 @@ class InternalPair(CylindricalPair):
                 f"contact ratio {self.contact_ratio:.4f} is below 1 at centre distance "
                 f"{self.centre_distance:g} mm: the teeth lose touch"
             )
+
+    @property
+    def touching_azimuths(self) -> tuple[float, float]:
+        """The path of contact, and what its ends move by as axes stray by CONTACT_MARGIN p_b sin(alpha_w).
+
+        As an axis moves by d the path ends off by d/sin(alpha_w), as of external gears, and the line of centres and the
+        working pressure angle turn by d/(a sin(alpha_w)): much where the teeth differ by few.
+        """
+        lowest, highest = self.active_azimuths
+        margin = CONTACT_MARGIN * (self.pinion.angular_pitch + self.pinion.base_pitch / self.centre_distance)
+        return lowest - margin, highest + margin
 
     # positions --------------------------------------------------------------------------------------
 
