@@ -1,18 +1,23 @@
 """Sets of the tests: the published 3K one, random simple, compound and Wolfrom ones, and random deviations of them."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.planetary.deviated import Deviated
-from tol3d.planetary.planetary_set import PlanetarySet, SetGear, SetMesh
+from tol3d.planetary.planetary_set import PlanetarySet, SetGear, SetMesh, Spring
 
 Array = NDArray[np.float64]
 ALPHA = math.radians(20)
 ARCMIN = math.radians(1 / 60)
+
+ONE = (Spring((0, 2), (1, 3)),)
+PAIRS = (Spring((0,), (1,)), Spring((2,), (3,)))
+KAPPA, R_S, R_R2 = 24 / 27, 12.5, 38.0
+CLEARANCE = 0.03  # mm, of each flank at the pitch circle
 
 
 def external(name: str, teeth: int, module: float = 1.0, shift: float = 0.0) -> SetGear:
@@ -143,3 +148,15 @@ def free_by_highs(own: PlanetarySet, found: PitchRows, shaft: str, stands: str) 
         assert solved.status == 0
         ends.append(sense * solved.fun)
     return ends
+
+
+def flexible(displacement: float | None = None, springs: tuple[Spring, ...] = ONE) -> PlanetarySet:
+    """The published set with springs, or with planets displaced [mm]."""
+    return replace(reducer_3k(), springs=tuple(replace(own, displacement=displacement) for own in springs))
+
+
+def thinned(c_a: float, c_b: float, c_c: float, trials: int = 1) -> Deviated:
+    """Teeth of the central gears thinned by so much a flank [mm]: gaps of each mesh alike in all planets."""
+    deviated = Deviated.nothing(reducer_3k(), trials)
+    deviated.central_thickness[:] = [-2 * c_a, -2 * c_b, -2 * c_c]
+    return deviated

@@ -8,36 +8,32 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 from places import SCENES
-from planetary_sets import ARCMIN, pitch_rows, random_deviations, reducer_3k
+from planetary_sets import (
+    ARCMIN,
+    CLEARANCE,
+    KAPPA,
+    ONE,
+    PAIRS,
+    R_R2,
+    R_S,
+    flexible,
+    pitch_rows,
+    random_deviations,
+    reducer_3k,
+    thinned,
+)
 from scipy.optimize import linprog
 
 from tol3d import Overrides, SceneError, load_scene, run_scene
-from tol3d.errors import InputError
 from tol3d.planetary.contact import Contact
 from tol3d.planetary.deviated import Deviated
 from tol3d.planetary.from_scene import planetary_system
 from tol3d.planetary.planetary_set import PlanetarySet, Spring
-from tol3d.planetary.spring_curve import turns_under
 from tol3d.planetary.stack_up import StackUp
 from tol3d.study.draws import drawn
 from tol3d.study.overrides import simulation_of
 
 Array = NDArray[np.float64]
-
-ONE = (Spring((0, 2), (1, 3)),)
-PAIRS = (Spring((0,), (1,)), Spring((2,), (3,)))
-KAPPA, R_S, R_R2 = 24 / 27, 12.5, 38.0
-CLEARANCE = 0.03  # mm, of each flank at the pitch circle
-
-
-def flexible(displacement: float | None = None, springs: tuple[Spring, ...] = ONE) -> PlanetarySet:
-    return replace(reducer_3k(), springs=tuple(replace(own, displacement=displacement) for own in springs))
-
-
-def thinned(c_a: float, c_b: float, c_c: float, trials: int = 1) -> Deviated:
-    deviated = Deviated.nothing(reducer_3k(), trials)
-    deviated.central_thickness[:] = [-2 * c_a, -2 * c_b, -2 * c_c]
-    return deviated
 
 
 def lost_motion(road: StackUp | Contact, deviated: Deviated, shaft: str = "ring 2") -> float:
@@ -73,12 +69,18 @@ def test_no_lost_motion_is_left_where_the_adjustment_is_c_and_none_fits_beyond()
 
 
 @pytest.mark.parametrize("seed", range(6))
+@pytest.mark.parametrize("springs", [ONE, PAIRS], ids=["one spring", "two pairs"])
 @pytest.mark.parametrize("road", [StackUp, Contact])
-def test_one_spring_leaves_what_unequal_gaps_do_not_close(road: type[StackUp | Contact], seed: int) -> None:
-    """2 |D|/rR2, D = c_c - kappa c_b - (1 - kappa)(c_a + c_b)/2; by rows of the digest's."""
+def test_springs_leave_what_unequal_gaps_do_not_close(
+    road: type[StackUp | Contact], springs: tuple[Spring, ...], seed: int
+) -> None:
+    """2 |D|/rR2, D = c_c - kappa c_b - (1 - kappa)(c_a + c_b)/2; by rows of the digest's.
+
+    A spring of its own for each pair changes nothing here: both are stopped alike, at whatever turns of the shafts.
+    """
     c_a, c_b, c_c = np.random.default_rng(seed).uniform(0.02, 0.04, 3)
     off = c_c - KAPPA * c_b - (1 - KAPPA) * (c_a + c_b) / 2
-    found = lost_motion(road(flexible()), thinned(c_a, c_b, c_c))
+    found = lost_motion(road(flexible(springs=springs)), thinned(c_a, c_b, c_c))
     assert found == pytest.approx(2 * abs(off) / R_R2, abs=1e-9)
 
 
@@ -156,33 +158,6 @@ def test_two_pairs_leave_about_half_of_what_one_spring_does(tmp_path: Path) -> N
     """
     found, error = means_of("reducer_3k_flexible", "each", 4000, tmp_path)
     assert 0.48 - 3 * error - 0.005 < found < 0.54 + 3 * error + 0.005
-
-
-# springs against torques --------------------------------------------------------------------------------------
-
-
-def test_torques_below_the_breakaway_turn_nothing_and_beyond_it_the_spring_gives_way() -> None:
-    """T0 = Q0 rS (1 - kappa)/(4 (1 + kappa)); from there on theta = 4 (1 + kappa)/(1 - kappa) (T/T0 - 1) Q0/(k rS)."""
-    c, force, stiffness = CLEARANCE, 100.0, 500.0
-    breakaway = force * R_S * (1 - KAPPA) / (4 * (1 + KAPPA))
-    shares = np.array([-1.02, -0.999, -0.5, 0.5, 0.999, 1.01, 1.02])
-    found = turns_under(flexible(), thinned(c, c, c), shares * breakaway, "sun", force, stiffness)
-    beyond = np.sign(shares) * np.maximum(np.abs(shares) - 1.0, 0.0) * force / stiffness
-    np.testing.assert_allclose(found, 4 * (1 + KAPPA) / (1 - KAPPA) * beyond / R_S, rtol=0, atol=1e-8)
-
-
-def test_a_torque_far_beyond_crosses_the_dead_band_of_the_rigid_set() -> None:
-    c = CLEARANCE
-    far = turns_under(flexible(), thinned(c, c, c), np.array([-1e5, 1e5]), "sun", 100.0, 50.0)
-    rigid = lost_motion(StackUp(reducer_3k()), thinned(c, c, c), "sun")
-    assert far[1] - far[0] == pytest.approx(rigid, abs=1e-8)
-
-
-def test_springs_that_cannot_push_are_refused() -> None:
-    with pytest.raises(InputError, match="one spring, got 0"):
-        turns_under(reducer_3k(), thinned(0.03, 0.03, 0.03), np.zeros(1), "sun", 1.0, 1.0)
-    with pytest.raises(InputError, match="jams before its spring pushes"):
-        turns_under(flexible(), thinned(-0.03, 0.03, 0.03), np.zeros(1), "sun", 1.0, 1.0)
 
 
 # scenes ---------------------------------------------------------------------------------------------------------
