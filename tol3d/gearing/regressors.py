@@ -15,7 +15,7 @@ from tol3d.gearing.model import Contributor, Effect, Measure, Mesh, Model, Plana
 from tol3d.gearing.roads.analytic import analytic_values
 from tol3d.system.regressors import is_group, regress_plainly, regress_term
 from tol3d.system.stated import mean_deviations, stated
-from tol3d.system.taken import taken
+from tol3d.system.taken import ROWS_AT_ONCE, taken
 from tol3d.system.trials import Trials
 
 Array = NDArray[np.float64]
@@ -71,8 +71,15 @@ def _group_term(model: Model, measure: Measure, contributor: Contributor, column
     for name in positions:
         if (column := position_column(name)) in columns:
             positions[name] = np.radians(np.asarray(columns[column], dtype=np.float64))
-    values = analytic_values(model, measure, Trials(deviations, positions))
-    found = values[:, 0] if measure.take == "curve" else taken(measure, values)
+    trials = Trials(deviations, positions)
+    at_once = max(1, ROWS_AT_ONCE // measure.positions.in_a_trial)
+    found = np.concatenate(
+        [
+            values[:, 0] if measure.take == "curve" else taken(measure, values)
+            for first in range(0, len(trials), at_once)
+            for values in [analytic_values(model, measure, trials.part(first, first + at_once))]
+        ]
+    )
     arm = model.mesh(measure.kind.backlashes[0][1].mesh).pair.wheel.base_radius if measure.kind.is_angle else 1.0
     return found, contributor.draw.sigma / arm
 
