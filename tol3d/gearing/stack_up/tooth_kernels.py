@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from tol3d.gearing.effects import FORM, HELIX, SHAPES, SLOPE, UNIFORM
 from tol3d.numerics.compiled import QUICK, kernel, part
+from tol3d.numerics.quick_waves import cos_and_sin
 
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
@@ -109,9 +110,9 @@ def profile_at(gear: GearTeeth, flank: Flank, roll: float) -> tuple[float, float
             out += flank.form * (1.0 / 3.0 - 4.0 * u * u)
             by_place -= 8.0 * flank.form * u
         else:
-            phase = gear.wave_rate * (inside - gear.wave_middle)
-            out += 0.5 * flank.form * math.cos(phase)
-            by_place -= 0.5 * flank.form * gear.wave_rate * length * math.sin(phase)
+            cos, sin = cos_and_sin(gear.wave_rate * (inside - gear.wave_middle))
+            out += 0.5 * flank.form * cos
+            by_place -= 0.5 * flank.form * gear.wave_rate * length * sin
     return out, by_place / length
 
 
@@ -134,7 +135,7 @@ def gone(gear: GearTeeth, mate: GearTeeth, roll: float, tangent: float) -> float
     long and touches that th further on, so that the mate's flank is L - r_bm (t_m - th) away.
     """
     beyond, own, other = roll - gear.tip, gear.base, mate.base
-    cos, sin = math.cos(beyond), math.sin(beyond)
+    cos, sin = cos_and_sin(beyond)
     x = own + other - own * (cos - gear.tip * sin)
     y = tangent - own * (sin + gear.tip * cos)
     length = math.sqrt(max(x * x + y * y - other * other, 0.0))
