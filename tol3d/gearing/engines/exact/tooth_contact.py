@@ -146,6 +146,28 @@ def height(own: DeviatedTooth, mate: DeviatedTooth, low: float, high: float, fac
 
 
 @part
+def touched(
+    mate: DeviatedTooth,
+    gap: float,
+    out: float,
+    roll: float,
+    z: float,
+    wave: tuple[float, float],
+    by: float,
+    along: float,
+) -> Touch:
+    """Of a gap [mm] at a roll [rad] of the mate, which stands out by `out` there; its waves as in near_offset."""
+    turn = gap * mate.per_base
+    if not mate.begin <= roll + turn <= mate.end:
+        return Touch(False, 0.0, 0.0, 0.0)
+    if not is_level(mate):
+        for _ in range(2):  # on the way the foot comes to where the mate stands out by another length
+            there = near_offset(mate, roll + turn, z, wave[0], wave[1], turn + by)
+            turn = (gap + out - there.value) * mate.per_base
+    return Touch(abs(turn + by) < SMALL, gap, turn, along)
+
+
+@part
 def touch(
     own: DeviatedTooth,
     mate: DeviatedTooth,
@@ -202,11 +224,4 @@ def touch(
     if fall >= LAST_FALL or not mate.begin <= mate_roll <= mate.end:
         return unknown
     found = gap - first.value + grown - second.value - fall
-    turn = found * mate.per_base
-    if not mate.begin <= mate_roll + turn <= mate.end:
-        return unknown
-    if not is_level(mate):
-        for _ in range(2):
-            there = near_offset(mate, mate_roll + turn, heights[1], mate_cos, mate_sin, turn + begin - theta)
-            turn = (found + second.value - there.value) * mate.per_base
-    return Touch(abs(turn + begin - theta) < SMALL, found, turn, theta)
+    return touched(mate, found, second.value, mate_roll, heights[1], (mate_cos, mate_sin), begin - theta, theta)
