@@ -263,6 +263,33 @@ def test_more_gaps_agree_with_that_search(name: str, spread: str, flank: Flank) 
     check_against_search(builds)
 
 
+@pytest.mark.slow
+@pytest.mark.parametrize("name", PAIRS)
+@pytest.mark.parametrize("tip", ["driver", "driven"])
+def test_tip_edges_that_touch_agree_with_that_search(name: str, tip: str) -> None:
+    """Gears that grow apart have other base pitches: a tip meets its mate before the path of contact, or after it."""
+    spread = Spread(tilt=0.0, shift=0.02, growth=3e-4, turned=0.01, offset=0.0)
+    builds = random_builds(PAIRS[name], RIGHT, 400, 3, spread=spread, thinner=0.15)
+    seen, engine, pair, made = read(builds), ExactEngine(builds.model), internal_pair(builds), builds.made
+    arm = pair.wheel.base_radius
+    opened = seen.driven_angle + builds.mesh.driven_flank * 0.02 / arm  # 0.02 mm, for a distance of 0 has no direction
+    teeth, near = pair.candidate_teeth(builds.driver_angle, RIGHT)
+    gaps = engine.gaps(made, builds.mesh, RIGHT, (builds.driver_angle, opened), teeth, near)
+    first, rows = np.argmin(np.where(np.isnan(gaps.value), np.inf, gaps.value), axis=1), np.arange(400)
+    seat, angle, points = (
+        (0, builds.driver_angle, gaps.driver_point) if tip == "driver" else (1, opened, gaps.driven_point)
+    )
+    off = points[rows, first] - made.centre_of(seat, angle)
+    gear = (pair.pinion, pair.wheel)[seat]
+    at_tip = np.abs(np.hypot(off[:, 0], off[:, 1]) / made.scale[:, seat] - gear.tip_radius) < 1e-6
+    found = np.flatnonzero(at_tip & gaps.at_end[rows, first] & (seen.status == OK))
+    assert len(found) >= 5
+    for row in found[:5]:
+        turns = (float(builds.driver_angle[row]), float(opened[row]))
+        expected = searched(builds, int(row), turns, RIGHT)
+        assert gaps.value[row, first[row]] == pytest.approx(expected, abs=SEARCH_BOUND)
+
+
 def seats(builds: Builds, reading: Reading) -> Meshing:
     return Meshing(ExactEngine(builds.model), builds.model, builds.mesh, builds.made, reading)
 
