@@ -7,6 +7,7 @@ import pytest
 from numpy.typing import NDArray
 from scipy.stats import kstest
 
+from tol3d.gearing.normal_pitch_draw import NormalPitchDraw
 from tol3d.gearing.pitch_draw import Pattern, PitchDraw, PitchLimits, RandomWalk, RunOutAndRandom
 
 Array = NDArray[np.float64]
@@ -95,3 +96,51 @@ def test_ends_are_as_full_as_limits_get_along_the_steepest_direction() -> None:
     assert ends[0] == pytest.approx(-ends[1])
     assert filled(ends.T) == pytest.approx([0.9, 0.9])
     assert np.asarray(np.corrcoef(ends[0], slopes))[0, 1] == pytest.approx(1.0)
+
+
+# normal pitches -------------------------------------------------------------------------------------------------
+
+
+def normal(cpk: float, cumulative: float, sides: tuple[str, ...] = ("",)) -> NormalPitchDraw:
+    return NormalPitchDraw(20, sides, RandomWalk(), PitchLimits(0.006, cumulative), (1.0, 1.0), cpk)
+
+
+def test_normal_pitches_have_their_capability_and_sum_to_zero() -> None:
+    """F_p far away: f_k normal with f_p/(3 cpk), each two correlate by -1/(z - 1)."""
+    index = drawn(normal(1.33, 1.0))
+    pitches = index - np.roll(index, 1, axis=0)
+    sigma = 0.006 / (3 * 1.33)
+    assert np.abs(pitches.sum(axis=0)).max() < 1e-16
+    assert np.abs(index.mean(axis=0)).max() < 1e-17
+    assert pitches.std() == pytest.approx(sigma, rel=4.5 / math.sqrt(2 * 19 * COUNT))
+    for tooth in (0, 7, 19):
+        assert kstest(pitches[tooth] / sigma, "norm").pvalue > 1e-4
+    seen = np.asarray(np.corrcoef(pitches))
+    assert np.mean(seen[~np.eye(20, dtype=bool)]) == pytest.approx(-1 / 19, abs=1e-3)
+
+
+def test_gears_beyond_the_cumulative_limit_are_none() -> None:
+    """A limit that a third of such gears exceeds; sorted gears, whose patterns are others too, spread 6 % less."""
+    free, cut = drawn(normal(1.0, 1.0), 20_000), drawn(normal(1.0, 0.010), 20_000, seed=8)
+    spread = np.ptp(free, axis=0)
+    assert 0.2 < np.mean(spread > 0.010) < 0.7
+    assert np.ptp(cut, axis=0).max() <= 0.010 * (1 + 1e-12)
+    kept = free[:, spread <= 0.010]
+    assert cut.std() == pytest.approx(1.06 * kept.std(), rel=0.02)
+
+
+def test_normal_pitches_say_their_moments_and_are_the_same_alone() -> None:
+    draw = normal(1.0, 0.014, ("right", "left"))
+    index = drawn(draw)
+    seen = index @ index.T / COUNT
+    around = [np.mean([seen[k, (k + apart) % 20] for k in range(20)]) for apart in range(20)]
+    assert around == pytest.approx(draw.covariance[0, :20], abs=0.05 * draw.sigma**2)
+    uniforms = np.random.default_rng(7).random((draw.uniforms, 300))
+    whole = np.stack(draw.deviations(*uniforms))
+    for trial in (0, 17, 299):
+        alone = np.stack(draw.deviations(*uniforms[:, trial : trial + 1]))
+        assert alone[:, 0].tobytes() == np.ascontiguousarray(whole[:, trial]).tobytes()
+    ends = draw.ends(lambda rows: rows[:, 0] - rows[:, 10], turning=False)
+    assert ends[0] == pytest.approx(-ends[1])
+    assert np.ptp(ends[0, :20]) <= 0.014 * (1 + 1e-12)
+    assert ends[0, 0] > draw.sigma

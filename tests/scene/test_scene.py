@@ -122,6 +122,9 @@ def test_every_field_uses_every_field_of_every_kind(tmp_path: Path) -> None:
     law = f"{{kind: given, right: [{arcs}], left: [{arcs}]}}"
     measured = f"tolerances: {{pitch: {{kind: pitch_deviation, of: a, flanks: each, law: {law}}}}}"
     said |= set(fields_said(load(tmp_path, f"{SMALL}{measured}\n", GEARS)))
+    normal = "limits: {iso_class: 6}, law: {kind: normal, cpk: 1.33}"
+    capable = f"tolerances: {{pitch: {{kind: pitch_deviation, of: a, flanks: each, {normal}}}}}"
+    said |= set(fields_said(load(tmp_path, f"{SMALL}{capable}\n", GEARS)))
     said |= {use for text in shoulders() for use in fields_said(load(tmp_path, text, GEARS))}
     assert unsaid(known, said) == set()
 

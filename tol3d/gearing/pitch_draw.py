@@ -9,7 +9,7 @@ round the gear they sum to zero whatever F is.
 import math
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import pairwise
 from typing import Final
@@ -172,7 +172,7 @@ class PitchDraw:
         """Index deviations of one side, (NET, teeth) [mm]; the same for every study."""
         generator = np.random.Generator(np.random.Philox(key=self.teeth))
         uniforms = 1.0 - generator.random((self._side_uniforms, NET))  # in (0, 1]
-        one = PitchDraw(self.teeth, ("",), self.pattern, self.limits, self.fill)
+        one = replace(self, sides=("",))
         return np.stack(one.deviations(*np.minimum(uniforms, 1 - 1e-12)), axis=-1)
 
     @cached_property

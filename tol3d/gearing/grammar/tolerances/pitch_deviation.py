@@ -18,6 +18,7 @@ from tol3d.gearing.grammar.tolerances.flank_tolerance import (
     no_word,
 )
 from tol3d.gearing.grammar.tolerances.record_law import RecordSpec
+from tol3d.gearing.normal_pitch_draw import NormalPitchDraw
 from tol3d.gearing.pitch_draw import (
     GivenDraw,
     Pattern,
@@ -104,6 +105,13 @@ class RunOutAndRandomSpec(FilledSpec):
         return RunOutAndRandom(self.run_out)
 
 
+class NormalPitchSpec(Strict):
+    """Single pitches are normal with 3 cpk sigma at f_p, sum to zero, and no index deviations spread beyond F_p."""
+
+    kind: Literal["normal"]
+    cpk: float = Field(gt=0.0, description="how far the process fills f_p, as ISO 22514-2 has it")
+
+
 class GivenSpec(Strict):
     """Index deviations of a gear that was measured, from tooth 0 on, in every trial the same."""
 
@@ -144,7 +152,7 @@ class PitchRecordSpec(RecordSpec):
 
 
 Law = Annotated[
-    RandomWalkSpec | RunOutAndRandomSpec | GivenSpec | PitchRecordSpec,
+    RandomWalkSpec | RunOutAndRandomSpec | NormalPitchSpec | GivenSpec | PitchRecordSpec,
     Field(discriminator="kind", description="how deviations go round the gear, and how far they fill the limits"),
     no_word("a law such as {kind: random_walk, fill: [0.7, 1]}"),
 ]
@@ -189,6 +197,8 @@ class PitchDeviationSpec(FlankToleranceSpec):
             names = tooth_names(gear.teeth, self.sides)
             return GivenDraw(names, tuple(chain.from_iterable(arcs)), f"measured in {self.law.file}")
         limits = PitchLimitsSpec.of(self._limits, gear)
+        if isinstance(self.law, NormalPitchSpec):
+            return NormalPitchDraw(gear.teeth, self.sides, RandomWalk(), limits, (1.0, 1.0), self.law.cpk)
         return PitchDraw(gear.teeth, self.sides, self.law.pattern, limits, self.law.fill)
 
     def file_names(self) -> Iterator[tuple[KeyPath, str]]:
