@@ -1,16 +1,32 @@
 """Springs of flexible carriers against torques: breakaway, the region of low stiffness, loops by friction."""
 
 import math
+import re
 from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 from numpy.typing import NDArray
-from planetary_sets import CLEARANCE, KAPPA, R_S, flexible, pitch_rows, random_deviations, reducer_3k, thinned
+from places import ROOT
+from planetary_sets import (
+    ARCMIN,
+    CLEARANCE,
+    KAPPA,
+    R_R2,
+    R_S,
+    flexible,
+    pitch_rows,
+    random_deviations,
+    reducer_3k,
+    thinned,
+)
 from scipy.optimize import linprog
 
 from tol3d.errors import InputError
 from tol3d.planetary.deviated import Deviated
+from tol3d.planetary.hysteresis import hysteresis
 from tol3d.planetary.planetary_set import PlanetarySet
 from tol3d.planetary.spring_curve import LeafSpring, breakaway, turns_under
 from tol3d.planetary.stack_up import StackUp
@@ -163,12 +179,57 @@ def test_breakaway_torques_part_what_stays_from_what_turns(seed: int) -> None:
         found = turns_under(own, deviated, end * np.array([1e-3, 0.999, 1.001, 1.01]), "sun", spring)
         assert found[1] == pytest.approx(found[0], abs=1e-12)
         assert (found[3] - found[2]) * (2 * sense - 1) > 1e-4
-    equal = breakaway(own, thinned(*3 * (CLEARANCE,)), "sun", spring)
     breaking = (spring.force + spring.friction) * R_S * (1 - KAPPA) / (4 * (1 + KAPPA))
-    np.testing.assert_allclose(equal, [-breaking, breaking], rtol=1e-8)
+    np.testing.assert_allclose(ends, [-breaking, breaking], rtol=1e-7)  # bends are found to 1e-9 rad of 0.1 rad
 
 
 @pytest.mark.parametrize("values", [(0.0, 1.0, 0.0), (1.0, -1.0, 0.0), (1.0, 1.0, 2.0), (math.nan, 1.0, 0.0)])
 def test_leaf_springs_without_a_meaning_are_refused(values: tuple[float, float, float]) -> None:
     with pytest.raises(InputError, match="expected"):
         LeafSpring(*values)
+
+
+# there and back -------------------------------------------------------------------------------------------------
+
+
+def test_a_loop_says_what_is_left_without_torque_and_what_a_rigid_carrier_leaves() -> None:
+    """Gaps alike in all planets: 2 |D|/rR2 at the output, D = c_c - kappa c_b - (1 - kappa)(c_a + c_b)/2."""
+    own, gaps = flexible(), (0.02, 0.03, 0.035)
+    loop = hysteresis(own, thinned(*gaps), "ring 2", LeafSpring(60.0, 4000.0, 9.0), 900.0, steps=30)
+    off = gaps[2] - KAPPA * gaps[1] - (1 - KAPPA) * (gaps[0] + gaps[1]) / 2
+    assert loop.lost_motion == pytest.approx(2 * abs(off) / R_R2, abs=1e-9)
+    rigid = 2 * (gaps[0] * (1 - KAPPA) / 2 + gaps[1] * (1 + KAPPA) / 2 + gaps[2]) / R_R2
+    assert loop.rigid[1] - loop.rigid[0] == pytest.approx(rigid, abs=1e-9)
+    assert loop.torques[[0, 30, 60, 90, 120, 150]].tolist() == [0.0, 900.0, 0.0, -900.0, 0.0, 900.0]
+    rows = [line.split(",") for line in loop.csv().splitlines()]
+    assert rows[0] == ["torque [N mm]", "turn [arcmin]"]
+    np.testing.assert_allclose(np.array(rows[1:], float), np.stack([loop.torques, loop.turns / ARCMIN], axis=1))
+
+
+WRONG = {
+    "another shaft": ({"shaft": "carrier"}, "expected 'sun' or 'ring 2', got 'carrier'"),
+    "no peak": ({"peak": 0.0}, "peak: expected more than 0 N mm, got 0.0"),
+    "no steps": ({"steps": 0}, "steps: expected 1 or more, got 0"),
+    "two trials": ({"deviated": thinned(0.03, 0.03, 0.03, 2)}, "deviations of one trial, got those of 2"),
+}
+
+
+@pytest.mark.parametrize(("change", "said"), WRONG.values(), ids=WRONG.keys())
+def test_loops_without_a_meaning_are_refused(change: dict[str, Any], said: str) -> None:
+    given: dict[str, Any] = {"own": flexible(), "deviated": thinned(0.03, 0.03, 0.03), "shaft": "sun", "peak": 1.0}
+    with pytest.raises(InputError, match=said):
+        hysteresis(**(given | {"spring": LeafSpring(60.0, 1.0)} | change))
+
+
+def test_the_page_s_program_draws_what_the_page_says(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    page = (ROOT / "docs" / "planetary.md").read_text("utf-8")
+    (program,) = re.findall(r"^```python\n(.*?)^```", page, re.MULTILINE | re.DOTALL)
+    (tmp_path / "scenes").symlink_to(ROOT / "scenes")
+    monkeypatch.chdir(tmp_path)
+    names: dict[str, Any] = {}
+    exec(compile(program, "docs/planetary.md", "exec"), names)
+    loop = names["loop"]
+    assert f"gives way at {loop.breakaway[1]:.0f} N mm. Below it {loop.lost_motion / ARCMIN:.2f}′ are left" in page
+    assert f"the {(loop.rigid[1] - loop.rigid[0]) / ARCMIN:.2f}′ that a rigid carrier leaves" in page
+    assert (tmp_path / "torque_curve.csv").read_text("utf-8") == loop.csv()
+    assert (tmp_path / "torque_curve.png").stat().st_size > 10_000

@@ -73,10 +73,12 @@ def displaced_ends(own: PlanetarySet, deviated: Deviated, shaft: str, turns: flo
         turns: of the output, at which gears stand.
 
     Raises:
-        InputError: no spring or several, or planets that find no room.
+        InputError: no spring or several, several trials, or planets that find no room.
     """
     if len(own.springs) != 1:
         raise InputError(f"expected a flexible carrier with one spring, got {len(own.springs)}")
+    if len(deviated.pins) != 1:
+        raise InputError(f"expected the deviations of one trial, got those of {len(deviated.pins)}")
     programme = _Programme(own, shaft, *StackUp(own).sides(deviated, np.array([turns])))
     least, closed = programme.room()
     return DisplacedEnds(*(_straights(programme, end, least, closed) for end in (0, 1)))

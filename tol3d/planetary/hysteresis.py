@@ -1,0 +1,87 @@
+"""A shaft turned there and back against the spring of a flexible carrier: the torque curve of one trial."""
+
+import math
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tol3d.errors import InputError
+from tol3d.planetary.deviated import Deviated
+from tol3d.planetary.displaced_ends import displaced_ends
+from tol3d.planetary.planetary_set import PlanetarySet
+from tol3d.planetary.spring_curve import LeafSpring, breakaway, turns_under
+
+Array = NDArray[np.float64]
+
+ARCMIN: Final = math.radians(1 / 60)
+
+
+@dataclass(frozen=True)
+class Hysteresis:
+    """From no torque to the peak, to the same backwards, and to the peak again.
+
+    Args:
+        shaft: that is turned, the opposite one held.
+        torques: on it (steps,) [N mm], positive is counter-clockwise.
+        turns: its turn (steps,) [rad].
+        breakaway: torques from which it turns, clockwise and counter-clockwise [N mm].
+        rigid: ends of its play with a rigid carrier [rad].
+    """
+
+    shaft: str
+    torques: Array
+    turns: Array
+    breakaway: tuple[float, float]
+    rigid: tuple[float, float]
+
+    @property
+    def lost_motion(self) -> float:
+        """Turn between the last ways through no torque, back and on [rad]: what springs and friction leave."""
+        quarter = len(self.torques) // 5
+        return float(self.turns[2 * quarter] - self.turns[4 * quarter])
+
+    def csv(self) -> str:
+        """A row a step."""
+        rows = [f"{torque!r},{turn!r}" for torque, turn in zip(self.torques.tolist(), self.minutes, strict=True)]
+        return "\n".join(["torque [N mm],turn [arcmin]", *rows, ""])
+
+    @property
+    def minutes(self) -> list[float]:
+        """Turns [arcmin]."""
+        return [float(turn) for turn in self.turns / ARCMIN]
+
+
+def hysteresis(
+    own: PlanetarySet, deviated: Deviated, shaft: str, spring: LeafSpring, peak: float, steps: int = 100
+) -> Hysteresis:
+    """That of one trial, at the first position of the gears; see spring_curve.turns_under.
+
+    Args:
+        own: a set with one spring.
+        deviated: of one trial.
+        shaft: the input or the output.
+        spring: its force, stiffness and friction.
+        peak: largest torque [N mm].
+        steps: torques from none to the peak.
+
+    Raises:
+        InputError: another shaft, no peak, no spring or several, or planets that find no room.
+    """
+    if shaft not in (own.input, own.output):
+        raise InputError(f"shaft: expected {own.input!r} or {own.output!r}, got {shaft!r}")
+    if not (math.isfinite(peak) and peak > 0.0):
+        raise InputError(f"peak: expected more than 0 N mm, got {peak}")
+    if steps < 1:
+        raise InputError(f"steps: expected 1 or more, got {steps}")
+    rising = np.arange(steps + 1) / steps
+    falling = rising[-2::-1]
+    torques = peak * np.concatenate([rising, falling, -rising[1:], -falling, rising[1:]])
+    return Hysteresis(
+        shaft,
+        torques,
+        turns_under(own, deviated, torques, shaft, spring),
+        breakaway(own, deviated, shaft, spring),
+        displaced_ends(own, deviated, shaft).at(0.0),
+    )
