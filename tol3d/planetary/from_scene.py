@@ -8,6 +8,7 @@ from tol3d.gearing.grammar.parts.gear import GearSpec
 from tol3d.gearing.grammar.tolerances.clocking import ClockingSpec
 from tol3d.gearing.grammar.tolerances.eccentricity import EccentricitySpec
 from tol3d.gearing.grammar.tolerances.tooth_thickness import ToothThicknessSpec
+from tol3d.gearing.model.pairs.spur_pair import cylindrical_gear
 from tol3d.planetary.deviated import Acts
 from tol3d.planetary.draws import EachPlanar
 from tol3d.planetary.grammar.measures.planetary_lost_motion import PlanetaryLostMotionSpec
@@ -43,7 +44,8 @@ def planetary_system(scene: Scene) -> PlanetarySystem:
         unit, per_unit = UNITS[spec.dimensions[0]]
         contributors.append(PlainContributor(name, spec.kind, draw, unit, per_unit, spec.description))
     measures = {name: _measure(scene, own, name, spec) for name, spec in scene.measures.items()}
-    return PlanetarySystem(scene.scene, tuple(contributors), tuple(measures.values()), own, acts, measures)
+    made = {gear.name: cylindrical_gear(scene, gear.name) for gear in own.all_gears}
+    return PlanetarySystem(scene.scene, tuple(contributors), tuple(measures.values()), own, acts, measures, made)
 
 
 def _acts(scene: Scene, own: PlanetarySet, name: str, spec: Any) -> Acts:

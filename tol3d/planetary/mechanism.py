@@ -15,4 +15,6 @@ PLANETARY: Final = Mechanism(
     includes=("gearing",),
     engines=("exact",),
     system="tol3d.planetary.from_scene:planetary_system",
+    presenter="tol3d.planetary.presenting",
+    requires=("cadquery",),
 )

@@ -172,6 +172,11 @@ class PlanetarySet:
         return (*(mesh.central.name for mesh in self.meshes), self.carrier)
 
     @property
+    def all_gears(self) -> tuple[SetGear, ...]:
+        """Central gears, then those of a planet."""
+        return (*(mesh.central for mesh in self.meshes), *self.gears)
+
+    @property
     def centre_distance(self) -> float:
         """Of all meshes [mm]."""
         return self.meshes[0].centre_distance

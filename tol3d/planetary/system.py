@@ -13,6 +13,7 @@ from tol3d.planetary.programme import ranges
 from tol3d.planetary.regressors import regress
 from tol3d.planetary.roads import PlanetaryRoad
 from tol3d.planetary.set_trials import SetTrials
+from tol3d.planetary.shown import Made, ShownSet, shown_set
 from tol3d.planetary.stack_up import StackUp
 from tol3d.planetary.statuses import STATUSES
 from tol3d.system.contributor import Contributor
@@ -20,6 +21,7 @@ from tol3d.system.measure import Measure
 from tol3d.system.road import ANALYTIC_ROAD, Road, RoadKind
 from tol3d.system.statuses import Statuses
 from tol3d.system.system import Columns, KeyPath
+from tol3d.system.trials import Trials
 
 Array = NDArray[np.float64]
 
@@ -31,7 +33,13 @@ ROADS: Final[Mapping[str, RoadKind]] = {
 
 @dataclass(frozen=True)
 class PlanetarySystem(SetTrials):
-    """Implements System."""
+    """Implements System.
+
+    Args:
+        made: its gears by their names, nominal, to be shown.
+    """
+
+    made: Made
 
     roads: ClassVar[Mapping[str, RoadKind]] = ROADS
     statuses: ClassVar[Statuses] = STATUSES
@@ -69,3 +77,7 @@ class PlanetarySystem(SetTrials):
     ) -> None:
         """See System: offsets as they lie seen from the planets."""
         regress(self, self.planetary_measures[measure.name], contributors, columns, rows)
+
+    def display(self, trials: Trials, road: Road) -> ShownSet:
+        """Its gears in the first trial, see System."""
+        return shown_set(self.own, self.made, self.deviated(trials), float(trials.positions[self.own.name][0]))

@@ -1,0 +1,38 @@
+"""What a scene's planetary set is, in tables."""
+
+import math
+from collections.abc import Sequence
+
+from tol3d.planetary.set_trials import SetTrials
+from tol3d.report.page import Heading, PageItem, Row, Table, line
+from tol3d.report.system_check import system_blocks
+from tol3d.study.simulation import Simulation
+
+
+def check_blocks(simulation: Simulation) -> Sequence[PageItem]:
+    """Ratio and meshes, then what any system shows."""
+    system = simulation.system
+    assert isinstance(system, SetTrials)
+    own = system.own
+    rows = [
+        Row(
+            mesh.name,
+            [
+                f"{mesh.central.teeth}",
+                f"{mesh.planet.teeth}",
+                f"{math.degrees(mesh.working_pressure_angle):.4f}",
+                f"{2e3 * mesh.clearance:z.3f}",
+                f"{mesh.tight_centre_distance:.4f}",
+            ],
+        )
+        for mesh in own.meshes
+    ]
+    heads = ("teeth", "of the planet", "working pressure angle [°]", "normal backlash [µm]", "tight at a [mm]")
+    ratio = f"{own.name}: {own.input} to {own.output}, {own.held} held: ratio {float(own.ratio):.6g} = {own.ratio}"
+    planets = f"{own.planets} planets, centre distance {own.centre_distance:.4f} mm; all teeth meet again after "
+    return (
+        line(ratio),
+        line(f"{planets}{own.period_planet_turns} turns of the planets"),
+        Table("mesh, nominal", [Heading(head) for head in heads], rows),
+        *system_blocks(simulation),
+    )

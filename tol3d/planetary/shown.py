@@ -1,0 +1,123 @@
+"""A planetary set as it stands in one trial, at one end of its lost motion: every gear with its pose."""
+
+import math
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tol3d.gearing.placed import PlacedGear
+from tol3d.gears import InternalGear, SpurGear
+from tol3d.planetary.contact import Contact
+from tol3d.planetary.deviated import Deviated
+from tol3d.planetary.planetary_set import PlanetarySet, SetMesh
+
+Array = NDArray[np.float64]
+
+Made = Mapping[str, SpurGear | InternalGear]
+"""Nominal gears by their names."""
+
+BETWEEN = 0.2  # of a face width; free room between gears of a planet along the axis
+
+
+@dataclass(frozen=True, eq=False)
+class ShownSet:
+    """Gears of a set, the output turned as far as it goes counter-clockwise; nominal where the set jams.
+
+    Args:
+        own: the set.
+        gears: central gears, then those of each planet.
+        status: 0 where it seats; see tol3d.planetary.programme.
+    """
+
+    own: PlanetarySet
+    gears: tuple[PlacedGear, ...]
+    status: int
+
+
+def shown_set(own: PlanetarySet, made: Made, deviated: Deviated, turns: float) -> ShownSet:
+    """A set of one trial where its output stands after so many turns.
+
+    Args:
+        own: the set.
+        made: its gears by name, nominal.
+        deviated: of one trial.
+        turns: of the output.
+    """
+    free, reached = Contact(own).seated(deviated, np.array([turns]), own.output, own.opposite(own.output))
+    at = np.nan_to_num(reached[0, 1])
+    carrier = -2 * math.pi * float(own.turn(own.held) * own.planet_turns) * turns
+    gears = (*_centrals(own, made, deviated, turns, at, carrier), *_planets(own, made, deviated, turns, at, carrier))
+    return ShownSet(own, gears, int(free.status[0]))
+
+
+def _heights(own: PlanetarySet, made: Made) -> list[float]:
+    """Middles of the faces of a planet's gears along the axis [mm]; the first lies at 0."""
+    heights, above = [], 0.0
+    for k, gear in enumerate(own.gears):
+        width = made[gear.name].face_width
+        heights.append(above + width / 2 if k else 0.0)
+        above = heights[-1] + width * (0.5 + BETWEEN)
+    return heights
+
+
+def _centrals(
+    own: PlanetarySet,
+    made: Made,
+    deviated: Deviated,
+    turns: float,
+    at: Array,
+    carrier: float,
+) -> Iterator[PlacedGear]:
+    heights = _heights(own, made)
+    for m, mesh in enumerate(own.meshes):
+        angle = carrier + 2 * math.pi * float(own.turn(mesh.central.name) * own.planet_turns) * turns
+        angle += at[m] + deviated.central_clocking[0, m]
+        place = _turned(deviated.central_offset[0, m], angle)
+        thick = deviated.central_thickness[0, m] / (mesh.central.module * mesh.central.teeth)
+        pose = _pose(angle + _facing(mesh), place, heights[own.gear_of(mesh)])
+        yield PlacedGear(mesh.central.name, made[mesh.central.name], pose, float(thick), 1.0)
+
+
+def _planets(
+    own: PlanetarySet,
+    made: Made,
+    deviated: Deviated,
+    turns: float,
+    at: Array,
+    carrier: float,
+) -> Iterator[PlacedGear]:
+    """Tooth 0 of the first planet's gears points outwards where nothing has turned."""
+    heights, count = _heights(own, made), len(own.meshes)
+    for k in range(own.planets):
+        pushed = sum(at[count + 1 + own.planets + j] * spring.sense(k) for j, spring in enumerate(own.springs))
+        arm = carrier + own.azimuths[k] + at[count] + pushed / own.centre_distance
+        pin = _turned(np.array([own.centre_distance + deviated.pins[0, k, 0], deviated.pins[0, k, 1]]), arm)
+        for g, gear in enumerate(own.gears):
+            angle = carrier + 2 * math.pi * float(own.planet_turns) * turns + own.azimuths[k] + own.phase(k)
+            angle += at[count + 1 + k] + deviated.planet_clocking[0, g, k]
+            place = pin + _turned(deviated.planet_offset[0, g, k], angle)
+            thick = deviated.planet_thickness[0, g, k] / (gear.module * gear.teeth)
+            pose = _pose(angle, place, heights[g])
+            yield PlacedGear(f"{gear.name} of planet {k + 1}", made[gear.name], pose, float(thick), 1.0)
+
+
+def _facing(mesh: SetMesh) -> float:
+    """Where tooth 0 of a central gear stands on its x [rad]: a space of it takes up the tooth of the first planet."""
+    if mesh.central.is_ring or mesh.planet.teeth % 2 == 0:
+        return math.pi / mesh.central.teeth
+    return 0.0  # the planet's side towards the axis has a space
+
+
+def _turned(vector: Array, angle: float) -> Array:
+    cos, sin = math.cos(angle), math.sin(angle)
+    return np.array([cos * vector[0] - sin * vector[1], sin * vector[0] + cos * vector[1]])
+
+
+def _pose(angle: float, place: Array, height: float) -> Array:
+    pose = np.eye(4)
+    cos, sin = math.cos(angle), math.sin(angle)
+    pose[:2, :2] = [[cos, -sin], [sin, cos]]
+    pose[:3, 3] = (place[0], place[1], height)
+    return pose
