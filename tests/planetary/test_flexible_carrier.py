@@ -84,37 +84,51 @@ def test_springs_leave_what_unequal_gaps_do_not_close(
     assert found == pytest.approx(2 * abs(off) / R_R2, abs=1e-9)
 
 
-def pressed_by_highs(own: PlanetarySet, deviated: Deviated, trial: int, turns: float) -> float:
-    """Free turn of the output where one spring has gone as far as it can, and then is held."""
+def left_by_highs(own: PlanetarySet, deviated: Deviated, trial: int, turns: float) -> float | None:
+    """Free turn of the output where springs have gone as far as 1 and 0.8 N push, or as set; None: no room."""
     found = pitch_rows(own, deviated, trial, turns)
-    centrals = len(own.meshes)
-    column = []
-    for k in range(own.planets):
-        sense = 1.0 if k in own.springs[0].forward else -1.0
-        column += [-sense * (-1 if mesh.central.is_ring else 1) for mesh in own.meshes]
-    rows = np.column_stack([found.rows, column])
+    columns = [
+        [-spring.sense(k) * (-1 if mesh.central.is_ring else 1) for k in range(own.planets) for mesh in own.meshes]
+        for spring in own.springs
+    ]
+    rows = np.column_stack([found.rows, *columns])
     both = np.vstack([rows, -rows]), np.concatenate([found.upper, -found.lower])
     bounds: list[tuple[float | None, float | None]] = [(None, None)] * rows.shape[1]
     for name in (own.held, own.input):
         bounds[own.shafts.index(name)] = (0.0, 0.0)
-    push = np.zeros(rows.shape[1])
-    push[-1] = -1.0
-    most = -linprog(push, A_ub=both[0], b_ub=both[1], bounds=bounds).fun
-    bounds[-1] = (most - 1e-11, most - 1e-11)
+    forces = np.zeros(rows.shape[1])
+    places = range(rows.shape[1] - len(own.springs), rows.shape[1])
+    forces[list(places)] = [1.0, 0.8][: len(own.springs)]
+    pushed = linprog(-forces, A_ub=both[0], b_ub=both[1], bounds=bounds)
+    for place, spring in zip(places, own.springs, strict=True):
+        at = float(pushed.x[place]) if spring.displacement is None else spring.displacement
+        slack = 1e-11 if spring.displacement is None else 0.0
+        bounds[place] = (at - slack, at - slack)
     turn = np.zeros(rows.shape[1])
     turn[own.shafts.index(own.output)] = 1.0
-    ends = [sense * linprog(sense * turn, A_ub=both[0], b_ub=both[1], bounds=bounds).fun for sense in (1.0, -1.0)]
-    assert centrals == 3
-    return float(ends[1] - ends[0])
+    ends = [linprog(sense * turn, A_ub=both[0], b_ub=both[1], bounds=bounds) for sense in (1.0, -1.0)]
+    return None if ends[0].status == 2 else float(-ends[1].fun - ends[0].fun)
 
 
-def test_a_pressed_set_is_that_of_highs() -> None:
-    own, rng = flexible(), np.random.default_rng(4)
+SETS = {
+    "one spring": flexible(),
+    "two springs": flexible(springs=PAIRS),
+    "set to 0.01 mm": flexible(0.01),
+    "set to 0.02 mm": flexible(0.02),
+}
+
+
+@pytest.mark.parametrize("own", SETS.values(), ids=SETS.keys())
+def test_what_is_left_is_that_of_highs(own: PlanetarySet) -> None:
+    """Of unequal gaps, pins and clocking."""
+    rng = np.random.default_rng(4)
     deviated, turns = random_deviations(own, 25, rng), rng.uniform(0, 9, 25)
     found = StackUp(own).free(deviated, turns, "ring 2", "sun")
-    for trial in range(25):
-        wanted = pressed_by_highs(own, deviated, trial, turns[trial])
-        assert found.ends[trial, 1] - found.ends[trial, 0] == pytest.approx(wanted, abs=2e-9)
+    wanted = [left_by_highs(own, deviated, trial, turns[trial]) for trial in range(25)]
+    assert found.status.tolist() == [int(left is None) for left in wanted]
+    assert sum(left is not None for left in wanted) > 15
+    for ends, left in zip(found.ends, wanted, strict=True):
+        assert left is None or ends[1] - ends[0] == pytest.approx(left, abs=2e-9)
 
 
 @pytest.mark.parametrize("springs", [(), ONE, PAIRS], ids=["rigid", "one spring", "two pairs"])
