@@ -16,8 +16,8 @@ from tol3d.gears.flank import LEFT, RIGHT
 
 Array = NDArray[np.float64]
 
-WORKED_OUT: Any = beside.py_func  # type: ignore[attr-defined]
-BOUND: Any = edge_gap.py_func  # type: ignore[attr-defined]
+COMPILED: tuple[Any, Any] = (beside, edge_gap)
+WORKED_OUT, BOUND = (own.py_func for own in COMPILED)
 POSITIONS = 320  # a turn of the driver, 16 a tooth
 ALL = f"{PITCH}\n{SHAPES}"
 ECCENTRIC = "  {gear} run-out: {{kind: eccentricity, of: {gear}, distribution: {{kind: rayleigh, scale: 8 um}}}}"

@@ -228,6 +228,27 @@ def test_the_readme_s_figures_are_those_of_the_pages() -> None:
     assert [number for number in numbers if not re.search(rf"(?<![\d.]){re.escape(number)}(?![\d.])", pages)] == []
 
 
+SOURCE = ("Jiang, Zhong, Lü, Lai, Jin", "Gear backlash modeling and", "doi.org/10.3785/j.issn.1008-973X.2024.08.001")
+"""Authors, title and DOI of the paper that the robot is from, on the page that README leads to."""
+
+
+@pytest.mark.parametrize(
+    ("page", "words"),
+    [
+        ("docs/paper.md", SOURCE),
+        ("docs/limits.md", ("3DCS", "KISSsoft", "otaf", "a spreadsheet", "made for", "loads, strength, wear")),
+        ("docs/manual.md", ("GB", "the first of the two commands took", "Linux x86-64 with Python", "Windows are not")),
+    ],
+)
+def test_what_a_stranger_asks_first_is_in_the_readme_or_a_page_that_it_links(page: str, words: tuple[str, ...]) -> None:
+    """Whose robot, what others do better, what it takes to set up and where it runs."""
+    readme = text("README.md")
+    assert f"]({page})" in readme
+    assert SOURCE[-1] in readme
+    assert "## What it is not for" in readme
+    assert [word for word in words if word not in text(page)] == []
+
+
 WORDS_A_MINUTE = 240
 
 
