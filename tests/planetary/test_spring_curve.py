@@ -27,6 +27,7 @@ from scipy.optimize import linprog
 from tol3d.errors import InputError
 from tol3d.planetary.deviated import Deviated
 from tol3d.planetary.hysteresis import hysteresis
+from tol3d.planetary.hysteresis_picture import draw_hysteresis
 from tol3d.planetary.planetary_set import PlanetarySet
 from tol3d.planetary.spring_curve import LeafSpring, breakaway, turns_under
 from tol3d.planetary.stack_up import StackUp
@@ -199,11 +200,23 @@ def test_a_loop_says_what_is_left_without_torque_and_what_a_rigid_carrier_leaves
     off = gaps[2] - KAPPA * gaps[1] - (1 - KAPPA) * (gaps[0] + gaps[1]) / 2
     assert loop.lost_motion == pytest.approx(2 * abs(off) / R_R2, abs=1e-9)
     rigid = 2 * (gaps[0] * (1 - KAPPA) / 2 + gaps[1] * (1 + KAPPA) / 2 + gaps[2]) / R_R2
+    assert loop.rigid is not None
     assert loop.rigid[1] - loop.rigid[0] == pytest.approx(rigid, abs=1e-9)
     assert loop.torques[[0, 30, 60, 90, 120, 150]].tolist() == [0.0, 900.0, 0.0, -900.0, 0.0, 900.0]
     rows = [line.split(",") for line in loop.csv().splitlines()]
     assert rows[0] == ["torque [N mm]", "turn [arcmin]"]
     np.testing.assert_allclose(np.array(rows[1:], float), np.stack([loop.torques, loop.turns / ARCMIN], axis=1))
+
+
+def test_a_spring_makes_room_where_pins_of_a_rigid_carrier_would_jam(tmp_path: Path) -> None:
+    """Planets are off their places by 0.04 mm against the sense of the spring: it has 0.04 mm farther to go."""
+    own, off, spring = flexible(), thinned(*3 * (CLEARANCE,)), LeafSpring(60.0, 500.0)
+    off.pins[0, :, 1] = [-0.04, 0.04, -0.04, 0.04]
+    loop = hysteresis(own, off, "sun", spring, 15.0)
+    assert loop.rigid is None
+    there = hysteresis(own, thinned(*3 * (CLEARANCE,)), "sun", spring, 15.0)
+    np.testing.assert_allclose(loop.turns, there.turns, rtol=0, atol=1e-8)
+    draw_hysteresis(loop, tmp_path / "loop.png")
 
 
 WRONG = {

@@ -54,6 +54,11 @@ class DisplacedEnds:
     high: Straights
 
     @property
+    def least(self) -> float:
+        """Displacement from which on there is room [mm]."""
+        return float(self.low.knots[0])
+
+    @property
     def closed(self) -> float:
         """Displacement at which contacts stop the planets [mm]."""
         return float(self.low.knots[-1])

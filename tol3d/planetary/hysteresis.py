@@ -27,14 +27,14 @@ class Hysteresis:
         torques: on it (steps,) [N mm], positive is counter-clockwise.
         turns: its turn (steps,) [rad].
         breakaway: torques from which it turns, clockwise and counter-clockwise [N mm].
-        rigid: ends of its play with a rigid carrier [rad].
+        rigid: ends of its play with a rigid carrier [rad]; None where that has no room.
     """
 
     shaft: str
     torques: Array
     turns: Array
     breakaway: tuple[float, float]
-    rigid: tuple[float, float]
+    rigid: tuple[float, float] | None
 
     @property
     def lost_motion(self) -> float:
@@ -77,11 +77,12 @@ def hysteresis(
         raise InputError(f"steps: expected 1 or more, got {steps}")
     rising = np.arange(steps + 1) / steps
     falling = rising[-2::-1]
+    ends = displaced_ends(own, deviated, shaft)
     torques = peak * np.concatenate([rising, falling, -rising[1:], -falling, rising[1:]])
     return Hysteresis(
         shaft,
         torques,
         turns_under(own, deviated, torques, shaft, spring),
         breakaway(own, deviated, shaft, spring),
-        displaced_ends(own, deviated, shaft).at(0.0),
+        ends.at(0.0) if ends.least <= 0.0 else None,
     )

@@ -20,8 +20,9 @@ def draw_hysteresis(found: Hysteresis, path: Path) -> None:
     """
     figure = new_figure(WIDTH, HEIGHT)
     axes = plain_axes(figure.subplots())
-    for place, end in enumerate(found.rigid):
-        label = f"rigid carrier: dead band {(found.rigid[1] - found.rigid[0]) / ARCMIN:.2f}′" if not place else None
+    rigid = [] if found.rigid is None else list(found.rigid)
+    for place, end in enumerate(rigid):
+        label = f"rigid carrier: dead band {(rigid[1] - rigid[0]) / ARCMIN:.2f}′" if not place else None
         axes.axhline(end / ARCMIN, color=GREY, linewidth=1.0, linestyle="--", label=label)
     ends = [end for end in found.breakaway if np.isfinite(end)]
     words = " and ".join(f"{end:.0f}" for end in ends)
