@@ -320,6 +320,7 @@ def test_rests_at_many_positions_are_those_of_single_ones(name: str, flank: Flan
         assert (found.tooth == alone.tooth[::23]).all()
 
 
+@pytest.mark.slow
 def test_rests_of_single_flanks_that_deviate_are_those_of_single_positions() -> None:
     model = model_from_scene(load_scene(SCENES / "tooth_deviations.yaml"))
     mesh, engine, angles = model.meshes[0], ExactEngine(model), np.linspace(0.0, 2.0, 60)

@@ -165,13 +165,13 @@ def test_means_are_those_of_the_monte_carlo_with_the_same_assumptions(name: str,
 
 
 def test_two_pairs_leave_about_half_of_what_one_spring_does(tmp_path: Path) -> None:
-    """The same Monte Carlo has 0.54'; which of two pairs gives way to the other is not said there: 0.48' to 0.66'.
+    """What the stated rule leaves, 0.48'; single trials are held to HiGHS elsewhere.
 
-    Here the first spring is the stronger one. Held by HiGHS where both together are largest, equal springs leave 0.55'
-    at whatever vertex it ends, and 0.66' where both are displaced as alike as they can be; 400 trials each.
+    The same Monte Carlo has 0.54' without a word on which of two pairs gives way. Here the first spring is the stronger
+    one; equal springs that are displaced alike leave 0.66', and HiGHS alone, at whatever vertex it ends, 0.55'.
     """
     found, error = means_of("reducer_3k_flexible", "each", 4000, tmp_path)
-    assert 0.48 - 3 * error - 0.005 < found < 0.54 + 3 * error + 0.005
+    assert abs(found - 0.48) < 0.005 + 3 * error
 
 
 # scenes ---------------------------------------------------------------------------------------------------------

@@ -1,6 +1,6 @@
 """A carrier that turns planets apart, so that they touch opposite flanks."""
 
-from typing import Annotated, Literal, Self
+from typing import Annotated, ClassVar, Literal, Self
 
 from pydantic import Field, model_validator
 
@@ -18,6 +18,8 @@ class FlexibleCarrierSpec(CarrierSpec):
     Of each pair the first planet is pushed counter-clockwise and the second clockwise, along the circle of the pins. A
     spring pushes as far as the meshes let it, or planets are displaced as an adjustment sets them.
     """
+
+    words: ClassVar[str] = "a flexible planet carrier"
 
     kind: Literal["flexible_carrier"]
     pairs: Annotated[tuple[Pair, ...], listed("pairs")] = Field(
