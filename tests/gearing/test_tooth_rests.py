@@ -46,7 +46,10 @@ def test_at_each_rest_dense_points_touch(tolerances: str, heights: tuple[float, 
                 assert 1e3 * BASES[1] * off == pytest.approx(0.0, abs=DENSE_UM)
 
 
-@pytest.mark.parametrize("more", ["", "\n".join(ECCENTRIC.format(gear=gear) for gear in ("pinion", "wheel"))])
+@pytest.mark.parametrize(
+    "more",
+    ["", pytest.param("\n".join(ECCENTRIC.format(gear=gear) for gear in ("pinion", "wheel")), marks=pytest.mark.slow)],
+)
 def test_at_each_rest_newton_finds_no_gap_and_no_overlap(more: str, tmp_path: Path) -> None:
     """Gaps of single positions are sought foot by foot on both flanks."""
     count = 20

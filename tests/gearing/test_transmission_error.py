@@ -275,7 +275,7 @@ def check_identity(kind: str, scenes: int, trials: int, seed: int) -> None:
     assert seated > scenes * trials / 2
 
 
-@pytest.mark.parametrize("kind", ["spur", "bevel"])
+@pytest.mark.parametrize("kind", ["spur", pytest.param("bevel", marks=pytest.mark.slow)])
 def test_error_and_play_of_one_side_are_those_of_the_other(kind: str) -> None:
     """TE_d + j = TE_b + j_0, where each side and the play come to rest by turns of their own."""
     check_identity(kind, 4, 20, 11)

@@ -142,6 +142,7 @@ def test_a_file_that_is_missing_is_named_at_its_place(tmp_path: Path) -> None:
         load_scene(tmp_path / "scene.yaml")
 
 
+@pytest.mark.slow
 def test_a_run_keeps_the_file_and_replays_without_it(tmp_path: Path) -> None:
     first = model(tmp_path, SLOPE, [HEADER, *ROWS])
     assert len(first.contributors) == 1

@@ -283,7 +283,7 @@ def test_a_flipped_sign_on_a_bevel_pair_is_more_than_it_leaves_out(name: str, mo
 # scenes that are right ------------------------------------------------------------------------------
 
 
-LONG = ("tooth_deviations", "measured_teeth")  # curves over every tooth of both gears
+LONG = ("tooth_deviations", "measured_teeth", "two_sided_te", "ring_train")  # over all teeth of both gears, or a train
 
 
 @pytest.mark.parametrize(
