@@ -76,6 +76,23 @@ REFUSED = {
         "tolerances.sun eccentricity.kind: expected of planetary sets tooth_thickness, eccentricity, clocking, "
         "planet_pin, got run_out",
     ),
+    "single flanks": (
+        (
+            "  sun eccentricity:",
+            "  sun pitch: {kind: pitch_deviation, of: sun, flanks: each, limits: {iso_class: 6}, "
+            "law: {kind: random_walk, fill: [0.7, 1]}}\n  sun eccentricity:",
+        ),
+        "tolerances.sun pitch.kind: expected of planetary sets tooth_thickness, eccentricity, clocking, planet_pin, "
+        "got pitch_deviation",
+    ),
+    "one mesh": (
+        ("meshes: {sun: P1, ring 1: P1, ring 2: P2}", "meshes: {sun: P1}"),
+        "moves.reducer.meshes: expected at least 2 entries, got 1",
+    ),
+    "a gear twice": (
+        ("gears: [P1, P2]", "gears: [P1, P2, P1]"),
+        "parts.planet.gears: expected every gear once, got ",
+    ),
     "another measure": (
         ("lost motion: {kind: planetary_lost_motion, of: reducer}", "lost motion: {kind: lost_motion, of: reducer}"),
         "measures.lost motion.of: expected the name of a train, got 'reducer', which is a planetary set",

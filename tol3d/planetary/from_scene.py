@@ -37,6 +37,7 @@ def planetary_system(scene: Scene) -> PlanetarySystem:
         SceneError: kinds that do not act on such a set, or a set that nobody can build, with its numbers.
     """
     own = planetary_set(scene)
+    _refuse_other_tolerances(scene)
     contributors, acts = [], {}
     for name, spec in scene.distributed.items():
         acts[name] = _acts(scene, own, name, spec)
@@ -48,11 +49,17 @@ def planetary_system(scene: Scene) -> PlanetarySystem:
     return PlanetarySystem(scene.scene, tuple(contributors), tuple(measures.values()), own, acts, measures, made)
 
 
+def _refuse_other_tolerances(scene: Scene) -> None:
+    """Refuse what acts on trains alone: nothing may be stated and left out."""
+    for name, spec in scene.tolerances.items():
+        if not isinstance(spec, KINDS):
+            words = ", ".join(str(kind_of(kind)) for kind in KINDS)
+            sentence = f"expected of planetary sets {words}, got {kind_of(type(spec))}"
+            raise scene.refuse(("tolerances", name, "kind"), sentence)
+
+
 def _acts(scene: Scene, own: PlanetarySet, name: str, spec: Any) -> Acts:
     """What a tolerance acts on."""
-    if not isinstance(spec, KINDS):
-        words = ", ".join(str(kind_of(kind)) for kind in KINDS)
-        raise scene.refuse(("tolerances", name, "kind"), f"expected of planetary sets {words}, got {spec.kind}")
     if isinstance(spec, PlanetPinSpec):
         if spec.of != own.carrier:
             raise scene.refuse(("tolerances", name, "of"), f"expected {own.carrier!r}, got {spec.of!r}")

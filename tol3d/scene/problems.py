@@ -181,6 +181,13 @@ def _bound(words: str, limit: str) -> Callable[[ErrorDetails], str]:
     return sentence
 
 
+def _too_few(details: ErrorDetails) -> str:
+    least, count = details["ctx"]["min_length"], details["ctx"]["actual_length"]
+    return (
+        f"expected at least {'one entry' if least == 1 else f'{least} entries'}, got {count or shown(details['input'])}"
+    )
+
+
 def _unexpected(details: ErrorDetails) -> str:
     """For what no scene has brought up yet: true, if plain."""
     return f"expected another value here, got {shown(details['input'])}"
@@ -211,5 +218,5 @@ SENTENCES: Final[dict[str, Callable[[ErrorDetails], str]]] = {
     "greater_than": _bound("more than", "gt"),
     "greater_than_equal": _bound("at least", "ge"),
     "less_than_equal": _bound("at most", "le"),
-    "too_short": _got("at least one entry"),
+    "too_short": _too_few,
 }

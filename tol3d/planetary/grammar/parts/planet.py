@@ -1,14 +1,15 @@
 """A planet: gears that turn as one on a pin of the carrier."""
 
-from typing import Annotated, ClassVar, Literal
+from typing import Annotated, ClassVar, Literal, Self
 
-from pydantic import Field
+from pydantic import Field, model_validator
 
 from tol3d.gearing.grammar.parts.gear import GearSpec
 from tol3d.scene.listed import listed
 from tol3d.scene.name import Name
 from tol3d.scene.part import PartSpec
 from tol3d.scene.reference import Reference
+from tol3d.strict import refused
 
 
 class PlanetSpec(PartSpec):
@@ -21,6 +22,12 @@ class PlanetSpec(PartSpec):
 
     kind: Literal["planet"]
     gears: Annotated[tuple[Name, ...], listed("gears")] = Field(description="the gears that it is made of")
+
+    @model_validator(mode="after")
+    def _refuse_repeated_gears(self) -> Self:
+        if len(set(self.gears)) < len(self.gears):
+            raise refused("gears", "every gear once", list(self.gears))
+        return self
 
     def references(self) -> tuple[Reference, ...]:
         """The gears."""
