@@ -47,9 +47,10 @@ def simulation_of(scene: Scene, overrides: Overrides = AS_WRITTEN) -> Simulation
         in_draw_order(system.contributors)
     _refuse_engine(scene, overrides, asked.study.engine, system.roads)
     if asked.study.witness and not any(kind.witness for kind in system.roads.values()):
-        raise asked.refuse(
-            ("study", "witness"), f"expected none, for this scene has no witness, got {asked.study.witness}"
-        )
+        sentence = f"expected none, for this scene has no witness, got {asked.study.witness}"
+        if overrides.witness is None:
+            raise asked.refuse(("study", "witness"), sentence)
+        raise InputError(f"{_said_by('witness')}: {sentence}")
     with faults_of(mechanism.origin):
         problem = next(iter(system.problems()), None)
     if problem:

@@ -179,10 +179,10 @@ def test_a_scene_has_a_witness_where_fcl_reads_something(scene: str, has_one: bo
     assert ("fcl" in roads) == has_one
 
 
-def test_a_scene_without_one_is_refused_one_as_ever(tol3d: Command) -> None:
+def test_a_scene_without_one_is_refused_the_option(tol3d: Command) -> None:
     code, _, err = tol3d("run", "cover_on_base", "--witness", "5")
     assert code == 2
-    assert "study.witness: expected none, for this scene has no witness, got 5" in err
+    assert "--witness (in Python Overrides.witness): expected none, for this scene has no witness, got 5" in err
 
 
 def test_overlap_is_the_same_status_by_both(tmp_path: Path) -> None:
