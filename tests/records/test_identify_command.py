@@ -143,7 +143,9 @@ def test_the_bundled_scene_means_the_reference_pair() -> None:
     ("scene", "words"),
     [
         ("bevel_pair", "expected a mesh of two external spur gears, got none"),
-        pytest.param("door", "expected a scene of gears", marks=pytest.mark.slow),  # its kernels take 10 s to load
+        pytest.param(
+            "door", "expected a scene whose moves are meshes of gears", marks=pytest.mark.slow
+        ),  # its kernels take 10 s to load
     ],
 )
 def test_a_scene_without_a_spur_pair_is_refused(tol3d: Command, tmp_path: Path, scene: str, words: str) -> None:

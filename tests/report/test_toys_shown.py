@@ -156,7 +156,7 @@ def test_a_trial_is_shown(run: Run, tol3d: Command, tmp_path: Path) -> None:
 def test_in_python_all_of_it_is_there_too(run: Run) -> None:
     told = check_scene(SPRING)
     assert "spring spring: a 0.5, b 2, q 3" in str(told)
-    with pytest.raises(InputError, match="this is of gears only"):
+    with pytest.raises(InputError, match="expected moves that are meshes or trains of gears"):
         _ = told.model
     again = replay(run, 5)
     assert again.poses["spring"][2, 3] == pytest.approx(1e-3 * run.columns(HEIGHT)[HEIGHT][5])

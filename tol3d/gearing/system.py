@@ -210,7 +210,7 @@ def gear_model(system: System) -> Model:
         InputError: it is another one.
     """
     if not isinstance(system, GearSystem):
-        raise InputError(f"{system.name}: this is of gears only, and there are none in the scene's moves")
+        raise InputError(f"{system.name}: expected moves that are meshes or trains of gears; the scene has none")
     return system.model
 
 

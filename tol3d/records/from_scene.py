@@ -41,7 +41,7 @@ def gears_of(system: "System") -> Model:
     """
     found = getattr(system, "gears", system)
     if not isinstance(found, GearSystem) or not hasattr(system, "seen_by_gears"):
-        raise InputError("expected a scene of gears, got one of another system")
+        raise InputError("expected a scene whose moves are meshes of gears, got one of another system")
     return found.model
 
 
