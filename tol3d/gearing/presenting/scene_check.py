@@ -62,29 +62,19 @@ def gear_rows(gear: Gear) -> dict[str, str]:
 
 @gear_rows.register
 def _(gear: SpurGear) -> dict[str, str]:
-    return {
-        "teeth z": str(gear.teeth),
-        "module m [mm]": f"{gear.module:g}",
-        "pressure angle α [°]": degrees_text(gear.pressure_angle),
-        "face width b [mm]": f"{gear.face_width:g}",
-        "profile shift x": f"{gear.profile_shift:g}",
-        "addendum, dedendum [m]": f"{gear.addendum:g}, {gear.dedendum:g}",
-        "reference diameter d [mm]": f"{gear.reference_diameter:.4f}",
-        "tip diameter d_a [mm]": f"{gear.tip_diameter:.4f}",
-        "base diameter d_b [mm]": f"{gear.base_diameter:.4f}",
-        "root diameter d_f [mm]": f"{gear.root_diameter:.4f}",
-        "involute from diameter [mm]": f"{2 * gear.form_radius:.4f}",
-        "root fillet [mm]": f"{gear.fillet_radius:.4f}",
-        "tooth thickness s [mm]": f"{gear.tooth_thickness:.4f}",
-        "thickness at the tip s_a [mm]": f"{gear.tip_thickness:.4f}",
-        "bore [mm]": f"{gear.bore:g}" if gear.bore else NOTHING,
-    }
+    bore = f"{gear.bore:g}" if gear.bore else NOTHING
+    return {"teeth z": str(gear.teeth), **_cylindrical_rows(gear), "bore [mm]": bore}
 
 
 @gear_rows.register
 def _(gear: InternalGear) -> dict[str, str]:
+    outer = f"{gear.rim_diameter:.4f}"
+    return {"teeth z": f"{gear.teeth}, inside", **_cylindrical_rows(gear), "outer diameter [mm]": outer}
+
+
+def _cylindrical_rows(gear: SpurGear | InternalGear) -> dict[str, str]:
+    """What external and internal gears have alike, but for the number of teeth."""
     return {
-        "teeth z": f"{gear.teeth}, inside",
         "module m [mm]": f"{gear.module:g}",
         "pressure angle α [°]": degrees_text(gear.pressure_angle),
         "face width b [mm]": f"{gear.face_width:g}",
@@ -98,7 +88,6 @@ def _(gear: InternalGear) -> dict[str, str]:
         "root fillet [mm]": f"{gear.fillet_radius:.4f}",
         "tooth thickness s [mm]": f"{gear.tooth_thickness:.4f}",
         "thickness at the tip s_a [mm]": f"{gear.tip_thickness:.4f}",
-        "outer diameter [mm]": f"{gear.rim_diameter:.4f}",
     }
 
 
