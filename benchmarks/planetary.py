@@ -4,7 +4,7 @@
 
 By the clock and by the processor's own time, least of several rounds. A train of `reducer_3k` has 24 flanks; both ends
 of the output's turn are two linear programmes over six turns. The study draws 45 deviations, goes both roads of both
-measures, and takes its statistics.
+lost motions, and takes its statistics; errors over a turn are counted by themselves, in positions a second.
 """
 
 import argparse
@@ -21,11 +21,14 @@ from rich.table import Table
 from tol3d import Overrides, load_scene, run_scene
 from tol3d.execution.pools import Execution
 from tol3d.planetary.contact import Contact
+from tol3d.planetary.contact_curves import ContactCurves
 from tol3d.planetary.from_scene import planetary_system
 from tol3d.planetary.stack_up import StackUp
+from tol3d.planetary.stack_up_curves import StackUpCurves
 from tol3d.study.draws import drawn
 from tol3d.study.overrides import simulation_of
 
+POSITIONS = 360
 SCENE = Path(__file__).resolve().parent.parent / "scenes" / "reducer_3k.yaml"
 
 
@@ -39,6 +42,12 @@ def least(rounds: int, what: Callable[[], object]) -> tuple[float, float]:
         spent = sum(resource.getrusage(resource.RUSAGE_SELF)[:2]) - used
         found.append((time.perf_counter() - clock, spent))
     return min(clock for clock, _ in found), min(used for _, used in found)
+
+
+def lost_motions_alone(scene: str) -> str:
+    """A scene without its transmission errors and published columns."""
+    first, last = scene.index("  transmission error:"), scene.index("\nstudy:")
+    return scene[:first] + scene[last : scene.index("published:")]
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
@@ -60,10 +69,21 @@ def main(arguments: Sequence[str] | None = None) -> None:
         clock, used = least(given.rounds, lambda: turning.free(deviated, turns, own.output, own.input))  # noqa: B023
         table.add_row(name, "1", f"{given.trials / clock:,.0f}", f"{given.trials / used:,.0f}")
 
+    count = max(1, given.trials // POSITIONS)
+    around, some = np.arange(POSITIONS) / POSITIONS, system.deviated(trials.part(0, count))
+    for name, road in (
+        ("a turn's positions, first order", StackUpCurves(own)),
+        ("the same, placed", ContactCurves(own)),
+    ):
+        clock, used = least(given.rounds, lambda: road.followed(some, around, own.output, own.input, 0))  # noqa: B023
+        table.add_row(name, "1", f"{count * POSITIONS / clock:,.0f}", f"{count * POSITIONS / used:,.0f}")
+
     def study() -> None:
         with tempfile.TemporaryDirectory() as out:
             execution = Execution(workers=given.workers, keep_trials=False)
-            run_scene(SCENE, out=Path(out) / "run", overrides=Overrides(trials=given.trials), execution=execution)
+            alone = Path(out) / "scene.yaml"
+            alone.write_text(lost_motions_alone(SCENE.read_text("utf-8")), "utf-8")
+            run_scene(alone, out=Path(out) / "run", overrides=Overrides(trials=given.trials), execution=execution)
 
     clock, used = least(given.rounds, study)
     table.add_row(

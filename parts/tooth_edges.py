@@ -6,15 +6,13 @@ from typing import Final
 import cadquery as cq
 import numpy as np
 from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeEdge, BRepBuilderAPI_MakeVertex
-from OCP.Geom import Geom_BSplineCurve, Geom_Circle, Geom_Curve
+from OCP.Geom import Geom_Circle, Geom_Curve
 from OCP.gp import gp_Ax1, gp_Ax2, gp_Dir, gp_Pnt, gp_Trsf
-from OCP.TColgp import TColgp_Array1OfPnt
-from OCP.TColStd import TColStd_Array1OfInteger, TColStd_Array1OfReal
 from OCP.TopoDS import TopoDS_Vertex
-from scipy.interpolate import make_interp_spline
 
 from tol3d.gears import LEFT, RIGHT, Flank
 from tol3d.gears.cylindrical_gear import CylindricalGear
+from tol3d.parts.complete_spline import complete_spline
 from tol3d.parts.named_solid import NamedEdge
 
 FLANK_ERROR: Final = 1e-6  # mm; how far a spline flank may leave the involute, a tenth of the 0.01 um asked for
@@ -58,16 +56,8 @@ def flank_curve(gear: CylindricalGear, flank: Flank) -> Geom_Curve:
     roll = np.linspace(*roll_span(gear), flank_intervals(gear) + 1)
     beta = gear.iso_sign * flank * (roll[[0, -1]] - gear.iso_sign * gear.base_half_angle)
     first, last = gear.base_radius * roll[[0, -1], None] * np.stack([np.cos(beta), np.sin(beta)], axis=-1)
-    spline = make_interp_spline(roll, gear.flank_points(roll, flank), k=3, bc_type=([(1, first)], [(1, last)]))
-    knots, multiplicities = np.unique(spline.t, return_counts=True)
-    poles = TColgp_Array1OfPnt(1, len(spline.c))
-    for index, (x, y) in enumerate(spline.c.tolist(), start=1):
-        poles.SetValue(index, gp_Pnt(x, y, -gear.face_width / 2))
-    places, counts = TColStd_Array1OfReal(1, len(knots)), TColStd_Array1OfInteger(1, len(knots))
-    for index, (knot, count) in enumerate(zip(knots.tolist(), multiplicities.tolist(), strict=True), start=1):
-        places.SetValue(index, knot)
-        counts.SetValue(index, count)
-    return Geom_BSplineCurve(poles, places, counts, 3)
+    points = gear.flank_points(roll, flank)
+    return complete_spline(roll, points, np.stack([first, last]), -gear.face_width / 2)
 
 
 def flank_edge(

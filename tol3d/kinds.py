@@ -29,6 +29,7 @@ SHIPPED: Final = (
     "tol3d.assembly.mechanism:ASSEMBLY",
     "tol3d.gearbox.mechanism:GEARBOX",
     "tol3d.planetary.mechanism:PLANETARY",
+    "tol3d.cycloid.mechanism:CYCLOID",
 )
 
 GROUP: Final = "tol3d.mechanisms"

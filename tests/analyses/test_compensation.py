@@ -183,6 +183,7 @@ def turning_variance(positions: int) -> float:
     return pinion + wheel + bevel**2 * 2 * 4.714045**2 * (1 + left_of_the_mean(14, positions))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("positions", [1, 3, 14, 16, 55])
 def test_the_own_mean_leaves_what_turns_with_gears_and_its_own_error(positions: int) -> None:
     own, sigma = of(SHIMMED, None, positions), math.sqrt(turning_variance(positions))

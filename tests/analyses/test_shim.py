@@ -126,6 +126,7 @@ ASKED: Mapping[str, tuple[str, float, Mapping[str, str]]] = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("what", ASKED)
 def test_the_geometrys_thickness_meets_the_target(what: str) -> None:
     scene, target, asked = ASKED[what]

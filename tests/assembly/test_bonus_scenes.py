@@ -285,6 +285,7 @@ def test_the_worst_case_of_a_gap_is_that_of_the_size_with_most_bonus(tmp_path: P
     assert [(own.name, round(own.reach, 6)) for own in found.effects] == [("bore position", 340.0)]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("grows", [True, False])
 @pytest.mark.parametrize("law", [Uniform(-0.05, 0.3), Uniform(0.05, 0.1), Normal(0.1, 0.1)])
 def test_ends_together_are_the_worst_of_all_sizes(grows: bool, law: Distribution) -> None:

@@ -94,6 +94,7 @@ def values(made: Assembled) -> Mapping[str, Mapping[str, Array]]:
     return {road: made.drawn(COUNT, road) for road in ("exact", "analytic")}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("measure", [SHIFT, TURN])
 @pytest.mark.parametrize("road", ["exact", "analytic"])
 def test_as_many_patterns_are_accepted_as_are_known_to(
@@ -104,6 +105,7 @@ def test_as_many_patterns_are_accepted_as_are_known_to(
     assert found == pytest.approx(share, abs=4 * math.hypot(error, math.sqrt(share * (1 - share) / COUNT)))
 
 
+@pytest.mark.slow
 def test_the_verdict_of_shifts_is_that_of_discs_with_a_point_in_common(
     made: Assembled, values: Mapping[str, Mapping[str, Array]]
 ) -> None:
@@ -114,6 +116,7 @@ def test_the_verdict_of_shifts_is_that_of_discs_with_a_point_in_common(
             assert accepted[k] == have_a_point(errors[k], (T0 + bonuses[k]) / 2), k
 
 
+@pytest.mark.slow
 def test_the_verdict_of_shifts_and_turns_is_that_of_a_linear_programme(
     made: Assembled, values: Mapping[str, Mapping[str, Array]]
 ) -> None:

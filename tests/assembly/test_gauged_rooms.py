@@ -159,6 +159,7 @@ def smallest(cones: Sequence[tuple[Array, Array, float, float]]) -> float:
     return float(found.x[-1])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("kept", "at"), FRAMES, ids=lambda own: "|".join(own) or "none")
 def test_positions_over_the_room_as_linear_programmes_find_them(kept: list[str], at: list[str]) -> None:
     draft, assembly = gauged(kept, at, None)

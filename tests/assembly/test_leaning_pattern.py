@@ -234,9 +234,10 @@ def starts(rng: np.random.Generator, own: Drawn, count: int, clearance: float = 
     return [np.zeros(3), *(clearance * rng.normal(size=(count, 3)) * own.scale)]
 
 
-SEEDS = [*range(2), *(pytest.param(k, marks=pytest.mark.slow) for k in range(2, 40))]
+SEEDS = [0, *(pytest.param(k, marks=pytest.mark.slow) for k in range(1, 40))]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", SEEDS)
 def test_the_slack_is_the_largest_of_all_poses(tmp_path: Path, seed: int) -> None:
     """Built or not; the ends that touch hold the part by the arms of the pose.

@@ -207,6 +207,7 @@ def inspected(law: str = UPRIGHT) -> str:
     return INSPECTED.format(law=law, off=off, datums="[floor, {feature: bore, mmb: least}]")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("road", ["exact", "analytic"])
 def test_a_gauge_that_may_shift_accepts_more(tmp_path: Path, road: str) -> None:
     """|e| <= t0 / 2 + bonus / 2 + clearance, both sizes uniform; value by value 2 max(|e| - c, 0) - bonus."""
@@ -241,6 +242,7 @@ def distance_to_lens(point: Array, half: Array, room: float) -> float:
     return min(float(np.hypot(*(point - own))) for own in (*found, corner, -corner))
 
 
+@pytest.mark.slow
 def test_a_datum_that_leans_limits_the_shift_at_both_ends(tmp_path: Path) -> None:
     made = assembled(inspected(law="{kind: uniform}"), tmp_path)
     trials = drawn(made.simulation, 0, 2_000)

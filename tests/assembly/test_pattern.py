@@ -155,7 +155,7 @@ def lacking_balance(own: Array, change: Array, clearances: Array, slack: float, 
     return float(nnls(matrix, np.array([0.0, 0.0, 0.0, 1.0]))[1])
 
 
-@pytest.mark.parametrize("seed", [*range(8), *(pytest.param(k, marks=pytest.mark.slow) for k in range(8, 28))])
+@pytest.mark.parametrize("seed", [*range(4), *(pytest.param(k, marks=pytest.mark.slow) for k in range(4, 28))])
 @pytest.mark.parametrize("road", ["exact", "analytic"])
 def test_random_patterns_are_at_their_optimum(tmp_path: Path, seed: int, road: str) -> None:
     """Fifty trials each: offsets of the pose leave the slack that is stated, and touching pins balance."""

@@ -142,7 +142,7 @@ def leaning(floating: str, spread: str) -> str:
     return text.replace("\nmoves:\n", f"  lean: {{kind: perpendicularity, {lean}}}\n\nmoves:\n")
 
 
-@pytest.mark.parametrize("road", ROADS)
+@pytest.mark.parametrize("road", [pytest.param("exact", marks=pytest.mark.slow), "analytic"])
 def test_a_hole_that_leans_leaves_a_lens(tmp_path: Path, road: str) -> None:
     """Uniform by area in the lens of two discs 2a apart: second moments by rejection from the box about it."""
     half = 0.03

@@ -59,6 +59,7 @@ def test_the_axis_fills_the_zone_beyond_its_end_and_leans_out_of_it_within(tmp_p
     assert expected["own"].max() > ZONE
 
 
+@pytest.mark.slow
 def test_a_hole_inspected_within_its_plate_is_judged_by_another_zone(tmp_path: Path) -> None:
     path = written(tmp_path, ("\nmeasures:\n", "\nmeasures:\n" + OWN.replace("[face]", "[face], upper_limit: 0.1 mm")))
     summary = run_scene(path, overrides=Overrides(trials=4000, engine="analytic"), out=tmp_path / "run").summary

@@ -35,6 +35,7 @@ def poses_agree(made: RandomTouch, deviations: Array) -> int:
     return count
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", KINDS)
 def test_each_contact_alone_is_met_as_scipy_meets_it(kind: str) -> None:
     made = random_touch(KINDS.index(kind), kinds=(kind,))
@@ -81,6 +82,7 @@ def test_what_small_displacements_leave_out_is_of_second_order(seed: int) -> Non
             assert slope == pytest.approx(2.0, abs=0.1), (name, made.kinds)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", range(16))
 def test_slopes_are_central_differences_of_finite_poses(seed: int) -> None:
     """Steps of h and 2h, extrapolated: the fourth power is left of 4e-3 mm over lengths of some mm, and rounding."""

@@ -260,6 +260,7 @@ FAILING_PAINTERS = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("reason", FAILING_PAINTERS)
 def test_a_picture_that_fails_costs_a_warning_and_not_the_run(
     tol3d: Command, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, reason: str
@@ -338,6 +339,7 @@ def test_ctrl_c_means_after_a_run_what_it_meant_before(tol3d: Command, tmp_path:
     assert signal.getsignal(signal.SIGINT) is before
 
 
+@pytest.mark.slow
 def test_an_export_tells_which_trial_it_took_and_why(tol3d: Command, tmp_path: Path) -> None:
     run = str(tmp_path / "run")
     assert tol3d("run", SPUR, "--trials", "40", *PLAIN, "--out", run)[0] == 0
@@ -383,6 +385,25 @@ def test_view_refuses_a_mesh_that_is_not_there(tol3d: Command, tmp_path: Path) -
     assert err == "--mesh: no mesh 'gear pear' is shown of this run; did you mean \"gear pair\"?\n"
 
 
+@pytest.mark.parametrize(
+    ("options", "expected"),
+    [
+        (("--animate", "a.gif", "--screenshot", "a.png"), "expected one of --screenshot and --animate, got both\n"),
+        (
+            ("--animate", "a.gif", "--mesh", "m"),
+            "--mesh: of moving pictures leave it out; --motion chooses what moves\n",
+        ),
+        (("--frames", "5"), "--frames: expected with --animate FILE, which writes moving pictures\n"),
+        (("--motion", "turn"), "--motion: expected with --animate FILE, which writes moving pictures\n"),
+    ],
+)
+def test_view_refuses_options_of_which_one_would_be_left_out(
+    tol3d: Command, options: tuple[str, ...], expected: str
+) -> None:
+    assert tol3d("view", "no run", "--nominal", *options) == (2, "", expected)
+
+
+@pytest.mark.slow
 def test_run_names_every_picture_that_it_drew(tol3d: Command, tmp_path: Path) -> None:
     arguments = ("--trials", "5", "--engine", "analytic", "--out")
     for scene, pictures in (("spur_pair", "picture: {0}/histogram.png"), ("three_stage_train", TRAINS_PICTURES)):

@@ -119,6 +119,7 @@ def assert_same_run(first: Run, second: Run) -> None:
         assert np.array_equal(bits, its[name].view(bits.dtype) if bits.dtype.kind == "i" else its[name]), name
 
 
+@pytest.mark.slow
 def test_two_dask_workers_give_the_bits_of_one_process(address: str, tmp_path: Path) -> None:
     study = STUDIES["analytic"]
     alone = run_scene(SPUR_PAIR, overrides=study, out=tmp_path / "alone")

@@ -57,6 +57,7 @@ def test_a_clearance_follows_the_part_that_it_is_of(path: Path) -> None:
         assert all((codes == 0).all() for codes in found.status.values())
 
 
+@pytest.mark.slow
 def test_backlashes_are_those_without_the_clearance(path: Path, tmp_path: Path) -> None:
     asked = Overrides(trials=60, witness=5)
     with_it = run_scene(path, overrides=asked, out=tmp_path / "with").summary

@@ -257,6 +257,7 @@ def check_normal_backlash(case: Case, count: int, seed: int, flank: Flank, engin
     assert_agree(measured, found, engine.chord_error)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("flank", [RIGHT, LEFT], ids=["right", "left"])
 @pytest.mark.parametrize("name", CASES)
 def test_tilted_and_shifted_gears_agree_with_brute_force_to_0_1_um(

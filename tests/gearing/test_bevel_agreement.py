@@ -257,6 +257,7 @@ def check_poses(name: str, count: int, seed: int, read_at: str, flank: Flank, en
     assert error.min() >= -0.01  # strips lie inside the teeth; FCL's own rounding and the oracle's zooms
 
 
+@pytest.mark.slow
 @covering(name=CASES, read_at=READINGS)
 def test_displaced_gears_agree_with_brute_force_to_0_08_um(name: str, read_at: str, engine_of: EngineOf) -> None:
     flank = LEFT if name in ("published", "60 deg") else RIGHT

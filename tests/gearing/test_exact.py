@@ -505,6 +505,7 @@ def test_beyond_reach_there_is_a_status_and_no_number_and_within_it_the_right_on
     assert_nothing_is_told(tilted, np.arange(12))
 
 
+@pytest.mark.slow
 @covering(
     name=["paper", "shifted"],
     spread=[

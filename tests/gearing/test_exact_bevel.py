@@ -124,6 +124,7 @@ def check_against_search(builds: Builds, reading: Reading) -> None:
     assert np.abs(turned).max(initial=0.0) <= TIE_BOUND
 
 
+@pytest.mark.slow
 @covering(name=PAIRS, spread=SPREADS, reading=READINGS)
 def test_seats_gaps_and_free_turns_agree_with_a_search_of_the_surfaces(name: str, spread: str, reading: str) -> None:
     for flank in (RIGHT, LEFT):
@@ -312,6 +313,7 @@ def test_gears_far_off_their_axes_have_a_status_or_the_right_number(centre: floa
     assert np.abs(found).max(initial=0.0) <= SEARCH_BOUND
 
 
+@pytest.mark.slow
 @covering(flank=BOTH_FLANKS, name=PAIRS)
 def test_every_candidate_pair_s_gap_is_that_of_the_search(name: str, flank: Flank) -> None:
     pair = PAIRS[name]

@@ -245,6 +245,7 @@ def check_against_search(builds: Builds) -> None:
             assert searched(builds, int(row), turns, flank) == pytest.approx(gaps[row], abs=SEARCH_BOUND)
 
 
+@pytest.mark.slow
 @covering_slowly("driving ring")
 def test_gaps_agree_with_a_search_of_the_surfaces_of_all_teeth(name: str) -> None:
     spread = SPREADS["warm" if name == "driving ring" else "tilted"]

@@ -71,6 +71,7 @@ MOVES = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("flank", ["right", "left"])
 @pytest.mark.parametrize("moved", MOVES)
 def test_the_path_of_contact_goes_with_the_axes(moved: str, flank: str, tmp_path: Path) -> None:
@@ -88,6 +89,7 @@ def test_the_path_of_contact_goes_with_the_axes(moved: str, flank: str, tmp_path
         assert np.abs(off).max() < 0.1
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("gear", ["pinion", "wheel"])
 @pytest.mark.parametrize("side", ["right", "left", "together"])
 @pytest.mark.parametrize("tilt", ["axis_out_of_plane", "axis_in_plane"])

@@ -103,6 +103,7 @@ def test_derivatives_far_from_nominal_are_those_of_central_differences(name: str
     assert worst_error(model, engine, far_block(model, 5, SMOOTH), measure) <= bound
 
 
+@pytest.mark.slow
 @covering(name=PAIRS, kind=KINDS)
 def test_derivatives_of_any_builds_keep_within_the_bound_of_faces(name: str, kind: str) -> None:
     """Edges and all; in steps of 0.01 um, which no kink comes near here."""

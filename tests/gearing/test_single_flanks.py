@@ -135,11 +135,13 @@ def dense(builds: Builds, row: int, heights: tuple[float, ...] = (0.0,)) -> Devi
 BRUTE = 1e-3  # um; dense points lie a um apart: (half of that)^2 over twice a gap of 140 um, and the spline
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", [1, pytest.param(2, marks=pytest.mark.slow)])
 def test_pitches_touch_and_stand_apart_as_dense_points_of_them(seed: int, tmp_path: Path) -> None:
     check_against_points(drawn(PITCH, tmp_path, 3, seed), (0.0,), BRUTE)
 
 
+@pytest.mark.slow
 def test_slopes_and_forms_touch_and_stand_apart_as_dense_points_of_them(tmp_path: Path) -> None:
     """Squares of slopes are left out: (7.5 um/5 mm)^2/2 of a gap of 140 um is 2e-4 um."""
     check_against_points(drawn(SHAPES, tmp_path, 3), (-5.0, 5.0), 1e-3)
@@ -235,6 +237,7 @@ def test_fcl_on_strips_of_each_flank_sees_what_the_exact_engine_sees_within_chor
     assert off.max() < chords + 0.02
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("tolerances", "bound"),
     [(PITCH, 1e-6), (f"{PITCH}\n{SHAPES}", 5e-3)],  # normals of the engine are those of involutes: off by a slope

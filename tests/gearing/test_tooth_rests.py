@@ -33,6 +33,7 @@ def rests(builds: Builds, angles: Array) -> Array:
     return np.stack([side.driven_angle for side in found], axis=-1)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("tolerances", "heights"), [(PITCH, (0.0,)), (ALL, (-5.0, 5.0))])
 def test_at_each_rest_dense_points_touch(tolerances: str, heights: tuple[float, ...], tmp_path: Path) -> None:
     """A position every seventh, so that all places of the path of contact and both gears' edges have their turn."""
@@ -46,6 +47,7 @@ def test_at_each_rest_dense_points_touch(tolerances: str, heights: tuple[float, 
                 assert 1e3 * BASES[1] * off == pytest.approx(0.0, abs=DENSE_UM)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "more",
     ["", pytest.param("\n".join(ECCENTRIC.format(gear=gear) for gear in ("pinion", "wheel")), marks=pytest.mark.slow)],

@@ -301,7 +301,7 @@ SIDES: tuple[Literal["drive", "back"], ...] = ("drive", "back")
 
 
 @pytest.mark.parametrize("flank", [LEFT, RIGHT], ids=["left", "right"])
-@pytest.mark.parametrize("name", PAIRS)
+@pytest.mark.parametrize("name", ["spur", pytest.param("bevel", marks=pytest.mark.slow)])
 def test_rests_at_many_positions_are_those_of_single_ones(name: str, flank: Flank) -> None:
     """The kernel goes on from the position before; reading each side for itself begins at the nominal one."""
     spread = Spread(growth=1e-4 if name == "spur" else 0.0)
@@ -525,7 +525,7 @@ def check_first_order(kind: str, scenes: int, trials: int, seed: int) -> None:
     assert turning > scenes * trials / 2
 
 
-@pytest.mark.parametrize("kind", ["spur", "bevel"])
+@pytest.mark.parametrize("kind", ["spur", pytest.param("bevel", marks=pytest.mark.slow)])
 def test_both_roads_differ_by_what_the_stack_up_neglects(kind: str) -> None:
     check_first_order(kind, 4, 10, 21)
 

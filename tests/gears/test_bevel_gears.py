@@ -492,6 +492,7 @@ def test_transmission_error_of_nominal_teeth_is_below_1e_5_um(name: str) -> None
     assert pair.normal_backlash == pytest.approx(0.0, abs=1e-13)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("share", "expected"), [(0.0, 74.8970), (0.5, 79.8739), (1.0, 84.8507)], ids=["toe", "middle", "heel"]
 )
@@ -601,6 +602,7 @@ def test_long_period_is_over_when_the_same_teeth_meet_again() -> None:
 TOUCHING = 1e-6  # mm
 
 
+@pytest.mark.slow
 @FLANKS
 @pytest.mark.parametrize("shifted", [-0.05, 0.0, 0.05])
 @pytest.mark.parametrize("name", PAIRS)

@@ -113,7 +113,7 @@ def test_chords_explain_what_fcl_reads_of_gears_of_any_size(
         assert 1e-6 < seen.chord_error < 2e-5
 
 
-@pytest.mark.parametrize(("text", "teeth"), [(SPUR, (12, 20)), (BEVEL, (14, 25))])
+@pytest.mark.parametrize(("text", "teeth"), [(SPUR, (12, 20)), pytest.param(BEVEL, (14, 25), marks=pytest.mark.slow)])
 def test_gears_alike_in_all_but_their_size_read_alike(tmp_path: Path, text: str, teeth: tuple[int, int]) -> None:
     reference = both(model_of(tmp_path, text, 2.5, teeth, 2.5), 2.5)
     for module in MODULES:

@@ -140,6 +140,7 @@ DAMAGES: dict[str, Damage] = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("damage", DAMAGES.values(), ids=DAMAGES.keys())
 def test_a_damaged_kernel_is_compiled_anew(folder: Path, damage: Damage) -> None:
     from tol3d.samplers import quick_uniforms as module

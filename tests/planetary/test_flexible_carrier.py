@@ -1,6 +1,7 @@
 """Flexible carriers: the published adjustment curve, what unequal gaps leave, springs against torques, both roads."""
 
 import math
+import re
 from dataclasses import replace
 from pathlib import Path
 
@@ -145,9 +146,12 @@ def test_placed_gears_differ_from_first_order_by_second(springs: tuple[Spring, .
     assert off[0] < 0.01 * ARCMIN
 
 
+PRESSED = "springs: one, force: 60 N, stiffness: 1500 N/mm, friction: 9 N"
+
+
 def lost_motions(name: str, springs: str, trials: int, tmp_path: Path) -> Array:
     """Lost motion of every trial [arcmin]."""
-    text = (SCENES / f"{name}.yaml").read_text("utf-8").replace("springs: one", f"springs: {springs}")
+    text = (SCENES / f"{name}.yaml").read_text("utf-8").replace(PRESSED, f"springs: {springs}")
     (tmp_path / "scene.yaml").write_text(text, "utf-8")
     scene = load_scene(tmp_path / "scene.yaml")
     system = planetary_system(scene)
@@ -187,13 +191,13 @@ def test_the_smaller_of_two_independent_residues_is_that_of_the_monte_carlo_for_
 
 # scenes ---------------------------------------------------------------------------------------------------------
 
-TEXT = (SCENES / "reducer_3k_flexible.yaml").read_text("utf-8")
+TEXT = re.sub(r"  turn against .*\n", "", (SCENES / "reducer_3k_flexible.yaml").read_text("utf-8"))
 REFUSED = {
     "a planet too many": (("[3, 4]]", "[3, 5]]"), "parts.carrier.pairs[1]: expected planets 1 to 4, got 5"),
     "a planet twice": (("[3, 4]]", "[3, 1]]"), "parts.carrier.pairs: expected every planet once at most, got"),
     "three of a pair": (("[3, 4]]", "[3, 4, 2]]"), "parts.carrier.pairs[1]: expected a list of 2 planets"),
     "adjusted too far": (
-        ("springs: one}", "springs: one, adjustment: 80 um, displacement: 0.54}"),
+        (PRESSED, "springs: one, adjustment: 80 um, displacement: 0.54"),
         "parts.carrier.adjustment: the planets cannot be displaced so far at the mean build: each contact that stops "
         "them lacks",
     ),

@@ -24,12 +24,12 @@ COMMON = {
 PAGE = KindsPage(DOCS, SCHEMA, COMMON)
 QUOTED = re.findall(r"```yaml\n(.*?)```", DOCS, re.DOTALL)
 OF_GEARS = {"tooth_thickness", "eccentricity", "clocking"}
-FIELD_SCENES = ("every_planetary_field", "reducer_3k", "reducer_3k_flexible")
+FIELD_SCENES = ("every_planetary_field", "reducer_3k", "reducer_3k_flexible", "reducer_3k_train")
 
 
 def test_what_the_page_quotes_stands_in_the_scenes() -> None:
     text = "".join((SCENES / f"{name}.yaml").read_text("utf-8") for name in FIELD_SCENES)
-    assert len(QUOTED) == 3
+    assert len(QUOTED) == 5
     assert all(quoted in text for quoted in QUOTED)
 
 

@@ -1,15 +1,19 @@
 """Scenes of planetary sets: what is refused, with its numbers, and what becomes of trials."""
 
+import io
 from pathlib import Path
 
 import numpy as np
 import pytest
 from places import SCENES
+from rich.console import Console
 
 from tol3d import Overrides, SceneError, load_scene, replay, run_scene
 from tol3d.planetary.from_scene import planetary_system
 from tol3d.planetary.stack_up import StackUp
 from tol3d.planetary.system import PlanetarySystem
+from tol3d.report.check import check_report
+from tol3d.study.overrides import simulation_of
 from tol3d.system.stated import mean_build
 
 TEXT = (SCENES / "reducer_3k.yaml").read_text("utf-8")
@@ -51,6 +55,19 @@ REFUSED = {
         ("teeth: 79", "teeth: 27"),
         "moves.reducer.meshes.ring 1: expected a ring with more teeth than its planets, got 27 and 27",
     ),
+    "a spur gear where a ring should be": (
+        ("ring 2: {kind: internal_gear", "ring 2: {kind: spur_gear"),
+        "moves.reducer.meshes.ring 2: expected an internal_gear, got the spur gear 'ring 2': beside its planets it "
+        "would need a centre distance of more than 46.9846 mm, got 26.0000 mm; a ring with 76 teeth round them needs "
+        "24.4320 mm",
+    ),
+    "a clearance of bearings": (
+        (
+            "  clocking:",
+            "  clear: {kind: bearing_clearance, of: P1, distribution: {kind: rayleigh, scale: 4 um}}\n  clocking:",
+        ),
+        "tolerances.clear.of: expected a gear of one mesh (or the mesh named beside it), got 'P1', which is in none",
+    ),
     "interfering teeth": (
         SHIFTED,
         "moves.reducer.meshes.sun: the teeth interfere at the mean build: sun–P1 has a normal backlash of -66.",
@@ -74,7 +91,7 @@ REFUSED = {
     "another tolerance": (
         ("{kind: eccentricity, of: sun,", "{kind: run_out, of: sun,"),
         "tolerances.sun eccentricity.kind: expected of planetary sets tooth_thickness, eccentricity, clocking, "
-        "planet_pin, got run_out",
+        "planet_pin, bore_position, got run_out",
     ),
     "single flanks": (
         (
@@ -83,7 +100,7 @@ REFUSED = {
             "law: {kind: random_walk, fill: [0.7, 1]}}\n  sun eccentricity:",
         ),
         "tolerances.sun pitch.kind: expected of planetary sets tooth_thickness, eccentricity, clocking, planet_pin, "
-        "got pitch_deviation",
+        "bore_position, got pitch_deviation",
     ),
     "one mesh": (
         ("meshes: {sun: P1, ring 1: P1, ring 2: P2}", "meshes: {sun: P1}"),
@@ -159,19 +176,20 @@ def test_trials_that_bind_keep_their_rows(tmp_path: Path) -> None:
     path = tmp_path / "scene.yaml"
     path.write_text(TEXT.replace("lower: -6 um, upper: 6 um", "lower: -60 um, upper: 60 um"), "utf-8")
     run = run_scene(path, overrides=Overrides(trials=300), out=tmp_path / "run")
-    counts = run.summary["status"]
+    counts = run.summary["measures"]["lost motion"]["status"]
     assert counts["ok"] + counts["interferes"] == 300
     assert counts["interferes"] > 100
     own = run.summary["measures"]["lost motion"]
     assert own["geometric"]["mean"] > 0.0
     frame = run.frame()
-    jammed = np.asarray(frame["status"]) == "interferes"
+    jammed = np.asarray(frame["status:lost motion"]) == "interferes"
     assert jammed.sum() == counts["interferes"]
     lacking = np.asarray(frame["lost motion: overlap [um]"])
     assert (lacking[jammed] > 0.0).all()
     assert (lacking[~jammed] == 0.0).all()
 
 
+@pytest.mark.slow
 def test_a_trial_replayed_alone_has_its_bits(tmp_path: Path) -> None:
     run = run_scene(SCENES / "reducer_3k.yaml", overrides=Overrides(trials=64), out=tmp_path / "run")
     row = run.frame()
@@ -180,3 +198,15 @@ def test_a_trial_replayed_alone_has_its_bits(tmp_path: Path) -> None:
         column = seen.simulation.system.road("exact", None).answers(seen.trials, seen.simulation.system.measures)
         value = column.values["lost motion"][0, 0] * seen.simulation.system.measures[0].per_internal
         assert float(np.asarray(row["geometric:lost motion"])[trial]) == pytest.approx(value, rel=0, abs=0)
+
+
+def test_a_check_shows_slopes_of_planets_with_their_sign_and_what_they_are_of() -> None:
+    """At the mean build all planets are met alike, each by itself half the time; a ring's thinning is one number."""
+    scene = load_scene(SCENES / "reducer_3k.yaml")
+    console = Console(file=io.StringIO(), width=200)
+    console.print(check_report(simulation_of(scene, Overrides(engine="analytic"))))
+    assert isinstance(console.file, io.StringIO)
+    rows = [" ".join(line.split()) for line in console.file.getvalue().splitlines()]
+    assert "P1 thinning ′/µm -0.04814 each" in rows
+    assert "ring 1 thinning ′/µm -0.09092" in rows
+    assert any(row.startswith("each: of every one of several deviations") for row in rows)

@@ -15,6 +15,7 @@ from tol3d.gears import LEFT, RIGHT, InternalGear, SpurGear
 from tol3d.planetary.presenting import PRESENTER
 from tol3d.planetary.presenting.shown_gears import PlanetaryDisplay
 from tol3d.planetary.shown import ShownSet
+from tol3d.report.motion import motion_of
 from tol3d.runs.run import Run
 
 Array = NDArray[np.float64]
@@ -58,6 +59,7 @@ def rooms(central: PlacedGear, planet: PlacedGear) -> Array:
     return np.asarray(base * (off - half))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("trial", [0, 7])
 def test_teeth_stand_in_spaces_and_touch_and_nowhere_overlap(run: Run, trial: int) -> None:
     build: ShownSet = shown(run, trial).shown
@@ -78,11 +80,35 @@ def test_every_gear_is_a_body_of_one_world(run: Run) -> None:
     display = shown(run, "mean")
     ((world),) = display.worlds
     own = display.shown.own
-    assert len(world.bodies) == len(own.meshes) + own.planets * len(own.gears)
+    arms = [body for body in world.bodies if body.name.startswith(f"{own.carrier} at planet ")]
+    assert len(world.bodies) == len(own.meshes) + own.planets * len(own.gears) + len(arms)
     assert len({body.name for body in world.bodies}) == len(world.bodies)
     heights = {body.name: body.world_from_part[2, 3] for body in world.bodies}
     for mesh in own.meshes:
         assert heights[mesh.central.name] == heights[f"{mesh.planet.name} of planet 1"]
+
+
+@pytest.mark.slow
+def test_arms_of_the_carrier_hold_the_planets(tmp_path: Path) -> None:
+    """Each pin goes through its planet, from below all gears to the topmost face, and ends there in a ball."""
+    run = run_scene(SCENES / "reducer_3k_flexible.yaml", overrides=Overrides(trials=4), out=tmp_path / "run")
+    display = shown(run, 1)
+    arms = [body for body in display.worlds[0].bodies if body.name.startswith("carrier at planet ")]
+    assert len(arms) == 4
+    for number, arm in enumerate(arms, 1):
+        gear = next(gear for gear in display.shown.gears if gear.name == f"P1 of planet {number}")
+        vertices = arm.mesh[0]
+        pin = vertices[vertices[:, 2] > 0.0]  # above the middle of the lowest face
+        off = np.hypot(*(pin - gear.world_from_gear[:3, 3])[:, :2].T)
+        # 0.7 of the bore of 8 mm, the ball 1.2 times as much; deviations of pins, and facets
+        assert off.max() == pytest.approx(1.2 * 0.7 * 4.0, abs=0.03)
+        assert vertices[:, 2].min() < -6.0
+        assert vertices[:, 2].max() > 14.4 + 6.0 - 0.01
+    opened = motion_of(display, "opening", 3)
+    turned = [np.arctan2(frame.poses[arms[0].name][1, 0], frame.poses[arms[0].name][0, 0]) for frame in opened.frames]
+    apart = [np.arctan2(frame.poses[arms[1].name][1, 0], frame.poses[arms[1].name][0, 0]) for frame in opened.frames]
+    neared = np.diff(np.array(apart) - np.array(turned))  # the first of a pair goes ahead, the second back
+    assert (neared < -0.01 / 26.0).all()
 
 
 def test_the_held_ring_stands_whatever_turns(tmp_path: Path) -> None:

@@ -133,9 +133,9 @@ parts:
   large: {kind: pin_gauge, pins: 5, radius: 25 mm, gap: 12 um}
   bare: {kind: pin_gauge, pins: 4, radius: 10 mm, gap: 7 um}
 tolerances:
-  pins of small: {kind: pin_position, of: small, distribution: {kind: uniform, lower: -9 um, upper: 4 um}}
-  more of small: {kind: pin_position, of: small, distribution: {kind: normal, lower: -3 um, upper: 3 um}}
-  pins of large: {kind: pin_position, of: large, distribution: {kind: normal, lower: -6 um, upper: 6 um}}
+  pins of small: {kind: pin_place, of: small, distribution: {kind: uniform, lower: -9 um, upper: 4 um}}
+  more of small: {kind: pin_place, of: small, distribution: {kind: normal, lower: -3 um, upper: 3 um}}
+  pins of large: {kind: pin_place, of: large, distribution: {kind: normal, lower: -6 um, upper: 6 um}}
   offset of large: {kind: peg_offset, of: large, distribution: {kind: rayleigh, scale: 2 um}}
 moves:
   into small: {kind: peg_among_pins, gauge: small}
@@ -212,6 +212,7 @@ def command(names: dict[str, Any]) -> Callable[..., str]:
     return printed
 
 
+@pytest.mark.slow
 def test_the_command_runs_shows_and_compares_it(names: dict[str, Any], command: Callable[..., str]) -> None:
     """Installed, it is as any other: the tables hold what the run from Python found."""
     printed = command("run", "pin_gauge.yaml", "--out", "runs/again", "--workers", "2")
@@ -222,7 +223,7 @@ def test_the_command_runs_shows_and_compares_it(names: dict[str, Any], command: 
     assert (names["folder"] / "runs" / "again" / "histogram.png").stat().st_size > 0
     checked = [" ".join(line.split()) for line in command("check", "pin_gauge.yaml").splitlines()]
     assert checked[0] == "peg among pins"
-    assert f"pin position pin_position normal, each of {PINS} 0 {SIGMA:g} µm –" in checked
+    assert f"pin position pin_place normal, each of {PINS} 0 {SIGMA:g} µm –" in checked
     assert "smallest gap smallest_gap ≥ 5 µm 20.000 20.000 20.000 20.000 µm" in checked
     slope = math.sqrt(PINS) / 2  # inwards each pin is the smallest gap, outwards it is not: a half on the average
     assert f"pin position µm/µm {slope:.4g} {slope:.4g}" in checked

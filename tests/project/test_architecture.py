@@ -26,6 +26,7 @@ DOORS = {
         "tol3d/analyses/compensation_picture.py",
         "tol3d/records/identified_picture.py",
     ),
+    "PIL": ("tol3d/report/animation.py",),
     "ruamel": ("tol3d/scene/",),
     "yaml": (),
     "joblib": ("tol3d/execution/pools.py",),

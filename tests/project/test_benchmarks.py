@@ -23,6 +23,8 @@ FEW: Mapping[str, tuple[str, ...]] = {
     "assemblies": ("--trials", "1024", "--rounds", "1", "--systems", "stack"),
     "convergence": ("--studies", "2", "--largest", "1024"),
     "curves": ("--trials", "20", "--positions", "8", "--long", "16", "--rounds", "1", "--workers", "1"),
+    "cycloid": ("--units", "20", "--angles", "20", "--rounds", "1", "--threads", "1"),
+    "disc_profile": (),
     "fcl_speed": ("--trials", "10", "--naive", "1", "--rounds", "1"),
     "memory": ("--trials", "100", "--scenes", "spur_pair", "cover_on_base"),
     "pairs": ("--trials", "500", "--rounds", "1"),
@@ -38,7 +40,18 @@ FEW: Mapping[str, tuple[str, ...]] = {
 }
 """Arguments with which each benchmark takes seconds."""
 
-LONG = ("curves", "fcl_speed", "memory", "rig_records", "startup", "structure", "studies", "tooth_curves", "trains")
+LONG = (
+    "curves",
+    "cycloid",
+    "fcl_speed",
+    "memory",
+    "rig_records",
+    "startup",
+    "structure",
+    "studies",
+    "tooth_curves",
+    "trains",
+)
 """Those that take more than a few of them."""
 
 ROWS: Mapping[str, tuple[str, ...]] = {
@@ -47,10 +60,16 @@ ROWS: Mapping[str, tuple[str, ...]] = {
         rf"sigma driver at one position +{sampler} +order -?[\d.]+ +at 1024: {NUMBER} um"
         for sampler in ("Monte Carlo", "Latin hypercube", "scrambled Sobol'")
     ),
+    "disc_profile": (rf"longest lever +{NUMBER} mm at {NUMBER} deg", rf"largest clearance +{NUMBER} um"),
     "curves": (
         rf"curves of both sides +│ +128 │ +20 │ +1 │ +{NUMBER}",
         rf"curve of the angular backlash +│ +128 │ +20 │ +1 │ +{NUMBER}",
         rf"ranges of both sides, long +│ +256 │ +20 │ +1 │ +{NUMBER}",
+    ),
+    "cycloid": (
+        rf"one sense +│ +1 │ +{NUMBER} │ +{NUMBER}",
+        rf"both senses +│ +1 │ +{NUMBER} │ +{NUMBER}",
+        rf"both, near +│ +1 │ +{NUMBER} │ +{NUMBER}",
     ),
     "fcl_speed": (
         rf"strips, normal backlash +{NUMBER} trials/s",
@@ -118,8 +137,8 @@ def test_a_benchmark_runs_and_prints_every_row(
     name: str, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setenv("OMP_NUM_THREADS", "1")  # what fcl_speed sets where nothing is said, for this test only
-    out = tmp_path / "convergence.png"
-    more = ("--out", str(out)) if name == "convergence" else ()
+    out = tmp_path / f"{name}.png"
+    more = ("--out", str(out)) if name in ("convergence", "disc_profile") else ()
     importlib.import_module(name).main([*FEW[name], *more])
     printed = capsys.readouterr().out
     for row in ROWS[name]:

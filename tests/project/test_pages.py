@@ -76,7 +76,7 @@ def test_every_page_and_picture_is_reached_from_the_readme() -> None:
         reached.add(path)
         name = path.relative_to(ROOT).as_posix()
         ahead += [target for target, _ in links(name) if target not in reached] if name in PAGES else []
-    there = {path for path in (ROOT / "docs").iterdir() if path.suffix in (".md", ".png")}
+    there = {path for path in (ROOT / "docs").iterdir() if path.suffix in (".md", ".png", ".webp")}
     assert there - reached == set()
 
 

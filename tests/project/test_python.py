@@ -172,6 +172,7 @@ def distance(first: trimesh.Trimesh, second: trimesh.Trimesh) -> float:
     return float(fcl.distance(shape(first), shape(second), fcl.DistanceRequest(), fcl.DistanceResult()))
 
 
+@pytest.mark.slow
 def test_the_parts_of_a_replay_touch_and_leave_its_backlash(spur: Run) -> None:
     """The wheel's mesh touches the pinion's; turned back by half its free turn it is half the backlash away, twice.
 
@@ -212,6 +213,7 @@ def test_poses_are_where_the_deviations_put_the_parts(spur: Run) -> None:
     assert turned == pytest.approx(row["position:gear pair [deg]"] % 360, abs=1e-9)
 
 
+@pytest.mark.slow
 def test_a_train_shows_its_shafts_and_arms_in_one_world(tmp_path: Path) -> None:
     run = tol3d.run_scene("robot_shoulder", overrides=FEW, out=tmp_path / "run")
     again = tol3d.replay(run, 3)
@@ -247,6 +249,7 @@ def test_python_shows_what_the_command_shows(tol3d_command: Command, spur: Run, 
         assert words <= set(out.split())
 
 
+@pytest.mark.slow
 def test_pictures_and_files_lie_where_they_say(spur: Run, tmp_path: Path) -> None:
     compared = tol3d.compare_runs([spur], out=tmp_path / "compared.png")
     seen = tol3d.view_trial(spur, 17, out=tmp_path / "seen.png")

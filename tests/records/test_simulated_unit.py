@@ -156,6 +156,7 @@ def test_gears_in_a_housing_stand_where_its_warm_bores_put_them(tmp_path: Path) 
         assert float(play) == pytest.approx(back - drive, abs=ROUNDING)
 
 
+@pytest.mark.slow
 def test_a_trial_is_that_of_the_scene_s_study(tmp_path: Path) -> None:
     """TE of trial 2 of a run, tooth by tooth; what the rig adds is where the encoders stand."""
     path = scene_file(tmp_path, PAIR, more=PITCHES)

@@ -456,11 +456,13 @@ def assert_labels_apart(figure: Figure, least: int) -> None:
         assert apart, (text, other)
 
 
+@pytest.mark.slow
 @covering(count=[1, 2, 3, 4, 5, 6, 7, 9, 12], lever=[LEVER, None])
 def test_no_two_labels_overlap_and_none_leaves_the_picture(count: int, lever: float) -> None:
     assert_labels_apart(chain_figure(typed_run(long_train(count, lever)), "shoulder swing"), 12 * count)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("others", [1, 2, 3, 4])
 def test_a_long_title_and_many_published_names_stand_apart_and_every_one_is_named(others: int) -> None:
     summary = long_train(3)
@@ -513,6 +515,7 @@ def test_a_wrapped_name_keeps_its_letters_or_ends_in_an_ellipsis(text: str, widt
 # the run's process --------------------------------------------------------------------------------
 
 
+@pytest.mark.slow
 def test_a_run_with_trains_draws_a_picture_of_each_beside_the_histogram(tmp_path: Path) -> None:
     summary = shoulder()
     summary["trains"]["wrist: a/b"] = summary["trains"]["shoulder swing"]

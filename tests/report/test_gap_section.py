@@ -41,6 +41,7 @@ def distance(section: GapSection) -> float:
     return float(cKDTree(first).query(second)[0].min())
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("magnify", [1.0, 2.0])
 @pytest.mark.parametrize("trial", [0, pytest.param(3, marks=pytest.mark.slow)])
 def test_the_outlines_are_as_far_apart_as_the_gap_and_the_line_reaches_from_one_to_the_other(

@@ -146,6 +146,7 @@ def test_three_sigma_is_the_one_band_of_a_curve_whether_its_trials_reach_further
 # ends ---------------------------------------------------------------------------------------------
 
 
+@pytest.mark.slow
 def test_normal_samples_are_told_by_three_sigma_and_uniform_ones_by_quantiles() -> None:
     """Two chances of a thousandth each in 2000 studies: 4 are expected at most, 14 or more have a chance of 1e-4."""
     rng = np.random.default_rng(3)
@@ -170,6 +171,16 @@ def test_the_bars_of_a_range_end_where_its_trials_do() -> None:
     assert any("0.135%and99.865%ofthetrials" in text for text in texts_of(figure))
 
 
+def test_a_column_with_nothing_to_draw_has_no_empty_line() -> None:
+    others = {"a table alone": {"pooled": {"half_span": 37.0}}, "a mean": {"mean": 8.0}}
+    measure = typed_measure(measure_of(normals(4000), published=others))
+    axes = axes_of(draw_ranges, measure, column_colours(columns_of(measure)))
+    labels = [label.get_text() for label in axes.get_yticklabels()]
+    assert "a mean" in labels
+    assert "a table alone" not in labels
+    assert len(labels) == len(columns_of(measure)) - 1
+
+
 def test_the_bars_of_a_normal_measure_end_at_three_sigma() -> None:
     measure = measure_of(normals(4000))
     axes = axes_of(draw_ranges, typed_measure(measure), column_colours(columns_of(typed_measure(measure))))
@@ -181,7 +192,8 @@ def test_the_bars_of_a_normal_measure_end_at_three_sigma() -> None:
 # names --------------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("count", [1, 2, 9, 10, pytest.param(40, marks=pytest.mark.slow)])
+@pytest.mark.slow
+@pytest.mark.parametrize("count", [2, 10, *(pytest.param(n, marks=pytest.mark.slow) for n in (1, 9, 40))])
 def test_contributors_bear_their_whole_names_and_no_words_cover_each_other(count: int) -> None:
     names = tuple(long_name(f"no. {k}") for k in range(count))
     told = {long_name("a paper"): {"contributors": {names[0]: 30.0}, "mean": 50.0}}
@@ -239,6 +251,7 @@ def test_each_of_many_measures_has_a_file_and_a_place_in_the_overview() -> None:
     assert_apart(figure)
 
 
+@pytest.mark.slow
 def test_a_run_of_many_measures_draws_a_picture_of_each(tmp_path: Path) -> None:
     measures = {f"play {k}": measure_of(normals(50, k), ("one",)) for k in range(5)}
     with picture.drawing() as draw:
@@ -247,6 +260,7 @@ def test_a_run_of_many_measures_draws_a_picture_of_each(tmp_path: Path) -> None:
     assert {path.name for path in tmp_path.iterdir()} == expected
 
 
+@pytest.mark.slow
 def test_a_measure_that_cannot_be_drawn_costs_a_warning_and_no_other_picture(tmp_path: Path) -> None:
     measures = {f"play {k}": measure_of(normals(50, k), ("one",)) for k in range(5)}
     (tmp_path / "histogram-play 3.png").symlink_to(tmp_path / "no such folder" / "picture.png")

@@ -35,6 +35,7 @@ def test_every_plain_sign_is_ascii_and_no_longer_than_it_must_be() -> None:
     assert all(plain.isascii() and 1 <= len(plain) <= 3 for plain in PLAIN_SIGNS.values())
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("encoding", [*DEFAULT, *(pytest.param(each, marks=pytest.mark.slow) for each in OTHERS)])
 def test_a_report_is_printed_in_any_encoding(encoding: str, tmp_path: Path) -> None:
     environment = os.environ | {"PYTHONIOENCODING": encoding, "PYTHONUTF8": "0"}

@@ -62,6 +62,7 @@ def test_worlds_of_single_bodies_are_told_apart_by_their_names(run: Run, tmp_pat
     assert names["step"] == ["mean-small.step", "mean-large.step"]
 
 
+@pytest.mark.slow
 def test_further_pictures_are_drawn_beside_the_histogram(
     run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

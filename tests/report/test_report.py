@@ -325,6 +325,7 @@ def test_check_says_of_which_measures_the_shares_are_of_one_position() -> None:
     assert "shares of" not in plain
 
 
+@pytest.mark.slow
 def test_check_marks_coefficients_on_which_geometry_and_stack_up_disagree() -> None:
     text = printed(check_report(simulation_of(load_scene(SCENES / "bevel_pair.yaml"))), 80)
     # by an exact solver 0.5311 and 0.4358 where the stack-up has their mean, and nothing for axes that pass each other
@@ -373,6 +374,7 @@ def test_measures_of_one_name_over_other_positions_are_compared_apart(run: Run) 
     assert rows == [4, 3]
 
 
+@pytest.mark.slow
 def test_an_error_that_jumps_over_the_swing_has_no_mean_in_the_comparison(tmp_path: Path) -> None:
     scene = SCENES / "robot_shoulder_swing.yaml"
     swing = run_scene(scene, overrides=Overrides(trials=4, witness=0), out=tmp_path / "swing")
@@ -402,6 +404,7 @@ def test_legends_of_a_comparison_lie_below_the_axes_and_hide_nothing(run: Run) -
         assert (legend.x0 >= 0, legend.x1 <= known(figure.axes[1].get_tightbbox()).x0) == (True, True)
 
 
+@pytest.mark.slow
 def test_flanks_of_a_swing_with_several_changes_of_side_are_told_at_the_first(tmp_path: Path) -> None:
     scene = tmp_path / "swing.yaml"
     text = (SCENES / "robot_shoulder_swing.yaml").read_text("utf-8")
@@ -520,6 +523,7 @@ def test_comparison_of_two_runs_is_drawn(run: Run, tmp_path: Path) -> None:
     assert imread(tmp_path / "c.png")[..., :3].std() > 0.05
 
 
+@pytest.mark.slow
 def test_a_run_loads_neither_cad_nor_meshes_nor_views(run: Run, tmp_path: Path) -> None:
     """Its strips are cached by the fixture; the picture and the table are made too."""
     program = (
@@ -732,6 +736,7 @@ def test_export_where_nothing_can_be_written_is_refused(run: Run, tmp_path: Path
 # view ---------------------------------------------------------------------------------------------
 
 
+@pytest.mark.slow
 @renders
 def test_view_marks_contact_and_gap_and_keeps_quiet(
     run: Run, tmp_path: Path, capfd: pytest.CaptureFixture[str]

@@ -105,6 +105,7 @@ def test_the_command_prints_the_schema_that_its_summary_keeps(tol3d: Command, ru
     assert "chords" in scenes["$defs"]["Study"]["properties"]["engine"]["enum"]
 
 
+@pytest.mark.slow
 def test_runs_are_compared(tol3d: Command, run: Run, folder: Path) -> None:
     other = folder / "other"
     assert tol3d("run", str(SPRING), "--trials", "1000", "--seed", "3", "--no-picture", "--out", str(other))[0] == 0

@@ -93,6 +93,7 @@ APEX = OUTPUT - np.array([0.0, 0.0, 60.0])
 CENTRES = {"pinion": PINION, "idler": IDLER, "wheel": WHEEL, "bevel driver": APEX, "bevel driven": APEX}
 
 
+@pytest.mark.slow
 def test_gears_stand_where_azimuths_offsets_and_facings_put_them(train: WholeTrain) -> None:
     poses = {part.name: part.world_from_gear for part in train.gears}
     assert set(poses) == set(CENTRES)
@@ -181,6 +182,7 @@ def exported(run: Run, folder: Path) -> dict[str, trimesh.Trimesh]:
     }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", MESHES)
 def test_teeth_mesh_in_the_one_world(run: Run, train: WholeTrain, tmp_path: Path, name: str) -> None:
     """Turned back by half of its play the driven gear stands free on both sides by half of the normal backlash.
@@ -209,6 +211,7 @@ def test_teeth_mesh_in_the_one_world(run: Run, train: WholeTrain, tmp_path: Path
 # files ----------------------------------------------------------------------------------------------
 
 
+@pytest.mark.slow
 def test_a_step_file_holds_every_part_once(run: Run, train: WholeTrain, tmp_path: Path) -> None:
     cadquery = pytest.importorskip("cadquery")
     (path,) = export_run(run, TRIAL, "step", out=tmp_path).files
@@ -303,6 +306,7 @@ def test_wide_bores_are_filled_by_collars(tmp_path: Path) -> None:
 # pictures -------------------------------------------------------------------------------------------
 
 
+@pytest.mark.slow
 @renders
 def test_the_picture_shows_every_shaft_in_its_colour_beside_the_close_ups(
     run: Run, train: WholeTrain, tmp_path: Path, capfd: pytest.CaptureFixture[str]
@@ -357,6 +361,7 @@ study: {trials: 2, seed: 5}
 """
 
 
+@pytest.mark.slow
 @renders
 def test_a_train_of_reducers_alone_is_exported_and_seen_without_a_close_up(tmp_path: Path) -> None:
     (tmp_path / "reducers.yaml").write_text(REDUCERS, encoding="utf-8")

@@ -71,6 +71,7 @@ def label_boxes(names: list[str], places: np.ndarray) -> dict[str, tuple[float, 
     return boxes
 
 
+@pytest.mark.slow
 @renders
 @pytest.mark.parametrize("count", [1, 12, 60])
 @pytest.mark.parametrize("name", ["p{}", "{} has a name that is longer than the room beside the cube", "${}_1$"])

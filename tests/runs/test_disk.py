@@ -85,6 +85,7 @@ def test_a_place_that_is_not_ours_to_write_is_wrong_input(tol3d: Command, tmp_pa
     assert issubclass(DiskError, RunError)  # who catches errors of runs catches these
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(sys.platform == "win32", reason="no limits on the size of files")
 def test_a_limit_on_the_size_of_files_is_told_and_the_same_command_goes_on(tmp_path: Path) -> None:
     command = [sys.executable, "-m", "tol3d.cli", "run", str(SPUR_PAIR), "--engine", "analytic", "--trials", "2000"]

@@ -154,7 +154,8 @@ def test_killed_at_twenty_moments_a_run_ends_with_the_same_bits(kind: str, tmp_p
     assert sorted(path.name for path in tmp_path.iterdir()) == ["killed", "whole"]
 
 
-@pytest.mark.parametrize("kind", ["exact", pytest.param("exact, statistics only", marks=pytest.mark.slow)])
+@pytest.mark.slow
+@pytest.mark.parametrize("kind", ["exact", "exact, statistics only"])
 @pytest.mark.usefixtures("small_blocks")
 def test_killed_at_two_files_a_run_ends_with_the_same_bits(kind: str, tol3d: Command, tmp_path: Path) -> None:
     more = (*KINDS[kind], "--no-picture")

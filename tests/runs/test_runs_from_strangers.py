@@ -36,6 +36,7 @@ from tol3d.simulate import simulation_again
 TRIALS = 24
 ESCAPE = "\x1b[2J\x1b]0;owned\x07"
 WRONG: tuple[Any, ...] = (None, ESCAPE, "x", True, -1, 0, 0.5, 1e14, 1e300, -1e300, 10**30, [], {}, [None], {"a": 1})
+MORE_EDITS = ("whole", 0.014), ("whole", 0.3), ("train", 0.3)  # scene and share of all values that are edited
 KeyPath = tuple[str | int, ...]
 
 
@@ -213,8 +214,11 @@ def test_an_edit_of_a_summary_is_refused(scene: str, request: pytest.FixtureRequ
     assert edited > 500
 
 
-@pytest.mark.parametrize("share", [0.014, pytest.param(0.3, marks=pytest.mark.slow)], ids=["some edits", "many edits"])
-@pytest.mark.parametrize("scene", ["whole", "train"])
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("scene", "share"),
+    [("train", 0.014), *(pytest.param(*edits, marks=pytest.mark.slow) for edits in MORE_EDITS)],
+)
 def test_an_edit_with_its_checksum_is_refused_or_harmless(
     scene: str, share: float, request: pytest.FixtureRequest, tmp_path: Path
 ) -> None:

@@ -166,6 +166,7 @@ def test_the_permutation_looks_like_a_random_one() -> None:
     assert scipy.stats.chi2.ppf(1e-6, 49) < chi_square < scipy.stats.chi2.ppf(1 - 1e-6, 49)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("size", [3, 5, 16])
 def test_small_permutations_take_any_two_places_anywhere(size: int) -> None:
     keys = 4000
@@ -238,6 +239,7 @@ def found(model: Model, sampler: Any, trials: int, seed: int) -> np.ndarray:
     return np.array([moments.mean - 1e3 * form.mean, moments.sigma - 1e3 * form.sigma, errors.mean_se, errors.sigma_se])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("sampler", ["sobol", pytest.param("latin_hypercube", marks=pytest.mark.slow)])
 def test_the_stated_standard_errors_are_the_true_spread(paper_model: Model, sampler: str) -> None:
     studies, replicates = 200, 16

@@ -77,7 +77,7 @@ def printed(report: Any) -> str:
     ("name", "share"),
     [
         ("spur_pair", 0.15),
-        ("every_field", 0.02),
+        pytest.param("every_field", 0.02, marks=pytest.mark.slow),
         pytest.param("every_field", 0.15, marks=pytest.mark.slow),
         ("every_bevel_field", 0.15),
         pytest.param("robot_shoulder_swing", 0.15, marks=pytest.mark.slow),

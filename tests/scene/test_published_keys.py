@@ -4,8 +4,10 @@ from collections.abc import Iterator, Mapping
 from fnmatch import fnmatchcase
 from typing import Any, Final
 
+from tol3d.cycloid.mechanism import CYCLOID
 from tol3d.gearing.mechanism import GEARING
 from tol3d.kinds import summary_kinds
+from tol3d.planetary.mechanism import PLANETARY
 from tol3d.scene import Grammar
 
 Schema = Mapping[str, Any]
@@ -22,6 +24,8 @@ STATED: Final = {
     "measures.*.lower_limit": "the scene states it",
     "measures.*.upper_limit": "the scene states it",
     "measures.*.load_changes_deg": "the scene states it",
+    "measures.*.order": "the scene states it",
+    "planetary_sets.*.spring.*": "what follows of the scene's own spring",
     "measures.*.lever_mm": "the scene states it",
     "measures.*.lost_motion.arcmin_per_um": "the scene states it",
     "measures.*.reasons.*": "counts of words of this program: which pair decided what failed",
@@ -67,7 +71,7 @@ def without_roads(place: str) -> str:
 
 
 def column_numbers() -> set[str]:
-    schema = Grammar((GEARING,)).scene.model_json_schema()
+    schema = Grammar((GEARING, PLANETARY, CYCLOID)).scene.model_json_schema()
     column = schema["$defs"]["PublishedColumn"]
     whole = {**column, "additionalProperties": False}
     for own in whole["properties"].values():  # a measure of the name of a key

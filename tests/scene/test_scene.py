@@ -152,6 +152,7 @@ def test_the_documents_message_is_what_the_tool_says(tmp_path: Path) -> None:
 # JSON Schema --------------------------------------------------------------------------------------
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("path", SCENES, ids=lambda path: path.stem)
 def test_shipped_scenes_satisfy_the_json_schema(path: Path) -> None:
     judged(path.read_text(encoding="utf-8"))

@@ -73,6 +73,7 @@ def test_every_bevel_scene_is_worked_out_by_hand() -> None:
         assert list(BY_HAND[scene]()) == list(load_scene(FOLDER / f"{scene}.yaml").tolerances)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("scene", SCENES)
 def test_closed_forms_follow_by_hand(scene: str, run_of: Callable[[str], Run]) -> None:
     terms, found = BY_HAND[scene](), run_of(scene).summary["measures"]["normal backlash"]

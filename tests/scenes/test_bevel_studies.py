@@ -86,6 +86,7 @@ def check(name: str, trials: int) -> None:
     assert np.std(geometric, ddof=1) == pytest.approx(case.sigma, abs=4 * case.sigma / math.sqrt(2 * trials) + GIVEN)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", CASES)
 def test_two_hundred_thousand_trials_meet_what_was_worked_out(name: str) -> None:
     check(name, 200_000)

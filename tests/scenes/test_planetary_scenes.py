@@ -1,5 +1,6 @@
 """The scenes of planetary sets run, none of their trials fails, and they meet the numbers in the files beside them."""
 
+import re
 from collections.abc import Callable
 from typing import Any
 
@@ -10,7 +11,8 @@ from shipped import shipped
 
 from tol3d import Run, load_scene
 
-SCENES = shipped("planetary")
+LONG = re.compile("^reducer")  # a turn of 360 positions, loaded at each
+SCENES = [pytest.param(own, marks=pytest.mark.slow) if LONG.match(own) else own for own in shipped("planetary")]
 PRINTED = 1e-5  # arcmin; the files give that many digits
 SEEN = 1e-5  # arcmin: another machine's bits
 
@@ -23,7 +25,7 @@ def measures_of(scene: str) -> dict[str, dict[str, Any]]:
 def test_a_planetary_set_meets_its_expected_numbers(scene: str, run_of: Callable[[str], Run]) -> None:
     summary = run_of(scene).summary
     trials = expected(scene)["trials"]
-    assert summary["status"] == {"ok": trials, "interferes": 0, "singular": 0}
+    assert summary["status"] == dict.fromkeys(summary["status"], 0) | {"ok": trials}
     assert list(measures_of(scene)) == list(load_scene(FOLDER / f"{scene}.yaml").measures)
     for name, own in measures_of(scene).items():
         found = summary["measures"][name]

@@ -138,6 +138,7 @@ def flank_deviation(gear: BevelGear, faces: Mapping[str, cq.Face], tooth: int, f
     return worst
 
 
+@pytest.mark.slow
 @each_gear
 def test_volume_is_the_integral_over_the_teeth_and_the_blank_within_1_ppm(gear: BevelGear) -> None:
     part = build(gear)

@@ -7,6 +7,7 @@ which knows no involute, no base circle and no internal gear.
 import dataclasses
 import functools
 import math
+from collections.abc import Iterator
 from pathlib import Path
 
 import cadquery as cq
@@ -45,9 +46,10 @@ each_gear = pytest.mark.parametrize("gear", GEARS.values(), ids=GEARS.keys())
 
 
 @pytest.fixture(autouse=True, scope="module")
-def _cache_of_the_tests(tmp_path_factory: pytest.TempPathFactory) -> None:
-    patch = pytest.MonkeyPatch()
-    patch.setenv("TOL3D_CACHE", str(tmp_path_factory.mktemp("cache")))
+def _cache_of_the_tests(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
+    with pytest.MonkeyPatch.context() as patch:  # later modules of the same process have the user's cache again
+        patch.setenv("TOL3D_CACHE", str(tmp_path_factory.mktemp("cache")))
+        yield
 
 
 def rack_flank(gear: InternalGear, radius: np.ndarray, flank: Flank) -> np.ndarray:

@@ -283,6 +283,7 @@ def test_a_shaft_s_mesh_lies_on_it_and_leaves_it_by_its_chord_error(deflection: 
     assert 0 < shaft_volume(60.0, 140.0) - mesh.volume <= 1.01 * chord_error * mesh.area
 
 
+@pytest.mark.slow
 @each_arm
 def test_an_arm_s_mesh_is_closed_and_as_large_as_its_chord_error_allows(
     points: list[tuple[float, float, float]],

@@ -197,6 +197,7 @@ def _section(gear: SpurGear) -> float:
     return gear.transverse_area - math.pi * gear.bore**2 / 4
 
 
+@pytest.mark.slow
 @each_gear
 @pytest.mark.parametrize("deflection", [0.05, 0.005])
 def test_display_mesh_is_closed_and_as_large_as_its_chord_error_allows(gear: SpurGear, deflection: float) -> None:

@@ -253,6 +253,7 @@ def test_one_trial_of_thousands_that_jumps_is_told_by_its_number(monkeypatch: py
 # what a stack-up leaves out on purpose ----------------------------------------------------------------
 
 
+@pytest.mark.slow
 def test_the_bevel_pair_names_what_its_stack_up_leaves_out() -> None:
     """The offset of the axes as a whole; of shifts a tenth, by where in the pitch the one tooth touches."""
     found = explained(model_of("bevel_pair"), 4000)["normal backlash"]
@@ -268,6 +269,7 @@ def test_the_bevel_pair_names_what_its_stack_up_leaves_out() -> None:
     assert max(part.percent for part in others) == pytest.approx(share, rel=0.05)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["driver tooth thickness", "driven tooth thickness", "shaft angle"])
 def test_what_a_bevel_stack_up_does_not_leave_out_is_held_to_3_percent(
     name: str, monkeypatch: pytest.MonkeyPatch
@@ -283,7 +285,7 @@ def test_a_flipped_sign_on_a_bevel_pair_is_more_than_it_leaves_out(name: str, mo
 # scenes that are right ------------------------------------------------------------------------------
 
 
-LONG = ("tooth_deviations", "measured_teeth", "two_sided_te", "ring_train")  # over all teeth of both gears, or a train
+LONG = ("tooth_deviations", "measured_teeth", "two_sided_te", "ring_train", "internal_pair")  # long
 
 
 @pytest.mark.parametrize(
@@ -295,6 +297,7 @@ def test_no_shipped_scene_is_warned_of(scene: str) -> None:
     assert [name for name, own in found.items() if own.undecided] == []
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("kind", "count"), [("spur", 20), ("bevel", 15), ("train", 15)])
 def test_no_random_scene_is_warned_of(kind: str, count: int) -> None:
     for scene in random_scenes(kind, count, seed=11):

@@ -56,14 +56,32 @@ def found_by(engine: str = "exact") -> dict[str, FirstOrder]:
 
 
 def test_slopes_are_those_of_the_sum_and_of_a_parabola_at_its_mean() -> None:
-    """Of 3 x + 40 x² at 20 um: 3 + 2 * 40 / mm * 0.020 mm = 4.6; the others as they are, of two or more their size.
+    """Of 3 x + 40 x² at 20 um: 3 + 2 * 40 / mm * 0.020 mm = 4.6; others as they are, or their size.
 
-    Eastwards only the first component counts; a constant is moved by a um to see what it would do.
+    Eastwards only the first component counts; a constant is moved by a um to see what it would do. Each of the pins has
+    a slope of its own, of which the greatest is shown, with its sign.
     """
     slopes = {road: {own.name: own.slope for own in found.effects} for road, found in found_by().items()}
-    expected = {"size": 3.0, "anywhere": 5.0, "eastwards": 3.0, "point": 3.0, "pins": math.sqrt(5.0), "fixed": 7.0}
+    expected = {"size": 3.0, "anywhere": 5.0, "eastwards": 3.0, "point": 3.0, "pins": -2.0, "fixed": 7.0}
     assert slopes["analytic"] == pytest.approx(expected, rel=1e-9)
     assert slopes["geometric"] == pytest.approx(expected | {"size": 4.6}, rel=1e-9)
+
+
+def test_slopes_of_each_of_several_are_alike_or_the_greatest_of_them() -> None:
+    """The slopes 0, 1 and -2 of the pins are not alike; all of one size and sign are, within 1e-6 of it."""
+    law = Uniform(-1 * UM, 1 * UM)
+    for slopes, alike in (((0.0, 1.0, -2.0), False), ((-2.0, -2.0, -2.0), True), ((-2.0, 1.0, -2.0), False)):
+
+        @dataclass(frozen=True)
+        class Pins(PlainSystem):
+            def analytic(self, trials: Trials, measure: Measure) -> Array:
+                return np.asarray(trials.deviations @ np.array(slopes))  # noqa: B023
+
+        pins = PlainContributor("pins", "pin", Each(law, ("a", "b", "c")))
+        asked = Simulation(Pins("pins", (pins,), (PlainMeasure("gap", "gap"),)), Study(engine="analytic"))
+        (effect,) = first_orders(asked, None, asked.system.measures[0])["analytic"].effects
+        assert (effect.each, effect.alike) == (3, alike)
+        assert effect.slope == pytest.approx(-2.0)
 
 
 def test_builds_are_worked_out_by_both_roads() -> None:

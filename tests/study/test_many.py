@@ -51,6 +51,7 @@ def model_of(folder: Path, tolerances: int) -> Model:
     return model_from_scene(load_scene(scene_of(folder, tolerances)))
 
 
+@pytest.mark.slow
 def test_a_block_holds_no_more_draws_however_many_a_trial_has(tmp_path: Path, paper_model: Model) -> None:
     assert block_trials(simulated(paper_model)) == 65_536  # ordinary scenes keep theirs, and with them their bits
     for tolerances in (200, 1500):
@@ -59,6 +60,7 @@ def test_a_block_holds_no_more_draws_however_many_a_trial_has(tmp_path: Path, pa
         assert block_trials(simulated(model)) * model.component_count > 2**20
 
 
+@pytest.mark.slow
 def test_statistics_of_many_tolerances_grow_with_their_number_at_most(tmp_path: Path) -> None:
     sizes = {}
     for tolerances in (300, 1500):

@@ -297,6 +297,7 @@ def test_a_witness_that_is_further_off_than_it_says_is_told_of(monkeypatch: pyte
     assert first.startswith("witness: CHORDS finds ")
 
 
+@pytest.mark.slow
 def test_chords_are_an_engine_of_processes_and_made_once_in_the_parent(tmp_path: Path, small_blocks: None) -> None:
     asked = Overrides(trials=4000, engine="chords")
     alone = run_scene(SPRING, overrides=asked, out=tmp_path / "alone")
@@ -322,6 +323,7 @@ def scene_with(folder: Path, *changes: tuple[str, str]) -> Path:
     return path
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("sampler", ["sobol", "latin_hypercube"])
 def test_even_samplers_find_the_moments_and_tell_their_errors_by_replicates(sampler: str, tmp_path: Path) -> None:
     study = f"trials: 32768, seed: 7, sampler: {sampler}, replicates: 16"
@@ -348,6 +350,7 @@ def test_automatic_trials_stop_at_the_error_that_was_asked_for(tmp_path: Path) -
 FEW = Overrides(trials=7700, witness=20)
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("small_blocks")
 def test_bits_are_those_of_any_blocks_workers_and_resume(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     first = run_scene(SPRING, overrides=FEW, out=tmp_path / "one")

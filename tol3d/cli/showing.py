@@ -10,6 +10,8 @@ from tol3d.cli.arguments import RunArgument, RunBuilders, SceneArgument, TrustPa
 from tol3d.cli.console import err_console, out_console, tell
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from tol3d.runs.run import Run
 
 
@@ -129,17 +131,46 @@ def view(
         str | None, typer.Option(metavar="NAME", help="Which mesh is shown close up; by default the first.")
     ] = None,
     screenshot: Annotated[Path | None, typer.Option(help="Write a picture instead of opening a window.")] = None,
+    animate: Annotated[
+        Path | None, typer.Option(help="Write moving pictures instead: .gif, .webp or .png (animated).")
+    ] = None,
+    motion: Annotated[
+        str | None, typer.Option(metavar="NAME", help="What moves, with --animate; by default the first there is.")
+    ] = None,
+    frames: Annotated[int | None, typer.Option(help="How many frames, with --animate.")] = None,
 ) -> None:
     """Show a trial in 3D; of gears with contact and gap marked."""
-    from tol3d.report.view import view_run
     from tol3d.runs.run import open_run
 
+    _refuse_mixed(screenshot, animate, mesh, {"--motion": motion, "--frames": frames})
     finished = open_run(run)
     which = _which(finished, trial, worst=worst, nominal=nominal, mean=mean)
-    for note in view_run(finished, which, screenshot=screenshot, magnify=magnify, close_up=mesh):
+    if animate is not None:
+        from tol3d.report.animation import animate_run
+
+        notes = animate_run(finished, which, animate, motion=motion, frames=frames, magnify=magnify)
+    else:
+        from tol3d.report.view import view_run
+
+        notes = view_run(finished, which, screenshot=screenshot, magnify=magnify, close_up=mesh)
+    for note in notes:
         err_console.print(note, style="yellow")
-    if screenshot:
-        tell(str(screenshot))
+    if written := animate or screenshot:
+        tell(str(written))
+
+
+def _refuse_mixed(
+    screenshot: Path | None, animate: Path | None, mesh: str | None, of_motions: "Mapping[str, object]"
+) -> None:
+    """Refuse options of which one would be left out."""
+    from tol3d.errors import InputError
+
+    if animate is not None and screenshot is not None:
+        raise InputError("expected one of --screenshot and --animate, got both")
+    if animate is not None and mesh is not None:
+        raise InputError("--mesh: of moving pictures leave it out; --motion chooses what moves")
+    if animate is None and (said := [option for option, value in of_motions.items() if value is not None]):
+        raise InputError(f"{said[0]}: expected with --animate FILE, which writes moving pictures")
 
 
 def _which(run: "Run", trial: int | None, *, worst: bool, nominal: bool, mean: bool) -> "int | str":

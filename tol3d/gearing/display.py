@@ -2,7 +2,8 @@
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,6 +24,8 @@ from tol3d.simulate import Replay, replay, replayed, simulation_again
 from tol3d.system.stated import magnified, mean_build, nominal_build
 
 Array = NDArray[np.float64]
+Side = Literal["drive", "back"]
+"""Flanks on which meshes rest: those that the first shaft pushes with, or the others."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -36,6 +39,7 @@ class SeatedBuild:
         meshes: each in a world of its own; those that are measured, or all of a model whose shafts are shown.
         values: value of each measure on the geometric road, in the measure's unit, magnified too.
         notes: what the user should know.
+        seen: the build itself, simulated again with its deviations as they are magnified.
     """
 
     model: Model
@@ -44,6 +48,7 @@ class SeatedBuild:
     meshes: tuple[SeatedMesh, ...]
     values: Mapping[str, object]
     notes: tuple[str, ...]
+    seen: Replay
 
 
 def seated_build(run: Run, which: Which, *, magnify: float = 1.0) -> SeatedBuild:
@@ -67,7 +72,7 @@ def seated_build(run: Run, which: Which, *, magnify: float = 1.0) -> SeatedBuild
     used, note = allowed_factor(lambda factor: _seated(_scaled(seen, factor), rows), magnify)
     again = _scaled(seen, used)
     label += f"-x{used:g}" if used != 1.0 else ""
-    return SeatedBuild(_model(seen), label, used, _seated(again, rows), again.geometric, (*plain.notes, note))
+    return SeatedBuild(_model(seen), label, used, _seated(again, rows), again.geometric, (*plain.notes, note), again)
 
 
 def replayed_build(seen: Replay, label: str) -> SeatedBuild:
@@ -81,7 +86,7 @@ def replayed_build(seen: Replay, label: str) -> SeatedBuild:
         if seat.status == NO_CONTACT:
             raise RunError(f"{label}: the working flanks of {seat.mesh.name} found no contact; choose another build")
     failed = () if seen.status == "ok" else (f"{label}: {seen.status}; shown where its working flanks touch",)
-    return SeatedBuild(_model(seen), label, 1.0, meshes, seen.geometric, failed)
+    return SeatedBuild(_model(seen), label, 1.0, meshes, seen.geometric, failed, seen)
 
 
 def replayed_of(run: Run, which: Which) -> tuple[str, Replay]:
@@ -173,13 +178,39 @@ def _seats(seen: Replay, rows: Mapping[str, int]) -> Mapping[str, MeshSeat]:
     return {mesh.name: _of_measure(seen, mesh) for mesh in _model(seen).meshes if mesh.name in rows}
 
 
-def _along_shafts(seen: Replay) -> Mapping[str, MeshSeat]:
+def seats_turned(seen: Replay, driver_angles: Mapping[str, float], beyond: float, side: Side) -> Mapping[str, MeshSeat]:
+    """Meshes of a build further on, on either side of their backlash.
+
+    Args:
+        seen: the build.
+        driver_angles: turns [rad] of the drivers of its meshes in it, by mesh; those that are shown.
+        beyond: turn of the first shafts, or of the drivers of single pairs, from there on [rad].
+        side: of all meshes.
+    """
+    if shows_shafts(_model(seen)):
+        return _along_shafts(seen, beyond, side)
+    meshes = (mesh for mesh in _model(seen).meshes if mesh.name in driver_angles)
+    return {
+        mesh.name: _meshing(seen, mesh, side).seat(np.array([driver_angles[mesh.name] + beyond])) for mesh in meshes
+    }
+
+
+def _along_shafts(seen: Replay, beyond: float = 0.0, side: Side | None = None) -> Mapping[str, MeshSeat]:
     """Meshes at the trial's position, each driver turned to where the links before it came to rest.
 
     Where load paths join, the first link decides where the shaft rests; how gears are clocked on their shafts is not
     shown.
+
+    Args:
+        seen: the build.
+        beyond: turn of the first shafts from the trial's position on [rad].
+        side: of their backlash that all meshes rest on; None: each on that of its first measure.
     """
-    layout, angles, meshings = _model(seen).layout, seen.trials.positions, _seats_of(seen).meshings
+    layout = _model(seen).layout
+    angles = {
+        name: angle + beyond * float(layout.mesh_turn[name].rate) if name in layout.mesh_turn else angle
+        for name, angle in seen.trials.positions.items()
+    }
     meshes = {mesh.name: mesh for mesh in _model(seen).meshes}
     ahead: dict[str, float] = {}  # of its nominal angle, by shaft [rad]
     seats = {}
@@ -190,8 +221,7 @@ def _along_shafts(seen: Replay) -> Mapping[str, MeshSeat]:
             about = ahead.get(link.carrier or "", 0.0)
             ahead.setdefault(link.driven, about + (before - about) * float(link.rate))
             continue
-        known = meshings[_own_key(seen, mesh)]
-        meshing = Meshing(known.engine, _model(seen), mesh, _seats_of(seen).build, known.reading)
+        meshing = _meshing(seen, mesh, side)
         (_, driver), (_, driven) = layout.carrying[mesh.driver], layout.carrying[mesh.driven]
         seats[mesh.name] = meshing.seat(angles[mesh.name] + driver.sense * before)
         off = seats[mesh.name].driven_angle - mesh.pair.driven_angle(angles[mesh.name])
@@ -199,16 +229,22 @@ def _along_shafts(seen: Replay) -> Mapping[str, MeshSeat]:
     return seats
 
 
+def _meshing(seen: Replay, mesh: Mesh, side: Side | None) -> Meshing:
+    """A mesh as its first measure reads it, or on a side of its backlash."""
+    known = _seats_of(seen).meshings[_own_key(seen, mesh)]
+    reading = known.reading if side is None else replace(known.reading, flank=side)
+    return Meshing(known.engine, _model(seen), mesh, _seats_of(seen).build, reading)
+
+
 def _seated(seen: Replay, rows: Mapping[str, int]) -> tuple[SeatedMesh, ...]:
     seats = _seats(seen, rows)
     return tuple(
-        _seated_mesh(seen, mesh, seats[mesh.name], rows[mesh.name])
-        for mesh in _model(seen).meshes
-        if mesh.name in seats
+        seated_mesh(seen, mesh, seats[mesh.name], rows[mesh.name]) for mesh in _model(seen).meshes if mesh.name in seats
     )
 
 
-def _seated_mesh(seen: Replay, mesh: Mesh, seat: MeshSeat, row: int) -> SeatedMesh:
+def seated_mesh(seen: Replay, mesh: Mesh, seat: MeshSeat, row: int) -> SeatedMesh:
+    """A mesh of a build, its gears placed as a row of its seat has them."""
     at_work, idle = seat.working, seat.non_working
     touching = int(np.argmin(np.where(np.isnan(at_work.value[row]), np.inf, at_work.value[row])))
     nearest = int(np.argmin(np.where(np.isnan(idle.value[row]), np.inf, idle.value[row])))

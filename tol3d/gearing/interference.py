@@ -3,6 +3,7 @@
 from collections.abc import Iterator
 from dataclasses import replace
 
+from tol3d.gearing.linked import link_trials
 from tol3d.gearing.model import Backlash, LostMotion, Measure, Model
 from tol3d.gearing.model.measure import ParallelStage
 from tol3d.gearing.roads.analytic import analytic_backlashes, analytic_play
@@ -18,8 +19,12 @@ ZERO_BACKLASH = 1e-9  # mm or rad; nominal backlash zero is legal, and closed fo
 def interferences(model: Model) -> Iterator[Problem]:
     """Meshes whose non-working flanks overlap with every contributor at its mean, and load paths that bind then."""
     nominal = nominal_build(model)
+    asked: set[str] = set()
     for measure in model.measures:
         mean = mean_build(model, measure)
+        for link in (model.link(name) for _, name in measure.kind.links if name not in asked):
+            asked.add(link.name)
+            yield from link.problems(link_trials(model, measure, link, mean))
         for backlash, values in analytic_backlashes(model, measure, mean):
             if float(values.min()) < -ZERO_BACKLASH:
                 before = dict(analytic_backlashes(model, measure, nominal))[backlash]

@@ -1,6 +1,7 @@
 """What links that are no gear meshes leave free in some trials, by either road's law."""
 
 from collections.abc import Callable
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,6 +15,21 @@ Array = NDArray[np.float64]
 
 LinkLaw = Callable[[StatedLink, LinkTrials], FreeTurn]
 """The free turn of a link's driven shaft."""
+
+
+@dataclass
+class Remembered:
+    """A law by which the free turns of a link in the same trials are worked out once, whatever measures read them."""
+
+    law: LinkLaw
+    known: dict[tuple[str, tuple[int, ...], bytes], FreeTurn] = field(default_factory=dict)
+
+    def __call__(self, link: StatedLink, seen: LinkTrials) -> FreeTurn:
+        """See LinkLaw; all that it is asked is of the same trials."""
+        key = link.name, seen.angles.shape, seen.angles.tobytes()
+        if key not in self.known:
+            self.known[key] = self.law(link, seen)
+        return self.known[key]
 
 
 def as_built(link: StatedLink, seen: LinkTrials) -> FreeTurn:

@@ -2,11 +2,12 @@
 
 The free turn of a shaft on one load path is an interval: from where its driven gear rests on the working flank to where
 the other flank touches, links in series added up. All is linear in the play of each mesh and the angle at which it
-rests, once it is known which path ends first on either side; so derivatives are computed as values are.
+rests, once it is known which path ends first on either side; so derivatives are computed as values are. Load paths that
+share links are compared likewise, walk by walk; each of their loops must leave itself some play, or they bind.
 """
 
 from collections.abc import Callable, Mapping
-from typing import Literal
+from typing import Final, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,6 +15,8 @@ from numpy.typing import NDArray
 from tol3d.gearing.model.measure import AnyStage, ParallelStage, Stage
 
 Array = NDArray[np.float64]
+
+FREE: Final = 1e-9  # rad; load paths that overlap by rounding errors do not bind each other
 
 Variable = tuple[Stage, Literal["play", "rest"]]
 VariableValues = Callable[[Variable], Array]
@@ -37,7 +40,20 @@ def value(form: LinearForm, read: VariableValues) -> Array:
 def free_form(stage: ParallelStage, flank: WorkingFlank, read: VariableValues) -> LinearForm:
     """Play of the shaft where load paths join; below 0 they bind each other."""
     low, high = _meeting(stage, flank, read)
-    return _sum(high, {variable: -weight for variable, weight in low.items()})
+    free = _sum(high, _reversed(low))
+    if not stage.loops:
+        return free
+    loops = [form for own in stage.loops for form in _around(own, flank, read)]
+    lacking = [value(form, read) for form in loops]
+    tightest = np.argmin(lacking, axis=0)
+    binds = np.min(lacking, axis=0) < -FREE
+    return _chosen([free, *loops], np.where(binds, 1 + tightest, 0))
+
+
+def _around(loop: tuple[Stage, ...], flank: WorkingFlank, read: VariableValues) -> tuple[LinearForm, LinearForm]:
+    """How far links that make a loop leave it open either way round; below 0 it cannot be closed."""
+    low, high = _ends_of_path(loop, flank, read)
+    return high, _reversed(low)
 
 
 def _meeting(stage: ParallelStage, flank: WorkingFlank, read: VariableValues) -> tuple[LinearForm, LinearForm]:
@@ -78,6 +94,10 @@ def _ends(stage: AnyStage, flank: WorkingFlank, read: VariableValues) -> tuple[L
     resting: LinearForm = {(stage, "rest"): factor}
     turned: LinearForm = {(stage, "rest"): factor, (stage, "play"): factor * side}
     return (resting, turned) if factor * side > 0.0 else (turned, resting)
+
+
+def _reversed(form: LinearForm) -> LinearForm:
+    return {variable: -weight for variable, weight in form.items()}
 
 
 def _sum(first: LinearForm, second: LinearForm) -> LinearForm:

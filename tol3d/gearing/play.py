@@ -11,15 +11,13 @@ from numpy.typing import NDArray
 
 from tol3d.gearing.clocking import clocking
 from tol3d.gearing.linked import LinkLaw, link_trials
-from tol3d.gearing.links.stated_link import middle_of
-from tol3d.gearing.load_paths import LinearForm, Variable, free_form, value
+from tol3d.gearing.links.stated_link import FreeTurn, middle_of
+from tol3d.gearing.load_paths import FREE, LinearForm, Variable, free_form, value
 from tol3d.gearing.model import Backlash, LostMotion, Measure, Model, Reading, TransmissionError
 from tol3d.gearing.model.measure import AnyStage, ParallelStage, Stage
 from tol3d.system.trials import Trials
 
 Array = NDArray[np.float64]
-
-FREE = 1e-9  # rad; load paths that overlap by rounding errors do not bind each other
 
 Angles = tuple[float, ...] | None
 """Driver angles [rad] that every trial shares; None for those of the trial."""
@@ -76,14 +74,32 @@ class Play:
             yield stage.link, stage.factor, self.of(stage)
 
     def overlap(self) -> Array:
-        """What meshes and parallel load paths lack where they bind [mm or rad], (trials, positions), 0 or less.
+        """What meshes, parallel load paths and other links lack where they bind [mm or rad], (trials, positions).
 
-        That of a train which is jammed somewhere: the play of its other stages does not free it.
+        0 or less. That of a train which is jammed somewhere: the play of its other stages does not free it.
         """
         if not isinstance(self.measure.kind, LostMotion):
             return np.minimum(self.free(), 0.0)
-        stages = (stage for stage in self.measure.kind.stages if not _is_stated(stage))
-        return np.asarray(sum(stage.factor * np.minimum(self.of(stage), 0.0) for stage in stages))
+        return np.asarray(sum(stage.factor * self._lacking(stage) for stage in self.measure.kind.stages))
+
+    def _lacking(self, stage: AnyStage) -> Array:
+        """What a stage lacks [rad]; of a link that is no mesh only where it jams, for data sheets may say anything."""
+        lacking = np.minimum(self.of(stage), 0.0)
+        if isinstance(stage, Stage) and stage.backlash is None:
+            return np.where(self._jams(stage), lacking, 0.0)
+        return lacking
+
+    def jammed(self) -> NDArray[np.bool_]:
+        """Where a link that is no mesh cannot be assembled, (trials, positions)."""
+        found = np.zeros(self._shape, dtype=bool)
+        for stage in self.measure.kind.singles if isinstance(self.measure.kind, LostMotion) else ():
+            if stage.backlash is None:
+                found |= self._jams(stage)
+        return found
+
+    def _jams(self, stage: Stage) -> NDArray[np.bool_]:
+        turn = self._turn(stage)
+        return np.broadcast_to(False if turn.jams is None else turn.jams, self._shape)
 
     def bound(self) -> NDArray[np.bool_]:
         """Where parallel load paths bind each other, (trials, positions)."""
@@ -110,8 +126,7 @@ class Play:
         """
         stage, what = variable
         if stage.backlash is None:
-            link = self.model.link(stage.link)
-            turn = self.law(link, link_trials(self.model, self.measure, link, self.trials))
+            turn = self._turn(stage)
             return np.broadcast_to(turn.play if what == "play" else middle_of(turn), self._shape)
         key = seat_key(self.model, self.measure, stage.backlash)
         if what == "play":
@@ -119,16 +134,17 @@ class Play:
         sits = clocking(self.model, self.model.mesh(stage.backlash.mesh), self.trials.deviations)
         return self.read(replace(stage.backlash, quantity="rest_angle"), key) + sits[:, None]
 
+    def _turn(self, stage: Stage) -> FreeTurn:
+        """The free turn of a link that is no mesh."""
+        link = self.model.link(stage.link)
+        return self.law(link, link_trials(self.model, self.measure, link, self.trials))
+
     @property
     def _shape(self) -> tuple[int, int]:
         return len(self.trials), self.measure.positions.in_a_trial
 
     def _flank(self, stage: Stage) -> int | None:
         return None if stage.backlash is None else self.model.mesh(stage.backlash.mesh).driven_flank
-
-
-def _is_stated(stage: AnyStage) -> bool:
-    return isinstance(stage, Stage) and stage.backlash is None
 
 
 def _parallel(stages: Iterable[AnyStage]) -> Iterator[ParallelStage]:

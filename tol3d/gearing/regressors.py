@@ -11,7 +11,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.gearing.model import Contributor, Effect, Measure, Mesh, Model, Planar
+from tol3d.gearing.linked import link_contributors
+from tol3d.gearing.links import LinkTrials
+from tol3d.gearing.model import Contributor, Effect, LinkDeviation, LostMotion, Measure, Mesh, Model, Planar
 from tol3d.gearing.roads.analytic import analytic_values
 from tol3d.system.regressors import is_group, regress_plainly, regress_term
 from tol3d.system.stated import mean_deviations, stated
@@ -26,7 +28,7 @@ def acting(model: Model, measure: Measure) -> tuple[Contributor, ...]:
     """The contributors that act on a measure: on one of its meshes, or one of its other links."""
     meshes = [model.mesh(backlash.mesh) for _, backlash in measure.kind.backlashes]
     links = {name for _, name in measure.kind.links}
-    clocked = () if measure.kind.adds_up else meshes
+    clocked = meshes if isinstance(measure.kind, LostMotion) and measure.kind.joins else ()
     return tuple(contributor for contributor in model.contributors if _acts(contributor.effect, meshes, links, clocked))
 
 
@@ -50,12 +52,49 @@ def regress(
 ) -> None:
     """Write contributors' rows (2, trials) from the columns of their components, over each one's sigma."""
     turning = _Turning(_angles(model, measure, columns) if measure.take == "value" else {})
+    parts = _parts_in_links(model, measure, columns)
     for contributor in contributors:
+        own = rows[contributor.name]
+        if contributor.name in parts and isinstance(contributor.effect, LinkDeviation):
+            own[...] = 0.0
+            own[0] = parts[contributor.name]
+            continue
         if is_group(contributor):
-            regress_term(rows[contributor.name], *_group_term(model, measure, contributor, columns))
+            regress_term(own, *_group_term(model, measure, contributor, columns))
             continue
         values = [np.asarray(columns[name], dtype=np.float64) * contributor.per_unit for name in contributor.columns]
-        _regress(rows[contributor.name], contributor, values, turning)
+        _regress(own, contributor, values, turning)
+        if contributor.name in parts:  # of a shaft: across the line of centres it does nothing to a mesh
+            own[1] = parts[contributor.name]
+
+
+def _parts_in_links(model: Model, measure: Measure, columns: Columns) -> Mapping[str, Array]:
+    """What contributors that act in links add to a measure there (trials,), where a link says it; [its unit]."""
+    found: dict[str, Array] = {}
+    for factor, name in measure.kind.links if measure.take == "value" else ():
+        link, own = model.link(name), link_contributors(model, name)
+        if not link.compares:
+            continue
+        deviations = {
+            each.name: np.stack([np.asarray(columns[key], dtype=np.float64) for key in each.columns], axis=-1)
+            * each.per_unit
+            for each in own
+        }
+        means = {
+            each.name: np.array(each.draw.mean(turning=model.turns_at_random(each, measure.positions))) for each in own
+        }
+        parts = link.parts(LinkTrials(own, deviations, _link_angles(model, measure, name, columns)), means)
+        found |= {name: factor * measure.per_internal * part for name, part in parts.items()}
+    return found
+
+
+def _link_angles(model: Model, measure: Measure, link: str, columns: Columns) -> Array:
+    """Where the driver of a link stands [rad], (trials, 1); 0 of a link whose play does not depend on it."""
+    if position_column(link) not in columns:
+        return np.zeros((len(next(iter(columns.values()))), 1))
+    angles = np.radians(np.asarray(columns[position_column(link)], dtype=np.float64))[:, None]
+    fixed = model.driver_angles(measure, link)
+    return angles if fixed is None else np.full_like(angles, fixed[0])
 
 
 def _group_term(model: Model, measure: Measure, contributor: Contributor, columns: Columns) -> tuple[Array, float]:
@@ -80,7 +119,8 @@ def _group_term(model: Model, measure: Measure, contributor: Contributor, column
             for values in [analytic_values(model, measure, trials.part(first, first + at_once))]
         ]
     )
-    arm = model.mesh(measure.kind.backlashes[0][1].mesh).pair.wheel.base_radius if measure.kind.is_angle else 1.0
+    meshes = [model.mesh(own.mesh) for _, own in measure.kind.backlashes] if measure.kind.is_angle else []
+    arm = meshes[0].pair.wheel.base_radius if meshes else 1.0
     return found, contributor.draw.sigma / arm
 
 

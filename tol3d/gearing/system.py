@@ -15,6 +15,7 @@ from tol3d.gearing.engines import Engine
 from tol3d.gearing.engines.lazy import exact_engine, exact_is_compiled, fcl_engine
 from tol3d.gearing.interference import interferences
 from tol3d.gearing.model import Contributor, Measure, Model, model_from_scene
+from tol3d.gearing.model.brought import NOTHING, Brought
 from tol3d.gearing.model.contributor import gear_contributor
 from tol3d.gearing.model.measure import gear_measure, gear_measures
 from tol3d.gearing.neglected import neglected, of_gaps
@@ -125,7 +126,8 @@ class GearSystem:
 
     def is_compiled(self, road: str) -> bool:
         """See System."""
-        return road != EXACT or exact_is_compiled(self.model)
+        links = all(link.is_compiled() for link in self.model.links)
+        return links and (road != EXACT or exact_is_compiled(self.model))
 
     def materials(self, road: str) -> Any:
         """See System: the strips of every gear's solid, for FCL."""
@@ -140,8 +142,11 @@ class GearSystem:
         return GeometricRoad(self.model, exact_engine(self.model))
 
     def cost(self, measures: Sequence[system_measure.Measure]) -> int:
-        """See System: positions of every different way of reading a mesh."""
-        return sum(1 if key[1] is None else len(key[1]) for key in all_seat_keys(self.model, gear_measures(measures)))
+        """See System: positions of every different way of reading a mesh, and contacts in other links."""
+        own = gear_measures(measures)
+        links = ((self.model.link(name).contacts, each.positions) for each in own for _, name in each.kind.links)
+        inside = sum(contacts * positions.in_a_trial for contacts, positions in links)
+        return inside + sum(1 if key[1] is None else len(key[1]) for key in all_seat_keys(self.model, own))
 
     def chord_bound(self, measure: system_measure.Measure, chord_error: float) -> float:
         """See System."""
@@ -226,10 +231,10 @@ def gears_in(system: System) -> GearSystem:
     return found
 
 
-def gear_system(scene: Scene) -> GearSystem:
-    """What a scene of gears means.
+def gear_system(scene: Scene, brought: Brought = NOTHING) -> GearSystem:
+    """What a scene of gears means, with links that another mechanism brings into it.
 
     Raises:
         SceneError: gears that cannot be made or run together, with their numbers and place.
     """
-    return GearSystem(model_from_scene(scene))
+    return GearSystem(model_from_scene(scene, brought))

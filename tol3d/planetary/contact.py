@@ -22,10 +22,10 @@ from numpy.typing import NDArray
 
 from tol3d.gears.involute import involute
 from tol3d.numerics.compiled import kernel, part
+from tol3d.numerics.programme import OK, STALLED, farthest
 from tol3d.planetary.deviated import Deviated
 from tol3d.planetary.free import Free, turned
 from tol3d.planetary.planetary_set import PlanetarySet
-from tol3d.planetary.programme import OK, STALLED, farthest
 
 Array = NDArray[np.float64]
 
@@ -201,23 +201,8 @@ class Contact:
         """
         own, found = self.own, Free.of(len(turns))
         reached = np.empty((len(turns), 2, own.all_rows.shape[1]))
-        directions = np.stack([np.cos(own.azimuths), np.sin(own.azimuths)], axis=-1)
-        places = np.array([own.gear_of(mesh) for mesh in own.meshes])
-        room = np.array([mesh.clearance for mesh in own.meshes]) + np.zeros((len(turns), own.planets, len(places)))
-        cosines = np.array([math.cos(mesh.central.pressure_angle) for mesh in own.meshes])
-        thicker = deviated.central_thickness[:, None] + deviated.planet_thickness[:, places].swapaxes(1, 2)
-        meshes = self._meshes
-        middle = meshes[:, 1] * deviated.planet_clocking[:, places].swapaxes(1, 2)
-        middle = middle + meshes[:, 2] * meshes[:, 0] * deviated.central_clocking[:, None]
         seated_ranges(
-            meshes,
-            places,
-            directions,
-            own.senses,
-            own.centre_distance,
-            *self._placed(deviated, turns, directions),
-            np.ascontiguousarray(room - thicker * cosines / 2),
-            np.ascontiguousarray(middle),
+            *self.given(deviated, turns),
             np.stack(own.pushed),
             np.array(own.unknowns(stands)),
             own.objective(stands, shaft),
@@ -231,6 +216,28 @@ class Contact:
         )
         return found, reached
 
+    def given(self, deviated: Deviated, turns: Array) -> tuple[Any, ...]:
+        """What gaps_at takes of the set and of trials whose output stands at turns (trials,)."""
+        own = self.own
+        directions = np.stack([np.cos(own.azimuths), np.sin(own.azimuths)], axis=-1)
+        places = np.array([own.gear_of(mesh) for mesh in own.meshes])
+        room = np.array([mesh.clearance for mesh in own.meshes]) + np.zeros((len(turns), own.planets, len(places)))
+        cosines = np.array([math.cos(mesh.central.pressure_angle) for mesh in own.meshes])
+        thicker = deviated.central_thickness[:, None] + deviated.planet_thickness[:, places].swapaxes(1, 2)
+        meshes = self._meshes
+        middle = meshes[:, 1] * deviated.planet_clocking[:, places].swapaxes(1, 2)
+        middle = middle + meshes[:, 2] * meshes[:, 0] * deviated.central_clocking[:, None]
+        return (
+            meshes,
+            places,
+            directions,
+            own.senses,
+            own.centre_distance,
+            *self._placed(deviated, turns, directions),
+            np.ascontiguousarray(room - thicker * cosines / 2),
+            np.ascontiguousarray(middle),
+        )
+
     def _placed(self, deviated: Deviated, turns: Array, directions: Array) -> tuple[Array, Array, Array]:
         """Centres of central gears (trials, meshes, 2), of planets' gears off pins (trials, gears, planets, 2), pins.
 
@@ -240,7 +247,7 @@ class Contact:
         rates = np.array([float(mesh.turn * self.own.planet_turns) for mesh in own.teeth.meshes])
         clocked = deviated.central_clocking / (2 * np.pi), deviated.planet_clocking / (2 * np.pi)
         central = turned(deviated.central_offset, turns[:, None] * rates + clocked[0])
-        phases = np.array([own.phase(planet) + own.azimuths[planet] for planet in range(own.planets)]) / (2 * np.pi)
+        phases = (own.phases + np.array(own.azimuths)) / (2 * np.pi)
         planet = turned(deviated.planet_offset, planet_turns * turns[:, None, None] + phases + clocked[1])
         radial = own.centre_distance + deviated.pins[..., :1]
         across = np.stack([-directions[:, 1], directions[:, 0]], axis=-1)

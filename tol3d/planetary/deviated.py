@@ -1,6 +1,6 @@
 """What the gears, planets and pins of a set deviate by in some trials, as both roads get it."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from typing import Literal
 
 import numpy as np
@@ -84,6 +84,21 @@ class Deviated:
         place = [gear.name for gear in own.gears].index(acts.gear) if of_planets else centrals.index(acts.gear)
         into = self._array(acts.effect, of_planets)[:, place]
         into += acts.factor * components.reshape(into.shape)
+
+    def of(self, own: PlanetarySet, acts: Acts) -> Array:
+        """What stands where a contributor acts, a component each (trials, components): of slopes, its own."""
+        if acts.effect == "pin":
+            found = self.pins[:, :, int(acts.direction == "tangential")] if acts.direction else self.pins
+            return found.reshape(len(found), -1)
+        centrals = [mesh.central.name for mesh in own.meshes]
+        of_planets = acts.gear not in centrals
+        place = [gear.name for gear in own.gears].index(acts.gear) if of_planets else centrals.index(acts.gear)
+        found = self._array(acts.effect, of_planets)[:, place]
+        return acts.factor * found.reshape(len(found), -1)
+
+    def plus(self, other: "Deviated") -> "Deviated":
+        """Both added up."""
+        return Deviated(*(getattr(self, each.name) + getattr(other, each.name) for each in fields(self)))
 
     def _array(self, effect: Effect, of_planets: bool) -> Array:
         arrays = {

@@ -7,10 +7,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.errors import InputError
+from tol3d.numerics.programme import ranges
 from tol3d.planetary.deviated import Deviated
 from tol3d.planetary.free import Free
 from tol3d.planetary.planetary_set import MOST_PUSH, PlanetarySet
-from tol3d.planetary.programme import ranges
 from tol3d.planetary.stack_up import StackUp
 
 Array = NDArray[np.float64]

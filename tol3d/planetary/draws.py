@@ -1,68 +1,97 @@
 """Draws of deviations that every planet has of its own, with a direction each."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
+from tol3d.assembly.zones.zone_draw import LEAST_STEP, ZoneDraw
 from tol3d.distributions import Distribution
-from tol3d.system.draw import Planar, Values
+from tol3d.system.draw import Values
 
 Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
-class EachPlanar:
-    """As many lengths as there are planets, each in a direction of its own: components x and y of one after the other.
+class EachZone:
+    """As many displacements as there are planets, each in a zone of its own: outwards and across, one after the other.
 
     Args:
-        distribution: of each length.
+        each: that of one planet, of two components.
         names: of the planets.
-        direction: of all of them [rad]; None draws each one's, uniform over the circle.
     """
 
-    distribution: Distribution
+    each: ZoneDraw
     names: tuple[str, ...]
-    direction: float | None
 
     @property
-    def each(self) -> Planar:
-        """That of one planet."""
-        return Planar(self.distribution, self.direction)
+    def distribution(self) -> Distribution:
+        """Of one component."""
+        return self.each.distribution
+
+    @property
+    def words(self) -> str:
+        """See JointDraw."""
+        return f"{self.each.words}, each of {len(self.names)}"
 
     @property
     def uniforms(self) -> int:
-        """One or two a planet."""
+        """Those of one a planet."""
         return len(self.names) * self.each.uniforms
 
     @property
     def components(self) -> tuple[str, ...]:
-        """x and y of each."""
-        return tuple(f"{name} {axis}" for name in self.names for axis in ("x", "y"))
+        """Both of each."""
+        return tuple(f"{name} {axis}" for name in self.names for axis in ("radial", "tangential"))
 
     @property
     def sigma(self) -> float:
         """Standard deviation of one component [mm]."""
         return self.each.sigma
 
+    @property
+    def covariance(self) -> Array:
+        """See JointDraw: planets are independent."""
+        return np.asarray(np.kron(np.eye(len(self.names)), self.each.covariance), dtype=np.float64)
+
     def deviations(self, *uniforms: Array) -> tuple[Array, ...]:
         """See Draw."""
-        count = self.each.uniforms
-        starts = range(0, self.uniforms, count)
-        return tuple(own for start in starts for own in self.each.deviations(*uniforms[start : start + count]))
+        return tuple(own for part in self._parts(uniforms, self.each.uniforms) for own in self.each.deviations(*part))
 
     def mean(self, *, turning: bool) -> tuple[float, ...]:
         """See Draw."""
         return self.each.mean(turning=turning) * len(self.names)
 
     def ends(self, values: Values, *, turning: bool) -> Array:
-        """See Draw: all lengths at their ends, along what each planet's does alone."""
-        law, count = self.distribution, len(self.names)
-        if self.direction is not None and not turning:
-            return np.tile(self.each.ends(values, turning=False), (1, count))
-        alone = law.radius * np.concatenate([np.eye(2 * count), -np.eye(2 * count)])
-        found = values(alone)
-        slopes = found[: 2 * count] - found[2 * count :]
-        size = float(np.sqrt((slopes * slopes).sum()))
-        along = law.radius * (slopes / size if size > 0.0 else np.eye(2 * count)[0])
-        return np.stack([along, -along])
+        """See Draw: all of them along the steepest direction, as far as one reaches along it by itself.
+
+        All bores at their worst ends at once would be far rarer than the end of one.
+        """
+        steps, mean = np.maximum(np.sqrt(np.diagonal(self.covariance)), LEAST_STEP), np.array(self.mean(turning=False))
+        found = values(mean + np.concatenate([np.diag(steps), -np.diag(steps)]))
+        slopes = (found[: len(steps)] - found[len(steps) :]) / (2 * steps)
+        return np.stack([self._reach(slopes), self._reach(-slopes)])
+
+    def _reach(self, slopes: Array) -> Array:
+        """How far all of them go along slopes, each as large a part of its own reach as its slopes are of all."""
+        middle = np.array(self.each.mean(turning=False))
+        size = float(np.sqrt((slopes * slopes).sum())) or 1.0
+        ends = [
+            middle + float(np.sqrt((own * own).sum())) / size * (self.each.furthest(own) - middle)
+            for own in slopes.reshape(len(self.names), -1)
+        ]
+        return np.concatenate(ends)
+
+    def _parts(self, given: Sequence[Array], count: int) -> list[Sequence[Array]]:
+        return [given[start : start + count] for start in range(0, len(given), count)]
+
+
+@dataclass(frozen=True)
+class EachJudgedZone(EachZone):
+    """The same of a process, which the zone judges only."""
+
+    def beyond(self, *components: Array) -> NDArray[np.bool_]:
+        """See JudgedDraw: where any bore lies outside its zone."""
+        outside = [~self.each.zone.inside(np.stack(own, axis=-1)) for own in self._parts(components, 2)]
+        return np.asarray(np.any(outside, axis=0))

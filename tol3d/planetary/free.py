@@ -39,3 +39,33 @@ def turned(vectors: Array, turns: Array) -> Array:
     cos, sin = np.cos(angles), np.sin(angles)
     x, y = vectors[..., 0], vectors[..., 1]
     return np.stack([cos * x - sin * y, sin * x + cos * y], axis=-1)
+
+
+@dataclass(frozen=True)
+class Followed:
+    """Where a shaft rests at positions one after another in some trials.
+
+    Args:
+        ends: its turn (trials, positions) [rad]; 0 where the set jams.
+        status: of the programme, the worst position's (trials,).
+        row: that has no room there, see Free (trials,).
+        lacking: how much each contact of a closed loop lacks at most [mm] (trials,).
+    """
+
+    ends: Array
+    status: Codes
+    row: NDArray[np.int64]
+    lacking: Array
+
+    @classmethod
+    def of(cls, trials: int, positions: int) -> "Followed":
+        """Room for some trials."""
+        return cls(
+            np.zeros((trials, positions)), np.empty(trials, np.int8), np.empty(trials, np.int64), np.empty(trials)
+        )
+
+
+def cosines_and_sines(turns: Array) -> Array:
+    """Of turns (...), (..., 2)."""
+    angles = 2 * np.pi * (turns - np.round(turns))
+    return np.ascontiguousarray(np.stack([np.cos(angles), np.sin(angles)], axis=-1))

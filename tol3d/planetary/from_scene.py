@@ -1,33 +1,40 @@
 """From a scene to a planetary set, its deviations and what is read of it."""
 
-import math
-from typing import Any, Final
+from dataclasses import replace
+from typing import Any
 
-from tol3d.distributions import Distribution
-from tol3d.gearing.grammar.parts.gear import GearSpec
-from tol3d.gearing.grammar.tolerances.clocking import ClockingSpec
-from tol3d.gearing.grammar.tolerances.eccentricity import EccentricitySpec
-from tol3d.gearing.grammar.tolerances.tooth_thickness import ToothThicknessSpec
-from tol3d.gearing.model.pairs.spur_pair import cylindrical_gear
-from tol3d.planetary.deviated import Acts
-from tol3d.planetary.draws import EachPlanar
+from tol3d.gearing.grammar.study import GearStudyOptions
 from tol3d.planetary.grammar.measures.planetary_lost_motion import PlanetaryLostMotionSpec
+from tol3d.planetary.grammar.measures.planetary_low_stiffness import PlanetaryLowStiffnessSpec
 from tol3d.planetary.grammar.measures.planetary_measure import PlanetaryMeasureSpec
 from tol3d.planetary.grammar.measures.planetary_transmission_error import PlanetaryTransmissionErrorSpec
-from tol3d.planetary.grammar.tolerances.planet_pin import PlanetPinSpec
+from tol3d.planetary.grammar.moves.planetary import PlanetarySpec
+from tol3d.planetary.grammar.parts.flexible_carrier import FlexibleCarrierSpec
 from tol3d.planetary.measure import PlanetaryMeasure, Reading
 from tol3d.planetary.planetary_set import PlanetarySet
 from tol3d.planetary.refusals import planetary_set
+from tol3d.planetary.shown import made_gears
+from tol3d.planetary.spring_curve import LeafSpring
+from tol3d.planetary.stage.from_scene import train_system
+from tol3d.planetary.stage.system import SetTrain
 from tol3d.planetary.system import PlanetarySystem
+from tol3d.planetary.tolerances import acts_of, draw_of, refuse_other_tolerance
 from tol3d.scene import Scene
 from tol3d.scene.direction import At
-from tol3d.scene.entry import kind_of
-from tol3d.system.draw import Draw, Each, Planar, Scalar
-from tol3d.system.plain import UNITS, PlainContributor
+from tol3d.scene.tolerance import ToleranceSpec
+from tol3d.system.plain import UNITS, PlainContributor, stated_of
 from tol3d.system.positions import AT_RANDOM, Positions, Take
+from tol3d.system.spectrum import Spectrum
 
-KINDS: Final = (ToothThicknessSpec, EccentricitySpec, ClockingSpec, PlanetPinSpec)
-"""Tolerances of planetary sets; those of gears are shared with trains."""
+
+def planetary_scene(scene: Scene) -> PlanetarySystem | SetTrain:
+    """What a scene with planetary kinds means: a set by itself, or sets in a train.
+
+    Raises:
+        SceneError: what nobody can build, or what such a set or train cannot have, with its place.
+    """
+    alone = all(isinstance(move, PlanetarySpec) for move in scene.moves.values())
+    return planetary_system(scene) if alone else train_system(scene)
 
 
 def planetary_system(scene: Scene) -> PlanetarySystem:
@@ -37,64 +44,49 @@ def planetary_system(scene: Scene) -> PlanetarySystem:
         SceneError: kinds that do not act on such a set, or a set that nobody can build, with its numbers.
     """
     own = planetary_set(scene)
-    _refuse_other_tolerances(scene)
+    for name in scene.tolerances:
+        refuse_other_tolerance(scene, name)
     contributors, acts = [], {}
-    for name, spec in scene.distributed.items():
-        acts[name] = _acts(scene, own, name, spec)
-        draw = _draw(own, spec, spec.distribution.resolve(scene.files))
-        unit, per_unit = UNITS[spec.dimensions[0]]
+    for name, spec in scene.tolerances.items():
+        acts[name] = acts_of(scene, own, name, spec)
+        draw = draw_of(scene, own, spec)
+        unit, per_unit = UNITS[spec.dimensions[0] if isinstance(spec, ToleranceSpec) else "length"]
         contributors.append(PlainContributor(name, spec.kind, draw, unit, per_unit, spec.description))
     measures = {name: _measure(scene, own, name, spec) for name, spec in scene.measures.items()}
-    made = {gear.name: cylindrical_gear(scene, gear.name) for gear in own.all_gears}
-    return PlanetarySystem(scene.scene, tuple(contributors), tuple(measures.values()), own, acts, measures, made)
+    return PlanetarySystem(
+        scene.scene,
+        tuple(contributors),
+        tuple(measures.values()),
+        own,
+        acts,
+        measures,
+        made_gears(scene, own),
+        scene.of(PlanetarySpec)[own.name].friction,
+        scene.options(GearStudyOptions).profile_steps,
+        _leaf_spring(scene.parts[own.carrier]),
+    )
 
 
-def _refuse_other_tolerances(scene: Scene) -> None:
-    """Refuse what acts on trains alone: nothing may be stated and left out."""
-    for name, spec in scene.tolerances.items():
-        if not isinstance(spec, KINDS):
-            words = ", ".join(str(kind_of(kind)) for kind in KINDS)
-            sentence = f"expected of planetary sets {words}, got {kind_of(type(spec))}"
-            raise scene.refuse(("tolerances", name, "kind"), sentence)
-
-
-def _acts(scene: Scene, own: PlanetarySet, name: str, spec: Any) -> Acts:
-    """What a tolerance acts on."""
-    if isinstance(spec, PlanetPinSpec):
-        if spec.of != own.carrier:
-            raise scene.refuse(("tolerances", name, "of"), f"expected {own.carrier!r}, got {spec.of!r}")
-        return Acts("pin", direction="" if spec.direction == "random" else spec.direction)
-    known = [mesh.central.name for mesh in own.meshes] + [gear.name for gear in own.gears]
-    if spec.of not in known:
-        raise scene.refuse(("tolerances", name, "of"), f"expected a gear of {own.name!r}, got {spec.of!r}")
-    if isinstance(spec, ToothThicknessSpec):
-        part = scene.parts[spec.of]
-        assert isinstance(part, GearSpec)
-        counted = 1 / math.cos(part.pressure_angle.internal) if spec.measured == "normal" else 1.0
-        return Acts("thickness", spec.of, factor=counted)
-    return Acts("clocking" if isinstance(spec, ClockingSpec) else "offset", spec.of)
-
-
-def _draw(own: PlanetarySet, spec: Any, law: Distribution) -> Draw:
-    """How its components are drawn: of planets and pins each one's own."""
-    names = tuple(f"planet {planet + 1}" for planet in range(own.planets))
-    of_planets = isinstance(spec, PlanetPinSpec) or spec.of in {gear.name for gear in own.gears}
-    if isinstance(spec, EccentricitySpec):
-        direction = spec.direction.at.internal if isinstance(spec.direction, At) else None
-        return EachPlanar(law, names, direction) if of_planets else Planar(law, direction)
-    if isinstance(spec, PlanetPinSpec) and spec.direction == "random":
-        return EachPlanar(law, names, None)
-    return Each(law, names) if of_planets else Scalar(law)
+def _leaf_spring(carrier: Any) -> LeafSpring | None:
+    """What presses planets apart, where it is given."""
+    if not isinstance(carrier, FlexibleCarrierSpec) or carrier.force is None:
+        return None
+    others = (0.0 if own is None else own.internal for own in (carrier.stiffness, carrier.friction))
+    return LeafSpring(carrier.force.internal, *others)
 
 
 def _measure(scene: Scene, own: PlanetarySet, name: str, spec: Any) -> PlanetaryMeasure:
     if not isinstance(spec, PlanetaryMeasureSpec):
-        words = "planetary_lost_motion or planetary_transmission_error"
+        words = "planetary_lost_motion, planetary_low_stiffness or planetary_transmission_error"
         raise scene.refuse(("measures", name, "kind"), f"expected of a planetary set {words}, got {spec.kind}")
-    if isinstance(spec, PlanetaryLostMotionSpec):
+    if isinstance(spec, PlanetaryLowStiffnessSpec) and not any(spring.pushes for spring in own.springs):
+        words = "expected a set on a flexible carrier whose springs press"
+        raise scene.refuse(("measures", name, "of"), f"{words}, got {own.name!r}, where none does")
+    if isinstance(spec, PlanetaryLostMotionSpec | PlanetaryLowStiffnessSpec):
         shaft = own.output if spec.at == "output" else own.input
         positions = Positions("at", 1, 1, spec.over.at.internal) if isinstance(spec.over, At) else AT_RANDOM
-        return _read(own, name, spec, "lost motion", positions, "value", shaft)
+        reading: Reading = "lost motion" if isinstance(spec, PlanetaryLostMotionSpec) else "low stiffness"
+        return _read(own, name, spec, reading, positions, "value", shaft)
     assert isinstance(spec, PlanetaryTransmissionErrorSpec)
     if spec.over == "long_period":
         turns = own.period_planet_turns
@@ -103,21 +95,17 @@ def _measure(scene: Scene, own: PlanetarySet, name: str, spec: Any) -> Planetary
             f"expected turn, got long_period: the same teeth meet again as they did after {turns} turns of the planets "
             f"on their pins, {float(own.period):.6g} turns of the output; take turn, one of the output",
         )
-    reading: Reading = "lag" if spec.flank == "drive" else "lead"
-    return _read(own, name, spec, reading, Positions("turn", 1, spec.positions), spec.take, own.output)
+    reading = "lag" if spec.flank == "drive" else "lead"
+    positions = Positions("turn", 1, spec.positions, jumps=True)  # bends where other contacts take over
+    spectrum = Spectrum.over(positions, (spec.order or 1,)) if spec.take == "harmonic" else None
+    return replace(_read(own, name, spec, reading, positions, spec.take, own.output), spectrum=spectrum)
 
 
 def _read(
     own: PlanetarySet, name: str, spec: PlanetaryMeasureSpec, reading: Reading, at: Positions, take: Take, shaft: str
 ) -> PlanetaryMeasure:
-    unit, per_unit = UNITS[spec.dimension]
     return PlanetaryMeasure(
-        name,
-        spec.kind,
-        None if spec.lower_limit is None else spec.lower_limit.internal,
-        None if spec.upper_limit is None else spec.upper_limit.internal,
-        unit,
-        1 / per_unit,
+        *stated_of(name, spec),
         worse="high",
         adds_up=False,
         positions=at,

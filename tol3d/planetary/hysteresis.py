@@ -9,12 +9,13 @@ from numpy.typing import NDArray
 
 from tol3d.errors import InputError
 from tol3d.planetary.deviated import Deviated
-from tol3d.planetary.displaced_ends import displaced_ends
+from tol3d.planetary.displaced_ends import DisplacedEnds, displaced_ends
 from tol3d.planetary.planetary_set import PlanetarySet
 from tol3d.planetary.spring_curve import LeafSpring, breakaway, turns_under
 
 Array = NDArray[np.float64]
 
+LEVEL: Final = 1e-6  # rad/mm; of slopes of 0.1 rad/mm and more, what is left of a level piece by rounding
 ARCMIN: Final = math.radians(1 / 60)
 
 
@@ -51,6 +52,20 @@ class Hysteresis:
     def minutes(self) -> list[float]:
         """Turns [arcmin]."""
         return [float(turn) for turn in self.turns / ARCMIN]
+
+
+def crossing(ends: DisplacedEnds, spring: LeafSpring) -> float:
+    """Torque [N mm] at which the shaft has crossed the region of low stiffness next to the breakaway, either way.
+
+    It may go on a little under many times as much: where springs are nearly in line with what stops the planets. 0
+    where it never turns against the spring.
+    """
+    torques = [0.0]
+    for side, sense in ((ends.low, 1.0), (ends.high, -1.0)):
+        if len(side.slopes) and sense * side.slopes[-1] > LEVEL:
+            force = spring.force + spring.friction + spring.stiffness * float(side.knots[-1] - side.knots[-2])
+            torques.append(force / abs(float(side.slopes[-1])))
+    return max(torques)
 
 
 def hysteresis(

@@ -3,6 +3,7 @@
 from typing import Final
 
 from tol3d.planetary.grammar import measures, moves, parts, tolerances
+from tol3d.planetary.grammar.published import PublishedPlanetarySets
 from tol3d.scene.grammar import specs_in
 from tol3d.system.mechanism import Mechanism
 
@@ -12,9 +13,12 @@ PLANETARY: Final = Mechanism(
     tolerances=specs_in(tolerances),
     moves=specs_in(moves),
     measures=specs_in(measures),
+    published=PublishedPlanetarySets,
     includes=("gearing",),
-    engines=("exact",),
-    system="tol3d.planetary.from_scene:planetary_system",
+    engines=("exact", "fcl"),
+    witness="fcl",
+    system="tol3d.planetary.from_scene:planetary_scene",
+    summary="tol3d.planetary.summary_types:SUMMARY_KINDS",
     presenter="tol3d.planetary.presenting",
-    requires=("cadquery",),
+    requires=("python-fcl", "cadquery"),
 )

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.gears.involute import inverse_involute, involute
-from tol3d.planetary.programme import first_basis
+from tol3d.numerics.programme import first_basis
 from tol3d.planetary.tooth_set import CentralMesh, ToothSet
 
 Array = NDArray[np.float64]
@@ -21,6 +21,7 @@ Array = NDArray[np.float64]
 EXTERNAL: Final = 1
 INTERNAL: Final = -1
 SMALL_TORQUE: Final = 1.0  # N mm a N of the first spring's force, at the output
+OVERCOME: Final = 1e-6  # of the springs' force; breakaway torques are hundreds of times under what that leaves
 WEAKER: Final = 0.25  # each spring than the one before; of equal ones nothing would say which gives way
 MOST_PUSH: Final = 10.0  # mm; no mesh leaves a planet so much
 
@@ -153,6 +154,7 @@ class PlanetarySet:
         held, input, output: names of shafts.
         azimuths: of the planets [rad].
         springs: of a flexible carrier; none of a rigid one.
+        overcome: whether torques are read that springs give way to, so that contacts alone stop the planets.
     """
 
     name: str
@@ -165,6 +167,7 @@ class PlanetarySet:
     output: str
     azimuths: tuple[float, ...]
     springs: tuple[Spring, ...] = ()
+    overcome: bool = False
 
     @property
     def shafts(self) -> tuple[str, ...]:
@@ -245,6 +248,11 @@ class PlanetarySet:
             key=lambda phase: (round(self._off(planet, phase), 9), phase),
         )
 
+    @cached_property
+    def phases(self) -> Array:
+        """The same of all planets (planets,) [rad]."""
+        return np.array([self.phase(planet) for planet in range(self.planets)])
+
     def _lag(self, planet: int) -> float:
         """What the first mesh asks of z times the phase of the first gear [rad]."""
         first = next(mesh for mesh in self.meshes if mesh.planet.name == self.gears[0].name)
@@ -313,6 +321,8 @@ class PlanetarySet:
         """
         first = len(self.shafts) + self.planets
         force = {first + k: 1.0 / (1.0 + WEAKER * k) for k in range(len(self.springs)) if self.springs[k].pushes}
+        if self.overcome:
+            force = {place: OVERCOME * own for place, own in force.items()}
         push = np.array([force.get(place, 0.0) for place in self.unknowns(stands)])
         torque = SMALL_TORQUE / (abs(float(self.ratio)) if shaft == self.input else 1.0)
         turn = self.objective(stands, shaft) * (torque if force else 1.0)

@@ -4,6 +4,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from tol3d.planetary.deviated import Deviated
 from tol3d.planetary.planetary_set import PlanetarySet, SetMesh
 from tol3d.planetary.set_trials import SetTrials
 from tol3d.planetary.stack_up import StackUp
@@ -15,18 +16,21 @@ ROUNDING = 1e-9  # mm; no clearance is legal, and rounds to 1e-14
 
 def problems_of(system: SetTrials) -> Iterator[tuple[KeyPath, str]]:
     """Meshes that overlap with every contributor at its mean, then load paths of several planets that do."""
-    own = system.own
+    for measure in tuple(system.planetary_measures.values())[:1]:
+        yield from problems_at(system.own, system.deviated(mean_build(system, measure)), measure.shaft)
+
+
+def problems_at(own: PlanetarySet, deviated: Deviated, shaft: str) -> Iterator[tuple[KeyPath, str]]:
+    """The same of a set's mean build, of one trial, while a shaft is turned."""
     jams = False
-    for measure in system.measures[:1]:
-        deviated = system.deviated(mean_build(system, measure))
-        lower, upper = StackUp(own).sides(deviated, np.zeros(1))
-        room = (upper - lower).reshape(own.planets, -1).min(axis=0)
-        for mesh, backlash in zip(own.meshes, room, strict=True):
-            if backlash < -ROUNDING:
-                jams = True
-                yield ("moves", own.name, "meshes", mesh.central.name), _interfering(mesh, float(backlash))
-        if not jams:
-            yield from _bound(system, own)
+    lower, upper = StackUp(own).sides(deviated, np.zeros(1))
+    room = (upper - lower).reshape(own.planets, -1).min(axis=0)
+    for mesh, backlash in zip(own.meshes, room, strict=True):
+        if backlash < -ROUNDING:
+            jams = True
+            yield ("moves", own.name, "meshes", mesh.central.name), _interfering(mesh, float(backlash))
+    if not jams:
+        yield from _bound(own, deviated, shaft)
 
 
 def _interfering(mesh: SetMesh, backlash: float) -> str:
@@ -39,10 +43,8 @@ def _interfering(mesh: SetMesh, backlash: float) -> str:
     )
 
 
-def _bound(system: SetTrials, own: PlanetarySet) -> Iterator[tuple[KeyPath, str]]:
-    measure = next(iter(system.planetary_measures.values()))
-    deviated = system.deviated(mean_build(system, measure))
-    free = StackUp(own).free(deviated, np.zeros(1), measure.shaft, own.opposite(measure.shaft))
+def _bound(own: PlanetarySet, deviated: Deviated, shaft: str) -> Iterator[tuple[KeyPath, str]]:
+    free = StackUp(own).free(deviated, np.zeros(1), shaft, own.opposite(shaft))
     if free.status[0] == 1 and free.lacking[0] > ROUNDING:
         planet, place = divmod(int(free.row[0]), len(own.meshes))
         if any(not spring.pushes for spring in own.springs):

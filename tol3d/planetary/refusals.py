@@ -1,6 +1,7 @@
 """The set that a scene means, or why nobody can build it: conditions with their numbers."""
 
 import math
+from dataclasses import replace
 from typing import Any
 
 from tol3d.errors import GeometryError
@@ -28,10 +29,25 @@ def planetary_set(scene: Scene) -> PlanetarySet:
             ("moves", name), f"expected one planetary set and no other move, got {len(scene.moves)} moves"
         )
     ((name, spec),) = sets.items()
-    own = _set(scene, name, spec)
+    own = set_of(scene, name, spec)
     for part in scene.parts:
-        if part not in {*own.shafts, *(gear.name for gear in own.gears), spec.planet}:
+        if part not in parts_of(own, spec):
             raise scene.refuse(("parts", part), f"{part!r} takes part in no move; name it in {name!r} or take it out")
+    return own
+
+
+def parts_of(own: PlanetarySet, spec: PlanetarySpec) -> set[str]:
+    """The parts of a set: central gears, carrier, planet and its gears."""
+    return {*own.shafts, *(gear.name for gear in own.gears), spec.planet}
+
+
+def set_of(scene: Scene, name: str, spec: PlanetarySpec) -> PlanetarySet:
+    """The set that a move of a scene stands for, whatever else is in the scene.
+
+    Raises:
+        SceneError: it cannot be put together.
+    """
+    own = _set(scene, name, spec)
     _refuse_roles(scene, own)
     _refuse_unbuildable(scene, own)
     _refuse_interference(scene, own)
@@ -133,7 +149,16 @@ def _refuse_no_mesh(scene: Scene, name: str, mesh: SetMesh) -> None:
     path = ("moves", name, "meshes", mesh.central.name)
     if mesh.base_radii <= 0.0:
         teeth = f"{mesh.central.teeth} and {mesh.planet.teeth}"
-        raise scene.refuse(path, f"expected a ring with more teeth than its planets, got {teeth}")
+        words = f"expected a ring with more teeth than its planets, got {teeth}; a sun is a spur_gear"
+        raise scene.refuse(path, words)
+    as_ring = SetMesh(replace(mesh.central, is_ring=True), mesh.planet, mesh.centre_distance)
+    if not mesh.central.is_ring and 0.0 < as_ring.base_radii < mesh.centre_distance <= mesh.base_radii:
+        raise scene.refuse(
+            path,
+            f"expected an internal_gear, got the spur gear {mesh.central.name!r}: beside its planets it would need a "
+            f"centre distance of more than {mesh.base_radii:.4f} mm, got {mesh.centre_distance:.4f} mm; a ring with "
+            f"{mesh.central.teeth} teeth round them needs {as_ring.base_radii:.4f} mm",
+        )
     if mesh.base_radii >= mesh.centre_distance:
         raise scene.refuse(
             path,

@@ -1,16 +1,29 @@
-"""What a measure of a set sees of contributors: each component, offsets of gears as they lie seen from the carrier."""
+"""What a measure of a set sees of contributors: the part that each has in it, trial by trial.
+
+A free turn is the optimum of a linear programme: the multipliers of the contacts that are met in a trial times their
+sides. Sides are linear in the deviations, so with the contacts of that trial the turn is a sum of parts, one of each
+contributor, and none is left over; what turns from trial to trial is which contacts are met. So it is with whatever
+adds or subtracts turns at positions: lost motions, extremes, ranges, and a harmonic along its own phase.
+
+A contributor's part is its regressor. Its share of the variance is then the covariance of its part with the measure:
+of the absolute value of a normal sum, whose parts neither raise nor lower it on average, that is each one's share of
+the variance of the sum.
+"""
 
 from collections.abc import Mapping, Sequence
+from functools import reduce
 
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.planetary.free import turned
+from tol3d.planetary.deviated import Deviated
 from tol3d.planetary.measure import PlanetaryMeasure
 from tol3d.planetary.set_trials import SetTrials
+from tol3d.planetary.stack_up_curves import StackUpCurves
 from tol3d.system.contributor import Contributor
-from tol3d.system.regressors import is_group, regress_plainly, regress_term
 from tol3d.system.system import Columns
+from tol3d.system.taken import ROWS_AT_ONCE
+from tol3d.system.trials import Trials
 
 Array = NDArray[np.float64]
 
@@ -22,35 +35,49 @@ def regress(
     columns: Columns,
     rows: Mapping[str, Array],
 ) -> None:
-    """Write contributors' rows (regressors, trials), see System.regress."""
+    """Write contributors' rows (regressors, trials): first its part, in the measure's unit; see System.regress."""
+    values = {
+        own.name: np.stack(
+            [np.asarray(columns[name], dtype=np.float64) * own.per_unit for name in own.columns], axis=-1
+        )
+        for own in system.contributors
+    }
+    deviations = np.concatenate([values[own.name] for own in system.contributors], axis=1)
+    turns = np.asarray(columns[system.position_column], dtype=np.float64) / 360.0
+    at_once = max(1, ROWS_AT_ONCE // measure.positions.in_a_trial)
     for own in contributors:
-        values = [np.asarray(columns[name], dtype=np.float64) * own.per_unit for name in own.columns]
-        if system.acts[own.name].effect == "offset" and measure.positions.over == "random":
-            values = _seen(system, system.acts[own.name].gear, values, columns)
-        if is_group(own):
-            slopes = system.slopes(measure, own)
-            term = sum((slope * value for slope, value in zip(slopes, values, strict=True)), np.zeros(len(values[0])))
-            mean = sum(
-                slope * own
-                for slope, own in zip(slopes, own.draw.mean(turning=_turns(system, own, measure)), strict=True)
-            )
-            regress_term(rows[own.name], term - mean, own.draw.sigma * float(np.sqrt((slopes * slopes).sum())))
-        else:
-            regress_plainly(rows[own.name], own, values)
+        rows[own.name][...] = 0.0
+    for first in range(0, len(deviations), at_once):
+        part = slice(first, first + at_once)
+        trials = Trials(deviations[part], {system.own.name: turns[part]})
+        slopes = slopes_of(system, measure, trials)
+        for own in contributors:
+            turning = system.turns_at_random(own, measure.positions)
+            off = values[own.name][part] - np.array(own.draw.mean(turning=turning))
+            along = slopes.of(system.own, system.acts[own.name])
+            rows[own.name][0, part] = (along * off).sum(axis=1) * measure.per_internal
 
 
-def _turns(system: SetTrials, contributor: Contributor, measure: PlanetaryMeasure) -> bool:
-    return system.turns_at_random(contributor, measure.positions)
+def slopes_of(system: SetTrials, measure: PlanetaryMeasure, trials: Trials) -> Deviated:
+    """Change of a measure [rad] of each trial by a unit of each deviation, while contacts that are met stay the same.
 
-
-def _seen(system: SetTrials, gear: str, values: Sequence[Array], columns: Columns) -> list[Array]:
-    """Components x and y, one after the other, of offsets turned with their gear against the carrier."""
-    own = system.own
-    mesh = next((mesh for mesh in own.teeth.meshes if mesh.central == gear), None)
-    rate = float((mesh.turn if mesh else 1) * own.planet_turns)
-    turns = rate * np.asarray(columns[system.position_column], dtype=np.float64) / 360.0
-    found: list[Array] = []
-    for x, y in zip(values[::2], values[1::2], strict=True):
-        both = turned(np.stack([x, y], axis=-1), turns)
-        found += [both[:, 0], both[:, 1]]
-    return found
+    By first-order gaps; zeros of trials that jam.
+    """
+    own, deviated, shaft = system.own, system.deviated(trials), measure.shaft
+    road, stands = StackUpCurves(own), own.opposite(measure.shaft)
+    if measure.is_free_turn:
+        turns = measure.turns_of(trials.positions[own.name])[:, None]
+        ones = np.ones((len(trials), 1))
+        read = [(road, 1.0)]
+        if measure.reading == "low stiffness":
+            read = [(StackUpCurves(system.overcome), 1.0), (road, -1.0)]
+        found = [
+            each.slopes(deviated, turns, shaft, stands, end, sign * (2 * end - 1) * ones)
+            for each, sign in read
+            for end in range(2)
+        ]
+        return reduce(Deviated.plus, found)
+    turns = np.array(measure.positions.fixed) / (2 * np.pi)
+    ends = road.followed(deviated, turns, shaft, stands, measure.end(own)).ends
+    coefficients = measure.sense(own) * measure.weights(measure.sense(own) * ends)
+    return road.slopes(deviated, turns, shaft, stands, measure.end(own), np.ascontiguousarray(coefficients))

@@ -1,13 +1,14 @@
 """Trials of a planetary set: what they deviate by, and where its shafts stand."""
 
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.planetary.deviated import Acts, Deviated
+from tol3d.planetary.levers import play_bound
 from tol3d.planetary.measure import PlanetaryMeasure
 from tol3d.planetary.planetary_set import PlanetarySet
 from tol3d.system.contributor import Contributor
@@ -34,6 +35,11 @@ class SetTrials(PlainSystem):
     own: PlanetarySet
     acts: Mapping[str, Acts]
     planetary_measures: Mapping[str, PlanetaryMeasure]
+
+    @cached_property
+    def overcome(self) -> PlanetarySet:
+        """The set under torques that its springs give way to."""
+        return replace(self.own, overcome=True)
 
     @property
     def streams(self) -> tuple[StreamKey, ...]:
@@ -64,14 +70,16 @@ class SetTrials(PlainSystem):
             found.add(self.own, self.acts[name], trials.deviations[:, own])
         return found
 
-    @cached_property
-    def _known_slopes(self) -> dict[tuple[str, str], Array]:
-        """Slopes that are known: each takes a programme a component."""
-        return {}
+    def gap_bound(self, measure: Measure, errors: Sequence[float]) -> float:
+        """What errors of the gaps of each mesh [mm] may make of a measure, in its unit.
 
-    def slopes(self, measure: Measure, contributor: Contributor) -> Array:
-        """Change of a measure by each component of a contributor, at rest."""
-        key = measure.name, contributor.name
-        if key not in self._known_slopes:
-            self._known_slopes[key] = self._slopes(measure, contributor)
-        return self._known_slopes[key]
+        Of a lost motion both ends may be off, of a transmission error the position and the first one; of a region of
+        low stiffness both ends twice.
+        """
+        own = self.planetary_measures[measure.name]
+        ends = 4 if own.reading == "low stiffness" else 2
+        return ends * play_bound(self.own, own.shaft, errors) * measure.per_internal
+
+    def chord_bound(self, measure: Measure, chord_error: float) -> float:
+        """See System: a gap lies between two flanks."""
+        return self.gap_bound(measure, [2 * chord_error] * len(self.own.meshes))

@@ -7,11 +7,13 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from tol3d.gearing.model.pairs.spur_pair import cylindrical_gear
 from tol3d.gearing.placed import PlacedGear
 from tol3d.gears import InternalGear, SpurGear
 from tol3d.planetary.contact import Contact
 from tol3d.planetary.deviated import Deviated
 from tol3d.planetary.planetary_set import PlanetarySet, SetMesh
+from tol3d.scene import Scene
 
 Array = NDArray[np.float64]
 
@@ -28,12 +30,20 @@ class ShownSet:
     Args:
         own: the set.
         gears: central gears, then those of each planet.
-        status: 0 where it seats; see tol3d.planetary.programme.
+        status: 0 where it seats; see tol3d.numerics.programme.
+        made: its gears by name, nominal.
+        deviated: of one trial.
+        turns: of the output.
+        pins: axes of the planets (2,) [mm].
     """
 
     own: PlanetarySet
     gears: tuple[PlacedGear, ...]
     status: int
+    made: Made
+    deviated: Deviated
+    turns: float
+    pins: tuple[Array, ...]
 
 
 def shown_set(own: PlanetarySet, made: Made, deviated: Deviated, turns: float) -> ShownSet:
@@ -47,9 +57,44 @@ def shown_set(own: PlanetarySet, made: Made, deviated: Deviated, turns: float) -
     """
     free, reached = Contact(own).seated(deviated, np.array([turns]), own.output, own.opposite(own.output))
     at = np.nan_to_num(reached[0, 1])
+    gears, pins = placed_gears(own, made, deviated, turns, at), placed_pins(own, deviated, turns, at)
+    return ShownSet(own, gears, int(free.status[0]), made, deviated, turns, pins)
+
+
+def placed_pins(own: PlanetarySet, deviated: Deviated, turns: float, at: Array) -> tuple[Array, ...]:
+    """Axes of the planets (2,) [mm]; arguments as of placed_gears."""
+    return tuple(_pins(own, deviated, at, -2 * math.pi * float(own.turn(own.held) * own.planet_turns) * turns))
+
+
+def _pins(own: PlanetarySet, deviated: Deviated, at: Array, carrier: float) -> Iterator[Array]:
+    count = len(own.meshes)
+    for k in range(own.planets):
+        pushed = sum(at[count + 1 + own.planets + j] * spring.sense(k) for j, spring in enumerate(own.springs))
+        arm = carrier + own.azimuths[k] + at[count] + pushed / own.centre_distance
+        yield _turned(np.array([own.centre_distance + deviated.pins[0, k, 0], deviated.pins[0, k, 1]]), arm)
+
+
+def placed_gears(own: PlanetarySet, made: Made, deviated: Deviated, turns: float, at: Array) -> tuple[PlacedGear, ...]:
+    """Central gears, then those of each planet, where they stand.
+
+    Args:
+        own, made, deviated, turns: see shown_set.
+        at: turns of shafts and planets [rad] and displacements by springs [mm], beyond where no backlash would have
+            them.
+    """
     carrier = -2 * math.pi * float(own.turn(own.held) * own.planet_turns) * turns
-    gears = (*_centrals(own, made, deviated, turns, at, carrier), *_planets(own, made, deviated, turns, at, carrier))
-    return ShownSet(own, gears, int(free.status[0]))
+    return (*_centrals(own, made, deviated, turns, at, carrier), *_planets(own, made, deviated, turns, at, carrier))
+
+
+def made_gears(scene: Scene, own: PlanetarySet) -> Made:
+    """The gears of a set, nominal."""
+    return {gear.name: cylindrical_gear(scene, gear.name) for gear in own.all_gears}
+
+
+def heights_of(own: PlanetarySet, made: Made) -> Mapping[str, float]:
+    """Where the middle of the face of each central gear lies along the axis of a set [mm]; 0 of the carrier."""
+    heights = _heights(own, made)
+    return {mesh.central.name: heights[own.gear_of(mesh)] for mesh in own.meshes} | {own.carrier: 0.0}
 
 
 def _heights(own: PlanetarySet, made: Made) -> list[float]:
@@ -90,10 +135,7 @@ def _planets(
 ) -> Iterator[PlacedGear]:
     """Tooth 0 of the first planet's gears points outwards where nothing has turned."""
     heights, count = _heights(own, made), len(own.meshes)
-    for k in range(own.planets):
-        pushed = sum(at[count + 1 + own.planets + j] * spring.sense(k) for j, spring in enumerate(own.springs))
-        arm = carrier + own.azimuths[k] + at[count] + pushed / own.centre_distance
-        pin = _turned(np.array([own.centre_distance + deviated.pins[0, k, 0], deviated.pins[0, k, 1]]), arm)
+    for k, pin in enumerate(_pins(own, deviated, at, carrier)):
         for g, gear in enumerate(own.gears):
             angle = carrier + 2 * math.pi * float(own.planet_turns) * turns + own.azimuths[k] + own.phase(k)
             angle += at[count + 1 + k] + deviated.planet_clocking[0, g, k]

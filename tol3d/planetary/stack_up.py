@@ -12,10 +12,10 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from tol3d.numerics.programme import ranges
 from tol3d.planetary.deviated import Deviated
 from tol3d.planetary.free import Free, turned
 from tol3d.planetary.planetary_set import PlanetarySet
-from tol3d.planetary.programme import ranges
 
 Array = NDArray[np.float64]
 
@@ -44,7 +44,7 @@ class StackUp:
             s, angle = mesh.sense, mesh.working_pressure_angle
             central = deviated.central_offset[:, None, place].repeat(own.planets, axis=1)
             central = turned(central, (of_centrals[place] * turns)[:, None] - azimuths)
-            phases = np.array([own.phase(planet) for planet in range(own.planets)]) / (2 * np.pi)
+            phases = own.phases / (2 * np.pi)
             planet = turned(deviated.planet_offset[:, gear], (of_planet * turns)[:, None] + phases)
             apart = planet + deviated.pins - central
             thicker = deviated.central_thickness[:, place, None] + deviated.planet_thickness[:, gear]

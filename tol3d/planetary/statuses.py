@@ -10,4 +10,4 @@ STATUSES: Final = Statuses(
     words={"interferes": "jam", "singular": "cannot be solved"},
     states={"interferes": "jammed"},
 )
-"""By the codes of tol3d.planetary.programme; a set interferes where contacts of a closed loop lack room."""
+"""By the codes of tol3d.numerics.programme; a set interferes where contacts of a closed loop lack room."""

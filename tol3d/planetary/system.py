@@ -2,31 +2,43 @@
 
 from collections.abc import Hashable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
+from importlib import import_module
 from typing import Any, ClassVar, Final
 
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.planetary.contact import Contact, seated_ranges
+from tol3d.numerics.programme import ranges
+from tol3d.planetary.contact import seated_ranges
+from tol3d.planetary.contact_curves import ContactCurves
 from tol3d.planetary.problems import problems_of
-from tol3d.planetary.programme import ranges
 from tol3d.planetary.regressors import regress
 from tol3d.planetary.roads import PlanetaryRoad
+from tol3d.planetary.sections import set_sections, spring_summary
 from tol3d.planetary.set_trials import SetTrials
 from tol3d.planetary.shown import Made, ShownSet, shown_set
-from tol3d.planetary.stack_up import StackUp
+from tol3d.planetary.spring_curve import LeafSpring
+from tol3d.planetary.stack_up_curves import StackUpCurves
 from tol3d.planetary.statuses import STATUSES
+from tol3d.planetary.summary_types import PlanetarySetSummary
+from tol3d.solids import measuring_strips
 from tol3d.system.contributor import Contributor
 from tol3d.system.measure import Measure
+from tol3d.system.pooled import PooledTerms
 from tol3d.system.road import ANALYTIC_ROAD, Road, RoadKind
+from tol3d.system.stated import mean_build
 from tol3d.system.statuses import Statuses
-from tol3d.system.system import Columns, KeyPath
+from tol3d.system.system import Columns, KeyPath, Published
 from tol3d.system.trials import Trials
 
 Array = NDArray[np.float64]
 
+FCL: Final = "fcl"
+WITNESS: Final = "tol3d.planetary.witness"  # it loads FCL, in the worker
 ROADS: Final[Mapping[str, RoadKind]] = {
-    "exact": RoadKind("kernels", compiled=True),
+    "exact": RoadKind("kernels", compiled=True, contacts_per_minute=120_000_000),
+    FCL: RoadKind("gears: solids and measuring strips", threads=False, witness=True, contacts_per_minute=14_000),
     ANALYTIC_ROAD: RoadKind("kernels", compiled=True),
 }
 
@@ -37,9 +49,15 @@ class PlanetarySystem(SetTrials):
 
     Args:
         made: its gears by their names, nominal, to be shown.
+        friction: coefficient of friction of the teeth; None where none is given.
+        profile_steps: of the strips that FCL measures.
+        spring: of a flexible carrier; None where none is given.
     """
 
     made: Made
+    friction: float | None = None
+    profile_steps: int = 120
+    spring: LeafSpring | None = None
 
     roads: ClassVar[Mapping[str, RoadKind]] = ROADS
     statuses: ClassVar[Statuses] = STATUSES
@@ -50,21 +68,37 @@ class PlanetarySystem(SetTrials):
 
     def describe(self, measure: Measure) -> Mapping[str, Any]:
         """See System."""
-        return {"kind": self.planetary_measures[measure.name].kind}
+        own = self.planetary_measures[measure.name]
+        order = {"order": int(own.spectrum.orders[0])} if own.spectrum is not None else {}
+        return {"kind": own.kind, "of": own.set_name, "shaft": own.shaft, **order}
 
     # its roads --------------------------------------------------------------------------------------
 
     def is_compiled(self, road: str) -> bool:
         """See System."""
-        return ranges.kept if road == ANALYTIC_ROAD else seated_ranges.kept
+        return seated_ranges.kept if road == "exact" else ranges.kept
+
+    def materials(self, road: str) -> Any:
+        """See System: the strips of every gear's solid, for FCL."""
+        if road != FCL:
+            return None
+        return {name: measuring_strips(gear, self.profile_steps) for name, gear in self.made.items()}
 
     def road(self, name: str, materials: Any) -> Road:
         """See System."""
-        return PlanetaryRoad(self, StackUp(self.own) if name == ANALYTIC_ROAD else Contact(self.own))
+        if name == FCL:
+            made: Road = import_module(WITNESS).witness(self, self.made, materials)
+            return made
+        kind = StackUpCurves if name == ANALYTIC_ROAD else ContactCurves
+        return PlanetaryRoad(self, kind(self.own), kind(self.overcome))
 
     def cost(self, measures: Sequence[Measure]) -> int:
-        """A contact for each mesh of each planet, at each position; see System."""
-        return sum(own.positions.in_a_trial for own in measures) * self.own.planets * len(self.own.meshes)
+        """A contact for each mesh of each planet, at each position; measures of one curve share them; see System."""
+        read = {
+            own.name if own.is_free_turn else own.curve_key: own.positions.in_a_trial
+            for own in (self.planetary_measures[measure.name] for measure in measures)
+        }
+        return sum(read.values()) * self.own.planets * len(self.own.meshes)
 
     # what acts on a measure -------------------------------------------------------------------------
 
@@ -77,6 +111,18 @@ class PlanetarySystem(SetTrials):
     ) -> None:
         """See System: offsets as they lie seen from the planets."""
         regress(self, self.planetary_measures[measure.name], contributors, columns, rows)
+
+    def sections(self, terms: Mapping[str, Mapping[str, PooledTerms]], published: Published) -> Mapping[str, Any]:
+        """Efficiencies and torques of the set, where friction or a spring is given; see System."""
+        return {"planetary_sets": self.summaries} if self.summaries else {}
+
+    @cached_property
+    def summaries(self) -> Mapping[str, PlanetarySetSummary]:
+        """Efficiencies, and what a spring of the carrier holds, by the set's name; nothing where neither is given."""
+        if self.spring is None:
+            return set_sections(self.own, self.friction)
+        mean = self.deviated(mean_build(self, self.measures[0]))
+        return set_sections(self.own, self.friction, spring_summary(self.own, mean, self.spring))
 
     def display(self, trials: Trials, road: Road) -> ShownSet:
         """Its gears in the first trial, see System."""

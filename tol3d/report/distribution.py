@@ -181,16 +181,27 @@ def range_labels(columns: Sequence[Column]) -> list[str]:
     return [wrapped(column.heading, RANGE_LABEL, RANGE_SIZE, 4) for column in columns]
 
 
+def ranged(measure: MeasureSummary) -> list[Column]:
+    """The columns that have something to draw; others publish what a table alone can show."""
+    bounded = is_bounded(measure)
+    return [column for column in columns_of(measure) if _is_drawn(measure, column, Ends.of(column, bounded=bounded))]
+
+
+def _is_drawn(measure: MeasureSummary, column: Column, ends: Ends) -> bool:
+    known = (ends.low, ends.high, column.value("mean"))
+    return known != (None, None, None) or "histogram" in measure.published.get(column.heading, {})
+
+
 def height_of_ranges(measure: MeasureSummary) -> float:
     """Height that the ranges of a measure need with their headings [inch]."""
-    labels = range_labels(columns_of(measure))
+    labels = range_labels(ranged(measure))
     lines = max((label.count("\n") + 1 for label in labels), default=1)
     return max(RANGE_HEIGHT, RANGE_LINE * lines) * len(labels)
 
 
 def draw_ranges(axes: Axes, measure: MeasureSummary, colours: Mapping[str, str]) -> None:
     """One line a column below the histogram: from end to end, one known end alone, the mean as a dot."""
-    columns, bounded = columns_of(measure), is_bounded(measure)
+    columns, bounded = ranged(measure), is_bounded(measure)
     for row, column in enumerate(columns):
         colour, ends, mean = colours[column.heading], Ends.of(column, bounded=bounded), column.value("mean")
         if ends.low is not None and ends.high is not None:

@@ -1,5 +1,6 @@
 """What pictures in 3D are drawn with: solids with their edges, labels and titles."""
 
+from collections.abc import Sequence
 from typing import Final
 
 import numpy as np
@@ -7,6 +8,7 @@ import pyvista as pv
 from numpy.typing import NDArray
 from vtkmodules.vtkFiltersGeneral import vtkContourTriangulator
 
+from tol3d.report.body import Body
 from tol3d.report.label import legible
 
 Array = NDArray[np.float64]
@@ -26,6 +28,17 @@ def poly_data(vertices: Array, triangles: NDArray[np.int64]) -> pv.PolyData:
 def set_background(plotter: pv.Plotter) -> None:
     """The background of every picture."""
     plotter.renderer.set_background("white", top="#E9EEF3")
+
+
+def add_body(plotter: pv.Plotter, body: Body) -> None:
+    """A body where it stands, with what is shown on it or within it."""
+    mesh = poly_data(*body.mesh)
+    if body.opacity < 1.0:
+        add_translucent_solid(plotter, mesh, body.colour, body.opacity)
+    else:
+        (add_round_solid if body.smooth else add_solid)(plotter, mesh, body.colour)
+    if body.detail_mesh is not None:
+        add_solid(plotter, poly_data(*body.detail_mesh), body.colour)
 
 
 def add_solid(plotter: pv.Plotter, mesh: pv.PolyData, colour: str) -> None:
@@ -65,6 +78,14 @@ def _add_edges(plotter: pv.Plotter, mesh: pv.PolyData) -> None:
 def arrow(tip_from: Array, direction: Array, length: float) -> pv.PolyData:
     """An arrow of that length [mm] from a point."""
     return pv.Arrow(start=tip_from, direction=direction, scale=length, tip_radius=0.09, shaft_radius=0.035)
+
+
+def add_dots(plotter: pv.Plotter, name: str, places: Sequence[Array], radius: float, colour: str) -> None:
+    """Flat dots of a radius [mm] at points (3,) [mm], in the place of those of that name in the current renderer."""
+    plotter.renderer.remove_actor(name, render=False)
+    if places:
+        dots = pv.merge([pv.Sphere(radius=radius, center=place) for place in places])
+        plotter.add_mesh(dots, color=colour, lighting=False, name=name, reset_camera=False, render=False)
 
 
 def add_label(plotter: pv.Plotter, place: Array, text: str, colour: str) -> None:

@@ -34,6 +34,7 @@ from tol3d.report.distribution import (
     height_of_ranges,
     out_text,
     range_labels,
+    ranged,
     samples_of,
     shown_span,
     values_label,
@@ -125,7 +126,7 @@ def _height(measure: MeasureSummary) -> float:
 
 def _words_width(measure: MeasureSummary) -> float:
     """Width that words above a histogram have [inch]: its own, which long labels of ranges and contributors lessen."""
-    ranges = widest(range_labels(columns_of(measure)), RANGE_SIZE)
+    ranges = widest(range_labels(ranged(measure)), RANGE_SIZE)
     names = widest(labels_of(measure), NAME_SIZE)
     return (WIDTH - BESIDE - ranges - names) * HISTOGRAM_SHARE / (HISTOGRAM_SHARE + 1)
 

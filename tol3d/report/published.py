@@ -36,6 +36,7 @@ SHARES: Final[Mapping[str, str]] = {
     "failed_ppm": "failed",
     "out_ppm": "out in all",
 }
+POOLED: Final[Mapping[str, str]] = {"half_span": "99.73 % half-range"}
 AGREEMENT: Final[Mapping[str, str]] = {
     "max_abs_difference": "at most",
     "rms_difference": "rms",
@@ -44,7 +45,7 @@ AGREEMENT: Final[Mapping[str, str]] = {
 
 
 def published_rows(measure: MeasureSummary, columns: Sequence[Column], shown: Sequence[str]) -> Iterator[Row]:
-    """Rows of the numbers that somebody published and that have no row else.
+    """Rows of the numbers that somebody published and that have no row else, and of statistics that a measure names.
 
     Args:
         measure: whose table it is.
@@ -69,8 +70,12 @@ def published_rows(measure: MeasureSummary, columns: Sequence[Column], shown: Se
         bounds = [_pair(column.values, f"{key}_95") for column in columns]
         if any(own for own, column in zip(bounds, columns, strict=True) if column.road == "published"):
             yield Row(f"{label}, 95 %", [" to ".join(map(share_text, own)) or NOTHING for own in bounds])
-    for name in dict.fromkeys(name for column in others for name in _pooled(column)):
-        yield Row(name, [_cell(own, _pooled(own).get(name), measure.unit) for own in columns], unit=measure.unit)
+    for name in dict.fromkeys(name for column in columns for name in _pooled(column)):
+        yield Row(
+            POOLED.get(name, name),
+            [_cell(own, _pooled(own).get(name), measure.unit) for own in columns],
+            unit=measure.unit,
+        )
 
 
 def published_counts(column: Column) -> Mapping[str, int]:

@@ -7,17 +7,18 @@ from collections.abc import Iterator, Mapping, Sequence
 from tol3d.distributions import Distribution
 from tol3d.report.number import NOTHING, UNIT_SIGNS, given_text, measured_text, unit_suffix, unsigned_zero, value_text
 from tol3d.report.page import Heading, PageItem, Row, Shown, Table, note, titled, warning
-from tol3d.study.first_order import FirstOrder, first_orders
+from tol3d.study.first_order import FirstOrder, FirstOrderEffect, first_orders
 from tol3d.study.simulation import Simulation
 from tol3d.study.task import materials_of, road_of
 from tol3d.system.contributor import Contributor
-from tol3d.system.draw import JointDraw
+from tol3d.system.draw import JointDraw, drawn_each
 from tol3d.system.measure import Measure
 
 SLOPES = (
     "slope: change of the measure per unit of the deviation at the mean build, by differences over one sigma to both "
     "sides; of several components the size of their gradient"
 )
+EACH = "each: of every one of several deviations, such as one a planet; greatest: of the one that does most"
 SHARES = "RSS: share of the variance by root sum of squares; worst: share of the sum of all reaches from end to end"
 NO_SUM = "no sum of effects, so no RSS and no worst case: its slopes are means over two sigma; run draws its trials"
 BESIDE = 1e-6  # um or arcmin; a value that is nearer to a limit lies on it
@@ -40,7 +41,9 @@ def system_blocks(simulation: Simulation) -> list[PageItem]:
         for block in _coefficients(measure, found[measure.name], headings)
     ]
     sums = any(measure.adds_up and found[measure.name] for measure in system.measures)
-    notes = [note(text) for text in (SLOPES, *([SHARES] if sums else []))] if tables else []
+    several = any(effect.each > 1 for own in found.values() for road in own.values() for effect in road.effects)
+    texts = (SLOPES, *([EACH] if several else []), *([SHARES] if sums else []))
+    notes = [note(text) for text in texts] if tables else []
     return [*_contributors(system.contributors), *_measures(system.measures, kinds, found, headings), *tables, *notes]
 
 
@@ -57,7 +60,7 @@ def law_words(contributor: Contributor) -> str:
     law, count = law_name(draw.distribution), len(draw.components)
     if count == 1:
         return law
-    if draw.uniforms == count and draw.components[:1] != ("x",):
+    if drawn_each(draw):
         return f"{law}, each of {count}"
     return f"{law}, random direction" if draw.uniforms > 1 else f"{law}, fixed direction"
 
@@ -124,7 +127,7 @@ def _coefficients(measure: Measure, found: Mapping[str, FirstOrder], headings: M
     rows = []
     for effects in zip(*(own.effects for own in found.values()), strict=True):
         roads = list(zip(found.values(), effects, strict=True))
-        cells = [_number(own.slope, ".4g") for own in effects]
+        cells = [_slope(own) for own in effects]
         if measure.adds_up:
             cells += [_number(road.variance_percent(own), ".1f") for road, own in roads]
             cells += [_number(road.reach_percent(own), ".1f") for road, own in roads]
@@ -134,6 +137,14 @@ def _coefficients(measure: Measure, found: Mapping[str, FirstOrder], headings: M
     table = Table("", [Heading("unit"), *columns], rows)
     below = [_sums(measure, headings[road], own) for road, own in found.items()] if measure.adds_up else [NO_SUM]
     return [*titled(f"{measure.name}: change by each deviation", table), *map(note, below)]
+
+
+def _slope(own: FirstOrderEffect) -> Shown:
+    """With its sign, where it has one; of several deviations what it is of."""
+    found = _number(own.slope, ".4g")
+    if own.each == 1 or found.value is None:
+        return found
+    return Shown(f"{found} {'each' if own.alike else 'greatest'}", own.slope)
 
 
 def _number(value: float, form: str) -> Shown:

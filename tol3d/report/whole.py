@@ -16,16 +16,14 @@ from scipy import ndimage
 from scipy.optimize import isotonic_regression, linear_sum_assignment
 from vtkmodules.vtkRenderingCore import vtkWorldPointPicker
 
-from tol3d.report.body import Body, World
+from tol3d.report.body import World
 from tol3d.report.camera import look
 from tol3d.report.drawn_solids import (
     CONTACT_COLOUR,
     EDGE_COLOUR,
     GAP_COLOUR,
+    add_body,
     add_label,
-    add_round_solid,
-    add_solid,
-    add_translucent_solid,
     arrow,
     poly_data,
     set_background,
@@ -119,7 +117,7 @@ def draw_whole(
     """
     set_background(plotter)
     for body in world.bodies:
-        _add_body(plotter, body)
+        add_body(plotter, body)
     if any(body.opacity < 1.0 for body in world.bodies):  # else faces hide each other in the order of drawing
         plotter.renderer.SetUseDepthPeeling(True)
         plotter.renderer.SetMaximumNumberOfPeels(PEELS)
@@ -133,16 +131,6 @@ def draw_whole(
         labels.append(Label(name, GAP_COLOUR, "white", shown.place + length * shown.direction))
     _look(plotter, eye, frame)
     (_label_beside if plotter.off_screen else _label_in_place)(plotter, Whole(eye, frame, tuple(labels)))
-
-
-def _add_body(plotter: pv.Plotter, body: Body) -> None:
-    mesh = poly_data(*body.mesh)
-    if body.opacity < 1.0:
-        add_translucent_solid(plotter, mesh, body.colour, body.opacity)
-    else:
-        (add_round_solid if body.smooth else add_solid)(plotter, mesh, body.colour)
-    if body.detail_mesh is not None:
-        add_solid(plotter, poly_data(*body.detail_mesh), body.colour)
 
 
 def _label_in_place(plotter: pv.Plotter, picture: Whole) -> None:

@@ -13,7 +13,7 @@ from tol3d.units import Dimension, Of, Quantity
 
 MOST_POSITIONS = 1000
 
-Take = Literal["value", "min", "max", "range", "curve"]
+Take = Literal["value", "min", "max", "range", "harmonic", "curve"]
 LengthLimit = Annotated[Quantity, Of("length")]
 AngleLimit = Annotated[Quantity, Of("angle")]
 

@@ -15,6 +15,7 @@ from tol3d.units import EXAMPLES, FACTORS, Dimension, expectation, shown
 
 MOST_PROBLEMS = 8  # what a screen shows and a person mends in one go
 QUOTED_WORD = re.compile(r"'((?:[^'\\]|\\.)*)'")
+MOST_LISTED: Final = 28  # words of a message; tolerances are more
 
 
 def messages(error: ValidationError, data: Mapping[str, Any], origin: Origin, grammar: Grammar) -> list[str]:
@@ -150,7 +151,9 @@ def _literal(details: ErrorDetails) -> str:
 
 def word_expected(value: object, known: Sequence[str]) -> str:
     """The sentence of a word that is none of those known, with the nearest of them."""
-    listed = " or ".join(known) if len(known) < 3 else f"one of {', '.join(known)}"
+    listed = " or ".join(known) if len(known) < 3 else f"one of {', '.join(known[:MOST_LISTED])}"
+    if len(known) > MOST_LISTED:
+        listed = f"{listed} or {len(known) - MOST_LISTED} others, which tol3d schema lists"
     return f"expected {listed}, got {shown(value)}{nearest(value, known) if isinstance(value, str) else ''}"
 
 
@@ -218,5 +221,6 @@ SENTENCES: Final[dict[str, Callable[[ErrorDetails], str]]] = {
     "greater_than": _bound("more than", "gt"),
     "greater_than_equal": _bound("at least", "ge"),
     "less_than_equal": _bound("at most", "le"),
+    "less_than": _bound("less than", "lt"),
     "too_short": _too_few,
 }

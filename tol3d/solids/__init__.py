@@ -1,8 +1,9 @@
 """From a part's CAD solid to measuring strips, display meshes and STEP; cached, so a warm run loads no CAD."""
 
 from tol3d.solids.bodies import ArmBody, Collar, ShaftBody
-from tol3d.solids.built_shape import BuiltShape, PosedShape
+from tol3d.solids.built_shape import BuiltShape, PosedShape, SweptShape
 from tol3d.solids.display_mesh import DisplayMesh, display_mesh, surface_of
+from tol3d.solids.face_strips import FaceStrip, face_strips
 from tol3d.solids.flank_strips import WHOLE_FACE, FlankStrips, Span, measuring_strips, strip_mesh
 from tol3d.solids.posed_gear import PosedBody, PosedGear, PosedPart
 from tol3d.solids.pulled_strip import PulledStrip
@@ -14,6 +15,7 @@ __all__ = [
     "BuiltShape",
     "Collar",
     "DisplayMesh",
+    "FaceStrip",
     "FlankStrips",
     "PosedBody",
     "PosedGear",
@@ -22,8 +24,10 @@ __all__ = [
     "PulledStrip",
     "ShaftBody",
     "Span",
+    "SweptShape",
     "display_mesh",
     "export_step",
+    "face_strips",
     "measuring_strips",
     "strip_mesh",
     "surface_of",

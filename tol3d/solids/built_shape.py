@@ -23,6 +23,17 @@ class BuiltShape(ABC):
     """
 
 
+@dataclass(frozen=True)
+class SweptShape(BuiltShape):
+    """A shape whose solid is one section swept along z, from -width/2 to +width/2.
+
+    Its display mesh is made of one end: of faces that are splines OCC makes hundreds of times as many triangles as
+    are asked for, and slowly.
+    """
+
+    width: float
+
+
 @dataclass(frozen=True, eq=False)
 class PosedShape:
     """A shape, the name of its part, and its pose: (4, 4), rotation and translation [mm]."""

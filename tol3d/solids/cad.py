@@ -20,9 +20,9 @@ from tol3d.files import FileContent
 from tol3d.gears import BevelGear, Gear, InternalGear, SpurGear
 from tol3d.parts import arm, bevel_gear, shaft
 from tol3d.parts.named_solid import NamedSolid, refuse_cut_step
-from tol3d.solids import bevel_cad, body_cad, own_program, picking, spur_cad
+from tol3d.solids import bevel_cad, body_cad, own_program, picking, spur_cad, swept_cad
 from tol3d.solids.bodies import ArmBody, Body, ShaftBody
-from tol3d.solids.built_shape import BuiltShape
+from tol3d.solids.built_shape import BuiltShape, SweptShape
 from tol3d.solids.lazy import Arrays
 from tol3d.solids.pick import Pick, PickedFace
 from tol3d.solids.posed_gear import PosedPart
@@ -45,6 +45,15 @@ def sample_flanks(gear: Gear, steps: int) -> Arrays:
         flank_error.
     """
     raise TypeError(f"cad.py samples no {type(gear).__name__}")
+
+
+def sample_faces(shape: BuiltShape, faces: Sequence[str], steps: int) -> Arrays:
+    """Arrays of FaceStrips, read off the named faces of a shape that is swept along z.
+
+    Returns:
+        parameter (faces, steps + 1), points and normals (faces, steps + 1, 2), chord_error.
+    """
+    return swept_cad.sample_faces(solid_of(shape), faces, steps)
 
 
 @singledispatch
@@ -77,6 +86,9 @@ solid_of.register(ArmBody, lambda body: arm.arm(body.points, body.diameter))
 solid_of.register(BuiltShape, lambda shape: _builder_of(shape)(shape))
 for kind in (ShaftBody, ArmBody, BuiltShape):
     tessellate.register(kind, lambda body, deflection: body_cad.tessellate(solid_of(body), deflection))
+tessellate.register(
+    SweptShape, lambda shape, deflection: swept_cad.tessellate(solid_of(shape), shape.width, deflection)
+)
 
 
 def pick_faces(shape: BuiltShape, picks: Sequence[Pick]) -> Sequence[PickedFace]:

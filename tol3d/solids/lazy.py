@@ -29,6 +29,10 @@ class Cad(Protocol):
         """Arrays of FlankStrips."""
         ...
 
+    def sample_faces(self, shape: BuiltShape, faces: Sequence[str], steps: int) -> Arrays:
+        """Arrays of FaceStrips."""
+        ...
+
     def tessellate(self, shape: Gear | Body | BuiltShape, deflection: float) -> Arrays:
         """Arrays of DisplayMesh."""
         ...

@@ -15,7 +15,7 @@ from tol3d.study.extremes import ends_together
 from tol3d.study.simulation import Simulation
 from tol3d.system.contributor import Contributor
 from tol3d.system.dependent import reads_of
-from tol3d.system.draw import JointDraw
+from tol3d.system.draw import JointDraw, drawn_each
 from tol3d.system.measure import Measure
 from tol3d.system.outcome import ANALYTIC, GEOMETRIC, outcome_of
 from tol3d.system.road import Road
@@ -26,6 +26,8 @@ Array = NDArray[np.float64]
 Values = Callable[[Array], Array]
 """A measure (rows,) of deviations (rows, components); nan where a build does not seat."""
 
+ALIKE = 1e-6  # of the greatest; slopes of features that are alike differ by rounding and by where they stand
+AS_LARGE = 0.99  # of the size of another one: of slopes of both signs the positive one is shown, by either road
 NOISE = 1e-9  # of the values; smaller differences are rounding, and have no sign
 
 
@@ -36,7 +38,9 @@ class FirstOrderEffect:
     Args:
         name, unit: of the contributor.
         slope: change of the measure [its unit] per unit of the deviation; of several components the size of their
-            gradient; nan where a build does not seat.
+            gradient, of several deviations of their own that of each or the greatest; nan where a build does not seat.
+        each: how many deviations of their own it has, such as one a feature; 1 of a single one or of components.
+        alike: whether their slopes are.
         variance: its part of the measure's variance [the measure's unit, squared].
         reach: how far it moves the measure between its low and high ends [the measure's unit].
     """
@@ -46,6 +50,8 @@ class FirstOrderEffect:
     slope: float
     variance: float
     reach: float
+    each: int = 1
+    alike: bool = True
 
 
 @dataclass(frozen=True)
@@ -156,7 +162,13 @@ def _effect(contributor: Contributor, slopes: Array, ends: Array, *, turning: bo
             size = float(slopes @ along) / (float(np.sqrt((along * along).sum())) or 1.0)
             variance = size**2 * sigma**2
     reach = float((ends[1] - ends[0]) @ slopes)
-    return FirstOrderEffect(contributor.name, contributor.unit, size * contributor.per_unit, variance, reach)
+    name, unit, per = contributor.name, contributor.unit, contributor.per_unit
+    if not drawn_each(draw):
+        return FirstOrderEffect(name, unit, size * per, variance, reach)
+    largest, smallest = float(slopes.max()), float(slopes.min())
+    greatest = largest if largest >= AS_LARGE * abs(smallest) else smallest
+    alike = bool((np.abs(slopes - greatest) <= ALIKE * abs(greatest)).all())
+    return FirstOrderEffect(name, unit, greatest * per, variance, reach, len(slopes), alike)
 
 
 def _percent(part: float, whole: float) -> float:

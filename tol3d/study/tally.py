@@ -59,7 +59,7 @@ def grids_of(system: System, pilot: Columns) -> Mapping[str, Grid]:
 def _spectrum_grids(system: System, measure: Measure, pilot: Columns) -> dict[str, Grid]:
     """Of amplitudes, which are at least 0."""
     spectrum = measure.spectrum
-    if spectrum is None:
+    if spectrum is None or measure.take != "curve":
         return {}
     roads = [road for road in ROADS if value_column(road, measure.name) in pilot]
     curves = (outcome_of(pilot, road, measure.name, system.statuses.lacking).values for road in roads)

@@ -66,6 +66,13 @@ class JointDraw(Protocol):
         ...
 
 
+def drawn_each(draw: Draw) -> bool:
+    """Whether its components are several deviations of their own, such as one a feature, not directions."""
+    count, first = len(draw.components), draw.components[0] if draw.components else ""
+    directed = first.rpartition(" ")[2] == "x" or isinstance(draw, JointDraw)
+    return count > 1 and draw.uniforms == count and not directed
+
+
 def component_sigmas(draw: Draw) -> tuple[float, ...]:
     """Standard deviation of each component of a draw [mm, rad or K]."""
     if isinstance(draw, JointDraw):

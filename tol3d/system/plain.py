@@ -15,7 +15,7 @@ from pydantic import Field
 
 from tol3d.distributions import Distribution
 from tol3d.scene import Scene
-from tol3d.scene.measure import LengthLimit, MeasureSpec
+from tol3d.scene.measure import LengthLimit, MeasureEntry, MeasureSpec
 from tol3d.scene.tolerance import ToleranceSpec
 from tol3d.system.breakdown import Breakdown
 from tol3d.system.closed_form import ClosedForm
@@ -140,12 +140,14 @@ def _scalar(law: Distribution, _: Any) -> Draw:
 
 def measures_of(scene: Scene, *, worse: Worse = "low", adds_up: bool = True) -> tuple[PlainMeasure, ...]:
     """The measures of a scene, each one number a trial; for the arguments see PlainMeasure."""
-    found = []
-    for name, spec in scene.measures.items():
-        lower, upper = (None if limit is None else limit.internal for limit in (spec.lower_limit, spec.upper_limit))
-        unit, per_unit = UNITS[spec.dimension]
-        found.append(PlainMeasure(name, spec.kind, lower, upper, unit, 1.0 / per_unit, worse, adds_up))
-    return tuple(found)
+    return tuple(PlainMeasure(*stated_of(name, spec), worse, adds_up) for name, spec in scene.measures.items())
+
+
+def stated_of(name: str, spec: MeasureEntry) -> tuple[str, str, float | None, float | None, str, float]:
+    """What a scene states of a measure: the first fields of PlainMeasure."""
+    lower, upper = (None if limit is None else limit.internal for limit in (spec.lower_limit, spec.upper_limit))
+    unit, per_unit = UNITS[spec.dimension]
+    return name, spec.kind, lower, upper, unit, 1.0 / per_unit
 
 
 class LengthSpec(MeasureSpec):

@@ -6,7 +6,7 @@ from functools import cached_property
 from typing import Literal
 
 Over = Literal["random", "at", "turn", "long_period", "swing"]
-Take = Literal["value", "min", "max", "range", "curve"]
+Take = Literal["value", "min", "max", "range", "harmonic", "curve"]
 
 
 @dataclass(frozen=True)

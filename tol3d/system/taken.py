@@ -15,12 +15,16 @@ def taken(measure: Measure, values: Array) -> Array:
 
     Extremes are those of a parabola through the extreme sample and its neighbours, on a closed period those
     round its end too: 1.1e-4 of the once-per-turn part at 24 positions a turn, where the sample is 9e-3 off. Of values
-    that jump they are those of the samples: a parabola beside a jump would lie above both.
+    that jump they are those of the samples: a parabola beside a jump would lie above both. A harmonic is the first
+    order of the measure's spectrum, from peak to peak as ranges are.
     """
     if measure.take == "curve":
         return values
     if measure.take == "value":
         return values[:, 0]
+    if measure.take == "harmonic":
+        assert measure.spectrum is not None
+        return 2 * measure.spectrum.amplitudes(measure.positions, values)[:, 0]
     if measure.positions.jumps:
         highest, lowest = np.asarray(values.max(axis=1)), np.asarray(values.min(axis=1))
     else:

@@ -55,6 +55,7 @@ def test_least_squares_of_a_hole_pattern(directions: Array) -> None:
     np.testing.assert_allclose(pose[2], (0, 0, 1, 0), atol=1e-13)
 
 
+@pytest.mark.slow
 def test_least_largest_residual_of_a_hole_pattern() -> None:
     made, row = fitted(PLATE, "minimax", np.eye(3)[:2]), of_holes((ACTUAL - PLATE[:, :2])[None])
     pose = placed(made, row)["plate"][0]
@@ -93,6 +94,7 @@ def test_least_squares_in_space_agree_with_kabsch(seed: int) -> None:
     np.testing.assert_allclose(placed(made, offsets.reshape(5, -1))["plate"], expected, atol=2e-11, rtol=0)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", seeds(10))
 def test_least_largest_residuals_in_space_agree_with_a_general_optimiser(seed: int) -> None:
     """Scipy's SLSQP from the pose of least squares: T least, T^2 >= each residual squared."""

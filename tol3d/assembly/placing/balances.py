@@ -13,7 +13,7 @@ from tol3d.assembly.placing.pose_steps import solved
 from tol3d.assembly.placing.rests import LOST, RESTS, begin
 from tol3d.assembly.placing.tilted_motions import motion_rows, shifted
 from tol3d.assembly.placing.tilted_rests import PIERCED
-from tol3d.numerics.compiled import kernel, part
+from tol3d.numerics.compiled import kernel, nested
 
 STEPS: Final = 30
 WAY: Final = 0.02
@@ -22,7 +22,7 @@ NUDGE: Final = 1e-4
 """Of the reach: by which rows are taken apart for how they change; the error is that squared."""
 
 
-@part
+@nested
 def lacking(pose: Any, trial: Any, reach: float, chosen: Any, shares: Any, programme: Any, found: Any) -> None:
     """What the balance of the force on chosen contacts lacks along the motions, and then their gaps."""
     contacts, i, on_part, _, force, _ = trial
@@ -38,7 +38,7 @@ def lacking(pose: Any, trial: Any, reach: float, chosen: Any, shares: Any, progr
         found[motions + c] = gap_of(pose, contacts, chosen[c], i, on_part)
 
 
-@part
+@nested
 def linearised(pose: Any, trial: Any, reach: float, chosen: Any, shares: Any, programme: Any, system: Any) -> None:
     """The equations of the contacts and the balance at a pose: what they lack, and how that changes by differences."""
     right, matrix, ends, motion, step, near, base = system
@@ -66,7 +66,7 @@ def linearised(pose: Any, trial: Any, reach: float, chosen: Any, shares: Any, pr
                 matrix[r, j] = (ends[1, r] - ends[0, r]) / (2.0 * by)
 
 
-@part
+@nested
 def balanced(pose: Any, trial: Any, reach: float, chosen: Any, shares: Any, programme: Any, system: Any) -> bool:
     """Whether chosen contacts are met and balance the force at some pose near by, and that and what they carry."""
     right, matrix, _, motion, step, _, base = system
@@ -88,7 +88,7 @@ def balanced(pose: Any, trial: Any, reach: float, chosen: Any, shares: Any, prog
     return False
 
 
-@part
+@nested
 def keeps(pose: Any, contacts: Any, i: int, on_part: bool, shares: Any) -> bool:
     """Whether no contact is pierced, and none would have to pull."""
     for k in range(contacts[0].shape[0]):

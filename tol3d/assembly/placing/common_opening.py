@@ -12,7 +12,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from tol3d.numerics.compiled import kernel, part
+from tol3d.numerics.compiled import kernel, nested
 
 MET: Final = 1e-13
 """mm, by which no disc is violated any more."""
@@ -20,7 +20,7 @@ STEPS: Final = 200
 """Each decides by other discs than all before; in practice 2 to 6."""
 
 
-@part
+@nested
 def violated(discs: Any, k: int, i: int, point: Any) -> Any:
     """How far a point lies outside a disc [mm]; below 0 inside."""
     x, y, radii = discs
@@ -28,7 +28,7 @@ def violated(discs: Any, k: int, i: int, point: Any) -> Any:
     return sqrt(a * a + b * b) - radii[k, i]
 
 
-@part
+@nested
 def worst_of(discs: Any, chosen: Any, count: int, i: int, point: Any) -> Any:
     """How far a point lies outside of several discs at most [mm]."""
     worst = -np.inf
@@ -37,7 +37,7 @@ def worst_of(discs: Any, chosen: Any, count: int, i: int, point: Any) -> Any:
     return worst
 
 
-@part
+@nested
 def between(discs: Any, j: int, k: int, i: int, point: Any) -> bool:
     """Whether two discs decide together, neither within the other, and the point (2,) where they do."""
     x, y, radii = discs
@@ -50,7 +50,7 @@ def between(discs: Any, j: int, k: int, i: int, point: Any) -> bool:
     return True
 
 
-@part
+@nested
 def touching(discs: Any, j: int, k: int, m: int, i: int, points: Any) -> int:
     """Points (2, 2) that three discs violate alike (Apollonius), and how many.
 
@@ -82,7 +82,7 @@ def touching(discs: Any, j: int, k: int, m: int, i: int, points: Any) -> int:
     return count
 
 
-@part
+@nested
 def better(discs: Any, chosen: Any, count: int, i: int, point: Any, best: Any, found: Any) -> Any:
     """The least violation so far (of `found` (2,), or of a further point, which is then kept)."""
     own = worst_of(discs, chosen, count, i, point)
@@ -92,7 +92,7 @@ def better(discs: Any, chosen: Any, count: int, i: int, point: Any, best: Any, f
     return best
 
 
-@part
+@nested
 def decided(discs: Any, chosen: Any, count: int, i: int, found: Any, deciding: Any, rooms: Any) -> Any:
     """The least violation of up to four discs, its point, and which of them decide; -1 for none."""
     point, points = rooms
@@ -118,7 +118,7 @@ def decided(discs: Any, chosen: Any, count: int, i: int, found: Any, deciding: A
     return best
 
 
-@part
+@nested
 def opened(discs: Any, i: int, found: Any, deciding: Any, rooms: Any) -> Any:
     """The least violation of all discs: its point (2,) in `found`, and in `deciding` (3,) which decide; -1 for none."""
     radii = discs[2]
@@ -152,7 +152,7 @@ def opened(discs: Any, i: int, found: Any, deciding: Any, rooms: Any) -> Any:
     return largest
 
 
-@part
+@nested
 def new_rooms() -> Any:
     """What `opened` works with."""
     return np.empty(4, dtype=np.int64), (np.empty(2), np.empty((2, 2)))

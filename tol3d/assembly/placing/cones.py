@@ -9,7 +9,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from tol3d.numerics.compiled import part
+from tol3d.numerics.compiled import nested
 
 STEPS: Final = 60
 """Of interior points, 8 to 15 in practice."""
@@ -37,7 +37,7 @@ POINTED: Final = 1e-6
 """Length of an offset, of its clearance, below which it has no direction."""
 
 
-@part
+@nested
 def factored(matrix: Any, count: int) -> None:
     """Cholesky's factors of a matrix without negative eigenvalues, in place; what is rounding of 0 is not moved by."""
     for j in range(count):
@@ -51,7 +51,7 @@ def factored(matrix: Any, count: int) -> None:
             matrix[i, j] /= matrix[j, j]
 
 
-@part
+@nested
 def substituted(matrix: Any, right: Any, count: int) -> None:
     """Solve with Cholesky's factors, in place."""
     for i in range(count):
@@ -64,7 +64,7 @@ def substituted(matrix: Any, right: Any, count: int) -> None:
         right[i] /= matrix[i, i]
 
 
-@part
+@nested
 def reach_of(a: float, b: float, c: float, u: float, v: float, w: float) -> Any:
     """The largest share by which a point (a, b, c) of a cone can go along (u, v, w)."""
     square, slope = a * a - b * b - c * c, a * u - b * v - c * w
@@ -78,7 +78,7 @@ def reach_of(a: float, b: float, c: float, u: float, v: float, w: float) -> Any:
     return 1e30 if u >= 0.0 else -a / u
 
 
-@part
+@nested
 def equations(cones: Any, size: int, lifts: int, matrix: Any, right: Any, aim: float, turned: Any) -> bool:
     """Those of a step, without the goal: G' W^-2 G and -aim G' y^-1; whether y and z lie inside."""
     y, z, rows, used = cones
@@ -118,7 +118,7 @@ def equations(cones: Any, size: int, lifts: int, matrix: Any, right: Any, aim: f
     return True
 
 
-@part
+@nested
 def changes_of(cones: Any, size: int, lifts: int, step: Any, aim: float, dy: Any, dz: Any) -> Any:
     """Changes of cones and multipliers that go with a step, and how far each can go."""
     y, z, rows, used = cones
@@ -152,7 +152,7 @@ def changes_of(cones: Any, size: int, lifts: int, step: Any, aim: float, dy: Any
     return min(1.0, SHORT_OF * ahead), min(1.0, SHORT_OF * behind)
 
 
-@part
+@nested
 def closing(cones: Any, size: int, rooms: Any) -> Any:
     """Equations of Newton's step from `at` (y), with multipliers m; how far cones that decide are apart, and balance.
 
@@ -192,7 +192,7 @@ def closing(cones: Any, size: int, rooms: Any) -> Any:
     return apart, balance
 
 
-@part
+@nested
 def stepped(cones: Any, size: int, rooms: Any) -> None:
     """Go Newton's whole step."""
     _, _, rows, used = cones
@@ -215,7 +215,7 @@ def stepped(cones: Any, size: int, rooms: Any) -> None:
         at[k, 2] += b
 
 
-@part
+@nested
 def amiss(cones: Any, rooms: Any, limit: float) -> int:
     """A cone that is beyond those that decide, or decides with a multiplier below 0; -1 where there is none."""
     used = cones[3]
@@ -228,7 +228,7 @@ def amiss(cones: Any, rooms: Any, limit: float) -> int:
     return -1
 
 
-@part
+@nested
 def ended(cones: Any, size: int, scale: float, found: Any, rooms: Any) -> bool:
     """Whether Newton's steps reach the largest s: all its conditions hold. Otherwise nothing is changed.
 
@@ -265,7 +265,7 @@ def ended(cones: Any, size: int, scale: float, found: Any, rooms: Any) -> bool:
     return False
 
 
-@part
+@nested
 def climbed(cones: Any, size: int, lifts: int, goal: Any, found: Any, rooms: Any) -> bool:
     """Whether a programme's optimum is found: the largest goal . p, or s where it lifts.
 

@@ -9,7 +9,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from tol3d.numerics.compiled import part
+from tol3d.numerics.compiled import nested
 
 POINT_PLANE: Final = 0
 PLANE_POINT: Final = 1
@@ -26,19 +26,19 @@ TWO: Final = (LINE_PLANE, PLANE_LINE, ALONG)
 """Contacts along a line: they ask for two things."""
 
 
-@part
+@nested
 def count_of(kind: int) -> Any:
     """How many equations a contact makes."""
     return 2 if kind in TWO else 1
 
 
-@part
+@nested
 def dot(a: Any, b: Any) -> Any:
     """Scalar product."""
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 
 
-@part
+@nested
 def crossed(a: Any, b: Any, out: Any) -> None:
     """Vector product."""
     x = a[1] * b[2] - a[2] * b[1]
@@ -47,7 +47,7 @@ def crossed(a: Any, b: Any, out: Any) -> None:
     out[0], out[1], out[2] = x, y, z
 
 
-@part
+@nested
 def pushed(row: Any, normal: Any, arm: Any, factor: float) -> None:
     """Add to a row what a point does along a normal, at an arm from the part's origin."""
     for k in range(3):
@@ -57,7 +57,7 @@ def pushed(row: Any, normal: Any, arm: Any, factor: float) -> None:
     row[5] += factor * (arm[0] * normal[1] - arm[1] * normal[0])
 
 
-@part
+@nested
 def tilted(row: Any, direction: Any, normal: Any, factor: float) -> None:
     """Add to a row what a direction that turns with the part does along a normal."""
     row[3] += factor * (direction[1] * normal[2] - direction[2] * normal[1])
@@ -65,7 +65,7 @@ def tilted(row: Any, direction: Any, normal: Any, factor: float) -> None:
     row[5] += factor * (direction[0] * normal[1] - direction[1] * normal[0])
 
 
-@part
+@nested
 def aside(apart: Any, direction: Any, normal: Any) -> Any:
     """Length of what is across a direction, which as a direction becomes `normal`."""
     along = dot(apart, direction)
@@ -77,7 +77,7 @@ def aside(apart: Any, direction: Any, normal: Any) -> Any:
     return length
 
 
-@part
+@nested
 def on_plane(kind: int, sides: Any, errors: Any, rows: Any, e: int, length: float) -> Any:
     """A contact with a plane: its first error without the radius; fills the second one of a line."""
     arm, along, other, apart, room = sides
@@ -97,7 +97,7 @@ def on_plane(kind: int, sides: Any, errors: Any, rows: Any, e: int, length: floa
     return height
 
 
-@part
+@nested
 def off_line(kind: int, sides: Any, normal: Any, errors: Any, rows: Any, e: int, length: float) -> Any:
     """Distance of a point and a point or a line, or of lines along each other, whose second error it fills."""
     arm, along, other, apart, room = sides
@@ -125,7 +125,7 @@ def off_line(kind: int, sides: Any, normal: Any, errors: Any, rows: Any, e: int,
     return distance
 
 
-@part
+@nested
 def at_crossing(sides: Any, normal: Any, rows: Any, e: int, sign: float) -> Any:
     """Distance of two lines that cross, along their common normal, with a sign."""
     arm, along, other, apart, room = sides
@@ -142,7 +142,7 @@ def at_crossing(sides: Any, normal: Any, rows: Any, e: int, sign: float) -> Any:
     return distance
 
 
-@part
+@nested
 def interpolated(nominal: Any, given: Any, c: int, i: int, share: float, out: Any) -> None:
     """A side (6,), origin and direction: of a trial, or a share of the way there."""
     at = min(i, given.shape[2] - 1)
@@ -157,7 +157,7 @@ def interpolated(nominal: Any, given: Any, c: int, i: int, share: float, out: An
             out[k] = out[k] / np.sqrt(square)
 
 
-@part
+@nested
 def asked_of(asked: Any, i: int, share: float, rooms: Any) -> Any:
     """Fill in what the contacts of a trial ask, a share of the way from nominal; whether it makes sense."""
     kinds, _, _, moving, targets, sums, nominal = asked
@@ -173,7 +173,7 @@ def asked_of(asked: Any, i: int, share: float, rooms: Any) -> Any:
     return True
 
 
-@part
+@nested
 def equations(pose: Any, asked: Any, errors: Any, rows: Any, rooms: Any) -> None:
     """Errors and rows of all contacts at a pose (3, 4), as `asked_of` has filled them in."""
     kinds, signs, length = asked[:3]
@@ -197,7 +197,7 @@ def equations(pose: Any, asked: Any, errors: Any, rows: Any, rooms: Any) -> None
         e += count_of(kind)
 
 
-@part
+@nested
 def new_sides(contacts: int) -> Any:
     """What equations work with."""
     sides = (np.empty(3), np.empty(3), np.empty(3), np.empty(3), np.empty(3))

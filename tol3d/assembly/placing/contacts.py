@@ -10,7 +10,7 @@ from typing import Any, Final
 import numpy as np
 
 from tol3d.assembly.placing.pose_steps import solved, stepped
-from tol3d.numerics.compiled import kernel, part
+from tol3d.numerics.compiled import kernel, nested
 
 CHORDS: Final = 14
 """Steps with the nominal inverse before Newton's method; a turn of 1e-2 takes seven."""
@@ -19,7 +19,7 @@ MET: Final = 1e-13
 """Step [rad, and mm a mm of the points' reach] after which a trial is done: the next one were shorter yet."""
 
 
-@part
+@nested
 def missing(pose: Any, contacts: Any, i: int, arms: Any, right: Any) -> None:
     """What each contact lacks, and the arms R p of the points."""
     points, normals, heights = contacts
@@ -35,7 +35,7 @@ def missing(pose: Any, contacts: Any, i: int, arms: Any, right: Any) -> None:
         )
 
 
-@part
+@nested
 def by_chords(pose: Any, contacts: Any, i: int, inverse: Any, reach: float, rooms: Any) -> bool:
     """Whether the nominal inverse finds the pose."""
     arms, right, step, _ = rooms
@@ -56,7 +56,7 @@ def by_chords(pose: Any, contacts: Any, i: int, inverse: Any, reach: float, room
     return False
 
 
-@part
+@nested
 def by_newton(pose: Any, contacts: Any, i: int, reach: float, rooms: Any) -> bool:
     """Whether Newton's method finds the pose."""
     normals = contacts[1]

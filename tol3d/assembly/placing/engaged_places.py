@@ -8,7 +8,7 @@ from typing import Any, Final
 import numpy as np
 
 from tol3d.assembly.placing.one_sided_gaps import wrench
-from tol3d.numerics.compiled import part
+from tol3d.numerics.compiled import nested
 
 PIN_IN_HOLE: Final = 0
 PIN_IN_SLOT: Final = 1
@@ -17,7 +17,7 @@ LEFT: Final = 1e-9
 """Of a motion, that relations may see: what rows have of it is of second order in the slack."""
 
 
-@part
+@nested
 def taken(pose: Any, moves: bool, vector: Any, i: int, found: Any) -> None:
     """A direction (3, n) in the world (3,): turned with the part if it is of the one that moves."""
     for r in range(3):
@@ -27,7 +27,7 @@ def taken(pose: Any, moves: bool, vector: Any, i: int, found: Any) -> None:
             found[r] = pose[r, 0] * vector[0, i] + pose[r, 1] * vector[1, i] + pose[r, 2] * vector[2, i]
 
 
-@part
+@nested
 def places_at(pose: Any, engaged: Any, i: int, reach: float, place: Any, all_rows: Any, nominal: bool) -> None:
     """Offsets and clearances at a pose; where rows are not nominal, how they change with turn by reach and shift."""
     moving, fixed, axes, _, halves, inner_moves, kinds = engaged
@@ -54,7 +54,7 @@ def places_at(pose: Any, engaged: Any, i: int, reach: float, place: Any, all_row
             leaning(pose, engaged, k, i, reach, place, all_rows[k, 0])
 
 
-@part
+@nested
 def leaning(pose: Any, engaged: Any, k: int, i: int, reach: float, place: Any, row: Any) -> None:
     """The clearance of what leans in a slot, and its change, which joins the row of the side that is near.
 
@@ -79,7 +79,7 @@ def leaning(pose: Any, engaged: Any, k: int, i: int, reach: float, place: Any, r
         row[r] -= gain * (other[s] * normal[t] - other[t] * normal[s])
 
 
-@part
+@nested
 def kept_tangents(pose: Any, kept: Any, i: int, steps: Any, reach: float, tangents: Any, rooms: Any) -> None:
     """Motions (6, freedoms) that change nothing of what is kept, to LEFT; as `one_sided_gaps.tangents_at`."""
     vectors, normals, shifts, undo, _ = kept
@@ -106,7 +106,7 @@ def kept_tangents(pose: Any, kept: Any, i: int, steps: Any, reach: float, tangen
                     tangents[r, f] -= undo[r, e] * change[e, f]
 
 
-@part
+@nested
 def rows_here(
     pose: Any, trial: Any, reach: float, place: Any, all_rows: Any, tangents: Any, nominal: bool, turned: bool
 ) -> None:

@@ -14,7 +14,7 @@ from tol3d.assembly.placing.one_sided_gaps import restored, wrench
 from tol3d.assembly.placing.pose_steps import stepped
 from tol3d.assembly.placing.rests import begin
 from tol3d.assembly.placing.rooms import lain, new_rooms
-from tol3d.numerics.compiled import kernel, part
+from tol3d.numerics.compiled import kernel, nested
 
 ROUNDS: Final = 40
 """How often a pose is corrected, 2 or 3 in practice; each time leaves a turn's share of what it corrects."""
@@ -36,7 +36,7 @@ NONE: Final = 1e-300
 """Step before the first."""
 
 
-@part
+@nested
 def moved_on(pose: Any, trial: Any, reach: float, q: Any, tangents: Any, step: Any) -> None:
     """Make a step (freedoms,) as a finite motion that keeps what is kept."""
     _, i, kept, _, _ = trial
@@ -48,7 +48,7 @@ def moved_on(pose: Any, trial: Any, reach: float, q: Any, tangents: Any, step: A
     restored(pose, kept, i, reach, step)
 
 
-@part
+@nested
 def way_of(x: float, y: float, a: float, b: float, square_room: float) -> Any:
     """How far an offset (x, y) may go on by (a, b) until its square is so much; NO_WAY if it does not go."""
     square, slope, room = a * a + b * b, x * a + y * b, square_room - x * x - y * y
@@ -58,7 +58,7 @@ def way_of(x: float, y: float, a: float, b: float, square_room: float) -> Any:
     return room / (slope + root) if slope > 0.0 else (root - slope) / square
 
 
-@part
+@nested
 def goal_at(pose: Any, goal: Any, i: int, reach: float, tangents: Any, push: Any) -> float:
     """The direction of the freedoms in which a part goes as far as it can (freedoms,), its largest component."""
     _, given, point, along, _ = goal
@@ -78,7 +78,7 @@ def goal_at(pose: Any, goal: Any, i: int, reach: float, tangents: Any, push: Any
     return largest
 
 
-@part
+@nested
 def way_along(place: Any, drawn: Any, i: int) -> Any:
     """How far a part may go on along a direction (freedoms,) until an offset is as long as its clearance."""
     offsets, clearances, rows = place
@@ -92,7 +92,7 @@ def way_along(place: Any, drawn: Any, i: int) -> Any:
     return way if way < NO_WAY else 0.0
 
 
-@part
+@nested
 def stays(pose: Any, start: Any, mode: int, trial: Any, reach: float, goal: Any, rooms: Any) -> Any:
     """Whether a pose is found at which nothing moves, the slack of the centred one, a cone that has it.
 
@@ -137,7 +137,7 @@ def stays(pose: Any, start: Any, mode: int, trial: Any, reach: float, goal: Any,
     return previous < LOST, slack, which
 
 
-@part
+@nested
 def lies(pose: Any, trial: Any, reach: float, goal: Any, rooms: Any) -> Any:
     """Whether a pose is found, the least slack of the centred one, a cone that has it."""
     mode, slack, which, start = CENTRED, 0.0, 0, rooms[10]
@@ -155,7 +155,7 @@ def lies(pose: Any, trial: Any, reach: float, goal: Any, rooms: Any) -> Any:
     return True, slack, which
 
 
-@part
+@nested
 def work_rooms(cones: int, freedoms: int, kept: int) -> Any:
     """What a trial works with."""
     vectors = (np.empty(3), np.empty(3), np.empty(3), np.empty(3), np.empty(6), np.empty((kept, freedoms)))

@@ -4,7 +4,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from tol3d.numerics.compiled import part
+from tol3d.numerics.compiled import nested
 
 OPEN: Final = -1e-11
 """Gap [mm] under which a contact is pierced."""
@@ -16,7 +16,7 @@ TIED: Final = 1e-9
 """Part of the force under which a contact carries nothing."""
 
 
-@part
+@nested
 def leaving(inverse: Any, loads: Any, row: Any, closes: Any) -> int:
     """Which contact of the basis a new one relieves first; -1 if none. `closes` becomes row . inverse."""
     count = loads.shape[1]
@@ -34,7 +34,7 @@ def leaving(inverse: Any, loads: Any, row: Any, closes: Any) -> int:
     return best
 
 
-@part
+@nested
 def exchange(inverse: Any, loads: Any, closes: Any, out: int) -> None:
     """Let a new contact take the place of one: the inverse of the basis, and the loads on it."""
     count = loads.shape[1]
@@ -52,7 +52,7 @@ def exchange(inverse: Any, loads: Any, closes: Any, out: int) -> None:
         loads[level, out] = share
 
 
-@part
+@nested
 def farthest(rows: Any, gaps: Any, basis: Any, inverse: Any, loads: Any, rooms: Any, pivots: int) -> int:
     """Motion z, into the first room, that goes farthest with rows z + gaps >= 0; the exchanges made, or below 0.
 

@@ -11,7 +11,7 @@ from typing import Any, Final
 import numpy as np
 
 from tol3d.assembly.placing.pose_steps import solved, stepped
-from tol3d.numerics.compiled import kernel, part
+from tol3d.numerics.compiled import kernel, nested
 
 STEPS: Final = 80
 MET: Final = 1e-13
@@ -24,7 +24,7 @@ CENTRED: Final = 1e-3
 """Newton's decrement, squared, at which a barrier's centre is found."""
 
 
-@part
+@nested
 def residual_of(pose: Any, fits: Any, f: int, i: int, arm: Any, residual: Any) -> Any:
     """A residual (3,), the arm R p of its point, and its length squared."""
     points, targets, directions, _ = fits
@@ -42,7 +42,7 @@ def residual_of(pose: Any, fits: Any, f: int, i: int, arm: Any, residual: Any) -
     return square
 
 
-@part
+@nested
 def rows_of(fits: Any, f: int, i: int, arm: Any, basis: Any, reach: float, rows: Any) -> None:
     """How a residual changes with the steps of the basis (3, steps)."""
     directions = fits[2]
@@ -56,7 +56,7 @@ def rows_of(fits: Any, f: int, i: int, arm: Any, basis: Any, reach: float, rows:
             rows[k, s] = directions[f, k, 0, d] * u + directions[f, k, 1, d] * v + directions[f, k, 2, d] * w
 
 
-@part
+@nested
 def moved(pose: Any, basis: Any, direction: Any, share: float, reach: float, step: Any) -> Any:
     """Move a pose by a share of a search direction, which is given in the basis; the step's length."""
     for r in range(6):
@@ -66,7 +66,7 @@ def moved(pose: Any, basis: Any, direction: Any, share: float, reach: float, ste
     return stepped(pose, step, reach)
 
 
-@part
+@nested
 def by_squares(pose: Any, fits: Any, i: int, basis: Any, reach: float, rooms: Any) -> bool:
     """Whether the pose of least squares is found."""
     matrix, right, arm, residual, rows, step, _ = rooms
@@ -88,7 +88,7 @@ def by_squares(pose: Any, fits: Any, i: int, basis: Any, reach: float, rooms: An
     return False
 
 
-@part
+@nested
 def largest(pose: Any, fits: Any, i: int, arm: Any, residual: Any) -> Any:
     """The largest residual, squared."""
     square = 0.0
@@ -97,7 +97,7 @@ def largest(pose: Any, fits: Any, i: int, arm: Any, residual: Any) -> Any:
     return square
 
 
-@part
+@nested
 def barrier_step(pose: Any, top: float, share: float, fits: Any, i: int, basis: Any, reach: float, rooms: Any) -> Any:
     """Newton's step to a barrier's centre, that of T last; its decrement squared, negative where there is none."""
     matrix, right, arm, residual, rows, _, pull = rooms
@@ -129,7 +129,7 @@ def barrier_step(pose: Any, top: float, share: float, fits: Any, i: int, basis: 
     return decrement
 
 
-@part
+@nested
 def by_barriers(pose: Any, fits: Any, i: int, basis: Any, reach: float, rooms: Any) -> bool:
     """Whether the pose of the least largest residual is found, from that of least squares."""
     _, right, arm, residual, _, step, _ = rooms
@@ -158,7 +158,7 @@ def by_barriers(pose: Any, fits: Any, i: int, basis: Any, reach: float, rooms: A
     return bool(np.isfinite(top))
 
 
-@part
+@nested
 def kept(pose: Any, found: bool, i: int, turns: Any, shifts: Any, met: Any) -> None:
     """Keep a trial's pose, not a number where none is found."""
     met[i] = found
@@ -168,7 +168,7 @@ def kept(pose: Any, found: bool, i: int, turns: Any, shifts: Any, met: Any) -> N
         shifts[r, i] = pose[r, 3] if found else np.nan
 
 
-@part
+@nested
 def new_rooms(count: int) -> Any:
     """What steps work with."""
     size = count + 1

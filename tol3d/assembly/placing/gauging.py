@@ -11,7 +11,7 @@ from typing import Any, Final
 import numpy as np
 
 from tol3d.assembly.placing.common_opening import new_rooms, opened
-from tol3d.numerics.compiled import kernel, part
+from tol3d.numerics.compiled import kernel, nested
 
 MET: Final = 1e-12
 """mm, under the tangents of both ends of the bracket."""
@@ -23,7 +23,7 @@ TURNS: Final = 200
 """In practice 5 to 15."""
 
 
-@part
+@nested
 def weights_of(discs: Any, deciding: Any, found: Any, pulls: Any) -> int:
     """How many discs decide; in pulls (3, 3) their directions from centre to point, and the weights that balance them.
 
@@ -56,7 +56,7 @@ def weights_of(discs: Any, deciding: Any, found: Any, pulls: Any) -> int:
     return count
 
 
-@part
+@nested
 def slope_of(discs: Any, deciding: Any, found: Any, rises: Any, pulls: Any) -> Any:
     """Change of the least violation with the turn.
 
@@ -80,7 +80,7 @@ def slope_of(discs: Any, deciding: Any, found: Any, rises: Any, pulls: Any) -> A
     return slope
 
 
-@part
+@nested
 def turned(pattern: Any, i: int, turn: float, rooms: Any) -> Any:
     """The least violation with the gauge turned, and its slope."""
     x, y, radii, nominal = pattern
@@ -95,7 +95,7 @@ def turned(pattern: Any, i: int, turn: float, rooms: Any) -> Any:
     return least, slope_of(discs, deciding, found, rises, pulls)
 
 
-@part
+@nested
 def gauged(pattern: Any, i: int, step: float, rooms: Any) -> Any:
     """The least violation over all turns."""
     least, slope = turned(pattern, i, 0.0, rooms)

@@ -5,7 +5,7 @@ from typing import Any, Final
 import numpy as np
 
 from tol3d.assembly.placing.pose_steps import stepped
-from tol3d.numerics.compiled import part
+from tol3d.numerics.compiled import nested
 
 MET: Final = 1e-13
 """Step [rad, and mm a mm of reach] after which a trial is done."""
@@ -13,7 +13,7 @@ TIMES: Final = 40
 """Corrections of what is kept; a turn of 0.1 takes 13."""
 
 
-@part
+@nested
 def gap_of(pose: Any, contacts: Any, k: int, i: int, on_part: bool) -> Any:
     """A gap [mm]: n . (R p + t) - h, or with the normal on the part (R n) . (t - p) - h."""
     points, normals, heights = contacts
@@ -30,7 +30,7 @@ def gap_of(pose: Any, contacts: Any, k: int, i: int, on_part: bool) -> Any:
     return total
 
 
-@part
+@nested
 def kept_at(pose: Any, kept: Any, e: int, i: int) -> Any:
     """n . (R p + s t) of what is kept."""
     vectors, normals, shifts = kept
@@ -43,7 +43,7 @@ def kept_at(pose: Any, kept: Any, e: int, i: int) -> Any:
     return total
 
 
-@part
+@nested
 def rows_at(pose: Any, contacts: Any, i: int, on_part: bool, reach: float, rows: Any) -> None:
     """How gaps change with turn by reach and shift at a pose (contacts, 6)."""
     points, normals, _ = contacts
@@ -62,7 +62,7 @@ def rows_at(pose: Any, contacts: Any, i: int, on_part: bool, reach: float, rows:
         wrench(arm, normal, reach, rows[k])
 
 
-@part
+@nested
 def wrench(arm: Any, force: Any, reach: float, found: Any) -> None:
     """Moment by reach, and force (6,)."""
     found[0] = (arm[1] * force[2] - arm[2] * force[1]) / reach
@@ -72,7 +72,7 @@ def wrench(arm: Any, force: Any, reach: float, found: Any) -> None:
         found[3 + r] = force[r]
 
 
-@part
+@nested
 def pull_at(pose: Any, force: Any, reach: float, pull: Any) -> float:
     """What the force does along turn by reach and shift (6,) at a pose; how far its point has gone along it [mm]."""
     along, at = force
@@ -85,7 +85,7 @@ def pull_at(pose: Any, force: Any, reach: float, pull: Any) -> float:
     return gone
 
 
-@part
+@nested
 def tangents_at(pose: Any, kept: Any, i: int, steps: Any, reach: float, tangents: Any) -> None:
     """Steps (6, motions), turn by reach and shift, that change at a pose nothing of what is kept.
 
@@ -115,7 +115,7 @@ def tangents_at(pose: Any, kept: Any, i: int, steps: Any, reach: float, tangents
                     tangents[r, j] -= undo[r, e] * change[e, j]
 
 
-@part
+@nested
 def undoing(pose: Any, kept: Any, i: int, step: Any) -> None:
     """The step (6,), turn by reach and shift, that undoes a change of what is kept."""
     vectors, normals, shifts, undo, first = kept
@@ -126,7 +126,7 @@ def undoing(pose: Any, kept: Any, i: int, step: Any) -> None:
             step[r] -= undo[r, e] * change
 
 
-@part
+@nested
 def restored(pose: Any, kept: Any, i: int, reach: float, step: Any) -> None:
     """Bring back what is kept."""
     for _ in range(TIMES if kept[4].shape[0] else 0):

@@ -4,13 +4,13 @@ from typing import Any, Final
 
 import numpy as np
 
-from tol3d.numerics.compiled import part
+from tol3d.numerics.compiled import nested
 
 NO_PIVOT: Final = 1e-12
 """Pivot of equations whose coefficients are about 1, under which they have lost their rank."""
 
 
-@part
+@nested
 def turned_by(pose: Any, a: float, b: float, c: float) -> None:
     """Turn the rotation of a pose (3, 4) further, about (a, b, c) by 2 atan(|(a, b, c)| / 2): Cayley's formula."""
     a, b, c = a / 2, b / 2, c / 2
@@ -23,7 +23,7 @@ def turned_by(pose: Any, a: float, b: float, c: float) -> None:
         pose[2, k] = z + share * (w + a * v - b * u)
 
 
-@part
+@nested
 def stepped(pose: Any, step: Any, reach: float) -> Any:
     """Move a pose by a step (6,): turn times reach, and shift; its length, a turn [rad] or a shift a reach."""
     turned_by(pose, step[0] / reach, step[1] / reach, step[2] / reach)
@@ -34,7 +34,7 @@ def stepped(pose: Any, step: Any, reach: float) -> Any:
     return length
 
 
-@part
+@nested
 def solved(matrix: Any, right: Any, count: int) -> bool:
     """Solve count equations in place by elimination with pivots; whether they have their rank."""
     for k in range(count):

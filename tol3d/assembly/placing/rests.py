@@ -14,7 +14,7 @@ import numpy as np
 from tol3d.assembly.placing.farthest_motion import TIED, farthest
 from tol3d.assembly.placing.one_sided_gaps import MET, gap_of, kept_at, pull_at, rows_at, tangents_at, undoing
 from tol3d.assembly.placing.pose_steps import solved, stepped
-from tol3d.numerics.compiled import kernel, part
+from tol3d.numerics.compiled import kernel, nested
 
 STEPS: Final = 60
 RESTS: Final = 0
@@ -27,7 +27,7 @@ BETWEEN: Final = 4
 """Near a tilt that balances the force on fewer contacts than freedoms."""
 
 
-@part
+@nested
 def settled(
     pose: Any, contacts: Any, i: int, on_part: bool, kept: Any, programme: Any, begun: Any, rooms: Any, reach: float
 ) -> int:
@@ -56,7 +56,7 @@ def settled(
     return LOST
 
 
-@part
+@nested
 def pressed(
     pose: Any, contacts: Any, i: int, on_part: bool, kept: Any, force: Any, steps: Any, begun: Any, rooms: Any,
     reach: float,
@@ -84,7 +84,7 @@ def pressed(
     return held
 
 
-@part
+@nested
 def begin(pose: Any, first: Any, start: Any, i: int, kept: Any) -> None:
     """Put the pose as it begins, and note what is kept there."""
     vectors, normals, shifts, _, _ = kept
@@ -93,7 +93,7 @@ def begin(pose: Any, first: Any, start: Any, i: int, kept: Any) -> None:
         first[e] = kept_at(pose, (vectors, normals, shifts), e, i)
 
 
-@part
+@nested
 def note(outcome: int, pose: Any, basis: Any, loads: Any, i: int, found: Any) -> None:
     """Write down where a part is, and what its contacts carry if it rests."""
     turns, shifts, carried = found

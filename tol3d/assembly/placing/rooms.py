@@ -11,7 +11,7 @@ from typing import Any, Final
 import numpy as np
 
 from tol3d.assembly.placing.cones import climbed, ended
-from tol3d.numerics.compiled import FULL, kernel, part
+from tol3d.numerics.compiled import FULL, kernel, nested
 
 HELD: Final = 1e-6
 """Multiplier (they sum to 1) over which a cone is tight."""
@@ -21,7 +21,7 @@ UNSEEN: Final = 1e-6
 """Change of an offset by a freedom, as a share of how far that moves what is farthest, that is none."""
 
 
-@part
+@nested
 def reduced(rows: Any, basis: Any, size: int, seen: Any) -> None:
     """Rows B_k in the freedoms that are left (cones, 2, size)."""
     for k in range(rows.shape[0]):
@@ -33,7 +33,7 @@ def reduced(rows: Any, basis: Any, size: int, seen: Any) -> None:
                 seen[k, r, s] = total
 
 
-@part
+@nested
 def narrowed(seen: Any, tight: Any, basis: Any, size: int, held: Any) -> int:
     """Take from the freedoms those that tight cones hold; how many are left.
 
@@ -71,7 +71,7 @@ def narrowed(seen: Any, tight: Any, basis: Any, size: int, held: Any) -> int:
     return count - first
 
 
-@part
+@nested
 def independent(held: Any, count: int, size: int) -> int:
     """Make row `count` square to those before it and of length 1; 0 where nothing is left of it."""
     for _ in range(2):
@@ -92,7 +92,7 @@ def independent(held: Any, count: int, size: int) -> int:
     return 1
 
 
-@part
+@nested
 def seeing(seen: Any, used: Any, done: Any, size: int) -> int:
     """Find the cones that the freedoms left change, and that are not done; how many."""
     count = 0
@@ -106,7 +106,7 @@ def seeing(seen: Any, used: Any, done: Any, size: int) -> int:
     return count
 
 
-@part
+@nested
 def at_step(offsets: Any, rows: Any, q: Any, k: int) -> Any:
     """The offset of a cone after a step."""
     a, b = offsets[k, 0], offsets[k, 1]
@@ -116,7 +116,7 @@ def at_step(offsets: Any, rows: Any, q: Any, k: int) -> Any:
     return a, b
 
 
-@part
+@nested
 def started(place: Any, q: Any, used: Any, y: Any, z: Any, count: int, lifts: int, strength: float) -> None:
     """Cones and multipliers inside, from which a programme starts: with less slack than there is, or with none."""
     offsets, clearances, rows = place
@@ -132,7 +132,7 @@ def started(place: Any, q: Any, used: Any, y: Any, z: Any, count: int, lifts: in
         z[k, 0], z[k, 1], z[k, 2] = strength / count, 0.0, 0.0
 
 
-@part
+@nested
 def least_slack(place: Any, q: Any) -> Any:
     """The least slack, and a cone that has it."""
     offsets, clearances, rows = place
@@ -145,7 +145,7 @@ def least_slack(place: Any, q: Any) -> Any:
     return least, which
 
 
-@part
+@nested
 def opened(basis: Any, done: Any) -> int:
     """Make all freedoms free, and no cone held; how many freedoms there are."""
     done[:] = False
@@ -155,7 +155,7 @@ def opened(basis: Any, done: Any) -> int:
     return int(basis.shape[0])
 
 
-@part
+@nested
 def again(cones: Any, size: int, before: Any, turn: int, found: Any, rooms: Any) -> bool:
     """Whether the cones that decided this programme at the pose before decide it here: the largest s by Newton's steps.
 
@@ -175,7 +175,7 @@ def again(cones: Any, size: int, before: Any, turn: int, found: Any, rooms: Any)
     return some and ended(cones, size, scale, found, rooms)
 
 
-@part
+@nested
 def reached(
     place: Any, q: Any, cones: Any, size: int, lifts: int, weight: float, push: Any, found: Any, rooms: Any
 ) -> bool:
@@ -194,7 +194,7 @@ def reached(
     return False
 
 
-@part
+@nested
 def lain(place: Any, push: Any, strength: float, before: Any, basis: Any, done: Any, q: Any, rooms: Any) -> Any:
     """Find the step q of a trial: whether it is found, the least slack of the centred pose, a cone that has it.
 
@@ -248,7 +248,7 @@ def lain(place: Any, push: Any, strength: float, before: Any, basis: Any, done: 
         pushes = 2 if pushes == 1 else pushes
 
 
-@part
+@nested
 def new_rooms(cones: int, freedoms: int) -> Any:
     """What programmes work with."""
     size = freedoms + 1

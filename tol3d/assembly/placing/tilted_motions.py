@@ -4,10 +4,10 @@ from typing import Any
 
 from tol3d.assembly.placing.one_sided_gaps import restored, rows_at, tangents_at
 from tol3d.assembly.placing.pose_steps import stepped
-from tol3d.numerics.compiled import part
+from tol3d.numerics.compiled import nested
 
 
-@part
+@nested
 def motion_rows(pose: Any, trial: Any, reach: float, pull: Any, found: Any) -> None:
     """How gaps change with the motions that keep what is kept (contacts, motions), and what the force does (motions,).
 
@@ -29,7 +29,7 @@ def motion_rows(pose: Any, trial: Any, reach: float, pull: Any, found: Any) -> N
                 rows[k, j] += all_rows[k, r] * tangents[r, j]
 
 
-@part
+@nested
 def shifted(pose: Any, trial: Any, reach: float, motion: Any, tangents: Any, step: Any) -> Any:
     """Move a pose along its motions (motions,); the length of the step."""
     _, i, _, kept, _, _ = trial

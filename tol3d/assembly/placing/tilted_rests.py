@@ -15,7 +15,7 @@ from tol3d.assembly.placing.farthest_motion import TIED, farthest
 from tol3d.assembly.placing.one_sided_gaps import MET, gap_of, pull_at
 from tol3d.assembly.placing.rests import BETWEEN, CLASHES, LOST, RESTS, TIPS, begin, note
 from tol3d.assembly.placing.tilted_motions import motion_rows, shifted
-from tol3d.numerics.compiled import kernel, part
+from tol3d.numerics.compiled import kernel, nested
 
 STEPS: Final = 300
 SEARCH: Final = 0.05
@@ -35,7 +35,7 @@ PIERCED: Final = 1e-10
 """mm; a gap below minus that is one."""
 
 
-@part
+@nested
 def cost_of(pose: Any, trial: Any, reach: float, dear: float, rooms: Any) -> Any:
     """The potential of the force and the price of the deepest gap [mm], that gap as an amount, and gaps and pull."""
     contacts, i, on_part, _, force, _ = trial
@@ -47,7 +47,7 @@ def cost_of(pose: Any, trial: Any, reach: float, dear: float, rooms: Any) -> Any
     return dear * deepest - pull_at(pose, force, reach, pull), deepest
 
 
-@part
+@nested
 def boxed_rows(rows: Any, contacts: int) -> None:
     """Rows of a box, and of a last motion that opens all gaps, beside those of contacts."""
     motions = rows.shape[1] - 1
@@ -61,7 +61,7 @@ def boxed_rows(rows: Any, contacts: int) -> None:
     rows[contacts + 2 * motions, motions] = 1.0
 
 
-@part
+@nested
 def boxed(programme: Any, gaps: Any, box: float, dear: float, begun: Any, own: Any) -> int:
     """The best motion in a box, into the room of `farthest`; the exchanges made, below 0 if it is not found."""
     rows, all_rows, _, pull = programme
@@ -85,7 +85,7 @@ def boxed(programme: Any, gaps: Any, box: float, dear: float, begun: Any, own: A
     return int(farthest(rows, all_gaps, basis, inverse, loads, moves, 0))
 
 
-@part
+@nested
 def far_from(pose: Any, start: Any, reach: float) -> bool:
     """Whether a pose has left another one for good."""
     shift, trace = 0.0, 0.0
@@ -96,7 +96,7 @@ def far_from(pose: Any, start: Any, reach: float) -> bool:
     return not (shift < FAR * reach and trace > 1.0 + 2.0 * np.cos(FAR))
 
 
-@part
+@nested
 def boxed_in(basis: Any, loads: Any, contacts: int, motions: int) -> bool:
     """Whether a side of the box carries."""
     found = False
@@ -105,7 +105,7 @@ def boxed_in(basis: Any, loads: Any, contacts: int, motions: int) -> bool:
     return found
 
 
-@part
+@nested
 def found_rest(
     pose: Any, start: Any, trial: Any, reach: float, most: float, begun: Any, programme: Any, rooms: Any, own: Any
 ) -> int:

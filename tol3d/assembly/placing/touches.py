@@ -13,7 +13,7 @@ import numpy as np
 from tol3d.assembly.model.statuses import NO_CONTACT, OK, SINGULAR
 from tol3d.assembly.placing.contact_equations import asked_of, count_of, equations, new_sides
 from tol3d.assembly.placing.pose_steps import NO_PIVOT, solved, turned_by
-from tol3d.numerics.compiled import kernel, part
+from tol3d.numerics.compiled import kernel, nested
 
 STEPS: Final = 60
 MET: Final = 1e-13
@@ -33,7 +33,7 @@ NOWHERE: Final = 2.0
 """The side of the folds of what is not found; else 1, -1, or 0 on a fold."""
 
 
-@part
+@nested
 def posed(start: Any, basis: Any, reach: float, amounts: Any, pose: Any, moves: Any) -> None:
     """The pose (3, 4) by amounts (k,) of steps (6, k), shift and turn times reach; `moves`: its changes with them."""
     for r in range(6):
@@ -56,7 +56,7 @@ def posed(start: Any, basis: Any, reach: float, amounts: Any, pose: Any, moves: 
         moves[5, s] = share * (w + (a * v - b * u) / 2)
 
 
-@part
+@nested
 def systems(rows: Any, moves: Any, count: int, matrix: Any) -> None:
     """How errors change with the amounts (count, count)."""
     for e in range(count):
@@ -67,7 +67,7 @@ def systems(rows: Any, moves: Any, count: int, matrix: Any) -> None:
             matrix[e, s] = total
 
 
-@part
+@nested
 def by_steps(amounts: Any, asked: Any, i: int, share: float, falling: float, about: Any, rooms: Any) -> Any:
     """Whether Newton's method finds the amounts, with steps each at most `falling` of the one before."""
     start, basis, reach, lacking = about
@@ -98,7 +98,7 @@ def by_steps(amounts: Any, asked: Any, i: int, share: float, falling: float, abo
     return False
 
 
-@part
+@nested
 def side_of(matrix: Any, count: int) -> Any:
     """The sign of a determinant by elimination with pivots; 0 where it has lost its rank. The matrix is used up."""
     sign = 1.0
@@ -122,7 +122,7 @@ def side_of(matrix: Any, count: int) -> Any:
     return sign
 
 
-@part
+@nested
 def end_of(amounts: Any, kept: Any, asked: Any, i: int, side: float, about: Any, rooms: Any) -> Any:
     """The side of the folds on which the pose of a trial is found, with its rows and moves left in the rooms.
 
@@ -152,7 +152,7 @@ def end_of(amounts: Any, kept: Any, asked: Any, i: int, side: float, about: Any,
     return NOWHERE
 
 
-@part
+@nested
 def held(asked: Any, i: int, about: Any, rooms: Any, force: Any, inner: Any) -> Any:
     """Whether no contact has to pull, under a force through the mean of the moving origins; SINGULAR in doubt."""
     kinds, _, _, moving, _, _, _ = asked
@@ -186,7 +186,7 @@ def held(asked: Any, i: int, about: Any, rooms: Any, force: Any, inner: Any) -> 
     return True
 
 
-@part
+@nested
 def new_rooms(count: int, contacts: int) -> Any:
     """What steps work with."""
     return (

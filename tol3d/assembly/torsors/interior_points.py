@@ -9,7 +9,7 @@ from typing import Any, Final
 import numpy as np
 
 from tol3d.assembly.torsors.meeting import solved
-from tol3d.numerics.compiled import FULL, kernel, part
+from tol3d.numerics.compiled import FULL, kernel, nested
 
 GAP: Final = 1e-12
 """Of the largest room: by how much the slack may be better."""
@@ -24,13 +24,13 @@ LEAST: Final = 1e-300
 """Of a square that is inside its cone but for rounding."""
 
 
-@part
+@nested
 def square_in(a: float, b: float, c: float) -> Any:
     """How far a point is inside its cone, squared."""
     return a * a - b * b - c * c
 
 
-@part
+@nested
 def way_in(a: float, b: float, c: float, u: float, v: float, w: float) -> Any:
     """The share of a change (u, v, w) that takes a point (a, b, c) to the end of its cone."""
     inside, slope, bend = square_in(a, b, c), a * u - b * v - c * w, square_in(u, v, w)
@@ -40,7 +40,7 @@ def way_in(a: float, b: float, c: float, u: float, v: float, w: float) -> Any:
     return inside / (rest - slope) if slope < 0.0 else np.inf
 
 
-@part
+@nested
 def scaled(cones: Any, trial: Any, target: float, state: Any) -> None:
     """The points at which cones and multipliers look alike, their weights, and the pull to the middle."""
     y, z = cones
@@ -59,7 +59,7 @@ def scaled(cones: Any, trial: Any, target: float, state: Any) -> None:
         weights[k], back[k] = a / b, target / inside
 
 
-@part
+@nested
 def equations(cones: Any, trial: Any, goal: Any, lifts: int, state: Any, system: Any, step: Any) -> None:
     """Those of a step of the freedoms, and of the slack where it lifts."""
     y = cones[0]
@@ -94,7 +94,7 @@ def equations(cones: Any, trial: Any, goal: Any, lifts: int, state: Any, system:
             system[i, j] += stiff * closed[i, j]  # else equations of what is closed would be rounding
 
 
-@part
+@nested
 def changes(cones: Any, trial: Any, lifts: int, step: Any, state: Any) -> Any:
     """Those of cones and multipliers by a step, and the shares of them that stay inside."""
     y, z = cones
@@ -119,7 +119,7 @@ def changes(cones: Any, trial: Any, lifts: int, step: Any, state: Any) -> Any:
     return min(1.0, NEAR * up), min(1.0, NEAR * down)
 
 
-@part
+@nested
 def climb(cones: Any, trial: Any, goal: Any, lifts: int, state: Any, system: Any, step: Any, gone: Any) -> None:
     """Change cones, multipliers and how far the freedoms went to those of the optimum of a trial."""
     y, z = cones

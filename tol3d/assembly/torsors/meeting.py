@@ -11,7 +11,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from tol3d.numerics.compiled import part
+from tol3d.numerics.compiled import nested
 
 MIDDLE: Final = 1e-6
 """Share of its clearance, under which a place is in the middle of it."""
@@ -29,7 +29,7 @@ HUGE: Final = 1e200
 """A pivot that nothing moves by."""
 
 
-@part
+@nested
 def solved(system: Any, right: Any, size: int) -> None:
     """Solve positive definite equations in place, by L D L'; what they do not decide stays 0."""
     for j in range(size):
@@ -51,7 +51,7 @@ def solved(system: Any, right: Any, size: int) -> None:
             right[i] -= system[k, i] * right[k]
 
 
-@part
+@nested
 def equations(trial: Any, state: Any, system: Any, right: Any) -> None:
     """Those of a step (q, s), after which multipliers are back + stiff (u . B q + s)."""
     rows, counts, closed = trial
@@ -79,7 +79,7 @@ def equations(trial: Any, state: Any, system: Any, right: Any) -> None:
         system[size, size] += stiff[k]
 
 
-@part
+@nested
 def balance(trial: Any, state: Any) -> Any:
     """The largest amount of sum z_k B_k' u_k, and of sum z_k - 1."""
     rows, counts, _ = trial
@@ -98,7 +98,7 @@ def balance(trial: Any, state: Any) -> Any:
     return largest
 
 
-@part
+@nested
 def lengths_of(place: Any, trial: Any, q: Any, s: float, state: Any) -> bool:
     """Offsets and what is left of the clearances after a step; whether all have a direction."""
     offsets, clearances = place
@@ -117,7 +117,7 @@ def lengths_of(place: Any, trial: Any, q: Any, s: float, state: Any) -> bool:
     return True
 
 
-@part
+@nested
 def finished(place: Any, trial: Any, q: Any, s: float, scale: float, state: Any, system: Any, step: Any) -> bool:
     """Whether the optimum is reached where the places that decide, by their multipliers, meet exactly."""
     rows, counts, _ = trial

@@ -10,7 +10,7 @@ from typing import Any, Final
 import numpy as np
 
 from tol3d.assembly.torsors.meeting import balance, equations, finished, lengths_of, solved
-from tol3d.numerics.compiled import FULL, kernel, part
+from tol3d.numerics.compiled import FULL, kernel, nested
 
 STEPS: Final = 20
 """Of Newton, 6 to 10 in practice; what takes more is left."""
@@ -24,7 +24,7 @@ NEAR: Final = 1e-3
 """Gap and balance, under which it shows which places decide."""
 
 
-@part
+@nested
 def way_out(w: float, length: float, a: float, b: float, up: float, u: float, v: float) -> Any:
     """The share of a step after which |y + t (u, v)| = w + |y| + t up, that has w to go at first."""
     inside, slope = w * (w + 2.0 * length), (w + length) * up - a * u - b * v
@@ -37,7 +37,7 @@ def way_out(w: float, length: float, a: float, b: float, up: float, u: float, v:
     return 1e30
 
 
-@part
+@nested
 def moved(trial: Any, state: Any, step: Any, near: float) -> Any:
     """Change multipliers by a step, as far as they stay over 0; how far the room allows it."""
     rows, counts, _ = trial
@@ -63,7 +63,7 @@ def moved(trial: Any, state: Any, step: Any, near: float) -> Any:
     return min(1.0, near * ahead)
 
 
-@part
+@nested
 def sought(place: Any, trial: Any, under: float, q: Any, state: Any, system: Any, step: Any) -> bool:
     """Whether the optimum of a trial is found: q, and multipliers in the state; from a slack under the one there is."""
     offsets, clearances = place
@@ -103,7 +103,7 @@ def sought(place: Any, trial: Any, under: float, q: Any, state: Any, system: Any
     return False
 
 
-@part
+@nested
 def improved(place: Any, trial: Any, q: Any, state: Any, system: Any, step: Any) -> bool:
     """Whether the optimum is reached from q and multipliers that are near it."""
     clearances = place[1]

@@ -14,6 +14,7 @@ from tol3d.gearbox.system import GearboxSystem
 from tol3d.gearing.display import replayed_build, replayed_of, seated_build
 from tol3d.gearing.presenting.gear_display import GearDisplay
 from tol3d.report.body import World
+from tol3d.report.motion import Motion
 from tol3d.report.presenter import View, Which
 from tol3d.runs.run import Run
 from tol3d.simulate import Replay
@@ -72,6 +73,15 @@ class ShownGearbox:
             root, own = layout.root_of[layout.carrying[mesh.driver][0]], layout.world_from_mesh[name]
         there = self.system.worlds.get(root)
         return None if there is None else np.asarray(np.linalg.inv(there @ own))
+
+    @property
+    def motions(self) -> tuple[str, ...]:
+        """See `tol3d.report.motion.Movable`."""
+        return self.gears.motions
+
+    def motion(self, name: str, frames: int | None) -> Motion:
+        """The gears move, the parts around them are left out; see `tol3d.report.motion.Movable`."""
+        return self.gears.motion(name, frames)
 
     def view(self, close_up: str | None) -> View:
         """The whole gearbox; with a mesh named, that mesh close up as in any train."""

@@ -11,9 +11,15 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class LinkDeviation(Effect):
-    """A deviation of a link: what it does to the play is the link's own, see links/."""
+    """A deviation of a link: what it does to the play is the link's own, see links/.
+
+    Args:
+        link: its name.
+        turning: the part in the link with which the deviation turns; None where it rests.
+    """
 
     link: str
+    turning: str | None = None
 
     def acts_in(self, mesh: "Mesh") -> bool:
         """It moves no axis and no flank."""
@@ -22,3 +28,8 @@ class LinkDeviation(Effect):
     def acts_on(self, link: str) -> bool:
         """On that link."""
         return link == self.link
+
+    @property
+    def turns_with(self) -> str | None:
+        """The part in the link."""
+        return self.turning

@@ -120,11 +120,11 @@ class FclEngine:
             scale, triangle = scales[at[0], seat], triangles[..., side][at]
             own = frames.apply(frames.transposed(turn), points[..., side, :][at] - shift)
             strips = [(self._strip(gear, own_flank, width, shape), rows) for shape, rows in _alike(each)]
-            put_back, bent, ends = _read_strips(strips, scale, triangle, own)
+            put_back, bent, ends = read_strips(strips, scale, triangle, own)
             back[..., side, :][at] = frames.apply(turn, put_back)
             curvature[..., side][at] = bent
             at_end[at] |= ends
-        found = _Found(distance, points, back, curvature, distance < OUT_OF_REACH * _module(mesh), at_end)
+        found = Found(distance, points, back, curvature, distance < OUT_OF_REACH * _module(mesh), at_end)
         return found.gaps(build.flank_offset[:, [driver, driven]], (driver_rotation, driver_origin), driver_teeth)
 
     def _shapes(self, build: Build, seat: int, rows: Teeth, teeth: Teeth, flank: Flank) -> list[Numbers]:
@@ -148,7 +148,7 @@ class FclEngine:
 
 
 @dataclass(frozen=True)
-class _Found:
+class Found:
     """What FCL found between pulled strips, in the frames of the driver's flanks.
 
     Args:
@@ -202,7 +202,7 @@ def _alike(shapes: Sequence[Numbers]) -> Iterator[tuple[Numbers, NDArray[np.intp
         yield shape, np.array(own, dtype=np.intp)
 
 
-def _read_strips(
+def read_strips(
     strips: Sequence[tuple[PulledStrip, NDArray[np.intp]]], scale: Array, triangle: Teeth, point: Array
 ) -> tuple[Array, Array, NDArray[np.bool_]]:
     """What puts points (n, 3) back onto their flanks, curvatures there (n,), and which are ends of them (n,).

@@ -30,6 +30,11 @@ class LinkTrials:
         """How many trials."""
         return len(self.angles)
 
+    def part(self, first: int, last: int) -> "LinkTrials":
+        """Trials from one to before another."""
+        deviations = {name: own[first:last] for name, own in self.deviations.items()}
+        return LinkTrials(self.contributors, deviations, self.angles[first:last])
+
     def of(self, kind: str) -> Array:
         """Components (trials, components) of the contributors of a kind, added up; 0 where there is none."""
         own = [self.deviations[each.name] for each in self.contributors if each.kind == kind]

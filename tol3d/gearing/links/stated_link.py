@@ -4,7 +4,7 @@ A kind of link from elsewhere is a subclass here, and a kind of move whose `link
 """
 
 from abc import ABC, abstractmethod
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import ClassVar, Final, Literal
@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from tol3d.gearing.links.link_trials import LinkTrials
 from tol3d.system.contributor import Contributor
+from tol3d.system.system import KeyPath
 
 Array = NDArray[np.float64]
 
@@ -29,10 +30,13 @@ class FreeTurn:
         play: from end to end [rad], (trials, positions) or (trials, 1); below 0 the link binds.
         middle: of that turn about the shaft's z [rad], against its nominal angle, the same shape; None for 0. It
             matters only where load paths are parallel.
+        jams: where the link cannot be assembled, the same shape; the play there is what it lacks, below 0. None of a
+            link that always can be.
     """
 
     play: Array
     middle: Array | None = None
+    jams: NDArray[np.bool_] | None = None
 
 
 @dataclass(frozen=True)
@@ -69,6 +73,15 @@ class StatedLink(ABC):
 
     has_middle: ClassVar[bool] = False
     """Whether its free turns have a middle of their own."""
+
+    unfollowed: ClassVar[str] = "whose error from position to position is not known"
+    """Why trains have no transmission error with it, in words."""
+
+    compares: ClassVar[bool] = False
+    """Whether load paths within it are compared, so that its play is no sum of effects; see `parts`."""
+
+    housed: ClassVar[bool] = True
+    """Whether pictures show a housing in its place; else somebody shows what is in it."""
 
     name: str
     driver: str
@@ -107,6 +120,30 @@ class StatedLink(ABC):
     def analytic(self, seen: LinkTrials) -> FreeTurn:
         """The free turn by theory; that of the 3D simulation where nothing better is known."""
         return self.exact(seen)
+
+    @property
+    def contacts(self) -> int:
+        """Contacts that are found for one of its free turns; none of a formula."""
+        return 0
+
+    def is_compiled(self) -> bool:
+        """Whether the kernels of both laws were compiled on this machine before; it has none unless it says so."""
+        return True
+
+    def parts(self, seen: LinkTrials, means: Mapping[str, Array]) -> Mapping[str, Array]:
+        """What each contributor adds to the play at the first position, against its mean [rad], (trials,) by name.
+
+        Asked of a link that compares load paths; other contributors are regressed as they are.
+
+        Args:
+            seen: the trials.
+            means: of each contributor (components,).
+        """
+        return {}
+
+    def problems(self, mean: LinkTrials) -> Iterator[tuple[KeyPath, str]]:
+        """Why it cannot be built with every contributor at its mean, with the place in the scene; see System."""
+        return iter(())
 
     def ends(self, contributors: Sequence[Contributor]) -> tuple[float, float] | None:
         """Between which ends the play lies by the laws of its contributors [rad]; None where that is not known."""

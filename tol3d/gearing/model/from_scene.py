@@ -7,6 +7,7 @@ from tol3d.errors import SceneError
 from tol3d.gearing.grammar.moves import GearMeshSpec, meshes_of
 from tol3d.gearing.grammar.parts import GearSpec, HousingSpec
 from tol3d.gearing.grammar.study import GearStudyOptions
+from tol3d.gearing.model.brought import NOTHING, Brought
 from tol3d.gearing.model.layout import Layout, layout_of
 from tol3d.gearing.model.links import links_between_shafts, links_of
 from tol3d.gearing.model.measure import Measure
@@ -33,18 +34,18 @@ from tol3d.gears import LEFT, RIGHT
 from tol3d.scene import Scene
 
 
-def model_from_scene(scene: Scene) -> Model:
-    """What a scene means.
+def model_from_scene(scene: Scene, brought: Brought = NOTHING) -> Model:
+    """What a scene means, with links that another mechanism brings into it.
 
     Raises:
         SceneError: gears that cannot be made or run together, with their numbers and place.
     """
-    for gear in loose_gears(scene):
+    for gear in (name for name in loose_gears(scene) if name not in brought.parts):
         raise scene.refuse(("parts", gear), f"{gear!r} takes part in no move; put it into a mesh or take it out")
     refuse_bearings(scene)
     refuse_second_laws(scene)
-    shafts, stated, arms = shafts_of(scene), stated_links_of(scene), arms_of(scene)
-    meshes, layout = meshes_of_scene(scene)
+    shafts, stated, arms = shafts_of(scene), (*stated_links_of(scene), *brought.links), arms_of(scene)
+    meshes, layout = meshes_of_scene(scene, brought)
     refuse_revolving(scene, layout, arms)
     refuse_misfits(scene, meshes, layout)
     trains = trains_of(scene, layout)
@@ -54,13 +55,16 @@ def model_from_scene(scene: Scene) -> Model:
     nominal = Nominal(scene, by_name, layout)
     model = Model(
         name=scene.scene,
-        gears=tuple(_gears(scene, by_name)),
+        gears=tuple(_gears(scene, by_name, brought)),
         housings=tuple(
             Housing(name, internal(part.expansion))
             for name, part in scene.parts.items()
             if isinstance(part, HousingSpec)
         ),
-        contributors=tuple(nominal.contributor(str(name), spec) for name, spec in scene.tolerances.items()),
+        contributors=tuple(
+            brought.contributors.get(str(name)) or nominal.contributor(str(name), spec)
+            for name, spec in scene.tolerances.items()
+        ),
         meshes=meshes,
         measures=(),
         profile_steps=scene.options(GearStudyOptions).profile_steps,
@@ -81,13 +85,13 @@ def _jumping(model: Model, measure: Measure) -> Measure:
     return replace(measure, positions=replace(measure.positions, jumps=True)) if jumps else measure
 
 
-def meshes_of_scene(scene: Scene) -> tuple[tuple[Mesh, ...], Layout]:
+def meshes_of_scene(scene: Scene, brought: Brought = NOTHING) -> tuple[tuple[Mesh, ...], Layout]:
     """The meshes of a scene, with flanks as it says them, and where its shafts lie.
 
     Raises:
         SceneError: gears that cannot be made or run together, or shafts that do not make trees.
     """
-    shafts, stated = shafts_of(scene), stated_links_of(scene)
+    shafts, stated = shafts_of(scene), (*stated_links_of(scene), *brought.links)
     meshes = tuple(_mesh(scene, name, move) for name, move in scene.moves.items() if isinstance(move, GearMeshSpec))
     refuse_no_trees(scene, links_between_shafts(meshes, shafts, stated))
     return meshes, layout_of(meshes, shafts, stated)
@@ -128,9 +132,9 @@ def _loaded(scene: Scene, mesh: Mesh, trains: tuple[Train, ...], layout: Layout,
     )
 
 
-def _gears(scene: Scene, meshes: dict[str, Mesh]) -> Iterator[GearPart]:
+def _gears(scene: Scene, meshes: dict[str, Mesh], brought: Brought) -> Iterator[GearPart]:
     for name, part in scene.parts.items():
-        if isinstance(part, GearSpec):
+        if isinstance(part, GearSpec) and name not in brought.parts:
             first, *others = meshes_of(name, scene.moves)
             gear = meshes[first].gear(name)
             for other in others:

@@ -15,6 +15,7 @@ from fractions import Fraction
 import numpy as np
 from numpy.typing import NDArray
 
+from tol3d.errors import GeometryError
 from tol3d.gearing.links import StatedLink
 from tol3d.gearing.model.drive import Drive, drives_of, periods_of
 from tol3d.gearing.model.links import (
@@ -31,6 +32,7 @@ from tol3d.gearing.model.links import (
     upstream,
 )
 from tol3d.gearing.model.mesh import Mesh
+from tol3d.gearing.model.networks import network_path
 from tol3d.gearing.model.shafts import Carried, Shaft
 
 Array = NDArray[np.float64]
@@ -121,10 +123,17 @@ class Layout:
     def load_path(self, first: str, last: str) -> LoadPath:
         """What lies between two shafts of a tree, in the order of the load path.
 
+        Load paths that part and join in series and in parallel are compared where they join; others are networks.
+
         Raises:
-            GeometryError: one of them lies inside parallel load paths, or these are not apart.
+            GeometryError: carriers turn in a network, or it has too many walks.
         """
-        return load_path_between(self.links, first, last)
+        try:
+            for end in (first, last):  # a shaft in the midst of load paths is held by all of them
+                load_path_between(self.links, self.root_of[end], end)
+            return load_path_between(self.links, first, last)
+        except GeometryError:
+            return network_path(self.links, first, last)
 
     def ratio(self, first: str, last: str) -> Fraction:
         """Turns of the first shaft per turn of the last, signed."""

@@ -149,7 +149,7 @@ def load_path_between(links: Sequence[Link], first: str, last: str) -> LoadPath:
     if any(link.carrier for link in links_of((*up, *down))):
         return _about_carriers(links, (up, down), (first, last))
     common = _alike([up, down])
-    _refuse_midst(links, (*up[common:], *down[common:]))
+    _refuse_incomparable(links, (*up[common:], *down[common:]))
     return (*reversed(up[common:]), *down[common:])
 
 
@@ -158,7 +158,7 @@ def _about_carriers(links: Sequence[Link], paths: tuple[LoadPath, LoadPath], end
     (up, down), (first, last) = paths, ends
     elements = (*(element for element in reversed(up) if element not in down), *down)
     path = tuple(element for element in elements if freed_turn(links, element.driven, last, first))
-    _refuse_midst(links, path)
+    _refuse_incomparable(links, path)
     return path
 
 
@@ -237,7 +237,7 @@ def _alike(paths: Sequence[LoadPath]) -> int:
     return count
 
 
-def _refuse_midst(links: Sequence[Link], path: LoadPath) -> None:
+def _refuse_incomparable(links: Sequence[Link], path: LoadPath) -> None:
     """A shaft inside parallel load paths is held by the others too, which one load path from the root does not show."""
     used = {link.name for link in links_of(path)}
     for shaft in dict.fromkeys(link.driven for link in links):

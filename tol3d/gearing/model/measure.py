@@ -78,6 +78,7 @@ class Stage:
         sense: of the turn of the shaft that is read for a turn of the driven gear about its own z, 1 or -1; without a
             gear, of the driven shaft.
         has_middle: whether a link that is no mesh says where the middle of its free turn lies.
+        compares: whether a link that is no mesh compares load paths within it, so that its play is no sum.
     """
 
     link: str
@@ -85,6 +86,7 @@ class Stage:
     backlash: Backlash | None
     sense: int = 1
     has_middle: bool = False
+    compares: bool = False
 
 
 @dataclass(frozen=True)
@@ -97,6 +99,7 @@ class ParallelStage:
         first, last: the shafts where they part and meet.
         paths: the stages of each load path; their factors and senses are those of the shaft where the paths join.
         sense: of the turn of the shaft that is read for a turn of the shaft where they meet, 1 or -1.
+        loops: stages from a shaft back to itself, likewise, of load paths that share links; none where they do not.
     """
 
     link: str
@@ -106,15 +109,17 @@ class ParallelStage:
     paths: tuple[tuple["Stage | ParallelStage", ...], ...]
     sense: int = 1
     backlash: None = None
+    loops: tuple[tuple[Stage, ...], ...] = ()
 
     @property
     def singles(self) -> tuple[Stage, ...]:
-        """All stages in it, with their factors at the shaft that is read."""
-        found: list[Stage] = []
+        """All stages in it, each link once, with their factors at the shaft that is read."""
+        found: dict[str, Stage] = {}
         for stage in (stage for path in self.paths for stage in path):
             inner = stage.singles if isinstance(stage, ParallelStage) else (stage,)
-            found += [replace(single, factor=self.factor * single.factor) for single in inner]
-        return tuple(found)
+            for single in inner:
+                found.setdefault(single.link, replace(single, factor=self.factor * single.factor))
+        return tuple(found.values())
 
 
 AnyStage = Stage | ParallelStage
@@ -165,8 +170,13 @@ class LostMotion:
 
     @property
     def adds_up(self) -> bool:
-        """Whether it is the sum of its backlashes: no load paths are in parallel."""
-        return not any(isinstance(stage, ParallelStage) for stage in self.stages)
+        """Whether it is the sum of its backlashes: no load paths are in parallel, nor within a link."""
+        return not self.joins and not any(stage.compares for stage in self.singles)
+
+    @property
+    def joins(self) -> bool:
+        """Whether load paths are in parallel."""
+        return any(isinstance(stage, ParallelStage) for stage in self.stages)
 
     @property
     def backlashes(self) -> tuple[tuple[float, Backlash], ...]:

@@ -207,7 +207,7 @@ def _train(scene: Scene, name: str, move: TrainSpec, layout: Layout) -> Train:
                 f"{'nothing drives ' + repr(shaft) if root == shaft else f'{shaft!r} is driven from {root!r}'}",
             )
     for field in ("output", "held"):
-        refuse_midst(scene, ("moves", name, field), layout, move.driven, getattr(move, field) or move.driven)
+        refuse_incomparable(scene, ("moves", name, field), layout, move.driven, getattr(move, field) or move.driven)
     return Train(
         name=name,
         driven=move.driven,
@@ -218,8 +218,8 @@ def _train(scene: Scene, name: str, move: TrainSpec, layout: Layout) -> Train:
     )
 
 
-def refuse_midst(scene: Scene, path: KeyPath, layout: Layout, first: str, last: str) -> None:
-    """Refuse a shaft inside parallel load paths, which the other ones hold too.
+def refuse_incomparable(scene: Scene, path: KeyPath, layout: Layout, first: str, last: str) -> None:
+    """Refuse a shaft to which load paths lead that cannot be compared: carriers turn in them, or they are too many.
 
     Raises:
         SceneError: at the path.
@@ -227,9 +227,7 @@ def refuse_midst(scene: Scene, path: KeyPath, layout: Layout, first: str, last: 
     try:
         layout.load_path(first, last)
     except GeometryError as error:
-        raise scene.refuse(
-            path, f"expected a shaft before or after all parallel load paths, got {last!r}: {error}"
-        ) from None
+        raise scene.refuse(path, f"expected a shaft whose load paths can be compared, got {last!r}: {error}") from None
 
 
 def loose_gears(scene: Scene) -> Iterator[str]:

@@ -9,8 +9,10 @@ from typing import Final
 from tol3d.errors import InputError
 from tol3d.gearing.display import SeatedBuild, replayed_build, seated_build
 from tol3d.gearing.placed import SeatedMesh
+from tol3d.gearing.presenting.moved_gears import motion, motions
 from tol3d.gearing.presenting.whole_trains import WholeTrain, gear_body, whole_trains
 from tol3d.report.body import World
+from tol3d.report.motion import Motion
 from tol3d.report.presenter import Panel, View, Which
 from tol3d.runs.run import Run
 from tol3d.scene.name import LONGEST_NAME
@@ -46,6 +48,15 @@ class GearDisplay:
     def worlds(self) -> tuple[World, ...]:
         """A world a tree of shafts, or where there are only single pairs a world a mesh."""
         return tuple(train.world for train in self.trains) or tuple(_pair(mesh) for mesh in self.build.meshes)
+
+    @property
+    def motions(self) -> tuple[str, ...]:
+        """See `tol3d.report.motion.Movable`."""
+        return motions(self.build)
+
+    def motion(self, name: str, frames: int | None) -> Motion:
+        """See `tol3d.report.motion.Movable`."""
+        return motion(self.build, name, frames)
 
     def view(self, close_up: str | None) -> View:
         """The teeth of one mesh, the whole pair, a close-up of the gap; of a train, the train before the teeth.

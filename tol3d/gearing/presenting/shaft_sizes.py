@@ -5,6 +5,7 @@ Nothing is measured on them.
 
 import math
 from collections.abc import Iterator, Mapping
+from dataclasses import replace
 from functools import cache
 from typing import Final
 
@@ -43,13 +44,14 @@ class ShaftSizes:
     def __init__(self, model: Model, faces: Mapping[str, Span]) -> None:
         self._model = model
         self._faces = faces
-        self.shafts: Mapping[str, Shaft] = {shaft.name: shaft for shaft in model.shafts}
+        self.shafts: Mapping[str, Shaft] = {shaft.name: _with_meshing(shaft, faces) for shaft in model.shafts}
         self.body = cache(self._body)
 
     def _body(self, name: str) -> ShaftBody:
         """A shaft's cylinder, in its own frame."""
         shaft = self._shaft(name)
-        after = next((link for link in self._model.links if link.coaxial and link.driver == name), None)
+        housed = (link for link in self._model.links if link.housed and link.coaxial)
+        after = next((link for link in housed if link.driver == name), None)
         diameter = shaft.diameter or self._needed_diameter(shaft, after)
         start, end = self._span(shaft, diameter, after)
         return ShaftBody(diameter, start, end, tuple(self._collars(shaft, diameter, (start, end))))
@@ -144,3 +146,8 @@ class ShaftSizes:
             thickness = gap if gap > LEAST_GAP * driven.diameter else thickness
         ends = sorted((place, place + towards * thickness))
         return ShaftBody(DISC_DIAMETER * driven.diameter, ends[0], ends[1])
+
+
+def _with_meshing(shaft: Shaft, faces: Mapping[str, Span]) -> Shaft:
+    """A shaft with those of its gears that are in meshes; others are shown by whoever knows them."""
+    return replace(shaft, carries=tuple(carried for carried in shaft.carries if carried.gear in faces))

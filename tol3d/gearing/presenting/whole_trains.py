@@ -62,7 +62,7 @@ class WholeTrain:
     def world(self) -> World:
         """All its parts as they are shown and exported."""
         gears = [gear_body(part, self.colours[part.name]) for part in self.gears]
-        others = [_plain_body(body, self.colours[body.name]) for body in self.bodies]
+        others = [plain_body(body, self.colours[body.name]) for body in self.bodies]
         if self.gravity is None:
             return World(self.root, (*gears, *others), points=self.points)
         direction, place = self.gravity
@@ -89,7 +89,7 @@ def gear_body(part: PlacedGear, colour: str) -> Body:
     )
 
 
-def _plain_body(body: PosedBody, colour: str) -> Body:
+def plain_body(body: PosedBody, colour: str) -> Body:
     """A shaft, an arm or a housing as it is shown and exported."""
 
     def surface() -> Surface:
@@ -118,7 +118,9 @@ def _train(build: SeatedBuild, root: str) -> WholeTrain:
     points: dict[str, Array] = {}
     for shaft in own:
         pose = _shaft_pose(layout, shaft, angles)
-        for gear in (name for name, (carrier, _) in layout.carrying.items() if carrier == shaft):
+        for gear in (
+            name for name, (carrier, _) in layout.carrying.items() if carrier == shaft and _meshes(build, name)
+        ):
             gears.append(_in_world(build, gear))
             shaft_of[gear] = shaft
         if shaft in sizes.shafts:
@@ -130,7 +132,7 @@ def _train(build: SeatedBuild, root: str) -> WholeTrain:
             shaft_of[arm.name] = shaft
             shown = {name: place for name, place in arm.points if name in _named_points(model, arm)}
             points |= {f"{name} of {arm.name}": hung[:3, :3] @ place + hung[:3, 3] for name, place in shown.items()}
-    for link in (link for link in model.links if link.coaxial and link.driven in own):
+    for link in (link for link in model.links if link.housed and link.coaxial and link.driven in own):
         name = _free_name(link.name, {*shaft_of, *sizes.shafts, *(arm.name for arm in model.arms)})
         bodies.append(PosedBody(name, sizes.housing(link), layout.world_from_shaft[link.driven]))
         shaft_of[name] = None
@@ -180,6 +182,11 @@ def _gravity(model: Model, root: str, angles: Mapping[str, float]) -> tuple[Arra
 # positions ----------------------------------------------------------------------------------------
 
 
+def _meshes(build: SeatedBuild, gear: str) -> bool:
+    """Whether a gear is in a mesh; one in another link is not."""
+    return any(gear in (seated.mesh.driver, seated.mesh.driven) for seated in build.meshes)
+
+
 def _seating(build: SeatedBuild, gear: str) -> SeatedMesh:
     """The mesh in which a gear is shown: the one that drives it, or the first that it drives."""
     return next(
@@ -199,7 +206,7 @@ def _in_world(build: SeatedBuild, gear: str) -> PlacedGear:
 def _angle(build: SeatedBuild, shaft: str) -> float:
     """Turn of a shaft [rad]: that of its gear, the driven one if there is one; without gears as the first shaft's."""
     layout = build.model.layout
-    own = [carried for carrier, carried in layout.carrying.values() if carrier == shaft]
+    own = [own for carrier, own in layout.carrying.values() if carrier == shaft and _meshes(build, own.gear)]
     driven = [carried for carried in own if _seating(build, carried.gear).mesh.driven == carried.gear]
     for carried in driven or own:
         seated = _seating(build, carried.gear)

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.gearing.breakdowns import staged_measures
-from tol3d.gearing.linked import by_theory
+from tol3d.gearing.linked import Remembered, by_theory
 from tol3d.gearing.model import Backlash, Measure, Model, TransmissionError
 from tol3d.gearing.model.measure import gear_measures
 from tol3d.gearing.play import Play, SeatKey, seat_key
@@ -38,7 +38,8 @@ class AnalyticRoad:
         """See Road."""
         stacks = _Stacks(self.model, trials)
         own = gear_measures(measures)
-        plays = {measure.name: Play(self.model, measure, trials, stacks, by_theory) for measure in own}
+        law = Remembered(by_theory)
+        plays = {measure.name: Play(self.model, measure, trials, stacks, law) for measure in own}
         values = {measure.name: _values(plays[measure.name]) for measure in own}
         terms = {
             (measure.name, link): values[:, 0]

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from tol3d.gearing.breakdowns import staged_measures
 from tol3d.gearing.build import Build
 from tol3d.gearing.engines import INTERFERES, OK, OUT_OF_RANGE, Engine, MeshReading, ReadingEngine
-from tol3d.gearing.linked import as_built
+from tol3d.gearing.linked import Remembered, as_built
 from tol3d.gearing.measures import measure_backlash, moved, read_backlash, turning_gear
 from tol3d.gearing.model import Backlash, Measure, Mesh, Model, TransmissionError
 from tol3d.gearing.model.measure import gear_measures
@@ -119,9 +119,9 @@ class GeometricRoad:
         values: dict[str, Array] = {}
         terms: dict[tuple[str, str], Array] = {}
         status: dict[str, Codes] = {}
-        staged = staged_measures(self.model)
+        staged, law = staged_measures(self.model), Remembered(as_built)
         for measure in measures:
-            play = Play(self.model, measure, trials, read, as_built)
+            play = Play(self.model, measure, trials, read, law)
             codes = _codes(play, seated_as)
             free = _free_or_overlap(play, codes)
             codes[np.isnan(free) & (codes == OK)] = OUT_OF_RANGE  # a turn whose end is not known
@@ -150,6 +150,8 @@ def _codes(play: Play, seated_as: Mapping[SeatKey, Codes]) -> Codes:
         codes = np.maximum(codes, seated_as[key].reshape(shape))
     if not play.measure.kind.adds_up:
         codes[play.bound() & (codes == OK)] = INTERFERES
+    if play.measure.kind.links:
+        codes[play.jammed() & (codes == OK)] = INTERFERES
     return codes
 
 

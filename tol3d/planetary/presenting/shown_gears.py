@@ -5,14 +5,17 @@ from dataclasses import dataclass
 from functools import cached_property
 
 from tol3d.errors import InputError
+from tol3d.gearing.display import replayed_of
 from tol3d.gearing.presenting.whole_trains import gear_body
+from tol3d.planetary.presenting.arms import arms_of
+from tol3d.planetary.presenting.motions import motion, motions
 from tol3d.planetary.shown import ShownSet
-from tol3d.report.body import World
+from tol3d.report.body import Body, World
+from tol3d.report.motion import Motion
 from tol3d.report.presenter import View, Which
 from tol3d.runs.run import Run
-from tol3d.runs.worst import worst_trial
-from tol3d.simulate import Replay, replay, replayed, simulation_again
-from tol3d.system.stated import magnified, mean_build, nominal_build
+from tol3d.simulate import Replay, replayed
+from tol3d.system.stated import magnified
 
 CENTRALS, FORWARD, BACKWARD, PLANETS = "#E69F00", "#4682B4", "#009E73", "#4682B4"
 
@@ -27,14 +30,17 @@ class PlanetaryDisplay:
 
     @cached_property
     def worlds(self) -> tuple[World, ...]:
-        """One world with every gear."""
-        own, count = self.shown.own, len(self.shown.own.meshes)
-        colours = [CENTRALS] * count
-        for planet in range(own.planets):
-            pushed = [spring.sense(planet) for spring in own.springs if spring.sense(planet)]
-            colours += [BACKWARD if pushed and pushed[0] < 0 else FORWARD if pushed else PLANETS] * len(own.gears)
-        bodies = zip(self.shown.gears, colours, strict=True)
-        return (World(own.name, tuple(gear_body(gear, colour) for gear, colour in bodies)),)
+        """One world with every gear, and the carrier where its pins fit in bores."""
+        return (World(self.shown.own.name, (*bodies_of(self.shown), *arms_of(self.shown))),)
+
+    @property
+    def motions(self) -> tuple[str, ...]:
+        """See `tol3d.report.motion.Movable`."""
+        return motions(self.shown.own)
+
+    def motion(self, name: str, frames: int | None) -> Motion:
+        """See `tol3d.report.motion.Movable`."""
+        return motion(self.shown, self.worlds[0], name, frames)
 
     def view(self, close_up: str | None) -> View:
         """All gears.
@@ -47,6 +53,15 @@ class PlanetaryDisplay:
         return View()
 
 
+def bodies_of(shown: ShownSet) -> tuple[Body, ...]:
+    """Every gear of a set, central gears and planets in their colours, planets by how springs push them."""
+    own, colours = shown.own, [CENTRALS] * len(shown.own.meshes)
+    for planet in range(own.planets):
+        pushed = [spring.sense(planet) for spring in own.springs if spring.sense(planet)]
+        colours += [BACKWARD if pushed and pushed[0] < 0 else FORWARD if pushed else PLANETS] * len(own.gears)
+    return tuple(gear_body(gear, colour) for gear, colour in zip(shown.gears, colours, strict=True))
+
+
 def display(run: Run, which: Which, *, magnify: float) -> PlanetaryDisplay:
     """A build of a run.
 
@@ -55,7 +70,7 @@ def display(run: Run, which: Which, *, magnify: float) -> PlanetaryDisplay:
     """
     if not (math.isfinite(magnify) and magnify >= 0.0):
         raise InputError(f"magnify: expected a number of at least 0, got {magnify:g}")
-    label, seen = _replayed(run, which)
+    label, seen = replayed_of(run, which)
     if magnify == 1.0:
         return replayed_display(seen, label)
     again = replayed(seen.simulation, magnified(seen.simulation.system, seen.trials, magnify))
@@ -70,15 +85,3 @@ def replayed_display(seen: Replay, label: str) -> PlanetaryDisplay:
     shown: ShownSet = seen.build
     note = () if not shown.status else (f"{label} jams; shown where no backlash would have its gears",)
     return PlanetaryDisplay(label, shown, note)
-
-
-def _replayed(run: Run, which: Which) -> tuple[str, Replay]:
-    trial = worst_trial(run) if which == "worst" else which
-    if isinstance(trial, int):
-        return f"trial-{trial}", replay(run, trial)
-    if trial not in ("nominal", "mean"):
-        raise InputError(f"expected a trial's number, worst, nominal or mean, got {trial!r}")
-    simulation = simulation_again(run)
-    system = simulation.system
-    build = nominal_build(system) if trial == "nominal" else mean_build(system, system.measures[0])
-    return trial, replayed(simulation, build)

@@ -86,7 +86,7 @@ class MeasureSummary(Section):
 
     kind: Label
     over: Label
-    take: Literal["value", "min", "max", "range", "curve"]
+    take: Literal["value", "min", "max", "range", "harmonic", "curve"]
     unit: Unit
     worse: Worse = Field(description="which end is the worse where no limit says so")
     lower_limit: Known

@@ -4,13 +4,14 @@ from typing import Annotated, ClassVar
 
 from pydantic import Field
 
-from tol3d.scene.part import Length, PartSpec
+from tol3d.gearing.grammar.parts.turning import TurningSpec
+from tol3d.scene.part import Length
 from tol3d.units import Of, Positive, Quantity
 
 MOST_TEETH = 10_000  # far more than anyone hobs; keeps a slip of the finger from building for days
 
 
-class GearSpec(PartSpec):
+class GearSpec(TurningSpec):
     """A gear by the words of ISO 21771-1; profile_shift, addendum and dedendum count in modules."""
 
     words: ClassVar[str] = "a gear"

@@ -5,7 +5,7 @@ from typing import Annotated, ClassVar, Literal, Self
 
 from pydantic import Field, model_validator
 
-from tol3d.gearing.grammar.parts.gear import GearSpec
+from tol3d.gearing.grammar.parts.turning import TurningSpec
 from tol3d.scene.name import Name
 from tol3d.scene.part import Length, PartSpec
 from tol3d.scene.reference import Reference
@@ -54,7 +54,7 @@ class ShaftSpec(PartSpec):
 
     def references(self) -> tuple[Reference, ...]:
         """The gears that it carries."""
-        return tuple(Reference(("carries", gear), gear, (GearSpec,)) for gear in self.carries)
+        return tuple(Reference(("carries", gear), gear, (TurningSpec,)) for gear in self.carries)
 
 
 def gears_on(shaft: str, parts: Mapping[str, PartSpec]) -> tuple[str, ...]:

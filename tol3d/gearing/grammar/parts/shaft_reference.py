@@ -3,8 +3,8 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from tol3d.gearing.grammar.parts.gear import GearSpec
 from tol3d.gearing.grammar.parts.shaft import ShaftSpec, carried
+from tol3d.gearing.grammar.parts.turning import TurningSpec
 from tol3d.scene.entry import Entry
 from tol3d.scene.part import PartSpec
 from tol3d.scene.reference import Reference, Taken
@@ -14,7 +14,7 @@ from tol3d.scene.reference import Reference, Taken
 class ShaftReference(Reference):
     """The name of a shaft, or of a gear that is its own because none carries it."""
 
-    specs: tuple[type[Entry], ...] = (ShaftSpec, GearSpec)
+    specs: tuple[type[Entry], ...] = (ShaftSpec, TurningSpec)
 
     @property
     def expected(self) -> str:

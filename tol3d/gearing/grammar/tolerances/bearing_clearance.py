@@ -65,7 +65,9 @@ class BearingClearanceSpec(GearToleranceSpec):
             yield Contradiction(("mesh",), f"a mesh of the gear {self.of!r}", repr(self.mesh), meshes)
         elif self.mesh is None and len(meshes) != 1:
             yield Contradiction(
-                ("of",), "a gear of one mesh (or the mesh named beside it)", f"{self.of!r}, which is in {len(meshes)}"
+                ("of",),
+                "a gear of one mesh (or the mesh named beside it)",
+                f"{self.of!r}, which is in {len(meshes) or 'none'}",
             )
 
     def _of_bearing(

@@ -7,7 +7,7 @@ from tol3d.gearing.model.measures.measured import measured
 from tol3d.gearing.model.model import Model
 from tol3d.gearing.model.readings import reader_of
 from tol3d.gearing.model.shafts import Arm
-from tol3d.gearing.model.trains import refuse_midst
+from tol3d.gearing.model.trains import refuse_incomparable
 from tol3d.scene import Scene
 
 
@@ -33,7 +33,7 @@ def arm_of(scene: Scene, name: str, spec: TipMeasureSpec, model: Model) -> Arm:
             f"expected an arm on a shaft that moves where {train.held!r} is held, such as {train.output!r}, got "
             f"{spec.arm!r}, which hangs on {arm.on!r}",
         )
-    refuse_midst(scene, ("measures", name, "arm"), model.layout, train.driven, arm.on)
+    refuse_incomparable(scene, ("measures", name, "arm"), model.layout, train.driven, arm.on)
     return arm
 
 

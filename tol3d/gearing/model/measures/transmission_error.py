@@ -80,11 +80,11 @@ def _mesh_of(element: Link | Parallel, scene: Scene, name: str, model: Model, tr
     mesh = next((mesh for mesh in model.meshes if mesh.name == element.name), None)
     if mesh is not None:
         return mesh
-    what = (
-        f"the parallel load paths {element.name}"
-        if isinstance(element, Parallel)
-        else f"{element.name!r}, a {model.link(element.name).kind} whose error from position to position is not known"
-    )
+    if isinstance(element, Parallel):
+        what = f"the parallel load paths {element.name}"
+    else:
+        link = model.link(element.name)
+        what = f"{element.name!r}, a {link.kind.replace('_', ' ')} {link.unfollowed}"
     raise scene.refuse(
         ("measures", name, "of"),
         f"expected meshes in series from {train.driven!r} to {train.output!r}, got {what}; measure mesh by mesh",

@@ -1,10 +1,11 @@
 """Transmission error of a planetary set."""
 
-from typing import Literal
+from typing import Literal, Self
 
-from pydantic import Field
+from pydantic import Field, model_validator
 
 from tol3d.planetary.grammar.measures.planetary_measure import PlanetaryMeasureSpec
+from tol3d.strict import refused
 
 
 class PlanetaryTransmissionErrorSpec(PlanetaryMeasureSpec):
@@ -21,12 +22,26 @@ class PlanetaryTransmissionErrorSpec(PlanetaryMeasureSpec):
         default="turn",
         description="positions of the output: turn (one of it) or long_period (until the same teeth meet again)",
     )
-    take: Literal["min", "max", "range", "curve"] = Field(
-        default="range", description="min, max, range (peak to peak) or curve of these positions"
+    take: Literal["min", "max", "range", "harmonic", "curve"] = Field(
+        default="range",
+        description="min, max, range (peak to peak), harmonic (one sine, peak to peak) or curve of these positions",
+    )
+    order: int | None = Field(
+        default=None, ge=1, description="of the harmonic: cycles a turn of the output; 1 if not given"
     )
     positions: int = Field(
         default=2000, ge=24, le=32_000, description="positions a turn of the output; many for each turn of the input"
     )
+
+    @model_validator(mode="after")
+    def _refuse_orders(self) -> Self:
+        if self.order is None:
+            return self
+        if self.take != "harmonic":
+            raise refused("order", f"none beside take: {self.take}; only a harmonic has an order", self.order)
+        if self.order > (highest := (self.positions - 1) // 2):
+            raise refused("order", f"at most {highest}, which {self.positions} positions resolve", self.order)
+        return self
 
     @property
     def gives_curve(self) -> bool:

@@ -37,6 +37,12 @@ class PlanetarySpec(MoveSpec):
     held: Name = Field(description="the central gear that is fixed, or the carrier")
     input: Name = Field(description="the central gear that drives, or the carrier")
     output: Name = Field(description="the central gear that is driven, or the carrier")
+    friction: float | None = Field(
+        default=None,
+        ge=0.0,
+        le=0.5,
+        description="coefficient of friction of the teeth, for efficiencies; none are worked out if not given",
+    )
 
     def references(self) -> tuple[Reference, ...]:
         """The planet, the carrier, the gears."""

@@ -2,10 +2,10 @@
 
 from typing import ClassVar
 
-from tol3d.scene.part import PartSpec
+from tol3d.gearing.grammar.parts.turning import TurningSpec
 
 
-class CarrierSpec(PartSpec):
+class CarrierSpec(TurningSpec):
     """A carrier: it turns about the common axis and holds the pins of the planets."""
 
     words: ClassVar[str] = "a planet carrier"

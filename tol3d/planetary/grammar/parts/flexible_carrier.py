@@ -8,7 +8,10 @@ from tol3d.planetary.grammar.parts.carrier import CarrierSpec
 from tol3d.scene.listed import listed
 from tol3d.scene.part import Length
 from tol3d.strict import refused
+from tol3d.units import Of, Positive, Quantity
 
+Force = Annotated[Quantity, Of("force"), Positive()]
+Stiffness = Annotated[Quantity, Of("stiffness"), Positive()]
 Pair = Annotated[tuple[int, int], listed("planets", 2, 2)]
 
 
@@ -34,6 +37,29 @@ class FlexibleCarrierSpec(CarrierSpec):
     displacement: float = Field(
         default=1.0, gt=0.0, description="how far each planet moves a unit of the adjustment, such as 0.54"
     )
+
+    force: Force | None = Field(
+        default=None,
+        description="of the spring against each planet's displacement where contacts stop it; no torques if not given",
+    )
+    stiffness: Stiffness | None = Field(default=None, description="of the spring against that displacement; 0 if none")
+    friction: Force | None = Field(
+        default=None, description="between the parts of the carrier, against that displacement; 0 if none"
+    )
+
+    @model_validator(mode="after")
+    def _refuse_idle_forces(self) -> Self:
+        given = [name for name in ("force", "stiffness", "friction") if getattr(self, name) is not None]
+        if given and (self.adjustment is not None or self.springs == "each"):
+            other = "an adjustment" if self.adjustment is not None else "springs: each"
+            raise refused(given[0], f"none beside {other}: torques are those of one spring that presses", "one")
+        if given and self.force is None:
+            raise refused(given[0], "a force of the spring beside it", "none")
+        if self.force is not None and self.friction is not None and self.friction.internal >= self.force.internal:
+            raise refused(
+                "friction", f"less than the force of {self.force}, or planets stay wherever they are", self.friction
+            )
+        return self
 
     @model_validator(mode="after")
     def _refuse_repeated_planets(self) -> Self:

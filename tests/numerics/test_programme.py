@@ -7,7 +7,7 @@ import pytest
 from numpy.typing import NDArray
 from scipy.optimize import linprog
 
-from tol3d.planetary.programme import NO_ROOM, OK, first_basis, ranges
+from tol3d.numerics.programme import NO_ROOM, OK, first_basis, ranges
 
 Array = NDArray[np.float64]
 

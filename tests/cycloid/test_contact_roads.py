@@ -1,0 +1,50 @@
+"""Both roads of a cycloid stage, trial by trial, with errors on everything."""
+
+import math
+
+import numpy as np
+import pytest
+from cycloid_stages import CRANK_CIRCLE, PROFILE
+
+from tol3d.cycloid.contact import ContactStage
+from tol3d.cycloid.deviated import Deviated
+from tol3d.cycloid.linear import LinearStage
+
+STAGE = (PROFILE, 2, 3, CRANK_CIRCLE, 1.5, 0.7)
+ARC_SECOND = math.pi / 648_000
+
+
+def drawn(trials: int, scale: float, seed: int) -> Deviated:
+    """Deviations of everything, of some size [mm]; phases of the cranks by a hundredth of it [rad]."""
+    rng = np.random.default_rng(seed)
+    nothing = Deviated.nothing(trials, 40, 2, 3)
+    sizes = {name: scale / 100 if name == "crank_phases" else scale for name in nothing.__dataclass_fields__}
+    return Deviated(**{name: size * rng.standard_normal(getattr(nothing, name).shape) for name, size in sizes.items()})
+
+
+def test_what_first_order_neglects_shrinks_with_the_square_of_errors() -> None:
+    """Of a disc without clearance; a tenth of the errors leaves a hundredth of the difference."""
+    bare = (PROFILE.__class__(40, 114.5, 5.0, 2.2), *STAGE[1:])
+    phis = np.random.default_rng(2).uniform(0, 245, (20, 3))
+    off = []
+    for scale in (1e-3, 1e-4):
+        deviated = drawn(20, scale, seed=5)
+        exact, linear = ContactStage(*bare).touches(deviated, phis), LinearStage(*bare).touches(deviated, phis, 1)
+        same = exact.places[..., 0] == linear.places
+        assert same.mean() > 0.8
+        off.append(np.where(same, exact.turns[..., 0] - linear.turns, 0.0))
+    ratio = np.abs(off[0]).max() / np.abs(off[1]).max()
+    assert 50 < ratio < 200
+
+
+@pytest.mark.slow
+def test_roads_agree_trial_by_trial_in_both_senses() -> None:
+    trials = 5000
+    deviated, phis = drawn(trials, 0.002, seed=6), np.random.default_rng(3).uniform(0, 245, (trials, 4))
+    exact = ContactStage(*STAGE).touches(deviated, phis)
+    for s, sense in ((0, 1), (1, -1)):
+        linear = LinearStage(*STAGE).touches(deviated, phis, sense)  # type: ignore[arg-type]
+        off = (exact.turns[..., s] - linear.turns) / ARC_SECOND
+        assert math.sqrt(np.mean(off**2)) < 0.15
+        assert np.quantile(np.abs(off), 0.99) < 0.8
+        assert (exact.places[..., s] == linear.places).mean() > 0.98

@@ -1,0 +1,185 @@
+"""Cycloid stages at rest: without play first contact; with play HiGHS on gaps and slopes of its own."""
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from cycloid_stages import CRANK_CIRCLE, PROFILE
+from numpy.typing import NDArray
+from scipy.optimize import linprog
+
+from tol3d.cycloid.contact import ContactStage
+from tol3d.cycloid.deviated import Deviated
+from tol3d.cycloid.rest import Play, RestStage
+from tol3d.numerics.programme import NO_ROOM, OK
+
+Array = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+
+SUN_HELD, WINDOW = 1.5, 0.7
+STAGE = RestStage(ContactStage(PROFILE, 2, 3, CRANK_CIRCLE, SUN_HELD, WINDOW))
+NO_PLAY = Play(np.zeros(()), np.zeros(()), np.zeros(()))
+
+
+def drawn(trials: int, scale: float, seed: int) -> Deviated:
+    """Deviations of everything, of some size [mm]; phases of the cranks by a hundredth of it [rad]."""
+    rng = np.random.default_rng(seed)
+    nothing = Deviated.nothing(trials, 40, 2, 3)
+    sizes = {name: scale / 100 if name == "crank_phases" else scale for name in nothing.__dataclass_fields__}
+    return Deviated(**{name: size * rng.standard_normal(getattr(nothing, name).shape) for name, size in sizes.items()})
+
+
+def fitting(deviated: Deviated) -> Deviated:
+    """The same with cranks that fit: all alike, in holes without errors or displaced alike."""
+    nothing = Deviated.nothing(len(deviated.pins), 40, 2, 3)
+    return replace(
+        deviated,
+        disc_holes=nothing.disc_holes,
+        crank_phases=nothing.crank_phases,
+        carrier_holes=np.repeat(deviated.carrier_holes[:, :1], 3, axis=1),
+        crank_errors=np.repeat(deviated.crank_errors[:, :1], 3, axis=1),
+    )
+
+
+def phis_of(trials: int) -> Array:
+    """A random crank angle each."""
+    return np.random.default_rng(trials).uniform(0, 2 * np.pi * 39, (trials, 1))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("sense", [1.0, -1.0])
+def test_without_play_it_is_the_first_contact(sense: float) -> None:
+    deviated, phis = fitting(drawn(200, 0.002, seed=3)), phis_of(200)
+    rest = STAGE.rests(deviated, phis, NO_PLAY, sense)
+    first = STAGE.contact.touches(deviated, phis, (sense,))
+    assert (rest.status == OK).all()
+    np.testing.assert_allclose(rest.turns, first.turns[..., 0], rtol=0, atol=1e-12)  # 1e-10 mm over 85 mm
+    np.testing.assert_array_equal(rest.loads.argmax(axis=-1), first.places[..., 0])
+
+
+@pytest.mark.slow
+def test_cranks_that_do_not_fit_find_no_place_without_play() -> None:
+    rest = STAGE.rests(drawn(20, 0.002, seed=4), phis_of(20), NO_PLAY, 1.0)
+    assert (rest.status == NO_ROOM).all()
+    assert np.isnan(rest.turns).all()
+
+
+class Posed:
+    """One build as points and complex numbers, written without the code under test."""
+
+    def __init__(self, deviated: Deviated, trial: int, phi: float, play: tuple[float, float, float]) -> None:
+        self.phi, self.disc_play, self.carrier_play, self.crank_play = phi, *play
+        at = {name: getattr(deviated, name)[trial] for name in deviated.__dataclass_fields__}
+        around, pins = np.exp(2j * np.pi * np.arange(3) / 3), np.exp(2j * np.pi * np.arange(40) / 40)
+        flat: Callable[[Array], Complex] = lambda points: points[..., 0] + 1j * points[..., 1]  # noqa: E731
+        self.pins = (114.5 + flat(at["pins"])) * pins
+        self.radii = 5.0 + at["pin_radii"]
+        self.holes = CRANK_CIRCLE * around + flat(at["carrier_holes"]) + flat(at["carrier_offsets"])
+        self.bored = CRANK_CIRCLE * around + flat(at["disc_holes"]) - flat(at["disc_offsets"])[:, None]
+        throws = np.array([2.2, -2.2])
+        self.thrown = (throws + flat(at["crank_errors"])) * np.exp(1j * at["crank_phases"])[:, None]
+        self.lobes = at["lobe_pitch"] * 40 / (39 * 114.5), at["lobe_profile"]
+
+    def gaps(self, unknowns: Array, sense: float) -> Array:
+        """Of working pins of both discs [um]; unknowns as lengths [um], turns at 100 mm."""
+        z = unknowns / 1e3
+        found = []
+        for disc in range(2):
+            x, y, turn = z[1 + 3 * disc : 4 + 3 * disc]
+            throw = self.phi + np.pi * disc
+            phase = 2 * np.pi * np.arange(40) / 40 - throw
+            k = 2.2 * 40 / 114.5
+            works = sense * np.sin(phase) / np.sqrt(1 + k * k - 2 * k * np.cos(phase)) > WINDOW
+            own = np.exp(1j * (turn / 100 - self.phi / 39 - np.pi * disc / 39))
+            seen = (self.pins[works] - 2.2 * np.exp(1j * throw) - x - 1j * y) * np.conj(own)
+            u = (2 * np.pi * np.arange(40) / 40 + throw / 39)[works]
+            lobe = np.floor(u * 39 / (2 * np.pi)).astype(int) % 39
+            seen = seen * np.exp(-1j * self.lobes[0][disc, lobe])
+            radius = 114.5 + PROFILE.modification.shift
+            for _ in range(8):  # the foot: the tangential distance, by its rate along a nearly straight path
+                slope = 1j * (radius * np.exp(1j * u) - 88.0 * np.exp(40j * u))
+                bend = -(radius * np.exp(1j * u) - 88.0 * 40 * np.exp(40j * u))
+                off = seen - radius * np.exp(1j * u) + 2.2 * np.exp(40j * u)
+                u = u + (off * np.conj(slope)).real / (abs(slope) ** 2 - (off * np.conj(bend)).real)
+            away = (off * np.conj(-1j * slope / abs(slope))).real
+            grinding = 5.0 + PROFILE.modification.offset
+            found.append(away + grinding - self.radii[works] - self.lobes[1][disc, lobe])
+        return 1e3 * np.concatenate(found)
+
+    def joints(self, unknowns: Array) -> Array:
+        """Displacements in the bearings (9, 2) [um], those of discs first."""
+        z = unknowns / 1e3
+        cranks = np.exp(-1j * self.phi / 39) * CRANK_CIRCLE * np.exp(2j * np.pi * np.arange(3) / 3)
+        cranks = cranks + z[7::3] + 1j * z[8::3]
+        turns = np.exp(1j * (self.phi + (SUN_HELD * z[0] + z[9::3]) / 100))
+        found = []
+        for i in range(3):
+            for disc in range(2):
+                x, y, turn = z[1 + 3 * disc : 4 + 3 * disc]
+                centre = 2.2 * np.exp(1j * (self.phi + np.pi * disc)) + x + 1j * y
+                hole = centre + np.exp(1j * (turn / 100 - self.phi / 39)) * self.bored[disc, i]
+                found.append(hole - cranks[i] - turns[i] * self.thrown[i, disc])
+        found.extend(cranks - np.exp(1j * (z[0] / 100 - self.phi / 39)) * self.holes)
+        each = 1e3 * np.array(found)
+        return np.stack([each.real, each.imag], axis=-1)
+
+    def turned(self, sense: float) -> float:
+        """The carrier's turn [rad] by HiGHS: linear programmes with differences for slopes and tangents to circles."""
+        z, radial = np.zeros(16), 1e3 / 2 * np.array([self.disc_play] * 6 + [self.carrier_play] * 3)
+        eye = np.eye(16)
+        tangents = [(b, np.array([np.cos(t), np.sin(t)])) for b in range(9) for t in 2 * np.pi * np.arange(8) / 8]
+        bounds = np.full(16, 1000.0)
+        bounds[9::3] = 1e5 * self.crank_play
+        for step in range(40):
+            gaps, joints = self.gaps(z, sense), self.joints(z)
+            if step in (0, 3, 9):  # later slopes are those of then: z changes by less than a hundredth of a micrometre
+                by_gap = np.stack([self.gaps(z + d, sense) - self.gaps(z - d, sense) for d in eye], axis=-1) / 2
+            by_joint = np.stack([self.joints(z + d) - self.joints(z - d) for d in eye], axis=-1) / 2
+            near = 1000 * 0.5 ** max(0, step - 8)  # so that idle bodies come to rest
+            rows = np.array([direction @ by_joint[b] for b, direction in tangents])
+            room = np.array([radial[b] - direction @ joints[b] for b, direction in tangents])
+            given = linprog(
+                -sense * eye[0], np.concatenate([-by_gap, rows]), np.concatenate([gaps, room]), method="highs",
+                bounds=np.stack([np.maximum(-bounds - z, -near), np.minimum(bounds - z, near)], axis=-1),
+                options={"primal_feasibility_tolerance": 1e-10, "dual_feasibility_tolerance": 1e-10},
+            )  # fmt: skip
+            assert given.status == 0
+            z = z + given.x
+            joints = self.joints(z)
+            far = np.hypot(joints[:, 0], joints[:, 1])
+            tangents.extend((int(b), joints[b] / far[b]) for b in np.flatnonzero(far > radial + 1e-7))
+            if abs(given.x[0]) < 1e-6 and (far <= radial + 1e-6).all():
+                break
+        return float(z[0] / 1e5)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("quarter", [0, 1, 2, 3])
+def test_with_play_it_is_where_highs_finds_it_on_two_hundred_builds(quarter: int) -> None:
+    deviated, phis = drawn(200, 0.002, seed=5), phis_of(200)
+    plays = (0.02, 0.015, 1e-5)
+    play = Play(*(np.full((), each) for each in plays))
+    sense = (1.0, -1.0)[quarter % 2]
+    rest = STAGE.rests(deviated, phis, play, sense)
+    assert (rest.status == OK).all()
+    expected = [Posed(deviated, trial, phis[trial, 0], plays).turned(sense) for trial in range(quarter, 200, 4)]
+    # its loop ends where circles are met to 1e-9 mm, over levers of some 10 mm
+    np.testing.assert_allclose(rest.turns[quarter::4, 0], expected, rtol=0, atol=1e-10)
+
+
+@pytest.mark.slow
+def test_loads_balance_the_torque_as_work_says() -> None:
+    """A pin that grows takes the carrier back by its load times the growth."""
+    deviated, phis = drawn(50, 0.002, seed=6), phis_of(50)
+    play = Play(np.full((), 0.02), np.full((), 0.015), np.full((), 1e-5))
+    rest = STAGE.rests(deviated, phis, play, 1.0)
+    most = rest.loads[:, 0].argmax(axis=-1)
+    grown = deviated.pin_radii.copy()
+    grown[np.arange(50), most % 40] += 1e-6
+    later = STAGE.rests(replace(deviated, pin_radii=grown), phis, play, 1.0)
+    # a pin stands for both discs; where it is last to be reached a growth may change which pins carry
+    loads = rest.loads[:, 0, :40] + rest.loads[:, 0, 40:]
+    expected = -1e-6 * loads[np.arange(50), most % 40]
+    close = np.isclose((later.turns - rest.turns)[:, 0], expected, rtol=2e-3, atol=0)
+    assert close.mean() > 0.9

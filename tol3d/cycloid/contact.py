@@ -1,0 +1,206 @@
+"""First contact of the discs of a cycloid stage among their pins, exact in finite geometry."""
+
+import math
+from dataclasses import dataclass, replace
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tol3d.cycloid.contact_kernel import first_contacts
+from tol3d.cycloid.contact_kinematics import Bearings, bearings, linkage, throws
+from tol3d.cycloid.contact_newton import ContactShape
+from tol3d.cycloid.deviated import Deviated
+from tol3d.cycloid.profile import DiscProfile
+
+Array = NDArray[np.float64]
+Places = NDArray[np.int64]
+
+BOTH: Final = (1.0, -1.0)
+"""Counter-clockwise, and back."""
+NONE_COUNTED: Final = -1.0
+
+
+@dataclass(frozen=True)
+class Touching:
+    """First contacts of trials at crank angles, by senses on the last axis.
+
+    Attributes:
+        turns: the carrier's beyond -phi / Zc (trials, positions, senses) [rad], counter-clockwise; NaN where no contact
+            was found.
+        places: the pin that touches, disc times pins + pin (trials, positions, senses); -1 for none.
+        near: working pins that have a gap of at most the stated deflection then; None where none was stated.
+    """
+
+    turns: Array
+    places: Places
+    near: Places | None
+
+
+@dataclass(frozen=True)
+class AsMade:
+    """Discs, cranks, carrier and pins as they are made.
+
+    Attributes:
+        linkage: of contact_kinematics (trials, discs, 10).
+        pins: centres (trials, pins, 2) [mm].
+        pin_radii: (trials, pins) [mm].
+        lobe_pitch, lobe_profile: errors (trials, discs, lobes) [mm].
+        leans: how discs lean (trials, discs, 3): see `leaning`; None where they lie flat.
+    """
+
+    linkage: Array
+    pins: Array
+    pin_radii: Array
+    lobe_pitch: Array
+    lobe_profile: Array
+    leans: Array | None = None
+
+
+@dataclass(frozen=True)
+class ContactStage:
+    """A cycloid stage as its exact first contacts need it: discs, cranks and carrier without bearing play.
+
+    Args:
+        profile: of the discs.
+        discs, cranks: how many.
+        crank_circle: radius of the circle of crank axes [mm].
+        rolling: turns of the cranks in space per turn of the carrier beyond its place, 1 + sun teeth over planet teeth
+            while the sun stands and 0 while the cranks do.
+        window: pins work whose nominal lever is more than this share of the pitch radius; others stop nothing, and may
+            lie in the disc by some micrometres where clearance is small.
+    """
+
+    profile: DiscProfile
+    discs: int
+    cranks: int
+    crank_circle: float
+    rolling: float
+    window: float
+
+    def touches(
+        self,
+        deviated: Deviated,
+        phis: Array,
+        senses: tuple[float, ...] = BOTH,
+        deflection: float | None = None,
+        leans: Array | None = None,
+    ) -> Touching:
+        """Where the first working pin stops the carrier, counter-clockwise (+1) and back (-1).
+
+        Lost motion is the first of `BOTH` turns less the second, negative where a build is tight: where the carrier has
+        to turn back before pins of the other flanks are clear.
+
+        Args:
+            deviated: trials.
+            phis: crank angles (trials, positions), or (1, positions) that are those of every trial [rad].
+            senses: of the turn.
+            deflection: pins are counted whose gap is at most so much then [mm]; None where none are.
+            leans: of discs, see `leaning`; None where they lie flat.
+        """
+        shape = contact_shape(
+            self.profile, self.window, self.rolling, NONE_COUNTED if deflection is None else deflection
+        )
+        positions = np.broadcast_to(phis, (len(deviated.pins), phis.shape[1]))
+        return first_contact(shape, replace(self.as_made(deviated), leans=leans), positions, senses)
+
+    def as_made(self, deviated: Deviated) -> AsMade:
+        """Places and sizes of what deviates."""
+        own = self.profile
+        pins = pin_centres(own.pin_circle_radius, deviated.pins)
+        radii = own.pin_radius + deviated.pin_radii
+        return AsMade(linkage(self.joined(deviated)), pins, radii, deviated.lobe_pitch, deviated.lobe_profile)
+
+    def joined(self, deviated: Deviated) -> Bearings:
+        """What bearings join, where it lies."""
+        return bearings(
+            self.profile.eccentricity,
+            self.crank_circle,
+            deviated.disc_offsets,
+            deviated.disc_holes,
+            deviated.crank_errors,
+            deviated.crank_phases,
+            deviated.carrier_holes,
+            deviated.carrier_offsets,
+        )
+
+
+def contact_shape(
+    profile: DiscProfile, window: float, rolling: float, deflection: float = NONE_COUNTED
+) -> ContactShape:
+    """What the kernels read of a nominal stage; see ContactShape."""
+    ground = profile.ground
+    k, pins = ground.shortening, ground.pins
+    cosine = ((2 * pins - 1) * k**2 - (pins - 2)) / ((pins + 1) * k)
+    return ContactShape(
+        pins=float(profile.pins),
+        lobes=float(profile.lobes),
+        eccentricity=profile.eccentricity,
+        ground_circle=ground.pin_circle_radius,
+        ground_radius=ground.pin_radius,
+        pin_circle=profile.pin_circle_radius,
+        pin_radius=profile.pin_radius,
+        rotation=profile.modification.rotation,
+        window=window,
+        rolling=rolling,
+        sharpest=1 / profile.smallest_convex_radius,
+        sharpest_cosine=max(cosine, -1.0),
+        deflection=deflection,
+    )
+
+
+def first_contact(shape: ContactShape, made: AsMade, phis: Array, senses: tuple[float, ...] = BOTH) -> Touching:
+    """Turn the carrier until the first working pin touches a disc, with cranks at phi (trials, positions) [rad].
+
+    All turns are exact for rigid parts: any working pin of any disc may be first. Results do not depend on which trials
+    and positions are asked for together.
+    """
+    trials, positions = phis.shape
+    turns = np.empty((trials, positions, len(senses)))
+    places = np.empty(turns.shape, dtype=np.int64)
+    counted = shape.deflection >= 0
+    near = np.empty(turns.shape if counted else (0, 0, 0), dtype=np.int64)
+    first_contacts(
+        shape,
+        throws(made.linkage.shape[1]),
+        pin_directions(int(shape.pins)),
+        *(
+            np.require(each, dtype=np.float64, requirements=["C", "W"])
+            for each in (
+                made.linkage, made.pins, made.pin_radii, made.lobe_pitch, made.lobe_profile,
+                np.zeros((*made.linkage.shape[:2], 3)) if made.leans is None else made.leans, phis,
+            )
+        ),
+        np.array(senses),
+        turns,
+        places,
+        near,
+    )  # fmt: skip
+    return Touching(turns, places, near if counted else None)
+
+
+def pin_directions(pins: int) -> Array:
+    """Cosine and sine of the pins' azimuths (pins, 2)."""
+    azimuths = 2 * math.pi * np.arange(pins) / pins
+    return np.stack([np.cos(azimuths), np.sin(azimuths)], axis=-1)
+
+
+def pin_centres(circle: float, errors: Array) -> Array:
+    """Centres of pins (trials, pins, 2) [mm] that lie off a circle outwards and counter-clockwise (trials, pins, 2)."""
+    along = pin_directions(errors.shape[1])
+    across = np.stack([-along[:, 1], along[:, 0]], axis=-1)
+    return np.asarray((circle + errors[..., :1]) * along + errors[..., 1:] * across)
+
+
+def leaning(tilts: Array, width: float) -> Array:
+    """How discs lean that are tilted about axes in their plane (trials, discs, 3): slopes, and half their width [mm].
+
+    Args:
+        tilts: about x and y of the frame of a disc's holes, through the middle of its width (trials, discs, 2) [rad]:
+            one rotation about the axis that both make, by the root of their squares.
+        width: of the discs' faces [mm].
+    """
+    angle = np.sqrt(tilts[..., 0] ** 2 + tilts[..., 1] ** 2)
+    ratio = np.where(angle > 0, np.tan(angle) / np.where(angle > 0, angle, 1.0), 1.0)
+    half = np.full(tilts.shape[:-1], width / 2)
+    return np.stack([-tilts[..., 1] * ratio, tilts[..., 0] * ratio, half], axis=-1)

@@ -1,0 +1,54 @@
+"""What pins, discs, cranks and carrier of a cycloid stage deviate by in some trials, as both roads get it."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Deviated:
+    """Deviations from nominal (trials, ...), counter-clockwise and outwards positive.
+
+    Args:
+        pins: of their centres, outwards and counter-clockwise (trials, pins, 2) [mm].
+        pin_radii: (trials, pins) [mm].
+        lobe_pitch: arc by which a lobe lies counter-clockwise of its place (trials, discs, lobes) [mm]; its best flank
+            moves by K of it along the normal.
+        lobe_profile: material along the normal (trials, discs, lobes) [mm].
+        disc_offsets: of a disc's profile from its crank holes, in the disc's frame (trials, discs, 2) [mm].
+        disc_holes: of the discs' crank holes in the same frame (trials, discs, cranks, 2) [mm].
+        crank_errors: of the throws, in the crank's frame (trials, cranks, discs, 2) [mm].
+        crank_phases: of the cranks (trials, cranks) [rad].
+        carrier_holes: of the carrier's crank holes in its frame (trials, cranks, 2) [mm].
+        carrier_offsets: of the carrier by its main bearing, in its frame (trials, 2) [mm].
+    """
+
+    pins: Array
+    pin_radii: Array
+    lobe_pitch: Array
+    lobe_profile: Array
+    disc_offsets: Array
+    disc_holes: Array
+    crank_errors: Array
+    crank_phases: Array
+    carrier_holes: Array
+    carrier_offsets: Array
+
+    @classmethod
+    def nothing(cls, trials: int, pins: int, discs: int, cranks: int) -> "Deviated":
+        """No deviations."""
+        return cls(
+            np.zeros((trials, pins, 2)),
+            np.zeros((trials, pins)),
+            np.zeros((trials, discs, pins - 1)),
+            np.zeros((trials, discs, pins - 1)),
+            np.zeros((trials, discs, 2)),
+            np.zeros((trials, discs, cranks, 2)),
+            np.zeros((trials, cranks, discs, 2)),
+            np.zeros((trials, cranks)),
+            np.zeros((trials, cranks, 2)),
+            np.zeros((trials, 2)),
+        )

@@ -1,0 +1,1 @@
+"""What scenes say of RV reducers besides the kinds of gears."""

@@ -1,0 +1,1 @@
+"""Kinds of part, one file each."""

@@ -1,0 +1,260 @@
+"""The analytic road of a cycloid stage: turns of its carrier to first order, by levers and gaps at nominal pins.
+
+With crank phi, disc d has its centre at a e^(i phi_d), phi_d = phi + 2 pi d / discs, and has turned with the carrier
+by chi = -phi / Zc. A pin at azimuth alpha stands at phase s = alpha - phi_d; its normal, out of the disc, comes from
+the pitch point a Zp e^(i phi_d): n = e^(i alpha) (1 - K e^(-is)) / w, w = sqrt(1 + K^2 - 2 K cos s). The disc closes
+its gap by the lever L = rc' sin s / w per radian. To first order the gap there is
+
+    c + n . (pin - disc) - pin radius - profile - L (turn + K pitch / rc'),
+
+c the clearance of the modification, "pin" and "disc" displacements. Three cranks without play that give way alike place
+the disc: it is displaced by the means of carrier holes, throws and disc holes and turned by their mean moments over the
+crank circle. While the carrier turns by delta the cranks turn by rho delta, which moves the disc against every pin as
+far as a turn by rho delta / Zc more. So each pin of lever L allows the turn gap / (L (1 + rho / Zc)), forwards where
+L > 0; the smallest of all working pins of all discs is the carrier's. Neglected: every product of two deviations, the
+modification among them: pins touch where they would nominally, on the normal of that place. Nothing here sees a pose.
+"""
+
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tol3d.cycloid.deviated import Deviated
+from tol3d.cycloid.profile import DiscProfile
+
+Array = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+Places = NDArray[np.int64]
+Sense = Literal[1, -1]
+
+
+@dataclass(frozen=True)
+class FirstTouches:
+    """Which pin stops the carrier, and where.
+
+    Args:
+        turns: of the carrier beyond -phi / Zc (trials, positions) [rad], counter-clockwise.
+        places: disc times pins + pin (trials, positions).
+    """
+
+    turns: Array
+    places: Places
+
+
+@dataclass(frozen=True)
+class LinearStage:
+    """A cycloid stage as its first-order turns need it.
+
+    Args:
+        profile: of the discs.
+        discs, cranks: how many.
+        crank_circle: radius of the circle of crank axes [mm].
+        rolling: turns rho of the cranks in space per turn of the carrier beyond its place, 1 + sun teeth over planet
+            teeth while the sun stands and 0 while the cranks do.
+        window: pins work whose lever is more than this share of the pitch radius.
+    """
+
+    profile: DiscProfile
+    discs: int
+    cranks: int
+    crank_circle: float
+    rolling: float
+    window: float
+
+    def touches(self, deviated: Deviated, phis: Array, sense: Sense = 1, aside: Array | None = None) -> FirstTouches:
+        """Where the first working pin stops the carrier on its way counter-clockwise (1) or back (-1).
+
+        Args:
+            deviated: trials.
+            phis: crank angles (trials, positions), or (1, positions) that are those of every trial [rad].
+            sense: of the turn.
+            aside: tilts of discs about x and y of their frames, times half their width (trials, discs, 2) [mm]: a pin
+                sees the faces so far off to either side, and the nearer one closes its gap; None for no tilts.
+        """
+        trials, positions = len(deviated.pins), phis.shape[1]
+        turns = np.empty((trials, positions))
+        places = np.empty((trials, positions), dtype=np.int64)
+        placed = [_Placed.of(self, deviated, disc) for disc in range(self.discs)]
+        for position in range(positions):
+            at = phis[:, position]
+            found = [self._disc_touches(deviated, disc, own, at, sense, aside) for disc, own in enumerate(placed)]
+            allowed, pins = np.stack([turn for turn, _ in found]), np.stack([pin for _, pin in found])
+            first = np.argmin(sense * allowed, axis=0)
+            turns[:, position] = np.take_along_axis(allowed, first[None], axis=0)[0]
+            places[:, position] = np.take_along_axis(pins, first[None], axis=0)[0] + first * self.profile.pins
+        return FirstTouches(turns, places)
+
+    def rates(self, phis: Array, places: Places) -> Deviated:
+        """What the turn (rows,) [rad] changes by per deviation while a pin touches, in the form of the deviations.
+
+        Args:
+            phis: crank angles (rows,) [rad].
+            places: the pins that touch (rows,), see FirstTouches.
+        """
+        profile, rows = self.profile, np.arange(len(phis))
+        disc, pin = np.divmod(places, profile.pins)
+        found = Deviated.nothing(len(phis), profile.pins, self.discs, self.cranks)
+        phases = phis + self._throws[disc]
+        u = self._parameters(phases)[rows, pin]
+        normal, lever = self._normals(u, self._azimuths[pin]), -profile.lever(u)
+        reach = lever * self._giving
+        at_pin = normal * np.exp(-1j * self._azimuths[pin]) / reach
+        found.pins[rows, pin] = _plane(at_pin)
+        found.pin_radii[rows, pin] = -1.0 / reach
+        lobe = self._lobes(u)
+        found.lobe_profile[rows, disc, lobe] = -1.0 / reach
+        found.lobe_pitch[rows, disc, lobe] = -profile.shortening / profile.pitch_radius / self._giving
+        self._of_linkage(found, phis, disc, -normal / reach)
+        return found
+
+    def placed(self, deviated: Deviated, discs: Places, phis: Array) -> tuple[Complex, Array]:
+        """Displacement in the world (trials,) [mm] and turn on the carrier [rad] of one disc of each trial.
+
+        Before any turn of the carrier, at crank angles (trials,).
+        """
+        each = [_Placed.of(self, deviated, disc).at(phis, self.profile.lobes) for disc in range(self.discs)]
+        moved, turned = (np.stack(own)[discs, np.arange(len(discs))] for own in zip(*each, strict=True))
+        return moved, turned
+
+    # one disc -------------------------------------------------------------------------------------------
+
+    def allowed(
+        self, deviated: Deviated, disc: int, phis: Array, sense: Sense, aside: Array | None = None
+    ) -> tuple[Array, Places]:
+        """How far each working pin lets one disc turn the carrier.
+
+        Args:
+            deviated: trials.
+            disc: which.
+            phis: crank angles (trials,), or (1,) that of every trial [rad].
+            sense, aside: see touches.
+
+        Returns:
+            Turns (trials, pins) [rad], infinite where a pin does not work in a trial, and which pins (pins,).
+        """
+        return self._allowed(deviated, disc, _Placed.of(self, deviated, disc), phis, sense, aside)
+
+    def _disc_touches(
+        self, deviated: Deviated, disc: int, placed: "_Placed", phis: Array, sense: Sense, aside: Array | None
+    ) -> tuple[Array, Places]:
+        """Turns and pins (trials,) of one disc, at phis (trials,) or (1,)."""
+        turn, pins = self._allowed(deviated, disc, placed, phis, sense, aside)
+        first = np.argmin(sense * turn, axis=1)
+        return np.take_along_axis(turn, first[:, None], axis=1)[:, 0], pins[first]
+
+    def _allowed(
+        self, deviated: Deviated, disc: int, placed: "_Placed", phis: Array, sense: Sense, aside: Array | None
+    ) -> tuple[Array, Places]:
+        profile = self.profile
+        u = self._parameters(phis + self._throws[disc])
+        pins = np.flatnonzero((-sense * profile.lever(u) > self.window * profile.pitch_radius).any(axis=0))
+        u, azimuths = u[:, pins], self._azimuths[pins]
+        lever = -profile.lever(u)
+        normal = self._normals(u, azimuths)
+        own = normal * np.exp(-1j * azimuths)
+        lobes = self._lobes(u)
+        moved, turned = placed.at(phis, profile.lobes)
+        gap = profile.clearance(u) + own.real * deviated.pins[:, pins, 0] + own.imag * deviated.pins[:, pins, 1]
+        gap -= deviated.pin_radii[:, pins] + _picked(deviated.lobe_profile[:, disc], lobes)
+        gap -= normal.real * moved.real[:, None] + normal.imag * moved.imag[:, None]
+        if aside is not None:
+            faces = 1j * _complex(aside[:, disc]) * np.exp(-1j * phis / profile.lobes)
+            gap -= np.abs(normal.real * faces.real[:, None] + normal.imag * faces.imag[:, None])
+        works = sense * lever > self.window * profile.pitch_radius
+        turn = gap / np.where(works, lever, 1.0) - turned[:, None]
+        turn -= profile.shortening / profile.pitch_radius * _picked(deviated.lobe_pitch[:, disc], lobes)
+        return np.where(works, turn / self._giving, sense * np.inf), pins
+
+    def _of_linkage(self, found: Deviated, phis: Array, disc: Places, push: Complex) -> None:
+        """Write the rates of what places a disc: `push` is that of its displacement (rows,) in the world."""
+        rows, profile = np.arange(len(phis)), self.profile
+        carrier, throw = np.exp(-1j * phis / profile.lobes), np.exp(1j * phis)
+        moment = 1j * self._crank_directions / (self.crank_circle * self.cranks) / self._giving
+        carried = push * np.conj(carrier)
+        holes = carried[:, None] / self.cranks - moment
+        found.carrier_offsets[...] = _plane(carried)
+        found.disc_offsets[rows, disc] = _plane(carried)
+        found.carrier_holes[...] = _plane(holes)
+        found.disc_holes[rows, disc] = -_plane(holes)
+        thrown = (push * np.conj(throw))[:, None] / self.cranks - moment * (carrier * np.conj(throw))[:, None]
+        found.crank_errors[rows, :, disc] = _plane(thrown)
+        tangential = 1j * profile.eccentricity * np.exp(1j * self._throws[disc])
+        found.crank_phases[...] = (np.conj(thrown) * tangential[:, None]).real
+
+    # numbers --------------------------------------------------------------------------------------------
+
+    @property
+    def _giving(self) -> float:
+        """1 + rho / Zc: by how much more a gap closes as the cranks turn with the carrier."""
+        return 1.0 + self.rolling / self.profile.lobes
+
+    @property
+    def _throws(self) -> Array:
+        """Phase of each disc on a crank [rad]."""
+        return 2 * np.pi * np.arange(self.discs) / self.discs
+
+    @property
+    def _crank_directions(self) -> Complex:
+        return np.asarray(np.exp(2j * np.pi * np.arange(self.cranks) / self.cranks))
+
+    @property
+    def _azimuths(self) -> Array:
+        return 2 * np.pi * np.arange(self.profile.pins) / self.profile.pins
+
+    def _parameters(self, phases: Array) -> Array:
+        """Places of all pins on the profile of a disc whose eccentricity points at phases (rows,): (rows, pins)."""
+        return np.asarray(self._azimuths + phases[:, None] / self.profile.lobes)
+
+    def _normals(self, u: Array, azimuths: Array) -> Complex:
+        """Normals out of the disc, in the world."""
+        return np.asarray((self.profile.cos_normal(u) - 1j * self.profile.sin_normal(u)) * np.exp(1j * azimuths))
+
+    def _lobes(self, u: Array) -> Places:
+        """Which lobe lies there."""
+        return np.floor(u / self.profile.lobe_pitch).astype(np.int64) % self.profile.lobes
+
+
+@dataclass(frozen=True)
+class _Placed:
+    """By what one disc is displaced and turned (trials,), before any turn of the crank.
+
+    Args:
+        carried: displacement that goes round with the carrier, complex [mm].
+        thrown: the same with the crank.
+        turned: its turn on the carrier [rad].
+        rocked: the same that goes round with crank against carrier, as a complex number whose imaginary part counts.
+    """
+
+    carried: Complex
+    thrown: Complex
+    turned: Array
+    rocked: Complex
+
+    @classmethod
+    def of(cls, stage: LinearStage, deviated: Deviated, disc: int) -> "_Placed":
+        holes = _complex(deviated.carrier_holes) - _complex(deviated.disc_holes[:, disc])
+        tangential = 1j * stage.profile.eccentricity * np.exp(1j * stage._throws[disc])
+        throws = _complex(deviated.crank_errors[:, :, disc]) + tangential * deviated.crank_phases
+        across = np.conj(stage._crank_directions) / (stage.crank_circle * stage.cranks)
+        offsets = _complex(deviated.carrier_offsets) + _complex(deviated.disc_offsets[:, disc])
+        return cls(holes.mean(axis=1) + offsets, throws.mean(axis=1), (holes @ across).imag, throws @ across)
+
+    def at(self, phis: Array, lobes: int) -> tuple[Complex, Array]:
+        """Displacement in the world and turn (trials,)."""
+        carrier, throw = np.exp(-1j * phis / lobes), np.exp(1j * phis)
+        return carrier * self.carried + throw * self.thrown, self.turned + (throw * np.conj(carrier) * self.rocked).imag
+
+
+def _picked(own: Array, lobes: Places) -> Array:
+    """Values of lobes (trials, lobes) at (trials, pins) or (1, pins)."""
+    return own[:, lobes[0]] if len(lobes) == 1 else np.take_along_axis(own, lobes, axis=1)
+
+
+def _complex(points: Array) -> Complex:
+    return np.asarray(points[..., 0] + 1j * points[..., 1])
+
+
+def _plane(values: Complex) -> Array:
+    return np.stack([values.real, values.imag], axis=-1)

@@ -1,0 +1,25 @@
+"""RV reducers, as a mechanism: cycloid discs on crankshafts among pins, and the spur gears before them."""
+
+from typing import Final
+
+from tol3d.cycloid.grammar import measures, moves, parts, tolerances
+from tol3d.cycloid.grammar.published import PublishedCycloidStages
+from tol3d.scene.grammar import specs_in
+from tol3d.system.mechanism import Mechanism
+
+CYCLOID: Final = Mechanism(
+    name="cycloid",
+    parts=specs_in(parts),
+    tolerances=specs_in(tolerances),
+    moves=specs_in(moves),
+    measures=specs_in(measures),
+    published=PublishedCycloidStages,
+    includes=("gearing",),
+    engines=("exact",),
+    witness="fcl",
+    system="tol3d.cycloid.from_scene:rv_system",
+    summary="tol3d.cycloid.summary_types:SUMMARY_KINDS",
+    presenter="tol3d.cycloid.presenting",
+    requires=("python-fcl", "cadquery"),
+)
+"""RV reducers."""

@@ -1,0 +1,50 @@
+"""How RV reducers are shown: what a scene's reducer is."""
+
+from collections.abc import Mapping, Sequence
+from importlib import import_module
+from typing import TYPE_CHECKING, Any, Final
+
+if TYPE_CHECKING:
+    from tol3d.report.page import PageItem
+    from tol3d.report.presenter import Display, Draw, FurtherRow, Which
+    from tol3d.runs.run import Run
+    from tol3d.runs.summary.measure import MeasureSummary
+    from tol3d.runs.summary.run import RunSummary
+    from tol3d.simulate import Replay
+    from tol3d.study.simulation import Simulation
+
+
+class CycloidPresenter:
+    """The presenter of RV reducers; see `tol3d.report.presenter.Presenter`."""
+
+    def pictures(self, summary: "RunSummary") -> "Mapping[str, Draw]":
+        """None besides those of every run."""
+        return {}
+
+    def sections(self, summary: "RunSummary") -> "Sequence[PageItem]":
+        """Its cycloid stage by formula, published and by first principles."""
+        return _lazily("formulas").formula_blocks(summary)  # type: ignore[no-any-return]
+
+    def measure_rows(self, measure: "MeasureSummary", summary: "RunSummary") -> "Sequence[FurtherRow]":
+        """None."""
+        return ()
+
+    def check(self, simulation: "Simulation") -> "Sequence[PageItem]":
+        """What the reducer is, then what any system shows."""
+        return _lazily("tables").check_blocks(simulation)  # type: ignore[no-any-return]
+
+    def display(self, run: "Run", which: "Which", *, magnify: float) -> "Display":
+        """A build with its first pin in contact."""
+        return _lazily("shown_reducer").display(run, which, magnify=magnify)  # type: ignore[no-any-return]
+
+    def replayed(self, replay: "Replay", label: str) -> "Display":
+        """A trial that was replayed."""
+        return _lazily("shown_reducer").replayed_display(replay, label)  # type: ignore[no-any-return]
+
+
+def _lazily(module: str) -> Any:
+    """A module of this folder, imported when it is needed."""
+    return import_module(f"{__name__}.{module}")
+
+
+PRESENTER: Final = CycloidPresenter()

@@ -1,0 +1,129 @@
+"""A build of an RV reducer as it is shown, exported and moved: discs among their pins, where the first pin touches."""
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property, partial
+from importlib import import_module
+from typing import Any, Final
+
+import numpy as np
+
+from tol3d.cycloid.presenting.motions import MOTIONS, motion
+from tol3d.cycloid.shown import ShownReducer
+from tol3d.errors import InputError
+from tol3d.gearing.display import replayed_of
+from tol3d.gearing.placed import PlacedGear
+from tol3d.gearing.presenting.whole_trains import gear_body
+from tol3d.report.body import Body, Surface, World
+from tol3d.report.built_body import built_body
+from tol3d.report.motion import Motion
+from tol3d.report.presenter import View, Which
+from tol3d.runs.run import Run
+from tol3d.simulate import Replay, replayed
+from tol3d.solids import PosedGear, PosedPart, PosedShape
+from tol3d.system.stated import magnified
+
+DEFLECTION: Final = 0.02  # mm; of triangles off round surfaces
+TITLE_SIZE: Final = 13
+COLOURS: Final = {"ring": "#A4ACB5", "pin": "#6B747E", "carrier": "#8CC5A2", "crank": "#E39B86", "sun": "#B7A3D6"}
+PLANET_COLOUR: Final = "#D9A5C3"
+DISC_COLOURS: Final = ("#4682B4", "#E69F00", "#009E73", "#CC79A7")
+PINS: Final = "pins"
+
+
+@dataclass(frozen=True, eq=False)
+class RVDisplay:
+    """A build of a reducer; see `tol3d.report.presenter.Display`."""
+
+    label: str
+    shown: ShownReducer
+    notes: tuple[str, ...] = ()
+
+    motions = MOTIONS
+
+    @cached_property
+    def worlds(self) -> tuple[World, ...]:
+        """One world with every part."""
+        parts = self.shown.shapes.placed(self.shown.seated.places)
+        return (World(self.shown.own.name, tuple(map(_body, parts))),)
+
+    @cached_property
+    def seen(self) -> World:
+        """The same with all pins as one body, for pictures."""
+        bodies = self.worlds[0].bodies
+        pins = [body for body in bodies if _is_pin(body.name)]
+        joined = Body(PINS, np.eye(4), partial(_joined, pins), None, COLOURS["pin"])
+        return World(self.shown.own.name, (*(body for body in bodies if not _is_pin(body.name)), joined))
+
+    def view(self, close_up: str | None) -> View:
+        """All parts.
+
+        Raises:
+            InputError: a close-up was asked for.
+        """
+        if close_up is not None:
+            raise InputError(f"--mesh: nothing of an RV reducer is shown close up, not {close_up[:80]!r}")
+        return View((self._panel,))
+
+    def _panel(self, plotter: Any, width_by_height: float) -> None:
+        import_module("tol3d.report.whole").draw_whole(plotter, self.seen, width_by_height)
+        import_module("tol3d.report.drawn_solids").add_title(plotter, self.label, TITLE_SIZE)
+
+    def motion(self, name: str, frames: int | None) -> Motion:
+        """See `tol3d.report.motion.Movable`."""
+        return motion(self.shown, self.seen, name, frames)
+
+
+def _is_pin(name: str) -> bool:
+    return name.startswith("pin ") and name != "pin ring"
+
+
+def _joined(bodies: list[Body]) -> Surface:
+    """Bodies as one mesh in the world."""
+    counts = np.cumsum([0, *(len(body.mesh[0]) for body in bodies)])
+    triangles = [body.mesh[1] + first for body, first in zip(bodies, counts[:-1], strict=True)]
+    return np.concatenate([body.mesh[0] for body in bodies]), np.concatenate(triangles)
+
+
+def _body(part: PosedPart) -> Body:
+    if isinstance(part, PosedGear):
+        colour = COLOURS["sun"] if part.name == "sun" else PLANET_COLOUR
+        return gear_body(PlacedGear(part.name, part.gear, part.world_from_part, 0.0, 1.0), colour)
+    assert isinstance(part, PosedShape)
+    kind, _, number = part.name.rpartition(" ")
+    colour = DISC_COLOURS[(int(number) - 1) % len(DISC_COLOURS)] if kind == "disc" else COLOURS.get(kind or number, "")
+    colour = COLOURS["ring"] if part.name == "pin ring" else colour
+    return built_body(part.name, part.shape, part.world_from_part, colour, deflection=DEFLECTION)
+
+
+# builds -------------------------------------------------------------------------------------------
+
+
+def display(run: Run, which: Which, *, magnify: float) -> RVDisplay:
+    """A build of a run.
+
+    Raises:
+        InputError: no such build, or one that no pin touches.
+    """
+    if not (math.isfinite(magnify) and magnify >= 0.0):
+        raise InputError(f"magnify: expected a number of at least 0, got {magnify:g}")
+    label, seen = replayed_of(run, which)
+    if magnify == 1.0:
+        return replayed_display(seen, label)
+    again = replayed(seen.simulation, magnified(seen.simulation.system, seen.trials, magnify))
+    notes = (f"deviations magnified {magnify:g} times", *_left_out(again.build))
+    return RVDisplay(f"{label}-x{magnify:g}", again.build, notes)
+
+
+def replayed_display(seen: Replay, label: str) -> RVDisplay:
+    """A build that was replayed, under a label."""
+    return RVDisplay(label, seen.build, tuple(_left_out(seen.build)))
+
+
+def _left_out(shown: ShownReducer) -> Iterator[str]:
+    stage = shown.deviated.stage
+    if stage.lobe_pitch.any() or stage.lobe_profile.any():
+        yield "solids of discs have the nominal profile: errors of single lobes act, but are not drawn"
+    if shown.own.first is not None:
+        yield "gears of the first stage are drawn without their deviations"

@@ -1,0 +1,60 @@
+"""What a scene's RV reducer is, in tables."""
+
+import math
+from collections.abc import Sequence
+from typing import Final
+
+from tol3d.cycloid.formula_section import stages_by_formula
+from tol3d.cycloid.limits import largest_pin_radius
+from tol3d.cycloid.presenting.formulas import stage_blocks
+from tol3d.cycloid.rv_set import RVSet
+from tol3d.cycloid.system import RVSystem
+from tol3d.report.page import Heading, PageItem, Row, Table, line
+from tol3d.report.system_check import system_blocks
+from tol3d.study.simulation import Simulation
+
+ARC_SECONDS: Final = math.degrees(1.0) * 3.6  # that 1 um turns what is 1 mm away
+
+
+def check_blocks(simulation: Simulation) -> Sequence[PageItem]:
+    """Ratio, profile, levers and transmission error by formula, then what any system shows."""
+    system = simulation.system
+    assert isinstance(system, RVSystem)
+    own = system.own
+    formulas = stage_blocks(stages_by_formula(system))
+    return (*map(line, _words(own)), _levers(own), *formulas, *system_blocks(simulation))
+
+
+def _words(own: RVSet) -> list[str]:
+    profile, first = own.profile, own.first
+    stage = "the cranks are the input"
+    if first is not None:
+        backlash = f"normal backlash {1e3 * first.pair.normal_backlash:z.3f} µm"
+        stage = f"{first.sun} {first.teeth[0]} and {first.planet} {first.teeth[1]} teeth, {backlash}"
+    return [
+        f"{own.name}: {own.carrier} is the output, {own.ring} fixed; ratio {own.ratio}; {own.discs} discs, "
+        f"{own.cranks} cranks; {stage}",
+        f"{profile.lobes} lobes, {profile.pins} pins of radius {profile.pin_radius:g} mm on "
+        f"{profile.pin_circle_radius:g} mm, eccentricity {profile.eccentricity:g} mm: K = {profile.shortening:.6f}, "
+        f"largest lever {profile.pitch_radius:.4f} mm at {math.degrees(profile.best_phase):.4f}°, pin radius below "
+        f"{largest_pin_radius(profile):.4f} mm",
+        f"pins work whose lever is over {own.window:g} of the largest; with the input held, turns of a disc count "
+        f"{1 / (1 + own.rolling / profile.lobes):.5f} at the output",
+    ]
+
+
+def _levers(own: RVSet) -> Table:
+    radius, k = own.profile.pitch_radius, own.profile.shortening
+    rows = {
+        "disc displaced across": 1.0,
+        "pin outwards": math.sqrt(1 - k**2),
+        "pin round, lobe pitch": k,
+        "pin radius, lobe profile": 1.0,
+    }
+    per = {name: ARC_SECONDS * share / radius for name, share in rows.items()}
+    held = 1 + own.rolling / own.profile.lobes
+    return Table(
+        "what 1 µm does at the best pin",
+        [Heading("at the disc [″]"), Heading("at the output [″]")],
+        [Row(name, [f"{each:.4f}", f"{each / held:.4f}"]) for name, each in per.items()],
+    )

@@ -1,0 +1,118 @@
+"""The reducer that a scene means, or why nobody can build it: conditions with their numbers."""
+
+from tol3d.cycloid.grammar.moves.rv_reducer import RVReducerSpec
+from tol3d.cycloid.grammar.parts.crank_carrier import CrankCarrierSpec
+from tol3d.cycloid.grammar.parts.crankshaft import CrankshaftSpec
+from tol3d.cycloid.grammar.parts.cycloid_disc import CycloidDiscSpec
+from tol3d.cycloid.grammar.parts.pin_ring import PinRingSpec
+from tol3d.cycloid.limits import faults, lobes_fault
+from tol3d.cycloid.modification import Modification
+from tol3d.cycloid.profile import DiscProfile
+from tol3d.cycloid.rv_set import FirstStage, RVSet
+from tol3d.errors import GeometryError
+from tol3d.gearing.grammar.parts.gear import GearSpec
+from tol3d.gearing.model.pairs.spur_pair import cylindrical_gear
+from tol3d.gears import SpurGear, SpurPair
+from tol3d.scene import Scene
+from tol3d.scene.place import KeyPath
+
+
+def rv_set(scene: Scene) -> RVSet:
+    """The reducer of a scene.
+
+    Raises:
+        SceneError: not one reducer and nothing else, or one that cannot be put together.
+    """
+    reducers = scene.of(RVReducerSpec)
+    others = [name for name in scene.moves if name not in reducers]
+    if len(reducers) != 1 or others:
+        name = others[0] if others else list(reducers)[-1]
+        raise scene.refuse(("moves", name), f"expected one RV reducer and no other move, got {len(scene.moves)} moves")
+    ((name, spec),) = reducers.items()
+    used = {spec.pin_ring, spec.disc, spec.crankshaft, spec.carrier, spec.sun, spec.planet}
+    for part in scene.parts:
+        if part not in used:
+            raise scene.refuse(("parts", part), f"{part!r} takes part in no move; name it in {name!r} or take it out")
+    carrier, disc = scene.parts[spec.carrier], scene.parts[spec.disc]
+    assert isinstance(carrier, CrankCarrierSpec)
+    assert isinstance(disc, CycloidDiscSpec)
+    return RVSet(
+        name=name,
+        ring=spec.pin_ring,
+        disc=spec.disc,
+        crankshaft=spec.crankshaft,
+        carrier=spec.carrier,
+        profile=_profile(scene, spec),
+        discs=spec.discs,
+        cranks=spec.cranks,
+        crank_circle=carrier.radius.internal,
+        window=spec.window,
+        first=_first_stage(scene, name, spec, carrier.radius.internal),
+        width=None if disc.width is None else disc.width.internal,
+    )
+
+
+def _profile(scene: Scene, spec: RVReducerSpec) -> DiscProfile:
+    """The discs' profile.
+
+    Raises:
+        SceneError: it cannot be made, or does not run among the pins; at the field of the part that decides.
+    """
+    ring, disc, crank = scene.parts[spec.pin_ring], scene.parts[spec.disc], scene.parts[spec.crankshaft]
+    assert isinstance(ring, PinRingSpec)
+    assert isinstance(disc, CycloidDiscSpec)
+    assert isinstance(crank, CrankshaftSpec)
+    if (fault := lobes_fault(disc.lobes, ring.pins)) is not None:
+        raise scene.refuse(("parts", spec.disc, fault.field), fault.words)
+    profile = DiscProfile(
+        ring.pins,
+        ring.radius.internal,
+        ring.pin_radius.internal,
+        crank.eccentricity.internal,
+        Modification(disc.shift.internal, disc.offset.internal, disc.rotation.internal),
+    )
+    places: dict[str, KeyPath] = {
+        "pins": (spec.pin_ring, "pins"),
+        "pin_circle_radius": (spec.pin_ring, "radius"),
+        "pin_radius": (spec.pin_ring, "pin_radius"),
+        "eccentricity": (spec.crankshaft, "eccentricity"),
+    }
+    for fault in faults(profile):
+        raise scene.refuse(("parts", *places.get(fault.field, (spec.disc, fault.field))), fault.words)
+    return profile
+
+
+def _first_stage(scene: Scene, name: str, spec: RVReducerSpec, distance: float) -> FirstStage | None:
+    """Sun and planets.
+
+    Raises:
+        SceneError: they do not mesh at the radius of the circle of crank axes, or planets touch each other.
+    """
+    if spec.sun is None or spec.planet is None:
+        return None
+    if spec.sun == spec.planet:
+        raise scene.refuse(("moves", name, "planet"), f"expected another gear than the sun, got {spec.planet!r} twice")
+    sun, planet = (cylindrical_gear(scene, gear) for gear in (spec.sun, spec.planet))
+    assert isinstance(sun, SpurGear)
+    assert isinstance(planet, SpurGear)
+    _refuse_unlike(scene, spec)
+    try:
+        pair = SpurPair(sun, planet, distance)
+        pair.refuse_interference()
+    except GeometryError as error:
+        right = sun.module * (sun.teeth + planet.teeth) / 2
+        raise scene.refuse(
+            ("parts", spec.carrier, "radius"),
+            f"{spec.sun} and {spec.planet} do not mesh there: {error}; their reference circles touch at {right:.4f} mm",
+        ) from None
+    return FirstStage(spec.sun, spec.planet, pair)
+
+
+def _refuse_unlike(scene: Scene, spec: RVReducerSpec) -> None:
+    """Refuse gears that do not roll on each other."""
+    gears = [scene.parts[str(gear)] for gear in (spec.sun, spec.planet)]
+    for field in ("module", "pressure_angle"):
+        one, other = (getattr(gear, field) for gear in gears if isinstance(gear, GearSpec))
+        if one.internal != other.internal:
+            words = f"expected {one} as of {spec.sun!r}, its mate, got {other}"
+            raise scene.refuse(("parts", str(spec.planet), field), words)

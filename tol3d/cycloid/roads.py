@@ -1,0 +1,70 @@
+"""From deviations to what is read of an RV reducer: the same of both roads, which differ in how it turns."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tol3d.cycloid.measure import RVMeasure
+from tol3d.cycloid.rv_deviated import RVDeviated
+from tol3d.cycloid.rv_trials import RVTrials
+from tol3d.cycloid.statuses import NO_CONTACT
+from tol3d.cycloid.turning import Turned, Turning
+from tol3d.system.measure import Measure
+from tol3d.system.positions import Positions
+from tol3d.system.road import Answers
+from tol3d.system.trials import Trials
+
+Array = NDArray[np.float64]
+Curves = dict[tuple[Positions, int, float | None], Turned]
+
+
+@dataclass(frozen=True)
+class RVRoad:
+    """Implements Road."""
+
+    system: RVTrials
+    turning: Turning
+
+    @property
+    def chord_error(self) -> float:
+        """See Road."""
+        return 0.0
+
+    def answers(self, trials: Trials, measures: Sequence[Measure]) -> Answers:
+        """See Road."""
+        deviated = self.system.deviated(trials)
+        values: dict[str, Array] = {}
+        status: dict[str, NDArray[np.int8]] = {}
+        details: dict[str, NDArray[np.generic]] = {}
+        known: Curves = {}
+        for measure in measures:
+            own = self.system.rv_measures[measure.name]
+            forwards = self._turned(own, deviated, trials, own.sense, known)
+            values[own.name] = forwards.turns
+            if own.reading == "lost motion":
+                values[own.name] = forwards.turns - self._turned(own, deviated, trials, -1, known).turns
+            elif own.positions.over == "turn":
+                values[own.name] = forwards.turns - forwards.turns[:, :1]
+            lacking = np.asarray(np.isnan(values[own.name]).any(axis=1))
+            values[own.name] = np.where(lacking[:, None], np.nan, values[own.name])
+            status[own.name] = np.where(lacking, NO_CONTACT, 0).astype(np.int8)
+            details |= self._details(own, forwards)
+        return Answers(values, details=details, status=status)
+
+    def _turned(self, measure: RVMeasure, deviated: RVDeviated, trials: Trials, sense: int, known: Curves) -> Turned:
+        """How far the output turns at a measure's positions; measures of the same share it."""
+        key = measure.positions, sense, measure.deflection
+        if key not in known:
+            turns = self.system.turns(measure.positions, trials)
+            known[key] = self.turning.turned(deviated, turns, sense, measure.deflection)
+        return known[key]
+
+    def _details(self, measure: RVMeasure, found: Turned) -> Mapping[str, NDArray[np.generic]]:
+        """Disc and pin that touch, counted from 1, and pins near contact; of a curve, at its first position."""
+        disc, pin = np.divmod(found.places[:, 0], self.system.own.profile.pins)
+        details = {f"{measure.name}: disc": disc + 1, f"{measure.name}: pin": pin + 1}
+        if found.near is not None:
+            details[f"{measure.name}: pins near contact"] = found.near[:, 0]
+        return details

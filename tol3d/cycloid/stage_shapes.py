@@ -1,0 +1,168 @@
+"""All parts of an RV reducer as shapes, placed in one world."""
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tol3d.cycloid.contact import ContactStage
+from tol3d.cycloid.contact_kinematics import throws
+from tol3d.cycloid.profile import DiscProfile
+from tol3d.cycloid.shapes import Carrier, CrankSection, Crankshaft, CycloidDisc, DiscHoles, PinRing, RingPin
+from tol3d.cycloid.stage_places import Place, StagePlaces
+from tol3d.cycloid.walls import lobe_reach
+from tol3d.gears import SpurGear
+from tol3d.solids import PosedGear, PosedPart, PosedShape
+
+Array = NDArray[np.float64]
+
+WALL: Final = 0.08  # of the cranks' circle: between holes
+LARGEST_HOLE: Final = 0.8  # of it: a disc's bearing hole
+ECCENTRIC: Final = 0.7  # of a bearing hole; rollers fill the rest and are not drawn
+JOURNAL: Final = 0.85  # of what an eccentric leaves about the crank's axis
+SEAT: Final = 0.9  # of a bearing hole: the carrier's hole for a crank
+POST_ROOM: Final = 0.02  # of the cranks' circle: about a post, beyond the eccentricity
+WIDTH: Final = 0.15  # of the pins' circle: a disc
+GAP: Final = 0.1  # of a disc's width: between discs and flanges
+FLANGE: Final = 0.8  # of a disc's width
+LOBE_ROOM: Final = 0.1  # of a pin's radius: between lobes and the ring's bore
+RIM: Final = 2.0  # pin radii outside the pins
+
+
+@dataclass(frozen=True)
+class StageShapes:
+    """Shapes of an RV reducer.
+
+    Args:
+        discs: from the lowest on; lobes are clocked so that each meshes where its eccentrics point.
+        ring, pin, crank, carrier: the others; the ring's own frame is the world.
+        first: gears of the first stage, which lies above the carrier; or none.
+    """
+
+    discs: tuple[CycloidDisc, ...]
+    ring: PinRing
+    pin: RingPin
+    crank: Crankshaft
+    carrier: Carrier
+    first: tuple[SpurGear, SpurGear] | None = None
+
+    def placed(self, places: StagePlaces) -> tuple[PosedPart, ...]:
+        """Every part in the world, by names such as "pin 1", "disc 2" and "planet 3"; pins as thick as they are."""
+        return tuple(self._placed(places))
+
+    def _placed(self, places: StagePlaces) -> Iterator[PosedPart]:
+        yield PosedShape("pin ring", self.ring, np.eye(4))
+        for number, (place, grown) in enumerate(zip(places.pins, places.deviated.pin_radii[0], strict=True), start=1):
+            own = replace(self.pin, radius=self.pin.radius + float(grown)) if grown else self.pin
+            yield PosedShape(f"pin {number}", own, _pose(place))
+        step = self.discs[0].width * (1 + GAP)
+        for number, (disc, place) in enumerate(zip(self.discs, places.discs, strict=True)):
+            level = step * (number - (len(self.discs) - 1) / 2)
+            yield PosedShape(f"disc {number + 1}", disc, _pose(place, level))
+        yield PosedShape("carrier", self.carrier, _pose(places.carrier))
+        for number, place in enumerate(places.cranks, start=1):
+            yield PosedShape(f"crank {number}", self.crank, _pose(place))
+        if self.first is not None:
+            yield from self._first_stage(places, *self.first)
+
+    def _first_stage(self, places: StagePlaces, sun: SpurGear, planet: SpurGear) -> Iterator[PosedPart]:
+        """A sun tooth faces a space of each planet nominally; planets turn with their cranks, the sun stands."""
+        level = self.crank.start + sum(part.length for part in self.crank.sections) - planet.face_width / 2
+        ratio, carried = sun.teeth / planet.teeth, -places.phi / places.stage.profile.lobes
+        sun_turned = carried - (places.phi - carried) / ratio
+        yield PosedGear("sun", sun, _pose(Place(0j, sun_turned), level))
+        for number, crank in enumerate(places.cranks):
+            arm = carried + 2 * math.pi * number / len(places.cranks)
+            facing = arm + math.pi + math.pi / planet.teeth - ratio * (sun_turned - arm)
+            turned = Place(crank.at, facing + crank.turned - places.phi)
+            yield PosedGear(f"planet {number + 1}", planet, _pose(turned, level))
+
+
+def usual_shapes(
+    stage: ContactStage,
+    width: float | None = None,
+    crank_hole: float | None = None,
+    first: tuple[SpurGear, SpurGear] | None = None,
+) -> StageShapes:
+    """Shapes of a reducer of which only what acts is known; all else by the proportions above.
+
+    Args:
+        stage: what acts.
+        width: of a disc [mm].
+        crank_hole: diameter of the discs' crank holes [mm].
+        first: sun and planet.
+    """
+    profile, circle = stage.profile, stage.crank_circle
+    width = WIDTH * profile.pin_circle_radius if width is None else width
+    holes = _holes(stage, crank_hole)
+    gap, flange = GAP * width, FLANGE * width
+    length = stage.discs * width + (stage.discs - 1) * gap
+    rim = profile.pin_circle_radius + (1 + RIM) * profile.pin_radius
+    discs = (CycloidDisc(width, profile, holes, -throw / profile.lobes) for throw in throws(stage.discs).tolist())
+    return StageShapes(
+        tuple(discs),
+        PinRing(length, profile.pins, profile.pin_circle_radius, profile.pin_radius, _bore_radius(profile), rim),
+        RingPin(profile.pin_radius, length),
+        Crankshaft(tuple(_sections(stage, holes, width, first)), -length / 2 - gap - flange),
+        Carrier(
+            cranks=stage.cranks,
+            circle_radius=circle,
+            hole_diameter=SEAT * holes.crank_diameter,
+            post_diameter=holes.window_diameter - 2 * (profile.eccentricity + POST_ROOM * circle),
+            bore_diameter=holes.bore_diameter,
+            flange_diameter=2 * circle + holes.crank_diameter + 2 * WALL * circle,
+            flange_width=flange,
+            between=length + 2 * gap,
+        ),
+        first,
+    )
+
+
+def _sections(
+    stage: ContactStage, holes: DiscHoles, width: float, first: tuple[SpurGear, SpurGear] | None
+) -> Iterator[CrankSection]:
+    """Of a crankshaft: journal, eccentrics with a piece of journal between, journal, seat of a planet."""
+    gap, flange, own = GAP * width, FLANGE * width, stage.profile.eccentricity
+    eccentric = ECCENTRIC * holes.crank_diameter
+    journal = JOURNAL * (eccentric - 2 * own)
+    yield CrankSection(journal, flange + gap)
+    for number, throw in enumerate(throws(stage.discs).tolist()):
+        if number:
+            yield CrankSection(journal, gap)
+        yield CrankSection(eccentric, width, own, throw)
+    yield CrankSection(journal, flange + gap)
+    if first is not None:
+        planet = first[1]
+        yield CrankSection(journal, gap)
+        if planet.bore > 0.0:
+            yield CrankSection(planet.bore, planet.face_width)
+
+
+def _bore_radius(profile: DiscProfile) -> float:
+    """Of the ring between the pins [mm]: half of each pin is held, or as much as the lobes leave room for."""
+    reach, circle = lobe_reach(profile), profile.pin_circle_radius
+    if reach < circle - LOBE_ROOM * profile.pin_radius:
+        return circle
+    return (reach + circle + profile.pin_radius) / 2
+
+
+def _holes(stage: ContactStage, crank_hole: float | None) -> DiscHoles:
+    """Crank holes and windows as large as walls allow, and the bore that is left."""
+    circle = stage.crank_circle
+    wall = WALL * circle
+    outwards = 2 * (stage.profile.root_radius - wall - circle)
+    beside = 2 * circle * math.sin(math.pi / (2 * stage.cranks)) - wall
+    hole = min(outwards, beside, LARGEST_HOLE * circle) if crank_hole is None else crank_hole
+    window = min(hole, 2 * beside - hole)
+    return DiscHoles(stage.cranks, circle, hole, window, 2 * (circle - wall) - hole)
+
+
+def _pose(place: Place, level: float = 0.0) -> Array:
+    pose = np.eye(4)
+    cos, sin = math.cos(place.turned), math.sin(place.turned)
+    pose[:2, :2] = [[cos, -sin], [sin, cos]]
+    pose[:3, 3] = (place.at.real, place.at.imag, level)
+    return pose

@@ -1,0 +1,124 @@
+"""First contact of a cycloid stage by FCL: strips of the discs' CAD faces against round pins.
+
+Strips are ruled along z and pins stand along it, so a ball of the pin's radius at mid-height is as far off as the pin.
+FCL knows the distance of a ball from a triangle in closed form; that of a cylinder it iterates to some 1e-5 mm only.
+
+The carrier is turned by the least gap over lever, with nominal levers, until no gap is left. Strips are pulled into the
+disc by a slack, which is taken off again, so that a lobe which overlaps its pin a little has a negative gap. The chords
+of a strip lie inside the disc where it is convex and outside where it is concave: a gap errs by the strips' chord error
+either way. Errors of lobes move whole strips: pitch turns them, profile acts along the normal.
+"""
+
+import math
+from collections.abc import Iterable
+from dataclasses import dataclass, fields
+from functools import cached_property
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tol3d.cycloid.contact import BOTH, ContactStage, Touching
+from tol3d.cycloid.deviated import Deviated
+from tol3d.cycloid.stage_places import StagePlaces
+from tol3d.cycloid.strips import LobeStrips
+from tol3d.solids.distance import NearestPoints, Surface, mesh_surface, put, sphere
+
+Array = NDArray[np.float64]
+Places = NDArray[np.int64]
+
+SLACK: Final = 0.05  # mm; overlaps up to it are measured
+LAST_STEP: Final = 1e-7  # mm over the pitch radius
+MOST_STEPS: Final = 25
+NEARLY: Final = 3e-6  # rad; pins that to first order would touch so much later are asked again at the end only
+NEARLY_SHARE: Final = 0.05  # of the turn, on top
+NO_PIN: Final = -1
+
+
+@dataclass(frozen=True, eq=False)
+class StripContact:
+    """Made in the worker: FCL's objects do not pickle.
+
+    Args:
+        stage: the stage.
+        strips: of one disc whose lobes are not clocked.
+    """
+
+    stage: ContactStage
+    strips: LobeStrips
+
+    def touches(self, deviated: Deviated, phis: Array, senses: tuple[float, ...] = BOTH) -> Touching:
+        """See ContactStage.touches; no pins are counted."""
+        trials = len(deviated.pins)
+        positions = np.broadcast_to(phis, (trials, phis.shape[1]))
+        turns = np.full((*positions.shape, len(senses)), np.nan)
+        places = np.full(turns.shape, NO_PIN, dtype=np.int64)
+        for trial in range(trials):
+            own = Deviated(*(getattr(deviated, field.name)[trial : trial + 1] for field in fields(deviated)))
+            for position, phi in enumerate(positions[trial].tolist()):
+                for s, sense in enumerate(senses):
+                    turns[trial, position, s], places[trial, position, s] = self._first(own, phi, sense)
+        return Touching(turns, places, None)
+
+    def _first(self, deviated: Deviated, phi: float, sense: float) -> tuple[float, int]:
+        """The carrier's turn and the place of the pin that touches; NaN and NO_PIN where the search does not end."""
+        levers = self._levers(phi)
+        working = np.flatnonzero(sense * levers > self.stage.window * self.stage.profile.pitch_radius)
+        if not working.size:
+            return math.nan, NO_PIN
+        levers = levers * (1.0 + self.stage.rolling / self.stage.profile.lobes)
+        turn, asked, every = 0.0, working, True
+        for _ in range(MOST_STEPS):
+            gaps = self._gaps(StagePlaces(self.stage, deviated, phi, turn), asked.tolist())
+            allowed = gaps / levers[asked]
+            first = int(np.argmin(sense * allowed))
+            step = float(allowed[first])
+            if abs(step) * self.stage.profile.pitch_radius < LAST_STEP:
+                if every:
+                    return turn, int(asked[first])
+                asked, every = working, True
+                continue
+            turn += step
+            later = sense * (allowed - step)
+            asked, every = asked[later < NEARLY + NEARLY_SHARE * abs(step)], False
+        return math.nan, NO_PIN
+
+    def _gaps(self, at: StagePlaces, asked: Iterable[int]) -> Array:
+        """Between discs and pins [mm], by their places disc times pins + pin; not below -SLACK less errors of size."""
+        profile, own, discs, pins = self.stage.profile, at.deviated, at.discs, at.pins
+        found = []
+        for place in asked:
+            disc, pin = divmod(place, profile.pins)
+            throw = float(at.throws[disc])
+            u = 2 * math.pi * pin / profile.pins + (at.phi + throw) / profile.lobes
+            lobe = math.floor(u / profile.lobe_pitch) % profile.lobes
+            side = int(math.sin(profile.lobes * u) < 0.0)
+            turned = discs[disc].turned - throw / profile.lobes + lobe * profile.lobe_pitch
+            turned += own.lobe_pitch[0, disc, lobe] * profile.shortening / profile.pitch_radius
+            centre = (pins[pin].at - discs[disc].at) * np.exp(-1j * turned)
+            put(self._pin, np.eye(3), np.array([centre.real, centre.imag, 0.0]))
+            distance = self._nearest.of(self._flanks[side], self._pin).distance
+            found.append(distance - SLACK - own.lobe_profile[0, disc, lobe] - own.pin_radii[0, pin])
+        return np.array(found)
+
+    def _levers(self, phi: float) -> Array:
+        """Nominal levers of all discs' pins (discs pins,) [mm], positive where they stop counter-clockwise turning."""
+        profile = self.stage.profile
+        around = 2 * math.pi * np.arange(profile.pins) / profile.pins
+        throws = 2 * math.pi * np.arange(self.stage.discs) / self.stage.discs
+        return -profile.lever(around + (phi + throws[:, None]) / profile.lobes).ravel()
+
+    @cached_property
+    def _flanks(self) -> tuple[Surface, Surface]:
+        return (
+            mesh_surface(*self.strips.right.mesh(SLACK)),
+            mesh_surface(*self.strips.left.mesh(SLACK)),
+        )
+
+    @cached_property
+    def _pin(self) -> Surface:
+        return sphere(self.stage.profile.pin_radius)
+
+    @cached_property
+    def _nearest(self) -> NearestPoints:
+        return NearestPoints()

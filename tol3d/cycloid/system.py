@@ -1,0 +1,128 @@
+"""An RV reducer as a study sees it."""
+
+from collections.abc import Hashable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from importlib import import_module
+from typing import Any, ClassVar, Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tol3d.cycloid.contact_kernel import first_contacts
+from tol3d.cycloid.formula_section import stages_by_formula
+from tol3d.cycloid.neglected import neglected
+from tol3d.cycloid.problems import problems_of
+from tol3d.cycloid.regressors import regress_touching
+from tol3d.cycloid.roads import RVRoad
+from tol3d.cycloid.rv_trials import RVTrials
+from tol3d.cycloid.shown import ShownReducer
+from tol3d.cycloid.stage_shapes import usual_shapes
+from tol3d.cycloid.statuses import STATUSES
+from tol3d.cycloid.strips import lobe_strips
+from tol3d.cycloid.turn_regressors import TAKEN, regress_over_turn
+from tol3d.cycloid.turning import ExactTurning, LinearTurning
+from tol3d.system.contributor import Contributor
+from tol3d.system.measure import Measure
+from tol3d.system.pooled import PooledTerms
+from tol3d.system.road import ANALYTIC_ROAD, Road, RoadKind
+from tol3d.system.statuses import Statuses
+from tol3d.system.system import Columns, KeyPath, Published
+from tol3d.system.trials import Trials
+
+Array = NDArray[np.float64]
+
+FCL: Final = "fcl"
+WITNESS: Final = "tol3d.cycloid.witness"  # it loads FCL, in the worker
+ROADS: Final[Mapping[str, RoadKind]] = {
+    "exact": RoadKind("kernels", compiled=True, contacts_per_minute=900_000_000),
+    FCL: RoadKind("discs: solid and measuring strips", threads=False, witness=True, contacts_per_minute=800_000),
+    ANALYTIC_ROAD: RoadKind("model"),
+}
+
+
+@dataclass(frozen=True)
+class RVSystem(RVTrials):
+    """Implements System.
+
+    Args:
+        width: of a disc where it is shown [mm]; None: a usual one.
+        crank_hole: diameter of the discs' crank holes there [mm]; None: as large as walls allow.
+        profile_steps: of the strips of a flank that FCL measures.
+    """
+
+    width: float | None = None
+    crank_hole: float | None = None
+    profile_steps: int = 120
+
+    roads: ClassVar[Mapping[str, RoadKind]] = ROADS
+    statuses: ClassVar[Statuses] = STATUSES
+
+    def problems(self) -> Iterator[tuple[KeyPath, str]]:
+        """See System."""
+        return problems_of(self)
+
+    def describe(self, measure: Measure) -> Mapping[str, Any]:
+        """See System."""
+        own = self.rv_measures[measure.name]
+        order = {"order": int(own.spectrum.orders[0])} if own.take == "harmonic" and own.spectrum else {}
+        return {"kind": own.kind, "of": self.own.name, **order}
+
+    def is_compiled(self, road: str) -> bool:
+        """See System."""
+        return road != "exact" or first_contacts.kept
+
+    def materials(self, road: str) -> Any:
+        """See System: the strips of a disc's solid, for FCL."""
+        return (
+            lobe_strips(usual_shapes(self.own.contact, self.width, self.crank_hole).discs[0], self.profile_steps)
+            if road == FCL
+            else None
+        )
+
+    def road(self, name: str, materials: Any) -> Road:
+        """See System."""
+        if name == FCL:
+            made: Road = import_module(WITNESS).witness(self, materials)
+            return made
+        return RVRoad(self, LinearTurning(self.own) if name == ANALYTIC_ROAD else ExactTurning(self.own))
+
+    def cost(self, measures: Sequence[Measure]) -> int:
+        """Every pin of every disc at each position, for each sense; measures of one curve share them; see System."""
+        read = {
+            (own.positions, sense, own.deflection)
+            for own in (self.rv_measures[measure.name] for measure in measures)
+            for sense in ((1, -1) if own.reading == "lost motion" else (own.sense,))
+        }
+        pins = self.own.profile.pins * self.own.discs
+        return sum(positions.in_a_trial for positions, _, _ in read) * pins
+
+    def regressor_key(self, measure: Measure) -> Hashable:
+        """Of its own: contributors are regressed by what they do to it."""
+        return measure.name
+
+    def regress(
+        self, measure: Measure, contributors: Sequence[Contributor], columns: Columns, rows: Mapping[str, Array]
+    ) -> None:
+        """See System: by what touches at the positions that are taken; of a harmonic and a curve by mean slopes."""
+        own = self.rv_measures[measure.name]
+        if own.positions.in_a_trial == 1:
+            regress_touching(self, own, contributors, columns, rows)
+        elif own.take in TAKEN:
+            regress_over_turn(self, own, contributors, columns, rows)
+        else:
+            super().regress(measure, contributors, columns, rows)
+
+    def neglected(self, measure: Measure, trials: Trials) -> Mapping[str, Array]:
+        """See System."""
+        return neglected(self, self.rv_measures[measure.name], trials)
+
+    def sections(self, terms: Mapping[str, Mapping[str, PooledTerms]], published: Published) -> Mapping[str, Any]:
+        """Its cycloid stage by formula; see System."""
+        found = stages_by_formula(self)
+        return {"cycloid_stages": found} if found else {}
+
+    def display(self, trials: Trials, road: Road) -> ShownReducer:
+        """Its parts in the first trial, see System."""
+        turns = float(trials.positions[self.own.name][0])
+        deviated = self.deviated(trials.part(0, 1))
+        return ShownReducer(self.own, deviated, turns, self.width, self.crank_hole)

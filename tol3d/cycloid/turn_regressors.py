@@ -1,0 +1,89 @@
+"""What a measure of a turn of an RV reducer sees of contributors: the part that each has in it, trial by trial.
+
+The output's turn at a position is a sum of parts, one of each contributor by the rates of the pin and planet that touch
+there, and of what the modification leaves at that pin. What is taken of a turn adds and subtracts turns at positions
+that are found anew of each trial. A contributor's part is its regressor; its share is the covariance of its part with
+the measure.
+"""
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tol3d.cycloid.measure import RVMeasure
+from tol3d.cycloid.rv_deviated import RVDeviated
+from tol3d.cycloid.rv_trials import RVTrials
+from tol3d.cycloid.turning import LinearTurning, Turned
+from tol3d.system.contributor import Contributor
+from tol3d.system.system import Columns
+from tol3d.system.taken import ROWS_AT_ONCE
+from tol3d.system.trials import Trials
+
+Array = NDArray[np.float64]
+
+TAKEN = ("min", "max", "range")  # a harmonic would take the rates at every position
+
+
+def regress_over_turn(
+    system: RVTrials,
+    measure: RVMeasure,
+    contributors: Sequence[Contributor],
+    columns: Columns,
+    rows: Mapping[str, Array],
+) -> None:
+    """Write contributors' rows (regressors, trials) of an extreme or a range, first its part; see System.regress."""
+    values = {own.name: _values(own, columns) for own in system.contributors}
+    deviations = np.concatenate([values[own.name] for own in system.contributors], axis=1)
+    for own in contributors:
+        rows[own.name][...] = 0.0
+    at_once = max(1, ROWS_AT_ONCE // measure.positions.in_a_trial)
+    for first in range(0, len(deviations), at_once):
+        part = slice(first, first + at_once)
+        deviated = system.deviated(Trials(deviations[part], {}))
+        weights, rates = taken_rates(system, measure, deviated)
+        trials, positions = np.nonzero(weights)
+        for own in contributors:
+            off = values[own.name][part] - np.array(own.draw.mean(turning=False))
+            terms = weights[trials, positions] * rates.term(system.acts[own.name], off[trials])
+            rows[own.name][0, part] = measure.per_internal * np.bincount(trials, terms, minlength=len(off))
+
+
+def taken_rates(system: RVTrials, measure: RVMeasure, deviated: RVDeviated) -> tuple[Array, RVDeviated]:
+    """What a measure takes of each trial's turns by the analytic road.
+
+    Returns:
+        Weights of the turns (trials, positions), most of them 0, and rates of those that are not, in their order.
+    """
+    turns = fixed_turns(measure)
+    road = LinearTurning(system.own)
+    found = road.turned(deviated, turns, measure.sense)
+    weights = weights_of(measure, found.turns)
+    trials, positions = np.nonzero(weights)
+    places = np.broadcast_to(found.places, weights.shape)[trials, positions][:, None]
+    planets = np.broadcast_to(found.planets, weights.shape)[trials, positions][:, None]
+    at = Turned(found.turns[trials, positions][:, None], places, planets)
+    return weights, road.rates(deviated.disc_tilts[trials], turns[0, positions], at, measure.sense)
+
+
+def fixed_turns(measure: RVMeasure) -> Array:
+    """Turns of the output (1, positions) at which every trial is read."""
+    assert measure.positions.fixed is not None
+    return np.array([measure.positions.fixed]) / (2 * np.pi)
+
+
+def weights_of(measure: RVMeasure, turns: Array) -> Array:
+    """What a measure takes of turns (trials, positions), which are read from the first on, is their sum times these."""
+    found, rows = np.zeros_like(turns), np.arange(len(turns))
+    if measure.take in ("max", "range"):
+        found[rows, turns.argmax(axis=1)] += 1.0
+    if measure.take in ("min", "range"):
+        found[rows, turns.argmin(axis=1)] += -1.0 if measure.take == "range" else 1.0
+    if measure.take != "range":
+        found[:, 0] -= 1.0
+    return found
+
+
+def _values(contributor: Contributor, columns: Columns) -> Array:
+    read = (np.asarray(columns[name], dtype=np.float64) for name in contributor.columns)
+    return np.stack([own * contributor.per_unit for own in read], axis=1)

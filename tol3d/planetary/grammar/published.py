@@ -1,0 +1,52 @@
+"""What others found of planetary sets."""
+
+from collections.abc import Iterator, Mapping
+from typing import TYPE_CHECKING
+
+from pydantic import Field
+
+from tol3d.planetary.grammar.moves.planetary import PlanetarySpec
+from tol3d.scene.name import Name, Remark
+from tol3d.scene.nearest import hint
+from tol3d.scene.place import KeyPath
+from tol3d.scene.published import PublishedFigures
+from tol3d.scene.published.figures import Figure, NotNegative
+from tol3d.strict import Strict
+
+if TYPE_CHECKING:
+    from tol3d.scene.schema import Scene
+
+
+class PublishedEfficiency(Strict):
+    """Of a set [%]."""
+
+    forward_percent: Figure | None = Field(default=None, description="driven at the input [%]")
+    backward_percent: Figure | None = Field(default=None, description="driven at the output [%]")
+
+
+class PublishedPlanetarySet(Strict):
+    """A planetary set: its efficiencies, however they were found."""
+
+    ratio: Figure | None = None
+    friction: NotNegative | None = Field(default=None, description="coefficient of friction of the teeth")
+    meshes_percent: Mapping[Name, Figure] = Field(
+        default_factory=dict, description="efficiency of each mesh, by its central gear [%]"
+    )
+    efficiency: PublishedEfficiency | None = Field(default=None, description="measured, or by a balance of torques")
+    efficiency_by_formula: PublishedEfficiency | None = Field(default=None, description="by a closed form")
+    description: Remark = Field(default="", description="what must be known of these numbers")
+
+
+class PublishedPlanetarySets(PublishedFigures):
+    """What others found of planetary sets."""
+
+    planetary_sets: Mapping[Name, PublishedPlanetarySet] = Field(
+        default_factory=dict, description="planetary sets of the scene"
+    )
+
+    def problems(self, scene: "Scene") -> Iterator[tuple[KeyPath, str]]:
+        """Sets that the scene does not have."""
+        sets = scene.of(PlanetarySpec)
+        for name in self.planetary_sets:
+            if name not in sets:
+                yield ("planetary_sets", name), f"expected a planetary set, got {name!r}{hint(name, sets)}"

@@ -1,0 +1,134 @@
+"""A planetary set between two shafts of a train."""
+
+import math
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import cached_property
+from typing import ClassVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tol3d.gearing.links import FreeTurn, LinkTrials, StatedLink
+from tol3d.numerics.programme import NO_ROOM, ranges
+from tol3d.planetary.contact import Contact, seated_ranges
+from tol3d.planetary.deviated import Acts, Deviated
+from tol3d.planetary.planetary_set import PlanetarySet
+from tol3d.planetary.problems import problems_at
+from tol3d.planetary.shown import Made, ShownSet, shown_set
+from tol3d.planetary.stack_up import StackUp
+from tol3d.planetary.stack_up_curves import StackUpCurves
+from tol3d.system.system import KeyPath
+from tol3d.system.taken import ROWS_AT_ONCE
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, kw_only=True)
+class SetLink(StatedLink):
+    """A set whose input and output turn with shafts of a train, its third shaft held in the world.
+
+    Its gears stand as those of a set by itself do, its output at 0 where the driver is at 0. They are read where the
+    driver stands nominally: by how little the play of the stages before turns it more, eccentric teeth do not notice.
+
+    Args:
+        own: the set.
+        made: its gears by their names, nominal, to be shown.
+        height: where its first planet gear's middle lies along the driver's z [mm].
+        actions: what each contributor acts on, by its name.
+        friction: coefficient of friction of its teeth; None where it is not given.
+    """
+
+    kind: ClassVar[str] = "planetary_set"
+    has_middle: ClassVar[bool] = True
+    unfollowed: ClassVar[str] = (
+        "whose error recurs with turns of its output, not of the motor (planetary_transmission_error reads it, in a "
+        "scene of its own)"
+    )
+    compares: ClassVar[bool] = True
+    housed: ClassVar[bool] = False
+
+    own: PlanetarySet
+    made: Made
+    height: float
+    actions: tuple[tuple[str, Acts], ...]
+    friction: float | None = None
+
+    @property
+    def turns(self) -> Fraction:
+        """Turns of the input until all teeth meet again as they did."""
+        return self.own.period * abs(self.own.ratio)
+
+    @property
+    def contacts(self) -> int:
+        """One for each mesh of each planet."""
+        return self.own.planets * len(self.own.meshes)
+
+    def is_compiled(self) -> bool:
+        """See StatedLink."""
+        return bool(ranges.kept and seated_ranges.kept)
+
+    # its play ---------------------------------------------------------------------------------------
+
+    def exact(self, seen: LinkTrials) -> FreeTurn:
+        """The free turn of the output with all gears placed."""
+        return self._free(Contact(self.own), seen)
+
+    def analytic(self, seen: LinkTrials) -> FreeTurn:
+        """The same to first order."""
+        return self._free(StackUp(self.own), seen)
+
+    def _free(self, road: StackUp | Contact, seen: LinkTrials) -> FreeTurn:
+        own, deviated = self.own, self.deviated(seen)
+        stands = own.opposite(own.output)
+        found = [road.free(deviated, turns, own.output, stands) for turns in self.output_turns(seen).T]
+        jams = np.stack([free.status == NO_ROOM for free in found], axis=1)
+        lacking = np.stack([free.lacking for free in found], axis=1)
+        ends = np.stack([free.ends for free in found], axis=1)
+        play = np.where(jams, -2 * lacking / own.arm(own.output), ends[..., 1] - ends[..., 0])
+        return FreeTurn(play, np.where(jams, 0.0, ends.mean(axis=-1)), jams)
+
+    def deviated(self, seen: LinkTrials) -> Deviated:
+        """What its gears and pins deviate by."""
+        found = Deviated.nothing(self.own, len(seen))
+        for contributor in seen.contributors:
+            found.add(self.own, self._acts[contributor.name], seen.deviations[contributor.name])
+        return found
+
+    def output_turns(self, seen: LinkTrials) -> Array:
+        """Turns of the output (trials, positions) where the driver stands nominally."""
+        return np.ascontiguousarray(seen.angles / (2 * math.pi) * float(self.rate))
+
+    @cached_property
+    def _acts(self) -> Mapping[str, Acts]:
+        return dict(self.actions)
+
+    def shown(self, seen: LinkTrials) -> ShownSet:
+        """Its gears in the first trial, in a frame at the driver's origin that rests, its height not counted."""
+        return shown_set(self.own, self.made, self.deviated(seen), float(self.output_turns(seen)[0, 0]))
+
+    # what acts on it --------------------------------------------------------------------------------
+
+    def parts(self, seen: LinkTrials, means: Mapping[str, Array]) -> Mapping[str, Array]:
+        """By the contacts that are met in each trial, to first order; see StatedLink, and regressors.py."""
+        own, stands, found = self.own, self.own.opposite(self.own.output), []
+        for first in range(0, len(seen), ROWS_AT_ONCE):
+            piece = seen.part(first, first + ROWS_AT_ONCE)
+            turns, deviated = self.output_turns(piece)[:, :1], self.deviated(piece)
+            senses = ((end, np.full((len(piece), 1), 2.0 * end - 1.0)) for end in range(2))
+            low, high = (
+                StackUpCurves(own).slopes(deviated, turns, own.output, stands, end, sign) for end, sign in senses
+            )
+            slopes = low.plus(high)
+            found.append(
+                {
+                    name: (slopes.of(own, self._acts[name]) * (deviations - means[name])).sum(axis=1)
+                    for name, deviations in piece.deviations.items()
+                }
+            )
+        return {name: np.concatenate([own[name] for own in found]) for name in seen.deviations}
+
+    def problems(self, mean: LinkTrials) -> Iterator[tuple[KeyPath, str]]:
+        """Meshes that overlap at the mean build, then load paths of several planets that do."""
+        return problems_at(self.own, self.deviated(mean), self.own.output)

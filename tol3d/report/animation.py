@@ -1,0 +1,210 @@
+"""A motion as moving pictures: drawn off screen frame by frame, written as one file."""
+
+import io
+from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import Any, Final
+
+import numpy as np
+import pyvista as pv
+from numpy.typing import NDArray
+from PIL import Image, ImageColor
+
+from tol3d.errors import InputError, unwritable
+from tol3d.report.camera import look
+from tol3d.report.drawn_solids import (
+    EDGE_COLOUR,
+    add_body,
+    add_dots,
+    add_title,
+    set_background,
+)
+from tol3d.report.motion import Motion, Shot, motion_of
+from tol3d.report.presenter import Display, Which, presenter_of, require_bodies
+from tol3d.report.view import choose_window
+from tol3d.runs.atomic_write import write_whole
+from tol3d.runs.run import Run
+
+Array = NDArray[np.float64]
+Pictures = Sequence[Image.Image]
+
+ANIMATIONS: Final = (".gif", ".png", ".webp")
+FRAME_SIZE: Final = (960, 640)  # pixels
+LEFT_SHARE: Final = 2 / 3  # of the width, the larger picture
+SECONDS: Final = 0.08  # a frame
+HELD: Final = 8  # frames that the last one of a motion that goes back is shown
+COLOURS: Final = 64  # of a GIF; few enough for small files, enough for shaded solids
+SAMPLED: Final = 5  # frames from which they are chosen
+TITLE_SIZE, CAPTION_SIZE = 8, 11
+NEAREST: Final = 0.1  # of the way from the eye to what is seen: nothing that is drawn is nearer
+MARK_RADIUS: Final = 5.5  # pixels
+
+
+def animate_run(
+    run: Run,
+    which: Which,
+    path: Path,
+    *,
+    motion: str | None = None,
+    frames: int | None = None,
+    magnify: float = 1.0,
+    presenter: str | None = None,
+) -> tuple[str, ...]:
+    """Write moving pictures of a build of a run; needs no display.
+
+    Args:
+        run: a finished run.
+        which: a trial, or "worst", "nominal", "mean".
+        path: the file, whose ending says what is written: .gif, .png (animated) or .webp.
+        motion: what moves; None: the first motion there is.
+        frames: how many; None: as many as suit the motion.
+        magnify: scales the deviations and simulates again.
+        presenter: import path of what shows the system; by default that of the run's measures.
+
+    Returns:
+        what the user should know, such as the magnification in use.
+
+    Raises:
+        InputError: no such build or motion, nothing that moves, or the file cannot be written.
+    """
+    if path.suffix.lower() not in ANIMATIONS:
+        raise InputError(f"{path}: expected moving pictures ending in {', '.join(ANIMATIONS)}")
+    if not path.parent.is_dir():
+        raise InputError(f"{path}: there is no folder {path.parent}")
+    display = presenter_of(run.found, presenter).display(run, which, magnify=magnify)
+    require_bodies(display)
+    shown = motion_of(display, motion, frames)
+    choose_window(needs_display=False)
+    content = encoded(shown, pictures(shown, display), path.suffix.lower())
+    try:
+        write_whole(path, content)
+    except OSError as error:
+        raise unwritable(path, error, "choose another file") from None
+    return (*display.notes, *shown.notes)
+
+
+def encoded(motion: Motion, drawn: Iterator[Image.Image], suffix: str) -> bytes:
+    """Moving pictures as the content of a file.
+
+    Args:
+        motion: whose frames are drawn.
+        drawn: each frame once, in their order.
+        suffix: one of ANIMATIONS.
+    """
+    kept = list(drawn)
+    if suffix == ".gif":
+        kept = list(_few_colours(kept, [*motion.colours.values(), EDGE_COLOUR, "#FFFFFF"]))
+    played = motion.played
+    lasts = [1000 * SECONDS * (HELD if motion.back and k in (0, len(kept) - 1) else 1) for k in played]
+    first, *others = [kept[k] for k in played]
+    options: dict[str, Any] = {
+        ".gif": {"format": "GIF", "optimize": False, "disposal": 1},
+        ".png": {"format": "PNG", "default_image": False},
+        ".webp": {"format": "WEBP", "quality": 80, "method": 4},
+    }[suffix]
+    stream = io.BytesIO()
+    first.save(stream, save_all=True, append_images=others, duration=[round(own) for own in lasts], loop=0, **options)
+    return stream.getvalue()
+
+
+def _few_colours(drawn: Pictures, exact: Sequence[str]) -> Iterator[Image.Image]:
+    """Pictures in the colours of some of them and some exact ones, "#RRGGBB": what stands still stays to the pixel.
+
+    They are not dithered: noise that changes from frame to frame would triple the file.
+    """
+    some = [np.asarray(drawn[k]) for k in np.unique(np.linspace(0, len(drawn) - 1, SAMPLED).astype(int))]
+    common = Image.fromarray(np.concatenate(some)).quantize(COLOURS, method=Image.Quantize.MEDIANCUT)
+    palette = Image.new("P", (1, 1))
+    own = (common.getpalette() or [])[: 3 * COLOURS]
+    palette.putpalette([*own, *(part for colour in exact for part in ImageColor.getrgb(colour))])
+    for picture in drawn:
+        yield picture.quantize(palette=palette, dither=Image.Dither.NONE)
+
+
+def pictures(motion: Motion, display: Display) -> Iterator[Image.Image]:
+    """Each frame of a motion, drawn.
+
+    Args:
+        motion: whose.
+        display: of the build that moves.
+    """
+    several = len(motion.shots) > 1
+    plotter = pv.Plotter(
+        off_screen=True,
+        window_size=list(FRAME_SIZE),
+        shape=f"1|{len(motion.shots) - 1}" if several else (1, 1),
+        splitting_position=LEFT_SHARE if several else None,
+        border=several,
+    )
+    plotter.enable_anti_aliasing("ssaa", all_renderers=several)
+    try:
+        actors = [_begun(plotter, motion, place, display.label) for place in range(len(motion.shots))]
+        for number in range(len(motion.frames)):
+            for place, own in enumerate(actors):
+                _move(plotter, motion, place, number, own)
+            plotter.render()
+            yield Image.fromarray(np.asarray(plotter.screenshot(return_img=True)))
+    finally:
+        plotter.close()
+
+
+def _chosen(plotter: pv.Plotter, motion: Motion, place: int) -> Shot:
+    if len(motion.shots) > 1:
+        plotter.subplot(place)
+    return motion.shots[place]
+
+
+def _begun(plotter: pv.Plotter, motion: Motion, place: int, label: str) -> Mapping[str, Sequence[pv.Actor]]:
+    """Draw the bodies of a shot where they stand in the world; what is drawn of each, by its name."""
+    shot = _chosen(plotter, motion, place)
+    set_background(plotter)
+    found = {}
+    for body in motion.world.bodies:
+        if shot.shows([body.name]):
+            before = set(plotter.renderer.actors)
+            add_body(plotter, body)
+            found[body.name] = [actor for name, actor in plotter.renderer.actors.items() if name not in before]
+    add_title(plotter, f"{label}   {shot.title}" if place == 0 else shot.title, TITLE_SIZE)
+    if place == 0:
+        _add_legend(plotter, motion.colours)
+    return found
+
+
+def _add_legend(plotter: pv.Plotter, colours: Mapping[str, str]) -> None:
+    """What marks are, in the upper right corner, below each other."""
+    for row, (text, colour) in enumerate(colours.items()):
+        actor = plotter.add_text(
+            f" {text} ", position=(0.99, 0.975 - 0.045 * row), viewport=True, font_size=TITLE_SIZE, color="white"
+        )
+        actor.prop.justification_horizontal, actor.prop.justification_vertical = "right", "top"
+        actor.prop.background_color, actor.prop.background_opacity = colour, 1.0
+
+
+def _move(
+    plotter: pv.Plotter, motion: Motion, place: int, number: int, actors: Mapping[str, Sequence[pv.Actor]]
+) -> None:
+    """Put the bodies of a shot where they stand in a frame, and what is marked there."""
+    shot, frame = _chosen(plotter, motion, place), motion.frames[number]
+    for body in motion.world.bodies:
+        if body.name in actors and body.name in frame.poses:
+            moved = frame.poses[body.name] @ np.linalg.inv(body.world_from_part)
+            for actor in actors[body.name]:
+                actor.user_matrix = moved
+    own = shot.look(number)
+    wide, tall = plotter.renderer.GetSize()
+    high = max(own.high, own.wide * tall / wide)
+    look(plotter, own.middle, high, own.towards, own.up)
+    radius = MARK_RADIUS * 2 * high / tall
+    for what, colour in motion.colours.items():
+        points = [mark.point for mark in frame.marks if mark.what == what and shot.shows(mark.of)]
+        # before everything: one looks along parallels, so that they are seen where they are
+        places = [point + plotter.renderer.length * own.towards for point in points]
+        add_dots(plotter, f"{what}, {place}", places, radius, colour)  # pyvista has one namespace for all renderers
+    if place == 0:
+        caption = plotter.add_text(
+            f" {frame.caption} ", position="lower_left", font_size=CAPTION_SIZE, name="caption", render=False
+        )
+        caption.prop.color, caption.prop.background_color = "white", EDGE_COLOUR
+        caption.prop.background_opacity = 0.9
+    distance = float(np.linalg.norm(np.array(plotter.camera.position) - own.middle))
+    plotter.camera.clipping_range = (NEAREST * distance, 2 * distance)  # marks lie far before the bodies
