@@ -114,17 +114,14 @@ class KindsPage:
             for word in words(next(each for each in paragraphs if start in each))
         }
 
-    @property
-    def section_kinds(self) -> list[tuple[str, str]]:
-        """Every section with each of its kinds."""
-        return [(section, kind) for section in SECTIONS for kind in self.kinds(section)]
-
     def unnamed(self, section: str, kind: str) -> set[str]:
         """Fields of a kind that neither its row nor what its section says of all names."""
         fields = set(self.kinds(section)[kind]["properties"]) - {"kind"}
         return fields - words(self.row(section, kind)) - self.common_words(section)
 
     def strange(self, section: str, kind: str) -> set[str]:
-        """Words of a kind's row that are none of its fields and values, nor kinds."""
+        """Words of a kind's row that are none of its fields and values, nor kinds, nor fields of the part it is of."""
         kinds = {other for each in SECTIONS for other in self.kinds(each)}
-        return words(self.row(section, kind)) - set(self.vocabulary(self.kinds(section)[kind])) - kinds
+        of_parts = {field for part in self.kinds("parts").values() for field in part["properties"]}
+        known = set(self.vocabulary(self.kinds(section)[kind])) | kinds
+        return words(self.row(section, kind)) - known - (of_parts if section != "parts" else set())

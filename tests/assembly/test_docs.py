@@ -7,7 +7,8 @@ from typing import Any, get_args
 
 import pytest
 from fixtures import Command
-from kinds_page import KindsPage, words
+from kinds_page import words
+from mechanism_pages import ASSEMBLIES
 from places import ROOT, SCENES
 from ruamel.yaml import YAML
 from said_fields import fields_said, fields_within, unsaid
@@ -24,18 +25,11 @@ from tol3d.scene import Grammar
 from tol3d.scene.schema import SECTIONS
 from tol3d.units import FACTORS
 
-DOCS = (ROOT / "docs" / "assemblies.md").read_text("utf-8")
+PAGE = ASSEMBLIES.kinds
+DOCS, SCHEMA = PAGE.text, PAGE.schema
 KINDS = Grammar((ASSEMBLY,))
-SCHEMA: Mapping[str, Any] = KINDS.scene.model_json_schema()
 WORDS = "What the words mean"
 OWN = ("tol3d.assembly", "tol3d.scene.temperature")  # modules of its kinds
-COMMON = {
-    "tolerances": ["Each has `kind` and, if you like, `description`"],
-    "moves": ["A pair has `from`"],
-    "measures": ["Each has `kind` and may have `lower_limit`"],
-}
-PAGE = KindsPage(DOCS, SCHEMA, COMMON)
-QUOTED = re.findall(r"```yaml\n(.*?)```", DOCS, re.DOTALL)
 TABLES = re.findall(r"```text\n([^\n]*analytic.*?)```", DOCS, re.DOTALL)
 
 
@@ -87,7 +81,7 @@ FEATURES, LAWS = union("SolidSpec", "features"), union("PositionSpec", "law")
 
 def test_the_page_quotes_both_scenes() -> None:
     names = ("cover_on_base", "every_assembly_field")
-    assert [(SCENES / f"{name}.yaml").read_text("utf-8") for name in names] == QUOTED
+    assert [(SCENES / f"{name}.yaml").read_text("utf-8") for name in names] == ASSEMBLIES.quoted
 
 
 def test_the_tables_of_the_example_are_those_of_the_run(tol3d: Command, tmp_path: Any) -> None:
@@ -130,22 +124,6 @@ def test_the_program_of_the_page_builds_what_it_says(tmp_path: Path) -> None:
 
 
 # the tables --------------------------------------------------------------------------------------------------
-
-
-@pytest.mark.parametrize("section", SECTIONS)
-def test_every_kind_has_a_row_and_every_row_is_a_kind(section: str) -> None:
-    rows = [kind for kind, _ in PAGE.table(section.capitalize()).rows]
-    assert sorted(rows) == sorted(PAGE.kinds(section))
-
-
-@pytest.mark.parametrize(("section", "kind"), PAGE.section_kinds)
-def test_a_row_and_what_its_section_says_of_all_name_every_field(section: str, kind: str) -> None:
-    assert PAGE.unnamed(section, kind) == set()
-
-
-@pytest.mark.parametrize(("section", "kind"), PAGE.section_kinds)
-def test_a_row_names_no_field_that_the_grammar_does_not_know(section: str, kind: str) -> None:
-    assert PAGE.strange(section, kind) <= {"placed", "expansion"}  # of the part
 
 
 def test_the_table_of_features_names_their_fields() -> None:

@@ -4,50 +4,21 @@ import re
 from collections.abc import Mapping
 from typing import Any
 
-import pytest
-from kinds_page import KindsPage, words
-from places import ROOT
+from kinds_page import words
+from mechanism_pages import SCENE
 
 from tol3d import Scene
 from tol3d.gearing.engines import STATUS_TEXT
-from tol3d.gearing.mechanism import GEARING
-from tol3d.scene import Grammar
 from tol3d.scene.schema import SECTIONS
 from tol3d.units import FACTORS
 
-DOCS = (ROOT / "docs" / "scene.md").read_text("utf-8")
-SCHEMA: Mapping[str, Any] = Grammar((GEARING,)).scene.model_json_schema()
+PAGE = SCENE.kinds
+DOCS, SCHEMA = PAGE.text, PAGE.schema
 FAILURES = "Builds that fail, and what ppm means"
-
-COMMON = {
-    "parts": ["Every part may have"],
-    "tolerances": ["Each has `kind`, `of`, `distribution`"],
-    "measures": ["and besides `kind` and `of` have"],
-}
-
-PAGE = KindsPage(DOCS, SCHEMA, COMMON)
 
 
 def laws() -> dict[str, Mapping[str, Any]]:
     return PAGE.mapping(SCHEMA["$defs"]["EccentricitySpec"]["properties"]["distribution"])
-
-
-@pytest.mark.parametrize("section", SECTIONS)
-def test_every_kind_has_a_row_and_every_row_is_a_kind(section: str) -> None:
-    assert {kind for kind, _ in PAGE.table(section.capitalize()).rows} == set(PAGE.kinds(section))
-
-
-@pytest.mark.parametrize(("section", "kind"), PAGE.section_kinds)
-def test_a_row_and_what_its_section_says_of_all_name_every_field(section: str, kind: str) -> None:
-    assert PAGE.unnamed(section, kind) == set()
-
-
-@pytest.mark.parametrize(("section", "kind"), PAGE.section_kinds)
-def test_a_row_names_no_field_that_the_grammar_does_not_know(section: str, kind: str) -> None:
-    known = set()
-    if section == "tolerances":  # of a part, and by what it says of itself
-        known |= {field for part in PAGE.kinds("parts").values() for field in part["properties"]}
-    assert PAGE.strange(section, kind) <= known
 
 
 def test_the_table_of_distributions_names_the_fields_of_every_law() -> None:

@@ -1,0 +1,92 @@
+"""The pages of docs/ that list the kinds of a mechanism."""
+
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+from kinds_page import KindsPage
+from places import ROOT
+
+from tol3d.assembly.mechanism import ASSEMBLY
+from tol3d.cycloid.mechanism import CYCLOID
+from tol3d.gearing.mechanism import GEARING
+from tol3d.planetary.mechanism import PLANETARY
+from tol3d.scene import Grammar
+from tol3d.system.mechanism import Mechanism
+
+
+@dataclass(frozen=True)
+class MechanismPage:
+    """A page of docs/.
+
+    Args:
+        name: of its file.
+        mechanism: whose kinds it lists.
+        common: see KindsPage.
+        scenes: that use every field between them, and that it quotes.
+        quotes: how many times.
+        beside: words of its sections of kinds that are kinds of another mechanism.
+    """
+
+    name: str
+    mechanism: Mechanism
+    common: Mapping[str, Sequence[str]]
+    scenes: tuple[str, ...] = ()
+    quotes: int = 0
+    beside: frozenset[str] = frozenset()
+
+    @cached_property
+    def kinds(self) -> KindsPage:
+        """Its tables, and the schema of scenes of this mechanism."""
+        schema = Grammar((self.mechanism,)).scene.model_json_schema()
+        return KindsPage((ROOT / "docs" / f"{self.name}.md").read_text("utf-8"), schema, self.common)
+
+    @property
+    def quoted(self) -> list[str]:
+        """What it quotes of scenes."""
+        return re.findall(r"```yaml\n(.*?)```", self.kinds.text, re.DOTALL)
+
+
+SCENE = MechanismPage(
+    "scene",
+    GEARING,
+    {
+        "parts": ["Every part may have"],
+        "tolerances": ["Each has `kind`, `of`, `distribution`"],
+        "measures": ["and besides `kind` and `of` have"],
+    },
+)
+ASSEMBLIES = MechanismPage(
+    "assemblies",
+    ASSEMBLY,
+    {
+        "tolerances": ["Each has `kind` and, if you like, `description`"],
+        "moves": ["A pair has `from`"],
+        "measures": ["Each has `kind` and may have `lower_limit`"],
+    },
+)
+CYCLOIDS = MechanismPage(
+    "cycloid",
+    CYCLOID,
+    {
+        "parts": ["Every part may have"],
+        "tolerances": ["Beside `kind`, each has"],
+        "measures": ["All are angles of the output, and besides"],
+    },
+    ("every_cycloid_field", "rv_250aii"),
+    quotes=3,
+    beside=frozenset({"tooth_thickness", "eccentricity"}),
+)
+PLANETARIES = MechanismPage(
+    "planetary",
+    PLANETARY,
+    {
+        "parts": ["Every part may have"],
+        "tolerances": ["Beside `kind`, each has"],
+        "measures": ["All are angles, and besides"],
+    },
+    ("every_planetary_field", "reducer_3k", "reducer_3k_flexible", "reducer_3k_train"),
+    quotes=5,
+    beside=frozenset({"tooth_thickness", "eccentricity", "clocking"}),
+)
