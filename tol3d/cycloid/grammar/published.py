@@ -7,7 +7,6 @@ from pydantic import Field
 
 from tol3d.cycloid.grammar.moves.rv_reducer import RVReducerSpec
 from tol3d.scene.name import Name, Remark
-from tol3d.scene.nearest import hint
 from tol3d.scene.place import KeyPath
 from tol3d.scene.published import PublishedFigures
 from tol3d.scene.published.figures import NotNegative, Percent
@@ -61,7 +60,4 @@ class PublishedCycloidStages(PublishedFigures):
 
     def problems(self, scene: "Scene") -> Iterator[tuple[KeyPath, str]]:
         """Reducers that the scene does not have."""
-        reducers = scene.of(RVReducerSpec)
-        for name in self.cycloid_stages:
-            if name not in reducers:
-                yield ("cycloid_stages", name), f"expected an RV reducer, got {name!r}{hint(name, reducers)}"
+        return self.strangers("cycloid_stages", self.cycloid_stages, scene.of(RVReducerSpec), "an RV reducer")

@@ -73,9 +73,8 @@ class PublishedTrains(PublishedFigures):
         """Trains and links that the scene does not have."""
         trains = scene.of(TrainSpec)
         links = [name for name, move in scene.moves.items() if not isinstance(move, TrainSpec)]
+        yield from self.strangers("trains", self.trains, trains, "the name of a train")
         for name, train in self.trains.items():
-            if name not in trains:
-                yield ("trains", name), f"expected the name of a train, got {name!r}{hint(name, trains)}"
             for link in train.stages:
                 if not set(IN_PARALLEL.split(link)) <= set(links):
                     near = hint(link, links)

@@ -7,7 +7,6 @@ from pydantic import Field
 
 from tol3d.planetary.grammar.moves.planetary import PlanetarySpec
 from tol3d.scene.name import Name, Remark
-from tol3d.scene.nearest import hint
 from tol3d.scene.place import KeyPath
 from tol3d.scene.published import PublishedFigures
 from tol3d.scene.published.figures import Figure, NotNegative
@@ -46,7 +45,4 @@ class PublishedPlanetarySets(PublishedFigures):
 
     def problems(self, scene: "Scene") -> Iterator[tuple[KeyPath, str]]:
         """Sets that the scene does not have."""
-        sets = scene.of(PlanetarySpec)
-        for name in self.planetary_sets:
-            if name not in sets:
-                yield ("planetary_sets", name), f"expected a planetary set, got {name!r}{hint(name, sets)}"
+        return self.strangers("planetary_sets", self.planetary_sets, scene.of(PlanetarySpec), "a planetary set")

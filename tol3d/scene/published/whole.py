@@ -1,6 +1,6 @@
 """What somebody else found of more than one measure: yields, correlations, how many trials, how long they took."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from typing import Any, Self
 
 from pydantic import Field, model_validator
@@ -31,6 +31,13 @@ class PublishedFigures(Strict):
     def problems(self, scene: Any) -> Iterator[Problem]:
         """What does not fit the rest of the scene, such as names that it does not have: place below the column."""
         return iter(())
+
+    @staticmethod
+    def strangers(section: str, names: Iterable[str], known: Collection[str], expected: str) -> Iterator[Problem]:
+        """Names of a section that a scene does not have."""
+        for name in names:
+            if name not in known:
+                yield (section, name), f"expected {expected}, got {name!r}{hint(name, known)}"
 
 
 class PublishedYield(Strict):
