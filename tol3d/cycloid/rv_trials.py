@@ -9,19 +9,18 @@ from numpy.typing import NDArray
 from tol3d.cycloid.measure import RVMeasure
 from tol3d.cycloid.rv_deviated import Acts, RVDeviated
 from tol3d.cycloid.rv_set import RVSet
-from tol3d.system.contributor import Contributor
 from tol3d.system.measure import Measure
-from tol3d.system.plain import PlainSystem
+from tol3d.system.output_system import OutputSystem
 from tol3d.system.positions import Positions
 from tol3d.system.stated import component_slices
-from tol3d.system.system import Columns, StreamKey
+from tol3d.system.system import Columns
 from tol3d.system.trials import Trials
 
 Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
-class RVTrials(PlainSystem):
+class RVTrials(OutputSystem):
     """What a System of an RV reducer knows of trials.
 
     Args:
@@ -33,28 +32,6 @@ class RVTrials(PlainSystem):
     own: RVSet
     acts: Mapping[str, Acts]
     rv_measures: Mapping[str, RVMeasure]
-
-    @property
-    def streams(self) -> tuple[StreamKey, ...]:
-        """One, of the position of the output; see System."""
-        return ((self.own.name, "position"),)
-
-    def positions(self, uniforms: Mapping[StreamKey, Array]) -> Mapping[str, Array]:
-        """Turns of the output, uniform over the time until all meets again as it did; see System."""
-        return {self.own.name: uniforms[self.streams[0]] * self.own.period}
-
-    @property
-    def position_column(self) -> str:
-        """Name of the column of positions."""
-        return f"position:{self.own.name} [deg]"
-
-    def columns(self, trials: Trials) -> Mapping[str, NDArray[np.generic]]:
-        """Angle of the output; see System."""
-        return {self.position_column: 360.0 * trials.positions[self.own.name]}
-
-    def turns_at_random(self, contributor: Contributor, positions: Positions) -> bool:
-        """Every direction is drawn at random; see System."""
-        return False
 
     def deviated(self, trials: Trials) -> RVDeviated:
         """What trials deviate by."""

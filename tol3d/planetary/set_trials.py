@@ -13,17 +13,16 @@ from tol3d.planetary.measure import PlanetaryMeasure
 from tol3d.planetary.planetary_set import PlanetarySet
 from tol3d.system.contributor import Contributor
 from tol3d.system.measure import Measure
-from tol3d.system.plain import PlainSystem
+from tol3d.system.output_system import OutputSystem
 from tol3d.system.positions import Positions
 from tol3d.system.stated import component_slices
-from tol3d.system.system import StreamKey
 from tol3d.system.trials import Trials
 
 Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
-class SetTrials(PlainSystem):
+class SetTrials(OutputSystem):
     """What a System of a planetary set says of trials.
 
     Args:
@@ -40,24 +39,6 @@ class SetTrials(PlainSystem):
     def overcome(self) -> PlanetarySet:
         """The set under torques that its springs give way to."""
         return replace(self.own, overcome=True)
-
-    @property
-    def streams(self) -> tuple[StreamKey, ...]:
-        """One, of the position of the output; see System."""
-        return ((self.own.name, "position"),)
-
-    def positions(self, uniforms: Mapping[StreamKey, Array]) -> Mapping[str, Array]:
-        """Turns of the output, uniform over the time until all teeth meet again as they did; see System."""
-        return {self.own.name: uniforms[self.streams[0]] * float(self.own.period)}
-
-    @property
-    def position_column(self) -> str:
-        """Name of the column of positions."""
-        return f"position:{self.own.name} [deg]"
-
-    def columns(self, trials: Trials) -> Mapping[str, NDArray[np.generic]]:
-        """Angle of the output; see System."""
-        return {self.position_column: 360.0 * trials.positions[self.own.name]}
 
     def turns_at_random(self, contributor: Contributor, positions: Positions) -> bool:
         """Offsets of gears from their axes do, at random positions; see System."""
