@@ -1,28 +1,22 @@
 """What summary.json holds of planetary sets besides what every run has."""
 
 from collections.abc import Mapping
-from typing import Annotated, Final, Literal, Self
+from typing import Final, Literal, Self
 
 from pydantic import Field, model_validator
 
 from tol3d.runs.summary.kinds import SummaryKinds
-from tol3d.runs.summary.measure import MeasureSummary
+from tol3d.runs.summary.output_measure import OutputMeasureSummary
 from tol3d.runs.summary.run import RunSummary
 from tol3d.runs.summary.values import LEFT_OUT, Label, Maybe, Number, Numbers, Section
 from tol3d.strict import refused
 
-MOST_ORDER: Final = 16_000
 
-
-class PlanetaryMeasureSummary(MeasureSummary):
+class PlanetaryMeasureSummary(OutputMeasureSummary):
     """A measure of a planetary set."""
 
     kind: Literal["planetary_lost_motion", "planetary_low_stiffness", "planetary_transmission_error"]
-    of: Label
     shaft: Label = Field(description="the shaft that turns")
-    order: Maybe[Annotated[int, Field(ge=1, le=MOST_ORDER)]] = Field(
-        default=LEFT_OUT, description="of a harmonic: cycles a turn of the output"
-    )
 
     @property
     def words(self) -> str:
@@ -36,24 +30,12 @@ class PlanetaryMeasureSummary(MeasureSummary):
         """
         if self.kind == "planetary_low_stiffness":
             return f"turn of {self.shaft} against springs alone, {self.of}"
-        quantity = self.kind.removeprefix("planetary_").replace("_", " ")
-        taken = {
-            "min": "least ",
-            "max": "largest ",
-            "range": "range of the ",
-            "harmonic": f"order {self.order}, peak to peak, of the ",
-        }
-        return f"{taken.get(self.take, '')}{quantity} of {self.shaft}, {self.of}"
-
-    @property
-    def position_word(self) -> str:
-        """See MeasureSummary."""
-        return "output"
+        return f"{self.quantity} of {self.shaft}, {self.of}"
 
     @property
     def identity(self) -> tuple[str | None, ...]:
         """See MeasureSummary."""
-        return self.kind, self.of, self.shaft, None if self.order is None else str(self.order)
+        return *super().identity, self.shaft
 
 
 class EfficiencySummary(Section):
