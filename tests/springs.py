@@ -3,11 +3,8 @@
 from collections.abc import Iterator
 from typing import Annotated, ClassVar, Literal
 
-from pydantic import Field
-
 from tol3d.gearing.grammar.parts import GearSpec
 from tol3d.scene import Scene
-from tol3d.scene.measure import LengthLimit, MeasureSpec
 from tol3d.scene.move import MoveSpec
 from tol3d.scene.name import Name
 from tol3d.scene.part import PartSpec
@@ -15,6 +12,7 @@ from tol3d.scene.place import KeyPath
 from tol3d.scene.reference import Reference
 from tol3d.scene.tolerance import ToleranceSpec
 from tol3d.system.mechanism import Mechanism
+from tol3d.system.plain import LengthSpec
 from tol3d.units import Dimension, Of, Quantity
 
 
@@ -66,22 +64,10 @@ class LonelyPressSpec(PressSpec):
         return (Reference(("spring",), self.spring, (SpringSpec,)),)
 
 
-class TravelSpec(MeasureSpec):
+class TravelSpec(LengthSpec):
     """How far a spring gives."""
 
-    dimension: ClassVar[Dimension] = "length"
-
     kind: Literal["travel"]
-    lower_limit: LengthLimit | None = Field(default=None, description="less than this is out of limits")
-    upper_limit: LengthLimit | None = Field(default=None, description="more than this is out of limits")
-
-    @property
-    def gives_curve(self) -> bool:
-        return False
-
-    @property
-    def several_positions(self) -> bool:
-        return False
 
     def references(self) -> tuple[Reference, ...]:
         return (Reference(("of",), self.of, (PressSpec,)),)

@@ -6,7 +6,7 @@ from typing import Any
 from tol3d.gearing.grammar.study import GearStudyOptions
 from tol3d.planetary.grammar.measures.planetary_lost_motion import PlanetaryLostMotionSpec
 from tol3d.planetary.grammar.measures.planetary_low_stiffness import PlanetaryLowStiffnessSpec
-from tol3d.planetary.grammar.measures.planetary_measure import PlanetaryMeasureSpec
+from tol3d.planetary.grammar.measures.planetary_measure import PlanetaryFreeTurnSpec, PlanetaryMeasureSpec
 from tol3d.planetary.grammar.measures.planetary_transmission_error import PlanetaryTransmissionErrorSpec
 from tol3d.planetary.grammar.moves.planetary import PlanetarySpec
 from tol3d.planetary.grammar.parts.flexible_carrier import FlexibleCarrierSpec
@@ -82,7 +82,7 @@ def _measure(scene: Scene, own: PlanetarySet, name: str, spec: Any) -> Planetary
     if isinstance(spec, PlanetaryLowStiffnessSpec) and not any(spring.pushes for spring in own.springs):
         words = "expected a set on a flexible carrier whose springs press"
         raise scene.refuse(("measures", name, "of"), f"{words}, got {own.name!r}, where none does")
-    if isinstance(spec, PlanetaryLostMotionSpec | PlanetaryLowStiffnessSpec):
+    if isinstance(spec, PlanetaryFreeTurnSpec):
         shaft = own.output if spec.at == "output" else own.input
         positions = Positions("at", 1, 1, spec.over.at.internal) if isinstance(spec.over, At) else AT_RANDOM
         reading: Reading = "lost motion" if isinstance(spec, PlanetaryLostMotionSpec) else "low stiffness"

@@ -53,3 +53,12 @@ class MeasureSpec(MeasureEntry):
     """A measure that is read on a move."""
 
     of: Name = Field(description="the move that it is read on")
+
+
+class AngleSpec(MeasureSpec):
+    """An angle that is read on a move."""
+
+    dimension: ClassVar[Dimension] = "angle"
+
+    lower_limit: AngleLimit | None = Field(default=None, description="less than this is out of limits")
+    upper_limit: AngleLimit | None = Field(default=None, description="more than this is out of limits")

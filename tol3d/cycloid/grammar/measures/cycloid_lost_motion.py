@@ -1,6 +1,6 @@
 """Lost motion of an RV reducer."""
 
-from typing import Literal
+from typing import ClassVar, Literal
 
 from pydantic import Field
 
@@ -11,15 +11,8 @@ from tol3d.scene.direction import RandomOrFixed
 class CycloidLostMotionSpec(CycloidMeasureSpec):
     """An angle: the free turn of the output while the input stands; below 0 where pins press on both sides."""
 
+    gives_curve: ClassVar[bool] = False
+    several_positions: ClassVar[bool] = False
+
     kind: Literal["cycloid_lost_motion"]
     over: RandomOrFixed = Field(default="random", description="position of the output: random or {at: angle}")
-
-    @property
-    def gives_curve(self) -> bool:
-        """A number a trial."""
-        return False
-
-    @property
-    def several_positions(self) -> bool:
-        """At one."""
-        return False
