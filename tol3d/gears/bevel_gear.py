@@ -8,9 +8,9 @@ spur gear of the back cone.
 """
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
-from typing import Self
+from typing import ClassVar, Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,15 +24,17 @@ from tol3d.gears.spherical_involute import (
     inverse_spherical_involute,
     spherical_involute,
 )
+from tol3d.gears.toothed_gear import PRESSURE_ANGLES, ToothedGear
 from tol3d.gears.undercut import RACK_ADDENDUM, crown_rack_undercut_angle
 
 Array = NDArray[np.float64]
 
+PITCH_ANGLES: Final = (0.01, 89.99)  # deg
 LONGEST_FACE = 0.9  # of the outer cone distance; common practice stops at a third
 
 
 @dataclass(frozen=True)
-class BevelGear:
+class BevelGear(ToothedGear):
     """A straight bevel gear by the words of ISO 23509; lengths in mm, angles in rad. Its depth tapers to the apex.
 
     Args:
@@ -55,10 +57,8 @@ class BevelGear:
     (76.721086, 41.641143)
     """
 
-    teeth: int
-    module: float
-    pressure_angle: float
-    face_width: float
+    lengths: ClassVar[tuple[str, ...]] = (*ToothedGear.lengths, "bore")
+
     pitch_angle: float
     profile_shift: float = 0.0
     addendum: float = 1.0
@@ -70,15 +70,7 @@ class BevelGear:
         self._refuse_unmakeable()
 
     def _refuse_unmakeable(self) -> None:
-        if self.teeth < 3:
-            raise GeometryError(f"teeth: expected at least 3, got {self.teeth}")
-        for name in ("module", "face_width"):
-            if not getattr(self, name) > 0.0:
-                raise GeometryError(f"{name}: expected more than 0 mm, got {getattr(self, name):g} mm")
-        for name, low, high in (("pressure_angle", 5, 45), ("pitch_angle", 0.01, 89.99)):
-            degrees = math.degrees(getattr(self, name))
-            if not low <= degrees <= high:
-                raise GeometryError(f"{name}: expected {low} to {high} deg, got {degrees:g} deg")
+        self._refuse_sizes({"pressure_angle": PRESSURE_ANGLES, "pitch_angle": PITCH_ANGLES})
         longest = LONGEST_FACE * self.outer_cone_distance
         if not self.face_width <= longest:
             raise GeometryError(
@@ -128,16 +120,6 @@ class BevelGear:
     def mean_cone_distance(self) -> float:
         """R_m = R_e - b/2 [mm], to the middle of the face."""
         return self.outer_cone_distance - self.face_width / 2
-
-    @property
-    def reference_radius(self) -> float:
-        """r_e = m z/2 [mm], of the pitch cone at the outer end."""
-        return self.module * self.teeth / 2
-
-    @property
-    def reference_diameter(self) -> float:
-        """d_e = m z [mm], of the pitch cone at the outer end."""
-        return self.module * self.teeth
 
     @property
     def mean_radius(self) -> float:
@@ -204,11 +186,6 @@ class BevelGear:
         return self.pitch_angle - math.atan(depth / self.outer_cone_distance)
 
     @property
-    def angular_pitch(self) -> float:
-        """2 pi/z [rad], about the axis."""
-        return 2 * math.pi / self.teeth
-
-    @property
     def base_pitch_angle(self) -> float:
         """p_b = 2 pi sin(beta)/z [rad], from flank to flank in the rolling plane; R p_b is an arc."""
         return self.angular_pitch * math.sin(self.base_angle)
@@ -217,21 +194,6 @@ class BevelGear:
     def base_pitch(self) -> float:
         """R_m p_b [mm], arc from flank to flank in the middle of the face."""
         return self.mean_cone_distance * self.base_pitch_angle
-
-    def perturbed(self, flank_turn: float, scale: float) -> Self:
-        """The gear with its flanks turned out of their teeth [rad], and grown about its apex.
-
-        Raises:
-            GeometryError: such a gear cannot be made.
-        """
-        thicker = self.tooth_thickness_deviation + 2 * self.reference_radius * flank_turn
-        return replace(
-            self,
-            module=self.module * scale,
-            face_width=self.face_width * scale,
-            bore=self.bore * scale,
-            tooth_thickness_deviation=thicker * scale,
-        )
 
     # tooth thickness ----------------------------------------------------------------------------
 

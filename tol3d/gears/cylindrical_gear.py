@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from tol3d.errors import GeometryError
 from tol3d.gears.flank import Flank
 from tol3d.gears.involute import involute
+from tol3d.gears.toothed_gear import ToothedGear
 
 Array = NDArray[np.float64]
 
@@ -23,37 +24,18 @@ FULL_ROUND_MARGIN: Final = 1e-9  # mm; two fillets of a space may touch, not ove
 
 
 @dataclass(frozen=True)
-class CylindricalGear:
+class CylindricalGear(ToothedGear):
     """A spur gear, external or internal; arguments as there. Lengths in mm, angles in rad."""
 
-    teeth: int
-    module: float
-    pressure_angle: float
-    face_width: float
     profile_shift: float = 0.0
     addendum: float = 1.0
     dedendum: float = 1.25
     root_fillet: float | None = None
 
     @property
-    def tooth_thickness_deviation(self) -> float:
-        """Added to the nominal arc at the reference circle [mm]."""
-        raise NotImplementedError
-
-    @property
     def iso_sign(self) -> int:
         """Sign of the number of teeth, of all radii and of the centre distance in ISO 21771: -1 inside."""
         raise NotImplementedError
-
-    def _refuse_sizes(self) -> None:
-        if self.teeth < 3:
-            raise GeometryError(f"teeth: expected at least 3, got {self.teeth}")
-        for name in ("module", "face_width"):
-            if not getattr(self, name) > 0.0:
-                raise GeometryError(f"{name}: expected more than 0 mm, got {getattr(self, name):g} mm")
-        if not math.radians(5) <= self.pressure_angle <= math.radians(45):
-            degrees = math.degrees(self.pressure_angle)
-            raise GeometryError(f"pressure_angle: expected 5 to 45 deg, got {degrees:g} deg")
 
     def _refuse_fillet(self) -> None:
         if self.root_fillet is not None and not 0.0 < self.root_fillet <= self.full_round_fillet + FULL_ROUND_MARGIN:
@@ -63,16 +45,6 @@ class CylindricalGear:
             )
 
     # circles ----------------------------------------------------------------------------------
-
-    @property
-    def reference_radius(self) -> float:
-        """r = m z / 2 [mm]."""
-        return self.module * self.teeth / 2
-
-    @property
-    def reference_diameter(self) -> float:
-        """d = m z [mm]."""
-        return self.module * self.teeth
 
     @cached_property
     def base_radius(self) -> float:
@@ -123,11 +95,6 @@ class CylindricalGear:
     def base_pitch(self) -> float:
         """p_b = pi m cos alpha [mm]."""
         return math.pi * self.module * math.cos(self.pressure_angle)
-
-    @property
-    def angular_pitch(self) -> float:
-        """2 pi / z [rad]."""
-        return 2 * math.pi / self.teeth
 
     # tooth thickness ----------------------------------------------------------------------------
 

@@ -1,13 +1,14 @@
 """One internal involute spur gear, the ring: what it can be, root fillet, rim."""
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
-from typing import Final, Self
+from typing import ClassVar, Final
 
 from tol3d.errors import GeometryError
 from tol3d.gears.cylindrical_gear import CylindricalGear
 from tol3d.gears.involute import involute
+from tol3d.gears.toothed_gear import PRESSURE_ANGLES, ToothedGear
 
 RIM: Final = 2.5  # modules between root circle and outside, where no outer diameter is given
 BISECTIONS: Final = 200  # more than a double has bits
@@ -41,11 +42,13 @@ class InternalGear(CylindricalGear):
     (79.0, 74.235717, 77.0, 81.5)
     """
 
+    lengths: ClassVar[tuple[str, ...]] = (*ToothedGear.lengths, "root_fillet", "outer_diameter")
+
     outer_diameter: float | None = None
     tooth_thickness_deviation: float = 0.0
 
     def __post_init__(self) -> None:
-        self._refuse_sizes()
+        self._refuse_sizes({"pressure_angle": PRESSURE_ANGLES})
         self._refuse_circles()
         self._refuse_teeth()
         if not self.rim_diameter > self.root_diameter:
@@ -99,22 +102,6 @@ class InternalGear(CylindricalGear):
     def rim_diameter(self) -> float:
         """Of the outside [mm]."""
         return self.root_diameter + 2 * RIM * self.module if self.outer_diameter is None else self.outer_diameter
-
-    def perturbed(self, flank_turn: float, scale: float) -> Self:
-        """The gear with its flanks turned out of their teeth [rad], and grown.
-
-        Raises:
-            GeometryError: such a gear cannot be made.
-        """
-        thicker = self.tooth_thickness_deviation + 2 * self.reference_radius * flank_turn
-        return replace(
-            self,
-            module=self.module * scale,
-            face_width=self.face_width * scale,
-            root_fillet=None if self.root_fillet is None else self.root_fillet * scale,
-            outer_diameter=None if self.outer_diameter is None else self.outer_diameter * scale,
-            tooth_thickness_deviation=thicker * scale,
-        )
 
     @property
     def pointed_radius(self) -> float:

@@ -1,15 +1,16 @@
 """One external involute spur gear: what it can be, root fillet, undercut."""
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
-from typing import Self
+from typing import ClassVar
 
 from tol3d.errors import GeometryError
 from tol3d.gears.cylindrical_gear import CylindricalGear
 from tol3d.gears.flank import Flank
 from tol3d.gears.involute import involute
 from tol3d.gears.root_fillet import fillet_azimuth
+from tol3d.gears.toothed_gear import PRESSURE_ANGLES, ToothedGear
 from tol3d.gears.undercut import RACK_ADDENDUM, rack_undercut_radius
 
 
@@ -38,6 +39,8 @@ class SpurGear(CylindricalGear):
     (275.0, 258.415471, 280.0)
     """
 
+    lengths: ClassVar[tuple[str, ...]] = (*ToothedGear.lengths, "root_fillet", "bore")
+
     bore: float = 0.0
     tooth_thickness_deviation: float = 0.0
 
@@ -45,7 +48,7 @@ class SpurGear(CylindricalGear):
         self._refuse_unmakeable()
 
     def _refuse_unmakeable(self) -> None:
-        self._refuse_sizes()
+        self._refuse_sizes({"pressure_angle": PRESSURE_ANGLES})
         if not self.root_radius > 0.0 or not self.tip_radius > self.root_radius:
             raise GeometryError(
                 f"the tip circle ({self.tip_diameter:.4f} mm) must lie outside the root circle "
@@ -76,22 +79,6 @@ class SpurGear(CylindricalGear):
     def iso_sign(self) -> int:
         """+1."""
         return 1
-
-    def perturbed(self, flank_turn: float, scale: float) -> Self:
-        """The gear with its flanks turned out of their teeth [rad], and grown.
-
-        Raises:
-            GeometryError: such a gear cannot be made.
-        """
-        thicker = self.tooth_thickness_deviation + 2 * self.reference_radius * flank_turn
-        return replace(
-            self,
-            module=self.module * scale,
-            face_width=self.face_width * scale,
-            root_fillet=None if self.root_fillet is None else self.root_fillet * scale,
-            bore=self.bore * scale,
-            tooth_thickness_deviation=thicker * scale,
-        )
 
     @property
     def pointed_radius(self) -> float:
