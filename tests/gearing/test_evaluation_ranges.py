@@ -3,6 +3,7 @@
 import math
 from pathlib import Path
 
+import deviating_pair
 import numpy as np
 import pytest
 from numpy.typing import NDArray
@@ -18,18 +19,6 @@ from tol3d.gears.flank import LEFT, RIGHT, Flank
 
 Array = NDArray[np.float64]
 
-SCENE = """
-scene: ranges
-parts:
-  pinion: {{kind: spur_gear, teeth: 20, module: 2 mm, face_width: 12 mm}}
-  wheel: {{kind: spur_gear, teeth: 30, module: 2 mm, face_width: 10 mm}}
-tolerances:
-{tolerances}
-moves:
-  pair: {{kind: mesh, driver: pinion, driven: wheel, centre_distance: 50.2 mm}}
-measures:
-  play: {{kind: normal_backlash, of: pair}}
-"""
 GIVEN = "flanks: each, each: gear, law: {kind: given, right: [10 um], left: [-4 um]}"
 BASE = 20 * math.cos(math.radians(20))  # mm
 ACTIVE = active_rolls(20, 30, 2.0, 50.2)
@@ -38,8 +27,7 @@ TIP = math.sqrt((22 / BASE) ** 2 - 1)
 
 def model_of(folder: Path, *tolerances: str) -> Model:
     lines = "\n".join(f"  deviation {k}: {{{own}}}" for k, own in enumerate(tolerances))
-    (folder / "scene.yaml").write_text(SCENE.format(tolerances=lines), "utf-8")
-    return model_from_scene(load_scene(folder / "scene.yaml"))
+    return deviating_pair.model_of(folder, lines)
 
 
 def out_um(model: Model, flank: Flank, roll: float, z: float = 0.0) -> float:
@@ -103,7 +91,7 @@ def test_waves_count_over_the_range_and_slopes_beside_them_over_their_own(tmp_pa
 
 def test_the_smallest_begin_of_all_mates_counts(tmp_path: Path) -> None:
     """An idler between two mates: the one with the longer teeth touches further down."""
-    text = SCENE.format(tolerances=f"  slope: {{{SLOPE}}}")
+    text = deviating_pair.SCENE.format(tolerances=f"  slope: {{{SLOPE}}}", flank="right")
     other = "{kind: mesh, driver: pinion, driven: long, centre_distance: 50.2 mm, azimuth: 150 deg}"
     text = text.replace("moves:", f"moves:\n  other: {other}")
     long = "  long: {kind: spur_gear, teeth: 30, module: 2 mm, face_width: 10 mm, addendum: 1.1, dedendum: 1.25}\n"

@@ -5,53 +5,25 @@ from typing import Literal
 
 import numpy as np
 import pytest
+from deviating_pair import BASES, draws, model_of
 from fixtures import strips_of
 from numpy.typing import NDArray
 
-from tol3d import Overrides, load_scene, run_scene
+from tol3d import Overrides, run_scene
 from tol3d.gearing.engines.exact import ExactEngine
 from tol3d.gearing.engines.fcl import FclEngine
 from tol3d.gearing.meshing import Meshing
-from tol3d.gearing.model import Model, Reading, model_from_scene
+from tol3d.gearing.model import Model, Reading
 from tol3d.gearing.stack_up import stack_of
 
 Array = NDArray[np.float64]
 
-SCENE = """
-scene: moved
-parts:
-  pinion: {{kind: spur_gear, teeth: 20, module: 2 mm, face_width: 12 mm}}
-  wheel: {{kind: spur_gear, teeth: 30, module: 2 mm, face_width: 10 mm}}
-tolerances:
-{tolerances}
-moves:
-  pair: {{kind: mesh, driver: pinion, driven: wheel, centre_distance: 50.2 mm, working_flank: {flank}}}
-measures:
-  play: {{kind: normal_backlash, of: pair}}
-"""
 WALK = "limits: {iso_class: 6}, law: {kind: random_walk, fill: [0.7, 1]}"
 FREE = "each: tooth, limits: {iso_class: 6}, law: {kind: uniform}"
-TEETH = [f"{gear} pitch: {{kind: pitch_deviation, of: {gear}, flanks: each, {WALK}}}" for gear in ("pinion", "wheel")]
-SLOPES = [f"{gear} slope: {{kind: profile_slope, of: {gear}, flanks: each, {FREE}}}" for gear in ("pinion", "wheel")]
+TEETH = [f"  {gear} pitch: {{kind: pitch_deviation, of: {gear}, flanks: each, {WALK}}}" for gear in ("pinion", "wheel")]
+SLOPES = [f"  {gear} slope: {{kind: profile_slope, of: {gear}, flanks: each, {FREE}}}" for gear in ("pinion", "wheel")]
 COUNT = 300
-BASES = (20 * np.cos(np.radians(20)), 30 * np.cos(np.radians(20)))
 Turns = Literal["driver", "driven"]
-
-
-def model_of(folder: Path, tolerances: list[str], flank: str = "right") -> Model:
-    path = folder / "scene.yaml"
-    path.write_text(SCENE.format(tolerances="\n".join(f"  {own}" for own in tolerances), flank=flank), "utf-8")
-    return model_from_scene(load_scene(path))
-
-
-def drawn(model: Model, count: int) -> tuple[Array, Array]:
-    generator = np.random.default_rng(4)
-    columns = [
-        np.stack(np.broadcast_arrays(*own.draw.deviations(*generator.random((own.draw.uniforms, count))),
-                                     np.zeros(count))[:-1], axis=-1)
-        for own in model.contributors
-    ]  # fmt: skip
-    return np.concatenate(columns, axis=1), generator.uniform(0.0, 6 * np.pi, count)
 
 
 def off_um(model: Model, deviations: Array, angle: Array, turns: Turns | None) -> Array:
@@ -79,8 +51,8 @@ def test_the_path_of_contact_goes_with_the_axes(moved: str, flank: str, tmp_path
 
     What teeth add to the squares of the move (0.14 um, taken out) goes with the square of the slopes.
     """
-    model = model_of(tmp_path, [*TEETH, *SLOPES, f"move: {MOVES[moved]}"], flank)
-    deviations, angle = drawn(model, COUNT)
+    model = model_of(tmp_path, "\n".join(TEETH + SLOPES + [f"  move: {MOVES[moved]}"]), flank)
+    deviations, angle = draws(model, COUNT, 4)
     alike = deviations.copy()
     alike[:, : -len(model.contributors[-1].draw.components)] = 0.0
     turns: tuple[Turns | None, ...] = (None, "driven", "driver")
@@ -101,8 +73,8 @@ def test_leaning_axes_add_to_helix_slopes_at_the_end_where_both_count(
     helix = f"{{kind: helix_slope, of: {gear}, flanks: {side}, each: gear, law: {{kind: given, {given}}}}}"
     for value in (-10, 10):
         lean = f"{{kind: {tilt}, of: pair, distribution: {{kind: constant, value: {value} um}}}}"
-        model = model_of(tmp_path, [f"helix: {helix}", f"lean: {lean}"])
-        deviations, angle = drawn(model, 2)
+        model = model_of(tmp_path, f"  helix: {helix}\n  lean: {lean}")
+        deviations, angle = draws(model, 2, 4)
         assert np.abs(off_um(model, deviations, angle, None)).max() < 0.1
 
 
@@ -111,8 +83,8 @@ def test_leaning_axes_add_to_helix_slopes_at_the_end_where_both_count(
 def test_fcl_sees_leaning_axes_and_helix_slopes_add_up(value: int, tmp_path: Path) -> None:
     helix = "{kind: helix_slope, of: pinion, flanks: right, each: gear, law: {kind: given, right: [10 um]}}"
     lean = f"{{kind: axis_out_of_plane, of: pair, distribution: {{kind: constant, value: {value} um}}}}"
-    model = model_of(tmp_path, [f"helix: {helix}", f"lean: {lean}"])
-    deviations, angle = drawn(model, 3)
+    model = model_of(tmp_path, f"  helix: {helix}\n  lean: {lean}")
+    deviations, angle = draws(model, 3, 4)
     fcl = FclEngine(model, {part.name: strips_of(part.gear, model.profile_steps) for part in model.gears})
     made = ExactEngine(model).build(deviations)
     seen = 1e3 * Meshing(fcl, model, model.meshes[0], made, Reading()).seat(angle).non_working.smallest()

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from gearing.test_single_flanks import BASES, PITCH, SHAPES, TURN, Builds, dense, drawn
+from deviating_pair import BASES, PITCH, SHAPES, TURN, Builds, dense, drawn
 from numpy.typing import NDArray
 
 from tol3d.gearing.engines.exact.deviated import DeviatedTooth
@@ -22,7 +22,7 @@ POSITIONS = 320  # a turn of the driver, 16 a tooth
 ALL = f"{PITCH}\n{SHAPES}"
 ECCENTRIC = "  {gear} run-out: {{kind: eccentricity, of: {gear}, distribution: {{kind: rayleigh, scale: 8 um}}}}"
 NEWTON_UM = 5e-4  # squares of slopes, of gaps that are sought from the edge where a face ends
-DENSE_UM = 2e-3  # dense points lie a um apart, and squares of slopes are left out: see test_single_flanks
+DENSE_UM = 2e-3  # dense points lie a um apart, and squares of slopes are left out: see test_single_flanks.py
 
 
 def rests(builds: Builds, angles: Array) -> Array:
