@@ -110,6 +110,15 @@ def test_what_cannot_be_built_or_read_is_refused_with_what_would_do(
     assert said in str(caught.value)
 
 
+def test_gears_are_alike_whatever_the_units_of_their_angles(tmp_path: Path) -> None:
+    """24 deg and 1440 arcmin differ by the last digit of a double."""
+    sun = ("teeth: 21, module: 2 mm", "teeth: 21, module: 2 mm, pressure_angle: 24 deg")
+    planet = ("teeth: 42, module: 2 mm", "teeth: 42, module: 2 mm, pressure_angle: 1440 arcmin")
+    first = rv_system(load_scene(changed(tmp_path, sun, planet))).own.first
+    assert first is not None
+    assert first.pair.pinion.pressure_angle != first.pair.wheel.pressure_angle
+
+
 @pytest.mark.parametrize(
     ("old", "new", "said"),
     [

@@ -1,5 +1,7 @@
 """The reducer that a scene means, or why nobody can build it: conditions with their numbers."""
 
+import math
+
 from tol3d.cycloid.grammar.moves.rv_reducer import RVReducerSpec
 from tol3d.cycloid.grammar.parts.crank_carrier import CrankCarrierSpec
 from tol3d.cycloid.grammar.parts.crankshaft import CrankshaftSpec
@@ -13,6 +15,7 @@ from tol3d.errors import GeometryError
 from tol3d.gearing.grammar.parts.gear import GearSpec
 from tol3d.gearing.model.pairs.spur_pair import cylindrical_gear
 from tol3d.gears import SpurGear, SpurPair
+from tol3d.gears.cylindrical_pair import SAME_LENGTH
 from tol3d.scene import Scene
 from tol3d.scene.place import KeyPath
 
@@ -113,6 +116,6 @@ def _refuse_unlike(scene: Scene, spec: RVReducerSpec) -> None:
     gears = [scene.parts[str(gear)] for gear in (spec.sun, spec.planet)]
     for field in ("module", "pressure_angle"):
         one, other = (getattr(gear, field) for gear in gears if isinstance(gear, GearSpec))
-        if one.internal != other.internal:
+        if not math.isclose(one.internal, other.internal, rel_tol=SAME_LENGTH):
             words = f"expected {one} as of {spec.sun!r}, its mate, got {other}"
             raise scene.refuse(("parts", str(spec.planet), field), words)

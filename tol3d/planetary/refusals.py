@@ -8,6 +8,7 @@ from tol3d.errors import GeometryError
 from tol3d.gearing.grammar.parts.gear import GearSpec
 from tol3d.gearing.grammar.parts.internal_gear import InternalGearSpec
 from tol3d.gearing.model.pairs.spur_pair import cylindrical_gear, cylindrical_pair
+from tol3d.gears.cylindrical_pair import SAME_LENGTH
 from tol3d.planetary.grammar.moves.planetary import PlanetarySpec
 from tol3d.planetary.grammar.parts.flexible_carrier import FlexibleCarrierSpec
 from tol3d.planetary.grammar.parts.planet import PlanetSpec
@@ -122,7 +123,7 @@ def _refuse_unlike(scene: Scene, name: str, central: SetGear, own: SetGear) -> N
     """Refuse a mesh of gears that do not roll on each other."""
     for field in ("module", "pressure_angle"):
         one, other = (getattr(scene.parts[gear.name], field) for gear in (central, own))
-        if not math.isclose(one.internal, other.internal, rel_tol=1e-9):
+        if not math.isclose(one.internal, other.internal, rel_tol=SAME_LENGTH):
             raise scene.refuse(
                 ("moves", name, "meshes", central.name),
                 f"expected gears of the same {field}, got {one} and {other}",
