@@ -153,7 +153,11 @@ def lost_motions(name: str, springs: str, trials: int, tmp_path: Path) -> Array:
     """Lost motion of every trial [arcmin]."""
     text = (SCENES / f"{name}.yaml").read_text("utf-8").replace(PRESSED, f"springs: {springs}")
     (tmp_path / "scene.yaml").write_text(text, "utf-8")
-    scene = load_scene(tmp_path / "scene.yaml")
+    return _lost_motions(tmp_path / "scene.yaml", trials)
+
+
+def _lost_motions(path: Path, trials: int) -> Array:
+    scene = load_scene(path)
     system = planetary_system(scene)
     drawn_trials = drawn(simulation_of(scene, Overrides(trials=trials)), 0, trials)
     answers = system.road("exact", None).answers(drawn_trials, system.measures[:1])
@@ -189,6 +193,15 @@ def test_the_smaller_of_two_independent_residues_is_that_of_the_monte_carlo_for_
     assert abs(found - 0.54) < 0.005 + 3 * error
 
 
+def test_an_adjustment_of_nothing_is_the_rigid_carrier(tmp_path: Path) -> None:
+    """The curve begins at 0: the same trials as with the rigid carrier, up to rounding."""
+    text = (SCENES / "reducer_3k_flexible.yaml").read_text("utf-8").replace(PRESSED, "springs: one, adjustment: 0 mm")
+    text = re.sub(r"  turn against .*\n", "", text)
+    (tmp_path / "scene.yaml").write_text(text, "utf-8")
+    found = [_lost_motions(path, 50) for path in (tmp_path / "scene.yaml", SCENES / "reducer_3k.yaml")]
+    np.testing.assert_allclose(found[0], found[1], rtol=0.0, atol=1e-9)
+
+
 # scenes ---------------------------------------------------------------------------------------------------------
 
 TEXT = re.sub(r"  turn against .*\n", "", (SCENES / "reducer_3k_flexible.yaml").read_text("utf-8"))
@@ -196,6 +209,10 @@ REFUSED = {
     "a planet too many": (("[3, 4]]", "[3, 5]]"), "parts.carrier.pairs[1]: expected planets 1 to 4, got 5"),
     "a planet twice": (("[3, 4]]", "[3, 1]]"), "parts.carrier.pairs: expected every planet once at most, got"),
     "three of a pair": (("[3, 4]]", "[3, 4, 2]]"), "parts.carrier.pairs[1]: expected a list of 2 planets"),
+    "adjusted the other way": (
+        (PRESSED, "springs: one, adjustment: -1 um"),
+        "parts.carrier.adjustment: expected a length of zero or more, got '-1 um'",
+    ),
     "adjusted too far": (
         (PRESSED, "springs: one, adjustment: 80 um, displacement: 0.54"),
         "parts.carrier.adjustment: the planets cannot be displaced so far at the mean build: each contact that stops "

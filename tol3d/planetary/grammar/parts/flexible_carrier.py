@@ -2,13 +2,19 @@
 
 from typing import Annotated, ClassVar, Literal, Self
 
-from pydantic import Field, model_validator
+from pydantic import AfterValidator, Field, model_validator
 
 from tol3d.planetary.grammar.parts.carrier import CarrierSpec
 from tol3d.scene.listed import listed
-from tol3d.scene.part import Length
 from tol3d.strict import refused
 from tol3d.units import Of, Positive, Quantity
+
+
+def _not_negative(quantity: Quantity) -> Quantity:
+    if quantity.internal < 0.0:
+        raise refused("", "a length of zero or more", quantity)
+    return quantity
+
 
 Force = Annotated[Quantity, Of("force"), Positive()]
 Stiffness = Annotated[Quantity, Of("stiffness"), Positive()]
@@ -31,7 +37,7 @@ class FlexibleCarrierSpec(CarrierSpec):
     springs: Literal["one", "each"] = Field(
         default="one", description="one: one spring moves all pairs alike; each: every pair has its own"
     )
-    adjustment: Length | None = Field(
+    adjustment: Annotated[Quantity, Of("length"), AfterValidator(_not_negative)] | None = Field(
         default=None, description="of the screw; the springs push as far as they can if not given"
     )
     displacement: float = Field(
