@@ -6,7 +6,6 @@ flanks and no stack-up. Drawings are made here, of gears of 20 deg; scenes and m
 
 import math
 import sys
-import tomllib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import product
@@ -14,6 +13,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from expected import PRINTED, assert_met, expected, measures_of
 from gear_trials import drawn_trials, gear_columns
 from of_kind import of_kind
 from oracles import split
@@ -670,9 +670,7 @@ def test_idlers_whose_teeth_miss_their_mates_are_refused(azimuth: float, gap: fl
 
 # the scene that ships -----------------------------------------------------------------------------------------------
 
-EXPECTED = tomllib.loads((SCENES / "split_train.expected.toml").read_text(encoding="utf-8"))
-MEASURES = {name: own for name, own in EXPECTED.items() if isinstance(own, dict)}
-PRINTED = 1e-5  # um or arcmin; the file gives that many digits
+EXPECTED, MEASURES = expected("split_train"), measures_of("split_train")
 SEEN = 2e-5  # um; where the exact engine's steps end, 1e-8 mm, and another machine's bits
 
 
@@ -707,15 +705,8 @@ def test_the_split_train_meets_its_expected_numbers(split_run: Run) -> None:
     assert list(MEASURES) == list(summary["measures"])
     for name, own in MEASURES.items():
         found = summary["measures"][name]
-        for road, bound in (("analytic", PRINTED), ("geometric", PRINTED + SEEN)):
-            assert found["nominal"][road] == pytest.approx(own["nominal"][road], abs=bound), name
-            assert found["mean_build"][road] == pytest.approx(own["mean_build"][road], abs=bound), name
-            assert found[road]["mean"] == pytest.approx(own[road]["mean"], abs=bound), name
-            assert found[road]["sigma"] == pytest.approx(own[road]["sigma"], abs=bound), name
+        assert_met(found, own, PRINTED + SEEN)
         assert ("analytic_closed_form" in found) == ("closed_form" in own)
-        if "closed_form" in own:
-            form = {key: found["analytic_closed_form"][key] for key in ("mean", "sigma")}
-            assert form == pytest.approx(own["closed_form"], abs=PRINTED), name
     shares = [row["name"] for row in summary["measures"]["lost motion"]["contributors"]]
     assert {"left clocking", "right clocking"} <= set(shares)
 

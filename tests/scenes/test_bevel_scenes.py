@@ -8,7 +8,7 @@ import math
 from collections.abc import Callable
 
 import pytest
-from expected import expected
+from expected import PRINTED, assert_met, expected, measures_of
 from places import SCENES as FOLDER
 
 from tol3d import Run, load_scene
@@ -19,7 +19,6 @@ SIN, COS = math.sin(ALPHA), math.cos(ALPHA)
 SQUARE = math.sqrt(0.5)  # sine and cosine of 45 deg
 DELTA1 = math.atan(math.sin(math.radians(75)) / (26 / 17 + math.cos(math.radians(75))))
 DELTA2 = math.radians(75) - DELTA1
-PRINTED = 1e-5  # um or arcmin; the files give that many digits
 SEEN = {"exact": 2e-5, "fcl": 0.005}
 """um; printed digits and where the exact engine's steps end; FCL's rounding and another machine's CAD kernel."""
 
@@ -106,16 +105,11 @@ def test_a_bevel_scene_meets_its_expected_numbers(scene: str, run_of: Callable[[
         "no contact": 0,
         "out of range": 0,
     }
-    measures = {name: own for name, own in expected(scene).items() if isinstance(own, dict)}
-    assert measures.keys() == run.summary["measures"].keys()
-    for name, own in measures.items():
+    assert measures_of(scene).keys() == run.summary["measures"].keys()
+    for name, own in measures_of(scene).items():
         found = run.summary["measures"][name]
         seen = SEEN[run.summary["engine"]]
-        seen = seen if found["unit"] == "um" else PRINTED + seen / 10  # arcmin: a um is 0.07
-        for road, bound in (("analytic", PRINTED), ("geometric", seen)):
-            assert found["mean_build"][road] == pytest.approx(own["mean_build"][road], abs=bound), name
-            assert found[road]["mean"] == pytest.approx(own[road]["mean"], abs=bound), name
-            assert found[road]["sigma"] == pytest.approx(own[road]["sigma"], abs=bound), name
+        assert_met(found, own, seen if found["unit"] == "um" else PRINTED + seen / 10)  # arcmin: a um is 0.07
 
 
 @pytest.mark.parametrize(

@@ -1,26 +1,20 @@
 """The scenes of RV reducers run, none of their trials fails, and they meet the numbers in the files beside them."""
 
 from collections.abc import Callable
-from typing import Any
 
 import pytest
-from expected import expected
+from expected import PRINTED, assert_met, expected, measures_of
 from places import SCENES as FOLDER
 from shipped import shipped
 
 from tol3d import Run, load_scene
 
 SCENES = {"rv_250aii", "every_cycloid_field"}
-PRINTED = 1e-5  # arcmin; the files give that many digits
 SEEN = 1e-5  # arcmin: another machine's bits
 
 
 def test_every_scene_is_here() -> None:
     assert set(shipped("cycloid")) == SCENES
-
-
-def measures_of(scene: str) -> dict[str, dict[str, Any]]:
-    return {name: own for name, own in expected(scene).items() if isinstance(own, dict)}
 
 
 @pytest.mark.parametrize("scene", [pytest.param("rv_250aii", marks=pytest.mark.slow), "every_cycloid_field"])
@@ -29,13 +23,7 @@ def test_an_rv_reducer_meets_its_expected_numbers(scene: str, run_of: Callable[[
     assert summary["status"] == {"ok": expected(scene)["trials"], "no contact": 0}
     assert list(measures_of(scene)) == list(load_scene(FOLDER / f"{scene}.yaml").measures)
     for name, own in measures_of(scene).items():
-        found = summary["measures"][name]
-        for road in ("analytic", "geometric"):
-            for moment in ("mean", "sigma"):
-                value = found["curve"][road][moment][-2] if found["take"] == "curve" else found[road][moment]
-                assert value == pytest.approx(own[road][moment], abs=PRINTED + SEEN), name
-            for build in {"nominal", "mean_build"} & own.keys():
-                assert found[build][road] == pytest.approx(own[build][road], abs=PRINTED + SEEN), name
+        assert_met(summary["measures"][name], own, PRINTED + SEEN, PRINTED + SEEN, at=-2)
 
 
 @pytest.mark.slow

@@ -2,10 +2,9 @@
 
 import re
 from collections.abc import Callable
-from typing import Any
 
 import pytest
-from expected import expected
+from expected import PRINTED, assert_met, expected, measures_of
 from places import SCENES as FOLDER
 from shipped import shipped
 
@@ -13,12 +12,7 @@ from tol3d import Run, load_scene
 
 LONG = re.compile("^reducer")  # a turn of 360 positions, loaded at each
 SCENES = [pytest.param(own, marks=pytest.mark.slow) if LONG.match(own) else own for own in shipped("planetary")]
-PRINTED = 1e-5  # arcmin; the files give that many digits
 SEEN = 1e-5  # arcmin: another machine's bits
-
-
-def measures_of(scene: str) -> dict[str, dict[str, Any]]:
-    return {name: own for name, own in expected(scene).items() if isinstance(own, dict)}
 
 
 @pytest.mark.parametrize("scene", SCENES)
@@ -28,13 +22,7 @@ def test_a_planetary_set_meets_its_expected_numbers(scene: str, run_of: Callable
     assert summary["status"] == dict.fromkeys(summary["status"], 0) | {"ok": trials}
     assert list(measures_of(scene)) == list(load_scene(FOLDER / f"{scene}.yaml").measures)
     for name, own in measures_of(scene).items():
-        found = summary["measures"][name]
-        for road in ("analytic", "geometric"):
-            for moment in ("mean", "sigma"):
-                value = found["curve"][road][moment][-1] if found["take"] == "curve" else found[road][moment]
-                assert value == pytest.approx(own[road][moment], abs=PRINTED + SEEN), name
-            for build in {"nominal", "mean_build"} & own.keys():
-                assert found[build][road] == pytest.approx(own[build][road], abs=PRINTED + SEEN), name
+        assert_met(summary["measures"][name], own, PRINTED + SEEN, PRINTED + SEEN, at=-1)
 
 
 @pytest.mark.parametrize("scene", SCENES)

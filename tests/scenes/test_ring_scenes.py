@@ -5,7 +5,7 @@ from collections.abc import Callable, Mapping
 
 import numpy as np
 import pytest
-from expected import expected
+from expected import PRINTED, assert_met, expected
 from numpy.typing import NDArray
 from oracles.ring_pairs import RingPair
 from scipy.integrate import quad
@@ -18,7 +18,6 @@ Array = NDArray[np.float64]
 Columns = Mapping[str, Array]
 
 SCENES = ("internal_pair", "ring_train")
-PRINTED = 1e-5  # um or arcmin; the files give that many digits
 SEEN = 1e-5  # um; where the exact engine's steps end
 TILT_NODES = 5e-4  # um; midpoint rule of tol3d for |tilt|
 TILT = 0.004  # um; a tilt of 4 um at a pressure angle that an eccentricity of 20 um changes by 20 um/(33 mm tan)
@@ -38,19 +37,8 @@ def test_the_scene_meets_its_expected_numbers(scene: str, run_of: Callable[[str]
     assert list(run.summary["measures"]) == [name for name in wanted if name != "trials"]
     assert run.summary["status"]["ok"] == wanted["trials"]
     for name, measure in run.summary["measures"].items():
-        own = wanted[name]
-        for road, bound in (("analytic", PRINTED), ("geometric", PRINTED + SEEN)):
-            assert measure["nominal"][road] == pytest.approx(own["nominal"][road], abs=bound), name
-            assert measure["mean_build"][road] == pytest.approx(own["mean_build"][road], abs=bound), name
-            assert measure[road]["mean"] == pytest.approx(own[road]["mean"], abs=bound), name
-            assert measure[road]["sigma"] == pytest.approx(own[road]["sigma"], abs=bound), name
-        assert ("closed_form" in own) == ("analytic_closed_form" in measure)
-        if "closed_form" in own:
-            form = measure["analytic_closed_form"]
-            assert form["mean"] == pytest.approx(own["closed_form"]["mean"], abs=PRINTED), name
-            assert form["sigma"] == pytest.approx(own["closed_form"]["sigma"], abs=PRINTED), name
-            shares = {row["name"]: row["analytic_percent"] for row in measure["contributors"]}
-            assert shares == pytest.approx(own["shares"], abs=0.01), name
+        assert_met(measure, wanted[name], PRINTED + SEEN)
+        assert ("closed_form" in wanted[name]) == ("analytic_closed_form" in measure)
 
 
 # the pair by hand -----------------------------------------------------------------------------------------------------

@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from expected import expected
+from expected import PRINTED, assert_met, expected, measures_of
 from gear_trials import drawn_trials
 from oracles import exact_eccentric
 from oracles.involute_gear import InvoluteGear
@@ -37,7 +37,6 @@ ARCMIN = 10800 / math.pi / 1000  # one um at a radius of one mm
 
 Columns = Mapping[str, np.ndarray]
 
-PRINTED = 1e-5  # um or arcmin; the files give that many digits
 SEEN = 1e-5  # um; where the exact engine's steps end
 TILT_NODES = 5e-4  # um; midpoint rule of tol3d for |tilt|, 3e-4 of a mean loss of 1.5 um
 
@@ -248,10 +247,6 @@ def extremes_of_the_mean_build(stack: Stack) -> dict[str, tuple[float, float]]:
 # the files ------------------------------------------------------------------------------------------------------
 
 
-def measures_of(scene: str) -> dict[str, dict[str, Any]]:
-    return {name: own for name, own in expected(scene).items() if isinstance(own, dict)}
-
-
 def test_every_scene_has_its_expected_numbers_beside_it() -> None:
     files = sorted(path.name.removesuffix(".expected.toml") for path in FOLDER.glob("*.expected.toml"))
     assert files == sorted(path.stem for path in FOLDER.glob("*.yaml"))
@@ -309,20 +304,8 @@ def test_a_scene_meets_its_expected_numbers(scene: str, run_of: Callable[[str], 
     }
     for name, own in measures_of(scene).items():
         found = run.summary["measures"][name]
-        samples = found["curve"] if found["take"] == "curve" else found
-        seen = PRINTED + in_unit(found, scene, SEEN)
-        for road, bound in (("analytic", PRINTED), ("geometric", seen)):
-            assert found["nominal"][road] == pytest.approx(own["nominal"][road], abs=bound), name
-            assert found["mean_build"][road] == pytest.approx(own["mean_build"][road], abs=bound), name
-            assert samples[road]["mean"] == pytest.approx(own[road]["mean"], abs=bound), name
-            assert samples[road]["sigma"] == pytest.approx(own[road]["sigma"], abs=bound), name
+        assert_met(found, own, PRINTED + in_unit(found, scene, SEEN))
         assert ("analytic_closed_form" in found) == ("closed_form" in own)
-        if "closed_form" in own:
-            form = found["analytic_closed_form"]
-            assert form["mean"] == pytest.approx(own["closed_form"]["mean"], abs=PRINTED), name
-            assert form["sigma"] == pytest.approx(own["closed_form"]["sigma"], abs=PRINTED), name
-            shares = {row["name"]: row["analytic_percent"] for row in found["contributors"]}
-            assert shares == pytest.approx(own["shares"], abs=0.01), name
 
 
 @pytest.mark.parametrize(("scene", "measure"), MOMENTS)

@@ -5,7 +5,7 @@ from collections.abc import Callable, Mapping
 
 import numpy as np
 import pytest
-from expected import expected
+from expected import PRINTED, assert_met, expected
 from numpy.typing import NDArray
 from oracles.deviated_flanks import DeviatedGear, DeviatedPair, active_rolls, between, parts
 from places import SCENES
@@ -17,7 +17,6 @@ from tol3d.gears import SpurGear
 Array = NDArray[np.float64]
 
 SCENE = "tooth_deviations"
-PRINTED = 1e-5  # um or arcmin; the file gives that many digits
 SEEN = 1e-5  # where the exact engine's steps end
 COS = math.cos(math.radians(20))
 BASES = (24 * COS, 36 * COS)  # mm
@@ -31,12 +30,7 @@ def test_the_scene_meets_its_expected_numbers(run_of: Callable[[str], Run]) -> N
     assert list(run.summary["measures"]) == [name for name in wanted if name != "trials"]
     assert run.summary["status"]["ok"] == wanted["trials"]
     for name, measure in run.summary["measures"].items():
-        own = wanted[name]
-        for road, bound in (("analytic", PRINTED), ("geometric", PRINTED + SEEN)):
-            assert measure["nominal"][road] == pytest.approx(own["nominal"][road], abs=bound), name
-            assert measure["mean_build"][road] == pytest.approx(own["mean_build"][road], abs=bound), name
-            assert measure[road]["mean"] == pytest.approx(own[road]["mean"], abs=bound), name
-            assert measure[road]["sigma"] == pytest.approx(own[road]["sigma"], abs=bound), name
+        assert_met(measure, wanted[name], PRINTED + SEEN)
 
 
 def test_the_nominal_backlash_is_that_of_the_involutes() -> None:

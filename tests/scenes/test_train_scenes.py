@@ -5,11 +5,10 @@ The table's shaft leans between its two bearings, never so far that another end 
 
 import math
 from collections.abc import Callable
-from typing import Any
 
 import numpy as np
 import pytest
-from expected import expected
+from expected import PRINTED, assert_met, expected, measures_of
 from of_kind import known, of_kind
 from oracles.train import (
     at_height,
@@ -30,16 +29,11 @@ SCENES = ("robot_shoulder", "robot_shoulder_swing", "three_stage_train")
 ALPHA = math.radians(20.0)
 SIN, COS = math.sin(ALPHA), math.cos(ALPHA)
 ARCMIN = 10800 / math.pi  # in a radian
-PRINTED = 1e-5  # um, mm or arcmin; the files give that many digits
 SEEN = {
     "um": 2e-5,
     "arcmin": 1e-5,
     "mm": 1e-6,
 }  # where the exact engine's steps end, 1e-8 mm, and another machine's bits
-
-
-def measures_of(scene: str) -> dict[str, dict[str, Any]]:
-    return {name: own for name, own in expected(scene).items() if isinstance(own, dict) and name != "stages"}
 
 
 # by hand --------------------------------------------------------------------------------------------------------
@@ -199,21 +193,10 @@ def test_a_train_meets_its_expected_numbers(scene: str, run_of: Callable[[str], 
     for name, own in measures_of(scene).items():
         found = summary["measures"][name]
         seen = PRINTED + SEEN[found["unit"]]
-        if found["take"] == "curve":
-            for road in ("analytic", "geometric"):
-                for moment in ("mean", "sigma"):
-                    curve = [found["curve"][road][moment][k] for k in own["positions"]]
-                    assert curve == pytest.approx(own[road][moment], abs=seen), name
-            continue
-        for road in ("analytic", "geometric"):
-            assert found["nominal"][road] == pytest.approx(own["nominal"][road], abs=seen), name
-            assert found["mean_build"][road] == pytest.approx(own["mean_build"][road], abs=seen), name
-            assert found[road]["mean"] == pytest.approx(own[road]["mean"], abs=seen), name
-            assert found[road]["sigma"] == pytest.approx(own[road]["sigma"], abs=seen), name
+        assert_met(found, own, seen, seen, at=own.get("positions", slice(None)))
         assert ("analytic_closed_form" in found) == ("closed_form" in own), name
         if "closed_form" in own:
-            form = {key: found["analytic_closed_form"][key] for key in ("mean", "sigma")}
-            assert form == pytest.approx(own["closed_form"], abs=PRINTED), name
+            form = found["analytic_closed_form"]
             error = form["sigma"] / math.sqrt(trials)
             for road in ("analytic", "geometric"):
                 assert abs(found[road]["mean"] - form["mean"]) < 4 * error
