@@ -16,7 +16,7 @@ import threading
 import zipfile
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
-from functools import cached_property
+from functools import cached_property, partial
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -27,6 +27,7 @@ from llvmlite import ir
 from numba import types as numba_types
 from numba.core import sigutils as numba_signatures
 from numba.core.compiler import Compiler as NumbaCompiler
+from numba.core.registry import CPUDispatcher
 from numba.extending import intrinsic, overload
 
 from tol3d.numerics.cache_folder import read_entry, sole_maker, write_entry
@@ -37,34 +38,63 @@ Function = TypeVar("Function", bound=Callable[..., Any])
 
 # forced inlining keeps the tuples of numbers in registers: a third of the time; fused products round once, not twice
 SETTINGS: Any = {"error_model": "numpy", "nogil": True, "forceinline": True, "fastmath": {"contract"}}
-
+PART_SETTINGS: Any = SETTINGS | {"nopython": True, "boundscheck": None}  # as numba's own decorators have them
 
 FULL, QUICK = 3, 2  # LLVM's levels of optimization
-LONGEST_WAIT = 150.0  # s, while another process compiles a kernel; the largest takes 13 s on a core of its own
+LONGEST_WAIT = 150.0  # s, while another process compiles a kernel; the largest takes 20 s on a core of its own
 
 
-class PlainCompiler(NumbaCompiler):
-    """Compiles a part without optimizing it."""
+class PartCompiler(NumbaCompiler):
+    """Compiles a part for kernels to be linked with: nothing by which Python could call it, no machine code of its own.
+
+    numba by itself makes both for each part, in a fifth to two fifths of the time of compiling.
+    """
+
+    optimizing = True
 
     def compile_extra(self, func: Any) -> Any:
         """Compile a function, and the parts it is made of."""
         state = self.state
+        state.flags.no_cpython_wrapper = state.flags.no_cfunc_wrapper = state.flags.no_compile = True
         if state.library is None:
             state.library = state.targetctx.codegen().create_library(func.__qualname__)
             state.library.enable_object_caching()
-        state.library._optimize_final_module = _left_as_it_is  # numba's; where it is gone, parts are optimized
+        # numba's methods; where they are gone, parts are optimized, and become machine code
+        state.library._finalize_final_module = partial(_finished, state.library)
+        if not self.optimizing:
+            state.library._optimize_final_module = _left_as_it_is
         compiled: Any = super()
-        return compiled.compile_extra(func)
+        made = compiled.compile_extra(func)
+        known_by: Any = {}.__getitem__  # numba demands a builtin of its own for each function; this one is never called
+        state.targetctx.insert_user_function(known_by, made.fndesc, [made.library])
+        return made._replace(entry_point=known_by)
+
+
+class NestedCompiler(PartCompiler):
+    """Compiles a part without optimizing it."""
+
+    optimizing = False
+
+
+def _finished(library: Any) -> None:
+    library._finalized = True
 
 
 def _left_as_it_is() -> None:
     pass
 
 
+class Part(CPUDispatcher):
+    """What kernels are made of; Python that calls it runs it as Python."""
+
+    def __call__(self, *arguments: Any) -> Any:
+        """Do what its lines say."""
+        return self.py_func(*arguments)
+
+
 def part(function: Function) -> Function:
     """A function that kernels are made of: compiled into them, for whatever they hand it."""
-    compiled: Function = numba.njit(**SETTINGS)(function)
-    return compiled
+    return _part(function, PartCompiler)
 
 
 def nested(function: Function) -> Function:
@@ -73,7 +103,12 @@ def nested(function: Function) -> Function:
     numba by itself optimizes each part with all that it is made of, the innermost as often as parts are nested. The
     machine code is another one, and its last bits where products are fused with other sums.
     """
-    compiled: Function = numba.njit(pipeline_class=PlainCompiler, **SETTINGS)(function)
+    return _part(function, NestedCompiler)
+
+
+def _part(function: Function, compiler: type[PartCompiler]) -> Function:
+    made: Any = Part(function, targetoptions=PART_SETTINGS, pipeline_class=compiler)
+    compiled: Function = made
     return compiled
 
 
@@ -95,7 +130,7 @@ def variant(of: Callable[..., Any], kind: type) -> Callable[[Function], Function
     def register(function: Function) -> Function:
         _VARIANTS_IN.setdefault(kind, set()).add(function.__module__)
 
-        @overload(of, strict=False, jit_options=SETTINGS)
+        @overload(of, strict=False, jit_options=SETTINGS | {"pipeline_class": PartCompiler})
         def chosen(*arguments: Any) -> Function | None:
             return function if getattr(arguments[0], "instance_class", None) is kind else None
 
