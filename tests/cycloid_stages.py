@@ -100,6 +100,27 @@ def searched(
     return sense * turn, place
 
 
+def counted(
+    made: AsMade, trial: int, phi: float, first: tuple[float, int], window: float, deflection: float,
+    profile: DiscProfile = PROFILE,
+) -> tuple[int, float]:  # fmt: skip
+    """Working pins of the first one's sense whose gap is within a deflection at its turn, and the gap nearest to it."""
+    turn, place = first
+    sense = 1 if _lever(_phase(place, made, phi, profile), profile) > 0 else -1
+    places = [own for own in range(made.linkage.shape[1] * profile.pins)
+              if sense * _lever(_phase(own, made, phi, profile), profile) > window]  # fmt: skip
+    gaps = [
+        _gap(made, trial, phi, at, turn, 0.0, _sections(made, trial, phi, at, profile, FLAT))
+        for at in (divmod(own, profile.pins) for own in places)
+    ]
+    return sum(gap <= deflection for gap in gaps), min(gaps, key=lambda gap: abs(gap - deflection))
+
+
+def _phase(place: int, made: AsMade, phi: float, profile: DiscProfile) -> float:
+    disc, pin = divmod(place, profile.pins)
+    return 2 * math.pi * (pin / profile.pins - disc / made.linkage.shape[1]) - phi
+
+
 def _lever(phase: float, profile: DiscProfile) -> float:
     """Of a pin about the disc's axis, over a Zc; positive where it stops clockwise turning."""
     k = profile.eccentricity * profile.pins / profile.pin_circle_radius

@@ -72,7 +72,7 @@ CYCLOIDS = MechanismPage(
     {
         "parts": ["Every part may have"],
         "tolerances": ["Beside `kind`, each has"],
-        "measures": ["All are angles of the output, and besides"],
+        "measures": ["The first two are angles of the output, the last"],
     },
     ("every_cycloid_field", "rv_250aii"),
     quotes=3,

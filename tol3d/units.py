@@ -1,7 +1,8 @@
 """Numbers with their units, as a user writes them: `2.5 mm`, `-19 um`, `20 deg`, `11.5e-6 1/K`.
 
 The grammar is strict on purpose: one number, a blank, one unit of the table below. Inside tol3d
-lengths are mm, angles rad, temperature differences K, expansion coefficients 1/K, forces N.
+lengths are mm, angles rad, temperature differences K, expansion coefficients 1/K, forces N. What is counted has its own
+word for a unit: `3 pins`.
 """
 
 import math
@@ -12,7 +13,7 @@ from typing import Any, Final, Literal
 from pydantic import GetCoreSchemaHandler, GetJsonSchemaHandler
 from pydantic_core import PydanticCustomError, core_schema
 
-Dimension = Literal["length", "angle", "temperature", "expansion", "force", "stiffness"]
+Dimension = Literal["length", "angle", "temperature", "expansion", "force", "stiffness", "count"]
 
 ARCMIN: Final = 10800 / math.pi  # in a radian
 RAD_PER_ARCMIN: Final = math.pi / 10800
@@ -31,8 +32,9 @@ FACTORS: Final[dict[Dimension, dict[str, float]]] = {
     "expansion": {"1/K": 1.0, "/K": 1.0, "um/m/K": 1e-6, "ppm/K": 1e-6},
     "force": {"N": 1.0, "kN": 1e3, "mN": 1e-3},
     "stiffness": {"N/mm": 1.0, "N/um": 1e3, "N/m": 1e-3},
+    "count": {"pins": 1.0},
 }
-"""What one of each unit is in mm, rad, K, 1/K, N or N/mm."""
+"""What one of each unit is in mm, rad, K, 1/K, N or N/mm; counts are numbers of what is counted."""
 
 EXAMPLES: Final[dict[Dimension, str]] = {
     "length": "4.5 um",
@@ -41,6 +43,7 @@ EXAMPLES: Final[dict[Dimension, str]] = {
     "expansion": "11.5e-6 1/K",
     "force": "60 N",
     "stiffness": "1500 N/mm",
+    "count": "3 pins",
 }
 DIMENSION_WORDS: Final[dict[Dimension, str]] = {
     "length": "length",
@@ -49,6 +52,7 @@ DIMENSION_WORDS: Final[dict[Dimension, str]] = {
     "expansion": "expansion coefficient",
     "force": "force",
     "stiffness": "stiffness",
+    "count": "count",
 }
 LARGEST: Final[dict[Dimension, float]] = {
     "length": 1e6,
@@ -57,8 +61,9 @@ LARGEST: Final[dict[Dimension, float]] = {
     "expansion": 1.0,
     "force": 1e9,
     "stiffness": 1e9,
+    "count": 1e6,
 }
-"""Of a quantity in a scene [mm, rad, K, 1/K, N, N/mm]: a kilometre, 1600 turns; products of such stay finite."""
+"""Of a quantity in a scene [mm, rad, K, 1/K, N, N/mm, 1]: a kilometre, 1600 turns; products of such stay finite."""
 LEAST_POSITIVE: Final = 1e-9  # mm or rad; a thousandth of an atom, a nanometre at a kilometre
 MICRO_SIGNS: Final = str.maketrans({"µ": "u", "μ": "u"})
 NUMBER: Final = r"[+-]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][+-]?[0-9]+)?"  # YAML 1.2 core schema, 10.3.2

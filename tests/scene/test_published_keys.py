@@ -25,6 +25,7 @@ STATED: Final = {
     "measures.*.upper_limit": "the scene states it",
     "measures.*.load_changes_deg": "the scene states it",
     "measures.*.order": "the scene states it",
+    "measures.*.deflection_um": "the scene states it",
     "planetary_sets.*.spring.*": "what follows of the scene's own spring",
     "measures.*.lever_mm": "the scene states it",
     "measures.*.lost_motion.arcmin_per_um": "the scene states it",

@@ -12,8 +12,16 @@ from pydantic import TypeAdapter
 from tol3d import units
 from tol3d.units import FACTORS, LONGEST_TEXT, UNITS, Quantity, angle_text
 
-PINT_NAMES = {"/K": "1/K", "um/m/K": "um/m/K", "ppm/K": "ppm/K"}
-INNER = {"length": "mm", "angle": "rad", "temperature": "K", "expansion": "1/K", "force": "N", "stiffness": "N/mm"}
+PINT_NAMES = {"/K": "1/K", "um/m/K": "um/m/K", "ppm/K": "ppm/K", "pins": "dimensionless"}
+INNER = {
+    "length": "mm",
+    "angle": "rad",
+    "temperature": "K",
+    "expansion": "1/K",
+    "force": "N",
+    "stiffness": "N/mm",
+    "count": "dimensionless",
+}
 
 quantities = st.builds(Quantity, st.floats(allow_nan=False, allow_infinity=False, width=32), st.sampled_from([*UNITS]))
 

@@ -7,39 +7,45 @@ lever is 0.7 of the largest. Of D the shift's part stays while deviations shrink
 are of first order in these.
 """
 
+from dataclasses import dataclass, fields
+
 import numpy as np
-from numpy.typing import NDArray
 
 from tol3d.cycloid.deviated import Deviated
-from tol3d.cycloid.linear import LinearStage
-
-Array = NDArray[np.float64]
+from tol3d.cycloid.linear import Array, LinearStage, PlacedDisc, Places, Sense, as_complex, picked
 
 
-def along_flank(
-    stage: LinearStage, deviated: Deviated, phis: Array, places: NDArray[np.int64], turns: Array
-) -> tuple[Array, Array, Array]:
-    """How far pins stand along the path by deviations and turn, and by the shift [mm], and a factor [rad/mm^2].
+@dataclass(frozen=True)
+class BentStage(LinearStage):
+    """A cycloid stage whose first-order turns have the bend of the path of each pin besides."""
 
-    The factor times the square of the sum of both is what the bend adds to the turn; all are (trials,).
+    @classmethod
+    def of(cls, stage: LinearStage) -> "BentStage":
+        """The same stage."""
+        return cls(*(getattr(stage, field.name) for field in fields(stage)))
 
-    Args:
-        stage: the cycloid stage.
-        deviated: of the trials.
-        phis, places, turns: crank angle [rad], pin that touches and turn of each trial (trials,), see FirstTouches.
-    """
-    profile = stage.profile
-    disc, pin = np.divmod(places, profile.pins)
-    azimuths = 2 * np.pi * pin / profile.pins
-    towards = np.exp(1j * (phis + 2 * np.pi * disc / stage.discs))
-    u = azimuths + (phis + 2 * np.pi * disc / stage.discs) / profile.lobes
-    normal = (profile.cos_normal(u) - 1j * profile.sin_normal(u)) * np.exp(1j * azimuths)
-    moved, turned = stage.placed(deviated, disc, phis)
-    rows, lobe = np.arange(len(phis)), np.floor(u / profile.lobe_pitch).astype(np.int64) % profile.lobes
-    pins = (deviated.pins[rows, pin, 0] + 1j * deviated.pins[rows, pin, 1]) * np.exp(1j * azimuths)
-    pitch = deviated.lobe_pitch[rows, disc, lobe] * profile.shortening / profile.pitch_radius
-    arm = profile.pin_circle_radius * np.exp(1j * azimuths) - profile.eccentricity * towards
-    rolled = turns * stage.rolling * profile.eccentricity * towards
-    apart = pins - moved - 1j * (rolled + (turns + turned + pitch) * arm)
-    bend = profile.path_curvature(u) / 2 / (-profile.lever(u) * (1 + stage.rolling / profile.lobes))
-    return (np.conj(1j * normal) * apart).real, -profile.modification.shift * profile.sin_normal(u), bend
+    def _allowed(
+        self, deviated: Deviated, disc: int, placed: PlacedDisc, phis: Array, sense: Sense, aside: Array | None
+    ) -> tuple[Array, Places]:
+        turns, pins = super()._allowed(deviated, disc, placed, phis, sense, aside)
+        works = np.isfinite(turns)
+        bends = self._bends(deviated, disc, placed, phis, pins, np.where(works, turns, 0.0))
+        return np.where(works, turns + bends, turns), pins
+
+    def _bends(
+        self, deviated: Deviated, disc: int, placed: PlacedDisc, phis: Array, pins: Places, turns: Array
+    ) -> Array:
+        """What the bend adds to turns of one disc (trials, pins) [rad]."""
+        profile, azimuths = self.profile, self._azimuths[pins]
+        phases = phis + self._throws[disc]
+        towards = profile.eccentricity * np.exp(1j * phases)[:, None]
+        u = self._parameters(phases)[:, pins]
+        moved, turned = placed.at(phis, profile.lobes)
+        pitch = picked(deviated.lobe_pitch[:, disc], self._lobes(u)) * profile.shortening / profile.pitch_radius
+        arm = profile.pin_circle_radius * np.exp(1j * azimuths) - towards
+        apart = as_complex(deviated.pins[:, pins]) * np.exp(1j * azimuths) - moved[:, None]
+        apart = apart - 1j * (turns * self.rolling * towards + (turns + turned[:, None] + pitch) * arm)
+        along = (np.conj(1j * self._normals(u, azimuths)) * apart).real
+        along -= profile.modification.shift * profile.sin_normal(u)
+        lever = -profile.lever(u) * self._giving
+        return np.asarray(profile.path_curvature(u) / 2 * along**2 / np.where(lever == 0.0, 1.0, lever))

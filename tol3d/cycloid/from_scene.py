@@ -5,6 +5,7 @@ from typing import Any
 from tol3d.cycloid.draws import acts_of, draw_of
 from tol3d.cycloid.grammar.measures.cycloid_lost_motion import CycloidLostMotionSpec
 from tol3d.cycloid.grammar.measures.cycloid_measure import CycloidMeasureSpec
+from tol3d.cycloid.grammar.measures.cycloid_pins_near_contact import CycloidPinsNearContactSpec
 from tol3d.cycloid.grammar.measures.cycloid_transmission_error import CycloidTransmissionErrorSpec
 from tol3d.cycloid.grammar.parts.cycloid_disc import CycloidDiscSpec
 from tol3d.cycloid.measure import Reading, RVMeasure
@@ -48,19 +49,22 @@ def rv_system(scene: Scene) -> RVSystem:
 
 def _measure(scene: Scene, own: RVSet, name: str, spec: Any) -> RVMeasure:
     if not isinstance(spec, CycloidMeasureSpec):
-        words = "cycloid_transmission_error or cycloid_lost_motion"
+        words = "cycloid_transmission_error, cycloid_lost_motion or cycloid_pins_near_contact"
         raise scene.refuse(("measures", name, "kind"), f"expected of an RV reducer {words}, got {spec.kind}")
     if isinstance(spec, CycloidLostMotionSpec):
         return _read(name, spec, "lost motion", _one(spec.over), "value")
-    assert isinstance(spec, CycloidTransmissionErrorSpec)
-    deflection = None if spec.deflection is None else spec.deflection.internal
-    if spec.over != "turn":
-        return _read(name, spec, spec.flank, _one(spec.over), "value", deflection=deflection)
-    positions = Positions("turn", 1, spec.positions, jumps=True)  # bends where another pin takes over
+    assert isinstance(spec, CycloidTransmissionErrorSpec | CycloidPinsNearContactSpec)
+    one = spec.over != "turn"
+    # over a turn it bends where another pin takes over
+    positions = _one(spec.over) if one else Positions("turn", 1, spec.positions, jumps=True)
+    if isinstance(spec, CycloidPinsNearContactSpec):
+        return _read(name, spec, spec.flank, positions, spec.taken, deflection=spec.deflection.internal)
+    if one:
+        return _read(name, spec, spec.flank, positions, "value")
     spectrum = Spectrum.over(positions, (spec.order or 1,)) if spec.take == "harmonic" else None
     if spec.taken == "curve":
         spectrum = Spectrum.over(positions, spec.orders) if spec.orders else None
-    return _read(name, spec, spec.flank, positions, spec.taken, spectrum, deflection)
+    return _read(name, spec, spec.flank, positions, spec.taken, spectrum)
 
 
 def _one(over: Any) -> Positions:
@@ -79,9 +83,9 @@ def _read(
 ) -> RVMeasure:
     return RVMeasure(
         *stated_of(name, spec),
-        worse="high",
+        worse="high" if deflection is None else "low",
         adds_up=False,
-        pooled_statistics=(HalfSpan(),) if take == "value" and reading != "lost motion" else (),
+        pooled_statistics=(HalfSpan(),) if (take, deflection) == ("value", None) and reading != "lost motion" else (),
         positions=positions,
         take=take,
         spectrum=spectrum,

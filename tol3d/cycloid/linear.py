@@ -15,6 +15,7 @@ L > 0; the smallest of all working pins of all discs is the carrier's. Neglected
 modification among them: pins touch where they would nominally, on the normal of that place. Nothing here sees a pose.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Literal
 
@@ -37,10 +38,12 @@ class FirstTouches:
     Args:
         turns: of the carrier beyond -phi / Zc (trials, positions) [rad], counter-clockwise.
         places: disc times pins + pin (trials, positions).
+        near: working pins with a gap within a deflection then (trials, positions); None where none was stated.
     """
 
     turns: Array
     places: Places
+    near: Places | None = None
 
 
 @dataclass(frozen=True)
@@ -63,7 +66,14 @@ class LinearStage:
     rolling: float
     window: float
 
-    def touches(self, deviated: Deviated, phis: Array, sense: Sense = 1, aside: Array | None = None) -> FirstTouches:
+    def touches(
+        self,
+        deviated: Deviated,
+        phis: Array,
+        sense: Sense = 1,
+        aside: Array | None = None,
+        deflection: float | None = None,
+    ) -> FirstTouches:
         """Where the first working pin stops the carrier on its way counter-clockwise (1) or back (-1).
 
         Args:
@@ -72,19 +82,25 @@ class LinearStage:
             sense: of the turn.
             aside: tilts of discs about x and y of their frames, times half their width (trials, discs, 2) [mm]: a pin
                 sees the faces so far off to either side, and the nearer one closes its gap; None for no tilts.
+            deflection: pins are counted whose gap is at most so much then [mm]; None where none are.
         """
-        trials, positions = len(deviated.pins), phis.shape[1]
+        trials, positions, rows = len(deviated.pins), phis.shape[1], np.arange(len(deviated.pins))
         turns = np.empty((trials, positions))
         places = np.empty((trials, positions), dtype=np.int64)
-        placed = [_Placed.of(self, deviated, disc) for disc in range(self.discs)]
+        near = None if deflection is None else np.empty_like(places)
+        placed = [PlacedDisc.of(self, deviated, disc) for disc in range(self.discs)]
         for position in range(positions):
             at = phis[:, position]
-            found = [self._disc_touches(deviated, disc, own, at, sense, aside) for disc, own in enumerate(placed)]
-            allowed, pins = np.stack([turn for turn, _ in found]), np.stack([pin for _, pin in found])
+            found = [self._allowed(deviated, disc, own, at, sense, aside) for disc, own in enumerate(placed)]
+            firsts = np.stack([np.argmin(sense * own, axis=1) for own, _ in found])
+            allowed = np.stack([own[rows, first] for (own, _), first in zip(found, firsts, strict=True)])
+            pins = np.stack([own[first] for (_, own), first in zip(found, firsts, strict=True)])
             first = np.argmin(sense * allowed, axis=0)
-            turns[:, position] = np.take_along_axis(allowed, first[None], axis=0)[0]
-            places[:, position] = np.take_along_axis(pins, first[None], axis=0)[0] + first * self.profile.pins
-        return FirstTouches(turns, places)
+            turns[:, position] = allowed[first, rows]
+            places[:, position] = pins[first, rows] + first * self.profile.pins
+            if near is not None and deflection is not None:
+                near[:, position] = self._within(turns[:, position], at, found, deflection)
+        return FirstTouches(turns, places, near)
 
     def rates(self, phis: Array, places: Places) -> Deviated:
         """What the turn (rows,) [rad] changes by per deviation while a pin touches, in the form of the deviations.
@@ -109,15 +125,6 @@ class LinearStage:
         self._of_linkage(found, phis, disc, -normal / reach)
         return found
 
-    def placed(self, deviated: Deviated, discs: Places, phis: Array) -> tuple[Complex, Array]:
-        """Displacement in the world (trials,) [mm] and turn on the carrier [rad] of one disc of each trial.
-
-        Before any turn of the carrier, at crank angles (trials,).
-        """
-        each = [_Placed.of(self, deviated, disc).at(phis, self.profile.lobes) for disc in range(self.discs)]
-        moved, turned = (np.stack(own)[discs, np.arange(len(discs))] for own in zip(*each, strict=True))
-        return moved, turned
-
     # one disc -------------------------------------------------------------------------------------------
 
     def allowed(
@@ -134,18 +141,24 @@ class LinearStage:
         Returns:
             Turns (trials, pins) [rad], infinite where a pin does not work in a trial, and which pins (pins,).
         """
-        return self._allowed(deviated, disc, _Placed.of(self, deviated, disc), phis, sense, aside)
+        return self._allowed(deviated, disc, PlacedDisc.of(self, deviated, disc), phis, sense, aside)
 
-    def _disc_touches(
-        self, deviated: Deviated, disc: int, placed: "_Placed", phis: Array, sense: Sense, aside: Array | None
-    ) -> tuple[Array, Places]:
-        """Turns and pins (trials,) of one disc, at phis (trials,) or (1,)."""
-        turn, pins = self._allowed(deviated, disc, placed, phis, sense, aside)
-        first = np.argmin(sense * turn, axis=1)
-        return np.take_along_axis(turn, first[:, None], axis=1)[:, 0], pins[first]
+    def gaps(self, phis: Array, disc: int, pins: Places, further: Array) -> Array:
+        """What gaps of a disc's pins close [mm] by further turns of the carrier (trials, pins), at phis (trials,)."""
+        lever = self.profile.lever(self._parameters(phis + self._throws[disc])[:, pins])
+        return np.abs(further * lever * self._giving)
+
+    def _within(self, turns: Array, phis: Array, found: Sequence[tuple[Array, Places]], deflection: float) -> Places:
+        """How many pins of all discs have a gap of at most a deflection at turns (trials,)."""
+        count = np.zeros(len(turns), dtype=np.int64)
+        for disc, (allowed, pins) in enumerate(found):
+            works = np.isfinite(allowed)
+            gaps = self.gaps(phis, disc, pins, np.where(works, allowed, 0.0) - turns[:, None])
+            count += (works & (gaps <= deflection)).sum(axis=1)
+        return count
 
     def _allowed(
-        self, deviated: Deviated, disc: int, placed: "_Placed", phis: Array, sense: Sense, aside: Array | None
+        self, deviated: Deviated, disc: int, placed: "PlacedDisc", phis: Array, sense: Sense, aside: Array | None
     ) -> tuple[Array, Places]:
         profile = self.profile
         u = self._parameters(phis + self._throws[disc])
@@ -157,14 +170,14 @@ class LinearStage:
         lobes = self._lobes(u)
         moved, turned = placed.at(phis, profile.lobes)
         gap = profile.clearance(u) + own.real * deviated.pins[:, pins, 0] + own.imag * deviated.pins[:, pins, 1]
-        gap -= deviated.pin_radii[:, pins] + _picked(deviated.lobe_profile[:, disc], lobes)
+        gap -= deviated.pin_radii[:, pins] + picked(deviated.lobe_profile[:, disc], lobes)
         gap -= normal.real * moved.real[:, None] + normal.imag * moved.imag[:, None]
         if aside is not None:
-            faces = 1j * _complex(aside[:, disc]) * np.exp(-1j * phis / profile.lobes)
+            faces = 1j * as_complex(aside[:, disc]) * np.exp(-1j * phis / profile.lobes)
             gap -= np.abs(normal.real * faces.real[:, None] + normal.imag * faces.imag[:, None])
         works = sense * lever > self.window * profile.pitch_radius
         turn = gap / np.where(works, lever, 1.0) - turned[:, None]
-        turn -= profile.shortening / profile.pitch_radius * _picked(deviated.lobe_pitch[:, disc], lobes)
+        turn -= profile.shortening / profile.pitch_radius * picked(deviated.lobe_pitch[:, disc], lobes)
         return np.where(works, turn / self._giving, sense * np.inf), pins
 
     def _of_linkage(self, found: Deviated, phis: Array, disc: Places, push: Complex) -> None:
@@ -217,7 +230,7 @@ class LinearStage:
 
 
 @dataclass(frozen=True)
-class _Placed:
+class PlacedDisc:
     """By what one disc is displaced and turned (trials,), before any turn of the crank.
 
     Args:
@@ -233,12 +246,13 @@ class _Placed:
     rocked: Complex
 
     @classmethod
-    def of(cls, stage: LinearStage, deviated: Deviated, disc: int) -> "_Placed":
-        holes = _complex(deviated.carrier_holes) - _complex(deviated.disc_holes[:, disc])
+    def of(cls, stage: LinearStage, deviated: Deviated, disc: int) -> "PlacedDisc":
+        """One of a stage's discs."""
+        holes = as_complex(deviated.carrier_holes) - as_complex(deviated.disc_holes[:, disc])
         tangential = 1j * stage.profile.eccentricity * np.exp(1j * stage._throws[disc])
-        throws = _complex(deviated.crank_errors[:, :, disc]) + tangential * deviated.crank_phases
+        throws = as_complex(deviated.crank_errors[:, :, disc]) + tangential * deviated.crank_phases
         across = np.conj(stage._crank_directions) / (stage.crank_circle * stage.cranks)
-        offsets = _complex(deviated.carrier_offsets) + _complex(deviated.disc_offsets[:, disc])
+        offsets = as_complex(deviated.carrier_offsets) + as_complex(deviated.disc_offsets[:, disc])
         return cls(holes.mean(axis=1) + offsets, throws.mean(axis=1), (holes @ across).imag, throws @ across)
 
     def at(self, phis: Array, lobes: int) -> tuple[Complex, Array]:
@@ -247,12 +261,13 @@ class _Placed:
         return carrier * self.carried + throw * self.thrown, self.turned + (throw * np.conj(carrier) * self.rocked).imag
 
 
-def _picked(own: Array, lobes: Places) -> Array:
+def picked(own: Array, lobes: Places) -> Array:
     """Values of lobes (trials, lobes) at (trials, pins) or (1, pins)."""
     return own[:, lobes[0]] if len(lobes) == 1 else np.take_along_axis(own, lobes, axis=1)
 
 
-def _complex(points: Array) -> Complex:
+def as_complex(points: Array) -> Complex:
+    """Points or displacements (..., 2) as complex numbers."""
     return np.asarray(points[..., 0] + 1j * points[..., 1])
 
 

@@ -14,11 +14,16 @@ class RVMeasure(PlainMeasure):
 
     Args:
         reading: the whole free turn of the output, or where it rests while its load resists or drives it on.
-        deflection: pins within it of contact are counted [mm]; None where they are not.
+        deflection: pins within it of contact are counted then [mm]; None where the turn itself is read.
     """
 
     reading: Reading
     deflection: float | None = None
+
+    @property
+    def counts(self) -> bool:
+        """Whether pins near contact are counted."""
+        return self.deflection is not None
 
     @property
     def sense(self) -> int:

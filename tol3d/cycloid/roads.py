@@ -17,7 +17,8 @@ from tol3d.system.road import Answers
 from tol3d.system.trials import Trials
 
 Array = NDArray[np.float64]
-Curves = dict[tuple[Positions, int, float | None], Turned]
+Read = tuple[Positions, int]
+Curves = dict[tuple[Read, float | None], Turned]
 
 
 @dataclass(frozen=True)
@@ -39,11 +40,15 @@ class RVRoad:
         status: dict[str, NDArray[np.int8]] = {}
         details: dict[str, NDArray[np.generic]] = {}
         known: Curves = {}
-        for measure in measures:
-            own = self.system.rv_measures[measure.name]
+        read = [self.system.rv_measures[measure.name] for measure in measures]
+        for own in (own for own in read if own.counts):  # what is turned for a count serves others too
+            self._turned(own, deviated, trials, own.sense, known)
+        for own in read:
             forwards = self._turned(own, deviated, trials, own.sense, known)
             values[own.name] = forwards.turns
-            if own.reading == "lost motion":
+            if forwards.near is not None and own.counts:
+                values[own.name] = np.where(np.isnan(forwards.turns), np.nan, forwards.near)
+            elif own.reading == "lost motion":
                 values[own.name] = forwards.turns - self._turned(own, deviated, trials, -1, known).turns
             elif own.positions.over == "turn":
                 values[own.name] = forwards.turns - forwards.turns[:, :1]
@@ -55,16 +60,16 @@ class RVRoad:
 
     def _turned(self, measure: RVMeasure, deviated: RVDeviated, trials: Trials, sense: int, known: Curves) -> Turned:
         """How far the output turns at a measure's positions; measures of the same share it."""
-        key = measure.positions, sense, measure.deflection
+        read = measure.positions, sense
+        if not measure.counts and (shared := next((own for (key, _), own in known.items() if key == read), None)):
+            return shared
+        key = read, measure.deflection
         if key not in known:
             turns = self.system.turns(measure.positions, trials)
             known[key] = self.turning.turned(deviated, turns, sense, measure.deflection)
         return known[key]
 
     def _details(self, measure: RVMeasure, found: Turned) -> Mapping[str, NDArray[np.generic]]:
-        """Disc and pin that touch, counted from 1, and pins near contact; of a curve, at its first position."""
+        """Disc and pin that touch, counted from 1; of a curve, at its first position."""
         disc, pin = np.divmod(found.places[:, 0], self.system.own.profile.pins)
-        details = {f"{measure.name}: disc": disc + 1, f"{measure.name}: pin": pin + 1}
-        if found.near is not None:
-            details[f"{measure.name}: pins near contact"] = found.near[:, 0]
-        return details
+        return {f"{measure.name}: disc": disc + 1, f"{measure.name}: pin": pin + 1}

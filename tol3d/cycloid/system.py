@@ -65,7 +65,8 @@ class RVSystem(RVTrials):
         """See System."""
         own = self.rv_measures[measure.name]
         order = {"order": int(own.spectrum.orders[0])} if own.take == "harmonic" and own.spectrum else {}
-        return {"kind": own.kind, "of": self.own.name, **order}
+        counted = {} if own.deflection is None else {"deflection_um": round(1e3 * own.deflection, 9)}
+        return {"kind": own.kind, "of": self.own.name, **order, **counted}
 
     def is_compiled(self, road: str) -> bool:
         """See System."""
@@ -88,13 +89,15 @@ class RVSystem(RVTrials):
 
     def cost(self, measures: Sequence[Measure]) -> int:
         """Every pin of every disc at each position, for each sense; measures of one curve share them; see System."""
-        read = {
+        read = [
             (own.positions, sense, own.deflection)
             for own in (self.rv_measures[measure.name] for measure in measures)
             for sense in ((1, -1) if own.reading == "lost motion" else (own.sense,))
-        }
+        ]
+        counted = {(positions, sense) for positions, sense, deflection in read if deflection is not None}
+        apart = {own for own in read if own[2] is not None or own[:2] not in counted}
         pins = self.own.profile.pins * self.own.discs
-        return sum(positions.in_a_trial for positions, _, _ in read) * pins
+        return sum(positions.in_a_trial for positions, _, _ in apart) * pins
 
     def regressor_key(self, measure: Measure) -> Hashable:
         """Of its own: contributors are regressed by what they do to it."""

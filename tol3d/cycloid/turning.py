@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from tol3d.cycloid.contact import leaning
 from tol3d.cycloid.first_stage import add_rates, crank_turns, first_order_mesh, placed_mesh
+from tol3d.cycloid.linear import LinearStage
 from tol3d.cycloid.rv_deviated import RVDeviated
 from tol3d.cycloid.rv_set import RVSet
 from tol3d.gears import LEFT, RIGHT
@@ -89,16 +90,23 @@ class LinearTurning:
     own: RVSet
 
     def turned(self, deviated: RVDeviated, turns: Array, sense: int, deflection: float | None = None) -> Turned:
-        """See Turning; pins near contact are not counted."""
+        """See Turning."""
         own = self.own
         beta, planets = crank_turns(own, deviated, turns, sense, first_order_mesh)
         aside = None if own.width is None else deviated.disc_tilts * (own.width / 2)
-        phis = own.crank_angles(turns)
-        if turns.shape[1] == 1:
-            phis = phis + beta * (own.profile.lobes / own.crank_arm)
-        found = own.linear.touches(deviated.stage, phis, 1 if sense > 0 else -1, aside)
+        phis = self.phis(turns, beta)
+        found = self.stage.touches(deviated.stage, phis, 1 if sense > 0 else -1, aside, deflection)
         shifted = phis if turns.shape[1] == 1 else None
-        return Turned(found.turns - beta / own.crank_arm, found.places, planets, phis=shifted)
+        return Turned(found.turns - beta / own.crank_arm, found.places, planets, found.near, shifted)
+
+    @property
+    def stage(self) -> LinearStage:
+        """The cycloid stage."""
+        return self.own.linear
+
+    def phis(self, turns: Array, beta: Array) -> Array:
+        """Crank angles (trials, 1), or over a turn (1, positions) of all trials [rad]; the cranks lead by beta."""
+        return led_angles(self.own, turns, beta) if turns.shape[1] == 1 else self.own.crank_angles(turns)
 
     def rates(self, tilts: Array, turns: Array, found: Turned, sense: int) -> RVDeviated:
         """What the turn (trials,) changes by per deviation where these pins and planets touch.

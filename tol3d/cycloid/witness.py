@@ -51,8 +51,9 @@ class RVWitness(RVRoad):
         return self.strips.chord_error
 
     def reads(self, measure: Measure) -> bool:
-        """See WitnessRoad."""
-        return measure.positions.in_a_trial <= MOST_POSITIONS
+        """See WitnessRoad: all but counts of pins near contact."""
+        own = self.system.rv_measures[measure.name]
+        return not own.counts and measure.positions.in_a_trial <= MOST_POSITIONS
 
     def bounds(self, measure: Measure) -> tuple[float, float]:
         """See WitnessRoad: by chords, and by all else."""

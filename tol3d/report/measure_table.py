@@ -35,7 +35,7 @@ ROWS = {
     "sample_max": "largest",
 }
 CONVERTED_ROWS = {"low_3sigma": "low", "mean": "mean", "high_3sigma": "high"}
-UNIT_HEADINGS = {"um": "[µm]", "mm": "[mm]", "arcmin": "[′, ″ of arc]"}
+UNIT_HEADINGS = {"um": "[µm]", "mm": "[mm]", "arcmin": "[′, ″ of arc]", "pins": "[pins]"}
 SIDES = ("below", "above")
 INDICES = {"pp": "Pp", "ppk": "Ppk"}
 UNEXPLAINED_SHOWN = 0.05  # %; less is 0.0 in print

@@ -4,10 +4,11 @@ import math
 from typing import Final
 
 from tol3d.report.page import Shown
-from tol3d.units import RAD_PER_ARCMIN, angle_text
+from tol3d.units import FACTORS, RAD_PER_ARCMIN, angle_text
 
 NOTHING: Final = "–"
-UNIT_SIGNS: Final = {"um": "µm", "mm": "mm", "arcmin": "′", "mrad": "mrad", "K": "K", "1": "1"}
+UNIT_SIGNS: Final = {"um": "µm", "mm": "mm", "arcmin": "′", "mrad": "mrad", "K": "K", "1": "1", "pins": "pins"}
+COUNTED: Final = frozenset(FACTORS["count"])
 MANY_UM: Final = 1000.0  # um; from there on a nanometre says nothing
 UM_PER_MM: Final = 1000.0
 LEAST_PERCENT: Final = 1000.0  # ppm; smaller shares are given in ppm, as quality people do
@@ -19,6 +20,8 @@ def value_text(value: float | None, unit: str) -> str:
 
     >>> value_text(53.3966, "um"), value_text(1.42, "arcmin"), value_text(None, "um"), value_text(2.217224, "mm")
     ('53.397', '1′25.2″', '–', '2.2172')
+    >>> value_text(5.0, "pins"), value_text(5.27448, "pins")
+    ('5', '5.274')
     """
     if value is None:
         return NOTHING
@@ -26,6 +29,8 @@ def value_text(value: float | None, unit: str) -> str:
         return angle_text(value * RAD_PER_ARCMIN)
     if unit == "mm":
         return unsigned_zero(f"{value:.4f}")
+    if unit in COUNTED:
+        return unsigned_zero(f"{round(value, 3):g}")
     return unsigned_zero(f"{value:.3f}" if abs(value) < MANY_UM else f"{value:.1f}")
 
 
@@ -59,6 +64,8 @@ def short_text(value: float, unit: str) -> str:
     """
     if unit == "arcmin":
         return measured_text(value, unit)
+    if unit in COUNTED:
+        return f"{unsigned_zero(f'{round(value, 1):g}')} {UNIT_SIGNS[unit]}"
     return f"{unsigned_zero(f'{value:.3f}' if unit == 'mm' else f'{value:.1f}')} {UNIT_SIGNS[unit]}"
 
 

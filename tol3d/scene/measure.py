@@ -16,6 +16,7 @@ MOST_POSITIONS = 1000
 Take = Literal["value", "min", "max", "range", "harmonic", "curve"]
 LengthLimit = Annotated[Quantity, Of("length")]
 AngleLimit = Annotated[Quantity, Of("angle")]
+CountLimit = Annotated[Quantity, Of("count")]
 
 
 class MeasureEntry(Entry):

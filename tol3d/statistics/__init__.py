@@ -1,7 +1,7 @@
 """Estimates from the values of trials, with their errors: pure functions, gathered block by block."""
 
 from tol3d.statistics.agreement import Agreement
-from tol3d.statistics.grid import Grid, Histogram
+from tol3d.statistics.grid import CountGrid, Grid, Histogram
 from tol3d.statistics.limits import LimitCounts, Proportion, equivalent_ppk, pp, ppk
 from tol3d.statistics.moments import Moments
 from tol3d.statistics.pair_sums import PairSums
@@ -9,6 +9,7 @@ from tol3d.statistics.variance_shares import RegressorSums, Shares, shares
 
 __all__ = [
     "Agreement",
+    "CountGrid",
     "Grid",
     "Histogram",
     "LimitCounts",

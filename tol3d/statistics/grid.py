@@ -78,7 +78,7 @@ class Grid:
             self.overflow + int(np.count_nonzero(above)),
         )
 
-    def merge(self, other: Self) -> Self:
+    def merge(self, other: "Grid") -> Self:
         """The counts of both.
 
         Raises:
@@ -114,6 +114,11 @@ class Grid:
         inside = 1 - (below[index] - rank) / self.counts[index]
         return float(self.lower + (index + inside) * self.width)
 
+    @property
+    def quantile_error(self) -> float:
+        """How far a quantile may be off."""
+        return self.width
+
     def histogram(self, bins: int, span: tuple[float, float] | None = None) -> Histogram:
         """At most `bins` coarse bins, each of equally many fine ones, over a span of values.
 
@@ -140,3 +145,23 @@ class Grid:
         first = math.floor(min(max((span[0] - self.lower) / self.width, 0), bins - 1))
         last = math.ceil(min(max((span[1] - self.lower) / self.width, 0), bins))
         return first, max(last, first + 1)
+
+
+@dataclass(frozen=True, eq=False)
+class CountGrid(Grid):
+    """A grid of whole numbers, each in the middle of its bin."""
+
+    @classmethod
+    def up_to(cls, most: int) -> Self:
+        """A grid without values, for 0 to `most`."""
+        return cls.empty(-0.5, 1.0, most + 1)
+
+    def quantile(self, p: float) -> float | None:
+        """The whole number below or at which a share p of the sample lies, 0 < p < 1; see Grid."""
+        value = super().quantile(p)
+        return None if value is None else float(math.ceil(value - 0.5))
+
+    @property
+    def quantile_error(self) -> float:
+        """None."""
+        return 0.0

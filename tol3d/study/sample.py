@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from tol3d.runs.summary import sample as summary
 from tol3d.runs.summary.values import made
-from tol3d.statistics import Grid, LimitCounts, Moments, equivalent_ppk, pp, ppk
+from tol3d.statistics import CountGrid, Grid, LimitCounts, Moments, equivalent_ppk, pp, ppk
 from tol3d.study.replicated import Replicated
 from tol3d.system.measure import Measure
 from tol3d.system.outcome import Mask, Outcome
@@ -45,7 +45,7 @@ class Sample:
     """
 
     moments: Moments
-    grid: Grid
+    grid: Grid | CountGrid
     limits: LimitCounts
     deepest: float
     replicated: Replicated | None = None
@@ -104,7 +104,7 @@ def sample_summary(measure: Measure, sample: Sample) -> summary.Sample:
         p0_135=low,
         p50=middle,
         p99_865=high,
-        quantile_error=sample.grid.width,
+        quantile_error=sample.grid.quantile_error,
         outside_grid=sample.grid.underflow + sample.grid.overflow,
         below_limit_ppm=finite(limits.below_limit.ppm),
         below_limit_ppm_95=listed(errors.below_interval_ppm),

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.statistics import Agreement, Grid, RegressorSums
+from tol3d.statistics import Agreement, CountGrid, Grid, RegressorSums
 from tol3d.statistics.grid import BINS
 from tol3d.statistics.lazy import quick_products
 from tol3d.statistics.variance_shares import Products, TargetSums, plain_products
@@ -28,12 +28,14 @@ from tol3d.system.measure import Measure
 from tol3d.system.outcome import ANALYTIC, GEOMETRIC, ROADS, Columns, Outcome, outcome_of, value_column
 from tol3d.system.pooled import PooledTerms
 from tol3d.system.system import System
+from tol3d.units import FACTORS
 
 Array = NDArray[np.float64]
 
 PILOT_TRIALS = 64  # the study's first trials; they give sigma to 9 %, and a spread that the stack-up does not see
 GRID_SIGMAS = 12.0  # the grid spans the mean +- this many sigma of both roads: bins of 1.8e-4 sigma, 1.3 nm
 LEAST_SPAN = 1e-3  # mm or rad; for a model in which nothing varies
+MOST_COUNTED = 4095  # of a measure that counts
 DIFFERENCE = "difference"  # of the two, beside them
 
 
@@ -70,6 +72,8 @@ def _spectrum_grids(system: System, measure: Measure, pilot: Columns) -> dict[st
 
 
 def _grid(system: System, measure: Measure, form: ClosedForm | None, pilot: Columns) -> Grid:
+    if measure.unit in FACTORS["count"]:
+        return CountGrid.up_to(MOST_COUNTED)
     spans = [(form.mean * measure.per_internal, form.sigma * measure.per_internal)] if form else []
     for road in ROADS:
         if value_column(road, measure.name) not in pilot:

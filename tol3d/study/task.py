@@ -120,11 +120,11 @@ class Task:
 
     def __getstate__(self) -> dict[str, Any]:
         """Grids travel as what they are made of: a megabyte of zeros each would go with every call."""
-        spans = {name: (grid.lower, grid.width, len(grid.counts)) for name, grid in self.grids.items()}
+        spans = {name: (type(grid), grid.lower, grid.width, len(grid.counts)) for name, grid in self.grids.items()}
         return {**self.__dict__, "grids": spans}
 
     def __setstate__(self, state: dict[str, Any]) -> None:
-        grids = {name: Grid.empty(*span) for name, span in state["grids"].items()}
+        grids = {name: kind.empty(*span) for name, (kind, *span) in state["grids"].items()}
         self.__dict__.update({**state, "grids": grids})
 
 

@@ -11,7 +11,7 @@ Worse = Literal["low", "high"]
 
 
 class Measure(Protocol):
-    """What is read of each trial; values inside are mm or rad, outside in `unit`."""
+    """What is read of each trial; values inside are mm, rad or counts, outside in `unit`."""
 
     @property
     def name(self) -> str:
@@ -40,7 +40,7 @@ class Measure(Protocol):
 
     @property
     def unit(self) -> str:
-        """Unit of its columns and of summary.json: "um", "mm" or "arcmin"."""
+        """Unit of its columns and of summary.json: "um", "mm", "arcmin", or "pins" of a count."""
         ...
 
     @property

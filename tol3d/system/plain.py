@@ -43,8 +43,9 @@ UNITS: Mapping[Dimension, tuple[str, float]] = {
     "length": ("um", 1e-3),
     "angle": ("arcmin", math.radians(1 / 60)),
     "temperature": ("K", 1.0),
+    "count": ("pins", 1.0),
 }
-"""Units of columns, and one of each in mm, rad or K."""
+"""Units of columns, and one of each in mm, rad or K, or in what is counted."""
 
 
 @dataclass(frozen=True)

@@ -148,7 +148,7 @@ class System(Protocol):
         ...
 
     def neglected(self, measure: Measure, trials: Trials) -> Mapping[str, Array]:
-        """What the analytic road leaves out of the first order on purpose: bounds (trials,) in the measure's unit."""
+        """What the analytic road leaves out on purpose: its size, or a bound (trials,) in the measure's unit."""
         ...
 
     # what it shows ----------------------------------------------------------------------------------

@@ -13,9 +13,21 @@ from tol3d.runs.summary.values import LEFT_OUT, Number, Section, made
 from tol3d.strict import Strict
 from tol3d.units import ARCMIN, Dimension, Of, Quantity
 
-PER_INTERNAL: Final[Mapping[Dimension, float]] = {"length": 1e3, "angle": ARCMIN, "temperature": 1.0, "expansion": 1.0}
+PER_INTERNAL: Final[Mapping[Dimension, float]] = {
+    "length": 1e3,
+    "angle": ARCMIN,
+    "temperature": 1.0,
+    "expansion": 1.0,
+    "count": 1.0,
+}
 """What one mm, rad, K or 1/K is in the units of summaries, where no measure has one of its own."""
-UNITS: Final[Mapping[Dimension, str]] = {"length": "um", "angle": "arcmin", "temperature": "K", "expansion": "1/K"}
+UNITS: Final[Mapping[Dimension, str]] = {
+    "length": "um",
+    "angle": "arcmin",
+    "temperature": "K",
+    "expansion": "1/K",
+    "count": "pins",
+}
 
 
 @cache

@@ -4,11 +4,11 @@ from typing import ClassVar, Literal
 
 from pydantic import Field
 
-from tol3d.cycloid.grammar.measures.cycloid_measure import CycloidMeasureSpec
+from tol3d.cycloid.grammar.measures.cycloid_measure import OutputAngleSpec
 from tol3d.scene.direction import RandomOrFixed
 
 
-class CycloidLostMotionSpec(CycloidMeasureSpec):
+class CycloidLostMotionSpec(OutputAngleSpec):
     """An angle: the free turn of the output while the input stands; below 0 where pins press on both sides."""
 
     gives_curve: ClassVar[bool] = False

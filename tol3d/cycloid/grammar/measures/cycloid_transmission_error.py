@@ -2,23 +2,18 @@
 
 from typing import Annotated, Final, Literal, Self
 
-from pydantic import Discriminator, Field, Tag, model_validator
+from pydantic import Field, model_validator
 
-from tol3d.cycloid.grammar.measures.cycloid_measure import CycloidMeasureSpec
-from tol3d.scene.direction import FixedAngle, known_word, shape
+from tol3d.cycloid.grammar.measures.cycloid_measure import OutputAngleSpec, Over
 from tol3d.scene.listed import listed
-from tol3d.scene.part import Length
 from tol3d.strict import refused
 
 MOST_ORDER: Final = 16_000  # of 32 000 positions
 ONE_POSITION: Final = "value"
-Over = Annotated[
-    Annotated[Literal["random", "turn"], Tag("word")] | FixedAngle, Discriminator(shape), known_word("random", "turn")
-]
 Order = Annotated[int, Field(ge=1, le=MOST_ORDER)]
 
 
-class CycloidTransmissionErrorSpec(CycloidMeasureSpec):
+class CycloidTransmissionErrorSpec(OutputAngleSpec):
     """An angle: how far the output leads its nominal position while a load on it keeps pins and flanks in touch.
 
     The output turns counter-clockwise. At one position it is counted from the nominal one; over a turn it is 0 at the
@@ -39,9 +34,6 @@ class CycloidTransmissionErrorSpec(CycloidMeasureSpec):
     )
     orders: Annotated[tuple[Order, ...], listed("orders")] | None = Field(
         default=None, description="of a curve: orders whose amplitudes are pooled, cycles a turn of the output"
-    )
-    deflection: Length | None = Field(
-        default=None, description="working pins whose gap is within it at the contact are counted, trial by trial"
     )
     positions: int = Field(
         default=2000, ge=24, le=32_000, description="positions a turn of the output; many for each turn of the cranks"
