@@ -118,7 +118,7 @@ def counted(
 
 def _phase(place: int, made: AsMade, phi: float, profile: DiscProfile) -> float:
     disc, pin = divmod(place, profile.pins)
-    return 2 * math.pi * (pin / profile.pins - disc / made.linkage.shape[1]) - phi
+    return 2 * math.pi * (pin / profile.pins - disc / int(made.linkage.shape[1])) - phi
 
 
 def _lever(phase: float, profile: DiscProfile) -> float:
