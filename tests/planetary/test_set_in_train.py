@@ -18,6 +18,7 @@ from planetary_sets import ARCMIN, free_by_highs, pitch_rows, reducer_3k
 from tol3d import Overrides, Run, SceneError, load_scene, run_scene
 from tol3d.planetary.deviated import Deviated
 from tol3d.planetary.from_scene import planetary_scene
+from tol3d.planetary.presenting.shown_train import display
 from tol3d.planetary.stage.system import SetTrain
 from tol3d.system.trials import Trials
 
@@ -362,3 +363,28 @@ def test_a_set_that_goes_up_and_turns_back_drives_a_train(tmp_path: Path) -> Non
     wanted = ((lacking["sun"] + lacking["ring"]) / 10 / 2 + lacking["pinion"] / 20) / ARCMIN
     for road in ROADS:
         np.testing.assert_allclose(columns[f"{road}:lost motion"], wanted, rtol=0, atol=1e-6)
+
+
+# shown ----------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.slow  # makes the solids of all gears
+def test_the_set_turns_with_its_train(tmp_path: Path) -> None:
+    """Of a turn of the motor: 1/3 at the sun, 25/104 of that at the pins, 25/1368 at ring 2; all against the motor."""
+    run = ran(tmp_path, TEXT, 4)
+    moved = display(run, "mean", magnify=1.0).motion("turn", 9)  # type: ignore[attr-defined]
+    assert {"sun", "ring 2", "P1 of planet 3"} <= {body.name for body in moved.world.bodies}
+    first, now = moved.frames[0].poses, moved.frames[6].poses
+    sun = -(2 * math.pi * 6 / 9) / 3
+
+    def turned(name: str) -> float:
+        turn = now[name][:2, :2] @ first[name][:2, :2].T
+        return math.atan2(turn[1, 0], turn[0, 0])
+
+    assert turned("sun") == pytest.approx(sun, abs=1e-9)
+    assert turned("ring 1") == pytest.approx(0.0, abs=1e-12)
+    assert turned("ring 2") == pytest.approx(sun / RATIO, abs=1e-9)
+    axis = now["sun"][:2, 3]
+    before, after = (poses["P1 of planet 3"][:2, 3] - axis for poses in (first, now))
+    angle = math.atan2(before[0] * after[1] - before[1] * after[0], before @ after)
+    assert angle == pytest.approx(sun * 25 / 104, abs=1e-3)  # the carrier rests anywhere in its play, 0.001 rad

@@ -141,17 +141,25 @@ def _point(build: SeatedBuild, mesh: SeatedMesh, point: Array) -> Array:
 
 def _shots(build: SeatedBuild, world: World) -> Iterator[Shot]:
     """Teeth in mesh, then the whole pair; of a train the train, then the teeth of its meshes."""
-    points = np.concatenate([body.mesh[0] for body in world.bodies])
-    middle = (points.min(axis=0) + points.max(axis=0)) / 2
-    up = np.array(world.up)
     if not shows_shafts(build.model):
         yield _teeth(build, build.meshes[0])
         towards = build.meshes[0].mesh.pair.view_from_world.T
-        yield Shot("whole", (around(points, middle, towards[:, 2], towards[:, 1]),))
+        yield _whole(world, towards[:, 2], towards[:, 1])
         return
-    yield Shot("whole", (around(points, middle, *corner(up)),))
+    yield whole_train(world)
     for mesh in build.meshes[:MOST_CLOSE_UPS]:
         yield _teeth(build, mesh)
+
+
+def whole_train(world: World) -> Shot:
+    """All of a train, from a corner: the first of its shots."""
+    return _whole(world, *corner(np.array(world.up)))
+
+
+def _whole(world: World, towards: Array, up: Array) -> Shot:
+    points = np.concatenate([body.mesh[0] for body in world.bodies])
+    middle = (points.min(axis=0) + points.max(axis=0)) / 2
+    return Shot("whole", (around(points, middle, towards, up),))
 
 
 def _teeth(build: SeatedBuild, mesh: SeatedMesh) -> Shot:

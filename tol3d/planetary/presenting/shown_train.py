@@ -1,5 +1,6 @@
 """Builds of trains with planetary sets as they are shown: seated gears, shafts, and the sets between them."""
 
+import math
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -13,8 +14,10 @@ from tol3d.gearing.links import LinkTrials
 from tol3d.gearing.model import Model
 from tol3d.gearing.placed import PlacedGear
 from tol3d.gearing.presenting.gear_display import GearDisplay
+from tol3d.gearing.presenting.moved_gears import TURN, whole_train
 from tol3d.gearing.system import GearSystem, gear_model
 from tol3d.planetary.presenting import shown_gears
+from tol3d.planetary.shown import ShownSet
 from tol3d.planetary.stage.set_link import SetLink
 from tol3d.report.body import Body, World
 from tol3d.report.motion import Motion
@@ -61,26 +64,35 @@ class ShownTrain:
         )
 
     def _bodies(self, root: str) -> Iterator[Body]:
-        layout = self.model.layout
         for name, (bodies, _) in self._sets.items():
-            if layout.root_of[self.model.link(name).driver] == root:
+            if self._root_of(self._links[name]) == root:
                 yield from bodies
+
+    @cached_property
+    def _links(self) -> dict[str, SetLink]:
+        return {link.name: link for link in self.model.links if isinstance(link, SetLink)}
+
+    def _root_of(self, link: SetLink) -> str:
+        """The first shaft of the train that drives it."""
+        return self.model.layout.root_of[link.driver]
 
     @cached_property
     def _sets(self) -> dict[str, tuple[tuple[Body, ...], bool]]:
         """Bodies of each set in the world of its train, and whether it jams."""
-        found = {}
-        for link in (link for link in self.model.links if isinstance(link, SetLink)):
-            shown = link.shown(self._seen(link))
-            into = self.model.layout.world_from_shaft[link.driver] @ _along_z(link.height)
-            gears = tuple(_moved(gear, into) for gear in shown.gears)
-            found[link.name] = (shown_gears.bodies_of(replace(shown, gears=gears)), bool(shown.status))
-        return found
+        shown = {name: self._shown(link) for name, link in self._links.items()}
+        return {name: (shown_gears.bodies_of(own), bool(own.status)) for name, own in shown.items()}
 
-    def _seen(self, link: SetLink) -> LinkTrials:
+    def _shown(self, link: SetLink, beyond: float = 0.0) -> ShownSet:
+        """A set in the world of its train, the first shaft turned by so much [rad] beyond the trial's position."""
+        shown = link.shown(self._seen(link, beyond))
+        into = self.model.layout.world_from_shaft[link.driver] @ _along_z(link.height)
+        return replace(shown, gears=tuple(_moved(gear, into) for gear in shown.gears))
+
+    def _seen(self, link: SetLink, beyond: float) -> LinkTrials:
         own = link_contributors(self.model, link.name)
         deviations = {each.name: self.trials.deviations[:, self.model.component_slices[each.name]] for each in own}
-        return LinkTrials(own, deviations, self.trials.positions[link.name][:, None])
+        further = beyond * float(self.model.layout.mesh_turn[link.name].rate)
+        return LinkTrials(own, deviations, self.trials.positions[link.name][:, None] + further)
 
     @property
     def motions(self) -> tuple[str, ...]:
@@ -88,9 +100,22 @@ class ShownTrain:
         return self.gears.motions
 
     def motion(self, name: str, frames: int | None) -> Motion:
-        """The gears in meshes move, sets are left out; see `tol3d.report.motion.Movable`."""
+        """The first shaft turns once, sets with it; swinging they stand still. See `tol3d.report.motion.Movable`."""
         found = self.gears.motion(name, frames)
-        return replace(found, notes=(*found.notes, f"{', '.join(self._sets)}: left out, its planets stand still here"))
+        if name != TURN:
+            return replace(found, notes=(*found.notes, f"{', '.join(self._sets)}: stands still here"))
+        world = next(own for own in self.worlds if own.name == found.world.name)
+        driven = [link for link in self._links.values() if self._root_of(link) == world.name]
+        turned = (
+            replace(frame, poses={**frame.poses, **self._poses(driven, 2 * math.pi * place / len(found.frames))})
+            for place, frame in enumerate(found.frames)
+        )
+        return replace(found, world=world, frames=tuple(turned), shots=(whole_train(world), *found.shots[1:]))
+
+    def _poses(self, links: list[SetLink], beyond: float) -> dict[str, Array]:
+        """Of the gears of sets, by their names; see _shown."""
+        shown = (self._shown(link, beyond) for link in links)
+        return {gear.name: gear.world_from_gear for own in shown for gear in own.gears}
 
     def view(self, close_up: str | None) -> View:
         """The whole train with its sets; with a mesh named, that mesh close up as in any train."""
