@@ -1,15 +1,24 @@
 """How many cycloid reducers a minute: exact first contact of two discs with forty pins over a turn of the output.
 
-    python benchmarks/cycloid.py [--units 2000] [--angles 200] [--rounds 3] [--threads 2]
+    python benchmarks/cycloid.py [--units 1000] [--angles 200] [--rounds 2] [--threads 2]
+    python benchmarks/cycloid.py --memory 1000 20000 100000
 
-By the clock and by the processor's own time, least of several rounds. Errors are those of an RV-250AII: every pin and
-lobe, discs, cranks and carrier. `near`: pins within 2 um of contact are counted. Blocks of 500 units are drawn before
-the clock runs and go to threads, as the kernel holds no lock; the last column is the largest memory of the process.
+By the clock and by the processor's own time of a core, least of several rounds; the clock also counts what others do on
+the machine. `--memory`: peak memory of whole studies of `rv_250aii`, a range over 200 positions and two more measures,
+by one worker, each in a process of its own; it must not grow with trials.
+
+Errors are those of an RV-250AII: every pin and lobe, discs, cranks and carrier. `near`: pins within 2 um of contact are
+counted. Blocks of 500 units are drawn before the clock runs and go to threads, as the kernel holds no lock; the last
+column is the largest memory of the process.
 """
 
 import argparse
 import math
+import os
 import resource
+import subprocess
+import sys
+import tempfile
 import time
 from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
@@ -43,18 +52,46 @@ def block(seed: int, units: int) -> AsMade:
     return AsMade(made, pins, 5 + drawn(0.0005, 40), drawn(0.0033, 2, 39), drawn(0.0002, 2, 39))
 
 
+def memory(trials: int) -> tuple[float, float]:
+    """Peak memory [MB] and processor's time [s] of a study of `rv_250aii` by one worker."""
+    with tempfile.TemporaryDirectory() as folder:
+        words = ["-m", "tol3d.cli", "run", "rv_250aii", "--trials", str(trials), "--workers", "1", "--no-trials"]
+        study = subprocess.Popen(
+            [sys.executable, *words, "--out", f"{folder}/run"], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL
+        )
+        _, status, used = os.wait4(study.pid, 0)
+    if os.waitstatus_to_exitcode(status):
+        raise RuntimeError(f"a study of {trials} trials failed")
+    return used.ru_maxrss / 1024, used.ru_utime + used.ru_stime
+
+
+def memory_table(trials: Sequence[int]) -> Table:
+    """Peak memory over the number of trials."""
+    table = Table(title="Whole studies of rv_250aii")
+    for heading in ("trials", "MB", "processor s"):
+        table.add_column(heading, justify="right")
+    for count in trials:
+        most, used = memory(count)
+        table.add_row(f"{count:,}", f"{most:,.0f}", f"{used:,.0f}")
+    return table
+
+
 def main(arguments: Sequence[str] | None = None) -> None:
     """Measure and print."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--units", type=int, default=2000)
+    parser.add_argument("--units", type=int, default=1000)
     parser.add_argument("--angles", type=int, default=200)
-    parser.add_argument("--rounds", type=int, default=3)
+    parser.add_argument("--rounds", type=int, default=2)
     parser.add_argument("--threads", type=int, default=2)
+    parser.add_argument("--memory", type=int, nargs="+", help="trials of whole studies, and nothing else")
     given = parser.parse_args(arguments)
+    if given.memory:
+        Console().print(memory_table(given.memory))
+        return
     blocks = [block(seed, min(BLOCK, given.units - seed * BLOCK)) for seed in range(-(-given.units // BLOCK))]
     angles = np.arange(given.angles) * (2 * np.pi * PROFILE.lobes / given.angles)
     table = Table(title=f"Units a minute: {given.units} x {given.angles} crank angles x 2 discs x {PROFILE.pins} pins")
-    for heading in ("what", "threads", "a minute", "of processor", "us a position", "MB"):
+    for heading in ("what", "threads", "a minute", "a minute of a core", "us a position", "MB"):
         table.add_column(heading, justify="left" if heading == "what" else "right")
     for name, senses, deflection in (
         ("one sense", BOTH[:1], -1.0),
