@@ -74,8 +74,8 @@ CYCLOIDS = MechanismPage(
         "tolerances": ["Beside `kind`, each has"],
         "measures": ["The first two are angles of the output, the last"],
     },
-    ("every_cycloid_field", "rv_250aii"),
-    quotes=3,
+    ("every_cycloid_field", "rv_250aii", "rv_bearing_play"),
+    quotes=4,
     beside=frozenset({"tooth_thickness", "eccentricity"}),
 )
 PLANETARIES = MechanismPage(

@@ -3,6 +3,7 @@
 import math
 from typing import Any
 
+from tol3d.cycloid.grammar.tolerances.bearing_play import BearingPlaySpec
 from tol3d.cycloid.grammar.tolerances.carrier_bearing import CarrierBearingSpec
 from tol3d.cycloid.grammar.tolerances.carrier_hole import CarrierHoleSpec
 from tol3d.cycloid.grammar.tolerances.crank_eccentricity import CrankEccentricitySpec
@@ -40,7 +41,7 @@ OF_THE_STAGE: dict[type, Effect] = {
     CarrierBearingSpec: "carrier offset",
 }
 OF_GEARS = (ToothThicknessSpec, EccentricitySpec)
-OF_A_CHOICE = (PinPositionSpec, CrankEccentricitySpec, CarrierHoleSpec)
+OF_A_CHOICE = (PinPositionSpec, CrankEccentricitySpec, CarrierHoleSpec, BearingPlaySpec)
 
 
 def acts_of(scene: Scene, own: RVSet, name: str, spec: Any) -> Acts:
@@ -61,6 +62,8 @@ def acts_of(scene: Scene, own: RVSet, name: str, spec: Any) -> Acts:
         return Acts("crank throw" if spec.each == "crank" else "crank throw of a disc")
     if isinstance(spec, CarrierHoleSpec):
         return Acts("carrier hole" if spec.each == "hole" else "carrier circle")
+    if isinstance(spec, BearingPlaySpec):
+        return Acts("disc play" if spec.of == own.disc else "carrier play")
     if isinstance(spec, OF_GEARS):
         return _of_a_gear(scene, own, name, spec)
     words = ", ".join(str(kind_of(kind)) for kind in (*OF_THE_STAGE, *OF_A_CHOICE, *OF_GEARS))
@@ -99,6 +102,8 @@ def draw_of(own: RVSet, acts: Acts, law: Distribution) -> Draw:
         "crank throw of a disc": discs,
         "crank phase": cranks,
         "carrier hole": _numbered("hole", own.cranks),
+        "disc play": _of_each(discs, _numbered("hole", own.cranks)),
+        "carrier play": _numbered("hole", own.cranks),
         "planet thickness": _numbered("planet", own.cranks),
         "planet offset": _numbered("planet", own.cranks),
     }
@@ -108,6 +113,8 @@ def draw_of(own: RVSet, acts: Acts, law: Distribution) -> Draw:
     return EachPlanar(law, names[acts.effect], None) if planar else Each(law, names[acts.effect])
 
 
+NOT_NEGATIVE: tuple[Effect, ...] = ("disc play", "carrier play")
+"""Effects of a clearance."""
 PLANAR: tuple[Effect, ...] = (
     "pin ring", "pin place", "disc offset", "disc tilt", "disc hole", "crank throw", "crank throw of a disc",
     "carrier hole", "carrier circle", "carrier offset", "sun offset", "planet offset",

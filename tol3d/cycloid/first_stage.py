@@ -84,7 +84,9 @@ def first_order_mesh(
     return np.asarray((math.cos(alpha) * apart.imag + flank * closing) / pair.wheel.base_radius)
 
 
-def add_rates(own: RVSet, rates: RVDeviated, turns: Array, planets: Places, flank: Flank, factor: float) -> None:
+def add_rates(
+    own: RVSet, rates: RVDeviated, turns: Array, planets: Places, flank: Flank, factor: float | Array
+) -> None:
     """Add what the first planet's turn changes by per deviation, times a factor.
 
     Args:
@@ -93,7 +95,7 @@ def add_rates(own: RVSet, rates: RVDeviated, turns: Array, planets: Places, flan
         turns: of the output (trials,).
         planets: which planet stops the cranks (trials,).
         flank: of the sun.
-        factor: what a turn of the cranks counts for.
+        factor: what a turn of the cranks counts for, alike or of each trial.
     """
     first = own.first
     if first is None:

@@ -37,7 +37,7 @@ class BentStage(LinearStage):
     ) -> Array:
         """What the bend adds to turns of one disc (trials, pins) [rad]."""
         profile, azimuths = self.profile, self._azimuths[pins]
-        phases = phis + self._throws[disc]
+        phases = phis + self.throws[disc]
         towards = profile.eccentricity * np.exp(1j * phases)[:, None]
         u = self._parameters(phases)[:, pins]
         moved, turned = placed.at(phis, profile.lobes)

@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from tol3d.cycloid.draws import acts_of, draw_of
+from tol3d.cycloid.draws import NOT_NEGATIVE, acts_of, draw_of
 from tol3d.cycloid.grammar.measures.cycloid_lost_motion import CycloidLostMotionSpec
 from tol3d.cycloid.grammar.measures.cycloid_measure import CycloidMeasureSpec
 from tol3d.cycloid.grammar.measures.cycloid_pins_near_contact import CycloidPinsNearContactSpec
@@ -11,7 +11,7 @@ from tol3d.cycloid.grammar.parts.cycloid_disc import CycloidDiscSpec
 from tol3d.cycloid.measure import Reading, RVMeasure
 from tol3d.cycloid.refusals import rv_set
 from tol3d.cycloid.rv_set import RVSet
-from tol3d.cycloid.system import RVSystem
+from tol3d.cycloid.system import PlayingSystem, RVSystem
 from tol3d.gearing.grammar.study import GearStudyOptions
 from tol3d.scene import Scene
 from tol3d.scene.direction import At
@@ -36,6 +36,7 @@ def rv_system(scene: Scene) -> RVSystem:
             draw_of(own, acts[name], spec.distribution.resolve(scene.files)),
             *UNITS[spec.dimensions[0]],
             spec.description,
+            least=0.0 if acts[name].effect in NOT_NEGATIVE else None,
         )
         for name, spec in scene.distributed.items()
     ]
@@ -44,7 +45,8 @@ def rv_system(scene: Scene) -> RVSystem:
     assert isinstance(disc, CycloidDiscSpec)
     width, hole = (None if size is None else size.internal for size in (disc.width, disc.hole))
     steps = scene.options(GearStudyOptions).profile_steps
-    return RVSystem(scene.scene, tuple(contributors), tuple(measures.values()), own, acts, measures, width, hole, steps)
+    system = PlayingSystem if own.plays else RVSystem
+    return system(scene.scene, tuple(contributors), tuple(measures.values()), own, acts, measures, width, hole, steps)
 
 
 def _measure(scene: Scene, own: RVSet, name: str, spec: Any) -> RVMeasure:

@@ -112,7 +112,7 @@ class LinearStage:
         profile, rows = self.profile, np.arange(len(phis))
         disc, pin = np.divmod(places, profile.pins)
         found = Deviated.nothing(len(phis), profile.pins, self.discs, self.cranks)
-        phases = phis + self._throws[disc]
+        phases = phis + self.throws[disc]
         u = self._parameters(phases)[rows, pin]
         normal, lever = self._normals(u, self._azimuths[pin]), -profile.lever(u)
         reach = lever * self._giving
@@ -145,7 +145,7 @@ class LinearStage:
 
     def gaps(self, phis: Array, disc: int, pins: Places, further: Array) -> Array:
         """What gaps of a disc's pins close [mm] by further turns of the carrier (trials, pins), at phis (trials,)."""
-        lever = self.profile.lever(self._parameters(phis + self._throws[disc])[:, pins])
+        lever = self.profile.lever(self._parameters(phis + self.throws[disc])[:, pins])
         return np.abs(further * lever * self._giving)
 
     def _within(self, turns: Array, phis: Array, found: Sequence[tuple[Array, Places]], deflection: float) -> Places:
@@ -161,30 +161,54 @@ class LinearStage:
         self, deviated: Deviated, disc: int, placed: "PlacedDisc", phis: Array, sense: Sense, aside: Array | None
     ) -> tuple[Array, Places]:
         profile = self.profile
-        u = self._parameters(phis + self._throws[disc])
+        u = self._parameters(phis + self.throws[disc])
         pins = np.flatnonzero((-sense * profile.lever(u) > self.window * profile.pitch_radius).any(axis=0))
-        u, azimuths = u[:, pins], self._azimuths[pins]
-        lever = -profile.lever(u)
+        moved, turned = placed.at(phis, profile.lobes)
+        gap, lever, _ = self._gaps(deviated, disc, phis, aside, (moved, pins))
+        works = sense * lever > self.window * profile.pitch_radius
+        turn = gap / np.where(works, lever, 1.0) - turned[:, None]
+        lobes = self._lobes(u[:, pins])
+        turn -= profile.shortening / profile.pitch_radius * picked(deviated.lobe_pitch[:, disc], lobes)
+        return np.where(works, turn / self._giving, sense * np.inf), pins
+
+    def nominal_gaps(
+        self, deviated: Deviated, disc: int, phis: Array, aside: Array | None
+    ) -> tuple[Array, Array, Complex]:
+        """Gaps of all pins at a disc in its nominal place [mm], levers, and normals in the world (trials, pins).
+
+        Args: see allowed; phis (trials,).
+        """
+        pins = np.arange(self.profile.pins)
+        gap, lever, normal = self._gaps(deviated, disc, phis, aside, (np.zeros(len(phis), dtype=np.complex128), pins))
+        own = picked(deviated.lobe_pitch[:, disc], self.lobes_at(disc, phis))
+        pitch = self.profile.shortening / self.profile.pitch_radius * own
+        return gap - lever * pitch, lever, normal
+
+    def lobes_at(self, disc: int, phis: Array) -> Places:
+        """The lobe of a disc at each pin (trials, pins)."""
+        return self._lobes(self._parameters(phis + self.throws[disc]))
+
+    def _gaps(
+        self, deviated: Deviated, disc: int, phis: Array, aside: Array | None, at: tuple[Complex, Places]
+    ) -> tuple[Array, Array, Complex]:
+        """The same of some pins at a disc that is displaced (trials,), without errors of pitch."""
+        profile, (moved, pins) = self.profile, at
+        u, azimuths = self._parameters(phis + self.throws[disc])[:, pins], self._azimuths[pins]
         normal = self._normals(u, azimuths)
         own = normal * np.exp(-1j * azimuths)
-        lobes = self._lobes(u)
-        moved, turned = placed.at(phis, profile.lobes)
         gap = profile.clearance(u) + own.real * deviated.pins[:, pins, 0] + own.imag * deviated.pins[:, pins, 1]
-        gap -= deviated.pin_radii[:, pins] + picked(deviated.lobe_profile[:, disc], lobes)
+        gap -= deviated.pin_radii[:, pins] + picked(deviated.lobe_profile[:, disc], self._lobes(u))
         gap -= normal.real * moved.real[:, None] + normal.imag * moved.imag[:, None]
         if aside is not None:
             faces = 1j * as_complex(aside[:, disc]) * np.exp(-1j * phis / profile.lobes)
             gap -= np.abs(normal.real * faces.real[:, None] + normal.imag * faces.imag[:, None])
-        works = sense * lever > self.window * profile.pitch_radius
-        turn = gap / np.where(works, lever, 1.0) - turned[:, None]
-        turn -= profile.shortening / profile.pitch_radius * picked(deviated.lobe_pitch[:, disc], lobes)
-        return np.where(works, turn / self._giving, sense * np.inf), pins
+        return gap, -profile.lever(u), normal
 
     def _of_linkage(self, found: Deviated, phis: Array, disc: Places, push: Complex) -> None:
         """Write the rates of what places a disc: `push` is that of its displacement (rows,) in the world."""
         rows, profile = np.arange(len(phis)), self.profile
         carrier, throw = np.exp(-1j * phis / profile.lobes), np.exp(1j * phis)
-        moment = 1j * self._crank_directions / (self.crank_circle * self.cranks) / self._giving
+        moment = 1j * self.crank_directions / (self.crank_circle * self.cranks) / self._giving
         carried = push * np.conj(carrier)
         holes = carried[:, None] / self.cranks - moment
         found.carrier_offsets[...] = _plane(carried)
@@ -193,7 +217,7 @@ class LinearStage:
         found.disc_holes[rows, disc] = -_plane(holes)
         thrown = (push * np.conj(throw))[:, None] / self.cranks - moment * (carrier * np.conj(throw))[:, None]
         found.crank_errors[rows, :, disc] = _plane(thrown)
-        tangential = 1j * profile.eccentricity * np.exp(1j * self._throws[disc])
+        tangential = 1j * profile.eccentricity * np.exp(1j * self.throws[disc])
         found.crank_phases[...] = (np.conj(thrown) * tangential[:, None]).real
 
     # numbers --------------------------------------------------------------------------------------------
@@ -204,12 +228,13 @@ class LinearStage:
         return 1.0 + self.rolling / self.profile.lobes
 
     @property
-    def _throws(self) -> Array:
+    def throws(self) -> Array:
         """Phase of each disc on a crank [rad]."""
         return 2 * np.pi * np.arange(self.discs) / self.discs
 
     @property
-    def _crank_directions(self) -> Complex:
+    def crank_directions(self) -> Complex:
+        """Unit vectors to the cranks' axes (cranks,)."""
         return np.asarray(np.exp(2j * np.pi * np.arange(self.cranks) / self.cranks))
 
     @property
@@ -249,9 +274,9 @@ class PlacedDisc:
     def of(cls, stage: LinearStage, deviated: Deviated, disc: int) -> "PlacedDisc":
         """One of a stage's discs."""
         holes = as_complex(deviated.carrier_holes) - as_complex(deviated.disc_holes[:, disc])
-        tangential = 1j * stage.profile.eccentricity * np.exp(1j * stage._throws[disc])
+        tangential = 1j * stage.profile.eccentricity * np.exp(1j * stage.throws[disc])
         throws = as_complex(deviated.crank_errors[:, :, disc]) + tangential * deviated.crank_phases
-        across = np.conj(stage._crank_directions) / (stage.crank_circle * stage.cranks)
+        across = np.conj(stage.crank_directions) / (stage.crank_circle * stage.cranks)
         offsets = as_complex(deviated.carrier_offsets) + as_complex(deviated.disc_offsets[:, disc])
         return cls(holes.mean(axis=1) + offsets, throws.mean(axis=1), (holes @ across).imag, throws @ across)
 

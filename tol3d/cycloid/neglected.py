@@ -44,7 +44,7 @@ class BentTurning(LinearTurning):
 
 def neglected(system: RVTrials, measure: RVMeasure, trials: Trials) -> Mapping[str, Array]:
     """By how much what is left out changes a measure, in its unit: (trials,) by its words; of a curve nothing."""
-    if measure.take == "curve":
+    if measure.take == "curve" or system.own.plays:
         return {}
     bent, straight = (_taken(system, measure, trials, road(system.own)) for road in (BentTurning, LinearTurning))
     return {BEND: measure.per_internal * np.abs(bent - straight)}

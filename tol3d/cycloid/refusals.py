@@ -7,6 +7,7 @@ from tol3d.cycloid.grammar.parts.crank_carrier import CrankCarrierSpec
 from tol3d.cycloid.grammar.parts.crankshaft import CrankshaftSpec
 from tol3d.cycloid.grammar.parts.cycloid_disc import CycloidDiscSpec
 from tol3d.cycloid.grammar.parts.pin_ring import PinRingSpec
+from tol3d.cycloid.grammar.tolerances.bearing_play import BearingPlaySpec
 from tol3d.cycloid.limits import faults, lobes_fault
 from tol3d.cycloid.modification import Modification
 from tol3d.cycloid.profile import DiscProfile
@@ -52,6 +53,7 @@ def rv_set(scene: Scene) -> RVSet:
         window=spec.window,
         first=_first_stage(scene, name, spec, carrier.radius.internal),
         width=None if disc.width is None else disc.width.internal,
+        plays=any(isinstance(tolerance, BearingPlaySpec) for tolerance in scene.tolerances.values()),
     )
 
 

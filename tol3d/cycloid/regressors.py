@@ -9,9 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.cycloid.measure import RVMeasure
+from tol3d.cycloid.resting import linear_rates, linear_turning
 from tol3d.cycloid.rv_deviated import RVDeviated
 from tol3d.cycloid.rv_trials import RVTrials
-from tol3d.cycloid.turning import LinearTurning
 from tol3d.system.contributor import Contributor
 from tol3d.system.regressors import has_square
 from tol3d.system.system import Columns
@@ -54,9 +54,8 @@ def _senses(measure: RVMeasure) -> tuple[tuple[int, float], ...]:
 
 
 def _rates(system: RVTrials, deviated: RVDeviated, turns: Array, sense: tuple[int, float]) -> tuple[float, RVDeviated]:
-    road = LinearTurning(system.own)
-    found = road.turned(deviated, turns[:, None], sense[0])
-    return sense[1], road.rates(deviated.disc_tilts, turns, found, sense[0])
+    found = linear_turning(system.own).turned(deviated, turns[:, None], sense[0])
+    return sense[1], linear_rates(system.own, deviated, turns, found, sense[0])
 
 
 def _term(system: RVTrials, name: str, rates: Sequence[tuple[float, RVDeviated]], values: Array) -> Array:

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.cycloid.contact import Array, ContactStage, contact_shape
+from tol3d.cycloid.contact import NONE_COUNTED, Array, ContactStage, contact_shape
 from tol3d.cycloid.contact_kinematics import throws
 from tol3d.cycloid.deviated import Deviated
 from tol3d.cycloid.rest_kernel import rests
@@ -18,12 +18,16 @@ class Play:
     Args:
         disc: diametral clearance of each throw in its disc (trials, cranks, discs) [mm], or what broadcasts to it.
         carrier: the same of each crank in the carrier (trials, cranks) [mm].
-        crank: by which the first stage lets the cranks turn either way (trials,) [rad].
+        crank: least and most turn that the first stage leaves each crank in the middle of its bearing (trials,
+            positions, cranks, 2) [rad], or what broadcasts to it.
+        leaving: by how much both change for a crank that lies off by 1 mm round the carrier, and outwards [rad/mm]:
+            flanks lean, so that outwards there is more room either way.
     """
 
     disc: Array
     carrier: Array
     crank: Array
+    leaving: tuple[float, float] = (0.0, 0.0)
 
 
 @dataclass(frozen=True)
@@ -34,11 +38,13 @@ class Resting:
         turns: of the carrier beyond -phi / Zc (trials, positions) [rad]; NaN where it does not rest.
         loads: force on each pin per torque on the carrier (trials, positions, discs pins) [1/mm]; 0 where it carries
             nothing. As many carry as bearings without stiffness can share loads among, no more.
+        near: working pins that have a gap of at most the stated deflection then (trials, positions).
         status: 0 where it rests; else see tol3d.numerics.programme, and NOT_HELD.
     """
 
     turns: Array
     loads: Array
+    near: NDArray[np.int64]
     status: NDArray[np.int8]
 
 
@@ -56,7 +62,15 @@ class RestStage:
 
     contact: ContactStage
 
-    def rests(self, deviated: Deviated, phis: Array, play: Play, sense: float) -> Resting:
+    def rests(
+        self,
+        deviated: Deviated,
+        phis: Array,
+        play: Play,
+        sense: float,
+        deflection: float | None = None,
+        leans: Array | None = None,
+    ) -> Resting:
         """Turn the carrier by a torque, counter-clockwise (+1) or back (-1), until contacts hold it.
 
         Args:
@@ -64,6 +78,7 @@ class RestStage:
             phis: crank angles (trials, positions), or (1, positions) that are those of every trial [rad].
             play: of bearings.
             sense: of the torque.
+            deflection, leans: see ContactStage.touches.
         """
         own = self.contact
         trials, positions = len(deviated.pins), phis.shape[1]
@@ -75,20 +90,26 @@ class RestStage:
         found = Resting(
             np.empty((trials, positions)),
             np.empty((trials, positions, own.discs * own.profile.pins)),
+            np.empty((trials, positions), dtype=np.int64),
             np.empty((trials, positions), dtype=np.int8),
         )
         given = (
             *(made.linkage, joined.holes, joined.thrown, joined.bored, made.pins, made.pin_radii),
-            *(made.lobe_pitch, made.lobe_profile, radial, np.broadcast_to(play.crank, (trials,))),
+            *(made.lobe_pitch, made.lobe_profile),
+            np.zeros((trials, own.discs, 3)) if leans is None else leans,
+            radial,
+            np.broadcast_to(play.crank, (trials, positions, own.cranks, 2)),
+            np.array(play.leaving),
             np.broadcast_to(phis, (trials, positions)),
         )
         rests(
-            contact_shape(own.profile, own.window, own.rolling),
+            contact_shape(own.profile, own.window, own.rolling, NONE_COUNTED if deflection is None else deflection),
             throws(own.discs),
             *(np.require(each, dtype=np.float64, requirements=["C", "W"]) for each in given),
             sense,
             found.turns,
             found.loads,
+            found.near,
             found.status,
         )
         return found

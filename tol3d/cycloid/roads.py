@@ -46,15 +46,18 @@ class RVRoad:
         for own in read:
             forwards = self._turned(own, deviated, trials, own.sense, known)
             values[own.name] = forwards.turns
+            codes = _worst(forwards)
             if forwards.near is not None and own.counts:
                 values[own.name] = np.where(np.isnan(forwards.turns), np.nan, forwards.near)
             elif own.reading == "lost motion":
-                values[own.name] = forwards.turns - self._turned(own, deviated, trials, -1, known).turns
+                back = self._turned(own, deviated, trials, -1, known)
+                values[own.name] = forwards.turns - back.turns
+                codes = np.maximum(codes, _worst(back))
             elif own.positions.over == "turn":
                 values[own.name] = forwards.turns - forwards.turns[:, :1]
             lacking = np.asarray(np.isnan(values[own.name]).any(axis=1))
             values[own.name] = np.where(lacking[:, None], np.nan, values[own.name])
-            status[own.name] = np.where(lacking, NO_CONTACT, 0).astype(np.int8)
+            status[own.name] = np.where(lacking, np.maximum(codes, NO_CONTACT), 0).astype(np.int8)
             details |= self._details(own, forwards)
         return Answers(values, details=details, status=status)
 
@@ -73,3 +76,10 @@ class RVRoad:
         """Disc and pin that touch, counted from 1; of a curve, at its first position."""
         disc, pin = np.divmod(found.places[:, 0], self.system.own.profile.pins)
         return {f"{measure.name}: disc": disc + 1, f"{measure.name}: pin": pin + 1}
+
+
+def _worst(found: Turned) -> NDArray[np.int8]:
+    """Codes (trials,) of the worst positions."""
+    if found.codes is None:
+        return np.zeros(len(found.turns), dtype=np.int8)
+    return np.asarray(found.codes.max(axis=1))

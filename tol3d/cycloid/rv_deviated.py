@@ -1,7 +1,7 @@
 """What contributors do to an RV reducer: deviations of its cycloid stage, and of the gears before it."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from typing import Literal
 
 import numpy as np
@@ -24,6 +24,8 @@ Effect = Literal[
     "disc offset",
     "disc hole",
     "disc tilt",
+    "disc play",
+    "carrier play",
     "crank throw",
     "crank throw of a disc",
     "crank phase",
@@ -61,6 +63,8 @@ class RVDeviated:
         sun_offset: of the teeth's centre from the axis, in the gear's frame (trials, 2) [mm].
         planet_offset: the same of planets, from their cranks' axes (trials, cranks, 2).
         disc_tilts: of discs about x and y of their own frame, through mid-face (trials, discs, 2) [rad].
+        disc_play: diametral clearance of each crank's bearing in each disc (trials, discs, cranks) [mm].
+        carrier_play: the same in the carrier (trials, cranks).
     """
 
     stage: Deviated
@@ -69,6 +73,8 @@ class RVDeviated:
     sun_offset: Array
     planet_offset: Array
     disc_tilts: Array
+    disc_play: Array
+    carrier_play: Array
 
     @classmethod
     def nothing(cls, own: RVSet, trials: int) -> "RVDeviated":
@@ -80,7 +86,21 @@ class RVDeviated:
             np.zeros((trials, 2)),
             np.zeros((trials, own.cranks, 2)),
             np.zeros((trials, own.discs, 2)),
+            np.zeros((trials, own.discs, own.cranks)),
+            np.zeros((trials, own.cranks)),
         )
+
+    def rows(self, own: NDArray[np.int64]) -> "RVDeviated":
+        """Those of some trials, in some order."""
+        stage = Deviated(*(getattr(self.stage, field.name)[own] for field in fields(self.stage)))
+        return RVDeviated(stage, *(getattr(self, field.name)[own] for field in fields(self)[1:]))
+
+    def put(self, own: NDArray[np.int64], part: "RVDeviated") -> None:
+        """Write those of some trials."""
+        for field in fields(self.stage):
+            getattr(self.stage, field.name)[own] = getattr(part.stage, field.name)
+        for field in fields(self)[1:]:
+            getattr(self, field.name)[own] = getattr(part, field.name)
 
     def add(self, acts: Acts, components: Array) -> None:
         """Add what a contributor does.
@@ -115,6 +135,8 @@ class RVDeviated:
             "disc offset": (stage.disc_offsets, _shaped(stage.disc_offsets[0])),
             "disc hole": (stage.disc_holes, _shaped(stage.disc_holes[0])),
             "disc tilt": (self.disc_tilts, _shaped(self.disc_tilts[0])),
+            "disc play": (self.disc_play, _shaped(self.disc_play[0])),
+            "carrier play": (self.carrier_play, _shaped(self.carrier_play[0])),
             "crank throw": (stage.crank_errors, _shaped(stage.crank_errors[0])),
             "crank throw of a disc": (stage.crank_errors, _shaped(stage.crank_errors[0, :1])),
             "crank phase": (stage.crank_phases, _shaped(stage.crank_phases[0])),

@@ -57,6 +57,7 @@ class RVSet:
         window: pins work whose lever is more than this share of the pitch radius.
         first: its first stage; None where the cranks are the input.
         width: of the discs [mm]; None where it is not stated, and discs do not tilt.
+        plays: whether bearings of cranks have play, so that a torque decides where discs and cranks lie.
     """
 
     name: str
@@ -71,6 +72,7 @@ class RVSet:
     window: float
     first: FirstStage | None = None
     width: float | None = None
+    plays: bool = False
 
     @property
     def gear_ratio(self) -> Fraction:

@@ -13,6 +13,8 @@ from tol3d.cycloid.formula_section import stages_by_formula
 from tol3d.cycloid.neglected import neglected
 from tol3d.cycloid.problems import problems_of
 from tol3d.cycloid.regressors import regress_touching
+from tol3d.cycloid.rest_kernel import rests
+from tol3d.cycloid.resting import exact_turning, linear_turning
 from tol3d.cycloid.roads import RVRoad
 from tol3d.cycloid.rv_trials import RVTrials
 from tol3d.cycloid.shown import ShownReducer
@@ -20,7 +22,6 @@ from tol3d.cycloid.stage_shapes import usual_shapes
 from tol3d.cycloid.statuses import STATUSES
 from tol3d.cycloid.strips import lobe_strips
 from tol3d.cycloid.turn_regressors import TAKEN, regress_over_turn
-from tol3d.cycloid.turning import ExactTurning, LinearTurning
 from tol3d.system.contributor import Contributor
 from tol3d.system.measure import Measure
 from tol3d.system.pooled import PooledTerms
@@ -32,6 +33,7 @@ from tol3d.system.trials import Trials
 Array = NDArray[np.float64]
 
 FCL: Final = "fcl"
+REST_COSTS: Final = 80  # times a first contact
 WITNESS: Final = "tol3d.cycloid.witness"  # it loads FCL, in the worker
 ROADS: Final[Mapping[str, RoadKind]] = {
     "exact": RoadKind("kernels", compiled=True, contacts_per_minute=900_000_000),
@@ -70,7 +72,7 @@ class RVSystem(RVTrials):
 
     def is_compiled(self, road: str) -> bool:
         """See System."""
-        return road != "exact" or first_contacts.kept
+        return road != "exact" or (rests if self.own.plays else first_contacts).kept
 
     def materials(self, road: str) -> Any:
         """See System: the strips of a disc's solid, for FCL."""
@@ -85,7 +87,7 @@ class RVSystem(RVTrials):
         if name == FCL:
             made: Road = import_module(WITNESS).witness(self, materials)
             return made
-        return RVRoad(self, LinearTurning(self.own) if name == ANALYTIC_ROAD else ExactTurning(self.own))
+        return RVRoad(self, linear_turning(self.own) if name == ANALYTIC_ROAD else exact_turning(self.own))
 
     def cost(self, measures: Sequence[Measure]) -> int:
         """Every pin of every disc at each position, for each sense; measures of one curve share them; see System."""
@@ -96,7 +98,7 @@ class RVSystem(RVTrials):
         ]
         counted = {(positions, sense) for positions, sense, deflection in read if deflection is not None}
         apart = {own for own in read if own[2] is not None or own[:2] not in counted}
-        pins = self.own.profile.pins * self.own.discs
+        pins = self.own.profile.pins * self.own.discs * (REST_COSTS if self.own.plays else 1)
         return sum(positions.in_a_trial for positions, _, _ in apart) * pins
 
     def regressor_key(self, measure: Measure) -> Hashable:
@@ -129,3 +131,10 @@ class RVSystem(RVTrials):
         turns = float(trials.positions[self.own.name][0])
         deviated = self.deviated(trials.part(0, 1))
         return ShownReducer(self.own, deviated, turns, self.width, self.crank_hole)
+
+
+@dataclass(frozen=True)
+class PlayingSystem(RVSystem):
+    """A reducer whose bearings have play: where it rests no other engine knows."""
+
+    roads: ClassVar[Mapping[str, RoadKind]] = {name: kind for name, kind in ROADS.items() if not kind.witness}

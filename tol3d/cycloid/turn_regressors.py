@@ -12,9 +12,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.cycloid.measure import RVMeasure
+from tol3d.cycloid.resting import linear_rates, linear_turning
 from tol3d.cycloid.rv_deviated import RVDeviated
 from tol3d.cycloid.rv_trials import RVTrials
-from tol3d.cycloid.turning import LinearTurning, Turned
+from tol3d.cycloid.turning import Turned
 from tol3d.system.contributor import Contributor
 from tol3d.system.system import Columns
 from tol3d.system.taken import ROWS_AT_ONCE
@@ -56,14 +57,13 @@ def taken_rates(system: RVTrials, measure: RVMeasure, deviated: RVDeviated) -> t
         Weights of the turns (trials, positions), most of them 0, and rates of those that are not, in their order.
     """
     turns = fixed_turns(measure)
-    road = LinearTurning(system.own)
-    found = road.turned(deviated, turns, measure.sense)
+    found = linear_turning(system.own).turned(deviated, turns, measure.sense)
     weights = weights_of(measure, found.turns)
     trials, positions = np.nonzero(weights)
     places = np.broadcast_to(found.places, weights.shape)[trials, positions][:, None]
     planets = np.broadcast_to(found.planets, weights.shape)[trials, positions][:, None]
     at = Turned(found.turns[trials, positions][:, None], places, planets)
-    return weights, road.rates(deviated.disc_tilts[trials], turns[0, positions], at, measure.sense)
+    return weights, linear_rates(system.own, deviated.rows(trials), turns[0, positions], at, measure.sense)
 
 
 def fixed_turns(measure: RVMeasure) -> Array:

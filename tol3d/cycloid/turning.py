@@ -9,7 +9,7 @@ Over a turn the analytic road leaves out the first, by which the angle of the cr
 there. Which pins work at the window's edge may differ by that.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Protocol
 
 import numpy as np
@@ -36,6 +36,7 @@ class Turned:
         planets: the planet that stops the cranks, 0 without a first stage.
         near: working pins within a deflection of contact; None where none was stated.
         phis: crank angles (trials, 1) that the first stage has shifted [rad]; None where they are the nominal ones.
+        codes: of the system's statuses (trials, positions); None where NaN says all.
     """
 
     turns: Array
@@ -43,6 +44,7 @@ class Turned:
     planets: Places
     near: Places | None = None
     phis: Array | None = None
+    codes: NDArray[np.int8] | None = None
 
 
 class Turning(Protocol):
@@ -115,14 +117,8 @@ class LinearTurning:
         """
         own = self.own
         rates = RVDeviated.nothing(own, len(turns))
-        rates = RVDeviated(
-            own.linear.rates(own.crank_angles(turns) if found.phis is None else found.phis[:, 0], found.places[:, 0]),
-            rates.sun_thickness,
-            rates.planet_thickness,
-            rates.sun_offset,
-            rates.planet_offset,
-            rates.disc_tilts,
-        )
+        phis = own.crank_angles(turns) if found.phis is None else found.phis[:, 0]
+        rates = replace(rates, stage=own.linear.rates(phis, found.places[:, 0]))
         if own.width is not None:
             at = np.arange(len(turns)), found.places[:, 0] // own.profile.pins
             rates.disc_tilts[at] = _tilt_rates(rates.stage.carrier_offsets, tilts[at], own.width, sense)

@@ -125,5 +125,7 @@ def _left_out(shown: ShownReducer) -> Iterator[str]:
     stage = shown.deviated.stage
     if stage.lobe_pitch.any() or stage.lobe_profile.any():
         yield "solids of discs have the nominal profile: errors of single lobes act, but are not drawn"
+    if shown.own.plays:
+        yield "bearings are drawn without play: discs and cranks where the first pin would touch"
     if shown.own.first is not None:
         yield "gears of the first stage are drawn without their deviations"

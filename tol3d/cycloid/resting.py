@@ -1,0 +1,135 @@
+"""How far the output of an RV reducer turns whose bearings have play, by each road: until a torque on it rests.
+
+Cranks are taken where first contact without play would have them (see tol3d.cycloid.turning), and may turn from there
+between both flanks of their planets. The flank that holds all cranks holds; where a planet's other flank overlaps, as
+of a tight build, that one holds nothing.
+"""
+
+import math
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tol3d.cycloid.contact import leaning
+from tol3d.cycloid.first_stage import OneMesh, crank_turns, first_order_mesh, placed_mesh
+from tol3d.cycloid.linear_rest import Forces, LinearRest
+from tol3d.cycloid.rest import Play, RestStage
+from tol3d.cycloid.rest_kernel import NOT_HELD
+from tol3d.cycloid.rest_rates import rest_rates
+from tol3d.cycloid.rv_deviated import RVDeviated
+from tol3d.cycloid.rv_set import RVSet
+from tol3d.cycloid.statuses import NO_CONTACT, NO_FIT, NO_REST
+from tol3d.cycloid.turning import ExactTurning, LinearTurning, Turned, Turning, led_angles
+from tol3d.gears import LEFT, RIGHT
+from tol3d.numerics.programme import NO_ROOM, OK, STALLED
+
+Array = NDArray[np.float64]
+
+AT_ONCE: Final = 1024  # rests of the analytic road in memory, some 10 kB each
+MEANS: Final = {OK: OK, NO_ROOM: NO_FIT, STALLED: NO_REST, NOT_HELD: NO_CONTACT}
+
+
+@dataclass(frozen=True)
+class ExactResting:
+    """In finite geometry."""
+
+    own: RVSet
+
+    def turned(self, deviated: RVDeviated, turns: Array, sense: int, deflection: float | None = None) -> Turned:
+        """See Turning; where it rests, and the pin that carries most."""
+        own = self.own
+        beta, planets = crank_turns(own, deviated, turns, sense, placed_mesh)
+        tilts = own.width is not None and bool(np.any(deviated.disc_tilts))
+        leans = leaning(deviated.disc_tilts, own.width) if own.width is not None and tilts else None
+        play = play_of(own, deviated, turns, beta, placed_mesh)
+        stage = RestStage(own.contact)
+        found = stage.rests(deviated.stage, led_angles(own, turns, beta), play, float(sense), deflection, leans)
+        codes = np.zeros(found.status.shape, dtype=np.int8)
+        for status, code in MEANS.items():
+            codes[found.status == status] = code
+        places = np.where(codes == OK, found.loads.argmax(axis=-1), -1)
+        near = None if deflection is None else found.near
+        return Turned(found.turns - beta / own.crank_arm, places, planets, near, codes=codes)
+
+
+def play_of(own: RVSet, deviated: RVDeviated, turns: Array, beta: Array, one_mesh: OneMesh) -> Play:
+    """Of a reducer's bearings and planets, where its cranks stand by beta (trials, positions) ahead."""
+    disc = np.maximum(np.swapaxes(deviated.disc_play, 1, 2), 0.0)
+    carrier = np.maximum(deviated.carrier_play, 0.0)
+    free = np.zeros((*beta.shape, own.cranks, 2))
+    if own.first is None:
+        return Play(disc, carrier, free)
+    for crank in range(own.cranks):
+        for side, flank in enumerate((RIGHT, LEFT)):
+            free[:, :, crank, side] = one_mesh(own, own.first, deviated, turns, crank, flank) - beta
+    free[..., 0], free[..., 1] = np.minimum(free[..., 0], 0.0), np.maximum(free[..., 1], 0.0)
+    pair = own.first.pair
+    alpha, arm = pair.working_pressure_angle, pair.wheel.base_radius
+    return Play(disc, carrier, free, (math.cos(alpha) / arm, math.sin(alpha) / arm))
+
+
+@dataclass(frozen=True)
+class LinearResting:
+    """To first order."""
+
+    own: RVSet
+
+    def turned(self, deviated: RVDeviated, turns: Array, sense: int, deflection: float | None = None) -> Turned:
+        """See Turning."""
+        own, trials = self.own, len(deviated.sun_thickness)
+        beta, planets = crank_turns(own, deviated, turns, sense, first_order_mesh)
+        phis = np.broadcast_to(own.crank_angles(turns), beta.shape)
+        if turns.shape[1] == 1:
+            phis = led_angles(own, turns, beta)
+        play = play_of(own, deviated, turns, beta, first_order_mesh)
+        found, places, near = np.empty(beta.shape), *(np.empty(beta.shape, dtype=np.int64) for _ in range(2))
+        for position in range(beta.shape[1]):
+            for first in range(0, trials, AT_ONCE):
+                rows = np.arange(first, min(first + AT_ONCE, trials))
+                forces = self._forces(deviated.rows(rows), phis[rows, position], play, (rows, position), sense)
+                found[rows, position] = forces.turns
+                near[rows, position] = (forces.gaps <= (deflection or 0.0)).sum(axis=1)
+                places[rows, position] = np.abs(forces.pins).reshape(len(rows), -1).argmax(axis=1)
+        shifted, counted = phis if turns.shape[1] == 1 else None, None if deflection is None else near
+        return Turned(found - beta / own.crank_arm, places, planets, counted, shifted)
+
+    def rates(self, deviated: RVDeviated, turns: Array, sense: int) -> RVDeviated:
+        """What the turn of trials at turns of the output (trials,) changes by per deviation, by the forces at rest."""
+        own, at, rates = self.own, turns[:, None], RVDeviated.nothing(self.own, len(turns))
+        beta, _ = crank_turns(own, deviated, at, sense, first_order_mesh)
+        phis = led_angles(own, at, beta)
+        play = play_of(own, deviated, at, beta, first_order_mesh)
+        for first in range(0, len(turns), AT_ONCE):
+            rows = np.arange(first, min(first + AT_ONCE, len(turns)))
+            part = deviated.rows(rows)
+            forces = self._forces(part, phis[rows, 0], play, (rows, 0), sense)
+            rates.put(rows, rest_rates(own, part, turns[rows], phis[rows, 0], forces))
+        return rates
+
+    def _forces(
+        self, part: RVDeviated, phis: Array, play: Play, at: tuple[NDArray[np.int64], int], sense: int
+    ) -> Forces:
+        """Of some trials (rows) at a position, given the play of all."""
+        own, (rows, position) = self.own, at
+        played = Play(play.disc[rows], play.carrier[rows], play.crank[rows, position], play.leaving)
+        aside = None if own.width is None else part.disc_tilts * (own.width / 2)
+        return LinearRest(own.linear).rests(part.stage, phis, played, 1 if sense > 0 else -1, aside)
+
+
+def exact_turning(own: RVSet) -> Turning:
+    """How the exact road turns a reducer."""
+    return ExactResting(own) if own.plays else ExactTurning(own)
+
+
+def linear_turning(own: RVSet) -> Turning:
+    """How the analytic road turns it."""
+    return LinearResting(own) if own.plays else LinearTurning(own)
+
+
+def linear_rates(own: RVSet, deviated: RVDeviated, turns: Array, found: Turned, sense: int) -> RVDeviated:
+    """What the turn of trials at turns of the output (trials,) changes by per deviation, where they were found so."""
+    if own.plays:
+        return LinearResting(own).rates(deviated, turns, sense)
+    return LinearTurning(own).rates(deviated.disc_tilts, turns, found, sense)
