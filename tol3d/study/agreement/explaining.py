@@ -297,7 +297,7 @@ class _Case:
     def _accuracy(self, name: str, group: slice, second: LinearFit | None) -> float:
         """To which share of its effect both roads are known to agree on a contributor's coefficient, SHARE at most."""
         fit, own = self.fits.difference, self.fits.own[name]
-        if not fit.spread[group, group].any():
+        if own == 0.0 or not fit.spread[group, group].any():  # counts may not change with it at all
             return SHARE
         left, _ = self._of_first_order(group, second)
         chance = math.sqrt(max(float(np.trace(fit.covariance[group, group] @ fit.spread[group, group])), 0.0))
