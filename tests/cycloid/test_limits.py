@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from oracles.rolling_disc import Outline, distance
 
-from tol3d.cycloid.limits import faults, flank_gaps, largest_pin_radius, least_gap, lobes_fault
+from tol3d.cycloid.limits import faults, flank_gaps, largest_pin_radius, largest_window, least_gap, lobes_fault
 from tol3d.cycloid.modification import Modification
 from tol3d.cycloid.profile import DiscProfile
 
@@ -138,3 +138,17 @@ def test_gaps_are_those_found_by_search(modification: Modification) -> None:
     pins = own.pin_centres(u)
     searched = [distance(outline, complex(x, y), at, 0.03) - 5.0 for (x, y), at in zip(pins, u, strict=True)]
     assert flank_gaps(own, u) == pytest.approx(searched, abs=1e-10)
+
+
+@pytest.mark.parametrize(("pins", "circle", "eccentricity"), [(40, 114.5, 2.2), (12, 50.0, 3.0), (60, 100.0, 0.4)])
+def test_the_largest_window_is_the_least_over_positions_of_the_longest_lever(
+    pins: int, circle: float, eccentricity: float
+) -> None:
+    """Of one flank, by the moment of the normal through each pin, over a pitch; 2000 positions leave 1e-3."""
+    profile = DiscProfile(pins, circle, 1.0, eccentricity)
+    phases = np.arange(2000)[:, None] / 2000 * 2 * math.pi / pins + 2 * math.pi * np.arange(pins) / pins
+    u = phases / (pins - 1)
+    slope = 1j * circle * np.exp(1j * u) - 1j * pins * eccentricity * np.exp(1j * pins * u)
+    centre = circle * np.exp(1j * u) - eccentricity * np.exp(1j * pins * u)
+    levers = (np.conj(centre) * slope).real / abs(slope) / (eccentricity * (pins - 1))
+    assert largest_window(profile) == pytest.approx(levers.max(axis=1).min(), abs=1e-3)

@@ -51,6 +51,27 @@ REFUSED = {
         "crank_carrier, radius: 58 mm",
         "parts.carrier.radius: sun and planet do not mesh there: ",
     ),
+    "planets that overlap": (  # tips of 88 mm; on 63 mm four are 89.1 mm apart, five 74.1 mm
+        "cranks: 3",
+        "cranks: 5",
+        "moves.reducer.cranks: expected at most 4 planets of 88.0000 mm beside each other on this circle, got 5, which "
+        "are 74.0609 mm apart",
+    ),
+    "cranks outside the discs": (  # roots at 114.5 - 0.02 - 2.2 - 5 + 0.0128 mm
+        "crank_carrier, radius: 63 mm",
+        "crank_carrier, radius: 110 mm",
+        "parts.carrier.radius: expected less than 107.2928 mm, the radius of the discs' roots",
+    ),
+    "holes through the lobes": (  # 2 (107.2928 - 1 - 63) mm
+        "lobes: 39,",
+        "lobes: 39, hole: 90 mm,",
+        "parts.disc.hole: expected at most 86.585 mm, which leave a wall of 1 mm to the lobes' roots, got 90 mm",
+    ),
+    "a window that leaves no pin": (
+        "window: 0.7",
+        "window: 0.9995",
+        "moves.reducer.window: expected less than 0.9969, from where positions have no working pin among 40 pins",
+    ),
     "unlike gears": (
         "teeth: 42, module: 2 mm",
         "teeth: 42, module: 1.5 mm",

@@ -139,6 +139,18 @@ def test_parts_stand_in_the_world_as_crank_and_lobes_say() -> None:
     assert len(parts) == 1 + 40 + 2 + 1 + 3 + 1 + 3
 
 
+@pytest.mark.parametrize("bore", [0.0, 24.0])
+def test_planets_stand_above_the_carrier_and_share_no_plane_with_their_cranks(bore: float) -> None:
+    """The outer face of the flange is at 21 + 2 + 16 mm and a gap of 2 mm above it; the sun is 4 mm wider."""
+    sun, planet = SpurGear(21, 2.0, TWENTY, 24.0), SpurGear(42, 2.0, TWENTY, 20.0, bore=bore)
+    shapes = usual_shapes(stage(), 20.0, first=(sun, planet))
+    parts = {part.name: part.world_from_part for part in shapes.placed(StagePlaces.nominal(stage(), 0.6))}
+    assert parts["sun"][2, 3] == parts["planet 1"][2, 3] == pytest.approx(21 + 2 + 16 + 2 + 12)
+    top = shapes.crank.start + sum(part.length for part in shapes.crank.sections)
+    assert top == pytest.approx(43.0 if bore == 0.0 else 63.0 - 0.6)
+    assert shapes.crank.start == pytest.approx(-39.0 + 0.6)
+
+
 @pytest.mark.slow
 def test_nominal_parts_overlap_nowhere() -> None:
     """Of those whose boxes meet; ring, pins and first stage are looked at apart."""

@@ -22,6 +22,7 @@ LEAST_GAP: Final = (
     1e-5  # mm; offset = shift sqrt(1 - K^2) overlaps by (K shift)^2 / (2 rp sqrt(1 - K^2)), 2e-6 at 20 um
 )
 LEAST_DIGIT: Final = 1e-3  # of the last digit printed
+BISECTIONS: Final = 53  # of a share, to its last bit
 PHASES: Final = 361  # of a flank where gaps are looked at; between two of them a gap differs by 1e-5 of its range
 FEET: Final = 361  # points of a flank, from the nearest of which Newton's method starts
 PROJECTIONS: Final = 20  # Newton steps at most; three or four are needed
@@ -53,6 +54,23 @@ def lobes_fault(lobes: int, pins: int) -> Fault | None:
     return Fault(
         "lobes", f"expected {pins - 1} lobes, one fewer than the {pins} pins, got {lobes}; or take {lobes + 1} pins"
     )
+
+
+def largest_window(profile: DiscProfile) -> float:
+    """Share of the longest lever at which some position has no working pin; a window must be smaller.
+
+    Levers beyond a share w have sin² t > w² (1 + K² - 2 K cos t), between two phases with
+    cos t = K w² +- sqrt((1 - w²) (1 - K² w²)); the phases of neighbouring pins differ by 2 pi / Zp.
+    """
+    shortening, apart = profile.shortening, 2 * math.pi / profile.pins
+    low, high = 0.0, 1.0
+    for _ in range(BISECTIONS):
+        share = (low + high) / 2
+        half = math.sqrt((1 - share**2) * (1 - (shortening * share) ** 2))
+        middle = shortening * share**2
+        wide = math.acos(max(middle - half, -1.0)) - math.acos(min(middle + half, 1.0)) > apart
+        low, high = (share, high) if wide else (low, share)
+    return low
 
 
 def faults(profile: DiscProfile) -> Iterator[Fault]:

@@ -8,10 +8,12 @@ from tol3d.cycloid.grammar.parts.crankshaft import CrankshaftSpec
 from tol3d.cycloid.grammar.parts.cycloid_disc import CycloidDiscSpec
 from tol3d.cycloid.grammar.parts.pin_ring import PinRingSpec
 from tol3d.cycloid.grammar.tolerances.bearing_play import BearingPlaySpec
-from tol3d.cycloid.limits import faults, lobes_fault
+from tol3d.cycloid.limits import faults, largest_window, lobes_fault
 from tol3d.cycloid.modification import Modification
 from tol3d.cycloid.profile import DiscProfile
 from tol3d.cycloid.rv_set import FirstStage, RVSet
+from tol3d.cycloid.shapes import DiscHoles
+from tol3d.cycloid.walls import hole_faults
 from tol3d.errors import GeometryError
 from tol3d.gearing.grammar.parts.gear import GearSpec
 from tol3d.gearing.model.pairs.spur_pair import cylindrical_gear
@@ -40,13 +42,16 @@ def rv_set(scene: Scene) -> RVSet:
     carrier, disc = scene.parts[spec.carrier], scene.parts[spec.disc]
     assert isinstance(carrier, CrankCarrierSpec)
     assert isinstance(disc, CycloidDiscSpec)
+    profile = _profile(scene, spec)
+    _refuse_window(scene, name, spec, profile)
+    _refuse_holes(scene, spec, profile)
     return RVSet(
         name=name,
         ring=spec.pin_ring,
         disc=spec.disc,
         crankshaft=spec.crankshaft,
         carrier=spec.carrier,
-        profile=_profile(scene, spec),
+        profile=profile,
         discs=spec.discs,
         cranks=spec.cranks,
         crank_circle=carrier.radius.internal,
@@ -87,6 +92,28 @@ def _profile(scene: Scene, spec: RVReducerSpec) -> DiscProfile:
     return profile
 
 
+def _refuse_window(scene: Scene, name: str, spec: RVReducerSpec, profile: DiscProfile) -> None:
+    """Refuse a window that leaves positions without a working pin."""
+    most = largest_window(profile)
+    if spec.window >= most:
+        words = f"expected less than {math.floor(most * 1e4) / 1e4:.4f}, from where positions have no working pin"
+        raise scene.refuse(("moves", name, "window"), f"{words} among {profile.pins} pins, got {spec.window:g}")
+
+
+def _refuse_holes(scene: Scene, spec: RVReducerSpec, profile: DiscProfile) -> None:
+    """Refuse crankshafts outside the discs, and holes for them that meet each other or the lobes."""
+    carrier, disc = scene.parts[spec.carrier], scene.parts[spec.disc]
+    assert isinstance(carrier, CrankCarrierSpec)
+    assert isinstance(disc, CycloidDiscSpec)
+    if carrier.radius.internal >= profile.root_radius:
+        words = f"expected less than {profile.root_radius:.4f} mm, the radius of the discs' roots: cranks run in discs"
+        raise scene.refuse(("parts", spec.carrier, "radius"), f"{words}, got {carrier.radius}")
+    if disc.hole is None:
+        return
+    for fault in hole_faults(profile, DiscHoles(spec.cranks, carrier.radius.internal, disc.hole.internal)):
+        raise scene.refuse(("parts", spec.disc, "hole"), fault.words)
+
+
 def _first_stage(scene: Scene, name: str, spec: RVReducerSpec, distance: float) -> FirstStage | None:
     """Sun and planets.
 
@@ -110,6 +137,11 @@ def _first_stage(scene: Scene, name: str, spec: RVReducerSpec, distance: float) 
             ("parts", spec.carrier, "radius"),
             f"{spec.sun} and {spec.planet} do not mesh there: {error}; their reference circles touch at {right:.4f} mm",
         ) from None
+    apart = 2 * distance * math.sin(math.pi / spec.cranks)
+    if apart <= 2 * planet.tip_radius:
+        most = math.floor(math.pi / math.asin(min(planet.tip_radius / distance, 1.0)))
+        words = f"expected at most {most} planets of {2 * planet.tip_radius:.4f} mm beside each other on this circle"
+        raise scene.refuse(("moves", name, "cranks"), f"{words}, got {spec.cranks}, which are {apart:.4f} mm apart")
     return FirstStage(spec.sun, spec.planet, pair)
 
 

@@ -30,6 +30,7 @@ GAP: Final = 0.1  # of a disc's width: between discs and flanges
 FLANGE: Final = 0.8  # of a disc's width
 LOBE_ROOM: Final = 0.1  # of a pin's radius: between lobes and the ring's bore
 RIM: Final = 2.0  # pin radii outside the pins
+RECESS: Final = 0.3  # of the gap: ends of cranks within faces about them; two faces in one plane flicker
 
 
 @dataclass(frozen=True)
@@ -70,7 +71,8 @@ class StageShapes:
 
     def _first_stage(self, places: StagePlaces, sun: SpurGear, planet: SpurGear) -> Iterator[PosedPart]:
         """A sun tooth faces a space of each planet nominally; planets turn with their cranks, the sun stands."""
-        level = self.crank.start + sum(part.length for part in self.crank.sections) - planet.face_width / 2
+        gap, width = GAP * self.discs[0].width, max(sun.face_width, planet.face_width)
+        level = self.carrier.between / 2 + self.carrier.flange_width + gap + width / 2
         ratio, carried = sun.teeth / planet.teeth, -places.phi / places.stage.profile.lobes
         sun_turned = carried - (places.phi - carried) / ratio
         yield PosedGear("sun", sun, _pose(Place(0j, sun_turned), level))
@@ -106,7 +108,7 @@ def usual_shapes(
         tuple(discs),
         PinRing(length, profile.pins, profile.pin_circle_radius, profile.pin_radius, _bore_radius(profile), rim),
         RingPin(profile.pin_radius, length),
-        Crankshaft(tuple(_sections(stage, holes, width, first)), -length / 2 - gap - flange),
+        Crankshaft(tuple(_sections(stage, holes, width, first)), -length / 2 - gap - flange + RECESS * gap),
         Carrier(
             cranks=stage.cranks,
             circle_radius=circle,
@@ -128,17 +130,18 @@ def _sections(
     gap, flange, own = GAP * width, FLANGE * width, stage.profile.eccentricity
     eccentric = ECCENTRIC * holes.crank_diameter
     journal = JOURNAL * (eccentric - 2 * own)
-    yield CrankSection(journal, flange + gap)
+    recess = RECESS * gap
+    yield CrankSection(journal, flange + gap - recess)
     for number, throw in enumerate(throws(stage.discs).tolist()):
         if number:
             yield CrankSection(journal, gap)
         yield CrankSection(eccentric, width, own, throw)
-    yield CrankSection(journal, flange + gap)
+    yield CrankSection(journal, flange + gap - (recess if first is None else 0.0))
     if first is not None:
-        planet = first[1]
-        yield CrankSection(journal, gap)
+        sun, planet = first
+        yield CrankSection(journal, gap + max(sun.face_width - planet.face_width, 0.0) / 2)
         if planet.bore > 0.0:
-            yield CrankSection(planet.bore, planet.face_width)
+            yield CrankSection(planet.bore, planet.face_width - recess)
 
 
 def _bore_radius(profile: DiscProfile) -> float:
