@@ -20,6 +20,7 @@ from tol3d.planetary.deviated import Deviated
 from tol3d.planetary.from_scene import planetary_scene
 from tol3d.planetary.presenting.shown_train import display
 from tol3d.planetary.stage.system import SetTrain
+from tol3d.report.motion import motion_of
 from tol3d.system.trials import Trials
 
 Array = NDArray[np.float64]
@@ -372,7 +373,7 @@ def test_a_set_that_goes_up_and_turns_back_drives_a_train(tmp_path: Path) -> Non
 def test_the_set_turns_with_its_train(tmp_path: Path) -> None:
     """Of a turn of the motor: 1/3 at the sun, 25/104 of that at the pins, 25/1368 at ring 2; all against the motor."""
     run = ran(tmp_path, TEXT, 4)
-    moved = display(run, "mean", magnify=1.0).motion("turn", 9)  # type: ignore[attr-defined]
+    moved = motion_of(display(run, "mean", magnify=1.0), "turn", 9)
     assert {"sun", "ring 2", "P1 of planet 3"} <= {body.name for body in moved.world.bodies}
     first, now = moved.frames[0].poses, moved.frames[6].poses
     sun = -(2 * math.pi * 6 / 9) / 3
