@@ -12,7 +12,6 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.cycloid.contact import leaning
 from tol3d.cycloid.first_stage import OneMesh, crank_turns, first_order_mesh, placed_mesh
 from tol3d.cycloid.linear_rest import Forces, LinearRest
 from tol3d.cycloid.rest import Play, RestStage
@@ -21,7 +20,7 @@ from tol3d.cycloid.rest_rates import rest_rates
 from tol3d.cycloid.rv_deviated import RVDeviated
 from tol3d.cycloid.rv_set import RVSet
 from tol3d.cycloid.statuses import NO_CONTACT, NO_FIT, NO_REST
-from tol3d.cycloid.turning import ExactTurning, LinearTurning, Turned, Turning, led_angles
+from tol3d.cycloid.turning import ExactTurning, LinearTurning, Turned, Turning, leans_of, led_angles
 from tol3d.gears import LEFT, RIGHT
 from tol3d.numerics.programme import NO_ROOM, OK, STALLED
 
@@ -41,11 +40,11 @@ class ExactResting:
         """See Turning; where it rests, and the pin that carries most."""
         own = self.own
         beta, planets = crank_turns(own, deviated, turns, sense, placed_mesh)
-        tilts = own.width is not None and bool(np.any(deviated.disc_tilts))
-        leans = leaning(deviated.disc_tilts, own.width) if own.width is not None and tilts else None
         play = play_of(own, deviated, turns, beta, placed_mesh)
         stage = RestStage(own.contact)
-        found = stage.rests(deviated.stage, led_angles(own, turns, beta), play, float(sense), deflection, leans)
+        found = stage.rests(
+            deviated.stage, led_angles(own, turns, beta), play, float(sense), deflection, leans_of(own, deviated)
+        )
         codes = np.zeros(found.status.shape, dtype=np.int8)
         for status, code in MEANS.items():
             codes[found.status == status] = code

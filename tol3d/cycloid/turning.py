@@ -72,12 +72,17 @@ class ExactTurning:
         """See Turning."""
         own = self.own
         beta, planets = crank_turns(own, deviated, turns, sense, placed_mesh)
-        tilts = own.width is not None and bool(np.any(deviated.disc_tilts))
-        leans = leaning(deviated.disc_tilts, own.width) if own.width is not None and tilts else None
         phis = led_angles(own, turns, beta)
-        found = own.contact.touches(deviated.stage, phis, (float(sense),), deflection, leans)
+        found = own.contact.touches(deviated.stage, phis, (float(sense),), deflection, leans_of(own, deviated))
         near = None if found.near is None else found.near[..., 0]
         return Turned(found.turns[..., 0] - beta / own.crank_arm, found.places[..., 0], planets, near)
+
+
+def leans_of(own: RVSet, deviated: RVDeviated) -> Array | None:
+    """How discs lean (trials, discs, 3): see `leaning`; None where they lie flat."""
+    if own.width is None or not np.any(deviated.disc_tilts):
+        return None
+    return leaning(deviated.disc_tilts, own.width)
 
 
 def led_angles(own: RVSet, turns: Array, beta: Array) -> Array:
