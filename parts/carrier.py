@@ -31,7 +31,8 @@ def carrier(
         between: the flanges' inner faces [mm].
         circle_radius: of the axes of holes and posts [mm].
         holes: how many, and as many posts.
-        hole_diameter, post_diameter, bore_diameter: [mm]; a bore of 0 is none.
+        hole_diameter, post_diameter, bore_diameter: [mm]; a bore of 0 is none; without posts, of 0, the lower flange
+            alone is made.
 
     Raises:
         GeometryError: holes or posts that leave the flange or meet.
@@ -49,6 +50,8 @@ def carrier(
         _flange(side, sign, flange_diameter, flange_width, between, circle_radius, holes, hole_diameter, bore_diameter)
         for side, sign in (("lower", -1), ("upper", 1))
     ]
+    if not post_diameter:
+        return flanges[0]
     posts = []
     for number in range(holes):
         azimuth = math.pi * (2 * number + 1) / holes

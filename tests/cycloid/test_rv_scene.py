@@ -57,10 +57,21 @@ REFUSED = {
         "moves.reducer.cranks: expected at most 4 planets of 88.0000 mm beside each other on this circle, got 5, which "
         "are 74.0609 mm apart",
     ),
-    "cranks outside the discs": (  # roots at 114.5 - 0.02 - 2.2 - 5 + 0.0128 mm
+    "cranks outside the discs": (  # roots at 114.5 - 0.02 - 2.2 - 5 + 0.0128 mm, less 1 and 2.2 mm
         "crank_carrier, radius: 63 mm",
-        "crank_carrier, radius: 110 mm",
-        "parts.carrier.radius: expected less than 107.2928 mm, the radius of the discs' roots",
+        "crank_carrier, radius: 105 mm",
+        "parts.carrier.radius: expected less than 104.0927 mm, or holes of 4.4 mm for 3 cranks'",
+    ),
+    "cranks on each other": (  # (4.4 + 1) / (2 sin 60 deg)
+        "crank_carrier, radius: 63 mm",
+        "crank_carrier, radius: 3 mm",
+        "parts.carrier.radius: expected more than 3.1177 mm, or holes of 4.4 mm for 3 cranks'",
+    ),
+    "holes that no eccentric fills": (
+        "lobes: 39,",
+        "lobes: 39, hole: 1 mm,",
+        "parts.disc.hole: expected more than 4.4 mm, twice the eccentricity: an eccentric reaches "
+        "round its crank's axis, got 1 mm",
     ),
     "holes through the lobes": (  # 2 (107.2928 - 1 - 63) mm
         "lobes: 39,",
@@ -77,7 +88,11 @@ REFUSED = {
         "teeth: 42, module: 1.5 mm",
         "parts.planet.module: expected 2 mm as of 'sun', its mate, got 1.5 mm",
     ),
-    "half a first stage": ("    planet: planet\n", "", "moves.reducer.planet: expected a spur gear beside the sun"),
+    "half a first stage": (
+        "    planet: planet\n",
+        "",
+        "moves.reducer.planet: expected a spur gear beside the sun, or neither of them, got none",
+    ),
     "a window of more than every lever": (
         "window: 0.7",
         "window: 1.4",

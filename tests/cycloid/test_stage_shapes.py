@@ -8,6 +8,8 @@ from pathlib import Path
 import cadquery as cq
 import numpy as np
 import pytest
+from hypothesis import assume, given, settings
+from hypothesis import strategies as st
 from OCP.BRepExtrema import BRepExtrema_DistShapeShape
 
 from tol3d.cycloid.contact import ContactStage
@@ -15,10 +17,10 @@ from tol3d.cycloid.deviated import Deviated
 from tol3d.cycloid.modification import Modification
 from tol3d.cycloid.profile import DiscProfile
 from tol3d.cycloid.shapes import CrankSection, Crankshaft, DiscHoles
-from tol3d.cycloid.shapes_cad import crank, ring
+from tol3d.cycloid.shapes_cad import carrier_of, crank, ring
 from tol3d.cycloid.stage_places import StagePlaces
 from tol3d.cycloid.stage_shapes import StageShapes, usual_shapes
-from tol3d.cycloid.walls import hole_faults, lobe_reach, post_fault, ring_bore_fault
+from tol3d.cycloid.walls import circle_fault, hole_faults, largest_hole, lobe_reach
 from tol3d.errors import GeometryError
 from tol3d.gears import SpurGear
 from tol3d.solids import PosedPart, export_step
@@ -237,8 +239,8 @@ def test_sections_that_do_not_touch_are_refused() -> None:
 def test_the_usual_shapes_have_no_fault() -> None:
     shapes = reducer()
     assert not list(hole_faults(RV_250, shapes.discs[0].holes))
-    assert post_fault(RV_250, shapes.discs[0].holes.window_diameter, shapes.carrier.post_diameter) is None
-    assert ring_bore_fault(RV_250, shapes.ring.bore_radius) is None
+    assert 0.0 < shapes.carrier.post_diameter < shapes.discs[0].holes.window_diameter - 2 * 2.2  # it goes round by 2.2
+    assert lobe_reach(RV_250) < shapes.ring.bore_radius < 114.5 + 5.0
 
 
 @pytest.mark.parametrize(
@@ -270,6 +272,59 @@ def test_lobes_reach_the_tip_circle_and_the_eccentricity() -> None:
     turns = np.exp(1j * np.linspace(0.0, 2 * math.pi, 401))
     furthest = max(float(np.abs(points + 2.2 * turn).max()) for turn in turns)
     assert lobe_reach(RV_250) == pytest.approx(furthest, abs=2e-3)
-    fault = ring_bore_fault(RV_250, 113.5)
+
+
+@settings(max_examples=100, deadline=None)
+@given(
+    st.integers(5, 60), st.floats(0.4, 0.85), st.integers(2, 8), st.integers(1, 4), st.floats(0.02, 0.98), st.booleans()
+)
+def test_whatever_goes_through_the_discs_is_drawn_with_walls_about_it(
+    pins: int, shortening: float, cranks: int, discs: int, place: float, stated: bool
+) -> None:
+    """Of all circles of crankshafts that are not refused, and the smallest holes that are not."""
+    bare = DiscProfile(pins, 100.0, 0.1, shortening * 100.0 / pins)
+    profile = replace(bare, pin_radius=0.8 * min(bare.smallest_convex_radius, 100.0 * math.sin(math.pi / pins)))
+    circle, eccentricity = place * profile.root_radius, profile.eccentricity
+    assume(circle_fault(profile, cranks, circle) is None)
+    hole = 2 * eccentricity + 1e-3 if stated else None
+    shapes = usual_shapes(ContactStage(profile, discs, cranks, circle, 1.5, 0.7), crank_hole=hole)
+    holes, carrier = shapes.discs[0].holes, shapes.carrier
+    for diameter in (holes.crank_diameter, holes.window_diameter):
+        assert circle + diameter / 2 < profile.root_radius
+        assert circle - diameter / 2 > holes.bore_diameter / 2
+    beside = 2 * circle * math.sin(math.pi / (2 * cranks))
+    assert beside > (holes.crank_diameter + holes.window_diameter) / 2
+    assert min(section.diameter for section in shapes.crank.sections) > 0.0
+    eccentric = shapes.crank.sections[1]
+    assert eccentric.diameter / 2 > eccentricity + shapes.crank.sections[0].diameter / 2  # round the journal
+    assert holes.crank_diameter > eccentric.diameter
+    if holes.window_diameter:
+        assert 0.0 < carrier.post_diameter < holes.window_diameter - 2 * eccentricity
+    assert carrier.post_diameter >= 0.0
+    assert beside > (carrier.hole_diameter + carrier.post_diameter) / 2
+    assert carrier.hole_diameter > shapes.crank.sections[0].diameter
+
+
+def test_a_circle_on_which_holes_meet_or_reach_the_roots_is_refused_with_one_that_does() -> None:
+    for circle, sign in ((3.0, 1), (106.0, -1)):
+        fault = circle_fault(RV_250, 3, circle)
+        assert fault is not None
+        limit = float(fault.words.split(" mm")[0].split()[-1])
+        assert circle_fault(RV_250, 3, limit - sign * 1e-3) is not None
+        assert circle_fault(RV_250, 3, limit + sign * 1e-3) is None
+        assert largest_hole(RV_250, 3, limit) == pytest.approx(2 * RV_250.eccentricity, abs=1e-3)
+    fault = circle_fault(DiscProfile(4, 40.0, 5.0, 8.0), 8, 12.0)
     assert fault is not None
-    assert "113.8800 mm, which the tips of the lobes reach" in fault.words
+    assert fault.field == "cranks"
+
+
+def test_a_carrier_without_room_for_posts_is_its_lower_flange() -> None:
+    shapes = usual_shapes(ContactStage(RV_250, 2, 8, 14.0, 1.5, 0.7), 20.0)
+    assert shapes.carrier.post_diameter == 0.0
+    made = carrier_of(shapes.carrier)
+    assert made.solid.isValid()
+    assert {name.split()[0] for name in made.faces} == {"lower"}
+    ends = made.solid.BoundingBox()
+    assert (ends.zmin, ends.zmax) == pytest.approx(
+        (-shapes.carrier.between / 2 - shapes.carrier.flange_width, -shapes.carrier.between / 2), abs=1e-5
+    )

@@ -13,7 +13,7 @@ from tol3d.cycloid.modification import Modification
 from tol3d.cycloid.profile import DiscProfile
 from tol3d.cycloid.rv_set import FirstStage, RVSet
 from tol3d.cycloid.shapes import DiscHoles
-from tol3d.cycloid.walls import hole_faults
+from tol3d.cycloid.walls import circle_fault, hole_faults
 from tol3d.errors import GeometryError
 from tol3d.gearing.grammar.parts.gear import GearSpec
 from tol3d.gearing.model.pairs.spur_pair import cylindrical_gear
@@ -44,7 +44,7 @@ def rv_set(scene: Scene) -> RVSet:
     assert isinstance(disc, CycloidDiscSpec)
     profile = _profile(scene, spec)
     _refuse_window(scene, name, spec, profile)
-    _refuse_holes(scene, spec, profile)
+    _refuse_holes(scene, name, spec, profile)
     return RVSet(
         name=name,
         ring=spec.pin_ring,
@@ -100,14 +100,14 @@ def _refuse_window(scene: Scene, name: str, spec: RVReducerSpec, profile: DiscPr
         raise scene.refuse(("moves", name, "window"), f"{words} among {profile.pins} pins, got {spec.window:g}")
 
 
-def _refuse_holes(scene: Scene, spec: RVReducerSpec, profile: DiscProfile) -> None:
-    """Refuse crankshafts outside the discs, and holes for them that meet each other or the lobes."""
+def _refuse_holes(scene: Scene, name: str, spec: RVReducerSpec, profile: DiscProfile) -> None:
+    """Refuse crankshafts that do not go through the discs, and holes too small for them or that leave no walls."""
     carrier, disc = scene.parts[spec.carrier], scene.parts[spec.disc]
     assert isinstance(carrier, CrankCarrierSpec)
     assert isinstance(disc, CycloidDiscSpec)
-    if carrier.radius.internal >= profile.root_radius:
-        words = f"expected less than {profile.root_radius:.4f} mm, the radius of the discs' roots: cranks run in discs"
-        raise scene.refuse(("parts", spec.carrier, "radius"), f"{words}, got {carrier.radius}")
+    if (fault := circle_fault(profile, spec.cranks, carrier.radius.internal)) is not None:
+        place: KeyPath = ("parts", spec.carrier, "radius") if fault.field == "radius" else ("moves", name, fault.field)
+        raise scene.refuse(place, fault.words)
     if disc.hole is None:
         return
     for fault in hole_faults(profile, DiscHoles(spec.cranks, carrier.radius.internal, disc.hole.internal)):

@@ -122,7 +122,7 @@ class Carrier(BuiltShape):
     Args:
         cranks: how many holes for cranks, the first on +x, and as many posts.
         circle_radius: of the axes of holes and posts.
-        hole_diameter, post_diameter, bore_diameter: a bore of 0 is none.
+        hole_diameter, post_diameter, bore_diameter: a bore of 0 is none, posts of 0 leave the lower flange.
         flange_diameter, flange_width: of either flange.
         between: the flanges' inner faces.
     """

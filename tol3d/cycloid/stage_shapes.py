@@ -13,7 +13,7 @@ from tol3d.cycloid.contact_kinematics import throws
 from tol3d.cycloid.profile import DiscProfile
 from tol3d.cycloid.shapes import Carrier, CrankSection, Crankshaft, CycloidDisc, DiscHoles, PinRing, RingPin
 from tol3d.cycloid.stage_places import Place, StagePlaces
-from tol3d.cycloid.walls import lobe_reach
+from tol3d.cycloid.walls import LEAST_WALL, largest_hole, lobe_reach
 from tol3d.gears import SpurGear
 from tol3d.solids import PosedGear, PosedPart, PosedShape
 
@@ -113,7 +113,7 @@ def usual_shapes(
             cranks=stage.cranks,
             circle_radius=circle,
             hole_diameter=SEAT * holes.crank_diameter,
-            post_diameter=holes.window_diameter - 2 * (profile.eccentricity + POST_ROOM * circle),
+            post_diameter=max(holes.window_diameter - 2 * (profile.eccentricity + POST_ROOM * circle), 0.0),
             bore_diameter=holes.bore_diameter,
             flange_diameter=2 * circle + holes.crank_diameter + 2 * WALL * circle,
             flange_width=flange,
@@ -128,7 +128,7 @@ def _sections(
 ) -> Iterator[CrankSection]:
     """Of a crankshaft: journal, eccentrics with a piece of journal between, journal, seat of a planet."""
     gap, flange, own = GAP * width, FLANGE * width, stage.profile.eccentricity
-    eccentric = ECCENTRIC * holes.crank_diameter
+    eccentric = max(ECCENTRIC * holes.crank_diameter, (holes.crank_diameter + 2 * own) / 2)
     journal = JOURNAL * (eccentric - 2 * own)
     recess = RECESS * gap
     yield CrankSection(journal, flange + gap - recess)
@@ -153,14 +153,17 @@ def _bore_radius(profile: DiscProfile) -> float:
 
 
 def _holes(stage: ContactStage, crank_hole: float | None) -> DiscHoles:
-    """Crank holes and windows as large as walls allow, and the bore that is left."""
-    circle = stage.crank_circle
-    wall = WALL * circle
+    """Crank holes and windows as large as walls allow, and the bore that is left; no windows where no post passes."""
+    circle, least = stage.crank_circle, 2 * stage.profile.eccentricity
+    wall = max(WALL * circle, LEAST_WALL)
     outwards = 2 * (stage.profile.root_radius - wall - circle)
     beside = 2 * circle * math.sin(math.pi / (2 * stage.cranks)) - wall
     hole = min(outwards, beside, LARGEST_HOLE * circle) if crank_hole is None else crank_hole
+    if hole <= least:  # no room for usual walls
+        hole = (least + largest_hole(stage.profile, stage.cranks, circle)) / 2
     window = min(hole, 2 * beside - hole)
-    return DiscHoles(stage.cranks, circle, hole, window, 2 * (circle - wall) - hole)
+    posted = window - 2 * POST_ROOM * circle > least
+    return DiscHoles(stage.cranks, circle, hole, window if posted else 0.0, max(2 * (circle - wall) - hole, 0.0))
 
 
 def _pose(place: Place, level: float = 0.0) -> Array:

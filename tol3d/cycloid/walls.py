@@ -16,22 +16,41 @@ def lobe_reach(profile: DiscProfile) -> float:
     return profile.tip_radius + profile.eccentricity
 
 
-def ring_bore_fault(profile: DiscProfile, bore_radius: float) -> Fault | None:
-    """Why lobes or pins do not go with the bore of their ring, between the pins; nothing where they do.
+def circle_fault(profile: DiscProfile, cranks: int, radius: float) -> Fault | None:
+    """Why crankshafts do not go through the discs on a circle of this radius [mm]; nothing where they do.
+
+    Their holes are wider than twice the eccentricity, for an eccentric reaches round its crankshaft's axis.
 
     >>> profile = DiscProfile(pins=40, pin_circle_radius=114.5, pin_radius=5.0, eccentricity=2.2)
-    >>> ring_bore_fault(profile, 113.0).words
-    'expected more than 113.9000 mm, which the tips of the lobes reach, and less than 119.5000 mm, got 113 mm'
+    >>> circle_fault(profile, 3, 1.0).words
+    "expected more than 3.1177 mm, or holes of 4.4 mm for 3 cranks' eccentrics meet, got 1 mm"
     """
-    least, most = lobe_reach(profile), profile.pin_circle_radius + profile.pin_radius
-    if least < bore_radius < most:
+    least = (2 * profile.eccentricity + LEAST_WALL) / (2 * math.sin(math.pi / cranks))
+    most = profile.root_radius - LEAST_WALL - profile.eccentricity
+    hole = f"holes of {2 * profile.eccentricity:g} mm for {cranks} cranks' eccentrics"
+    if least >= most:
+        return Fault("cranks", f"expected fewer cranks: {hole} leave no wall between them and the lobes' roots")
+    if radius <= least:
+        limit = f"more than {math.ceil(least * 1e4) / 1e4:.4f} mm, or {hole} meet"
+    elif radius >= most:
+        limit = f"less than {math.floor(most * 1e4) / 1e4:.4f} mm, or {hole} leave no wall to the lobes' roots"
+    else:
         return None
-    words = f"expected more than {least:.4f} mm, which the tips of the lobes reach, and less than {most:.4f} mm"
-    return Fault("bore_radius", f"{words}, got {bore_radius:g} mm")
+    return Fault("radius", f"expected {limit}, got {radius:g} mm")
+
+
+def largest_hole(profile: DiscProfile, cranks: int, radius: float) -> float:
+    """Diameter [mm] of holes on a circle of this radius that leave walls of LEAST_WALL, to the roots and each other."""
+    return min(2 * (profile.root_radius - LEAST_WALL - radius), 2 * radius * math.sin(math.pi / cranks) - LEAST_WALL)
 
 
 def hole_faults(profile: DiscProfile, holes: DiscHoles) -> Iterator[Fault]:
-    """Holes of a disc that meet, or leave no wall of LEAST_WALL between them or to the lobes' roots."""
+    """Holes of a disc too small for an eccentric, or that leave no wall of LEAST_WALL between them or to the roots."""
+    least = 2 * profile.eccentricity
+    if holes.crank_diameter <= least:
+        words = f"expected more than {least:g} mm, twice the eccentricity: an eccentric reaches round its crank's axis"
+        yield Fault("crank_diameter", f"{words}, got {holes.crank_diameter:g} mm")
+        return
     outwards = 2 * (profile.root_radius - LEAST_WALL - holes.circle_radius)
     limits = {
         "the lobes' roots": outwards,
@@ -56,15 +75,3 @@ def hole_faults(profile: DiscProfile, holes: DiscHoles) -> Iterator[Fault]:
                 else f"expected a smaller circle, on which there is a wall of {LEAST_WALL:g} mm to {meets}"
             )
             yield Fault(field, f"{words}, got {diameter:g} mm")
-
-
-def post_fault(profile: DiscProfile, window_diameter: float, post_diameter: float) -> Fault | None:
-    """Why a post does not pass its windows, which go round it by the eccentricity; nothing where it does."""
-    most = window_diameter - 2 * profile.eccentricity
-    if post_diameter < most:
-        return None
-    return Fault(
-        "post_diameter",
-        f"expected less than {most:.4f} mm, the window of {window_diameter:g} mm less twice the eccentricity, "
-        f"got {post_diameter:g} mm",
-    )

@@ -45,7 +45,7 @@ class RVReducerSpec(MoveSpec):
     def _refuse_half_a_stage(self) -> Self:
         if (self.sun is None) != (self.planet is None):
             given, lacking = ("planet", "sun") if self.sun is None else ("sun", "planet")
-            raise refused(lacking, f"a spur gear beside the {given}, or neither of them", None)
+            raise refused(lacking, f"a spur gear beside the {given}, or neither of them", "none")
         return self
 
     def references(self) -> tuple[Reference, ...]:
