@@ -41,6 +41,14 @@ def test_rotated_flanks_touch_where_a_dense_search_finds_them() -> None:
     assert (found.places[0, 0, 1], abs(found.turns[0, 0, 1] - turn) < 1e-10) == (place, True)
 
 
+def test_contact_after_many_turns_is_that_of_the_first() -> None:
+    """A sun of 41 and planets of 47 teeth stand as before after 41 turns of the output, crank angles of 10 000 rad."""
+    made, phis, shape = erring(2, 2, 0.002, seed=3), around(2, 50), contact_shape(PROFILE, WINDOW, 1 + 41 / 47)
+    first, last = (first_contact(shape, made, phis + 2 * math.pi * 39 * turns) for turns in (0, -41))
+    assert abs(first.turns - last.turns).max() < 1e-13  # rounding of such an angle, 2e-12, over 39 lobes
+    assert (first.places == last.places).all()
+
+
 @pytest.mark.parametrize("tilt", [3e-4, 2e-3])
 def test_a_tilted_disc_touches_with_the_section_that_a_dense_search_finds(tilt: float) -> None:
     made, phis, tilts = erring(2, 2, 0.002, seed=15), around(2, 1), np.empty((2, 2, 2))

@@ -153,7 +153,8 @@ def first_contact(shape: ContactShape, made: AsMade, phis: Array, senses: tuple[
     """Turn the carrier until the first working pin touches a disc, with cranks at phi (trials, positions) [rad].
 
     All turns are exact for rigid parts: any working pin of any disc may be first. Results do not depend on which trials
-    and positions are asked for together.
+    and positions are asked for together. A turn of the discs leaves all as it was; whole ones are taken off the crank
+    angles, whose last digit would otherwise be more than Newton's method asks for.
     """
     trials, positions = phis.shape
     turns = np.empty((trials, positions, len(senses)))
@@ -168,7 +169,8 @@ def first_contact(shape: ContactShape, made: AsMade, phis: Array, senses: tuple[
             np.require(each, dtype=np.float64, requirements=["C", "W"])
             for each in (
                 made.linkage, made.pins, made.pin_radii, made.lobe_pitch, made.lobe_profile,
-                np.zeros((*made.linkage.shape[:2], 3)) if made.leans is None else made.leans, phis,
+                np.zeros((*made.linkage.shape[:2], 3)) if made.leans is None else made.leans,
+                np.mod(phis, 2 * math.pi * shape.lobes),
             )
         ),
         np.array(senses),
