@@ -1,6 +1,7 @@
 """The shipped reducer, from its scene to its columns, against a search that has the drawn deviations alone."""
 
 import math
+import re
 from pathlib import Path
 
 import pyarrow.parquet as pq
@@ -30,3 +31,23 @@ def test_transmission_error_and_lost_motion_are_those_of_a_search(tmp_path: Path
         assert table["geometric:transmission error"][trial] * ARC_MINUTE == pytest.approx(back, abs=5e-9)
         assert table["geometric:lost motion"][trial] * ARC_MINUTE == pytest.approx(forth - back, abs=1e-8)
         assert (table["transmission error: disc"][trial], table["transmission error: pin"][trial]) == (disc, pin)
+
+
+@pytest.mark.slow
+def test_over_a_turn_the_pins_of_the_highest_and_the_lowest_position_are_columns(tmp_path: Path) -> None:
+    positions, scene = 24, tmp_path / "scene.yaml"
+    text = (SCENES / "rv_250aii.yaml").read_text("utf-8")
+    scene.write_text(re.sub(r"positions: \d+", f"positions: {positions}", text), "utf-8")
+    run_scene(scene, out=tmp_path / "run", overrides=Overrides(trials=2))
+    (block,) = sorted((tmp_path / "run" / "trials").glob("*.parquet"))
+    table = pq.read_table(block).to_pydict()
+    for trial in range(2):
+
+        def of(name: str, trial: int = trial) -> float:
+            return float(table[f"{name} [um]"][trial]) * 1e-3
+
+        curve = [output_turn(of, 2 * math.pi * k / positions, -1) for k in range(positions)]
+        (high, *highest), (low, *lowest) = max(curve), min(curve)
+        assert table["geometric:over a turn"][trial] * ARC_MINUTE == pytest.approx(high - low, abs=1e-8)
+        for where, touching in (("highest", highest), ("lowest", lowest)):
+            assert [table[f"over a turn: {own} at {where}"][trial] for own in ("disc", "pin")] == touching

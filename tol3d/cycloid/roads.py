@@ -1,6 +1,6 @@
 """From deviations to what is read of an RV reducer: the same of both roads, which differ in how it turns."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -19,6 +19,7 @@ from tol3d.system.trials import Trials
 Array = NDArray[np.float64]
 Read = tuple[Positions, int]
 Curves = dict[tuple[Read, float | None], Turned]
+Details = dict[str, NDArray[np.generic]]
 
 
 @dataclass(frozen=True)
@@ -38,7 +39,7 @@ class RVRoad:
         deviated = self.system.deviated(trials)
         values: dict[str, Array] = {}
         status: dict[str, NDArray[np.int8]] = {}
-        details: dict[str, NDArray[np.generic]] = {}
+        details: Details = {}
         known: Curves = {}
         read = [self.system.rv_measures[measure.name] for measure in measures]
         for own in (own for own in read if own.counts):  # what is turned for a count serves others too
@@ -58,7 +59,7 @@ class RVRoad:
             lacking = np.asarray(np.isnan(values[own.name]).any(axis=1))
             values[own.name] = np.where(lacking[:, None], np.nan, values[own.name])
             status[own.name] = np.where(lacking, np.maximum(codes, NO_CONTACT), 0).astype(np.int8)
-            details |= self._details(own, forwards)
+            details |= self._details(own, forwards.places, values[own.name])
         return Answers(values, details=details, status=status)
 
     def _turned(self, measure: RVMeasure, deviated: RVDeviated, trials: Trials, sense: int, known: Curves) -> Turned:
@@ -72,10 +73,21 @@ class RVRoad:
             known[key] = self.turning.turned(deviated, turns, sense, measure.deflection)
         return known[key]
 
-    def _details(self, measure: RVMeasure, found: Turned) -> Mapping[str, NDArray[np.generic]]:
-        """Disc and pin that touch, counted from 1; of a curve, at its first position."""
-        disc, pin = np.divmod(found.places[:, 0], self.system.own.profile.pins)
-        return {f"{measure.name}: disc": disc + 1, f"{measure.name}: pin": pin + 1}
+    def _details(self, measure: RVMeasure, places: NDArray[np.int64], values: Array) -> Details:
+        """Disc and pin that touch, counted from 1; over a turn where the measure is highest and lowest; 0 for none."""
+        if measure.positions.over != "turn":
+            return self._named(measure.name, "", places[:, 0])
+        rows = np.arange(len(values))
+        high, low = places[rows, values.argmax(axis=1)], places[rows, values.argmin(axis=1)]
+        return self._named(measure.name, " at highest", high) | self._named(measure.name, " at lowest", low)
+
+    def _named(self, measure: str, where: str, places: NDArray[np.int64]) -> Details:
+        disc, pin = np.divmod(places, self.system.own.profile.pins)
+        none = places < 0
+        return {
+            f"{measure}: disc{where}": np.where(none, 0, disc + 1),
+            f"{measure}: pin{where}": np.where(none, 0, pin + 1),
+        }
 
 
 def _worst(found: Turned) -> NDArray[np.int8]:
