@@ -1,6 +1,8 @@
 """The first stage of an RV reducer against closed forms, and what a turn of the cranks does to the output."""
 
 import math
+from dataclasses import replace
+from itertools import product
 
 import numpy as np
 import pytest
@@ -12,7 +14,7 @@ from tol3d.cycloid.first_stage import crank_turns, first_order_mesh, placed_mesh
 from tol3d.cycloid.from_scene import rv_system
 from tol3d.cycloid.rv_deviated import RVDeviated
 from tol3d.cycloid.rv_set import RVSet
-from tol3d.cycloid.turning import LinearTurning
+from tol3d.cycloid.turning import ExactTurning, LinearTurning
 
 OWN: RVSet = rv_system(load_scene(SCENES / "rv_250aii.yaml")).own
 TURNS = np.linspace(0.0, 1.0, 241)[None]
@@ -114,3 +116,22 @@ def test_rates_are_differences_of_the_analytic_road() -> None:
         expected += (rate * along).reshape(30, -1).sum(axis=1)
     after = road.turned(own, twice, -1)
     assert (after.turns - before.turns)[:, 0] / step == pytest.approx(expected, rel=1e-5, abs=1e-7)
+
+
+@pytest.mark.parametrize(("sense", "road"), [*product((1, -1), (ExactTurning, LinearTurning))])
+def test_phases_of_cranks_are_turns_of_their_planets_of_which_the_first_holds(
+    sense: int, road: type[ExactTurning | LinearTurning]
+) -> None:
+    """A perfect stage turns with its cranks, and those until the planet that has least room touches."""
+    plain, own = RVDeviated.nothing(OWN, 20), RVDeviated.nothing(OWN, 20)
+    own.stage.crank_phases[...] = np.random.default_rng(3).normal(0.0, 3e-4, own.stage.crank_phases.shape)
+    least = own.stage.crank_phases.max(axis=1) if sense > 0 else own.stage.crank_phases.min(axis=1)
+    turns = np.full((20, 1), 0.3)
+    backlash = crank_turns(OWN, plain, turns, sense, placed_mesh)[0]
+    found = road(OWN).turned(own, turns, sense)
+    nominal = replace(OWN, first=None)
+    phis = turns - (backlash + least[:, None]) / (2 * np.pi * OWN.crank_arm)  # of the output, cranks held there
+    there = road(nominal).turned(plain, phis, sense).turns
+    assert there == pytest.approx(0.0, abs=1e-4)
+    assert found.turns == pytest.approx(there - (backlash + least[:, None]) / OWN.crank_arm, abs=1e-7)
+    assert (own.stage.crank_phases[np.arange(20), found.planets[:, 0]] == least).all()

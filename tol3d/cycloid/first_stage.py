@@ -1,17 +1,20 @@
 """The first stage of an RV reducer: how far planets turn on a sun that stands, and so their cranks.
 
-Discs hold all cranks parallel, so that they turn together as far as the first planet lets them: load paths in parallel,
-of which one carries. Both roads find the turn beyond where teeth without backlash would have the planets, counted
+Discs hold the throws of all cranks parallel, so that they turn together as far as the first planet lets them: load
+paths in parallel, of which one carries. A phase of a crank so is a turn of its planet. Both roads find the turn beyond
+where teeth without backlash would have the planets, counted
 counter-clockwise. Meshes are looked at in frames that turn with the carrier, the sun at the origin, the planet on x.
 The carrier is taken where it should be: 100 arc seconds more turn an eccentricity of 10 um by 5 nm.
 """
 
 import math
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
+from tol3d.cycloid.deviated import Deviated
 from tol3d.cycloid.rv_deviated import RVDeviated
 from tol3d.cycloid.rv_set import FirstStage, RVSet
 from tol3d.gears import LEFT, RIGHT, Displaced, Flank
@@ -24,7 +27,7 @@ OneMesh = Callable[[RVSet, FirstStage, RVDeviated, Array, int, Flank], Array]
 def crank_turns(
     own: RVSet, deviated: RVDeviated, turns: Array, sense: float, one_mesh: OneMesh
 ) -> tuple[Array, Places]:
-    """How far the cranks turn beyond their place (trials, positions) [rad], and which planet stops them.
+    """How far the throws turn beyond their place (trials, positions) [rad], and which planet stops them.
 
     Args:
         own: the reducer.
@@ -37,9 +40,24 @@ def crank_turns(
     if own.first is None:
         return np.zeros(shape), np.zeros(shape, dtype=np.int64)
     flank = LEFT if sense < 0 else RIGHT
-    found = np.stack([one_mesh(own, own.first, deviated, turns, crank, flank) for crank in range(own.cranks)])
+    found = np.stack(
+        [throw_turn(own, own.first, deviated, turns, crank, flank, one_mesh) for crank in range(own.cranks)]
+    )
     first = found.argmin(axis=0) if sense < 0 else found.argmax(axis=0)
     return np.take_along_axis(found, first[None], axis=0)[0], first
+
+
+def throw_turn(
+    own: RVSet, first: FirstStage, deviated: RVDeviated, turns: Array, crank: int, flank: Flank, one_mesh: OneMesh
+) -> Array:
+    """How far one crank's throws turn (trials, positions) [rad]: its planet, which they lead by their phase."""
+    return one_mesh(own, first, deviated, turns, crank, flank) + deviated.stage.crank_phases[:, crank, None]
+
+
+def held_stage(own: RVSet, deviated: RVDeviated) -> Deviated:
+    """The cycloid stage, its throws parallel where discs hold them so; cranks that are the input keep their phases."""
+    stage = deviated.stage
+    return stage if own.first is None else replace(stage, crank_phases=np.zeros_like(stage.crank_phases))
 
 
 def placed_mesh(own: RVSet, first: FirstStage, deviated: RVDeviated, turns: Array, crank: int, flank: Flank) -> Array:
@@ -111,6 +129,7 @@ def add_rates(
     rates.planet_offset[rows, planets] += _plane(push * np.exp(-1j * planet))
     rates.sun_thickness[...] += thicker
     rates.planet_thickness[rows, planets] += thicker
+    rates.stage.crank_phases[rows, planets] += factor
     rates.stage.carrier_holes[rows, planets] += carried
     rates.stage.carrier_offsets[...] += carried
 

@@ -72,7 +72,8 @@ def _of_bearings(own: RVSet, found: Deviated, phis: Array, forces: Forces) -> No
     found.disc_holes[...] = np.swapaxes(forces.discs, 1, 2)
     found.disc_offsets[...] = -_plane(discs.sum(axis=1))
     found.crank_errors[...] = _plane(thrown)
-    found.crank_phases[...] = (np.conj(thrown) * swung).real.sum(axis=2)
+    if own.first is None:  # else those of planets
+        found.crank_phases[...] = (np.conj(thrown) * swung).real.sum(axis=2)
     found.carrier_holes[...] = _plane(carrier)
     found.carrier_offsets[...] = _plane(carrier.sum(axis=1))
 

@@ -12,7 +12,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.cycloid.first_stage import OneMesh, crank_turns, first_order_mesh, placed_mesh
+from tol3d.cycloid.first_stage import OneMesh, crank_turns, first_order_mesh, held_stage, placed_mesh, throw_turn
 from tol3d.cycloid.linear_rest import Forces, LinearRest
 from tol3d.cycloid.rest import Play, RestStage
 from tol3d.cycloid.rest_kernel import NOT_HELD
@@ -42,9 +42,8 @@ class ExactResting:
         beta, planets = crank_turns(own, deviated, turns, sense, placed_mesh)
         play = play_of(own, deviated, turns, beta, placed_mesh)
         stage = RestStage(own.contact)
-        found = stage.rests(
-            deviated.stage, led_angles(own, turns, beta), play, float(sense), deflection, leans_of(own, deviated)
-        )
+        phis, leans = led_angles(own, turns, beta), leans_of(own, deviated)
+        found = stage.rests(held_stage(own, deviated), phis, play, float(sense), deflection, leans)
         codes = np.zeros(found.status.shape, dtype=np.int8)
         for status, code in MEANS.items():
             codes[found.status == status] = code
@@ -62,7 +61,7 @@ def play_of(own: RVSet, deviated: RVDeviated, turns: Array, beta: Array, one_mes
         return Play(disc, carrier, free)
     for crank in range(own.cranks):
         for side, flank in enumerate((RIGHT, LEFT)):
-            free[:, :, crank, side] = one_mesh(own, own.first, deviated, turns, crank, flank) - beta
+            free[:, :, crank, side] = throw_turn(own, own.first, deviated, turns, crank, flank, one_mesh) - beta
     free[..., 0], free[..., 1] = np.minimum(free[..., 0], 0.0), np.maximum(free[..., 1], 0.0)
     pair = own.first.pair
     alpha, arm = pair.working_pressure_angle, pair.wheel.base_radius
@@ -114,7 +113,7 @@ class LinearResting:
         own, (rows, position) = self.own, at
         played = Play(play.disc[rows], play.carrier[rows], play.crank[rows, position], play.leaving)
         aside = None if own.width is None else part.disc_tilts * (own.width / 2)
-        return LinearRest(own.linear).rests(part.stage, phis, played, 1 if sense > 0 else -1, aside)
+        return LinearRest(own.linear).rests(held_stage(own, part), phis, played, 1 if sense > 0 else -1, aside)
 
 
 def exact_turning(own: RVSet) -> Turning:

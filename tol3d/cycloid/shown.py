@@ -9,7 +9,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.cycloid.first_stage import crank_turns, placed_mesh
+from tol3d.cycloid.first_stage import crank_turns, held_stage, placed_mesh
 from tol3d.cycloid.rv_deviated import RVDeviated
 from tol3d.cycloid.rv_set import RVSet
 from tol3d.cycloid.stage_places import StagePlaces
@@ -101,14 +101,13 @@ class ShownReducer:
         own, turns = self.own, (self.turns + beyond)[None]
         beta, _ = crank_turns(own, self.deviated, turns, sense, placed_mesh)
         phis = own.crank_angles(turns) + beta * (own.profile.lobes / own.crank_arm)
-        found = own.contact.touches(self.deviated.stage, phis, (float(sense),))
+        stage = held_stage(own, self.deviated)
+        found = own.contact.touches(stage, phis, (float(sense),))
         if (found.places < 0).any():
             raise InputError("no pin touches the discs of this build; choose another trial")
         pins = own.profile.pins
         return tuple(
-            SeatedReducer(
-                StagePlaces(own.contact, self.deviated.stage, float(phi), float(turn)), divmod(int(place), pins)
-            )
+            SeatedReducer(StagePlaces(own.contact, stage, float(phi), float(turn)), divmod(int(place), pins))
             for phi, turn, place in zip(phis[0], found.turns[0, :, 0], found.places[0, :, 0], strict=True)
         )
 

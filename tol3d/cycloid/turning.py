@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.cycloid.contact import leaning
-from tol3d.cycloid.first_stage import add_rates, crank_turns, first_order_mesh, placed_mesh
+from tol3d.cycloid.first_stage import add_rates, crank_turns, first_order_mesh, held_stage, placed_mesh
 from tol3d.cycloid.linear import LinearStage
 from tol3d.cycloid.rv_deviated import RVDeviated
 from tol3d.cycloid.rv_set import RVSet
@@ -73,7 +73,8 @@ class ExactTurning:
         own = self.own
         beta, planets = crank_turns(own, deviated, turns, sense, placed_mesh)
         phis = led_angles(own, turns, beta)
-        found = own.contact.touches(deviated.stage, phis, (float(sense),), deflection, leans_of(own, deviated))
+        stage = held_stage(own, deviated)
+        found = own.contact.touches(stage, phis, (float(sense),), deflection, leans_of(own, deviated))
         near = None if found.near is None else found.near[..., 0]
         return Turned(found.turns[..., 0] - beta / own.crank_arm, found.places[..., 0], planets, near)
 
@@ -102,7 +103,7 @@ class LinearTurning:
         beta, planets = crank_turns(own, deviated, turns, sense, first_order_mesh)
         aside = None if own.width is None else deviated.disc_tilts * (own.width / 2)
         phis = self.phis(turns, beta)
-        found = self.stage.touches(deviated.stage, phis, 1 if sense > 0 else -1, aside, deflection)
+        found = self.stage.touches(held_stage(own, deviated), phis, 1 if sense > 0 else -1, aside, deflection)
         shifted = phis if turns.shape[1] == 1 else None
         return Turned(found.turns - beta / own.crank_arm, found.places, planets, found.near, shifted)
 
@@ -124,6 +125,8 @@ class LinearTurning:
         rates = RVDeviated.nothing(own, len(turns))
         phis = own.crank_angles(turns) if found.phis is None else found.phis[:, 0]
         rates = replace(rates, stage=own.linear.rates(phis, found.places[:, 0]))
+        if own.first is not None:
+            rates.stage.crank_phases[...] = 0.0  # of planets, below
         if own.width is not None:
             at = np.arange(len(turns)), found.places[:, 0] // own.profile.pins
             rates.disc_tilts[at] = _tilt_rates(rates.stage.carrier_offsets, tilts[at], own.width, sense)

@@ -5,7 +5,7 @@ from typing import Final
 
 import numpy as np
 
-from tol3d.cycloid.first_stage import crank_turns, placed_mesh
+from tol3d.cycloid.first_stage import crank_turns, held_stage, placed_mesh
 from tol3d.cycloid.roads import RVRoad
 from tol3d.cycloid.rv_deviated import RVDeviated
 from tol3d.cycloid.rv_set import RVSet
@@ -32,7 +32,7 @@ class StripTurning:
         own = self.own
         beta, planets = crank_turns(own, deviated, turns, sense, placed_mesh)
         tilts = deviated.disc_tilts if np.any(deviated.disc_tilts) else None
-        found = self.strips.touches(deviated.stage, led_angles(own, turns, beta), (float(sense),), tilts)
+        found = self.strips.touches(held_stage(own, deviated), led_angles(own, turns, beta), (float(sense),), tilts)
         return Turned(found.turns[..., 0] - beta / own.crank_arm, found.places[..., 0], planets)
 
 
