@@ -234,7 +234,7 @@ def starts(rng: np.random.Generator, own: Drawn, count: int, clearance: float = 
     return [np.zeros(3), *(clearance * rng.normal(size=(count, 3)) * own.scale)]
 
 
-SEEDS = [0, *(pytest.param(k, marks=pytest.mark.slow) for k in range(1, 40))]
+SEEDS = [0, *(pytest.param(k, marks=pytest.mark.slow) for k in range(1, 20))]
 
 
 @pytest.mark.slow

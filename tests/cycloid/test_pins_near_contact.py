@@ -68,7 +68,7 @@ def test_the_analytic_road_counts_linear_gaps_where_the_first_one_is_closed(defl
     assert len(set(counts)) > 2
 
 
-@pytest.mark.parametrize("deflection", [0.002, 0.006])
+@pytest.mark.parametrize("deflection", [0.002, pytest.param(0.006, marks=pytest.mark.slow)])
 def test_the_exact_road_counts_gaps_to_dense_points_of_all_flanks(deflection: float) -> None:
     """Distances to points are off by less than a nanometre; no gap of these trials is so near to the deflection."""
     made, phis = erring(3, 2, 0.003, seed=8), np.linspace(0.3, 200.0, 3)

@@ -7,6 +7,7 @@ more.
 """
 
 import compileall
+import json
 import os
 import re
 import shutil
@@ -24,6 +25,22 @@ from places import ROOT
 LIST = ROOT / "tests" / "mutants.toml"
 FAILED, PASSED = 1, 0  # pytest's exit codes; others mean that it could not run
 HANGS = 900  # s; a guard against waiting for ever, no claim
+HEAVY = "import matplotlib.pyplot, numba, numpy, pyarrow.parquet, pydantic, pytest, rich, scipy.optimize, scipy.stats"
+FORKS = f"""
+{HEAVY}
+import json, os, signal, sys
+for line in sys.stdin:  # what a process is to be told, and where it writes
+    child = os.fork()
+    if not child:
+        arguments, output = json.loads(line)
+        signal.alarm({HANGS})
+        written = os.open(output, os.O_WRONLY | os.O_CREAT | os.O_TRUNC)
+        os.dup2(written, 1), os.dup2(written, 2)
+        code = pytest.main(arguments)
+        sys.stdout.flush()
+        os._exit(code)
+    print(os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]), flush=True)
+"""  # libraries are loaded once, of the tree nothing is: each process imports what stands there then
 COPIED = ("tol3d", "parts", "scenes", "tests", "docs", "README.md", "pyproject.toml")
 
 
@@ -59,24 +76,33 @@ class Tree:
             # by their content: a mutant is written within the second that times of files are compared by
             compileall.compile_dir(folder / name, quiet=2, invalidation_mode=PycInvalidationMode.CHECKED_HASH)
 
-    def pytest(self, *tests: str) -> subprocess.CompletedProcess[str]:
-        """Run tests there, slow ones too."""
         more = {"PYTHONPATH": str(self.folder), "PYTHONDONTWRITEBYTECODE": "1"}
         if "TOL3D_CACHE" not in os.environ:
             more["TOL3D_CACHE"] = str(self.folder / "cache")
+        self.forks = subprocess.Popen(
+            [sys.executable, "-c", FORKS],
+            cwd=self.folder, env=os.environ | more, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True,
+        )  # fmt: skip
+
+    def pytest(self, *tests: str) -> tuple[int, str]:
+        """Run tests there, slow ones too: the exit code, and what is printed."""
         options = ("-n", "0", "-q", "-p", "no:cacheprovider", "--tb=line", "-m", "slow or not slow")
-        command = [sys.executable, "-m", "pytest", *options, *tests]
-        environment = os.environ | more
-        return subprocess.run(command, cwd=self.folder, env=environment, capture_output=True, text=True, timeout=HANGS)
+        output = self.folder / "output.txt"
+        assert self.forks.stdin
+        assert self.forks.stdout
+        self.forks.stdin.write(json.dumps([[*options, *tests], str(output)]) + "\n")
+        self.forks.stdin.flush()
+        return int(self.forks.stdout.readline()), output.read_text("utf-8")
 
 
 @pytest.fixture(scope="module")
-def tree(tmp_path_factory: pytest.TempPathFactory) -> Tree:
+def tree(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Tree]:
     """The copy, on which every test of the list passes as long as nothing is wrong."""
     made = Tree(tmp_path_factory.mktemp("mutants"))
-    done = made.pytest(*sorted({test for mutant in MUTANTS for test in mutant.tests}))
-    assert done.returncode == PASSED, done.stdout[-3000:]
-    return made
+    with made.forks:
+        code, said = made.pytest(*sorted({test for mutant in MUTANTS for test in mutant.tests}))
+        assert code == PASSED, said[-3000:]
+        yield made
 
 
 @pytest.fixture
@@ -106,5 +132,5 @@ def test_a_mutant_s_text_is_there_once_and_its_tests_too(mutant: Mutant) -> None
 @pytest.mark.parametrize("mutated", MUTANTS, ids=lambda mutant: mutant.fault, indirect=True)
 def test_a_mutant_is_killed(mutated: tuple[Tree, Mutant]) -> None:
     tree, mutant = mutated
-    done = tree.pytest(*mutant.tests)
-    assert done.returncode == FAILED, f"{mutant.fault}: survives\n{done.stdout[-3000:]}"
+    code, said = tree.pytest(*mutant.tests)
+    assert code == FAILED, f"{mutant.fault}: survives\n{said[-3000:]}"

@@ -108,7 +108,7 @@ def test_an_absurd_number_is_refused_or_simulated(name: str, engine: str, tmp_pa
     for file in SCENES.glob("*.csv"):
         shutil.copy(file, tmp_path)
     simulated = 0
-    for _, _, text in edited(name, 0.5):
+    for _, _, text in edited(name, 0.2):
         scene = tmp_path / "scene.yaml"
         scene.write_text(text, "utf-8")
         study = Overrides(trials=3, engine=engine, witness=0)

@@ -10,7 +10,6 @@ from shipped import shipped
 from tol3d import Run, load_scene
 
 SCENES = {"rv_250aii", "rv_bearing_play", "every_cycloid_field"}
-SLOW = {"rv_250aii", "rv_bearing_play"}
 SEEN = 1e-5  # arcmin: another machine's bits
 
 
@@ -18,9 +17,8 @@ def test_every_scene_is_here() -> None:
     assert set(shipped("cycloid")) == SCENES
 
 
-@pytest.mark.parametrize(
-    "scene", [pytest.param(name, marks=[pytest.mark.slow] if name in SLOW else []) for name in sorted(SCENES)]
-)
+@pytest.mark.slow
+@pytest.mark.parametrize("scene", sorted(SCENES))
 def test_an_rv_reducer_meets_its_expected_numbers(scene: str, run_of: Callable[[str], Run]) -> None:
     summary = run_of(scene).summary
     assert summary["status"].pop("ok") == expected(scene)["trials"]
@@ -31,7 +29,7 @@ def test_an_rv_reducer_meets_its_expected_numbers(scene: str, run_of: Callable[[
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("scene", sorted(SLOW))
+@pytest.mark.parametrize("scene", sorted(SCENES))
 def test_both_roads_of_an_rv_reducer_differ_by_nothing_that_is_not_explained(
     scene: str, run_of: Callable[[str], Run]
 ) -> None:

@@ -27,6 +27,7 @@ ARCMIN = 60 * 180 / math.pi
 FACES = (16.0, 14.0)  # mm
 
 
+@pytest.mark.slow
 def test_the_scene_meets_its_expected_numbers(run_of: Callable[[str], Run]) -> None:
     run, wanted = run_of(SCENE), expected(SCENE)
     assert list(run.summary["measures"]) == [name for name in wanted if name != "trials"]

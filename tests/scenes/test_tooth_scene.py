@@ -25,6 +25,7 @@ HALF_FACE = 7.0  # mm, of the common one
 ARCMIN = 60 * 180 / math.pi
 
 
+@pytest.mark.slow
 def test_the_scene_meets_its_expected_numbers(run_of: Callable[[str], Run]) -> None:
     run, wanted = run_of(SCENE), expected(SCENE)
     assert list(run.summary["measures"]) == [name for name in wanted if name != "trials"]
