@@ -33,5 +33,6 @@ def test_an_rv_reducer_meets_its_expected_numbers(scene: str, run_of: Callable[[
 def test_both_roads_of_an_rv_reducer_differ_by_nothing_that_is_not_explained(
     scene: str, run_of: Callable[[str], Run]
 ) -> None:
-    for own in run_of(scene).summary["measures"].values():
-        assert own["agreement"]["explanation"]["faults"] == []
+    compared = [own for own in run_of(scene).summary["measures"].values() if own["take"] != "curve"]
+    assert len(compared) > 1
+    assert [own["agreement"]["explanation"]["faults"] for own in compared] == [[]] * len(compared)
