@@ -29,7 +29,7 @@ def test_an_rv_reducer_meets_its_expected_numbers(scene: str, run_of: Callable[[
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("scene", sorted(SCENES))
+@pytest.mark.parametrize("scene", ["rv_250aii", "rv_bearing_play"])  # counts of a hundred trials tell too little
 def test_both_roads_of_an_rv_reducer_differ_by_nothing_that_is_not_explained(
     scene: str, run_of: Callable[[str], Run]
 ) -> None:
