@@ -1,13 +1,21 @@
 """Scenes whose bearings have play: where builds of their columns rest, by HiGHS, and what pure play does by hand."""
 
+import re
 from pathlib import Path
 
 import numpy as np
 import pytest
+from numpy.typing import NDArray
 from oracles.playing_reducer import PlayingReducer
 from places import SCENES
 
-from tol3d import Overrides, run_scene
+from tol3d import load_scene
+from tol3d.study.columns import columns_of
+from tol3d.study.draws import drawn
+from tol3d.study.overrides import simulation_of
+from tol3d.study.simulation import Simulation
+
+Array = NDArray[np.float64]
 
 ARCMIN = np.degrees(1.0) * 60
 TEXT = (SCENES / "rv_bearing_play.yaml").read_text("utf-8")
@@ -15,22 +23,91 @@ MORE = """
   disc holes: {kind: disc_hole, of: disc, each: hole, distribution: {kind: rayleigh, scale: 0.5 um}}
   cranks: {kind: crank_eccentricity, of: crankshaft, each: crank, distribution: {kind: rayleigh, scale: 0.5 um}}
   holes: {kind: carrier_hole, of: carrier, each: hole, distribution: {kind: rayleigh, scale: 0.5 um}}
-  phases: {kind: crank_phase, of: crankshaft, each: crank, distribution: {kind: normal, lower: -15 arcsec, upper: 15 arcsec}}
+  phases:
+    {kind: crank_phase, of: crankshaft, each: crank, distribution: {kind: normal, lower: -15 arcsec, upper: 15 arcsec}}
 """
 BACK = "\n  back: {kind: cycloid_transmission_error, of: reducer, flank: back, over: random}\n\nstudy:"
+SMALL = 30.0  # mm, the crank circle's radius
+
+
+def simulated(tmp_path: Path, text: str) -> Simulation:
+    path = tmp_path / "scene.yaml"
+    path.write_text(text, "utf-8")
+    return simulation_of(load_scene(path))
+
+
+def turned(simulation: Simulation, road: str, trials: int) -> dict[str, Array]:
+    """Values of each measure [rad] by a road."""
+    own = simulation.system
+    return dict(own.road(road, None).answers(drawn(simulation, 0, trials), own.measures).values)
 
 
 @pytest.mark.slow
 def test_two_hundred_builds_of_a_scene_rest_where_highs_finds_them(tmp_path: Path) -> None:
     """Of each by turns with the torque back and on, by both roads."""
-    text = TEXT.replace("\nmoves:", f"{MORE}\nmoves:").replace("\nstudy:", BACK)
-    path = tmp_path / "scene.yaml"
-    path.write_text(text, "utf-8")
-    columns = run_scene(path, overrides=Overrides(trials=200), out=tmp_path / "run").columns()
+    made = simulated(tmp_path, TEXT.replace("\nmoves:", f"{MORE}\nmoves:").replace("\nstudy:", BACK))
+    road, trials = made.system.road("exact", None), drawn(made, 0, 200)
+    columns = columns_of(made.system, road, trials)
     for sense, measure in ((-1, "transmission error"), (1, "back")):
-        trials = np.arange(200)[(1 - sense) // 2 :: 2]
-        expected = np.array([PlayingReducer(columns, trial).turned(sense) for trial in trials])
-        exact, analytic = (columns[f"{road}:{measure}"][trials] / ARCMIN for road in ("geometric", "analytic"))
+        own = np.arange(200)[(1 - sense) // 2 :: 2]
+        expected = np.array([PlayingReducer(columns, trial).turned(sense) for trial in own])
+        exact, analytic = (columns[f"{road}:{measure}"][own] / ARCMIN for road in ("geometric", "analytic"))
         # teeth are met at the middle of a bearing and along a straight line from there: (5 um)^2 / 63 mm of a planet
         np.testing.assert_allclose(exact, expected, rtol=0, atol=1e-9)
         assert np.abs(analytic - expected).max() < 5e-6  # an arc second: pins near the window's edge
+
+
+def cranks_turned_by_hand(disc: float | None, carrier: float = 0.0) -> str:
+    """A scene whose cranks are the input and stand, its carrier true, with plays alike [um] or none."""
+    left_out = "sun|planet|play in|# diametral|carrier.hole|main bearing"
+    lines = [line for line in TEXT.splitlines() if not re.search(left_out, line)]
+    text = "\n".join(lines).replace("radius: 63 mm", f"radius: {SMALL} mm")
+    if disc is None:
+        return text
+    law = "{kind: bearing_play, of: %s, each: hole, distribution: {kind: constant, value: %.12f um}}"
+    plays = f"  play of discs: {law % ('disc', disc)}\n  play of carrier: {law % ('carrier', carrier)}\n"
+    return text.replace("\nmoves:", f"{plays}\nmoves:")
+
+
+@pytest.mark.parametrize(
+    ("road", "within"),  # the analytic one leaves a bearing without play a nanometre on the radius
+    [("analytic", 2 * 2e-6 / SMALL + 1e-8), pytest.param("exact", 1e-11, marks=pytest.mark.slow)],
+    ids=["analytic", "exact"],
+)
+def test_equal_play_turns_the_carrier_by_itself_over_the_cranks_circle_either_way(
+    road: str, within: float, tmp_path: Path
+) -> None:
+    """By hand, with cranks that stand and no error of holes.
+
+    A pin at the lever L that carries the torque M takes M/L, which three bearings at R share alike, and each takes a
+    third of M/R along the circle. Where L is 2 R or more none of the six forces' sums turns round: bearing i carries
+    (1/R + 2 n.t_i / L) / 3 >= 0 along its tangent t_i. So all clearances c = (disc + carrier) / 2 lie along the circle,
+    the disc stays in the middle, and the carrier turns on from first contact by the angle whose chord is c: all levers
+    of working pins are above 0.7 * 85.8 mm = 2 * 30.03 mm.
+    """
+    first = turned(simulated(tmp_path, cranks_turned_by_hand(None)), road, 40)
+    for disc, carrier in ((0.0, 0.0), (10.0, 5.0), (0.0, 8.0)):
+        found = turned(simulated(tmp_path, cranks_turned_by_hand(disc, carrier)), road, 40)
+        more = 2 * np.arcsin((disc + carrier) / 2 * 1e-3 / (2 * SMALL))
+        for name, times in (("transmission error", -1), ("lost motion", 2)):
+            np.testing.assert_allclose(found[name] - first[name], times * more, rtol=0, atol=within)
+
+
+@pytest.mark.slow
+def test_more_play_in_any_bearing_is_no_less_lost_motion(tmp_path: Path) -> None:
+    """Feasible places stay feasible; a step of 4 um in one of nine bearings."""
+    made = simulated(tmp_path, TEXT)
+    own, before = made.system, drawn(made, 0, 100)
+    columns = [
+        k for k, name in enumerate(n for one in own.contributors for n in one.columns) if name.startswith("play")
+    ]
+    assert len(columns) == 9
+    for road in ("exact", "analytic"):
+        less, sums = own.road(road, None).answers(before, own.measures).values["lost motion"], []
+        for column in columns:
+            before.deviations[:, column] += 4e-3
+            more = own.road(road, None).answers(before, own.measures).values["lost motion"]
+            before.deviations[:, column] -= 4e-3
+            assert (more - less).min() > -1e-9
+            sums.append((more - less).mean())
+        assert min(sums) > 1e-7  # none of them counts for nothing

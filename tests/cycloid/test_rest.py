@@ -192,3 +192,32 @@ def test_a_pin_that_rests_on_the_bend_of_a_hollow_flank_is_no_stall(seed: int, t
     assert rest.turns[0, 0] == pytest.approx(
         expected, abs=3e-9
     )  # its steps halve: along a bend it stops a little short
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("sense", [1.0, -1.0])
+def test_a_mirrored_build_rests_at_the_mirrored_angle(sense: float) -> None:
+    """Across the x axis: whatever was counter-clockwise is clockwise, pins, lobes and cranks come in turned order."""
+    own, phis = drawn(50, 0.002, seed=7), phis_of(50)
+    flip, pins, cranks = np.array([1.0, -1.0]), -np.arange(40) % 40, -np.arange(3) % 3
+    # a disc's first lobe begins on its throw's ray; the second disc's throw is at half a turn, mirrored at minus that
+    lobes = np.stack([38 - np.arange(39), (39 - np.arange(39)) % 39])
+    of_discs = np.arange(2)[:, None]
+    mirrored = Deviated(
+        pins=own.pins[:, pins] * flip,
+        pin_radii=own.pin_radii[:, pins],
+        lobe_pitch=-own.lobe_pitch[:, of_discs, lobes],
+        lobe_profile=own.lobe_profile[:, of_discs, lobes],
+        disc_offsets=own.disc_offsets * flip,
+        disc_holes=own.disc_holes[:, :, cranks] * flip,
+        crank_errors=own.crank_errors[:, cranks] * flip,
+        crank_phases=-own.crank_phases[:, cranks],
+        carrier_holes=own.carrier_holes[:, cranks] * flip,
+        carrier_offsets=own.carrier_offsets * flip,
+    )
+    disc, carrier = np.random.default_rng(8).uniform(0.01, 0.02, (50, 3, 2)), np.full(3, 0.015)
+    free = np.array([-1e-5, 3e-5])
+    there = STAGE.rests(own, phis, Play(disc, carrier, free, (0.022, 0.008)), sense)
+    back = STAGE.rests(mirrored, -phis, Play(disc[:, cranks], carrier, -free[::-1], (0.022, 0.008)), -sense)
+    assert (there.status == OK).all()
+    np.testing.assert_allclose(back.turns, -there.turns, rtol=0, atol=2e-12)

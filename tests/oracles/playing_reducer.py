@@ -59,7 +59,12 @@ class PlayingReducer:
 
     def _all(self, name: str, *of: str) -> Array:
         """A contributor's components of one trial [mm or rad]; 0 of one that the scene has not."""
-        for unit, size in (("um", 1e-3), ("mrad", 1e-3), ("arcmin", np.radians(1 / 60)), ("arcsec", np.radians(1 / 3600))):
+        for unit, size in (
+            ("um", 1e-3),
+            ("mrad", 1e-3),
+            ("arcmin", np.radians(1 / 60)),
+            ("arcsec", np.radians(1 / 3600)),
+        ):
             names = [f"{name}.{own} [{unit}]" if own else f"{name} [{unit}]" for own in of]
             if names[0] in self._columns:
                 return size * np.array([self._columns[own][self._trial] for own in names])
@@ -142,7 +147,7 @@ class PlayingReducer:
                 by_joint = np.stack([self.joined(z + d) - self.joined(z - d) for d in eye], axis=-1) / 2
             joints, across = self.joined(z), np.array([np.conj(direction) for _, direction in tangents])
             at = [b for b, _ in tangents]
-            near = 1000 * 0.5 ** max(0, step - 10)  # so that idle bodies come to rest
+            near = 1000 * 0.4 ** max(0, step - 4)  # so that idle bodies come to rest
             given = linprog(
                 -sense * eye[0],
                 np.concatenate([-by_gap, (across[:, None] * by_joint[at]).real]),
