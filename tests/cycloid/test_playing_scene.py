@@ -9,11 +9,12 @@ from numpy.typing import NDArray
 from oracles.playing_reducer import PlayingReducer
 from places import SCENES
 
-from tol3d import load_scene
+from tol3d import SceneError, load_scene
 from tol3d.study.columns import columns_of
 from tol3d.study.draws import drawn
 from tol3d.study.overrides import simulation_of
 from tol3d.study.simulation import Simulation
+from tol3d.study.tally import Tally, grids_of
 
 Array = NDArray[np.float64]
 
@@ -111,3 +112,39 @@ def test_more_play_in_any_bearing_is_no_less_lost_motion(tmp_path: Path) -> None
             assert (more - less).min() > -1e-9
             sums.append((more - less).mean())
         assert min(sums) > 1e-7  # none of them counts for nothing
+
+
+def test_a_negative_mean_play_is_refused_with_what_would_do(tmp_path: Path) -> None:
+    with pytest.raises(SceneError) as caught:
+        simulated(tmp_path, TEXT.replace("lower: 0 um, upper: 10 um", "lower: -12 um, upper: 2 um"))
+    assert "tolerances.play in the carrier.distribution: expected a mean clearance of at least 0 um, got -5 um" in str(
+        caught.value
+    )
+
+
+def test_draws_below_zero_of_every_bearing_are_counted_and_count_as_no_play(tmp_path: Path) -> None:
+    made = simulated(tmp_path, TEXT.replace("lower: 0 um, upper: 10 um", "lower: -1 um, upper: 9 um"))
+    trials = drawn(made, 0, 200)
+    columns = columns_of(made.system, None, trials)
+    tally = Tally.of(made, grids_of(made.system, columns), columns)
+    below = np.stack([columns[f"play in the carrier.hole {k} [um]"] < 0 for k in (1, 2, 3)])
+    assert tally.unphysical["play in the discs"] == 0
+    assert tally.unphysical["play in the carrier"] == below.any(axis=0).sum() > below[0].sum()
+    known = turned(made, "analytic", 200)["lost motion"]
+    trials.deviations[:, -3:] = np.maximum(trials.deviations[:, -3:], 0.0)  # the carrier's play comes last
+    without = made.system.road("analytic", None).answers(trials, made.system.measures).values["lost motion"]
+    np.testing.assert_array_equal(known, without)
+
+
+@pytest.mark.slow
+def test_cranks_that_do_not_fit_are_failed_and_counted_as_that(tmp_path: Path) -> None:
+    """Holes off by some 2 um each in bearings of 1 um: no place in most builds. Without play at all bearings give."""
+    tight = re.sub("lower: (5|0) um, upper: (15|10) um", "lower: 0.5 um, upper: 1.5 um", TEXT)
+    holes = "  holes: {kind: carrier_hole, of: carrier, each: hole, distribution: {kind: rayleigh, scale: 2 um}}\n"
+    made = simulated(tmp_path, tight.replace("\nmoves:", f"{holes}\nmoves:"))
+    answers = made.system.road("exact", None).answers(drawn(made, 0, 200), made.system.measures)
+    for name, status in answers.status.items():
+        failed = made.system.statuses.texts.index("cranks do not fit")
+        assert set(status) == {0, failed}
+        assert 100 < (status == failed).sum() < 200
+        np.testing.assert_array_equal(np.isnan(answers.values[name][:, 0]), status == failed)

@@ -23,7 +23,7 @@ from tol3d.study.spectrum_tally import amplitudes_of, grid_name
 from tol3d.study.status_counts import added, counted, gathered, reason_counts, status_counts
 from tol3d.system.closed_form import ClosedForm
 from tol3d.system.dependent import DependentlyJudged
-from tol3d.system.draw import JudgedDraw
+from tol3d.system.draw import Each, JudgedDraw
 from tol3d.system.measure import Measure
 from tol3d.system.outcome import ANALYTIC, GEOMETRIC, ROADS, Columns, Outcome, outcome_of, value_column
 from tol3d.system.pooled import PooledTerms
@@ -208,7 +208,8 @@ class Tally:
     Args:
         trials: how many.
         status: how many of them ended how, by the worst of their measures.
-        unphysical: how many draws lie below what a contributor can be, or beyond what its drawing allows, by its name.
+        unphysical: how many trials have a draw below what a contributor can be, or beyond what its drawing allows, by
+            its name.
         measures, curves: by name.
         terms: of breakdowns, by measure and road.
         joint: what measures do together.
@@ -268,8 +269,9 @@ def _unphysical(system: System, columns: Columns) -> dict[str, int]:
     for name, contributor in known.items():
         draw = contributor.draw
         if contributor.least is not None:
-            drawn = np.asarray(columns[contributor.columns[0]], dtype=np.float64)
-            counts[name] = int(np.count_nonzero(drawn < contributor.least / contributor.per_unit))
+            # of a length with a direction the first component is the length; features have one each
+            lengths = components(name) if isinstance(draw, Each) else components(name)[:1]
+            counts[name] = int(np.count_nonzero(np.min(lengths, axis=0) < contributor.least))
         elif isinstance(draw, DependentlyJudged):
             given = {own: np.stack(components(own)) for own in draw.reads}
             counts[name] = int(np.count_nonzero(draw.beyond_given(given, *components(name))))
