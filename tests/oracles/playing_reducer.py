@@ -94,7 +94,7 @@ class PlayingReducer:
         centres = ECCENTRICITY * np.exp(1j * self.phi) * np.array([1, -1]) + at[1:7:3] + 1j * at[2:7:3]
         holes = centres[:, None] + np.exp(1j * (self.chi + at[3:7:3] / ARM))[:, None] * self.bored
         bored = np.exp(1j * (self.chi + at[0] / ARM)) * (CRANK_CIRCLE * self.around + self.off)
-        return 1e3 * np.concatenate([(holes.T - axes[:, None] - throws).ravel(), axes - bored])
+        return np.asarray(1e3 * np.concatenate([(holes.T - axes[:, None] - throws).ravel(), axes - bored]), np.complex128)
 
     def gaps(self, z: Array, works: NDArray[np.bool_]) -> Array:
         """Of working pins of both discs [um]."""
