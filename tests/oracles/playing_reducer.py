@@ -1,7 +1,7 @@
 """An RV-250AII with play at rest, by HiGHS from the columns of a run, sharing no code with tol3d.
 
 Parts are points in the plane as complex numbers, where they stand nominally when the output has made its turn; planets
-are involutes about displaced centres. Eccentricities of gears point where they would nominally, as in tol3d.
+are involutes about displaced centres. Eccentricities turn with planets; the sun's points where it would nominally.
 """
 
 from collections.abc import Mapping
@@ -10,6 +10,8 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import linprog
+
+from oracles.drawn_columns import DrawnColumns
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -29,61 +31,42 @@ class PlayingReducer:
     """One trial of scenes/rv_bearing_play.yaml, whatever other tolerances of these names it has."""
 
     def __init__(self, columns: Mapping[str, Array], trial: int) -> None:
-        self._columns, self._trial = columns, trial
-        turn = np.radians(columns["position:reducer [deg]"][trial])
+        drawn = DrawnColumns(columns, trial)
+        turn = drawn.at("reducer")
         self.phi, self.chi = -LOBES * turn, turn
         self.around = np.exp(2j * np.pi * np.arange(CRANKS) / CRANKS)
-        pins = self._all("pin pitch", *(f"pin {j + 1}" for j in range(PINS)))
-        self.pins = (CIRCLE + self._one("pin circle") + 1j * pins) * np.exp(2j * np.pi * np.arange(PINS) / PINS)
+        pins = drawn.all("pin pitch", *(f"pin {j + 1}" for j in range(PINS)))
+        self.pins = (CIRCLE + drawn.one("pin circle") + 1j * pins) * np.exp(2j * np.pi * np.arange(PINS) / PINS)
         discs = ("disc 1", "disc 2")
         lobes = [[f"{disc} lobe {k + 1}" for k in range(LOBES)] for disc in discs]
-        self.lobe_pitch = np.stack([self._all("disc pitch", *own) for own in lobes])
-        self.lobe_profile = np.stack([self._all("disc profile", *own) for own in lobes])
+        self.lobe_pitch = np.stack([drawn.all("disc pitch", *own) for own in lobes])
+        self.lobe_profile = np.stack([drawn.all("disc profile", *own) for own in lobes])
         each = [[f"{disc} hole {k + 1}" for k in range(CRANKS)] for disc in discs]
-        bored = np.stack([self._plane("disc holes", *own) for own in each])
-        self.bored = CRANK_CIRCLE * self.around + bored - self._plane("disc run-out", *discs)[:, None]
-        own = np.stack([self._plane("cranks", *(f"crank {i + 1} {disc}" for disc in discs)) for i in range(CRANKS)])
-        self.thrown = ECCENTRICITY * np.array([1.0, -1.0]) + own + self._plane("crank run-out", *discs)
-        holes = self._plane("holes", *(f"hole {i + 1}" for i in range(CRANKS)))
-        self.off = holes + self._plane("carrier holes", "") + self._plane("main bearing run-out", "")
-        plays = np.stack([self._all("play in the discs", *own) for own in each]).T.ravel()
-        carrier = self._all("play in the carrier", *(f"hole {i + 1}" for i in range(CRANKS)))
+        bored = np.stack([drawn.plane("disc holes", *own) for own in each])
+        self.bored = CRANK_CIRCLE * self.around + bored - drawn.plane("disc run-out", *discs)[:, None]
+        thrown = np.stack([drawn.plane("cranks", *(f"crank {i + 1} {disc}" for disc in discs)) for i in range(CRANKS)])
+        self.thrown = ECCENTRICITY * np.array([1.0, -1.0]) + thrown + drawn.plane("crank run-out", *discs)
+        holes = drawn.plane("holes", *(f"hole {i + 1}" for i in range(CRANKS)))
+        self.off = holes + drawn.plane("carrier holes", "") + drawn.plane("main bearing run-out", "")
+        plays = np.stack([drawn.all("play in the discs", *own) for own in each]).T.ravel()
+        carrier = drawn.all("play in the carrier", *(f"hole {i + 1}" for i in range(CRANKS)))
         self.radial = 1e3 * np.maximum(np.concatenate([plays, carrier]), 0.0) / 2  # um
         planets = [f"planet {i + 1}" for i in range(CRANKS)]
-        thicker = self._one("sun thinning") + self._all("planet thinning", *planets)
+        thicker = drawn.one("sun thinning") + drawn.all("planet thinning", *planets)
         sun = (LOBES + 1) * 42 / 21 * turn - 2 * np.pi * np.arange(CRANKS) / CRANKS
         planet = -sun * 21 / 42 + np.pi + np.pi / 42  # a space of its teeth faces the sun
-        self.apart = CRANK_CIRCLE + self._plane("planet run-out", *planets) * np.exp(1j * planet)
-        self.apart = self.apart - self._plane("sun run-out", "") * np.exp(1j * sun)
-        self.thicker, self.phases = thicker, self._all("phases", *(f"crank {i + 1}" for i in range(CRANKS)))
-
-    def _all(self, name: str, *of: str) -> Array:
-        """A contributor's components of one trial [mm or rad]; 0 of one that the scene has not."""
-        for unit, size in (
-            ("um", 1e-3),
-            ("mrad", 1e-3),
-            ("arcmin", np.radians(1 / 60)),
-            ("arcsec", np.radians(1 / 3600)),
-        ):
-            names = [f"{name}.{own} [{unit}]" if own else f"{name} [{unit}]" for own in of]
-            if names[0] in self._columns:
-                return size * np.array([self._columns[own][self._trial] for own in names])
-        return np.zeros(len(of))
-
-    def _one(self, name: str) -> float:
-        return float(self._all(name, "")[0])
-
-    def _plane(self, name: str, *of: str) -> Complex:
-        x, y = (self._all(name, *(f"{own} {axis}".strip() for own in of)) for axis in "xy")
-        return np.asarray(x + 1j * y)
+        self.off_planets = drawn.plane("planet run-out", *planets) * np.exp(1j * planet)
+        self.off_sun = drawn.plane("sun run-out", "") * np.exp(1j * sun)
+        self.thicker, self.phases = thicker, drawn.all("phases", *(f"crank {i + 1}" for i in range(CRANKS)))
 
     def flanks(self, z: Array) -> Array:
         """Room of each planet's teeth (2 cranks,), back and ahead [um at the arm]."""
         lies = self.joined(z)[-CRANKS:] / 1e3 * np.exp(-1j * self.chi) + self.off
-        apart = self.apart + lies * np.conj(self.around)
+        turned = z[9::3] / 1e3 / ARM - self.phases
+        apart = CRANK_CIRCLE + self.off_planets * np.exp(1j * turned) - self.off_sun + lies * np.conj(self.around)
         alpha, bases = np.arccos(sum(BASES) / abs(apart)), sum(BASES)
         room = bases * (involute(alpha) - involute(np.radians(20.0))) - self.thicker / 2
-        turned = z[9::3] / 1e3 / ARM - self.phases - bases * np.angle(apart) / BASES[1]
+        turned = turned - bases * np.angle(apart) / BASES[1]
         return 1e3 * ARM * np.concatenate([turned + room / BASES[1], room / BASES[1] - turned])
 
     def joined(self, z: Array) -> Complex:
@@ -94,11 +77,13 @@ class PlayingReducer:
         centres = ECCENTRICITY * np.exp(1j * self.phi) * np.array([1, -1]) + at[1:7:3] + 1j * at[2:7:3]
         holes = centres[:, None] + np.exp(1j * (self.chi + at[3:7:3] / ARM))[:, None] * self.bored
         bored = np.exp(1j * (self.chi + at[0] / ARM)) * (CRANK_CIRCLE * self.around + self.off)
-        return np.asarray(1e3 * np.concatenate([(holes.T - axes[:, None] - throws).ravel(), axes - bored]), np.complex128)
+        off = np.concatenate([(holes.T - axes[:, None] - throws).ravel(), axes - bored])
+        return np.asarray(1e3 * off, dtype=np.complex128)
 
     def gaps(self, z: Array, works: NDArray[np.bool_]) -> Array:
         """Of working pins of both discs [um]."""
-        at, found, azimuths = z / 1e3, [], 2 * np.pi * np.arange(PINS) / PINS
+        at, azimuths = z / 1e3, 2 * np.pi * np.arange(PINS) / PINS
+        found: list[Array] = []
         for disc in range(2):
             x, y, turn = at[1 + 3 * disc : 4 + 3 * disc]
             throw, own = self.phi + np.pi * disc, works[disc]

@@ -2,14 +2,14 @@
 
 Discs hold the throws of all cranks parallel, so that they turn together as far as the first planet lets them: load
 paths in parallel, of which one carries. A phase of a crank so is a turn of its planet. Both roads find the turn beyond
-where teeth without backlash would have the planets, counted
-counter-clockwise. Meshes are looked at in frames that turn with the carrier, the sun at the origin, the planet on x.
-The carrier is taken where it should be: 100 arc seconds more turn an eccentricity of 10 um by 5 nm.
+where teeth without backlash would have the planets, counted counter-clockwise. Meshes are looked at in frames that turn
+with the carrier, the sun at the origin, the planet on x.
 """
 
 import math
 from collections.abc import Callable
 from dataclasses import replace
+from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,6 +22,9 @@ from tol3d.gears import LEFT, RIGHT, Displaced, Flank
 Array = NDArray[np.float64]
 Places = NDArray[np.int64]
 OneMesh = Callable[[RVSet, FirstStage, RVDeviated, Array, int, Flank], Array]
+
+ROUNDS: Final = 2
+"""How often a planet is turned; each time leaves its eccentricity over its base radius of the error of the last."""
 
 
 def crank_turns(
@@ -60,21 +63,40 @@ def held_stage(own: RVSet, deviated: RVDeviated) -> Deviated:
     return stage if own.first is None else replace(stage, crank_phases=np.zeros_like(stage.crank_phases))
 
 
-def placed_mesh(own: RVSet, first: FirstStage, deviated: RVDeviated, turns: Array, crank: int, flank: Flank) -> Array:
-    """How far one planet turns (trials, positions) [rad] until its flank touches the sun's, gears as they lie."""
-    sun, planet = angles(own, first, turns, crank)
+def placed_mesh(
+    own: RVSet,
+    first: FirstStage,
+    deviated: RVDeviated,
+    turns: Array,
+    crank: int,
+    flank: Flank,
+    carried: float | Array = 0.0,
+) -> Array:
+    """How far one planet turns (trials, positions) [rad] until its flank touches the sun's, gears as they lie.
+
+    Args:
+        own, first, deviated, turns, crank, flank: see OneMesh.
+        carried: how far the carrier has turned beyond its place while the sun stands (trials, positions) [rad]. 100 arc
+            seconds turn an eccentricity of 10 um by 5 nm.
+    """
     shape = len(deviated.sun_thickness), turns.shape[1]
+    sun, planet = angles(own, first, turns, crank)
+    sun = sun - carried
+    planet = first.pair.driven_angle(sun)
     origins = np.zeros((*shape, 2, 3))
     origins[..., 0, :2] = _plane(_complex(deviated.sun_offset)[:, None] * np.exp(1j * sun))
     place = first.pair.centre_distance + _carried(own, deviated, crank)[:, None]
-    origins[..., 1, :2] = _plane(place + _complex(deviated.planet_offset[:, crank])[:, None] * np.exp(1j * planet))
     thicker = np.stack([deviated.sun_thickness, deviated.planet_thickness[:, crank]], axis=-1)
     reference = np.array([gear.module * gear.teeth for gear in (first.pair.pinion, first.pair.wheel)])
     flank_turn = np.broadcast_to((thicker / reference)[:, None], (*shape, 2)).reshape(-1, 2)
     rows = np.broadcast_to(sun, shape).reshape(-1)
-    displaced = Displaced(origins.reshape(-1, 2, 3), np.zeros((len(rows), 2, 3)), flank_turn)
-    touching = first.pair.touching_angle(rows, flank, displaced) - first.pair.driven_angle(rows)
-    return np.asarray(touching.reshape(shape))
+    upright, turn = np.zeros((len(rows), 2, 3)), np.zeros(shape)
+    for _ in range(ROUNDS):
+        off = _complex(deviated.planet_offset[:, crank])[:, None] * np.exp(1j * (planet + turn))
+        origins[..., 1, :2] = _plane(place + off)
+        displaced = Displaced(origins.reshape(-1, 2, 3), upright, flank_turn)
+        turn = (first.pair.touching_angle(rows, flank, displaced) - first.pair.driven_angle(rows)).reshape(shape)
+    return turn
 
 
 def first_order_mesh(

@@ -10,6 +10,7 @@ there. Which pins work at the window's edge may differ by that.
 """
 
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import Protocol
 
 import numpy as np
@@ -76,7 +77,21 @@ class ExactTurning:
         stage = held_stage(own, deviated)
         found = own.contact.touches(stage, phis, (float(sense),), deflection, leans_of(own, deviated))
         near = None if found.near is None else found.near[..., 0]
-        return Turned(found.turns[..., 0] - beta / own.crank_arm, found.places[..., 0], planets, near)
+        turned = output_turns(own, deviated, turns, sense, found.turns[..., 0], beta)
+        return Turned(turned, found.places[..., 0], planets, near)
+
+
+def output_turns(own: RVSet, deviated: RVDeviated, turns: Array, sense: int, found: Array, beta: Array) -> Array:
+    """How far the output turns (trials, positions) [rad] of which the cycloid stage turns a part.
+
+    Args:
+        own, deviated, turns, sense: see Turning.
+        found: that part.
+        beta: how far the cranks turn where the carrier is in its place. By its turn they turn less than a thousandth of
+            that more, which is nothing to the discs.
+    """
+    there = partial(placed_mesh, carried=found - beta / own.crank_arm)
+    return found - crank_turns(own, deviated, turns, sense, there)[0] / own.crank_arm
 
 
 def leans_of(own: RVSet, deviated: RVDeviated) -> Array | None:

@@ -12,7 +12,7 @@ from tol3d.cycloid.rv_set import RVSet
 from tol3d.cycloid.rv_trials import RVTrials
 from tol3d.cycloid.strip_contact import StripContact
 from tol3d.cycloid.strips import LobeStrips
-from tol3d.cycloid.turning import Array, Turned, led_angles
+from tol3d.cycloid.turning import Array, Turned, led_angles, output_turns
 from tol3d.system.measure import Measure
 
 MOST_POSITIONS: Final = 24
@@ -33,7 +33,9 @@ class StripTurning:
         beta, planets = crank_turns(own, deviated, turns, sense, placed_mesh)
         tilts = deviated.disc_tilts if np.any(deviated.disc_tilts) else None
         found = self.strips.touches(held_stage(own, deviated), led_angles(own, turns, beta), (float(sense),), tilts)
-        return Turned(found.turns[..., 0] - beta / own.crank_arm, found.places[..., 0], planets)
+        return Turned(
+            output_turns(own, deviated, turns, sense, found.turns[..., 0], beta), found.places[..., 0], planets
+        )
 
 
 @dataclass(frozen=True)
