@@ -332,6 +332,20 @@ def printed(summary: Mapping[str, Any]) -> str:
     return " ".join(console.export_text().split())
 
 
+@pytest.mark.slow
+def test_what_is_left_out_but_is_no_contributors_is_printed_with_its_rms(tmp_path: Path) -> None:
+    summary = run_scene(
+        SCENES / "rv_250aii.yaml", overrides=Overrides(trials=500, witness=0), out=tmp_path / "run"
+    ).summary
+    left_out = "the bend of flanks, and which pin touches"
+    for name in ("transmission error", "lost motion"):
+        explanation = summary["measures"][name]["agreement"]["explanation"]
+        assert explanation["linear"] == []
+        rms = 60 * explanation["neglected"][left_out]
+        assert rms > 0.05
+        assert f"the stack-up leaves out {left_out}: rms {rms:.2f}″" in printed(summary)
+
+
 def test_what_is_decided_is_printed_and_a_fault_is_loud(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     asked = Overrides(trials=500, witness=0)
     right = run_scene(SCENES / "spur_pair.yaml", overrides=asked, out=tmp_path / "right").summary

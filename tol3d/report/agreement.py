@@ -30,7 +30,8 @@ def agreement_lines(agreement: Agreement, unit: str, chord_words: str = "") -> I
     elif explanation.faults:
         yield line
     else:
-        yield f"{line}; explained: {_of_first_order(explanation)}; {_of_second_order(explanation, unit)}"
+        why = [_of_first_order(explanation), _of_second_order(explanation, unit), *_neglected(explanation, unit)]
+        yield f"{line}; explained: {'; '.join(why)}"
         yield from _left_out(explanation.linear)
 
 
@@ -56,6 +57,14 @@ def _of_second_order(explanation: Explanation, unit: str) -> str:
     shift = difference_text(explanation.second_order_mean, unit)
     terms = f"terms of second order have rms {difference_text(rms, unit)}, mean {shift}"
     return f"{terms}, the most by {named}" if named else terms
+
+
+def _neglected(explanation: Explanation, unit: str) -> Iterator[str]:
+    """What the stack-up leaves out that no contributor's part in the differences shows, where it is seen at all."""
+    nothing, shown = difference_text(0.0, unit), {part.by for part in explanation.linear}
+    for what, rms in explanation.neglected.items():
+        if what not in shown and (text := difference_text(rms, unit)) != nothing:
+            yield f"the stack-up leaves out {what}: rms {text}"
 
 
 def _left_out(linear: Sequence[LinearPart]) -> Iterator[str]:
