@@ -2,7 +2,7 @@
 
 The grammar is strict on purpose: one number, a blank, one unit of the table below. Inside tol3d
 lengths are mm, angles rad, temperature differences K, expansion coefficients 1/K, forces N. What is counted has its own
-word for a unit: `3 pins`.
+word for a unit: `3 pins`, `1 pin`.
 """
 
 import math
@@ -32,7 +32,7 @@ FACTORS: Final[dict[Dimension, dict[str, float]]] = {
     "expansion": {"1/K": 1.0, "/K": 1.0, "um/m/K": 1e-6, "ppm/K": 1e-6},
     "force": {"N": 1.0, "kN": 1e3, "mN": 1e-3},
     "stiffness": {"N/mm": 1.0, "N/um": 1e3, "N/m": 1e-3},
-    "count": {"pins": 1.0},
+    "count": {"pins": 1.0, "pin": 1.0},
 }
 """What one of each unit is in mm, rad, K, 1/K, N or N/mm; counts are numbers of what is counted."""
 

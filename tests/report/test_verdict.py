@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 import pytest
 from fixtures import Command
-from loose_summaries import typed_measure
+from loose_summaries import typed_measure, typed_run
 from places import SCENES, SPUR_PAIR
 from printing import printed
 from rich.console import RenderableType
@@ -187,3 +187,25 @@ def test_the_exit_code_follows_the_accepted_share_where_one_is_said(tol3d: Comma
         code, _, err = tol3d(*arguments, "--accept", wrong)
         assert code == 2
         assert "expected a share of the trials" in err
+
+
+def test_no_count_and_no_range_is_said_to_end_below_0() -> None:
+    """Of so few trials the quantiles alone would not tell; a length of the same sample may lie on either side of 0."""
+    sample = stated(0, 20)["geometric"] | {
+        "count": 20,
+        "mean": 1.5,
+        "sigma": 1.0,
+        "low_3sigma": -1.5,
+        "high_3sigma": 4.5,
+    }
+    sample |= {"p0.135": 0.0, "p99.865": 4.0}
+    shown: dict[str, dict[str, object]] = {
+        "count": {"unit": "pins", "take": "value", "lower_limit": 1.0, "upper_limit": None},
+        "range": {"unit": "um", "take": "range", "lower_limit": None, "upper_limit": None},
+        "length": {"unit": "um", "take": "value", "lower_limit": None, "upper_limit": None},
+    }
+    run = typed_run({"trials": 20, "measures": {name: own | {"geometric": sample} for name, own in shown.items()}})
+    cells = {row.label: [str(cell) for cell in row.cells[1:5]] for row in verdict_table(run).rows}
+    assert cells["count *"] == ["1.5 pins", "0 pins", "4 pins", "≥ 1 pin"]
+    assert cells["range *"][:3] == ["1.5 µm", "0.0 µm", "4.0 µm"]
+    assert cells["length"][:3] == ["1.5 µm", "-1.5 µm", "4.5 µm"]

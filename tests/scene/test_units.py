@@ -12,7 +12,7 @@ from pydantic import TypeAdapter
 from tol3d import units
 from tol3d.units import FACTORS, LONGEST_TEXT, UNITS, Quantity, angle_text
 
-PINT_NAMES = {"/K": "1/K", "um/m/K": "um/m/K", "ppm/K": "ppm/K", "pins": "dimensionless"}
+PINT_NAMES = {"/K": "1/K", "um/m/K": "um/m/K", "ppm/K": "ppm/K", "pins": "dimensionless", "pin": "dimensionless"}
 INNER = {
     "length": "mm",
     "angle": "rad",

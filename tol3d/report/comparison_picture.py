@@ -32,7 +32,7 @@ from tol3d.report.distribution import density_label, values_label
 from tol3d.report.drawn_sample import FILL_OPACITY, DrawnSample, Line, draw_samples
 from tol3d.report.heading import heading
 from tol3d.report.label import wrapped
-from tol3d.report.number import given_text, unit_suffix
+from tol3d.report.number import limit_text
 from tol3d.runs.run import Run
 from tol3d.runs.summary.measure import MeasureSummary
 from tol3d.runs.summary.values import Road
@@ -192,7 +192,7 @@ def _mark_limits(axes: Axes, name: str, shown: Sequence[Shown]) -> None:
             if limit is None or not low <= limit <= high:
                 continue
             unit = measures[0].unit
-            text = f"{word} {given_text(limit, unit)}{unit_suffix(unit)}" + ("" if shared else f" of {each.label}")
+            text = f"{word} {limit_text(limit, unit)}" + ("" if shared else f" of {each.label}")
             colour = OUTSIDE if shared else each.colours["geometric"]
             axes.axvline(limit, color=colour, linewidth=2, label=_broken(text, 0))
 

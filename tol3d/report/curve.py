@@ -11,7 +11,7 @@ from tol3d.report.canvas import GREY, ORANGE, OUTSIDE, PUBLISHED_COLOURS, ROAD_C
 from tol3d.report.distribution import NO_VALUES, values_label
 from tol3d.report.heading import position_of
 from tol3d.report.label import legible
-from tol3d.report.number import given_text, unit_suffix
+from tol3d.report.number import limit_text
 from tol3d.runs.summary.measure import MeasureSummary
 
 Array = NDArray[np.float64]
@@ -66,7 +66,7 @@ def draw_curve(axes: Axes, name: str, measure: MeasureSummary) -> None:
     _mark_jumps(axes, measure, stepped.jumps)
     for limit, limit_word in zip(measure.limits, ("LSL", "USL"), strict=True):
         if limit is not None:
-            text = f"{limit_word} {given_text(limit, unit)}{unit_suffix(unit)}"
+            text = f"{limit_word} {limit_text(limit, unit)}"
             axes.axhline(limit, color=OUTSIDE, linewidth=2, label=text)
     axes.set_xlim(x[0], x[-1] if x[-1] > x[0] else x[0] + 1.0)
     axes.set_xlabel(position_label(measure), fontsize=10)

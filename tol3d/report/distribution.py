@@ -19,7 +19,7 @@ from tol3d.report.column import Column, columns_of
 from tol3d.report.drawn_sample import LINE_TOP, DrawnSample, draw_ends, draw_samples, name_ends
 from tol3d.report.ends import Ends, is_bounded
 from tol3d.report.label import legible, wrapped
-from tol3d.report.number import UNIT_SIGNS, given_text, share_text, unit_suffix
+from tol3d.report.number import UNIT_SIGNS, limit_text, share_text
 from tol3d.runs.summary.measure import MeasureSummary
 from tol3d.runs.summary.values import Section
 
@@ -147,7 +147,7 @@ def _mark_limits(axes: Axes, measure: MeasureSummary, span: tuple[float, float])
         if limit is None:
             continue
         lower = side == "below"
-        text = f"{word} {given_text(limit, unit)}{unit_suffix(unit)}\n{out_text(ppm, side)}"
+        text = f"{word} {limit_text(limit, unit)}\n{out_text(ppm, side)}"
         inside = span[0] <= limit <= span[1]
         if inside:
             axes.axvline(limit, ymax=LINE_TOP, color=OUTSIDE, linewidth=2.0)

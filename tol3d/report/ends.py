@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from typing import Final
 
 from tol3d.report.column import Column
+from tol3d.report.number import COUNTED
 from tol3d.runs.summary.measure import MeasureSummary
 
 SHORT_OF_3_SIGMA: Final = 2.5  # sigma; a quantile nearer to the mean than this is no end of a normal law
@@ -33,10 +34,24 @@ class Ends:
 
 
 def is_bounded(measure: MeasureSummary) -> bool:
-    """Whether mean ∓ 3 sigma lies where a measure has no values: a range near 0, a sum of a few uniform laws."""
+    """Whether mean ∓ 3 sigma lies where a measure has no values.
+
+    Below 0 that is of counts and ranges, else where trials end before: a range near 0, a sum of a few uniform laws.
+    """
     sample = measure.sample(measure.best_road)
-    known = None if sample is None else (sample.mean, sample.sigma, sample.count, sample.p0_135, sample.p99_865)
-    return known is not None and _ends_early(*known)
+    if sample is None:
+        return False
+    known = (sample.mean, sample.sigma, sample.count, sample.p0_135, sample.p99_865)
+    return (_is_never_negative(measure) and _reaches_below_0(*known[:2])) or _ends_early(*known)
+
+
+def _is_never_negative(measure: MeasureSummary) -> bool:
+    """What is counted, and peak to peak."""
+    return measure.unit in COUNTED or measure.take in ("range", "harmonic")
+
+
+def _reaches_below_0(mean: float | None, sigma: float | None) -> bool:
+    return mean is not None and sigma is not None and mean - 3 * sigma < 0.0
 
 
 def _ends_early(

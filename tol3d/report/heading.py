@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 
-from tol3d.report.number import given_text, unit_suffix
+from tol3d.report.number import limit_text
 from tol3d.runs.summary.measure import MeasureSummary, Worse
 from tol3d.runs.summary.run import RunSummary
 
@@ -26,7 +26,7 @@ def limits_text(measure: MeasureSummary) -> str:
     """The limits of a measure, with their unit."""
     unit = measure.unit
     given = [
-        f"{word} limit {given_text(limit, unit)}{unit_suffix(unit)}"
+        f"{word} limit {limit_text(limit, unit)}"
         for word, limit in zip(("lower", "upper"), measure.limits, strict=True)
         if limit is not None
     ]

@@ -8,9 +8,9 @@ from tol3d.report.column import Column, Road, columns_of, contributor_columns, r
 from tol3d.report.number import (
     NOTHING,
     given_text,
+    limit_text,
     percent_cell,
     share_cell,
-    unit_suffix,
     unsigned_zero,
     value_cell,
     value_text,
@@ -107,7 +107,7 @@ def limit_rows(measure: MeasureSummary) -> dict[str, str]:
     """Labels of the rows of shares out of limits, by their keys."""
     unit = measure.unit
     sides = {
-        f"{side}_limit_ppm": f"{side} {given_text(limit, unit)}{unit_suffix(unit)}"
+        f"{side}_limit_ppm": f"{side} {limit_text(limit, unit)}"
         for side, limit in zip(SIDES, measure.limits, strict=True)
         if limit is not None
     }

@@ -52,8 +52,7 @@ def percent_cell(value: float | None, error: float | None = None) -> Shown:
 
 def measured_text(value: float | None, unit: str) -> str:
     """A value with its unit, for sentences: `53.397 µm`."""
-    text = value_text(value, unit)
-    return text if unit == "arcmin" or value is None else f"{text} {UNIT_SIGNS[unit]}"
+    return NOTHING if value is None else with_unit(value_text(value, unit), unit)
 
 
 def short_text(value: float, unit: str) -> str:
@@ -61,12 +60,13 @@ def short_text(value: float, unit: str) -> str:
 
     >>> short_text(53.3966, "um"), short_text(-0.04, "um"), short_text(1.42, "arcmin"), short_text(2.217224, "mm")
     ('53.4 µm', '0.0 µm', '1′25.2″', '2.217 mm')
+    >>> short_text(1.0, "pins"), short_text(1.977, "pins")
+    ('1 pin', '2 pins')
     """
     if unit == "arcmin":
         return measured_text(value, unit)
-    if unit in COUNTED:
-        return f"{unsigned_zero(f'{round(value, 1):g}')} {UNIT_SIGNS[unit]}"
-    return f"{unsigned_zero(f'{value:.3f}' if unit == 'mm' else f'{value:.1f}')} {UNIT_SIGNS[unit]}"
+    text = f"{round(value, 1):g}" if unit in COUNTED else f"{value:.3f}" if unit == "mm" else f"{value:.1f}"
+    return with_unit(unsigned_zero(text), unit)
 
 
 def given_text(value: float | None, unit: str) -> str:
@@ -95,13 +95,24 @@ def difference_text(value: float | None, unit: str) -> str:
     return f"{unsigned_zero(f'{value:.3f}')} {UNIT_SIGNS.get(unit, unit)}"
 
 
-def unit_suffix(unit: str) -> str:
-    """The unit behind a value's text: nothing for an angle, whose text has its signs.
+def limit_text(limit: float, unit: str) -> str:
+    """A limit with its unit: `53 µm`.
 
-    >>> unit_suffix("mm"), unit_suffix("arcmin")
-    (' mm', '')
+    >>> limit_text(53.0, "um"), limit_text(1.42, "arcmin"), limit_text(1.0, "pins"), limit_text(1.5, "pins")
+    ('53 µm', '1′25.2″', '1 pin', '1.5 pins')
     """
-    return "" if unit == "arcmin" else f" {UNIT_SIGNS[unit]}"
+    return with_unit(given_text(limit, unit), unit)
+
+
+def with_unit(text: str, unit: str) -> str:
+    """A value's text with its unit behind: nothing for an angle, whose text has its signs; one is singular.
+
+    >>> with_unit("2.2", "mm"), with_unit("1′25.2″", "arcmin"), with_unit("1", "pins"), with_unit("0", "pins")
+    ('2.2 mm', '1′25.2″', '1 pin', '0 pins')
+    """
+    if unit == "arcmin":
+        return text
+    return f"{text} {unit.removesuffix('s') if unit in COUNTED and text == '1' else UNIT_SIGNS[unit]}"
 
 
 def tip_mm(arcmin: float | None, lever_mm: float | None) -> float | None:

@@ -5,7 +5,7 @@ import re
 from collections.abc import Iterator, Mapping, Sequence
 
 from tol3d.distributions import Distribution
-from tol3d.report.number import NOTHING, UNIT_SIGNS, given_text, measured_text, unit_suffix, unsigned_zero, value_text
+from tol3d.report.number import NOTHING, UNIT_SIGNS, limit_text, measured_text, unsigned_zero, value_text
 from tol3d.report.page import Heading, PageItem, Row, Shown, Table, note, titled, warning
 from tol3d.study.first_order import FirstOrder, FirstOrderEffect, first_orders
 from tol3d.study.simulation import Simulation
@@ -120,7 +120,7 @@ def _limits(measure: Measure) -> str:
     limits = (("≥", measure.lower_limit), ("≤", measure.upper_limit))
     per, unit = measure.per_internal, measure.unit
     given = ((sign, limit * per) for sign, limit in limits if limit is not None)
-    return ", ".join(f"{sign} {given_text(limit, unit)}{unit_suffix(unit)}" for sign, limit in given) or NOTHING
+    return ", ".join(f"{sign} {limit_text(limit, unit)}" for sign, limit in given) or NOTHING
 
 
 def _coefficients(measure: Measure, found: Mapping[str, FirstOrder], headings: Mapping[str, str]) -> list[PageItem]:

@@ -22,9 +22,8 @@ from tol3d.report.measure_table import (
 )
 from tol3d.report.number import (
     difference_text,
-    given_text,
+    limit_text,
     share_text,
-    unit_suffix,
 )
 from tol3d.report.page import BLANK, Line, Page, PageItem, line, note, page, title, warning
 from tol3d.report.presenter import Presenter, presenter_of
@@ -203,7 +202,7 @@ def _curve_notes(measure: MeasureSummary, curve: CurveRoads) -> Iterator[str]:
         yield f"3D mean, sigma, smallest and largest are {seated} at every position"
     for limit, word in zip(measure.limits, SIDES, strict=True):
         if limit is not None:
-            given = given_text(limit, measure.unit) + unit_suffix(measure.unit)
+            given = limit_text(limit, measure.unit)
             yield f"anywhere {word} {given}, of all trials: " + ", ".join(
                 f"{'3D' if road == 'geometric' else road} {share_text(own.value(f'{word}_limit_ppm'))}"
                 for road, own in curve.by_road.items()

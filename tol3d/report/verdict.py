@@ -7,7 +7,7 @@ from typing import Final, Literal
 from tol3d.report.column import columns_of, ranked_contributors, seated_text, shares_of
 from tol3d.report.ends import Ends, is_bounded
 from tol3d.report.joint import yield_lines
-from tol3d.report.number import NOTHING, given_text, share_text, short_text, unit_suffix, unsigned_zero
+from tol3d.report.number import NOTHING, given_text, limit_text, share_text, short_text, unsigned_zero
 from tol3d.report.page import BLANK, Heading, PageItem, Row, Table, note, title
 from tol3d.runs.summary.measure import MeasureSummary
 from tol3d.runs.summary.run import RunSummary
@@ -117,11 +117,10 @@ def _short(value: float | None, unit: str) -> str:
 def _limits(measure: MeasureSummary) -> str:
     unit = measure.unit
     lower, upper = measure.limits
-    suffix = unit_suffix(unit)
     if lower is None or upper is None:
         given = [(sign, limit) for sign, limit in (("≥", lower), ("≤", upper)) if limit is not None]
-        return "".join(f"{sign} {given_text(limit, unit)}{suffix}" for sign, limit in given) or NOTHING
-    return f"{given_text(lower, unit)} to {given_text(upper, unit)}{suffix}"
+        return "".join(f"{sign} {limit_text(limit, unit)}" for sign, limit in given) or NOTHING
+    return f"{given_text(lower, unit)} to {limit_text(upper, unit)}"
 
 
 def _out(judged: JudgedMeasure) -> str:
