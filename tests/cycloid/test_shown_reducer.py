@@ -1,6 +1,7 @@
 """A reducer shown and moved: the output by its ratio, the swing its lost motion, contacts where disc and pin meet."""
 
 import math
+import re
 from pathlib import Path
 
 import numpy as np
@@ -10,6 +11,7 @@ from places import SCENES
 from tol3d import Overrides, load_scene, run_scene
 from tol3d.cycloid.from_scene import rv_system
 from tol3d.cycloid.presenting import PRESENTER
+from tol3d.cycloid.presenting.motions import touching_words
 from tol3d.cycloid.presenting.shown_reducer import RVDisplay
 from tol3d.cycloid.rv_deviated import RVDeviated
 from tol3d.cycloid.shown import ShownReducer, carrier_angles, swung, turned
@@ -59,6 +61,17 @@ def test_the_swing_is_the_lost_motion_of_the_trial(trial: ShownReducer, system: 
     assert math.radians(angles[-1]) == pytest.approx(lost, abs=1e-12)
     assert angles == pytest.approx([share * angles[-1] for share in (0, 0.25, 0.5, 0.75, 1)], abs=1e-12)
     assert [state.touching is None for state in swung(trial, 5)] == [False, True, True, True, False]
+
+
+def test_between_its_ends_a_tight_swing_has_lobes_and_pins_overlap_and_a_free_one_touches_nothing(
+    trial: ShownReducer,
+) -> None:
+    """Less than no lost motion: pins on both sides would have to give way."""
+    between = swung(trial, 3)[1]
+    assert touching_words(between, -1e-3) == "lobes and pins overlap"
+    assert touching_words(between, 1e-3) == "no pin touches"
+    ends = {touching_words(swung(trial, 2)[k], -1e-3) for k in (0, 1)}
+    assert all(re.fullmatch(r"disc [12] touches pin \d+", end) for end in ends)
 
 
 def test_the_contact_lies_on_the_profile_of_the_disc_that_touches(trial: ShownReducer) -> None:

@@ -37,9 +37,26 @@ def cube(name: str, side: float, middle: tuple[float, float, float]) -> Body:
 def test_a_body_within_another_is_seen_nowhere_not_even_at_an_edge() -> None:
     """Bodies are found by the colours of their numbers: half of the second's at an edge would be the first's."""
     middle = (3.0, 4.0, 5.0)
-    _, anchors = _best_eye(World("nested", (cube("inner", 2.0, middle), cube("outer", 20.0, middle))), 1.0)
-    assert anchors["inner"] == pytest.approx([3.0, 4.0, 5.0])
-    assert np.abs(anchors["outer"] - [3.0, 4.0, 5.0]).max() == pytest.approx(10.0, abs=0.1)  # mm, a pixel
+    _, named = _best_eye(World("nested", (cube("inner", 2.0, middle), cube("outer", 20.0, middle))), 1.0)
+    assert named["inner"].point == pytest.approx([3.0, 4.0, 5.0])
+    assert np.abs(named["outer"].point - [3.0, 4.0, 5.0]).max() == pytest.approx(10.0, abs=0.1)  # mm, a pixel
+    assert [name for name, own in named.items() if own.hidden] == ["inner"]
+
+
+@renders
+def test_the_label_of_a_hidden_body_says_so_and_no_dot_is_set_on_what_hides_it() -> None:
+    plotter = pv.Plotter(off_screen=True, window_size=list(SIZE))
+    try:
+        bodies = (cube("inner", 2.0, (0.0, 0.0, 0.0)), cube("outer", 20.0, (0.0, 0.0, 0.0)))
+        draw_whole(plotter, World("nested", bodies), SIZE[0] / SIZE[1])
+        actors = list(plotter.renderer.actors.values())
+        texts = {actor.input.strip() for actor in actors if isinstance(actor, pv.Text)}
+        meshes = [actor.mapper.dataset for actor in actors if isinstance(actor, pv.Actor)]
+        dots = [mesh for mesh in meshes if np.ptp(mesh.bounds[:2]) < 1.0 and mesh.n_cells > 100]
+    finally:
+        plotter.close()
+    assert texts == {"inner (hidden)", "outer"}
+    assert len(dots) == 1
 
 
 @renders
@@ -47,8 +64,8 @@ def test_a_body_within_another_is_seen_nowhere_not_even_at_an_edge() -> None:
 def test_what_is_within_a_clear_body_is_seen(is_clear: bool) -> None:
     """The label of the inner cube points at its middle where nothing is seen of it, else at its surface."""
     outer = replace(cube("outer", 20.0, (3.0, 4.0, 5.0)), opacity=0.3 if is_clear else 1.0)
-    _, anchors = _best_eye(World("nested", (cube("inner", 4.0, (3.0, 4.0, 5.0)), outer)), 1.0)
-    off = {name: float(np.abs(place - (3.0, 4.0, 5.0)).max()) for name, place in anchors.items()}
+    _, named = _best_eye(World("nested", (cube("inner", 4.0, (3.0, 4.0, 5.0)), outer)), 1.0)
+    off = {name: float(np.abs(own.point - (3.0, 4.0, 5.0)).max()) for name, own in named.items()}
     assert off["inner"] == pytest.approx(2.0 if is_clear else 0.0, abs=0.1)  # mm, a pixel
     assert off["outer"] == pytest.approx(10.0, abs=0.1)
 

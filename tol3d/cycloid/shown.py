@@ -14,6 +14,7 @@ from tol3d.cycloid.rv_deviated import RVDeviated
 from tol3d.cycloid.rv_set import RVSet
 from tol3d.cycloid.stage_places import StagePlaces
 from tol3d.cycloid.stage_shapes import StageShapes, usual_shapes
+from tol3d.cycloid.turning import led_angles, output_turns
 from tol3d.errors import InputError
 
 Array = NDArray[np.float64]
@@ -100,15 +101,18 @@ class ShownReducer:
         """
         own, turns = self.own, (self.turns + beyond)[None]
         beta, _ = crank_turns(own, self.deviated, turns, sense, placed_mesh)
-        phis = own.crank_angles(turns) + beta * (own.profile.lobes / own.crank_arm)
         stage = held_stage(own, self.deviated)
-        found = own.contact.touches(stage, phis, (float(sense),))
+        found = own.contact.touches(stage, led_angles(own, turns, beta), (float(sense),))
         if (found.places < 0).any():
             raise InputError("no pin touches the discs of this build; choose another trial")
+        rolled = found.turns[..., 0]
+        phis = own.crank_angles(turns) + own.profile.lobes * (
+            rolled - output_turns(own, self.deviated, turns, sense, rolled, beta)
+        )
         pins = own.profile.pins
         return tuple(
             SeatedReducer(StagePlaces(own.contact, stage, float(phi), float(turn)), divmod(int(place), pins))
-            for phi, turn, place in zip(phis[0], found.turns[0, :, 0], found.places[0, :, 0], strict=True)
+            for phi, turn, place in zip(phis[0], rolled[0], found.places[0, :, 0], strict=True)
         )
 
 

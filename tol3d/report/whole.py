@@ -7,7 +7,7 @@ its own: adjustText overlaps dense labels, and both it and textalloc put them ov
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Final
+from typing import Final, NamedTuple
 
 import numpy as np
 import pyvista as pv
@@ -45,6 +45,7 @@ MARK_SHARE: Final = 1 / 120  # the same at what is no part: a tip, a contact
 PROBE_HEIGHT: Final = 480  # pixels of the pictures that are only asked what is seen in them
 LARGE_COUNTS: Final = 1 / 4  # power; of two corners from which as much is seen, the one with the larger picture
 ALIKE: Final = 0.98  # of the best corner's score: near enough to it, so that trials of a run are seen from one corner
+HIDDEN: Final = " (hidden)"  # behind the name of what others hide
 PEELS: Final = 12  # faces one behind the other that are seen through
 INSIDE_SHARE: Final = 0.6  # of the largest distance to the edge of what is seen of a body: what a label may point at
 
@@ -87,12 +88,20 @@ class Frame:
 
 @dataclass(frozen=True, eq=False)
 class Label:
-    """A text, its colours, and the point (3,) [mm] that it names."""
+    """A text, its colours, the point (3,) [mm] that it names, and whether others hide all of that in a picture."""
 
     text: str
     colour: str
     ink: str
     point: Array
+    hidden: bool = False
+
+
+class Named(NamedTuple):
+    """A point of a body (3,) [mm] that is seen, or its middle where it is hidden."""
+
+    point: Array
+    hidden: bool
 
 
 @dataclass(frozen=True, eq=False)
@@ -121,9 +130,9 @@ def draw_whole(
     if any(body.opacity < 1.0 for body in world.bodies):  # else faces hide each other in the order of drawing
         plotter.renderer.SetUseDepthPeeling(True)
         plotter.renderer.SetMaximumNumberOfPeels(PEELS)
-    eye, anchors = _best_eye(world, width_by_height)
+    eye, named = _best_eye(world, width_by_height)
     frame = _frame(world, eye, width_by_height)
-    labels = [Label(body.name, body.colour, EDGE_COLOUR, anchors[body.name]) for body in world.bodies]
+    labels = [Label(own.name, own.colour, EDGE_COLOUR, *named[own.name]) for own in world.bodies]
     labels += [Label(name, CONTACT_COLOUR, "white", point) for name, point in {**world.points, **marks}.items()]
     for name, shown in world.arrows.items():
         length = ARROW_SHARE * frame.height
@@ -159,8 +168,8 @@ def _frame(world: World, eye: Eye, width_by_height: float) -> Frame:
     return Frame.around(eye.seen(np.concatenate([body.mesh[0] for body in world.bodies])), width_by_height)
 
 
-def _best_eye(world: World, width_by_height: float) -> tuple[Eye, Mapping[str, Array]]:
-    """Of the four corners the one from which most is seen of the bodies, and a point to be seen of each body."""
+def _best_eye(world: World, width_by_height: float) -> tuple[Eye, Mapping[str, Named]]:
+    """Of the four corners the one from which most is seen of the bodies, and what of each body is named from there."""
     plotter = pv.Plotter(off_screen=True, window_size=[round(PROBE_HEIGHT * width_by_height), PROBE_HEIGHT])
     plotter.renderer.set_background("black")
     plotter.disable_anti_aliasing()  # a pixel between two bodies would have the number of a third
@@ -177,7 +186,7 @@ def _best_eye(world: World, width_by_height: float) -> tuple[Eye, Mapping[str, A
     finally:
         plotter.close()
     best = max(score for _, score, _ in found)
-    return next((eye, anchors) for eye, score, anchors in found if score >= ALIKE * best)
+    return next((eye, named) for eye, score, named in found if score >= ALIKE * best)
 
 
 def _corners(up: Array) -> Iterator[Eye]:
@@ -194,8 +203,8 @@ def _corners(up: Array) -> Iterator[Eye]:
         yield Eye(np.stack([right, np.cross(eye, right), eye]))
 
 
-def _seen(plotter: pv.Plotter, world: World, clear: Mapping[int, pv.Actor]) -> tuple[float, Mapping[str, Array]]:
-    """How much is seen of the bodies, each counting, and how large; and a point to be seen of each.
+def _seen(plotter: pv.Plotter, world: World, clear: Mapping[int, pv.Actor]) -> tuple[float, Mapping[str, Named]]:
+    """How much is seen of the bodies, each counting, and how large; and what of each is named.
 
     Args:
         plotter: as it looks at the bodies, each in a colour that is its number in the world, from 1 on.
@@ -203,7 +212,7 @@ def _seen(plotter: pv.Plotter, world: World, clear: Mapping[int, pv.Actor]) -> t
         clear: those that hide nothing, by their numbers.
     """
     pixel = 2 * plotter.camera.parallel_scale / PROBE_HEIGHT  # mm
-    score, anchors = 0.0, {}
+    score, named = 0.0, {}
     for are_clear in (False, True) if clear else (False,):
         for actor in clear.values():
             actor.visibility = are_clear
@@ -216,13 +225,13 @@ def _seen(plotter: pv.Plotter, world: World, clear: Mapping[int, pv.Actor]) -> t
                 continue
             shown = numbers == number
             if not shown.any():
-                anchors[body.name] = body.mesh[0].mean(axis=0)
+                named[body.name] = Named(body.mesh[0].mean(axis=0), hidden=True)
                 continue
             score += math.sqrt(shown.sum() * pixel**2 / poly_data(*body.mesh).area)
             x, y = _clear_place(shown)
             picker.Pick(x, y, 0.0, plotter.renderer)
-            anchors[body.name] = np.array(picker.GetPickPosition())
-    return score / pixel**LARGE_COUNTS, anchors
+            named[body.name] = Named(np.array(picker.GetPickPosition()), hidden=False)
+    return score / pixel**LARGE_COUNTS, named
 
 
 def _clear_place(shown: NDArray[np.bool_]) -> tuple[int, int]:
@@ -262,14 +271,15 @@ def _places(points: Array, edge: float, frame: Frame) -> Array:
 
 
 def _add_line(plotter: pv.Plotter, picture: Whole, label: Label, place: Array) -> None:
-    """A line from a label to what it names, in front of everything: one looks along parallels."""
+    """A line from label to what it names, in front of everything (one looks along parallels); a dot on what is seen."""
     eye, frame = picture.eye, picture.frame
     ends = (place, eye.seen(label.point)[:2])
     begin, end = (eye.world(np.array([*point, frame.front])) for point in ends)
     part = label.ink == EDGE_COLOUR
     colour, radius = (EDGE_COLOUR, DOT_SHARE) if part else (label.colour, MARK_SHARE)
     plotter.add_mesh(pv.Line(begin, end), color=colour, line_width=1.5, lighting=False)
-    plotter.add_mesh(pv.Sphere(radius=radius * frame.height, center=end), color=colour, lighting=False)
+    if not label.hidden:
+        plotter.add_mesh(pv.Sphere(radius=radius * frame.height, center=end), color=colour, lighting=False)
 
 
 def _add_text(plotter: pv.Plotter, label: Label, frame: Frame, place: Array, size: int) -> None:
@@ -280,7 +290,7 @@ def _add_text(plotter: pv.Plotter, label: Label, frame: Frame, place: Array, siz
     actor.prop.justification_horizontal, actor.prop.justification_vertical = "right" if x < 0.5 else "left", "center"
     actor.prop.background_color, actor.prop.background_opacity = label.colour, 1.0
     for letters in range(len(label.text), 0, -1):
-        actor.input = f" {legible(label.text, letters)} "
+        actor.input = f" {legible(label.text, letters)}{HIDDEN if label.hidden else ''} "
         actor.GetSize(plotter.renderer, extent := [0.0, 0.0])
         if extent[0] <= room:
             break

@@ -45,16 +45,22 @@ def _frames(shown: ShownReducer, states: Sequence[SeatedReducer], name: str) -> 
         parts = shown.shapes.placed(state.places)
         poses = {part.name: part.world_from_part for part in parts if part.name not in still}
         marks: tuple[Mark, ...] = ()
-        touched = "no pin touches"
         if state.touching is not None and state.contact is not None:
-            disc, pin = state.touching
-            marks = (Mark(TOUCHES, np.array([*state.contact, 0.0]), (f"disc {disc + 1}",)),)
-            touched = f"disc {disc + 1} touches pin {pin + 1}"
+            marks = (Mark(TOUCHES, np.array([*state.contact, 0.0]), (f"disc {state.touching[0] + 1}",)),)
+        touched = touching_words(state, angle)
         if name == TURN:
             cranks = math.degrees(state.places.phi - states[0].places.phi)
             yield Frame(f"cranks {cranks:.1f}°, {shown.own.carrier} {angle:.3f}°, {touched}", poses, marks)
         else:
             yield Frame(f"input held, {shown.own.carrier} {3600 * angle:.2f} arcsec, {touched}", poses, marks)
+
+
+def touching_words(state: SeatedReducer, angle: float) -> str:
+    """What touches; between the ends of a swing nothing does, or both sides overlap where it goes back (below 0)."""
+    if state.touching is not None:
+        disc, pin = state.touching
+        return f"disc {disc + 1} touches pin {pin + 1}"
+    return "lobes and pins overlap" if angle < 0.0 else "no pin touches"
 
 
 def _shots(shown: ShownReducer, world: World, states: Sequence[SeatedReducer]) -> Iterator[Shot]:
