@@ -10,6 +10,8 @@ from oracles.playing_reducer import PlayingReducer
 from places import SCENES
 
 from tol3d import SceneError, load_scene
+from tol3d.cycloid.resting import exact_turning
+from tol3d.cycloid.rv_trials import RVTrials
 from tol3d.study.columns import columns_of
 from tol3d.study.draws import drawn
 from tol3d.study.overrides import simulation_of
@@ -148,3 +150,16 @@ def test_cranks_that_do_not_fit_are_failed_and_counted_as_that(tmp_path: Path) -
         assert set(status) == {0, failed}
         assert 100 < (status == failed).sum() < 200
         np.testing.assert_array_equal(np.isnan(answers.values[name][:, 0]), status == failed)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("sense", [1, -1])
+def test_no_build_is_lost_where_cranks_stand_at_round_angles(tmp_path: Path, sense: int) -> None:
+    """Rows of throws along the axes then nearly depend on each other; idle bodies go to and fro for long."""
+    made, turns = simulated(tmp_path, TEXT), np.tile(np.arange(8) / 8, (1000, 1))
+    own = made.system
+    assert isinstance(own, RVTrials)
+    found = exact_turning(own.own).turned(own.deviated(drawn(made, 0, 1000)), turns, sense)
+    assert found.codes is not None
+    assert (found.codes == 0).all()
+    assert np.isfinite(found.turns).all()

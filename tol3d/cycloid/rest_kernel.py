@@ -22,8 +22,10 @@ from tol3d.numerics.programme import NO_ROOM, OK, STALLED, farthest
 NOT_HELD: Final = 3
 """A body leaves by the end of the room that it is given: nothing stops it."""
 MET: Final = 1e-10  # mm
+NEARLY_MET: Final = 1e-8  # mm; in the last steps, where idle bodies still go to and fro and the carrier stands
 STILL: Final = 5e-11  # mm at the arm, of the carrier's turn
 MOST_STEPS: Final = 150
+LAST: Final = 100  # steps before
 WILD: Final = 8  # steps in which bodies may go anywhere in their room; then
 NEAR: Final = 100.0  # times the deepest overlap or the last turn, so that idle bodies do not go to and fro
 CUTS: Final = 40  # tangents a bearing
@@ -151,7 +153,8 @@ def rested(
                 both = lower[own : own + 2], upper[own : own + 2]
                 mesh_written(stage, meshes, z, b - cranks * discs, (x_b, y_b), across, rows[own : own + 2], both)
         held = step < 1 or not boxed(count, basis, solving[3])
-        if step > 0 and deepest < MET and abs(x[0]) < STILL and (held or near >= ROOM):
+        met = deepest < (MET if step < LAST else NEARLY_MET)
+        if step > 0 and met and abs(x[0]) < STILL and (held or near >= ROOM):
             return OK if held else NOT_HELD, z[0] / ARM
         more = max(NEAR, more / 4.0) if held else 4.0 * more
         near = 2.0 * ROOM if step < WILD else min(more * (max(deepest, abs(x[0])) + MET), 2.0 * ROOM)

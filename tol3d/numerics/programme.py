@@ -27,7 +27,7 @@ KEPT: Final = 1e-12  # mm; a row is kept that is exceeded by less: rounding of 5
 SMALLEST_PIVOT: Final = 1e-9  # of rows in mm a turn, whose entries are some mm
 TIED: Final = 1e-12  # rad/mm; a multiplier of less is none: rounding of 1 rad over 10 mm is 1e-17
 MOST_PIVOTS: Final = 400
-PATIENT: Final = 60  # pivots until the first row that is not kept enters instead of the worst
+PATIENT: Final = 60  # pivots until rows enter and leave by their number: neither the worst nor the largest pivot
 
 
 @part
@@ -90,15 +90,23 @@ def entering(rows: Any, lower: Any, upper: Any, x: Any, first: bool) -> tuple[in
 
 
 @part
-def leaving(basis: Any, sides: Any, loads: Any, shares: Any, sense: float) -> int:
-    """The place in the basis that becomes free: the first whose multiplier would change its sign; -1 for none."""
-    found, least = -1, np.inf
+def leaving(basis: Any, sides: Any, loads: Any, shares: Any, sense: float, first: bool) -> int:
+    """The place in the basis that becomes free; -1 for none.
+
+    That is one whose multiplier would change its sign first. Of those that would at once, to rounding, it is the one
+    with the largest pivot (Harris 1973), or the first row: a pivot of rounding's own size spoils the inverse.
+    """
+    least = np.inf
     for j in range(basis.shape[0]):
         rate = sides[j] * sense * shares[j]
         if rate > SMALLEST_PIVOT:
-            ratio = max(0.0, sides[j] * loads[j]) / rate
-            if ratio < least or (ratio == least and basis[j] < basis[found]):
-                found, least = j, ratio
+            least = min(least, (max(0.0, sides[j] * loads[j]) + (0.0 if first else TIED)) / rate)
+    found, largest = -1, 0.0
+    for j in range(basis.shape[0]):
+        rate = sides[j] * sense * shares[j]
+        at_once = rate > SMALLEST_PIVOT and max(0.0, sides[j] * loads[j]) / rate <= least
+        if at_once and (found < 0 or (basis[j] < basis[found] if first else rate > largest)):
+            found, largest = j, rate
     return found
 
 
@@ -132,7 +140,8 @@ def farthest(
             sides[j] = 1.0 if loads[j] > 0.0 else -1.0
     for pivot in range(MOST_PIVOTS):
         met(lower, upper, basis, inverse, sides, x)
-        row, beyond = entering(rows, lower, upper, x, pivot > PATIENT)
+        by_number = pivot > PATIENT
+        row, beyond = entering(rows, lower, upper, x, by_number)
         if row < 0:
             return OK, -1, 0.0
         side = 1.0 if beyond > 0.0 else -1.0
@@ -142,7 +151,7 @@ def farthest(
             for i in range(count):
                 shares[j] += rows[row, i] * inverse[i, j]
             together += abs(shares[j])
-        place = leaving(basis, sides, loads, shares, side)
+        place = leaving(basis, sides, loads, shares, side, by_number)
         if place < 0:
             return NO_ROOM, row, abs(beyond) / together
         step = 1.0 / shares[place]
