@@ -41,6 +41,25 @@ def test_rotated_flanks_touch_where_a_dense_search_finds_them() -> None:
     assert (found.places[0, 0, 1], abs(found.turns[0, 0, 1] - turn) < 1e-10) == (place, True)
 
 
+@pytest.mark.parametrize("phase", [0.08, 0.12])
+@pytest.mark.parametrize("outwards", [0.01, 0.06])
+def test_a_pin_that_no_turn_reaches_changes_nothing(phase: float, outwards: float) -> None:
+    """Near a root, where the flank bends: others stop the disc within 0.1 um, while this one has a gap of 10 um or more."""
+    made, phis = perfect(1, 1), np.array([[phase]])
+    made.pins[0, 0, 0] += outwards
+    found, without = (first_contact(contact_shape(PROFILE, least, 0.0), made, phis, (-1.0,)) for least in (0.01, 0.7))
+    assert (found.turns[0, 0, 0], found.places[0, 0, 0]) == (without.turns[0, 0, 0], without.places[0, 0, 0])
+    assert abs(found.turns[0, 0, 0]) * PROFILE.pitch_radius < 1e-4  # mm
+
+
+def test_a_pin_that_no_turn_clears_leaves_no_contact() -> None:
+    """At a root, a fiftieth of the longest lever, it lies 20 um inwards, where the modification leaves 7.2 um."""
+    made = perfect(1, 1)
+    made.pins[0, 0, 0] -= 0.02
+    found = first_contact(contact_shape(PROFILE, 0.01, 0.0), made, np.array([[0.005]]), (-1.0,))
+    assert (np.isnan(found.turns[0, 0, 0]), found.places[0, 0, 0]) == (True, -1)
+
+
 def test_contact_after_many_turns_is_that_of_the_first() -> None:
     """A sun of 41 and planets of 47 teeth stand as before after 41 turns of the output, crank angles of 10 000 rad."""
     made, phis, shape = erring(2, 2, 0.002, seed=3), around(2, 50), contact_shape(PROFILE, WINDOW, 1 + 41 / 47)

@@ -10,6 +10,7 @@ from typing import Any, Final
 
 import numpy as np
 
+from tol3d.cycloid.contact_gap import standing_gap
 from tol3d.cycloid.contact_newton import TURN, ContactShape, lobe_at, lobe_turn, placed, touched
 from tol3d.numerics.compiled import kernel, part
 
@@ -167,30 +168,65 @@ def exact(
 
 
 @part
+def clear(
+    shape: Any, linkage: Any, throws: Any, flanks: Any, pins: Any, around: Any, phi: float, place: int, turn: float,
+    leans: Any,
+) -> bool:  # fmt: skip
+    """Whether a pin has a gap where the carrier stands, of a leaning disc at both faces and between."""
+    lobe_pitch, lobe_profile = flanks
+    places, radii = pins
+    disc, j = place // around.shape[0], place % around.shape[0]
+    u = TURN * j / shape.pins + (phi + throws[disc]) / shape.lobes
+    pin = (places[j, 0], places[j, 1], radii[j])
+    own = (lobe_pitch[disc], lobe_profile[disc])
+    x, y, high = leans[disc, 0], leans[disc, 1], leans[disc, 2]
+    for height in (-high, 0.0, high):
+        clock = -throws[disc] / shape.lobes
+        if not standing_gap(shape, linkage[disc], clock, own, pin, phi, u, turn, (x, y, height)) > 0.0:
+            return False
+    return True
+
+
+@part
 def first_of(
     shape: Any, linkage: Any, throws: Any, flanks: Any, pins: Any, around: Any, phi: float, sense: float, screen: Any,
     leans: Any,
 ) -> tuple[float, int]:  # fmt: skip
-    """The first contact in a sense: the carrier's turn and the pin's place; NaN where Newton's method finds none."""
+    """The first contact in a sense: the carrier's turn and the pin's place; NaN where there is none, or none is known.
+
+    Pins of which Newton's method finds no turn are in the way unless they are clear where the others stop the discs.
+    """
     firsts, slacks = screen
     best = np.inf
-    at = NO_PIN
+    begun = NO_PIN
     for place in range(firsts.shape[0]):
         if firsts[place] < best:
-            best, at = firsts[place], place
-    if at == NO_PIN:
+            best, begun = firsts[place], place
+    if begun == NO_PIN:
         return np.nan, NO_PIN
-    begun = at
-    turn, found = exact(shape, linkage, throws, flanks, pins, around, phi, at, 0.0, leans)
+    turn, found = exact(shape, linkage, throws, flanks, pins, around, phi, begun, 0.0, leans)
+    at, missed = begun, 0
     if not found:
-        return np.nan, NO_PIN
+        turn, at, missed = sense * np.inf, NO_PIN, 1
     for place in range(firsts.shape[0]):
         if firsts[place] < np.inf and place != begun and firsts[place] - slacks[place] < sense * turn:
             other, found = exact(shape, linkage, throws, flanks, pins, around, phi, place, 0.0, leans)
             if not found:
-                return np.nan, NO_PIN
-            if sense * other < sense * turn:
+                missed += 1
+            elif sense * other < sense * turn:
                 turn, at = other, place
+    if at == NO_PIN:
+        return np.nan, NO_PIN
+    if missed > 0:
+        for place in range(firsts.shape[0]):
+            if place == at or not (firsts[place] < np.inf and firsts[place] - slacks[place] < sense * turn):
+                continue
+            _, found = exact(shape, linkage, throws, flanks, pins, around, phi, place, 0.0, leans)
+            if not found and not (
+                firsts[place] > sense * turn
+                and clear(shape, linkage, throws, flanks, pins, around, phi, place, turn, leans)
+            ):
+                return np.nan, NO_PIN
     return turn, at
 
 
