@@ -44,7 +44,7 @@ def test_rotated_flanks_touch_where_a_dense_search_finds_them() -> None:
 @pytest.mark.parametrize("phase", [0.08, 0.12])
 @pytest.mark.parametrize("outwards", [0.01, 0.06])
 def test_a_pin_that_no_turn_reaches_changes_nothing(phase: float, outwards: float) -> None:
-    """Near a root, where the flank bends: others stop the disc within 0.1 um, while this one has a gap of 10 um or more."""
+    """Near a root, where the flank bends: others stop the disc within 0.1 um, while this one has a gap of 10 um."""
     made, phis = perfect(1, 1), np.array([[phase]])
     made.pins[0, 0, 0] += outwards
     found, without = (first_contact(contact_shape(PROFILE, least, 0.0), made, phis, (-1.0,)) for least in (0.01, 0.7))
