@@ -5,9 +5,14 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
 from tol3d import Overrides, Scene, run_scene
+from tol3d.study.first_order import first_order
+from tol3d.study.high_low_mean import high_low_mean_percents
+from tol3d.study.overrides import simulation_of
+from tol3d.system.stated import mean_deviations
 
 ALPHA = math.radians(20)
 SIN, COS = math.sin(ALPHA), math.cos(ALPHA)
@@ -92,3 +97,20 @@ def test_a_build_that_does_not_seat_leaves_the_shares_open(tmp_path: Path) -> No
     run = run_scene(made(tight), overrides=Overrides(trials=4), out=tmp_path / "run")
     (share,) = run.summary["measures"]["play"]["contributors"]
     assert share["high_low_mean_percent"] is None
+
+
+@pytest.mark.parametrize("mean_seats", [False, True])
+def test_no_build_is_asked_for_at_ends_that_are_not_known(mean_seats: bool) -> None:
+    """Where builds do not seat, neither the steepest direction nor slopes are numbers, and no share is known."""
+    system = simulation_of(made({**THIN, **PAPERLIKE}), Overrides(trials=4)).system
+    (measure,) = system.measures
+    mean = mean_deviations(system, measure.positions)
+
+    def values(rows: np.ndarray) -> np.ndarray:
+        assert np.isfinite(rows).all()
+        return np.where((rows == mean).all(axis=1) & mean_seats, 0.0, np.nan)
+
+    assert set(high_low_mean_percents(system, measure, values).values()) == {None}
+    found = first_order(system, measure, values)
+    assert math.isnan(found.mean) is not mean_seats
+    assert np.isnan(found.ends).all()

@@ -126,7 +126,10 @@ def first_order(system: System, measure: Measure, values: Values) -> FirstOrder:
     for name, own_ends in ends.items():
         low[:, slices[name]], high[:, slices[name]] = own_ends
     effects = [_effect(own, slopes[own.name], ends[own.name], turning=turning[own.name]) for own in acting]
-    found = values(np.concatenate([nominal, mean, low, high]))
+    rows = np.concatenate([nominal, mean, low, high])
+    known = np.isfinite(rows).all(axis=1)  # ends are not where a slope is not
+    found = np.full(len(rows), np.nan)
+    found[known] = values(rows[known])
     return FirstOrder(float(found[0]), float(found[1]), tuple(effects), (float(found[2]), float(found[3])))
 
 

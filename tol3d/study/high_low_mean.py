@@ -30,6 +30,9 @@ def high_low_mean_percents(system: System, measure: Measure, values: Values) -> 
     """
     mean = mean_deviations(system, measure.positions)
     middle = values(mean)[0]
+    named = [contributor.name for contributor in system.contributors]
+    if math.isnan(middle):
+        return dict.fromkeys(named, None)
     ranges = {}
     for contributor, columns in zip(system.contributors, component_slices(system).values(), strict=True):
 
@@ -39,7 +42,10 @@ def high_low_mean_percents(system: System, measure: Measure, values: Values) -> 
             return values(rows)
 
         turning = system.turns_at_random(contributor, measure.positions)
-        found = [middle, *states(contributor.draw.ends(states, turning=turning))]
+        ends = contributor.draw.ends(states, turning=turning)
+        if not np.isfinite(ends).all():  # which way it acts is not known where a build beside the mean does not seat
+            return dict.fromkeys(named, None)
+        found = [middle, *states(ends)]
         ranges[contributor.name] = float(np.max(found) - np.min(found))
     total = sum(own**2 for own in ranges.values())
     if math.isnan(total):
