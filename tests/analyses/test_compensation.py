@@ -373,6 +373,7 @@ def compensate(tol3d: Command) -> Command:
     return command
 
 
+@pytest.mark.slow
 def test_the_command_prints_the_tables_and_draws_the_picture(compensate: Command, tmp_path: Path) -> None:
     picture = tmp_path / "compensation.png"
     arguments = ("--trials", "30", "--positions", "4", "--train", "shoulder swing", "--out", str(picture))

@@ -19,6 +19,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from of_kind import known
 from places import SCENES
+from thinned import thinned
 
 from tol3d import Overrides, Scene, load_scene, run_scene
 from tol3d.analyses import Pieces, ShimPlan, ShimQuestion, Step, Stock, shim_plan, stock_of
@@ -110,6 +111,7 @@ def test_the_paper_shim_takes_46_um_of_the_low() -> None:
     assert own.before.minimum == pytest.approx(70.0 * UM, abs=1.1 * UM)
 
 
+@pytest.mark.slow
 def test_by_formula_is_the_excess_over_the_papers_factor() -> None:
     own = plan()
     assert own.by_formula.thickness == pytest.approx((own.before.minimum - 24 * UM) / PAPERS, abs=1e-9)
@@ -153,6 +155,7 @@ def test_the_minimum_falls_as_shims_grow() -> None:
     assert len({round(low, 6) for low in lows}) == len(lows)
 
 
+@pytest.mark.slow
 def test_shims_that_are_there_are_found_again() -> None:
     """The same trials, from 48 um on instead of from none: the same thickness."""
     new, there = plan(), plan(SHIMMED)
@@ -189,6 +192,7 @@ def test_other_cones_take_2_sin_alpha_sin_delta_each(tmp_path: Path, gears: tupl
     )
 
 
+@pytest.mark.slow
 def test_one_shim_alone_takes_about_half() -> None:
     one = plan(shims=("driver",))
     assert list(one.tolerances) == ["driver shim"]
@@ -198,6 +202,7 @@ def test_one_shim_alone_takes_about_half() -> None:
     assert taken / known(one.by_geometry.thickness) == pytest.approx(0.4358, rel=0.005)
 
 
+@pytest.mark.slow
 def test_shims_that_open_are_rounded_up() -> None:
     asked = ShimQuestion(100 * UM, measure="normal backlash", shims=("wheel shim",))
     own = shim_plan(load_scene(Path(EVERY)), asked, Overrides(engine="exact"))
@@ -339,7 +344,7 @@ def test_the_command_prints_lines_that_make_the_scene_it_writes(shim_command: Co
     )
 
 
-@pytest.mark.parametrize(("rounding", "taken"), [("down", "0.04 mm"), ("nearest", "0.05 mm")])
+@pytest.mark.parametrize(("rounding", "taken"), thinned([("down", "0.04 mm"), ("nearest", "0.05 mm")], 2))
 def test_a_thickness_is_rounded_as_it_was_asked(shim_command: Command, rounding: str, taken: str) -> None:
     """48.3 um by the geometry, 48.2 by the formula: of steps of 10 um 40 lie below them, and 50 nearest."""
     code, out, _ = shim_command(BEVEL, "--target-min", "24 um", "--stock", "0.01 mm", "--round", rounding)

@@ -204,6 +204,7 @@ def test_a_process_is_judged_with_the_bonus_and_not_changed_by_it(tmp_path: Path
         assert words in runs[modifier].summary["warnings"]
 
 
+@pytest.mark.slow
 def test_workers_replays_and_the_order_of_entries_change_no_bit(tmp_path: Path) -> None:
     """The position is written before the size that it reads; where it is written after, its draws are the same."""
     text = zoned(square="mmc")

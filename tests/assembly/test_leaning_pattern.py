@@ -282,6 +282,7 @@ def test_a_random_float_stays_in_its_room(tmp_path: Path, seed: int) -> None:
     assert (inside[built] > -1e-9).all()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", SEEDS)
 def test_a_push_goes_as_far_as_the_room_does(tmp_path: Path, seed: int) -> None:
     """As a float and as the largest value over the play.

@@ -215,6 +215,7 @@ def test_a_program_runs_only_with_leave(tmp_path: Path, tol3d: Command) -> None:
     assert (tmp_path / "ran").exists()
 
 
+@pytest.mark.slow
 def test_a_run_keeps_what_a_program_built_and_never_runs_it(tmp_path: Path) -> None:
     path = own_scene(tmp_path, f"open({str(tmp_path / 'ran')!r}, 'w')\n{PROGRAM}")
     run = run_scene(path, overrides=Overrides(trials=300), out=tmp_path / "run", run_builders=True)

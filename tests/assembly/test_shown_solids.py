@@ -204,6 +204,7 @@ def test_marks_are_closed_and_as_large_as_stated(shape: Axis | Plane | RoundPlan
     assert mesh.volume == pytest.approx(volume, rel=1e-9)
 
 
+@pytest.mark.slow
 @renders
 def test_a_picture_is_written(run: Run, tmp_path: Path) -> None:
     notes = view_run(run, 1, screenshot=tmp_path / "turned.png", magnify=5.0)

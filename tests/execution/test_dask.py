@@ -131,6 +131,7 @@ def test_two_dask_workers_give_the_bits_of_one_process(address: str, tmp_path: P
     assert statistics.summary["measures"] == alone.summary["measures"]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("engine", "blocks"), [("exact", 6), pytest.param("chords", 1, marks=pytest.mark.slow)]
 )  # whose pieces are a trial or two each

@@ -48,6 +48,7 @@ def exact_of(model: Model, block: Trials, angle: np.ndarray) -> np.ndarray:
     return exact_eccentric.normal_backlash(pinion, wheel, thickness, axis, centres, angle, mesh.working_flank)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("flank", [RIGHT, LEFT], ids=["right", "left"])
 def test_mean_error_of_the_strips_falls_with_the_square_of_the_step(
     flank: Flank, paper_model: Model, engine_of: EngineOf

@@ -145,6 +145,7 @@ def test_a_thousand_poses_agree_with_a_search_of_the_surfaces(
         check_against_search(random_builds(PAIRS[name], flank, 8, 40, spread=spread, thinner=THINNER), own)
 
 
+@pytest.mark.slow
 def test_the_search_and_the_brute_force_find_the_same_distances() -> None:
     builds = random_builds(PAIRS["17 to 43"], LEFT, 3, 5, spread=SPREADS["usual"], thinner=THINNER)
     driven = builds.mesh.pair.driven_angle(builds.driver_angle)

@@ -389,6 +389,7 @@ def test_on_a_carrier_play_follows_the_angle_against_it(tmp_path: Path, road: st
     assert np.abs(columns[f"{road}:lost motion"] - wanted).max() < SAME
 
 
+@pytest.mark.slow
 def test_a_shaft_on_a_carrier_is_shown_where_it_went(runs: Mapping[str, Run]) -> None:
     """About the sun's axis by the carrier's turn; its own mark turns by -1/3 of the sun's, as Willis says."""
     seen = seated_build(runs["wolfrom"], 3)

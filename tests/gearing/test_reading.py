@@ -104,6 +104,7 @@ def hold_the_defaults(pair: ThinnedPair, positions: int, seed: int) -> None:
     assert np.abs(turn - pair.driven_turn).max() * model.meshes[0].pair.wheel.base_radius <= ROUNDING
 
 
+@pytest.mark.slow
 @given(kind=st.sampled_from(["bevel", "spur"]), seed=st.integers(0, 2**32))
 @settings(max_examples=60)
 def test_defaults_hold_on_random_pairs(kind: str, seed: int) -> None:
@@ -157,6 +158,7 @@ def hold_one_tooth(pair: ThinnedPair, owner: Owner, positions: int, seed: int) -
     assert not turned[never].any()
 
 
+@pytest.mark.slow
 @given(kind=st.sampled_from(["bevel", "spur"]), seed=st.integers(0, 2**32), owner=st.sampled_from(OWNERS))
 @settings(max_examples=60)
 def test_one_tooth_is_told_where_it_is_in_action_and_then_right(kind: str, seed: int, owner: Owner) -> None:

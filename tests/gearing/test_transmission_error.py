@@ -481,6 +481,7 @@ def peak_of_range(model: Model, engine: Engine, trials: Trials) -> int:
         tracemalloc.stop()
 
 
+@pytest.mark.slow
 def test_a_range_holds_no_curve() -> None:
     """Five times as many trials take no more memory but for their own numbers; their curves would take 8 MB."""
     model = model_from_scene(scene_of(REFERENCE))

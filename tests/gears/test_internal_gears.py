@@ -228,6 +228,7 @@ def test_the_search_of_surfaces_finds_the_closed_backlash_with_eccentric_centres
             assert found[row] == pytest.approx(closed, abs=3e-6)  # a zoom keeps 4 nm of profile, no more of its height
 
 
+@pytest.mark.slow
 def test_signed_distances_to_a_ring_are_those_to_its_dense_points() -> None:
     rng = np.random.default_rng(4)
     ring = Ring(60, 1.0, ALPHA, 4.0, 30.9)

@@ -28,6 +28,7 @@ def least_overlap(pair: InternalPair, steps: int) -> float:
     return min(most(float(phase)) for phase in PHASES)
 
 
+@pytest.mark.slow
 def test_many_teeth_of_difference_go_in_radially_and_few_do_not() -> None:
     for ring_teeth, addendum, goes in ((52, 1.0, True), (34, 0.8, False)):
         inner = SpurGear(27, 1.0, math.radians(25), 5.0, addendum=addendum, tooth_thickness_deviation=-0.02)

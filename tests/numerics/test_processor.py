@@ -52,6 +52,7 @@ def elsewhere(code: str, **environment: str) -> str:
     return done.stdout.strip()
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(platform.machine().lower() not in ("x86_64", "amd64"), reason="the names are of x86")
 def test_what_the_compiler_is_told_to_make_code_for_is_what_it_is_named_by() -> None:
     target = "from numba.core.registry import cpu_target; print(*cpu_target.target_context.codegen().magic_tuple()[1:])"

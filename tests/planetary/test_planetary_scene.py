@@ -175,10 +175,10 @@ def test_trials_that_bind_keep_their_rows(tmp_path: Path) -> None:
     """Pins that lie 60 um off at random bind some planets of most trials, and a column says by how much."""
     path = tmp_path / "scene.yaml"
     path.write_text(TEXT.replace("lower: -6 um, upper: 6 um", "lower: -60 um, upper: 60 um"), "utf-8")
-    run = run_scene(path, overrides=Overrides(trials=300), out=tmp_path / "run")
+    run = run_scene(path, overrides=Overrides(trials=100), out=tmp_path / "run")
     counts = run.summary["measures"]["lost motion"]["status"]
-    assert counts["ok"] + counts["interferes"] == 300
-    assert counts["interferes"] > 100
+    assert counts["ok"] + counts["interferes"] == 100
+    assert counts["interferes"] > 33
     own = run.summary["measures"]["lost motion"]
     assert own["geometric"]["mean"] > 0.0
     frame = run.frame()

@@ -41,16 +41,20 @@ FEW: Mapping[str, tuple[str, ...]] = {
 """Arguments with which each benchmark takes seconds."""
 
 LONG = (
+    "assemblies",
+    "convergence",
     "curves",
     "cycloid",
     "fcl_speed",
     "memory",
+    "pairs",
     "rig_records",
     "startup",
     "structure",
     "studies",
     "tooth_curves",
     "trains",
+    "zones",
 )
 """Those that take more than a few of them."""
 

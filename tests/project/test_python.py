@@ -99,7 +99,7 @@ def test_a_curve_has_a_column_a_position_or_none(tmp_path: Path) -> None:
         run.frame(curves="flat")  # type: ignore[arg-type]
 
 
-SHORT = ("spur_pair", "bevel_pair", "three_stage_train", "door", "two_plates", "housed_gears")
+SHORT = ("spur_pair", "three_stage_train", "door")
 
 
 @pytest.mark.parametrize(
@@ -134,6 +134,7 @@ def test_the_worst_of_a_measure_is_the_trial_nearest_to_its_limit(spur: Run) -> 
         spur.worst("backlash")
 
 
+@pytest.mark.slow
 def test_a_jam_is_the_worst_and_can_be_looked_at(tmp_path: Path) -> None:
     """Both gears touch on both flanks of a tooth: where the working ones are brought to touch, the others overlap."""
     gear = {"kind": "spur_gear", "module": "2 mm", "face_width": "10 mm"}
@@ -263,6 +264,7 @@ def test_pictures_and_files_lie_where_they_say(spur: Run, tmp_path: Path) -> Non
     assert all(path.stat().st_size > 0 for path in exported.files)
 
 
+@pytest.mark.slow
 def test_shims_from_python_are_those_of_the_command(tol3d_command: Command) -> None:
     found = tol3d.find_shims("bevel_pair", "24 um", overrides=tol3d.Overrides(trials=200))
     code, out, _ = tol3d_command("shim", "bevel_pair", "--target-min", "24 um", "--trials", "200")
@@ -300,6 +302,7 @@ def code_blocks(text: str) -> Iterator[str]:
     yield from re.findall(r"^```python\n(.*?)^```", text, re.MULTILINE | re.DOTALL)
 
 
+@pytest.mark.slow
 def test_the_page_runs_as_it_stands(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Every block in its order, in one notebook; it names every public function."""
     text = (ROOT / "docs" / "python.md").read_text("utf-8")

@@ -81,6 +81,7 @@ def first_command(tmp_path_factory: pytest.TempPathFactory) -> list[str]:
     return [line.rstrip() for line in done.stdout.splitlines()]
 
 
+@pytest.mark.slow
 def test_the_block_it_shows_is_what_its_first_command_prints(first_command: list[str]) -> None:
     """Line by line, in their order; the README may leave out lines. What is told of time and place is not shown there.
 

@@ -525,6 +525,7 @@ def test_a_run_with_trains_draws_a_picture_of_each_beside_the_histogram(tmp_path
     assert imread(tmp_path / "chain.png").shape[1] >= 1600
 
 
+@pytest.mark.slow
 def test_a_chain_that_cannot_be_drawn_costs_a_warning_and_not_the_histogram(tmp_path: Path) -> None:
     summary = shoulder()
     (tmp_path / "chain.png").symlink_to(tmp_path / "no such folder" / "picture.png")

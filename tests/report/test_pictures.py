@@ -238,6 +238,7 @@ def test_words_at_mean_and_ends_stand_apart_however_narrow_the_trials_are(sigma:
 # many measures ------------------------------------------------------------------------------------
 
 
+@pytest.mark.slow
 def test_each_of_many_measures_has_a_file_and_a_place_in_the_overview() -> None:
     kinds = [measure_of(normals(500, seed), ("one",), lower_limit=45.0, over="turn", take="min") for seed in range(19)]
     measures = {long_name(f"no. {k}"): kind for k, kind in enumerate(kinds)} | {"over a turn": curve(5.0)}
@@ -350,6 +351,7 @@ def run_of(path: str, measures: dict[str, Any]) -> Any:
     return SimpleNamespace(path=Path(path), found=typed_summary_of(measures), keeps_trials=False, column_names=())
 
 
+@pytest.mark.slow
 def test_a_comparison_names_every_run_in_each_of_its_rows_in_one_colour() -> None:
     """The second run reads another section of the same name: a row of its own, which says where it is read."""
     section: dict[str, Any] = {"reading": READING | {"teeth": "driver"}, "lower_limit": 45.0}
@@ -391,6 +393,7 @@ def test_limits_that_runs_do_not_share_say_whose_they_are() -> None:
     assert shared.count("LSL46µm") == 1
 
 
+@pytest.mark.slow
 def test_no_line_of_a_comparison_runs_through_its_legends() -> None:
     runs = [run_of(f"/runs/{long_name(str(k))}", {"play": measure_of(normals(500, k))}) for k in range(3)]
     figure = comparison_figure(runs)

@@ -361,6 +361,7 @@ def test_comparison_gives_the_largest_and_rms_difference_of_the_columns(run: Run
     assert line[-2:] == [f"{np.abs(difference).max():.3f}", f"{np.sqrt(np.mean(difference**2)):.3f}"]
 
 
+@pytest.mark.slow
 def test_measures_of_one_name_over_other_positions_are_compared_apart(run: Run) -> None:
     play = run.summary["measures"]["free play"]
     whole = {key: own for key, own in run.summary.items() if key != "joint"}  # which is of all its measures
@@ -392,6 +393,7 @@ def test_an_error_that_jumps_over_the_swing_has_no_mean_in_the_comparison(tmp_pa
         assert len(below.splitlines()) == 2
 
 
+@pytest.mark.slow
 def test_legends_of_a_comparison_lie_below_the_axes_and_hide_nothing(run: Run) -> None:
     figure = comparison_figure([run, run, run])
     figure.canvas.draw()
@@ -492,6 +494,7 @@ def test_a_curve_without_any_seated_trial_says_so(run: Run, tmp_path: Path) -> N
     draw_histogram(typed_run(dict(run.summary) | {"measures": {"shape": measure}}), tmp_path / "none.png")
 
 
+@pytest.mark.slow
 def test_signs_that_no_font_has_are_no_warning(run: Run, tmp_path: Path) -> None:
     with warnings.catch_warnings():
         warnings.simplefilter("error")
@@ -503,6 +506,7 @@ def test_a_picture_of_another_format_is_refused(run: Run, tmp_path: Path) -> Non
         draw_histogram(run.found, tmp_path / "histogram.docx")
 
 
+@pytest.mark.slow
 def test_a_picture_in_a_missing_folder_is_refused(run: Run, tmp_path: Path) -> None:
     with pytest.raises(InputError, match="cannot be written"):
         draw_comparison([run], tmp_path / "missing" / "c.png")
@@ -642,6 +646,7 @@ def test_magnified_gap_grows_along_the_stack_up(run: Run) -> None:
     )
 
 
+@pytest.mark.slow
 def test_magnification_is_capped_where_the_gap_would_leave_its_space_or_a_tip_would_fold(run: Run) -> None:
     assembly = seated_build(run, TRIAL, magnify=1e4)
     seated = assembly.meshes[0]

@@ -144,6 +144,7 @@ def test_the_worst_trial_is_exported_and_magnified(run: Run, tmp_path: Path) -> 
     assert trimesh.load_mesh(far).bounds[0, 2] == 0.0
 
 
+@pytest.mark.slow
 @renders
 def test_a_trial_is_shown(run: Run, tol3d: Command, tmp_path: Path) -> None:
     picture = tmp_path / "seen.png"

@@ -142,6 +142,7 @@ def test_many_measures_are_a_row_each_and_their_tables_come_when_asked(tmp_path:
     assert not any(shares in line for line in short)
 
 
+@pytest.mark.slow
 def test_quiet_prints_the_verdict_and_verbose_every_table(tol3d: Command, tmp_path: Path) -> None:
     arguments = ("run", "robot_shoulder", "--trials", "100", "--witness", "0", "--no-picture")
     lengths = {}

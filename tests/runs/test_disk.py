@@ -100,6 +100,7 @@ def test_a_limit_on_the_size_of_files_is_told_and_the_same_command_goes_on(tmp_p
     assert open_run(tmp_path / "run").trials == 2000
 
 
+@pytest.mark.slow
 def test_a_step_file_that_the_kernel_cut_short_is_not_there(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     # OCC says nothing of a disk that is full: its file ends somewhere
     part = spur_gear.build(SpurGear(teeth=20, module=2.0, face_width=10.0, pressure_angle=math.radians(20.0)))

@@ -182,6 +182,7 @@ def test_a_killed_run_goes_on_where_it_was(tmp_path: Path, monkeypatch: pytest.M
     assert not (tmp_path / "cut.partial").exists()
 
 
+@pytest.mark.slow
 def test_pieces_of_an_unfinished_block_are_kept(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(folding, "KEEP_EVERY", 0.0)
     study = Overrides(trials=2000, engine="fcl")

@@ -63,6 +63,7 @@ def test_the_worst_trial_is_the_one_that_its_words_say(what: str, tmp_path: Path
     assert worst_trial(run) == worst(values)
 
 
+@pytest.mark.slow
 def test_export_of_a_train_takes_its_worst_trial_and_says_which(tol3d: Command, tmp_path: Path) -> None:
     run = run_of(tmp_path, LOST)
     values = run.columns("geometric:asked")["geometric:asked"]

@@ -605,6 +605,7 @@ def test_what_makes_no_train_is_said_once_with_its_line_and_place(
     assert said.isprintable()
 
 
+@pytest.mark.slow
 def test_a_train_that_does_not_connect_ends_the_command_with_2(tmp_path: Path) -> None:
     text = (SCENES / "three_stage_train.yaml").read_text(encoding="utf-8")
     (tmp_path / "scene.yaml").write_text(text.replace("train, driven: motor", "train, driven: idler"), encoding="utf-8")
@@ -833,6 +834,7 @@ def test_garbage_is_refused_and_nothing_else_happens(tmp_path: Path, text: str |
     loads_or_is_refused_well(tmp_path, text)
 
 
+@pytest.mark.slow
 @fuzz
 @given(data=st.data(), text=st.sampled_from([EVERY_FIELD, SPUR_PAIR]))
 def test_a_scene_with_bits_replaced_is_read_or_refused_well(tmp_path: Path, data: st.DataObject, text: str) -> None:

@@ -244,7 +244,7 @@ def test_the_command_line_knows_a_mechanism_that_a_package_offers(tmp_path: Path
     ("target", "why"),
     [
         ("no_such_module:SPRINGS", "No module named 'no_such_module'"),
-        ("springs:lengths", "expected a Mechanism, got function"),
+        pytest.param("springs:lengths", "expected a Mechanism, got function", marks=pytest.mark.slow),
     ],
 )
 def test_a_broken_mechanism_is_told_of_and_shipped_scenes_open(target: str, why: str, tmp_path: Path) -> None:

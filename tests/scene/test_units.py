@@ -26,9 +26,14 @@ INNER = {
 quantities = st.builds(Quantity, st.floats(allow_nan=False, allow_infinity=False, width=32), st.sampled_from([*UNITS]))
 
 
+@pytest.fixture(scope="module")
+def registry() -> "pint.UnitRegistry[float]":
+    """It takes a fifth of a second to be read."""
+    return pint.UnitRegistry()
+
+
 @pytest.mark.parametrize(("dimension", "unit"), [(d, unit) for d, table in FACTORS.items() for unit in table])
-def test_factors_are_those_of_pint(dimension: str, unit: str) -> None:
-    registry: pint.UnitRegistry[float] = pint.UnitRegistry()
+def test_factors_are_those_of_pint(dimension: str, unit: str, registry: "pint.UnitRegistry[float]") -> None:
     factor = registry.Quantity(1.0, PINT_NAMES.get(unit, unit)).to(INNER[dimension]).magnitude
     assert Quantity(1.0, unit).internal == pytest.approx(factor, rel=1e-15)  # one rounding of the quotient
 

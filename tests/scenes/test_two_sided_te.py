@@ -46,6 +46,7 @@ def extremes(pair: EccentricPair, *, exact: bool = True) -> dict[str, float]:
     return found | {"least backlash": float(play.min()), "largest backlash": float(play.max())}
 
 
+@pytest.mark.slow
 def test_the_scene_meets_its_expected_numbers(run_of: Callable[[str], Run]) -> None:
     run, wanted = run_of("two_sided_te"), expected("two_sided_te")
     assert list(run.summary["measures"]) == [name for name in wanted if name != "trials"]

@@ -286,6 +286,7 @@ def test_root_cones_hardly_below_the_base_cone_make_a_valid_solid(off: float) ->
     assert len(part.solid.Faces()) == len(part.faces)
 
 
+@pytest.mark.slow
 def test_step_file_comes_back_as_the_same_solid(tmp_path: Path) -> None:
     part = build(PAPER)
     to_step(part, tmp_path / "bevel.step")
@@ -295,6 +296,7 @@ def test_step_file_comes_back_as_the_same_solid(tmp_path: Path) -> None:
     assert again.Volume() == pytest.approx(part.solid.Volume(), rel=1e-9)
 
 
+@pytest.mark.slow
 def test_occ_can_cut_and_triangulate_the_solid() -> None:
     part = build(PAPER)
     half = cq.Solid.makeBox(200, 100, 200, cq.Vector(-100, 0, 0))

@@ -40,6 +40,7 @@ def test_a_display_mesh_is_that_of_the_solid(cube: KeptShape) -> None:
     assert (mesh.vertices.min(), mesh.vertices.max()) == pytest.approx((-10.0, 10.0), abs=1e-9)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "content",
     [

@@ -191,6 +191,7 @@ def test_springs_have_the_correlations_worked_out_by_hand(run: Run) -> None:
     assert geometric["trials"][0][3] == run.summary["measures"]["room"]["status"]["ok"]
 
 
+@pytest.mark.slow
 def test_more_measures_than_are_correlated_are_told_of(tmp_path: Path) -> None:
     more = "".join(f"  h{k}: {{kind: height, of: lift, upper_limit: {90 + k} um}}\n" for k in range(MOST_CORRELATED))
     scene = scene_with(tmp_path, ("measures:\n", f"measures:\n{more}"))
@@ -217,6 +218,7 @@ def test_even_samplers_tell_the_error_of_the_yield_by_replicates_and_none_of_r(t
     assert found["r"][0][1] == pytest.approx(math.sqrt(HEIGHT / (HEIGHT + WAVE**2 / 2)), abs=1e-3)
 
 
+@pytest.mark.slow
 def test_bits_do_not_depend_on_workers_nor_on_an_interruption(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """The interrupted run keeps no trials, so that what it had counted comes from its checkpoint."""
     monkeypatch.setattr(blocks, "BLOCK_TRIALS", 1000)

@@ -79,6 +79,7 @@ def test_statistics_of_many_tolerances_grow_with_their_number_at_most(tmp_path: 
     assert sizes[1500] < 2 * sizes[300]
 
 
+@pytest.mark.slow
 def test_the_largest_contributors_have_shares_and_the_others_are_told_to_have_none(tmp_path: Path) -> None:
     run = run_scene(scene_of(tmp_path, 320, trials=2000), out=tmp_path / "run", execution=Execution(keep_trials=False))
     model = model_of(tmp_path, 320)

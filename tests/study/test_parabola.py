@@ -236,6 +236,7 @@ def test_failures_are_counted_by_their_own_words_and_stay_in_the_statistics(run:
     assert f"{status['too long']} do not fit, {status['lost']} lost" in warning
 
 
+@pytest.mark.slow
 def test_the_worst_trial_is_the_one_that_overlaps_most(run: Run) -> None:
     columns = run.columns("geometric:room", "status:room")
     deepest = int(np.nanargmin(columns["geometric:room"]))

@@ -163,6 +163,7 @@ study: {trials: 100, seed: 1, witness: 30}
 """
 
 
+@pytest.mark.slow
 def test_a_clearance_is_witnessed_by_meshes_of_half_the_step(tmp_path: Path) -> None:
     path = tmp_path / "scene.yaml"
     path.write_text(PIN, "utf-8")

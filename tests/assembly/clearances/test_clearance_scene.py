@@ -125,6 +125,7 @@ def test_its_chord_error_is_stated_and_met(tmp_path: Path) -> None:
     assert made.system.chord_bound(made.system.measures[1], 1.0) == 0.0
 
 
+@pytest.mark.slow
 def test_scenes_without_a_clearance_load_no_fcl() -> None:
     words = (
         "import sys; from tol3d.simulate import load, simulation_of; "

@@ -79,6 +79,7 @@ def test_highs_finds_no_way_on_from_where_a_part_rests(seed: int, spread: float)
             assert spread > 0.1 or not vertices(own, row)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", [1, *(pytest.param(s, marks=pytest.mark.slow) for s in (0, *range(100, 120)))])
 def test_a_part_rests_where_brute_force_over_all_sixes_lays_it(seed: int) -> None:
     """Deviations of 0.3 mm, tilts to 0.05; of trials in which just one six holds the part."""
