@@ -109,6 +109,7 @@ def test_check_lists_features_with_their_datum_frames_and_moves(tmp_path: Path) 
     assert "machine,fixed,plate," in shown
 
 
+@pytest.mark.slow
 def test_check_shows_what_floats() -> None:
     shown = page(*PRESENTER.check(simulation_of(load(SCENES / "hole_and_slot.yaml"), Overrides()))).csv()
     assert '"slot 10.06 mm wide, 14 × 8 mm, across y"' in shown

@@ -181,6 +181,7 @@ def test_schema_prints_what_the_example_scenes_are_held_against(tol3d: Command) 
     validate(YAML(typ="safe", pure=True).load((SCENES / "every_field.yaml").read_text("utf-8")), schema)
 
 
+@pytest.mark.slow
 def test_compare_lays_runs_over_each_other(tol3d: Command, tmp_path: Path) -> None:
     runs = []
     for seed in ("1", "2"):

@@ -209,7 +209,7 @@ CASES = {
 }
 
 
-@pytest.mark.parametrize("case", CASES)
+@pytest.mark.parametrize("case", thinned(CASES, 2))
 def test_a_large_sample_of_either_road_agrees(case: str, tmp_path: Path) -> None:
     """Mean within four standard errors of the sample, sigma too by its own fourth moment, beside what NET allows.
 

@@ -88,6 +88,7 @@ def summed(row: Array, side: int) -> tuple[Array, NDArray[np.bool_]]:
     return best, clear
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("name", "side"), [("drive", 1), ("back", -1)])
 def test_errors_are_those_of_the_tooth_that_stands_out_most(
     name: str, side: int, trials: Trials, curves: dict[str, Array]

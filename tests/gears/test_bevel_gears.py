@@ -693,6 +693,7 @@ def test_undercut_on_nearly_parallel_axes_is_a_rack_s() -> None:
 # the search itself -------------------------------------------------------------------------------------------------
 
 
+@pytest.mark.slow
 def test_the_search_finds_what_a_minimisation_over_four_parameters_finds() -> None:
     """scipy's L-BFGS-B over cone distance and roll of both flanks, from several starts, at a crooked pose."""
     mesh = mesh_of(PAPER, 1, turned=-0.0425 / (2 * PAPER_GEAR.mean_radius))

@@ -171,6 +171,7 @@ def test_an_eccentric_ring_that_binds_the_planets_at_the_mean_build_is_refused(t
     assert said.startswith("the planets bind at the mean build: no turn of planet ")
 
 
+@pytest.mark.slow
 def test_trials_that_bind_keep_their_rows(tmp_path: Path) -> None:
     """Pins that lie 60 um off at random bind some planets of most trials, and a column says by how much."""
     path = tmp_path / "scene.yaml"

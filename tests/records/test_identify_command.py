@@ -60,6 +60,7 @@ def test_it_prints_the_figures_and_writes_the_folder(tol3d: Command, tmp_path: P
     assert min(float(row["predicted [arcsec]"]) for row in rows) == pytest.approx(LEAST, abs=0.3)
 
 
+@pytest.mark.slow
 def test_files_of_others_are_not_replaced(tol3d: Command, tmp_path: Path) -> None:
     """Files of its names without findings of its own beside them are somebody's."""
     arguments, out = written(tmp_path), tmp_path / "out"

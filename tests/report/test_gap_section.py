@@ -59,6 +59,7 @@ def test_the_outlines_are_as_far_apart_as_the_gap_and_the_line_reaches_from_one_
     assert abs(across @ section.towards) < 0.01  # one looks at the line from the side, not along it
 
 
+@pytest.mark.slow
 def test_a_cut_stays_inside_both_faces_where_the_gap_lies_at_an_end(run: Run) -> None:
     """Moved to the end of its face a gap is cut 2 % inside of it, where both gears are."""
     seated = _as_seen(seated_build(run, 0).meshes[0])

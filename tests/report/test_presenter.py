@@ -73,6 +73,7 @@ def test_further_pictures_are_drawn_beside_the_histogram(
     assert imread(tmp_path / "boxes_ all.png").shape[1] == 2 * 4  # two inches, as many pixels an inch as trials
 
 
+@pytest.mark.slow
 @renders
 def test_the_window_of_a_system_without_panels_shows_its_bodies_named(run: Run, tmp_path: Path) -> None:
     assert view_run(run, 3, screenshot=tmp_path / "boxes.png", presenter=BOXES) == ("a note", "all is shown")

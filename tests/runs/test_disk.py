@@ -72,6 +72,7 @@ def test_a_refused_picture_or_export_names_its_file_and_exits_with_2(
         assert err.startswith(f"{place}: cannot be written ({os.strerror(number)}); nothing is wrong with the input")
 
 
+@pytest.mark.slow
 def test_a_place_that_is_not_ours_to_write_is_wrong_input(tol3d: Command, tmp_path: Path, finished: Run) -> None:
     for number in (errno.EACCES, errno.ENOENT, errno.ENOTDIR, errno.EPERM):
         error = unwritable(tmp_path, OSError(number, os.strerror(number)), "choose another")

@@ -13,6 +13,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from of_kind import of_kind
 from places import SCENES
+from thinned import thinned
 
 from tol3d import load_scene
 from tol3d.errors import SceneError
@@ -711,6 +712,7 @@ def test_an_endless_file_is_refused() -> None:
     assert problems(Path("/dev/zero")) == ("/dev/zero: expected a scene file, got a pipe or a device",)
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="no pipes with names here")
 def test_a_pipe_is_refused_and_not_waited_for(tmp_path: Path) -> None:
     pipe = tmp_path / "scene.yaml"
@@ -766,7 +768,7 @@ GROWING: dict[str, Callable[[int], str]] = {
 }
 
 
-@pytest.mark.parametrize("what", GROWING)
+@pytest.mark.parametrize("what", thinned(GROWING, 4))
 def test_the_work_on_a_text_grows_with_its_length_and_no_faster(what: str, tmp_path: Path) -> None:
     """Calls that are made while it is refused, Python's and C's: twice the text, twice the calls at most."""
     path = tmp_path / "scene.yaml"

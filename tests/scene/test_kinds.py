@@ -233,6 +233,7 @@ def in_a_process(folder: Path, code: str) -> subprocess.CompletedProcess[str]:
     return subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, cwd=folder, timeout=120)
 
 
+@pytest.mark.slow
 def test_the_command_line_knows_a_mechanism_that_a_package_offers(tmp_path: Path) -> None:
     installed(tmp_path, "springs:SPRINGS")
     done = in_a_process(tmp_path, "sys.argv = ['tol3d', 'schema']\nfrom tol3d import cli\ncli.main()")

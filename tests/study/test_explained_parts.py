@@ -12,6 +12,7 @@ from typing import Any
 import pytest
 from places import SCENES
 from shipped import shipped
+from thinned import thinned
 
 from tol3d import Overrides, load_scene
 from tol3d.assembly.roads import TorsorRoad
@@ -66,10 +67,13 @@ def scaled(patch: pytest.MonkeyPatch, scene: str, name: str, factor: float) -> I
 
 @pytest.mark.parametrize(
     "scene",
-    [
-        pytest.param(own, marks=pytest.mark.slow) if own in LONG else own
-        for own in (*shipped("assembly"), *shipped("gearbox"))
-    ],
+    thinned(
+        [
+            pytest.param(own, marks=pytest.mark.slow) if own in LONG else own
+            for own in (*shipped("assembly"), *shipped("gearbox"))
+        ],
+        4,
+    ),
 )
 def test_no_shipped_scene_of_parts_is_warned_of(scene: str) -> None:
     found = explained(scene, 1000)

@@ -10,6 +10,7 @@ import pytest
 from numpy.typing import NDArray
 from oracles.zone_sets import REFINED, SETS
 from scipy.stats import ks_2samp, kstest, qmc
+from thinned import thinned
 
 from tol3d.assembly.zones import Confined, Zone, catalogue, normal_in, process_in, uniform_in
 from tol3d.distributions.normal import Normal
@@ -70,7 +71,7 @@ def seen(points: Array, directions: Array) -> list[Array]:
     return [*points.T, *(points @ directions.T).T, *lengths]
 
 
-@pytest.mark.parametrize(("name", "law", "orientation"), CASES)
+@pytest.mark.parametrize(("name", "law", "orientation"), thinned(CASES, 5))
 def test_draws_have_the_law_that_rejection_has(name: str, law: str, orientation: float | None) -> None:
     assert_same_law(name, law, orientation, 2 * FEW)
 
@@ -121,7 +122,7 @@ def test_all_that_is_drawn_lies_inside_even_from_the_ends_of_uniforms(
         assert zone.inside(points).all()
 
 
-@pytest.mark.parametrize(("name", "law", "orientation"), CASES)
+@pytest.mark.parametrize(("name", "law", "orientation"), thinned(CASES, 5))
 def test_a_trial_has_its_bits_whatever_block_it_is_drawn_in(name: str, law: str, orientation: float | None) -> None:
     draw = LAWS[law](zone_of(name, orientation))
     uniforms = np.random.default_rng(6).random((draw.uniforms, 99))
@@ -161,7 +162,7 @@ def test_zones_of_each_trial_s_own_widths_are_the_zones_of_these_widths(name: st
         assert found[:, k] == pytest.approx(np.concatenate(alone), abs=2e-9 * width)
 
 
-@pytest.mark.parametrize(("name", "law", "orientation"), CASES)
+@pytest.mark.parametrize(("name", "law", "orientation"), thinned(CASES, 5))
 def test_the_distribution_is_that_of_the_first_component(name: str, law: str, orientation: float | None) -> None:
     draw = LAWS[law](zone_of(name, orientation))
     own = draw.distribution
