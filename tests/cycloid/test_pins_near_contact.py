@@ -143,3 +143,4 @@ def test_a_run_has_whole_quantiles_bars_and_shares_out_of_limits(tmp_path: Path)
     assert found["histogram"]["lower_edge"] == min(counts.min(), 1) - 0.5
     assert found["histogram"]["counts"]["geometric"][1] == np.sum(counts == 2)
     assert not found["agreement"]["explanation"]["faults"]
+    assert "counted by one road" in found["agreement"]["explanation"]["undecided"]

@@ -28,6 +28,7 @@ from tol3d.system.road import Road
 from tol3d.system.stated import component_count, component_slices, mean_deviations, stated
 from tol3d.system.system import System
 from tol3d.system.trials import Trials
+from tol3d.units import FACTORS
 
 Array = NDArray[np.float64]
 
@@ -52,7 +53,7 @@ def explanations(simulation: Simulation, road: Road | None, tally: Tally) -> dic
     if road is None or not measures:
         return {}
     fits = {measure.name: RoadFits.of(system, measure, tally.measures[measure.name]) for measure in measures}
-    undecided = {m.name: Explanation(undecided=_too_few(system, m, tally)) for m in measures if fits[m.name] is None}
+    undecided = {m.name: Explanation(undecided=why) for m in measures if (why := _undecided(system, m, tally, fits))}
     if len(undecided) == len(measures):
         return undecided
     widest = max(len(regressor_groups(system, measure)) for measure in measures)
@@ -72,11 +73,16 @@ def explanations(simulation: Simulation, road: Road | None, tally: Tally) -> dic
             system.chord_bound(measure, road.chord_error),
         ).explained(bent[measure.name])
         for k, measure in enumerate(measures)
-        if (fit := fits[measure.name]) is not None
+        if (fit := fits[measure.name]) is not None and measure.name not in undecided
     }
 
 
-def _too_few(system: System, measure: Measure, tally: Tally) -> str:
+def _undecided(system: System, measure: Measure, tally: Tally, fits: Mapping[str, RoadFits | None]) -> str:
+    """Why it cannot be told, "" where it can: of counts, which jump, there is no first and no second order."""
+    if measure.unit in FACTORS["count"]:
+        return "what is near a bound is counted by one road and not by the other"
+    if fits[measure.name] is not None:
+        return ""
     own = tally.measures[measure.name].disagreement
     compared = own.sums.count if own else 0
     needed = 2 * len(regressor_groups(system, measure)) + LEAST_FREEDOM + 1
