@@ -2,7 +2,9 @@
 
 import cmath
 import math
+from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -14,7 +16,9 @@ from rv_250 import nothing, rv_250, stage_of
 from tol3d import Overrides, SceneError, load_scene, run_scene
 from tol3d.cycloid.contact import contact_shape, first_contact
 from tol3d.cycloid.from_scene import rv_system
+from tol3d.cycloid.rv_deviated import RVDeviated
 from tol3d.cycloid.system import RVSystem
+from tol3d.cycloid.turning import LinearTurning, Turned
 from tol3d.study.draws import drawn
 from tol3d.study.overrides import simulation_of
 
@@ -143,4 +147,23 @@ def test_a_run_has_whole_quantiles_bars_and_shares_out_of_limits(tmp_path: Path)
     assert found["histogram"]["lower_edge"] == min(counts.min(), 1) - 0.5
     assert found["histogram"]["counts"]["geometric"][1] == np.sum(counts == 2)
     assert not found["agreement"]["explanation"]["faults"]
-    assert "counted by one road" in found["agreement"]["explanation"]["undecided"]
+    assert found["agreement"]["explanation"]["second_order_rms"] is None
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("sign", [1.0, -1.0], ids=["as it is", "wrong sign"])
+def test_a_count_is_held_to_its_contributors_and_not_to_second_order(
+    sign: float, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Pins that go inwards for outwards on the analytic road come near where those of the exact one leave."""
+    known = LinearTurning.turned
+
+    def turned(self: LinearTurning, deviated: RVDeviated, *rest: Any) -> Turned:
+        altered = replace(deviated.stage, pins=sign * deviated.stage.pins)
+        return known(self, replace(deviated, stage=altered), *rest)
+
+    monkeypatch.setattr(LinearTurning, "turned", turned)
+    summary = run_scene(with_counts(tmp_path), overrides=Overrides(trials=2000), out=tmp_path / "run").summary
+    faults = summary["measures"]["pins"]["agreement"]["explanation"]["faults"]
+    assert any("pin circle" in fault for fault in faults) == (sign < 0), faults
+    assert bool(faults) == (sign < 0)

@@ -4,6 +4,7 @@ from collections.abc import Iterator, Sequence
 
 from tol3d.report.number import difference_text, percent_text
 from tol3d.runs.summary.agreement import Agreement, Explanation, LinearPart
+from tol3d.units import FACTORS
 
 NAMED = 3  # contributors of one reason
 
@@ -51,6 +52,8 @@ def _of_first_order(explanation: Explanation) -> str:
 
 def _of_second_order(explanation: Explanation, unit: str) -> str:
     rms = explanation.second_order_rms
+    if unit in FACTORS["count"]:
+        return "what is near a bound one road counts and the other does not"
     if rms is None:
         return "of what order the rest is cannot be told, for nominal builds do not seat"
     named = ", ".join(explanation.second_order_of)

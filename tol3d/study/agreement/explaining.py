@@ -53,7 +53,7 @@ def explanations(simulation: Simulation, road: Road | None, tally: Tally) -> dic
     if road is None or not measures:
         return {}
     fits = {measure.name: RoadFits.of(system, measure, tally.measures[measure.name]) for measure in measures}
-    undecided = {m.name: Explanation(undecided=why) for m in measures if (why := _undecided(system, m, tally, fits))}
+    undecided = {m.name: Explanation(undecided=_too_few(system, m, tally)) for m in measures if fits[m.name] is None}
     if len(undecided) == len(measures):
         return undecided
     widest = max(len(regressor_groups(system, measure)) for measure in measures)
@@ -73,16 +73,11 @@ def explanations(simulation: Simulation, road: Road | None, tally: Tally) -> dic
             system.chord_bound(measure, road.chord_error),
         ).explained(bent[measure.name])
         for k, measure in enumerate(measures)
-        if (fit := fits[measure.name]) is not None and measure.name not in undecided
+        if (fit := fits[measure.name]) is not None
     }
 
 
-def _undecided(system: System, measure: Measure, tally: Tally, fits: Mapping[str, RoadFits | None]) -> str:
-    """Why it cannot be told, "" where it can: of counts, which jump, there is no first and no second order."""
-    if measure.unit in FACTORS["count"]:
-        return "what is near a bound is counted by one road and not by the other"
-    if fits[measure.name] is not None:
-        return ""
+def _too_few(system: System, measure: Measure, tally: Tally) -> str:
     own = tally.measures[measure.name].disagreement
     compared = own.sums.count if own else 0
     needed = 2 * len(regressor_groups(system, measure)) + LEAST_FREEDOM + 1
@@ -135,17 +130,18 @@ class _Case:
         parts = tuple(self._linear_parts(second))
         mean = self._mean(curved, second, sum((own[first].mean() for own in bounds.values()), 0.0))
         allowed = math.hypot(LEAST_LEFT * self.fits.sigma, _rms(sum(bounds.values(), np.zeros(len(curved)))[first]))
-        known = not np.isnan(curved[first]).all()
+        jumps = self.measure.unit in FACTORS["count"]  # what is near a bound one road counts and the other does not
+        known = not jumps and not np.isnan(curved[first]).all()
         left_rms = min(left.residual, self.fits.difference.residual) if left else None
-        return Explanation(
-            faults=()
-            if self.fits.disagreement.largest <= ROUNDING
-            else (
-                *self._unexplained(parts),
+        beyond: tuple[str, ...] = ()
+        if not jumps:
+            beyond = (
                 *self._beyond(left_rms, allowed + CHORDS_OF_A_LOOK * self.chords),
                 *self._beyond_in_the_worst(bounds, mean),
                 *self._mean_fault(mean),
-            ),
+            )
+        return Explanation(
+            faults=() if self.fits.disagreement.largest <= ROUNDING else (*self._unexplained(parts), *beyond),
             linear=parts,
             largest_trial=self.fits.disagreement.trial,
             largest_percent=self._largest_percent([part.contributor for part in parts]),
