@@ -17,7 +17,7 @@ Array = NDArray[np.float64]
 SCENE = SCENES / "gearbox_in_housing.yaml"
 BOX = Box.read(SCENE)
 STAGES = {"first normal backlash": FIRST, "second normal backlash": SECOND}
-TRIALS = 2_000
+TRIALS = 5_000
 
 
 def correlation(one: Array, other: Array) -> float:

@@ -80,8 +80,7 @@ def placed_mesh(
             seconds turn an eccentricity of 10 um by 5 nm.
     """
     shape = len(deviated.sun_thickness), turns.shape[1]
-    sun, planet = angles(own, first, turns, crank)
-    sun = sun - carried
+    sun = angles(own, first, turns, crank)[0] - carried
     planet = first.pair.driven_angle(sun)
     origins = np.zeros((*shape, 2, 3))
     origins[..., 0, :2] = _plane(_complex(deviated.sun_offset)[:, None] * np.exp(1j * sun))

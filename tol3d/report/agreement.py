@@ -2,9 +2,8 @@
 
 from collections.abc import Iterator, Sequence
 
-from tol3d.report.number import difference_text, percent_text
+from tol3d.report.number import COUNTED, difference_text, percent_text
 from tol3d.runs.summary.agreement import Agreement, Explanation, LinearPart
-from tol3d.units import FACTORS
 
 NAMED = 3  # contributors of one reason
 
@@ -52,7 +51,7 @@ def _of_first_order(explanation: Explanation) -> str:
 
 def _of_second_order(explanation: Explanation, unit: str) -> str:
     rms = explanation.second_order_rms
-    if unit in FACTORS["count"]:
+    if unit in COUNTED:
         return "what is near a bound one road counts and the other does not"
     if rms is None:
         return "of what order the rest is cannot be told, for nominal builds do not seat"

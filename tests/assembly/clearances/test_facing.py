@@ -67,7 +67,7 @@ def test_a_ball_over_a_plate_has_one_pair(steps: int) -> None:
 
 def test_a_pin_in_a_hole_has_pairs_all_around() -> None:
     """Least over n directions: c - |o| cos of half a step at most, and the polygons' own chord error."""
-    hole, pin = tube(9.0, 5.0, 10.0, 360), tube(4.8, 0.0, 30.0, 360)
+    hole, pin = tube(9.0, 5.0, 10.0, 720), tube(4.8, 0.0, 30.0, 720)
     found = faced(hole, pin, (0.0, 0.0, 0.0), (0.04, 1e-5))
     assert found.normals[:, 2] == pytest.approx(np.zeros(len(found.lengths)), abs=5e-5)  # as far as motions turn it
     rng = np.random.default_rng(9)
