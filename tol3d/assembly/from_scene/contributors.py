@@ -9,7 +9,6 @@ from numpy.typing import NDArray
 from tol3d.assembly.from_scene.zones import drawn_in
 from tol3d.assembly.grammar.drawing import Drawing, Stated
 from tol3d.assembly.grammar.features import PlaneSpec, PointSpec, SlotSpec, SphereSpec
-from tol3d.assembly.grammar.features.nominal_frame import unit
 from tol3d.assembly.grammar.moves import PinAndHoleSpec, PlaySpec
 from tol3d.assembly.grammar.moves.locating import LocatingSpec
 from tol3d.assembly.grammar.moves.play import RandomSpec
@@ -136,9 +135,9 @@ class Effects:
     def _along(self, feature: str, spec: PlusMinusSpec) -> Array:
         """What one mm along a dimension does to the components of a feature."""
         own = self.drawing.kind(feature)
-        rotation = own.frame[:3, :3]
-        direction = rotation[:, 2] if spec.along is None else unit(spec.along)
-        x, y, z = rotation.T @ direction
+        direction = self.drawing.positive(feature, spec)
+        assert direction is not None, "refused before"
+        x, y, z = own.frame[:3, :3].T @ direction
         if isinstance(own, PointSpec | SphereSpec):
             return np.array([x, y, z])
         return np.array([z, 0.0, 0.0]) if isinstance(own, PlaneSpec | SlotSpec) else np.array([x, y, x, y])

@@ -9,7 +9,8 @@ from functools import cached_property
 
 from tol3d.assembly.grammar.datums import DatumSpec
 from tol3d.assembly.grammar.feature_name import part_of
-from tol3d.assembly.grammar.features import FeatureUnion
+from tol3d.assembly.grammar.features import AxisSpec, CylinderSpec, FeatureUnion, PointSpec, SphereSpec
+from tol3d.assembly.grammar.features.nominal_frame import Array, unit
 from tol3d.assembly.grammar.parts import SolidSpec
 from tol3d.assembly.grammar.tolerances import (
     FeatureTolerance,
@@ -19,6 +20,7 @@ from tol3d.assembly.grammar.tolerances import (
     PlusMinusSpec,
 )
 from tol3d.assembly.grammar.tolerances.form import FormSpec
+from tol3d.assembly.model.dimension import longer
 from tol3d.scene import Scene
 
 
@@ -109,6 +111,27 @@ class Drawing:
     def names(self) -> tuple[str, ...]:
         """All features, with their parts."""
         return tuple(f"{part}.{feature}" for part, features in self.features.items() for feature in features)
+
+    def positive(self, feature: str, spec: PlusMinusSpec) -> Array | None:
+        """The direction (3,) in which a dimension of a feature is positive, in its part's frame, of unit length.
+
+        None where nothing but `along` could say it: of an axis, of a point without a normal that has datums, and of
+        what lies off none of its datums along its normal.
+        """
+        own = self.kind(feature)
+        if spec.along is not None:
+            return unit(spec.along)
+        if isinstance(own, AxisSpec | CylinderSpec):
+            return None
+        normal = own.frame[:3, 2]
+        if not spec.named_datums:
+            return normal
+        if isinstance(own, SphereSpec) or (isinstance(own, PointSpec) and own.normal is None):
+            return None
+        features = self.features[part_of(feature)]
+        datums = [[features[name] for name in datum.features if name in features] for datum in spec.named_datums]
+        found = longer(own.frame[:3, 3], normal, filter(None, datums))  # of unknown names another check tells
+        return None if found is None else normal * found[1]
 
     def parents(self) -> Iterator[tuple[str, tuple[DatumSpec, ...]]]:
         """Each feature, and the datums to which its location is toleranced."""

@@ -133,6 +133,8 @@ def _direction_problems(here: KeyPath, spec: PlusMinusSpec, drawing: Drawing, fe
     if spec.along is None:
         if own.kind in ("axis", "cylinder"):
             yield here, "expected a direction across the axis as `along`, got none"
+        elif drawing.positive(feature, spec) is None:
+            yield here, _unclear(spec, drawing, feature)
         return
     length = float(sum(number**2 for number in spec.along)) ** 0.5
     share = float(z @ spec.along) / length
@@ -140,6 +142,15 @@ def _direction_problems(here: KeyPath, spec: PlusMinusSpec, drawing: Drawing, fe
         yield (*here, "along"), "expected a direction that is not in the plane, which would not move it"
     if own.kind in ("axis", "cylinder") and 1.0 - abs(share) < ROUNDING:
         yield (*here, "along"), "expected a direction across the axis, got one along it, where it does not deviate"
+
+
+def _unclear(spec: PlusMinusSpec, drawing: Drawing, feature: str) -> str:
+    """Words for a dimension of which no datum says which way is longer."""
+    names = ", ".join("-".join(datum.features) for datum in spec.named_datums)
+    expected = "expected `along`, the direction in which the dimension is positive, got none"
+    if drawing.kind(feature).kind in ("point", "sphere"):
+        return f"{expected}, and {feature!r} has no normal to say it"
+    return f"{expected}, and {feature!r} lies off none of its datums ({names}) along its normal"
 
 
 def _names(drawing: Drawing) -> Iterator[Problem]:

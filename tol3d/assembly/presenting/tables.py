@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.assembly.model import Axis, Engage, Feature, Locate, Move, Plane, Point, RoundPlane, Slot, Touch
+from tol3d.assembly.model.dimension import longer
 from tol3d.assembly.model.moves import BestFit, Mate, Rest, Weld
 from tol3d.assembly.placing import road as placing
 from tol3d.assembly.placing.engaging import Engaging
@@ -55,7 +56,37 @@ def drawing_blocks(system: AssemblySystem) -> Sequence[PageItem]:
     moves = [Row(move.name, _move(move, plan)) for move, plan in zip(system.assembly.moves, planned, strict=True)]
     steps = titled("moves", Table("", [Heading(word, words=True) for word in ("kind", "part", "by")], moves))
     frames, freedoms = datum_blocks(system.assembly), freedom_blocks(system.assembly)
-    return (*_solids(system), *features, *frames, *steps, *freedoms, *_rests(system))
+    return (*_solids(system), *features, *_dimensions(system), *frames, *steps, *freedoms, *_rests(system))
+
+
+def _dimensions(system: AssemblySystem) -> Sequence[PageItem]:
+    """Dimensions, and what a positive deviation does to each."""
+    named = {own.name for own in system.contributors if own.kind == "plus_minus"}
+    rows = [
+        Row(by.contributor, (own.name, _positive(system, own, by.matrix[:, 0])))
+        for own in system.assembly.features.values()
+        for by in own.moved_by
+        if own.is_named and by.contributor in named
+    ]
+    columns = [Heading("of", words=True), Heading("a positive deviation moves it", words=True)]
+    return titled("dimensions, along the axes of their part", Table("", columns, rows)) if rows else ()
+
+
+def _positive(system: AssemblySystem, feature: Feature, moved: NDArray[np.float64]) -> str:
+    """Where a dimension's positive deviation moves a feature, by what it does to its components."""
+    flat, axis = isinstance(feature.shape, Plane | RoundPlane), isinstance(feature.shape, Axis)
+    own = (0.0, 0.0, moved[0]) if flat else (*moved[:2], 0.0) if axis else moved
+    along = feature.frame[:3, :3] @ own
+    words = f"along {_direction(along / np.linalg.norm(along))}"
+    datums = system.assembly.datum_frames[feature.parent].datums if feature.parent else ()
+    specs = [[system.assembly.features[name] for name in datum.features] for datum in datums]
+    found = longer(feature.frame[:3, 3], along, specs)
+    if found is not None:
+        name = "-".join(own.partition(".")[2] for own in datums[found[0]].features)
+        return f"{words}: {'longer, away from' if found[1] > 0 else 'shorter, towards'} {name}"
+    if flat and not isinstance(feature.shape, Slot):
+        return f"{words}: {'out of' if own[2] > 0.0 else 'into'} the material"
+    return words
 
 
 def _solids(system: AssemblySystem) -> Sequence[PageItem]:
@@ -128,12 +159,17 @@ def _facing(system: AssemblySystem, feature: Feature) -> str:
     """The normal or the axis of a feature in the world, in words; of a point nothing."""
     if isinstance(feature.shape, Point):
         return ""
-    z = (system.assembly.part[feature.part].pose[:3, :3] @ feature.frame[:3, 2]).round(6) + 0.0
-    named = f"{'-' if z.sum() < 0 else ''}{'xyz'[int(np.abs(z).argmax())]}"
-    direction = named if np.abs(z).max() == 1 else "(" + ", ".join(f"{value:.4g}" for value in z) + ")"
+    direction = _direction(system.assembly.part[feature.part].pose[:3, :3] @ feature.frame[:3, 2])
     if isinstance(feature.shape, Slot):
         return f", across {direction}"
     return f", along {direction}" if isinstance(feature.shape, Axis) else f", facing {direction}"
+
+
+def _direction(direction: NDArray[np.float64]) -> str:
+    """A direction of unit length by the axis that it is along, or its coordinates."""
+    z = direction.round(6) + 0.0
+    named = f"{'-' if z.sum() < 0 else ''}{'xyz'[int(np.abs(z).argmax())]}"
+    return named if np.abs(z).max() == 1 else "(" + ", ".join(f"{value:.4g}" for value in z) + ")"
 
 
 def _frame(feature: Feature) -> str:

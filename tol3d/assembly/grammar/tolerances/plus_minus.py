@@ -21,7 +21,9 @@ class PlusMinusSpec(FeatureTolerance, ToleranceSpec):
 
     kind: Literal["plus_minus"]
     along: Direction | None = Field(
-        default=None, description="in the part's frame; the feature's normal or axis if not given"
+        default=None,
+        description="in the part's frame; if not given away from the first of the datums off which the feature lies "
+        "along its normal, and without datums along its normal",
     )
     datums: Datums | None = Field(default=None, description="where the dimension starts; the part's frame if not given")
 
