@@ -8,6 +8,15 @@ Names are loaded when they are first used, so that `import tol3d` and `tol3d --h
 every one of them at work.
 """
 
+import sys
+
+# Python looks for `python -m tol3d.…` in the current folder first, where anybody's numpy.py may lie; once tol3d is
+# found, and before it imports anything, that folder is left out.
+if sys.argv[:1] == ["-m"] and not sys.flags.safe_path:  # what argv is while the module to run is sought
+    word = sys.orig_argv[-len(sys.argv)]  # the module, or "-mtol3d.cli" in one
+    if (word.partition("m")[2] if word.startswith("-") else word).partition(".")[0] == __name__:
+        del sys.path[0]
+
 from importlib import import_module
 from importlib.metadata import version
 from typing import TYPE_CHECKING, Any

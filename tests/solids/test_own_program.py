@@ -6,6 +6,7 @@ from pathlib import Path
 import cadquery as cq
 import numpy as np
 import pytest
+from hostile_folder import hostile, run_from
 
 from tol3d.errors import GeometryError
 from tol3d.files import FileContent
@@ -25,11 +26,15 @@ def cube() -> KeptShape:
     return run_program(FileContent(Path("cube.py"), PROGRAM), "build", {"size": 20.0})
 
 
-def test_a_solid_is_read_as_it_was_made_in_another_process(cube: KeptShape, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_solid_is_read_as_it_was_made_in_another_process_that_runs_nothing_of_the_folder_it_is_in(
+    cube: KeptShape, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
     monkeypatch.setattr(own_program, "made_here", set())
+    monkeypatch.chdir(hostile(tmp_path))
     again = KeptShape.of(cube.brep, cube.faces)
     assert again == cube
     solid = own_program.read(again)
+    assert run_from(tmp_path) == []
     assert solid.solid.Volume() == pytest.approx(8000.0, rel=1e-12)
     assert solid.faces["top"].Center().z == pytest.approx(10.0, abs=1e-9)
     assert sorted(solid.faces) == sorted(["top", *(f"face {k}" for k in range(1, 7) if f"face {k}" in cube.faces)])

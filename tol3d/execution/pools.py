@@ -25,6 +25,8 @@ CALLS_A_SLOT = 3  # under way for each worker, so that none waits while results 
 ANSWER_S = 10.0  # s; a scheduler that lives answers within this, and so does a first worker
 SHORT_STUDY = 20_000  # contacts (trials x positions); about 8 s of them on one core, where others take 2 s to start
 IDLE_S = 60  # s; after which idle processes end
+SAFE_PATH = "PYTHONSAFEPATH"  # where it is set, a Python that starts takes no module from the folder it starts in
+TRACKERS = ("joblib.externals.loky.backend.resource_tracker", "multiprocessing.resource_tracker")  # started by loky
 
 
 @dataclass(frozen=True)
@@ -196,12 +198,27 @@ def _threads(workers: int) -> Iterator[Pool]:
 @contextmanager
 def _processes(workers: int) -> Iterator[Pool]:
     loky = importlib.import_module("joblib.externals.loky")  # nobody else should wait for it to load
-    executor = loky.get_reusable_executor(max_workers=workers, timeout=IDLE_S)
+    _start_trackers()
+    executor = loky.get_reusable_executor(max_workers=workers, timeout=IDLE_S, env={SAFE_PATH: "1"})
     try:
         yield OnExecutor(executor, workers, shares_memory=False)
     except BaseException:
         executor.shutdown(kill_workers=True)
         raise
+
+
+def _start_trackers() -> None:
+    """Start the processes beside loky's workers: they have no environment but this process's own."""
+    before = os.environ.get(SAFE_PATH)
+    os.environ[SAFE_PATH] = "1"
+    try:
+        for tracker in TRACKERS[: 1 if os.name == "nt" else None]:  # Windows has loky's own only
+            importlib.import_module(tracker).ensure_running()
+    finally:
+        if before is None:
+            del os.environ[SAFE_PATH]
+        else:
+            os.environ[SAFE_PATH] = before
 
 
 @contextmanager

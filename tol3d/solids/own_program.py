@@ -87,7 +87,8 @@ def _read(brep: bytes) -> cq.Solid:
 
 def _try_apart(brep: bytes) -> None:
     """Read a solid in a process of its own: one that crashes or hangs takes nothing with it."""
-    command = [sys.executable, "-c", f"import sys\nfrom {__name__} import _read\n_read(sys.stdin.buffer.read())"]
+    program = f"import sys\nfrom {__name__} import _read\n_read(sys.stdin.buffer.read())"
+    command = [sys.executable, "-P", "-c", program]  # -P: nothing is imported from the folder it is called in
     try:
         found = subprocess.run(command, input=brep, capture_output=True, timeout=PATIENCE, check=False)
     except subprocess.TimeoutExpired:
