@@ -35,7 +35,7 @@ def test_a_reducer_s_low_and_high_are_the_ends_of_its_law(run: Run, road: str) -
 
 
 @pytest.mark.parametrize("road", ["analytic", "geometric"])
-def test_the_worst_case_counts_the_reducer_s_ends(run: Run, road: str) -> None:
+def test_the_sum_of_highs_counts_the_reducer_s_ends(run: Run, road: str) -> None:
     (train,) = run.summary["trains"].values()
     for key, end in (("low_3sigma", LOW), ("high_3sigma", HIGH)):
         others = [s["factor"] * s["roads"][road][key] for s in train["stages"] if s["link"] != "gearbox"]

@@ -219,7 +219,7 @@ def train_of(summary: dict[str, Any]) -> TrainSummary:
 # tables -------------------------------------------------------------------------------------------
 
 
-def test_the_paper_s_worst_case_of_the_shoulder_is_9_minutes_59_4_seconds_and_2_217_mm_at_the_tip() -> None:
+def test_the_paper_s_sum_of_highs_of_the_shoulder_is_9_minutes_59_4_seconds_and_2_217_mm_at_the_tip() -> None:
     """Section 4: a maximum of 9′59″ and 2.21 mm (its 2.2172 cut short)."""
     text = all_printed(shoulder())
     assert row_of(text, "sum of the stages' highs") == ["9′59.4″"] * 3
@@ -240,7 +240,7 @@ def test_each_stage_stands_with_the_paper_s_lost_motion_ratio_and_sense() -> Non
     assert "i = 597.143, motor and shoulder flange turn the same way" in text  # 152 * 110/28
 
 
-def test_mean_and_3_sigma_of_the_sum_stand_beside_the_worst_case_and_are_less() -> None:
+def test_mean_and_3_sigma_of_the_sum_stand_beside_the_sum_of_highs_and_are_less() -> None:
     """Means add up, spreads only in squares: sqrt(a² + b²) < a + b."""
     seconds = 3600 * DEGREES_PER_UM
     mean = 28 / 110 * 60 + seconds * (54 / SPUR_DIAMETER + 90 / BEVEL_DIAMETER)
@@ -270,8 +270,7 @@ def test_measures_of_a_train_have_the_sums_of_its_stages_below() -> None:
     assert row_of(tip, "sum of the stages' highs") == ["2.2172"] * 3
     assert row_of(tip, "high (+3 sigma)")[-1] == "2.21578"  # 599″ of 763 mm, published: pi / 648000 each
     assert "[mm]" in tip
-    note = "a sum of the stages' highs is a worst case; mean + 3 sigma of the sum is of its distribution"
-    assert text.count(note) == 1  # beside the train, for its measures too
+    assert text.count("it is no worst case") == 1  # beside the train, for its measures too
     means = sum(FACTORS[k] * OWN[k]["mean"] for k in range(3)) * MM_PER_ARCMIN
     assert row_of(tip, "sum of the stages' means")[0] == f"{means:.4f}"
 
@@ -402,14 +401,15 @@ def texts_of(figure: Figure) -> list[str]:
     return [text.get_text() for text in artists_of(figure)]
 
 
-def test_the_picture_tells_ratios_own_lost_motions_shares_and_the_worst_case() -> None:
+def test_the_picture_tells_ratios_own_lost_motions_shares_and_the_sum_of_highs() -> None:
     texts = texts_of(chain_figure(typed_run(shoulder()), "shoulder swing"))
     for text in ("i = 152", "110/28 = 3.929", "31/31 = 1", "54.3″ … 1′59.7″", "5′09.6″ … 7′44.4″", "left", "right"):
         assert text in texts
     assert "119.7″\n0.443 mm" in texts  # 75 um: 0.12195 * 75 / 275 deg; by 763 mm
     assert "464.4″\n1.718 mm" in texts
     assert "15.3″\n0.056 mm" in texts  # 1′ behind 110/28
-    assert any(text.startswith("9′59.4″ = 2.217 mm") for text in texts)
+    assert "9′59.4″ = 2.217 mm, all at +3 sigma" in texts
+    assert not any("worst" in text for text in texts)
     spur_share = 100 / (1 + (36 / BEVEL_DIAMETER) ** 2 / (41 / SPUR_DIAMETER) ** 2)
     assert f"{spur_share:.0f} %" in texts
     assert "tip of arm\nlever 763 mm" in texts

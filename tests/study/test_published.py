@@ -20,7 +20,7 @@ from schemas import validate
 
 from tol3d import Run, load_scene
 from tol3d.analyses.compensation import CompensationQuestion, compensation
-from tol3d.analyses.compensation_table import worst_table
+from tol3d.analyses.compensation_table import highs_table
 from tol3d.report import published_whole
 from tol3d.report.distribution import draw_distribution
 from tol3d.report.measure_table import curve_table
@@ -100,7 +100,7 @@ def test_what_compensation_leaves_of_each_pair_is_the_papers() -> None:
     """34″ and 1′17″: highs less means, (75 - 54) and (61 - 43) um, by 0.12195/d degrees each, d 275 and 102.1 mm."""
     scene = load_scene(SCENES / "robot_shoulder_shimmed.yaml")
     found = compensation(scene, CompensationQuestion(None, 1, 2))
-    text = printed(worst_table([found]), 120)
+    text = printed(highs_table([found]), 120)
     of_paper = text[text.index("paper, 3DCS") :].splitlines()
     left = {line.split(",")[0].strip(): line.split()[-1] for line in of_paper if "at its driven shaft" in line}
     assert left == {"– of spur pair": "33.5″", "– of bevel pair": "1′17.4″"}

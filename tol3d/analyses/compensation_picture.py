@@ -71,9 +71,9 @@ def compensation_figure(found: Sequence[Compensation]) -> Figure:
 
 
 def _edges(found: Sequence[Compensation], unit: Unit) -> Array:
-    """Edges of bins that hold every value, zero and the worst cases of the scenes."""
+    """Edges of bins that hold every value, zero and the sums of highs of the scenes."""
     values = [own.remaining[own.road].in_unit(unit)[state] for own in found for state in STATES]
-    marks = [value for own in found for _, value, _ in _worst(own, unit)]
+    marks = [value for own in found for _, value, _ in _highs(own, unit)]
     every = np.concatenate([*values, np.array([0.0, *marks])])
     low, high = float(every.min()), float(every.max())
     margin = MARGIN * (high - low) or 1e-3
@@ -91,7 +91,7 @@ def _draw_left(axes: Axes, own: Compensation, unit: Unit, edges: Array) -> None:
         return
     width = float(edges[1] - edges[0])
     draw_samples(axes, samples, per=width)
-    for label, value, colour in _worst(own, unit):
+    for label, value, colour in _highs(own, unit):
         text = f"{label}: {short_text(value, unit)}"
         axes.axvline(value, ymax=MARKS_HEIGHT, color=colour, linewidth=1.6, linestyle="--", label=text)
     for label, value, marker in _published(own, unit):
@@ -128,12 +128,12 @@ def _ends_text(spread: Spread, unit: Unit) -> str:
     )
 
 
-def _worst(own: Compensation, unit: Unit) -> list[tuple[str, float, str]]:
-    """The worst cases of the leading road, with their colours."""
+def _highs(own: Compensation, unit: Unit) -> list[tuple[str, float, str]]:
+    """The sums of the stages' highs by the leading road, with their colours."""
     correction = own.corrections[own.road]
     cases = (
-        ("worst case", correction.before, STATE_COLOURS["before"]),
-        ("worst case, compensated", correction.left, STATE_COLOURS["batch"]),
+        ("sum of highs", correction.before, STATE_COLOURS["before"]),
+        ("sum of highs, compensated", correction.left, STATE_COLOURS["batch"]),
     )
     values = [(label, tip_mm(arcmin, own.lever) if unit == "mm" else arcmin, colour) for label, arcmin, colour in cases]
     return [(label, value, colour) for label, value, colour in values if value is not None]

@@ -1,4 +1,4 @@
-"""The motor's correction as tables: how large it is, what it leaves, the worst case, and which flanks work."""
+"""The motor's correction as tables: how large it is, what it leaves, sums of the stages' highs, which flanks work."""
 
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -21,7 +21,7 @@ STATE_WORDS: Final[Mapping[State, str]] = {
 }
 TOLD_OF_TIPS: Final[Mapping[str, str]] = {"mean": "mean", "low_3sigma": "low", "high_3sigma": "high"}
 UNIT_WORDS: Final[Mapping[Unit, str]] = {"mm": "at the tip", "arcmin": "at the output"}
-WORST: Final[Mapping[str, Callable[[Correction], float | None]]] = {
+HIGHS: Final[Mapping[str, Callable[[Correction], float | None]]] = {
     "not compensated": lambda correction: correction.before,
     "compensated": lambda correction: correction.left,
 }
@@ -62,8 +62,8 @@ def compensation_report(found: Sequence[Compensation]) -> Page:
                 left_table(shown, unit),
             ]
     blocks += [note(text) for text in LEFT_NOTES]
-    blocks += [*_section("the worst case: every stage at its high, less its mean where that is compensated")]
-    blocks += [worst_table(found), *(note(text) for text in _worst_notes(found))]
+    blocks += [*_section("sum of highs: every stage at its mean + 3 sigma, less its mean where that is compensated")]
+    blocks += [highs_table(found), *(note(text) for text in _highs_notes(found))]
     swings = [own for own in found if own.swing]
     if swings:
         blocks += [*_section("where the load changes side over the swing"), swing_table(swings), note(SWING_MEANS)]
@@ -160,16 +160,16 @@ def _form_sigma(own: Compensation, state: State, unit: Unit) -> float | None:
     return tip_mm(sigma, own.lever) if unit == "mm" else sigma
 
 
-# the worst case -----------------------------------------------------------------------------------
+# sums of highs ------------------------------------------------------------------------------------
 
 
-def worst_table(found: Sequence[Compensation]) -> Table:
+def highs_table(found: Sequence[Compensation]) -> Table:
     """A block of rows for each road and publisher: sums of the stages' highs, before and after."""
     rows = []
     for column in _columns(found):
         known = [own.corrections.get(column) for own in found]
         rows.append(Row(COLUMN_WORDS.get(column, column), [""] * len(found), "bold"))
-        for word, take in WORST.items():
+        for word, take in HIGHS.items():
             values = [take(own) if own else None for own in known]
             tips = [tip_mm(value, own.lever) for value, own in zip(values, found, strict=True)]
             rows.append(Row(f"  {word}", [_angle(value) for value in values]))
@@ -192,8 +192,11 @@ def _published_rows(found: Sequence[Compensation]) -> Iterator[Row]:
                 yield Row(f"{column}: {word} of the tip, not compensated [mm]", cells, "green")
 
 
-def _worst_notes(found: Sequence[Compensation]) -> Iterator[str]:
-    yield "a sum of highs is no distribution: nearly no robot is as bad at all of its stages at once"
+def _highs_notes(found: Sequence[Compensation]) -> Iterator[str]:
+    yield (
+        "a sum of highs is no distribution: nearly no robot is as bad at all of its stages at once; and no worst case: "
+        "a robot with every deviation at its limit may exceed it"
+    )
     left_out = dict.fromkeys(stage.link for own in found for stage in own.left_out)
     if left_out:
         yield f"what is left holds the whole maximum of {', '.join(left_out)}"

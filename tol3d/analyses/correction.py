@@ -1,4 +1,4 @@
-"""The turn of the motor that makes good for the mean lost motion of a train, and the worst case that it leaves.
+"""The turn of the motor that makes good for the mean lost motion of a train, and the sum of highs that it leaves.
 
 Angles are in minutes of arc, as in columns and in summary.json.
 """

@@ -214,7 +214,7 @@ def _published_ends(model: Model, measures: PublishedColumn, backlash: Backlash)
 
 
 def _sums(kind: LostMotion, by_link: ByLink) -> Ends:
-    """The sums of the stages' ends at the shaft that is read: the worst case, not the distribution of the sum."""
+    """The sums of the stages' ends at the shaft that is read, all of them at theirs: no distribution of the sum."""
 
     def added(end: str) -> float | None:
         parts = [(stage.factor, by_link[stage.link].value(end)) for stage in kind.stages]

@@ -44,7 +44,7 @@ class SumLine:
 
 
 def sum_lines(train: TrainSummary, summary: RunSummary) -> list[SumLine]:
-    """The distribution of the sum by each road, the worst case of the leading one, and others' sums."""
+    """The distribution of the sum by each road, the stages' highs by the leading one, and others' sums."""
     return list(_lines(train, summary))
 
 
@@ -55,8 +55,8 @@ def _lines(train: TrainSummary, summary: RunSummary) -> Iterator[SumLine]:
         if values.known:
             text = f"mean {value_text(values.mean, 'arcmin')}, high {_with_tip(values.high, lever)}"
             yield SumLine(f"{words}: mean ± 3 sigma", text, values, ROAD_COLOURS[road])
-    worst = leading_sums(train)
-    yield SumLine("sum of the stages' highs", f"{_with_tip(worst.high, lever)}, worst case", worst, OUTSIDE, True)
+    highs = leading_sums(train)
+    yield SumLine("sum of the stages' highs", f"{_with_tip(highs.high, lever)}, all at +3 sigma", highs, OUTSIDE, True)
     colours = published_colours(train)
     for name, ends in train.sums.published.items():
         values = Range.of(ends)
@@ -77,7 +77,7 @@ def height_of_sums(lines: Sequence[SumLine]) -> float:
 def draw_sums(
     figure: Figure, place: SubplotSpec, train: TrainSummary, stages: Sequence[ShownStage], lines: Sequence[SumLine]
 ) -> None:
-    """All lines on one axis, and the worst case as a mark across them."""
+    """All lines on one axis, and the sum of the stages' highs as a mark across them."""
     width = WIDTH - LABELS - VALUES
     heights, widths = [ABOVE, LINE * len(lines), FOOT], [LABELS - CAPTIONS, width, VALUES]
     parts = place.subgridspec(3, 3, height_ratios=heights, width_ratios=widths, wspace=0.0, hspace=0.0)
@@ -89,7 +89,7 @@ def draw_sums(
     for y, line in enumerate(lines):
         if line.stacked:
             _stack_highs(axes, stages, y, axes.get_xlim()[1] / width)
-            _mark_worst(axes, line)
+            _mark_highs(axes, line)
         else:
             _draw_range(axes, line, y)
         colour, weight = (OUTSIDE, "bold") if line.stacked else (BLACK, "normal")
@@ -112,7 +112,7 @@ def _stack_highs(axes: Axes, stages: Sequence[ShownStage], y: float, per_inch: f
         start += high
 
 
-def _mark_worst(axes: Axes, line: SumLine) -> None:
+def _mark_highs(axes: Axes, line: SumLine) -> None:
     if line.values.high is not None:
         axes.axvline(line.values.high, color=line.colour, linewidth=1.5, linestyle="--", zorder=1)
 

@@ -1,4 +1,4 @@
-"""The trains of a run as tables: what each stage brings to the lost motion, and the worst case beside the sum."""
+"""The trains of a run as tables: what each stage brings to the lost motion, and the sum of the stages."""
 
 from collections.abc import Iterator
 
@@ -23,7 +23,10 @@ from tol3d.runs.summary.measure import MeasureSummary
 from tol3d.runs.summary.run import RunSummary
 
 ROAD_WORDS = {"analytic": "analytic (same trials)", "geometric": "3D simulation"}
-WORST_CASE_MEANS = "a sum of the stages' highs is a worst case; mean + 3 sigma of the sum is of its distribution"
+SUMS_MEAN = (
+    "a sum of the stages' highs has every stage at its mean + 3 sigma at once; it is no worst case: a build with every "
+    "deviation at its limit may exceed it. Mean + 3 sigma of the sum is of its distribution"
+)
 STAGES_MEAN = "low, mean, high: a stage's own angular backlash at its driven shaft, mean ∓ 3 sigma; by the {road}"
 OF_LAWS = "; of a data sheet's law its ends, where they are nearer than 3 sigma"
 
@@ -43,7 +46,7 @@ def _train_blocks(name: str, summary: RunSummary) -> Iterator[PageItem]:
     yield from (BLANK, stages_table(train, stages))
     road = "3D simulation" if leading_road(train) == "geometric" else "analytic road"
     yield note(STAGES_MEAN.format(road=road) + (OF_LAWS if any(stage.within_its_law for stage in stages) else ""))
-    yield from (BLANK, sums_table(train, summary), note(WORST_CASE_MEANS))
+    yield from (BLANK, sums_table(train, summary), note(SUMS_MEAN))
 
 
 def sum_rows(measure: MeasureSummary, summary: RunSummary) -> list[FurtherRow]:
