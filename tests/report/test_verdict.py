@@ -89,7 +89,7 @@ def test_a_row_has_what_is_counted_of_the_trials(tmp_path: Path) -> None:
     shares = [f"{100 * share:.4g} %" for share in (out / 4000, ci.low, ci.high)]
     ppk = min(mean - 45, 70 - mean) / 3 / sigma
     assert row.split("  ", 1)[1].strip() == (
-        f"NOT OK   {ends}  45 to 70 µm  {shares[0]} ({shares[1]} to {shares[2]})  {ppk:.2f}"
+        f"NOT OK   {ends}  45 to 70 µm  {shares[0]} ({shares[1]} to {shares[2]})  {ppk:.2f}  mean, sigma"
     )
     (other,) = [line for line in lines_of(verdict_table(run.found)) if line.startswith("lost motion")]
     assert other.split()[2] == "–"  # no limits, no verdict
@@ -120,6 +120,8 @@ def test_a_curve_and_a_bounded_measure_say_what_their_ends_are(tmp_path: Path) -
     high = (curve.mean(axis=0) + 3 * curve.std(axis=0, ddof=1)).max()
     assert f"–  {low:.1f} µm  {high:.1f} µm" in row
     assert f"{100 * (curve < 40).any(axis=1).mean():.4g} %" in row
+    lowest = curve.min(axis=1)
+    assert row.rstrip().endswith(f"{(lowest.mean() - 40) / lowest.std(ddof=1) / 3:.2f}  mean, sigma")
     assert "of a curve over its positions" in " ".join(lines_of(run_report(run.found, Detail.VERDICT)))
 
 

@@ -81,7 +81,7 @@ def test_every_word_of_the_page_that_looks_like_a_field_is_one() -> None:
     """Between backticks stand words of the grammar, or of the command line."""
     known = {*PAGE.vocabulary(SCHEMA), *Scene.model_fields, *(unit for units in FACTORS.values() for unit in units)}
     known |= {kind for section in SECTIONS for kind in PAGE.kinds(section)} | set(laws())
-    others = {"no", "on", "status", "ok", "interferes", "ppk_by"}  # of YAML 1.1; of a run's columns and summary
+    others = {"no", "on", "status", "ok", "interferes", "ppk_reason"}  # of YAML 1.1; of a run's columns and summary
     others |= {"joint", "limited", "yields", "yield_ppm", "yield_ppm_95", "within"}
     others |= {"correlated", "r", "r_low_95", "r_high_95"}
     assert words(PAGE.prose) - known - others == set()

@@ -9,6 +9,7 @@ from tol3d.report.number import (
     difference_text,
     given_text,
     number_cell,
+    number_text,
     share_cell,
     share_text,
     value_text,
@@ -118,6 +119,7 @@ def _curve_text(curve: Section) -> str:
     parts += [
         f"out in all between {' and '.join(map(share_text, own))} (95 %)" for own in [_pair(curve, "out_ppm_95")] if own
     ]
+    parts += [f"Ppk {number_text(curve.value('ppk'))}"] if "ppk" in curve else []
     parts += [f"of {curve['trials']} trials"] if "trials" in curve else []
     return f"anywhere on the curve: {', '.join(parts)}" if parts else ""
 

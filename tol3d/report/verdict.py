@@ -11,10 +11,21 @@ from tol3d.report.number import NOTHING, given_text, limit_text, share_text, sho
 from tol3d.report.page import BLANK, Heading, PageItem, Row, Table, note, title
 from tol3d.runs.summary.measure import MeasureSummary
 from tol3d.runs.summary.run import RunSummary
+from tol3d.runs.summary.sample import PpkBy
 
 Verdict = Literal["OK", "NOT OK", "too few trials", "no limits"]
 
 ACCEPTED_PPM: Final = 2700.0  # what ±3 sigma of a normal measure leave out, Pp = Ppk = 1
+PPK_BY: Final[Mapping[PpkBy, str]] = {
+    "quantiles": "quantiles",
+    "share out of limits": "share out",
+    "mean and sigma": "mean, sigma",
+}
+PPK_MEANS: Final[Mapping[PpkBy, str]] = {
+    "quantiles": "quantiles: distance of a limit from 50 % over that of 0.135 % or 99.865 % (ISO 22514-2)",
+    "share out of limits": "share out: that of a normal measure with as much out",
+    "mean and sigma": "mean, sigma: distance of the nearest limit over 3 sigma",
+}
 STYLES: Final[Mapping[Verdict, str]] = {"NOT OK": "red", "too few trials": "yellow"}
 
 
@@ -75,17 +86,20 @@ def verdict_table(run: RunSummary, accepted_ppm: float = ACCEPTED_PPM, *, blame:
     """A row a measure, by the 3D simulation where there is one."""
     headings = [Heading("verdict", words=True), *(Heading(word) for word in ("mean", "low", "high"))]
     headings += [Heading("limits"), Heading("out of limits (95 %)", words=True), Heading("Ppk")]
+    limited = any(measure.has_limits for measure in run.measures.values())
+    headings += [Heading("Ppk by", words=True)] if limited else []
     headings += [Heading("mostly from", words=True, optional=True)] if blame else []
-    rows = [_row(name, measure, accepted_ppm, blame=blame) for name, measure in run.measures.items()]
+    rows = [_row(name, measure, accepted_ppm, blame=blame, limited=limited) for name, measure in run.measures.items()]
     return Table("measure", headings, rows, repeated=1)
 
 
-def _row(name: str, measure: MeasureSummary, accepted_ppm: float, *, blame: bool) -> Row:
+def _row(name: str, measure: MeasureSummary, accepted_ppm: float, *, blame: bool, limited: bool) -> Row:
     judged = JudgedMeasure.of(measure, accepted_ppm)
     low, mean, high = _curve_ends(measure) if measure.take == "curve" else _ends(measure)
     verdict = NOTHING if judged.verdict == "no limits" else judged.verdict
     cells = [verdict, *(_short(value, measure.unit) for value in (mean, low, high)), _limits(measure)]
     cells += [NOTHING if judged.verdict == "no limits" else _out(judged), _ppk(measure)]
+    cells += [_ppk_by(measure)] if limited else []
     cells += [_mostly(measure)] if blame else []
     return Row(f"{name} *" if _by_quantiles(measure) else name, cells, STYLES.get(judged.verdict, ""))
 
@@ -133,9 +147,16 @@ def _out(judged: JudgedMeasure) -> str:
 
 
 def _ppk(measure: MeasureSummary) -> str:
-    own = measure.sample(measure.best_road)
-    value = own.ppk if own and measure.take != "curve" else None
+    value = measure.shares.ppk
     return NOTHING if value is None else unsigned_zero(f"{value:.2f}")
+
+
+def _ppk_by(measure: MeasureSummary) -> str:
+    """What a Ppk was taken from, and why from that; nothing of a measure without limits, or in a run made before."""
+    own = measure.shares
+    if not measure.has_limits or own.ppk_by is None:
+        return NOTHING
+    return f"{PPK_BY[own.ppk_by]} ({own.ppk_reason})" if own.ppk_reason else PPK_BY[own.ppk_by]
 
 
 def _mostly(measure: MeasureSummary) -> str:
@@ -158,3 +179,8 @@ def _notes(run: RunSummary) -> Iterator[str]:
     ends += ", * 0.135 % and 99.865 % of the trials, which end before" if any(map(_by_quantiles, measures)) else ""
     ends += ", of a curve over its positions" if any(own.take == "curve" for own in measures) else ""
     yield ends + ("; of the trials that seated" if any(map(seated_text, measures)) else "")
+    words = {
+        own.shares.ppk_by: PPK_MEANS[own.shares.ppk_by] for own in measures if own.has_limits and own.shares.ppk_by
+    }
+    if words:
+        yield f"Ppk by {'; by '.join(words[key] for key in PPK_BY if key in words)}"

@@ -110,6 +110,11 @@ class StudySpec(Strict):
     witness: int = Field(
         default=0, ge=0, le=MOST_WITNESSED, description="trials, at random, that another engine measures again"
     )
+    ppk_by: Literal["quantiles", "sigma"] | None = Field(
+        default=None,
+        description="Ppk of measures of which all builds seat: by quantiles, or mean and sigma; as distributed if not "
+        "given",
+    )
 
     engines: ClassVar[Engines]  # of the subclass that validates: a grammar makes one that knows them
     options: ClassVar[tuple[type[StudyOptions], ...]] = ()  # its further bases

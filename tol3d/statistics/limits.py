@@ -166,5 +166,54 @@ def equivalent_ppk(out: Proportion) -> float | None:
     return 0.0 - float(scipy.special.ndtri(min(max(out.count / out.total, half), 1 - half))) / 3
 
 
+def quantile_pp(lower: float | None, upper: float | None, low: float | None, high: float | None) -> float | None:
+    """Pp by quantiles, (upper - lower) / (x99.865 - x0.135), ISO 22514-2; None without both limits or without spread.
+
+    Args:
+        lower, upper: the limits.
+        low, high: the 0.135 % and 99.865 % quantiles; None where one is not known.
+    """
+    if lower is None or upper is None or low is None or high is None or not high > low:
+        return None
+    return (upper - lower) / (high - low)
+
+
+def quantile_ppk(
+    lower: float | None, upper: float | None, below: tuple[float, float] | None, above: tuple[float, float] | None
+) -> float | None:
+    """Ppk by quantiles, the smaller of (x50 - L) / (x50 - x0.135) and (U - x50) / (x99.865 - x50), ISO 22514-2.
+
+    Of any law: at 1 a share of 0.135 % lies beyond the limit. None without limits, where a quantile that a limit needs
+    is not known, and where the quantiles of a side are the same and a limit lies inside or on them.
+
+    >>> quantile_ppk(0.0, 3.0, (0.5, 1.0), (1.0, 5.0))
+    0.5
+
+    Args:
+        lower, upper: the limits.
+        below: x0.135 and x50 of the values that the lower limit judges.
+        above: x50 and x99.865 of the values that the upper limit judges.
+    """
+    sides = []
+    if lower is not None:
+        sides.append(None if below is None else (below[1] - lower, below[1] - below[0]))
+    if upper is not None:
+        sides.append(None if above is None else (upper - above[0], above[1] - above[0]))
+    known = [side for side in sides if side is not None]
+    spread = [margin / reach for margin, reach in known if reach > 0.0]
+    if not spread or len(known) < len(sides) or any(reach <= 0.0 >= margin for margin, reach in known):
+        return None
+    return min(spread)
+
+
+def normal_share(margin: float, sigma: float) -> float:
+    """Share of a normal measure beyond a limit that lies a margin from its mean.
+
+    >>> round(1e6 * normal_share(3.0, 1.0))
+    1350
+    """
+    return float(scipy.special.ndtr(-margin / sigma))
+
+
 def _difference(larger: float | None, smaller: float | None) -> float | None:
     return None if larger is None or smaller is None else larger - smaller

@@ -114,3 +114,22 @@ class Moments:
         n = self.count
         variance_of_variance = (self.m4 / n - self.variance**2 * (n - 3) / (n - 1)) / n
         return math.sqrt(max(variance_of_variance, 0.0)) / (2 * self.sigma)
+
+
+def skewness_se(count: int) -> float:
+    """Standard deviation of the skewness g1 of so many independent values of a normal law; inf for fewer than three.
+
+    var(g1) = 6 (n - 2) / ((n + 1) (n + 3)), exact. Source: Fisher, The moments of the distribution for normal samples
+    of measures of departure from normality, Proc. R. Soc. A 130, 1930; it tends to 6 / n.
+    """
+    n = count
+    return math.sqrt(6 * (n - 2) / ((n + 1) * (n + 3))) if n > 2 else math.inf
+
+
+def kurtosis_se(count: int) -> float:
+    """Standard deviation of the excess kurtosis g2 of so many values of a normal law; inf for fewer than four.
+
+    var(g2) = 24 n (n - 2) (n - 3) / ((n + 1)^2 (n + 3) (n + 5)), exact; it tends to 24 / n. Source: as skewness_se.
+    """
+    n = count
+    return math.sqrt(24 * n * (n - 2) * (n - 3) / ((n + 1) ** 2 * (n + 3) * (n + 5))) if n > 3 else math.inf

@@ -1,36 +1,67 @@
 """Statistics of a curve measure, folded block by block."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from typing import Final
 
 import numpy as np
+from numpy.typing import NDArray
 
 from tol3d.statistics import Grid, LimitCounts, Moments
-from tol3d.study.sample import in_unit, lacking_of
+from tol3d.study.performance import Judged, Performance, Side
+from tol3d.study.replicated import Rows, interval_of_replicates, limits_by_replicate, merged_by_replicate
+from tol3d.study.sample import Sample, in_unit, lacking_of
 from tol3d.study.spectrum_tally import OrderTally, spectrum_tally
 from tol3d.study.status_counts import added, status_counts
+from tol3d.study.study import PpkBy
 from tol3d.system.measure import Measure
-from tol3d.system.outcome import ANALYTIC, GEOMETRIC, ROADS, Columns, outcome_of, value_column
+from tol3d.system.outcome import ANALYTIC, GEOMETRIC, ROADS, Columns, Outcome, outcome_of, value_column
 from tol3d.system.statuses import Statuses
+
+Array = NDArray[np.float64]
+
+LOWEST: Final = "lowest"
+HIGHEST: Final = "highest"
+ENDS: Final[Mapping[str, Callable[[Array], Array]]] = {
+    LOWEST: lambda curves: np.asarray(curves.min(axis=1)),
+    HIGHEST: lambda curves: np.asarray(curves.max(axis=1)),
+}
+"""The value of a trial's curve (trials, positions) that a lower and that an upper limit judges."""
+
+
+def judged_ends(measure: Measure) -> tuple[str, ...]:
+    """The ends of a curve that its limits judge."""
+    limits = {LOWEST: measure.lower_limit, HIGHEST: measure.upper_limit}
+    return tuple(end for end, limit in limits.items() if limit is not None)
+
+
+def end_name(measure: str, end: str) -> str:
+    """Name of the grid of an end of a measure's curves."""
+    return f"{measure}:{end}"
 
 
 @dataclass(frozen=True)
 class CurveTally:
     """A curve measure: moments at each position, for both roads, the trials with any position out of limits, spectra.
 
-    A trial counts at every position, or where one of them did not seat at none.
+    A trial counts at every position, or where one of them did not seat at none. `ends` are the samples of the ends that
+    limits judge, `replicates` what is out of limits by replicate, empty for independent trials; both by road.
     """
 
     status: Mapping[str, int]
     analytic: tuple[Moments, ...]
     geometric: tuple[Moments, ...] | None
     limits: Mapping[str, LimitCounts]
+    replicates: Mapping[str, Mapping[int, LimitCounts]]
+    ends: Mapping[str, Mapping[str, Sample]]
     deepest: float
     spectra: Mapping[str, tuple[OrderTally, ...]]
 
     @classmethod
-    def of(cls, statuses: Statuses, measure: Measure, columns: Columns, grids: Mapping[str, Grid]) -> "CurveTally":
-        """Tally of one block of columns; `grids` as grids_of gives them."""
+    def of(
+        cls, statuses: Statuses, measure: Measure, columns: Columns, grids: Mapping[str, Grid], rows: Rows
+    ) -> "CurveTally":
+        """Tally of one block of columns; `grids` as grids_of gives them, `rows` those of each replicate."""
         curves = {
             road: outcome_of(columns, road, measure.name, statuses.lacking)
             for road in ROADS
@@ -41,17 +72,35 @@ class CurveTally:
             for road, own in curves.items()
         }
         lower, upper = in_unit(measure, measure.lower_limit), in_unit(measure, measure.upper_limit)
+        lowest, highest = (
+            {road: Outcome(end(own.values), own.lacking) for road, own in curves.items()} for end in ENDS.values()
+        )
         limits = {
             road: LimitCounts.of_spans(
-                own.values.min(axis=1), own.values.max(axis=1), lower, upper, lacking_of(measure, own)
+                lowest[road].values, highest[road].values, lower, upper, lacking_of(measure, own)
             )
             for road, own in curves.items()
         }
+        replicates = {
+            road: limits_by_replicate(
+                lowest[road].values, highest[road].values, rows, lower, upper, lacking_of(measure, own)
+            )
+            for road, own in curves.items()
+        }
+        ends = {LOWEST: lowest, HIGHEST: highest}
         return cls(
             status_counts(statuses, columns, measure),
             moments[ANALYTIC],
             moments.get(GEOMETRIC),
             limits,
+            replicates,
+            {
+                road: {
+                    end: Sample.of(measure, ends[end][road], grids[end_name(measure.name, end)], rows)
+                    for end in judged_ends(measure)
+                }
+                for road in curves
+            },
             min(own.deepest for own in curves.values()),
             {road: spectrum_tally(measure, own.values, grids) for road, own in curves.items()},
         )
@@ -67,9 +116,29 @@ class CurveTally:
             merged(self.analytic, other.analytic),
             merged(self.geometric, other.geometric) if self.geometric and other.geometric else None,
             {road: counts.merge(other.limits[road]) for road, counts in self.limits.items()},
+            {road: merged_by_replicate(own, other.replicates[road]) for road, own in self.replicates.items()},
+            {
+                road: {end: sample.merge(other.ends[road][end]) for end, sample in own.items()}
+                for road, own in self.ends.items()
+            },
             min(self.deepest, other.deepest),
             {
                 road: tuple(a.merge(b) for a, b in zip(own, other.spectra[road], strict=True))
                 for road, own in self.spectra.items()
             },
         )
+
+    def interval_ppm(self, road: str) -> tuple[float, float] | None:
+        """Bounds [ppm] of the true share of trials with any position out of limits; None of no trials."""
+        limits, replicates = self.limits[road], self.replicates[road]
+        if replicates:
+            return interval_of_replicates([counts.out_of_limits for counts in replicates.values()])
+        return limits.out_of_limits.interval_ppm() if limits.total else None
+
+    def performance(self, measure: Measure, road: str, asked: PpkBy | None) -> Performance:
+        """Ppk by the lowest value of each trial against the lower limit, and by the highest against the upper one."""
+        lower, upper = in_unit(measure, measure.lower_limit), in_unit(measure, measure.upper_limit)
+        sides = {end: sample.side for end, sample in self.ends[road].items()}
+        nothing = Side(Moments(), (), lambda p: None)
+        low, high = (sides.get(end, nothing) for end in ENDS)
+        return Judged(lower, upper, low, high, self.limits[road], self.interval_ppm(road)).performance(asked)

@@ -44,20 +44,17 @@ class Replicated:
     ) -> "Replicated":
         """Of a block of values (trials,), nan where a trial failed; limits and `lacking` as in LimitCounts.of."""
         own = {replicate: values[part] for replicate, part in rows.items()}
-        short = {replicate: None if lacking is None else lacking[part] for replicate, part in rows.items()}
         return cls(
             {replicate: Moments.of(part[~np.isnan(part)]) for replicate, part in own.items()},
-            {replicate: LimitCounts.of(part, lower, upper, short[replicate]) for replicate, part in own.items()},
+            limits_by_replicate(values, values, rows, lower, upper, lacking),
         )
 
     def merge(self, other: "Replicated") -> "Replicated":
         """Both samples as one; a replicate may have begun in one and end in the other."""
-        moments, limits = dict(self.moments), dict(self.limits)
+        moments = dict(self.moments)
         for replicate, found in other.moments.items():
             moments[replicate] = moments[replicate].merge(found) if replicate in moments else found
-        for replicate, counts in other.limits.items():
-            limits[replicate] = limits[replicate].merge(counts) if replicate in limits else counts
-        return Replicated(moments, limits)
+        return Replicated(moments, merged_by_replicate(self.limits, other.limits))
 
     @property
     def mean_se(self) -> float:
@@ -86,6 +83,24 @@ class Replicated:
 
     def _interval_ppm(self, share_of: Callable[[LimitCounts], Proportion]) -> tuple[float, float] | None:
         return interval_of_replicates([share_of(counts) for counts in self.limits.values()])
+
+
+def limits_by_replicate(
+    lowest: Array, highest: Array, rows: Rows, lower: float | None, upper: float | None, lacking: Mask | None = None
+) -> dict[int, LimitCounts]:
+    """Trials out of limits by replicate; arguments as LimitCounts.of_spans has them."""
+    return {
+        replicate: LimitCounts.of_spans(
+            lowest[part], highest[part], lower, upper, None if lacking is None else lacking[part]
+        )
+        for replicate, part in rows.items()
+    }
+
+
+def merged_by_replicate(mine: Mapping[int, LimitCounts], its: Mapping[int, LimitCounts]) -> dict[int, LimitCounts]:
+    """Both; a replicate may have begun in one and end in the other."""
+    both = {key: own.merge(its[key]) if key in its else own for key, own in mine.items()}
+    return both | {key: own for key, own in its.items() if key not in mine}
 
 
 def interval_of_replicates(shares: Sequence[Proportion]) -> tuple[float, float] | None:

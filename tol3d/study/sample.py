@@ -9,15 +9,18 @@ from numpy.typing import NDArray
 
 from tol3d.runs.summary import sample as summary
 from tol3d.runs.summary.values import made
-from tol3d.statistics import CountGrid, Grid, LimitCounts, Moments, equivalent_ppk, pp, ppk
+from tol3d.statistics import CountGrid, Grid, LimitCounts, Moments, pp
+from tol3d.statistics.limits import quantile_pp
+from tol3d.study.performance import OUTER, Judged, Side
 from tol3d.study.replicated import Replicated
+from tol3d.study.study import PpkBy
 from tol3d.system.measure import Measure
 from tol3d.system.outcome import Mask, Outcome
 from tol3d.system.pooled_statistic import Pool
 
 Array = NDArray[np.float64]
 
-QUANTILES = (0.00135, 0.5, 0.99865)
+QUANTILES = (OUTER, 0.5, 1 - OUTER)
 
 
 def in_unit(measure: Measure, value: float | None) -> float | None:
@@ -81,14 +84,20 @@ class Sample:
             self.replicated.merge(other.replicated) if self.replicated and other.replicated else None,
         )
 
+    @property
+    def side(self) -> Side:
+        """Its values, as a limit judges them."""
+        replicates = [*self.replicated.moments.values()] if self.replicated else []
+        return Side(self.moments, replicates, lambda p: quantile(self.moments, self.grid, p))
 
-def sample_summary(measure: Measure, sample: Sample) -> summary.Sample:
-    """A sample as summary.json shows it, in the measure's unit."""
+
+def sample_summary(measure: Measure, sample: Sample, asked: PpkBy | None = None) -> summary.Sample:
+    """A sample as summary.json shows it, in the measure's unit; `asked` is by what Ppk is to be taken."""
     moments, limits = sample.moments, sample.limits
     lower, upper = in_unit(measure, measure.lower_limit), in_unit(measure, measure.upper_limit)
     errors = sample.replicated or _Independent(moments, limits)
-    by_share = limits.failed > 0 and (lower, upper) != (None, None)
-    ppk_found = equivalent_ppk(limits.out_of_limits) if by_share else ppk(lower, upper, moments.mean, moments.sigma)
+    judged = Judged(lower, upper, sample.side, sample.side, limits, errors.out_interval_ppm)
+    performance = judged.performance(asked)
     pooled = {statistic.name: finite(statistic.of(_pool(sample))) for statistic in measure.pooled_statistics}
     low, middle, high = (finite(quantile(moments, sample.grid, p)) for p in QUANTILES)
     return made(
@@ -119,9 +128,12 @@ def sample_summary(measure: Measure, sample: Sample) -> summary.Sample:
         error_by="sample" if sample.replicated is None else "replicates",
         skewness=finite(moments.skewness),
         kurtosis=finite(moments.excess_kurtosis),
-        pp=finite(pp(lower, upper, moments.sigma)),
-        ppk=finite(ppk_found),
-        ppk_by="share out of limits" if by_share else "mean and sigma",
+        pp=finite(
+            quantile_pp(lower, upper, low, high) if performance.by == "quantiles" else pp(lower, upper, moments.sigma)
+        ),
+        ppk=finite(performance.ppk),
+        ppk_by=performance.by,
+        ppk_reason=performance.reason or None,
         pooled=pooled or None,
     )
 

@@ -59,6 +59,7 @@ def study_of(scene: Scene) -> Study:
         ),
         engine=spec.engine,
         witness=spec.witness,
+        ppk_by=spec.ppk_by,
         options=scene.grammar.options_of(scene),
     )
 

@@ -2,11 +2,13 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Any, NamedTuple
+from typing import Any, Literal, NamedTuple
 
 from tol3d.errors import InputError
 from tol3d.samplers.replicates import SamplerKind, balanced_trials, is_power_of_two, uneven
 from tol3d.scene.options import Option
+
+PpkBy = Literal["quantiles", "sigma"]
 
 
 class Until(NamedTuple):
@@ -22,7 +24,8 @@ class Study:
     """How many trials, drawn from which seed and how, by which engine.
 
     With `until` the trials are those at most. `replicates` of a sampler are parts of equal size, each randomised
-    anew. `options` are what the system's vocabulary adds, for its own use.
+    anew. `ppk_by` is by what Ppk is taken; None is as the trials are distributed. `options` are what the system's
+    vocabulary adds, for its own use.
     """
 
     trials: int = 2000
@@ -32,6 +35,7 @@ class Study:
     until: tuple[Until, ...] = ()
     engine: str = "exact"
     witness: int = 0
+    ppk_by: PpkBy | None = None
     options: Mapping[str, Option] = field(default_factory=dict)
 
     def __post_init__(self) -> None:

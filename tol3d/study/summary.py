@@ -22,7 +22,7 @@ from tol3d.study.high_low_mean import high_low_mean_percents
 from tol3d.study.histograms import histograms
 from tol3d.study.joint import joint_summary, uncorrelated
 from tol3d.study.regressors import MOST_REGRESSED
-from tol3d.study.sample import in_unit, listed, sample_summary
+from tol3d.study.sample import finite, in_unit, listed, sample_summary
 from tol3d.study.shares import share_percents
 from tol3d.study.simulation import Simulation
 from tol3d.study.spectrum_tally import spectrum_sample
@@ -86,6 +86,7 @@ def _asked(study: Study) -> StudySummary:
         until=[list(until) for until in study.until],
         engine=study.engine,
         witness=study.witness,
+        ppk_by=study.ppk_by,
     )
 
 
@@ -158,7 +159,7 @@ def _measure(
     simulation: Simulation, road: Road | None, measure: Measure, tally: Tally, explanation: Explanation | None
 ) -> MeasureSummary:
     """A measure: statistics of both roads, contributors, published columns; its kind and no more of its system's."""
-    system, curve = simulation.system, measure.take == "curve"
+    system, curve, asked = simulation.system, measure.take == "curve", simulation.study.ppk_by
     own = None if curve else tally.measures[measure.name]
     found = own if own is not None and own.geometric is not None and own.agreement is not None else None
     return made(
@@ -174,10 +175,10 @@ def _measure(
         reasons=_reasons(measure, tally) or None,
         nominal=_single(simulation, road, measure, nominal_build(system)),
         mean_build=_single(simulation, road, measure, mean_build(system, measure)),
-        analytic=sample_summary(measure, own.analytic) if own else None,
+        analytic=sample_summary(measure, own.analytic, asked) if own else None,
         analytic_closed_form=None if curve else _closed_form(measure, system.closed_form(measure)),
         histogram=histograms(own) if own else None,
-        geometric=sample_summary(measure, found.geometric) if found and found.geometric else None,
+        geometric=sample_summary(measure, found.geometric, asked) if found and found.geometric else None,
         agreement=_agreement(found.agreement, explanation) if found and found.agreement else None,
         position_deg=np.degrees(measure.positions.shown or measure.positions.fixed or ()).tolist() if curve else None,
         curve=_curve(simulation, measure, tally.curves[measure.name]) if curve else None,
@@ -256,7 +257,7 @@ def _high_low_mean(simulation: Simulation, road: Road | None, measure: Measure) 
 
 def _curve(simulation: Simulation, measure: Measure, own: CurveTally) -> CurveRoads:
     def sample(road: str, moments: Sequence[Moments], limits: LimitCounts) -> CurveSample:
-        independent = simulation.study.sampler == "monte_carlo"
+        performance = own.performance(measure, road, simulation.study.ppk_by)
         return made(
             CurveSample,
             mean=[m.mean if m.count else None for m in moments],
@@ -268,7 +269,10 @@ def _curve(simulation: Simulation, measure: Measure, own: CurveTally) -> CurveRo
             above_limit_ppm=limits.above_limit.ppm,
             failed_ppm=limits.failures.ppm,
             out_ppm=limits.out_of_limits.ppm,
-            out_ppm_95=listed(limits.out_of_limits.interval_ppm()) if independent and limits.total else None,
+            out_ppm_95=listed(own.interval_ppm(road)),
+            ppk=finite(performance.ppk),
+            ppk_by=performance.by,
+            ppk_reason=performance.reason or None,
             spectrum=spectrum_sample(measure, own.spectra[road]),
         )
 

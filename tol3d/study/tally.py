@@ -12,7 +12,7 @@ from tol3d.statistics.lazy import quick_products
 from tol3d.statistics.variance_shares import Products, TargetSums, plain_products
 from tol3d.study.agreement.disagreement import Disagreement
 from tol3d.study.breakdowns import merged_terms, pooled_terms
-from tol3d.study.curve_tally import CurveTally
+from tol3d.study.curve_tally import ENDS, CurveTally, end_name, judged_ends
 from tol3d.study.joint import Among, JointTally, limited
 from tol3d.study.regressors import regressors
 from tol3d.study.replicated import rows_of_replicates
@@ -49,13 +49,23 @@ def grids_of(system: System, pilot: Columns) -> Mapping[str, Grid]:
         pilot: columns of the study's first PILOT_TRIALS trials, whatever the number of trials.
     """
     grids = {
-        measure.name: _grid(system, measure, system.closed_form(measure), pilot)
+        measure.name: _grid(measure, system.closed_form(measure), _values(system, measure, pilot))
         for measure in system.measures
         if measure.take != "curve"
     }
     for measure in system.measures:
         grids |= _spectrum_grids(system, measure, pilot)
+        if measure.take == "curve":
+            curves = _values(system, measure, pilot)
+            for end in judged_ends(measure):
+                grids[end_name(measure.name, end)] = _grid(measure, None, [ENDS[end](own) for own in curves])
     return grids
+
+
+def _values(system: System, measure: Measure, pilot: Columns) -> list[Array]:
+    """The pilot's values of a measure by each road that was gone, nan where a trial did not seat."""
+    roads = [road for road in ROADS if value_column(road, measure.name) in pilot]
+    return [outcome_of(pilot, road, measure.name, system.statuses.lacking).values for road in roads]
 
 
 def _spectrum_grids(system: System, measure: Measure, pilot: Columns) -> dict[str, Grid]:
@@ -63,22 +73,21 @@ def _spectrum_grids(system: System, measure: Measure, pilot: Columns) -> dict[st
     spectrum = measure.spectrum
     if spectrum is None or measure.take != "curve":
         return {}
-    roads = [road for road in ROADS if value_column(road, measure.name) in pilot]
-    curves = (outcome_of(pilot, road, measure.name, system.statuses.lacking).values for road in roads)
-    found = [amplitudes for own in curves if len(amplitudes := amplitudes_of(measure, spectrum, own))]
+    found = [
+        amplitudes
+        for own in _values(system, measure, pilot)
+        if len(amplitudes := amplitudes_of(measure, spectrum, own))
+    ]
     reach = np.max([own.mean(axis=0) + GRID_SIGMAS * own.std(axis=0) for own in found], axis=0, initial=0.0)
     spans = np.maximum(np.broadcast_to(reach, len(spectrum.orders)), LEAST_SPAN * measure.per_internal).tolist()
     return {grid_name(measure.name, k): Grid.empty(0.0, span / ORDER_BINS, ORDER_BINS) for k, span in enumerate(spans)}
 
 
-def _grid(system: System, measure: Measure, form: ClosedForm | None, pilot: Columns) -> Grid:
+def _grid(measure: Measure, form: ClosedForm | None, columns: Sequence[Array]) -> Grid:
     if measure.unit in FACTORS["count"]:
         return CountGrid.up_to(MOST_COUNTED)
     spans = [(form.mean * measure.per_internal, form.sigma * measure.per_internal)] if form else []
-    for road in ROADS:
-        if value_column(road, measure.name) not in pilot:
-            continue
-        values = outcome_of(pilot, road, measure.name, system.statuses.lacking).values
+    for values in columns:
         good = values[~np.isnan(values)]
         spans += [(float(good.mean()), float(good.std()))] if len(good) else []
     reach = [max(GRID_SIGMAS * sigma, LEAST_SPAN * measure.per_internal) for _, sigma in spans]
@@ -240,7 +249,7 @@ class Tally:
             counted(statuses, columns.get("status"), trials),
             _unphysical(system, columns),
             tallies,
-            {measure.name: CurveTally.of(statuses, measure, columns, grids) for measure in curves},
+            {measure.name: CurveTally.of(statuses, measure, columns, grids, rows) for measure in curves},
             pooled_terms(system.breakdowns, statuses, columns),
             JointTally.of(system.measures, together, rows, block.products, among),
         )

@@ -48,6 +48,7 @@ class StudySummary(Section):
     )
     engine: Label
     witness: int = Field(ge=0, le=1_000_000)
+    ppk_by: Maybe[Literal["quantiles", "sigma"]] = Field(default=LEFT_OUT, description="by what Ppk was asked for")
 
 
 class Blocks(Section):

@@ -22,6 +22,8 @@ from tol3d.runs.summary.values import (
 )
 from tol3d.strict import refused
 
+PpkBy = Literal["quantiles", "share out of limits", "mean and sigma"]
+
 
 class Roads(Section):
     """A value of both roads of one build; of a curve at each position; null where it does not seat."""
@@ -66,7 +68,8 @@ class Sample(LimitShares):
     kurtosis: Known = Field(description="excess kurtosis")
     pp: Known
     ppk: Known
-    ppk_by: Literal["share out of limits", "mean and sigma"]
+    ppk_by: PpkBy
+    ppk_reason: Maybe[Label] = Field(default=LEFT_OUT, description="why by that; mean and sigma need no reason")
     pooled: Maybe[Mapping[Label, Known]] = Field(
         default=LEFT_OUT, description="statistics that the measure names besides, in its unit"
     )
@@ -118,6 +121,9 @@ class CurveSample(LimitShares):
     sigma: KnownNumbers
     min: KnownNumbers
     max: KnownNumbers
+    ppk: Maybe[Known] = Field(default=LEFT_OUT, description="of the lowest and the highest value of each trial")
+    ppk_by: Maybe[PpkBy] = LEFT_OUT
+    ppk_reason: Maybe[Label] = LEFT_OUT
     spectrum: Maybe[SpectrumSample] = LEFT_OUT
 
 

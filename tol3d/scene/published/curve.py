@@ -4,7 +4,7 @@ from typing import Self
 
 from pydantic import Field, model_validator
 
-from tol3d.scene.published.figures import Count, Counts, Figures, Ppm, PpmRange, Quantities
+from tol3d.scene.published.figures import Count, Counts, Figure, Figures, Ppm, PpmRange, Quantities
 from tol3d.strict import Strict, refused
 from tol3d.units import Quantity
 
@@ -57,6 +57,7 @@ class PublishedCurve(Strict):
     failed_ppm: Ppm | None = None
     out_ppm: Ppm | None = None
     out_ppm_95: PpmRange | None = Field(default=None, description="bounds of the true share, 95 % confidence [ppm]")
+    ppk: Figure | None = Field(default=None, description="Ppk")
     spectrum: PublishedSpectrum | None = None
 
     @property

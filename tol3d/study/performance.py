@@ -1,0 +1,128 @@
+"""Ppk of a measure: by quantiles, by the share out of limits, or by mean and sigma, and the reason for it."""
+
+import math
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from typing import Final, Literal
+
+import numpy as np
+
+from tol3d.statistics import LimitCounts, Moments, equivalent_ppk
+from tol3d.statistics.limits import normal_share, quantile_ppk
+from tol3d.statistics.moments import kurtosis_se, skewness_se
+from tol3d.study.study import PpkBy
+
+By = Literal["quantiles", "share out of limits", "mean and sigma"]
+
+OUTER: Final = 0.00135  # beyond each outer quantile of ISO 22514-2
+NOT_NORMAL: Final = 0.2  # of skewness or excess kurtosis; less moves a Ppk of 1 by a tenth at most
+SURE: Final = 5.0  # standard errors of a normal law's; by chance once in two million
+FEWEST: Final = math.ceil(1 / OUTER)  # trials; of fewer less than one lies beyond an outer quantile
+
+
+@dataclass(frozen=True)
+class Side:
+    """Values that a limit judges: all of a measure, or of curves the lowest or the highest of each.
+
+    Args:
+        moments: of the trials that have a value.
+        replicates: the same of each replicate; empty for independent trials.
+        quantile: the value below which a share of them lies; None where it is not known.
+    """
+
+    moments: Moments
+    replicates: Sequence[Moments]
+    quantile: Callable[[float], float | None]
+
+    @property
+    def not_normal(self) -> str:
+        """Skewness or excess kurtosis where it is none of a normal law's, beyond chance; else nothing.
+
+        The error is that of as many independent trials of a normal law. Replicates may vary more, their spread counts
+        then.
+        """
+        own, count = self.moments, self.moments.count
+        parts = ([each.skewness for each in self.replicates], [each.excess_kurtosis for each in self.replicates])
+        errors = (_larger(skewness_se(count), parts[0]), _larger(kurtosis_se(count), parts[1]))
+        values = {"skewness": own.skewness, "excess kurtosis": own.excess_kurtosis}
+        for (word, value), error in zip(values.items(), errors, strict=True):
+            if abs(value) > max(NOT_NORMAL, SURE * error):
+                return f"{word} {value:.2f}"
+        return ""
+
+    def pair(self, first: float, second: float) -> tuple[float, float] | None:
+        """Two quantiles; None where one is not known or trials are too few for it."""
+        low, high = self.quantile(first), self.quantile(second)
+        return None if self.moments.count < FEWEST or low is None or high is None else (low, high)
+
+
+def _larger(error: float, replicates: Sequence[float]) -> float:
+    """The larger of an error and that by the spread of replicates."""
+    spread = float(np.std(replicates, ddof=1)) / math.sqrt(len(replicates)) if len(replicates) > 1 else 0.0
+    return max(error, spread if math.isfinite(spread) else 0.0)
+
+
+@dataclass(frozen=True)
+class Performance:
+    """A Ppk, by which rule it was found, and why by that one; None where trials cannot say."""
+
+    ppk: float | None
+    by: By
+    reason: str
+
+
+@dataclass(frozen=True)
+class Judged:
+    """Limits of a measure, and what its trials say of them.
+
+    Args:
+        lower, upper: the limits; None for none.
+        low, high: values that the one and the other judges.
+        counts: of all trials.
+        interval: bounds of the true share out of limits [ppm]; None where it is not known.
+    """
+
+    lower: float | None
+    upper: float | None
+    low: Side
+    high: Side
+    counts: LimitCounts
+    interval: tuple[float, float] | None
+
+    def performance(self, asked: PpkBy | None) -> Performance:
+        """By the share out of limits where any build failed, else as asked, else as the trials are distributed.
+
+        Mean and sigma are of a normal law. By quantiles it is taken where a skewness or kurtosis is not one's, and
+        where a normal law would have a share out that the trials refute, so that Ppk and verdict do not contradict
+        each other.
+        """
+        if (self.lower, self.upper) == (None, None):
+            return Performance(None, "mean and sigma", "")
+        if self.counts.failed:
+            return Performance(
+                equivalent_ppk(self.counts.out_of_limits), "share out of limits", f"{self.counts.failed} failed"
+            )
+        reason = "as asked" if asked else next(self._reasons_against_normal(), "")
+        if asked == "sigma" or not reason:
+            indices = [margin / (3 * side.moments.sigma) for side, margin in self._sides if side.moments.sigma > 0.0]
+            return Performance(min(indices, default=None), "mean and sigma", reason)
+        found = quantile_ppk(self.lower, self.upper, self.low.pair(OUTER, 0.5), self.high.pair(0.5, 1 - OUTER))
+        few = any(side.moments.count < FEWEST for side, _ in self._sides)
+        return Performance(found, "quantiles", f"{reason}; under {FEWEST} trials" if few else reason)
+
+    @property
+    def _sides(self) -> list[tuple[Side, float]]:
+        """The values that each limit judges, and how far it lies from their mean."""
+        found = []
+        if self.lower is not None:
+            found.append((self.low, self.low.moments.mean - self.lower))
+        if self.upper is not None:
+            found.append((self.high, self.upper - self.high.moments.mean))
+        return found
+
+    def _reasons_against_normal(self) -> Iterator[str]:
+        yield from (words for side, _ in self._sides if (words := side.not_normal))
+        shares = [normal_share(margin, side.moments.sigma) for side, margin in self._sides if side.moments.sigma > 0.0]
+        out = 1e6 * sum(shares)
+        if shares and self.interval and not self.interval[0] <= out <= self.interval[1]:
+            yield f"a normal law would have {out / 1e4:.3g} % out"
