@@ -112,7 +112,7 @@ def _notes(found: Found, wish: Wish) -> Iterator[str]:
         number = f"{fallen.count} set{'' if fallen.count == 1 else 's'} of that ratio"
         yield f"left out by {fallen.condition}: {number}; {fallen.nearest}"
     if found.left:
-        yield f"{found.left} further sets have that ratio and room for their planets: --most shows more"
+        yield f"{found.left} further sets of that ratio can be assembled, and are not judged: --most shows more"
 
 
 def _own_notes(own: Candidate) -> Iterator[str]:

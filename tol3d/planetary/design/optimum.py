@@ -14,12 +14,14 @@ from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import minimize
+from scipy.optimize import minimize, minimize_scalar
 
 from tol3d.errors import GeometryError
+from tol3d.planetary.design.adjacency import tip_gap
 from tol3d.planetary.design.basic_rack import BasicRack
-from tol3d.planetary.design.shifted_set import Limits, ShiftedSet
+from tol3d.planetary.design.shifted_set import PLANET_GAP, Limits, Margin, ShiftedSet, least_shift
 from tol3d.planetary.design.torque_balance import Drive, efficiency
+from tol3d.planetary.design.working_mesh import shift_sum
 from tol3d.planetary.tooth_set import ToothSet
 
 Array = NDArray[np.float64]
@@ -38,6 +40,19 @@ class Goal(StrEnum):
     SMALLEST = "smallest"
     FORWARD = "forward"
     BACKWARD = "backward"
+
+
+class LimitsNotKeptError(GeometryError):
+    """No shifts keep the limits.
+
+    Args:
+        margin: the one that fails in the nearest try.
+        words: the message.
+    """
+
+    def __init__(self, margin: Margin, words: str) -> None:
+        super().__init__(words)
+        self.margin = margin
 
 
 @dataclass(frozen=True)
@@ -88,6 +103,32 @@ class Task:
             raise GeometryError(self._unreachable("one centre distance", low, high))
         return low, high
 
+    @property
+    def widest_gap(self) -> Margin:
+        """The most room that the limits of profile shifts leave between the tips of neighbouring planets.
+
+        Tips are lowest at the least shift without undercut with which that of the sun is within its limit, a convex
+        function of the centre distance: the gap is concave, so that its maximum is found.
+
+        Raises:
+            GeometryError: no distance, or not the stated one, suits all meshes.
+        """
+        low, high = self.distances
+        gaps = [self._gap(low), self._gap(high)]
+        if low < high:
+            gaps.append(-float(minimize_scalar(lambda a: -self._gap(a), bounds=(low, high), method="bounded").fun))
+        return Margin(PLANET_GAP, max(gaps), self.limits.planet_gap, "mm")
+
+    def _gap(self, distance: float) -> float:
+        """Between tips that are as low as can be [mm], at a centre distance [modules]."""
+        m, most = self.rack.module, self.limits.shift
+        shifts = [max(-most, least_shift(count, self.rack)) for count in self.teeth.steps]
+        for mesh in self.teeth.meshes:
+            if not mesh.internal:
+                shifts[mesh.step] = max(shifts[mesh.step], shift_sum(mesh, self.rack, distance * m) - most)
+        tips = [count / 2 + self.rack.addendum + x for count, x in zip(self.teeth.steps, shifts, strict=True)]
+        return tip_gap(distance * m, self.planets, max(tips) * m)
+
     def _unreachable(self, what: str, low: float, high: float) -> str:
         m, sums = self.rack.module, ", ".join(str(mesh.tooth_sum) for mesh in self.teeth.meshes)
         return (
@@ -101,8 +142,12 @@ def best_shifts(task: Task, goal: Goal) -> ShiftedSet:
     """The set with its shifts.
 
     Raises:
-        GeometryError: no shifts were found that keep the limits; with the margin that fails in the nearest try.
+        GeometryError: no centre distance suits all meshes.
+        LimitsNotKeptError: no shifts were found that keep the limits.
     """
+    widest = task.widest_gap
+    if widest.kept < -KEPT:
+        raise LimitsNotKeptError(widest, f"{widest.words}, and no profile shifts give more")
     smallest = _smallest(task)
     if goal is Goal.SMALLEST:
         return task.shifted(smallest)
@@ -130,7 +175,8 @@ def _smallest(task: Task) -> Array:
         tries.append(values)
     nearest = task.shifted(max(tries, key=lambda values: _kept(task, values)))
     worst = nearest.worst(task.limits, task.planets)
-    raise GeometryError(f"no profile shifts were found that keep the limits; the nearest fail by {worst.words}")
+    words = f"no profile shifts were found that keep the limits; the nearest fail by {worst.words}"
+    raise LimitsNotKeptError(worst, words)
 
 
 def _starts(task: Task) -> Iterator[Array]:

@@ -5,12 +5,11 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 
 from tol3d.errors import GeometryError
-from tol3d.planetary.design.adjacency import tip_gap
 from tol3d.planetary.design.basic_rack import BasicRack
 from tol3d.planetary.design.families import Family, Teeth
 from tol3d.planetary.design.made_gears import refuse_interference
-from tol3d.planetary.design.optimum import Goal, Task, best_shifts
-from tol3d.planetary.design.shifted_set import Limits, ShiftedSet, step_name
+from tol3d.planetary.design.optimum import Goal, LimitsNotKeptError, Task, best_shifts
+from tol3d.planetary.design.shifted_set import PLANET_GAP, Limits, ShiftedSet, step_name
 from tol3d.planetary.tooth_set import ToothSet
 
 
@@ -109,9 +108,9 @@ def find(wish: Wish, most: int = 10) -> Found:
     if not with_ratio:
         raise GeometryError(_no_ratio(wish, nearest))
     assembled, not_assembled = _assembled(wish, with_ratio)
-    apart, touching = _apart(wish, assembled)
-    ordered = sorted(apart, key=lambda own: (round(abs(_ratio(wish, own) - wish.ratio), 9), _size(own)))
+    ordered = sorted(assembled, key=lambda own: (round(abs(_ratio(wish, own) - wish.ratio), 9), _size(own)))
     candidates: list[Candidate] = []
+    touching: list[tuple[float, str]] = []
     failed: list[str] = []
     for teeth in ordered:
         if len(candidates) == most:
@@ -120,14 +119,19 @@ def find(wish: Wish, most: int = 10) -> Found:
             own = best_shifts(wish.task(teeth), wish.goal)
             refuse_interference(own)
         except GeometryError as error:
-            failed.append(f"{teeth_text(teeth)}: {error}")
+            words = f"{teeth_text(teeth)}: {error}"
+            if isinstance(error, LimitsNotKeptError) and error.margin.what == PLANET_GAP:
+                touching.append((-error.margin.kept, words))
+            else:
+                failed.append(words)
             continue
         candidates.append(Candidate(own, wish.task(teeth)))
+    adjacent = (Fallen("adjacency", len(touching), min(touching)[1]),) if touching else ()
     interfering = (Fallen("limits of the teeth", len(failed), failed[0]),) if failed else ()
-    fallen = (*not_assembled, *touching, *interfering)
+    fallen = (*not_assembled, *adjacent, *interfering)
     if not candidates:
         raise GeometryError(_none_left(wish, len(with_ratio), fallen))
-    return Found(tuple(candidates), fallen, len(ordered) - len(candidates) - len(failed))
+    return Found(tuple(candidates), fallen, len(ordered) - len(candidates) - len(touching) - len(failed))
 
 
 def teeth_text(teeth: ToothSet) -> str:
@@ -167,28 +171,6 @@ def _assembled(wish: Wish, sets: Iterable[ToothSet]) -> tuple[list[ToothSet], tu
         else:
             kept.append(teeth)
     return kept, (Fallen("assembly", len(failed), failed[0]),) if failed else ()
-
-
-def _apart(wish: Wish, sets: Iterable[ToothSet]) -> tuple[list[ToothSet], tuple[Fallen, ...]]:
-    """By the tips of gears without shift, at the mean of the meshes' reference centre distances or the stated one."""
-    kept, failed = list[ToothSet](), list[tuple[float, str]]()
-    for teeth in sets:
-        sums = [mesh.tooth_sum for mesh in teeth.meshes]
-        distance = wish.centre_distance or wish.rack.module * sum(sums) / len(sums) / 2
-        tip = wish.rack.module * (max(teeth.steps) / 2 + wish.rack.addendum)
-        gap = tip_gap(distance, wish.planets, tip)
-        if gap >= wish.limits.planet_gap:
-            kept.append(teeth)
-            continue
-        state = f"{gap:.3f} mm apart" if gap >= 0 else f"overlap by {-gap:.3f} mm"
-        failed.append(
-            (
-                -gap,
-                f"{teeth_text(teeth)}: tips of neighbouring planets {state} at a centre distance of {distance:g} mm, "
-                f"{wish.limits.planet_gap:g} mm needed",
-            )
-        )
-    return kept, (Fallen("adjacency", len(failed), min(failed)[1]),) if failed else ()
 
 
 def _no_ratio(wish: Wish, nearest: ToothSet | None) -> str:

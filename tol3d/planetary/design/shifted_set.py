@@ -14,6 +14,7 @@ from tol3d.planetary.design.working_mesh import WorkingMesh, shift_sum
 from tol3d.planetary.tooth_set import ToothSet
 
 APART = 1e-3  # modules; a micrometre of a module of 1 mm, so that nothing touches by rounding alone
+PLANET_GAP = "gap between the tips of neighbouring planets"
 NO_CONTACT = 1.0  # rad; a margin that stands for tips whose circles do not cross
 
 
@@ -108,7 +109,7 @@ class ShiftedSet:
     def margins(self, limits: Limits, planets: int) -> tuple[Margin, ...]:
         """All that limits hold, lengths of teeth in modules."""
         gap = min(self.planet_gap(planets), 2 * self.centre_distance)
-        between = Margin("gap between the tips of neighbouring planets", gap, limits.planet_gap, "mm")
+        between = Margin(PLANET_GAP, gap, limits.planet_gap, "mm")
         return (*self._shift_margins(limits), *self._undercut_margins(), *self._mesh_margins(limits), between)
 
     def _shift_margins(self, limits: Limits) -> Iterator[Margin]:
@@ -122,7 +123,7 @@ class ShiftedSet:
         teeth = {own.central: own.teeth for own in self.teeth.meshes if not own.internal}
         teeth |= {step_name(self.teeth, k): count for k, count in enumerate(self.teeth.steps)}
         for name, count in teeth.items():
-            least = RACK_ADDENDUM - count * math.sin(self.rack.pressure_angle) ** 2 / 2
+            least = least_shift(count, self.rack)
             yield Margin(f"profile shift of {name}, for no undercut", shifts[name], least, "")
 
     def _mesh_margins(self, limits: Limits) -> Iterator[Margin]:
@@ -150,6 +151,11 @@ class ShiftedSet:
     def worst(self, limits: Limits, planets: int) -> Margin:
         """The margin kept least."""
         return min(self.margins(limits, planets), key=lambda own: own.kept)
+
+
+def least_shift(teeth: int, rack: BasicRack) -> float:
+    """x without undercut [modules]: 1 - z sin^2(alpha)/2 of teeth on the outside."""
+    return RACK_ADDENDUM - teeth * math.sin(rack.pressure_angle) ** 2 / 2
 
 
 def step_name(teeth: ToothSet, step: int) -> str:
