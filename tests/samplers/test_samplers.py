@@ -38,6 +38,7 @@ from tol3d.study.columns import columns_of
 from tol3d.study.draws import drawn
 from tol3d.study.findings import findings
 from tol3d.study.replicated import Replicated, rows_of_replicates
+from tol3d.study.sample import mean_interval, sigma_interval
 from tol3d.study.simulation import Simulation
 from tol3d.study.tally import PILOT_TRIALS, Tally, grids_of
 from tol3d.system.outcome import Columns
@@ -285,15 +286,78 @@ def test_replicates_that_blocks_cut_are_put_together_again(tmp_path: Path) -> No
     assert whole.limits == cut.limits
 
 
-def test_a_share_beyond_a_limit_has_students_interval_or_none() -> None:
+def test_a_share_beyond_a_limit_has_students_interval() -> None:
     generator = np.random.default_rng(2)
     values, rows = generator.normal(size=1600), {k: slice(100 * k, 100 * k + 100) for k in range(16)}
     shares = 1e6 * (values.reshape(16, 100) < -1.0).mean(axis=1)
     expected = scipy.stats.t.interval(0.95, 15, loc=shares.mean(), scale=shares.std(ddof=1) / 4)
-    replicated = Replicated.of(values, rows, -1.0, 2.5)
-    assert replicated.below_interval_ppm == pytest.approx(expected)
-    assert np.count_nonzero(values > 2.5) < 5 * 16
-    assert replicated.above_interval_ppm is None
+    assert Replicated.of(values, rows, -1.0, None).below_interval_ppm == pytest.approx(expected)
+
+
+def test_a_share_of_few_trials_has_the_wider_of_students_and_clopper_and_pearson_s_interval() -> None:
+    """Two trials of 16 replicates of 100; a share that all of them miss is below 4.2 of 1600, less than either."""
+    values, rows = np.zeros(1600), {k: slice(100 * k, 100 * k + 100) for k in range(16)}
+    values[[5, 740]] = 9.0
+    found = Replicated.of(values, rows, None, 2.5).above_interval_ppm
+    alone = scipy.stats.binomtest(2, 1600).proportion_ci(0.95, "exact")
+    assert found == pytest.approx((0.0, 1e6 * alone.high))  # Student's half is 2.131 sqrt(2)/1600: lower end cut at 0
+    mirrored = Replicated.of(values, rows, 2.5, None).below_interval_ppm
+    assert mirrored == pytest.approx((1e6 - 1e6 * alone.high, 1e6))
+
+
+@pytest.mark.parametrize("replicates", [2, 4, 16])
+def test_a_share_that_no_replicate_has_is_bounded_by_cantelli_s_inequality(replicates: int) -> None:
+    """There a count of mean m = n p and variance n/(n - 1) m (1 - p) is 0 in all with a chance of 2.5 % at most."""
+    rows = {k: slice(64 * k, 64 * k + 64) for k in range(replicates)}
+    found = Replicated.of(np.zeros(64 * replicates), rows, None, 2.5).above_interval_ppm
+    assert found is not None
+    assert found[0] == 0.0
+    p = found[1] / 1e6
+    mean, variance = 64 * p, 64 / 63 * 64 * p * (1 - p)
+    assert (variance / (variance + mean**2)) ** replicates == pytest.approx(0.025)
+    assert p > scipy.stats.binomtest(0, 64 * replicates).proportion_ci(0.95, "exact").high
+
+
+def latin(rng: np.random.Generator, sets: int) -> np.ndarray:
+    """Latin hypercubes (sets, 64, 3), written for this test."""
+    cells = np.argsort(rng.random((sets, 3, 64)), axis=2).transpose(0, 2, 1)
+    return (cells + rng.random((sets, 64, 3))) / 64
+
+
+def scrambled_net(rng: np.random.Generator, sets: int) -> np.ndarray:
+    """Sobol' points (sets, 64, 3), scipy's, each set scrambled anew."""
+    seeds = rng.integers(0, 2**31, sets).tolist()
+    return np.stack([scipy.stats.qmc.Sobol(3, scramble=True, rng=seed).random(64) for seed in seeds])
+
+
+def holds(interval: Any, value: float) -> bool:
+    return bool(interval[0] <= value <= interval[1])
+
+
+@pytest.mark.parametrize("points", [latin, pytest.param(scrambled_net, marks=pytest.mark.slow)])
+def test_intervals_of_four_replicates_hold_the_truth_as_often_as_they_say(points: Any) -> None:
+    """A sum of three uniforms: mean 3/2, sigma 1/2, d^3/6 beyond 3 - d; 1.96 errors hold 85.5 % of means.
+
+    Of 300 studies 95 % hold it to 4 standard deviations of a binomial law, 5 %; few trials are beyond 2.94 and 2.4.
+    """
+    studies, replicates = 300, 4
+    sums = points(np.random.default_rng(7), studies * replicates).sum(axis=2).reshape(studies, -1)
+    rows = {k: slice(64 * k, 64 * k + 64) for k in range(replicates)}
+    normal, held = 0, dict.fromkeys(("mean", "sigma", 2.94, 2.4, 2.0), 0)
+    for values in sums:
+        own = Replicated.of(values, rows, None, None)
+        mean, sigma = (of(Moments.of(values), own) for of in (mean_interval, sigma_interval))
+        held["mean"] += holds(mean, 1.5)
+        held["sigma"] += holds(sigma, 0.5)
+        normal += abs(values.mean() - 1.5) <= 1.96 * own.mean_se
+        for limit in (2.94, 2.4, 2.0):
+            interval = Replicated.of(values, rows, None, limit).above_interval_ppm
+            held[limit] += holds(interval, 1e6 * (3 - limit) ** 3 / 6)
+    error = 4 * math.sqrt(0.95 * 0.05 / studies)
+    assert min(held.values()) / studies >= 0.95 - error
+    if points is latin:  # whose replicates' means are near a normal
+        assert held["mean"] / studies <= 0.95 + error
+        assert normal / studies == pytest.approx(0.855, abs=4 * math.sqrt(0.855 * 0.145 / studies))
 
 
 # in a summary and in print ----------------------------------------------------------------------------------------
@@ -329,11 +393,16 @@ def test_a_summary_says_by_what_its_errors_are_known(tmp_path: Path) -> None:
     assert own["error_by"] == "replicates"
     assert own["mean_se"] == pytest.approx(values.mean(axis=1).std(ddof=1) / math.sqrt(8), rel=1e-9)
     assert own["sigma_se"] == pytest.approx(values.std(axis=1, ddof=1).std(ddof=1) / math.sqrt(8), rel=1e-9)
-    assert own["below_limit_ppm_95"] is None  # 5.3 sigma off: no trial is below the limit
+    odds = 0.025 ** (-1 / 8) - 1
+    assert own["below_limit_ppm_95"] == pytest.approx([0.0, 1e6 * odds / (127 + odds)])  # 5.3 sigma off: none is below
+    assert own["mean_95"] == pytest.approx(scipy.stats.t.interval(0.95, 7, own["mean"], own["mean_se"]))
+    low, high = scipy.stats.t.interval(0.95, 7, own["sigma"], own["sigma_se"])
+    assert own["sigma_95"] == pytest.approx([low - own["sigma"] * (1 - math.sqrt(1023 / 1024)), high])
     assert summary["measures"]["normal backlash"]["contributors"][0]["geometric_percent_se"] is None
     text = printed(summary)
     assert "sampling error of 1024 trials of scrambled Sobol' points, by the spread of 8 replicates: mean ±" in text
-    assert "below 15 µm: too few trials on one side of the limit in each replicate" in text
+    assert f"{scipy.stats.t.ppf(0.975, 7) * own['mean_se']:.3f} µm, sigma ±" in text
+    assert "(95 % confidence, Student's t)" in text
     assert json.loads(json.dumps(summary["study"]))["sampler"] == "sobol"
 
 

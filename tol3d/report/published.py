@@ -1,7 +1,7 @@
 """What others published of a measure besides its usual rows: further rows, notes, columns of curves."""
 
 from collections.abc import Iterator, Mapping, Sequence
-from typing import Final
+from typing import Any, Final
 
 from tol3d.report.column import Column
 from tol3d.report.number import (
@@ -71,6 +71,11 @@ def published_rows(measure: MeasureSummary, columns: Sequence[Column], shown: Se
         bounds = [_pair(column.values, f"{key}_95") for column in columns]
         if any(own for own, column in zip(bounds, columns, strict=True) if column.road == "published"):
             yield Row(f"{label}, 95 %", [" to ".join(map(share_text, own)) or NOTHING for own in bounds])
+    for key, label in (("mean_95", "mean, 95 %"), ("sigma_95", "sigma, 95 %")):
+        ranges = [_pair(column.values, key) for column in columns]
+        if any(own for own, column in zip(ranges, columns, strict=True) if column.road == "published"):
+            cells = [" to ".join(value_text(end, measure.unit) for end in own) or NOTHING for own in ranges]
+            yield Row(label, cells, unit=measure.unit)
     for name in dict.fromkeys(name for column in columns for name in _pooled(column)):
         yield Row(
             POOLED.get(name, name),
@@ -91,7 +96,7 @@ def _pooled(column: Column) -> Mapping[str, float | None]:
     return (column.values.get("pooled") if column.values else None) or {}
 
 
-def _pair(values: Section | None, key: str) -> Sequence[float]:
+def _pair(values: Section | None, key: str) -> Sequence[Any]:
     return (values.get(key) if values else None) or ()
 
 

@@ -47,7 +47,6 @@ SHARES_MEAN = (
 MOST_TABLES = 4  # measures whose tables are shown unasked; of 6 they took 288 lines
 MORE_TABLES = "tables of every measure: -v, and how they are correlated"
 SAMPLER_WORDS = {"sobol": "scrambled Sobol' points", "latin_hypercube": "Latin hypercubes"}
-TOO_FEW_TO_BOUND = "too few trials on one side of the limit in each replicate to bound the true share"
 
 
 class Detail(Enum):
@@ -156,10 +155,13 @@ def _sampling_notes(measure: MeasureSummary, own: Sample, run: RunSummary) -> It
     unit = measure.unit
     seated = " that seated" if seated_text(measure) else ""
     if own.mean_se is not None and own.sigma_se is not None:
+        mean, sigma, words = own.mean_se, own.sigma_se, "one standard error"
+        if own.error_by == "replicates" and own.mean_95 and own.sigma_95:  # not in runs made before
+            mean, sigma = (((high or 0.0) - (low or 0.0)) / 2 for low, high in (own.mean_95, own.sigma_95))
+            words = "95 % confidence, Student's t"
         yield (
             f"sampling error of {own.count} trials{seated}{_by_replicates(own, run)}: "
-            f"mean ±{difference_text(own.mean_se, unit)}, "
-            f"sigma ±{difference_text(own.sigma_se, unit)} (one standard error)"
+            f"mean ±{difference_text(mean, unit)}, sigma ±{difference_text(sigma, unit)} ({words})"
         )
     if is_bounded(measure):
         yield "trials end before mean ∓ 3 sigma here: the quantiles say more than low and high"
@@ -168,8 +170,6 @@ def _sampling_notes(measure: MeasureSummary, own: Sample, run: RunSummary) -> It
         if low_high:
             low, high = map(share_text, low_high)
             yield f"{label}: the true share lies between {low} and {high} (95 % confidence)"
-        elif own.error_by == "replicates":
-            yield f"{label}: {TOO_FEW_TO_BOUND}"
 
 
 def _by_replicates(sample: Sample, run: RunSummary) -> str:

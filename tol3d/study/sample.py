@@ -12,7 +12,7 @@ from tol3d.runs.summary.values import made
 from tol3d.statistics import CountGrid, Grid, LimitCounts, Moments, pp
 from tol3d.statistics.limits import quantile_pp
 from tol3d.study.performance import OUTER, Judged, Side
-from tol3d.study.replicated import Replicated
+from tol3d.study.replicated import Replicated, students_half
 from tol3d.study.study import PpkBy
 from tol3d.system.measure import Measure
 from tol3d.system.outcome import Mask, Outcome
@@ -125,6 +125,8 @@ def sample_summary(measure: Measure, sample: Sample, asked: PpkBy | None = None)
         deepest_overlap=finite(sample.deepest),
         mean_se=finite(errors.mean_se),
         sigma_se=finite(errors.sigma_se),
+        mean_95=mean_interval(moments, errors),
+        sigma_95=sigma_interval(moments, errors),
         error_by="sample" if sample.replicated is None else "replicates",
         skewness=finite(moments.skewness),
         kurtosis=finite(moments.excess_kurtosis),
@@ -161,6 +163,10 @@ class _Independent:
         return self.moments.sigma_se
 
     @property
+    def freedom(self) -> int:
+        return self.moments.count - 1
+
+    @property
     def below_interval_ppm(self) -> tuple[float, float] | None:
         return self.limits.below_limit.interval_ppm() if self.limits.total else None
 
@@ -173,10 +179,30 @@ class _Independent:
         return self.limits.out_of_limits.interval_ppm() if self.limits.total else None
 
 
+Errors = Replicated | _Independent
+
+
 def quantile(moments: Moments, grid: Grid, p: float) -> float | None:
     """The grid's quantile of a sample, which lies within a bin, not beyond the sample's own ends."""
     value = grid.quantile(p)
     return None if value is None else min(max(value, moments.minimum), moments.maximum)
+
+
+def mean_interval(moments: Moments, errors: Errors) -> list[float | None]:
+    """Bounds of the true mean, 95 % confidence, by Student's t; null where its error is not known."""
+    half = students_half(errors.mean_se, errors.freedom)
+    return [finite(moments.mean - half), finite(moments.mean + half)]
+
+
+def sigma_interval(moments: Moments, errors: Errors) -> list[float | None]:
+    """Bounds of the true sigma, 95 % confidence, by Student's t; null where its error is not known.
+
+    Of n trials of a net the mean hardly varies, so that the mean square is to be divided by n, not by n - 1 as of
+    independent ones: the lower bound counts from that.
+    """
+    half, own = students_half(errors.sigma_se, errors.freedom), moments.sigma
+    least = own if isinstance(errors, _Independent) else own * math.sqrt(1 - 1 / max(moments.count, 1))
+    return [finite(max(least - half, 0.0)) if math.isfinite(half) else None, finite(own + half)]
 
 
 def finite(value: float | None) -> float | None:

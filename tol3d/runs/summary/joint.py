@@ -25,7 +25,7 @@ class JointYield(Section):
     within: Count
     yield_ppm: Ppm | None = Field(description="share of all trials")
     yield_ppm_95: PpmRange | None = Field(
-        description="bounds of the true share, 95 % confidence; null where replicates are too few to say"
+        description="bounds of the true share, 95 % confidence; null for fewer than two replicates"
     )
 
     @model_validator(mode="after")

@@ -10,6 +10,7 @@ from tol3d.runs.summary.values import (
     Count,
     Known,
     KnownNumbers,
+    KnownRange,
     Label,
     Maybe,
     NotNegative,
@@ -63,6 +64,8 @@ class Sample(LimitShares):
     deepest_overlap: Known
     mean_se: Known = Field(description="standard error of the mean")
     sigma_se: Known
+    mean_95: Maybe[KnownRange] = Field(default=LEFT_OUT, description="bounds of the true mean, 95 %, by Student's t")
+    sigma_95: Maybe[KnownRange] = LEFT_OUT
     error_by: Literal["sample", "replicates"]
     skewness: Known
     kurtosis: Known = Field(description="excess kurtosis")

@@ -39,6 +39,7 @@ Ppm = Annotated[float, Field(ge=0.0, le=1e6 * (1 + 1e-9))]
 PpmRange = Annotated[list[Ppm], Field(min_length=2, max_length=2)]
 Numbers = Annotated[list[Number], Field(max_length=MOST_ENTRIES)]
 KnownNumbers = Annotated[list[Known], Field(max_length=MOST_ENTRIES)]
+KnownRange = Annotated[list[Known], Field(min_length=2, max_length=2)]
 Unit = Literal["um", "mm", "arcmin", "pins"]
 Road = Literal["analytic", "geometric"]
 

@@ -23,6 +23,8 @@ Counts = Annotated[list[Count], Field(min_length=1, max_length=MOST_FIGURES)]
 Figures = Annotated[list[Figure], Field(min_length=1, max_length=MOST_FIGURES)]
 Quantities = Annotated[list[Quantity], Field(min_length=1, max_length=MOST_FIGURES)]
 
+Range = Annotated[list[Quantity], Field(min_length=2, max_length=2)]
+
 
 def _rising(bounds: list[float]) -> list[float]:
     if not bounds[0] <= bounds[1]:

@@ -8,7 +8,7 @@ from pydantic import Field, model_validator
 
 from tol3d.scene.name import Name, Remark
 from tol3d.scene.published.curve import PublishedAgreement, PublishedCurve, PublishedHistogram, refuse_uneven
-from tol3d.scene.published.figures import Count, Figure, Figures, Ppm, PpmRange, PublishedShare, Share
+from tol3d.scene.published.figures import Count, Figure, Figures, Ppm, PpmRange, PublishedShare, Range, Share
 from tol3d.strict import Strict, refused
 from tol3d.units import Quantity
 
@@ -31,6 +31,8 @@ class PublishedMeasure(Strict):
     p99_865: Quantity | None = Field(default=None, alias="p99.865", description="99.865 % quantile")
     mean_se: Quantity | None = Field(default=None, description="standard error of the mean")
     sigma_se: Quantity | None = Field(default=None, description="standard error of sigma")
+    mean_95: Range | None = Field(default=None, description="bounds of the true mean, 95 % confidence")
+    sigma_95: Range | None = None
     contributors: Mapping[Name, Share] = Field(
         default_factory=dict, description="share of each tolerance [% of the variance]"
     )
