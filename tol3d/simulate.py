@@ -64,7 +64,7 @@ trial is a pure function of (system, seed, trial index): `replay` makes any of t
 import platform
 import tempfile
 import warnings
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from contextlib import closing, contextmanager
 from dataclasses import dataclass
 from pathlib import Path
@@ -74,13 +74,13 @@ from tol3d.execution.folding import Plan, StudyOutcome, run_blocks
 from tol3d.execution.pools import ONE_WORKER, Execution, pool_of
 from tol3d.execution.timing import Clock
 from tol3d.execution.watch import UNWATCHED, Watch
-from tol3d.kinds import all_kinds, load_scene
+from tol3d.kinds import all_kinds
 from tol3d.runs.fingerprint import Fingerprint
 from tol3d.runs.full_disk import refusals_explained
-from tol3d.runs.occupant import free_folder
+from tol3d.runs.occupant import free_folder, refuse_changed
 from tol3d.runs.run import Run, whole_run
 from tol3d.runs.writer import RunWriter
-from tol3d.scene import Grammar, Scene, scene_from_python
+from tol3d.scene import Grammar, Scene, read_scene, scene_from_python
 from tol3d.study import replaying
 from tol3d.study.blocks import plan_of
 from tol3d.study.findings import findings
@@ -133,7 +133,8 @@ def run_scene(
         MechanismError: a mechanism of another package is at fault.
     """
     clock = Clock()
-    scene = load(scene, trust_parts=trust_parts, run_builders=run_builders, kinds=kinds)
+    resumed = [Path(out)] if out is not None and execution.resume else []
+    scene = load(scene, trust_parts=trust_parts, run_builders=run_builders, kinds=kinds, resumed=resumed)
     simulation = simulation_of(scene, overrides)
     with faults_of(simulation.mechanism):
         return _run(_order(scene, simulation, execution, out, clock), watch, force=force)
@@ -246,12 +247,29 @@ def _temporary(scene: Scene) -> Path:
 
 
 def load(
-    scene: Scene | Path | str, *, trust_parts: bool = False, run_builders: bool = False, kinds: Grammar | None = None
+    scene: Scene | Path | str,
+    *,
+    trust_parts: bool = False,
+    run_builders: bool = False,
+    kinds: Grammar | None = None,
+    resumed: Iterable[Path] = (),
 ) -> Scene:
-    """A scene from a path or a bundled name, or the scene itself; one made in Python is checked first."""
-    if not isinstance(scene, Scene):
-        return load_scene(scene, kinds, trust_parts=trust_parts, run_builders=run_builders)
-    return scene if scene.text else scene_from_python(scene, trust_parts=trust_parts, run_builders=run_builders)
+    """A scene from a path or a bundled name, or the scene itself; one made in Python is checked first.
+
+    Args:
+        scene: the scene, or where it is.
+        trust_parts, run_builders, kinds: see run_scene.
+        resumed: folders, in one of which a run is to go on; no program is run for one of other files.
+    """
+    if isinstance(scene, Scene):
+        return scene if scene.text else scene_from_python(scene, trust_parts=trust_parts, run_builders=run_builders)
+
+    def examine(found: Scene) -> None:
+        refuse_changed(resumed, text_of(found).sha256, {name: file.sha256 for name, file in found.files.items()})
+
+    grammar = kinds or all_kinds()
+    before_programs = examine if run_builders else None
+    return read_scene(scene, grammar, trust_parts=trust_parts, run_builders=run_builders, examine=before_programs)
 
 
 def replay(run: Run | Path | str, trial: int, kinds: Grammar | None = None) -> Replay:

@@ -1,5 +1,6 @@
 """Scenes whose features are faces of solids: the same numbers as if stated, kept with the run, wrong picks refused."""
 
+import hashlib
 import json
 import subprocess
 import sys
@@ -11,10 +12,13 @@ from fixtures import Command
 
 from tol3d import load_scene
 from tol3d.assembly.grammar.parts import SolidSpec
-from tol3d.errors import RunError, SceneError
+from tol3d.errors import GeometryError, RunError, SceneError
+from tol3d.execution.pools import Execution
+from tol3d.files import FileContent
 from tol3d.runs.run import open_run
 from tol3d.scene import scene_from_python
 from tol3d.simulate import run_scene, simulation_again
+from tol3d.solids.own_program import run_program
 from tol3d.study.overrides import Overrides
 
 BUILDER = """{kind: plate, length: 120 mm, width: 80 mm, thickness: 20 mm, holes: {
@@ -261,11 +265,43 @@ FAILING = {
 
 
 @pytest.mark.parametrize(("program", "message"), FAILING.values(), ids=FAILING.keys())
-def test_a_program_that_fails_is_a_message_with_its_line(program: str, message: str, tmp_path: Path) -> None:
+def test_a_program_that_fails_is_a_message_with_its_line(program: str, message: str) -> None:
+    with pytest.raises(GeometryError) as caught:
+        run_program(
+            FileContent(Path("part.py"), program.encode()), "build", {"length": 120.0, "wall": 20.0, "holes": 1}
+        )
+    assert message in str(caught.value)
+
+
+def test_a_program_that_fails_is_a_message_at_its_place_in_the_scene(tmp_path: Path) -> None:
+    program, message = FAILING["an error"]
     with pytest.raises(SceneError) as caught:
         load_scene(own_scene(tmp_path, program), run_builders=True)
-    assert message in str(caught.value)
-    assert "parts.base.builder" in str(caught.value)
+    assert f"parts.base.builder: {tmp_path / 'part.py'}{message}" in str(caught.value)
+
+
+def test_a_changed_program_is_not_run_where_a_run_should_go_on(tmp_path: Path) -> None:
+    path = own_scene(tmp_path, f"open({str(tmp_path / 'ran')!r}, 'w')\n{PROGRAM}")
+    interrupted = tmp_path / "run.partial"
+    interrupted.mkdir()
+    kept = {"scene": hashlib.sha256(path.read_bytes()).hexdigest(), "files": {"part.py": 64 * "0"}}
+    (interrupted / "fingerprint.json").write_text(json.dumps(kept), "utf-8")
+    with pytest.raises(RunError, match=r"run: nothing to resume, its run is of something else \(files: part\.py 0000"):
+        run_scene(path, out=tmp_path / "run", execution=Execution(resume=True), run_builders=True)
+    assert not (tmp_path / "ran").exists()
+
+
+@pytest.mark.slow
+def test_an_unchanged_program_is_run_again_where_a_run_should_go_on(tmp_path: Path, tol3d: Command) -> None:
+    path = own_scene(tmp_path)
+    words = ("run", str(path), "--trials", "20", "--no-picture", "--run-builders", "--out", str(tmp_path / "run"))
+    assert tol3d(*words)[0] == 0
+    assert tol3d(*words, "--resume")[0] == 0
+    (tmp_path / "part.py").write_text(f"open({str(tmp_path / 'ran')!r}, 'w')\n{PROGRAM}", "utf-8")
+    code, _, err = tol3d(*words, "--resume")
+    assert code == 2
+    assert "nothing to resume, its run is of something else (files: part.py" in err
+    assert not (tmp_path / "ran").exists()
 
 
 def test_a_run_with_other_picks_than_it_kept_is_refused(tmp_path: Path) -> None:

@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 from hostile_folder import hostile, run_from
 
-from tol3d.errors import GeometryError
+from tol3d.errors import GeometryError, InputError
 from tol3d.files import FileContent
 from tol3d.solids import display_mesh, own_program
-from tol3d.solids.kept_shape import KeptShape, run_program
+from tol3d.solids.kept_shape import PATIENCE_VARIABLE, KeptShape, made_here, run_program
 
 PROGRAM = b"""
 import cadquery as cq
@@ -21,9 +21,16 @@ def build(size):
 """
 
 
-@pytest.fixture
+@pytest.fixture(scope="module")
 def cube() -> KeptShape:
-    return run_program(FileContent(Path("cube.py"), PROGRAM), "build", {"size": 20.0})
+    return made(PROGRAM, size=20.0)
+
+
+def made(program: bytes, **dimensions: float) -> KeptShape:
+    """What a program makes in this process, which is quicker."""
+    shape = KeptShape.of(*own_program.run_program(FileContent(Path("cube.py"), program), "build", dimensions))
+    made_here.add(shape.sha256)
+    return shape
 
 
 def test_a_solid_is_read_as_it_was_made_in_another_process_that_runs_nothing_of_the_folder_it_is_in(
@@ -87,6 +94,44 @@ def test_a_stream_of_another_shape_is_refused(monkeypatch: pytest.MonkeyPatch, t
         own_program.read(KeptShape.of(path.read_bytes(), ("top",)))
 
 
+ENDS = {
+    "an exit that nothing can catch": ("import os; os._exit(0)", "it ended its process (exit code 0) before build had"),
+    "a crash": ("import os; os.kill(os.getpid(), 11)", "its process was ended by SIGSEGV before build had returned"),
+    "no end": ("while True: pass", "build made no solid within 0.5 s and was stopped; TOL3D_BUILDER_SECONDS=5 would"),
+}
+
+
+@pytest.mark.parametrize(
+    ("does", "message"),
+    [pytest.param(*own, id=name, marks=[pytest.mark.slow] * (name == "a crash")) for name, own in ENDS.items()],
+)
+def test_a_program_that_ends_its_process_or_never_ends_is_a_message(
+    does: str, message: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv(PATIENCE_VARIABLE, "0.5" if "while" in does else "60")
+    with pytest.raises(GeometryError) as caught:
+        run_program(FileContent(Path("own.py"), does.encode()), "build", {})
+    assert str(caught.value).startswith(f"own.py: {message}")
+
+
+@pytest.mark.slow
+def test_what_a_program_makes_in_its_process_is_what_it_makes_in_this_one(
+    cube: KeptShape, capfd: pytest.CaptureFixture[str]
+) -> None:
+    printing = b"print('hello')" + PROGRAM
+    assert run_program(FileContent(Path("cube.py"), printing), "build", {"size": 20.0}) == cube
+    assert capfd.readouterr() == ("", "hello\n")
+
+
+@pytest.mark.parametrize("text", ["long", "0", "inf", "nan"])
+def test_a_time_that_is_no_number_of_seconds_is_refused(text: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv(PATIENCE_VARIABLE, text)
+    with pytest.raises(
+        InputError, match=f"{PATIENCE_VARIABLE}: expected a number of seconds, such as 300, got '{text}'"
+    ):
+        run_program(FileContent(Path("cube.py"), PROGRAM), "build", {"size": 20.0})
+
+
 DISC = b"""
 import cadquery as cq
 
@@ -97,7 +142,7 @@ def build(radius, height):
 
 @pytest.mark.parametrize("deflection", [0.5, 0.1, 0.02])
 def test_the_chord_error_counts_what_a_thin_edge_lacks(deflection: float) -> None:
-    disc = run_program(FileContent(Path("disc.py"), DISC), "build", {"radius": 20.0, "height": 0.7})
+    disc = made(DISC, radius=20.0, height=0.7)
     mesh = display_mesh(disc, deflection)
     rim = mesh.vertices[np.abs(mesh.vertices[:, 2]) < 1e-9]
     angles = np.sort(np.arctan2(rim[:, 1], rim[:, 0])[np.linalg.norm(rim[:, :2], axis=1) > 19.999])

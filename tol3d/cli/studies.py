@@ -79,12 +79,15 @@ def run(
     from tol3d.execution.pools import Execution
     from tol3d.report.table import Detail, run_report
     from tol3d.report.verdict import ACCEPTED_PPM, all_ok
+    from tol3d.runs.occupant import numbered
     from tol3d.simulate import Overrides, folder_for, load, run_scene, simulation_of, workers_for
     from tol3d.system.faults import faults_of
 
     path = scene_path(scene)
     overrides = Overrides(trials, seed, engine, sampler.value if sampler else None, witness)
-    loaded = load(path, trust_parts=trust_parts, run_builders=run_builders)
+    by_default = Path("runs") / path.stem
+    resumed = ([out] if out else numbered(by_default)) if resume else ()
+    loaded = load(path, trust_parts=trust_parts, run_builders=run_builders, resumed=resumed)
     simulation = simulation_of(loaded, overrides)
     with faults_of(simulation.mechanism):
         for warning in simulation.warnings:
@@ -93,7 +96,7 @@ def run(
             err_console.print(notice)
         workers = workers or workers_for(simulation)
     execution = Execution(workers, scheduler, keep_trials=not no_trials, resume=resume)
-    folder, taken = out or Path("runs") / path.stem, ""
+    folder, taken = out or by_default, ""
     if out is None and not force:
         folder, taken = folder_for(loaded, simulation, execution, Path("runs"))
     if taken:

@@ -6,11 +6,12 @@ else it moves aside whole, to the first free of `<name>.1`, `<name>.2` ...
 """
 
 import itertools
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
 from tol3d.errors import RunError
-from tol3d.runs.fingerprint import Fingerprint, another_study, interrupted
+from tol3d.runs.fingerprint import Fingerprint, another_study, differences, interrupted
 from tol3d.runs.run import Run, partial_of, read_run, tidy_after_kill
 from tol3d.runs.summary.kinds import SummaryKinds
 
@@ -90,8 +91,7 @@ def free_folder(
         the folder, and what is in the wanted one where it is another.
     """
     taken = ""
-    for number in itertools.count(1):
-        path = wanted if number == 1 else wanted.with_name(f"{wanted.name}-{number}")
+    for path in numbered(wanted):
         reason = _taken(path, fingerprint, kinds, resume=resume)
         if reason is None:
             return (path, taken)
@@ -99,6 +99,49 @@ def free_folder(
             return (wanted, "") if resume else (path, taken)
         taken = taken or f"{path} {reason}"
     raise AssertionError("numbers do not end")
+
+
+def numbered(wanted: Path) -> Iterator[Path]:
+    """Where runs of a scene go by default: its folder, then `<name>-2`, `<name>-3` ..."""
+    yield wanted
+    yield from (wanted.with_name(f"{wanted.name}-{number}") for number in itertools.count(2))
+
+
+def refuse_changed(folders: Iterable[Path], scene: str, files: Mapping[str, str]) -> None:
+    """Raise where the first of the folders have runs, and none of them is of this scene and these files.
+
+    Args:
+        folders: where a run may go on.
+        scene: SHA-256 of its text.
+        files: SHA-256 of the files that it names; what else a run keeps is not looked at.
+
+    Raises:
+        RunError: in what the first run differs.
+    """
+    reasons = []
+    for path in folders:
+        try:
+            there = _begun_or_finished(path)
+        except RunError as error:
+            reasons.append(str(error))
+            continue
+        if not there:
+            break
+        kept = {"scene": there.get("scene"), "files": {name: (there.get("files") or {}).get(name) for name in files}}
+        others = differences(kept, {"scene": scene, "files": files})
+        if not others:
+            return
+        words = f"{path}: nothing to resume, its run is of something else ({'; '.join(others)})"
+        reasons.append(f"{words}; choose another --out, or --force without --resume")
+    if reasons:
+        raise RunError(reasons[0])
+
+
+def _begun_or_finished(path: Path) -> Fingerprint:
+    """The fingerprint of the run that a folder has, interrupted or not; empty where it has none."""
+    if (partial := partial_of(path)).exists():
+        return interrupted(partial) or {}
+    return read_run(path).fingerprint if path.exists() else {}
 
 
 def _taken(path: Path, fingerprint: Fingerprint, kinds: SummaryKinds | None, *, resume: bool) -> str | None:

@@ -1,5 +1,6 @@
 """From a scene's file to a checked Scene."""
 
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
@@ -16,6 +17,8 @@ from tol3d.scene.schema import Scene
 from tol3d.scene.settling import is_settled, settled
 from tol3d.scene.text import read_scene_text
 
+Examine = Callable[[Scene], None]
+
 
 def read_scene(
     path: Path | str,
@@ -25,6 +28,7 @@ def read_scene(
     run_builders: bool = False,
     files: Files | None = None,
     settle: bool = True,
+    examine: Examine | None = None,
 ) -> Scene:
     """Read a scene and the files that it names.
 
@@ -38,6 +42,7 @@ def read_scene(
         run_builders: whether programs that it names as builders of its parts may be run.
         files: the contents of the files that it names, where they are known; none is read then, and nothing built.
         settle: False leaves open what solids decide, for those that only list scenes.
+        examine: is shown the scene with its files before anything is built, or any program run; it may raise.
 
     Raises:
         SceneError: one or several messages `file:line: place: what was expected, what came`.
@@ -47,7 +52,10 @@ def read_scene(
         scene = grammar.scene.model_validate(data, context=origin)
     except ValidationError as error:
         raise SceneError(*messages(error, data, origin, grammar)) from None
-    return _with_files(scene, origin, files, trust_parts=trust_parts, run_builders=run_builders, settle=settle)
+    scene = _with_files(scene, origin, files, trust_parts=trust_parts)
+    if examine is not None:
+        examine(scene)
+    return _settled(scene, files, run_builders=run_builders) if settle else scene
 
 
 def scene_from_python(scene: Scene, *, trust_parts: bool = False, run_builders: bool = False) -> Scene:
@@ -58,22 +66,22 @@ def scene_from_python(scene: Scene, *, trust_parts: bool = False, run_builders: 
     """
     text = scene.model_dump_json(indent=1, exclude_unset=True, by_alias=True) + "\n"
     source = scene.source if scene.source != Origin().source else Path("scene.yaml")
-    origin = Origin(source, text)
-    return _with_files(scene, origin, None, trust_parts=trust_parts, run_builders=run_builders, settle=True)
+    scene = _with_files(scene, Origin(source, text), None, trust_parts=trust_parts)
+    return _settled(scene, None, run_builders=run_builders)
 
 
-def _with_files(
-    scene: Scene, origin: Origin, known: Files | None, *, trust_parts: bool, run_builders: bool, settle: bool
-) -> Scene:
+def _with_files(scene: Scene, origin: Origin, known: Files | None, *, trust_parts: bool) -> Scene:
     scene = scene.read_from(origin)
-    open_ends = not is_settled(scene)
-    problems = bad_names(scene) if open_ends else loose_ends(scene)
+    problems = loose_ends(scene) if is_settled(scene) else bad_names(scene)
     refuse(scene, problems if known is not None else [*problems, *unreadable_files(scene, trust_parts)])
     files = known
     if files is None:
         files = {name: read_file(scene.folder / name) for name in scene.file_names}
-    scene = scene.read_from(replace(origin, files=files))
-    if open_ends and settle:
+    return scene.read_from(replace(origin, files=files))
+
+
+def _settled(scene: Scene, known: Files | None, *, run_builders: bool) -> Scene:
+    if not is_settled(scene):
         scene = settled(scene, run_builders=run_builders, known=known)
         refuse(scene, loose_ends(scene))
     return scene

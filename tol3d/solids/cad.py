@@ -6,7 +6,7 @@ A kind of gear registers here what its own file does; a BuiltShape, of whatever 
 import importlib
 import itertools
 import os
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from functools import singledispatch
 from pathlib import Path
 
@@ -16,11 +16,10 @@ from numpy.typing import NDArray
 from OCP.gp import gp_Trsf
 
 from tol3d.errors import unwritable
-from tol3d.files import FileContent
 from tol3d.gears import BevelGear, Gear, InternalGear, SpurGear
 from tol3d.parts import arm, bevel_gear, shaft
 from tol3d.parts.named_solid import NamedSolid, refuse_cut_step
-from tol3d.solids import bevel_cad, body_cad, own_program, picking, spur_cad, swept_cad
+from tol3d.solids import bevel_cad, body_cad, picking, spur_cad, swept_cad
 from tol3d.solids.bodies import ArmBody, Body, ShaftBody
 from tol3d.solids.built_shape import BuiltShape, SweptShape
 from tol3d.solids.lazy import Arrays
@@ -100,11 +99,6 @@ def box_around(shape: BuiltShape) -> tuple[list[float], list[float]]:
     """See tol3d.solids.bounding_box."""
     box = solid_of(shape).solid.BoundingBox()
     return [box.xmin, box.ymin, box.zmin], [box.xmax, box.ymax, box.zmax]
-
-
-def run_program(file: FileContent, function: str, dimensions: Mapping[str, float]) -> tuple[bytes, tuple[str, ...]]:
-    """See tol3d.solids.kept_shape.run_program."""
-    return own_program.run_program(file, function, dimensions)
 
 
 def write_step(parts: Sequence[PosedPart], path: Path, colours: Sequence[str]) -> None:

@@ -1,14 +1,13 @@
 """Lazy import of CadQuery: it costs seconds, so it is loaded only when a solid must be built."""
 
 import importlib
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Protocol, cast
 
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.files import FileContent
 from tol3d.gears import Gear
 from tol3d.solids.bodies import Body
 from tol3d.solids.built_shape import BuiltShape
@@ -43,12 +42,6 @@ class Cad(Protocol):
 
     def box_around(self, shape: BuiltShape) -> tuple[list[float], list[float]]:
         """Lowest and highest x, y, z of a solid."""
-        ...
-
-    def run_program(
-        self, file: FileContent, function: str, dimensions: Mapping[str, float]
-    ) -> tuple[bytes, tuple[str, ...]]:
-        """What a builder of the user makes: the solid as OCC writes it, names of its faces."""
         ...
 
     def write_step(self, parts: Sequence[PosedPart], path: Path, colours: Sequence[str]) -> None:

@@ -1,7 +1,10 @@
 """Builders of the user: programs that make the solid of a part, and what they made read again."""
 
-import hashlib
 import io
+import json
+import os
+import pickle
+import signal
 import subprocess
 import sys
 import traceback
@@ -13,14 +16,33 @@ import cadquery as cq
 from tol3d.errors import GeometryError
 from tol3d.files import FileContent
 from tol3d.parts.named_solid import NamedSolid
-from tol3d.solids.kept_shape import KeptShape
+from tol3d.solids.kept_shape import KeptShape, made_here
 
 DAMAGED: Final = "the solid that was kept is damaged"
 PATIENCE: Final = 120.0
 """s: in which what was kept is read by a process of its own."""
 
-made_here: set[str] = set()
-"""SHA-256 of solids that were made or tried by this process, and need not be tried again."""
+
+def main(answer: int) -> None:
+    """Run the program that comes on standard input, pickled, and write what it makes; see kept_shape.
+
+    That is a line of JSON, with the names of the faces and the number of bytes that follow, which are the solid; or
+    with the reason why there is none.
+
+    Args:
+        answer: the descriptor where it is written.
+    """
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # a terminal interrupts both processes; the command says what is done
+    order = io.BytesIO(sys.stdin.buffer.read())
+    sys.path += [path for path in pickle.load(order) if path and path not in sys.path]
+    file, function, dimensions = pickle.load(order)
+    try:
+        brep, faces = run_program(file, function, dimensions)
+        head: dict[str, Any] = {"faces": faces, "bytes": len(brep)}
+    except GeometryError as error:
+        brep, head = b"", {"refused": str(error)}
+    with os.fdopen(answer, "wb") as stream:
+        stream.write(json.dumps(head).encode() + b"\n" + brep)
 
 
 def run_program(file: FileContent, function: str, dimensions: Mapping[str, float]) -> tuple[bytes, tuple[str, ...]]:
@@ -41,7 +63,7 @@ def run_program(file: FileContent, function: str, dimensions: Mapping[str, float
         made = names[function](**dimensions)
     except GeometryError:
         raise
-    except (Exception, SystemExit) as error:  # one that ends itself would end the study without a word
+    except BaseException as error:  # one that ends itself too
         raise GeometryError(f"{_line(error, file)}: {type(error).__name__}: {error}") from None
     solid, named = _solid_and_names(made, file)
     if not solid.isValid():
@@ -56,7 +78,6 @@ def run_program(file: FileContent, function: str, dimensions: Mapping[str, float
         raise GeometryError(f"{file.path}: {words}; tag it after all cuts")
     stream = io.BytesIO()
     solid.exportBrep(stream)
-    made_here.add(hashlib.sha256(stream.getvalue()).hexdigest())
     return stream.getvalue(), called
 
 
