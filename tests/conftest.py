@@ -22,6 +22,9 @@ hypothesis.settings.register_profile("tol3d", deadline=None, derandomize=True)
 hypothesis.settings.register_profile("search", deadline=None)
 hypothesis.settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE", "tol3d"))
 
+# what pyproject.toml makes an error here, numpy's warnings, is one in the processes that tests start too
+os.environ.setdefault("PYTHONWARNINGS", "error::RuntimeWarning")
+
 
 @pytest.hookimpl(wrapper=True)
 def pytest_collection() -> Generator[None, Any, Any]:

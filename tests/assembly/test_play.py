@@ -216,9 +216,9 @@ def test_a_pattern_pushed_along_x_goes_by_the_smallest_clearance(tmp_path: Path,
         if road == "exact"
         else torsors.values(made.system.assembly, rows, ["x", "y", "slack"])
     )
-    assert found["x"][0] == pytest.approx(0.1, abs=1e-6)
+    assert found["x"][0] == pytest.approx(0.1, abs=1e-9)
     assert 0.075 < found["x"][1] <= 0.1  # the others let it turn about the tight one
-    assert found["slack"] == pytest.approx([0.1, 0.075, -0.025], abs=1e-6)
+    assert found["slack"] == pytest.approx([0.1, 0.075, -0.025], abs=1e-9)
 
 
 @pytest.mark.parametrize("road", ROADS)

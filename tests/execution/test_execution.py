@@ -246,3 +246,16 @@ def test_a_worker_with_other_versions_is_refused(paper_model: Model) -> None:
     task = Task(simulated(paper_model), None, {}, "other", True, other)
     with pytest.raises(RunError, match=r"a worker has numpy .* instead of 0\.0\.1: results could differ"):
         task.columns(0, 1)
+
+
+def divided() -> float:
+    """By zero: numpy warns."""
+    return float(np.float64(1.0) / np.zeros(1)[0])
+
+
+@pytest.mark.parametrize("pool", POOLS)
+def test_a_warning_of_numpy_is_an_error_wherever_tests_run(pool: str) -> None:
+    """In threads as in worker processes."""
+    workers, concurrency = POOLS[pool]
+    with pytest.raises(RuntimeWarning, match="divide by zero"), pool_of(workers, None, concurrency) as own:
+        own.submit(divided).result()

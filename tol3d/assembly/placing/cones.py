@@ -17,6 +17,10 @@ GAP: Final = 1e-12
 """Where they end, of the size of offsets and clearances: by how much the slack may be better."""
 AIM: Final = 0.1
 """Of the gap from one step to the next."""
+CAREFUL_STEPS: Final = 200
+"""Of interior points that keep to the middle."""
+CAREFUL_AIM: Final = 0.8
+"""Of the gap after a step that was cut short by more than half, where they keep to the middle."""
 SHORT_OF: Final = 0.98
 """Of the way to where a cone ends."""
 OWED: Final = 1e-9
@@ -153,7 +157,7 @@ def changes_of(cones: Any, size: int, lifts: int, step: Any, aim: float, dy: Any
 
 
 @nested
-def closing(cones: Any, size: int, rooms: Any) -> Any:
+def closing(cones: Any, size: int, lifts: int, goal: Any, rooms: Any) -> Any:
     """Equations of Newton's step from `at` (y), with multipliers m; how far cones that decide are apart, and balance.
 
     Each of them gives m + stiff (u . B p + s + w) at the end of the step; negative where one has no direction.
@@ -166,6 +170,9 @@ def closing(cones: Any, size: int, rooms: Any) -> Any:
         for s in range(r + 1):
             matrix[r, s] = 0.0
     turned[size], apart, balance = 1.0, 0.0, 0.0
+    if not lifts:
+        for r in range(size):
+            turned[r] = goal[r]
     for k in range(at.shape[0]):
         if not used[k] or own[k, 1] == 0.0:
             continue
@@ -186,9 +193,10 @@ def closing(cones: Any, size: int, rooms: Any) -> Any:
         turned[size] -= m
         step[size] += stiff * w
         matrix[size, size] += stiff
-    for r in range(size + 1):
+    for r in range(size + lifts):
         balance = max(balance, abs(turned[r]))
         step[r] += turned[r]
+    step[size] *= lifts
     return apart, balance
 
 
@@ -229,13 +237,14 @@ def amiss(cones: Any, rooms: Any, limit: float) -> int:
 
 
 @nested
-def ended(cones: Any, size: int, scale: float, found: Any, rooms: Any) -> bool:
-    """Whether Newton's steps reach the largest s: all its conditions hold. Otherwise nothing is changed.
+def ended(cones: Any, size: int, lifts: int, goal: Any, scale: float, weight: float, found: Any, rooms: Any) -> bool:
+    """Whether Newton's steps reach the optimum: all its conditions hold. Otherwise nothing is changed.
 
     Args:
         cones: as in `climbed`; the multipliers are changed to z = (m, 0, 0).
-        size: of p.
+        size, lifts, goal: as in `climbed`.
         scale: of offsets and clearances.
+        weight: of the multipliers.
         found: changed by the step.
         rooms: to work in, whose fourth has the first multipliers m, 0 of cones that do not decide.
     """
@@ -244,12 +253,12 @@ def ended(cones: Any, size: int, scale: float, found: Any, rooms: Any) -> bool:
     gone[:] = 0.0
     for k in range(y.shape[0]):
         at[k, 0], at[k, 1], at[k, 2] = y[k, 0], y[k, 1], y[k, 2]
-        own[k, 1] = STIFF / scale if own[k, 0] > 0.0 else 0.0
+        own[k, 1] = weight * STIFF / scale if own[k, 0] > 0.0 else 0.0
     for _ in range(LAST):
-        apart, balance = closing(cones, size, rooms)
+        apart, balance = closing(cones, size, lifts, goal, rooms)
         if apart < 0.0:
             return False
-        if apart <= MET * scale and balance <= BALANCED:
+        if apart <= MET * scale and balance <= BALANCED * weight:
             wrong = amiss(cones, rooms, MET * scale)
             if wrong < 0:
                 for k in range(y.shape[0]):
@@ -257,49 +266,53 @@ def ended(cones: Any, size: int, scale: float, found: Any, rooms: Any) -> bool:
                 for r in range(size + 1):
                     found[r] += gone[r]
                 return True
-            own[wrong, 0], own[wrong, 1] = 0.0, STIFF / scale if own[wrong, 1] == 0.0 else 0.0
-            apart, balance = closing(cones, size, rooms)
-        factored(matrix, size + 1)
-        substituted(matrix, step, size + 1)
+            own[wrong, 0], own[wrong, 1] = 0.0, weight * STIFF / scale if own[wrong, 1] == 0.0 else 0.0
+            apart, balance = closing(cones, size, lifts, goal, rooms)
+        factored(matrix, size + lifts)
+        substituted(matrix, step, size + lifts)
         stepped(cones, size, rooms)
     return False
 
 
 @nested
-def climbed(cones: Any, size: int, lifts: int, goal: Any, found: Any, rooms: Any) -> bool:
+def climbed(cones: Any, size: int, lifts: int, careful: bool, goal: Any, found: Any, rooms: Any) -> bool:
     """Whether a programme's optimum is found: the largest goal . p, or s where it lifts.
 
     Args:
         cones: y at p = 0 and multipliers z, both inside (cones, 3), changed; B_k (cones, 2, size); which of them count.
         size: of p.
         lifts: 1 for the largest s, 0 for the largest goal.
+        careful: whether steps keep to the middle, where cones that tie would cut them short.
         goal: (size,).
         found: p and s, as changes (size + 1,).
         rooms: to work in.
     """
     y, z, _, used = cones
     matrix, step, dy, dz, turned, _ = rooms
-    count, scale, owed, tries = 0, 0.0, 1.0, 0
+    count, scale, owed, tries, share, weight = 0, 0.0, 1.0, 0, AIM, float(lifts)
     for k in range(y.shape[0]):
         if used[k]:
             count += 1
             scale = max(scale, y[k, 0])
+    if not lifts:
+        for r in range(size):
+            weight = max(weight, abs(goal[r]))
     found[:] = 0.0
-    for _ in range(STEPS):
+    for _ in range(CAREFUL_STEPS if careful else STEPS):
         gap = 0.0
         for k in range(y.shape[0]):
             if used[k]:
                 gap += y[k, 0] * z[k, 0] + y[k, 1] * z[k, 1] + y[k, 2] * z[k, 2]
         if gap <= GAP * scale and owed <= OWED:
             return True
-        if lifts and tries < len(SHOWN) and gap <= SHOWN[tries] * scale:
+        if tries < len(SHOWN) and gap <= SHOWN[tries] * scale * weight:
             tries += 1
             for k in range(y.shape[0]):
                 length = np.sqrt(y[k, 1] * y[k, 1] + y[k, 2] * y[k, 2])
-                dz[k, 0] = z[k, 0] if used[k] and z[k, 0] * scale > y[k, 0] - length else 0.0
-            if ended(cones, size, scale, found, rooms):
+                dz[k, 0] = z[k, 0] if used[k] and z[k, 0] * scale > (y[k, 0] - length) * weight else 0.0
+            if ended(cones, size, lifts, goal, scale, weight, found, rooms):
                 return True
-        aim = AIM * gap / count
+        aim = share * gap / count
         if not equations(cones, size, lifts, matrix, step, aim, turned):
             return gap <= 1e3 * GAP * scale
         if lifts:
@@ -311,6 +324,7 @@ def climbed(cones: Any, size: int, lifts: int, goal: Any, found: Any, rooms: Any
         substituted(matrix, step, size + lifts)
         ahead, behind = changes_of(cones, size, lifts, step, aim, dy, dz)
         owed *= 1.0 - behind
+        share = CAREFUL_AIM if careful and min(ahead, behind) < 0.5 else AIM
         for r in range(size + lifts):
             found[r] += ahead * step[r]
         for k in range(y.shape[0]):

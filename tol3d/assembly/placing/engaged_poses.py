@@ -22,8 +22,6 @@ MET: Final = 1e-10
 """What a step [mm] is expected to leave, by how much shorter it is than the one before, after which a trial is done."""
 TURNED: Final = 1e-5
 """Step, a mm of reach, after which motions that keep what relations hold are found anew."""
-FLAT: Final = 1e-7
-"""Step [mm] after which a part that is pushed is done: interior points leave as much where its way ends flat."""
 LOST: Final = 1e-6
 """Step [mm] at which it is not found, if that is still left after all rounds."""
 CENTRED: Final = 0
@@ -125,7 +123,7 @@ def stays(pose: Any, start: Any, mode: int, trial: Any, reach: float, goal: Any,
             size = 0.0
             for f in range(freedoms):
                 size = max(size, abs(q[f]))
-        ends = size * min(1.0, size / previous) <= MET or (mode == PUSHED and size <= FLAT)
+        ends = size * min(1.0, size / previous) <= MET
         if mode == STRAYED:
             for f in range(freedoms):
                 q[f] = gone * drawn[f, i] * (drawn[freedoms, i] if ends else 1.0)

@@ -68,7 +68,7 @@ class Floats:
             along[f] = sum(own[r] * drawn[r] for r in range(6))
         size = np.sqrt(sum(own * own for own in along))
         along /= np.where(size > 0.0, size, 1.0)
-        found[-1] = drawn[6] ** (1.0 / len(along))
+        found[-1] = np.clip(drawn[6], 0.0, 1.0) ** (1.0 / len(along))  # slopes ask beyond its ends
         return found
 
 

@@ -15,7 +15,7 @@ from tol3d.numerics.compiled import FULL, kernel, nested
 
 HELD: Final = 1e-6
 """Multiplier (they sum to 1) over which a cone is tight."""
-STARTS: Final = 1.0, 0.1, 0.01
+STARTS: Final = 1.0, 0.1, 0.01, 1.0
 """Multipliers from which a programme starts, of those that balance its goal, until it ends."""
 UNSEEN: Final = 1e-6
 """Change of an offset by a freedom, as a share of how far that moves what is farthest, that is none."""
@@ -172,7 +172,7 @@ def again(cones: Any, size: int, before: Any, turn: int, found: Any, rooms: Any)
         some = some or decided
         scale = max(scale, y[k, 0] if used[k] else 0.0)
     found[:] = 0.0
-    return some and ended(cones, size, scale, found, rooms)
+    return some and ended(cones, size, 1, before[0], scale, 1.0, found, rooms)
 
 
 @nested
@@ -186,10 +186,10 @@ def reached(
         cones, size, lifts, push, found, rooms: as in `climbed`, started.
     """
     y, z, _, used = cones
-    for share in STARTS:
-        if share < 1.0:
-            started(place, q, used, y, z, used.sum(), lifts, share * weight)
-        if climbed(cones, size, lifts, push, found, rooms):
+    for n in range(len(STARTS)):
+        if n > 0:
+            started(place, q, used, y, z, used.sum(), lifts, STARTS[n] * weight)
+        if climbed(cones, size, lifts, n == len(STARTS) - 1, push, found, rooms):
             return True
     return False
 

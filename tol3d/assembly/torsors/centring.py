@@ -136,14 +136,15 @@ def largest_slack(offsets: Array, clearances: Array, rows: Array, counts: Mask, 
     step, multipliers, found = np.empty(rows.shape[2:]), np.empty(counts.shape), np.zeros(trials, dtype=bool)
     counts = np.ascontiguousarray(counts)
     offsets, clearances, rows, closed = (np.ascontiguousarray(own) for own in (offsets, clearances, rows, closed))
-    quickly_centred(offsets, clearances, rows, counts, closed, step, multipliers, found)
+    quickly_centred(offsets, clearances, rows, counts, closed, np.zeros(step.shape), 1, step, multipliers, found)
     if not found.all():
         left, counts = ~found, np.ascontiguousarray(counts[:, ~found])
         offsets, clearances, rows, closed = (
             np.ascontiguousarray(own[..., left]) for own in (offsets, clearances, rows, closed)
         )
         near, its = _by_cones(offsets, clearances, rows, counts, closed)
-        quickly_centred(offsets, clearances, rows, counts, closed, near, its, np.ones(len(counts[0]), dtype=bool))
+        near_all, no_goal = np.ones(len(counts[0]), dtype=bool), np.zeros(near.shape)
+        quickly_centred(offsets, clearances, rows, counts, closed, no_goal, 1, near, its, near_all)
         step[:, left], multipliers[:, left] = near, its
     return step, multipliers
 

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from tol3d.assembly.torsors.centring import DECIDES, Cones, narrowed, refined
 from tol3d.assembly.torsors.interior_points import climbed
 from tol3d.assembly.torsors.ordered import ordered_product, ordered_sum
+from tol3d.assembly.torsors.quick_centring import quickly_centred
 
 Array = NDArray[np.float64]
 
@@ -28,6 +29,9 @@ def pushed(cones: Cones, q: Array, push: Array) -> Array:
     closed = np.zeros((len(q), len(q), trials))
     step, multipliers, goal = np.empty(q.shape), np.empty(counts.shape), push[:, None] * np.ones(trials)
     climbed(primal, dual, rows, counts, closed, goal, 0, step, multipliers)
+    near = np.ones(trials, dtype=bool)
+    offsets, clearances = np.ascontiguousarray(cones.at(q)), np.ascontiguousarray(cones.clearances)
+    quickly_centred(offsets, clearances, rows, counts, closed, goal, 0, step, multipliers, near)
     decides = counts & (multipliers > DECIDES)
     everything = np.eye(len(q))[:, :, None] * np.ones(trials)
     return refined(cones, q + step, narrowed(everything, rows, decides), decides)
@@ -48,7 +52,8 @@ def along_rays(cones: Cones, q: Array, directions: Array, share: Array) -> Array
     root = np.sqrt(np.maximum(half_b**2 - a * (c - cones.clearances**2), 0.0))
     way = np.where(bent, (root - half_b) / np.where(bent, a, 1.0), np.inf).min(axis=0)
     way = np.where(moves & np.isfinite(way), np.maximum(way, 0.0), 0.0)
-    return q + share ** (1.0 / len(q)) * way * ray
+    inside = np.clip(share, 0.0, 1.0)  # slopes ask beyond its ends
+    return q + inside ** (1.0 / len(q)) * way * ray
 
 
 def by_pairs(cones: Cones, q: Array, drawn: Array) -> Array:

@@ -1,6 +1,7 @@
 """How the largest common slack of a part with play ends, in a kernel: places that decide meet exactly, and balance.
 
-Newton's steps on the conditions of the optimum, in q, s and one multiplier z_k of each place that decides:
+Newton's steps on the conditions of the optimum, in q, s and one multiplier z_k of each place that decides (the farthest
+way along a goal ends alike, without s and the first of them, with the goal in place of the second's 0):
 
     sum z_k = 1,    sum z_k B_k' u_k = 0,    w_k = c_k - s - |y_k| = 0,    y_k = b_k + B_k q,    u_k = y_k / |y_k|.
 
@@ -80,16 +81,16 @@ def equations(trial: Any, state: Any, system: Any, right: Any) -> None:
 
 
 @nested
-def balance(trial: Any, state: Any) -> Any:
-    """The largest amount of sum z_k B_k' u_k, and of sum z_k - 1."""
+def balance(trial: Any, goal: Any, lifts: int, state: Any) -> Any:
+    """The largest amount of sum z_k B_k' u_k, less the goal, and of sum z_k - 1 where it lifts."""
     rows, counts, _ = trial
     y, z = state[0], state[1]
     total = -1.0
     for k in range(rows.shape[0]):
         total += z[k] if counts[k] else 0.0
-    largest = abs(total)
+    largest = abs(total) if lifts else 0.0
     for i in range(rows.shape[2]):
-        pull = 0.0
+        pull = -goal[i]
         for k in range(rows.shape[0]):
             if counts[k]:
                 length = np.sqrt(y[k, 0] * y[k, 0] + y[k, 1] * y[k, 1])
@@ -118,7 +119,9 @@ def lengths_of(place: Any, trial: Any, q: Any, s: float, state: Any) -> bool:
 
 
 @nested
-def finished(place: Any, trial: Any, q: Any, s: float, scale: float, state: Any, system: Any, step: Any) -> bool:
+def finished(
+    place: Any, trial: Any, goal: Any, lifts: int, q: Any, s: float, scale: float, state: Any, system: Any, step: Any
+) -> bool:
     """Whether the optimum is reached where the places that decide, by their multipliers, meet exactly."""
     rows, counts, _ = trial
     _, z, w, stiff, back, pulls = state
@@ -132,7 +135,7 @@ def finished(place: Any, trial: Any, q: Any, s: float, scale: float, state: Any,
         for k in range(rows.shape[0]):
             back[k] = z[k] - stiff[k] * w[k]
             off = max(off, abs(w[k]) if stiff[k] > 0.0 else 0.0)
-        if off <= MET * scale and balance(trial, state) <= BALANCED:
+        if off <= MET * scale and balance(trial, goal, lifts, state) <= BALANCED:
             worst = -1
             for k in range(rows.shape[0]):  # of multipliers under 0 and of places beyond the others, one
                 if counts[k] and (z[k] < 0.0 or w[k] < -MET * scale):
@@ -143,7 +146,10 @@ def finished(place: Any, trial: Any, q: Any, s: float, scale: float, state: Any,
             z[worst] = 0.0
             back[worst] = -stiff[worst] * w[worst]
         equations(trial, state, system, step)
-        solved(system, step, size + 1)
+        for i in range(size):
+            step[i] += goal[i]
+        step[size] *= lifts
+        solved(system, step, size + lifts)
         s += step[size]
         for i in range(size):
             q[i] += step[i]

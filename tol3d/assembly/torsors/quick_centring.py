@@ -64,8 +64,8 @@ def moved(trial: Any, state: Any, step: Any, near: float) -> Any:
 
 
 @nested
-def sought(place: Any, trial: Any, under: float, q: Any, state: Any, system: Any, step: Any) -> bool:
-    """Whether the optimum of a trial is found: q, and multipliers in the state; from a slack under the one there is."""
+def sought(place: Any, trial: Any, goal: Any, under: float, q: Any, state: Any, system: Any, step: Any) -> bool:
+    """Whether the largest slack is found: q, and multipliers in the state; from one under that there is, goal 0."""
     offsets, clearances = place
     rows, counts, _ = trial
     _, z, w, stiff, back, _ = state
@@ -85,9 +85,9 @@ def sought(place: Any, trial: Any, under: float, q: Any, state: Any, system: Any
         gap = 0.0
         for k in range(rows.shape[0]):
             gap += z[k] * w[k] if counts[k] else 0.0
-        share = max(gap / scale, balance(trial, state))
+        share = max(gap / scale, balance(trial, goal, 1, state))
         if share <= NEAR:
-            return finished(place, trial, q, s, scale, state, system, step)
+            return finished(place, trial, goal, 1, q, s, scale, state, system, step)
         mu = min(FALLS, share) * share * scale / count
         for k in range(rows.shape[0]):
             if counts[k]:
@@ -104,7 +104,7 @@ def sought(place: Any, trial: Any, under: float, q: Any, state: Any, system: Any
 
 
 @nested
-def improved(place: Any, trial: Any, q: Any, state: Any, system: Any, step: Any) -> bool:
+def improved(place: Any, trial: Any, goal: Any, lifts: int, q: Any, state: Any, system: Any, step: Any) -> bool:
     """Whether the optimum is reached from q and multipliers that are near it."""
     clearances = place[1]
     rows, counts, _ = trial
@@ -114,24 +114,28 @@ def improved(place: Any, trial: Any, q: Any, state: Any, system: Any, step: Any)
     for k in range(rows.shape[0]):
         if counts[k]:
             s, scale = min(s, w[k]), max(scale, clearances[k])
+    s = s if lifts else 0.0
     scale = max(scale, scale - s)
     for k in range(rows.shape[0]):
         w[k] -= s
-    return finished(place, trial, q, s, scale, state, system, step)
+    return finished(place, trial, goal, lifts, q, s, scale, state, system, step)
 
 
 @kernel(
     arrays="float64[:,:,::1], float64[:,::1], float64[:,:,:,::1], boolean[:,::1], float64[:,:,::1], float64[:,::1], "
-    "float64[:,::1], boolean[::1]",
+    "int64, float64[:,::1], float64[:,::1], boolean[::1]",
     level=FULL,
 )
 def quickly_centred(
-    offsets: Any, clearances: Any, rows: Any, counts: Any, closed: Any, steps: Any, multipliers: Any, found: Any
-) -> None:
-    """Steps to the largest common slack.
+    offsets: Any, clearances: Any, rows: Any, counts: Any, closed: Any, goal: Any, lifts: Any, steps: Any,
+    multipliers: Any, found: Any,
+) -> None:  # fmt: skip
+    """Steps to the largest common slack, or, from near by, as far as a goal can be reached.
 
     Args:
         offsets, clearances, rows, counts, closed: see centring.largest_slack.
+        goal: (freedoms, trials), of length 1; 0 where it lifts.
+        lifts: 1 for the slack, 0 for the goal.
         steps: (freedoms, trials) [mm].
         multipliers: of the places, 1 in all (places, trials).
         found: in which trials they are (trials,); before, in which they are near it, to be improved. What is not found
@@ -140,6 +144,7 @@ def quickly_centred(
     places, size = rows.shape[0], rows.shape[2]
     own, clear, turned = np.empty((places, 2)), np.empty(places), np.empty((places, 2, size))
     used, shut, q = np.empty(places, dtype=np.bool_), np.empty((size, size)), np.empty(size)
+    way = np.empty(size)
     state = (
         np.empty((places, 2)), np.empty(places), np.empty(places), np.empty(places), np.empty(places),
         np.empty((places, size)),
@@ -153,6 +158,7 @@ def quickly_centred(
                 for i in range(size):
                     turned[k, r, i] = rows[k, r, i, n]
         for i in range(size):
+            way[i] = goal[i, n]
             for j in range(size):
                 shut[i, j] = closed[i, j, n]
         place, trial = (own, clear), (turned, used, shut)
@@ -161,10 +167,10 @@ def quickly_centred(
                 q[i] = steps[i, n]
             for k in range(places):
                 state[1][k] = multipliers[k, n]
-            found[n] = improved(place, trial, q, state, system, step)
+            found[n] = improved(place, trial, way, lifts, q, state, system, step)
         else:
             for under in UNDER:
-                found[n] = sought(place, trial, under, q, state, system, step)
+                found[n] = sought(place, trial, way, under, q, state, system, step)
                 if found[n]:
                     break
         if found[n]:

@@ -1,0 +1,210 @@
+"""Patterns whose places tie, and parts pushed to flat ends of their room: against linear programmes and closed forms.
+
+The oracle cuts each cone |o + B q| <= c by planes in HiGHS, about the directions that the best pose so far has, until
+both bounds meet; a lens of two discs is a closed form.
+"""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from assembly_trials import Assembled, assembled
+from numpy.typing import NDArray
+from scipy.optimize import linprog
+
+from tol3d.assembly.model.statuses import OK
+from tol3d.assembly.placing import road as placing
+from tol3d.assembly.placing.rooms import room_found
+from tol3d.assembly.torsors import road as torsors
+from tol3d.assembly.torsors.centring import Cones, centred
+from tol3d.assembly.torsors.floating import pushed
+
+Array = NDArray[np.float64]
+FAN = np.array([0.0, *(sign * 10.0**-k for k in range(1, 6) for sign in (1, -1))])
+"""Angles [rad] beside a direction in which the oracle cuts too: steps along a flat end stay short at every scale."""
+
+
+def cut(offsets: Array, clearances: Array, rows: Array, goal: Array | None = None) -> float:
+    """The largest goal . q, or the largest s with |o + B q| <= c - s, to 1e-10 between both bounds; nan if lost."""
+    size, lifts = rows.shape[2], goal is None
+    costs = np.append(np.zeros(size), -1.0) if goal is None else np.append(-goal, 0.0)
+    q = base = np.zeros(size)
+    best, most, cuts = -float("inf"), float("inf"), list[tuple[Array, Array]]()
+    for _ in range(60):
+        at = offsets + rows @ q
+        slack = float((clearances - np.hypot(*at.T)).min())
+        if goal is None:
+            best, base = (slack, q) if slack > best else (best, base)
+        else:
+            best, base = float(goal @ q) if slack > -1e-10 else best, q
+        if most - best < 1e-10:
+            return best
+        angles = np.arctan2(at[:, 1], at[:, 0])[:, None] + FAN
+        angles[np.hypot(*at.T) < 1e-6] = np.arange(len(FAN)) * 2 * np.pi / len(FAN)
+        ways = np.stack([np.cos(angles), np.sin(angles)], axis=2)  # (places, fan, 2)
+        planes = np.einsum("kar,krj->kaj", ways, rows).reshape(-1, size)
+        room = (clearances[:, None] - np.einsum("kar,kr->ka", ways, offsets)).ravel()
+        cuts = [*cuts[-8:], (np.column_stack([planes, np.full(len(planes), float(lifts))]), room)]
+        matrix, limits = np.concatenate([own for own, _ in cuts]), np.concatenate([own for _, own in cuts])
+        found = linprog(
+            costs, A_ub=matrix, b_ub=1e4 * (limits - matrix[:, :size] @ base), method="highs",
+            bounds=[(-1e4, 1e4)] * size + [(None, None) if lifts else (0, 0)],
+            options={"primal_feasibility_tolerance": 1e-10, "dual_feasibility_tolerance": 1e-10},
+        ).x  # fmt: skip
+        if found is None:
+            return np.nan
+        most = float(found[-1]) / 1e4 if goal is None else float(goal @ (base + found[:size] / 1e4))
+        q = base + found[:size] / 1e4
+    return np.nan
+
+
+def exact(offsets: Array, clearances: Array, rows: Array, push: Array | None = None) -> tuple[Array, float]:
+    """The step and its centred slack by the exact road's kernel; the step is found."""
+    places, size = len(rows), rows.shape[2]
+    step, slack, which, found = np.empty((size, 1)), np.empty(1), np.empty(1, np.int64), np.empty(1, np.bool_)
+    room_found(
+        np.ascontiguousarray(offsets[:, :, None]), np.ascontiguousarray(clearances[:, None]), rows,
+        np.zeros(size) if push is None else push, np.ones(1, np.bool_), step, slack, which, found,
+        np.zeros((places, 1)), np.zeros((places, 1), np.int64),
+    )  # fmt: skip
+    assert found[0]
+    return step[:, 0], float(slack[0])
+
+
+def by_torsors(offsets: Array, clearances: Array, rows: Array, push: Array | None = None) -> tuple[Array, float]:
+    """The same by the analytic road's."""
+    cones = Cones(offsets[:, :, None], clearances[:, None], rows)
+    q = centred(cones)
+    slack = float(cones.slack(q)[0])
+    return (q if push is None else pushed(cones, q, push / np.linalg.norm(push)))[:, 0], slack
+
+
+SOLVERS = {"exact": exact, "analytic": by_torsors}
+
+
+def tied(rng: np.random.Generator) -> tuple[Array, Array, Array]:
+    """Offsets, clearances and rows of 2 to 8 holes on a grid or a circle, at one or both ends, most of them alike.
+
+    All freedoms of a plane, the turn alone, the shifts alone, or tilts too; some holes are slots; up to two ends are
+    displaced, or all by 1e-7 mm, and one clearance may be another.
+    """
+    count = int(rng.choice([2, 3, 4, 4, 5, 6, 8]))
+    if rng.random() < 0.5:
+        at = 50.0 * np.array([(x, y) for x in (-1, 0, 1) for y in (-1, 0, 1)])[rng.permutation(9)[:count]]
+    else:
+        turns = 2 * np.pi * np.arange(count) / count
+        at = 50.0 * np.stack([np.cos(turns), np.sin(turns)], axis=1)
+    ends = int(rng.integers(1, 3))
+    at = np.repeat(at, ends, axis=0)
+    reach, freed = max(float(np.hypot(*at.T).max()), 1.0), int(rng.integers(5))
+    slot = np.repeat(rng.random(count) < 0.1, ends)
+    rows = np.zeros((len(at), 2, 5))
+    rows[:, 0, 0] = rows[:, 1, 1] = 1.0
+    rows[:, 0, 2], rows[:, 1, 2] = -at[:, 1] / reach, at[:, 0] / reach
+    rows[:, 0, 3] = rows[:, 1, 4] = np.tile([5.0, 15.0][:ends], count) / reach
+    chosen = [[2], [0, 1], [0, 1, 2, 3, 4] if ends == 2 else [0, 1, 2], [0, 1, 2], [0, 1, 2]][freed]
+    rows, offsets = rows[:, :, chosen], np.zeros((len(at), 2))
+    for _ in range(rng.integers(3)):
+        offsets[rng.integers(len(at))] = 0.1 * rng.choice([-1, 0, 1, 0.5, 1e-3], 2)
+    offsets += 1e-7 * rng.normal(size=offsets.shape) * (rng.random() < 0.3)
+    rows[slot, 1], offsets[slot, 1] = 0.0, 0.0
+    clearances = np.full(len(at), 0.5)
+    clearances[rng.integers(len(at))] += rng.choice([0.0, 0.0, -0.3, 0.1, -0.55])
+    return offsets, clearances, np.ascontiguousarray(rows)
+
+
+@pytest.mark.parametrize("seeds", [range(12), pytest.param(range(12, 92), marks=pytest.mark.slow)])
+@pytest.mark.parametrize("road", list(SOLVERS))
+def test_tied_patterns_have_the_slack_and_the_reach_of_cutting_planes(road: str, seeds: range) -> None:
+    """Slack to 1e-9 mm and, of a room, how far it goes along a freedom or any direction."""
+    lost = 0
+    for seed in seeds:
+        rng = np.random.default_rng(seed)
+        place = tied(rng)
+        slack = SOLVERS[road](*place)[1]
+        expected = cut(*place)
+        lost += bool(np.isnan(expected))
+        assert not abs(slack - expected) > 1e-9, seed
+        size = place[2].shape[2]
+        if slack > 0.0 and np.linalg.matrix_rank(place[2].reshape(-1, size)) == size:
+            way = int(rng.integers(size))
+            push: Array = np.asarray(rng.normal(size=size) if seed % 2 else np.eye(size)[way])
+            q, _ = SOLVERS[road](*place, push)
+            assert (place[1] - np.hypot(*(place[0] + place[2] @ q).T)).min() > -1e-11, seed
+            expected = cut(*place, push)
+            lost += bool(np.isnan(expected))
+            assert not abs(push @ q - expected) > 1e-9 * max(1.0, abs(expected)), seed
+    assert lost <= len(seeds) / 6  # oracles, of two a seed
+
+
+@pytest.mark.parametrize("road", list(SOLVERS))
+def test_a_pin_goes_to_the_end_of_its_lens(road: str) -> None:
+    """Both ends of a pin in a hole make a lens of two discs; its farthest point is of a disc or a corner."""
+    rng = np.random.default_rng(2)
+    corners = 0
+    for turn in np.append(rng.uniform(0, 2 * np.pi, 20), [0.0, np.pi / 2]):
+        radius, along = rng.uniform(0.05, 0.3), np.array([np.cos(turn), np.sin(turn)])
+        apart = rng.uniform(0.05, 0.9) * radius * np.array([1.0, 0.0])
+        tips = [(side + radius * along, -side) for side in (apart, -apart)]
+        inside = [tip for tip, other in tips if np.hypot(*(tip - other)) <= radius]
+        corner = np.sqrt(radius**2 - apart[0] ** 2) * np.array([0.0, 1.0])
+        expected = inside[0] if inside else max((corner, -corner), key=lambda own: float(own @ along))
+        corners += not inside
+        rows = np.repeat(np.eye(2)[None], 2, axis=0)
+        q, slack = SOLVERS[road](np.array([apart, -apart]), np.full(2, radius), rows, along)
+        assert slack == pytest.approx(radius - apart[0], abs=1e-12)
+        np.testing.assert_allclose(q, expected, rtol=0, atol=1e-9)
+    assert 3 < corners < 19
+
+
+FEATURE = "{kind: cylinder, at: [%d mm, %d mm, 5 mm], axis: [0, 0, 1], length: 10 mm, diameter: %d mm%s}"
+
+
+def cover(floating: str, folder: Path) -> Assembled:
+    """Four bolts of 8 mm in holes of 9 mm; hole 4 has a zone of 0.3 mm, and all the others lie exactly."""
+    at = ((-70, -50), (70, -50), (-70, 50), (70, 50))
+    face = "{kind: plane, at: [0 mm, 0 mm, 0 mm], normal: [0, 0, %d], extent: [160 mm, 120 mm]}"
+    none = "{kind: constant, value: 0 mm}"
+    parts = {
+        "housing": [f"screw {k}: {FEATURE % (*own, 8, '')}" for k, own in enumerate(at)],
+        "cover": [f"hole {k}: {FEATURE % (*own, 9, ', hole: true')}" for k, own in enumerate(at)],
+    }
+    lines = ["scene: cover", "parts:"]
+    for sign, (name, own) in zip((1, -1), parts.items(), strict=True):
+        lines += [f"  {name}:", "    kind: solid", "    features:", f"      face: {face % sign}"]
+        lines += [f"      {each}" for each in own]
+    lines += ["tolerances:"]
+    lines += [f"  screw {k}: {{kind: size, of: housing.screw {k}, distribution: {none}}}" for k in range(4)]
+    lines += [f"  hole {k}: {{kind: size, of: cover.hole {k}, distribution: {none}}}" for k in range(4)]
+    lines += [
+        "  off: {kind: position, of: cover.hole 3, datums: [face, hole 0], zone: {diameter: 0.3 mm}, "
+        "law: {kind: uniform}}",
+        "moves:",
+        "  down: {kind: fix, part: housing}",
+        "  on: {kind: pattern, part: cover, relations: [{kind: coincident, from: cover.face, to: housing.face}], "
+        f"float: {floating}, pairs: [",
+        ", ".join(f"{{from: cover.hole {k}, to: housing.screw {k}}}" for k in range(4)) + "]}",
+        "measures:",
+        "  slack: {kind: slack, of: on}",
+        "  x: {kind: gap, from: housing.screw 0, to: cover.hole 0, along: [1, 0, 0]}",
+    ]
+    return assembled("\n".join(lines), folder)
+
+
+@pytest.mark.parametrize("floating", ["{kind: centred}", "{kind: random}"])
+def test_one_end_of_one_hole_off_leaves_half_of_it(floating: str, tmp_path: Path) -> None:
+    """Holes 0 to 2 tie; what end e of hole 3 is off by d costs d / 2, to second order (d / 10)^2 / 2 of d / 2."""
+    made = cover(floating, tmp_path)
+    own = next(place for contributor, place in made.slices if contributor.name == "off")
+    rows = np.repeat(np.zeros((1, made.system.assembly.width)), 9, axis=0)
+    sizes = np.array([0.1, 0.03])
+    for k in range(4):
+        rows[1 + 2 * k : 3 + 2 * k, own.start + k] = sizes
+    values, codes = placing.values(made.system.assembly, rows, ["slack"])["slack"]
+    assert (codes == OK).all()
+    expected = 0.5 - np.concatenate([[0.0], np.tile(sizes / 2, 4)])
+    np.testing.assert_allclose(values, expected, rtol=0, atol=2.6e-6)
+    np.testing.assert_allclose(torsors.values(made.system.assembly, rows, ["slack"])["slack"], expected, atol=1e-9)
+    x, codes = placing.values(made.system.assembly, rows, ["x"])["x"]
+    assert np.isfinite(x).all()
+    assert np.isfinite(torsors.values(made.system.assembly, rows, ["x"])["x"]).all()
