@@ -153,7 +153,7 @@ def contributors_table(measure: MeasureSummary) -> Table:
     ]
     errors = {share.name: share.geometric_percent_se for share in measure.contributors}
     rows = [
-        Row(name, [_share(column, name, errors[name]) for column in shares], unit="%")
+        Row(name, [_share(measure, column, name, errors[name]) for column in shares], unit="%")
         for name in ranked_contributors(measure)
     ]
     left = not_attributed(measure)
@@ -162,14 +162,24 @@ def contributors_table(measure: MeasureSummary) -> Table:
     return Table("share [%]", _headings(shares), rows)
 
 
-def _share(column: Column, name: str, error: float | None) -> Shown:
+def _share(measure: MeasureSummary, column: Column, name: str, error: float | None) -> Shown:
+    if not _varies(measure, column):
+        return percent_cell(None)
     return percent_cell(column.percents.get(name), error if column.road == "geometric" else None)
+
+
+def _varies(measure: MeasureSummary, column: Column) -> bool:
+    """Whether there is a variance to share: one of our roads finds none where all that acts is constant."""
+    own = measure.sample(column.road) if column.road in ("analytic", "geometric") else None
+    return own is None or own.sigma != 0.0
 
 
 def not_attributed(measure: MeasureSummary) -> list[float | None]:
     """What each road leaves to no contributor [%], None for other columns; empty where that is nothing in print."""
     left = [
-        100 - sum(share or 0.0 for share in column.percents.values()) if column.road in ATTRIBUTING else None
+        100 - sum(share or 0.0 for share in column.percents.values())
+        if column.road in ATTRIBUTING and _varies(measure, column)
+        else None
         for column in contributor_columns(measure)
     ]
     return left if any(abs(rest or 0.0) > UNEXPLAINED_SHOWN for rest in left) else []

@@ -166,7 +166,8 @@ def _mostly(measure: MeasureSummary) -> str:
     if leading is None:
         return NOTHING
     name = ranked_contributors(measure)[0]
-    return f"{name} {leading.percents.get(name) or 0.0:.0f} %"
+    share = leading.percents.get(name)
+    return f"{name} {share:.0f} %" if share else NOTHING
 
 
 def _notes(run: RunSummary) -> Iterator[str]:

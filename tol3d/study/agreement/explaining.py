@@ -42,6 +42,8 @@ FURTHER_SLOW_LOOKS = 64  # by an engine with chord errors, which takes a millise
 CHORDS_OF_A_LOOK = 4  # chord errors in a second look: 4 D(1/2) - D(1) - 3 D(0), none of them below 0
 SECOND_ORDER = "second order, for the means lie off the nominal build"
 ROUNDING = 1e-9  # of the measure's unit; roads that never differ by more agree
+ROUNDINGS = 32 * 2.0**-52  # of a coordinate; 14 were seen in a difference of the roads and its second look
+REACH = 1e4  # mm; coordinates of a scene, or the measure where it is larger
 NAMED_BENDS = 3  # contributors named for the second order
 NAMED_SHARE = 0.1  # of the largest second difference; smaller ones are not named
 
@@ -129,7 +131,7 @@ class _Case:
         bounds = self.system.neglected(self.measure, self.look.trials)
         parts = tuple(self._linear_parts(second))
         mean = self._mean(curved, second, sum((own[first].mean() for own in bounds.values()), 0.0))
-        allowed = math.hypot(LEAST_LEFT * self.fits.sigma, _rms(sum(bounds.values(), np.zeros(len(curved)))[first]))
+        allowed = math.hypot(self._negligible, _rms(sum(bounds.values(), np.zeros(len(curved)))[first]))
         jumps = self.measure.unit in FACTORS["count"]  # what is near a bound one road counts and the other does not
         known = not jumps and not np.isnan(curved[first]).all()
         left_rms = min(left.residual, self.fits.difference.residual) if left else None
@@ -153,6 +155,18 @@ class _Case:
             mean_left=mean.left,
             mean_allowed=mean.allowed,
         )
+
+    @property
+    def _negligible(self) -> float:
+        """What is left that need not be explained [unit of the measure].
+
+        A share of sigma; of a measure that does not vary, for all that acts on it is constant, rounding and the same
+        share of what its constants shift it by in second order: that of higher order is less.
+        """
+        rounding = ROUNDINGS * max(REACH * self.measure.per_internal, self.fits.magnitude)
+        if self.fits.sigma > rounding:
+            return LEAST_LEFT * self.fits.sigma
+        return rounding + LEAST_LEFT * _rms(self.look.second_order[self.measure.name][: self.looked])
 
     # linear parts -----------------------------------------------------------------------------------
 
@@ -258,7 +272,7 @@ class _Case:
         straight, whole = self.look.left(self.measure.name), self.look.whole[self.measure.name]
         left = min(abs(float(straight[self.worst])), abs(float(whole[self.worst])))
         regressors = self.look.regressors[self.measure.name][:, self.worst]
-        allowed = mean.allowed + CHORDS_OF_A_LOOK * self.chords + LARGEST_LEFT * LEAST_LEFT * self.fits.sigma
+        allowed = mean.allowed + CHORDS_OF_A_LOOK * self.chords + LARGEST_LEFT * self._negligible
         allowed += sum(float(own[self.worst]) for own in bounds.values())
         for name, group in regressor_groups(self.system, self.measure).items():
             spread = math.sqrt(np.trace(self.fits.difference.spread[group, group]))
@@ -280,7 +294,7 @@ class _Case:
         if not len(known):
             known, nominal = np.zeros(1), np.zeros(1)
         error = math.hypot(sigma_of(sums) / math.sqrt(sums.count), float(known.std()) / math.sqrt(len(known)))
-        allowed = SURE * error + LEAST_LEFT * self.fits.sigma + left_out + self.chords
+        allowed = SURE * error + self._negligible + left_out + self.chords
         groups = regressor_groups(self.system, self.measure)
         for name, shift in self.means.items():
             if name in groups:
@@ -307,7 +321,7 @@ class _Case:
 
     def _mean_fault(self, mean: "_Mean") -> Iterator[str]:
         unit = self.measure.unit
-        allowed = LEAST_LEFT * self.fits.sigma + self.chords
+        allowed = self._negligible + self.chords
         if abs(mean.nominal) > allowed and abs(mean.nominal) > allowed + self._left_out_at_nominal():
             yield f"the roads differ by {mean.nominal:.3g} {unit} in the mean at the nominal build already"
         if abs(mean.left) > mean.allowed:

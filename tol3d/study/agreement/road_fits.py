@@ -23,6 +23,7 @@ class RoadFits:
         disagreement: of the roads.
         difference, analytic, geometric: the fits.
         sigma: of the measure, the larger of both roads'.
+        magnitude: the largest |value| by the stack-up.
         own: effect of each contributor, a standard deviation, the larger of both roads'.
 
     Both are of an extreme over positions at least what they are at one of them: what chooses another position changes
@@ -34,6 +35,7 @@ class RoadFits:
     analytic: LinearFit
     geometric: LinearFit
     sigma: float
+    magnitude: float
     own: Mapping[str, float]
 
     @classmethod
@@ -52,7 +54,9 @@ class RoadFits:
             name: max(analytic.effect(group), geometric.effect(group), alone.get(name, 0.0), LEAST_OWN * sigma)
             for name, group in regressor_groups(system, measure).items()
         }
-        return cls(tally.disagreement, difference, analytic, geometric, sigma, own)
+        ends = tally.analytic.moments
+        magnitude = max(-ends.minimum, ends.maximum)
+        return cls(tally.disagreement, difference, analytic, geometric, sigma, magnitude, own)
 
 
 def _effects_at_one_position(system: System, measure: Measure) -> Mapping[str, float]:
