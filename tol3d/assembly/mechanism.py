@@ -7,6 +7,7 @@ from tol3d.assembly.grammar.boundary_checks import unfit_boundaries
 from tol3d.assembly.grammar.checks import unknown_features, unplaced_bodies
 from tol3d.assembly.grammar.contact_checks import round_contacts
 from tol3d.assembly.grammar.drawing_checks import contradicting_tolerances
+from tol3d.assembly.grammar.implausible_sizes import implausible_sizes
 from tol3d.assembly.grammar.measure_checks import (
     missing_solids,
     mixed_dimensions,
@@ -74,6 +75,7 @@ ASSEMBLY: Final = Mechanism(
         unfit_pairs,
         round_contacts,
     ),
+    warnings=(implausible_sizes,),
     other_kinds=OTHER_KINDS,
     other_keys=OTHER_KEYS,
     engines=("exact",),

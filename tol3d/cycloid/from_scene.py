@@ -13,6 +13,7 @@ from tol3d.cycloid.refusals import rv_set
 from tol3d.cycloid.rv_set import RVSet
 from tol3d.cycloid.system import PlayingSystem, RVSystem
 from tol3d.gearing.grammar.study import GearStudyOptions
+from tol3d.gearing.model.implausible_teeth import implausible_teeth
 from tol3d.scene import Scene
 from tol3d.scene.direction import At
 from tol3d.system.plain import UNITS, PlainContributor, stated_of
@@ -46,7 +47,10 @@ def rv_system(scene: Scene) -> RVSystem:
     width, hole = (None if size is None else size.internal for size in (disc.width, disc.hole))
     steps = scene.options(GearStudyOptions).profile_steps
     system = PlayingSystem if own.plays else RVSystem
-    return system(scene.scene, tuple(contributors), tuple(measures.values()), own, acts, measures, width, hole, steps)
+    gears = {} if own.first is None else {own.first.sun: own.first.pair.pinion, own.first.planet: own.first.pair.wheel}
+    found = tuple(implausible_teeth(scene, gears))
+    stated = tuple(contributors), tuple(measures.values())
+    return system(scene.scene, *stated, own, acts, measures, width, hole, steps, found)
 
 
 def _measure(scene: Scene, own: RVSet, name: str, spec: Any) -> RVMeasure:

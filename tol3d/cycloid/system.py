@@ -50,14 +50,21 @@ class RVSystem(RVTrials):
         width: of a disc where it is shown [mm]; None: a usual one.
         crank_hole: diameter of the discs' crank holes there [mm]; None: as large as walls allow.
         profile_steps: of the strips of a flank that FCL measures.
+        implausible: warnings of the gears before the cycloid stage.
     """
 
     width: float | None = None
     crank_hole: float | None = None
     profile_steps: int = 120
+    implausible: tuple[str, ...] = ()
 
     roads: ClassVar[Mapping[str, RoadKind]] = ROADS
     statuses: ClassVar[Statuses] = STATUSES
+
+    @property
+    def warnings(self) -> tuple[str, ...]:  # type: ignore[override]
+        """See System."""
+        return self.implausible
 
     def problems(self) -> Iterator[tuple[KeyPath, str]]:
         """See System."""

@@ -64,6 +64,11 @@ class Distribution(ABC):
         return self.limits[1] if self.limits else float(self.ppf(np.array([HIGH_PROBABILITY]))[0])
 
     @property
+    def extremes(self) -> tuple[float, float]:
+        """The least and the largest deviation by which its size is judged: `low` and `high`, or what draws exceed."""
+        return self.low, self.high
+
+    @property
     def radius(self) -> float:
         """The end for worst cases of a length in a direction: its larger limit, or what 99.73 % stay within."""
         if self.limits:

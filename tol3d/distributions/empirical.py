@@ -63,6 +63,11 @@ class Empirical(Distribution):
         """Mean over the segments (a, b) of (a^2 + a b + b^2) / 3, a and b taken from the mean."""
         return self._moments[1]
 
+    @property
+    def extremes(self) -> tuple[float, float]:
+        """The smallest and the largest value of the sample."""
+        return float(self.values[0]), float(self.values[-1])
+
 
 class EmpiricalSpec(DistributionSpec):
     """`{file, column, unit}`: a CSV file with a header row; commas or semicolons between the cells.

@@ -46,6 +46,12 @@ class Normal(Distribution):
         """The stated ones, or mean +- 3 sigma."""
         return self.stated or (self.location - 3 * self.scale, self.location + 3 * self.scale)
 
+    @property
+    def extremes(self) -> tuple[float, float]:
+        """The limits, or mean -+ 3 sigma where these are wider."""
+        low, high = self.limits
+        return min(low, self.location - 3 * self.scale), max(high, self.location + 3 * self.scale)
+
 
 class NormalSpec(DistributionSpec):
     """`{lower, upper, sigmas}`: limits at +-sigmas about their middle; or `{mean, sigma}`."""

@@ -12,12 +12,15 @@ from tol3d.gearbox.counted import refuse_counted_twice
 from tol3d.gearbox.nominal import HousedShaft, housed
 from tol3d.gearbox.system import GearboxSystem
 from tol3d.gearing.effects import NOTHING
+from tol3d.gearing.grammar.checks import off_shaft
+from tol3d.gearing.grammar.parts import ShaftSpec
 from tol3d.gearing.grammar.tolerances.gearing_tolerance import together
 from tol3d.gearing.grammar.tolerances.lever import Lever
 from tol3d.gearing.mechanism import GEARING
 from tol3d.gearing.model import Contributor, Model
 from tol3d.gearing.system import GearSystem, gear_system
 from tol3d.scene import Scene, Vocabulary
+from tol3d.scene.implausible import warned
 from tol3d.scene.schema import SECTIONS
 from tol3d.scene.temperature import TemperatureSpec
 from tol3d.system.draw import Planar
@@ -44,9 +47,21 @@ def gearbox_system(scene: Scene) -> GearboxSystem:
         drawn=drawn,
         bores=bores,
         worlds=place.worlds,
+        off_shafts=tuple(_off_shafts(scene, bores)),
     )
     refuse_counted_twice(scene, made)
     return made
+
+
+def _off_shafts(scene: Scene, bores: Bores) -> Iterator[str]:
+    """Warnings of bores whose middles lie beyond an end of the shaft that they hold."""
+    for own in bores.shafts:
+        shaft, places = scene.parts[own.shaft], [own.along(bore) for bore in own.bores]
+        if own.bores[0].end is not None:  # of a long bore, which may stand out, its middle
+            places = [sum(places) / 2]
+        for k, at in enumerate(places):
+            if isinstance(shaft, ShaftSpec) and (sentence := off_shaft(own.shaft, shaft, at)):
+                yield warned(("moves", own.move, "in", k), sentence)
 
 
 def _of_name(*systems: GearSystem | AssemblySystem) -> Iterator[Any]:

@@ -45,6 +45,7 @@ class Joined:
         drawn: the assembly as the scene has it.
         bores: the same assembly with what reads its bores.
         worlds: by the first shaft of each train in bores, where its world lies in that of the parts (4, 4).
+        off_shafts: warnings of bores beyond the ends of their shafts.
     """
 
     name: str
@@ -54,6 +55,7 @@ class Joined:
     drawn: AssemblySystem
     bores: Bores
     worlds: Mapping[str, Array]
+    off_shafts: tuple[str, ...] = ()
 
     @cached_property
     def assembly(self) -> AssemblySystem:

@@ -62,7 +62,7 @@ class GearboxSystem(Joined):
     @property
     def warnings(self) -> tuple[str, ...]:
         """See System."""
-        return (*self.gears.warnings, *self.drawn.warnings)
+        return (*self.off_shafts, *self.gears.warnings, *self.drawn.warnings)
 
     def problems(self) -> Iterator[tuple[KeyPath, str]]:
         """See System."""

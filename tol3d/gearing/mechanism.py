@@ -3,7 +3,12 @@
 from typing import Final
 
 from tol3d.gearing.grammar import measures, moves, parts, tolerances
-from tol3d.gearing.grammar.checks import carried_again, forms_of_two_shapes
+from tol3d.gearing.grammar.checks import (
+    bearings_off_shafts,
+    carried_again,
+    forms_of_two_shapes,
+    shafts_thicker_than_hubs,
+)
 from tol3d.gearing.grammar.published import PublishedTrains
 from tol3d.gearing.grammar.study import GearStudyOptions
 from tol3d.scene.grammar import specs_in
@@ -17,6 +22,7 @@ GEARING: Final = Mechanism(
     moves=specs_in(moves),
     measures=specs_in(measures),
     checks=(carried_again, forms_of_two_shapes),
+    warnings=(bearings_off_shafts, shafts_thicker_than_hubs),
     options=GearStudyOptions,
     published=PublishedTrains,
     engines=("exact", "fcl"),

@@ -228,6 +228,16 @@ class BevelGear(ToothedGear):
         return 2 * self.tip_radius * self.half_angle_at(self.tip_angle)
 
     @property
+    def section_thickness(self) -> float:
+        """s_m [mm], in the middle of the face."""
+        return self.mean_tooth_thickness
+
+    @property
+    def section_tip(self) -> float:
+        """s_ae r_m/r_ae [mm]: the arc in the middle of the face that is as wide an angle as the tooth at its tip."""
+        return self.tip_thickness * self.mean_radius / self.tip_radius
+
+    @property
     def pointed_angle(self) -> float:
         """Polar angle [rad] at which both flanks of a tooth would meet; pi/2 where they do not up to there."""
         if self.base_half_angle >= float(spherical_involute(math.pi / 2, self.base_angle)):

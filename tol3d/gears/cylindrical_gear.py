@@ -129,6 +129,16 @@ class CylindricalGear(ToothedGear):
         """s_a, arc at the tip circle [mm]."""
         return self.thickness_at(self.tip_radius)
 
+    @property
+    def section_thickness(self) -> float:
+        """s [mm], the same in every section."""
+        return self.tooth_thickness
+
+    @property
+    def section_tip(self) -> float:
+        """s_a r/r_a [mm]: the arc at the reference circle that is as wide an angle as the tooth at its tip."""
+        return self.tip_thickness * self.reference_radius / self.tip_radius
+
     # roll -----------------------------------------------------------------------------------------
 
     def roll_at(self, radius: float) -> float:

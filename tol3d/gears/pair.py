@@ -64,6 +64,16 @@ class Gear(Protocol):
         ...
 
     @property
+    def section_thickness(self) -> float:
+        """Arc [mm] of a tooth at that radius."""
+        ...
+
+    @property
+    def section_tip(self) -> float:
+        """Arc [mm] at that radius by which a tooth may be thinner before its flanks meet at its tip."""
+        ...
+
+    @property
     def pitch_angle(self) -> float:
         """delta [rad] of the pitch cone, 0 for a cylinder."""
         ...

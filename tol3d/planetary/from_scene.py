@@ -10,6 +10,7 @@ from tol3d.planetary.grammar.measures.planetary_measure import PlanetaryFreeTurn
 from tol3d.planetary.grammar.measures.planetary_transmission_error import PlanetaryTransmissionErrorSpec
 from tol3d.planetary.grammar.moves.planetary import PlanetarySpec
 from tol3d.planetary.grammar.parts.flexible_carrier import FlexibleCarrierSpec
+from tol3d.planetary.implausible import implausible_set
 from tol3d.planetary.measure import PlanetaryMeasure, Reading
 from tol3d.planetary.planetary_set import PlanetarySet
 from tol3d.planetary.refusals import planetary_set
@@ -53,6 +54,7 @@ def planetary_system(scene: Scene) -> PlanetarySystem:
         unit, per_unit = UNITS[spec.dimensions[0] if isinstance(spec, ToleranceSpec) else "length"]
         contributors.append(PlainContributor(name, spec.kind, draw, unit, per_unit, spec.description))
     measures = {name: _measure(scene, own, name, spec) for name, spec in scene.measures.items()}
+    made = made_gears(scene, own)
     return PlanetarySystem(
         scene.scene,
         tuple(contributors),
@@ -60,10 +62,11 @@ def planetary_system(scene: Scene) -> PlanetarySystem:
         own,
         acts,
         measures,
-        made_gears(scene, own),
+        made,
         scene.of(PlanetarySpec)[own.name].friction,
         scene.options(GearStudyOptions).profile_steps,
         _leaf_spring(scene.parts[own.carrier]),
+        implausible_set(scene, own, made),
     )
 
 

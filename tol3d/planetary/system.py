@@ -52,15 +52,22 @@ class PlanetarySystem(SetTrials):
         friction: coefficient of friction of the teeth; None where none is given.
         profile_steps: of the strips that FCL measures.
         spring: of a flexible carrier; None where none is given.
+        implausible: warnings of its teeth and pins.
     """
 
     made: Made
     friction: float | None = None
     profile_steps: int = 120
     spring: LeafSpring | None = None
+    implausible: tuple[str, ...] = ()
 
     roads: ClassVar[Mapping[str, RoadKind]] = ROADS
     statuses: ClassVar[Statuses] = STATUSES
+
+    @property
+    def warnings(self) -> tuple[str, ...]:  # type: ignore[override]
+        """See System."""
+        return self.implausible
 
     def problems(self) -> Iterator[tuple[KeyPath, str]]:
         """See System."""

@@ -15,6 +15,7 @@ from tol3d.distributions.stated import SHIPPED, Laws, word_of
 from tol3d.errors import InputError
 from tol3d.scene.engines import Engines
 from tol3d.scene.entry import Entry, kind_of
+from tol3d.scene.implausible import warned
 from tol3d.scene.measure import MeasureEntry
 from tol3d.scene.move import MoveSpec
 from tol3d.scene.name import Name
@@ -48,6 +49,7 @@ class Vocabulary:
         name: of them all, for messages and for others that build on it.
         parts, tolerances, moves, measures: the kinds of each section.
         checks: what must hold across entries.
+        warnings: what is most likely a slip, and is warned of: numbers that could be built.
         includes: names of vocabularies whose kinds may stand beside these in one scene, which is then this one's.
         extends: names of vocabularies in whose scenes these kinds may stand; the scene stays theirs.
         distributions: laws that tolerances of any scene may state besides those that tol3d ships.
@@ -70,6 +72,7 @@ class Vocabulary:
     moves: tuple[type[MoveSpec], ...] = ()
     measures: tuple[type[MeasureEntry], ...] = ()
     checks: tuple[Check, ...] = ()
+    warnings: tuple[Check, ...] = ()
     includes: tuple[str, ...] = ()
     extends: tuple[str, ...] = ()
     distributions: tuple[type[DistributionSpec], ...] = ()
@@ -165,6 +168,12 @@ class Grammar:
         for vocabulary in self.vocabularies:
             for check in vocabulary.checks:
                 yield from check(scene)
+
+    def warnings(self, scene: Scene) -> Iterator[str]:
+        """What the vocabularies warn of, each with its place; the files of the scene are read, its solids known."""
+        for vocabulary in self.vocabularies:
+            for check in vocabulary.warnings:
+                yield from (warned(path, sentence) for path, sentence in check(scene))
 
     def vocabulary_of(self, scene: Scene) -> Vocabulary:
         """The vocabulary that understands all of a scene: its own kinds, those that it includes or that extend it.

@@ -53,6 +53,7 @@ def simulation_of(scene: Scene, overrides: Overrides = AS_WRITTEN) -> Simulation
         raise InputError(f"{_said_by('witness')}: {sentence}")
     with faults_of(mechanism.origin):
         problem = next(iter(system.problems()), None)
+        implausible = tuple(scene.grammar.warnings(scene))
     if problem:
         raise scene.refuse(*problem)
     return Simulation(
@@ -62,6 +63,7 @@ def simulation_of(scene: Scene, overrides: Overrides = AS_WRITTEN) -> Simulation
         requires=requires_of(asked),
         presenter=mechanism.presenter,
         mechanism=mechanism.origin,
+        implausible=implausible,
     )
 
 

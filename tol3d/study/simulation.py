@@ -21,6 +21,7 @@ class Simulation:
         requires: packages, besides those of every study, whose versions decide its results.
         presenter: import path of what shows the system, see `tol3d.report.presenter`; "" for nothing.
         mechanism: the one that understood the scene; None of a system made without.
+        implausible: what its vocabularies warn of in the scene.
     """
 
     system: System
@@ -29,6 +30,7 @@ class Simulation:
     requires: tuple[str, ...] = ()
     presenter: str = ""
     mechanism: Origin | None = None
+    implausible: tuple[str, ...] = ()
 
     @property
     def road(self) -> RoadKind:
@@ -43,7 +45,7 @@ class Simulation:
     @property
     def warnings(self) -> tuple[str, ...]:
         """What may spoil the numbers of this study."""
-        return (*self.system.warnings, *self.study.warnings)
+        return (*self.implausible, *self.system.warnings, *self.study.warnings)
 
 
 def study_of(scene: Scene) -> Study:

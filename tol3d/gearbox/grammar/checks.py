@@ -1,10 +1,14 @@
-"""What must hold across the entries of a scene of gears in a housing."""
+"""What must hold across the entries of a scene of gears in a housing, and what is most likely a slip."""
 
 from collections.abc import Iterator
 
+from tol3d.assembly.grammar.drawing import Drawing
 from tol3d.assembly.grammar.feature_name import part_of
 from tol3d.assembly.grammar.moves import PlacingSpec
+from tol3d.assembly.model.shape import nominal_size
 from tol3d.gearbox.grammar.shaft_in_bores import ShaftInBoresSpec
+from tol3d.gearing.grammar.checks import too_thick
+from tol3d.gearing.grammar.parts import ShaftSpec
 from tol3d.scene import Scene
 from tol3d.scene.place import KeyPath
 
@@ -40,3 +44,15 @@ def laid_too_early(scene: Scene) -> Iterator[Problem]:
                 del placing[part_of(bore)]
                 words = f"expected a bore of a part that is placed already, got {bore!r}"
                 yield ("moves", name, "in", k), f"{words}; put the move {by!r}, which places it, before this one"
+
+
+def shafts_thicker_than_bores(scene: Scene) -> Iterator[Problem]:
+    """Shafts that do not go into a bore that holds them."""
+    drawing = Drawing(scene)
+    for move in scene.of(ShaftInBoresSpec).values():
+        shaft = scene.parts[move.shaft]
+        if not isinstance(shaft, ShaftSpec):
+            continue
+        for bore in move.in_:
+            if sentence := too_thick(shaft, nominal_size(drawing.kind(bore).shape), repr(bore)):
+                yield ("parts", move.shaft, "diameter"), sentence

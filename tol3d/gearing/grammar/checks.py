@@ -1,8 +1,10 @@
-"""What must hold across the entries of a scene of gears."""
+"""What must hold across the entries of a scene of gears, and what is most likely a slip."""
 
 from collections.abc import Iterator
+from typing import Final
 
-from tol3d.gearing.grammar.parts import carried
+from tol3d.gearing.grammar.parts import BearingSpec, ShaftSpec, carried
+from tol3d.gearing.grammar.parts.gear import BoredGearSpec
 from tol3d.gearing.grammar.tolerances.profile_form import ProfileFormSpec
 from tol3d.scene import Scene
 from tol3d.scene.place import KeyPath
@@ -26,3 +28,40 @@ def forms_of_two_shapes(scene: Scene) -> Iterator[tuple[KeyPath, str]]:
         other, known = first.setdefault(spec.of, (str(name), spec))
         if spec.waves != known.waves:
             yield ("tolerances", str(name), "shape"), f"expected the shape of {other!r}, the form of {spec.of!r} too"
+
+
+def bearings_off_shafts(scene: Scene) -> Iterator[tuple[KeyPath, str]]:
+    """Bearings beyond an end of their shaft."""
+    for name, bearing in scene.of(BearingSpec).items():
+        shaft = scene.parts[bearing.shaft]
+        if isinstance(shaft, ShaftSpec) and (sentence := off_shaft(bearing.shaft, shaft, bearing.at.internal)):
+            yield ("parts", name, "at"), sentence
+
+
+def off_shaft(name: str, shaft: ShaftSpec, at: float) -> str:
+    """What is wrong with a place along a shaft [mm] that lies beyond one of its ends; "" where nothing is."""
+    for field, end, sense in (("start", shaft.start, -1.0), ("end", shaft.end, 1.0)):
+        if end is not None and (beyond := sense * (at - end.internal)) > ROUNDING:
+            words = f"expected a place on {name!r}, whose {field} is at {end}, got {at:.6g} mm, {beyond:.4g} mm beyond"
+            return f"{words}; look at the unit, and where the shaft's origin lies"
+    return ""
+
+
+def shafts_thicker_than_hubs(scene: Scene) -> Iterator[tuple[KeyPath, str]]:
+    """Shafts that do not go through the bore of a gear on them."""
+    for name, shaft in scene.of(ShaftSpec).items():
+        for gear in shaft.carries:
+            hub = scene.parts[gear]
+            bore = hub.bore.internal if isinstance(hub, BoredGearSpec) and hub.bore is not None else None
+            if sentence := too_thick(shaft, bore, f"the bore of {gear!r}"):
+                yield ("parts", name, "diameter"), sentence
+
+
+def too_thick(shaft: ShaftSpec, bore: float | None, words: str) -> str:
+    """What is wrong with a shaft that is thicker than a bore [mm] around it; "" where nothing is, or a size unknown."""
+    if bore is None or shaft.diameter is None or shaft.diameter.internal <= bore + ROUNDING:
+        return ""
+    return f"expected at most {bore:.6g} mm, the diameter of {words}, got {shaft.diameter}; look at both, and the units"
+
+
+ROUNDING: Final = 1e-9  # mm; the same number in two units

@@ -1,6 +1,6 @@
 """Scene to model: text becomes meaning, units become mm and rad, gears become geometry or are refused."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
 
 from tol3d.errors import SceneError
@@ -8,6 +8,7 @@ from tol3d.gearing.grammar.moves import GearMeshSpec, meshes_of
 from tol3d.gearing.grammar.parts import GearSpec, HousingSpec
 from tol3d.gearing.grammar.study import GearStudyOptions
 from tol3d.gearing.model.brought import NOTHING, Brought
+from tol3d.gearing.model.implausible_teeth import implausible_teeth
 from tol3d.gearing.model.layout import Layout, layout_of
 from tol3d.gearing.model.links import links_between_shafts, links_of
 from tol3d.gearing.model.measure import Measure
@@ -30,7 +31,7 @@ from tol3d.gearing.model.trains import (
     stated_links_of,
     trains_of,
 )
-from tol3d.gears import LEFT, RIGHT
+from tol3d.gears import LEFT, RIGHT, Gear
 from tol3d.scene import Scene
 
 
@@ -68,7 +69,7 @@ def model_from_scene(scene: Scene, brought: Brought = NOTHING) -> Model:
         meshes=meshes,
         measures=(),
         profile_steps=scene.options(GearStudyOptions).profile_steps,
-        warnings=tuple(_warnings(meshes)),
+        warnings=(*_warnings(meshes), *implausible_teeth(scene, _by_name(meshes))),
         shafts=shafts,
         links=stated,
         arms=arms,
@@ -150,6 +151,10 @@ def _other_shape(scene: Scene, gear: str, first: str, other: str) -> SceneError:
         f"{gear!r} would need another pitch angle than in {first!r}: a bevel gear can be in several meshes only where "
         "shaft angle and mate are alike",
     )
+
+
+def _by_name(meshes: tuple[Mesh, ...]) -> Mapping[str, Gear]:
+    return {name: mesh.gear(name) for mesh in meshes for name in (mesh.driver, mesh.driven)}
 
 
 def _warnings(meshes: tuple[Mesh, ...]) -> Iterator[str]:

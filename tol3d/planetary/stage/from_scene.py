@@ -12,6 +12,7 @@ from tol3d.gearing.model.brought import Brought
 from tol3d.gearing.system import GearSystem, gear_system
 from tol3d.planetary.deviated import Acts
 from tol3d.planetary.grammar.moves.planetary import PlanetarySpec
+from tol3d.planetary.implausible import implausible_set
 from tol3d.planetary.planetary_set import PlanetarySet
 from tol3d.planetary.refusals import parts_of, set_of
 from tol3d.planetary.shown import heights_of, made_gears
@@ -143,4 +144,5 @@ def _with_shared(scene: Scene, system: GearSystem, inside: Mapping[str, Planetar
         replace(link, actions=link.actions + added[link.name]) if isinstance(link, SetLink) else link
         for link in model.links
     )
-    return SetTrain(replace(model, contributors=tuple(found), links=links))
+    warnings = (line for own in links if isinstance(own, SetLink) for line in implausible_set(scene, own.own, own.made))
+    return SetTrain(replace(model, contributors=tuple(found), links=links, warnings=(*model.warnings, *warnings)))

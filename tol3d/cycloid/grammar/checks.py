@@ -1,0 +1,74 @@
+"""What is most likely a slip in a scene of an RV reducer: discs ground far off, pins far off or into each other."""
+
+import math
+from collections.abc import Iterator
+from typing import Final
+
+from tol3d.cycloid.grammar.moves.rv_reducer import RVReducerSpec
+from tol3d.cycloid.grammar.parts.crankshaft import CrankshaftSpec
+from tol3d.cycloid.grammar.parts.cycloid_disc import CycloidDiscSpec
+from tol3d.cycloid.grammar.parts.pin_ring import PinRingSpec
+from tol3d.cycloid.grammar.tolerances.pin_circle import PinCircleSpec
+from tol3d.cycloid.grammar.tolerances.pin_position import PinPositionSpec
+from tol3d.cycloid.grammar.tolerances.pin_radius import PinRadiusSpec
+from tol3d.cycloid.grammar.tolerances.pin_ring_offset import PinRingOffsetSpec
+from tol3d.scene import Scene
+from tol3d.scene.implausible import Implausible
+from tol3d.scene.place import KeyPath
+
+Problem = tuple[KeyPath, str]
+
+GROUND: Final = Implausible(0.05)
+HALF: Final = Implausible(0.5)
+
+
+def implausible_grinding(scene: Scene) -> Iterator[Problem]:
+    """Modifications of discs that take off, or leave, more than a twentieth of the pins' radius."""
+    for move in scene.of(RVReducerSpec).values():
+        disc, ring, crank = (scene.parts[name] for name in (move.disc, move.pin_ring, move.crankshaft))
+        assert isinstance(disc, CycloidDiscSpec)
+        assert isinstance(ring, PinRingSpec)
+        assert isinstance(crank, CrankshaftSpec)
+        lever = disc.lobes * crank.eccentricity.internal  # the largest
+        turned = disc.rotation.internal * lever
+        ground = {"shift": disc.shift.internal, "offset": disc.offset.internal, "rotation": turned}
+        for field, taken in ground.items():
+            words = f"the pin radius of {move.pin_ring!r}"
+            if sentence := GROUND.sentence(words, ring.pin_radius.internal, taken):
+                how = f", of a rotation at a lever of {lever:.4g} mm" if field == "rotation" else ""
+                yield ("parts", move.disc, field), f"{sentence}{how}"
+
+
+def implausible_pins(scene: Scene) -> Iterator[Problem]:
+    """Pins off their places by more than half of their pitch, off their radius by more than half of it, or overlapping.
+
+    Neighbours overlap where all tolerances of their places and radii at their worst leave no room between them.
+    """
+    for name, ring in scene.of(PinRingSpec).items():
+        half_angle, radius = math.pi / ring.pins, ring.pin_radius.internal
+        pitch = 2 * ring.radius.internal * math.sin(half_angle)
+        of_pitch, of_radius = f"the pitch of the pins of {name!r}", f"the pin radius of {name!r}"
+        room, taken = pitch - 2 * radius, 0.0
+        for tolerance, spec in scene.distributed.items():
+            if not isinstance(spec, PinPositionSpec | PinCircleSpec | PinRingOffsetSpec | PinRadiusSpec):
+                continue
+            low, high = spec.distribution.resolve(scene.files).extremes
+            far = max(low, high, key=abs)
+            match spec:
+                case PinRadiusSpec():
+                    sentence, own = HALF.sentence(of_radius, radius, far), 2 * high
+                case PinRingOffsetSpec():
+                    sentence, own = HALF.sentence(of_pitch, pitch, far), 0.0
+                case PinCircleSpec() | PinPositionSpec(direction="radial"):
+                    sentence, own = HALF.sentence(of_pitch, pitch, far), -2 * low * math.sin(half_angle)
+                case PinPositionSpec():
+                    sentence, own = HALF.sentence(of_pitch, pitch, far), 2 * abs(far)
+            taken += own
+            if sentence:
+                yield ("tolerances", tolerance, "distribution"), sentence
+        if taken > room > 0.0:
+            words = f"expected pins that stay clear of their neighbours, {pitch:.4g} mm apart, got pins of radius "
+            words += (
+                f"{ring.pin_radius} that overlap by up to {taken - room:.4g} mm where tolerances are at their worst"
+            )
+            yield ("parts", name, "pin_radius"), f"{words}; look at the units of pins' places and radii"

@@ -1,0 +1,45 @@
+"""Numbers that could be built and are most likely a slip: deviations that are a large part of what deviates."""
+
+from dataclasses import dataclass
+
+from tol3d.distributions import Distribution
+from tol3d.scene.place import KeyPath, path_text, printable
+
+
+@dataclass(frozen=True)
+class Implausible:
+    """From which part of a nominal size on a deviation is warned of.
+
+    Args:
+        share: of the nominal size; that much is still plausible.
+        advice: what to do.
+
+    >>> Implausible(0.5).sentence("the diameter of 'plate.hole'", 8.0, 200.0)
+    "expected at most 50 % of the diameter of 'plate.hole' (8 mm), got 200 mm (2500 %); look at the unit"
+    """
+
+    share: float
+    advice: str = "look at the unit"
+
+    def sentence(self, of: str, nominal: float, deviation: float) -> str:
+        """What is implausible of a deviation [mm]; "" where nothing is, or there is no nominal size.
+
+        Args:
+            of: the nominal size in words.
+            nominal: that size [mm].
+            deviation: how far it goes at most, with its sign [mm].
+        """
+        if not nominal > 0.0 or abs(deviation) <= self.share * nominal:
+            return ""
+        came = f"got {deviation:.4g} mm ({abs(deviation) / nominal * 100:.4g} %)"
+        return f"expected at most {self.share * 100:g} % of {of} ({nominal:.4g} mm), {came}; {self.advice}"
+
+
+def farthest(law: Distribution) -> float:
+    """The end of a law that is farther from 0, with its sign [mm, rad or K]."""
+    return max(law.extremes, key=abs)
+
+
+def warned(path: KeyPath, sentence: str) -> str:
+    """The line of a warning: place in the scene, sentence."""
+    return f"{path_text(path)}: {printable(sentence)}"
