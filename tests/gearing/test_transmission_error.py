@@ -137,6 +137,22 @@ def test_the_analytic_road_meets_the_reference_case_to_a_thousandth_of_an_arc_se
     assert play.max() == pytest.approx(414.475, abs=0.001)
 
 
+def test_the_scene_s_first_order_is_off_by_what_the_wheel_turns_in_half_its_play() -> None:
+    """Its wave counts from the nominal angle: e2/r_b2 (2 sin alpha of it in the play) times half the play."""
+    found = curves_of(model_from_scene(scene_of(REFERENCE)), "analytic")
+    wave = REFERENCE.eccentricity[1] / REFERENCE.base[1] * REFERENCE.play / 2 / REFERENCE.base[1]
+    play = found.play - REFERENCE.first_order_backlash(found.positions)
+    # beside that it meets the first order to 0.002"; see the test before
+    assert np.abs(play).max() == pytest.approx(2 * math.sin(REFERENCE.alpha) * wave, abs=0.002 / ARCSEC)
+    assert np.abs(play).max() * ARCSEC == pytest.approx(0.056, abs=0.002)
+    for side, own in (("drive", found.drive), ("back", found.back)):
+        off = own - REFERENCE.first_order_error(found.positions, side)
+        assert np.ptp(off) / 2 == pytest.approx(wave, abs=0.002 / ARCSEC)
+        assert np.ptp(off) / 2 * ARCSEC == pytest.approx(0.082, abs=0.003)
+    peaks = abs(np.ptp(found.drive) - np.ptp(REFERENCE.first_order_error(found.positions, "drive")))
+    assert peaks * ARCSEC == pytest.approx(0.010, abs=0.001)
+
+
 @pytest.mark.parametrize("flank", ["left", "right"])
 @pytest.mark.parametrize(
     "pair",

@@ -1,5 +1,6 @@
 """Free turns of planetary sets: the closed form of the 3K paper, HiGHS with rows worked out anew, pairs of gears."""
 
+import math
 from fractions import Fraction
 
 import numpy as np
@@ -7,18 +8,22 @@ import pytest
 from planetary_sets import (
     ALPHA,
     ARCMIN,
+    external,
     free_by_highs,
     pitch_rows,
     random_deviations,
     random_set,
     reducer_3k,
+    ring,
+    set_of,
 )
 
 from tol3d.gears import SpurGear, SpurPair
 from tol3d.gears.internal_gear import InternalGear
 from tol3d.gears.internal_pair import InternalPair
-from tol3d.planetary.deviated import Deviated
-from tol3d.planetary.planetary_set import PlanetarySet, SetMesh
+from tol3d.planetary.contact import Contact
+from tol3d.planetary.deviated import Acts, Deviated
+from tol3d.planetary.planetary_set import PlanetarySet, SetGear, SetMesh
 from tol3d.planetary.stack_up import StackUp
 
 NONE = np.zeros(1)
@@ -160,3 +165,35 @@ def test_an_offset_of_a_gear_turns_with_it() -> None:
     # a quarter of a turn takes it from planet 1 to planet 2
     first, second = lower[0].reshape(4, 3)[:, 0], lower[2].reshape(4, 3)[:, 0]
     np.testing.assert_allclose(np.roll(first, 1), second, rtol=0, atol=1e-15)
+
+
+def tooth_0_at_rest(central: SetGear, planet: SetGear) -> float:
+    """Azimuth of a central gear's tooth 0 [rad], so that a space of it faces a tooth of a planet, or a tooth a space.
+
+    The planet stands on the azimuth 0 with its own tooth 0 outwards; the side that it turns to a sun is the other one.
+    """
+    side = 0.0 if central.is_ring else math.pi
+    steps = (side / (2 * math.pi) * planet.teeth) % 1.0  # of a pitch from a tooth of the planet to that side
+    return math.pi / central.teeth if steps == 0.0 else 0.0 if steps == 0.5 else math.nan
+
+
+@pytest.mark.parametrize(("name", "planet_teeth"), [("sun", 20), ("sun", 21), ("ring", 20), ("ring", 21)])
+def test_eccentricities_of_central_gears_count_from_the_middle_of_their_tooth_0(name: str, planet_teeth: int) -> None:
+    """One planet: a sun towards it by d takes 2 sin(alpha_w) d from the backlash, a ring gives as much (DESIGN)."""
+    planet, distance, off = external("P", planet_teeth), (14 + planet_teeth) / 2, 1e-5
+    gears = {"sun": external("sun", 14), "ring": ring("ring", 14 + 2 * planet_teeth)}
+    own = set_of([(gear, planet) for gear in gears.values()], distance, 1, ("ring", "sun", "carrier"))
+    taken = -1.0 if name == "sun" else 1.0
+    for direction in (0.0, 1.0, 2.5):
+        deviated = thinned(own, dict.fromkeys(gears, 1e-4))
+        roads: tuple[StackUp | Contact, ...] = (StackUp(own), Contact(own))
+        nothing = [road.free(deviated, NONE, "sun", "carrier").ends[0] for road in roads]
+        deviated.add(own, Acts("offset", name), off * np.array([[math.cos(direction), math.sin(direction)]]))
+        towards = off * math.cos(direction + tooth_0_at_rest(gears[name], planet))
+        wanted = taken * 2 * math.sin(ALPHA) * towards / gears["sun"].base_radius
+        for road, ends in zip(roads, nothing, strict=True):
+            free = road.free(deviated, NONE, "sun", "carrier").ends[0]
+            # the sun turns by 3e-5 rad either way within its play, and its offset with it: 1e-4 of 1e-6 rad
+            assert np.ptp(free) - np.ptp(ends) == pytest.approx(wanted, abs=1e-9)
+        back = deviated.of(own, Acts("offset", name))
+        np.testing.assert_allclose(back, [[off * math.cos(direction), off * math.sin(direction)]], rtol=0, atol=1e-18)

@@ -82,7 +82,9 @@ def ends_of_set(columns: Columns, trial: int) -> tuple[float, float]:
 
     for m, central in enumerate(("sun", "ring 1", "ring 2")):
         found.central_thickness[0, m] = columns[f"{central} thinning [um]"][trial] * 1e-3 / COS
-        found.central_offset[0, m] = both(f"{central} eccentricity")
+        x, y = both(f"{central} eccentricity")  # in its own frame, whose tooth 0 stands half a pitch off a ring's space
+        lean = 0.0 if central == "sun" else math.pi / (79, 76)[m - 1]
+        found.central_offset[0, m] = math.cos(lean) * x - math.sin(lean) * y, math.sin(lean) * x + math.cos(lean) * y
     found.central_offset[0, 0] += both("countershaft run-out")
     for g, gear in enumerate(("P1", "P2")):
         found.planet_thickness[0, g] = each(f"{gear} thinning", "um") / COS

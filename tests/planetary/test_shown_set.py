@@ -88,6 +88,17 @@ def test_every_gear_is_a_body_of_one_world(run: Run) -> None:
         assert heights[mesh.central.name] == heights[f"{mesh.planet.name} of planet 1"]
 
 
+def test_teeth_of_central_gears_lie_off_the_axis_as_the_trial_has_it_in_their_own_frames(run: Run) -> None:
+    """In a frame whose x goes through the middle of tooth 0."""
+    for trial in (0, 7):
+        build: ShownSet = shown(run, trial).shown
+        for gear, mesh in zip(build.gears, build.own.meshes, strict=False):
+            columns = [f"{mesh.central.name} eccentricity.{axis} [um]" for axis in "xy"]
+            wanted = [run.columns()[name][trial] * 1e-3 if name in run.columns() else 0.0 for name in columns]
+            off = gear.world_from_gear[:2, :2].T @ gear.world_from_gear[:2, 3]
+            np.testing.assert_allclose(off, wanted, rtol=0, atol=1e-12)
+
+
 @pytest.mark.slow
 def test_arms_of_the_carrier_hold_the_planets(tmp_path: Path) -> None:
     """Each pin goes through its planet, from below all gears to the topmost face, and ends there in a ball."""

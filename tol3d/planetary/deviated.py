@@ -1,5 +1,6 @@
 """What the gears, planets and pins of a set deviate by in some trials, as both roads get it."""
 
+import math
 from dataclasses import dataclass, fields
 from typing import Literal
 
@@ -37,7 +38,7 @@ class Deviated:
     Args:
         central_thickness: arc at the reference circle (trials, centrals) [mm], positive is thicker.
         planet_thickness: of the gears of planets (trials, gears, planets).
-        central_offset: centre of the teeth off the axis, in the gear's frame (trials, centrals, 2) [mm].
+        central_offset: centre of the teeth off the axis where nothing has turned (trials, centrals, 2) [mm].
         planet_offset: the same of planets (trials, gears, planets, 2), off the pin.
         central_clocking, planet_clocking: turn of the teeth on what carries them [rad].
         pins: outwards and counter-clockwise off their places (trials, planets, 2) [mm].
@@ -71,7 +72,8 @@ class Deviated:
         Args:
             own: the set.
             acts: on what.
-            components: of the contributor (trials, components) [mm or rad]; of planets x and y of one after the other.
+            components: of the contributor (trials, components) [mm or rad]; of planets x and y of one after the other,
+                offsets in the gear's own frame, whose x goes through the middle of tooth 0.
         """
         if acts.effect == "pin":
             if acts.direction:
@@ -83,7 +85,8 @@ class Deviated:
         of_planets = acts.gear not in centrals
         place = [gear.name for gear in own.gears].index(acts.gear) if of_planets else centrals.index(acts.gear)
         into = self._array(acts.effect, of_planets)[:, place]
-        into += acts.factor * components.reshape(into.shape)
+        own_components = acts.factor * components.reshape(into.shape)
+        into += own_components if of_planets else _turned(own_components, acts, own.meshes[place].facing)
 
     def of(self, own: PlanetarySet, acts: Acts) -> Array:
         """What stands where a contributor acts, a component each (trials, components): of slopes, its own."""
@@ -94,6 +97,7 @@ class Deviated:
         of_planets = acts.gear not in centrals
         place = [gear.name for gear in own.gears].index(acts.gear) if of_planets else centrals.index(acts.gear)
         found = self._array(acts.effect, of_planets)[:, place]
+        found = found if of_planets else _turned(found, acts, -own.meshes[place].facing)
         return acts.factor * found.reshape(len(found), -1)
 
     def plus(self, other: "Deviated") -> "Deviated":
@@ -107,3 +111,13 @@ class Deviated:
             "clocking": (self.central_clocking, self.planet_clocking),
         }
         return arrays[effect][of_planets]
+
+
+def _turned(components: Array, acts: Acts, angle: float) -> Array:
+    """Offsets of a central gear (trials, 2) turned by an angle [rad]; what is no offset as it is."""
+    if acts.effect != "offset" or not angle:
+        return components
+    cos, sin = math.cos(angle), math.sin(angle)
+    return np.stack(
+        [cos * components[:, 0] - sin * components[:, 1], sin * components[:, 0] + cos * components[:, 1]], -1
+    )

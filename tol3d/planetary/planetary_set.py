@@ -89,6 +89,16 @@ class SetMesh:
         """r_b of the central gear plus that of the planet, of a ring less [mm]; more than 0."""
         return self.central.base_radius + self.sense * self.planet.base_radius
 
+    @property
+    def facing(self) -> float:
+        """Azimuth of the central gear's tooth 0 where nothing has turned [rad].
+
+        Tooth 0 of the first planet points outwards there: a ring has a space for it, and a sun one for the tooth that
+        planets with an even number of teeth have opposite; else they have a space there.
+        """
+        has_space = self.central.is_ring or self.planet.teeth % 2 == 0
+        return math.pi / self.central.teeth if has_space else 0.0
+
     @cached_property
     def working_pressure_angle(self) -> float:
         """alpha_w with cos alpha_w = base radii / a [rad]; ISO 21771-1:2024, 5.3."""

@@ -12,7 +12,7 @@ from tol3d.gearing.placed import PlacedGear
 from tol3d.gears import InternalGear, SpurGear
 from tol3d.planetary.contact import Contact
 from tol3d.planetary.deviated import Deviated
-from tol3d.planetary.planetary_set import PlanetarySet, SetMesh
+from tol3d.planetary.planetary_set import PlanetarySet
 from tol3d.scene import Scene
 
 Array = NDArray[np.float64]
@@ -121,7 +121,7 @@ def _centrals(
         angle += at[m] + deviated.central_clocking[0, m]
         place = _turned(deviated.central_offset[0, m], angle)
         thick = deviated.central_thickness[0, m] / (mesh.central.module * mesh.central.teeth)
-        pose = _pose(angle + _facing(mesh), place, heights[own.gear_of(mesh)])
+        pose = _pose(angle + mesh.facing, place, heights[own.gear_of(mesh)])
         yield PlacedGear(mesh.central.name, made[mesh.central.name], pose, float(thick), 1.0)
 
 
@@ -143,13 +143,6 @@ def _planets(
             thick = deviated.planet_thickness[0, g, k] / (gear.module * gear.teeth)
             pose = _pose(angle, place, heights[g])
             yield PlacedGear(f"{gear.name} of planet {k + 1}", made[gear.name], pose, float(thick), 1.0)
-
-
-def _facing(mesh: SetMesh) -> float:
-    """Where tooth 0 of a central gear stands on its x [rad]: a space of it takes up the tooth of the first planet."""
-    if mesh.central.is_ring or mesh.planet.teeth % 2 == 0:
-        return math.pi / mesh.central.teeth
-    return 0.0  # the planet's side towards the axis has a space
 
 
 def _turned(vector: Array, angle: float) -> Array:
