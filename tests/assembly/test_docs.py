@@ -21,6 +21,7 @@ from tol3d.assembly.grammar.zone import ZoneSpec
 from tol3d.assembly.mechanism import ASSEMBLY
 from tol3d.assembly.model.datum_frame import Simulator
 from tol3d.assembly.model.statuses import WITH_CLEARANCES
+from tol3d.assembly.zones import catalogue, normal_in, uniform_in
 from tol3d.scene import Grammar
 from tol3d.scene.schema import SECTIONS
 from tol3d.units import FACTORS
@@ -158,8 +159,29 @@ def test_the_paragraph_below_the_tolerances_names_what_is_in_a_zone_and_a_datum(
 def test_no_table_is_forgotten() -> None:
     known = {(section.capitalize(), "kind") for section in SECTIONS} | {("Features", "kind")}
     known |= {("Moves", head) for head in ("relation", "contact")}
-    known |= {(WORDS, head) for head in ("simulator", "law", "status")}
+    known |= {(WORDS, head) for head in ("simulator", "law", "sigma of the middle / t", "status")}
     assert {(each.section, each.head[0]) for each in PAGE.tables} == known
+
+
+def test_the_table_of_sigmas_has_those_of_the_draws() -> None:
+    """In parts of the zone's width; `uniform` where the orientation is free, and the most where it is refined."""
+    free = {
+        "axis in a cylinder": catalogue.axis(1.0),
+        "axis at one section": catalogue.axis_section(1.0),
+        "face": catalogue.rectangle(1.0),
+        "axis between planes": catalogue.flat_axis(1.0, (1.0, 0.0)),
+        "point between planes": catalogue.point_between_planes(1.0),
+        "point in a sphere": catalogue.point_in_sphere(1.0),
+    }
+    refined = {"axis in a cylinder": catalogue.axis(1.0, 1e-6), "face": catalogue.rectangle(1.0, 1e-6)}
+    refined["axis between planes"] = catalogue.flat_axis(1.0, (1.0, 0.0), 1e-6)
+    for name, zone in free.items():
+        (row,) = re.findall(rf"^\| {name}[^|]* \| ([\d.]+)([^|]*) \| ([\d.]+) \|", DOCS, re.MULTILINE)
+        assert row[0] == f"{uniform_in(zone).middle_sigma:.3f}"
+        assert row[2] == f"{normal_in(zone).middle_sigma:.3f}"
+        assert re.findall(r"([\d.]+) at most", row[1]) == [
+            f"{uniform_in(refined[own]).middle_sigma:.3f}" for own in refined if own == name
+        ]
 
 
 def test_every_word_of_the_page_that_looks_like_a_field_is_one() -> None:
@@ -167,4 +189,5 @@ def test_every_word_of_the_page_that_looks_like_a_field_is_one() -> None:
     known |= {kind for section in SECTIONS for kind in PAGE.kinds(section)} | set(FEATURES) | set(LAWS)
     known |= {unit for units in FACTORS.values() for unit in units}
     known |= {"gauge", "ok", "singular", "overlap", "study", "witness", "exact", "analytic", "engine", "view", "export"}
+    known |= {"law_sigmas_um"}  # a key of summary.json
     assert words(PAGE.prose) - known == set()

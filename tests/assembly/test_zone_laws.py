@@ -1,13 +1,16 @@
 """Problem 9: what a zone does to a face and to an axis, law by law, as a scene's measures read it."""
 
 import math
+import re
 from pathlib import Path
 
 import numpy as np
 import pytest
 from assembly_trials import Assembled, assembled
+from fixtures import Command
 from scipy.stats import norm
 
+from tol3d.runs.run import open_run
 from tol3d.simulate import Overrides, run_scene
 
 WIDTH, A, B, LENGTH = 0.1, 100.0, 60.0, 40.0
@@ -100,12 +103,35 @@ def test_a_run_counts_what_is_out_of_drawing(tmp_path: Path) -> None:
     assert any(f"position: {aside} of {count}" in warning for warning in run.summary["warnings"])
 
 
-def test_normals_within_the_zone(tmp_path: Path) -> None:
-    found = zoned(tmp_path, "{kind: normal}").drawn(COUNT)
-    sigma = 0.790728 * WIDTH / 6  # what redrawing until inside leaves
-    error = 4 / math.sqrt(2 * COUNT)
-    for name, arm in (("height", 1.0), ("about x", B / 2), ("about y", A / 2)):
-        assert arm * found[name].std() == pytest.approx(sigma, rel=error + 1e-6)
+SIGMAS = {  # of the middle in its zone of 0.1 mm [um]: of the face, of the bore
+    "{kind: uniform}": (100 / 2 / math.sqrt(10), 100 / 4 / math.sqrt(2)),
+    "{kind: normal}": (0.98657840 * 100 / 6, math.sqrt(1 - 4.5 / math.expm1(4.5)) * 100 / 6),
+    "{kind: process, distribution: {kind: normal, mean: 0 mm, sigma: 0.02 mm}}": (20.0, 20 / math.sqrt(2)),
+}
+
+
+@pytest.mark.parametrize("law", SIGMAS)
+def test_check_and_run_tell_the_sigma_of_the_middle_under_each_law(law: str, tol3d: Command, tmp_path: Path) -> None:
+    """As both roads draw it: a hole's middle by `normal` has 0.974 of a sixth of the zone, by `process` 1/√2 of it."""
+    text = (
+        SCENE.format(law=law, outward="")
+        + "  aside: {kind: gap, from: plate.upright, to: plate.bore, along: [1, 0, 0]}\n"
+    )
+    path, count = tmp_path / "scene.yaml", 20_000
+    path.write_text(text, encoding="utf-8")
+    _, checked, _ = tol3d("check", str(path))
+    _, shown, _ = tol3d("run", str(path), "--trials", str(count), "--no-picture", "--out", str(tmp_path / "run"))
+    run = open_run(tmp_path / "run").summary["measures"]
+    for name, tolerance, sigma in zip(("height", "aside"), ("profile", "position"), SIGMAS[law], strict=True):
+        assert run[name]["law_sigmas_um"] == pytest.approx({tolerance: sigma}, rel=1e-7)
+        assert run[name]["analytic_closed_form"]["sigma"] == pytest.approx(sigma, rel=1e-7)
+        for road in ("analytic", "geometric"):
+            assert run[name][road]["sigma"] == pytest.approx(sigma, rel=4 / math.sqrt(2 * count))
+        row = re.search(rf"^{tolerance} .* (\S+) +µm +–", checked, re.MULTILINE)
+        assert row is not None
+        assert row[1] == f"{sigma:.3g}"
+        assert re.search(rf"^{tolerance} .* {sigma:.3g} *$", shown.partition("laws of zones")[2], re.MULTILINE)
+    assert "so that the middle has 1/√2 of its sigma" in " ".join(checked.split())
 
 
 def test_unequal_profile(tmp_path: Path) -> None:

@@ -84,7 +84,7 @@ def test_closed_form_is_what_the_sample_tends_to(
     pair = SpurPair(pinion, replace(wheel, teeth=wheel_teeth), 35.0 + 1.25 * wheel_teeth)
     model = replace(model, meshes=(replace(model.meshes[0], pair=pair),))
     contributors = [
-        replace(c, draw=Planar(c.distribution, direction)) if isinstance(c.draw, Planar) else c
+        replace(c, draw=replace(c.draw, direction=direction)) if isinstance(c.draw, Planar) else c
         for c in model.contributors
     ]
     free = Planar(Uniform(0.01, 0.03), direction)

@@ -12,6 +12,7 @@ from places import SCENES
 from shipped import shipped
 
 from tol3d import load_scene
+from tol3d.distributions import Distribution
 from tol3d.gearing import effects
 from tol3d.gearing.build import build
 from tol3d.gearing.displacements import displacements
@@ -149,6 +150,7 @@ def test_two_effects_of_one_deviation_on_one_seat_add_up() -> None:
     model, _ = far_model("spur", RIGHT)
     twice = Together((AxisOffset("wheel"), AxisOffset("wheel", (0.0, 1.0, 0.0), 0.5), AxisOffset("wheel")))
     law = model.contributors[0].distribution
+    assert isinstance(law, Distribution)
     model = replace(model, contributors=(Contributor("c", "", twice, Scalar(law), "um"),))
     deviations = np.array([[0.01]])
     for made in (build(model, deviations), compiled_displacements(model).build(deviations)):

@@ -10,6 +10,10 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 Inside = Callable[[Array, float, float], NDArray[np.bool_]]
 """Which points (n, components) [mm] lie in a zone of width t, orientation t_o."""
+Placed = Callable[[Array, Array], Array]
+"""Points (n, components) of a middle (n, coordinates) and a tilt or half difference (n, coordinates)."""
+
+HALVINGS = 60
 
 
 @dataclass(frozen=True)
@@ -19,18 +23,26 @@ class ZoneSet:
     Args:
         inside: which points lie in it.
         tilts: which components the orientation zone limits to t_o / 2, the others being limited to t / 2.
+        placed: points of a middle and a tilt; None where a point is one or the other.
+        sizes: how many coordinates middle and tilt have.
+        directed: whether the tilt has a uniform direction of its own, and is normal along it only.
     """
 
     inside: Inside
     tilts: tuple[bool, ...]
+    placed: Placed | None = None
+    sizes: tuple[int, int] = (0, 0)
+    directed: bool = False
 
     def reach(self, width: float, orientation: float) -> Array:
         """Largest value of each component."""
         return np.where(self.tilts, orientation, width) / 2
 
     def rejected(self, law: str, width: float, orientation: float, count: int, seed: int) -> Array:
-        """So many points (count, components), uniform in the zone, or normal of sigma reach / 3 and within it."""
+        """So many points (count, components), uniform in the zone or by the law `normal`."""
         rng = np.random.default_rng(seed)
+        if law == "normal" and self.placed is not None:
+            return self._middle_first(width, orientation, count, rng)
         reach = self.reach(width, orientation)
         found: list[Array] = []
         while sum(map(len, found)) < count:
@@ -39,6 +51,38 @@ class ZoneSet:
             points = unit * reach
             found.append(points[self.inside(points, width, orientation)])
         return np.concatenate(found)[:count]
+
+    def _middle_first(self, width: float, orientation: float, count: int, rng: np.random.Generator) -> Array:
+        """Middles of 3 sigma = t / 2, redrawn until in the zone; then tilts of 3 sigma = t_o / 2, until both are.
+
+        A tilt is proposed uniform in the box (or, directed, along the radius of a disc) that the middle leaves, whose
+        size is found by halving, and kept as often as its normal density says.
+        """
+        assert self.placed is not None
+        placed = self.placed
+        coordinates, tilted = self.sizes
+        middle = np.empty((count, coordinates))
+        out = np.ones(count, dtype=bool)
+        while out.any():
+            middle[out] = rng.standard_normal((out.sum(), coordinates)) * (width / 6)
+            out = ~self.inside(placed(middle, np.zeros((count, tilted))), width, orientation)
+        angle = rng.uniform(0.0, 2 * math.pi, count)
+        direction = np.stack([np.cos(angle), np.sin(angle)], axis=1) if self.directed else np.eye(1, tilted)
+        reach, above = np.zeros((count, 1)), np.full((count, 1), width)
+        for _ in range(HALVINGS):
+            between = 0.5 * (reach + above)
+            within = self.inside(placed(middle, between * direction), width, orientation)[:, None]
+            reach, above = np.where(within, between, reach), np.where(within, above, between)
+        tilt, out = np.empty((count, tilted)), np.ones(count, dtype=bool)
+        while out.any():
+            if self.directed:
+                tilt[out] = (reach * direction)[out] * np.sqrt(rng.random((out.sum(), 1)))
+            else:
+                tilt[out] = reach[out] * rng.uniform(-1.0, 1.0, (out.sum(), tilted))
+            kept = rng.random(count) < np.exp(-0.5 * (tilt**2).sum(axis=1) / (orientation / 6) ** 2)
+            fresh = out & kept & self.inside(placed(middle, tilt), width, orientation)
+            out &= ~fresh
+        return placed(middle, tilt)
 
 
 def _corners(points: Array, width: float, orientation: float) -> NDArray[np.bool_]:
@@ -74,15 +118,23 @@ def _length(points: Array, width: float, orientation: float) -> NDArray[np.bool_
     return np.sqrt((points**2).sum(axis=1)) <= width / 2
 
 
+def _beside(middle: Array, tilt: Array) -> Array:
+    return np.concatenate([middle, tilt], axis=1)
+
+
+def _about(middle: Array, half: Array) -> Array:
+    return np.concatenate([middle - half, middle + half], axis=1)
+
+
 SETS = {
-    "rectangle": ZoneSet(_corners, (False, True, True)),
-    "round face": ZoneSet(_rim, (False, True, True)),
+    "rectangle": ZoneSet(_corners, (False, True, True), _beside, (1, 2)),
+    "round face": ZoneSet(_rim, (False, True, True), _beside, (1, 2)),
     "rectangle's orientation": ZoneSet(_sum, (False, False)),
     "round face's orientation": ZoneSet(_length, (False, False)),
-    "axis": ZoneSet(_both_ends, (False,) * 4),
+    "axis": ZoneSet(_both_ends, (False,) * 4, _about, (2, 2), directed=True),
     "axis' orientation": ZoneSet(_length, (False, False)),
     "axis at a section": ZoneSet(_length, (False, False)),
-    "flat axis": ZoneSet(_both_heights, (False, False)),
+    "flat axis": ZoneSet(_both_heights, (False, False), _about, (1, 1)),
     "flat axis' orientation": ZoneSet(_length, (False,)),
     "flat axis at a section": ZoneSet(_length, (False,)),
     "point in a sphere": ZoneSet(_length, (False,) * 3),

@@ -46,12 +46,12 @@ def test_both_roads_of_an_assembly_differ_by_nothing_that_is_not_explained(
 
 def test_the_cover_s_numbers_follow_by_hand(tmp_path: Any) -> None:
     """Datum C stands off by |a| + |b| of the left wall, rises a, b uniform in |a| + |b| <= 10 um; the cover touches
-    it at 0.4 b. The middle of each hole is that of two ends, drawn in discs by normals cut at 3 sigma."""
+    it at 0.4 b. The middle of each hole is a normal of 3 sigma = 0.1 mm, cut off there by its length."""
     count = 20_000
     found = run_scene(FOLDER / "cover_on_base.yaml", overrides=Overrides(trials=count), out=tmp_path / "run").summary
     disc = (100 / 3) ** 2 * (1 - 4.5 * math.exp(-4.5) / (1 - math.exp(-4.5)))
     by_hand = {
-        "hole offset": (-20 / 3, math.sqrt(2 * disc / 2 + 10**2 / 18 + 0.4**2 * 10**2 / 6)),
+        "hole offset": (-20 / 3, math.sqrt(2 * disc + 10**2 / 18 + 0.4**2 * 10**2 / 6)),
         "flush": (0.0, math.sqrt(2) * 100 / 3),
     }
     for name, (mean, sigma) in by_hand.items():

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from tol3d.distributions import Distribution
 from tol3d.distributions.constant import Constant
 from tol3d.distributions.normal import Normal
 from tol3d.distributions.rayleigh import Rayleigh
@@ -55,6 +56,7 @@ def test_ends_are_those_of_a_linear_measure_in_its_steepest_direction(name: str)
     slope = np.array([3.0, -4.0, 12.0])[: len(draw.components)]
     ends = draw.ends(lambda rows: rows @ slope, turning=False)
     law, values = draw.distribution, ends @ slope
+    assert isinstance(law, Distribution)
     if name == "scalar":
         expected = {3.0 * law.low, 3.0 * law.high}
     elif name == "at an angle":

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from tol3d.distributions import Distribution
+from tol3d.distributions import DeviationLaw
 from tol3d.system.contributor import column_names
 from tol3d.system.draw import Draw
 
@@ -25,5 +25,5 @@ class ToyContributor:
         return column_names(self.name, self.draw.components, self.unit)
 
     @property
-    def distribution(self) -> Distribution:
+    def distribution(self) -> DeviationLaw:
         return self.draw.distribution

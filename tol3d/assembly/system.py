@@ -22,7 +22,7 @@ from tol3d.assembly.roads import PlacingRoad, TorsorRoad
 from tol3d.assembly.torsors import road as torsors
 from tol3d.assembly.torsors.slopes import Slopes
 from tol3d.assembly.witnessed import reads
-from tol3d.assembly.zones import ZoneDraw
+from tol3d.assembly.zones import ZoneDraw, laws_told
 from tol3d.errors import InputError
 from tol3d.scene import Scene
 from tol3d.scene.schema import SECTIONS
@@ -91,8 +91,8 @@ class AssemblySystem(PlainSystem):
 
     def describe(self, measure: Measure) -> Mapping[str, Any]:
         """Its kind, what it is of, and by which laws deviations lie in the zones that act on it."""
-        laws = {own.name: own.draw.words for own in self.acting(measure) if isinstance(own.draw, ZoneDraw)}
-        return {**super().describe(measure), "of": list(self.named[measure.name]), **({"laws": laws} if laws else {})}
+        laws = laws_told(own for own in self.acting(measure) if isinstance(own.draw, ZoneDraw))
+        return {**super().describe(measure), "of": list(self.named[measure.name]), **laws}
 
     def problems(self) -> Iterator[tuple[KeyPath, str]]:
         """Measures of the nominal assembly that the roads read differently, or not at all."""

@@ -1,6 +1,6 @@
 """Laws of a deviation: what a scene writes of them and what that means, one file each."""
 
-from tol3d.distributions.base import Distribution, DistributionSpec
+from tol3d.distributions.base import DeviationLaw, Distribution, DistributionSpec
 from tol3d.distributions.constant import Constant
 from tol3d.distributions.empirical import Empirical
 from tol3d.distributions.normal import Normal
@@ -12,6 +12,7 @@ from tol3d.distributions.uniform import Uniform
 
 __all__ = [
     "Constant",
+    "DeviationLaw",
     "Distribution",
     "DistributionSpec",
     "Empirical",

@@ -3,7 +3,7 @@
 from abc import ABC, abstractmethod
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Self
+from typing import Protocol, Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,6 +20,35 @@ HIGH_PROBABILITY = 1 - LOW_PROBABILITY
 CIRCLE_PROBABILITY = HIGH_PROBABILITY - LOW_PROBABILITY
 RADIUS_HALVINGS = 60  # down to the last bits of a double
 LARGEST_DEVIATION = 1e9  # mm, rad or K; keeps squares and differences of what a user writes finite
+
+
+class DeviationLaw(Protocol):
+    """Moments of the law of a deviation [mm, rad or K], and its ends for worst cases; every Distribution has them."""
+
+    @property
+    def mean(self) -> float:
+        """The expected deviation."""
+        ...
+
+    @property
+    def variance(self) -> float:
+        """The variance [mm^2, rad^2 or K^2]."""
+        ...
+
+    @property
+    def sigma(self) -> float:
+        """The standard deviation."""
+        ...
+
+    @property
+    def low(self) -> float:
+        """The lower end."""
+        ...
+
+    @property
+    def high(self) -> float:
+        """The upper end."""
+        ...
 
 
 @dataclass(frozen=True, eq=False)

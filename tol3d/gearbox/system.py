@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from tol3d.assembly.clearances.prepared import reader_of
 from tol3d.assembly.system import AssemblySystem, ClearanceSystem
+from tol3d.assembly.zones import laws_told
 from tol3d.gearbox.closed_form import closed_form
 from tol3d.gearbox.joined import Joined
 from tol3d.gearbox.regressors import regress_bores
@@ -20,7 +21,6 @@ from tol3d.gearing.system import EXACT, ROADS, GearSystem
 from tol3d.system.breakdown import Breakdown
 from tol3d.system.closed_form import ClosedForm
 from tol3d.system.contributor import Contributor
-from tol3d.system.draw import JointDraw
 from tol3d.system.measure import Measure
 from tol3d.system.pooled import PooledTerms
 from tol3d.system.positions import Positions
@@ -76,8 +76,7 @@ class GearboxSystem(Joined):
             return found
         slices = component_slices(self.drawn)
         moving = (own for own in self.drawn.contributors if self.displacing[:, slices[own.name]].any())
-        laws = {own.name: own.draw.words for own in moving if isinstance(own.draw, JointDraw)}
-        return {**found, "laws": laws} if laws else found
+        return {**found, **laws_told(moving)}
 
     def _owner(self, measure: Measure) -> GearSystem | AssemblySystem:
         return self.gears if isinstance(measure, GearMeasure) else self.assembly

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.assembly.zones.zone_draw import LEAST_STEP, ZoneDraw
-from tol3d.distributions import Distribution
+from tol3d.distributions import DeviationLaw
 from tol3d.system.draw import Values
 
 Array = NDArray[np.float64]
@@ -26,7 +26,7 @@ class EachZone:
     names: tuple[str, ...]
 
     @property
-    def distribution(self) -> Distribution:
+    def distribution(self) -> DeviationLaw:
         """Of one component."""
         return self.each.distribution
 

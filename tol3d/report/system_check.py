@@ -4,14 +4,14 @@ import math
 import re
 from collections.abc import Iterator, Mapping, Sequence
 
-from tol3d.distributions import Distribution
+from tol3d.distributions import DeviationLaw
 from tol3d.report.number import NOTHING, UNIT_SIGNS, limit_text, measured_text, unsigned_zero, value_text
 from tol3d.report.page import Heading, PageItem, Row, Shown, Table, note, titled, warning
 from tol3d.study.first_order import FirstOrder, FirstOrderEffect, first_orders
 from tol3d.study.simulation import Simulation
 from tol3d.study.task import materials_of, road_of
 from tol3d.system.contributor import Contributor
-from tol3d.system.draw import JointDraw, drawn_each
+from tol3d.system.draw import JointDraw, MiddleDraw, drawn_each, told_sigma
 from tol3d.system.measure import Measure
 
 SLOPES = (
@@ -20,6 +20,10 @@ SLOPES = (
 )
 EACH = "each: of every one of several deviations, such as one a planet; greatest: of the one that does most"
 SHARES = "RSS: share of the variance by root sum of squares; worst: share of the sum of all reaches from end to end"
+MIDDLE = (
+    "sigma of a zone: of the middle of its feature along one axis; of an orientation alone, of a rise at the edge or "
+    "an end of the axis; a process draws both ends of an axis, so that the middle has 1/√2 of its sigma"
+)
 NO_SUM = "no sum of effects, so no RSS and no worst case: its slopes are means over two sigma; run draws its trials"
 BESIDE = 1e-6  # um or arcmin; a value that is nearer to a limit lies on it
 
@@ -47,7 +51,7 @@ def system_blocks(simulation: Simulation) -> list[PageItem]:
     return [*_contributors(system.contributors), *_measures(system.measures, kinds, found, headings), *tables, *notes]
 
 
-def law_name(law: Distribution) -> str:
+def law_name(law: DeviationLaw) -> str:
     """A distribution in words, such as "truncated normal"."""
     return re.sub(r"(?<=[a-z])(?=[A-Z])", " ", type(law).__name__).lower()
 
@@ -68,13 +72,14 @@ def law_words(contributor: Contributor) -> str:
 def _contributors(contributors: Sequence[Contributor]) -> list[PageItem]:
     rows = []
     for own in contributors:
-        numbers = [f"{own.distribution.mean / own.per_unit:.4g}", f"{own.draw.sigma / own.per_unit:.3g}"]
+        numbers = [f"{own.distribution.mean / own.per_unit:.4g}", f"{told_sigma(own.draw) / own.per_unit:.3g}"]
         least = NOTHING if own.least is None else f"{own.least / own.per_unit:g}"
         cells = (own.kind, law_words(own), *map(unsigned_zero, numbers), UNIT_SIGNS[own.unit], unsigned_zero(least))
         rows.append(Row(own.name, cells))
     words = [Heading("kind", words=True), Heading("law", words=True)]
     table = Table("", [*words, *map(Heading, ("mean", "sigma", "unit", "least"))], rows)
-    return titled("contributors", table) if rows else []
+    notes = [note(MIDDLE)] if any(isinstance(own.draw, MiddleDraw) for own in contributors) else []
+    return [*titled("contributors", table), *notes] if rows else []
 
 
 def _measures(

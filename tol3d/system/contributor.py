@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from typing import Protocol
 
-from tol3d.distributions import Distribution
+from tol3d.distributions import DeviationLaw
 from tol3d.system.draw import Draw
 
 
@@ -51,7 +51,7 @@ class Contributor(Protocol):
         ...
 
     @property
-    def distribution(self) -> Distribution:
+    def distribution(self) -> DeviationLaw:
         """The law of the deviation, or of its length where it has a direction."""
         ...
 

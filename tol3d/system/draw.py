@@ -8,7 +8,7 @@ from typing import Protocol, runtime_checkable
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.distributions import Distribution
+from tol3d.distributions import DeviationLaw, Distribution
 
 Array = NDArray[np.float64]
 Values = Callable[[Array], Array]
@@ -19,8 +19,8 @@ class Draw(Protocol):
     """k uniforms to m components."""
 
     @property
-    def distribution(self) -> Distribution:
-        """The law of the deviation, or of its length where it has a direction."""
+    def distribution(self) -> DeviationLaw:
+        """The law of the deviation, or of its length where it has a direction; of several, that of the first."""
         ...
 
     @property
@@ -64,6 +64,21 @@ class JointDraw(Protocol):
     def words(self) -> str:
         """Its law in words, such as "uniform in its zone"."""
         ...
+
+
+@runtime_checkable
+class MiddleDraw(Protocol):
+    """A Draw of the displacement of a feature, of whose components a stack sees the middle."""
+
+    @property
+    def middle_sigma(self) -> float:
+        """Standard deviation [mm] of the feature's middle along one direction; `zones.zone.Shape` says of what else."""
+        ...
+
+
+def told_sigma(draw: Draw) -> float:
+    """Standard deviation that tables tell [mm, rad or K]: of a feature's middle, else of one component."""
+    return draw.middle_sigma if isinstance(draw, MiddleDraw) else draw.sigma
 
 
 def drawn_each(draw: Draw) -> bool:

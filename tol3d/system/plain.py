@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field
 
-from tol3d.distributions import Distribution
+from tol3d.distributions import DeviationLaw, Distribution
 from tol3d.scene import Scene
 from tol3d.scene.measure import LengthLimit, MeasureEntry, MeasureSpec
 from tol3d.scene.tolerance import ToleranceSpec
@@ -74,7 +74,7 @@ class PlainContributor:
         return column_names(self.name, self.draw.components, self.unit)
 
     @property
-    def distribution(self) -> Distribution:
+    def distribution(self) -> DeviationLaw:
         """The law of the deviation."""
         return self.draw.distribution
 

@@ -77,19 +77,21 @@ def test_independent_normals_leave_the_zone_as_often_as_their_sum_exceeds_three_
     assert flat.zone.inside(drawn(flat)).mean() == pytest.approx(share, abs=4 * math.sqrt(share * (1 - share) / COUNT))
 
 
-def test_normals_conditioned_on_the_zone_have_0_790728_of_their_sigma() -> None:
-    def moment(power: int) -> float:
-        """Of |Z1|, for Z2 + Z3 within the diamond that is left: both diagonals within ±r / sqrt 2."""
+@pytest.mark.parametrize("part", [1.0, 0.4])
+def test_a_normal_face_has_the_height_of_a_point_and_the_tilts_that_it_leaves(part: float) -> None:
+    """Each diagonal of both rises is a normal of sigma t_o / 6, cut off at ±r / sqrt 2, r = min(1 - |x|, t_o / t)."""
 
-        def integrand(first: float) -> float:
-            return float(2 * first**power * norm.pdf(first) * (2 * norm.cdf((3 - first) / math.sqrt(2)) - 1) ** 2)
+    def cut(z: float) -> float:
+        """Variance of a standard normal cut off at ±z."""
+        return float(1 - 2 * z * norm.pdf(z) / (2 * norm.cdf(z) - 1)) if z > 1e-9 else 0.0
 
-        return float(quad(integrand, 0, 3)[0])
+    def left(x: float) -> float:
+        return float(2 * norm.pdf(x) * cut(min((3 - x) / part, 3) / math.sqrt(2)))
 
-    expected = math.sqrt(moment(2) / moment(0))
-    assert expected == pytest.approx(0.790728, abs=1e-6)
-    draw = normal_in(catalogue.rectangle(T))
-    assert draw.sigmas == pytest.approx(np.full(3, expected * T / 6), rel=1e-9)
+    rise = part * math.sqrt(quad(left, 0, 3, points=[3 - 3 * part], epsabs=1e-12)[0] / (2 * norm.cdf(3) - 1))
+    draw = normal_in(catalogue.rectangle(T, part * T))
+    assert math.sqrt(cut(3)) == pytest.approx(0.9865784, abs=5e-8)
+    assert draw.sigmas == pytest.approx(np.array([math.sqrt(cut(3)), rise, rise]) * T / 6, rel=1e-8)
     assert drawn(draw).std(axis=0) == pytest.approx(draw.sigmas, rel=4 / math.sqrt(2 * COUNT))
 
 

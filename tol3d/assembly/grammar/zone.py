@@ -50,7 +50,7 @@ class UniformLawSpec(Strict):
 
 
 class NormalLawSpec(Strict):
-    """Independent normals, 3 sigma of each at its largest value in the zone, on condition that all stay in the zone."""
+    """The middle of the feature is normal, 3 sigma at half of the zone and cut off there; tilts in what it leaves."""
 
     kind: Literal["normal"]
 

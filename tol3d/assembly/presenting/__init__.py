@@ -29,12 +29,12 @@ class AssemblyPresenter:
 
     def sections(self, summary: RunSummary) -> "Sequence[PageItem]":
         """By which laws deviations lie in their zones."""
-        laws = {
-            name: words
-            for own in summary.measures.values()
-            for name, words in (getattr(own, "laws", None) or {}).items()
-        }
-        return _lazily("tables").law_blocks(laws) if laws else ()
+        laws: dict[str, str] = {}
+        sigmas: dict[str, float] = {}
+        for own in summary.measures.values():
+            laws |= own.laws or {}
+            sigmas |= own.law_sigmas_um or {}
+        return _lazily("tables").law_blocks(laws, sigmas) if laws else ()
 
     def measure_rows(self, measure: MeasureSummary, summary: RunSummary) -> "Sequence[FurtherRow]":
         """None."""

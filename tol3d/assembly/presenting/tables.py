@@ -15,8 +15,9 @@ from tol3d.assembly.placing.engaging import Engaging
 from tol3d.assembly.placing.resting import Resting
 from tol3d.assembly.presenting.freedom_tables import datum_blocks, freedom_blocks
 from tol3d.assembly.system import AssemblySystem
-from tol3d.report.page import Heading, PageItem, Row, Table, titled
-from tol3d.report.system_check import system_blocks
+from tol3d.report.number import NOTHING
+from tol3d.report.page import Heading, PageItem, Row, Table, note, titled
+from tol3d.report.system_check import MIDDLE, system_blocks
 from tol3d.solids.bounding_box import bounding_box
 from tol3d.solids.kept_shape import KeptShape
 from tol3d.study.simulation import Simulation
@@ -198,11 +199,23 @@ def _move(move: Move, plan: placing.Placing) -> tuple[str, str, str]:
     return "fixed", move.part, ""
 
 
-def law_blocks(laws: Mapping[str, str]) -> Sequence[PageItem]:
-    """The laws of tolerances, by their names; the commonest one in one row where it is of many."""
+def law_blocks(laws: Mapping[str, str], sigmas: Mapping[str, float]) -> Sequence[PageItem]:
+    """The laws of tolerances and sigmas of middles [um], by name; the commonest law in one row where it is of many."""
     commonest, count = Counter(laws.values()).most_common(1)[0]
     together = count >= MANY_ALIKE
-    rows = [Row(name, (words,)) for name, words in laws.items() if not (together and words == commonest)]
+    alike = [name for name, words in laws.items() if together and words == commonest]
+    rows = [Row(name, (words, _sigma_words([name], sigmas))) for name, words in laws.items() if name not in alike]
     if together:
-        rows.append(Row(f"the other {count}" if rows else f"all {count}", (commonest,)))
-    return titled("laws of zones", Table("", [Heading("law", words=True)], rows))
+        name = f"the other {count}" if rows else f"all {count}"
+        rows.append(Row(name, (commonest, _sigma_words(alike, sigmas))))
+    table = Table("", [Heading("law", words=True), Heading("sigma [µm]")], rows)
+    return [*titled("laws of zones", table), note(MIDDLE)]
+
+
+def _sigma_words(names: Sequence[str], sigmas: Mapping[str, float]) -> str:
+    """The sigma of one zone, or the least and largest of several."""
+    known = [sigmas[name] for name in names if name in sigmas]
+    if not known:
+        return NOTHING
+    least, most = (f"{own:.3g}" for own in (min(known), max(known)))
+    return least if least == most else f"{least} … {most}"

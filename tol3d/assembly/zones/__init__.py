@@ -7,7 +7,7 @@ size of its feature, `Widened` draws from what it leaves.
 from tol3d.assembly.zones.bonus import Bonus
 from tol3d.assembly.zones.widened import JudgedProcess, SizedBy, Widened
 from tol3d.assembly.zones.zone import Zone
-from tol3d.assembly.zones.zone_draw import Confined, Process, ZoneDraw, normal_in, process_in, uniform_in
+from tol3d.assembly.zones.zone_draw import Confined, Process, ZoneDraw, laws_told, normal_in, process_in, uniform_in
 
 __all__ = [
     "Bonus",
@@ -18,6 +18,7 @@ __all__ = [
     "Widened",
     "Zone",
     "ZoneDraw",
+    "laws_told",
     "normal_in",
     "process_in",
     "uniform_in",

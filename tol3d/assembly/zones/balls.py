@@ -50,10 +50,6 @@ class UniformLine(UnitLaw):
         """See UnitLaw."""
         return np.array([[1.0 / 3.0]])
 
-    def density(self, ratio: float, first: Array) -> Array:
-        """See UnitLaw."""
-        return np.ones_like(first)
-
 
 @dataclass(frozen=True)
 class NormalLine(UnitLaw):
@@ -70,10 +66,6 @@ class NormalLine(UnitLaw):
         """See UnitLaw: (1 - 6 phi(3) / (2 Phi(3) - 1)) / 9."""
         at_end = math.sqrt(2.0 / math.pi) * SIGMAS * math.exp(-0.5 * SIGMAS**2)
         return np.array([[(1.0 - at_end / math.erf(SIGMAS * math.sqrt(0.5))) / SIGMAS**2]])
-
-    def density(self, ratio: float, first: Array) -> Array:
-        """See UnitLaw."""
-        return np.exp(-0.5 * (SIGMAS * first) ** 2)
 
 
 @dataclass(frozen=True)
@@ -119,10 +111,6 @@ class UniformFlat(UnitLaw):
         """See UnitLaw."""
         return self.section.uniform_variance * np.eye(2)
 
-    def density(self, ratio: float, first: Array) -> Array:
-        """See UnitLaw."""
-        return self.section.densities(first)[0]
-
 
 @dataclass(frozen=True)
 class NormalFlat(UnitLaw):
@@ -139,10 +127,6 @@ class NormalFlat(UnitLaw):
     def covariance(self, ratio: float) -> Array:
         """See UnitLaw."""
         return float(self.section.normal_variance(_ONE)) * np.eye(2)
-
-    def density(self, ratio: float, first: Array) -> Array:
-        """See UnitLaw."""
-        return self.section.densities(first)[1]
 
 
 @dataclass(frozen=True)
@@ -185,10 +169,6 @@ class UniformSphere(UnitLaw):
         """See UnitLaw."""
         return np.eye(3) / 5.0
 
-    def density(self, ratio: float, first: Array) -> Array:
-        """See UnitLaw."""
-        return 1.0 - first * first
-
 
 @dataclass(frozen=True)
 class NormalSphere(UnitLaw):
@@ -198,20 +178,15 @@ class NormalSphere(UnitLaw):
 
     def coordinates(self, ratio: Ratio, *uniforms: Array) -> tuple[Array, ...]:
         """See UnitLaw."""
-        return _in_space(inverse(maxwell, 3, 1.0)(np.cbrt(uniforms[0])), *uniforms[1:])
+        return _in_space(inverse(maxwell, 3)(np.cbrt(uniforms[0])), *uniforms[1:])
 
     def covariance(self, ratio: float) -> Array:
         """See UnitLaw: a third of the radius' second moment, by Gauss-Legendre."""
-        mass = WEIGHTS * maxwell(NODES, _ONE)
+        mass = WEIGHTS * maxwell(NODES)
         return float(mass @ NODES**2 / mass.sum() / 3.0) * np.eye(3)
 
-    def density(self, ratio: float, first: Array) -> Array:
-        """See UnitLaw."""
-        square = 0.5 * (SIGMAS * first) ** 2
-        return np.asarray(-np.exp(-square) * np.expm1(square - 0.5 * SIGMAS**2))
 
-
-def maxwell(radius: Array, unused: Array) -> Array:
+def maxwell(radius: Array) -> Array:
     """Density of the length of three normals of sigma 1/3, up to a factor."""
     return radius * radius * np.exp(-0.5 * (SIGMAS * radius) ** 2)
 

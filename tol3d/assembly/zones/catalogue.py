@@ -44,7 +44,7 @@ def round_face_orientation(width: float) -> Zone:
 
 def axis(width: float, orientation: float | None = None, form: float = 0.0) -> Zone:
     """Of an axis in a cylinder of diameter t: both ends in discs of t/2, half their difference within t_o/2."""
-    return Zone(Shape(Ends(), AXIS, FOUR), width, orientation, form=form)
+    return Zone(Shape(Ends(), AXIS, FOUR, (0.5, 0.0, 0.5, 0.0)), width, orientation, form=form)
 
 
 def axis_orientation(width: float) -> Zone:
@@ -63,7 +63,7 @@ def flat_axis(width: float, along: tuple[float, float], orientation: float | Non
     """Of an axis between planes t apart whose normal points `along` (x, y): both ends within ±t/2 along it."""
     x, y = _unit(along)
     ends = ((x, 0.0), (y, 0.0), (0.0, x), (0.0, y))
-    return Zone(Shape(FlatEnds(), ("start", "end"), ends), width, orientation, form=form)
+    return Zone(Shape(FlatEnds(), ("start", "end"), ends, (0.5, 0.5)), width, orientation, form=form)
 
 
 def flat_axis_orientation(width: float, along: tuple[float, float]) -> Zone:

@@ -26,11 +26,6 @@ class CrossSection(ABC):
     def normal(self, radius: Array, u: Array, v: Array) -> tuple[Array, Array]:
         """Both rises (trials,), normal and within sections of radii (trials,) up to 1."""
 
-    @staticmethod
-    @abstractmethod
-    def kept(radius: Array) -> Array:
-        """The share of the normal that lies within a section."""
-
     @property
     @abstractmethod
     def uniform_variance(self) -> float:
@@ -48,10 +43,6 @@ class CrossSection(ABC):
     def furthest(self, gradient: Array) -> Array:
         """The point (2,) of the section of radius 1 that lies furthest along a gradient (2,)."""
 
-    @abstractmethod
-    def densities(self, rise: Array) -> tuple[Array, Array]:
-        """Densities of one rise at radius 1, uniform and normal, up to factors."""
-
 
 @dataclass(frozen=True)
 class Diamond(CrossSection):
@@ -68,12 +59,6 @@ class Diamond(CrossSection):
         first, second = (_cut(ndtri(0.5 + (own - 0.5) * kept) / SIGMAS, limit) for own in (u, v))
         return math.sqrt(0.5) * (first + second), math.sqrt(0.5) * (first - second)
 
-    @staticmethod
-    def kept(radius: Array) -> Array:
-        """See CrossSection: 2 Phi(3 r / sqrt 2) - 1 of each diagonal."""
-        share: Array = erf((0.5 * SIGMAS) * radius)
-        return share * share
-
     @property
     def uniform_variance(self) -> float:
         """See CrossSection."""
@@ -81,9 +66,7 @@ class Diamond(CrossSection):
 
     def normal_variance(self, radius: Array) -> Array:
         """See CrossSection: that of a truncated normal."""
-        limit = np.maximum(math.sqrt(0.5) * SIGMAS * radius, np.finfo(float).tiny)
-        cut = limit * math.sqrt(2.0 / math.pi) * np.exp(-0.5 * limit * limit) / erf(math.sqrt(0.5) * limit)
-        return np.asarray((1.0 - cut) / SIGMAS**2)
+        return cut_variance(math.sqrt(0.5) * radius)
 
     def length(self, rises: Array) -> Array:
         """See CrossSection."""
@@ -93,11 +76,6 @@ class Diamond(CrossSection):
         """See CrossSection: a corner."""
         x, y = gradient
         return np.array([_sign(x), 0.0]) if abs(x) >= abs(y) else np.array([0.0, _sign(y)])
-
-    def densities(self, rise: Array) -> tuple[Array, Array]:
-        """See CrossSection."""
-        room = 1.0 - np.abs(rise)
-        return room, np.exp(-0.5 * (SIGMAS * rise) ** 2) * erf(math.sqrt(0.5) * SIGMAS * room)
 
 
 @dataclass(frozen=True)
@@ -109,14 +87,8 @@ class Disc(CrossSection):
         return _turned(radius * np.sqrt(u), v)
 
     def normal(self, radius: Array, u: Array, v: Array) -> tuple[Array, Array]:
-        """See CrossSection: the radius is a truncated Rayleigh."""
-        length = np.sqrt(-2.0 * np.log1p(-u * self.kept(radius))) / SIGMAS
-        return _turned(np.minimum(length, radius), v)
-
-    @staticmethod
-    def kept(radius: Array) -> Array:
         """See CrossSection."""
-        return np.asarray(-np.expm1(-0.5 * (SIGMAS * radius) ** 2))
+        return _turned(cut_rayleigh(radius, u), v)
 
     @property
     def uniform_variance(self) -> float:
@@ -137,10 +109,23 @@ class Disc(CrossSection):
         size = math.hypot(*gradient)
         return gradient / size if size > 0.0 else np.array([1.0, 0.0])
 
-    def densities(self, rise: Array) -> tuple[Array, Array]:
-        """See CrossSection."""
-        chord = np.sqrt(np.maximum(1.0 - rise * rise, 0.0))
-        return chord, np.exp(-0.5 * (SIGMAS * rise) ** 2) * erf(math.sqrt(0.5) * SIGMAS * chord)
+
+def cut_rayleigh(limit: Array, u: Array) -> Array:
+    """Length (trials,) of two normals of sigma 1/3, truncated at limits (trials,), of uniforms (trials,)."""
+    kept = -np.expm1(-0.5 * (SIGMAS * limit) ** 2)
+    return np.minimum(np.sqrt(-2.0 * np.log1p(-u * kept)) / SIGMAS, limit)
+
+
+def cut_normal(limit: Array, u: Array) -> Array:
+    """Normal of sigma 1/3, truncated at ±limits (trials,), of uniforms (trials,)."""
+    return _cut(ndtri(0.5 + (u - 0.5) * erf(math.sqrt(0.5) * SIGMAS * limit)) / SIGMAS, limit)
+
+
+def cut_variance(limit: Array) -> Array:
+    """Variance of a normal of sigma 1/3, truncated at ±limits."""
+    z = np.maximum(SIGMAS * limit, np.finfo(float).tiny)
+    cut = z * math.sqrt(2.0 / math.pi) * np.exp(-0.5 * z * z) / erf(math.sqrt(0.5) * z)
+    return np.asarray((1.0 - cut) / SIGMAS**2)
 
 
 def _cut(value: Array, limit: Array) -> Array:

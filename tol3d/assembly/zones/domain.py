@@ -26,10 +26,6 @@ class UnitLaw(ABC):
     def covariance(self, ratio: float) -> Array:
         """Covariance (coordinates, coordinates) in squared half widths; every mean is 0."""
 
-    @abstractmethod
-    def density(self, ratio: float, first: Array) -> Array:
-        """Density of the first coordinate at values (n,) in [-1, 1], up to a constant factor."""
-
 
 class Domain(ABC):
     """A convex set of coordinates, symmetric about 0, of a half width and an orientation half width."""
@@ -47,7 +43,11 @@ class Domain(ABC):
     @property
     @abstractmethod
     def normal(self) -> UnitLaw:
-        """Independent normals, 3 sigma = the largest value of each coordinate, conditioned on the set."""
+        """The middle of the feature first, a normal of sigma 1/3 truncated to the set as a point's would be.
+
+        Tilts and half differences are normals of sigma ratio / 3, confined to what the middle leaves; where the zone
+        holds no middle, of sigma 1/3.
+        """
 
     @abstractmethod
     def furthest(self, gradient: Array, half: float, orientation_half: float) -> Array:

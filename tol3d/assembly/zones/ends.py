@@ -4,26 +4,16 @@ With m the middle and d half the difference of the ends, start = m - d and end =
 """
 
 import math
-from collections.abc import Callable
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
-from scipy.special import erf, ndtri
 
-from tol3d.assembly.zones.cross_section import SIGMAS, Disc
+from tol3d.assembly.zones.cross_section import SIGMAS, Disc, cut_rayleigh
 from tol3d.assembly.zones.domain import Array, Domain, Ratio, UnitLaw
-from tol3d.assembly.zones.end_density import normal_end, start_density, uniform_end
-from tol3d.assembly.zones.half_difference import (
-    NORMAL_DIFFERENCE,
-    QUARTER_TURN,
-    UNIFORM_DIFFERENCE,
-    HalfDifference,
-    normal_lens,
-    uniform_lens,
-)
-from tol3d.assembly.zones.inverse import NODES, WEIGHTS, Density, inverse, inverse_family
+from tol3d.assembly.zones.half_difference import QUARTER_TURN, UNIFORM_DIFFERENCE, uniform_lens
+from tol3d.assembly.zones.inverse import NODES, WEIGHTS, inverse
 
-CUT_SIGMAS = math.sqrt(2.0) * SIGMAS  # in a half width: of the middle and of half the difference of two normal ends
 ROUNDING = 1e-12
 
 
@@ -82,55 +72,62 @@ class UniformEnds(UnitLaw):
         angle = UNIFORM_DIFFERENCE.angle(ratio, u)
         tail = 2.0 * np.minimum(v, 1.0 - v)
         segment = np.cbrt((angle - np.sin(angle) * np.cos(angle)) * tail / QUARTER_TURN)  # of a half disc
-        inner = np.minimum(QUARTER_TURN * inverse(uniform_lens, 3, 1.0)(segment), angle)
+        inner = np.minimum(QUARTER_TURN * inverse(uniform_lens, 3)(segment), angle)
         return _ends(angle, np.copysign(inner, v - 0.5), np.sin(inner) * (2.0 * p - 1.0), q)
 
     def covariance(self, ratio: float) -> Array:
         """See UnitLaw."""
         if ratio >= 1.0:
             return 0.25 * np.eye(4)
-        return _covariance(UNIFORM_DIFFERENCE, uniform_lens, lambda reach: reach**2 / 3.0, ratio)
-
-    def density(self, ratio: float, first: Array) -> Array:
-        """See UnitLaw."""
-        return start_density(uniform_end, ratio, first)
+        return _uniform_covariance(ratio)
 
 
 @dataclass(frozen=True)
 class NormalEnds(UnitLaw):
-    """Normal: ends of sigma 1/3, so that middle and half the difference are independent but for the limits."""
+    """Normal: the middle m as of a point in the disc; d in a uniform direction, as far as m leaves, sigma ratio / 3."""
 
     uniforms = 4
 
     def coordinates(self, ratio: Ratio, *uniforms: Array) -> tuple[Array, ...]:
-        """See UnitLaw: the radius and angle of each end; refined: length of d, m along and across d, angle of d."""
+        """See UnitLaw: the radius and angle of m, the length of d and its angle against m."""
         u, v, p, q = uniforms
-        if isinstance(ratio, float) and ratio >= 1.0:
-            return *Disc().normal(_ONE, u, v), *Disc().normal(_ONE, p, q)
-        angle = NORMAL_DIFFERENCE.angle(ratio, u)
-        tail = 2.0 * np.minimum(v, 1.0 - v)
-        inner = angle * inverse_family(normal_lens, 3)(np.cbrt(tail), angle / QUARTER_TURN)
-        reach = np.sin(inner)
-        across = ndtri(0.5 + (p - 0.5) * erf(SIGMAS * reach)) / CUT_SIGMAS
-        across = np.minimum(np.maximum(across, -reach), reach)
-        return _ends(angle, np.copysign(inner, v - 0.5), across, q)
+        length, angle, turn = cut_rayleigh(_ONE, u), (2.0 * math.pi) * v, (2.0 * math.pi) * q
+        room = np.minimum(_room(length, np.cos(turn), np.sin(turn)) / ratio, 1.0)
+        apart, direction = ratio * cut_rayleigh(room, p), angle + turn
+        x, y = length * np.cos(angle), length * np.sin(angle)
+        a, b = apart * np.cos(direction), apart * np.sin(direction)
+        return x - a, y - b, x + a, y + b
 
     def covariance(self, ratio: float) -> Array:
-        """See UnitLaw."""
-        if ratio >= 1.0:
-            return float(Disc().normal_variance(_ONE)) * np.eye(4)
-        return _covariance(NORMAL_DIFFERENCE, normal_lens, cut_variance, ratio)
-
-    def density(self, ratio: float, first: Array) -> Array:
-        """See UnitLaw."""
-        return start_density(normal_end, ratio, first)
+        """See UnitLaw: middle and half difference do not correlate, for d and -d are as likely."""
+        middle, apart = float(Disc().normal_variance(_ONE)), _normal_difference(ratio)
+        return np.kron(np.array([[middle + apart, middle - apart], [middle - apart, middle + apart]]), np.eye(2))
 
 
-def cut_variance(reach: Array) -> Array:
-    """Of a normal middle [squared half widths], truncated at ±reach."""
-    limit = CUT_SIGMAS * reach
-    cut = limit * math.sqrt(2.0 / math.pi) * np.exp(-0.5 * limit * limit) / erf(SIGMAS * reach)
-    return np.asarray((1.0 - cut) / CUT_SIGMAS**2)
+def _room(length: Array, along: Array, across: Array) -> Array:
+    """Longest half difference in a direction (along, across) to both sides of a middle of a length, in a disc of 1."""
+    chord = np.sqrt(np.maximum(1.0 - (length * across) ** 2, 0.0)) + length * np.abs(along)
+    return np.asarray((1.0 - length) * (1.0 + length) / np.maximum(chord, np.finfo(float).tiny))
+
+
+@lru_cache(maxsize=4096)
+def _normal_difference(ratio: float) -> float:
+    """Variance of each coordinate of a normal half difference, by Gauss-Legendre over the middle's length and angle.
+
+    A middle up to `near` leaves all of the ratio; beyond it sine substitutes the length, for the room's root.
+    """
+    turn = 0.5 * math.pi * NODES[:, None]
+    along, across = np.cos(turn), np.sin(turn)
+    near = np.sqrt(np.maximum(1.0 - (ratio * across) ** 2, 0.0)) - ratio * along
+    start = np.arcsin(np.clip(near, 0.0, 1.0))
+    place = start + (0.5 * math.pi - start) * NODES
+    length = np.sin(place)
+    rayleigh = SIGMAS**2 * length * np.exp(-0.5 * (SIGMAS * length) ** 2)
+    mass = WEIGHTS * (0.5 * math.pi - start) * np.cos(place) * rayleigh
+    variance = Disc().normal_variance(np.minimum(_room(length, along, across) / ratio, 1.0))
+    whole = -np.expm1(-0.5 * (SIGMAS * near) ** 2) * float(Disc().normal_variance(_ONE))
+    total = float((WEIGHTS * (whole[:, 0] + (mass * variance).sum(axis=1))).sum())
+    return ratio**2 * total / -math.expm1(-0.5 * SIGMAS**2)
 
 
 def _ends(angle: Array, inner: Array, across: Array, turn: Array) -> tuple[Array, ...]:
@@ -144,14 +141,14 @@ def _ends(angle: Array, inner: Array, across: Array, turn: Array) -> tuple[Array
     return x + cosine * before, y + sine * before, x + cosine * after, y + sine * after
 
 
-def _covariance(law: HalfDifference, lens: Density, variance: Callable[[Array], Array], ratio: float) -> Array:
-    """By Gauss-Legendre; `variance` is that of the middle across d, where the lens reaches so far."""
-    angle, mass = law.quadrature(ratio)
+def _uniform_covariance(ratio: float) -> Array:
+    """By Gauss-Legendre over the half difference and the lens in which the middle lies."""
+    angle, mass = UNIFORM_DIFFERENCE.quadrature(ratio)
     angle, mass = angle[:, None], mass[:, None]
-    shares = WEIGHTS * lens(NODES, angle / QUARTER_TURN)
+    shares = WEIGHTS * uniform_lens(NODES, angle / QUARTER_TURN)
     shares = mass * shares / shares.sum(axis=1, keepdims=True)
     along = np.cos(angle * NODES) - np.cos(angle)
-    of_middle = 0.5 * float((shares * (along**2 + variance(np.sin(angle * NODES)))).sum())
+    of_middle = 0.5 * float((shares * (along**2 + np.sin(angle * NODES) ** 2 / 3.0)).sum())
     of_difference = 0.5 * float((mass * np.cos(angle) ** 2).sum())
     own, shared = of_middle + of_difference, of_middle - of_difference
     return np.kron(np.array([[own, shared], [shared, own]]), np.eye(2))

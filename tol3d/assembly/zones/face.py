@@ -7,14 +7,13 @@ on each end: r = min(1 - |w|, ratio).
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cache
 
 import numpy as np
-from scipy.special import ndtr, ndtri
 
-from tol3d.assembly.zones.cross_section import SIGMAS, CrossSection, Diamond, Disc
+from tol3d.assembly.zones.balls import NormalLine
+from tol3d.assembly.zones.cross_section import SIGMAS, CrossSection
 from tol3d.assembly.zones.domain import Array, Domain, Ratio, UnitLaw
-from tol3d.assembly.zones.inverse import NODES, WEIGHTS, Density, InverseTable, integral, inverse, inverse_family, table
+from tol3d.assembly.zones.inverse import NODES, WEIGHTS
 
 
 @dataclass(frozen=True)
@@ -81,14 +80,10 @@ class UniformFace(UnitLaw):
         rise = self.section.uniform_variance * square / volume
         return np.diag([height / volume, rise, rise])
 
-    def density(self, ratio: float, first: Array) -> Array:
-        """See UnitLaw."""
-        return np.minimum(1.0 - np.abs(first), ratio) ** 2
-
 
 @dataclass(frozen=True)
 class NormalFace(UnitLaw):
-    """Normal: the height by its marginal, phi(3 w) times the share of both rises within r; then the section."""
+    """Normal: the height as of a point, then both rises, of sigma ratio / 3, in the section that the height leaves."""
 
     section: CrossSection
 
@@ -98,71 +93,24 @@ class NormalFace(UnitLaw):
         return 3
 
     def coordinates(self, ratio: Ratio, *uniforms: Array) -> tuple[Array, ...]:
-        """See UnitLaw: the tips by a table, for their distribution function has no closed form."""
+        """See UnitLaw."""
         of_height, u, v = uniforms
-        straight, tip = self._masses(ratio)
-        tail = np.minimum(of_height, 1.0 - of_height) * (2.0 * (straight + tip) / tip)
-        w = np.cbrt(np.minimum(tail, 1.0))
-        if isinstance(ratio, float):
-            radius = inverse(_TIPS[type(self.section)], 3, ratio)(w)
-        else:
-            radius = inverse_family(_TIPS[type(self.section)], 3)(w, ratio)
-        height = 1.0 - ratio * radius
-        if not isinstance(ratio, float) or ratio < 1.0:
-            kept = float(self.section.kept(np.asarray(1.0)))
-            inner = 0.5 + (straight + tip - tip * np.maximum(tail, 1.0)) / (kept * math.sqrt(2 * math.pi) / SIGMAS)
-            height = np.where(tail < 1.0, height, np.minimum(ndtri(inner) / SIGMAS, 1.0 - ratio))
-        rises = self.section.normal(radius, u, v)
-        return np.copysign(height, of_height - 0.5), *(ratio * rise for rise in rises)
-
-    def _masses(self, ratio: Ratio) -> tuple[Ratio, Ratio]:
-        """Of half the prism and of a tip, of the density exp(-(3 w)^2 / 2) times the section's share."""
-        kept = float(self.section.kept(np.asarray(1.0)))
-        share = ndtr(SIGMAS * (1.0 - ratio)) - 0.5
-        straight = kept * math.sqrt(2 * math.pi) / SIGMAS * share
-        tip = ratio * _tip_mass(_TIPS[type(self.section)], ratio)
-        return straight, tip
+        (height,) = NormalLine().coordinates(ratio, of_height)
+        radius = np.minimum((1.0 - np.abs(height)) / ratio, 1.0)
+        return height, *(ratio * rise for rise in self.section.normal(radius, u, v))
 
     def covariance(self, ratio: float) -> Array:
-        """See UnitLaw: by Gauss-Legendre over prism and tip."""
-        heights = np.concatenate([NODES * (1.0 - ratio), 1.0 - ratio * NODES])
-        radii = np.concatenate([np.ones_like(NODES), NODES])
-        mass = np.concatenate([WEIGHTS * (1.0 - ratio), WEIGHTS * ratio])
-        mass = mass * np.exp(-0.5 * (SIGMAS * heights) ** 2) * self.section.kept(radii)
-        mass = mass / mass.sum()
-        rise = ratio**2 * float(mass @ self.section.normal_variance(radii))
-        return np.diag([float(mass @ heights**2), rise, rise])
-
-    def density(self, ratio: float, first: Array) -> Array:
         """See UnitLaw."""
-        radius = np.minimum(1.0 - np.abs(first), ratio) / ratio
-        return np.exp(-0.5 * (SIGMAS * first) ** 2) * self.section.kept(radius)
+        rise = ratio**2 * left_by_a_normal(self.section.normal_variance, ratio)
+        return np.diag([NormalLine().covariance(ratio)[0, 0], rise, rise])
 
 
-def _tip(kept: Callable[[Array], Array], z: Array, ratio: Array) -> Array:
-    """Density of z = r / ratio in a tip."""
-    return np.exp(-0.5 * (SIGMAS * (1.0 - ratio * z)) ** 2) * kept(z)
+def left_by_a_normal(variance: Callable[[Array], Array], ratio: float) -> float:
+    """Mean of a variance of the radius min(1 - |w|, ratio) / ratio, for a normal height w truncated at ±1.
 
-
-def diamond_tip(z: Array, ratio: Array) -> Array:
-    """Density of z = r / ratio in a tip of a rectangular face's domain."""
-    return _tip(Diamond.kept, z, ratio)
-
-
-def disc_tip(z: Array, ratio: Array) -> Array:
-    """Density of z = r / ratio in a tip of a round face's domain."""
-    return _tip(Disc.kept, z, ratio)
-
-
-_TIPS: dict[type[CrossSection], Density] = {Diamond: diamond_tip, Disc: disc_tip}
-
-
-def _tip_mass(density: Density, ratio: Ratio) -> Ratio:
-    if isinstance(ratio, float):
-        return float(integral(density, np.asarray(1.0), np.asarray(ratio)))
-    return _tip_masses(density)(ratio)
-
-
-@cache
-def _tip_masses(density: Density) -> InverseTable:
-    return table(lambda ratio: integral(density, np.ones_like(ratio), ratio))
+    By Gauss-Legendre where the height limits it.
+    """
+    mass = WEIGHTS * ratio * np.exp(-0.5 * (SIGMAS * (1.0 - ratio * NODES)) ** 2)
+    straight = math.sqrt(0.5 * math.pi) / SIGMAS * math.erf(math.sqrt(0.5) * SIGMAS * (1.0 - ratio))
+    total = straight * float(variance(np.asarray(1.0))) + float((mass * variance(NODES)).sum())
+    return total / (straight + float(mass.sum()))

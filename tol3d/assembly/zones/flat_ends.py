@@ -2,16 +2,13 @@
 
 import math
 from dataclasses import dataclass
-from functools import cache
 
 import numpy as np
-from scipy.special import erf, ndtr, ndtri
 
 from tol3d.assembly.zones.balls import NormalLine
-from tol3d.assembly.zones.cross_section import SIGMAS
+from tol3d.assembly.zones.cross_section import cut_normal, cut_variance
 from tol3d.assembly.zones.domain import Array, Domain, Ratio, UnitLaw
-from tol3d.assembly.zones.ends import CUT_SIGMAS, cut_variance
-from tol3d.assembly.zones.inverse import NODES, WEIGHTS, InverseTable, integral, inverse, table
+from tol3d.assembly.zones.face import left_by_a_normal
 
 
 @dataclass(frozen=True)
@@ -67,62 +64,21 @@ class UniformFlatEnds(UnitLaw):
         middle = (1.0 - (1.0 - ratio) ** 4) / (12.0 * mass)
         return np.array([[middle + apart, middle - apart], [middle - apart, middle + apart]])
 
-    def density(self, ratio: float, first: Array) -> Array:
-        """See UnitLaw: how far the other end may move."""
-        return np.minimum(first + 2.0 * ratio, 1.0) - np.maximum(first - 2.0 * ratio, -1.0)
-
 
 @dataclass(frozen=True)
 class NormalFlatEnds(UnitLaw):
-    """Normal: ends of sigma 1/3, so that middle and half the difference are independent but for the limits."""
+    """Normal: the middle as of a point, then half the difference, of sigma ratio / 3, in what the middle leaves."""
 
     uniforms = 2
 
     def coordinates(self, ratio: Ratio, *uniforms: Array) -> tuple[Array, ...]:
-        """See UnitLaw: |d| by a table of 1 - |d|, which an orientation zone only cuts off."""
+        """See UnitLaw."""
         u, v = uniforms
-        if isinstance(ratio, float) and ratio >= 1.0:
-            return *NormalLine().coordinates(1.0, u), *NormalLine().coordinates(1.0, v)
-        share = np.abs(2.0 * u - 1.0) * (_share(ratio) if isinstance(ratio, float) else _shares()(ratio))
-        difference = np.minimum(1.0 - inverse(room, 2, 1.0)(np.sqrt(1.0 - share)), ratio)
-        reach = 1.0 - difference
-        middle = ndtri(0.5 + (v - 0.5) * erf(SIGMAS * reach)) / CUT_SIGMAS
-        middle = np.minimum(np.maximum(middle, -reach), reach)
-        difference = np.copysign(difference, u - 0.5)
+        (middle,) = NormalLine().coordinates(ratio, u)
+        difference = ratio * cut_normal(np.minimum((1.0 - np.abs(middle)) / ratio, 1.0), v)
         return middle - difference, middle + difference
 
     def covariance(self, ratio: float) -> Array:
-        """See UnitLaw: by Gauss-Legendre."""
-        mass = WEIGHTS * room(1.0 - ratio * NODES, _ONE)
-        mass = mass / mass.sum()
-        apart = float(mass @ (ratio * NODES) ** 2)
-        middle = float(mass @ cut_variance(1.0 - ratio * NODES))
-        return np.array([[middle + apart, middle - apart], [middle - apart, middle + apart]])
-
-    def density(self, ratio: float, first: Array) -> Array:
         """See UnitLaw."""
-        high, low = np.minimum(first + 2.0 * ratio, 1.0), np.maximum(first - 2.0 * ratio, -1.0)
-        return np.asarray(np.exp(-0.5 * (SIGMAS * first) ** 2) * (ndtr(SIGMAS * high) - ndtr(SIGMAS * low)))
-
-
-def room(reach: Array, unused: Array) -> Array:
-    """Density of 1 - |d| for normal ends: the middle lies within ±that."""
-    return np.asarray(np.exp(-((SIGMAS * (1.0 - reach)) ** 2)) * erf(SIGMAS * reach))
-
-
-def _apart(difference: Array, unused: Array) -> Array:
-    """Density of |d| for normal ends."""
-    return room(1.0 - difference, unused)
-
-
-def _share(ratio: float) -> float:
-    """The probability that |d| <= ratio."""
-    return float(integral(_apart, np.asarray(ratio), _ONE) / integral(_apart, _ONE, _ONE))
-
-
-@cache
-def _shares() -> InverseTable:
-    return table(lambda ratio: integral(_apart, ratio, _ONE) / integral(_apart, _ONE, _ONE))
-
-
-_ONE = np.asarray(1.0)
+        middle, apart = NormalLine().covariance(ratio)[0, 0], ratio**2 * left_by_a_normal(cut_variance, ratio)
+        return np.array([[middle + apart, middle - apart], [middle - apart, middle + apart]])

@@ -68,7 +68,7 @@ class GaugeShift(Widened):
         angle = np.arccos(share)
         tail = 2.0 * np.minimum(u, 1.0 - u)
         segment = np.cbrt((angle - np.sin(angle) * np.cos(angle)) * tail / QUARTER_TURN)
-        inner = np.minimum(QUARTER_TURN * inverse(uniform_lens, 3, 1.0)(segment), angle)
+        inner = np.minimum(QUARTER_TURN * inverse(uniform_lens, 3)(segment), angle)
         along = np.copysign(np.cos(inner) - np.cos(angle), u - 0.5)
         across = np.sin(inner) * (2.0 * v - 1.0)
         some = np.where(length > 0.0, length, 1.0)

@@ -6,21 +6,17 @@ tabulated: the tip of a domain keeps its relative accuracy.
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import cache
 
 import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
-Density = Callable[[Array, Array], Array]
-"""Density at z in [0, 1] for a parameter in [0, 1], up to a factor: shapes broadcast. A function of a module, which
-tables are kept by."""
+Density = Callable[[Array], Array]
+"""Density at z in [0, 1], up to a factor. A function of a module, which tables are kept by."""
 
 CELLS = 384
 DEGREE = 7
-FAMILY_CELLS = 96
-PARAMETER_CELLS = 24
-PARAMETER_DEGREE = 7
 KNOTS = 32
 NEWTON_STEPS = 4  # from 1e-3 of [0, 1] Newton's method doubles the digits at each step
 NODE_COUNT = 32
@@ -29,28 +25,26 @@ NODES, WEIGHTS = (
 )
 
 
-def integral(density: Density, z: Array, parameter: Array) -> Array:
-    """Of the density from 0 to z, by Gauss-Legendre; shapes broadcast."""
-    parts = density(z[..., None] * NODES, parameter[..., None]) * WEIGHTS
+def integral(density: Density, z: Array) -> Array:
+    """Of the density from 0 to z, by Gauss-Legendre."""
+    parts = density(z[..., None] * NODES) * WEIGHTS
     total: Array = parts.sum(axis=-1) * z
     return total
 
 
-def solved(density: Density, order: int, w: Array, parameters: Array) -> Array:
-    """The z in (0, 1) with F(z) = w^order F(1), (*w.shape, parameters), of w (any shape) and parameters (n,).
+def solved(density: Density, order: int, w: Array) -> Array:
+    """The z in (0, 1) with F(z) = w^order F(1), of w (any shape).
 
     By Newton's method from straight lines between knots: the order-th root of F is nearly straight in z, F is not.
     """
-    knots = np.linspace(0.0, 1.0, KNOTS + 1)[:, None]
-    whole = integral(density, np.ones_like(parameters), parameters)
-    roots = (integral(density, knots, parameters) / whole) ** (1 / order)
-    start = [np.interp(w, own, knots[:, 0]) for own in roots.T]
-    z = np.stack(start, axis=-1)
+    knots = np.linspace(0.0, 1.0, KNOTS + 1)
+    whole = integral(density, np.asarray(1.0))
+    z = np.interp(w, (integral(density, knots) / whole) ** (1 / order), knots)
     for _ in range(NEWTON_STEPS):
-        share = integral(density, z, parameters) / whole
+        share = integral(density, z) / whole
         root = share ** (1 / order)
-        rise = density(z, parameters) / whole * root / (order * share)
-        z = np.clip(z - (root - w[..., None]) / rise, 0.5 * z, 0.5 * (1.0 + z))
+        rise = density(z) / whole * root / (order * share)
+        z = np.clip(z - (root - w) / rise, 0.5 * z, 0.5 * (1.0 + z))
     return z
 
 
@@ -83,51 +77,16 @@ class Inverse:
         return np.minimum(z, 1.0, out=z)
 
 
-@dataclass(frozen=True, eq=False)
-class InverseFamily:
-    """z(w) of laws with a parameter: (degree + 1, parameter degree + 1, cells · parameter cells)."""
-
-    coefficients: Array
-
-    def __call__(self, w: Array, parameter: Array) -> Array:
-        """Z (trials,) of w and parameters (trials,) in [0, 1]."""
-        cell, place = _placed(w, FAMILY_CELLS)
-        row, height = _placed(parameter, PARAMETER_CELLS)
-        cell += FAMILY_CELLS * row
-        ratio = np.zeros_like(w)
-        for own in self.coefficients[::-1]:
-            ratio *= place
-            inner = own[PARAMETER_DEGREE].take(cell)
-            for coefficient in own[PARAMETER_DEGREE - 1 :: -1]:
-                inner *= height
-                inner += coefficient.take(cell)
-            ratio += inner
-        ratio *= w
-        return np.minimum(ratio, 1.0, out=ratio)
-
-
 def table(function: Callable[[Array], Array]) -> InverseTable:
     """Of a smooth function on [0, 1], which takes arrays of any shape."""
     places, w = _nodes(CELLS, DEGREE)
     return InverseTable(_coefficients(places, function(w)))
 
 
-@lru_cache(maxsize=256)
-def inverse(density: Density, order: int, parameter: float) -> Inverse:
-    """z(w) for one parameter, tabulated."""
-    return Inverse(table(lambda w: solved(density, order, w, np.array([parameter]))[..., 0] / w))
-
-
-@lru_cache(maxsize=16)
-def inverse_family(density: Density, order: int) -> InverseFamily:
-    """z(w) for all parameters, tabulated: half a second at first use."""
-    places, w = _nodes(FAMILY_CELLS, DEGREE)
-    heights, parameter = _nodes(PARAMETER_CELLS, PARAMETER_DEGREE)
-    ratio = np.stack([solved(density, order, w, own).transpose(0, 2, 1) / w[:, None] for own in parameter])
-    # axes: parameter node, node, parameter cell, cell
-    by_node = _coefficients(heights, ratio.reshape(len(heights), -1)).reshape(ratio.shape).swapaxes(0, 1)
-    both = _coefficients(places, by_node.reshape(len(places), -1))
-    return InverseFamily(both.reshape(DEGREE + 1, PARAMETER_DEGREE + 1, PARAMETER_CELLS * FAMILY_CELLS))
+@cache
+def inverse(density: Density, order: int) -> Inverse:
+    """z(w), tabulated."""
+    return Inverse(table(lambda w: solved(density, order, w) / w))
 
 
 def _coefficients(places: Array, values: Array) -> Array:

@@ -6,20 +6,15 @@ not know of it and only the inspection does.
 
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.assembly.zones.bonus import Bonus
 from tol3d.assembly.zones.domain import Array, Ratio
-from tol3d.assembly.zones.mixture import Mixture
-from tol3d.assembly.zones.zone_draw import Confined, Process, ZoneDraw
+from tol3d.assembly.zones.zone_draw import ComponentLaw, Confined, Process, ZoneDraw
 from tol3d.distributions import Distribution
 from tol3d.system.dependent import Given
-
-SIZES: Final = 64
-"""Of equal probability, of which a first component's law is mixed: for tables, its sigma is that of the covariance."""
 
 
 @dataclass(frozen=True)
@@ -80,11 +75,9 @@ class Widened(ZoneDraw):
         return self.size.bonus.covariance(self.confined, self.size.law)
 
     @cached_property
-    def distribution(self) -> Distribution:
+    def distribution(self) -> ComponentLaw:
         """See ZoneDraw; over all sizes."""
-        sizes = self.size.law.ppf((np.arange(SIZES) + 0.5) / SIZES)
-        laws = [self._at(float(own)).distribution for own in sizes]
-        return Mixture((*laws, self._widest.distribution), float(self.covariance[0, 0]))
+        return replace(self._widest.distribution, variance=float(self.covariance[0, 0]))
 
     @cached_property
     def _widest(self) -> Confined:

@@ -22,11 +22,14 @@ class Shape:
         domain: of the coordinates.
         names: of the coordinates, which are the components that are drawn.
         embedding: components of the feature = embedding (components of the feature, coordinates) @ coordinates.
+        middle: weights of the coordinates in a displacement of the feature's middle, along one direction; the first
+            coordinate if not given. Of an orientation alone, which holds no middle, that is a rise or an end's offset.
     """
 
     domain: Domain
     names: tuple[str, ...]
     embedding: tuple[tuple[float, ...], ...]
+    middle: tuple[float, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -69,6 +72,12 @@ class Zone:
     def matrix(self) -> Array:
         """Components of the feature = matrix (components of the feature, components) @ components; without unit."""
         return np.array(self.shape.embedding)
+
+    @cached_property
+    def middle(self) -> Array:
+        """Displacement of the feature's middle along one direction = middle (components,) @ components; see Shape."""
+        count = len(self.components)
+        return np.array(self.shape.middle) if self.shape.middle else np.eye(1, count)[0]
 
     @cached_property
     def half(self) -> float:

@@ -2,20 +2,37 @@
 
 import math
 from abc import ABC, abstractmethod
+from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.assembly.zones.domain import Array, Ratio, UnitLaw
-from tol3d.assembly.zones.marginal import Marginal
 from tol3d.assembly.zones.zone import Zone
-from tol3d.distributions import Distribution
+from tol3d.distributions import DeviationLaw, Distribution
 from tol3d.errors import InputError
-from tol3d.system.draw import Values
+from tol3d.system.contributor import Contributor
+from tol3d.system.draw import JointDraw, Values
 
 LEAST_STEP = 1e-9  # mm; of a gradient, where a zone of width 0 has no sigma
+
+
+@dataclass(frozen=True)
+class ComponentLaw:
+    """Moments and ends of one component that its zone confines [mm]; it is drawn with the others alone."""
+
+    mean: float
+    variance: float
+    low: float
+    high: float
+
+    @property
+    def sigma(self) -> float:
+        """See DeviationLaw."""
+        return math.sqrt(self.variance)
 
 
 @dataclass(frozen=True)
@@ -26,7 +43,7 @@ class ZoneDraw(ABC):
 
     @property
     @abstractmethod
-    def distribution(self) -> Distribution:
+    def distribution(self) -> DeviationLaw:
         """The law of the first component: offset, start x, x, or what is stated along a direction."""
 
     @property
@@ -95,6 +112,11 @@ class ZoneDraw(ABC):
         """Standard deviation of the first component [mm]."""
         return float(self.sigmas[0])
 
+    @property
+    def middle_sigma(self) -> float:
+        """See MiddleDraw."""
+        return math.sqrt(max(float(self.zone.middle @ self.covariance @ self.zone.middle), 0.0))
+
     def mean(self, *, turning: bool) -> tuple[float, ...]:
         """See Draw; directions are those of the feature, which does not turn."""
         return tuple(float(value) for value in self.mean_vector)
@@ -126,9 +148,10 @@ class Confined(ZoneDraw):
         return f"{self.name} in its zone"
 
     @cached_property
-    def distribution(self) -> Distribution:
+    def distribution(self) -> ComponentLaw:
         """See ZoneDraw."""
-        return Marginal(self.law, self.zone.ratio, self.zone.half, self.zone.centre)
+        centre, half = self.zone.centre, self.zone.half
+        return ComponentLaw(centre, float(self.covariance[0, 0]), centre - half, centre + half)
 
     @property
     def uniforms(self) -> int:
@@ -146,11 +169,6 @@ class Confined(ZoneDraw):
     def covariance(self) -> Array:
         """See ZoneDraw."""
         return self.law.covariance(self.zone.ratio) * self.zone.half**2
-
-    def covariance_in(self, width: float, orientation: float | None = None) -> Array:
-        """As `covariance`, of a zone of another width t [mm]; see `deviations_in`."""
-        half, ratio = (float(value) for value in self.zone.halves(width, orientation))
-        return self.law.covariance(ratio) * half**2
 
     def deviations(self, *uniforms: Array) -> tuple[Array, ...]:
         """See ZoneDraw."""
@@ -244,13 +262,21 @@ class Process(ZoneDraw):
         return np.array([law.high if own > 0.0 else law.low for law, own in zip(self.laws, gradient, strict=True)])
 
 
+def laws_told(contributors: Iterable[Contributor]) -> dict[str, Any]:
+    """Laws of contributors in words and sigmas of middles [um], by their names, as a summary has them of a measure."""
+    drawn = {own.name: own.draw for own in contributors}
+    laws = {name: draw.words for name, draw in drawn.items() if isinstance(draw, JointDraw)}
+    sigmas = {name: 1e3 * draw.middle_sigma for name, draw in drawn.items() if isinstance(draw, ZoneDraw)}
+    return ({"laws": laws} if laws else {}) | ({"law_sigmas_um": sigmas} if sigmas else {})
+
+
 def uniform_in(zone: Zone) -> Confined:
     """The law `uniform`: every displacement that the zone allows is as likely as any other."""
     return Confined(zone, zone.shape.domain.uniform, "uniform")
 
 
 def normal_in(zone: Zone) -> Confined:
-    """The law `normal`: independent normals, 3 sigma = the largest value of each component, given the zone holds."""
+    """The law `normal`: the middle is normal, cut to the zone, tilts in what it leaves; see Domain.normal."""
     return Confined(zone, zone.shape.domain.normal, "normal")
 
 

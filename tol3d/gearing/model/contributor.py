@@ -6,7 +6,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.distributions import Distribution
+from tol3d.distributions import DeviationLaw
 from tol3d.gearing.effects import Effect
 from tol3d.system import contributor as system_contributor
 from tol3d.system.contributor import column_names
@@ -53,7 +53,7 @@ class Contributor:
         return INTERNAL_PER_UNIT[self.unit]
 
     @property
-    def distribution(self) -> Distribution:
+    def distribution(self) -> DeviationLaw:
         """The law of the deviation, or of its length where it has a direction."""
         return self.draw.distribution
 

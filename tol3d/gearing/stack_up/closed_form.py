@@ -14,6 +14,7 @@ from fractions import Fraction
 
 import numpy as np
 
+from tol3d.distributions import Distribution
 from tol3d.gearing.links import LinkSum
 from tol3d.gearing.model import Contributor, LostMotion, Measure, Model, Planar, Positions, TransmissionError
 from tol3d.gearing.model.measure import at_one_position
@@ -262,12 +263,13 @@ def _plain_tilts(group: Sequence[Contributor], terms: Sequence[_ReadTerm], alike
     """
     own = [term for term in terms if term.term.contributor in group]
     only_tilts = len(own) == len(group) and all(term.term.tilts for term in own)
-    if not only_tilts or any(isinstance(contributor.draw, Planar) for contributor in group):
+    laws = [law for law in (term.term.contributor.distribution for term in own) if isinstance(law, Distribution)]
+    if not only_tilts or len(laws) < len(own) or any(isinstance(contributor.draw, Planar) for contributor in group):
         return None
     if len(own) > 2 or (len(own) == 2 and (not alike or sorted(_plane(term) for term in own) != ["across", "in"])):
         return None
     nodes = (np.arange(TILT_NODES) + 0.5) / TILT_NODES
-    losses = [np.abs(term.amplitude * term.term.contributor.distribution.ppf(nodes)) for term in own]
+    losses = [np.abs(term.amplitude * law.ppf(nodes)) for term, law in zip(own, laws, strict=True)]
     loss = -losses[0] if len(losses) == 1 else -np.maximum(losses[0][:, None], losses[1][None, :])
     mean, variance = float(loss.mean()), float(loss.var())
     alone = [variance] if len(losses) == 1 else [float(loss.mean(axis=1).var()), float(loss.mean(axis=0).var())]

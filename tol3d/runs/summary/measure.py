@@ -15,6 +15,7 @@ from tol3d.runs.summary.values import (
     Known,
     Label,
     Maybe,
+    NotNegative,
     Numbers,
     Road,
     Section,
@@ -97,6 +98,11 @@ class MeasureSummary(Section):
     )
     laws: Maybe[Mapping[Label, Label]] = Field(
         default=LEFT_OUT, description="laws of the zones that act on it, by tolerance"
+    )
+    law_sigmas_um: Maybe[Mapping[Label, NotNegative]] = Field(
+        default=LEFT_OUT,
+        description="standard deviation of the middle of each of these zones' features along one axis; of an "
+        "orientation alone, of a rise at the edge or an end of the axis",
     )
     nominal: Roads
     mean_build: Roads
