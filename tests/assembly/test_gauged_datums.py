@@ -113,6 +113,15 @@ def test_a_first_datum_at_its_boundary_shifts_by_its_size_alone(tmp_path: Path, 
     np.testing.assert_allclose(found, 2 * (0.05 - 0.03), atol=1e-9)
 
 
+@pytest.mark.parametrize("road", ["exact", "analytic"])
+def test_a_position_takes_its_least_over_the_shift_in_a_bore_alone(tmp_path: Path, road: str) -> None:
+    """The bore leaves its gauge 0.04 all around: of a hole 0.05 off 0.01 is left, of one 0.03 off nothing."""
+    for far, left in ((0.05, 0.05 - CLEAR_BORE), (0.03, 0.0)):
+        made = assembled(plate("[floor, bore, slot]", "[floor, {feature: bore, mmb: least}]", far), tmp_path)
+        found = made.values(drawn(made.simulation, 0, 3), road)["least"]
+        np.testing.assert_allclose(found, 2 * left, atol=1e-9)
+
+
 def test_centred_gauges_read_as_datums_regardless_of_size_where_these_lie_true(tmp_path: Path) -> None:
     centred, plain = (
         assembled(plate(own, far=0.02), tmp_path) for own in (BOTH.format("centred"), "[floor, bore, slot]")

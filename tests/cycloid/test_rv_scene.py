@@ -1,5 +1,6 @@
 """Scenes of RV reducers: what they mean, what is refused and with which number, and how they compare with others."""
 
+import math
 import re
 from pathlib import Path
 
@@ -9,6 +10,7 @@ from places import SCENES
 from tol3d import Overrides, Run, SceneError, load_scene, run_scene
 from tol3d.cycloid.from_scene import rv_system
 from tol3d.study.overrides import simulation_of
+from tol3d.system.stated import mean_build
 
 TEXT = (SCENES / "rv_250aii.yaml").read_text("utf-8")
 
@@ -222,3 +224,13 @@ def test_a_group_of_lobes_is_one_contributor_and_pins_that_touch_are_columns(run
     pin, disc = (run_of_rv.columns(*names)[name] for name in names)
     assert set(disc) == {1, 2}
     assert set(pin) == set(range(1, 41))
+
+
+def test_a_thickness_along_the_normal_counts_as_its_arc(tmp_path: Path) -> None:
+    """s_n of a tooth is s cos(alpha): 1/cos 20 deg of it on the reference circle; planets likewise."""
+    law = r"distribution: \{kind: normal, lower: -40 um, upper: -20 um\}"
+    system = rv_system(load_scene(changed(tmp_path, (law, "distribution: {kind: constant, value: -20 um}"))))
+    deviated = system.deviated(mean_build(system, system.measures[0]))
+    arc = -0.020 / math.cos(math.radians(20.0))
+    assert deviated.sun_thickness == pytest.approx(arc)
+    assert deviated.planet_thickness == pytest.approx(arc)

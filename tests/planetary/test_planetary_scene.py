@@ -1,6 +1,7 @@
 """Scenes of planetary sets: what is refused, with its numbers, and what becomes of trials."""
 
 import io
+import math
 from pathlib import Path
 
 import numpy as np
@@ -9,7 +10,9 @@ from places import SCENES
 from rich.console import Console
 
 from tol3d import Overrides, SceneError, load_scene, replay, run_scene
+from tol3d.gears import InternalGear
 from tol3d.planetary.from_scene import planetary_system
+from tol3d.planetary.planetary_set import SetGear
 from tol3d.planetary.stack_up import StackUp
 from tol3d.planetary.system import PlanetarySystem
 from tol3d.report.check import check_report
@@ -211,3 +214,24 @@ def test_a_check_shows_slopes_of_planets_with_their_sign_and_what_they_are_of() 
     assert "P1 thinning ′/µm -0.04814 each" in rows
     assert "ring 1 thinning ′/µm -0.09092" in rows
     assert any(row.startswith("each: of every one of several deviations") for row in rows)
+
+
+def test_the_cost_of_a_trial_is_a_contact_for_each_mesh_of_each_planet_at_each_position() -> None:
+    """Four planets of three meshes; measures of one curve, of 360 positions and the turn's end, cost one."""
+    system = planetary_system(load_scene(SCENES / "reducer_3k.yaml"))
+    own = {measure.name: measure for measure in system.measures}
+    curve = own["transmission error"]
+    assert system.cost([own["lost motion"]]) == 4 * 3
+    assert system.cost([own["lost motion"], own["lost motion of the input"]]) == 2 * 4 * 3
+    same = next(measure for name, measure in own.items() if name != curve.name and measure.take == "harmonic")
+    assert system.cost([curve, same]) == system.cost([curve]) == 361 * 4 * 3
+
+
+def test_a_shifted_gear_of_a_set_has_the_tips_of_the_gear_that_is_made() -> None:
+    """Of a ring m (z/2 - h_a* - x): a positive shift goes towards the tip, which is inwards."""
+    alpha = math.radians(20.0)
+    ring = SetGear("ring", 80, 2.0, alpha, profile_shift=0.3, addendum=0.8, is_ring=True)
+    sun = SetGear("sun", 30, 2.0, alpha, profile_shift=0.3)
+    assert ring.tip_radius == pytest.approx(80.0 - 1.6 - 0.6)
+    assert ring.tip_radius == InternalGear(80, 2.0, alpha, 10.0, profile_shift=0.3, addendum=0.8).tip_radius
+    assert sun.tip_radius == pytest.approx(30.0 + 2.0 + 0.6)

@@ -11,6 +11,7 @@ import pytest
 from records.rigged import LARGEST, LEAST, PAIR, REFERENCE, START, arcsec, ends_of, identified_by, passes, within
 
 from tol3d.errors import InputError
+from tol3d.records.alignment import hidden_shift
 from tol3d.records.csv_file import Block
 from tol3d.records.curve import curve_of
 from tol3d.records.exact_play import Side, angular_backlash
@@ -18,6 +19,7 @@ from tol3d.records.findings import Identified, Settings
 from tol3d.records.identify import identified
 from tol3d.records.pair import ARCSEC, RigPair, Specimen
 from tol3d.records.reading import Pass, Senses, passes_of
+from tol3d.records.refusals import refuse_other_gear
 from tol3d.records.rig import Rig, measured
 
 ENCODERS = Rig(samples=180, encoder1=6 * ARCSEC, encoder2=4 * ARCSEC, tooth_mesh=5 * ARCSEC)
@@ -290,3 +292,30 @@ def test_a_pair_without_a_long_period_is_identified() -> None:
     own = Specimen(pair, 0.01, 1.0, 0.02, -2.0, 0.06)
     found = identified_by(own, Rig(turns=4))
     assert all(within(found, own)[name] for name in ("e1", "e2"))
+
+
+def test_a_hidden_shift_moves_the_backlash_by_the_chord_of_its_turn() -> None:
+    """The back side's part b turned by psi = 2 pi n z1/z2 lies 2 |b| sin(psi/2) off, and the backlash with it."""
+    alpha, turns = PAIR.working_angle, 5
+    eccentric = 0.003 * np.exp(0.7j)
+    turn = np.exp(2j * math.pi * PAIR.rate * turns)
+    shift = hidden_shift(PAIR, eccentric * np.exp(-1j * alpha), turn * eccentric * np.exp(1j * alpha))
+    assert shift.turns == turns
+    assert shift.least == pytest.approx(0.0, abs=1e-15)
+    assert shift.moved == pytest.approx(2 * 0.003 * abs(math.sin(math.pi * PAIR.rate * turns)), rel=1e-9)
+
+
+@pytest.mark.parametrize("sign", [-1, 1])
+def test_gears_of_the_next_ratio_are_other_gears(sign: int) -> None:
+    """Of pairs up to two teeth off the nearest of another ratio is refused, and a third of the way to it is not."""
+    ratios = {(27 + k) / (48 + n) for k in range(-2, 3) for n in range(-2, 3)} - {27 / 48}
+    nearest = min(abs(ratio - 27 / 48) for ratio in ratios)
+    own = passes(REFERENCE, Rig(samples=90, turns=4), "drive")[0]
+
+    def drifting(drift: float) -> Pass:
+        bins = own.bins
+        return replace(own, bins=replace(bins, error=bins.error + sign * drift * bins.travel))
+
+    refuse_other_gear(drifting(nearest / 3), PAIR)
+    with pytest.raises(InputError, match="other gears: the driven gear turns by"):
+        refuse_other_gear(drifting(nearest), PAIR)

@@ -203,6 +203,40 @@ def test_mending_a_run_leaves_what_is_kept_in_it(tmp_path: Path) -> None:
     assert [path.name for path in tmp_path.iterdir()] == ["run"]
 
 
+def test_a_picture_painted_over_while_a_run_is_mended_is_not_of_the_run(tmp_path: Path) -> None:
+    a_run(tmp_path / "run")
+    block = tmp_path / "run" / "trials" / "block-000000.parquet"
+    block.write_bytes(block.read_bytes()[:-9])
+
+    def paint(place: Path, summary: object) -> None:
+        (place.parent / "histogram.png").write_text("circled", "utf-8")
+
+    with pytest.warns(UserWarning, match="it is made again"):
+        run_scene(
+            SPUR_PAIR,
+            overrides=FEW,
+            out=tmp_path / "run",
+            execution=Execution(resume=True),
+            watch=Watch(finisher=paint),
+        )
+    assert open_run(tmp_path / "run").manifest.foreign() == ["histogram.png"]
+    with pytest.raises(RunError, match=r"holds what is not of the run \(histogram\.png\)"):
+        run_scene(SPUR_PAIR, overrides=FEW, out=tmp_path / "run")
+
+
+def test_a_run_of_another_study_that_came_meanwhile_is_moved_aside(tmp_path: Path) -> None:
+    a_run(tmp_path / "other", OTHER_SEED)
+    others = files_in(tmp_path / "other")
+
+    def come(place: Path, summary: object) -> None:
+        shutil.copytree(tmp_path / "other", tmp_path / "run")
+
+    with pytest.warns(MovedAsideWarning, match=r"another study .*run\.1"):
+        run_scene(SPUR_PAIR, overrides=FEW, out=tmp_path / "run", watch=Watch(finisher=come))
+    assert files_in(tmp_path / "run.1") == others
+    assert open_run(tmp_path / "run").summary["seed"] != 5
+
+
 def test_a_note_written_while_a_run_is_replaced_is_not_lost(tmp_path: Path) -> None:
     a_run(tmp_path / "run")
 

@@ -1,15 +1,19 @@
 """Which trial is the worst: of pairs, of trains, with limits on either side and without any."""
 
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 from fixtures import Command
+from loose_summaries import typed_run
 from numpy.typing import NDArray
 
 from tol3d import Run, run_scene
+from tol3d.runs.summary.run import RunSummary
 from tol3d.runs.worst import worst_trial
 
 TRAIN = """
@@ -73,3 +77,38 @@ def test_export_of_a_train_takes_its_worst_trial_and_says_which(tol3d: Command, 
     assert said is not None, err
     assert int(said[1]) == values.argmax()
     assert all(f"{values.argmax()}" in Path(line).name for line in out.split())
+
+
+@dataclass(frozen=True)
+class Kept:
+    """A run of made-up trials: a length in um and an angle in arc minutes."""
+
+    found: RunSummary
+    kept: Mapping[str, NDArray[np.float64]]
+    path: Path = Path("made up")
+
+    @property
+    def trials(self) -> int:
+        return len(next(iter(self.kept.values())))
+
+    @property
+    def column_names(self) -> tuple[str, ...]:
+        return tuple(self.kept)
+
+    def columns(self, *names: str) -> dict[str, NDArray[Any]]:
+        return {name: self.kept[name] for name in names}
+
+
+def test_nearness_to_limits_of_different_units_is_counted_in_sigmas() -> None:
+    """90 um at a sigma of 32 um are nearer than 1 arc minute at one of 0.2; as numbers they are ninety times as far."""
+    values = {
+        "analytic:gap": np.array([100.0, 120.0, 140.0, 160.0, 180.0, 90.0]),
+        "analytic:angle": np.array([1.0, 1.2, 1.3, 1.4, 1.5, 1.6]),
+    }
+    nearest = {name: int(np.argmin(own)) for name, own in values.items()}
+    sigmas = {name: own.min() / own.std() for name, own in values.items()}
+    assert sigmas["analytic:gap"] < sigmas["analytic:angle"]
+    limited = {"take": "value", "lower_limit": 0.0, "upper_limit": None, "analytic": {}}
+    measures = {"gap": limited | {"unit": "um"}, "angle": limited | {"unit": "arcmin"}}
+    run = Kept(typed_run({"trials": 6, "engine": "analytic", "measures": measures}), values)
+    assert worst_trial(run) == nearest["analytic:gap"] != nearest["analytic:angle"]
