@@ -130,16 +130,14 @@ def inspected(shape: Axis | Plane | RoundPlane | Point, size: int) -> tuple[Asse
 
 
 def frame_of(row: Array) -> Array:
-    """Of the tilted bottom (4, 4): least rotation from its nominal normal, and the height of its middle."""
+    """Of the tilted bottom (4, 4): least rotation from its nominal normal, and where its middle lies."""
     normal = np.array([0, 0, -1.0]) - np.array([row[1] / 50, -row[2] / 30, 0])
     normal /= np.linalg.norm(normal)
     axis = np.cross((0, 0, -1), normal)
     angle = np.arcsin(np.linalg.norm(axis))
     found = np.eye(4)
     found[:3, :3] = Rotation.from_rotvec(axis / np.linalg.norm(axis) * angle).as_matrix()
-    # the inverse shifts along the nominal normal only, until the middle is at 0
-    seen = found[:3, :3].T @ (0, 0, -row[0])
-    found[:3, 3] = found[:3, :3] @ (0, 0, seen[2])
+    found[:3, 3] = 0, 0, -row[0]
     return found
 
 

@@ -95,8 +95,8 @@ def test_a_slot_after_a_plane_holds_the_turn_by_its_lean_and_the_shift_by_its_mi
     found = first_order(assembly, row)
     turn = 0.1 / 15  # about z: +x rises towards +y
     assert found[5] == pytest.approx(turn, abs=1e-12)
-    # shifts of the part's origin along y: the middle at x = 100 keeps 0.2; along x nothing is asked
-    assert found[:2] == pytest.approx([0.0, 0.2 - 100 * turn], abs=1e-12)
+    # the middle of the slot, at (100, 25), keeps 0.2 along y and shifts by nothing along x
+    assert found[:2] == pytest.approx([25 * turn, 0.2 - 100 * turn], abs=1e-12)
 
 
 def test_a_slot_across_the_bore_clocks_the_part_by_its_lean() -> None:
@@ -159,6 +159,7 @@ class Builder:
 
     def __init__(self) -> None:
         self.q, self.left = np.zeros(6), np.eye(6)
+        self.turn, self.shift = np.zeros(3), np.zeros(3)
 
     def hold(self, rows: Array) -> None:
         self.left = self.left @ null_space(self.acting(rows), rcond=1e-9)
@@ -186,10 +187,17 @@ class Builder:
         self.q = self.q + self.left @ acts @ (found.x[:-1] / scale)
         self.hold(rows)
 
+    def turned_about(self, centre: Array) -> None:
+        """Let what has turned since the last datum turn about a centre: what is left may shift the part to that."""
+        turns = np.hstack([np.zeros((3, 3)), np.eye(3)])
+        least = self.q[3:] - turns @ self.left @ np.linalg.pinv(self.acting(turns), rcond=1e-9) @ self.q[3:]
+        self.shift = self.shift + np.cross(centre, least - self.turn)
+        self.turn = least
+
     def displaced(self) -> Array:
-        """The frame's own motion: the opposite, with the least turn and no shift of the origin where nothing asks."""
-        rest = np.hstack([np.zeros((3, 3)), np.eye(3)])
-        self.squares(rest, np.zeros(3))
+        """The frame's own motion: the opposite, with the least turn and the shifts to it where nothing asks."""
+        self.squares(np.eye(6)[3:], np.zeros(3))
+        self.squares(np.eye(6)[:3], -self.shift)
         return -self.q
 
 
@@ -208,6 +216,7 @@ def built(names: Sequence[str], shapes: Mapping[str, tuple[Array, Shape]], devia
             middle, lean = (moved[:2] + moved[2:]) / 2, (moved[2:] - moved[:2]) / shape.length
             builder.squares(np.array([row_of(origin, x), row_of(origin, y)]), middle)
             builder.squares(tilts, np.array([-lean[1], lean[0]]))
+            builder.turned_about(origin)
             continue
         assert isinstance(shape, Plane)
         a, b = shape.reach
@@ -216,12 +225,14 @@ def built(names: Sequence[str], shapes: Mapping[str, tuple[Array, Shape]], devia
         heights = np.array([moved @ (1, sx, sy) for sx, sy in ends])
         if isinstance(shape, Slot):
             builder.closing_in(corners, heights)
+            builder.turned_about(origin)
             continue
         builder.squares(tilts, np.array([moved[2] / b, -moved[1] / a]))
         height = row_of(origin, z)[None]
         if np.abs(height @ builder.left).max(initial=0.0) > 1e-9:
             outermost = (heights + corners @ builder.q - height @ builder.q).max() if k else moved[0]
             builder.squares(height, np.array([outermost]))
+        builder.turned_about(origin)
     return builder.displaced()
 
 

@@ -158,8 +158,8 @@ def test_a_pattern_of_two_holes_is_a_line_through_both_centres() -> None:
     found = values(assembly, draft.trial(given), ["x", "y"])
     turn = (0.01 - 0.03) / 100.0
     assert found["y"][0] == pytest.approx(90.0 + 0.01, abs=1e-12)
-    # along the line the frame stays: its origin does not shift in x, and the turn is about it
-    assert found["x"][0] == pytest.approx(120.0 - turn * 90.0, abs=1e-12)
+    # along the line the frame stays: the middle between the holes, 50 mm below the point, does not shift in x
+    assert found["x"][0] == pytest.approx(120.0 - turn * 50.0, abs=1e-12)
 
 
 def test_a_second_hole_turns_the_frame_whatever_its_distance() -> None:

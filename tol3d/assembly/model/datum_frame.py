@@ -58,9 +58,10 @@ class DatumFrame:
     held already is met as nearly as the freedoms left allow: least squares over its two or three components. So a
     second hole turns the frame until its centre lies in the right direction from the first, whatever their distance.
 
-    Its pose in a trial is the displacement, from the nominal datums to those of the trial, with the least rotation,
-    and about the part's origin where nothing decides: T_datum_frame(trial) T_datum_frame(nominal)^-1, in the part's
-    frame; nominally it is the part's frame itself.
+    Each turns the part by the least rotation that meets what it asks, about its own centre in the trial where shifts
+    are still free (of a common datum the midpoint of both centres), and shifts it along the nominal directions that it
+    holds. The frame's pose is the inverse of that: T_datum_frame(trial) T_datum_frame(nominal)^-1, in the part's frame;
+    nominally it is the part's frame itself. Where the part's origin lies makes no difference.
 
     Args:
         name: "part|A|B|C" of its features.

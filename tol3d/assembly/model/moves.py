@@ -80,7 +80,7 @@ class Fit:
 class BestFit:
     """The pose of least weighted squares of residuals, or of the least largest residual; finite, no scale.
 
-    Freedoms that no residual sees stay as nominal: least rotation, about the part's origin.
+    Freedoms that no residual sees stay as nominal: least rotation, then the least shift of the middle of the points.
 
     Args:
         name, part: of the move, and what it places.
@@ -117,7 +117,10 @@ class Relation:
 
 @dataclass(frozen=True)
 class Mate:
-    """Relations in order; freedoms that none takes stay as nominal (least rotation, about the part's origin)."""
+    """Relations in order; each turns by the least rotation, about its moving origin in the trial where shifts are free.
+
+    Freedoms that none takes stay as nominal.
+    """
 
     name: str
     part: str
@@ -130,7 +133,7 @@ class Rest:
 
     Which contacts carry follows from the lever arms of the pose; where nominally some carry nothing the part rocks,
     whatever a tilt of the trial does to their arms. Freedoms that no relation, contact or force sees stay as nominal
-    (least rotation, about the part's origin).
+    (least rotation, then the least shift of the middle of the part's features that touch).
 
     Args:
         name, part: of the move, and what it places.

@@ -32,7 +32,8 @@ class Contact:
 class Touch:
     """A part is laid against placed ones at its contacts, all at once, near its nominal pose.
 
-    Freedoms that no contact decides stay as nominal: the least turn, then the least shift of the part's origin.
+    Freedoms that no contact decides stay as nominal: the least turn, then the least shift of the middle of the part's
+    features in contact.
 
     Args:
         name, part: of the move, and what it places.

@@ -3,7 +3,8 @@
 Which freedoms those are is analysed once, on the nominal geometry (`freedoms.aligned`); the steps that come of it are
 vectorised over trials (`Alignment.poses`). Rotations follow from directions first; heights are met by shifts, solved in
 order along what is free of the earlier ones, so that earlier ones stay met. What none takes stays: least rotation,
-about the origin of the frame that is moved, and no shift.
+and no shift of the centre about which a feature turns, its own in the trial. So the origin of the frame that is moved
+is no part of it.
 """
 
 from collections.abc import Sequence
@@ -67,13 +68,14 @@ class Seat:
     """A tie in its trials.
 
     Args:
-        point: in the frame that is moved (3, n) [mm].
+        point: in the frame that is moved (3, n) [mm]; about it the tie turns what it turns, where shifts are free.
         target: the point over, around or at which it is to lie (3, n) [mm].
         direction: of the feature, in the frame that is moved (3, n), of unit length; None without a direction.
         toward: the target's direction (3, n), of unit length; None of a point.
         height: over the target, along its direction (n,) [mm].
         outermost: a feature whose outermost point along the direction counts instead of `point`.
         across: a slot or tab, whose place comes before its direction where one turn alone is left to it.
+        centre: about which it turns instead of `point` (3, n) [mm].
     """
 
     point: Array
@@ -83,6 +85,12 @@ class Seat:
     height: Array | float = 0.0
     outermost: ActualFeature | None = None
     across: ActualFeature | None = None
+    centre: Array | None = None
+
+    @property
+    def its_centre(self) -> Array:
+        """About which it turns what it turns (3, n) [mm]."""
+        return self.point if self.centre is None else self.centre
 
     @property
     def its_direction(self) -> Array:
@@ -110,11 +118,13 @@ class Step:
             to that of the pivot's; hold: no rotation, its direction is held.
         tie: whose.
         pivot: the tie whose point stays, or that lies; -1 where shifts decide in each trial about what it swings.
+        owner: the tie for which it is, about whose centre; its own where it is -1.
     """
 
     kind: Literal["aim", "azimuth", "level", "aim at", "turn to", "swing", "lie", "lie between", "hold"]
     tie: int
     pivot: int = -1
+    owner: int = -1
 
     @property
     def repeated(self) -> bool:
@@ -176,17 +186,19 @@ class Alignment:
             start: the pose before anything is aligned.
         """
         directions, codes = self.shift_directions(seats)
-        turn, held = start.turn, column(np.zeros(3))
+        turn, shift, held = start.turn, start.shift, column(np.zeros(3))
         for number, (step, shifts_before) in enumerate(self.turns):
             known = directions if number == len(self.turns) - 1 else directions[:shifts_before]
+            centre = seats[step.tie if step.owner < 0 else step.owner].its_centre
             for _ in range(self.rounds if step.repeated else 1):
                 if step.repeated:
-                    turned, held, reached = self._by_point(step, seats, known, Pose(turn, start.shift), held)
+                    turned, held, reached = self._by_point(step, seats, known, Pose(turn, shift), held)
                 else:
                     turned, held, reached = _by_direction(step, seats, turn, held)
-                codes = np.maximum(codes, reached)
+                codes, before = np.maximum(codes, reached), rotated(turn, centre)
                 turn = product(turned, turn)
-        return Pose(turn, _shifted(turn, start.shift, seats, directions)), codes
+                shift = shift + (before - rotated(turn, centre))
+        return Pose(turn, _shifted(turn, shift, seats, directions)), codes
 
     def _by_point(
         self, step: Step, seats: Sequence[Seat], directions: Sequence[ShiftDirection], start: Pose, held: Array
@@ -195,7 +207,8 @@ class Alignment:
         turn, seat = start.turn, seats[step.tie]
         pose = Pose(turn, _shifted(turn, start.shift, seats, directions))
         stays = step.pivot >= 0
-        pivot = pose.point(seats[step.pivot].point) if stays else cross(held, drift(pose, seats, directions, held))
+        about_own = drift(pose, seats, directions, held, pose.point(seat.its_centre))
+        pivot = pose.point(seats[step.pivot].point) if stays else cross(held, about_own)
         point = pose.point(seat.point)
         arm, line = point - pivot, self._target(step.tie, seat, point) - pivot
         if step.kind == "aim at":
@@ -231,19 +244,20 @@ class Alignment:
         return seat.target + dot(point - seat.target, seat.its_toward) * seat.its_toward
 
 
-def drift(pose: Pose, seats: Sequence[Seat], directions: Sequence[ShiftDirection], axis: Array) -> Array:
-    """How the world's origin shifts with a turn about an axis through it, the shifts keeping what they hold.
+def drift(pose: Pose, seats: Sequence[Seat], directions: Sequence[ShiftDirection], axis: Array, centre: Array) -> Array:
+    """How the world's origin shifts with a turn about an axis through a centre, the shifts keeping what they hold.
 
     Args:
         pose: from which it turns.
         seats: one of each tie.
         directions: of the shifts.
         axis: about which it turns (3, n), of unit length.
+        centre: through which the axis goes (3, n) [mm].
 
     Returns:
         Per turn (3, n) [mm / rad].
     """
-    moved = column(np.zeros(3))
+    moved = cross(centre, axis)
     for direction in directions:
         rate = dot(direction.normal, moved + cross(axis, pose.point(seats[direction.tie].point)))
         moved = moved - rate / direction.steepness * direction.along

@@ -19,15 +19,16 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False)
 class BestFitting:
-    """A best fit, as its points are nominally; solved in the world, with the part's nominal origin at 0.
+    """A best fit, as its points are nominally; solved in the world, with the middle of the part's points at 0.
 
     Args:
         move: which.
         weights: of the squares (fits,).
-        reach: of the points about the part's origin [mm].
+        reach: of the points about their middle [mm].
         basis: steps that residuals see, turn times reach and shift (6, steps).
         start: the nominal pose there (3, 4).
-        origin: of the part, nominally in the world (3, 1) [mm].
+        middle: of the points, in the part's frame (3, 1) [mm].
+        origin: where that lies nominally in the world (3, 1) [mm].
     """
 
     move: BestFit
@@ -35,6 +36,7 @@ class BestFitting:
     reach: float
     basis: Array
     start: Array
+    middle: Array
     origin: Array
 
     def placed(self, world: World) -> tuple[World, Codes]:
@@ -43,9 +45,9 @@ class BestFitting:
         turn, shift = np.empty((3, 3, world.trials)), np.empty((3, world.trials))
         met = np.empty(world.trials, dtype=bool)
         fitted = least_squares if self.move.criterion == "squares" else least_largest
-        targets = np.ascontiguousarray(targets - self.origin)
+        points, targets = np.ascontiguousarray(points - self.middle), np.ascontiguousarray(targets - self.origin)
         fitted(points, targets, directions, self.weights, self.basis, self.start, self.reach, turn, shift, met)
-        pose = Pose(turn, shift + self.origin)
+        pose = Pose(turn, shift + self.origin - rotated(turn, self.middle))
         return world.with_part_at(self.move.part, pose), np.where(met, OK, SINGULAR).astype(np.int8)
 
 
@@ -60,14 +62,14 @@ def best_fitting(move: BestFit, nominal: World) -> BestFitting:
         InputError: a weight is not positive; nothing is seen of the part.
     """
     pose = nominal.poses[move.part]
-    turn, origin = pose.turn[:, :, 0], pose.shift[:, 0]
     points, _, directions = _asked(move, nominal)
-    arms = points[:, :, 0] @ turn.T
+    turn, middle = pose.turn[:, :, 0], points[:, :, 0].mean(axis=0)
+    arms = (points[:, :, 0] - middle) @ turn.T
     reach = max(float(np.linalg.norm(arms, axis=1).max()), 1.0)
     for fit in move.fits:
         if not fit.weight > 0:
             raise InputError(f"moves.{move.name}: expected a positive weight of {fit.moving}, got {fit.weight}")
-    # of a residual by shift of the origin and turn: D v + D (w x arm)
+    # of a residual by shift of the middle and turn: D v + D (w x arm)
     rows = np.concatenate(
         [np.hstack([own, np.cross(arm, own)]) for own, arm in zip(directions[:, :, :, 0], arms, strict=True)]
     )
@@ -81,7 +83,8 @@ def best_fitting(move: BestFit, nominal: World) -> BestFitting:
         reach,
         basis,
         np.ascontiguousarray(np.column_stack([turn, np.zeros(3)])),
-        column(origin),
+        column(middle),
+        pose.point(column(middle)),
     )
 
 

@@ -130,7 +130,8 @@ def _single(datum: Datum, k: int, own: ActualFeature, simulator: ActualFeature) 
         yield ("all", "none"), Seat(own.origin, simulator.origin)
     elif datum.simulator == "targets" and datum.targets is not None and k > 0:
         for target in datum.targets:
-            yield ("along", "none"), Seat(own.at(target), simulator.at(target), None, simulator.direction)
+            point, place = own.at(target), simulator.at(target)
+            yield ("along", "none"), Seat(point, place, None, simulator.direction, centre=own.origin)
     else:
         is_wide = isinstance(shape, Slot)
         outermost = own if datum.simulator == "contact" and k > 0 and not is_wide else None

@@ -126,10 +126,15 @@ class _Freedoms:
             self._turn(Step("lie", earlier), Step("azimuth", index), Step("hold", earlier))
             self.turning = _unit(end - end @ normal * normal)
         elif self.ties[index].turning == "direction":
-            self._turn(Step("aim", index), Step("level", earlier))
+            self._turn(Step("lie", earlier), Step("aim", index), Step("level", earlier, owner=index))
             self.turning = "none"
         elif along and np.linalg.norm(np.cross(normal, end)) > HELD:
-            self._turn(Step("lie between", index, earlier), Step("level", earlier), Step("hold", index))
+            self._turn(
+                Step("lie", earlier),
+                Step("lie between", index, earlier),
+                Step("level", earlier, owner=index),
+                Step("hold", index),
+            )
             self.turning = _unit(np.cross(normal, end))
         elif not along:
             raise InputError(
@@ -166,7 +171,7 @@ class _Freedoms:
         if isinstance(self.turning, str):
             self._aim_at(index)
             return
-        swung = self._swung(seat.point)
+        swung = self._swung(seat)
         around = tie.held == "across" and abs(self.turning @ seat.its_toward[:, 0]) > 1 - HELD**2
         if tie.held != "all":
             toward = seat.its_toward[:, 0]
@@ -177,11 +182,12 @@ class _Freedoms:
             self._turn(step)
             self.turning = "none"
 
-    def _swung(self, point: Array) -> Array:
-        """How a point (3, 1) moves with the turn that is left, about what shifts leave in place (3,) [mm]."""
+    def _swung(self, seat: Seat) -> Array:
+        """How its point moves with the turn that is left, about what shifts leave in place (3,) [mm]."""
         pose, axis = self._pose(), column(np.asarray(self.turning))
         directions, _ = self.alignment.shift_directions(self.seats)
-        return np.asarray((drift(pose, self.seats, directions, axis) + cross(axis, pose.point(point)))[:, 0])
+        shift = drift(pose, self.seats, directions, axis, pose.point(seat.its_centre))
+        return np.asarray((shift + cross(axis, pose.point(seat.point)))[:, 0])
 
     def _by_place(self, index: int) -> bool:
         """Whether the one turn left moves the middle of a slot across it, and more than its ends against that.
@@ -195,7 +201,7 @@ class _Freedoms:
         toward = seat.its_toward[:, 0]
         if np.linalg.norm(self._free @ toward) > HELD:
             return False
-        lever = abs(self._swung(seat.point) @ toward)
+        lever = abs(self._swung(seat) @ toward)
         arms = [self._pose().turn[:, :, 0] @ span[:, 0] for span in seat.across.spans]
         ends = sum(abs(np.cross(self.turning, arm) @ toward) for arm in arms)
         return bool(lever > HELD and lever > ends - HELD)

@@ -42,8 +42,7 @@ class GaugedFrame:
         reach: of them about it [mm].
         freedoms: motions that earlier datums leave and gauges see: shift of the middle, turn times reach (6, freedoms),
             orthonormal.
-        motions: by these, with the least turn and the least shift of the part's origin that gauges do not see
-            (6, freedoms).
+        motions: by these, with the least turn and the least shift of the middle that gauges do not see (6, freedoms).
         rows: change of each offset by them (cones, 2, freedoms).
         floats: where in the room the part lies.
     """
@@ -144,18 +143,17 @@ def _gauged(seats: DatumSeats, gauges: Gauges) -> GaugedFrame:
     _, sizes, right = np.linalg.svd((ways @ free).reshape(-1, free.shape[1]), full_matrices=True)
     rank = int(np.sum(sizes > SEEN))
     freedoms = free @ right[:rank].T
-    motions = _least_motions(freedoms, free @ right[rank:].T, middle, reach)
+    motions = _least_motions(freedoms, free @ right[rank:].T)
     floating = gauges.floating or Floating("centred")
     floats = GaugeFloats(Engage(frame.name, frame.part, (), (), floating), freedoms, np.zeros(freedoms.shape[1]))
     rows, kept = np.ascontiguousarray(ways @ freedoms), aligned(ties, its, IDENTITY)
     return GaugedFrame(gauges, kept, len(ties), tuple(nominal), middle, reach, freedoms, motions, rows, floats)
 
 
-def _least_motions(seen: Array, unseen: Array, middle: Array, reach: float) -> Array:
-    """Motions that are seen (6, motions), with unseen ones (6, unseen) so that they turn least, then shift 0 least."""
+def _least_motions(seen: Array, unseen: Array) -> Array:
+    """Motions that are seen (6, motions), with unseen ones (6, unseen) so that they turn, then shift least."""
     found, left = seen, unseen
-    to_origin = np.hstack([np.eye(3), np.cross(np.eye(3), -middle).T / reach])
-    for rows in (np.eye(6)[3:], to_origin):
+    for rows in (np.eye(6)[3:], np.eye(6)[:3]):
         acts = np.where(np.abs(rows @ left) < HELD, 0.0, rows @ left)
         found = found - left @ np.linalg.pinv(acts, rcond=HELD) @ rows @ found
         left = left @ np.linalg.svd(acts)[2][int(np.linalg.matrix_rank(acts, HELD)) :].T

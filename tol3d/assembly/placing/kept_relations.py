@@ -1,7 +1,7 @@
 """Relations that a part keeps while it moves on, at rest or with play: what stays as they have laid it."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,7 +20,7 @@ INDEPENDENT = 1e-6
 
 @dataclass(frozen=True, eq=False)
 class Kept:
-    """What relations keep, n . (R p + s t), in the world with the part's nominal origin at 0.
+    """What relations keep, n . (R p + s t), t the place of the part's origin or of what it is `about`.
 
     Args:
         vectors, normals: p and n (kept, 3, n), directions times a length [mm].
@@ -32,6 +32,10 @@ class Kept:
     normals: Array
     shifts: Array
     groups: tuple[int, ...]
+
+    def about(self, middle: Array) -> "Kept":
+        """The same of poses that say where a middle of the part (3, 1) [mm] is, not its origin."""
+        return replace(self, vectors=np.ascontiguousarray(self.vectors - self.shifts[:, None, None] * middle))
 
 
 NOTHING = Kept(np.zeros((0, 3, 1)), np.zeros((0, 3, 1)), np.zeros(0), ())

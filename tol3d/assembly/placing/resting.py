@@ -15,7 +15,7 @@ from tol3d.assembly.placing.balances import balances_found
 from tol3d.assembly.placing.farthest_motion import TIED
 from tol3d.assembly.placing.free_motion import free_motions, in_words, seen_steps
 from tol3d.assembly.placing.kept_relations import NOTHING, KeptRelations, kept_motions, kept_relations, kept_rows
-from tol3d.assembly.placing.poses import Codes, Pose, column, dot
+from tol3d.assembly.placing.poses import Codes, Pose, column, dot, rotated
 from tol3d.assembly.placing.rests import BETWEEN, LOST, RESTS, rests_found
 from tol3d.assembly.placing.tilted_rests import tilted_rests_found
 from tol3d.assembly.placing.world import World
@@ -32,11 +32,12 @@ OUTCOMES: Codes = np.array([OK, NO_BUILD, SINGULAR, NOT_HELD, SINGULAR], dtype=n
 
 @dataclass(frozen=True, eq=False)
 class Resting:
-    """A rest, as its contacts are nominally; solved in the world, with the part's nominal origin at 0.
+    """A rest, as its contacts are nominally; solved in the world, with the middle of the part's features at 0.
 
     Args:
         move: which.
-        origin: of the part, nominally in the world (3, 1) [mm].
+        middle: of the part's features that touch, in its frame (3, 1) [mm].
+        origin: where that lies nominally in the world (3, 1) [mm].
         reach: of the contacts about it [mm].
         start: the nominal pose there (3, 4, 1).
         relations: that are kept, if there are any.
@@ -52,6 +53,7 @@ class Resting:
     """
 
     move: Rest
+    middle: Array
     origin: Array
     reach: float
     start: Array
@@ -74,12 +76,12 @@ class Resting:
         start, kept, before = self.start, NOTHING, np.full(1, OK, dtype=np.int8)
         if self.relations is not None:
             pose, before, kept = self.relations.met(world)
-            start = _array(pose, self.origin)
-        contacts = _contacts(self.move, world, self.origin)
+            start, kept = _array(pose, self.middle, self.origin), kept.about(self.middle)
+        contacts = _contacts(self.move, world, self.middle, self.origin)
         self._found((*contacts, kept.vectors, kept.normals, start), kept.shifts, (turn, shift, carried, outcomes))
         if self.nudge is not None:
             turn, shift = self._moved_on(self.nudge, turn, shift)
-        pose = Pose(turn, shift + self.origin)
+        pose = Pose(turn, shift + self.origin - rotated(turn, self.middle))
         placed = world.with_part_at(self.move.part, pose).with_loads(self.move.name, carried)
         return placed, np.where(before == OK, OUTCOMES[outcomes], before).astype(np.int8)
 
@@ -92,7 +94,7 @@ class Resting:
             kept_shifts: see Kept.
             results: filled in.
         """
-        on_part, force = self.move.points_on == "part", (self.undo, self.move.force, self.move.at)
+        on_part, force = self.move.points_on == "part", (self.undo, self.move.force, self.move.at - self.middle[:, 0])
         nominal = (self.all_rows, self.rows, self.steps, self.basis, self.inverse, self.loads)
         *contacts, start = given
         rests_found(
@@ -149,15 +151,16 @@ def resting(move: Rest, nominal: World) -> Resting:
         InputError: the contacts do not hold the part against the force, or leave it free to move across the force.
     """
     pose = nominal.poses[move.part]
-    turn, origin = pose.turn[:, :, 0], pose.shift[:, 0]
     on_part = move.points_on == "part"
-    points, normals, _ = (own[..., 0] for own in _contacts(move, nominal, column(origin)))
+    middle = np.mean([nominal.on_body(pair.moving, move.part).origin for pair in move.pairs], axis=0)
+    at, turn, origin = move.at - middle[:, 0], pose.turn[:, :, 0], pose.point(middle)[:, 0]
+    points, normals, _ = (own[..., 0] for own in _contacts(move, nominal, middle, column(origin)))
     arms, normals = (points @ turn.T, normals) if on_part else (points, normals @ turn.T)
     reach = max(float(np.linalg.norm(arms, axis=1).max()), 1.0)
     relations = kept_relations(move, nominal, reach)
-    kept = NOTHING if relations is None else relations.met(nominal)[2]
+    kept = NOTHING if relations is None else relations.met(nominal)[2].about(middle)
     rows = np.hstack([np.cross(arms, normals) / reach, normals])
-    pull = np.concatenate([np.cross(turn @ move.at, move.force) / reach, move.force])
+    pull = np.concatenate([np.cross(turn @ at, move.force) / reach, move.force])
     left, _ = kept_motions(kept, turn, reach, np.eye(6))
     _refuse_unheld(move, rows, pull, left, reach, origin)
     steps, undo = kept_motions(kept, turn, reach, _seen(rows, kept_rows(kept, turn, reach), reach))
@@ -166,10 +169,10 @@ def resting(move: Rest, nominal: World) -> Resting:
     _refuse_loose(move, rows, pull, steps, reach, origin)
     own_rows, own_pull = np.ascontiguousarray(rows @ steps), steps.T @ pull
     basis, inverse, loads = first_basis(own_rows, own_pull, generic(len(own_pull)))
-    start = _array(pose, column(origin))
+    start = _array(pose, middle, column(origin))
     return Resting(
-        move, column(origin), reach, start, relations, undo, np.ascontiguousarray(rows), np.ascontiguousarray(steps),
-        own_rows, own_pull, basis, inverse, loads,
+        move, middle, column(origin), reach, start, relations, undo,
+        np.ascontiguousarray(rows), np.ascontiguousarray(steps), own_rows, own_pull, basis, inverse, loads,
     )  # fmt: skip
 
 
@@ -177,9 +180,9 @@ def _of(array: NDArray[Any], trials: NDArray[np.intp]) -> NDArray[Any]:
     return np.ascontiguousarray(array[..., trials])
 
 
-def _array(pose: Pose, origin: Array) -> Array:
-    """Poses (3, 4, n) about an origin (3, 1)."""
-    shift = pose.shift - origin
+def _array(pose: Pose, middle: Array, origin: Array) -> Array:
+    """Poses (3, 4, n) of a middle (3, 1) about an origin (3, 1)."""
+    shift = pose.point(middle) - origin
     made = np.empty((3, 4, max(pose.turn.shape[-1], shift.shape[-1])))
     made[:, :3], made[:, 3] = pose.turn, shift
     return made
@@ -254,22 +257,29 @@ def _refuse_loose(move: Rest, rows: Array, pull: Array, steps: Array, reach: flo
 
 
 def _world_motion(step: Array, reach: float, origin: Array) -> Array:
-    """A step, turn times reach and shift of the part's origin, as a motion about the world's (1, 6)."""
+    """A step, turn times reach and shift at an origin, as a motion about the world's (1, 6)."""
     turn, shift = step[:3] / reach, step[3:]
     size = max(float(np.abs(step).max()), 1e-300)
     return np.concatenate([shift - np.cross(turn, origin), turn])[None] / size
 
 
-def _contacts(move: Rest, world: World, origin: Array) -> tuple[Array, Array, Array]:
-    """Points, normals (contacts, 3, n) and heights (contacts, n); a gap is as `rests.gap_of` has it."""
-    contacts = [_contact(move, pair, world, origin) for pair in move.pairs]
+def _contacts(move: Rest, world: World, middle: Array, origin: Array) -> tuple[Array, Array, Array]:
+    """Points, normals (contacts, 3, n) and heights (contacts, n); a gap is as `rests.gap_of` has it.
+
+    Args:
+        move: which.
+        world: before it.
+        middle: about which they are in the part's frame (3, 1) [mm].
+        origin: about which they are in the world (3, 1) [mm].
+    """
+    contacts = [_contact(move, pair, world, middle, origin) for pair in move.pairs]
     return _stacked([own[0] for own in contacts]), _stacked([own[1] for own in contacts]), _stacked(
         [own[2] for own in contacts]
     )  # fmt: skip
 
 
-def _contact(move: Rest, pair: Pair, world: World, origin: Array) -> tuple[Array, Array, Array]:
-    moving = world.on_body(pair.moving, move.part).origin
+def _contact(move: Rest, pair: Pair, world: World, middle: Array, origin: Array) -> tuple[Array, Array, Array]:
+    moving = world.on_body(pair.moving, move.part).origin - middle
     target = world.placed(pair.target).origin - origin
     locator = total(pair.locator, 1, world.columns)[0]
     normal = column(pair.normal)

@@ -41,21 +41,22 @@ KINDS: Final = {
 
 @dataclass(frozen=True, eq=False)
 class Touching:
-    """A touch, as its contacts are nominally; solved in the world.
+    """A touch, as its contacts are nominally; solved in the world, with the middle of the part's features at 0.
 
     Args:
         move: which.
         kinds: of the contacts (contacts,), see contact_equations.
         signs: of the distances of axes that cross (contacts,).
         inner: which contacts have one inside the other (contacts,).
-        reach: of the contacts about the part's origin [mm].
+        reach: of the contacts about the middle [mm].
         nominal: the sides and at what distance they touch (contacts, 6), (contacts, 6), (contacts,).
         start: the nominal pose (3, 4).
         basis: steps that the contacts decide, shift and turn times reach (6, k).
-        origin: of the part, nominally in the world (3, 1) [mm].
+        middle: of the part's features, in its frame (3, 1) [mm].
+        origin: where that lies nominally in the world (3, 1) [mm].
         lacking: errors at the nominal pose (k,) [mm].
         side: of the folds, on which the nominal pose lies.
-        rows: how errors change with a shift and a turn about the part's origin there (k, 6).
+        rows: how errors change with a shift and a turn about the middle there (k, 6).
     """
 
     move: Touch
@@ -66,6 +67,7 @@ class Touching:
     nominal: tuple[Array, Array, Array]
     start: Array
     basis: Array
+    middle: Array
     origin: Array
     lacking: Array
     side: float
@@ -73,13 +75,14 @@ class Touching:
 
     def placed(self, world: World) -> tuple[World, Codes]:
         """The world after the move, and what became of it (n,)."""
-        moving, targets, sums = _asked(self.move, world, self.origin)
+        moving, targets, sums = _asked(self.move, world, self.middle, self.origin)
         turn, shift = np.empty((3, 3, world.trials)), np.empty((3, world.trials))
         codes = np.empty(world.trials, dtype=np.int8)
         contacts = (self.kinds, self.signs, self.reach, moving, targets, sums, *self.nominal)
         about = (self.start, self.basis, self.reach, self.lacking, self.side, self._force(world), self.inner)
         touching_poses(*contacts, *about, turn, shift, codes)
-        return world.with_part_at(self.move.part, Pose(turn, shift + self.origin)), codes
+        pose = Pose(turn, shift + self.origin - rotated(turn, self.middle))
+        return world.with_part_at(self.move.part, pose), codes
 
     def _force(self, world: World) -> Array:
         if self.move.pressed is None:
@@ -99,31 +102,34 @@ def touching(move: Touch, nominal: World) -> Touching:
         InputError: a contact asks what the others hold; something lies where its contact has no direction.
     """
     pose = nominal.poses[move.part]
-    turn, origin = pose.turn[:, :, 0], pose.shift[:, 0]
-    found = [_contact(move, contact, nominal) for contact in move.contacts]
+    own = [nominal.on_body(contact.moving, move.part).origin for contact in move.contacts]
+    turn, middle = pose.turn[:, :, 0], np.mean(own, axis=0)
+    origin = pose.point(middle)
+    found = [_contact(move, contact, nominal, middle) for contact in move.contacts]
     kinds, signs = np.array([kind for kind, _, _ in found], dtype=np.int64), np.array([sign for _, sign, _ in found])
     reach = max(1.0, *(own for _, _, own in found))
-    given = _asked(move, nominal, column(origin))
+    given = _asked(move, nominal, middle, origin)
     flat = given[0][:, :, 0].copy(), given[1][:, :, 0].copy(), given[2][:, 0].copy()
     start = np.ascontiguousarray(np.column_stack([turn, np.zeros(3)]))
     counts = [2 if kind in contact_equations.TWO else 1 for kind in kinds]
     lacking, rows = np.empty(sum(counts)), np.empty((sum(counts), 6))
     lacking_at(kinds, signs, reach, *given, *flat, start, lacking, rows)
     rows = rows * np.array([1.0, 1.0, 1.0, 1 / reach, 1 / reach, 1 / reach])
-    _refuse_redundant(move, rows, np.cumsum(counts).tolist(), origin, reach)
+    _refuse_redundant(move, rows, np.cumsum(counts).tolist(), origin[:, 0], reach)
     about_origin = rows * np.array([1.0, 1.0, 1.0, reach, reach, reach])
     basis = np.roll(seen_steps(free_motions(about_origin, np.zeros(3), reach), reach), 3, axis=0)
-    shapes = [[nominal.assembly.features[name].shape for name in (own.moving, own.target)] for own in move.contacts]
+    shapes = [[nominal.assembly.features[name].shape for name in (each.moving, each.target)] for each in move.contacts]
     made = Touching(
         move,
         kinds,
         signs,
-        np.array([is_inside(*own) for own in shapes]),
+        np.array([is_inside(*each) for each in shapes]),
         reach,
         flat,
         start,
         np.ascontiguousarray(basis),
-        column(origin),
+        middle,
+        origin,
         lacking,
         float(np.sign(np.linalg.det(rows @ basis))),
         about_origin,
@@ -136,7 +142,7 @@ def touching(move: Touch, nominal: World) -> Touching:
     return made
 
 
-def _contact(move: Touch, contact: Contact, nominal: World) -> tuple[int, float, float]:
+def _contact(move: Touch, contact: Contact, nominal: World, middle: Array) -> tuple[int, float, float]:
     """Its kind, the sign of the distance of axes that cross, and how far it reaches [mm]."""
     own = nominal.on_body(contact.moving, move.part)
     moving, target = own.moved(nominal.poses[move.part]), nominal.placed(contact.target)
@@ -159,7 +165,7 @@ def _contact(move: Touch, contact: Contact, nominal: World) -> tuple[int, float,
         raise InputError(
             f"{name}: lies in its middle, so that there is no direction to it; place {move.part} towards the contact"
         )
-    reaches = (np.linalg.norm(own.origin), np.linalg.norm(apart), getattr(shapes[0], "length", 0.0) / 2)
+    reaches = (np.linalg.norm(own.origin - middle), np.linalg.norm(apart), getattr(shapes[0], "length", 0.0) / 2)
     return kind, sign, float(max(reaches))
 
 
@@ -179,13 +185,13 @@ def _refuse_redundant(move: Touch, rows: Array, ends: Sequence[int], origin: Arr
         before = end
 
 
-def _asked(move: Touch, world: World, origin: Array) -> tuple[Array, Array, Array]:
-    """Sides of the part in its frame and of the others about an origin (contacts, 6, n), and touching distances."""
+def _asked(move: Touch, world: World, middle: Array, origin: Array) -> tuple[Array, Array, Array]:
+    """Sides of the part about a middle, of the others about an origin (contacts, 6, n), and touching distances."""
     moving = [world.on_body(contact.moving, move.part) for contact in move.contacts]
     targets = [world.placed(contact.target) for contact in move.contacts]
     sums = [touching_distance(*pair, world.columns) for pair in zip(moving, targets, strict=True)]
     return (
-        _stacked([_side(own, own.origin) for own in moving]),
+        _stacked([_side(own, own.origin - middle) for own in moving]),
         _stacked([_side(own, own.origin - origin) for own in targets]),
         _stacked(sums),
     )

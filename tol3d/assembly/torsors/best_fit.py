@@ -13,7 +13,7 @@ Array = NDArray[np.float64]
 
 
 def fitted(move: BestFit, world: World) -> Array:
-    """The torsor (6, columns) of a part by best fit; freedoms that no residual sees stay as nominal."""
+    """The torsor (6, columns) of a part by best fit; the middle of its points stays where no residual sees it."""
     residuals = [_residual(fit, move, world) for fit in move.fits]
     points = [world.origin(fit.moving) for fit in move.fits]
     freedoms = Freedoms(world.assembly.part[move.part].pose[:3, 3], points, world.columns.count)
@@ -22,6 +22,7 @@ def fitted(move: BestFit, world: World) -> Array:
         rows, values = (np.concatenate(each) for each in zip(*residuals, strict=True))
         weight = np.concatenate(weights)[:, None]
         freedoms.take(weight * rows, weight * values)
+        freedoms.settle(np.mean(points, axis=0))
         return freedoms.rest()
     # as many numbers for each, those that no direction counts are 0
     rows = np.array([np.pad(rows, ((0, 3 - len(rows)), (0, 0))) for rows, _ in residuals]) @ freedoms.scale
@@ -30,6 +31,7 @@ def fitted(move: BestFit, world: World) -> Array:
     seen = right[strengths > 1e-8 * strengths[0]]
     found = world.columns.made_by(Minimax(values.reshape(-1, world.columns.count), rows @ seen.T))
     freedoms.take(seen @ np.linalg.inv(freedoms.scale), found)
+    freedoms.settle(np.mean(points, axis=0))
     return freedoms.rest()
 
 

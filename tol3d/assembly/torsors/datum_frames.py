@@ -57,10 +57,16 @@ def _without_any(datums: Sequence[Sequence[Displaced]], columns: Columns) -> Fre
 
 
 def _take(freedoms: Freedoms, datum: Datum, features: Sequence[Displaced], columns: Columns) -> None:
+    """What a datum holds, and the turn to it, about its centre: of two the middle between them."""
     (feature, torsor), *others = features
     if others:
         _take_line(freedoms, (feature, torsor), others[0])
-        return
+    else:
+        _take_one(freedoms, datum, feature, torsor, columns)
+    freedoms.settle(np.mean([own.frame[:3, 3] for own, _ in features], axis=0))
+
+
+def _take_one(freedoms: Freedoms, datum: Datum, feature: Feature, torsor: Array, columns: Columns) -> None:
     match feature.shape:
         case Slot() as slot:
             _take_slot(freedoms, slot, feature.frame, torsor)

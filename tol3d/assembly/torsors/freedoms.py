@@ -1,11 +1,12 @@
 """The freedoms of a rigid body, as groups of equations take them one after the other."""
 
 from collections.abc import Iterable
+from copy import copy
 
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.assembly.torsors.torsor import cross_matrix, turn_about
+from tol3d.assembly.torsors.torsor import cross_matrix, shift_at, torsor_of, turn_about
 
 Array = NDArray[np.float64]
 
@@ -18,10 +19,11 @@ class Freedoms:
     """A torsor that is found by equations in groups, the first leading.
 
     A group is met as nearly as the freedoms left allow: least squares over its equations, which are all lengths or all
-    turns. What earlier groups hold stays.
+    turns. What earlier groups hold stays. What no equation asks for: no turn, and no shift of the centres about which
+    what is asked turns (`settle`).
 
     Args:
-        origin: about which nothing turns that no equation asks for (3,) [mm].
+        origin: at which shifts are counted inside (3,) [mm]; what is found does not depend on it.
         points: what the equations are about (points, 3) [mm]: their distance from there weighs a turn.
         columns: of the torsor.
     """
@@ -31,6 +33,7 @@ class Freedoms:
         self._length = max([1.0, *(float(np.linalg.norm(point - origin)) for point in points)])
         self._left = np.eye(6)
         self._found = np.zeros((6, columns))
+        self._settled = np.zeros((6, columns))
 
     @property
     def scale(self) -> Array:
@@ -79,10 +82,22 @@ class Freedoms:
         asked = equations @ self.scale
         return bool(np.abs(asked @ self._left).max(initial=0.0) <= INDEPENDENT * np.linalg.norm(asked))
 
+    def settle(self, centre: Array) -> None:
+        """Let what groups since the last call turn have a centre (3,) [mm], which stays as far as shifts are free.
+
+        The turn that groups ask for is the least that meets them all; what earlier ones have asked for is settled.
+        """
+        least = copy(self)
+        least.take(turn_about(np.eye(3)), np.zeros_like(self._found[3:]))
+        turn = least.torsor[3:] - self._settled[3:]
+        self._settled = self._settled + torsor_of(centre, np.zeros_like(turn), turn)
+
     def rest(self) -> Array:
-        """The torsor, nothing turning or shifting that no equation asks for: the least turn, then about `origin`."""
-        self.take(turn_about(np.eye(3)), np.zeros((3, self._found.shape[1])))
-        return self.torsor  # shifts that are left were never taken: at `origin` they are 0
+        """The torsor: of what no equation asks for the least turn, and shifts as they are settled."""
+        self.take(turn_about(np.eye(3)), np.zeros_like(self._found[3:]))
+        at_origin = shift_at(self._origin)
+        self.take(at_origin, at_origin @ self._settled)
+        return self.torsor
 
 
 def freedom_in_words(torsors: Array) -> str:

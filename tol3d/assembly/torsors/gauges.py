@@ -89,18 +89,18 @@ def gauges_room(
     whole = np.array(ways) @ free
     _, strengths, right = np.linalg.svd(whole.reshape(-1, free.shape[1]))
     seen = right[: int(np.sum(strengths > SEEN))].T
-    motions = to_torsor @ _least(free @ seen, free @ right[seen.shape[1] :].T, to_torsor)
+    motions = to_torsor @ _least(free @ seen, free @ right[seen.shape[1] :].T, reach)
     return GaugesRoom(rest, motions, (free @ seen).T, np.concatenate(offsets), np.array(clearances), whole @ seen)
 
 
-def _least(seen: Array, unseen: Array, to_torsor: Array) -> Array:
-    """Freedoms that are seen (6, freedoms), with so much of the others that the part turns and shifts least.
+def _least(seen: Array, unseen: Array, reach: float) -> Array:
+    """Freedoms that are seen (6, freedoms), with so much of the others that the part turns, then shifts least.
 
     By one system of least squares in which turns [rad] count for so much more than shifts [mm] that these only decide
     what turns leave open.
     """
-    weights = np.array([1.0, 1.0, 1.0, 1e6, 1e6, 1e6])[:, None]
-    amounts = np.linalg.lstsq(weights * (to_torsor @ unseen), -weights * (to_torsor @ seen), rcond=None)[0]
+    weights = np.array([1.0, 1.0, 1.0, 1e6 / reach, 1e6 / reach, 1e6 / reach])[:, None]
+    amounts = np.linalg.lstsq(weights * unseen, -weights * seen, rcond=None)[0]
     return np.asarray(seen + unseen @ amounts, dtype=np.float64)
 
 

@@ -43,6 +43,7 @@ def take_relations(freedoms: Freedoms, move: Mate | Rest, world: World) -> None:
                 f"moves.{move.name}: {relation.kind} of {relation.moving} and {relation.target} takes no freedom: "
                 "earlier relations hold all that it asks; leave it out"
             )
+        freedoms.settle(world.origin(relation.moving))
 
 
 def _take(freedoms: Freedoms, relation: Relation, move: Mate | Rest, world: World) -> int:

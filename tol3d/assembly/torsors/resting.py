@@ -70,6 +70,7 @@ def rested(move: Rest, world: World, leaning: Array | None = None) -> Array:
     found = world.columns.made_by(OneSided(before - values, matrix, tuple(tuple(own) for own in corners)))
     back = np.linalg.pinv(matrix)
     freedoms.take(back @ rows, found + back @ before)
+    freedoms.settle(np.mean([world.origin(pair.moving) for pair in move.pairs], axis=0))
     return freedoms.rest()
 
 

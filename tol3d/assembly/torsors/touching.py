@@ -30,6 +30,7 @@ def touched(move: Touch, world: World) -> Array:
                 f"moves.{move.name}: contact of {contact.moving} and {contact.target} asks what earlier contacts hold; "
                 f"{free}; expected contacts that are independent of each other"
             )
+    freedoms.settle(np.mean([world.origin(contact.moving) for contact in move.contacts], axis=0))
     return freedoms.rest()
 
 
