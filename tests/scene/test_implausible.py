@@ -190,17 +190,49 @@ def test_planets_may_come_close(warned: Warned) -> None:
     """
     law = "direction: tangential, distribution: {{kind: uniform, lower: -{0}, upper: {0}}}"
     found = [warned("every_planetary_field", (ROUND, law.format(far))) for far in ("12.08 mm", "12.09 mm")]
-    assert [len(lines) for lines in found] == [0, 1]
-    assert found[1][0].startswith("moves.stage.planets: expected planets that stay clear of their neighbours")
+    assert [len(lines) for lines in found] == [1, 2]  # far beyond half of a module they are in any case
+    assert found[1][1].startswith("moves.stage.planets: expected planets that stay clear of their neighbours")
 
 
-def test_pins_of_planets_may_lie_off_by_half_of_their_pitch(warned: Warned) -> None:
-    """58.7165 mm / 2 = 29.358 mm, outwards, where planets come no closer."""
+def test_pins_of_planets_may_lie_off_by_half_of_a_module(warned: Warned) -> None:
     law = "direction: radial, distribution: {{kind: constant, value: {}}}"
-    found = [warned("every_planetary_field", (ROUND, law.format(far))) for far in ("29.35 mm", "29.36 mm")]
+    found = [warned("every_planetary_field", (ROUND, law.format(far))) for far in ("0.75 mm", "-0.751 mm")]
     assert [len(lines) for lines in found] == [0, 1]
-    words = "tolerances.pins round.distribution: expected at most 50 % of the pitch of the pins of 'carrier' (58.72 mm)"
+    words = "tolerances.pins round.distribution: expected at most 50 % of the module of 'planet wheel' (1.5 mm)"
     assert found[1][0].startswith(words)
+
+
+@pytest.mark.parametrize(
+    ("name", "old", "below", "above", "gear"),
+    [  # a Rayleigh length reaches 3.6350 of its scale: 1 mm at 0.2751 mm, 0.75 mm at 0.20633 mm
+        ("every_field", "{kind: rayleigh, scale: 3 um}", "{SCALE 275 um}", "{SCALE 276 um}", "pinion"),
+        ("every_field", "{kind: rayleigh, scale: 1.5 um}", "{SCALE 275 um}", "{SCALE 276 um}", "pinion"),
+        ("every_field", "mean: 0 um, sigma: 6 um, lower: -12 um", "LOW -1 mm", "LOW -1.1 mm", "pinion"),
+        ("every_planetary_field", "{kind: rayleigh, scale: 3 um}", "{SCALE 206 um}", "{SCALE 207 um}", "planet wheel"),
+        (
+            "every_bevel_field",
+            "lower: -9 um, upper: 9 um",
+            "lower: -9 um, upper: 1.5 mm",
+            "lower: -9 um, upper: 1.51 mm",
+            "pinion",
+        ),
+        (
+            "housed_gears",
+            "lower: 5 um, upper: 15 um",
+            "lower: 0 mm, upper: 1 mm",
+            "lower: 0 mm, upper: 1.1 mm",
+            "second wheel",
+        ),
+    ],
+)
+def test_axes_may_lie_off_by_half_of_a_module(
+    name: str, old: str, below: str, above: str, gear: str, warned: Warned
+) -> None:
+    full = [law.replace("SCALE", "kind: rayleigh, scale:") for law in (below, above)]
+    full = [law.replace("LOW", "mean: 0 um, sigma: 6 um, lower:") for law in full]
+    found = [warned(name, (old, law)) for law in full]
+    assert [len(lines) for lines in found] == [0, 1]
+    assert f"distribution: expected at most 50 % of the module of {gear!r}" in found[1][0]
 
 
 # shafts ---------------------------------------------------------------------------------------------

@@ -32,19 +32,17 @@ def implausible_set(scene: Scene, own: PlanetarySet, made: Made) -> tuple[str, .
 
 
 def _pins(scene: Scene, own: PlanetarySet, made: Made) -> Iterator[str]:
-    """Pins off by more than half of their pitch; planets that overlap where all pins are at their worst places."""
-    if own.planets == 1:
-        return
-    half_angle = math.pi / own.planets
+    """Pins off by more than half of a module; planets that overlap where all pins are at their worst places."""
+    smallest, half_angle = min(own.gears, key=lambda gear: gear.module), math.pi / own.planets
     pitch, taken = 2 * own.centre_distance * math.sin(half_angle), 0.0
     room = pitch - 2 * max(made[gear.name].tip_radius for gear in own.gears)
     for path, spec in _of_pins(scene, own):
         far, low = _reach(scene, spec)
-        if sentence := HALF.sentence(f"the pitch of the pins of {own.carrier!r}", pitch, far):
+        if sentence := HALF.sentence(f"the module of {smallest.name!r}", smallest.module, far):
             yield warned(path, sentence)
         radial = isinstance(spec, PlanetPinSpec) and spec.direction == "radial"
         taken += -2 * low * math.sin(half_angle) if radial else 2 * abs(far)
-    if taken > room > 0.0:
+    if own.planets > 1 and taken > room > 0.0:
         words = (
             f"expected planets that stay clear of their neighbours, whose pins are {pitch:.4g} mm apart, got planets "
         )

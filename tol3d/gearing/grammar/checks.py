@@ -3,10 +3,17 @@
 from collections.abc import Iterator
 from typing import Final
 
-from tol3d.gearing.grammar.parts import BearingSpec, ShaftSpec, carried
+from tol3d.gearing.grammar.moves import GearMeshSpec
+from tol3d.gearing.grammar.parts import BearingSpec, GearSpec, ShaftSpec, carried, gears_on
 from tol3d.gearing.grammar.parts.gear import BoredGearSpec
+from tol3d.gearing.grammar.tolerances.axes_offset import AxesOffsetSpec
+from tol3d.gearing.grammar.tolerances.bearing_clearance import BearingClearanceSpec
+from tol3d.gearing.grammar.tolerances.centre_distance import CentreDistanceSpec
+from tol3d.gearing.grammar.tolerances.eccentricity import EccentricitySpec
 from tol3d.gearing.grammar.tolerances.profile_form import ProfileFormSpec
+from tol3d.gearing.grammar.tolerances.run_out import RunOutSpec
 from tol3d.scene import Scene
+from tol3d.scene.implausible import Implausible, farthest
 from tol3d.scene.place import KeyPath
 
 
@@ -28,6 +35,30 @@ def forms_of_two_shapes(scene: Scene) -> Iterator[tuple[KeyPath, str]]:
         other, known = first.setdefault(spec.of, (str(name), spec))
         if spec.waves != known.waves:
             yield ("tolerances", str(name), "shape"), f"expected the shape of {other!r}, the form of {spec.of!r} too"
+
+
+def implausible_displacements(scene: Scene) -> Iterator[tuple[KeyPath, str]]:
+    """Axes that lie off their places by more than half of a module, as teeth are two modules deep."""
+    for name, spec in scene.distributed.items():
+        if not isinstance(
+            spec, EccentricitySpec | RunOutSpec | BearingClearanceSpec | CentreDistanceSpec | AxesOffsetSpec
+        ):
+            continue
+        gears = {gear: part for gear in _displaced(scene, spec.of) if isinstance(part := scene.parts[gear], GearSpec)}
+        if not gears:
+            continue
+        gear, part = min(gears.items(), key=lambda own: own[1].module.internal)
+        far = farthest(spec.distribution.resolve(scene.files))
+        if sentence := HALF.sentence(f"the module of {gear!r}", part.module.internal, far):
+            yield ("tolerances", name, "distribution"), sentence
+
+
+def _displaced(scene: Scene, of: str) -> tuple[str, ...]:
+    """The gears of a mesh, on a shaft or at a bearing of it, or the gear itself."""
+    if isinstance(move := scene.moves.get(of), GearMeshSpec):
+        return move.gears
+    part = scene.parts[of]
+    return gears_on(part.shaft if isinstance(part, BearingSpec) else of, scene.parts)
 
 
 def bearings_off_shafts(scene: Scene) -> Iterator[tuple[KeyPath, str]]:
@@ -64,4 +95,5 @@ def too_thick(shaft: ShaftSpec, bore: float | None, words: str) -> str:
     return f"expected at most {bore:.6g} mm, the diameter of {words}, got {shaft.diameter}; look at both, and the units"
 
 
+HALF: Final = Implausible(0.5)
 ROUNDING: Final = 1e-9  # mm; the same number in two units
