@@ -11,6 +11,8 @@ import hypothesis
 import pytest
 from fixtures import Command, EngineOf, strips_of
 from places import SPUR_PAIR
+from scheduling import DearestFirst, dearest_first
+from thinned import sort_into_sets
 
 from tol3d import cli, load_scene
 from tol3d.gearing.engines.fcl import FclEngine
@@ -24,6 +26,19 @@ hypothesis.settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE", "tol3d"))
 
 # what pyproject.toml makes an error here, numpy's warnings, is one in the processes that tests start too
 os.environ.setdefault("PYTHONWARNINGS", "error::RuntimeWarning")
+
+
+def pytest_xdist_make_scheduler(config: pytest.Config, log: Any) -> DearestFirst | None:
+    """Share whole files between processes (--dist loadfile, as set in pyproject.toml)."""
+    return DearestFirst(config, log) if config.getoption("dist") == "loadfile" else None
+
+
+@pytest.hookimpl(tryfirst=True)  # before pytest selects by marks
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    """Sort tests into default, slow and nightly ones; where several processes share them start with the dearest files."""
+    sort_into_sets(items)
+    if hasattr(config, "workerinput"):
+        items[:] = dearest_first(items)
 
 
 @pytest.hookimpl(wrapper=True)

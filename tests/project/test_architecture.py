@@ -112,12 +112,6 @@ def test_every_package_is_shipped() -> None:
     assert declared == found
 
 
-@pytest.mark.slow  # 40 s of a processor in a fresh clone; .ci/run runs mypy by itself too
-def test_strict_types() -> None:
-    done = subprocess.run([sys.executable, "-m", "mypy"], cwd=ROOT, capture_output=True, text=True)
-    assert done.returncode == 0, done.stdout + done.stderr
-
-
 def test_no_lint() -> None:
     done = subprocess.run([sys.executable, "-m", "ruff", "check", "."], cwd=ROOT, capture_output=True, text=True)
     assert done.returncode == 0, done.stdout + done.stderr

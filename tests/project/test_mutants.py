@@ -14,13 +14,14 @@ import shutil
 import subprocess
 import sys
 import tomllib
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from py_compile import PycInvalidationMode
 
 import pytest
 from places import ROOT
+from scheduling import GROUP
 
 LIST = ROOT / "tests" / "mutants.toml"
 FAILED, PASSED = 1, 0  # pytest's exit codes; others mean that it could not run
@@ -65,6 +66,7 @@ class Tree:
 
     def __init__(self, folder: Path) -> None:
         self.folder = folder
+        self.passed: set[str] = set()  # tests, as long as nothing is wrong
         for name in COPIED:
             ignored = shutil.ignore_patterns("__pycache__")
             source, target = ROOT / name, folder / name
@@ -86,7 +88,7 @@ class Tree:
 
     def pytest(self, *tests: str) -> tuple[int, str]:
         """Run tests there, slow ones too: the exit code, and what is printed."""
-        options = ("-n", "0", "-q", "-p", "no:cacheprovider", "--tb=line", "-m", "slow or not slow")
+        options = ("-n", "0", "-q", "-p", "no:cacheprovider", "--tb=line", "-m", "not nightly")
         output = self.folder / "output.txt"
         assert self.forks.stdin
         assert self.forks.stdout
@@ -95,20 +97,34 @@ class Tree:
         return int(self.forks.stdout.readline()), output.read_text("utf-8")
 
 
+    def passes(self, tests: Iterable[str]) -> None:
+        """Run those of some tests that were not run yet: without a fault they pass."""
+        new = sorted(set(tests) - self.passed)
+        if new:
+            code, said = self.pytest(*new)
+            assert code == PASSED, said[-3000:]
+            self.passed.update(new)
+
+
 @pytest.fixture(scope="module")
 def tree(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Tree]:
-    """The copy, on which every test of the list passes as long as nothing is wrong."""
+    """The copy, one in each process of pytest's."""
     made = Tree(tmp_path_factory.mktemp("mutants"))
     with made.forks:
-        code, said = made.pytest(*sorted({test for mutant in MUTANTS for test in mutant.tests}))
-        assert code == PASSED, said[-3000:]
         yield made
+
+
+def _group(mutant: Mutant) -> Iterator[Mutant]:
+    """Mutants near it in the list: their tests are run together, which takes one start."""
+    place = MUTANTS.index(mutant)
+    yield from MUTANTS[place // GROUP * GROUP : (place // GROUP + 1) * GROUP]
 
 
 @pytest.fixture
 def mutated(tree: Tree, request: pytest.FixtureRequest) -> Iterator[tuple[Tree, Mutant]]:
-    """The copy with one fault in it."""
+    """The copy with one fault in it, and tests that pass without it."""
     mutant: Mutant = request.param
+    tree.passes(test for other in _group(mutant) for test in other.tests)
     path = tree.folder / mutant.file
     text = path.read_text("utf-8")
     path.write_text(text.replace(mutant.old, mutant.new), "utf-8")

@@ -26,6 +26,7 @@ import numpy as np
 from llvmlite import ir
 from numba import types as numba_types
 from numba.core import sigutils as numba_signatures
+from numba.core.caching import FunctionCache
 from numba.core.compiler import Compiler as NumbaCompiler
 from numba.core.registry import CPUDispatcher
 from numba.extending import intrinsic, overload
@@ -226,8 +227,10 @@ class Kernel:
         if content is None:
             return None
         try:
-            with _numbas_folder() as folder:
-                zipfile.ZipFile(io.BytesIO(content)).extractall(folder)
+            with _numbas_folder():
+                # numba looks in a subfolder named after the source's path; an entry serves copies of it elsewhere too
+                place: Any = FunctionCache
+                zipfile.ZipFile(io.BytesIO(content)).extractall(place(self._function).cache_path)
                 made: Any = self._made(signature, cache=True)
         except Exception:  # whole, but of no use to this numba: whatever it stumbles over, compiling does without
             return None
@@ -245,7 +248,7 @@ class Kernel:
             files = [path for path in sorted(folder.rglob("*")) if path.is_file()]
             if files and self.name:
                 with contextlib.suppress(OSError):
-                    write_entry(self.name, _packed(folder, files))
+                    write_entry(self.name, _packed(files))
         return made
 
     def _read(self) -> bytes | None:
@@ -265,7 +268,7 @@ def _made_of(function: Callable[..., None], tuples: Sequence[type]) -> dict[str,
     modules = {function.__module__, *(kind.__module__ for kind in tuples)}
     modules = modules.union(*(_VARIANTS_IN.get(kind, set()) for kind in tuples))
     return {
-        "function": [function.__qualname__, function.__code__.co_filename],  # by which numba knows it
+        "function": [function.__module__, function.__qualname__],
         "kinds": [f"{kind.__module__}.{kind.__qualname__}" for kind in tuples],
         "sources": sources_of(*modules),
         "versions": [numba.__version__, llvmlite.__version__, np.__version__, platform.python_version()],
@@ -273,12 +276,12 @@ def _made_of(function: Callable[..., None], tuples: Sequence[type]) -> dict[str,
     }
 
 
-def _packed(folder: Path, files: Sequence[Path]) -> bytes:
-    """Files as an archive, by their places in a folder."""
+def _packed(files: Sequence[Path]) -> bytes:
+    """Files as an archive, by their names."""
     archive = io.BytesIO()
     with zipfile.ZipFile(archive, "w") as entries:
         for path in files:
-            entries.write(path, path.relative_to(folder))
+            entries.write(path, path.name)
     return archive.getvalue()
 
 
