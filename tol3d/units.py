@@ -1,6 +1,6 @@
 """Numbers with their units, as a user writes them: `2.5 mm`, `-19 um`, `20 deg`, `11.5e-6 1/K`.
 
-The grammar is strict on purpose: one number, a blank, one unit of the table below. Inside tol3d
+The grammar is strict on purpose: one number, a blank or none, one unit of the table below. Inside tol3d
 lengths are mm, angles rad, temperature differences K, expansion coefficients 1/K, forces N. What is counted has its own
 word for a unit: `3 pins`, `1 pin`.
 """
@@ -19,7 +19,7 @@ ARCMIN: Final = 10800 / math.pi  # in a radian
 RAD_PER_ARCMIN: Final = math.pi / 10800
 
 FACTORS: Final[dict[Dimension, dict[str, float]]] = {
-    "length": {"mm": 1.0, "um": 1e-3, "nm": 1e-6, "m": 1e3, "cm": 10.0},
+    "length": {"mm": 1.0, "um": 1e-3, "nm": 1e-6, "m": 1e3, "cm": 10.0, "in": 25.4},
     "angle": {
         "rad": 1.0,
         "mrad": 1e-3,
@@ -67,7 +67,9 @@ LARGEST: Final[dict[Dimension, float]] = {
 LEAST_POSITIVE: Final = 1e-9  # mm or rad; a thousandth of an atom, a nanometre at a kilometre
 MICRO_SIGNS: Final = str.maketrans({"µ": "u", "μ": "u"})
 NUMBER: Final = r"[+-]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][+-]?[0-9]+)?"  # YAML 1.2 core schema, 10.3.2
-NUMBER_UNIT: Final = re.compile(rf"\s*({NUMBER})\s+(\S+)\s*")
+NUMBER_UNIT: Final = re.compile(rf"\s*({NUMBER})(?:\s+|(?=[^\s\d.,+-]))(\S+)\s*")
+DECIMAL_COMMA: Final = re.compile(r"\s*([+-]?\d+),(\d+(?:[eE][+-]?\d+)?)\s*(\S*)\s*")
+COMMA_SEPARATES: Final = "decimals have a point, for a comma begins another entry"
 BARE_NUMBER: Final = re.compile(rf"\s*{NUMBER}\s*")
 LONGEST_TEXT: Final = 100  # characters of a quantity; seventeen digits and a unit are far shorter
 UNITS: Final[dict[str, Dimension]] = {unit: dimension for dimension, table in FACTORS.items() for unit in table}
@@ -114,7 +116,9 @@ class Quantity:
             raise ValueError(f"got {shown(text)}, a bare number without its unit")
         match = NUMBER_UNIT.fullmatch(text) if len(text) <= LONGEST_TEXT else None
         if match is None:
-            raise ValueError(f"got {shown(text)}")
+            comma = DECIMAL_COMMA.fullmatch(text[:LONGEST_TEXT])
+            advice = f", with a decimal comma: write {comma[1]}.{comma[2]} {comma[3]}".rstrip() if comma else ""
+            raise ValueError(f"got {shown(text)}{advice}")
         number, unit = float(match[1]), match[2].translate(MICRO_SIGNS)
         if unit not in UNITS:
             raise ValueError(f"got {shown(text)}: unknown unit {unit!r}")
@@ -244,11 +248,12 @@ def _value_refused(expected: str, quantity: Quantity) -> PydanticCustomError:
 
 
 def _json_schema(*dimensions: Dimension) -> dict[str, Any]:
-    units = "|".join(re.sub("^u", "[uµμ]", re.escape(unit)) for dimension in dimensions for unit in FACTORS[dimension])
+    named = [re.sub("^u", "[uµμ]", re.escape(unit)) for dimension in dimensions for unit in FACTORS[dimension]]
+    units, without_digit = "|".join(named), "|".join(own for own in named if not own[0].isdigit())
     return {
         "type": "string",
         "title": " or ".join(dimensions),
-        "pattern": rf"^\s*{NUMBER}\s+({units})\s*$",
+        "pattern": rf"^\s*{NUMBER}(\s+({units})|({without_digit}))\s*$",
         "examples": [EXAMPLES[dimension] for dimension in dimensions],
     }
 

@@ -3,6 +3,7 @@
 import importlib.metadata
 import json
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -235,8 +236,26 @@ def test_a_name_that_is_no_scene_is_refused(tol3d: Command, tmp_path: Path) -> N
 def test_a_name_near_a_scene_that_tol3d_brings_along_is_guessed(tol3d: Command) -> None:
     code, _, err = tol3d("run", "spur_pairs")
     assert code == 2
+    assert err == 'spur_pairs: no such file, and no scene of that name; did you mean "spur_pair"?\n'
+    _, _, err = tol3d("run", "xyz")
     assert "no such file, and no scene of that name (tol3d brings along: bevel_pair, " in err
-    assert 'did you mean "spur_pair"?' in err
+
+
+@pytest.mark.parametrize(
+    ("option", "said", "expected"),
+    [
+        ("--witness", "x", "expected a whole number from 0 on, got 'x'"),
+        ("--seed", "1.5", "expected a whole number from 0 on, got '1.5'"),
+        ("--trials", "1e-1", "expected a whole number from 1 on, or auto, got '1e-1'"),
+        ("--workers", "0", "expected a whole number from 1 on, got '0'"),
+    ],
+)
+def test_numbers_of_options_are_asked_for_in_words_of_ours(
+    tol3d: Command, option: str, said: str, expected: str
+) -> None:
+    code, _, err = tol3d("run", "spur_pair", option, said)
+    assert code == 2
+    assert expected in re.sub(r"[\s│]+", " ", err)
 
 
 def test_a_scene_that_tol3d_brings_along_is_found_beside_a_folder_of_its_name(

@@ -1,13 +1,17 @@
 """The tables of the published formula and first principles, as they are printed."""
 
+from types import SimpleNamespace
+from typing import cast
+
 import pytest
 from rv_250 import TOLERANCES, rv_250
 
 from tol3d.cycloid.formula_section import stage_by_formula
 from tol3d.cycloid.paper_formula import Source, sigma_of, sun_held_factor
 from tol3d.cycloid.paper_sources import SOURCES, PaperSources
-from tol3d.cycloid.presenting.formulas import stage_blocks
+from tol3d.cycloid.presenting.formulas import below_zero, stage_blocks
 from tol3d.report.page import Page
+from tol3d.runs.summary.run import RunSummary
 
 SUN_HELD = sun_held_factor(39, 21, 42)
 
@@ -53,3 +57,16 @@ def test_a_reducer_driven_at_its_cranks_has_no_line_for_the_sun() -> None:
 def test_a_scene_with_nothing_that_the_formula_knows_has_totals_of_nothing() -> None:
     rows = page_of(()).tables[-1].rows
     assert {cell for row in rows[:5] for cell in row.cells} == {"0.000"}
+
+
+@pytest.mark.parametrize(
+    ("analytic", "geometric", "noted"), [(-0.27, -0.25, True), (0.3, 0.29, False), (None, -1.0, True)]
+)
+def test_a_lost_motion_below_zero_is_said_to_be_no_play(analytic: float | None, geometric: float, noted: bool) -> None:
+    roads = {"analytic": SimpleNamespace(mean=analytic), "geometric": SimpleNamespace(mean=geometric)}
+    measures = {
+        "play": SimpleNamespace(kind="cycloid_lost_motion", **roads),
+        "error": SimpleNamespace(kind="cycloid_transmission_error", **roads),
+    }
+    said = [str(line) for line in below_zero(cast(RunSummary, SimpleNamespace(measures=measures)))]
+    assert [line.strip().startswith("play: negative where pins press on both sides") for line in said] == [True] * noted

@@ -13,9 +13,10 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from of_kind import of_kind
 from places import SCENES
+from ruamel.yaml import YAML
 from thinned import thinned
 
-from tol3d import load_scene
+from tol3d import Scene, load_scene
 from tol3d.errors import SceneError
 from tol3d.gearing.model import model_from_scene
 from tol3d.kinds import all_kinds
@@ -90,13 +91,13 @@ CHANGES = {
         ("lower: -30 um", "lower: -30"),
         'tolerances.pinion tooth thickness.distribution.lower: expected a length with its unit, such as "4.5 um"',
     ),
-    "no blank before the unit": (
-        ("module: 2.5 mm", "module: 2.5mm"),
-        "parts.pinion.module: expected a length with its unit, such as \"4.5 um\", got '2.5mm'",
+    "a decimal comma": (
+        ("module: 2.5 mm", "module: 2,5 mm"),
+        'parts.pinion.5 mm: expected a key, got "5 mm"; decimals have a point, for a comma begins another entry',
     ),
     "unknown unit": (
         ("module: 2.5 mm", "module: 2.5 inch"),
-        "unknown unit 'inch'; units are mm, um, nm, m, cm",
+        "unknown unit 'inch'; units are mm, um, nm, m, cm, in",
     ),
     "wrong dimension": (
         ("module: 2.5 mm", "module: 2.5 deg"),
@@ -857,3 +858,52 @@ def test_a_scene_with_a_value_replaced_is_read_or_refused_well(tmp_path: Path, d
         | st.sampled_from(values).map(lambda other: other[0])
     )
     loads_or_is_refused_well(tmp_path, text[: value.start()] + new + text[value.end() :])
+
+
+COMMAS = """
+scene: commas
+parts:
+  base:
+    kind: solid
+    features:
+      floor: {{kind: plane, at: [{at}], normal: [0, 0, 1], extent: [60 mm, 40 mm]}}
+tolerances:
+  height: {{kind: {kind}, of: base.floor{law}}}
+moves:
+  fixed: {{kind: fix, part: base}}
+measures:
+  tilt: {{kind: angle, from: base.floor, to: base.floor}}
+"""
+PLACE, LAW = "0 mm, 0 mm, 1 mm", ", distribution: {kind: constant, value: 0.1 mm}"
+
+
+@pytest.mark.parametrize(
+    ("at", "kind", "law", "expected"),
+    [
+        (
+            "0 mm, 0 mm, 40,1 mm",
+            "plus_minus",
+            LAW,
+            "got a list of 4; decimals have a point, for a comma begins another",
+        ),
+        (PLACE, "plus_minus", LAW.replace("0.1", "0,1"), 'expected a key, got "1 mm"; decimals have a point'),
+        (PLACE, "true_position", LAW, "expected another word here, got 'true_position'; write position"),
+        (
+            PLACE,
+            "plus_minus",
+            "",
+            'expected the key "distribution" here, such as {kind: normal, lower: -10 um, upper: ',
+        ),
+    ],
+)
+def test_slips_of_the_field_are_told_by_file_and_by_python(
+    tmp_path: Path, at: str, kind: str, law: str, expected: str
+) -> None:
+    text = COMMAS.format(at=at, kind=kind, law=law)
+    (tmp_path / "scene.yaml").write_text(text, encoding="utf-8")
+    with pytest.raises(SceneError) as of_file:
+        load_scene(tmp_path / "scene.yaml")
+    assert expected in str(of_file.value)
+    with pytest.raises(SceneError) as of_python:
+        Scene.model_validate(YAML(typ="safe").load(text))
+    assert expected in str(of_python.value)

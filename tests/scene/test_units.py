@@ -55,6 +55,11 @@ def test_each_unit_belongs_to_one_dimension() -> None:
         ("180 deg", math.pi),
         ("11.5e-6 1/K", 11.5e-6),
         ("11.5 um/m/K", 11.5e-6),
+        ("105mm", 105.0),
+        ("-1e-3mm", -0.001),
+        ("20deg", math.pi / 9),
+        ("1e-5/K", 1e-5),
+        ("4.134 in", 105.0036),  # an inch is 25.4 mm since 1959
     ],
 )
 def test_number_blank_unit_is_read(text: str, internal: float) -> None:
@@ -69,8 +74,11 @@ def test_number_blank_unit_is_read(text: str, internal: float) -> None:
         (True, "got true"),
         (None, "got nothing"),
         ([1], "got a list"),
-        ("2.5mm", "got '2.5mm'"),
-        ("2,5 mm", "got '2,5 mm'"),
+        ("2.5.1mm", "got '2.5.1mm'"),
+        ("1e-5 1 /K", "got '1e-5 1 /K'"),
+        ("2,5 mm", "got '2,5 mm', with a decimal comma: write 2.5 mm"),
+        ("-105,0mm", "with a decimal comma: write -105.0 mm"),
+        ("1,000.5 mm", "got '1,000.5 mm'"),
         ("mm", "got 'mm'"),
         ("1 mm 2", "got '1 mm 2'"),
         ("1_000 mm", "got '1_000 mm'"),

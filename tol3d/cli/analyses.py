@@ -6,7 +6,7 @@ from typing import Annotated, Any
 
 import typer
 
-from tol3d.cli.arguments import EngineOption, RunBuilders, SceneArgument, TrustParts, scene_path, trials_or_auto
+from tol3d.cli.arguments import EngineOption, RunBuilders, SceneArgument, TrustParts, scene_path, trials_or_auto, whole
 from tol3d.cli.console import err_console, out_console, tell
 
 
@@ -75,9 +75,14 @@ def compensate(
     ],
     train: Annotated[str | None, typer.Option(help="Whose motor; the first train of each scene.")] = None,
     trials: Annotated[
-        int | None, typer.Option(min=2, help="Number of robots; as many as the study's trials, 2000 at most.")
+        Any,
+        typer.Option(
+            parser=whole(2), metavar="N", help="Number of robots; as many as the study's trials, 2000 at most."
+        ),
     ] = None,
-    positions: Annotated[int, typer.Option(min=1, help="At how many a robot's own mean is taken.")] = 16,
+    positions: Annotated[
+        Any, typer.Option(parser=whole(1), metavar="N", help="At how many a robot's own mean is taken.")
+    ] = 16,
     out: Annotated[Path | None, typer.Option(help="Draw the picture here.")] = None,
     trust_parts: TrustParts = False,
     run_builders: RunBuilders = False,

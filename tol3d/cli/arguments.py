@@ -2,6 +2,8 @@
 
 import math
 import re
+from collections.abc import Callable
+from decimal import Decimal
 from enum import StrEnum
 from pathlib import Path
 from typing import Annotated
@@ -9,6 +11,7 @@ from typing import Annotated
 import typer
 
 PPM_PER = {"%": 1e4, "ppm": 1.0}
+WHOLE = re.compile(r"\d{1,19}(\.0*)?([eE]\+?\d{1,2})?")
 SHARE = re.compile(r"\s*(?P<number>\d+\.?\d*|\.\d+)\s*(?P<unit>%|ppm)\s*")
 
 app = typer.Typer(
@@ -45,11 +48,25 @@ class SamplerName(StrEnum):
 
 def trials_or_auto(text: str) -> int | str:
     """A number of trials, or auto, as --trials gives it."""
-    if text == "auto":
-        return text
-    if not text.isdecimal() or int(text) < 1:
-        raise typer.BadParameter(f"expected a whole number from 1 on, or auto, got {text!r}")
-    return int(text)
+    return text if text == "auto" else whole(1, " or auto")(text)
+
+
+def whole(least: int, other: str = "", most: int | None = None) -> Callable[[str | int], int]:
+    """What reads a whole number from `least` on, such as 20000 or 2e4; to `most`, if that is given.
+
+    >>> whole(1)("1e6")
+    1000000
+    """
+    ends = f"from {least} on" if most is None else f"from {least} to {most}"
+
+    def read(text: str | int) -> int:
+        said = WHOLE.fullmatch(str(text))
+        found = int(Decimal(said[0])) if said else -1
+        if not least <= found or (most is not None and found > most):
+            raise typer.BadParameter(f"expected a whole number {ends}{other and ','}{other}, got {str(text)!r}")
+        return found
+
+    return read
 
 
 def accepted_ppm(text: str) -> float:

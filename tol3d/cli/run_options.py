@@ -5,17 +5,18 @@ from typing import Annotated, Any
 
 import typer
 
-from tol3d.cli.arguments import SamplerName, accepted_ppm, trials_or_auto
+from tol3d.cli.arguments import SamplerName, accepted_ppm, trials_or_auto, whole
 
 PICTURE = "histogram.png"
 
 TrialsOption = Annotated[
     Any, typer.Option(parser=trials_or_auto, metavar="N|auto", help="Number of trials instead of the scene's.")
 ]
-SeedOption = Annotated[int | None, typer.Option(min=0, help="Seed instead of the scene's.")]
+SeedOption = Annotated[Any, typer.Option(parser=whole(0), metavar="N", help="Seed instead of the scene's.")]
 SamplerOption = Annotated[SamplerName | None, typer.Option(help="Sampler instead of the scene's.")]
 WitnessOption = Annotated[
-    int | None, typer.Option(min=0, help="Trials that another engine measures again, of gears FCL.")
+    Any,
+    typer.Option(parser=whole(0), metavar="N", help="Trials that another engine measures again, of gears FCL."),
 ]
 OutOption = Annotated[
     Path | None, typer.Option(help="The run's folder; by default runs/<scene>, or -2, -3 … of another study.")
@@ -24,7 +25,10 @@ ForceOption = Annotated[
     bool, typer.Option("--force", help="Replace a run of another study; what else lies there is moved aside.")
 ]
 WorkersOption = Annotated[
-    int | None, typer.Option(min=1, help="Threads or processes; by default one, or all cores for a long study.")
+    Any,
+    typer.Option(
+        parser=whole(1), metavar="N", help="Threads or processes; by default one, or all cores for a long study."
+    ),
 ]
 SchedulerOption = Annotated[
     str | None, typer.Option(metavar="ADDRESS", help="Run on the workers of this Dask scheduler.")

@@ -2,11 +2,11 @@
 
 from enum import StrEnum
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from tol3d.cli.arguments import RunArgument, RunBuilders, SceneArgument, TrustParts, scene_path
+from tol3d.cli.arguments import RunArgument, RunBuilders, SceneArgument, TrustParts, scene_path, whole
 from tol3d.cli.console import err_console, out_console, tell
 
 if TYPE_CHECKING:
@@ -88,7 +88,7 @@ def compare(
     tell(f"picture: {out}")
 
 
-TrialOption = Annotated[int | None, typer.Option(min=0, help="This trial.")]
+TrialOption = Annotated[Any, typer.Option(parser=whole(0), metavar="N", help="This trial.")]
 WorstOption = Annotated[bool, typer.Option("--worst", help="The trial nearest to a limit, or furthest beyond it.")]
 NominalOption = Annotated[bool, typer.Option("--nominal", help="The build without deviations.")]
 MeanOption = Annotated[bool, typer.Option("--mean", help="The build with every contributor at its mean.")]

@@ -31,5 +31,5 @@ def scene_path(scene: Path | str) -> Path:
     scenes = bundled_scenes()
     if text in scenes or os.path.exists(path):
         return scenes.get(text, path)
-    listed = f"(tol3d brings along: {', '.join(scenes)})"
-    raise SceneError(f"{text[:LONGEST_NAME]}: no such file, and no scene of that name {listed}{nearest(text, scenes)}")
+    listed = nearest(text, scenes) or f" (tol3d brings along: {', '.join(scenes)})"
+    raise SceneError(f"{text[:LONGEST_NAME]}: no such file, and no scene of that name{listed}")

@@ -8,7 +8,7 @@ from importlib import import_module
 from types import ModuleType
 from typing import Annotated, Any, Final, Union
 
-from pydantic import Field, create_model
+from pydantic import Field, ValidationError, create_model
 
 from tol3d.distributions import DistributionSpec
 from tol3d.distributions.stated import SHIPPED, Laws, word_of
@@ -21,7 +21,8 @@ from tol3d.scene.move import MoveSpec
 from tol3d.scene.name import Name
 from tol3d.scene.options import Option, StudyOptions, options_of
 from tol3d.scene.part import PartSpec
-from tol3d.scene.place import KeyPath
+from tol3d.scene.place import KeyPath, Origin
+from tol3d.scene.problems import messages
 from tol3d.scene.published import PublishedFigures
 from tol3d.scene.published.column import published_column_class
 from tol3d.scene.schema import PUBLISHED_MEANS, SECTIONS, Scene, StudySpec, study_spec_class
@@ -162,6 +163,10 @@ class Grammar:
     def scene(self) -> type[Scene]:
         """The class of scenes of these kinds: it validates, and writes their JSON Schema."""
         return _scene_class(self)
+
+    def messages(self, error: ValidationError, data: Any, origin: Origin) -> list[str]:
+        """What pydantic finds wrong with the plain values of a scene, in the user's words, each with its place."""
+        return messages(error, data, origin, self)
 
     def problems(self, scene: Scene) -> Iterator[tuple[KeyPath, str]]:
         """What the vocabularies find wrong across entries."""

@@ -4,14 +4,10 @@ from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
-from pydantic import ValidationError
-
-from tol3d.errors import SceneError
 from tol3d.files import Files, read_file
 from tol3d.scene.bundled import scene_path
 from tol3d.scene.grammar import Grammar
 from tol3d.scene.place import Origin
-from tol3d.scene.problems import messages
 from tol3d.scene.references import bad_names, loose_ends, refuse, unreadable_files
 from tol3d.scene.schema import Scene
 from tol3d.scene.settling import is_settled, settled
@@ -48,10 +44,7 @@ def read_scene(
         SceneError: one or several messages `file:line: place: what was expected, what came`.
     """
     data, origin = read_scene_text(scene_path(path))
-    try:
-        scene = grammar.scene.model_validate(data, context=origin)
-    except ValidationError as error:
-        raise SceneError(*messages(error, data, origin, grammar)) from None
+    scene = grammar.scene.model_validate(data, context=origin)
     scene = _with_files(scene, origin, files, trust_parts=trust_parts)
     if examine is not None:
         examine(scene)

@@ -2,23 +2,29 @@
 
 import re
 from collections.abc import Callable, Mapping, Sequence
-from typing import Any, Final
+from typing import TYPE_CHECKING, Any, Final
 
 from pydantic import ValidationError
 from pydantic_core import ErrorDetails
 
-from tol3d.scene.grammar import Grammar
 from tol3d.scene.nearest import hint, nearest
 from tol3d.scene.place import KeyPath, Origin, key_text
 from tol3d.scene.tolerance import ToleranceSpec
-from tol3d.units import EXAMPLES, FACTORS, Dimension, expectation, shown
+from tol3d.units import COMMA_SEPARATES, EXAMPLES, FACTORS, NUMBER_UNIT, Dimension, expectation, shown
+
+if TYPE_CHECKING:
+    from tol3d.scene.grammar import Grammar
 
 MOST_PROBLEMS = 8  # what a screen shows and a person mends in one go
 QUOTED_WORD = re.compile(r"'((?:[^'\\]|\\.)*)'")
+SUCH_AS: Final[Mapping[object, str]] = {
+    "distribution": ", such as {kind: normal, lower: -10 um, upper: 10 um}",
+    "law": ", such as {kind: uniform}",
+}
 MOST_LISTED: Final = 28  # words of a message; tolerances are more
 
 
-def messages(error: ValidationError, data: Mapping[str, Any], origin: Origin, grammar: Grammar) -> list[str]:
+def messages(error: ValidationError, data: Any, origin: Origin, grammar: "Grammar") -> list[str]:
     """One message for each problem, in the order of the file, at most MOST_PROBLEMS of them.
 
     Args:
@@ -69,7 +75,7 @@ def _path(loc: tuple[int | str, ...], data: Any) -> KeyPath:
     return tuple(path)
 
 
-def _dimensions(path: KeyPath, data: Mapping[str, Any], grammar: Grammar) -> tuple[Dimension, ...]:
+def _dimensions(path: KeyPath, data: Any, grammar: "Grammar") -> tuple[Dimension, ...]:
     """What the quantities of a distribution measure, by the kind of the tolerance that holds it."""
     if len(path) < 2 or path[0] != "tolerances":
         return ()
@@ -109,18 +115,21 @@ def _text_expected(details: ErrorDetails) -> str:
 
 def _unknown_key(details: ErrorDetails) -> str:
     key = details["ctx"]["key"]
+    if NUMBER_UNIT.fullmatch(key):
+        return f'expected a key, got "{key_text(key)}"; {COMMA_SEPARATES}'
     return f'unknown key "{key_text(key)}"{hint(key, details["ctx"]["known"])}'
 
 
 def _missing(details: ErrorDetails) -> str:
-    return f'expected the key "{details["loc"][-1]}" here, found none'
+    key = details["loc"][-1]
+    return f'expected the key "{key}" here{SUCH_AS.get(key, "")}, found none'
 
 
 def _missing_kind(details: ErrorDetails) -> str:
     return 'expected the key "kind" here, found none'
 
 
-def _other_word(details: ErrorDetails, grammar: Grammar) -> str:
+def _other_word(details: ErrorDetails, grammar: "Grammar") -> str:
     """The sentence of a word of the field that is said otherwise here, or not at all; "" of other findings."""
     match details["type"]:
         case "union_tag_invalid":

@@ -13,6 +13,8 @@ from pydantic import (
     GetJsonSchemaHandler,
     PrivateAttr,
     Tag,
+    ValidationError,
+    ValidationInfo,
     create_model,
     model_validator,
 )
@@ -205,9 +207,14 @@ class Scene(Strict):
 
     @model_validator(mode="wrap")
     @classmethod
-    def _with_its_laws(cls, data: Any, handler: ModelWrapValidatorHandler[Self]) -> Self:
-        with stating(cls.laws):
-            return handler(data)
+    def _in_its_words(cls, data: Any, handler: ModelWrapValidatorHandler[Self], info: ValidationInfo) -> Self:
+        """With the laws that its tolerances may have; what is wrong is said in the user's words, also from Python."""
+        origin = info.context if isinstance(info.context, Origin) else Origin()
+        try:
+            with stating(cls.laws):
+                return handler(data)
+        except ValidationError as error:
+            raise SceneError(*cls.grammar.messages(error, data, origin)) from None
 
     @classmethod
     def __get_pydantic_json_schema__(cls, schema: CoreSchema, handler: GetJsonSchemaHandler) -> JsonSchemaValue:

@@ -5,7 +5,7 @@ from typing import Annotated, Any
 from pydantic import AfterValidator, BeforeValidator, Field
 
 from tol3d.strict import refused
-from tol3d.units import Of, Quantity, shown
+from tol3d.units import COMMA_SEPARATES, Of, Quantity, shown
 
 AXES = 3  # x, y, z
 
@@ -23,7 +23,8 @@ def three(expected: str) -> BeforeValidator:
         if isinstance(value, list | tuple) and len(value) == AXES:
             return tuple(value)
         got = f"a list of {len(value)}" if isinstance(value, list | tuple) and value else shown(value)
-        raise refused("", expected, got)
+        commas = isinstance(value, list | tuple) and len(value) > AXES
+        raise refused("", expected, f"{got}; {COMMA_SEPARATES}" if commas else got)
 
     return BeforeValidator(checked)
 

@@ -22,8 +22,9 @@ class CycloidPresenter:
         return {}
 
     def sections(self, summary: "RunSummary") -> "Sequence[PageItem]":
-        """Its cycloid stage by formula, published and by first principles."""
-        return _lazily("formulas").formula_blocks(summary)  # type: ignore[no-any-return]
+        """Its cycloid stage by formula, published and by first principles, and what a negative lost motion means."""
+        formulas = _lazily("formulas")
+        return (*formulas.below_zero(summary), *formulas.formula_blocks(summary))
 
     def measure_rows(self, measure: "MeasureSummary", summary: "RunSummary") -> "Sequence[FurtherRow]":
         """None."""

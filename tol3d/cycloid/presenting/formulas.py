@@ -10,6 +10,10 @@ from tol3d.runs.summary.run import RunSummary
 PAPER: Final = "paper (reconstructed) [″]"
 FIRST_PRINCIPLES: Final = "first principles [″]"
 TERM_HEADS: Final = ("tolerance [µm]", PAPER, FIRST_PRINCIPLES, "per µm [″]")
+NEGATIVE: Final = (
+    "negative where pins press on both sides of their lobes at once: of rigid parts the turn by which lobes and pins "
+    "would have to give way, a preload and no play"
+)
 WHAT: Final = (
     "±3σ; first principles: a disc's turn while its best pin alone touches, through lobes times eccentricity; what "
     "the smallest of all working pins makes of it is in the simulation"
@@ -19,6 +23,17 @@ WHAT: Final = (
 def formula_blocks(summary: RunSummary) -> Sequence[PageItem]:
     """Tables of each stage of a run."""
     return stage_blocks((summary.cycloid_stages or {}) if isinstance(summary, CycloidOfRun) else {})
+
+
+def below_zero(summary: RunSummary) -> Sequence[PageItem]:
+    """A note to lost motions whose mean is negative."""
+    means = {
+        name: [road.mean for road in (own.analytic, own.geometric) if road is not None and road.mean is not None]
+        for name, own in summary.measures.items()
+        if own.kind == "cycloid_lost_motion"
+    }
+    names = [name for name, own in means.items() if own and min(own) < 0.0]
+    return [note(f"{', '.join(names)}: {NEGATIVE}")] if names else []
 
 
 def stage_blocks(stages: Mapping[str, CycloidStageSummary]) -> Sequence[PageItem]:
