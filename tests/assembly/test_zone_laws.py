@@ -8,10 +8,12 @@ import numpy as np
 import pytest
 from assembly_trials import Assembled, assembled
 from fixtures import Command
-from scipy.stats import norm
+from scipy.stats import kstest, norm
 
+from tol3d.errors import SceneError
 from tol3d.runs.run import open_run
 from tol3d.simulate import Overrides, run_scene
+from tol3d.study.first_order import first_orders
 
 WIDTH, A, B, LENGTH = 0.1, 100.0, 60.0, 40.0
 COUNT = 200_000
@@ -181,3 +183,81 @@ def test_a_scene_names_one_law_for_all_its_zones_by_an_anchor(tmp_path: Path) ->
     )
     found, same = (assembled(own, tmp_path).drawn(20) for own in (both, text))
     assert all(np.array_equal(found[name], same[name]) for name in same)
+
+
+# a ring ------------------------------------------------------------------------------------------------------
+
+RING = """
+scene: an eccentric hole
+parts:
+  plate:
+    kind: solid
+    features:
+      floor: {kind: plane, at: [0 mm, 0 mm, 0 mm], normal: [0, 0, 1], extent: [100 mm, 60 mm]}
+      bore: {kind: cylinder, at: [0 mm, 0 mm, 20 mm], axis: [0, 0, 1], length: 40 mm, diameter: 30 mm, hole: true}
+      upright: {kind: axis, at: [0 mm, 0 mm, 20 mm], axis: [0, 0, 1], length: 40 mm}
+tolerances:
+  bored:
+    {kind: position, of: plate.bore, zone: {diameter: 0.1 mm}, modifier: mmc, law: {kind: ring}, datums: [floor]}
+  size: {kind: size, of: plate.bore, distribution: {kind: uniform, lower: 0 mm, upper: 0.2 mm}}
+moves:
+  machine: {kind: fix, part: plate}
+measures:
+  x: {kind: gap, from: plate.upright, to: plate.bore, along: [1, 0, 0]}
+  y: {kind: gap, from: plate.upright, to: plate.bore, along: [0, 1, 0]}
+  tilt: {kind: angle, from: plate.upright, to: plate.bore}
+  diameter: {kind: inspected_size, of: plate.bore}
+  position: {kind: inspected_position, of: plate.bore}
+"""
+
+
+@pytest.mark.parametrize("road", ["exact", "analytic"])
+def test_on_a_ring_an_axis_lies_at_half_of_its_trial_s_zone_at_any_phase(tmp_path: Path, road: str) -> None:
+    """t = 0.1 mm + bonus in every trial, no lean; mean square (0.3^3 - 0.1^3) / (3 · 0.2) of t, sigma t / 2 / √2."""
+    made, count = assembled(RING, tmp_path), 20_000
+    found = made.drawn(count, road)
+    zone = 0.1 + found["diameter"] - 30
+    assert np.hypot(found["x"], found["y"]) == pytest.approx(zone / 2, abs=1e-9)
+    assert found["position"] == pytest.approx(zone, abs=1e-9)
+    assert np.abs(found["tilt"]).max() < 1e-9
+    phase = np.arctan2(found["y"], found["x"]) / (2 * math.pi) % 1
+    assert kstest(phase, "uniform").pvalue > 1e-6
+    sigma = math.sqrt((0.3**3 - 0.1**3) / 0.6 / 8)
+    form = made.system.closed_form(next(own for own in made.system.measures if own.name == "x"))
+    assert form is not None
+    assert form.sigma == pytest.approx(sigma, rel=1e-5)
+    assert found["x"].std() == pytest.approx(sigma, rel=4 / math.sqrt(2 * count))
+
+
+def test_the_worst_case_on_a_ring_is_half_of_the_widest_zone(tmp_path: Path) -> None:
+    made = assembled(RING, tmp_path)
+    measure = next(own for own in made.system.measures if own.name == "x")
+    found = first_orders(made.simulation, None, measure)["analytic"]
+    assert found.ends == pytest.approx((-150, 150), abs=1e-6)
+    assert found.sigma == pytest.approx(1e3 * math.sqrt((0.3**3 - 0.1**3) / 0.6 / 8), rel=1e-5)
+
+
+UPRIGHT = "  upright: {kind: perpendicularity, of: plate.bore, zone: {diameter: 0.05 mm}, datums: [floor]%s}\nmoves:"
+RINGS = {
+    "refined": (("moves:", UPRIGHT % ""), "beside the law ring, got 'upright'; on a ring the axis does not lean"),
+    "flat": (("{diameter: 0.1 mm}", "{width: 0.1 mm, along: [1, 0, 0]}"), "got ring of a position of 'plate.bore'"),
+    "plane": (
+        ("moves:", "  top: {kind: profile, of: plate.floor, zone: {width: 0.1 mm}, law: {kind: ring}}\nmoves:"),
+        "expected uniform, normal or process, got ring of a profile of 'plate.floor'; a ring is of where an axis lies",
+    ),
+    "orientation": (
+        ("  bored: {", "  unread: {"),
+        "got ring of a perpendicularity of 'plate.bore'; a ring is of where",
+    ),
+}
+
+
+@pytest.mark.parametrize("name", RINGS)
+def test_a_ring_is_of_where_an_axis_lies_and_refined_by_nothing(name: str, tmp_path: Path) -> None:
+    (old, new), words = RINGS[name]
+    text = RING.replace(old, new, 1)
+    if name == "orientation":
+        text = re.sub(r"  unread:\n.*\n", "", text).replace("moves:", UPRIGHT % ", law: {kind: ring}")
+    with pytest.raises(SceneError, match=re.escape(words)) as caught:
+        assembled(text, tmp_path)
+    assert ".law: " in str(caught.value)

@@ -71,6 +71,13 @@ def test_a_normal_law_has_three_sigma_at_the_edge_and_stays_inside(tmp_path: Pat
     assert squares.mean() == pytest.approx(expected, rel=5 / math.sqrt(4 * TRIALS))
 
 
+def test_bores_on_a_ring_lie_at_its_edge_at_phases_of_their_own(tmp_path: Path) -> None:
+    found = pins(*scene_of(tmp_path, "{kind: ring}"))
+    assert np.hypot(found[..., 0], found[..., 1]) == pytest.approx(np.full(found.shape[:2], DIAMETER / 2), rel=1e-12)
+    across = np.corrcoef(found.reshape(TRIALS, -1).T) - np.eye(8)
+    assert np.abs(across).max() < 5 / math.sqrt(TRIALS)
+
+
 def test_a_process_is_judged_by_the_zone_and_not_cut(tmp_path: Path) -> None:
     """Normals of 4 um in a disc of 6 um radius: exp(-36/32) of the bores lie outside, and keep their trials."""
     system, trials = scene_of(tmp_path, "{kind: process, distribution: {kind: normal, mean: 0 um, sigma: 4 um}}")

@@ -3,9 +3,9 @@
 import math
 from typing import Any, Final
 
-from tol3d.assembly.grammar.zone import NormalLawSpec, ProcessLawSpec
+from tol3d.assembly.from_scene.zones import drawn_by
+from tol3d.assembly.zones import Process
 from tol3d.assembly.zones.catalogue import axis_section
-from tol3d.assembly.zones.zone_draw import normal_in, process_in, uniform_in
 from tol3d.gearing.grammar.parts.gear import GearSpec
 from tol3d.gearing.grammar.tolerances.clocking import ClockingSpec
 from tol3d.gearing.grammar.tolerances.eccentricity import EccentricitySpec
@@ -65,10 +65,8 @@ def draw_of(scene: Scene, own: PlanetarySet, spec: Any) -> Draw:
 def _bores(scene: Scene, own: PlanetarySet, spec: BorePositionSpec) -> Draw:
     """Each bore in its zone, its axis parallel to the set's."""
     zone = axis_section(spec.zone.diameter.internal)
-    names, law = planet_names(own), spec.law
-    if isinstance(law, ProcessLawSpec):
-        return EachJudgedZone(process_in(zone, law.distribution.resolve(scene.files)), names)
-    return EachZone(normal_in(zone) if isinstance(law, NormalLawSpec) else uniform_in(zone), names)
+    draw = drawn_by(spec.law, zone, scene.files)
+    return (EachJudgedZone if isinstance(draw, Process) else EachZone)(draw, planet_names(own))
 
 
 def planet_names(own: PlanetarySet) -> tuple[str, ...]:

@@ -157,7 +157,7 @@ def _effect(contributor: Contributor, slopes: Array, ends: Array, *, turning: bo
     law, sigma, draw = contributor.distribution, contributor.draw.sigma, contributor.draw
     size = float(slopes[0]) if len(slopes) == 1 else float(np.sqrt((slopes * slopes).sum()))
     variance = float(slopes @ draw.covariance @ slopes) if isinstance(draw, JointDraw) else size**2 * sigma**2
-    if draw.uniforms == 1 and len(slopes) > 1:  # a length in one direction
+    if draw.uniforms == 1 and len(slopes) > 1 and not isinstance(draw, JointDraw):  # a length in one direction
         if turning:
             variance = size**2 * (law.variance + law.mean**2) / 2
         else:

@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from typing import assert_never
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,7 +21,7 @@ from tol3d.assembly.grammar.tolerances import (
     SizeSpec,
 )
 from tol3d.assembly.grammar.tolerances.form import FormSpec
-from tol3d.assembly.grammar.zone import NormalLawSpec, ProcessLawSpec
+from tol3d.assembly.grammar.zone import NormalLawSpec, ProcessLawSpec, RingLawSpec, UniformLawSpec
 from tol3d.assembly.model import Contribution
 from tol3d.assembly.model.shape import nominal_size
 from tol3d.assembly.zones.float_draw import FloatDraw, Law
@@ -159,8 +160,15 @@ class Effects:
                 law: Distribution = spec.law.distribution.resolve(self.scene.files)
             case NormalLawSpec():
                 law = TruncatedNormal(0.0, half / SIGMAS, -half, half)
-            case _:
+            case UniformLawSpec():
                 law = Uniform(-half, half)
+            case RingLawSpec():
+                words = f"expected uniform, normal or process, got ring of a {spec.kind} of {own.feature!r}"
+                raise self.scene.refuse(("tolerances", own.entry, "law"), f"{words}; a ring is of where an axis lies")
+            case None:
+                raise TypeError(f"{own.name}: expected a form with a law")
+            case _:
+                assert_never(spec.law)
         columns = self._added(own.name, spec.kind, spec.description, Each(law, tuple(others)))
         for k, touches in enumerate(others.values()):
             matrix = np.zeros((1, len(others)))

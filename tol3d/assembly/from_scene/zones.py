@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import replace
+from functools import singledispatch
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,9 +14,10 @@ from tol3d.assembly.grammar.features import FeatureUnion, PlaneSpec, PointSpec, 
 from tol3d.assembly.grammar.features.nominal_frame import Triple, unit
 from tol3d.assembly.grammar.tolerances import CircularRunOutSpec, LocationSpec, OrientationSpec
 from tol3d.assembly.grammar.tolerances.modified import Modified
-from tol3d.assembly.grammar.zone import LawUnion, NormalLawSpec, ProcessLawSpec, ZoneSpec
+from tol3d.assembly.grammar.zone import NormalLawSpec, ProcessLawSpec, RingLawSpec, UniformLawSpec, ZoneSpec
 from tol3d.assembly.model import Axis
 from tol3d.assembly.zones import (
+    Confined,
     JudgedProcess,
     Process,
     SizedBy,
@@ -24,10 +26,12 @@ from tol3d.assembly.zones import (
     ZoneDraw,
     catalogue,
     normal_in,
+    ring_in,
     uniform_in,
 )
 from tol3d.assembly.zones.centred import Centred
 from tol3d.errors import InputError
+from tol3d.files import Files
 from tol3d.scene import Scene
 
 Array = NDArray[np.float64]
@@ -49,16 +53,34 @@ def drawn_in(scene: Scene, own: Stated, drawing: Drawing) -> tuple[ZoneDraw, Arr
     assert isinstance(spec, LocationSpec | OrientationSpec)
     assert spec.law is not None
     feature = drawing.kind(own.feature)
+    if isinstance(spec.law, RingLawSpec):
+        _refuse_no_ring(scene, own, drawing)
     try:
-        zone = (
-            _location(spec, feature, drawing.orientation(own.feature), drawing.form(own.feature))
-            if isinstance(spec, LocationSpec)
-            else _orientation(spec.zone, feature)
-        )
+        if isinstance(spec.law, RingLawSpec):
+            zone = catalogue.axis_section(spec.zone.size, drawing.form(own.feature))
+        elif isinstance(spec, LocationSpec):
+            zone = _location(spec, feature, drawing.orientation(own.feature), drawing.form(own.feature))
+        else:
+            zone = _orientation(spec.zone, feature)
     except InputError as error:
         raise scene.refuse(("tolerances", own.entry, "zone"), str(error)) from None
     matrix = zone.matrix if spec.zone.projected is None else _projecting(scene, own, drawing) @ zone.matrix
-    return _by_law(scene, spec.law, zone, _size(scene, own, drawing)), matrix
+    draw, size = drawn_by(spec.law, zone, scene.files), _size(scene, own, drawing)
+    if size is None:
+        return draw, matrix
+    return JudgedProcess(zone, draw.laws, size) if isinstance(draw, Process) else Widened(zone, draw, size), matrix
+
+
+def _refuse_no_ring(scene: Scene, own: Stated, drawing: Drawing) -> None:
+    """A ring is of where an axis lies, in a cylinder or at a section, and of an axis that does not lean."""
+    spec, path = own.spec, ("tolerances", own.entry, "law")
+    located = isinstance(spec, LocationSpec) and isinstance(drawing.kind(own.feature).shape, Axis)
+    if not isinstance(spec, LocationSpec) or not located or spec.zone.along is not None:
+        words = f"expected uniform, normal or process, got ring of a {spec.kind} of {own.feature!r}"
+        raise scene.refuse(path, f"{words}; a ring is of where an axis lies, in a cylinder or at a section")
+    for other in drawing.of(own.feature, OrientationSpec):
+        words = f"expected no tolerance of the orientation beside the law ring, got {other.entry!r}"
+        raise scene.refuse(path, f"{words}; on a ring the axis does not lean, take it out")
 
 
 def _projecting(scene: Scene, own: Stated, drawing: Drawing) -> Array:
@@ -94,14 +116,41 @@ def _size(scene: Scene, own: Stated, drawing: Drawing) -> SizedBy | None:
     return replace(found, bonus=bonus)
 
 
-def _by_law(scene: Scene, law: LawUnion, zone: Zone, size: SizedBy | None) -> ZoneDraw:
-    if isinstance(law, ProcessLawSpec):
-        own = law.distribution.resolve(scene.files)
-        about_zero = Centred(own)
-        laws = tuple(about_zero if name in TILTS else own for name in zone.components)
-        return Process(zone, laws) if size is None else JudgedProcess(zone, laws, size)
-    confined = normal_in(zone) if isinstance(law, NormalLawSpec) else uniform_in(zone)
-    return confined if size is None else Widened(zone, confined, size)
+@singledispatch
+def drawn_by(law: object, zone: Zone, files: Files) -> Confined | Process:
+    """The draw that a law of a scene makes of a zone; a law of one's own registers what it makes.
+
+    Args:
+        law: as the scene states it.
+        zone: without bonus.
+        files: those that a distribution may read.
+
+    Raises:
+        TypeError: a law that nobody registered.
+    """
+    raise TypeError(f"from_scene/zones.py has no draw by the law {type(law).__name__}: register it at drawn_by")
+
+
+@drawn_by.register
+def _(law: UniformLawSpec, zone: Zone, files: Files) -> Confined:
+    return uniform_in(zone)
+
+
+@drawn_by.register
+def _(law: NormalLawSpec, zone: Zone, files: Files) -> Confined:
+    return normal_in(zone)
+
+
+@drawn_by.register
+def _(law: RingLawSpec, zone: Zone, files: Files) -> Confined:
+    return ring_in(zone)
+
+
+@drawn_by.register
+def _(law: ProcessLawSpec, zone: Zone, files: Files) -> Process:
+    own = law.distribution.resolve(files)
+    about_zero = Centred(own)
+    return Process(zone, tuple(about_zero if name in TILTS else own for name in zone.components))
 
 
 def _location(spec: LocationSpec, feature: FeatureUnion, orientation: float | None, form: float) -> Zone:

@@ -55,6 +55,12 @@ class NormalLawSpec(Strict):
     kind: Literal["normal"]
 
 
+class RingLawSpec(Strict):
+    """The middle of an axis lies on the edge of its zone, at any phase, without lean: an eccentricity of one size."""
+
+    kind: Literal["ring"]
+
+
 class ProcessLawSpec(Strict):
     """A stated law of each coordinate; the zone judges only, and what lies outside stays in the trial."""
 
@@ -69,7 +75,7 @@ def _no_word(value: Any) -> Any:
 
 
 LawUnion = Annotated[
-    UniformLawSpec | NormalLawSpec | ProcessLawSpec,
-    Field(discriminator="kind", description="the law of deviations in the zone: uniform, normal or process"),
+    UniformLawSpec | NormalLawSpec | RingLawSpec | ProcessLawSpec,
+    Field(discriminator="kind", description="the law of deviations in the zone: uniform, normal, ring or process"),
     BeforeValidator(_no_word),
 ]

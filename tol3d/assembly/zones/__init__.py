@@ -1,13 +1,22 @@
 """Tolerance zones as sets of small displacements, and draws from them by named laws.
 
-`catalogue` has the zones; `uniform_in`, `normal_in` and `process_in` make a draw of one; `Bonus` widens a zone by the
-size of its feature, `Widened` draws from what it leaves.
+`catalogue` has the zones; `uniform_in`, `normal_in`, `ring_in` and `process_in` make a draw of one; `Bonus` widens a
+zone by the size of its feature, `Widened` draws from what it leaves.
 """
 
 from tol3d.assembly.zones.bonus import Bonus
 from tol3d.assembly.zones.widened import JudgedProcess, SizedBy, Widened
 from tol3d.assembly.zones.zone import Zone
-from tol3d.assembly.zones.zone_draw import Confined, Process, ZoneDraw, laws_told, normal_in, process_in, uniform_in
+from tol3d.assembly.zones.zone_draw import (
+    Confined,
+    Process,
+    ZoneDraw,
+    laws_told,
+    normal_in,
+    process_in,
+    ring_in,
+    uniform_in,
+)
 
 __all__ = [
     "Bonus",
@@ -21,5 +30,6 @@ __all__ = [
     "laws_told",
     "normal_in",
     "process_in",
+    "ring_in",
     "uniform_in",
 ]

@@ -130,6 +130,22 @@ class NormalFlat(UnitLaw):
 
 
 @dataclass(frozen=True)
+class RingFlat(UnitLaw):
+    """At the edge of a disc, at a uniform phase."""
+
+    uniforms = 1
+
+    def coordinates(self, ratio: Ratio, *uniforms: Array) -> tuple[Array, ...]:
+        """See UnitLaw."""
+        phase = (2.0 * math.pi) * uniforms[0]
+        return np.cos(phase), np.sin(phase)
+
+    def covariance(self, ratio: float) -> Array:
+        """See UnitLaw."""
+        return 0.5 * np.eye(2)
+
+
+@dataclass(frozen=True)
 class Sphere(Domain):
     """A point in a sphere."""
 

@@ -53,10 +53,10 @@ def axis_orientation(width: float) -> Zone:
     return Zone(Shape(Flat(Disc()), ("end x", "end y"), opposite), width)
 
 
-def axis_section(width: float) -> Zone:
+def axis_section(width: float, form: float = 0.0) -> Zone:
     """Of an axis at one section, in a disc of diameter t: both ends equal; circular run-out."""
     equal = ((1.0, 0.0), (0.0, 1.0), (1.0, 0.0), (0.0, 1.0))
-    return Zone(Shape(Flat(Disc()), ("x", "y"), equal), width)
+    return Zone(Shape(Flat(Disc()), ("x", "y"), equal), width, form=form)
 
 
 def flat_axis(width: float, along: tuple[float, float], orientation: float | None = None, form: float = 0.0) -> Zone:

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from tol3d.assembly.zones.balls import RingFlat
 from tol3d.assembly.zones.domain import Array, Ratio, UnitLaw
 from tol3d.assembly.zones.zone import Zone
 from tol3d.distributions import DeviationLaw, Distribution
@@ -278,6 +279,11 @@ def uniform_in(zone: Zone) -> Confined:
 def normal_in(zone: Zone) -> Confined:
     """The law `normal`: the middle is normal, cut to the zone, tilts in what it leaves; see Domain.normal."""
     return Confined(zone, zone.shape.domain.normal, "normal")
+
+
+def ring_in(zone: Zone) -> Confined:
+    """The law `ring`: at the edge of a disc, such as `catalogue.axis_section`, at any phase."""
+    return Confined(zone, RingFlat(), "ring")
 
 
 def process_in(zone: Zone, law: Distribution) -> Process:
