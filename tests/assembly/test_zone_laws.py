@@ -246,7 +246,7 @@ RINGS = {
         "expected uniform, normal or process, got ring of a profile of 'plate.floor'; a ring is of where an axis lies",
     ),
     "orientation": (
-        ("  bored: {", "  unread: {"),
+        ("  bored:", "  unread:"),
         "got ring of a perpendicularity of 'plate.bore'; a ring is of where",
     ),
 }
