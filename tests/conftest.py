@@ -35,7 +35,7 @@ def pytest_xdist_make_scheduler(config: pytest.Config, log: Any) -> DearestFirst
 
 @pytest.hookimpl(tryfirst=True)  # before pytest selects by marks
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
-    """Sort tests into default, slow and nightly ones; where several processes share them start with the dearest files."""
+    """Sort tests into default, slow and nightly ones; where processes share them, start with the dearest files."""
     sort_into_sets(items)
     if hasattr(config, "workerinput"):
         items[:] = dearest_first(items)

@@ -6,6 +6,7 @@ the working flanks must touch there, none of them overlap, and the others must s
 
 import math
 import os
+import shutil
 import subprocess
 import sys
 from collections.abc import Callable
@@ -26,7 +27,7 @@ from oracles.involute_gear import InvoluteGear
 from oracles.plain import plain_spur
 from oracles.poses import world_from_gears
 from oracles.random_builds import Builds, Spread, random_builds, searched_spurs
-from places import TESTS
+from places import ROOT, TESTS
 from scipy.spatial.transform import Rotation
 
 from tol3d.errors import GeometryError
@@ -622,14 +623,16 @@ def test_threads_at_once_give_the_same_bits(many: Builds) -> None:
 FIRST_READ = """
 import sys
 sys.path[:0] = sys.argv[1:]
+import tol3d.gearing
+assert tol3d.gearing.__file__.startswith(sys.argv[1]) or len(sys.argv) == 3
 from test_exact import PAIRS, RIGHT, Spread, random_builds, read
 print(read(random_builds(PAIRS["paper"], RIGHT, 3, 1, spread=Spread(), thinner=0.1)).gap.tobytes().hex())
 """
 
 
-def first_read(cache: Path) -> str:
-    """What another process reads, its kernels kept in `cache`."""
-    command = [sys.executable, "-c", FIRST_READ, str(Path(__file__).parent), str(TESTS)]
+def first_read(cache: Path, *tree: Path) -> str:
+    """What another process reads, its kernels kept in `cache`; of a copy of the tree elsewhere if one is given."""
+    command = [sys.executable, "-c", FIRST_READ, *map(str, tree), str(Path(__file__).parent), str(TESTS)]
     environment = os.environ | {"TOL3D_CACHE": str(cache)}
     done = subprocess.run(command, env=environment, capture_output=True, text=True, check=True)
     return done.stdout.strip()
@@ -648,6 +651,15 @@ def test_a_second_process_takes_the_kernels_of_the_first(tmp_path: Path) -> None
     assert first_read(tmp_path) == first
     # what it had compiled anew it would have written anew
     assert kept(tmp_path) == before
+
+
+@pytest.mark.slow
+def test_a_copy_of_the_tree_elsewhere_takes_the_kernels_of_the_first(tmp_path: Path) -> None:
+    first = first_read(tmp_path / "cache")
+    before = kept(tmp_path / "cache")
+    shutil.copytree(ROOT / "tol3d", tmp_path / "tree" / "tol3d", ignore=shutil.ignore_patterns("__pycache__"))
+    assert first_read(tmp_path / "cache", tmp_path / "tree") == first
+    assert kept(tmp_path / "cache") == before
 
 
 @pytest.mark.slow
