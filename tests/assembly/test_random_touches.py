@@ -49,6 +49,26 @@ def test_random_touches_are_those_of_scipy(seed: int) -> None:
     assert poses_agree(made, drawn(made, seed, 2)) == 2
 
 
+def test_a_pose_beyond_a_fold_is_not_taken_for_that_which_grows_from_nominal() -> None:
+    """Deviations of 1 mm, at which Newton's steps from nominal fall and end on the other side of a fold."""
+    made = random_touch(119)
+    rows = np.random.default_rng(119).normal(size=(40, made.assembly.width))[[24, 31]]
+    found, codes = placing.placed(made.assembly, rows)["part"], placing.values(made.assembly, rows, ["x"])["x"][1]
+    assert (codes == OK).all()
+    for row, pose in zip(rows, found, strict=True):
+        expected = made.pose(row, steps=4)
+        assert expected is not None
+        np.testing.assert_allclose(pose, expected, rtol=0.0, atol=1e-9)
+
+
+def test_a_pose_that_no_way_from_nominal_leads_to_is_no_contact() -> None:
+    """Followed by shares, Newton's steps may jump over a fold; scipy's way from nominal ends there."""
+    made = random_touch(60)
+    row = 3.0 * np.random.default_rng(60).normal(size=(40, made.assembly.width))[3]
+    assert made.pose(row, steps=10) is None
+    assert placing.values(made.assembly, row[None], ["x"])["x"][1].tolist() == [NO_CONTACT]
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("hundred", range(10))
 def test_a_thousand_random_touches_are_those_of_scipy(hundred: int) -> None:
