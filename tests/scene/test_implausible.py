@@ -152,6 +152,23 @@ def test_discs_may_be_ground_by_a_twentieth_of_the_pin_radius(
     assert found[1][0].startswith(f"parts.disc.{field}: expected at most 5 % of the pin radius of 'pin ring' (5 mm)")
 
 
+@pytest.mark.parametrize(
+    ("old", "kind"),
+    [
+        ("{kind: normal, lower: -10 um, upper: 10 um}", "disc pitch"),
+        ("{kind: normal, lower: -0.5 um, upper: 0.5 um}", "disc profile"),
+        ("{kind: rayleigh, scale: 0.66666667 um}", "crank run-out"),
+        ("{kind: rayleigh, scale: 2 um}", "disc run-out"),
+    ],
+)
+def test_lobes_discs_and_cranks_may_lie_off_by_half_of_the_pin_radius(old: str, kind: str, warned: Warned) -> None:
+    """2.5 mm."""
+    found = [warned("rv_250aii", (old, f"{{kind: constant, value: {value}}}")) for value in ("2.5 mm", "2.51 mm")]
+    assert [len(lines) for lines in found] == [0, 1]
+    words = f"tolerances.{kind}.distribution: expected at most 50 % of the pin radius of 'pin ring' (5 mm), got 2.51 mm"
+    assert found[1][0].startswith(words)
+
+
 AS_PITCHED = "direction: tangential, distribution: {kind: normal, lower: -0.1 um, upper: 0.1 um}"
 
 

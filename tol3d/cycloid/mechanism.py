@@ -3,7 +3,7 @@
 from typing import Final
 
 from tol3d.cycloid.grammar import measures, moves, parts, tolerances
-from tol3d.cycloid.grammar.checks import implausible_grinding, implausible_pins
+from tol3d.cycloid.grammar.checks import implausible_discs, implausible_grinding, implausible_pins
 from tol3d.cycloid.grammar.published import PublishedCycloidStages
 from tol3d.scene.grammar import specs_in
 from tol3d.system.mechanism import Mechanism
@@ -14,7 +14,7 @@ CYCLOID: Final = Mechanism(
     tolerances=specs_in(tolerances),
     moves=specs_in(moves),
     measures=specs_in(measures),
-    warnings=(implausible_grinding, implausible_pins),
+    warnings=(implausible_grinding, implausible_pins, implausible_discs),
     published=PublishedCycloidStages,
     includes=("gearing",),
     engines=("exact",),

@@ -8,18 +8,37 @@ from tol3d.cycloid.grammar.moves.rv_reducer import RVReducerSpec
 from tol3d.cycloid.grammar.parts.crankshaft import CrankshaftSpec
 from tol3d.cycloid.grammar.parts.cycloid_disc import CycloidDiscSpec
 from tol3d.cycloid.grammar.parts.pin_ring import PinRingSpec
+from tol3d.cycloid.grammar.tolerances.bearing_play import BearingPlaySpec
+from tol3d.cycloid.grammar.tolerances.carrier_bearing import CarrierBearingSpec
+from tol3d.cycloid.grammar.tolerances.carrier_hole import CarrierHoleSpec
+from tol3d.cycloid.grammar.tolerances.crank_eccentricity import CrankEccentricitySpec
+from tol3d.cycloid.grammar.tolerances.disc_eccentricity import DiscEccentricitySpec
+from tol3d.cycloid.grammar.tolerances.disc_hole import DiscHoleSpec
+from tol3d.cycloid.grammar.tolerances.lobe_pitch import LobePitchSpec
+from tol3d.cycloid.grammar.tolerances.lobe_profile import LobeProfileSpec
 from tol3d.cycloid.grammar.tolerances.pin_circle import PinCircleSpec
 from tol3d.cycloid.grammar.tolerances.pin_position import PinPositionSpec
 from tol3d.cycloid.grammar.tolerances.pin_radius import PinRadiusSpec
 from tol3d.cycloid.grammar.tolerances.pin_ring_offset import PinRingOffsetSpec
 from tol3d.scene import Scene
-from tol3d.scene.implausible import Implausible
+from tol3d.scene.implausible import Implausible, farthest
 from tol3d.scene.place import KeyPath
 
 Problem = tuple[KeyPath, str]
 
 GROUND: Final = Implausible(0.05)
 HALF: Final = Implausible(0.5)
+OF_DISCS_AND_CRANKS: Final = (
+    BearingPlaySpec,
+    CarrierBearingSpec,
+    CarrierHoleSpec,
+    CrankEccentricitySpec,
+    DiscEccentricitySpec,
+    DiscHoleSpec,
+    LobePitchSpec,
+    LobeProfileSpec,
+)
+"""Lengths by which lobes, discs, cranks and the carrier lie off."""
 
 
 def implausible_grinding(scene: Scene) -> Iterator[Problem]:
@@ -72,3 +91,16 @@ def implausible_pins(scene: Scene) -> Iterator[Problem]:
                 f"{ring.pin_radius} that overlap by up to {taken - room:.4g} mm where tolerances are at their worst"
             )
             yield ("parts", name, "pin_radius"), f"{words}; look at the units of pins' places and radii"
+
+
+def implausible_discs(scene: Scene) -> Iterator[Problem]:
+    """Lobes, discs, cranks and carriers off by more than half of the radius of the pins among which discs run."""
+    for move in scene.of(RVReducerSpec).values():
+        ring = scene.parts[move.pin_ring]
+        assert isinstance(ring, PinRingSpec)
+        for name, spec in scene.distributed.items():
+            if isinstance(spec, OF_DISCS_AND_CRANKS):
+                far = farthest(spec.distribution.resolve(scene.files))
+                words = f"the pin radius of {move.pin_ring!r}"
+                if sentence := HALF.sentence(words, ring.pin_radius.internal, far):
+                    yield ("tolerances", name, "distribution"), sentence
