@@ -351,6 +351,15 @@ def test_the_command_line_ends_with_2(case: str, command: str, tol3d: Command, t
     assert "Traceback" not in err
 
 
+def test_pins_beside_their_holes_are_a_message(tmp_path: Path) -> None:
+    """4 mm off, where pins and holes have tenths of a millimetre of room: no deviation of the scene closes that."""
+    path = tmp_path / "scene.yaml"
+    text = (SCENES / "two_plates.yaml").read_text("utf-8")
+    path.write_text(text.replace("hole 1: {kind: cylinder, at: [0 mm,", "hole 1: {kind: cylinder, at: [4 mm,"), "utf-8")
+    with pytest.raises(SceneError, match=r"measures\.edge: cannot be read even without deviations: no build"):
+        simulation_of(load(path), Overrides())
+
+
 def test_an_engine_of_gears_is_refused_as_an_option_too(tol3d: Command) -> None:
     code, _, err = tol3d("run", "cover_on_base", "--engine", "fcl")
     assert code == 2

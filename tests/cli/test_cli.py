@@ -1,5 +1,6 @@
 """The command line as a user meets it: exit codes, messages, what it prints and writes."""
 
+import errno
 import importlib.metadata
 import json
 import os
@@ -62,6 +63,27 @@ def test_a_scenes_witness_is_not_asked_of_another_engine(tol3d: Command, tmp_pat
     for engine in ("analytic", "fcl"):
         assert tol3d(*arguments, engine)[0] == 0
         assert json.loads((tmp_path / "run" / "summary.json").read_text("utf-8"))["study"]["witness"] == 0
+
+
+NO_MEMORY = (
+    MemoryError("Unable to allocate 9 TiB"),
+    OSError(errno.ENOMEM, "Cannot allocate memory"),
+    ImportError("numpy.so: failed to map segment from shared object"),
+)
+
+
+@pytest.mark.parametrize("error", NO_MEMORY, ids=lambda error: type(error).__name__)
+def test_too_little_memory_is_a_line_and_no_fault(
+    error: Exception, tol3d: Command, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def refused(*arguments: Any, **others: Any) -> Any:
+        raise error
+
+    monkeypatch.setattr("tol3d.simulate.load", refused)
+    code, _, err = tol3d("run", SPUR, *PLAIN)
+    assert code == 2
+    assert err.startswith(f"out of memory ({error}): nothing is wrong with the input; give it more")
+    assert err.count("\n") == 1
 
 
 WRONG_OPTIONS = {

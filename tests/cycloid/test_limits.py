@@ -97,6 +97,14 @@ def test_an_offset_that_undercuts_is_refused_with_the_largest_that_does_not() ->
     assert list(faults(replace(RV_250, modification=Modification(offset=limit / 1e3 + 1e-5))))
 
 
+@pytest.mark.parametrize("turned", [math.radians(1667), -math.radians(1667), 1.0001 * math.pi / 39])
+def test_a_flank_that_is_turned_past_its_lobe_is_refused(turned: float) -> None:
+    """Half a pitch of 39 lobes is 180 / 39 = 4.61538 deg."""
+    words = only_fault(replace(RV_250, modification=Modification(rotation=turned)), "rotation")
+    assert "expected less than 4.6153 deg either way" in words
+    assert f"got {math.degrees(turned):g} deg" in words
+
+
 def test_a_shift_to_cusps_is_refused_with_the_limit() -> None:
     assert "-26.5000 mm" in only_fault(replace(RV_250, modification=Modification(shift=-27.0)), "shift")
 

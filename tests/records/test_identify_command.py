@@ -259,6 +259,11 @@ def long_line(folder: Path) -> None:
     changed(folder, [*rows(folder), "1" * (3 * csv_file.BLOCK_BYTES)])
 
 
+def counted_rows(folder: Path) -> None:
+    head, *others = rows(folder)
+    changed(folder, [f"{head},repeat", *(f"{row},{k}" for k, row in enumerate(others))])
+
+
 Change = Callable[[Path], None]
 SideChange = Callable[[Path, str], None]
 
@@ -279,6 +284,7 @@ WRONG: Mapping[Change, str] = {
     pipe: "drive.csv: expected a file, got a pipe or a device",
     device: "drive.csv: expected a file, got a pipe or a device",
     many_columns: "drive.csv: missing column 'phi1': expected `phi1 [deg]` in the header, got 'column 0', 'column 1', ",
+    counted_rows: "drive.csv:2: column 'repeat': expected one number for all rows of a pass, got 1",
     long_line: "drive.csv: cannot be read as CSV: a line is longer than 2 MB",
 }
 

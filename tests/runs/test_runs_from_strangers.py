@@ -6,6 +6,7 @@ import math
 import os
 import random
 import shutil
+import tracemalloc
 from collections.abc import Callable, Iterator
 from io import StringIO
 from pathlib import Path
@@ -23,7 +24,7 @@ from schemas import validate
 
 from tol3d import InputError, Overrides, Run, RunError, open_run, replay, run_scene
 from tol3d.cli.console import SafeConsole, shown_controls
-from tol3d.files import contained
+from tol3d.files import contained, read_contained
 from tol3d.report import comparison_report, draw_comparison, run_report
 from tol3d.runs.block_files import CHECKSUMS
 from tol3d.runs.manifest import MANIFEST
@@ -467,3 +468,12 @@ def test_bounds_of_the_schema_are_finite() -> None:
                 yield from bounds(item)
 
     assert max(bounds(default_kinds().run.model_json_schema())) < 1e19
+
+
+def test_a_small_file_takes_no_more_memory_than_it_has(tmp_path: Path) -> None:
+    (tmp_path / "own").write_bytes(b"0123456789")
+    tracemalloc.start()
+    assert read_contained(tmp_path / "own", tmp_path, 100_000_000) == b"0123456789"
+    _, most = tracemalloc.get_traced_memory()
+    tracemalloc.stop()
+    assert most < 1_000_000  # paths and the file's ten bytes; 100 MB were asked for before

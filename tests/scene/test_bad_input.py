@@ -327,6 +327,10 @@ CHANGES = {
         ("teeth: 28", '"te\\e[2Jeth": 28'),
         'parts.pinion.te\\x1b[2Jeth: unknown key "te\\x1b[2Jeth"',
     ),
+    "a face of no width": (
+        ("face_width: 20 mm", "face_width: 1e-9 mm"),
+        "parts.pinion.face_width: expected at least 1e-06 mm, got '1e-09 mm'",
+    ),
     "half a surrogate pair": (
         ("scene: spur pair at the drive end", 'scene: "\\ud800"'),
         "scene: expected Unicode text, got half of a surrogate pair",

@@ -301,11 +301,14 @@ def widely(contributors: Sequence[Contributor]) -> Array:
 
 
 def _settled(scene: Scene) -> Meant:
-    """What a scene means, parts at the poses in which its moves lay them without deviations."""
+    """What a scene means, parts at the poses in which its moves lay them without deviations.
+
+    A part that cannot be laid so, such as by pins beside their holes, stays where it is drawn.
+    """
     drawn = assembly_of(scene)
     poses = placing.placed(drawn.assembly, np.zeros((1, drawn.assembly.width)))
-    settled = {name: np.asarray(pose[0]) for name, pose in poses.items()}
-    return assembly_of(scene, settled)
+    settled = {name: np.asarray(pose[0]) for name, pose in poses.items() if np.isfinite(pose[0]).all()}
+    return assembly_of(scene, {part.name: part.pose for part in drawn.assembly.parts} | settled)
 
 
 def _asked(scene: Scene, ask: Callable[[], T]) -> T:

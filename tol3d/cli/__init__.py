@@ -1,8 +1,9 @@
 """The command line: arguments, exit codes, progress. The only place that prints.
 
-Exit codes: 0 done, 1 limits failed (with --fail-on-limits), 2 wrong input, or a write that the disk or the system
-refused (full, read-only, broken, a limit on files), 3 a fault of tol3d or of a mechanism of another package, 130
-interrupted. Imports stand inside the functions here, so that `tol3d --help` loads no numpy, no CAD and no plotting.
+Exit codes: 0 done, 1 limits failed (with --fail-on-limits), 2 wrong input, a write that the disk or the system refused
+(full, read-only, broken, a limit on files) or too little memory, 3 a fault of tol3d or of a mechanism of another
+package, 130 interrupted. Imports stand inside the functions here, so that `tol3d --help` loads no numpy, no CAD and no
+plotting.
 """
 
 import gc
@@ -37,6 +38,7 @@ COMMANDS = (
 )
 """In the order in which help shows them."""
 
+NO_ROOM_TO_LOAD = "failed to map segment"  # of the dynamic loader, where a library does not fit into memory
 OBJECTS_A_COLLECTION = 50_000  # instead of Python's 700: 0.15 s of a command of 1.5 s
 
 
@@ -103,6 +105,9 @@ def _exit_codes() -> Iterator[None]:
     except BrokenPipeError:
         sys.exit(DONE)
     except Exception as error:
+        if short := _out_of_memory(error):
+            sys.stderr.write(f"{short}\n")  # rich would want more of it
+            sys.exit(WRONG_INPUT)
         if refused := _refused_write(error):
             err_console.print(refused)
             sys.exit(WRONG_INPUT)
@@ -120,6 +125,21 @@ def _print_fault(words: str, whom: str, error: BaseException) -> None:
     err_console.print(words)
     err_console.print(f"please report it {whom}with the scene and these lines:")
     err_console.print("".join(traceback.format_exception(error)[-3:]).rstrip())
+
+
+def _out_of_memory(error: Exception) -> str:
+    """What is said where the system gives no more memory; nothing of other errors."""
+    import errno
+
+    failed = isinstance(error, MemoryError) or (isinstance(error, OSError) and error.errno == errno.ENOMEM)
+    if not failed and not (isinstance(error, ImportError) and NO_ROOM_TO_LOAD in str(error)):
+        return ""
+    why = " ".join(str(error).split())
+    return (
+        f"out of memory{f' ({why})' if why else ''}: nothing is wrong with the input; give it more (a run takes 1 to 2 "
+        "GB of address space and some for each worker), or take fewer --workers; what a run has done is kept, and the "
+        "same command goes on"
+    )
 
 
 def _refused_write(error: Exception) -> str:

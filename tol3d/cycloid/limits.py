@@ -141,6 +141,11 @@ def _ring(profile: DiscProfile) -> Iterator[Fault]:
 def _modified(profile: DiscProfile) -> Iterator[Fault]:
     """Modifications that undercut the lobes or leave no clearance."""
     own, bent = profile.modification, profile.smallest_convex_radius
+    if abs(own.rotation) >= profile.lobe_pitch / 2:
+        half = math.degrees(profile.lobe_pitch / 2)
+        words = f"expected less than {_below(half)} deg either way, which turn a flank past the whole of its lobe"
+        yield Fault("rotation", f"{words}, got {math.degrees(own.rotation):g} deg")
+        return
     most = bent - profile.pin_radius
     grown = profile.ground.pin_radius
     if grown <= 0.0:

@@ -23,6 +23,7 @@ MOST_REVERSED: Final = math.radians(1.0)  # of the driver; noise and a rig's own
 SETTLED: Final = math.radians(1.0)  # travel of the driver from which its direction is known
 LEAST_TRAVEL: Final = math.radians(0.01)  # of a file; far over an encoder's noise
 LONGEST_STEP: Final = 0.4 * TURN  # between rows; from half a turn on the way round cannot be known
+LEAST_ROWS: Final = 4  # of a pass on average: a column that changes more often numbers rows
 TRACE_STEP: Final = math.radians(0.5)  # of both gears together between rows kept to tell degrees from radians, as read
 TRACED: Final = 3 * 360.0  # rad of the driver, as read, over which they are kept: three turns if they are degrees
 
@@ -129,6 +130,7 @@ def passes_of(pair: RigPair, path: Path, blocks: Iterable[Block], senses: Senses
     """
     reader: PassReader | None = None
     for block in blocks:
+        _refuse_counter(path, block)
         for part, repeat in _by_repeat(block):
             if reader is not None and reader.repeat != repeat:
                 yield reader.finished()
@@ -138,6 +140,18 @@ def passes_of(pair: RigPair, path: Path, blocks: Iterable[Block], senses: Senses
             reader.add(part)
     if reader is not None:
         yield reader.finished()
+
+
+def _refuse_counter(path: Path, block: Block) -> None:
+    """Raise where `repeat` numbers rows, not passes."""
+    if block.repeat is None:
+        return
+    stretches = 1 + int(np.count_nonzero(np.diff(block.repeat)))
+    if stretches > 1 and len(block.repeat) < LEAST_ROWS * stretches:
+        raise InputError(
+            f"{path}:{line_of(path, block.first)}: column 'repeat': expected one number for all rows of a pass, got "
+            f"{stretches} numbers in the {len(block.repeat)} rows from here; leave out a column that counts rows"
+        )
 
 
 def _by_repeat(block: Block) -> Iterator[tuple[Block, int]]:

@@ -274,3 +274,12 @@ def test_a_process_draws_what_it_is_and_the_zone_judges() -> None:
 def test_what_is_drawn_moves_the_feature_as_the_zone_allows(zone: Zone, expected: Callable[..., object]) -> None:
     values = (0.7, -0.4)[: len(zone.components)]
     assert zone.matrix @ np.array(values) == pytest.approx(np.array(expected(*values)))
+
+
+@pytest.mark.parametrize("law", LAWS)
+@pytest.mark.parametrize("zone", ZONES)
+def test_the_ends_of_a_measure_that_cannot_be_read_beside_the_mean_are_not_known(zone: str, law: str) -> None:
+    draw = LAWS[law](ZONES[zone](200.0))
+    ends = draw.ends(lambda rows: np.full(len(rows), np.nan), turning=False)
+    assert ends.shape == (2, len(draw.mean_vector))
+    assert np.isnan(ends).all()

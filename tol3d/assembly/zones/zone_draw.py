@@ -127,6 +127,8 @@ class ZoneDraw(ABC):
         steps = np.maximum(self.sigmas, LEAST_STEP)
         found = values(self.mean_vector + np.concatenate([np.diag(steps), -np.diag(steps)]))
         gradient = (found[: len(steps)] - found[len(steps) :]) / (2.0 * steps)
+        if not np.isfinite(gradient).all():  # which way it acts is not known where builds beside the mean fail
+            return np.full((2, len(steps)), np.nan)
         return np.stack([self.furthest(gradient), self.furthest(-gradient)])
 
 
