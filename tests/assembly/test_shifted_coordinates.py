@@ -77,7 +77,8 @@ def drawn_elsewhere(assembly: Assembly, changes: Mapping[str, Array]) -> Assembl
                 at = change[:3, :3] @ move.at + change[:3, 3]
                 return replace(move, pairs=tuple(pair(own, move) for own in move.pairs), at=at)
             case BestFit():
-                fits = (replace(own, directions=turned(own.directions, owner(own.target))) for own in move.fits)
+                turns = {own.target: changes[owner(own.target)][:3, :3] for own in move.fits}
+                fits = (replace(own, directions=own.directions @ turns[own.target].T) for own in move.fits)
                 return replace(move, fits=tuple(fits))
             case Touch():
                 return replace(move, pressed=turned(move.pressed, owner(move.contacts[0].target)))

@@ -71,7 +71,7 @@ class TouchedPoints:
             rise[2] = 1.0, x / along_x, y / along_y
             moved_by = tuple(replace(own, matrix=rise @ own.matrix) for own in plane.moved_by)
             self.features[name] = Feature(
-                name, plane.part, Point(), frame, plane.parent, moved_by, grown_by=plane.grown_by, is_named=False
+                name, plane.part, Point(), frame, plane.parent, moved_by, (), plane.grown_by, is_named=False, plane=side
             )
         return name
 

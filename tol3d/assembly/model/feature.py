@@ -39,6 +39,7 @@ class Feature:
         size_by: contributions to its size (1, components of the contributor); positive is a larger diameter or width.
         grown_by: contributions to where its origin lies as its part grows (3, components), in its frame [mm].
         is_named: whether a drawing names it; a point that a move makes of one is not.
+        plane: of a point where a plane of its part is touched, the name of that plane, which it follows; else "".
         face: name of the face of its part's solid that it is; "" of one by numbers.
     """
 
@@ -52,3 +53,4 @@ class Feature:
     grown_by: tuple[Contribution, ...] = ()
     is_named: bool = True
     face: str = ""
+    plane: str = ""

@@ -19,8 +19,9 @@ PointsOn = Literal["part", "fixture"]
 class Pair:
     """A feature of the part that is placed, and the one of placed parts against which it lies.
 
-    Origins count: normal . (origin of moving - origin of target) = locator. The normal turns with the part, not with
-    the tilt of a single feature.
+    Origins count: normal . (origin of moving - origin of target) = locator. The normal turns with the part. Where one
+    of the two is a point of a plane (Feature.plane), that plane counts as it lies and tilts in the trial, with its own
+    normal: the other one lies on it wherever the trial puts it. To first order that is the point where it is nominally.
 
     Args:
         moving, target: names of the features.

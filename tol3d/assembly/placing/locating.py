@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.assembly.model import Locate, Pair
+from tol3d.assembly.model import Locate, Pair, Rest
 from tol3d.assembly.model.statuses import OK, SINGULAR
 from tol3d.assembly.placing.actual_feature import total
 from tol3d.assembly.placing.contacts import contacts_met
@@ -106,17 +106,32 @@ def _refuse_free(move: Locate, nominal: World, reference: str, normals: Array, m
 
 def _contact(move: Locate, pair: Pair, world: World, reference: str) -> tuple[Array, Array, Array, Array]:
     """Point, foot, normal (3, n) and height over the foot (n,) of a contact: normal . (pose point - foot) = height."""
-    moving = world.on_body(pair.moving, move.part).origin
-    target, part = world.on_part(pair.target), world.part_of(pair.target)
-    normal, height = column(pair.normal), total(pair.locator, 1, world.columns)[0]
-    if part != reference:
+    height = total(pair.locator, 1, world.columns)[0]
+    if move.points_on == "fixture":
+        target, (foot, inward) = world.on_part(pair.target), side_of(pair, move, world)
+        if (part := world.part_of(pair.target)) != reference:
+            target = target.moved(world.poses[reference].inverse @ world.poses[part])
+        return target.origin, foot, inward, -height
+    foot, normal = side_of(pair, move, world)
+    if (part := world.part_of(pair.target)) != reference:
         relative = world.poses[reference].inverse @ world.poses[part]
-        target = target.moved(relative)
-        if move.points_on == "part":
-            normal = rotated(relative.turn, normal)
+        foot, normal = relative.point(foot), rotated(relative.turn, normal)
+    return world.on_body(pair.moving, move.part).origin, foot, normal, height
+
+
+def side_of(pair: Pair, move: Locate | Rest, world: World) -> tuple[Array, Array]:
+    """Of the side of a contact on which its plane is, a point of that and its normal as it tilts (3, n).
+
+    In the frame of the target's part; with points on the fixture in that of the part that is placed. What is no point
+    of a plane has the normal of the pair.
+    """
     if move.points_on == "part":
-        return moving, target.origin, normal, height
-    return target.origin, moving, normal, -height
+        name = world.assembly.features[pair.target].plane
+        side, sign = world.on_part(name or pair.target), 1.0
+    else:
+        name = world.assembly.features[pair.moving].plane
+        side, sign = world.on_body(name or pair.moving, move.part), -1.0
+    return side.origin, sign * side.direction if name else column(pair.normal)
 
 
 def _stacked(arrays: Sequence[Array]) -> Array:

@@ -15,6 +15,7 @@ from tol3d.assembly.placing.balances import balances_found
 from tol3d.assembly.placing.farthest_motion import TIED
 from tol3d.assembly.placing.free_motion import free_motions, in_words, seen_steps
 from tol3d.assembly.placing.kept_relations import NOTHING, KeptRelations, kept_motions, kept_relations, kept_rows
+from tol3d.assembly.placing.locating import side_of
 from tol3d.assembly.placing.poses import Codes, Pose, column, dot, rotated
 from tol3d.assembly.placing.rests import BETWEEN, LOST, RESTS, rests_found
 from tol3d.assembly.placing.tilted_rests import tilted_rests_found
@@ -279,15 +280,13 @@ def _contacts(move: Rest, world: World, middle: Array, origin: Array) -> tuple[A
 
 
 def _contact(move: Rest, pair: Pair, world: World, middle: Array, origin: Array) -> tuple[Array, Array, Array]:
-    moving = world.on_body(pair.moving, move.part).origin - middle
-    target = world.placed(pair.target).origin - origin
-    locator = total(pair.locator, 1, world.columns)[0]
-    normal = column(pair.normal)
+    locator, (foot, normal) = total(pair.locator, 1, world.columns)[0], side_of(pair, move, world)
     if move.points_on == "part":
-        turn = world.poses[world.part_of(pair.target)].turn
-        normal = turn[:, 0] * normal[0] + turn[:, 1] * normal[1] + turn[:, 2] * normal[2]
-        return moving, normal, dot(normal, target) + locator
-    return target, normal, locator - dot(normal, moving)
+        pose = world.poses[world.part_of(pair.target)]
+        normal = rotated(pose.turn, normal)
+        moving = world.on_body(pair.moving, move.part).origin - middle
+        return moving, normal, dot(normal, pose.point(foot) - origin) + locator
+    return world.placed(pair.target).origin - origin, normal, locator - dot(normal, foot - middle)
 
 
 def _stacked(arrays: Sequence[Array]) -> Array:
