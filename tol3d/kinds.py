@@ -107,10 +107,11 @@ def _added(vocabulary: Vocabulary) -> "SummaryKinds":
         presenters=((vocabulary.name, presenter),) if presenter else (),
         published=(vocabulary.published,) if vocabulary.published else (),
     )
+    words = tuple(str(kind_of(spec)) for spec in vocabulary.measures)
     if isinstance(vocabulary, Mechanism) and vocabulary.summary:
-        found: SummaryKinds = named(vocabulary.summary) | shown
+        found: SummaryKinds = named(vocabulary.summary).stating(words) | shown
         return found
-    plain: SummaryKinds = made(plain=tuple((str(kind_of(spec)), presenter) for spec in vocabulary.measures))
+    plain: SummaryKinds = made(plain=tuple((word, presenter) for word in words))
     return plain | shown
 
 

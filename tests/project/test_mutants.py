@@ -96,7 +96,6 @@ class Tree:
         self.forks.stdin.flush()
         return int(self.forks.stdout.readline()), output.read_text("utf-8")
 
-
     def passes(self, tests: Iterable[str]) -> None:
         """Run those of some tests that were not run yet: without a fault they pass."""
         new = sorted(set(tests) - self.passed)

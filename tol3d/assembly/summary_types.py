@@ -1,6 +1,6 @@
 """What summary.json holds of assemblies: of which features each measure is."""
 
-from typing import Annotated, Final, Literal
+from typing import Annotated, Final
 
 from pydantic import Field
 
@@ -16,24 +16,6 @@ class AssemblyMeasureSummary(MeasureSummary):
 
     presenter = PRESENTER
 
-    kind: Literal[
-        "angle",
-        "clearance",
-        "contact_angle",
-        "difference",
-        "distance",
-        "flush",
-        "gap",
-        "inspected_flatness",
-        "inspected_orientation",
-        "inspected_pattern",
-        "inspected_position",
-        "inspected_size",
-        "point_plane",
-        "slack",
-        "virtual_clearance",
-        "surface_gap",
-    ]
     of: Annotated[list[Label], Field(min_length=1, max_length=MOST_ENTRIES)]
     chord_error_um: Maybe[NotNegative] = Field(
         default=LEFT_OUT, description="of a clearance: how far it may be off, as stated"
@@ -72,4 +54,5 @@ class AssemblyMeasureSummary(MeasureSummary):
         return (self.kind, *self.of)
 
 
-SUMMARY_KINDS: Final = SummaryKinds((AssemblyMeasureSummary,))
+SUMMARY_KINDS: Final = SummaryKinds(common=(AssemblyMeasureSummary,))
+"""For the measures of the mechanism that names it: those of assembly/grammar/measures/, or of one that adds to them."""

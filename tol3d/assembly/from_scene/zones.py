@@ -64,11 +64,12 @@ def drawn_in(scene: Scene, own: Stated, drawing: Drawing) -> tuple[ZoneDraw, Arr
             zone = _orientation(spec.zone, feature)
     except InputError as error:
         raise scene.refuse(("tolerances", own.entry, "zone"), str(error)) from None
-    matrix = zone.matrix if spec.zone.projected is None else _projecting(scene, own, drawing) @ zone.matrix
     draw, size = drawn_by(spec.law, zone, scene.files), _size(scene, own, drawing)
+    matrix = draw.matrix if spec.zone.projected is None else _projecting(scene, own, drawing) @ draw.matrix
     if size is None:
         return draw, matrix
-    return JudgedProcess(zone, draw.laws, size) if isinstance(draw, Process) else Widened(zone, draw, size), matrix
+    judged = JudgedProcess(draw.zone, draw.laws, size) if isinstance(draw, Process) else Widened(draw.zone, draw, size)
+    return judged, matrix
 
 
 def _refuse_no_ring(scene: Scene, own: Stated, drawing: Drawing) -> None:

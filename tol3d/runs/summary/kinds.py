@@ -1,7 +1,7 @@
 """What mechanisms add to a summary: classes of their measures, by kind, and sections of their own."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property, reduce
 from importlib import import_module
 from operator import or_
@@ -31,6 +31,8 @@ class SummaryKinds:
         options: classes of what vocabularies add to a study, and so to that of a witness, as keys that may be missing.
         presenters: names of mechanisms, each with the import path of what shows its systems.
         published: what others may have found beside measures, as scenes have it; besides that of any run.
+        common: classes that are for all kinds of measures of the mechanism that names them here; `stating` says which.
+        stated: the same with these kinds.
     """
 
     measures: tuple[type[MeasureSummary], ...] = ()
@@ -39,6 +41,12 @@ class SummaryKinds:
     options: tuple[type[Section], ...] = ()
     presenters: tuple[tuple[str, str], ...] = ()
     published: tuple[type[PublishedFigures], ...] = ()
+    common: tuple[type[MeasureSummary], ...] = ()
+    stated: tuple[tuple[type[MeasureSummary], tuple[str, ...]], ...] = ()
+
+    def stating(self, words: tuple[str, ...]) -> "SummaryKinds":
+        """The same, with the kinds of measures that a mechanism has."""
+        return replace(self, common=(), stated=(*self.stated, *((each, words) for each in self.common if words)))
 
     def __or__(self, other: "SummaryKinds") -> "SummaryKinds":
         """Both together."""
@@ -49,13 +57,15 @@ class SummaryKinds:
             options=(*self.options, *other.options),
             presenters=(*self.presenters, *other.presenters),
             published=(*self.published, *other.published),
+            common=(*self.common, *other.common),
+            stated=(*self.stated, *other.stated),
         )
 
     @cached_property
     def every_measure(self) -> tuple[type[MeasureSummary], ...]:
         """The classes of measures, those of plain ones last."""
         presenters = dict.fromkeys(presenter for _, presenter in self.plain)
-        return *self.measures, *map(self._plain, presenters)
+        return *self.measures, *(_of_kinds(each, words) for each, words in self.stated), *map(self._plain, presenters)
 
     def _plain(self, presenter: str) -> type[MeasureSummary]:
         """The class of the plain measures that something shows."""
@@ -68,7 +78,7 @@ class SummaryKinds:
     def __reduce__(self) -> tuple[Any, ...]:
         """Pickled by what it is made of: classes made of it are made anew."""
         own = (self.measures, self.runs, self.plain, self.options, self.presenters, self.published)
-        return SummaryKinds, own
+        return SummaryKinds, (*own, self.common, self.stated)
 
     @cached_property
     def run(self) -> type[RunSummary]:
@@ -122,6 +132,12 @@ class SummaryKinds:
         entries = measures.values() if isinstance(measures, Mapping) else ()
         words = (entry.get("kind") for entry in entries if isinstance(entry, Mapping))
         return tuple(dict.fromkeys(word for word in words if isinstance(word, str) and word not in self.words))
+
+
+def _of_kinds(measure: type[MeasureSummary], words: tuple[str, ...]) -> type[MeasureSummary]:
+    """A class of measures for some kinds."""
+    kind: Any = (Literal[words], ...)
+    return create_model(measure.__name__, __base__=measure, __doc__=measure.__doc__, kind=kind)
 
 
 def default_kinds() -> SummaryKinds:
