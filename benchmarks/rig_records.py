@@ -78,7 +78,7 @@ def timed(folder: Path) -> Timed:
     drive, back = ([folder / f"{side}.csv"] for side in SIDES)
     start, busy = time.perf_counter(), time.process_time()
     found = identify(PAIR, drive, back, Settings())
-    least = found.figures["jmin"].value / ARCSEC
+    least = found.figures["jmin eccentric"].value / ARCSEC
     seconds, processor = time.perf_counter() - start, time.process_time() - busy
     senses = senses_of(drive[0], None)
     read = {

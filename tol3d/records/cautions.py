@@ -34,7 +34,8 @@ def refuse_hidden_shift(found: Identified, settings: Settings, half_width: float
     if shift.own > settings.encoder_error:
         raise InputError(
             f"{found.read['back'][0].path}: {text}. Count the driver's turns on between the sides, or mark both zeros; "
-            f'if the encoder is that bad, say so: --encoder-error "{math.ceil(shift.own / ARCSEC)} arcsec"'
+            "if the encoder is that bad, or pitches of the driven gear deviate by that much once per turn, say so: "
+            f'--encoder-error "{math.ceil(shift.own / ARCSEC)} arcsec"'
         )
     return (text,)
 
@@ -55,16 +56,28 @@ def cautions(found: Identified, settings: Settings) -> tuple[str, ...]:
         if part.value - part.half_width > settings.encoder_error:
             words.append(
                 f"{name} would be wrong by {part.value / ARCSEC:.1f}″ once per turn, more than is believed of it "
-                f"({settings.encoder_error / ARCSEC:g}″, --encoder-error): do both sides share its zero? Pitches that "
-                "deviate once per turn on one flank otherwise than on the other look alike"
+                f"({settings.encoder_error / ARCSEC:g}″, --encoder-error): do both sides share its zero? Pitches "
+                "that deviate once per turn look alike"
             )
+    words += _teeth_warnings(found)
     if found.fit.low_orders > 1.0:
         words.append(
-            f"what is left at low orders is {found.fit.low_orders:.1f} times as strong as white noise (drift, "
-            "cumulative pitch, oval shafts, run-out of bearings); intervals are wider for it"
+            f"what is left at low orders is {found.fit.low_orders:.1f} times as strong as white noise, "
+            "pitches aside (drift, oval shafts, run-out of bearings); intervals are wider for it"
         )
     words += [*_stray_rows(found), *_torque_warnings(found), *_drift_warnings(found, settings)]
     return (*words, *_closure_warnings(found, settings))
+
+
+def _teeth_warnings(found: Identified) -> Iterator[str]:
+    """What deviating pitches do to eccentricities, where orders beside theirs show any."""
+    wide = [1e3 * found.model.quantile * found.fit.hidden_eccentricity(gear) for gear in (1, 2)]
+    if any(wide):
+        yield (
+            "pitches of the teeth deviate; once per turn that looks like an eccentricity, in 95 of 100 cases of up to "
+            f"{wide[0]:.2g} µm at the driver and {wide[1]:.2g} µm at the driven gear, by the orders beside that of one "
+            "turn; intervals have that part"
+        )
 
 
 def _stray_rows(found: Identified) -> Iterator[str]:

@@ -11,6 +11,7 @@ from tol3d.records.exact_play import Side
 from tol3d.records.findings import Identified
 from tol3d.records.fit import Fit
 from tol3d.records.pair import ARCSEC
+from tol3d.records.spectrum import with_tooth_mesh
 
 Array = NDArray[np.float64]
 
@@ -57,9 +58,9 @@ def curve_of(found: Identified) -> BacklashCurve:
 
 
 def _left(fit: Fit, side: Side, positions: int) -> Array:
-    """Mean of what the fit leaves of the rows about each position (positions,) [rad]; nan where there are none."""
+    """Mean of what eccentricities leave of the rows about each position (positions,) [rad]; nan where none are."""
     step = fit.measured.pair.long_period / positions
     index = np.round(fit.measured.points[side].phi1 / step).astype(np.int64) % positions
     rows = np.bincount(index, fit.measured.rows[side], minlength=positions)
-    total = np.bincount(index, fit.measured.rows[side] * fit.residual[side], minlength=positions)
+    total = np.bincount(index, fit.measured.rows[side] * with_tooth_mesh(fit, side), minlength=positions)
     return np.where(rows > 0, total / np.maximum(rows, 1.0), np.nan)

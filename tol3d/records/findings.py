@@ -18,7 +18,8 @@ from tol3d.records.pair import ARCSEC, RigPair, Specimen
 from tol3d.records.prediction import BacklashModel, Extreme, Figure, length_and_phase
 from tol3d.records.reading import Pass, Senses
 from tol3d.records.spectrum import Spectrum
-from tol3d.records.terms import ECCENTRIC, ENCODERS
+from tol3d.records.terms import ECCENTRIC, encoder_names
+from tol3d.records.whole_backlash import ToothPart, WholeBacklash
 
 Array = NDArray[np.float64]
 
@@ -54,7 +55,9 @@ class Identified:
         passes: as they were aligned, by side.
         read: the same as they were read, by side.
         fit: of both sides together.
-        model: the backlash.
+        model: the backlash of the eccentricities.
+        teeth: what deviating teeth add to it.
+        whole: the backlash with both.
         alone: of each side.
         shift: where the back side might lie instead.
         spectrum: of what is left.
@@ -67,6 +70,8 @@ class Identified:
     read: Mapping[Side, tuple[Pass, ...]]
     fit: Fit
     model: BacklashModel
+    teeth: ToothPart
+    whole: WholeBacklash
     alone: Mapping[Side, OneSided]
     shift: HiddenShift | None
     spectrum: Spectrum
@@ -79,36 +84,47 @@ class Identified:
 
     @cached_property
     def figures(self) -> Mapping[str, Figure]:
-        """e1, theta1, e2, theta2 [mm, rad]; jc, j0 and the backlash's ends jmin, jmax with their places [rad]."""
+        """e1, theta1, e2, theta2 [mm, rad]; jc, j0 and the backlash's ends jmin, jmax with their places [rad].
+
+        The ends are those of the whole backlash; beside them stand those of the eccentricities alone.
+        """
         vector, covariance = self.fit.of(ECCENTRIC)
         quantile = self.model.quantile
         found = dict(zip(("e1", "theta1"), length_and_phase(vector[:2], covariance[:2, :2], quantile), strict=True))
         found |= zip(("e2", "theta2"), length_and_phase(vector[2:], covariance[2:, 2:], quantile), strict=True)
-        start = np.zeros(1)
         found["jc"] = Figure(self.model.constant_part, self.model.constant_half_width)
-        found["j0"] = Figure(float(self.model.backlash(start)[0]), float(self.model.half_width(start)[0]))
-        for name, own in (("jmin", self.least), ("jmax", self.largest)):
+        found["j0"] = self.whole.start
+        for name, own in (("jmin", self.whole.least), ("jmax", self.whole.largest)):
             found[name], found[f"{name} at"] = own.backlash, own.place
+        for name, own in (("jmin", self.least), ("jmax", self.largest)):
+            found[f"{name} eccentric"], found[f"{name} eccentric at"] = own.backlash, own.place
         return found
 
     @cached_property
     def least(self) -> Extreme:
-        """The smallest backlash over the long period."""
+        """The smallest backlash over the long period, of the eccentricities alone."""
         return self.model.extreme(-1)
 
     @cached_property
     def largest(self) -> Extreme:
-        """The largest."""
+        """The largest, likewise."""
         return self.model.extreme(+1)
 
     @cached_property
     def encoders(self) -> Mapping[str, Figure]:
         """Parts common to both sides, once per turn [rad]: of encoder 1 in its own angle, of encoder 2."""
-        vector, covariance = self.fit.of(ENCODERS)
-        driver, _ = length_and_phase(vector[:2], covariance[:2, :2], self.model.quantile)
-        driven, _ = length_and_phase(vector[2:], covariance[2:, 2:], self.model.quantile)
-        gain = 1 / self.pair.rate
-        return {"encoder 1": Figure(gain * driver.value, gain * driver.half_width), "encoder 2": driven}
+        return {f"encoder {encoder}": self._encoder(encoder, 1) for encoder in (1, 2)}
+
+    @cached_property
+    def encoders_twice(self) -> Mapping[str, Figure]:
+        """The same twice per turn, of encoders of which the rows tell it."""
+        return {f"encoder {encoder}": self._encoder(encoder, 2) for encoder in self.fit.terms.twice}
+
+    def _encoder(self, encoder: int, order: int) -> Figure:
+        vector, covariance = self.fit.of(encoder_names(encoder, order))
+        own, _ = length_and_phase(vector, covariance, self.model.quantile)
+        gain = 1 / self.pair.rate if encoder == 1 else 1.0
+        return Figure(gain * own.value, gain * own.half_width)
 
     @cached_property
     def closure(self) -> Mapping[Closing, Figure]:

@@ -1,9 +1,9 @@
 """Least squares of the transmission error: linear to first order, then refined on the exact geometry.
 
 The rows' own noise is taken as white and alike on all rows; tooth-mesh orders are fitted along where there are rows
-enough in a tooth, so that they are not taken for noise. What is left at low orders (below LOW_ORDERS turns, where
-eccentricities are read) may be stronger than white noise, for it may be drift or an oval shaft: the covariance is then
-larger in the same proportion.
+enough in a tooth, so that they are not taken for noise. What deviating pitches add to the covariance is in
+background.py. What is left besides at low orders, where eccentricities are read, may be stronger than white noise, for
+it may be drift or an oval shaft: the covariance of noise is then larger in the same proportion.
 """
 
 import math
@@ -14,18 +14,16 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from tol3d.records.background import Background, background_of
 from tol3d.records.bins import Bins
 from tol3d.records.exact_play import Side, driven_angle
-from tol3d.records.pair import TURN, RigPair, Specimen
+from tol3d.records.pair import RigPair, Specimen
 from tol3d.records.terms import ECCENTRIC, Points, Terms, columns
 
 Array = NDArray[np.float64]
 
 MOST_ROUNDS = 8  # of Gauss-Newton with first-order columns; each gains a factor e/a
 STEP_XTOL = 1e-12  # rad, of the fitted curve; a millionth of an arc second
-LOW_ORDERS = 6.0  # per turn of the driver
-COARSE = 128  # places a turn of the driver at which low orders are read: 0.7 % of amplitude at the highest
-FAR = 2.0  # standard errors from which low orders count as stronger than white noise
 
 
 @dataclass(frozen=True, eq=False)
@@ -86,8 +84,8 @@ class Fit:
         terms: its columns.
         values: of the terms (terms,) [mm or rad].
         residual: what is left, by side (n,) [rad].
-        variance: of one row's noise [rad^2].
-        low_orders: strength of what is left at low orders over that of white noise; 1 where it is not stronger.
+        variance: of one row about the curve [rad^2].
+        background: what deviating teeth add to the covariance.
         unscaled: inverse of the normal matrix (terms, terms).
     """
 
@@ -96,13 +94,28 @@ class Fit:
     values: Array
     residual: Mapping[Side, Array]
     variance: float
-    low_orders: float
+    background: Background
     unscaled: Array
 
     @cached_property
     def covariance(self) -> Array:
         """Of the values (terms, terms)."""
-        return np.asarray(self.unscaled * (self.variance * self.low_orders))
+        return np.asarray(self.told_apart + self.background.hidden)
+
+    @property
+    def told_apart(self) -> Array:
+        """The same but for what teeth do at the orders that are fitted (terms, terms)."""
+        return np.asarray(self.unscaled * (self.variance * self.low_orders) + self.background.leaked)
+
+    def hidden_eccentricity(self, gear: int) -> float:
+        """Standard deviation of either component of what pitches of a gear do to its eccentricity [mm]."""
+        place = self.terms.index(ECCENTRIC[2 * gear - 2 : 2 * gear])
+        return math.sqrt(float(np.diagonal(self.background.hidden)[place].mean()))
+
+    @property
+    def low_orders(self) -> float:
+        """Strength of what is left at low orders over that of white noise; 1 where it is not stronger."""
+        return self.background.low_orders
 
     def of(self, names: Sequence[str]) -> tuple[Array, Array]:
         """Values of some terms and their covariance."""
@@ -195,7 +208,8 @@ def fitted(measured: Measured, terms: Terms, *, constant_part: float | None = No
     ends = np.cumsum([0, *(len(measured.error[side]) for side in sides)])
     parts = {side: residual[low:high] for side, low, high in zip(sides, ends[:-1], ends[1:], strict=True)}
     variance = _variance(measured, terms, values, parts)
-    return Fit(measured, terms, values, parts, variance, _low_orders(measured, parts, variance), inverse)
+    background = background_of(measured.pair, terms, measured.points, measured.rows, parts, measured.turned, variance)
+    return Fit(measured, terms, values, parts, variance, background, inverse)
 
 
 def _model(measured: Measured, terms: Terms, values: Array, matrix: Array, constant_part: float | None) -> Array:
@@ -234,27 +248,3 @@ def _slope(pair: RigPair, terms: Terms, side: Side, at: Points, values: Array) -
         moved = replace(at, phi1=at.phi1 + sign * step, phi2=at.phi2 + sign * step * pair.rate)
         ends.append(times(columns(pair, terms, side, moved), values))
     return np.asarray((ends[1] - ends[0]) / (2 * step))
-
-
-def _low_orders(measured: Measured, residual: Mapping[Side, Array], variance: float) -> float:
-    """How much stronger than white noise the residual is below LOW_ORDERS; 1 where it may be white."""
-    powers = [_powers(measured, side, own, variance) for side, own in residual.items()]
-    power = np.concatenate(powers)
-    if not len(power) or variance <= 0.0:
-        return 1.0
-    mean, error = float(power.mean()), 1.0 / math.sqrt(len(power))
-    return mean if mean > 1.0 + FAR * error else 1.0
-
-
-def _powers(measured: Measured, side: Side, residual: Array, variance: float) -> Array:
-    """Of orders that are not fitted, over that of white noise: each of mean 1 and standard deviation 1."""
-    turns = measured.turned[side]
-    orders = np.arange(1, int(LOW_ORDERS * turns) + 1) / turns
-    fitted_orders = np.array([0.0, 1.0, measured.pair.rate])
-    free = np.abs(orders[:, None] - fitted_orders).min(axis=1) > 0.75 / turns
-    rows, phi1 = measured.rows[side], measured.points[side].phi1
-    index = (phi1 * (COARSE / TURN)).astype(np.int64)
-    total = np.bincount(index, rows * residual)
-    middles = (np.arange(len(total)) + 0.5) * (TURN / COARSE)
-    power = np.abs(np.einsum("on,n->o", np.exp(-1j * orders[free][:, None] * middles), total)) ** 2
-    return np.asarray(power / (rows.sum() * max(variance, 1e-300)))

@@ -18,7 +18,7 @@ LEAST_SHOWN: Final = 1e-3  # arc seconds, of a spectrum on a logarithmic axis
 
 
 def draw_backlash(found: Identified, curve: BacklashCurve, path: Path) -> None:
-    """Predicted and measured backlash, its ends marked; `path` ends in .png, .svg or .pdf.
+    """Backlash of the eccentricities and as measured, its ends marked; `path` ends in .png, .svg or .pdf.
 
     Raises:
         InputError: the picture cannot be written there.
@@ -29,9 +29,9 @@ def draw_backlash(found: Identified, curve: BacklashCurve, path: Path) -> None:
     wide = curve.half_width / ARCSEC
     axes.plot(turns, curve.measured / ARCSEC, ".", color=GREY, markersize=2.5, label="measured, both sides")
     axes.fill_between(turns, predicted - wide, predicted + wide, color=BLUE, alpha=0.3, linewidth=0)
-    label = f"predicted, 95 % interval at most ±{float(wide.max()):.2f}″ at a position"
+    label = f"of the eccentricities alone, 95 % interval at most ±{float(wide.max()):.2f}″ at a position"
     axes.plot(turns, predicted, color=BLUE, linewidth=1.4, label=label)
-    for word, own in (("least", found.least), ("largest", found.largest)):
+    for word, own in (("least", found.whole.least), ("largest", found.whole.largest)):
         at, value = own.place.value / TURN, own.backlash.value / ARCSEC
         half = own.backlash.half_width / ARCSEC
         text = f"{word} {value:.2f} ±{half:.2f}″ at {np.degrees(own.place.value):.1f}°"

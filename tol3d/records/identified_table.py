@@ -23,6 +23,10 @@ WORDS: Final = {
     "jmin at": "  at φ1",
     "jmax": "largest backlash of the long period",
     "jmax at": "  at φ1",
+    "jmin eccentric": "least of the eccentricities alone",
+    "jmin eccentric at": "  at φ1",
+    "jmax eccentric": "largest of the eccentricities alone",
+    "jmax eccentric at": "  at φ1",
 }
 SIGNS: Final = {"um": "µm", "deg": "°", "arcsec": "″"}
 DIGITS: Final = {"um": 3, "deg": 3, "arcsec": 3}
@@ -61,9 +65,10 @@ def _figures(found: Identified) -> Table:
         Row(f"{WORDS[name]} [{SIGNS[UNITS[name][0]]}]", [*_cells(name, own), *_alone(name, alone)], unit=UNITS[name][0])
         for name, own in found.figures.items()
     ]
-    for name, own in found.encoders.items():
-        cells = [*(Shown(f"{value / ARCSEC:.3f}", value / ARCSEC) for value in (own.value, own.half_width))]
-        rows.append(Row(f"{name}, once per turn [″]", [*cells, NOTHING, NOTHING], unit="arcsec"))
+    for words, encoders in (("once per turn", found.encoders), ("twice per turn", found.encoders_twice)):
+        for name, own in encoders.items():
+            cells = [*(Shown(f"{value / ARCSEC:.3f}", value / ARCSEC) for value in (own.value, own.half_width))]
+            rows.append(Row(f"{name}, {words} [″]", [*cells, NOTHING, NOTHING], unit="arcsec"))
     for closing, own in found.closure.items():
         what = "backlash" if closing == "backlash" else f"{closing} side"
         cells = [Shown(f"{value / ARCSEC:.3f}", value / ARCSEC) for value in (own.value, own.half_width)]
@@ -90,9 +95,14 @@ def _alone(name: str, alone: Sequence[Mapping[str, Figure]]) -> list[str]:
 
 
 def _notes(found: Identified) -> Iterator[str]:
-    sigma = math.sqrt(found.fit.variance) / ARCSEC
-    teeth = "; tooth mesh is fitted along" if found.fit.terms.teeth else "; too few rows in a tooth to fit tooth mesh"
-    yield f"one row scatters by {sigma:.3f}″ (standard deviation), taken as white noise{teeth}"
+    sigma, noise = math.sqrt(found.fit.variance) / ARCSEC, found.teeth.noise / ARCSEC
+    teeth = "tooth mesh is fitted along" if found.fit.terms.teeth else "too few rows in a tooth to fit tooth mesh"
+    yield f"rows scatter by {sigma:.3f}″ about the fit, by {noise:.3f}″ about their neighbours; {teeth}"
+    yield (
+        "least, largest and first backlash are as measured: both sides cover the long period"
+        if found.whole.covered
+        else "least and largest backlash are predicted, with what teeth may do where a side has no rows"
+    )
     yield "angles count in each gear's own sense of rotation in the drive run, phases from the encoders' zeros"
     if found.closure:
         turns = found.pair.long_period_turns

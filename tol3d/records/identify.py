@@ -21,6 +21,8 @@ from tol3d.records.pooling import Pool
 from tol3d.records.prediction import BacklashModel, quantile_of
 from tol3d.records.reading import Pass, Senses, read_side, senses_of
 from tol3d.records.refusals import (
+    LARGEST_CONDITION,
+    condition_of,
     refuse_impossible_backlash,
     refuse_other_gear,
     refuse_too_few_turns,
@@ -28,6 +30,7 @@ from tol3d.records.refusals import (
 )
 from tol3d.records.spectrum import spectrum_of
 from tol3d.records.terms import ECCENTRIC, ENCODERS, Terms
+from tol3d.records.whole_backlash import ToothPart, tooth_part, whole_backlash
 
 Array = NDArray[np.float64]
 Tell = Callable[[str], None]
@@ -95,7 +98,7 @@ def identified(pair: RigPair, sides: Mapping[Side, Iterable[Pass]], senses: Sens
     for side in passes:
         refuse_too_few_turns(pair, side, read[side], measured.points[side].phi1, measured.rows[side])
     _refuse_reset(read, settings, RESET)
-    fit, model = _fits(measured, _terms(measured, passes, settings), settings)
+    fit, model, teeth = _fits(measured, _terms(measured, passes, settings), settings)
     _refuse_reset(read, settings, FAR * math.sqrt(fit.variance))
     shift = None if pair.long_period_turns == 1 else _shift(fit)
     found = Identified(
@@ -105,11 +108,13 @@ def identified(pair: RigPair, sides: Mapping[Side, Iterable[Pass]], senses: Sens
         read,
         fit,
         model,
+        teeth,
+        whole_backlash(fit, model, teeth),
         {side: one_sided(side, fit, model) for side in passes},
         shift,
         spectrum_of(fit),
     )
-    least, largest = found.figures["jmin"], found.figures["jmax"]
+    least, largest = found.least.backlash, found.largest.backlash
     half_width = max(least.half_width, largest.half_width)
     if model.constant_part < 0.0:
         refuse_impossible_backlash(pair, least.value, largest.value, least.half_width, given=zeroed)
@@ -125,23 +130,36 @@ def _terms(measured: Measured, passes: Mapping[Side, tuple[Aligned, ...]], setti
     known = [torques for torques in every if torques is not None]
     ends = [end for torques in known for end in torques]
     wound = len(known) == len(every) and max(ends) - min(ends) > SAME_TORQUE * max(ends)
-    return Terms(winding=wound, drift=settings.drift, teeth=(z1, 2 * z1) if dense else ())
+    twice = told_apart_twice(
+        measured.pair, [(measured.points[side].phi1, measured.rows[side]) for side in measured.points]
+    )
+    return Terms(twice=twice, winding=wound, drift=settings.drift, teeth=(z1, 2 * z1) if dense else ())
 
 
-def _fits(measured: Measured, terms: Terms, settings: Settings) -> tuple[Fit, BacklashModel]:
-    """The joint fit and the backlash by it."""
+def told_apart_twice(pair: RigPair, sides: Sequence[tuple[Array, Array]]) -> tuple[int, ...]:
+    """Encoders whose part twice per turn the places and rows of each side tell from those once per turn."""
+    every: tuple[tuple[int, ...], ...] = ((1, 2), (1,), (2,))
+    for encoders in every:
+        if all(condition_of(pair, phi1, rows, encoders) <= LARGEST_CONDITION for phi1, rows in sides):
+            return encoders
+    return ()
+
+
+def _fits(measured: Measured, terms: Terms, settings: Settings) -> tuple[Fit, BacklashModel, ToothPart]:
+    """The joint fit, the backlash of the eccentricities by it, and what teeth do besides."""
     pair = measured.pair
     fit = fitted(measured, terms, constant_part=settings.j0)
-    quantile = quantile_of(fit.freedom)
+    quantile, teeth = quantile_of(fit.freedom), tooth_part(fit)
     offset = float(fit.of(("offset",))[0][0])
     if settings.j0 is None:
         vector, covariance = fit.of((*ECCENTRIC, "constant part"))
-        return fit, BacklashModel(pair, vector[:4], offset, float(vector[4]), covariance, quantile)
+        return fit, BacklashModel(pair, vector[:4], offset, float(vector[4]), covariance, quantile), teeth
     vector, own = fit.of(ECCENTRIC)
+    ahead, variance = teeth.start  # of what was measured at the start teeth have their part
     covariance = np.zeros((5, 5))
-    covariance[:4, :4], covariance[4, 4] = own, (settings.j0_half_width / quantile) ** 2
+    covariance[:4, :4], covariance[4, 4] = own, (settings.j0_half_width / quantile) ** 2 + variance
     model = BacklashModel(pair, vector, offset, settings.j0, covariance, quantile, settings.j0_half_width)
-    return fit, model.starting_with(settings.j0)
+    return fit, model.starting_with(settings.j0 - ahead), teeth
 
 
 # what cannot be -----------------------------------------------------------------------------------

@@ -51,7 +51,7 @@ def one_sided(side: Side, fit: Fit, model: BacklashModel) -> OneSided:
     vector, covariance = own.of(ECCENTRIC)
     start = float(model.backlash(np.zeros(1))[0])
     full = np.zeros((5, 5))
-    full[:4, :4] = covariance
+    full[:4, :4], full[4, 4] = covariance, (float(model.half_width(np.zeros(1))[0]) / model.quantile) ** 2
     alone = replace(model, eccentric=vector, covariance=full, anchored=0.0).starting_with(start)
     figures = dict(zip(("e1", "theta1"), length_and_phase(vector[:2], covariance[:2, :2], model.quantile), strict=True))
     figures |= zip(("e2", "theta2"), length_and_phase(vector[2:], covariance[2:, 2:], model.quantile), strict=True)

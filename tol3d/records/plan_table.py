@@ -33,7 +33,11 @@ def plan_table(plans: Sequence[RigPlan]) -> Table:
         unit, one = UNITS.get(name, ("arcsec", ARCSEC))
         words = WORDS.get(name, f"{name}, once per turn")
         cells = [_cell(own, name, one) for own in plans]
-        rows.append(Row(f"{words} [±{SIGNS[unit]}]", cells, "bold" if name in ("jmin", "jmax") else "", unit))
+        rows.append(
+            Row(
+                f"{words} [±{SIGNS[unit]}]", cells, "bold" if name in ("jmin eccentric", "jmax eccentric") else "", unit
+            )
+        )
     return Table("half-width of the 95 % interval", headings, rows)
 
 
@@ -65,4 +69,5 @@ def _notes(plans: Sequence[RigPlan]) -> Iterator[str]:
     if short:
         words = "turn does" if short == ["1"] else "turns do"
         yield f"{', '.join(short)} {words} not tell the driver's part from the driven gear's: `identify` refuses them"
-    yield "both gears' eccentricities, the play and both encoders' once-per-turn errors are fitted together"
+    yield "both gears' eccentricities, the play and both encoders' errors once and twice per turn are fitted together"
+    yield "teeth do not deviate here: what pitches add to the intervals is known when they are measured"

@@ -12,12 +12,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.records.exact_play import Side, driven_angle
-from tol3d.records.identify import ROWS_A_TOOTH
+from tol3d.records.identify import ROWS_A_TOOTH, told_apart_twice
 from tol3d.records.pair import TURN, RigPair, Specimen
 from tol3d.records.prediction import BacklashModel, Figure, length_and_phase, quantile_of
 from tol3d.records.refusals import LARGEST_CONDITION, condition_of
 from tol3d.records.rig import Rig
-from tol3d.records.terms import ECCENTRIC, ENCODERS, Points, Terms, columns
+from tol3d.records.terms import ECCENTRIC, ENCODERS, Points, Terms, columns, difference_columns
 
 Array = NDArray[np.float64]
 
@@ -33,8 +33,8 @@ class RigPlan:
         turns: of the driver on each side.
         rows: of both sides together.
         condition: number of the columns once per turn of either gear and the constant.
-        figures: e1, theta1, e2, theta2, jc, j0, jmin, jmax, the places of these two and the encoders' parts once per
-            turn, with half-widths [mm, rad]; none where turns do not suffice.
+        figures: e1, theta1, e2, theta2, jc, j0, the ends of the backlash of the eccentricities alone, their places and
+            the encoders' parts once per turn, with half-widths [mm, rad]; none where turns do not suffice.
     """
 
     turns: float
@@ -73,7 +73,8 @@ def _plan(specimen: Specimen, rig: Rig, turns: float, *, drift: bool) -> RigPlan
         return RigPlan(turns, 2 * rows, condition, {})
     z1 = pair.driver_teeth
     teeth = (z1, 2 * z1) if min(rig.samples, MOST_POSITIONS) > ROWS_A_TOOTH * z1 else ()
-    terms = Terms(drift=drift, teeth=teeth)
+    twice = told_apart_twice(pair, [(phi1, np.ones_like(phi1))])
+    terms = Terms(twice=twice, drift=drift, teeth=teeth)
     normal = sum(_normal(specimen, terms, side, phi1) for side in SIDES) * (rows / len(phi1))
     covariance = np.asarray(np.linalg.inv(normal) * row_variance(pair, rig), dtype=np.float64)
     return RigPlan(turns, 2 * rows, condition, _figures(specimen, terms, covariance, 2 * rows))
@@ -99,8 +100,9 @@ def _figures(specimen: Specimen, terms: Terms, covariance: Array, rows: int) -> 
     found |= zip(("e2", "theta2"), length_and_phase(vector[2:], own[2:4, 2:4], quantile), strict=True)
     found["jc"] = Figure(model.constant_part, model.constant_half_width)
     start = np.zeros(1)
-    found["j0"] = Figure(float(model.backlash(start)[0]), float(model.half_width(start)[0]))
-    for name, sense in (("jmin", -1), ("jmax", +1)):
+    rates = difference_columns(specimen.pair, terms, start, driven_angle(specimen, start, "drive"))[0]
+    found["j0"] = Figure(float(model.backlash(start)[0]), quantile * math.sqrt(float(rates @ covariance @ rates)))
+    for name, sense in (("jmin eccentric", -1), ("jmax eccentric", +1)):
         end = model.extreme(sense)
         found |= {name: end.backlash, f"{name} at": end.place}
     parts = terms.index(ENCODERS)

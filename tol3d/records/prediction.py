@@ -14,6 +14,7 @@ from tol3d.records.terms import backlash_columns
 Array = NDArray[np.float64]
 
 CONFIDENCE = 0.95
+NEAR_ZERO = 4.0  # standard errors of a length, within which it may be that of a vector in any direction
 POSITIONS_A_TURN = 72  # of the driver; eccentricities alone have orders up to 1
 START_ROUNDS = 3  # each gains a factor e/a
 LEAST_BEND = 1e-9  # rad/rad^2; a curve flatter than that has no place of its extremes
@@ -111,7 +112,19 @@ class BacklashModel:
         rates = (self.rates(np.array([place + step])) - self.rates(np.array([place - step])))[0] / (2 * step)
         slack = self.quantile * float(np.sqrt(max(float(rates @ self.covariance @ rates), 0.0)))
         wide = slack / abs(bend) if abs(bend) > LEAST_BEND else self.pair.long_period
-        return Extreme(Figure(middle, half_width), Figure(place, min(wide, self.pair.long_period)))
+        wide = max(wide, self._elsewhere(sense, place))
+        return Extreme(Figure(middle, half_width), Figure(place, min(wide, self.pair.long_period / 2)))
+
+    def _elsewhere(self, sense: int, place: float) -> float:
+        """How far off the last peak or trough is that may be the highest or lowest one as well [rad]."""
+        phi1, period = self.positions[:-1], self.pair.long_period
+        own = sense * self.backlash(phi1)
+        phi1 = phi1[(own >= np.roll(own, 1)) & (own >= np.roll(own, -1))]
+        short = sense * (self.backlash(np.array([place])) - self.backlash(phi1))
+        rates = self.rates(phi1) - self.rates(np.array([place]))
+        error = np.sqrt(np.maximum(np.einsum("ni,ij,nj->n", rates, self.covariance, rates), 0.0))
+        off = np.abs(np.mod(phi1 - place + period / 2, period) - period / 2)
+        return float(np.max(off, where=(short <= self.quantile * error) & (off > TURN / POSITIONS_A_TURN), initial=0.0))
 
     def _place(self, sense: int) -> float:
         phi1 = self.positions[:-1]
@@ -122,6 +135,9 @@ class BacklashModel:
             place = float(around[np.argmax(sense * self.backlash(around))])
             step /= 10
         return place % self.pair.long_period
+
+
+OF_TWO = float(np.sqrt(stats.chi2.ppf(CONFIDENCE, 2)) / stats.norm.ppf(0.5 + CONFIDENCE / 2))  # a disc's, a line's
 
 
 def quantile_of(freedom: float) -> float:
@@ -137,5 +153,9 @@ def length_and_phase(vector: Array, covariance: Array, quantile: float) -> tuple
         wide = quantile * float(np.sqrt(np.trace(covariance) / 2))
         return Figure(0.0, wide), Figure(0.0, np.pi)
     along, across = np.array([x, y]) / length, np.array([-y, x]) / length
-    first, second = (quantile * float(np.sqrt(max(float(u @ covariance @ u), 0.0))) for u in (along, across))
-    return Figure(length, first), Figure(float(np.arctan2(y, x)), min(second / length, np.pi))
+    first, second = (float(np.sqrt(max(float(u @ covariance @ u), 0.0))) for u in (along, across))
+    phase = float(np.arctan2(y, x))
+    if length > NEAR_ZERO * max(first, second):
+        return Figure(length, quantile * first), Figure(phase, min(quantile * second / length, np.pi))
+    disc = quantile * OF_TWO * max(first, second)  # round the end of the vector, with the true one in it
+    return Figure(length, disc), Figure(phase, float(np.arcsin(disc / length)) if disc < length else np.pi)

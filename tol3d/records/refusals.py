@@ -87,9 +87,10 @@ def _neighbours(pair: RigPair, far: int = 2) -> list[tuple[int, int]]:
     return [(z1, z2) for z1, z2 in teeth if z1 > 2 and z2 > 2 and z1 * own[1] != z2 * own[0]]
 
 
-def condition_of(pair: RigPair, phi1: Array, rows: Array) -> float:
-    """Condition number of the columns once per turn of either gear and the constant."""
-    at = [phi1, pair.rate * phi1]
+def condition_of(pair: RigPair, phi1: Array, rows: Array, twice: Sequence[int] = ()) -> float:
+    """Condition number of the columns once per turn of either gear, twice per turn of some, and the constant."""
+    turns = (phi1, pair.rate * phi1)
+    at = [*turns, *(2 * turns[gear - 1] for gear in twice)]
     matrix = np.stack([*map(np.sin, at), *map(np.cos, at), np.ones_like(phi1)], axis=1)
     return float(np.linalg.cond(matrix * np.sqrt(rows)[:, None]))
 

@@ -50,7 +50,7 @@ class Spectrum:
 def spectrum_of(fit: Fit) -> Spectrum:
     """The spectrum over the long period of what the fit leaves and of the tooth-mesh orders that it took along."""
     pair, sides = fit.measured.pair, fit.terms.sides
-    left = {side: fit.residual[side] + _teeth(fit, side) for side in sides}
+    left = {side: with_tooth_mesh(fit, side) for side in sides}
     amplitudes = {side: _amplitudes(fit.measured, side, own) for side, own in left.items()}
     orders = np.arange(len(next(iter(amplitudes.values())))) / pair.long_period_turns
     named = [
@@ -69,11 +69,11 @@ def spectrum_of(fit: Fit) -> Spectrum:
     return Spectrum(orders, amplitudes, lines)
 
 
-def _teeth(fit: Fit, side: Side) -> Array:
-    """What the fit has taken along of tooth mesh [rad]."""
-    first = len(fit.terms.names) - 2 * len(fit.terms.teeth) * len(fit.terms.sides)
+def with_tooth_mesh(fit: Fit, side: Side) -> Array:
+    """What eccentricities and encoders leave of the rows: the fit's residual with tooth mesh [rad]."""
+    first = len(fit.terms.names) - len(fit.terms.tooth_columns)
     own = columns(fit.measured.pair, fit.terms, side, fit.measured.points[side])
-    return np.asarray(own[:, first:] @ fit.values[first:])
+    return np.asarray(fit.residual[side] + own[:, first:] @ fit.values[first:])
 
 
 def _one(measured: Measured, side: Side, left: Array, order: float) -> float:

@@ -27,6 +27,10 @@ UNITS: Mapping[str, tuple[Unit, float]] = {
     "jmin at": ("deg", math.pi / 180),
     "jmax": ("arcsec", ARCSEC),
     "jmax at": ("deg", math.pi / 180),
+    "jmin eccentric": ("arcsec", ARCSEC),
+    "jmin eccentric at": ("deg", math.pi / 180),
+    "jmax eccentric": ("arcsec", ARCSEC),
+    "jmax eccentric at": ("deg", math.pi / 180),
 }
 """Unit of each figure, and what one of it is in mm or rad."""
 
@@ -91,8 +95,11 @@ class OrderSummary(Kept):
 class ResidualSummary(Kept):
     """What the fit leaves."""
 
-    sigma_arcsec: float = Field(description="standard deviation of one row")
-    low_orders: float = Field(description="strength at low orders over white noise; it widens all intervals")
+    sigma_arcsec: float = Field(description="standard deviation of one row about the fit")
+    noise_arcsec: float = Field(description="the same about its neighbours: teeth aside")
+    low_orders: float = Field(
+        description="strength at low orders, pitches aside, over white noise; it widens intervals"
+    )
     tooth_orders_fitted: list[int]
     drift_fitted: bool
     orders: list[OrderSummary]
@@ -105,7 +112,11 @@ class IdentifiedSummary(Kept):
     pair: PairSummary
     encoder_senses: list[int] = Field(description="of encoders 1 and 2: +1 where they count in the gear's own sense")
     figures: dict[str, FigureSummary] = Field(description="of both sides together: " + ", ".join(UNITS))
+    measured: bool = Field(
+        description="whether both sides cover the long period, so that j0, jmin and jmax are measured, not predicted"
+    )
     encoders: dict[str, FigureSummary] = Field(description="once per turn, in each encoder's own angle")
+    encoders_twice: dict[str, FigureSummary] = Field(description="twice per turn, of encoders of which rows tell it")
     closure: dict[str, FigureSummary] = Field(
         description="change over the long period of the transmission error of drive and back, and of the backlash; "
         "empty where a side is shorter"
@@ -132,7 +143,9 @@ def summary_of(found: Identified, own: SceneMesh) -> IdentifiedSummary:
         ),
         encoder_senses=[found.senses.driver, found.senses.driven],
         figures={name: figure_summary(name, own) for name, own in found.figures.items()},
+        measured=found.whole.covered,
         encoders={name: _arcsec(own) for name, own in found.encoders.items()},
+        encoders_twice={name: _arcsec(own) for name, own in found.encoders_twice.items()},
         closure={name: _arcsec(own) for name, own in found.closure.items()},
         winding=None if found.winding is None else _arcsec(found.winding, "arcsec/(N m)"),
         sides={side: _side(found, side, own) for side, own in found.alone.items()},
@@ -149,8 +162,10 @@ def figure_summary(name: str, own: Figure) -> FigureSummary:
 
 def alone_figures(own: OneSided) -> Mapping[str, Figure]:
     """Figures of one side, by the names of the joint fit's."""
-    ends = {"jmin": own.least.backlash, "jmin at": own.least.place}
-    return {**own.figures, **ends, "jmax": own.largest.backlash, "jmax at": own.largest.place}
+    found = dict(own.figures)
+    for name, end in (("jmin", own.least), ("jmax", own.largest)):
+        found |= {f"{name} eccentric": end.backlash, f"{name} eccentric at": end.place}
+    return found
 
 
 def _arcsec(own: Figure, unit: Unit = "arcsec") -> FigureSummary:
@@ -187,6 +202,7 @@ def _residual(found: Identified) -> ResidualSummary:
     ]
     return ResidualSummary(
         sigma_arcsec=math.sqrt(fit.variance) / ARCSEC,
+        noise_arcsec=found.teeth.noise / ARCSEC,
         low_orders=fit.low_orders,
         tooth_orders_fitted=list(fit.terms.teeth),
         drift_fitted=fit.terms.drift,
