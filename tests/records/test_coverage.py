@@ -11,7 +11,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 from records.deviating_teeth import ToothedUnit, deviating
-from records.rigged import PAIR
 from scipy import stats
 
 from tol3d.records.background import expected_variance, likely_slopes
@@ -142,14 +141,11 @@ def test_intervals_hold_the_truth_in_88_of_100_sets(single: float) -> None:
 @pytest.mark.parametrize(
     "own",
     [
-        Class(0.0005, walk=True),
         Class(0.0015, eccentric=(0.0, 0.003)),
         Class(0.0015, eccentric=(0.03, 0.06)),
         Class(0.0015, encoders=(0.0, 0.0)),
-        Class(0.003, turns=2.0),
-        Class(0.0015, pair=PAIR, turns=2.0, samples=216),
     ],
-    ids=["random walk", "small eccentricities", "large ones", "one side", "two of three turns", "two of sixteen"],
+    ids=["small eccentricities", "large ones", "one side"],
 )
 def test_intervals_hold_the_truth_of_other_classes(own: Class) -> None:
     """Thirty sets each."""

@@ -17,6 +17,7 @@ CONFIDENCE = 0.95
 NEAR_ZERO = 4.0  # standard errors of a length, within which it may be that of a vector in any direction
 POSITIONS_A_TURN = 72  # of the driver; eccentricities alone have orders up to 1
 START_ROUNDS = 3  # each gains a factor e/a
+LINEAR = 0.2  # rad, up to which the error of an extreme's place is taken from its bend
 LEAST_BEND = 1e-9  # rad/rad^2; a curve flatter than that has no place of its extremes
 
 
@@ -112,14 +113,14 @@ class BacklashModel:
         rates = (self.rates(np.array([place + step])) - self.rates(np.array([place - step])))[0] / (2 * step)
         slack = self.quantile * float(np.sqrt(max(float(rates @ self.covariance @ rates), 0.0)))
         wide = slack / abs(bend) if abs(bend) > LEAST_BEND else self.pair.long_period
-        wide = max(wide, self._elsewhere(sense, place))
+        wide = max(wide, self._elsewhere(sense, place, everywhere=wide > LINEAR))
         return Extreme(Figure(middle, half_width), Figure(place, min(wide, self.pair.long_period / 2)))
 
-    def _elsewhere(self, sense: int, place: float) -> float:
-        """How far off the last peak or trough is that may be the highest or lowest one as well [rad]."""
+    def _elsewhere(self, sense: int, place: float, *, everywhere: bool) -> float:
+        """Distance of the farthest peak or trough, or place, that may be the highest or lowest one as well [rad]."""
         phi1, period = self.positions[:-1], self.pair.long_period
         own = sense * self.backlash(phi1)
-        phi1 = phi1[(own >= np.roll(own, 1)) & (own >= np.roll(own, -1))]
+        phi1 = phi1[everywhere | ((own >= np.roll(own, 1)) & (own >= np.roll(own, -1)))]
         short = sense * (self.backlash(np.array([place])) - self.backlash(phi1))
         rates = self.rates(phi1) - self.rates(np.array([place]))
         error = np.sqrt(np.maximum(np.einsum("ni,ij,nj->n", rates, self.covariance, rates), 0.0))

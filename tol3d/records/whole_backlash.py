@@ -20,7 +20,7 @@ from tol3d.records.terms import difference_columns
 
 Array = NDArray[np.float64]
 
-MOST_CELLS_A_TOOTH: Final = 16  # of the driver
+MOST_CELLS_A_TOOTH: Final = 32  # of the driver
 FEWEST_CELLS_A_TOOTH: Final = 2
 MOST_CELLS: Final = 2**15  # over the long period, where that leaves so many a tooth
 LONGEST_GAP: Final = 0.5  # of a tooth without rows, that counts as measured
@@ -130,7 +130,9 @@ def whole_backlash(fit: Fit, model: BacklashModel, teeth: ToothPart) -> WholeBac
         _extreme(mean, teeth, sense, np.concatenate(ends[sense]), np.concatenate(places[sense])) for sense in (-1, 1)
     ]
     at_start = np.concatenate(start)
-    own = Figure(float(mean[0]), float(np.quantile(np.abs(at_start - mean[0]), CONFIDENCE)))
+    left = teeth.mean[[-1, 0, 1]] - _mesh(fit, teeth.phi1[[-1, 0, 1]])
+    beside = float(np.abs(left[[0, 2]] - left[1]).max()) / 2  # by how much teeth may move it between two places
+    own = Figure(float(mean[0]), float(np.quantile(np.abs(at_start - mean[0]), CONFIDENCE)) + beside)
     if model.anchored is not None:
         own = Figure(float(mean[0]), model.anchored)
     return WholeBacklash(own, found[0], found[1], teeth.covered)
@@ -245,5 +247,7 @@ def _extreme(mean: Array, teeth: ToothPart, sense: int, ends: Array, places: Arr
     low, high = min(low, own) - further, max(high, own) + further
     at, period = float(teeth.phi1[np.argmax(sense * mean)]), float(teeth.phi1[1]) * len(mean)
     apart = np.abs(np.mod(places - at + period / 2, period) - period / 2)
-    wide = float(np.quantile(apart, CONFIDENCE)) + float(teeth.phi1[1])
+    may_be = sense * mean >= sense * own - (high - low)  # other places, whose interval of that width reaches the end's
+    elsewhere = np.abs(np.mod(teeth.phi1[may_be] - at + period / 2, period) - period / 2)
+    wide = max(float(np.quantile(apart, CONFIDENCE)), float(elsewhere.max())) + float(teeth.phi1[1])
     return Extreme(Figure((low + high) / 2, (high - low) / 2), Figure(at, min(wide, period / 2)))
