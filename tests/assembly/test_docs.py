@@ -16,6 +16,7 @@ from said_fields import fields_said, fields_within, unsaid
 from tol3d import load_scene
 from tol3d.assembly.grammar.builders import OwnFileSpec
 from tol3d.assembly.grammar.datums import DatumSpec
+from tol3d.assembly.grammar.moves.play import PatternPairSpec
 from tol3d.assembly.grammar.parts import SolidSpec
 from tol3d.assembly.grammar.zone import ZoneSpec
 from tol3d.assembly.mechanism import ASSEMBLY
@@ -72,6 +73,10 @@ OWN_PROGRAM, OWN_LINES = (
     re.findall(rf"```{language}\n({start}.*?)```", BUILDERS_PAGE, re.DOTALL)[0]
     for language, start in (("python", "import"), ("yaml", "builder:"))
 )
+PAIRS = [
+    PatternPairSpec.model_validate(YAML(typ="safe").load(pair))
+    for pair in re.findall(r"`(\{from: cover\.hole .*\})`", DOCS)
+]
 OWN_BUILDER = OwnFileSpec.model_validate(YAML(typ="safe").load(OWN_LINES)["builder"])
 
 FEATURES, LAWS = union("SolidSpec", "features"), union("PositionSpec", "law")
@@ -96,10 +101,12 @@ def test_the_tables_of_the_example_are_those_of_the_run(tol3d: Command, tmp_path
 def test_the_scenes_use_every_field_of_every_kind() -> None:
     kinds = [spec for section in SECTIONS for spec in ASSEMBLY.specs(section)]
     known = {own for spec in kinds for own in fields_within(spec) if own[0].__module__.startswith(OWN)}
-    # placement, datum, zone, force; 6 features, 4 laws, 5 pairs, 3 floats; 6 builders, 10 of their details, face
-    beside = 39
+    # placement, datum, zone, force; 6 features, 4 laws, 6 pairs, bolt, 3 floats; 6 builders, 10 details of theirs, face
+    beside = 41
     assert len({model for model, _ in known}) == len(kinds) + beside
     said = {own for name in FIELD_SCENES for own in fields_said(load_scene(SCENES / f"{name}.yaml", KINDS))}
+    assert len(PAIRS) == 3
+    said |= {own for pair in PAIRS for own in fields_said(pair)}  # of the page
     said |= set(fields_said(OWN_BUILDER))  # which runs only where the user says so: no scene that comes along has one
     assert unsaid(known, said) == set()
     assert set(kinds) <= {model for model, _ in said}

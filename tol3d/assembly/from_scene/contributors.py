@@ -12,7 +12,7 @@ from tol3d.assembly.grammar.drawing import Drawing, Stated
 from tol3d.assembly.grammar.features import PlaneSpec, PointSpec, SlotSpec, SphereSpec
 from tol3d.assembly.grammar.moves import PinAndHoleSpec, PlaySpec
 from tol3d.assembly.grammar.moves.locating import LocatingSpec
-from tol3d.assembly.grammar.moves.play import RandomSpec
+from tol3d.assembly.grammar.moves.play import BoltSpec, PatternPairSpec, RandomSpec
 from tol3d.assembly.grammar.tolerances import (
     LocationSpec,
     LocatorSpec,
@@ -59,6 +59,8 @@ class Effects:
     """Of surfaces where they are touched, by their form."""
     floats: dict[str, slice] = field(default_factory=dict)
     """Of moves with play, the columns of what is drawn of where in its room the part lies."""
+    bolts: dict[tuple[str, int], Contribution] = field(default_factory=dict)
+    """Of a move's pairs, what a bolt that is of no part deviates by."""
     width: int = 0
 
     def _added(self, name: str, spec_kind: str, description: str, draw: Draw) -> slice:
@@ -102,6 +104,22 @@ class Effects:
         words = f"where {spec.part} lies in its room"
         self.contributors.append(PlainContributor(f"float of {name}", "float", draw, "1", 1.0, words))
         self.width, self.floats[name] = columns.stop, columns
+
+    def add_bolts(self, name: str, spec: PlaySpec) -> None:
+        """The diameters of bolts that are of no part."""
+        for k, pair in enumerate(spec.engaged):
+            if isinstance(pair, PatternPairSpec) and pair.bolt is not None and pair.bolt.distribution is not None:
+                own, draw = f"bolt {k + 1} of {name}", Scalar(pair.bolt.distribution.resolve(self.scene.files))
+                self._refuse_no_bolt(name, k, pair.bolt, draw)
+                columns = self._added(own, "size", f"bolt through {pair.from_} and {pair.to}", draw)
+                self.bolts[name, k] = Contribution(own, columns, np.eye(1))
+
+    def _refuse_no_bolt(self, name: str, k: int, spec: BoltSpec, draw: Scalar) -> None:
+        assert spec.diameter is not None
+        nominal, law = spec.diameter.internal, draw.distribution
+        if nominal + law.low <= 0.0 or law.high >= nominal:
+            words = f"expected deviations smaller than the nominal {nominal:g} mm, got {law.low:g} to {law.high:g} mm"
+            raise self.scene.refuse(("moves", name, "pairs", k, "bolt", "distribution"), words)
 
     def _locator(self, name: str) -> None:
         spec = self.scene.tolerances[name]
@@ -204,6 +222,7 @@ def effects_of(scene: Scene, drawing: Drawing) -> Effects:
         effects.add(own)
     for name, move in scene.moves.items():
         if isinstance(move, PlaySpec):
+            effects.add_bolts(name, move)
             effects.add_float(name, move)
     return effects
 

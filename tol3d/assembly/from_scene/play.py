@@ -10,8 +10,8 @@ from tol3d.assembly.from_scene.features import poses_of
 from tol3d.assembly.grammar.feature_name import part_of
 from tol3d.assembly.grammar.features.nominal_frame import unit
 from tol3d.assembly.grammar.moves import PlaySpec
-from tol3d.assembly.grammar.moves.play import EngagementSpec, RandomSpec, TowardSpec
-from tol3d.assembly.model import Axis, Engage, Engagement, Feature, Floating, Plane, Relation, Slot
+from tol3d.assembly.grammar.moves.play import BoltSpec, EngagementSpec, PatternPairSpec, RandomSpec, TowardSpec
+from tol3d.assembly.model import Axis, Bolt, Contribution, Engage, Engagement, Feature, Floating, Plane, Relation, Slot
 from tol3d.assembly.model.shape import nominal_size
 from tol3d.scene import Scene
 
@@ -47,6 +47,9 @@ def engaged_by(
     engagements, poses = [], poses_of(scene)  # as they are drawn: moves may lean a part in its play
     for k, pair in enumerate(spec.engaged):
         here = ("moves", name, "pairs", k)
+        if isinstance(pair, PatternPairSpec) and pair.bolt is not None:
+            engagements.append(_bolted(scene, name, k, pair, pair.bolt, effects, features, poses))
+            continue
         found = _engagement(pair, features, poses)
         if isinstance(found, str):
             raise scene.refuse(here, found)
@@ -56,6 +59,51 @@ def engaged_by(
             raise scene.refuse(here, f"{words}, got {-clearance * 1e3:.6g} um under it; nothing could be assembled")
         engagements.append(found)
     return Engage(name, spec.part, relations, tuple(engagements), _floating(name, spec, effects))
+
+
+def _bolted(
+    scene: Scene,
+    name: str,
+    k: int,
+    pair: PatternPairSpec,
+    spec: BoltSpec,
+    effects: Effects,
+    features: Mapping[str, Feature],
+    poses: Mapping[str, Array],
+) -> Engagement:
+    """Two holes and their bolt."""
+    holes = [features[own] for own in (pair.from_, pair.to)]
+    frames = [poses[part_of(own.name)] @ own.frame for own in holes]
+    here = ("moves", name, "pairs", k)
+    if np.linalg.norm(np.cross(frames[0][:3, 2], frames[1][:3, 2])) > FLAT:
+        raise scene.refuse(here, "expected two holes that are nominally parallel, got them at an angle")
+    places = [_hole_ends(own) for own in holes]
+    ends = np.concatenate([own @ frame[:3, :3].T + frame[:3, 3] for own, frame in zip(places, frames, strict=True)])
+    frame = frames[1].copy()
+    frame[:3, 3] = ends.mean(axis=0)
+    reach = float(np.abs((ends - frame[:3, 3]) @ frame[:3, 2]).max())
+    if spec.of is None:
+        assert spec.diameter is not None
+        diameter: float = spec.diameter.internal
+        by: tuple[Contribution, ...] = (effects.bolts[name, k],)
+    else:
+        shank = features[spec.of]
+        diameter, by = nominal_size(shank.shape) or 0.0, shank.size_by
+    mean = diameter + _mean_deviation(effects, by)
+    for own in holes:
+        short = mean - _mean_size(effects, own)
+        if short > 0.0:
+            words = (
+                f"expected a size of {own.name!r} over that of its bolt at the mean, got {short * 1e3:.6g} um under it"
+            )
+            raise scene.refuse(here, f"{words}; nothing could be assembled")
+    bolt = Bolt(diameter, by, frame, reach)
+    return Engagement(holes[0].name, holes[1].name, places[0], places[1], bolt)
+
+
+def _hole_ends(hole: Feature) -> Array:
+    assert isinstance(hole.shape, Axis)
+    return hole.shape.ends
 
 
 def _floating(name: str, spec: PlaySpec, effects: Effects) -> Floating:
@@ -69,9 +117,12 @@ def _floating(name: str, spec: PlaySpec, effects: Effects) -> Floating:
 
 def _mean_size(effects: Effects, feature: Feature) -> float:
     """At the means of its tolerances [mm]."""
+    return (nominal_size(feature.shape) or 0.0) + _mean_deviation(effects, feature.size_by)
+
+
+def _mean_deviation(effects: Effects, size_by: Sequence[Contribution]) -> float:
     contributors = {own.name: own for own in effects.contributors}
-    off = sum(float(own.matrix[0] @ contributors[own.contributor].draw.mean(turning=False)) for own in feature.size_by)
-    return (nominal_size(feature.shape) or 0.0) + off
+    return sum(float(own.matrix[0] @ contributors[own.contributor].draw.mean(turning=False)) for own in size_by)
 
 
 def _engagement(pair: EngagementSpec, features: Mapping[str, Feature], poses: Mapping[str, Array]) -> Engagement | str:

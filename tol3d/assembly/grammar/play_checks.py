@@ -6,7 +6,7 @@ from tol3d.assembly.grammar.drawing import Drawing
 from tol3d.assembly.grammar.features import CylinderSpec, FeatureUnion, SlotSpec
 from tol3d.assembly.grammar.measures.assembly_measure import OverPlaySpec
 from tol3d.assembly.grammar.moves import PinAndHoleSpec, PlaySpec
-from tol3d.assembly.grammar.moves.play import EngagementSpec
+from tol3d.assembly.grammar.moves.play import BoltSpec, EngagementSpec, PatternPairSpec
 from tol3d.assembly.grammar.tolerances import SizeSpec
 from tol3d.scene import Scene
 from tol3d.scene.place import KeyPath
@@ -39,7 +39,10 @@ def unfit_engagements(scene: Scene) -> Iterator[Problem]:
             if problem:
                 yield here, problem
                 continue
-            for end, own in (("from", pair.from_), ("to", pair.to)):
+            bolt = _bolt_of(pair)
+            sized = [("from", pair.from_), ("to", pair.to)]
+            sized += [("bolt", bolt.of)] if bolt is not None and bolt.of is not None else []
+            for end, own in sized:
                 if not drawing.of(own, SizeSpec):
                     words = f"expected a size tolerance of {own!r}, for its play follows from its size, got none"
                     yield (*here, end), f"{words}; {NO_SIZE}"
@@ -50,13 +53,27 @@ def _unfit(pair: EngagementSpec, drawing: Drawing) -> str:
     for name, own in ((pair.from_, one), (pair.to, other)):
         if not isinstance(own, CylinderSpec | SlotSpec):
             return f"expected a pin or tab and a hole or slot, got {name!r}, which is {own.words}"
+    bolt = _bolt_of(pair)
+    if bolt is not None:
+        if not all(isinstance(own, CylinderSpec) and own.hole for own in (one, other)):
+            return f"expected two holes that the bolt goes through, got {pair.from_!r} and {pair.to!r}"
+        shank = None if bolt.of is None or bolt.of not in drawing.names else drawing.kind(bolt.of)
+        if isinstance(shank, CylinderSpec) and shank.hole:
+            return f"expected a bolt that is a pin, got {bolt.of!r}, which is a hole"
+        return ""
     if is_inner(one) == is_inner(other):
         both = "two holes or slots" if is_inner(one) else "two pins or tabs"
-        return f"expected a pin or tab and a hole or slot, got {both}, {pair.from_!r} and {pair.to!r}"
+        holes = is_inner(one) and isinstance(one, CylinderSpec) and isinstance(other, CylinderSpec)
+        advice = "; a bolt that is loose in both is `bolt` of a pattern's pair" if holes else ""
+        return f"expected a pin or tab and a hole or slot, got {both}, {pair.from_!r} and {pair.to!r}{advice}"
     inner, outer = (one, other) if is_inner(one) else (other, one)
     if isinstance(inner, CylinderSpec) and isinstance(outer, SlotSpec):
         return "expected a pin in a hole, a pin in a slot or a tab in a slot, got a tab in a hole"
     return ""
+
+
+def _bolt_of(pair: EngagementSpec) -> BoltSpec | None:
+    return pair.bolt if isinstance(pair, PatternPairSpec) else None
 
 
 def is_inner(feature: FeatureUnion) -> bool:

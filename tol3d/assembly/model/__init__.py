@@ -9,6 +9,7 @@ from tol3d.assembly.model.feature import Contribution, Feature
 from tol3d.assembly.model.measures import Measured
 from tol3d.assembly.model.moves import (
     BestFit,
+    Bolt,
     Engage,
     Engagement,
     Fit,
@@ -29,6 +30,7 @@ __all__ = [
     "Assembly",
     "Axis",
     "BestFit",
+    "Bolt",
     "Contact",
     "Contribution",
     "Datum",

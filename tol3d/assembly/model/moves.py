@@ -170,8 +170,25 @@ class Weld:
 
 
 @dataclass(frozen=True, eq=False)
+class Bolt:
+    """A bolt that goes through two holes, loose in both.
+
+    Args:
+        diameter: nominal [mm].
+        size_by: contributions to it (1, components); positive is larger.
+        frame: nominally in the world (4, 4): z along it, the origin in the middle of all ends of its holes.
+        reach: from there to the farthest of these ends [mm], over which a lean counts.
+    """
+
+    diameter: float
+    size_by: tuple[Contribution, ...]
+    frame: Array
+    reach: float
+
+
+@dataclass(frozen=True, eq=False)
 class Engagement:
-    """A pin in a hole, a pin in a slot or a tab in a slot.
+    """A pin in a hole, a pin in a slot or a tab in a slot; or two holes that a bolt goes through.
 
     Its offset at a place: how far the outer one's point lies from the inner one's, across the inner one's axis (both
     components of a hole) or across its width (one of a slot). Its clearance: half of how much larger the inner one is.
@@ -180,17 +197,20 @@ class Engagement:
         inner, outer: names of the features: hole or slot, pin or tab.
         places: where it engages, (places, 3) in the frame of the inner one: on a hole's axis, on a slot's plane.
         outer_places: the same in the frame of the outer one.
+        bolt: through two holes, `inner` and `outer`, whose ends the places are, each hole's own. Its axis is a line;
+            the offset at a hole's end is how far it lies from the hole's axis, across that, where it passes the end.
     """
 
     inner: str
     outer: str
     places: Array
     outer_places: Array
+    bolt: Bolt | None = None
 
     @property
     def name(self) -> str:
         """In words."""
-        return f"{self.outer} in {self.inner}"
+        return f"{self.outer} in {self.inner}" if self.bolt is None else f"bolt in {self.inner} and {self.outer}"
 
 
 @dataclass(frozen=True, eq=False)
@@ -202,7 +222,8 @@ class Floating:
     - random, by_pairs: the first engagement anywhere in its disc (in the lens of both ends' discs), the second one
       anywhere in what is left of its slot; each as often by area.
     - random: from the centred pose in any direction of its m freedoms, shift at the middle of all places and turn times
-      their largest distance from it; to fraction^(1/m) of the way to where the room ends.
+      their largest distance from it; to fraction^(1/m) of the way to where the room ends; of bolts, to where one has no
+      place left.
     - toward: where a point of the part goes farthest along a direction; what that leaves open is as centred as may be.
 
     Args:

@@ -6,8 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.assembly.model import Axis, Engage, Engagement
-from tol3d.assembly.placing.actual_feature import ActualFeature, actual_size
-from tol3d.assembly.placing.engaged_places import PIN_IN_HOLE, PIN_IN_SLOT, TAB_IN_SLOT
+from tol3d.assembly.placing.actual_feature import ActualFeature, actual_size, total
+from tol3d.assembly.placing.engaged_places import BOLT_IN_HOLE, PIN_IN_HOLE, PIN_IN_SLOT, TAB_IN_SLOT
 from tol3d.assembly.placing.poses import column, dot
 from tol3d.assembly.placing.world import World
 
@@ -36,7 +36,7 @@ def at_places(
 
 def engaged_arrays(
     move: Engage, world: World, origin: Array, middle: Array
-) -> tuple[Array, Array, Array, Array, Array, NDArray[np.bool_], NDArray[np.int64]]:
+) -> tuple[Array, Array, Array, Array, Array, NDArray[np.bool_], NDArray[np.int64], NDArray[np.int64], Array]:
     """What `engaged_poses_found` reads first: points, directions and sizes where a move engages, in their trials.
 
     Args:
@@ -46,8 +46,25 @@ def engaged_arrays(
         middle: that in the world (3,) [mm].
     """
     moving, fixed, axes, others, halves, inner_moves, kinds = [], [], [], [], [], [], []
-    none = np.zeros((3, 1))
+    none, bolt_of, bolts = np.zeros((3, 1)), list[int](), list[Array]()
     for own in move.engagements:
+        if own.bolt is not None:
+            half = (own.bolt.diameter + total(own.bolt.size_by, 1, world.columns)[0]) / 2
+            for name, places in ((own.inner, own.places), (own.outer, own.outer_places)):
+                moves = world.part_of(name) in world.bodies[move.part]
+                hole = world.on_body(name, move.part) if moves else world.placed(name)
+                for place in places:
+                    moving.append(hole.at(place) - column(origin) if moves else none)
+                    fixed.append(none if moves else hole.at(place) - column(middle))
+                    axes.append((hole.pose.turn[:, 0], hole.pose.turn[:, 1]))
+                    others.append(hole.pose.turn[:, 2])
+                    halves.append([actual_size(hole.feature, world.columns) / 2, half])
+                    inner_moves.append(moves)
+                    kinds.append(BOLT_IN_HOLE)
+                    bolt_of.append(len(bolts))
+            at, turn = own.bolt.frame[:3, 3] - middle, own.bolt.frame[:3, :3]
+            bolts.append(np.stack([at, turn[:, 0], turn[:, 1], turn[:, 2], np.array([own.bolt.reach, 0.0, 0.0])]))
+            continue
         moves = world.part_of(own.inner) in world.bodies[move.part]
         inner, outer = (
             world.on_body(name, move.part) if own_moves else world.placed(name)
@@ -64,6 +81,7 @@ def engaged_arrays(
             halves.append([actual_size(each.feature, world.columns) / 2 for each in (inner, outer)])
             inner_moves.append(moves)
             kinds.append(PIN_IN_HOLE if round_ else PIN_IN_SLOT if pin else TAB_IN_SLOT)
+            bolt_of.append(-1)
     return (
         _filled(moving, world.trials),
         _filled(fixed, world.trials),
@@ -72,6 +90,8 @@ def engaged_arrays(
         np.stack([_filled(own, world.trials) for own in halves]),
         np.array(inner_moves),
         np.array(kinds, dtype=np.int64),
+        np.array(bolt_of, dtype=np.int64),
+        np.array(bolts).reshape(-1, 5, 3),
     )
 
 

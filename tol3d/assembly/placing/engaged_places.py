@@ -13,6 +13,7 @@ from tol3d.numerics.compiled import nested
 PIN_IN_HOLE: Final = 0
 PIN_IN_SLOT: Final = 1
 TAB_IN_SLOT: Final = 2
+BOLT_IN_HOLE: Final = 3
 LEFT: Final = 1e-9
 """Of a motion, that relations may see: what rows have of it is of second order in the slack."""
 
@@ -30,15 +31,18 @@ def taken(pose: Any, moves: bool, vector: Any, i: int, found: Any) -> None:
 @nested
 def places_at(pose: Any, engaged: Any, i: int, reach: float, place: Any, all_rows: Any, nominal: bool) -> None:
     """Offsets and clearances at a pose; where rows are not nominal, how they change with turn by reach and shift."""
-    moving, fixed, axes, _, halves, inner_moves, kinds = engaged
-    offsets, clearances, _, (apart, arm, normal, _, _, _) = place
+    moving, fixed, axes, _, halves, inner_moves, kinds, _, _ = engaged
+    offsets, clearances, _, (apart, arm, normal, _, _, _), _ = place
     for k in range(kinds.shape[0]):
+        clearances[k] = halves[k, 0, i] - halves[k, 1, i]
+        if kinds[k] == BOLT_IN_HOLE:
+            bolt_in_hole(pose, engaged, k, i, reach, place, all_rows[k], nominal)
+            continue
         sign = -1.0 if inner_moves[k] else 1.0  # an offset is of the outer one
         for r in range(3):
             turned = pose[r, 0] * moving[k, 0, i] + pose[r, 1] * moving[k, 1, i] + pose[r, 2] * moving[k, 2, i]
             apart[r] = sign * (turned + pose[r, 3] - fixed[k, r, i])
             arm[r] = fixed[k, r, i] - pose[r, 3] if inner_moves[k] else turned
-        clearances[k] = halves[k, 0, i] - halves[k, 1, i]
         for c in range(2):
             offsets[k, c] = 0.0
             if c == 1 and kinds[k] != PIN_IN_HOLE:
@@ -55,13 +59,58 @@ def places_at(pose: Any, engaged: Any, i: int, reach: float, place: Any, all_row
 
 
 @nested
+def bolt_in_hole(
+    pose: Any, engaged: Any, k: int, i: int, reach: float, place: Any, all_rows: Any, nominal: bool
+) -> None:
+    """The offset of a bolt's axis from that of a hole, across it where it passes the hole's end, and its changes.
+
+    A bolt's axis passes base + h n + (p + h l / its reach) across n, h along its nominal direction n.
+    """
+    moving, fixed, axes, others, _, inner_moves, _, bolt_of, bolts = engaged
+    offsets, _, rows, (apart, arm, normal, along, way, _), state = place
+    b, first = bolt_of[k], rows.shape[2] - 4 * bolts.shape[0]
+    taken(pose, inner_moves[k], others[k], i, along)
+    height = 0.0
+    for r in range(3):
+        apart[r] = fixed[k, r, i]
+        if inner_moves[k]:
+            turned = pose[r, 0] * moving[k, 0, i] + pose[r, 1] * moving[k, 1, i] + pose[r, 2] * moving[k, 2, i]
+            apart[r] = turned + pose[r, 3]
+        height += bolts[b, 3, r] * (apart[r] - bolts[b, 0, r])
+    share, lean = height / bolts[b, 4, 0], 0.0
+    for r in range(3):
+        across = bolts[b, 1, r] * (state[b, 0] + share * state[b, 2])
+        across += bolts[b, 2, r] * (state[b, 1] + share * state[b, 3])
+        point = bolts[b, 0, r] + height * bolts[b, 3, r] + across
+        way[r] = bolts[b, 3, r] + (bolts[b, 1, r] * state[b, 2] + bolts[b, 2, r] * state[b, 3]) / bolts[b, 4, 0]
+        apart[r], arm[r] = point - apart[r], point - pose[r, 3]
+        lean += along[r] * way[r]
+    for c in range(2):
+        taken(pose, inner_moves[k], axes[k, c], i, normal)
+        cut = (normal[0] * way[0] + normal[1] * way[1] + normal[2] * way[2]) / lean
+        offsets[k, c], u, v = 0.0, 0.0, 0.0
+        for r in range(3):
+            normal[r] -= cut * along[r]
+            offsets[k, c] += normal[r] * apart[r]
+            u += normal[r] * bolts[b, 1, r]
+            v += normal[r] * bolts[b, 2, r]
+            normal[r] = -normal[r]
+        if not nominal:
+            j = first + 4 * b
+            rows[k, c, j], rows[k, c, j + 1], rows[k, c, j + 2], rows[k, c, j + 3] = u, v, share * u, share * v
+            all_rows[c, :] = 0.0
+            if inner_moves[k]:
+                wrench(arm, normal, reach, all_rows[c])
+
+
+@nested
 def leaning(pose: Any, engaged: Any, k: int, i: int, reach: float, place: Any, row: Any) -> None:
     """The clearance of what leans in a slot, and its change, which joins the row of the side that is near.
 
     |o + B q| <= c + C q is on the side of o the same as |o + (B - C o / |o|) q| <= c.
     """
-    _, _, axes, others, halves, inner_moves, kinds = engaged
-    offsets, clearances, _, (_, _, normal, other, _, _) = place
+    _, _, axes, others, halves, inner_moves, kinds, _, _ = engaged
+    offsets, clearances, _, (_, _, normal, other, _, _), _ = place
     taken(pose, inner_moves[k], axes[k, 0], i, normal)
     taken(pose, not inner_moves[k], others[k], i, other)
     along = normal[0] * other[0] + normal[1] * other[1] + normal[2] * other[2]
@@ -119,7 +168,11 @@ def rows_here(
         turned: whether it has.
     """
     engaged, i, kept, steps, nominal_rows = trial
-    rows = place[2]
+    rows, parts = place[2], steps.shape[1]
+    for k in range(rows.shape[0]):
+        for c in range(2):
+            for f in range(parts, rows.shape[2]):
+                rows[k, c, f] = nominal_rows[k, c, f] if nominal else 0.0
     places_at(pose, engaged, i, reach, place, all_rows, nominal)
     if nominal:
         tangents[:] = steps
@@ -127,7 +180,7 @@ def rows_here(
         kept_tangents(pose, kept, i, steps, reach, tangents, place[3])
     for k in range(rows.shape[0]):
         for c in range(2):
-            for f in range(rows.shape[2]):
+            for f in range(parts):
                 rows[k, c, f] = nominal_rows[k, c, f] if nominal else 0.0
                 if not nominal:
                     for r in range(6):

@@ -9,7 +9,8 @@ from typing import Any, Final
 
 import numpy as np
 
-from tol3d.assembly.placing.engaged_places import rows_here
+from tol3d.assembly.placing.bolt_room import bolt_rooms, bolt_way
+from tol3d.assembly.placing.engaged_places import BOLT_IN_HOLE, rows_here
 from tol3d.assembly.placing.one_sided_gaps import restored, wrench
 from tol3d.assembly.placing.pose_steps import stepped
 from tol3d.assembly.placing.rests import begin
@@ -40,7 +41,7 @@ def moved_on(pose: Any, trial: Any, reach: float, q: Any, tangents: Any, step: A
     _, i, kept, _, _ = trial
     for r in range(6):
         step[r] = 0.0
-        for f in range(q.shape[0]):
+        for f in range(tangents.shape[1]):
             step[r] += tangents[r, f] * q[f]
     stepped(pose, step, reach)
     restored(pose, kept, i, reach, step)
@@ -65,7 +66,7 @@ def goal_at(pose: Any, goal: Any, i: int, reach: float, tangents: Any, push: Any
     for r in range(3):
         arm[r] = pose[r, 0] * point[0, p] + pose[r, 1] * point[1, p] + pose[r, 2] * point[2, p]
     wrench(arm, along, reach, pull)
-    for f in range(push.shape[0]):
+    for f in range(tangents.shape[1]):
         push[f] = given[f]
         for r in range(6):
             push[f] += pull[r] * tangents[r, f]
@@ -77,16 +78,24 @@ def goal_at(pose: Any, goal: Any, i: int, reach: float, tangents: Any, push: Any
 
 
 @nested
-def way_along(place: Any, drawn: Any, i: int) -> Any:
-    """How far a part may go on along a direction (freedoms,) until an offset is as long as its clearance."""
+def way_along(place: Any, drawn: Any, i: int, engaged: Any, rooms: Any) -> Any:
+    """How far a part may go on along a direction (freedoms,) until an offset is as long as its clearance.
+
+    With bolts: until one of them has no place.
+    """
     offsets, clearances, rows = place
+    kinds, bolt_of, bolts = engaged[6], engaged[7], engaged[8]
     way = NO_WAY
     for k in range(rows.shape[0]):
+        if kinds[k] == BOLT_IN_HOLE:
+            continue
         a, b = 0.0, 0.0
-        for f in range(rows.shape[2]):
+        for f in range(drawn.shape[0] - 1):
             a += rows[k, 0, f] * drawn[f, i]
             b += rows[k, 1, f] * drawn[f, i]
         way = min(way, way_of(offsets[k, 0], offsets[k, 1], a, b, clearances[k] * clearances[k]))
+    for n in range(bolts.shape[0]):
+        way = min(way, bolt_way(place, bolt_of, n, drawn, i, way, rooms))
     return way if way < NO_WAY else 0.0
 
 
@@ -105,25 +114,28 @@ def stays(pose: Any, start: Any, mode: int, trial: Any, reach: float, goal: Any,
         goal: whither it goes.
         rooms: to work in.
     """
-    place, all_rows, tangents, q, push, step, before, basis, done, inner, _ = rooms
-    i, drawn, freedoms = trial[1], goal[4], tangents.shape[1]
+    place, all_rows, tangents, q, push, step, before, basis, done, inner, _, bolting = rooms
+    i, drawn, freedoms, state = trial[1], goal[4], tangents.shape[1], place[4]
     previous, gone, slack, which, left, nominal = NONE, 0.0, 0.0, 0, 0, mode != STRAYED
     for n in range(ROUNDS):
         turned = n == 0 or (mode != STRAYED and (n == 1 or previous > TURNED * reach))
         rows_here(pose, trial, reach, place, all_rows, tangents, nominal, turned)
         if mode == STRAYED:
-            more = way_along(place[:3], drawn, i)
+            more = way_along(place[:3], drawn, i, trial[0], bolting)
             gone += more
             size = abs(more)
         else:
             strength = goal_at(pose, goal, i, reach, tangents, push) if mode == PUSHED else 0.0
-            found, slack, which, left = lain(place[:3], push, strength, before, basis, done, q, inner)
+            found, slack, which, left = lain(place[:3], freedoms, push, strength, before, basis, done, q, inner)
             if not found:
                 return False, slack, which
             size = 0.0
             for f in range(freedoms):
                 size = max(size, abs(q[f]))
-        ends = size * min(1.0, size / previous) <= MET
+            for b in range(state.shape[0]):
+                for r in range(4):
+                    state[b, r] += q[freedoms + 4 * b + r]
+        ends = size * min(1.0, size / previous) <= MET and (n > 0 or state.shape[0] == 0)
         if mode == STRAYED:
             for f in range(freedoms):
                 q[f] = gone * drawn[f, i] * (drawn[freedoms, i] if ends else 1.0)
@@ -154,34 +166,38 @@ def lies(pose: Any, trial: Any, reach: float, goal: Any, rooms: Any) -> Any:
 
 
 @nested
-def work_rooms(cones: int, freedoms: int, kept: int) -> Any:
+def work_rooms(cones: int, freedoms: int, bolts: int, kept: int) -> Any:
     """What a trial works with."""
+    every = freedoms + 4 * bolts
     vectors = (np.empty(3), np.empty(3), np.empty(3), np.empty(3), np.empty(6), np.empty((kept, freedoms)))
-    place = (np.empty((cones, 2)), np.empty(cones), np.empty((cones, 2, freedoms)), vectors)
+    place = (np.empty((cones, 2)), np.empty(cones), np.empty((cones, 2, every)), vectors, np.zeros((bolts, 4)))
     return (
         place,
         np.empty((cones, 2, 6)),
         np.empty((6, freedoms)),
-        np.empty(freedoms),
-        np.zeros(freedoms),
+        np.empty(every),
+        np.zeros(every),
         np.empty(6),
         (np.empty(cones), np.empty(cones, dtype=np.int64)),
-        np.empty((freedoms, freedoms)),
+        np.empty((every, every)),
         np.empty(cones, dtype=np.bool_),
-        new_rooms(cones, freedoms),
+        new_rooms(cones, every),
         np.empty((3, 4)),
+        bolt_rooms(),
     )
 
 
 @kernel(
     arrays="float64[:,:,::1], float64[:,:,::1], float64[:,:,:,::1], float64[:,:,::1], float64[:,:,::1], boolean[::1], "
-    "int64[::1], float64[:,:,::1], float64[:,:,::1], float64[::1], float64[:,::1], float64[:,::1], float64[:,:,::1], "
+    "int64[::1], int64[::1], float64[:,:,::1], float64[:,:,::1], float64[:,:,::1], float64[::1], float64[:,::1], "
+    "float64[:,::1], float64[:,:,::1], "
     "float64[:,:,::1], float64, boolean, float64[::1], float64[:,::1], float64[::1], float64[:,::1], "
     "float64[:,:,::1], float64[:,::1], "
     "float64[::1], int64[::1], boolean[::1]"
 )
 def engaged_poses_found(
     moving: Any, fixed: Any, axes: Any, others: Any, halves: Any, inner_moves: Any, kinds: Any,
+    bolt_of: Any, bolts: Any,
     kept_vectors: Any, kept_normals: Any, kept_shifts: Any, kept_steps: Any, steps: Any, rows: Any, start: Any,
     reach: float, pushes: bool, push: Any, point: Any, along: Any, drawn: Any,
     turns: Any, shifts: Any, slacks: Any, deciding: Any, found: Any,
@@ -195,11 +211,14 @@ def engaged_poses_found(
         others: direction of the outer one, the same way (cones, 3, n).
         halves: sizes / 2 of the inner and of the outer one (cones, 2, n) [mm].
         inner_moves: whether the inner one is of the part (cones,).
-        kinds: PIN_IN_HOLE, PIN_IN_SLOT or TAB_IN_SLOT (cones,).
+        kinds: PIN_IN_HOLE, PIN_IN_SLOT, TAB_IN_SLOT or BOLT_IN_HOLE (cones,).
+        bolt_of: which bolt, -1 for none (cones,); its holes are inner ones, with their axes as `others`.
+        bolts: nominally, its middle from that of all places in the world, two directions across it, that along it,
+            and (reach, 0, 0) (bolts, 5, 3) [mm].
         kept_vectors, kept_normals, kept_shifts, kept_steps: what relations keep, and which steps undo a change of it,
             as in `tilted_rests_found`.
         steps: the freedoms, turn times reach and shift (6, freedoms).
-        rows: nominal change of offsets by them (cones, 2, freedoms).
+        rows: nominal change of offsets by them and by each bolt's shifts and leans (cones, 2, freedoms + 4 bolts).
         start: poses where relations lay the part (3, 4, n).
         reach: of all places about their middle [mm].
         pushes: whether it goes as far as it can along `push` (freedoms,), or its point (3, n) along a direction (3,);
@@ -211,14 +230,14 @@ def engaged_poses_found(
         found: whether all is found (n,).
     """
     cones, freedoms = kinds.shape[0], steps.shape[1]
-    engaged = (moving, fixed, axes, others, halves, inner_moves, kinds)
+    engaged = (moving, fixed, axes, others, halves, inner_moves, kinds, bolt_of, bolts)
     pose, first = np.empty((3, 4)), np.empty(kept_shifts.shape[0])
-    rooms = work_rooms(cones, freedoms, len(first))
+    rooms = work_rooms(cones, freedoms, bolts.shape[0], len(first))
     kept = (kept_vectors, kept_normals, kept_shifts, kept_steps, first)
     goal = (pushes, push, point, along, drawn)
     for i in range(found.shape[0]):
         begin(pose, first, start, i, kept)
-        rooms[6][1][:], rooms[4][:] = 0, 0.0
+        rooms[6][1][:], rooms[4][:], rooms[0][4][:] = 0, 0.0, 0.0
         found[i], slacks[i], deciding[i] = lies(pose, (engaged, i, kept, steps, rows), reach, goal, rooms)
         for r in range(3):
             shifts[r, i] = pose[r, 3]

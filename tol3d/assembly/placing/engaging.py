@@ -8,7 +8,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.assembly.model import Axis, Engage, Mate
+from tol3d.assembly.model import Axis, Engage, Engagement, Mate
 from tol3d.assembly.model.statuses import NO_BUILD, OK, SINGULAR
 from tol3d.assembly.placing.actual_feature import ActualFeature
 from tol3d.assembly.placing.alignment import Seat
@@ -46,7 +46,7 @@ class Engaging:
         reach: of them about it [mm].
         origin: the middle in the part's frame (3,) [mm].
         freedoms: motions that relations leave and offsets see: shift of the middle, turn times reach (6, freedoms).
-        rows: change of each offset by them (cones, 2, freedoms).
+        rows: change of each offset by them, and by shifts and leans of each bolt (cones, 2, freedoms + 4 bolts).
         floats: where in its room the part lies.
         relations: that are kept.
         undo: steps, turn times reach and shift, that undo a change of what they keep (6, kept).
@@ -131,7 +131,7 @@ class Engaging:
     @cached_property
     def _pairs(self) -> NDArray[np.str_]:
         """Of each cone, what engages there."""
-        return np.array([own.name for own in self.move.engagements for _ in own.places])
+        return np.array([own.name for own in self.move.engagements for _ in range(_cones_of(own))])
 
     def _targets(self, world: World) -> Sequence[str]:
         body = world.bodies[self.move.part]
@@ -195,6 +195,13 @@ def engaging(move: Engage, nominal: World) -> Engaging:
     world = nominal.with_part_at(move.part, start)
     places, ways = [], []
     for own in move.engagements:
+        if own.bolt is not None:
+            for name, its_places in ((own.inner, own.places), (own.outer, own.outer_places)):
+                turn = world.placed(name).pose.turn[:, :, 0]
+                moves = world.part_of(name) in world.bodies[move.part]
+                places += [world.placed(name).at(its)[:, 0] for its in its_places]
+                ways += [[-turn[:, 0], -turn[:, 1]] if moves else [np.zeros(3), np.zeros(3)] for _ in its_places]
+            continue
         frame, inner_moves = world.placed(own.inner).pose, world.part_of(own.inner) in world.bodies[move.part]
         sign = -1.0 if inner_moves else 1.0  # an offset is of the outer one
         x, y, z = (sign * frame.turn[:, k, 0] for k in range(3))
@@ -212,7 +219,7 @@ def engaging(move: Engage, nominal: World) -> Engaging:
     freedoms = free @ right[: int(np.sum(sizes > SEEN))].T
     if not freedoms.shape[1]:
         raise InputError(f"moves.{move.name}: its relations leave nothing free where its pins engage: take a mate")
-    rows = np.ascontiguousarray(whole @ freedoms)
+    rows = np.ascontiguousarray(np.concatenate([whole @ freedoms, _bolt_rows(move, world, at)], axis=2))
     origin = rotated_back(start.turn, column(middle) - start.shift)[:, 0]
     relations = kept_of(mate, nominal, reach)
     kept = relations.kept_by(mate.seats(nominal))
@@ -220,6 +227,28 @@ def engaging(move: Engage, nominal: World) -> Engaging:
     _, undo = kept_motions(kept, start.turn[:, :, 0], reach, np.eye(6))
     floats = floats_of(move, world, freedoms, rows, middle, reach)
     return Engaging(move, mate, middle, reach, origin, freedoms, rows, floats, relations, undo)
+
+
+def _cones_of(own: Engagement) -> int:
+    return len(own.places) if own.bolt is None else len(own.places) + len(own.outer_places)
+
+
+def _bolt_rows(move: Engage, world: World, at: Array) -> Array:
+    """Change of nominal offsets at (cones, 3) by shifts and leans of bolts (cones, 2, 4 bolts)."""
+    bolts = [own for own in move.engagements if own.bolt is not None]
+    rows, start, number = np.zeros((len(at), 2, 4 * len(bolts))), 0, 0
+    for own in move.engagements:
+        if own.bolt is not None:
+            across = own.bolt.frame[:3, :2]
+            for k in range(_cones_of(own)):
+                name = own.inner if k < len(own.places) else own.outer
+                seen = world.placed(name).pose.turn[:, :2, 0].T @ across
+                height = (at[start + k] - own.bolt.frame[:3, 3]) @ own.bolt.frame[:3, 2]
+                columns = slice(4 * number, 4 * number + 4)
+                rows[start + k, :, columns] = np.concatenate([seen, height / own.bolt.reach * seen], axis=1)
+            number += 1
+        start += _cones_of(own)
+    return rows
 
 
 def _free(mate: Mating, world: World, start: Pose, middle: Array, reach: float) -> Array:

@@ -195,13 +195,27 @@ def reached(
 
 
 @nested
-def lain(place: Any, push: Any, strength: float, before: Any, basis: Any, done: Any, q: Any, rooms: Any) -> Any:
+def moves_part(basis: Any, parts: int, size: int) -> bool:
+    """Whether some freedom that is left moves the part, not its bolts alone."""
+    for j in range(parts):
+        for s in range(size):
+            if abs(basis[j, s]) > UNSEEN:
+                return True
+    return False
+
+
+@nested
+def lain(
+    place: Any, parts: int, push: Any, strength: float, before: Any, basis: Any, done: Any, q: Any, rooms: Any
+) -> Any:
     """Find the step q of a trial: whether it is found, the least slack of the centred pose, a cone that has it.
 
     Last of what it returns is how many freedoms the first round (of a push, that one) leaves open.
 
     Args:
         place: o_k (cones, 2), c_k (cones,), B_k (cones, 2, freedoms).
+        parts: how many of the freedoms, the first, are the part's; the others are of its bolts, and are centred as long
+            as the part is.
         push: (freedoms,).
         strength: largest amount of it; 0 for the centred pose.
         before: of the cones that decided at the pose before, multipliers and in which programme, 0 for none (cones,);
@@ -217,7 +231,7 @@ def lain(place: Any, push: Any, strength: float, before: Any, basis: Any, done: 
     while True:
         reduced(rows, basis, size, seen)
         count = seeing(seen, used, done, size)
-        if count == 0:
+        if count == 0 or not moves_part(basis, parts, size):
             if pushes > 0:
                 return True, slack, which, left
             slack, which = least_slack(place, q)
@@ -244,7 +258,7 @@ def lain(place: Any, push: Any, strength: float, before: Any, basis: Any, done: 
                 before[1][k] = 0
         size = narrowed(seen, used, basis, size, held)
         if pushes == 1 or left < 0:
-            left = size
+            left = size if moves_part(basis, parts, size) else 0
         pushes = 2 if pushes == 1 else pushes
 
 
@@ -304,7 +318,9 @@ def room_found(
         for k in range(cones):
             own[k, 0], own[k, 1], clear[k] = offsets[k, 0, i], offsets[k, 1, i], clearances[k, i]
             before[0][k], before[1][k] = multipliers[k, i], programmes[k, i]
-        found[i], slacks[i], deciding[i], _ = lain((own, clear, rows), push, strength, before, basis, done, q, rooms)
+        found[i], slacks[i], deciding[i], _ = lain(
+            (own, clear, rows), freedoms, push, strength, before, basis, done, q, rooms
+        )
         for k in range(cones):
             multipliers[k, i], programmes[k, i] = before[0][k], before[1][k]
         for j in range(freedoms):

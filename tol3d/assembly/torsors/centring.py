@@ -32,20 +32,28 @@ class Cones:
         offsets: b (places, 2, trials) [mm].
         clearances: c (places, trials) [mm].
         rows: B (places, 2, freedoms), of all trials.
+        bolt_of: of each place the bolt that it holds, -1 for none; empty where there are no bolts. The last freedoms
+            are four of each bolt, and are centred as long as the others are.
     """
 
     offsets: Array
     clearances: Array
     rows: Array
+    bolt_of: tuple[int, ...] = ()
 
     @property
     def freedoms(self) -> int:
         """How many."""
         return int(self.rows.shape[2])
 
-    def of(self, trials: Mask) -> "Cones":
+    @property
+    def parts(self) -> int:
+        """How many of them are the part's."""
+        return self.freedoms - 4 * (max(self.bolt_of, default=-1) + 1)
+
+    def of(self, trials: Mask | NDArray[np.intp]) -> "Cones":
         """Those of some of the trials."""
-        return Cones(self.offsets[:, :, trials], self.clearances[:, trials], self.rows)
+        return Cones(self.offsets[:, :, trials], self.clearances[:, trials], self.rows, self.bolt_of)
 
     def at(self, q: Array) -> Array:
         """Offsets (places, 2, trials) after freedoms (freedoms, trials)."""
@@ -80,6 +88,8 @@ def refined(cones: Cones, q: Array, free: Array, decided: Mask) -> Array:
         closed = np.eye(len(free))[:, :, None] - free
         sees = (np.abs(rows).max(axis=(1, 2)) > LOST) & ~decided[:, going]
         any_left = sees.any(axis=0)
+        if cones.bolt_of:
+            any_left &= np.abs(free[: cones.parts, :, going]).max(axis=(0, 1)) > LOST
         going, own, rows, sees = going[any_left], own.of(any_left), rows[..., any_left], sees[:, any_left]
         if not len(going):
             break

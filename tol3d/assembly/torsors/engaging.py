@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.assembly.model import Axis, Engage, Engagement, Floating, Mate
+from tol3d.assembly.model import Axis, Bolt, Engage, Engagement, Floating, Mate
 from tol3d.assembly.model.shape import nominal_size
 from tol3d.assembly.torsors.columns import without_rounding
 from tol3d.assembly.torsors.mating import freedoms_after
@@ -42,11 +42,16 @@ def engaged(move: Engage, world: World, whither: Array | None = None) -> World:
     to_torsor[3:, 3:] /= reach
     free = np.linalg.qr(np.linalg.solve(to_torsor, left))[0] if left.shape[1] else left
     offsets, clearances, ways = [], [], []
+    bolt_of, bolt_rows, bolts = list[int](), list[Array](), 0
     for own in move.engagements:
-        for rows, values, clearance in _places(own, before, move.part):
+        found = _places(own, before, move.part) if own.bolt is None else _bolted(own, own.bolt, before, move.part)
+        for rows, values, clearance, own_bolt in found:
             ways.append(rows @ to_torsor)
             offsets.append(values)
             clearances.append(clearance)
+            bolt_rows.append(own_bolt)
+            bolt_of.append(-1 if own.bolt is None else bolts)
+        bolts += own.bolt is not None
     whole = np.array(ways)
     _, strengths, right = np.linalg.svd((whole @ free).reshape(-1, free.shape[1]))
     free = free @ right[: int(np.sum(strengths > SEEN))].T
@@ -58,19 +63,51 @@ def engaged(move: Engage, world: World, whither: Array | None = None) -> World:
     if whither is not None:
         push, floating = whither, Floating("toward" if np.abs(whither).max() > SEEN else "centred")
     push = push / max(float(np.linalg.norm(push)), 1e-300)
-    made = world.columns.made_by(Room(forms, whole @ free, floating, free.T, push))
+    seen = np.concatenate([whole @ free, np.zeros((len(whole), 2, 4 * bolts))], axis=2)
+    for row, own_bolt, number in zip(seen, bolt_rows, bolt_of, strict=True):
+        if number >= 0:
+            row[:, free.shape[1] + 4 * number : free.shape[1] + 4 * number + 4] = own_bolt
+    push = np.concatenate([push, np.zeros(4 * bolts)])
+    made = world.columns.made_by(Room(forms, seen, floating, free.T, push, tuple(bolt_of) if bolts else ()))
     torsor = rest + to_torsor @ free @ made[:-1]
     return before.with_part_at(move.part, torsor).with_slack(move.name, made[-1])
 
 
 def _points(own: Engagement, world: World) -> Array:
     """Where it engages, nominally in the world (places, 3)."""
-    frame = world.frame(own.inner)
-    return own.places @ frame[:3, :3].T + frame[:3, 3]
+    frame, outer = world.frame(own.inner), world.frame(own.outer)
+    points = own.places @ frame[:3, :3].T + frame[:3, 3]
+    if own.bolt is None:
+        return points
+    return np.concatenate([points, own.outer_places @ outer[:3, :3].T + outer[:3, 3]])
 
 
-def _places(own: Engagement, world: World, part: str) -> Sequence[tuple[Array, Array, Array]]:
-    """Of each place: rows (2, 6) of the part's torsor, offsets (2, columns) and clearance (columns,)."""
+def _bolted(own: Engagement, bolt: Bolt, world: World, part: str) -> Sequence[tuple[Array, Array, Array, Array]]:
+    """As `_places`, of all ends of both holes of a bolt; last the rows (2, 4) of its two shifts and two leans.
+
+    An offset is of the bolt from the hole.
+    """
+    found, radius = [], world.columns.zeros(1)[0]
+    for contribution in bolt.size_by:
+        radius[contribution.columns] += contribution.matrix[0] / 2.0
+    for name, places in ((own.inner, own.places), (own.outer, own.outer_places)):
+        frame, moves = world.frame(name), world.is_of_body(name, part)
+        directions = frame[:3, :2].T
+        spare = ((nominal_size(world.assembly.features[name].shape) or 0.0) - bolt.diameter) / 2.0
+        clearance = world.size(name) / 2.0 - radius + world.columns.constants(np.array([spare]))[0]
+        for place in places:
+            point = frame[:3, :3] @ place + frame[:3, 3]
+            at, height = directions @ shift_at(point), (point - bolt.frame[:3, 3]) @ bolt.frame[:3, 2]
+            on_axis = bolt.frame[:3, 3] + height * bolt.frame[:3, 2]
+            values = world.columns.constants(directions @ (on_axis - point)) - at @ world.placed(name)
+            across = directions @ bolt.frame[:3, :2]
+            its_rows = np.concatenate([across, height / bolt.reach * across], axis=1)
+            found.append((-at if moves else np.zeros(at.shape), values, clearance, its_rows))
+    return found
+
+
+def _places(own: Engagement, world: World, part: str) -> Sequence[tuple[Array, Array, Array, Array]]:
+    """Of each place: rows (2, 6) of the part's torsor, offsets (2, columns), clearance (columns,); none of a bolt."""
     frame, features = world.frame(own.inner), world.assembly.features
     round_ = isinstance(features[own.inner].shape, Axis)
     directions = frame[:3, :2].T if round_ else np.array([frame[:3, 2], np.zeros(3)])
@@ -86,7 +123,7 @@ def _places(own: Engagement, world: World, part: str) -> Sequence[tuple[Array, A
         at = directions @ shift_at(point)
         apart = its_frame[:3, :3] @ place + its_frame[:3, 3] - point
         values = at @ relative + world.columns.constants(directions @ apart)
-        found.append((sign * at, values, clearance))
+        found.append((sign * at, values, clearance, np.zeros((2, 0))))
     return found
 
 

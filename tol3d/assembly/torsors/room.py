@@ -24,6 +24,7 @@ class Room:
         floating: where in its room it lies.
         directions: of what is drawn as a shift and a turn, the freedoms (freedoms, 6).
         push: the direction in which it goes as far as it can (freedoms,); 0 where it does not.
+        bolt_of: see Cones; the freedoms of bolts come after the part's.
     """
 
     forms: Array
@@ -31,17 +32,18 @@ class Room:
     floating: Floating
     directions: Array
     push: Array
+    bolt_of: tuple[int, ...] = ()
     form: Form = "place in a room"
 
     @property
     def count(self) -> int:
-        """Freedoms, and the slack."""
-        return int(self.rows.shape[2]) + 1
+        """Freedoms of the part, and the slack."""
+        return len(self.directions) + 1
 
     def values(self, read: Array) -> Array:
         """(freedoms + 1, trials) [mm]."""
         places = len(self.rows)
-        cones = Cones(read[: 2 * places].reshape(places, 2, -1), read[2 * places : 3 * places], self.rows)
+        cones = Cones(read[: 2 * places].reshape(places, 2, -1), read[2 * places : 3 * places], self.rows, self.bolt_of)
         q = centred(cones)
         slack = cones.slack(q)
         inside = slack > 0.0
@@ -54,4 +56,4 @@ class Room:
             else:
                 drawn = read[3 * places :, inside]
                 q[:, inside] = along_rays(own, q[:, inside], ordered_product(self.directions, drawn[:6]), drawn[6])
-        return np.concatenate([q, slack[None]])
+        return np.concatenate([q[: len(self.directions)], slack[None]])

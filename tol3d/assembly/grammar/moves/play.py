@@ -2,7 +2,7 @@
 
 from abc import abstractmethod
 from collections.abc import Iterator
-from typing import Annotated, Any, ClassVar, Literal
+from typing import Annotated, Any, ClassVar, Literal, Self
 
 from pydantic import BeforeValidator, Field, model_validator
 
@@ -10,12 +10,13 @@ from tol3d.assembly.grammar.feature_name import FeatureName, Use, part_of
 from tol3d.assembly.grammar.moves.mate import RelationSpec
 from tol3d.assembly.grammar.moves.placing_move import PairSpec, PlacingSpec
 from tol3d.assembly.grammar.parts import SolidSpec
+from tol3d.distributions import StatedDistribution
 from tol3d.scene.listed import listed
 from tol3d.scene.place import KeyPath
 from tol3d.scene.reference import Reference
 from tol3d.scene.vector import Direction
 from tol3d.strict import Strict, refused
-from tol3d.units import shown
+from tol3d.units import Of, Quantity, refuse_dimension, shown
 
 
 class EngagementSpec(PairSpec):
@@ -24,6 +25,49 @@ class EngagementSpec(PairSpec):
     over: Literal["from", "to"] | None = Field(
         default=None, description="whose ends are those of the engagement; of the stretch that both share if not given"
     )
+
+
+class BoltSpec(Strict):
+    """A bolt: a diameter with the law of its deviation, or a cylinder of a part with its size tolerance."""
+
+    words: ClassVar[str] = "a bolt"
+
+    of: FeatureName | None = Field(default=None, description="a pin of a part, such as screw.shank, instead of both")
+    diameter: Annotated[Quantity, Of("length")] | None = Field(default=None, description="nominal")
+    distribution: StatedDistribution | None = Field(default=None, description="the law of its deviation")
+
+    @model_validator(mode="after")
+    def _refuse_half_a_bolt(self) -> Self:
+        if (self.of is None) != (self.diameter is not None and self.distribution is not None):
+            raise refused("", "a diameter with its distribution, or a pin such as screw.shank", "both, or half of it")
+        if self.diameter is not None and not self.diameter.internal > 0.0:
+            raise refused("diameter", "a length above 0", str(self.diameter))
+        for field, quantity in self.distribution.quantities().items() if self.distribution is not None else ():
+            refuse_dimension(quantity, ("length",), f"distribution.{field}")
+        return self
+
+
+def _bolt(value: Any) -> Any:
+    """`screw.shank` as a BoltSpec's fields."""
+    if isinstance(value, str):
+        return {"of": value}
+    if isinstance(value, BoltSpec | dict):
+        return value
+    raise refused("", "a pin such as screw.shank, or {diameter: 8 mm, distribution: {..}}", shown(value))
+
+
+class PatternPairSpec(EngagementSpec):
+    """What engages in a pattern: also two holes with a bolt through both."""
+
+    bolt: Annotated[BoltSpec, BeforeValidator(_bolt, json_schema_input_type=str | BoltSpec)] | None = Field(
+        default=None, description="that goes through two holes, loose in both: a pin of a part, or its diameter and law"
+    )
+
+    @model_validator(mode="after")
+    def _refuse_over(self) -> Self:
+        if self.bolt is not None and self.over is not None:
+            raise refused("over", "none beside a bolt, which both holes hold at all their ends", self.over)
+        return self
 
 
 class CentredSpec(Strict):
@@ -117,14 +161,38 @@ class PinAndHoleSpec(PlaySpec):
 
 
 class PatternSpec(PlaySpec):
-    """Pins and tabs that go into their holes and slots together."""
+    """Pins and tabs that go into their holes and slots together, and holes that bolts go through."""
 
     words: ClassVar[str] = "a pattern"
 
     kind: Literal["pattern"]
-    pairs: Annotated[tuple[EngagementSpec, ...], listed("pairs", 1)]
+    pairs: Annotated[tuple[PatternPairSpec, ...], listed("pairs", 1)]
 
     @property
     def engaged(self) -> tuple[EngagementSpec, ...]:
         """See PlaySpec."""
         return self.pairs
+
+    def references(self) -> tuple[Reference, ...]:
+        """See PlaySpec."""
+        bolts = [(path, own) for path, own in self._bolts() if own.of is not None]
+        return super().references() + tuple(
+            Reference(path, part_of(own.of), (SolidSpec,)) for path, own in bolts if own.of is not None
+        )
+
+    def uses(self) -> Iterator[Use]:
+        """See PlaySpec."""
+        yield from super().uses()
+        for path, own in self._bolts():
+            if own.of is not None:
+                yield Use(path, own.of, ("cylinder",))
+
+    def file_names(self) -> Iterator[tuple[KeyPath, str]]:
+        """Those that laws of bolts read."""
+        yield from super().file_names()
+        for path, own in self._bolts():
+            if own.distribution is not None:
+                yield from (((*path, "distribution", field), name) for field, name in own.distribution.file_names())
+
+    def _bolts(self) -> Iterator[tuple[KeyPath, BoltSpec]]:
+        yield from ((("pairs", k, "bolt"), pair.bolt) for k, pair in enumerate(self.pairs) if pair.bolt is not None)
