@@ -260,7 +260,7 @@ def test_the_roads_differ_by_second_order(tmp_path: Path) -> None:
         own = trials.scaled(share)
         exact, linear = made.values(own), made.values(own, "analytic")
         far.append(max(float(np.abs(exact[name] - linear[name]).max()) for name in exact))
-    assert far[0] < 1e-4  # turns of 3e-3 over 20 mm
+    assert far[0] < 1.2e-4  # half the square of 4.4e-3, the largest turn of the hole in the box, over 12 mm
     assert far[1] == pytest.approx(far[0] / 4, rel=0.2)
 
 

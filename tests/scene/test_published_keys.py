@@ -28,6 +28,7 @@ STATED: Final = {
     "measures.*.deflection_um": "the scene states it",
     "planetary_sets.*.spring.*": "what follows of the scene's own spring",
     "measures.*.lever_mm": "the scene states it",
+    "measures.*.law_sigmas_um.*": "what follows of the scene's own zones and laws",
     "measures.*.lost_motion.arcmin_per_um": "the scene states it",
     "measures.*.reasons.*": "counts of words of this program: which pair decided what failed",
     "trains.*.stages.*.teeth": "the scene states it",

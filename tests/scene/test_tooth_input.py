@@ -40,7 +40,7 @@ def refused(folder: Path, tolerances: str, gears: str = SPUR) -> str:
     ("entry", "words"),
     [
         (f"{PITCH}, {WALK}", "limits: expected limits such as {iso_class: 5}, which the law fills, got none"),
-        (f"{PITCH}, limits: {{iso_class: 5}}", 'expected the key "law" here, found none'),
+        (f"{PITCH}, limits: {{iso_class: 5}}", 'expected the key "law" here, such as {kind: uniform}, found none'),
         (f"{PITCH}, limits: {{iso_class: 12}}, {WALK}", "iso_class: expected"),
         (
             f"{PITCH}, limits: {{single: 5 um}}, {WALK}",
