@@ -71,16 +71,15 @@ def test_a_drift_shows_in_the_sides_and_not_in_the_backlash(turns: float, expect
 @pytest.mark.parametrize("turns", [16.0, 17.0])
 def test_an_encoder_that_slips_shows_in_its_side_and_in_the_backlash(turns: float) -> None:
     found = slipped(REFERENCE, replace(RUN, turns=turns, noise=0.1 * ARCSEC), 7.3, 5.0)
-    takes = (
-        0.25 if turns > 16.0 else 0.3
-    )  # of a step what parts once and twice per turn take, where they bridge the end
+    # of a step what parts once and twice per turn take, where they bridge the end; and of the half-widths
+    takes, wide = (0.25, 0.25) if turns > 16.0 else (0.3, 0.45)
     assert arcsec(found.closure["back"].value) == pytest.approx(5.0, abs=takes)
     assert abs(arcsec(found.closure["drive"].value)) < 0.25
     assert arcsec(found.closure["backlash"].value) == pytest.approx(5.0, abs=takes)
     texts = [text for text in found.warnings if "does not close" in text]
     assert "the back side does not close: after the long period of 16 turns it has changed by" in texts[0]
     assert texts[1].startswith("the backlash does not close")
-    assert all(arcsec(own.half_width) < 1.5 * takes for own in found.closure.values())  # a single slip widens none
+    assert all(arcsec(own.half_width) < wide for own in found.closure.values())  # a single slip widens none
 
 
 def test_teeth_that_deviate_do_not_open_a_run_that_goes_on_after_the_long_period() -> None:
