@@ -66,7 +66,7 @@ class RandomTouch:
         return float(nominal + sum(float(deviations[own.columns].sum()) for own in feature.size_by)) / 2.0
 
     def pose(self, deviations: Array, steps: int = 1) -> Array | None:
-        """Of the part (4, 4), near its nominal one: nothing turns or shifts that contacts do not decide there.
+        """Of the part (4, 4), near its nominal one, where contacts decide: no more turn, nor shift of their middle.
 
         Args:
             deviations: (columns,) [mm].
@@ -76,11 +76,12 @@ class RandomTouch:
             None where contacts cannot be met.
         """
         start = self.assembly.part["part"].pose
+        middle = np.mean([self.assembly.features[own.moving].frame[:3, 3] for own in self.touch.contacts], axis=0)
 
         def posed(unknowns: Array) -> Array:
             made = np.eye(4)
             made[:3, :3] = Rotation.from_rotvec(unknowns[3:] / RADIUS).as_matrix() @ start[:3, :3]
-            made[:3, 3] = start[:3, 3] + unknowns[:3]
+            made[:3, 3] = start[:3, :3] @ middle + start[:3, 3] + unknowns[:3] - made[:3, :3] @ middle
             return made
 
         step = 1e-4

@@ -139,14 +139,18 @@ def largest_slack(offsets: Array, clearances: Array, rows: Array) -> float:
 def test_leaning_holes_leave_the_slack_of_a_cone_programme(
     at: tuple[tuple[float, float], ...], count: int, road: str, tmp_path: Path
 ) -> None:
-    """All freedoms of cover and bolts by scipy, to 1e-8 mm; the exact road by second order of leans of 0.03 more."""
+    """All freedoms of cover and bolts by scipy, to 1e-8 mm; the exact road by second order of leans of 0.03 more.
+
+    A hole's end is 5 mm times 0.03^2 / 2 nearer its middle then, where a bolt that leans by 0.06 against the hole is
+    1.35e-4 mm off.
+    """
     made = joint(at, tmp_path, zones=True)
     rows = drawn(made.simulation, 0, count).deviations
     found = read(made, rows, road)
     for k, row in enumerate(rows):
         holes, bolts = row[: 10 * len(at)].reshape(len(at), 2, 5), row[10 * len(at) :]
         own = programme(np.array(at), holes[:, :, :2], holes[:, :, 2:4], 8.4 + holes[:, :, 4], 8 + bolts)
-        assert found[k] == pytest.approx(largest_slack(*own), abs=1e-8 if road == "analytic" else 1e-4)
+        assert found[k] == pytest.approx(largest_slack(*own), abs=1e-8 if road == "analytic" else 1.35e-4)
 
 
 def test_bolts_one_by_one_fail_twenty_times_too_often(tmp_path: Path) -> None:

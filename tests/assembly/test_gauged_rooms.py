@@ -96,32 +96,32 @@ def rows_of(end: tuple[Array, Array, Array]) -> Array:
 def least(kept: Sequence[str], at: Sequence[str], measured: str, own: dict[str, float]) -> float:
     """Twice the least largest distance of the ends, by linear programmes over the motions (6,) of the part."""
     start, free = np.zeros(6), np.eye(6)
-    for name in kept:  # a floor flat on its gauge, a bore with its middle in its place
+    for name in kept:  # a floor flat on its gauge, a bore with its middle in its place: the least turn, then the shift
         where, shape, _ = SHAPES[name]
         (x, y, z, place), moved = where[:3, :4].T, [own[f"p.{name} {c}"] for c in shape.components]
-        turns = [[0, 0, 0, *x], [0, 0, 0, *y]]
+        turns = np.array([[0, 0, 0, *x], [0, 0, 0, *y]])
+        shifts = np.array([[*d, *np.cross(place, d)] for d in (x, y, z)])
         if isinstance(shape, Axis):
-            middle = [(moved[0] + moved[2]) / 2, (moved[1] + moved[3]) / 2]
-            asked = np.array([[*d, *np.cross(place, d)] for d in (x, y)]), np.array(middle)
-            lean = np.array(turns), np.array([moved[1] - moved[3], moved[2] - moved[0]]) / shape.length
-            steps = [asked, lean]
+            slopes = np.array([moved[1] - moved[3], moved[2] - moved[0]]) / shape.length
+            held, off = shifts[:2], np.array([(moved[0] + moved[2]) / 2, (moved[1] + moved[3]) / 2, 0.0])
         else:
             assert isinstance(shape, Plane)
             slopes = np.array([moved[2] / shape.reach[1], -moved[1] / shape.reach[0]])
-            steps = [(np.array(turns), slopes), (np.array([[*z, *np.cross(place, z)]]), np.array(moved[:1]))]
-        for rows, off in steps:
-            acts = np.where(np.abs(rows @ free) < 1e-9, 0.0, rows @ free)
-            start = start - free @ np.linalg.pinv(acts, rcond=1e-9) @ (off + rows @ start)
-            free = free @ np.linalg.svd(acts)[2][np.linalg.matrix_rank(acts, tol=1e-9) :].T
+            held, off = shifts[2:], np.array([0.0, 0.0, moved[0]])
+        start = start - free @ solved_by(turns @ free, slopes + turns @ start)
+        free = without(free, turns)
+        pure = without(free, np.eye(6)[3:])
+        start = start - pure @ solved_by(shifts @ pure, off + shifts @ start)
+        free = without(free, held)
     seen = np.concatenate([rows_of(end) for name in at for end in ends(name, own)]) @ free
     _, sizes, right = np.linalg.svd(seen)
     rank = int((sizes > 1e-6).sum())
     free, other = free @ right[:rank].T, free @ right[rank:].T
-    # what no gauge sees turns least, and then shifts the origin least
-    for rows in (np.eye(6)[3:], np.eye(6)[:3]):
-        acts = np.where(np.abs(rows @ other) < 1e-9, 0.0, rows @ other)
-        free = free - other @ np.linalg.pinv(acts, rcond=1e-9) @ rows @ free
-        other = other @ np.linalg.svd(acts)[2][np.linalg.matrix_rank(acts, tol=1e-9) :].T
+    # what no gauge sees turns least, and then shifts the middle of the gauges' ends least
+    middle = np.mean([end[0] for name in at for end in ends(name, own)], axis=0)
+    for rows in (np.eye(6)[3:], np.array([[*d, *np.cross(middle, d)] for d in np.eye(3)])):
+        free = free - other @ solved_by(rows @ other, rows @ free)
+        other = without(other, rows)
 
     cones = []  # |b + a u| <= clearance + weight t
     for name in at:
@@ -130,6 +130,17 @@ def least(kept: Sequence[str], at: Sequence[str], measured: str, own: dict[str, 
     cones += [(end, 0.0, 1.0) for end in ends(measured, own)]
     given = [(rows_of(end) @ free, end[2] + rows_of(end) @ start, clear, t) for end, clear, t in cones]
     return 2 * smallest(given)
+
+
+def solved_by(acts: Array, asked: Array) -> Array:
+    """The least amounts that do what is asked, as far as they can."""
+    return np.asarray(np.linalg.pinv(np.where(np.abs(acts) < 1e-9, 0.0, acts), rcond=1e-9) @ asked)
+
+
+def without(free: Array, rows: Array) -> Array:
+    """Those of the motions (6, k) on which rows (n, 6) do not act."""
+    acts = np.where(np.abs(rows @ free) < 1e-9, 0.0, rows @ free)
+    return free @ np.asarray(np.linalg.svd(acts)[2][np.linalg.matrix_rank(acts, tol=1e-9) :].T)
 
 
 def smallest(cones: Sequence[tuple[Array, Array, float, float]]) -> float:
