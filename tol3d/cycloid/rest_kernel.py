@@ -17,6 +17,7 @@ import numpy as np
 from tol3d.cycloid.contact_newton import ContactShape
 from tol3d.cycloid.rest_rows import ARM, ROOM, TURNS, based, bearing_at, mesh_written, pins_written, working_pins
 from tol3d.numerics.compiled import kernel, part
+from tol3d.numerics.loops import fill
 from tol3d.numerics.programme import NO_ROOM, OK, STALLED, farthest
 
 NOT_HELD: Final = 3
@@ -63,8 +64,9 @@ def room_written(count: int, discs: int, near: float, z: Any, lower: Any, upper:
 def bend_kept(pin: int, gap: float, row: Any, z: Any, bend: Any) -> None:
     """Keep the tangent of a pin's gap: slopes, gap at z = 0, and the row of the pin."""
     count = z.shape[0]
-    bend[:count], bend[count], bend[count + 1] = row, gap, float(pin)
+    bend[count], bend[count + 1] = gap, float(pin)
     for j in range(count):
+        bend[j] = row[j]
         bend[count] -= row[j] * z[j]
 
 
@@ -80,9 +82,11 @@ def bend_written(bend: Any, z: Any, row: int, rows: Any, lower: Any, upper: Any)
     for j in range(count):
         value += bend[j] * z[j]
     if value < -lower[pin] - MET:
-        bend[:count], bend[count] = 0.0, ROOM
-        value = ROOM
-    rows[row] = bend[:count]
+        for j in range(count):
+            bend[j] = 0.0
+        bend[count] = value = ROOM
+    for j in range(count):
+        rows[row, j] = bend[j]
     lower[row], upper[row] = -value, ROOM * ARM
 
 
@@ -127,9 +131,12 @@ def rested(
     pinned = count + 2 * cranks
     first = pinned + working.shape[0]
     cuts = begin_planes(bearings, planes)
-    bends[:, count + 1], z[:], x[:] = 0.0, 0.0, 0.0
+    for k in range(bends.shape[0]):
+        bends[k, count + 1] = 0.0
+    fill(z, 0.0)
+    fill(x, 0.0)
     begin(count, basis, solving[2])
-    across[2, :] = 0.0
+    fill(across[2], 0.0)
     across[2, 0] = sense
     more, near = NEAR, 2.0 * ROOM
     for step in range(MOST_STEPS):
@@ -236,14 +243,16 @@ def rests(
             based(stage, linkage[i], made, base[0], base[1])
             number = working_pins(shape, throws, phis[i, p], sense, working)
             for k in range(count):
-                rows[k, :] = 0.0
+                fill(rows[k], 0.0)
                 rows[k, k] = 1.0
-            upper[pinned : pinned + number] = ROOM * ARM
+            for k in range(number):
+                upper[pinned + k] = ROOM * ARM
             status[i, p], turns[i, p] = rested(
                 shape, stage, throws, made, base, pins, (radial[i], (free[i, p], leaving[0], leaving[1])),
                 working[:number], sense, rooms,
             )  # fmt: skip
-            loads[i, p, :], near[i, p] = 0.0, 0
+            near[i, p] = 0
+            fill(loads[i, p], 0.0)
             if status[i, p] == OK:
                 note(pinned, working[:number], rooms[3], solving[3], rooms[9], loads[i, p])
                 for k in range(number):

@@ -6,6 +6,7 @@ import numpy as np
 
 from tol3d.cycloid.contact_newton import TURN, lobe_at, lobe_turn, placed
 from tol3d.numerics.compiled import part
+from tol3d.numerics.loops import fill
 
 ARM: Final = 100.0  # mm; turns count as lengths there, so that all rows are of one size
 ROOM: Final = 1.0  # mm, on either side of where it would be nominally
@@ -63,7 +64,7 @@ def bearing_at(stage: Any, made: Any, base: Any, z: Any, bearing: int, row: Any)
     discs, cranks, rolling, phi, chi = stage
     holes, thrown, bored = made
     poses, axes = base
-    row[:] = 0.0
+    fill(row, 0.0)
     if bearing < cranks * discs:
         i, d = bearing // discs, bearing % discs
         at, own = 1 + 3 * d, 1 + 3 * discs + 3 * i
@@ -163,7 +164,7 @@ def pins_written(
         slope_x, slope_y = pose[0] * leans[d, 0] - pose[1] * leans[d, 1], pose[1] * leans[d, 0] + pose[0] * leans[d, 1]
         gap -= abs(by_x * slope_x + by_y * slope_y) * leans[d, 2]  # the face of a leaning disc that is nearer
         row = rows[begun + r]
-        row[:] = 0.0
+        fill(row, 0.0)
         row[at], row[at + 1], row[at + 2] = by_x, by_y, by_turn / ARM
         lower[begun + r] = -gap
         deepest = max(deepest, -gap)

@@ -92,6 +92,12 @@ class Part(CPUDispatcher):
         """Do what its lines say."""
         return self.py_func(*arguments)
 
+    def get_call_template(self, args: Any, kws: Any) -> Any:
+        """Compile it once for numbers that are written out and for those that are not: numba by itself does both."""
+        types: Any = numba_types
+        template: Any = super()
+        return template.get_call_template(tuple(map(types.unliteral, args)), kws)
+
 
 def part(function: Function) -> Function:
     """A function that kernels are made of: compiled into them, for whatever they hand it."""

@@ -14,6 +14,7 @@ from tol3d.assembly.placing.rests import LOST, RESTS, begin
 from tol3d.assembly.placing.tilted_motions import motion_rows, shifted
 from tol3d.assembly.placing.tilted_rests import PIERCED
 from tol3d.numerics.compiled import kernel, nested
+from tol3d.numerics.loops import copy_matrix, fill_matrix
 
 STEPS: Final = 30
 WAY: Final = 0.02
@@ -46,7 +47,7 @@ def linearised(pose: Any, trial: Any, reach: float, chosen: Any, shares: Any, pr
     motions, by = pull.shape[0], NUDGE * reach
     for n in range(2 * motions + 1):
         j, side = (n - 1) // 2, (n - 1) % 2
-        near[:] = pose
+        copy_matrix(near, pose)
         if n > 0:
             for k in range(motions):
                 motion[k] = 0.0
@@ -54,8 +55,8 @@ def linearised(pose: Any, trial: Any, reach: float, chosen: Any, shares: Any, pr
             shifted(near, trial, reach, motion, base, step)
         lacking(near, trial, reach, chosen, shares, programme, ends[side])
         if n == 0:
-            matrix[:] = 0.0
-            base[:] = tangents
+            fill_matrix(matrix, 0.0)
+            copy_matrix(base, tangents)
             for r in range(right.shape[0]):
                 right[r] = -ends[side, r]
             for c in range(shares.shape[0]):

@@ -11,6 +11,7 @@ import numpy as np
 
 from tol3d.assembly.placing.rooms import at_step, new_rooms, reached, started
 from tol3d.numerics.compiled import nested
+from tol3d.numerics.loops import fill
 
 ENDS: Final = 4
 """Of both holes of a bolt; and its unknowns."""
@@ -27,8 +28,11 @@ def bolt_slack(own: Any, t: float, rooms: Any) -> Any:
     """The largest slack of a bolt after a way t, and its change; not a number if it is not found."""
     offsets, clearances, rows, gone, at, q = own
     _, used, y, z, found, _, inner = rooms
-    used[:], q[:] = True, 0.0
-    at[:] = offsets + t * gone
+    fill(used, True)
+    fill(q, 0.0)
+    for k in range(ENDS):
+        for c in range(2):
+            at[k, c] = offsets[k, c] + t * gone[k, c]
     started((at, clearances, rows), q, used, y, z, ENDS, 1, 1.0)
     if not reached((at, clearances, rows), q, (y, z, rows, used), ENDS, 1, 1.0, q, found, inner):
         return np.nan, np.nan
@@ -75,23 +79,18 @@ def bolt_way(place: Any, bolt_of: Any, bolt: int, drawn: Any, i: int, most: floa
         n += 1
     if not fastest > STILL:
         return most
-    t = 0.0
-    slack, slope = bolt_slack(own, t, inner)
-    if slack > 0.0:
-        t = 2.0 * widest / fastest
-        for _ in range(STEPS):
-            t = min(t, most)
-            slack, slope = bolt_slack(own, t, inner)
-            if slack <= 0.0:
-                break
+    t, ahead, slack = 0.0, 2.0 * widest / fastest, np.nan  # ways are doubled until one is too long
+    for _ in range(2 * STEPS):
+        slack, slope = bolt_slack(own, t, inner)
+        if slack > 0.0 and ahead > 0.0:
             if t >= most:
                 return most
-            t *= 2.0
-    for _ in range(STEPS):
+            t, ahead = min(ahead, most), 2.0 * ahead
+            continue
+        ahead = 0.0
         if slack >= -MET * widest or not slope < 0.0:
             break
         t -= slack / slope
-        slack, slope = bolt_slack(own, t, inner)
     return t if np.isfinite(slack) else np.nan
 
 

@@ -10,6 +10,7 @@ from typing import Any, Final
 import numpy as np
 
 from tol3d.numerics.compiled import nested
+from tol3d.numerics.loops import fill
 
 STEPS: Final = 60
 """Of interior points, 8 to 15 in practice."""
@@ -250,7 +251,7 @@ def ended(cones: Any, size: int, lifts: int, goal: Any, scale: float, weight: fl
     """
     y, z, _, used = cones
     matrix, step, at, own, _, gone = rooms
-    gone[:] = 0.0
+    fill(gone, 0.0)
     for k in range(y.shape[0]):
         at[k, 0], at[k, 1], at[k, 2] = y[k, 0], y[k, 1], y[k, 2]
         own[k, 1] = weight * STIFF / scale if own[k, 0] > 0.0 else 0.0
@@ -297,7 +298,7 @@ def climbed(cones: Any, size: int, lifts: int, careful: bool, goal: Any, found: 
     if not lifts:
         for r in range(size):
             weight = max(weight, abs(goal[r]))
-    found[:] = 0.0
+    fill(found, 0.0)
     for _ in range(CAREFUL_STEPS if careful else STEPS):
         gap = 0.0
         for k in range(y.shape[0]):

@@ -10,6 +10,7 @@ from typing import Any, Final
 import numpy as np
 
 from tol3d.numerics.compiled import nested
+from tol3d.numerics.loops import fill_matrix
 
 POINT_PLANE: Final = 0
 PLANE_POINT: Final = 1
@@ -179,7 +180,8 @@ def equations(pose: Any, asked: Any, errors: Any, rows: Any, rooms: Any) -> None
     kinds, signs, length = asked[:3]
     ours, theirs, totals, sides, normal = rooms
     arm, along, other, apart, _ = sides
-    rows[:], e = 0.0, 0
+    fill_matrix(rows, 0.0)
+    e = 0
     for c in range(kinds.shape[0]):
         for r in range(3):
             arm[r] = pose[r, 0] * ours[c, 0] + pose[r, 1] * ours[c, 1] + pose[r, 2] * ours[c, 2]

@@ -11,6 +11,7 @@ import numpy as np
 
 from tol3d.assembly.placing.pose_steps import solved, stepped
 from tol3d.numerics.compiled import kernel, nested
+from tol3d.numerics.loops import copy_matrix
 
 CHORDS: Final = 14
 """Steps with the nominal inverse before Newton's method; a turn of 1e-2 takes seven."""
@@ -104,10 +105,10 @@ def contacts_met(
     rooms = (np.empty((6, 3)), np.empty(6), np.empty(6), np.empty((6, 6)))
     pose = np.empty((3, 4))
     for i in range(met.shape[0]):
-        pose[:] = start
+        copy_matrix(pose, start)
         found = by_chords(pose, contacts, i, inverse, reach, rooms)
         if not found:
-            pose[:] = start
+            copy_matrix(pose, start)
             found = by_newton(pose, contacts, i, reach, rooms)
         met[i] = found
         for r in range(3):

@@ -9,6 +9,7 @@ import numpy as np
 
 from tol3d.assembly.placing.one_sided_gaps import wrench
 from tol3d.numerics.compiled import nested
+from tol3d.numerics.loops import copy_matrix
 
 PIN_IN_HOLE: Final = 0
 PIN_IN_SLOT: Final = 1
@@ -133,7 +134,7 @@ def kept_tangents(pose: Any, kept: Any, i: int, steps: Any, reach: float, tangen
     """Motions (6, freedoms) that change nothing of what is kept, to LEFT; as `one_sided_gaps.tangents_at`."""
     vectors, normals, shifts, undo, _ = kept
     _, arm, normal, _, row, change = rooms
-    tangents[:] = steps
+    copy_matrix(tangents, steps)
     largest, before = 0.0 if shifts.shape[0] == 0 else 1.0, np.inf
     while largest > LEFT and largest < before:
         before, largest = largest, 0.0
@@ -175,7 +176,7 @@ def rows_here(
                 rows[k, c, f] = nominal_rows[k, c, f] if nominal else 0.0
     places_at(pose, engaged, i, reach, place, all_rows, nominal)
     if nominal:
-        tangents[:] = steps
+        copy_matrix(tangents, steps)
     elif turned:
         kept_tangents(pose, kept, i, steps, reach, tangents, place[3])
     for k in range(rows.shape[0]):

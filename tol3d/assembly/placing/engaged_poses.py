@@ -16,6 +16,7 @@ from tol3d.assembly.placing.pose_steps import stepped
 from tol3d.assembly.placing.rests import begin
 from tol3d.assembly.placing.rooms import lain, new_rooms
 from tol3d.numerics.compiled import kernel, nested
+from tol3d.numerics.loops import copy_matrix, fill, fill_matrix
 
 ROUNDS: Final = 40
 """How often a pose is corrected, 2 or 3 in practice; each time leaves a turn's share of what it corrects."""
@@ -139,7 +140,7 @@ def stays(pose: Any, start: Any, mode: int, trial: Any, reach: float, goal: Any,
         if mode == STRAYED:
             for f in range(freedoms):
                 q[f] = gone * drawn[f, i] * (drawn[freedoms, i] if ends else 1.0)
-            pose[:] = start
+            copy_matrix(pose, start)
         moved_on(pose, trial, reach, q, tangents, step)
         if ends:
             return True, slack, which
@@ -153,7 +154,7 @@ def lies(pose: Any, trial: Any, reach: float, goal: Any, rooms: Any) -> Any:
     mode, slack, which, start = CENTRED, 0.0, 0, rooms[10]
     pushes, drawn = goal[0], goal[4]
     while mode != DONE:
-        start[:] = pose
+        copy_matrix(start, pose)
         found, least, decides = stays(pose, start, mode, trial, reach, goal, rooms)
         if not found:
             return False, slack, which
@@ -237,7 +238,9 @@ def engaged_poses_found(
     goal = (pushes, push, point, along, drawn)
     for i in range(found.shape[0]):
         begin(pose, first, start, i, kept)
-        rooms[6][1][:], rooms[4][:], rooms[0][4][:] = 0, 0.0, 0.0
+        fill(rooms[6][1], 0)
+        fill(rooms[4], 0.0)
+        fill_matrix(rooms[0][4], 0.0)
         found[i], slacks[i], deciding[i] = lies(pose, (engaged, i, kept, steps, rows), reach, goal, rooms)
         for r in range(3):
             shifts[r, i] = pose[r, 3]

@@ -12,6 +12,7 @@ import numpy as np
 
 from tol3d.assembly.placing.pose_steps import solved, stepped
 from tol3d.numerics.compiled import kernel, nested
+from tol3d.numerics.loops import copy_matrix, fill, fill_matrix
 
 STEPS: Final = 80
 MET: Final = 1e-13
@@ -72,7 +73,8 @@ def by_squares(pose: Any, fits: Any, i: int, basis: Any, reach: float, rooms: An
     matrix, right, arm, residual, rows, step, _ = rooms
     weights, count = fits[3], basis.shape[1]
     for _ in range(STEPS):
-        matrix[:], right[:] = 0.0, 0.0
+        fill_matrix(matrix, 0.0)
+        fill(right, 0.0)
         for f in range(weights.shape[0]):
             residual_of(pose, fits, f, i, arm, residual)
             rows_of(fits, f, i, arm, basis, reach, rows)
@@ -102,7 +104,8 @@ def barrier_step(pose: Any, top: float, share: float, fits: Any, i: int, basis: 
     """Newton's step to a barrier's centre, that of T last; its decrement squared, negative where there is none."""
     matrix, right, arm, residual, rows, _, pull = rooms
     count = basis.shape[1]
-    matrix[:], right[:] = 0.0, 0.0
+    fill_matrix(matrix, 0.0)
+    fill(right, 0.0)
     right[count] = -1.0 / share
     for f in range(fits[3].shape[0]):
         room = top * top - residual_of(pose, fits, f, i, arm, residual)
@@ -145,13 +148,13 @@ def by_barriers(pose: Any, fits: Any, i: int, basis: Any, reach: float, rooms: A
                 return False
             length = 1.0 / (1.0 + np.sqrt(decrement))
             for _ in range(STEPS):  # inside, for the barrier is of finite turns
-                trial[:] = pose
+                copy_matrix(trial, pose)
                 moved(trial, basis, right, length, reach, step)
                 its_top = top + length * right[count]
                 if its_top > 0.0 and its_top * its_top > largest(trial, fits, i, arm, residual):
                     break
                 length = length / 2
-            pose[:] = trial
+            copy_matrix(pose, trial)
             top = its_top
             if decrement < CENTRED:
                 break
@@ -216,7 +219,7 @@ def least_squares(
     """
     fits, rooms, pose = (points, targets, directions, weights), new_rooms(basis.shape[1]), np.empty((3, 4))
     for i in range(met.shape[0]):
-        pose[:] = start
+        copy_matrix(pose, start)
         kept(pose, by_squares(pose, fits, i, basis, reach, rooms), i, turns, shifts, met)
 
 
@@ -236,6 +239,6 @@ def least_largest(
     """Poses of the least largest residual; see `least_squares`, whose weights count for where it starts only."""
     fits, rooms, pose = (points, targets, directions, weights), new_rooms(basis.shape[1]), np.empty((3, 4))
     for i in range(met.shape[0]):
-        pose[:] = start
+        copy_matrix(pose, start)
         found = by_squares(pose, fits, i, basis, reach, rooms) and by_barriers(pose, fits, i, basis, reach, rooms)
         kept(pose, found, i, turns, shifts, met)

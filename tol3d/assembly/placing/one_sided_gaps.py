@@ -6,6 +6,7 @@ import numpy as np
 
 from tol3d.assembly.placing.pose_steps import stepped
 from tol3d.numerics.compiled import nested
+from tol3d.numerics.loops import copy_matrix, fill
 
 MET: Final = 1e-13
 """Step [rad, and mm a mm of reach] after which a trial is done."""
@@ -92,7 +93,7 @@ def tangents_at(pose: Any, kept: Any, i: int, steps: Any, reach: float, tangents
     The nominal ones do nearly; what they change is undone by nominal steps, which leaves less by the turn each time.
     """
     vectors, normals, shifts, undo, _ = kept
-    tangents[:] = steps
+    copy_matrix(tangents, steps)
     arm, normal, row = np.empty(3), np.empty(3), np.empty(6)
     change = np.empty((shifts.shape[0], steps.shape[1]))
     largest, before = 0.0 if shifts.shape[0] == 0 else 1.0, np.inf
@@ -119,7 +120,7 @@ def tangents_at(pose: Any, kept: Any, i: int, steps: Any, reach: float, tangents
 def undoing(pose: Any, kept: Any, i: int, step: Any) -> None:
     """The step (6,), turn by reach and shift, that undoes a change of what is kept."""
     vectors, normals, shifts, undo, first = kept
-    step[:] = 0.0
+    fill(step, 0.0)
     for e in range(first.shape[0]):
         change = kept_at(pose, (vectors, normals, shifts), e, i) - first[e]
         for r in range(6):

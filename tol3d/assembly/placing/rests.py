@@ -15,6 +15,7 @@ from tol3d.assembly.placing.farthest_motion import TIED, farthest
 from tol3d.assembly.placing.one_sided_gaps import MET, gap_of, kept_at, pull_at, rows_at, tangents_at, undoing
 from tol3d.assembly.placing.pose_steps import solved, stepped
 from tol3d.numerics.compiled import kernel, nested
+from tol3d.numerics.loops import copy, copy_matrix
 
 STEPS: Final = 60
 RESTS: Final = 0
@@ -88,7 +89,10 @@ def pressed(
 def begin(pose: Any, first: Any, start: Any, i: int, kept: Any) -> None:
     """Put the pose as it begins, and note what is kept there."""
     vectors, normals, shifts, _, _ = kept
-    pose[:] = start[:, :, min(i, start.shape[2] - 1)]
+    at = min(i, start.shape[2] - 1)
+    for r in range(3):
+        for c in range(4):
+            pose[r, c] = start[r, c, at]
     for e in range(first.shape[0]):
         first[e] = kept_at(pose, (vectors, normals, shifts), e, i)
 
@@ -169,7 +173,9 @@ def rests_found(
     there = (np.empty((count, 6)), np.empty(6), np.empty((6, motions)), np.empty((motions, motions)), np.empty(motions))
     for i in range(outcomes.shape[0]):
         begin(pose, first, start, i, kept)
-        begun[0][:], begun[1][:], begun[2][:] = first_basis, first_inverse, first_loads
+        copy(begun[0], first_basis)
+        copy_matrix(begun[1], first_inverse)
+        copy_matrix(begun[2], first_loads)
         outcome = settled(pose, contacts, i, on_part, kept, programme, begun, rooms, reach)
         if outcome == RESTS and not pressed(pose, contacts, i, on_part, kept, (force, at), steps, begun, there, reach):
             outcome = LOST

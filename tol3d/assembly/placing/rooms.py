@@ -12,6 +12,7 @@ import numpy as np
 
 from tol3d.assembly.placing.cones import climbed, ended
 from tol3d.numerics.compiled import FULL, kernel, nested
+from tol3d.numerics.loops import fill
 
 HELD: Final = 1e-6
 """Multiplier (they sum to 1) over which a cone is tight."""
@@ -148,7 +149,7 @@ def least_slack(place: Any, q: Any) -> Any:
 @nested
 def opened(basis: Any, done: Any) -> int:
     """Make all freedoms free, and no cone held; how many freedoms there are."""
-    done[:] = False
+    fill(done, False)
     for j in range(basis.shape[0]):
         for s in range(basis.shape[0]):
             basis[j, s] = 1.0 if s == j else 0.0
@@ -171,7 +172,7 @@ def again(cones: Any, size: int, before: Any, turn: int, found: Any, rooms: Any)
         own[k, 0] = before[0][k] if decided else 0.0
         some = some or decided
         scale = max(scale, y[k, 0] if used[k] else 0.0)
-    found[:] = 0.0
+    fill(found, 0.0)
     return some and ended(cones, size, 1, before[0], scale, 1.0, found, rooms)
 
 
@@ -227,7 +228,7 @@ def lain(
     rows = place[2]
     slack, which, pushes, turn, left = 0.0, 0, 0, 0, -1  # it pushes: then 1, and 2 after it
     size = opened(basis, done)
-    q[:] = 0.0
+    fill(q, 0.0)
     while True:
         reduced(rows, basis, size, seen)
         count = seeing(seen, used, done, size)

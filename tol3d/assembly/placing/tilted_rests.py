@@ -16,6 +16,7 @@ from tol3d.assembly.placing.one_sided_gaps import MET, gap_of, pull_at
 from tol3d.assembly.placing.rests import BETWEEN, CLASHES, LOST, RESTS, TIPS, begin, note
 from tol3d.assembly.placing.tilted_motions import motion_rows, shifted
 from tol3d.numerics.compiled import kernel, nested
+from tol3d.numerics.loops import copy_matrix
 
 STEPS: Final = 300
 SEARCH: Final = 0.05
@@ -123,7 +124,7 @@ def found_rest(
         gain = dear * (deepest - motion[motions])
         for j in range(motions):
             gain += programme[3][j] * motion[j]
-        there[:] = pose
+        copy_matrix(there, pose)
         length = shifted(there, trial, reach, motion, programme[2], step)
         bounded = boxed_in(basis, loads, contacts, motions)
         if length <= MET and not bounded:
@@ -135,7 +136,7 @@ def found_rest(
             continue
         its_cost, _ = cost_of(there, trial, reach, dear, rooms)
         if cost - its_cost >= 0.1 * gain - ROUNDING * reach:
-            pose[:] = there
+            copy_matrix(pose, there)
             if bounded and cost - its_cost > 0.75 * gain:
                 box = min(2.0 * box, most)
             if far_from(pose, start, reach):
@@ -192,7 +193,7 @@ def tilted_rests_found(
         for _ in range(TRIES):
             if outcome == TIPS:
                 begin(pose, first, start, i, kept)
-                begin_at[:] = pose
+                copy_matrix(begin_at, pose)
                 outcome = found_rest(pose, begin_at, trial, reach, box, begun, programme, rooms, own)
                 box = box / 8.0
         outcomes[i] = outcome

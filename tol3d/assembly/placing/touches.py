@@ -14,6 +14,7 @@ from tol3d.assembly.model.statuses import NO_CONTACT, OK, SINGULAR
 from tol3d.assembly.placing.contact_equations import asked_of, count_of, equations, new_sides
 from tol3d.assembly.placing.pose_steps import NO_PIVOT, solved, turned_by
 from tol3d.numerics.compiled import kernel, nested
+from tol3d.numerics.loops import copy, copy_matrix, fill
 
 STEPS: Final = 60
 MET: Final = 1e-13
@@ -42,7 +43,7 @@ def posed(start: Any, basis: Any, reach: float, amounts: Any, pose: Any, moves: 
             moves[r, 0] += basis[r, s] * amounts[s]
     a, b, c = moves[3, 0] / reach, moves[4, 0] / reach, moves[5, 0] / reach
     x, y, z = moves[0, 0], moves[1, 0], moves[2, 0]
-    pose[:] = start
+    copy_matrix(pose, start)
     turned_by(pose, a, b, c)
     pose[0, 3] += x
     pose[1, 3] += y
@@ -131,7 +132,8 @@ def end_of(amounts: Any, kept: Any, asked: Any, i: int, side: float, about: Any,
     start, basis, reach, _ = about
     pose, moves, _, rows, matrix, _, _ = rooms
     done, share, falling = 0.0, 1.0, FALLING
-    amounts[:], kept[:] = 0.0, 0.0
+    fill(amounts, 0.0)
+    fill(kept, 0.0)
     while share >= LEAST_SHARE:
         following = min(1.0, done + share)
         met = by_steps(amounts, asked, i, following, falling, about, rooms)
@@ -144,11 +146,11 @@ def end_of(amounts: Any, kept: Any, asked: Any, i: int, side: float, about: Any,
             met = False
         if met:
             done, share = following, 2 * share
-            kept[:] = amounts
+            copy(kept, amounts)
         else:
             share = FIRST_SHARE if falling == FALLING else share / 2
             falling = FOLLOWING
-            amounts[:] = kept
+            copy(amounts, kept)
     return NOWHERE
 
 

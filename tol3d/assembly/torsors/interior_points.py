@@ -10,6 +10,7 @@ import numpy as np
 
 from tol3d.assembly.torsors.meeting import solved
 from tol3d.numerics.compiled import FULL, kernel, nested
+from tol3d.numerics.loops import fill
 
 GAP: Final = 1e-12
 """Of the largest room: by how much the slack may be better."""
@@ -126,7 +127,7 @@ def climb(cones: Any, trial: Any, goal: Any, lifts: int, state: Any, system: Any
     rows, counts, _ = trial
     dy, dz = state[4], state[5]
     scale, owed, used = 0.0, 1.0, 0
-    gone[:] = 0.0
+    fill(gone, 0.0)
     for k in range(y.shape[0]):
         if counts[k]:
             scale, used = max(scale, y[k, 0]), used + 1

@@ -11,6 +11,7 @@ import numpy as np
 
 from tol3d.assembly.torsors.meeting import balance, equations, finished, lengths_of, solved
 from tol3d.numerics.compiled import FULL, kernel, nested
+from tol3d.numerics.loops import fill
 
 STEPS: Final = 20
 """Of Newton, 6 to 10 in practice; what takes more is left."""
@@ -70,7 +71,7 @@ def sought(place: Any, trial: Any, goal: Any, under: float, q: Any, state: Any, 
     rows, counts, _ = trial
     _, z, w, stiff, back, _ = state
     size, count, least, widest = rows.shape[2], 0, 1e30, 0.0
-    q[:] = 0.0
+    fill(q, 0.0)
     for k in range(rows.shape[0]):
         if counts[k]:
             length = np.sqrt(offsets[k, 0] * offsets[k, 0] + offsets[k, 1] * offsets[k, 1])

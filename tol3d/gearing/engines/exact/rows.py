@@ -25,6 +25,7 @@ from tol3d.gearing.engines.exact.seating import (
 )
 from tol3d.gearing.engines.status import INTERFERES, NO_CONTACT, OK, OUT_OF_RANGE
 from tol3d.numerics.compiled import part
+from tol3d.numerics.loops import fill
 
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
@@ -161,7 +162,7 @@ def read_row(
 ) -> None:
     """As `read_rows`, which has it written out (15 % faster), of a row's build and its driver's angle [rad]."""
     gears, pair, sigma = (which[0], which[1]), build.pair, looks.working.sigma
-    readings[row, :] = np.nan
+    fill(readings[row], np.nan)
     teeth[row], status[row] = 0, OUT_OF_RANGE
     if not within_reach(build, scale[row, gears[0]], scale[row, gears[1]]):
         return
@@ -265,7 +266,7 @@ def read_rows(
     for row in range(len(driver_angles)):
         build = build_of(pinion, wheel, pair, nominal, gears, shafts, centre, flank_turn, flank_offset, scale, row)
         angle = driver_angles[row]
-        readings[row, :] = np.nan
+        fill(readings[row], np.nan)
         teeth[row], status[row] = 0, OUT_OF_RANGE
         if not within_reach(build, scale[row, gears[0]], scale[row, gears[1]]):
             continue

@@ -13,6 +13,7 @@ from tol3d.gearing.displacements.slots import CENTRE, FLANK_OFFSET, FLANK_TURN, 
 from tol3d.gearing.displacements.slots import SLOTS as DISPLACED
 from tol3d.gearing.engines.exact.small_angles import sine
 from tol3d.numerics.compiled import FULL, kernel, part
+from tol3d.numerics.loops import fill
 
 Array = NDArray[np.float64]
 
@@ -62,7 +63,7 @@ def write_builds(
     seats = len(rest)
     slots = np.empty(SLOTS * seats + seats)
     for row in range(len(deviations)):
-        slots[:] = 0.0
+        fill(slots, 0.0)
         for k in range(len(terms)):
             slots[terms[k, 1]] += coefficients[k] * deviations[row, terms[k, 0]]
         for k in range(len(pivots)):
