@@ -29,7 +29,7 @@ DOORS = {
     ),
     "PIL": ("tol3d/report/animation.py",),
     "ruamel": ("tol3d/scene/",),
-    "yaml": (),
+    "yaml": ("tol3d/scene/text.py",),
     "joblib": ("tol3d/execution/pools.py",),
     "dask": ("tol3d/execution/pools.py",),
     "distributed": ("tol3d/execution/pools.py",),

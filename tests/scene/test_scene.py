@@ -2,6 +2,7 @@
 
 import json
 import pickle
+import random
 import re
 import subprocess
 import sys
@@ -30,8 +31,9 @@ from tol3d.gearing.grammar.study import GearStudyOptions
 from tol3d.gearing.mechanism import GEARING
 from tol3d.kinds import all_kinds
 from tol3d.scene import Grammar, read_scene
+from tol3d.scene.place import Origin
 from tol3d.scene.temperature import TemperatureSpec
-from tol3d.scene.text import core_value
+from tol3d.scene.text import _Composer, _events, _OtherParserError, _quick_events, core_value
 
 GEARS = Grammar((GEARING,))
 Geared = GEARS.scene
@@ -47,6 +49,20 @@ DOCUMENT = (ROOT / "docs" / "scene.md").read_text(encoding="utf-8")
 QUOTED = re.findall(r"```yaml\n(.*?)```", DOCUMENT, re.DOTALL)
 STUDIES = re.findall(r"```text\n(study:.*?)```", DOCUMENT, re.DOTALL)
 
+SIGNS = (
+    *"{}[]:,#&*!|>'\"%@`- \n?~\\/ab10.+=<é",
+    "\n  ",
+    ": ",
+    " #",
+    "\r\n",
+    "---\n",
+    "''",
+    "|\n   ",
+    ">-\n   ",
+    "\\x41",
+    "*a",
+    "&a ",
+)
 SMALL = """
 scene: small
 parts:
@@ -212,6 +228,39 @@ def test_shipped_scenes_read_the_same_by_another_yaml_parser(path: Path) -> None
     plain = yaml.safe_load(path.read_text(encoding="utf-8"))  # YAML 1.1; these scenes hold nothing it reads otherwise
     other = Scene.model_validate(plain)
     assert other.model_dump() == scene.model_dump()
+
+
+def altered(text: str, rng: random.Random) -> str:
+    """Some lines of a text with signs put in, taken out and exchanged."""
+    lines = text.split("\n")
+    first = rng.randrange(len(lines))
+    piece = "\n".join(lines[first : first + rng.randrange(1, 12)])
+    for _ in range(rng.randrange(1, 6)):
+        at, sign = rng.randrange(len(piece) + 1), rng.choice(SIGNS)
+        piece = piece[:at] + rng.choice((sign, "", sign + piece[at : at + 1])) + piece[at + 1 :]
+    return piece
+
+
+@pytest.mark.parametrize("count", [100, pytest.param(3000, marks=pytest.mark.slow)])
+def test_what_the_quick_parser_reads_the_other_one_reads_alike(count: int) -> None:
+    rng, texts, read = random.Random(1), [path.read_text("utf-8") for path in SCENES], 0
+    for _ in range(count):
+        text = altered(rng.choice(texts), rng)
+        origin = Origin(Path("scene.yaml"), text)
+        try:
+            quick = _Composer(origin, _quick_events(text)).document()
+        except (_OtherParserError, SceneError):  # then only the other one counts
+            continue
+        read += 1
+        slow = _Composer(origin, _events(origin, text)).document()
+        assert repr(quick.value) == repr(slow.value)
+        assert places_within(quick) == places_within(slow)
+    assert read > count // 5
+
+
+def places_within(node: Any) -> list[Any]:
+    """All places in a node, but those of values that are not there."""
+    return [(key, place, places_within(child)) for key, place, child in node.children if child.value not in (None, "")]
 
 
 @pytest.mark.parametrize("path", SCENES, ids=lambda path: path.stem)

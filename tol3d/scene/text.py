@@ -1,8 +1,10 @@
-"""From a file to plain values with their places: the only module that imports a YAML library.
+"""From a file to plain values with their places: the only module that reads YAML.
 
-Grammar: YAML 1.2 by ruamel.yaml's parser, whose events are turned into values here in one pass, so
-that no input costs more than the limits below, and every key keeps its line. Plain scalars follow
-the core schema of YAML 1.2.2, 10.3.2 (ruamel's own also takes `1_000` and dates).
+Grammar: YAML 1.2 by a parser's events, which are turned into values here in one pass, so that no
+input costs more than the limits below, and every key keeps its line. libyaml's parser, in PyYAML,
+reads most scenes, seven times as fast as ruamel.yaml's, which reads what libyaml stumbles over or
+takes for something else, and whose messages are told. Plain scalars follow the core
+schema of YAML 1.2.2, 10.3.2 (ruamel's own also takes `1_000` and dates).
 """
 
 import copy
@@ -16,19 +18,10 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Any, Final, NoReturn
 
+import yaml
 from ruamel.yaml import YAML
+from ruamel.yaml import events as ruamel_events
 from ruamel.yaml.error import MarkedYAMLError
-from ruamel.yaml.events import (
-    AliasEvent,
-    DocumentStartEvent,
-    Event,
-    MappingEndEvent,
-    MappingStartEvent,
-    ScalarEvent,
-    SequenceEndEvent,
-    SequenceStartEvent,
-    StreamEndEvent,
-)
 from ruamel.yaml.reader import ReaderError
 
 from tol3d.errors import SceneError
@@ -49,6 +42,16 @@ INTEGER: Final = re.compile(r"[-+]?[0-9]+")
 OCTAL_OR_HEX: Final = re.compile(r"0o[0-7]+|0x[0-9a-fA-F]+")
 FLOAT: Final = re.compile(r"[-+]?(?:\.[0-9]+|[0-9]+(?:\.[0-9]*)?)(?:[eE][-+]?[0-9]+)?")
 INFINITE_OR_NAN: Final = re.compile(r"([-+]?)\.(?:inf|Inf|INF)|\.(?:nan|NaN|NAN)")
+
+UNLIKE: Final = re.compile(r"[\t\x85\u2028\u2029]|^%|[|>][-+0-9]* *(?:#.*)?$", re.MULTILINE)  # where parsers differ
+ALIAS: Final = (yaml.AliasEvent, ruamel_events.AliasEvent)
+SCALAR: Final = (yaml.ScalarEvent, ruamel_events.ScalarEvent)
+LIST: Final = (yaml.SequenceStartEvent, ruamel_events.SequenceStartEvent)
+LIST_END: Final = (yaml.SequenceEndEvent, ruamel_events.SequenceEndEvent)
+MAPPING: Final = (yaml.MappingStartEvent, ruamel_events.MappingStartEvent)
+MAPPING_END: Final = (yaml.MappingEndEvent, ruamel_events.MappingEndEvent)
+DOCUMENT: Final = (yaml.DocumentStartEvent, ruamel_events.DocumentStartEvent)
+END: Final = (yaml.StreamEndEvent, ruamel_events.StreamEndEvent)
 
 HINTS: Final = {
     "mapping values are not allowed": 'a ":" too many or a wrong indent; text with ": " inside needs quotes',
@@ -150,12 +153,31 @@ def _collect_places(node: _Node, path: KeyPath, places: dict[KeyPath, Place]) ->
         _collect_places(child, (*path, key), places)
 
 
-def _place(event: Event) -> Place:
+def _place(event: Any) -> Place:
     return Place(event.start_mark.line + 1, event.start_mark.column + 1)
 
 
-def _events(origin: Origin, text: str) -> Iterator[Event]:
-    """The parser's events; whatever it trips over is one message."""
+class _OtherParserError(Exception):
+    """libyaml stumbles over a text: the other parser reads it, or says what is wrong."""
+
+
+def _quick_events(text: str) -> Iterator[Any]:
+    """libyaml's events.
+
+    Raises:
+        _OtherParserError: it is of no use for this text, or not there.
+    """
+    loader = getattr(yaml, "CSafeLoader", None)
+    if loader is None or UNLIKE.search(text):
+        raise _OtherParserError
+    try:
+        yield from yaml.parse(text, Loader=loader)
+    except (yaml.YAMLError, ValueError, OverflowError):
+        raise _OtherParserError from None
+
+
+def _events(origin: Origin, text: str) -> Iterator[Any]:
+    """The slower parser's events; whatever it trips over is one message."""
     try:
         yield from YAML(typ="safe", pure=True).parse(text)
     except ReaderError as error:
@@ -183,7 +205,10 @@ class _Source:
 @lru_cache(maxsize=KEPT_TEXTS)
 def _composed(source: _Source) -> _Node:
     """The document of a text, not to be changed: a scene is read again by each replay and comparison."""
-    return _Composer(source.origin, _events(source.origin, source.text)).document()
+    try:
+        return _Composer(source.origin, _quick_events(source.text)).document()
+    except (_OtherParserError, SceneError):  # what is wrong is said by one parser
+        return _Composer(source.origin, _events(source.origin, source.text)).document()
 
 
 @dataclass
@@ -191,39 +216,39 @@ class _Composer:
     """One pass over the events of a document: values, places, limits."""
 
     origin: Origin
-    events: Iterator[Event]
+    events: Iterator[Any]
     anchors: dict[str, _Node] = field(default_factory=dict)
     nodes: int = 0
 
     def document(self) -> _Node:
         """The only document of the file."""
         next(self.events)  # the start of the stream
-        if not isinstance(next(self.events), DocumentStartEvent):
+        if not isinstance(next(self.events), DOCUMENT):
             raise self.origin.error((), "expected a scene (scene:, parts:, moves:, measures:), got an empty file")
         top = self._node(next(self.events), ())
         next(self.events)  # the end of the document
         following = next(self.events)
-        if not isinstance(following, StreamEndEvent):
+        if not isinstance(following, END):
             self._refuse((), 'expected one scene in a file, got a second document ("---")', _place(following))
         return top
 
     def _refuse(self, path: KeyPath, sentence: str, place: Place) -> NoReturn:
         raise self.origin.error(path, sentence, place)
 
-    def _node(self, event: Event, path: KeyPath) -> _Node:
+    def _node(self, event: Any, path: KeyPath) -> _Node:
         place = _place(event)
-        if isinstance(event, AliasEvent):
+        if isinstance(event, ALIAS):
             return self._alias(event, path)
-        assert isinstance(event, ScalarEvent | SequenceStartEvent | MappingStartEvent)  # the parser's grammar
+        assert isinstance(event, SCALAR + LIST + MAPPING)  # the parser's grammar
         if event.tag is not None:
             tag = shown(str(event.tag).replace("tag:yaml.org,2002:", "!!"))
             self._refuse(path, f"expected no tags, got {tag}; put text into quotes instead", place)
         if len(path) >= MAX_DEPTH:
             self._refuse(path[:3], f"expected at most {MAX_DEPTH} levels of brackets and indents, got more", place)
         self._count(1, path, place)
-        if isinstance(event, ScalarEvent):
+        if isinstance(event, SCALAR):
             node = _Node(self._scalar(event, path), place)
-        elif isinstance(event, SequenceStartEvent):
+        elif isinstance(event, LIST):
             node = self._list(path, place)
         else:
             node = self._mapping(path, place)
@@ -236,7 +261,7 @@ class _Composer:
         if self.nodes > MAX_NODES:
             self._refuse(path[:3], f"expected at most {MAX_NODES} values (aliases count written out), got more", place)
 
-    def _alias(self, event: AliasEvent, path: KeyPath) -> _Node:
+    def _alias(self, event: Any, path: KeyPath) -> _Node:
         place = _place(event)
         node = self.anchors.get(event.anchor)
         if node is None:
@@ -247,7 +272,7 @@ class _Composer:
         self._count(node.size, path, place)
         return node
 
-    def _scalar(self, event: ScalarEvent, path: KeyPath) -> Any:
+    def _scalar(self, event: Any, path: KeyPath) -> Any:
         text = unicodedata.normalize("NFC", event.value)  # so that names that look equal are equal
         if any("\ud800" <= c <= "\udfff" for c in text):
             self._refuse(path, "expected Unicode text, got half of a surrogate pair", _place(event))
@@ -255,14 +280,14 @@ class _Composer:
 
     def _list(self, path: KeyPath, place: Place) -> _Node:
         children: list[tuple[str | int, Place, _Node]] = []
-        while not isinstance(event := next(self.events), SequenceEndEvent):
+        while not isinstance(event := next(self.events), LIST_END):
             children.append((len(children), _place(event), self._node(event, (*path, len(children)))))
         return self._branch([child.value for _, _, child in children], place, children)
 
     def _mapping(self, path: KeyPath, place: Place) -> _Node:
         children: list[tuple[str | int, Place, _Node]] = []
         first: dict[str, Place] = {}
-        while not isinstance(event := next(self.events), MappingEndEvent):
+        while not isinstance(event := next(self.events), MAPPING_END):
             key, here = self._key(event, path), _place(event)
             if key in first:
                 lines = f"first in line {first[key].line}, again in line {here.line}"
@@ -271,10 +296,10 @@ class _Composer:
             children.append((key, here, self._node(next(self.events), (*path, key))))
         return self._branch({key: child.value for key, _, child in children}, place, children)
 
-    def _key(self, event: Event, path: KeyPath) -> str:
-        key = self._scalar(event, path) if isinstance(event, ScalarEvent) and event.tag is None else None
+    def _key(self, event: Any, path: KeyPath) -> str:
+        key = self._scalar(event, path) if isinstance(event, SCALAR) and event.tag is None else None
         if not isinstance(key, str):
-            got = f"{shown(key)}; put it into quotes" if isinstance(event, ScalarEvent) else "something else"
+            got = f"{shown(key)}; put it into quotes" if isinstance(event, SCALAR) else "something else"
             self._refuse(path, f"expected a key that is text, got {got}", _place(event))
         if key == "<<":
             self._refuse(path, "merge keys (<<) are not used here; write the keys out", _place(event))
