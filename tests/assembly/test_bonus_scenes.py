@@ -279,7 +279,7 @@ def test_a_run_says_which_model_it_is(tol3d: Command, tmp_path: Path) -> None:
 def test_the_worst_case_of_a_gap_is_that_of_the_size_with_most_bonus(tmp_path: Path) -> None:
     made = assembled(zoned(), tmp_path)
     measure = next(own for own in made.system.measures if own.name == "along x")
-    found = first_orders(made.simulation, None, measure)["analytic"]
+    found = first_orders(made.simulation, None, [measure])[measure.name]["analytic"]
     assert found.ends == pytest.approx((30_000 - 170, 30_000 + 170), abs=1e-6)
     sigma = 1e3 * math.sqrt((0.34**3 - 0.14**3) / 0.6) / 4 / math.sqrt(2)
     assert found.sigma == pytest.approx(sigma, rel=1e-5)

@@ -140,7 +140,7 @@ def solved_by(acts: Array, asked: Array) -> Array:
 def without(free: Array, rows: Array) -> Array:
     """Those of the motions (6, k) on which rows (n, 6) do not act."""
     acts = np.where(np.abs(rows @ free) < 1e-9, 0.0, rows @ free)
-    return free @ np.asarray(np.linalg.svd(acts)[2][np.linalg.matrix_rank(acts, tol=1e-9) :].T)
+    return np.asarray(free @ np.linalg.svd(acts)[2][np.linalg.matrix_rank(acts, tol=1e-9) :].T)
 
 
 def smallest(cones: Sequence[tuple[Array, Array, float, float]]) -> float:

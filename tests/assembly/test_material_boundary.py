@@ -89,7 +89,7 @@ def test_the_closed_form_and_the_worst_case_have_the_shift(tmp_path: Path) -> No
     assert form.sigma == pytest.approx(math.sqrt(square / 4 + MIDDLE), rel=1e-5)
     variances = {share.name: share.variance for share in form.shares}
     assert variances[SHIFT] == pytest.approx(square / 4, rel=1e-5)
-    ends = first_orders(made.simulation, None, measure)["analytic"].ends
+    ends = first_orders(made.simulation, None, [measure])[measure.name]["analytic"].ends
     assert ends == pytest.approx((60_000 - 145, 60_000 + 145), abs=1e-6)  # 0.125 of the gauge, 0.02 of the zone
 
 

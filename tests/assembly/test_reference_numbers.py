@@ -58,7 +58,7 @@ def test_tails_of_uniform_blocks_are_those_of_irwin_and_hall_and_not_of_a_normal
 def test_the_worst_case_of_the_blocks_is_all_limits_at_once(tmp_path: Path) -> None:
     made = assembled(stack(), tmp_path)
     (measure,) = made.system.measures
-    for own in first_orders(made.simulation, made.system.road("exact", None), measure).values():
+    for own in first_orders(made.simulation, made.system.road("exact", None), [measure])[measure.name].values():
         assert own.ends == pytest.approx((1e3 * (GAP - 5 * HALF), 1e3 * (GAP + 5 * HALF)), abs=1e-6)
 
 

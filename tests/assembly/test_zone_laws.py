@@ -232,7 +232,7 @@ def test_on_a_ring_an_axis_lies_at_half_of_its_trial_s_zone_at_any_phase(tmp_pat
 def test_the_worst_case_on_a_ring_is_half_of_the_widest_zone(tmp_path: Path) -> None:
     made = assembled(RING, tmp_path)
     measure = next(own for own in made.system.measures if own.name == "x")
-    found = first_orders(made.simulation, None, measure)["analytic"]
+    found = first_orders(made.simulation, None, [measure])[measure.name]["analytic"]
     assert found.ends == pytest.approx((-150, 150), abs=1e-6)
     assert found.sigma == pytest.approx(1e3 * math.sqrt((0.3**3 - 0.1**3) / 0.6 / 8), rel=1e-5)
 

@@ -110,7 +110,7 @@ def test_extremes_move_what_is_read_along() -> None:
     """
     simulation = simulation_of(load(SCENE), Overrides())
     (measure,) = simulation.system.measures
-    found = first_orders(simulation, None, measure)["analytic"]
+    found = first_orders(simulation, None, [measure])[measure.name]["analytic"]
     mark = 5  # of a tip that strays by 10 um: per 10 um of tip
     assert found.ends[1] == pytest.approx(100_000 + 100 + 40 + mark * 40 / 10, rel=1e-12)
     assert found.ends[0] == pytest.approx(100_000 + 0 - 20 - mark * 20 / 10, rel=1e-12)

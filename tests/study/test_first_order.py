@@ -52,7 +52,7 @@ def simulation(engine: str = "exact", *, adds_up: bool = True) -> Simulation:
 
 def found_by(engine: str = "exact") -> dict[str, FirstOrder]:
     asked = simulation(engine)
-    return first_orders(asked, road_of(asked, materials_of(asked)), asked.system.measures[0])
+    return first_orders(asked, road_of(asked, materials_of(asked)), asked.system.measures)["gap"]
 
 
 def test_slopes_are_those_of_the_sum_and_of_a_parabola_at_its_mean() -> None:
@@ -79,7 +79,7 @@ def test_slopes_of_each_of_several_are_alike_or_the_greatest_of_them() -> None:
 
         pins = PlainContributor("pins", "pin", Each(law, ("a", "b", "c")))
         asked = Simulation(Pins("pins", (pins,), (PlainMeasure("gap", "gap"),)), Study(engine="analytic"))
-        (effect,) = first_orders(asked, None, asked.system.measures[0])["analytic"].effects
+        (effect,) = first_orders(asked, None, asked.system.measures)["gap"]["analytic"].effects
         assert (effect.each, effect.alike) == (3, alike)
         assert effect.slope == pytest.approx(-2.0)
 

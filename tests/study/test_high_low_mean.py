@@ -110,7 +110,10 @@ def test_no_build_is_asked_for_at_ends_that_are_not_known(mean_seats: bool) -> N
         assert np.isfinite(rows).all()
         return np.where((rows == mean).all(axis=1) & mean_seats, 0.0, np.nan)
 
-    assert set(high_low_mean_percents(system, measure, values).values()) == {None}
-    found = first_order(system, measure, values)
-    assert math.isnan(found.mean) is not mean_seats
-    assert np.isnan(found.ends).all()
+    def read(rows: np.ndarray, measures: object) -> dict[str, np.ndarray]:
+        return {measure.name: values(rows)}
+
+    assert set(high_low_mean_percents(system, [measure], read)[measure.name].values()) == {None}
+    linear = first_order(system, [measure], read)[measure.name]
+    assert math.isnan(linear.mean) is not mean_seats
+    assert np.isnan(linear.ends).all()

@@ -33,10 +33,8 @@ def system_blocks(simulation: Simulation) -> list[PageItem]:
     system, study = simulation.system, simulation.study
     road = road_of(simulation, materials_of(simulation))
     headings = {"analytic": "analytic"} | ({"geometric": study.engine} if road else {})
-    found = {
-        measure.name: {} if measure.take == "curve" else first_orders(simulation, road, measure)
-        for measure in system.measures
-    }
+    found: dict[str, dict[str, FirstOrder]] = {measure.name: {} for measure in system.measures}
+    found |= first_orders(simulation, road, [measure for measure in system.measures if measure.take != "curve"])
     kinds = {measure.name: str(system.describe(measure).get("kind", NOTHING)) for measure in system.measures}
     tables = [
         block

@@ -37,13 +37,18 @@ def columns_of(system: System, road: Road | None, trials: Trials, measures: Sequ
         geometric value whose status lacks what is measured is an overlap, below 0.
     """
     measures = system.measures if measures is None else measures
-    rows = max(1, ROWS_AT_ONCE // max(measure.positions.in_a_trial for measure in measures))
+    rows = rows_at_once(measures)
     pieces = [
         _columns(system, road, trials.part(first, first + rows), measures) for first in range(0, len(trials), rows)
     ]
     if len(pieces) == 1:
         return pieces[0]
     return {name: np.concatenate([piece[name] for piece in pieces]) for name in pieces[0]}
+
+
+def rows_at_once(measures: Sequence[Measure]) -> int:
+    """Trials that a road is asked at once, by the positions of its measures."""
+    return max(1, ROWS_AT_ONCE // max(measure.positions.in_a_trial for measure in measures))
 
 
 def _columns(system: System, road: Road | None, trials: Trials, measures: Sequence[Measure]) -> Columns:
@@ -65,11 +70,17 @@ def _columns(system: System, road: Road | None, trials: Trials, measures: Sequen
     return columns | _status_columns(system.statuses, status)
 
 
-def _values(road: str, answers: Answers, measures: Sequence[Measure], count: int) -> Columns:
+def answered(road: str, answers: Answers, measures: Sequence[Measure], count: int) -> dict[str, NDArray[np.float64]]:
+    """What measures take of a road's answers of so many trials, by name, in their units."""
     return {
-        value_column(road, measure.name): taken(measure, _read(road, answers, measure, count)) * measure.per_internal
+        measure.name: taken(measure, _read(road, answers, measure, count)) * measure.per_internal
         for measure in measures
     }
+
+
+def _values(road: str, answers: Answers, measures: Sequence[Measure], count: int) -> Columns:
+    found = answered(road, answers, measures, count)
+    return {value_column(road, name): values for name, values in found.items()}
 
 
 def _read(road: str, answers: Answers, measure: Measure, count: int) -> NDArray[np.float64]:

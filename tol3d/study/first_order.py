@@ -4,27 +4,24 @@ No theory is needed, so any system has it; both roads stand beside each other be
 """
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.study.columns import columns_of
+from tol3d.study.evaluation import Values, batches, evaluations, measures_alike
 from tol3d.study.extremes import ends_together
 from tol3d.study.simulation import Simulation
 from tol3d.system.contributor import Contributor
 from tol3d.system.dependent import reads_of
 from tol3d.system.draw import JointDraw, drawn_each
 from tol3d.system.measure import Measure
-from tol3d.system.outcome import ANALYTIC, GEOMETRIC, outcome_of
 from tol3d.system.road import Road
-from tol3d.system.stated import component_count, component_slices, mean_deviations, stated
+from tol3d.system.stated import component_slices, mean_deviations
 from tol3d.system.system import System
 
 Array = NDArray[np.float64]
-Values = Callable[[Array], Array]
-"""A measure (rows,) of deviations (rows, components); nan where a build does not seat."""
 
 ALIKE = 1e-6  # of the greatest; slopes of features that are alike differ by rounding and by where they stand
 AS_LARGE = 0.99  # of the size of another one: of slopes of both signs the positive one is shown, by either road
@@ -85,52 +82,106 @@ class FirstOrder:
         return _percent(effect.reach, sum(own.reach for own in self.effects))
 
 
-def first_orders(simulation: Simulation, road: Road | None, measure: Measure) -> dict[str, FirstOrder]:
-    """A measure of one number a trial by each road: "analytic", and "geometric" where there is an engine.
+def first_orders(
+    simulation: Simulation, road: Road | None, measures: Sequence[Measure]
+) -> dict[str, dict[str, FirstOrder]]:
+    """Measures of one number a trial, by name and road: "analytic", and "geometric" where there is an engine.
 
     Args:
         simulation: what is studied.
         road: of its engine; None without one.
-        measure: one of its system's, no curve.
+        measures: of its system, no curves.
     """
     system = simulation.system
-
-    def values_by(shown: str) -> Values:
-        def values(deviations: Array) -> Array:
-            columns = columns_of(system, road, stated(system, deviations), (measure,))
-            return outcome_of(columns, shown, measure.name, system.statuses.lacking).values
-
-        return values
-
-    roads = (ANALYTIC, GEOMETRIC) if road else (ANALYTIC,)
-    return {shown: first_order(system, measure, values_by(shown)) for shown in roads}
+    found = {
+        shown: first_order(system, measures, own.values) for shown, own in evaluations(system, road).items() if measures
+    }
+    return {own.name: {shown: by_measure[own.name] for shown, by_measure in found.items()} for own in measures}
 
 
-def first_order(system: System, measure: Measure, values: Values) -> FirstOrder:
-    """A measure of first order about the mean build, by central differences over one sigma to both sides.
+def first_order(system: System, measures: Sequence[Measure], values: Values) -> dict[str, FirstOrder]:
+    """Measures of first order about their mean builds, by central differences over one sigma to both sides.
 
     Args:
-        system, measure: what is built, and what is read of it.
-        values: by one road, in the unit of the measure.
+        system, measures: what is built, and what is read of it.
+        values: by one road, in units of the measures.
     """
-    nominal = np.zeros((1, component_count(system)))
-    mean = mean_deviations(system, measure.positions)
+    return {
+        name: own
+        for turning, alike in measures_alike(system, measures)
+        for name, own in _of_alike(system, alike, turning, values).items()
+    }
+
+
+def _of_alike(
+    system: System, measures: Sequence[Measure], turning: Mapping[str, bool], values: Values
+) -> dict[str, FirstOrder]:
+    """Of measures that share the mean build."""
+    mean = mean_deviations(system, measures[0].positions)
     slices = component_slices(system)
-    turning = {own.name: system.turns_at_random(own, measure.positions) for own in system.contributors}
-    slopes = {own.name: np.zeros(len(own.draw.components)) for own in system.contributors}
-    acting = system.acting(measure)
-    for own in acting:
-        slopes[own.name] = _slopes(mean, slices[own.name], own.draw.sigma or own.per_unit, values)
-    ends = ends_together(_concerned(system, acting), slopes, turning)
-    low, high = mean.copy(), mean.copy()
-    for name, own_ends in ends.items():
-        low[:, slices[name]], high[:, slices[name]] = own_ends
-    effects = [_effect(own, slopes[own.name], ends[own.name], turning=turning[own.name]) for own in acting]
-    rows = np.concatenate([nominal, mean, low, high])
-    known = np.isfinite(rows).all(axis=1)  # ends are not where a slope is not
-    found = np.full(len(rows), np.nan)
-    found[known] = values(rows[known])
-    return FirstOrder(float(found[0]), float(found[1]), tuple(effects), (float(found[2]), float(found[3])))
+    acting = {measure.name: system.acting(measure) for measure in measures}
+    slopes = _slopes(system, mean, measures, acting, values)
+    ends = {}
+    rows = [np.zeros_like(mean), mean]
+    for measure in measures:
+        own_slopes = slopes[measure.name]
+        ends[measure.name] = ends_together(_concerned(system, acting[measure.name]), own_slopes, turning)
+        low, high = mean.copy(), mean.copy()
+        for name, own_ends in ends[measure.name].items():
+            low[:, slices[name]], high[:, slices[name]] = own_ends
+        rows += [low, high]
+    builds = np.concatenate(rows)
+    known = np.isfinite(builds).all(axis=1)  # ends are not where a slope is not
+    read = values(builds[known], measures)
+    found = {}
+    for place, measure in enumerate(measures):
+        numbers = np.full(len(builds), np.nan)
+        numbers[known] = read[measure.name]
+        effects = tuple(
+            _effect(own, slopes[measure.name][own.name], ends[measure.name][own.name], turning=turning[own.name])
+            for own in acting[measure.name]
+        )
+        low, high = numbers[2 + 2 * place : 4 + 2 * place]
+        found[measure.name] = FirstOrder(float(numbers[0]), float(numbers[1]), effects, (float(low), float(high)))
+    return found
+
+
+def _slopes(
+    system: System,
+    mean: Array,
+    measures: Sequence[Measure],
+    acting: Mapping[str, Sequence[Contributor]],
+    values: Values,
+) -> dict[str, dict[str, Array]]:
+    """Change of measures per mm, rad or K of each contributor's components (components,); 0 of what does not act."""
+    names = {measure: {own.name for own in those} for measure, those in acting.items()}
+    slopes = {
+        measure.name: {own.name: np.zeros(len(own.draw.components)) for own in system.contributors}
+        for measure in measures
+    }
+    slices = component_slices(system)
+    asked = [own for own in system.contributors if any(own.name in those for those in names.values())]
+    for batch in batches(asked, [2 * len(own.draw.components) for own in asked], mean.shape[1]):
+        ends = np.cumsum([2 * len(own.draw.components) for own in batch]).tolist()
+        places = [slice(end - 2 * len(own.draw.components), end) for own, end in zip(batch, ends, strict=True)]
+        rows = np.repeat(mean, ends[-1], axis=0)
+        for own, place in zip(batch, places, strict=True):
+            each = np.eye(len(own.draw.components))
+            rows[place, slices[own.name]] += _step(own) * np.concatenate([each, -each])
+        found = values(rows, measures)
+        for own, place in zip(batch, places, strict=True):
+            count = len(own.draw.components)
+            for measure in measures:
+                if own.name in names[measure.name]:
+                    read = found[measure.name][place]
+                    change = read[:count] - read[count:]
+                    change[np.abs(change) <= NOISE * np.abs(read).max()] = 0.0
+                    slopes[measure.name][own.name] = change / (2 * _step(own))
+    return slopes
+
+
+def _step(contributor: Contributor) -> float:
+    return contributor.draw.sigma or contributor.per_unit
 
 
 def _concerned(system: System, acting: Sequence[Contributor]) -> list[Contributor]:
@@ -140,17 +191,6 @@ def _concerned(system: System, acting: Sequence[Contributor]) -> list[Contributo
     while added := {name for own in names for name in reads_of(known[own])} - names:
         names |= added
     return [own for own in system.contributors if own.name in names]
-
-
-def _slopes(mean: Array, own: slice, step: float, values: Values) -> Array:
-    """Change of a measure per mm, rad or K of each component (components,)."""
-    count = own.stop - own.start
-    rows = np.repeat(mean, 2 * count, axis=0)
-    rows[:, own] += step * np.concatenate([np.eye(count), -np.eye(count)])
-    found = values(rows)
-    change = found[:count] - found[count:]
-    change[np.abs(change) <= NOISE * np.abs(found).max()] = 0.0
-    return np.asarray(change / (2 * step))
 
 
 def _effect(contributor: Contributor, slopes: Array, ends: Array, *, turning: bool) -> FirstOrderEffect:

@@ -4,7 +4,6 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, cast
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tol3d.runs.summary.agreement import Agreement
 from tol3d.runs.summary.measure import ContributorShare, MeasureSummary, Published, PublishedColumn
@@ -18,7 +17,8 @@ from tol3d.study.agreement.explaining import explanations
 from tol3d.study.agreement.explanation import Explanation, faults
 from tol3d.study.columns import columns_of
 from tol3d.study.curve_tally import CurveTally
-from tol3d.study.high_low_mean import high_low_mean_percents
+from tol3d.study.evaluation import Evaluation
+from tol3d.study.high_low_mean import Percents, high_low_mean_percents
 from tol3d.study.histograms import histograms
 from tol3d.study.joint import joint_summary, uncorrelated
 from tol3d.study.regressors import MOST_REGRESSED
@@ -33,9 +33,9 @@ from tol3d.system.closed_form import ClosedForm
 from tol3d.system.dependent import DependentlyJudged
 from tol3d.system.draw import JudgedDraw
 from tol3d.system.measure import Measure
-from tol3d.system.outcome import ANALYTIC, GEOMETRIC, outcome_of, value_column
+from tol3d.system.outcome import ANALYTIC, GEOMETRIC, value_column
 from tol3d.system.road import Road
-from tol3d.system.stated import mean_build, nominal_build, stated
+from tol3d.system.stated import mean_build, nominal_build
 from tol3d.system.trials import Trials
 from tol3d.units import FACTORS
 
@@ -46,6 +46,8 @@ def study_summary(simulation: Simulation, road: Road | None, tally: Tally) -> Fi
     """What a study found, but what its system adds to the whole and to each measure."""
     explained = explanations(simulation, road, tally)
     study, mechanism = simulation.study, simulation.mechanism
+    single = [measure for measure in simulation.system.measures if measure.take != "curve"]
+    alone = high_low_mean_percents(simulation.system, single, Evaluation(simulation.system, road).values)
     return made(
         Findings,
         scene=simulation.system.name,
@@ -59,7 +61,9 @@ def study_summary(simulation: Simulation, road: Road | None, tally: Tally) -> Fi
         status_words=simulation.system.statuses.states or None,
         chord_error_um=road.chord_error * 1000 if road else None,
         measures={
-            measure.name: _measure(simulation, road, measure, tally, explained.get(measure.name))
+            measure.name: _measure(
+                simulation, road, measure, tally, explained.get(measure.name), alone.get(measure.name, {})
+            )
             for measure in simulation.system.measures
         },
         joint=joint_summary(simulation, tally.joint),
@@ -140,8 +144,7 @@ def _too_many(simulation: Simulation) -> Iterator[str]:
     for count, names in alike.items():
         yield (
             f"{', '.join(names)}: {count} tolerances act; shares of the 3D simulation are of the {MOST_REGRESSED} "
-            "that matter most by the stack-up (or come first, where it has no closed form), the others are in none; "
-            "no high-low-mean shares"
+            "that matter most by the stack-up (or come first, where it has no closed form), the others are in none"
         )
 
 
@@ -156,7 +159,12 @@ def _unphysical_draws(simulation: Simulation, tally: Tally) -> Iterator[str]:
 
 
 def _measure(
-    simulation: Simulation, road: Road | None, measure: Measure, tally: Tally, explanation: Explanation | None
+    simulation: Simulation,
+    road: Road | None,
+    measure: Measure,
+    tally: Tally,
+    explanation: Explanation | None,
+    alone: Percents,
 ) -> MeasureSummary:
     """A measure: statistics of both roads, contributors, published columns; its kind and no more of its system's."""
     system, curve, asked = simulation.system, measure.take == "curve", simulation.study.ppk_by
@@ -182,7 +190,7 @@ def _measure(
         agreement=_agreement(found.agreement, explanation) if found and found.agreement else None,
         position_deg=np.degrees(measure.positions.shown or measure.positions.fixed or ()).tolist() if curve else None,
         curve=_curve(simulation, measure, tally.curves[measure.name]) if curve else None,
-        contributors=_shares(simulation, road, measure, own) if own else [],
+        contributors=_shares(simulation, measure, own, alone) if own else [],
         published=_published(simulation, measure),
     )
 
@@ -219,12 +227,11 @@ def _agreement(compared: Comparison, explanation: Explanation | None) -> Agreeme
     )
 
 
-def _shares(simulation: Simulation, road: Road | None, measure: Measure, own: MeasureTally) -> list[ContributorShare]:
+def _shares(simulation: Simulation, measure: Measure, own: MeasureTally, alone: Percents) -> list[ContributorShare]:
     independent = own.analytic.replicated is None  # what the error of a share by regression is worked out for
     form = simulation.system.closed_form(measure)
     by_sample = share_percents(simulation.system, measure, own.analytic_regressors)
     geometric = share_percents(simulation.system, measure, own.geometric_regressors)
-    alone = _high_low_mean(simulation, road, measure)
     return [
         made(
             ContributorShare,
@@ -236,23 +243,6 @@ def _shares(simulation: Simulation, road: Road | None, measure: Measure, own: Me
         )
         for contributor in simulation.system.acting(measure)
     ]
-
-
-def _high_low_mean(simulation: Simulation, road: Road | None, measure: Measure) -> Mapping[str, float | None]:
-    """High-low-mean shares on the geometric road, or on the analytic one where there is no engine.
-
-    None of any where there are too many: each takes builds of its own, and each build all contributors.
-    """
-    system = simulation.system
-    if len(system.acting(measure)) > MOST_REGRESSED:
-        return dict.fromkeys((contributor.name for contributor in system.contributors), None)
-    shown = GEOMETRIC if road else ANALYTIC
-
-    def values(deviations: NDArray[np.float64]) -> NDArray[np.float64]:
-        columns = columns_of(system, road, stated(system, deviations), (measure,))
-        return outcome_of(columns, shown, measure.name, system.statuses.lacking).values
-
-    return high_low_mean_percents(system, measure, values)
 
 
 def _curve(simulation: Simulation, measure: Measure, own: CurveTally) -> CurveRoads:

@@ -1,0 +1,104 @@
+"""One evaluation of stated deviations: measures of a system by one road, all rows at once.
+
+Ends, slopes, shares and explanations ask this and nothing else, in batches: each call places every part again, and
+most of what it takes does not grow with the rows.
+"""
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tol3d.study.columns import answered, rows_at_once
+from tol3d.system.contributor import Contributor
+from tol3d.system.measure import Measure
+from tol3d.system.outcome import ANALYTIC, GEOMETRIC
+from tol3d.system.positions import Positions
+from tol3d.system.road import ANALYTIC_ROAD, Road
+from tol3d.system.stated import stated
+from tol3d.system.statuses import OK
+from tol3d.system.system import System
+
+Array = NDArray[np.float64]
+BATCH: Final = 2**22
+"""Numbers that are built at once: rows times components, 32 MB."""
+
+Values = Callable[[Array, Sequence[Measure]], Mapping[str, Array]]
+"""Measures (rows,) by name of deviations (rows, components), in their units; nan where a build does not seat."""
+
+
+@dataclass(frozen=True)
+class Evaluation:
+    """A system by one road.
+
+    Args:
+        system: what is built.
+        road: of the 3D simulation; None for the analytic one.
+    """
+
+    system: System
+    road: Road | None = None
+
+    @property
+    def name(self) -> str:
+        """Of its columns."""
+        return GEOMETRIC if self.road else ANALYTIC
+
+    def values(self, deviations: Array, measures: Sequence[Measure]) -> dict[str, Array]:
+        """What measures read of builds at rest; a row's values do not depend on the others.
+
+        Args:
+            deviations: (rows, components) [mm, rad, K].
+            measures: of the system.
+
+        Returns:
+            By name (rows,), or (rows, positions) of a curve, in the measure's unit; nan where a build does not seat.
+        """
+        road = self.road or self.system.road(ANALYTIC_ROAD, None)
+        pieces = []
+        for first in range(0, len(deviations), step := rows_at_once(measures)):
+            trials = stated(self.system, deviations[first : first + step])
+            answers = road.answers(trials, measures)
+            found = answered(self.name, answers, measures, len(trials))
+            for name, codes in answers.status.items() if self.road else ():
+                if name in found and codes.any():
+                    found[name] = found[name].copy()
+                    found[name][codes != OK] = np.nan
+            pieces.append(found)
+        if len(pieces) == 1:
+            return pieces[0]
+        return {own.name: np.concatenate([piece[own.name] for piece in pieces]) for own in measures}
+
+
+def evaluations(system: System, road: Road | None) -> Mapping[str, Evaluation]:
+    """By each road: "analytic", and "geometric" where there is an engine."""
+    own = {ANALYTIC: Evaluation(system)}
+    return own | {GEOMETRIC: Evaluation(system, road)} if road else own
+
+
+def measures_alike(system: System, measures: Sequence[Measure]) -> list[tuple[Mapping[str, bool], list[Measure]]]:
+    """Measures by what turns at random from trial to trial at their positions: those that share a mean build."""
+    names = [contributor.name for contributor in system.contributors]
+    turning: dict[Positions, tuple[bool, ...]] = {}
+    alike: dict[tuple[bool, ...], list[Measure]] = {}
+    for measure in measures:
+        if (positions := measure.positions) not in turning:
+            turning[positions] = tuple(system.turns_at_random(own, positions) for own in system.contributors)
+        alike.setdefault(turning[positions], []).append(measure)
+    return [(dict(zip(names, turns, strict=True)), group) for turns, group in alike.items()]
+
+
+def batches(contributors: Sequence[Contributor], rows: Sequence[int], width: int) -> Iterator[Sequence[Contributor]]:
+    """Contributors whose builds are made together, by the rows that each takes of so many components."""
+    batch: list[Contributor] = []
+    size = 0
+    for own, count in zip(contributors, rows, strict=True):
+        if batch and (size + count) * width > BATCH:
+            yield batch
+            batch, size = [], 0
+        batch.append(own)
+        size += count
+    if batch:
+        yield batch
