@@ -3,6 +3,7 @@
 import math
 from collections.abc import Callable, Hashable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Any, ClassVar, Final, TypeVar
 
 import numpy as np
@@ -175,10 +176,22 @@ class AssemblySystem(PlainSystem):
 
     def slopes_of(self, name: str) -> Slopes:
         """How a measure of the assembly changes with each deviation, at the means."""
+        known = self._known_slopes
+        if name not in known:
+            known[name] = torsors.slopes(self.assembly, name, *self._moments)
+        return known[name]
+
+    @cached_property
+    def _known_slopes(self) -> dict[str, Slopes]:
+        """By measure, as far as they were asked for."""
+        return {}
+
+    @cached_property
+    def _moments(self) -> tuple[Array, Array]:
+        """Means and sigmas of all components (columns,) [mm, K]."""
         moments = [moments_of(own) for own in self.contributors]
         means = np.concatenate([mean for mean, _ in moments] or [np.zeros(0)])
-        sigmas = np.concatenate([np.sqrt(np.diagonal(covariance)) for _, covariance in moments] or [np.zeros(0)])
-        return torsors.slopes(self.assembly, name, means, sigmas)
+        return means, np.concatenate([np.sqrt(np.diagonal(covariance)) for _, covariance in moments] or [np.zeros(0)])
 
 
 class WitnessedSystem(AssemblySystem):

@@ -7,7 +7,7 @@ from typing import Self
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.statistics.variance_shares import RANK_RTOL, RegressorSums, column_sigmas
+from tol3d.statistics.variance_shares import RegressorSums, column_sigmas, factorised
 
 Array = NDArray[np.float64]
 
@@ -44,9 +44,7 @@ class LinearFit:
             return None
         scale = sigma[used]
         correlation = sums.comoments[np.ix_(used, used)] / sums.count / scale / scale[:, None]
-        eigenvalues, modes = np.linalg.eigh(correlation) if len(used) else (np.zeros(0), np.zeros((0, 0)))
-        kept = eigenvalues > RANK_RTOL * max(eigenvalues, default=0.0)
-        inverse = (modes[:, kept] / eigenvalues[kept]) @ modes[:, kept].T / scale / scale[:, None] / sums.count
+        inverse = factorised(correlation).inverse / scale / scale[:, None] / sums.count
         coefficients, covariance = np.zeros(width), np.zeros((width, width))
         coefficients[used] = inverse @ sums.comoments[used, -1]
         left = max(float(sums.comoments[-1, -1] - coefficients @ sums.comoments[:-1, -1]), 0.0)

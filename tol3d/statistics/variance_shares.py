@@ -3,6 +3,7 @@
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property, lru_cache
 from typing import Self
 
 import numpy as np
@@ -184,12 +185,40 @@ def _explained(sums: RegressorSums, sigma: Array, used: list[int]) -> Array:
     scale = sigma[columns]
     correlation = sums.comoments[np.ix_(columns, columns)] / sums.count / scale / scale[:, None]
     r = correlation[:-1, -1]
-    eigenvalues, eigenvectors = np.linalg.eigh(correlation[:-1, :-1])
-    kept = eigenvalues > RANK_RTOL * eigenvalues[-1]
-    modes = eigenvectors[:, kept]
-    along = np.sum(modes * r[:, None], axis=0) / eigenvalues[kept]
-    explained[used] = np.sum(modes * along, axis=1) * r
+    modes = factorised(correlation[:-1, :-1])
+    along = np.sum(modes.vectors * r[:, None], axis=0) / modes.values
+    explained[used] = np.sum(modes.vectors * along, axis=1) * r
     return explained
+
+
+@dataclass(frozen=True, eq=False)
+class Modes:
+    """A matrix of correlations on its eigenvectors, without those of eigenvalue zero.
+
+    Args:
+        values: (modes,).
+        vectors: (rows, modes).
+    """
+
+    values: Array
+    vectors: Array
+
+    @cached_property
+    def inverse(self) -> Array:
+        """Pseudo-inverse of the matrix (rows, rows)."""
+        return np.asarray((self.vectors / self.values) @ self.vectors.T)
+
+
+def factorised(correlation: Array) -> Modes:
+    """Modes of a matrix (rows, rows); measures of the same regressors on both roads have the same one."""
+    return _modes(np.ascontiguousarray(correlation).tobytes(), len(correlation))
+
+
+@lru_cache(maxsize=8)
+def _modes(content: bytes, size: int) -> Modes:
+    eigenvalues, eigenvectors = np.linalg.eigh(np.frombuffer(content).reshape(size, size))
+    kept = eigenvalues > RANK_RTOL * max(eigenvalues, default=0.0)
+    return Modes(eigenvalues[kept], eigenvectors[:, kept])
 
 
 def _standard_error(share: float, unexplained: float, count: int) -> float:

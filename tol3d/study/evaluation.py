@@ -46,12 +46,15 @@ class Evaluation:
         """Of its columns."""
         return GEOMETRIC if self.road else ANALYTIC
 
-    def values(self, deviations: Array, measures: Sequence[Measure]) -> dict[str, Array]:
+    def values(
+        self, deviations: Array, measures: Sequence[Measure], *, with_overlaps: bool = False
+    ) -> dict[str, Array]:
         """What measures read of builds at rest; a row's values do not depend on the others.
 
         Args:
             deviations: (rows, components) [mm, rad, K].
             measures: of the system.
+            with_overlaps: keep what a road answers of builds that do not seat, such as how deep they overlap.
 
         Returns:
             By name (rows,), or (rows, positions) of a curve, in the measure's unit; nan where a build does not seat.
@@ -62,7 +65,7 @@ class Evaluation:
             trials = stated(self.system, deviations[first : first + step])
             answers = road.answers(trials, measures)
             found = answered(self.name, answers, measures, len(trials))
-            for name, codes in answers.status.items() if self.road else ():
+            for name, codes in answers.status.items() if self.road and not with_overlaps else ():
                 if name in found and codes.any():
                     found[name] = found[name].copy()
                     found[name][codes != OK] = np.nan

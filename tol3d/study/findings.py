@@ -2,6 +2,8 @@
 
 from typing import Any
 
+from threadpoolctl import threadpool_limits
+
 from tol3d.execution.watch import Activity
 from tol3d.runs.summary.run import Findings
 from tol3d.runs.summary.values import as_json
@@ -21,7 +23,8 @@ def findings(simulation: Simulation, road: Road | None, tally: Tally, activity: 
         tally: of all trials.
         activity: gets what goes on, in words.
     """
-    found = study_summary(simulation, road, tally)
+    with threadpool_limits(1, user_api="blas"):  # threads make these small matrices three to ten times as slow
+        found = study_summary(simulation, road, tally)
     wanted, witness = simulation.study.witness, witness_of(simulation.system)
     if road is not None and wanted and witness is not None:
         activity(f"witness: {witness.upper()} measures {min(wanted, tally.trials)} trials again")

@@ -4,6 +4,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, cast
 
 import numpy as np
+from numpy.typing import NDArray
 
 from tol3d.runs.summary.agreement import Agreement
 from tol3d.runs.summary.measure import ContributorShare, MeasureSummary, Published, PublishedColumn
@@ -15,9 +16,8 @@ from tol3d.statistics import Agreement as Comparison
 from tol3d.statistics import LimitCounts, Moments
 from tol3d.study.agreement.explaining import explanations
 from tol3d.study.agreement.explanation import Explanation, faults
-from tol3d.study.columns import columns_of
 from tol3d.study.curve_tally import CurveTally
-from tol3d.study.evaluation import Evaluation
+from tol3d.study.evaluation import Evaluation, evaluations, measures_alike
 from tol3d.study.high_low_mean import Percents, high_low_mean_percents
 from tol3d.study.histograms import histograms
 from tol3d.study.joint import joint_summary, uncorrelated
@@ -33,10 +33,9 @@ from tol3d.system.closed_form import ClosedForm
 from tol3d.system.dependent import DependentlyJudged
 from tol3d.system.draw import JudgedDraw
 from tol3d.system.measure import Measure
-from tol3d.system.outcome import ANALYTIC, GEOMETRIC, value_column
+from tol3d.system.outcome import ANALYTIC, GEOMETRIC
 from tol3d.system.road import Road
-from tol3d.system.stated import mean_build, nominal_build
-from tol3d.system.trials import Trials
+from tol3d.system.stated import mean_deviations
 from tol3d.units import FACTORS
 
 FAILURES_NAMED = 1e-3  # of the trials; a third of the 0.27 % that ±3 sigma leave out, in the table all the same
@@ -47,6 +46,7 @@ def study_summary(simulation: Simulation, road: Road | None, tally: Tally) -> Fi
     explained = explanations(simulation, road, tally)
     study, mechanism = simulation.study, simulation.mechanism
     single = [measure for measure in simulation.system.measures if measure.take != "curve"]
+    builds = _single_builds(simulation, road)
     alone = high_low_mean_percents(simulation.system, single, Evaluation(simulation.system, road).values)
     return made(
         Findings,
@@ -62,7 +62,12 @@ def study_summary(simulation: Simulation, road: Road | None, tally: Tally) -> Fi
         chord_error_um=road.chord_error * 1000 if road else None,
         measures={
             measure.name: _measure(
-                simulation, road, measure, tally, explained.get(measure.name), alone.get(measure.name, {})
+                simulation,
+                measure,
+                tally,
+                explained.get(measure.name),
+                alone.get(measure.name, {}),
+                builds[measure.name],
             )
             for measure in simulation.system.measures
         },
@@ -160,11 +165,11 @@ def _unphysical_draws(simulation: Simulation, tally: Tally) -> Iterator[str]:
 
 def _measure(
     simulation: Simulation,
-    road: Road | None,
     measure: Measure,
     tally: Tally,
     explanation: Explanation | None,
     alone: Percents,
+    builds: tuple[Roads, Roads],
 ) -> MeasureSummary:
     """A measure: statistics of both roads, contributors, published columns; its kind and no more of its system's."""
     system, curve, asked = simulation.system, measure.take == "curve", simulation.study.ppk_by
@@ -181,8 +186,8 @@ def _measure(
         upper_limit=in_unit(measure, measure.upper_limit),
         status=_status(measure, tally),
         reasons=_reasons(measure, tally) or None,
-        nominal=_single(simulation, road, measure, nominal_build(system)),
-        mean_build=_single(simulation, road, measure, mean_build(system, measure)),
+        nominal=builds[0],
+        mean_build=builds[1],
         analytic=sample_summary(measure, own.analytic, asked) if own else None,
         analytic_closed_form=None if curve else _closed_form(measure, system.closed_form(measure)),
         histogram=histograms(own) if own else None,
@@ -195,15 +200,25 @@ def _measure(
     )
 
 
-def _single(simulation: Simulation, road: Road | None, measure: Measure, build: Trials) -> Roads:
-    """Both roads' values of one build, None where it does not seat."""
-    columns = columns_of(simulation.system, road, build, (measure,))
+def _single_builds(simulation: Simulation, road: Road | None) -> dict[str, tuple[Roads, Roads]]:
+    """Of each measure both roads' values of the nominal build and of the one at all means; None where one is none."""
+    system = simulation.system
+    found = {}
+    for _, alike in measures_alike(system, system.measures):
+        mean = mean_deviations(system, alike[0].positions)
+        builds = np.concatenate([np.zeros_like(mean), mean])
+        read = {
+            shown: own.values(builds, alike, with_overlaps=True) for shown, own in evaluations(system, road).items()
+        }
+        for measure in alike:
+            found[measure.name] = (_both(read, measure, 0), _both(read, measure, 1))
+    return found
 
-    def value(name: str) -> Any:
-        column = columns.get(value_column(name, measure.name))
-        if column is None or np.isnan(np.asarray(column, dtype=np.float64)).any():
-            return None
-        return column[0].tolist()
+
+def _both(read: Mapping[str, Mapping[str, NDArray[np.float64]]], measure: Measure, row: int) -> Roads:
+    def value(road: str) -> Any:
+        own = read[road][measure.name][row] if road in read else None
+        return None if own is None or np.isnan(own).any() else own.tolist()
 
     return made(Roads, analytic=value(ANALYTIC), geometric=value(GEOMETRIC))
 

@@ -16,16 +16,15 @@ from tol3d.statistics.linear_fit import LEAST_FREEDOM, LinearFit, effect_of, sta
 from tol3d.study.agreement.explanation import Explanation, LinearPart
 from tol3d.study.agreement.road_fits import RoadFits, sigma_of
 from tol3d.study.agreement.second_look import SecondLook, bends, scalars_of, second_look
-from tol3d.study.columns import columns_of
+from tol3d.study.evaluation import Evaluation, measures_alike
 from tol3d.study.regressors import regressor_groups
 from tol3d.study.simulation import Simulation
 from tol3d.study.tally import Tally
 from tol3d.system.contributor import Contributor
 from tol3d.system.measure import Measure
-from tol3d.system.outcome import ANALYTIC, value_column
 from tol3d.system.regressors import has_square
 from tol3d.system.road import Road
-from tol3d.system.stated import component_count, component_slices, mean_deviations, stated
+from tol3d.system.stated import component_count, component_slices, mean_deviations
 from tol3d.system.system import System
 from tol3d.system.trials import Trials
 from tol3d.units import FACTORS
@@ -90,14 +89,13 @@ def _effects_of_means(system: System) -> Mapping[str, Mapping[str, float]]:
     """How far each contributor's mean shifts each measure on the analytic road, in its unit, by measure and name."""
     found = {}
     slices = component_slices(system)
-    for measure in scalars_of(system):
-        middle = mean_deviations(system, measure.positions)
+    for _, alike in measures_alike(system, scalars_of(system)):
+        middle = mean_deviations(system, alike[0].positions)
         rows = np.zeros((len(slices) + 1, component_count(system)))
         for row, own in zip(rows[1:], slices.values(), strict=True):
             row[own] = middle[0, own]
-        columns = columns_of(system, None, stated(system, rows), (measure,))
-        values = np.asarray(columns[value_column(ANALYTIC, measure.name)], dtype=np.float64)
-        found[measure.name] = dict(zip(slices, np.abs(values[1:] - values[0]).tolist(), strict=True))
+        for name, values in Evaluation(system).values(rows, alike).items():
+            found[name] = dict(zip(slices, np.abs(values[1:] - values[0]).tolist(), strict=True))
     return found
 
 

@@ -115,7 +115,7 @@ def bends(simulation: Simulation, road: Road) -> Mapping[str, Mapping[str, float
     builds = np.concatenate([middle, middle + steps, middle - steps])
     first = drawn(simulation, 0, BEND_POSITIONS)
     each = []
-    for position in range(BEND_POSITIONS):  # one by one, for builds go with the square of the contributors
+    for position in range(BEND_POSITIONS if first.positions else 1):  # one by one: builds go with contributors squared
         there = {name: np.full(len(builds), values[position]) for name, values in first.positions.items()}
         columns = columns_of(system, road, Trials(builds, there), measures)
         each.append(_differences(system, measures, columns))
