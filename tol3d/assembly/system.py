@@ -155,6 +155,16 @@ class AssemblySystem(PlainSystem):
 
     def closed_form(self, measure: Measure) -> ClosedForm | None:
         """Of the torsors; None where the measure is not linear in them."""
+        if measure.name not in self._known_forms:
+            self._known_forms[measure.name] = self._closed_form(measure)
+        return self._known_forms[measure.name]
+
+    @cached_property
+    def _known_forms(self) -> dict[str, ClosedForm | None]:
+        """By measure, as far as they were asked for."""
+        return {}
+
+    def _closed_form(self, measure: Measure) -> ClosedForm | None:
         slopes = self.slopes_of(measure.name)
         if slopes.bends:
             return None

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.system.contributor import Contributor
+from tol3d.system.draw import Remembered
 from tol3d.system.faults import UnfitError
 
 Array = NDArray[np.float64]
@@ -20,7 +21,7 @@ Own = TypeVar("Own", bound=Contributor)
 
 
 @runtime_checkable
-class Dependent(Protocol):
+class Dependent(Protocol, metaclass=Remembered):
     """A Draw that reads contributors drawn before it; studies ask `deviations_given` of it, not `deviations`.
 
     `mean`, `sigma`, `ends` and a covariance are over all that those contributors may be.
@@ -41,7 +42,7 @@ class Dependent(Protocol):
 
 
 @runtime_checkable
-class DependentlyJudged(Protocol):
+class DependentlyJudged(Protocol, metaclass=Remembered):
     """A Draw that a drawing judges by what other contributors are in the same trial, and does not confine."""
 
     @property

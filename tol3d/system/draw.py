@@ -51,8 +51,21 @@ class Draw(Protocol):
         ...
 
 
+_FOUND: dict[tuple[type, type], bool] = {}
+
+
+class Remembered(type(Protocol)):  # type: ignore[misc]  # what Protocol is made by
+    """Makes protocols that look at each type once: Python's own `isinstance` takes 30 us, and draws are asked often."""
+
+    def __instancecheck__(cls, instance: object) -> bool:
+        key = (cls, type(instance))
+        if key not in _FOUND:
+            _FOUND[key] = bool(super().__instancecheck__(instance))
+        return _FOUND[key]
+
+
 @runtime_checkable
-class JointDraw(Protocol):
+class JointDraw(Protocol, metaclass=Remembered):
     """A Draw whose components spread differently or together."""
 
     @property
@@ -67,7 +80,7 @@ class JointDraw(Protocol):
 
 
 @runtime_checkable
-class MiddleDraw(Protocol):
+class MiddleDraw(Protocol, metaclass=Remembered):
     """A Draw of the displacement of a feature, of whose components a stack sees the middle."""
 
     @property
@@ -96,7 +109,7 @@ def component_sigmas(draw: Draw) -> tuple[float, ...]:
 
 
 @runtime_checkable
-class JudgedDraw(Protocol):
+class JudgedDraw(Protocol, metaclass=Remembered):
     """A Draw that a drawing judges and does not confine."""
 
     def beyond(self, *components: Array) -> NDArray[np.bool_]:
