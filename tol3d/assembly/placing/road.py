@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.assembly.model import Assembly, BestFit, Engage, Fix, Locate, Mate, Move, Rest, Touch, Weld
-from tol3d.assembly.model.statuses import NO_BUILD, OK
+from tol3d.assembly.model.statuses import NO_BUILD, OK, SINGULAR
 from tol3d.assembly.placing.best_fitting import BestFitting, best_fitting
 from tol3d.assembly.placing.causes import Cause, Causes, causes_of, ordered
 from tol3d.assembly.placing.datum_seats import DatumSeats, datum_seats
@@ -17,7 +17,7 @@ from tol3d.assembly.placing.engaging import Engaging, engaging
 from tol3d.assembly.placing.gauged_frames import with_gauges
 from tol3d.assembly.placing.locating import Locating, locating
 from tol3d.assembly.placing.mating import Mating, mating
-from tol3d.assembly.placing.measuring import reading
+from tol3d.assembly.placing.measuring import may_lack, reading
 from tol3d.assembly.placing.part_features import PartFeatures
 from tol3d.assembly.placing.poses import Codes, Pose
 from tol3d.assembly.placing.resting import Resting, resting
@@ -266,9 +266,10 @@ def _read(plan: PlacingPlan, block: _Block, name: str, causes: Sequence[Cause]) 
         return _apart(plan, block, name, block.first_of(causes))
     measured, first = plan.assembly.measures[name], block.first_of(causes)
     lost = (first == OK) & ~np.isfinite(numbers := reading(measured, block.worlds))
-    if measured.room is None and not measured.over_gauges:
-        _refuse_lost(f"measures.{name}", lost)
-    first = np.where(lost, np.int8(NO_BUILD), first)  # where a gauge is asked, a datum does not take it
+    if lost.any():
+        _refuse_lost(f"measures.{name}", lost & ~may_lack(measured, block.codes))
+    gauged = measured.room is not None or measured.over_gauges  # a datum does not take a gauge
+    first = np.where(lost, np.int8(NO_BUILD if gauged else SINGULAR), first)
     return np.where(first == OK, numbers, np.nan), first
 
 
