@@ -65,6 +65,7 @@ LARGEST: Final[dict[Dimension, float]] = {
 }
 """Of a quantity in a scene [mm, rad, K, 1/K, N, N/mm, 1]: a kilometre, 1600 turns; products of such stay finite."""
 LEAST_POSITIVE: Final = 1e-9  # mm or rad; a thousandth of an atom, a nanometre at a kilometre
+ABSOLUTE_ZERO: Final = -293.15  # K from 20 degC, from which temperatures count
 MICRO_SIGNS: Final = str.maketrans({"µ": "u", "μ": "u"})
 NUMBER: Final = r"[+-]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][+-]?[0-9]+)?"  # YAML 1.2 core schema, 10.3.2
 NUMBER_UNIT: Final = re.compile(rf"\s*({NUMBER})(?:\s+|(?=[^\s\d.,+-]))(\S+)\s*")

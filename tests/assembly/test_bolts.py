@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from scipy.optimize import minimize
 from scipy.stats import norm
 
-from tol3d import SceneError
+from tol3d import Overrides, SceneError, run_scene
 from tol3d.assembly.model.statuses import NO_BUILD, OK
 from tol3d.assembly.placing import road as placing
 from tol3d.assembly.torsors import road as torsors
@@ -32,11 +32,12 @@ def joint(
     bolt: str = OWN,
     apart: float = 0.0,
     zones: bool = False,
+    screw: bool = False,
     more: str = "",
 ) -> Assembled:
     """Base and cover of 10 mm, the cover's holes `apart` over the base's; holes of 8.4 mm, by zones or dimensions.
 
-    Columns of each pair: shifts or zone of the base's hole, its size; the cover's alike; last all bolts.
+    Columns of each pair: shifts or zone of the base's hole, its size; the cover's alike; last all bolts, or the screw.
     """
     face = "{kind: plane, at: [0 mm, 0 mm, 0 mm], normal: [0, 0, %d], extent: [160 mm, 120 mm]}"
     features, tolerances = {"base": [f"face: {face % 1}"], "cover": [f"face: {face % -1}"]}, list[str]()
@@ -55,6 +56,11 @@ def joint(
                 for axis, along in (("x", "[1, 0, 0]"), ("y", "[0, 1, 0]")):
                     tolerances.append(f"{name} {axis}: {{kind: plus_minus, {of}, along: {along}, {LAW}}}")
             tolerances.append(f"{name} size: {{kind: size, {of}, {LAW}}}")
+    if screw:
+        features["screw"] = [
+            "shank: {kind: cylinder, at: [0 mm, 0 mm, 0 mm], axis: [0, 0, 1], length: 30 mm, diameter: 8 mm}"
+        ]
+        tolerances.append(f"shank: {{kind: size, of: screw.shank, {LAW}}}")
     pairs = ", ".join(f"{{from: cover.hole {k}, to: base.hole {k}, bolt: {bolt}}}" for k in range(len(at)))
     own = "".join(
         f"  {name}:\n    kind: solid\n    features:\n      {chr(10).join(each)}\n" for name, each in features.items()
@@ -67,6 +73,7 @@ tolerances:
   {(chr(10) + "  ").join(tolerances)}
 moves:
   down: {{kind: fix, part: base}}
+{"  laid: {kind: fix, part: screw}" if screw else ""}
   on:
     kind: pattern
     part: cover
@@ -201,6 +208,34 @@ def test_a_bolt_thicker_than_its_hole_is_not_built(road: str, tmp_path: Path) ->
     rows[:, 13] = [0.39, 0.41]
     assert read(made, rows, road) == pytest.approx([0.005, -0.005], abs=1e-9)
     assert list(placing.values(made.system.assembly, rows, ["x"])["x"][1]) == [OK, NO_BUILD]
+
+
+@pytest.mark.parametrize("road", ROADS)
+def test_a_screw_s_size_takes_half_of_itself_from_the_clearance_at_each_end(road: str, tmp_path: Path) -> None:
+    """Both bolts are one screw's shank: of 0.2 mm at each end d / 2 goes, of the cover's 0.4 mm d, all alike."""
+    made = joint(TWO, tmp_path, "{kind: toward, along: [1, 0, 0], at: cover.hole 0}", bolt="screw.shank", screw=True)
+    assert [own.name for own in made.system.contributors][-1] == "shank"
+    deviations = np.array([-0.1, 0.0, 0.05, 0.39, 0.41])
+    rows = np.zeros((len(deviations), made.system.assembly.width))
+    rows[:, 12] = deviations
+    assert read(made, rows, road) == pytest.approx(0.2 - deviations / 2, abs=1e-9)
+    assert read(made, rows[:4], road, "x") == pytest.approx(0.4 - deviations[:4], abs=1e-9)
+    assert list(placing.values(made.system.assembly, rows, ["x"])["x"][1]) == [OK, OK, OK, OK, NO_BUILD]
+
+
+def test_a_run_with_a_screw_has_two_thirds_of_its_variance_by_the_screw(tmp_path: Path) -> None:
+    """x = 0.4 mm + (both sizes of holes) / 2 - d, each of 0.05 mm: sigma 0.05 √1.5, by both methods."""
+    floating, count = "{kind: toward, along: [1, 0, 0], at: cover.hole 0}", 1000
+    joint(TWO[:1], tmp_path, floating, bolt="screw.shank", screw=True)
+    scene, given = tmp_path / "assembly.yaml", Overrides(trials=count)
+    found = run_scene(scene, overrides=given, out=tmp_path / "run").found.measures["x"]
+    sigma = 50 * math.sqrt(1.5)
+    for own in (found.analytic, found.geometric):
+        assert own is not None
+        assert own.mean == pytest.approx(400, abs=4 * sigma / math.sqrt(count))
+        assert own.sigma == pytest.approx(sigma, rel=4 / math.sqrt(2 * count))
+    share = {each.name: each.geometric_percent for each in found.contributors}["shank"]
+    assert share == pytest.approx(200 / 3, abs=100 * 4 * math.sqrt(2 / count))
 
 
 @pytest.mark.parametrize("road", ROADS)

@@ -152,6 +152,10 @@ CHANGES = {
         ("trials: 2000", "trials: no"),
         "study.trials: expected a whole number or auto, got 'no'",
     ),
+    "half a trial": (
+        ("trials: 2000", "trials: 1.5e0"),
+        "study.trials: expected a whole number or auto, got 1.5",
+    ),
     "nothing behind a key": (
         ("teeth: 28, module: 2.5 mm", "teeth: 28, module: "),
         'parts.pinion.module: expected a length with its unit, such as "4.5 um", got nothing',

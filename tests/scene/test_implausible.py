@@ -252,6 +252,51 @@ def test_axes_may_lie_off_by_half_of_a_module(
     assert f"distribution: expected at most 50 % of the module of {gear!r}" in found[1][0]
 
 
+# faces and temperatures -----------------------------------------------------------------------------
+
+
+def test_gears_may_shift_by_their_face_width(warned: Warned) -> None:
+    """The wheel of every_field is 16 mm wide; the end of a law that is farther from 0 counts."""
+    old = "lower: -0.1 mm, upper: 0.1 mm"
+    found = [warned("every_field", (old, f"lower: {low}, upper: 0.1 mm")) for low in ("-16 mm", "-16.1 mm")]
+    assert [len(lines) for lines in found] == [0, 1]
+    words = "distribution: expected at most 100 % of the face width of 'wheel' (16 mm), got -16.1 mm (100.6 %)"
+    assert words in found[1][0]
+
+
+def test_faces_may_be_a_metre_wide(warned: Warned) -> None:
+    found = [warned("every_field", ("face_width: 18 mm", f"face_width: {width}")) for width in ("1 m", "1001 mm")]
+    assert found[0] == ()
+    assert found[1] == ("parts.pinion.face_width: expected at most 1 m, got 1001 mm; look at the unit",)
+
+
+@pytest.mark.parametrize(
+    ("law", "below", "above"),
+    [
+        ("{{kind: constant, value: {} K}}", -293.16, -293.15),
+        ("{{kind: uniform, lower: {} K, upper: 20 K}}", -293.16, -293.15),
+        ("{{kind: normal, mean: {} K, sigma: 1 K}}", -290.16, -290.14),  # to its 3 sigma
+        ('{{kind: empirical, file: t.csv, column: "t [K] {}", unit: K}}', -293.16, -293.15),
+    ],
+)
+def test_nothing_is_colder_than_absolute_zero(
+    law: str, below: float, above: float, warned: Warned, tmp_path: Path
+) -> None:
+    """-273.15 degC are -293.15 K from 20 degC."""
+    old = "{kind: normal, mean: 30 K, sigma: 10 K}"
+
+    def laid(lowest: float) -> Sequence[str]:
+        (tmp_path / "t.csv").write_text(f"t [K] {lowest}\n20\n{lowest}\n")
+        lines = warned("warm_bar", (old, law.format(lowest)))
+        scene = load_scene(tmp_path / "scene.yaml")
+        mechanism_of(scene).system_of(scene)  # it reads what files have
+        return lines
+
+    assert laid(above) == ()
+    with pytest.raises(SceneError, match=r"at least -293.15 K, which is absolute zero, .*got -293.16 K"):
+        laid(below)
+
+
 # shafts ---------------------------------------------------------------------------------------------
 
 

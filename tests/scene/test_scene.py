@@ -328,6 +328,12 @@ def test_defaults_are_those_of_the_grammar(tmp_path: Path) -> None:
     assert scene.options(GearStudyOptions).profile_steps == 120
 
 
+@pytest.mark.parametrize(("text", "count"), [("1e6", 1_000_000), ("2.5e3", 2500), ("400.0", 400)])
+def test_trials_are_whole_numbers_however_they_are_written(text: str, count: int, tmp_path: Path) -> None:
+    trials = load(tmp_path, f"{SMALL}study: {{trials: {text}}}\n").study.trials
+    assert (trials, type(trials)) == (count, int)
+
+
 @pytest.mark.parametrize(
     ("engine", "words"), [("fcl", "is the witness itself"), ("analytic", "no 3D simulation to check")]
 )

@@ -15,6 +15,7 @@ class AssemblyMeasureSummary(MeasureSummary):
     """A measure of features, or the difference of two measures."""
 
     presenter = PRESENTER
+    long_in_mm = True
 
     of: Annotated[list[Label], Field(min_length=1, max_length=MOST_ENTRIES)]
     chord_error_um: Maybe[NotNegative] = Field(

@@ -13,7 +13,7 @@ from tol3d.distributions.csv_table import csv_table
 from tol3d.errors import SceneError
 from tol3d.files import Files
 from tol3d.strict import refused
-from tol3d.units import MICRO_SIGNS, UNITS, Quantity
+from tol3d.units import ABSOLUTE_ZERO, MICRO_SIGNS, UNITS, Quantity
 
 
 @dataclass(frozen=True, eq=False)
@@ -117,6 +117,9 @@ class EmpiricalSpec(DistributionSpec):
         sample = np.array(column.numbers()) * self.quantities()["unit"].internal
         if not np.all(np.abs(sample) <= LARGEST_DEVIATION):
             raise SceneError(f"{file.path}: expected deviations of less than 1e9 mm, rad or K")
+        if self.quantities()["unit"].dimension == "temperature" and sample.min() < ABSOLUTE_ZERO:
+            least = f"at least {ABSOLUTE_ZERO} K, which is absolute zero"
+            raise SceneError(f"{file.path}: expected {least}, in column {self.column!r}, got {sample.min():.6g} K")
         sample = np.sort(sample)
         sample.flags.writeable = False
         return Empirical(sample)

@@ -8,6 +8,7 @@ from tol3d.gearing.grammar.checks import (
     carried_again,
     forms_of_two_shapes,
     implausible_displacements,
+    implausible_faces,
     shafts_thicker_than_hubs,
 )
 from tol3d.gearing.grammar.published import PublishedTrains
@@ -23,7 +24,7 @@ GEARING: Final = Mechanism(
     moves=specs_in(moves),
     measures=specs_in(measures),
     checks=(carried_again, forms_of_two_shapes),
-    warnings=(implausible_displacements, bearings_off_shafts, shafts_thicker_than_hubs),
+    warnings=(implausible_displacements, implausible_faces, bearings_off_shafts, shafts_thicker_than_hubs),
     options=GearStudyOptions,
     published=PublishedTrains,
     engines=("exact", "fcl"),

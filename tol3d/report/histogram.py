@@ -45,6 +45,7 @@ from tol3d.report.heading import heading
 from tol3d.report.label import widest, wrapped
 from tol3d.report.number import UNIT_SIGNS, share_text, short_text
 from tol3d.report.picture import measure_files
+from tol3d.report.shown_unit import shown_run
 from tol3d.runs.summary.measure import MeasureSummary
 from tol3d.runs.summary.run import RunSummary
 
@@ -84,7 +85,7 @@ def draw_measure(summary: RunSummary, name: str, path: Path) -> None:
 
 def histogram_figure(summary: RunSummary) -> Figure:
     """All measures of a summary one below the other, not yet written."""
-    measures = summary.measures
+    measures = shown_run(summary).measures
     heights = [_height(measure) for measure in measures.values()]
     figure = _headed(summary, sum(heights) + 0.5)
     scalars = [measure for measure in measures.values() if measure.take != "curve"]
@@ -157,7 +158,7 @@ def _draw_scalar(
 
 def overview_figure(summary: RunSummary) -> Figure:
     """Every measure of a run small, several in a row, not yet written."""
-    measures = summary.measures
+    measures = shown_run(summary).measures
     rows = -(-len(measures) // OVERVIEW_COLUMNS)
     figure = _headed(summary, OVERVIEW_HEIGHT * rows + 0.5)
     roads = dict.fromkeys(measure.best_road for measure in measures.values())

@@ -7,17 +7,16 @@ from dataclasses import replace
 from tol3d.report.column import Column, Road, columns_of, contributor_columns, ranked_contributors, seated_text
 from tol3d.report.number import (
     NOTHING,
-    given_text,
     limit_text,
     percent_cell,
     share_cell,
     unsigned_zero,
     value_cell,
-    value_text,
 )
 from tol3d.report.page import Heading, Row, Shown, Table
 from tol3d.report.presenter import FurtherRow
-from tol3d.report.published import curve_columns, published_counts, published_rows
+from tol3d.report.published import curve_columns, published_cell, published_counts, published_rows
+from tol3d.report.shown_unit import Spread
 from tol3d.runs.summary.measure import MeasureSummary
 from tol3d.runs.summary.run import RunSummary
 from tol3d.runs.summary.sample import CurveRoads, Roads
@@ -54,7 +53,7 @@ def measure_table(run: RunSummary, measure: MeasureSummary, further: Sequence[Fu
     """Statistics of one scalar measure, one column a road, the published ones last; `further` rows below."""
     columns, unit = columns_of(measure), measure.unit
     rows = [*_failure_rows(run, measure, columns)]
-    rows += [Row(label, [_cell(column, key, unit) for column in columns], unit=unit) for key, label in ROWS.items()]
+    rows += [_statistic(measure, columns, key, label) for key, label in ROWS.items()]
     rows += [
         Row(label, [share_cell(_ppm(column, key, measure)) for column in columns], unit="ppm")
         for key, label in limit_rows(measure).items()
@@ -76,14 +75,16 @@ def measure_table(run: RunSummary, measure: MeasureSummary, further: Sequence[Fu
     return Table(UNIT_HEADINGS[unit], _headings(columns), rows)
 
 
-def _cell(column: Column, key: str, unit: str) -> Shown:
-    text = given_text if column.road == "published" else value_text
-    return Shown(text(column.value(key), unit), column.value(key))
+def _statistic(measure: MeasureSummary, columns: Sequence[Column], key: str, label: str) -> Row:
+    spread = Spread.of(measure) if key == "sigma" else Spread(measure.unit)
+    cells = [published_cell(column, spread.times(column.value(key)), spread.unit) for column in columns]
+    return Row(f"{label}{spread.words}", cells, unit=spread.unit)
 
 
 def _build_cell(column: Column, key: str, build: Roads, unit: str) -> Shown:
     """Of one build: by both roads, and what others say of it."""
-    return _cell(column, key, unit) if column.road == "published" else value_cell(build.value(column.road), unit)
+    value = column.value(key) if column.road == "published" else build.value(column.road)
+    return published_cell(column, value, unit)
 
 
 def _index_cell(value: float | None) -> Shown:

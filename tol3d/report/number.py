@@ -10,6 +10,7 @@ NOTHING: Final = "–"
 UNIT_SIGNS: Final = {"um": "µm", "mm": "mm", "arcmin": "′", "mrad": "mrad", "K": "K", "1": "1", "pins": "pins"}
 COUNTED: Final = frozenset(FACTORS["count"])
 MANY_UM: Final = 1000.0  # um; from there on a nanometre says nothing
+MANY_MM: Final = 100.0  # mm; from there on six digits are too few for a tenth of a um
 UM_PER_MM: Final = 1000.0
 LEAST_PERCENT: Final = 1000.0  # ppm; smaller shares are given in ppm, as quality people do
 ALMOST_ALL: Final = 999_999.0  # ppm
@@ -74,9 +75,13 @@ def given_text(value: float | None, unit: str) -> str:
 
     >>> given_text(53.0, "um"), given_text(15.000000000000002, "um"), given_text(-0.0, "um")
     ('53', '15', '0')
+    >>> given_text(1200.0055, "mm"), given_text(120.0, "mm")
+    ('1200.0055', '120')
     """
     if value is None or unit == "arcmin":
         return value_text(value, unit)
+    if unit == "mm" and abs(value) >= MANY_MM:
+        return value_text(value, unit).rstrip("0").removesuffix(".")
     return unsigned_zero(f"{value:.6g}")
 
 

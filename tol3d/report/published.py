@@ -15,6 +15,7 @@ from tol3d.report.number import (
     value_text,
 )
 from tol3d.report.page import Row, Shown
+from tol3d.report.shown_unit import Spread
 from tol3d.runs.summary.measure import MeasureSummary
 from tol3d.runs.summary.values import Section
 
@@ -54,13 +55,16 @@ def published_rows(measure: MeasureSummary, columns: Sequence[Column], shown: Se
         shown: keys that have a row.
     """
     others = [column for column in columns if column.road == "published"]
+    spread = Spread.of(measure)
 
     def is_asked(key: str) -> bool:
         return key not in shown and any(column.value(key) is not None for column in others)
 
     for key, label in DIMENSIONED.items():
         if is_asked(key):
-            yield Row(label, [_cell(column, column.value(key), measure.unit) for column in columns], unit=measure.unit)
+            own = Spread(measure.unit) if key == "deepest_overlap" else spread
+            cells = [published_cell(column, own.times(column.value(key)), own.unit) for column in columns]
+            yield Row(f"{label}{own.words}", cells, unit=own.unit)
     for key, label in NUMBERS.items():
         if is_asked(key):
             yield Row(label, [number_cell(column.value(key)) for column in columns])
@@ -74,12 +78,13 @@ def published_rows(measure: MeasureSummary, columns: Sequence[Column], shown: Se
     for key, label in (("mean_95", "mean, 95 %"), ("sigma_95", "sigma, 95 %")):
         ranges = [_pair(column.values, key) for column in columns]
         if any(own for own, column in zip(ranges, columns, strict=True) if column.road == "published"):
-            cells = [" to ".join(value_text(end, measure.unit) for end in own) or NOTHING for own in ranges]
-            yield Row(label, cells, unit=measure.unit)
+            by = spread if key == "sigma_95" else Spread(measure.unit)
+            texts = [" to ".join(value_text(by.times(end), by.unit) for end in own) or NOTHING for own in ranges]
+            yield Row(f"{label}{by.words}", texts, unit=by.unit)
     for name in dict.fromkeys(name for column in columns for name in _pooled(column)):
         yield Row(
             POOLED.get(name, name),
-            [_cell(own, _pooled(own).get(name), measure.unit) for own in columns],
+            [published_cell(own, _pooled(own).get(name), measure.unit) for own in columns],
             unit=measure.unit,
         )
 
@@ -100,7 +105,8 @@ def _pair(values: Section | None, key: str) -> Sequence[Any]:
     return (values.get(key) if values else None) or ()
 
 
-def _cell(column: Column, value: float | None, unit: str) -> Shown:
+def published_cell(column: Column, value: float | None, unit: str) -> Shown:
+    """A value, with no more digits than it came with where somebody else gave it."""
     return Shown((given_text if column.road == "published" else value_text)(value, unit), value)
 
 

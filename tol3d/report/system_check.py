@@ -2,11 +2,12 @@
 
 import math
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 
 from tol3d.distributions import DeviationLaw
-from tol3d.report.number import NOTHING, UNIT_SIGNS, limit_text, measured_text, unsigned_zero, value_text
+from tol3d.report.number import NOTHING, UM_PER_MM, UNIT_SIGNS, limit_text, measured_text, unsigned_zero, value_text
 from tol3d.report.page import Heading, PageItem, Row, Shown, Table, note, titled, warning
+from tol3d.report.shown_unit import shown_unit
 from tol3d.study.first_order import FirstOrder, FirstOrderEffect, first_orders
 from tol3d.study.simulation import Simulation
 from tol3d.study.task import materials_of, road_of
@@ -28,25 +29,40 @@ NO_SUM = "no sum of effects, so no RSS and no worst case: its slopes are means o
 BESIDE = 1e-6  # um or arcmin; a value that is nearer to a limit lies on it
 
 
-def system_blocks(simulation: Simulation) -> list[PageItem]:
-    """Contributors, measures and first-order coefficients by both roads, of any kind of system."""
+def system_blocks(simulation: Simulation, long_in_mm: Collection[str] = ()) -> list[PageItem]:
+    """Contributors, measures and first-order coefficients by both roads, of any kind of system.
+
+    Args:
+        simulation: of the scene.
+        long_in_mm: names of measures whose values are shown in mm where they are nominally over 1 mm.
+    """
     system, study = simulation.system, simulation.study
     road = road_of(simulation, materials_of(simulation))
     headings = {"analytic": "analytic"} | ({"geometric": study.engine} if road else {})
     found: dict[str, dict[str, FirstOrder]] = {measure.name: {} for measure in system.measures}
     found |= first_orders(simulation, road, [measure for measure in system.measures if measure.take != "curve"])
+    units = {
+        name: shown_unit(own.unit, _nominal(found[name])) if name in long_in_mm else own.unit
+        for name, own in ((measure.name, measure) for measure in system.measures)
+    }
     kinds = {measure.name: str(system.describe(measure).get("kind", NOTHING)) for measure in system.measures}
     tables = [
         block
         for measure in system.measures
         if found[measure.name] and system.acting(measure)
-        for block in _coefficients(measure, found[measure.name], headings)
+        for block in _coefficients(measure, units[measure.name], found[measure.name], headings)
     ]
     sums = any(measure.adds_up and found[measure.name] for measure in system.measures)
     several = any(effect.each > 1 for own in found.values() for road in own.values() for effect in road.effects)
     texts = (SLOPES, *([EACH] if several else []), *([SHARES] if sums else []))
     notes = [note(text) for text in texts] if tables else []
-    return [*_contributors(system.contributors), *_measures(system.measures, kinds, found, headings), *tables, *notes]
+    shown = _measures(system.measures, units, kinds, found, headings)
+    return [*_contributors(system.contributors), *shown, *tables, *notes]
+
+
+def _nominal(found: Mapping[str, FirstOrder]) -> float | None:
+    """The nominal value by the first road that has one."""
+    return next((own.nominal for own in found.values() if not math.isnan(own.nominal)), None)
 
 
 def law_name(law: DeviationLaw) -> str:
@@ -82,29 +98,31 @@ def _contributors(contributors: Sequence[Contributor]) -> list[PageItem]:
 
 def _measures(
     measures: Sequence[Measure],
+    units: Mapping[str, str],
     kinds: Mapping[str, str],
     found: Mapping[str, Mapping[str, FirstOrder]],
     headings: Mapping[str, str],
 ) -> list[PageItem]:
     rows = []
     for measure in measures:
-        values = [_value(getattr(found[measure.name].get(road), build, None), measure.unit)
+        shown, own = units[measure.name], found[measure.name]
+        values = [_value(measure, getattr(own.get(road), build, None), shown)
                   for build in ("nominal", "mean") for road in headings]  # fmt: skip
-        unit = "′, ″" if measure.unit == "arcmin" else UNIT_SIGNS[measure.unit]
-        rows.append(Row(measure.name, (kinds[measure.name], _limits(measure), *values, unit)))
+        unit = "′, ″" if shown == "arcmin" else UNIT_SIGNS[shown]
+        rows.append(Row(measure.name, (kinds[measure.name], _limits(measure, shown), *values, unit)))
     words = [Heading(word, words=True) for word in ("kind", "limits")]
     numbers = [Heading(f"{build}, {name}") for build in ("nominal", "mean build") for name in headings.values()]
-    outside = [text for own in measures for text in _outside(own, found[own.name])]
+    outside = [text for own in measures for text in _outside(own, units[own.name], found[own.name])]
     return [*titled("measures", Table("", [*words, *numbers, Heading("unit")], rows)), *map(warning, outside)]
 
 
-def _outside(measure: Measure, found: Mapping[str, FirstOrder]) -> Iterator[str]:
+def _outside(measure: Measure, unit: str, found: Mapping[str, FirstOrder]) -> Iterator[str]:
     """A mean build out of a measure's limits, by the first road that finds it so; its nominal value, if that is too."""
     for own in found.values():
         if _is_outside(measure, own.mean):
             words, value = ("nominal", own.nominal) if _is_outside(measure, own.nominal) else ("mean build", own.mean)
-            text = f"{words} {measured_text(value, measure.unit)}"
-            yield f"{measure.name}: {text} is outside its limits {_limits(measure)}"
+            text = f"{words} {measured_text(_in(measure, value, unit), unit)}"
+            yield f"{measure.name}: {text} is outside its limits {_limits(measure, unit)}"
             return
 
 
@@ -114,19 +132,26 @@ def _is_outside(measure: Measure, value: float) -> bool:
     return (low is not None and value < low * per - BESIDE) or (high is not None and value > high * per + BESIDE)
 
 
-def _value(value: float | None, unit: str) -> Shown:
-    known = None if value is None or math.isnan(value) else value
+def _in(measure: Measure, value: float, unit: str) -> float:
+    """A value of a measure in the unit in which it is shown."""
+    return value / UM_PER_MM if unit != measure.unit else value
+
+
+def _value(measure: Measure, value: float | None, unit: str) -> Shown:
+    known = None if value is None or math.isnan(value) else _in(measure, value, unit)
     return Shown(value_text(known, unit), known)
 
 
-def _limits(measure: Measure) -> str:
+def _limits(measure: Measure, unit: str) -> str:
     limits = (("≥", measure.lower_limit), ("≤", measure.upper_limit))
-    per, unit = measure.per_internal, measure.unit
-    given = ((sign, limit * per) for sign, limit in limits if limit is not None)
+    given = ((sign, _in(measure, limit * measure.per_internal, unit)) for sign, limit in limits if limit is not None)
     return ", ".join(f"{sign} {limit_text(limit, unit)}" for sign, limit in given) or NOTHING
 
 
-def _coefficients(measure: Measure, found: Mapping[str, FirstOrder], headings: Mapping[str, str]) -> list[PageItem]:
+def _coefficients(
+    measure: Measure, unit: str, found: Mapping[str, FirstOrder], headings: Mapping[str, str]
+) -> list[PageItem]:
+    """Changes by each deviation in the measure's own unit; its ends in the one in which it is shown."""
     rows = []
     for effects in zip(*(own.effects for own in found.values()), strict=True):
         roads = list(zip(found.values(), effects, strict=True))
@@ -138,7 +163,7 @@ def _coefficients(measure: Measure, found: Mapping[str, FirstOrder], headings: M
     words = ("slope", "RSS [%]", "worst [%]") if measure.adds_up else ("slope",)
     columns = [Heading(f"{word}, {name}") for word in words for name in headings.values()]
     table = Table("", [Heading("unit"), *columns], rows)
-    below = [_sums(measure, headings[road], own) for road, own in found.items()] if measure.adds_up else [NO_SUM]
+    below = [_sums(measure, unit, headings[road], own) for road, own in found.items()] if measure.adds_up else [NO_SUM]
     return [*titled(f"{measure.name}: change by each deviation", table), *map(note, below)]
 
 
@@ -155,8 +180,7 @@ def _number(value: float, form: str) -> Shown:
     return Shown(NOTHING if known is None else unsigned_zero(f"{known:{form}}"), known)
 
 
-def _sums(measure: Measure, heading: str, found: FirstOrder) -> str:
-    sigma, low, high = (
-        measured_text(None if math.isnan(value) else value, measure.unit) for value in (found.sigma, *found.ends)
-    )
+def _sums(measure: Measure, unit: str, heading: str, found: FirstOrder) -> str:
+    sigma = measured_text(None if math.isnan(found.sigma) else found.sigma, measure.unit)
+    low, high = (measured_text(None if math.isnan(end) else _in(measure, end, unit), unit) for end in found.ends)
     return f"{heading}: sigma {sigma} by RSS; with all contributors at their ends {low} … {high}"

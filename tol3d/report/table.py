@@ -29,6 +29,7 @@ from tol3d.report.page import BLANK, Line, Page, PageItem, line, note, page, tit
 from tol3d.report.presenter import Presenter, presenter_of
 from tol3d.report.published import published_notes
 from tol3d.report.published_whole import published_blocks
+from tol3d.report.shown_unit import shown_run
 from tol3d.report.spectrum_table import spectrum_blocks
 from tol3d.report.verdict import ACCEPTED_PPM, verdict_report
 from tol3d.runs.summary.measure import MeasureSummary
@@ -76,19 +77,19 @@ def run_report(
         accepted_ppm: share of trials that may be out of a measure's limits.
         presenter: import path of what shows more of the system; by default that of the run's measures.
     """
-    own = presenter_of(run, presenter)
+    own, shown = presenter_of(run, presenter), shown_run(run)
     warnings = [*map(warning, run.warnings)]
-    verdict = verdict_report(run, accepted_ppm, blame=detail is not Detail.MEASURES)
+    verdict = verdict_report(shown, accepted_ppm, blame=detail is not Detail.MEASURES)
     if detail is Detail.VERDICT:
         return page(*verdict, *warnings)
     blocks: list[PageItem] = [_run_line(run)]
     if detail is Detail.MEASURES:
-        for name, measure in run.measures.items():
-            blocks += _measure_blocks(name, measure, run, own)
+        for name, measure in shown.measures.items():
+            blocks += _measure_blocks(name, measure, shown, own)
     blocks += own.sections(run)
     blocks += published_blocks(run)
     blocks += correlation_blocks(run) if detail is Detail.MEASURES else []
-    if detail is Detail.MEASURES and (meanings := list(_meanings(run))):
+    if detail is Detail.MEASURES and (meanings := list(_meanings(shown))):
         blocks += [title("notes"), *map(note, meanings)]
     blocks += verdict
     blocks += [] if detail is Detail.MEASURES else [note(MORE_TABLES)]

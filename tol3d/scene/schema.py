@@ -77,8 +77,12 @@ def _trials_shape(value: Any) -> str:
 
 
 def _number_or_auto(value: Any) -> Any:
-    if isinstance(value, str) and value != "auto":
-        raise refused("", "a whole number or auto", shown(value) + nearest(value, ["auto"]))
+    """As on the command line, `1e6` is a whole number, which YAML reads as a float."""
+    if isinstance(value, float) and value.is_integer():
+        return int(value)
+    if isinstance(value, str | float) and value != "auto":
+        near = nearest(value, ["auto"]) if isinstance(value, str) else ""
+        raise refused("", "a whole number or auto", shown(value) + near)
     return value
 
 

@@ -11,7 +11,7 @@ from tol3d.scene.part import GrowingSpec, PartSpec
 from tol3d.scene.reference import Contradiction, Reference
 from tol3d.scene.tolerance import ToleranceSpec
 from tol3d.strict import refused
-from tol3d.units import Dimension, shown
+from tol3d.units import ABSOLUTE_ZERO, Dimension, shown
 
 NAME_SCHEMA = {"type": "string", "minLength": 1, "maxLength": LONGEST_NAME}
 
@@ -47,9 +47,14 @@ class TemperatureSpec(ToleranceSpec):
         return tuple(Reference(("of", index), name, (GrowingSpec,)) for index, name in enumerate(self.of))
 
     def contradictions(self, parts: Mapping[str, PartSpec], moves: Mapping[str, MoveSpec]) -> Iterator[Contradiction]:
-        """A part without a coefficient of expansion would take no notice."""
+        """A part without a coefficient of expansion would take no notice; nothing is colder than absolute zero."""
         for index, name in enumerate(self.of):
             if parts[name].expansion is None:
                 yield Contradiction(
                     ("of", index), "a part with its coefficient of expansion", f"{name!r} without expansion:"
                 )
+        if not any(self.distribution.file_names()):  # those judge themselves when they are read
+            lowest = self.distribution.resolve({}).extremes[0]
+            if lowest < ABSOLUTE_ZERO:
+                least = f"at least {ABSOLUTE_ZERO} K, which is absolute zero"
+                yield Contradiction(("distribution",), least, f"{lowest:.6g} K; look at the unit")

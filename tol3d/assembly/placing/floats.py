@@ -191,6 +191,7 @@ def in_lens(x: Array, y: Array, clearance: Array, u: Array, v: Array) -> tuple[A
     some = length > 0.0
     a, b = np.where(some, x / np.where(some, length, 1.0), 1.0), np.where(some, y / np.where(some, length, 1.0), 0.0)
     along, across = u * a + v * b, v * a - u * b
+    along = np.where(np.abs(along) <= 1.0, along, np.nan)  # off the disc of radius 1 is no place
     share = np.minimum(length / np.where(clearance > 0.0, clearance, 1.0), 1.0)
     cut = _segment(np.abs(along)) / (np.pi / 2) * _segment(share)
     angle = np.minimum(np.cbrt(12 * cut), np.pi)  # of the segment: (angle - sin angle) / 2 is its area

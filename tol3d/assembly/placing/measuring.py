@@ -9,12 +9,13 @@ from numpy.typing import NDArray
 
 from tol3d.assembly.model import Assembly, Axis, Measured, Plane, RoundPlane, Shape
 from tol3d.assembly.model.measures import MeasureKind
+from tol3d.assembly.model.statuses import OK
 from tol3d.assembly.placing.actual_feature import ActualFeature, actual_size
 from tol3d.assembly.placing.datum_rooms import position_in_room
 from tol3d.assembly.placing.flatness import widths
 from tol3d.assembly.placing.gauged_positions import position_on_gauges
 from tol3d.assembly.placing.patterns import bonuses, pattern
-from tol3d.assembly.placing.poses import column, cross, dot, rotated
+from tol3d.assembly.placing.poses import Codes, column, cross, dot, rotated
 from tol3d.assembly.placing.surfaces import PARALLEL, common_normal, surface_gap
 from tol3d.assembly.placing.virtual_clearance import virtual_clearance
 from tol3d.assembly.placing.world import World
@@ -35,6 +36,21 @@ def reading(measured: Measured, worlds: Sequence[World]) -> Array:
     """
     values = READINGS[measured.kind](measured, worlds[-1] if measured.after < 0 else worlds[measured.after + 1])
     return values if measured.minus is None else values - reading(measured.minus, worlds)
+
+
+def may_lack(measured: Measured, codes: Mapping[int, Codes]) -> NDArray[np.bool_]:
+    """Whether a measure may have no value although nothing before it fails (n,) or (1,).
+
+    That is where datums take no gauge, and where the slack is asked of a move that finds no pose.
+
+    Args:
+        measured: what.
+        codes: what became of moves, by their places.
+    """
+    lacks = np.array([measured.room is not None or measured.over_gauges])
+    if measured.kind == "slack":
+        lacks = lacks | (codes[measured.of_move] != OK)
+    return lacks if measured.minus is None else lacks | may_lack(measured.minus, codes)
 
 
 def _length(vector: Array) -> Array:

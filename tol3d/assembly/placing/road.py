@@ -17,7 +17,7 @@ from tol3d.assembly.placing.engaging import Engaging, engaging
 from tol3d.assembly.placing.gauged_frames import with_gauges
 from tol3d.assembly.placing.locating import Locating, locating
 from tol3d.assembly.placing.mating import Mating, mating
-from tol3d.assembly.placing.measuring import reading
+from tol3d.assembly.placing.measuring import may_lack, reading
 from tol3d.assembly.placing.part_features import PartFeatures
 from tol3d.assembly.placing.poses import Codes, Pose
 from tol3d.assembly.placing.resting import Resting, resting
@@ -57,6 +57,7 @@ def values(
 
     Raises:
         InputError: a move leaves a freedom or takes one twice; a part is not placed.
+        FloatingPointError: what nothing fails is not a number.
     """
     return answers(assembly, deviations, names, solids)[0]
 
@@ -100,10 +101,9 @@ def placed(assembly: Assembly, deviations: Array) -> dict[str, Array]:
     for start in range(0, len(deviations), BLOCK):
         rows = slice(start, start + BLOCK)
         block = _placed(plan, deviations[rows])
-        trials = len(deviations[rows])
         for name, poses in found.items():
             failed = block.first_of(ordered(causes[name])) != OK
-            poses[rows] = block.worlds[-1].poses[name].matrices(trials)
+            poses[rows] = block.worlds[-1].poses[name].matrices(len(failed))
             poses[rows][failed] = np.nan
     return found
 
@@ -230,12 +230,23 @@ class _Block:
 def _placed(plan: PlacingPlan, deviations: Array, instead: Mapping[int, Resting | Engaging] | None = None) -> _Block:
     """Trials as moves place them; `instead` has other moves for some, by their places."""
     assembly = plan.assembly
+    _refuse_lost("a deviation", ~np.isfinite(deviations.sum(axis=1)))
     worlds, codes = [_world(assembly, plan.datum_seats, np.ascontiguousarray(deviations.T))], dict[int, Codes]()
-    with np.errstate(all="ignore"):  # what is not a number gets a code
-        for index, move in enumerate(plan.moves):
-            world, codes[index] = _after(instead.get(index, move) if instead else move, worlds[-1])
-            worlds.append(world)
-    return _Block(tuple(worlds), codes)
+    for index, move in enumerate(plan.moves):
+        world, codes[index] = _after(instead.get(index, move) if instead else move, worlds[-1])
+        worlds.append(world)
+    block = _Block(tuple(worlds), codes)
+    for part, causes in plan.causes[-1].placed.items():
+        pose = worlds[-1].poses[part]
+        lost = ~np.isfinite(pose.turn.sum(axis=(0, 1)) + pose.shift.sum(axis=0))
+        _refuse_lost(f"the pose of {part}", lost & (block.first_of(ordered(causes)) == OK) if lost.any() else lost)
+    return block
+
+
+def _refuse_lost(what: str, lost: NDArray[np.bool_]) -> None:
+    """Raise a fault, no status, where a number is lost in a trial (n,) that nothing fails."""
+    if lost.any():
+        raise FloatingPointError(f"{what} is not a number in {np.count_nonzero(lost)} trials that nothing fails")
 
 
 def _after(move: Placing, world: World) -> tuple[World, Codes]:
@@ -253,12 +264,12 @@ def _read(plan: PlacingPlan, block: _Block, name: str, causes: Sequence[Cause]) 
     """A measure's values and codes (n,)."""
     if plan.assembly.measures[name].kind == "clearance":
         return _apart(plan, block, name, block.first_of(causes))
-    with np.errstate(all="ignore"):
-        numbers = reading(plan.assembly.measures[name], block.worlds)
-        first = block.first_of(causes)
-    measured = plan.assembly.measures[name]  # where a gauge is asked, a datum does not take it
-    lost = SINGULAR if measured.room is None and not measured.over_gauges else NO_BUILD
-    first = np.where((first == OK) & ~np.isfinite(numbers), np.int8(lost), first)
+    measured, first = plan.assembly.measures[name], block.first_of(causes)
+    lost = (first == OK) & ~np.isfinite(numbers := reading(measured, block.worlds))
+    if lost.any():
+        _refuse_lost(f"measures.{name}", lost & ~may_lack(measured, block.codes))
+    gauged = measured.room is not None or measured.over_gauges  # a datum does not take a gauge
+    first = np.where(lost, np.int8(NO_BUILD if gauged else SINGULAR), first)
     return np.where(first == OK, numbers, np.nan), first
 
 
@@ -269,8 +280,6 @@ def _apart(plan: PlacingPlan, block: _Block, name: str, codes: Codes) -> tuple[A
     measured = plan.assembly.measures[name]
     world = block.worlds[-1] if measured.after < 0 else block.worlds[measured.after + 1]
     poses = [world.poses[part].matrices(world.trials) for part in measured.parts]
-    lost = ~np.isfinite(poses).all(axis=(0, 2, 3))
-    codes = np.where((codes == OK) & lost, np.int8(SINGULAR), codes)
     values, placed = np.full(len(codes), np.nan), codes == OK
     values[placed], codes[placed] = plan.solids.read(name, poses[0][placed], poses[1][placed])
     return values, codes

@@ -31,7 +31,7 @@ def check_blocks(simulation: Simulation) -> Sequence[PageItem]:
     """Features, moves, and what any system shows."""
     system = simulation.system
     assert isinstance(system, AssemblySystem)
-    return (*drawing_blocks(system), *system_blocks(simulation))
+    return (*drawing_blocks(system), *system_blocks(simulation, {own.name for own in system.measures}))
 
 
 def drawing_blocks(system: AssemblySystem) -> Sequence[PageItem]:

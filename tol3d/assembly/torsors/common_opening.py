@@ -68,8 +68,7 @@ def _of_three(first: Disc, second: Disc, third: Disc) -> Array:
     # where the pair that lies furthest outside leaves the third disc inside, it decides
     left = [_outside(disc, x, y) for (_, _, disc), (_, x, y) in zip(pairs, at_pairs, strict=True)]
     most = np.select([outside == least for outside, _, _ in at_pairs], [np.maximum(own, least) for own in left])
-    with np.errstate(all="ignore"):
-        together = _alike(first, second, third, least)
+    together = _alike(first, second, third, least)
     return np.where(most <= least, least, np.fmin(np.fmax(together, least), most))
 
 
@@ -85,17 +84,22 @@ def _alike(first: Disc, second: Disc, third: Disc, least: Array) -> Array:
     """
     rows = [(disc[0] - first[0], disc[1] - first[1], disc[2] - first[2]) for disc in (second, third)]
     (a, b, s), (c, d, t) = rows
-    area = a * d - b * c
+    area = _divisor(a * d - b * c)  # nil where the centres lie in one line
     e, f = 0.5 * (a * a + b * b - s * s), 0.5 * (c * c + d * d - t * t)
     p, q = (e * d - b * f) / area, (a * f - c * e) / area
     u, v = (b * t - d * s) / area, (c * s - a * t) / area
-    square, half, rest = u * u + v * v - 1.0, p * u + q * v, p * p + q * q
+    square, half, rest = _divisor(u * u + v * v - 1.0), p * u + q * v, p * p + q * q
     root = np.sqrt(np.where(half * half >= square * rest, half * half - square * rest, np.nan))
     middle = -(half + np.copysign(root, half))
-    amounts = np.stack([middle / square, rest / middle])
+    amounts = np.stack([middle / square, rest / _divisor(middle)])
     allowed = np.isfinite(amounts) & (amounts >= 0.0) & (amounts - first[2] >= least)
     found = np.where(allowed, amounts, np.inf).min(axis=0) - first[2]
     return np.where(np.isfinite(found), found, np.nan)
+
+
+def _divisor(read: Array) -> Array:
+    """It, nan where it is nil: what is divided by it is no solution."""
+    return np.where(read == 0.0, np.nan, read)
 
 
 @dataclass(frozen=True, eq=False)

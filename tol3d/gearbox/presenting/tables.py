@@ -21,7 +21,8 @@ def check_blocks(simulation: Simulation) -> Sequence[PageItem]:
     system = simulation.system
     assert isinstance(system, GearboxSystem)
     shafts, gears = shafts_table(system.bores), mechanics_blocks(system.gears.model)
-    return (*drawing_blocks(system.drawn), *shafts, *gears, *system_blocks(simulation))
+    parts = {own.name for own in system.drawn.measures}
+    return (*drawing_blocks(system.drawn), *shafts, *gears, *system_blocks(simulation, parts))
 
 
 def shafts_table(bores: Bores) -> Sequence[PageItem]:

@@ -7,6 +7,7 @@ from tol3d.gearing.grammar.moves import GearMeshSpec
 from tol3d.gearing.grammar.parts import BearingSpec, GearSpec, ShaftSpec, carried, gears_on
 from tol3d.gearing.grammar.parts.gear import BoredGearSpec
 from tol3d.gearing.grammar.tolerances.axes_offset import AxesOffsetSpec
+from tol3d.gearing.grammar.tolerances.axial_shift import AxialShiftSpec
 from tol3d.gearing.grammar.tolerances.bearing_clearance import BearingClearanceSpec
 from tol3d.gearing.grammar.tolerances.centre_distance import CentreDistanceSpec
 from tol3d.gearing.grammar.tolerances.eccentricity import EccentricitySpec
@@ -53,6 +54,18 @@ def implausible_displacements(scene: Scene) -> Iterator[tuple[KeyPath, str]]:
             yield ("tolerances", name, "distribution"), sentence
 
 
+def implausible_faces(scene: Scene) -> Iterator[tuple[KeyPath, str]]:
+    """Faces of gears wider than a metre, and gears that a shift along their axis takes beyond their own face."""
+    for name, gear in scene.of(GearSpec).items():
+        if gear.face_width.internal > WIDEST_FACE + ROUNDING:
+            yield ("parts", name, "face_width"), f"expected at most 1 m, got {gear.face_width}; look at the unit"
+    for name, spec in scene.of(AxialShiftSpec).items():
+        far, of = farthest(spec.distribution.resolve(scene.files)), scene.parts[spec.of]
+        assert isinstance(of, GearSpec)
+        if sentence := WHOLE.sentence(f"the face width of {spec.of!r}", of.face_width.internal, far):
+            yield ("tolerances", name, "distribution"), sentence
+
+
 def _displaced(scene: Scene, of: str) -> tuple[str, ...]:
     """The gears of a mesh, on a shaft or at a bearing of it, or the gear itself."""
     if isinstance(move := scene.moves.get(of), GearMeshSpec):
@@ -96,4 +109,6 @@ def too_thick(shaft: ShaftSpec, bore: float | None, words: str) -> str:
 
 
 HALF: Final = Implausible(0.5)
+WHOLE: Final = Implausible(1.0)
+WIDEST_FACE: Final = 1000.0  # mm; those of the widest mill gears
 ROUNDING: Final = 1e-9  # mm; the same number in two units
