@@ -439,7 +439,7 @@ def test_samplers_have_sixteen_replicates_if_nothing_is_said(tmp_path: Path) -> 
         "sampler: sobl": "study.sampler: expected one of monte_carlo, sobol, latin_hypercube, got 'sobl'; "
         'did you mean "sobol"?',
         "trials: aut": "study.trials: expected a whole number or auto, got 'aut'; did you mean \"auto\"?",
-        "trials: 2.5": "study.trials: expected a whole number, got 2.5",
+        "trials: 2.5": "study.trials: expected a whole number or auto, got 2.5",
         "trials: auto": "study.until: expected the standard errors to stop at where trials are auto, such as",
         "trials: auto, sampler: sobol, until: {normal backlash: {mean: 1 um}}": "study.sampler: expected monte_carlo "
         "where trials are auto, for replicates need their size beforehand, got 'sobol'",
