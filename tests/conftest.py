@@ -11,7 +11,7 @@ import hypothesis
 import pytest
 from fixtures import Command, EngineOf, strips_of
 from places import SPUR_PAIR
-from scheduling import DearestFirst, dearest_first
+from scheduling import MANY, DearestFirst, compile_kernels, dearest_first
 from thinned import sort_into_sets
 
 from tol3d import cli, load_scene
@@ -50,6 +50,13 @@ def pytest_collection() -> Generator[None, Any, Any]:
     finally:
         gc.freeze()  # nor is what is there by now looked through later
         gc.enable()
+
+
+def pytest_collection_finish(session: pytest.Session) -> None:
+    """Compile kernels before many tests, each process some."""
+    if len(session.items) >= MANY and hasattr(session.config, "workerinput"):
+        worker = session.config.workerinput
+        compile_kernels(int(worker["workerid"].removeprefix("gw")), worker["workercount"])
 
 
 @pytest.fixture(scope="session")

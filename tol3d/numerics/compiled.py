@@ -192,6 +192,11 @@ class Kernel:
         """Run it; results go into arrays among the arguments."""
         self._compiled(*arguments)
 
+    def make(self) -> None:
+        """Compile it now, unless this machine has."""
+        if not self.kept:
+            _ = self._compiled
+
     @property
     def kept(self) -> bool:
         """Whether this machine has compiled it before: whether using it takes no more than loading it."""
