@@ -66,7 +66,7 @@ class RandomTouch:
         return float(nominal + sum(float(deviations[own.columns].sum()) for own in feature.size_by)) / 2.0
 
     def pose(self, deviations: Array, steps: int = 1) -> Array | None:
-        """Of the part (4, 4), near its nominal one, where contacts decide: no more turn, nor shift of their middle.
+        """Pose of the part (4, 4), near its nominal one; what no contact decides neither turns nor shifts their middle.
 
         Args:
             deviations: (columns,) [mm].

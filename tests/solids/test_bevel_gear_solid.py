@@ -319,7 +319,7 @@ def test_occ_can_cut_and_triangulate_the_solid() -> None:
     dedendum=st.floats(0.9, 1.5),
     bore=st.floats(0.0, 0.99),
 )
-@settings(max_examples=25, deadline=None, derandomize=True)
+@settings(max_examples=60, deadline=None, derandomize=True)
 def test_any_gear_that_can_be_made_is_one_true_solid(
     teeth: int, alpha: float, delta: float, face: float, shift: float, addendum: float, dedendum: float, bore: float
 ) -> None:

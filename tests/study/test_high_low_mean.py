@@ -37,6 +37,7 @@ def normal(lower: str, upper: str) -> dict[str, str]:
     return {"kind": "normal", "lower": lower, "upper": upper}
 
 
+CENTRE = {"kind": "centre_distance", "of": "pair"}
 THIN = {"thin teeth": ({"kind": "constant", "value": "-120 um"}, {"kind": "tooth_thickness", "of": "wheel"})}
 PAPERLIKE = {
     "thickness": (normal("-30 um", "-19 um"), {"kind": "tooth_thickness", "of": "pinion"}),
@@ -117,3 +118,13 @@ def test_no_build_is_asked_for_at_ends_that_are_not_known(mean_seats: bool) -> N
     linear = first_order(system, [measure], read)[measure.name]
     assert math.isnan(linear.mean) is not mean_seats
     assert np.isnan(linear.ends).all()
+
+
+def test_every_one_of_200_contributors_has_its_share(tmp_path: Path) -> None:
+    """Ranges of 1 and 2 um, a hundred each: squares of 1 and 4 in a sum of 500."""
+    small, large = ((normal(f"-{half} um", f"{half} um"), CENTRE) for half in (0.5, 1.0))
+    many = {f"{size} {k}": own for k in range(100) for size, own in (("small", small), ("large", large))}
+    run = run_scene(made({**THIN, **many}), overrides=Overrides(trials=4, engine="analytic"), out=tmp_path / "run")
+    found = {c["name"]: c["high_low_mean_percent"] for c in run.summary["measures"]["play"]["contributors"]}
+    expected = {name: 0.2 if name.startswith("small") else 0.8 for name in many}
+    assert {name: found[name] for name in many} == {name: pytest.approx(own) for name, own in expected.items()}

@@ -47,7 +47,7 @@ class Spread:
 
     @classmethod
     def of(cls, measure: MeasureSummary) -> "Spread":
-        """Of a length that is shown in mm: um, as its label says."""
+        """The unit um for a length that is shown in mm, as its label says; else the measure's own."""
         if measure.long_in_mm and measure.unit == "mm":
             return cls("um", UM_PER_MM, f" [{UNIT_SIGNS['um']}]")
         return cls(measure.unit)

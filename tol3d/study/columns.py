@@ -71,7 +71,7 @@ def _columns(system: System, road: Road | None, trials: Trials, measures: Sequen
 
 
 def answered(road: str, answers: Answers, measures: Sequence[Measure], count: int) -> dict[str, NDArray[np.float64]]:
-    """What measures take of a road's answers of so many trials, by name, in their units."""
+    """Values that measures take of a road's answers of so many trials, by name, in their units."""
     return {
         measure.name: taken(measure, _read(road, answers, measure, count)) * measure.per_internal
         for measure in measures

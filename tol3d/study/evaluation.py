@@ -6,7 +6,7 @@ most of what it takes does not grow with the rows.
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Final
+from typing import Final, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,6 +22,7 @@ from tol3d.system.statuses import OK
 from tol3d.system.system import System
 
 Array = NDArray[np.float64]
+T = TypeVar("T")
 BATCH: Final = 2**22
 """Numbers that are built at once: rows times components, 32 MB."""
 
@@ -43,13 +44,13 @@ class Evaluation:
 
     @property
     def name(self) -> str:
-        """Of its columns."""
+        """The road's name in columns."""
         return GEOMETRIC if self.road else ANALYTIC
 
     def values(
         self, deviations: Array, measures: Sequence[Measure], *, with_overlaps: bool = False
     ) -> dict[str, Array]:
-        """What measures read of builds at rest; a row's values do not depend on the others.
+        """Values of measures of builds at rest; a row's do not depend on the others.
 
         Args:
             deviations: (rows, components) [mm, rad, K].
@@ -91,6 +92,18 @@ def measures_alike(system: System, measures: Sequence[Measure]) -> list[tuple[Ma
             turning[positions] = tuple(system.turns_at_random(own, positions) for own in system.contributors)
         alike.setdefault(turning[positions], []).append(measure)
     return [(dict(zip(names, turns, strict=True)), group) for turns, group in alike.items()]
+
+
+def of_alike(
+    system: System,
+    measures: Sequence[Measure],
+    find: Callable[[Sequence[Measure], Mapping[str, bool]], Mapping[str, T]],
+) -> dict[str, T]:
+    """Findings by measure; `find` is asked of those that share a mean build together, and told what turns."""
+    found: dict[str, T] = {}
+    for turning, alike in measures_alike(system, measures):
+        found |= find(alike, turning)
+    return found
 
 
 def batches(contributors: Sequence[Contributor], rows: Sequence[int], width: int) -> Iterator[Sequence[Contributor]]:

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.study.evaluation import Values, batches, evaluations, measures_alike
+from tol3d.study.evaluation import Values, batches, evaluations, of_alike
 from tol3d.study.extremes import ends_together
 from tol3d.study.simulation import Simulation
 from tol3d.system.contributor import Contributor
@@ -106,17 +106,13 @@ def first_order(system: System, measures: Sequence[Measure], values: Values) -> 
         system, measures: what is built, and what is read of it.
         values: by one road, in units of the measures.
     """
-    return {
-        name: own
-        for turning, alike in measures_alike(system, measures)
-        for name, own in _of_alike(system, alike, turning, values).items()
-    }
+    return of_alike(system, measures, lambda alike, turning: _first_order(system, alike, turning, values))
 
 
-def _of_alike(
+def _first_order(
     system: System, measures: Sequence[Measure], turning: Mapping[str, bool], values: Values
 ) -> dict[str, FirstOrder]:
-    """Of measures that share the mean build."""
+    """Measures that share the mean build."""
     mean = mean_deviations(system, measures[0].positions)
     slices = component_slices(system)
     acting = {measure.name: system.acting(measure) for measure in measures}

@@ -14,7 +14,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.study.evaluation import Values, batches, measures_alike
+from tol3d.study.evaluation import Values, batches, of_alike
 from tol3d.system.contributor import Contributor
 from tol3d.system.measure import Measure
 from tol3d.system.stated import component_slices, mean_deviations
@@ -35,17 +35,13 @@ def high_low_mean_percents(system: System, measures: Sequence[Measure], values: 
     Returns:
         By measure percents by the contributor's name; None where a build does not seat, 0 where nothing moves it.
     """
-    return {
-        name: own
-        for turning, alike in measures_alike(system, measures)
-        for name, own in _of_alike(system, alike, turning, values).items()
-    }
+    return of_alike(system, measures, lambda alike, turning: _percents_of(system, alike, turning, values))
 
 
-def _of_alike(
+def _percents_of(
     system: System, measures: Sequence[Measure], turning: Mapping[str, bool], values: Values
 ) -> dict[str, Percents]:
-    """Of measures that share the mean build and what turns at random."""
+    """Shares of measures that share the mean build and what turns at random."""
     mean = mean_deviations(system, measures[0].positions)
     middle = {name: float(own[0]) for name, own in values(mean, measures).items()}
     seated = [measure for measure in measures if not math.isnan(middle[measure.name])]
@@ -68,7 +64,7 @@ def _of_alike(
 
 
 def _rows(contributor: Contributor, measures: int) -> int:
-    """How many builds a contributor asks for, about."""
+    """The number of builds a contributor asks for, about."""
     count = len(contributor.draw.components)
     return 2 * count if count == 1 else 2 * (count + measures)
 

@@ -201,7 +201,7 @@ def _measure(
 
 
 def _single_builds(simulation: Simulation, road: Road | None) -> dict[str, tuple[Roads, Roads]]:
-    """Of each measure both roads' values of the nominal build and of the one at all means; None where one is none."""
+    """Both roads' values of the nominal build and of the one at all means, by measure; None where one is none."""
     system = simulation.system
     found = {}
     for _, alike in measures_alike(system, system.measures):

@@ -39,7 +39,7 @@ def reading(measured: Measured, worlds: Sequence[World]) -> Array:
 
 
 def may_lack(measured: Measured, codes: Mapping[int, Codes]) -> NDArray[np.bool_]:
-    """Whether a measure may have no value although nothing before it fails (n,) or (1,).
+    """Trials in which a measure may have no value although nothing before it fails (n,) or (1,).
 
     That is where datums take no gauge, and where the slack is asked of a move that finds no pose.
 

@@ -85,7 +85,7 @@ class MeasureSummary(Section):
     presenter: ClassVar[str] = ""
     """Import path of what shows more of its system, see `tol3d.report.presenter`."""
     long_in_mm: ClassVar[bool] = False
-    """Whether reports show it in mm where it is nominally over 1 mm; the file has um."""
+    """True of lengths that reports show in mm where they are nominally over 1 mm; the file has um."""
 
     kind: Label
     over: Label
