@@ -140,7 +140,8 @@ def test_sums_that_come_of_a_regression_are_those_of_the_columns(
     """To the last bit where they are compiled; numpy's follow a pair's place among the rows, so to rounding."""
     columns = np.concatenate([mixed(seed) for seed in range(11, 15)], axis=1)
     features = np.random.default_rng(12).normal(size=(3, columns.shape[1]))
-    known = [RegressorSums.with_targets(features, columns[[*own]], products)[1] for own in groups]
+    every = np.arange(len(features))
+    known = [RegressorSums.with_targets(features, columns[[*own]], products, [every] * len(own))[1] for own in groups]
     ordered = [k for own in groups for k in own]
     found = PairSums.of([*columns[ordered]], products, known).of_columns([ordered.index(k) for k in range(6)])
     expected = PairSums.of([*columns], products)

@@ -2,6 +2,7 @@
 
 from tol3d.statistics.agreement import Agreement
 from tol3d.statistics.grid import CountGrid, Grid, Histogram
+from tol3d.statistics.independent_sums import IndependentSums, independent_shares
 from tol3d.statistics.limits import LimitCounts, Proportion, equivalent_ppk, pp, ppk
 from tol3d.statistics.moments import Moments
 from tol3d.statistics.pair_sums import PairSums
@@ -12,6 +13,7 @@ __all__ = [
     "CountGrid",
     "Grid",
     "Histogram",
+    "IndependentSums",
     "LimitCounts",
     "Moments",
     "PairSums",
@@ -19,6 +21,7 @@ __all__ = [
     "RegressorSums",
     "Shares",
     "equivalent_ppk",
+    "independent_shares",
     "pp",
     "ppk",
     "shares",

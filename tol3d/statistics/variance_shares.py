@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
+Places = NDArray[np.intp]
 
 CONSTANT_RTOL = 1e-12  # of the mean; a column whose sigma is less holds rounding errors only
 RANK_RTOL = 1e-10  # of the largest eigenvalue of the correlations; columns closer than that say the same
@@ -89,15 +90,22 @@ class RegressorSums:
             features, targets: as said.
             products: what sums the products of all pairs of rows (rows, trials) over the trials, (rows, rows).
         """
-        return cls.with_targets(features, targets, products)[0]
+        every = np.arange(len(features))
+        return cls.with_targets(features, targets, products, [every] * len(targets))[0]
 
     @classmethod
-    def with_targets(cls, features: Array, targets: Array, products: Products) -> tuple[tuple[Self, ...], TargetSums]:
-        """The same, and the sums of the targets among each other, which come of the same products."""
-        count, width = targets.shape[1], len(features) + 1
+    def with_targets(
+        cls, features: Array, targets: Array, products: Products, own: Sequence[Places]
+    ) -> tuple[tuple[Self, ...], TargetSums]:
+        """The same where each target has `own` of the features, and the sums of the targets among each other.
+
+        They come of the same products.
+        """
+        count = targets.shape[1]
         if count == 0:
             none = TargetSums(0, np.zeros(len(targets)), np.zeros((len(targets), len(targets))))
-            return tuple(cls(0, np.zeros(width), np.zeros((width, width))) for _ in targets), none
+            widths = [len(each) + 1 for each in own]
+            return tuple(cls(0, np.zeros(width), np.zeros((width, width))) for width in widths), none
         # from the first value, so that a constant column has no spread at all, not a rounding error's;
         # a row each, for the order of a sum, and so its bits, follow the layout in memory
         rows = np.empty((len(features) + len(targets), count))
@@ -108,9 +116,10 @@ class RegressorSums:
         rows -= means[:, None]
         comoments = products(rows)
         means += first
-        each = [[*range(width - 1), k] for k in range(width - 1, len(rows))]
-        among = TargetSums(count, means[width - 1 :], comoments[width - 1 :, width - 1 :])
-        return tuple(cls(count, means[own], comoments[np.ix_(own, own)]) for own in each), among
+        size = len(features)
+        each = [np.append(columns, size + k) for k, columns in enumerate(own)]
+        among = TargetSums(count, means[size:], comoments[size:, size:])
+        return tuple(cls(count, means[which], comoments[np.ix_(which, which)]) for which in each), among
 
     def merge(self, other: Self) -> Self:
         """The sums of both blocks together; Pebay, SAND2008-6212, 2008 (covariances)."""
@@ -120,6 +129,16 @@ class RegressorSums:
         delta = other.means - self.means
         between = delta[:, None] * delta * (self.count * other.count / count)
         return type(self)(count, self.means + delta * (other.count / count), self.comoments + other.comoments + between)
+
+    @property
+    def target_mean(self) -> float:
+        """Of the target."""
+        return float(self.means[-1])
+
+    @property
+    def target_sigma(self) -> float:
+        """Standard deviation of the target."""
+        return math.sqrt(self.comoments[-1, -1] / self.count)
 
 
 @dataclass(frozen=True)

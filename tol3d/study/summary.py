@@ -141,15 +141,15 @@ def _status(measure: Measure, tally: Tally) -> Mapping[str, int]:
 
 
 def _too_many(simulation: Simulation) -> Iterator[str]:
-    """A sentence for measures of more contributors than have shares."""
+    """A sentence for measures of more contributors than are regressed on together."""
     alike: dict[int, list[str]] = {}
     for measure in simulation.system.measures:
         if (count := len(simulation.system.acting(measure))) > MOST_REGRESSED:
             alike.setdefault(count, []).append(measure.name)
     for count, names in alike.items():
         yield (
-            f"{', '.join(names)}: {count} tolerances act; shares of the 3D simulation are of the {MOST_REGRESSED} "
-            "that matter most by the stack-up (or come first, where it has no closed form), the others are in none"
+            f"{', '.join(names)}: {count} tolerances act, more than the {MOST_REGRESSED} that are regressed on "
+            "together; each one's share of the 3D simulation is what it has in common with the measure by itself"
         )
 
 

@@ -6,15 +6,15 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.statistics import Agreement, CountGrid, Grid, RegressorSums
+from tol3d.statistics import Agreement, CountGrid, Grid
 from tol3d.statistics.grid import BINS
 from tol3d.statistics.lazy import quick_products
-from tol3d.statistics.variance_shares import Products, TargetSums, plain_products
+from tol3d.statistics.variance_shares import Products, plain_products
 from tol3d.study.agreement.disagreement import Disagreement
 from tol3d.study.breakdowns import merged_terms, pooled_terms
 from tol3d.study.curve_tally import ENDS, CurveTally, end_name, judged_ends
 from tol3d.study.joint import Among, JointTally, limited
-from tol3d.study.regressors import regressors
+from tol3d.study.regression import DIFFERENCE, Sums, merged, target_sums
 from tol3d.study.replicated import rows_of_replicates
 from tol3d.study.sample import Sample
 from tol3d.study.simulation import Simulation
@@ -36,7 +36,6 @@ PILOT_TRIALS = 64  # the study's first trials; they give sigma to 9 %, and a spr
 GRID_SIGMAS = 12.0  # the grid spans the mean +- this many sigma of both roads: bins of 1.8e-4 sigma, 1.3 nm
 LEAST_SPAN = 1e-3  # mm or rad; for a model in which nothing varies
 MOST_COUNTED = 4095  # of a measure that counts
-DIFFERENCE = "difference"  # of the two, beside them
 
 
 def grids_of(system: System, pilot: Columns) -> Mapping[str, Grid]:
@@ -108,8 +107,8 @@ class MeasureTally:
     analytic: Sample
     geometric: Sample | None
     agreement: Agreement | None
-    analytic_regressors: RegressorSums
-    geometric_regressors: RegressorSums | None
+    analytic_regressors: Sums
+    geometric_regressors: Sums | None
     disagreement: Disagreement | None
 
     def merge(self, other: "MeasureTally") -> "MeasureTally":
@@ -120,8 +119,8 @@ class MeasureTally:
             self.analytic.merge(other.analytic),
             self.geometric.merge(other.geometric) if self.geometric and other.geometric else None,
             self.agreement.merge(other.agreement) if self.agreement and other.agreement else None,
-            self.analytic_regressors.merge(other.analytic_regressors),
-            self.geometric_regressors.merge(other.geometric_regressors)
+            merged(self.analytic_regressors, other.analytic_regressors),
+            merged(self.geometric_regressors, other.geometric_regressors)
             if self.geometric_regressors and other.geometric_regressors
             else None,
             self.disagreement.merge(other.disagreement) if self.disagreement and other.disagreement else None,
@@ -159,7 +158,7 @@ class _Block:
         values = {key: own.values for key, own in found.items()}
         both = [measure.name for measure in measures if (GEOMETRIC, measure.name) in values]
         values |= {(DIFFERENCE, name): values[GEOMETRIC, name] - values[ANALYTIC, name] for name in both}
-        sums, among = self._sums(measures, values)
+        sums, among = target_sums(self.simulation.system, measures, self.columns, values, self.products)
         tallies = {}
         for measure in measures:
             analytic, geometric = found[ANALYTIC, measure.name], found.get((GEOMETRIC, measure.name))
@@ -177,37 +176,6 @@ class _Block:
                 else None,
             )
         return tallies, among
-
-    def _sums(
-        self, measures: Sequence[Measure], values: Mapping[tuple[str, str], Array]
-    ) -> tuple[dict[tuple[str, str], RegressorSums], Among]:
-        """What each road's column of each measure has in common with its regressors, by road and name.
-
-        And with those columns that have the same regressors and that no trial lacks.
-        """
-        sums: dict[tuple[str, str], RegressorSums] = {}
-        among: dict[tuple[tuple[str, str], ...], TargetSums] = {}
-        system = self.simulation.system
-        keys = {measure.name: system.regressor_key(measure) for measure in measures}
-        for key in dict.fromkeys(keys.values()):
-            alike = [measure for measure in measures if keys[measure.name] == key]
-            seen = regressors(system, alike[0], self.columns)
-            roads = (*ROADS, DIFFERENCE)
-            columns = {(r, m.name): values[r, m.name] for m in alike for r in roads if (r, m.name) in values}
-            whole = {name: column for name, column in columns.items() if not np.isnan(np.min(column))}
-            if whole:
-                columns_of_all = np.stack(list(whole.values()))
-                each, among[tuple(whole)] = RegressorSums.with_targets(seen, columns_of_all, self.products)
-                sums |= dict(zip(whole, each, strict=True))
-            for measure in alike:  # what failed is the same trials on every road of a measure that lacks some
-                lacking = [(r, measure.name) for r in roads if (r, measure.name) in columns.keys() - whole.keys()]
-                if lacking:
-                    rows = np.stack([columns[name] for name in lacking])
-                    good = ~np.isnan(rows).any(axis=0)
-                    sums |= dict(
-                        zip(lacking, RegressorSums.of_each(seen[:, good], rows[:, good], self.products), strict=True)
-                    )
-        return sums, among
 
 
 @dataclass(frozen=True)

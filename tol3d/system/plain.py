@@ -268,10 +268,8 @@ class PlainSystem:
         return self.contributors
 
     def regressor_key(self, measure: Measure) -> Hashable:
-        """The contributors that act decide; of a large group also what each of its components does to the measure."""
-        acting = self.acting(measure)
-        grouped = any(is_group(contributor) for contributor in acting)
-        return tuple(contributor.name for contributor in acting), measure.name if grouped else ""
+        """The same for all, but of a large group what each of its components does to the measure decides."""
+        return measure.name if any(is_group(contributor) for contributor in self.acting(measure)) else ""
 
     def regress(
         self, measure: Measure, contributors: Sequence[Contributor], columns: Columns, rows: Mapping[str, Array]

@@ -130,7 +130,7 @@ class System(Protocol):
         ...
 
     def regressor_key(self, measure: Measure) -> Hashable:
-        """Measures of one key have the same regressors."""
+        """Measures of one key have the same regressors of each contributor that acts on them."""
         ...
 
     def regress(

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.statistics import RegressorSums
+from tol3d.study.regression import Sums, merged
 
 Array = NDArray[np.float64]
 
@@ -20,12 +20,12 @@ class Disagreement:
         trial: the first trial that has it; -1 without trials.
     """
 
-    sums: RegressorSums
+    sums: Sums
     largest: float
     trial: int
 
     @classmethod
-    def of(cls, first: int, difference: Array, sums: RegressorSums) -> "Disagreement":
+    def of(cls, first: int, difference: Array, sums: Sums) -> "Disagreement":
         """Of a block that begins at trial `first`; difference (trials,), nan where a road has no value."""
         size = np.where(np.isnan(difference), -1.0, np.abs(difference))
         at = int(np.argmax(size))
@@ -34,4 +34,4 @@ class Disagreement:
     def merge(self, other: "Disagreement") -> "Disagreement":
         """Both blocks as one."""
         further = other if other.trial >= 0 and (self.trial < 0 or other.largest > self.largest) else self
-        return Disagreement(self.sums.merge(other.sums), further.largest, further.trial)
+        return Disagreement(merged(self.sums, other.sums), further.largest, further.trial)

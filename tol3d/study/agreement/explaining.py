@@ -12,12 +12,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.statistics.linear_fit import LEAST_FREEDOM, LinearFit, effect_of, standard_errors
+from tol3d.statistics.linear_fit import LEAST_FREEDOM, LinearFit
 from tol3d.study.agreement.explanation import Explanation, LinearPart
-from tol3d.study.agreement.road_fits import RoadFits, sigma_of
+from tol3d.study.agreement.road_fits import RoadFits
 from tol3d.study.agreement.second_look import SecondLook, bends, scalars_of, second_look
 from tol3d.study.evaluation import Evaluation, measures_alike
-from tol3d.study.regressors import regressor_groups
+from tol3d.study.regressors import MOST_REGRESSED, Regressed, regressor_groups
 from tol3d.study.simulation import Simulation
 from tol3d.study.tally import Tally
 from tol3d.system.contributor import Contributor
@@ -57,7 +57,7 @@ def explanations(simulation: Simulation, road: Road | None, tally: Tally) -> dic
     undecided = {m.name: Explanation(undecided=_too_few(system, m, tally)) for m in measures if fits[m.name] is None}
     if len(undecided) == len(measures):
         return undecided
-    widest = max(len(regressor_groups(system, measure)) for measure in measures)
+    widest = max(_together(system, measure) for measure in measures)
     looked = 2 * widest + (FURTHER_SLOW_LOOKS if road.chord_error else FURTHER_LOOKS)
     worst = [own.trial for m in measures if (own := tally.measures[m.name].disagreement)]
     look = second_look(simulation, road, looked, [max(trial, 0) for trial in worst])
@@ -81,8 +81,13 @@ def explanations(simulation: Simulation, road: Road | None, tally: Tally) -> dic
 def _too_few(system: System, measure: Measure, tally: Tally) -> str:
     own = tally.measures[measure.name].disagreement
     compared = own.sums.count if own else 0
-    needed = 2 * len(regressor_groups(system, measure)) + LEAST_FREEDOM + 1
+    needed = 2 * _together(system, measure) + LEAST_FREEDOM + 1
     return f"{compared} trials are too few to tell what explains that, {needed} are enough"
+
+
+def _together(system: System, measure: Measure) -> int:
+    """How many contributors of a measure are regressed on together, at most."""
+    return min(len(regressor_groups(system, measure)), MOST_REGRESSED)
 
 
 def _effects_of_means(system: System) -> Mapping[str, Mapping[str, float]]:
@@ -125,10 +130,11 @@ class _Case:
         name, first = self.measure.name, slice(0, self.looked)
         curved = np.where(np.arange(len(self.look.trials)) < self.looked, self.look.second_order[name], np.nan)
         straight = np.where(np.isnan(curved), np.nan, self.look.left(name))
-        second, left = (LinearFit.of(self.look.sums(name, target)) for target in (curved, straight))
+        second, left = (self._fit(target) for target in (curved, straight))
         bounds = self.system.neglected(self.measure, self.look.trials)
-        parts = tuple(self._linear_parts(second))
-        mean = self._mean(curved, second, sum((own[first].mean() for own in bounds.values()), 0.0))
+        first_order = self.fits.difference.less(second) if second else self.fits.difference
+        parts = tuple(self._linear_parts(first_order))
+        mean = self._mean(curved, first_order, sum((own[first].mean() for own in bounds.values()), 0.0))
         allowed = math.hypot(self._negligible, _rms(sum(bounds.values(), np.zeros(len(curved)))[first]))
         jumps = self.measure.unit in FACTORS["count"]  # what is near a bound one road counts and the other does not
         known = not jumps and not np.isnan(curved[first]).all()
@@ -155,6 +161,13 @@ class _Case:
         )
 
     @property
+    def _regressed(self) -> Regressed:
+        return self.fits.regressed
+
+    def _fit(self, target: Array) -> LinearFit | None:
+        return LinearFit.of(self.look.sums(self.measure.name, self._regressed, target), self._regressed.parts)
+
+    @property
     def _negligible(self) -> float:
         """What is left that need not be explained [unit of the measure].
 
@@ -168,25 +181,36 @@ class _Case:
 
     # linear parts -----------------------------------------------------------------------------------
 
-    def _linear_parts(self, second: LinearFit | None) -> Iterator[LinearPart]:
-        """Contributors whose linear part is beyond chance and SHARE, with what explains it."""
-        fit = self.fits.difference
-        for name, group in regressor_groups(self.system, self.measure).items():
-            sure = standard_errors(fit.coefficients[group], fit.covariance[group, group])
-            size, own = fit.effect(group), self.fits.own[name]
-            if sure > SURE and size > SHARE * own:
-                yield LinearPart(name, 100 * size / own, min(sure, SUREST), self._reason(name, group, second))
+    def _linear_parts(self, first_order: LinearFit) -> Iterator[LinearPart]:
+        """Contributors whose linear part is beyond chance and SHARE, with what explains it.
 
-    def _reason(self, name: str, group: slice, second: LinearFit | None) -> str:
-        """What explains a contributor's linear part, "" where nothing does."""
-        allowed = SHARE * self.fits.own[name]
-        left, sure = self._of_first_order(group, second)
+        Args:
+            first_order: what the difference is of first order, less what follows of second order.
+        """
+        fit, own = self.fits.difference, self.fits.own
+        sure, size = fit.standard_errors, fit.effects
+        left, left_sure = first_order.effects, first_order.standard_errors
+        for k in np.flatnonzero((sure > SURE) & (size > SHARE * own)).tolist():
+            reason = self._reason(k, float(left[k]), float(left_sure[k]))
+            yield LinearPart(
+                self._regressed.names[k], 100 * float(size[k] / own[k]), min(float(sure[k]), SUREST), reason
+            )
+
+    def _reason(self, k: int, left: float, sure: float) -> str:
+        """What explains a contributor's linear part, "" where nothing does.
+
+        Args:
+            k: which.
+            left: of it beside second order [unit of the measure].
+            sure: of that in standard errors.
+        """
+        allowed = SHARE * float(self.fits.own[k])
         if left <= allowed:
             return SECOND_ORDER
         if sure <= SURE:
             return f"{SECOND_ORDER}, as far as {self.looked} builds tell"
         beyond_chance = left * (1 - SURE / sure)
-        sizes = {words: _rms(own) for words, own in self._left_out_by(name).items()}
+        sizes = {words: _rms(own) for words, own in self._left_out_by(k).items()}
         reasons: list[str] = []
         for words, size in sorted(sizes.items(), key=lambda item: -item[1]):
             if size > 0.0:
@@ -196,7 +220,7 @@ class _Case:
                     return " and ".join(reasons)
         return ""
 
-    def _left_out_by(self, name: str) -> Mapping[str, Array]:
+    def _left_out_by(self, k: int) -> Mapping[str, Array]:
         """What the stack-up leaves out of a contributor's effect, at most.
 
         Where positions or load paths are compared all that is left out helps to choose one of them, and by that what
@@ -206,10 +230,11 @@ class _Case:
         trials = self.look.trials.part(0, self.looked)
         if self.measure.take != "value" or not self.measure.adds_up:
             return self.system.neglected(self.measure, trials)
+        name = self._regressed.names[k]
         found = self.system.neglected(self.measure, self._alone(trials, name))
-        group = regressor_groups(self.system, self.measure)[name]
-        seen = self.look.regressors[self.measure.name][group, : self.looked].var(axis=1)
-        spread = np.diagonal(self.fits.difference.spread)[group]
+        rows = self._regressed.rows[self._regressed.groups[name]]
+        seen = self.look.regressors[self.measure.name][rows, : self.looked].var(axis=1)
+        spread = self.fits.difference.variances(k)
         first = np.s_[:1] if has_square(self._contributor(name)) else np.s_[:]  # a square is no component
         to_scale = math.sqrt(spread[first].sum() / seen[first].sum()) if seen[first].any() else 1.0
         return {words: to_scale * own for words, own in found.items()}
@@ -225,19 +250,6 @@ class _Case:
     def _contributor(self, name: str) -> Contributor:
         return next(own for own in self.system.contributors if own.name == name)
 
-    def _of_first_order(self, group: slice, second: LinearFit | None) -> tuple[float, float]:
-        """Linear part of a contributor less that of second order [unit of the measure]; in standard errors of both."""
-        fit = self.fits.difference
-        coefficients, covariance, spread = (
-            fit.coefficients[group],
-            fit.covariance[group, group],
-            fit.spread[group, group],
-        )
-        if second is not None:
-            coefficients = coefficients - second.coefficients[group]
-            covariance = covariance + second.covariance[group, group]
-        return effect_of(coefficients, spread), standard_errors(coefficients, covariance)
-
     def _unexplained(self, parts: tuple[LinearPart, ...]) -> Iterator[str]:
         for part in parts:
             if not part.by:
@@ -250,11 +262,8 @@ class _Case:
     def _largest_percent(self, besides: list[str]) -> float:
         """The largest part of the other contributors that is beyond chance, of its own effect [%]."""
         fit = self.fits.difference
-        found = [0.0]
-        for name, own in regressor_groups(self.system, self.measure).items():
-            if name not in besides and standard_errors(fit.coefficients[own], fit.covariance[own, own]) > SURE:
-                found.append(100 * fit.effect(own) / self.fits.own[name])
-        return max(found)
+        others = ~np.isin(self._regressed.names, besides) & (fit.standard_errors > SURE)
+        return float(np.max(100 * fit.effects[others] / self.fits.own[others], initial=0.0))
 
     # what is left -----------------------------------------------------------------------------------
 
@@ -269,13 +278,10 @@ class _Case:
         """The trial of the largest difference, where more of it than contributors may be off is not of second order."""
         straight, whole = self.look.left(self.measure.name), self.look.whole[self.measure.name]
         left = min(abs(float(straight[self.worst])), abs(float(whole[self.worst])))
-        regressors = self.look.regressors[self.measure.name][:, self.worst]
+        regressors = self.look.regressors[self.measure.name][self._regressed.rows, self.worst]
         allowed = mean.allowed + CHORDS_OF_A_LOOK * self.chords + LARGEST_LEFT * self._negligible
         allowed += sum(float(own[self.worst]) for own in bounds.values())
-        for name, group in regressor_groups(self.system, self.measure).items():
-            spread = math.sqrt(np.trace(self.fits.difference.spread[group, group]))
-            reach = float(np.hypot.reduce(regressors[group])) / spread if spread > 0.0 else 0.0
-            allowed += SHARE * self.fits.own[name] * reach
+        allowed += SHARE * float(np.sum(self.fits.own * self.fits.difference.reaches(regressors)))
         if left > allowed:  # not where it is nan
             yield (
                 f"trial {self.fits.disagreement.trial} differs by {self.fits.disagreement.largest:.3g} "
@@ -285,22 +291,17 @@ class _Case:
 
     # means ------------------------------------------------------------------------------------------
 
-    def _mean(self, curved: Array, second: LinearFit | None, left_out: float) -> "_Mean":
+    def _mean(self, curved: Array, first_order: LinearFit, left_out: float) -> "_Mean":
         """The difference of the means less what is of second order, and how much of it may be left."""
         sums, nominal = self.fits.disagreement.sums, self.look.nominal[self.measure.name][: self.looked]
         known = curved[~np.isnan(curved)]
         if not len(known):
             known, nominal = np.zeros(1), np.zeros(1)
-        error = math.hypot(sigma_of(sums) / math.sqrt(sums.count), float(known.std()) / math.sqrt(len(known)))
+        error = math.hypot(sums.target_sigma / math.sqrt(sums.count), float(known.std()) / math.sqrt(len(known)))
         allowed = SURE * error + self._negligible + left_out + self.chords
-        groups = regressor_groups(self.system, self.measure)
-        for name, shift in self.means.items():
-            if name in groups:
-                allowed += self._accuracy(name, groups[name], second) * shift
+        allowed += float(self._accuracies(first_order) @ [self.means[name] for name in self._regressed.names])
         at_nominal = float(np.nanmean(nominal))
-        return _Mean(
-            float(sums.means[-1]), error, at_nominal, float(sums.means[-1] - known.mean()) - at_nominal, allowed
-        )
+        return _Mean(sums.target_mean, error, at_nominal, sums.target_mean - float(known.mean()) - at_nominal, allowed)
 
     def _left_out_at_nominal(self) -> float:
         """What the stack-up leaves out of nominal builds on purpose, in the mean of the positions looked at."""
@@ -308,14 +309,16 @@ class _Case:
         nominal = replace(trials, deviations=np.zeros_like(trials.deviations))
         return sum(float(own.mean()) for own in self.system.neglected(self.measure, nominal).values())
 
-    def _accuracy(self, name: str, group: slice, second: LinearFit | None) -> float:
-        """To which share of its effect both roads are known to agree on a contributor's coefficient, SHARE at most."""
-        fit, own = self.fits.difference, self.fits.own[name]
-        if own == 0.0 or not fit.spread[group, group].any():  # counts may not change with it at all
-            return SHARE
-        left, _ = self._of_first_order(group, second)
-        chance = math.sqrt(max(float(np.trace(fit.covariance[group, group] @ fit.spread[group, group])), 0.0))
-        return min((left + SURE * chance) / own, SHARE)
+    def _accuracies(self, first_order: LinearFit) -> Array:
+        """To which share of its effect both roads are known to agree on each contributor's coefficient, SHARE at most.
+
+        Counts may not change with one at all.
+        """
+        fit, own = self.fits.difference, self.fits.own
+        known = (own > 0.0) & (fit.spreads > 0.0)
+        left = first_order.effects + SURE * fit.chances
+        shares: Array = np.divide(left, own, out=np.full(len(own), SHARE), where=known)
+        return np.minimum(shares, SHARE)
 
     def _mean_fault(self, mean: "_Mean") -> Iterator[str]:
         unit = self.measure.unit

@@ -4,13 +4,17 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from tol3d.statistics import RegressorSums
+import numpy as np
+from numpy.typing import NDArray
+
 from tol3d.statistics.linear_fit import LinearFit
 from tol3d.study.agreement.disagreement import Disagreement
-from tol3d.study.regressors import regressor_groups
+from tol3d.study.regressors import Regressed, regressor_set
 from tol3d.study.tally import MeasureTally
 from tol3d.system.measure import Measure
 from tol3d.system.system import System
+
+Array = NDArray[np.float64]
 
 LEAST_OWN = 1e-3  # of the measure's sigma; effects below it count as that, or rounding errors would be compared
 
@@ -20,43 +24,44 @@ class RoadFits:
     """Both roads and their difference on a measure's regressors, all its trials.
 
     Args:
+        regressed: what they are regressed on.
         disagreement: of the roads.
         difference, analytic, geometric: the fits.
         sigma: of the measure, the larger of both roads'.
         magnitude: the largest |value| by the stack-up.
-        own: effect of each contributor, a standard deviation, the larger of both roads'.
+        own: effect of each contributor (contributors,), a standard deviation, the larger of both roads'.
 
     Both are of an extreme over positions at least what they are at one of them: what chooses another position changes
     by that what a contributor does.
     """
 
+    regressed: Regressed
     disagreement: Disagreement
     difference: LinearFit
     analytic: LinearFit
     geometric: LinearFit
     sigma: float
     magnitude: float
-    own: Mapping[str, float]
+    own: Array
 
     @classmethod
     def of(cls, system: System, measure: Measure, tally: MeasureTally) -> "RoadFits | None":
         """None where there are too few trials."""
         if tally.disagreement is None or tally.geometric_regressors is None:
             return None
+        regressed = regressor_set(system, measure).of(measure)
         roads = (tally.analytic_regressors, tally.geometric_regressors)
-        fits = [LinearFit.of(sums) for sums in (tally.disagreement.sums, *roads)]
+        fits = [LinearFit.of(sums, regressed.parts) for sums in (tally.disagreement.sums, *roads)]
         difference, analytic, geometric = fits
         if difference is None or analytic is None or geometric is None:
             return None
         alone = _effects_at_one_position(system, measure)
-        sigma = max(*map(sigma_of, roads), math.hypot(*alone.values()))
-        own = {
-            name: max(analytic.effect(group), geometric.effect(group), alone.get(name, 0.0), LEAST_OWN * sigma)
-            for name, group in regressor_groups(system, measure).items()
-        }
+        sigma = max(*(own.target_sigma for own in roads), math.hypot(*alone.values()))
+        least = np.maximum([alone.get(name, 0.0) for name in regressed.names], LEAST_OWN * sigma)
+        own = np.maximum(np.maximum(analytic.effects, geometric.effects), least)
         ends = tally.analytic.moments
         magnitude = max(-ends.minimum, ends.maximum)
-        return cls(tally.disagreement, difference, analytic, geometric, sigma, magnitude, own)
+        return cls(regressed, tally.disagreement, difference, analytic, geometric, sigma, magnitude, own)
 
 
 def _effects_at_one_position(system: System, measure: Measure) -> Mapping[str, float]:
@@ -64,8 +69,3 @@ def _effects_at_one_position(system: System, measure: Measure) -> Mapping[str, f
     form = system.reference_form(measure) if measure.take != "value" else None
     shares = form.shares if form else ()
     return {share.name: math.sqrt(max(share.variance, 0.0)) * measure.per_internal for share in shares}
-
-
-def sigma_of(sums: RegressorSums) -> float:
-    """Standard deviation of the last column, the fitted measure."""
-    return math.sqrt(sums.comoments[-1, -1] / sums.count)

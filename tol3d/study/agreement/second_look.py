@@ -12,10 +12,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.statistics import RegressorSums
+from tol3d.statistics import IndependentSums, RegressorSums
+from tol3d.statistics.lazy import cross_products
 from tol3d.study.columns import columns_of
 from tol3d.study.draws import drawn
-from tol3d.study.regressors import regressors
+from tol3d.study.regression import Sums
+from tol3d.study.regressors import Regressed, regressor_sets
 from tol3d.study.simulation import Simulation
 from tol3d.system.draw import component_sigmas
 from tol3d.system.measure import Measure
@@ -43,7 +45,7 @@ class SecondLook:
         whole: of their builds, (trials,).
         nominal: of the nominal build at their positions, (trials,).
         second_order: Q, (trials,).
-        regressors: of each measure, (regressors, trials).
+        regressors: of the set that each measure is in, (regressors of the set, trials).
     """
 
     trials: Trials
@@ -56,10 +58,14 @@ class SecondLook:
         """What is neither there at the nominal build nor of second order, (trials,)."""
         return self.whole[measure] - self.nominal[measure] - self.second_order[measure]
 
-    def sums(self, measure: str, target: Array) -> RegressorSums:
+    def sums(self, measure: str, regressed: Regressed, target: Array) -> Sums:
         """What a target (trials,) has in common with a measure's regressors, of the trials that it is known of."""
         good = ~np.isnan(target)
-        return RegressorSums.of_each(self.regressors[measure][:, good], target[None, good])[0]
+        rows = self.regressors[measure][np.ix_(regressed.rows, good)]
+        if regressed.picked is None:
+            return RegressorSums.of_each(rows, target[None, good])[0]
+        own = regressed.picked.clusters
+        return IndependentSums.of_each(rows, target[None, good], own, [own.all], cross_products())[0]
 
 
 def scalars_of(system: System) -> tuple[Measure, ...]:
@@ -86,7 +92,9 @@ def second_look(simulation: Simulation, road: Road, count: int, others: Sequence
         name: ((at_far[name] - nominal[name]) - ratio * (at_near[name] - nominal[name])) / (near * far * (ratio - 1))
         for name in whole
     }
-    rows = {measure.name: regressors(system, measure, columns) for measure in measures}
+    rows: dict[str, Array] = {}
+    for own in regressor_sets(system):
+        rows |= dict.fromkeys((measure.name for measure in own.measures), own.rows(system, columns))
     return SecondLook(trials, whole, nominal, second_order, rows)
 
 

@@ -1,0 +1,117 @@
+"""Features in parts, and parts in clusters that are independent of each other."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+Places = NDArray[np.intp]
+
+
+@dataclass(frozen=True, eq=False)
+class Pattern:
+    """Clusters of parts of the same sizes.
+
+    Args:
+        sizes: features of each part, in a cluster's order.
+        parts: (clusters, parts of a cluster).
+        columns: (clusters, features of a cluster).
+        pairs: (clusters, features of a cluster, features of a cluster), places in `Clusters.pairs`.
+    """
+
+    sizes: tuple[int, ...]
+    parts: Places
+    columns: Places
+    pairs: Places
+
+    def within(self) -> Iterator[tuple[Places, slice]]:
+        """Each part of all clusters (clusters,), and its features among those of its cluster."""
+        start = 0
+        for place, size in enumerate(self.sizes):
+            yield self.parts[:, place], slice(start, start + size)
+            start += size
+
+
+@dataclass(frozen=True, eq=False)
+class Clusters:
+    """Features that are cut into parts, such as the regressors of contributors, and parts into clusters.
+
+    Args:
+        sizes: features of each part; they follow each other.
+        together: parts of each cluster.
+    """
+
+    sizes: tuple[int, ...]
+    together: tuple[tuple[int, ...], ...]
+
+    @cached_property
+    def starts(self) -> Places:
+        """Of each part its first feature, and the number of all."""
+        return np.concatenate([[0], np.cumsum(self.sizes)]).astype(np.intp)
+
+    @property
+    def features(self) -> int:
+        """How many there are."""
+        return int(self.starts[-1])
+
+    @cached_property
+    def patterns(self) -> tuple[Pattern, ...]:
+        """All clusters, those of one pattern together."""
+        alike: dict[tuple[int, ...], list[tuple[int, ...]]] = {}
+        for cluster in self.together:
+            alike.setdefault(tuple(self.sizes[part] for part in cluster), []).append(cluster)
+        patterns, pairs = [], 0
+        for sizes, clusters in alike.items():
+            parts = np.array(clusters, dtype=np.intp)
+            own = [self.starts[parts[:, k], None] + np.arange(size) for k, size in enumerate(sizes)]
+            columns = np.concatenate(own, axis=1)
+            width = columns.shape[1]
+            each = np.arange(width * width).reshape(width, width)
+            patterns.append(
+                Pattern(sizes, parts, columns, pairs + each + np.arange(len(parts))[:, None, None] * width * width)
+            )
+            pairs += len(parts) * width * width
+        return tuple(patterns)
+
+    @cached_property
+    def pairs(self) -> tuple[Places, Places]:
+        """Both features (pairs,) of all pairs within clusters, each in both orders."""
+        firsts = [np.broadcast_to(own.columns[:, :, None], own.pairs.shape).ravel() for own in self.patterns]
+        seconds = [np.broadcast_to(own.columns[:, None, :], own.pairs.shape).ravel() for own in self.patterns]
+        none: Places = np.zeros(0, dtype=np.intp)
+        return np.concatenate([none, *firsts]), np.concatenate([none, *seconds])
+
+    @property
+    def all(self) -> "Picked":
+        """All of the parts."""
+        return Picked(self, np.arange(self.features), np.arange(len(self.pairs[0])))
+
+    def part(self, chosen: Sequence[int]) -> "Picked":
+        """Some of the parts, in their order; what is left of a cluster stays together."""
+        new = {old: place for place, old in enumerate(chosen)}
+        left = [tuple(new[part] for part in cluster if part in new) for cluster in self.together]
+        own = Clusters(tuple(self.sizes[part] for part in chosen), tuple(cluster for cluster in left if cluster))
+        features = [np.arange(self.starts[part], self.starts[part + 1]) for part in chosen]
+        rows = np.concatenate([np.zeros(0, dtype=np.intp), *features])
+        width = self.features
+        first, second = self.pairs
+        order = np.argsort(keys := first * width + second)
+        wanted = rows[own.pairs[0]] * width + rows[own.pairs[1]]
+        return Picked(own, rows, order[np.searchsorted(keys, wanted, sorter=order)])
+
+
+@dataclass(frozen=True, eq=False)
+class Picked:
+    """Some parts of clusters.
+
+    Args:
+        clusters: what they are.
+        rows: their features among those of all.
+        pairs: their pairs among those of all.
+    """
+
+    clusters: Clusters
+    rows: Places
+    pairs: Places

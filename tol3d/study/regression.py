@@ -1,0 +1,96 @@
+"""What measures have in common with their regressors, block by block: shares and explanations come of it."""
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tol3d.statistics import IndependentSums, RegressorSums
+from tol3d.statistics.lazy import cross_products, quick_products
+from tol3d.statistics.variance_shares import Products, TargetSums
+from tol3d.study.joint import Among
+from tol3d.study.regressors import RegressorSet, regressor_sets
+from tol3d.system.measure import Measure
+from tol3d.system.outcome import ROADS
+from tol3d.system.system import Columns, System
+
+Array = NDArray[np.float64]
+Sums = RegressorSums | IndependentSums
+Key = tuple[str, str]
+"""Road, or DIFFERENCE, and name of a measure."""
+
+DIFFERENCE = "difference"  # of both roads, beside them
+MANY_REGRESSORS = 64  # from here on compiling what multiplies them pays
+
+
+def merged(one: Sums, other: Sums) -> Sums:
+    """Sums of the same measure, of both blocks."""
+    if isinstance(one, RegressorSums) and isinstance(other, RegressorSums):
+        return one.merge(other)
+    if isinstance(one, IndependentSums) and isinstance(other, IndependentSums):
+        return one.merge(other)
+    raise TypeError("sums of different kinds belong to different measures")
+
+
+def target_sums(
+    system: System, measures: Sequence[Measure], columns: Columns, values: Mapping[Key, Array], products: Products
+) -> tuple[dict[Key, Sums], Among]:
+    """What each road's column of each measure has in common with its regressors, by road and name.
+
+    And with those columns that have the same regressors and that no trial lacks.
+
+    Args:
+        system, measures: what is measured; scalar measures.
+        columns: of a block.
+        values: of roads and their difference, nan where a trial lacks one.
+        products: of all pairs of rows.
+    """
+    sums: dict[Key, Sums] = {}
+    among: dict[tuple[Key, ...], TargetSums] = {}
+    for own in regressor_sets(system):
+        keys = [(r, m.name) for m in own.measures for r in (*ROADS, DIFFERENCE) if (r, m.name) in values]
+        block = _Block(own, own.rows(system, columns), quick_products() if len(own) > MANY_REGRESSORS else products)
+        whole = [key for key in keys if not np.isnan(np.min(values[key], initial=0.0))]
+        if whole:
+            found, known = block.sums(whole, np.stack([values[key] for key in whole]))
+            sums |= found
+            if known is not None:
+                among[tuple(whole)] = known
+        lacking: dict[bytes, list[Key]] = {}
+        for key in (key for key in keys if key not in sums):  # what failed is often the same trials
+            lacking.setdefault(np.packbits(_good(key, keys, values)).tobytes(), []).append(key)
+        for alike in lacking.values():
+            good = _good(alike[0], keys, values)
+            sums |= block.part(good).sums(alike, np.stack([values[key][good] for key in alike]))[0]
+    return sums, among
+
+
+def _good(key: Key, keys: Sequence[Key], values: Mapping[Key, Array]) -> NDArray[np.bool_]:
+    """Trials that a road of a measure has; of one that lacks some, those that its difference has too."""
+    rows = [values[road, name] for road, name in keys if name == key[1]]
+    lacking = np.stack([row for row in rows if np.isnan(row).any()])
+    good: NDArray[np.bool_] = ~np.isnan(lacking).any(axis=0)
+    return good
+
+
+class _Block:
+    """The regressors (regressors, trials) of a set in one block."""
+
+    def __init__(self, own: RegressorSet, rows: Array, products: Products) -> None:
+        self.own, self.rows, self.products = own, rows, products
+
+    def part(self, good: NDArray[np.bool_]) -> "_Block":
+        """Of some of its trials."""
+        return _Block(self.own, self.rows[:, good], self.products)
+
+    def sums(self, keys: Sequence[Key], targets: Array) -> tuple[dict[Key, Sums], TargetSums | None]:
+        """Of targets (targets, trials), and those of the targets among each other where they are known."""
+        known = {own.name: own for own in self.own.measures}
+        regressed = [self.own.of(known[name]) for _, name in keys]
+        if self.own.clusters is None:
+            rows = [own.rows for own in regressed]
+            together, among = RegressorSums.with_targets(self.rows, targets, self.products, rows)
+            return dict(zip(keys, together, strict=True)), among
+        picked = [own.picked for own in regressed if own.picked is not None]
+        apart = IndependentSums.of_each(self.rows, targets, self.own.clusters, picked, cross_products())
+        return dict(zip(keys, apart, strict=True)), None
