@@ -118,11 +118,21 @@ class AssemblySystem(PlainSystem):
 
     def acting(self, measure: Measure) -> Sequence[Contributor]:
         """Those with a slope, or that a term which is not linear reads."""
-        slopes = self.slopes_of(measure.name)
-        acts = slopes.coefficients != 0.0
-        acts[list(slopes.bent)] = True
-        slices = component_slices(self)
-        return [own for own in self.contributors if acts[slices[own.name]].any()]
+        if measure.name not in self._known_acting:
+            slopes = self.slopes_of(measure.name)
+            acts = slopes.coefficients != 0.0
+            acts[list(slopes.bent)] = True
+            slices = component_slices(self).values()
+            touched = np.add.reduceat(acts, [own.start for own in slices]) if len(acts) else ()
+            self._known_acting[measure.name] = [
+                own for own, any_of in zip(self.contributors, touched, strict=True) if any_of
+            ]
+        return self._known_acting[measure.name]
+
+    @cached_property
+    def _known_acting(self) -> dict[str, Sequence[Contributor]]:
+        """By measure, as far as they were asked for."""
+        return {}
 
     def regressor_key(self, measure: Measure) -> Hashable:
         """As of any system; also which components are squared."""

@@ -11,6 +11,7 @@ Array = NDArray[np.float64]
 Counts = NDArray[np.int64]
 
 BINS = 2**17  # 1 MB of counts; over 40 sigma one bin is 0.0003 sigma, far under the sampling error of a percentile
+FEW = 8  # of so many bins at most one is occupied where the occupied ones alone are kept
 
 
 @dataclass(frozen=True)
@@ -36,13 +37,17 @@ class Grid:
     Args:
         lower: lower edge of the first bin.
         width: of a bin, in the unit of the values.
-        counts: (bins,) values in each bin.
+        bins: how many.
+        held: values in each bin (bins,), or in those of `places` alone.
+        places: bins that are occupied (occupied,), in order; None where all are held.
         underflow, overflow: values below the first and above the last bin, infinite ones included.
     """
 
     lower: float
     width: float
-    counts: Counts
+    bins: int
+    held: Counts
+    places: Counts | None
     underflow: int = 0
     overflow: int = 0
 
@@ -56,7 +61,16 @@ class Grid:
         upper = lower + bins * width
         if not (math.isfinite(upper) and lower + width > lower and upper - width < upper):
             raise ValueError(f"a grid of {bins} bins from {lower} to {upper} has no width")
-        return cls(lower, width, np.zeros(bins, dtype=np.int64))
+        return cls(lower, width, bins, np.zeros(0, dtype=np.int64), np.zeros(0, dtype=np.int64))
+
+    @property
+    def counts(self) -> Counts:
+        """Values in each bin (bins,)."""
+        if self.places is None:
+            return self.held
+        counts = np.zeros(self.bins, dtype=np.int64)
+        counts[self.places] = self.held
+        return counts
 
     def add(self, values: Array) -> Self:
         """This grid with the values (n,) counted.
@@ -66,17 +80,15 @@ class Grid:
         """
         if np.any(np.isnan(values)):
             raise ValueError("NaN has no place on a grid")
-        bins = len(self.counts)
         position = np.floor((values - self.lower) / self.width)
-        below, above = position < 0, position >= bins
+        below, above = position < 0, position >= self.bins
         index = position[~(below | above)].astype(np.int64)
-        return type(self)(
-            self.lower,
-            self.width,
-            self.counts + np.bincount(index, minlength=bins),
-            self.underflow + int(np.count_nonzero(below)),
-            self.overflow + int(np.count_nonzero(above)),
-        )
+        if len(index) * FEW < self.bins:
+            places, held = np.unique(index, return_counts=True)
+        else:
+            places, held = None, np.bincount(index, minlength=self.bins)
+        outside = int(np.count_nonzero(below)), int(np.count_nonzero(above))
+        return self._plus(places, held.astype(np.int64, copy=False), *outside)
 
     def merge(self, other: "Grid") -> Self:
         """The counts of both.
@@ -84,20 +96,34 @@ class Grid:
         Raises:
             ValueError: they are not the same grid.
         """
-        if (self.lower, self.width, len(self.counts)) != (other.lower, other.width, len(other.counts)):
+        if (self.lower, self.width, self.bins) != (other.lower, other.width, other.bins):
             raise ValueError("only counts on the same grid can be merged")
+        return self._plus(other.places, other.held, other.underflow, other.overflow)
+
+    def _plus(self, places: Counts | None, held: Counts, underflow: int, overflow: int) -> Self:
+        """With more counted: in the bins of `places`, or in all."""
+        if self.places is None:
+            mine, its = None, self.held.copy()
+            its[slice(None) if places is None else places] += held
+        elif places is None:
+            mine, its = None, held.copy()
+            its[self.places] += self.held
+        elif (len(self.places) + len(places)) * FEW < self.bins:
+            mine, which = np.unique(np.concatenate([self.places, places]), return_inverse=True)
+            its = np.zeros(len(mine), dtype=np.int64)
+            its[which[: len(self.places)]] += self.held
+            its[which[len(self.places) :]] += held
+        else:
+            mine, its = None, self.counts
+            its[places] += held
         return type(self)(
-            self.lower,
-            self.width,
-            self.counts + other.counts,
-            self.underflow + other.underflow,
-            self.overflow + other.overflow,
+            self.lower, self.width, self.bins, its, mine, self.underflow + underflow, self.overflow + overflow
         )
 
     @property
     def total(self) -> int:
         """Values counted, wherever they fell."""
-        return int(np.sum(self.counts)) + self.underflow + self.overflow
+        return int(np.sum(self.held)) + self.underflow + self.overflow
 
     def quantile(self, p: float) -> float | None:
         """The value below which a share p of the sample lies, 0 < p < 1; linear inside its bin.
@@ -107,11 +133,12 @@ class Grid:
         nothing was counted.
         """
         rank = p * self.total - self.underflow
-        below = np.cumsum(self.counts)
-        if not 0 < rank <= below[-1]:
+        below = np.cumsum(self.held)
+        if not len(below) or not 0 < rank <= below[-1]:
             return None
-        index = int(np.searchsorted(below, rank))
-        inside = 1 - (below[index] - rank) / self.counts[index]
+        at = int(np.searchsorted(below, rank))
+        inside = 1 - (below[at] - rank) / self.held[at]
+        index = at if self.places is None else int(self.places[at])
         return float(self.lower + (index + inside) * self.width)
 
     @property
@@ -136,12 +163,12 @@ class Grid:
         return Histogram(edges, fine.reshape(coarse, factor).sum(axis=1))
 
     def _occupied(self) -> tuple[int, int]:
-        occupied = np.flatnonzero(self.counts)
-        return (int(occupied[0]), int(occupied[-1]) + 1) if len(occupied) else (0, len(self.counts))
+        occupied = np.flatnonzero(self.held) if self.places is None else self.places
+        return (int(occupied[0]), int(occupied[-1]) + 1) if len(occupied) else (0, self.bins)
 
     def _bins_over(self, span: tuple[float, float]) -> tuple[int, int]:
         """The first bin of a span and the one after its last, at least one bin."""
-        bins = len(self.counts)
+        bins = self.bins
         first = math.floor(min(max((span[0] - self.lower) / self.width, 0), bins - 1))
         last = math.ceil(min(max((span[1] - self.lower) / self.width, 0), bins))
         return first, max(last, first + 1)

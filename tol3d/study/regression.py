@@ -69,8 +69,7 @@ def _good(key: Key, keys: Sequence[Key], values: Mapping[Key, Array]) -> NDArray
     """Trials that a road of a measure has; of one that lacks some, those that its difference has too."""
     rows = [values[road, name] for road, name in keys if name == key[1]]
     lacking = np.stack([row for row in rows if np.isnan(row).any()])
-    good: NDArray[np.bool_] = ~np.isnan(lacking).any(axis=0)
-    return good
+    return np.asarray(~np.isnan(lacking).any(axis=0))
 
 
 class _Block:

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from tol3d.statistics.clusters import Clusters, Picked
 from tol3d.system.contributor import Contributor
 from tol3d.system.dependent import reads_of
+from tol3d.system.itself import Itself
 from tol3d.system.measure import Measure
 from tol3d.system.regressors import regressor_count
 from tol3d.system.system import Columns, System
@@ -100,7 +101,7 @@ class RegressorSet:
 
 def regressor_sets(system: System) -> tuple[RegressorSet, ...]:
     """Sets of all measures of one value a trial; each has the products of its regressors worked out once."""
-    return _sets_of(_Itself(system))
+    return _sets_of(Itself(system))
 
 
 def regressor_set(system: System, measure: Measure) -> RegressorSet:
@@ -119,21 +120,8 @@ def regressors(system: System, measure: Measure, columns: Columns) -> Array:
     return own.rows(system, columns)[own.of(measure).rows]
 
 
-class _Itself:
-    """A thing as a key: itself, not its like."""
-
-    def __init__(self, thing: Any) -> None:
-        self.thing = thing
-
-    def __hash__(self) -> int:
-        return id(self.thing)
-
-    def __eq__(self, other: object) -> bool:
-        return isinstance(other, _Itself) and other.thing is self.thing
-
-
 @lru_cache(maxsize=16)
-def _sets_of(system: _Itself) -> tuple[RegressorSet, ...]:
+def _sets_of(system: Itself) -> tuple[RegressorSet, ...]:
     return tuple(_sets(system.thing))
 
 

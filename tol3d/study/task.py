@@ -118,15 +118,6 @@ class Task:
     def __eq__(self, other: object) -> bool:
         return isinstance(other, Task) and other.fingerprint == self.fingerprint
 
-    def __getstate__(self) -> dict[str, Any]:
-        """Grids travel as what they are made of: a megabyte of zeros each would go with every call."""
-        spans = {name: (type(grid), grid.lower, grid.width, len(grid.counts)) for name, grid in self.grids.items()}
-        return {**self.__dict__, "grids": spans}
-
-    def __setstate__(self, state: dict[str, Any]) -> None:
-        grids = {name: kind.empty(*span) for name, (kind, *span) in state["grids"].items()}
-        self.__dict__.update({**state, "grids": grids})
-
 
 _ONE_AT_A_TIME = threading.Lock()
 

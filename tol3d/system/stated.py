@@ -1,12 +1,14 @@
 """Trials that nobody drew: stated deviations, every contributor at its mean, no deviation at all."""
 
 from collections.abc import Mapping, Sequence
+from functools import lru_cache
 from typing import Final, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.system.contributor import Contributor
+from tol3d.system.itself import Itself
 from tol3d.system.measure import Measure
 from tol3d.system.positions import Positions
 from tol3d.system.trials import Trials
@@ -45,8 +47,13 @@ class Varying(Toleranced, Protocol):
 
 def component_slices(system: Toleranced) -> Mapping[str, slice]:
     """Which columns of the deviations belong to each contributor, by its name."""
+    return _slices(Itself(system.contributors))
+
+
+@lru_cache(maxsize=16)
+def _slices(contributors: Itself) -> Mapping[str, slice]:
     slices, start = {}, 0
-    for contributor in system.contributors:
+    for contributor in contributors.thing:
         width = len(contributor.draw.components)
         slices[contributor.name] = slice(start, start + width)
         start += width
