@@ -14,7 +14,7 @@ from tol3d.statistics.linear_fit import LinearFit
 
 Array = NDArray[np.float64]
 
-CLUSTERS = Clusters((2, 1, 3, 2, 2, 1), ((0,), (1, 3), (2,), (4,), (5,)))
+CLUSTERS = Clusters(np.array([2, 1, 3, 2, 2, 1]), np.array([7, 4, 2, 4, 1, 0]))
 """Eleven features; parts 1 and 3 depend on each other."""
 COLUMNS = [slice(0, 2), slice(2, 3), slice(3, 6), slice(6, 8), slice(8, 10), slice(10, 11)]
 
@@ -87,10 +87,10 @@ def test_a_target_of_one_feature_alone_is_all_its_own_and_others_have_what_chanc
 
 def test_some_of_the_parts_have_the_sums_of_a_block_of_their_own() -> None:
     features, targets = seen(np.random.default_rng(4), 50)
-    picked = CLUSTERS.part([0, 3, 4])
+    picked = CLUSTERS.part(np.array([0, 3, 4]))
     (found,) = IndependentSums.of_each(features, targets[:1], CLUSTERS, [picked], cross_products())
     own = features[[0, 1, 6, 7, 8, 9]]
-    alone = Clusters((2, 2, 2), ((0,), (1,), (2,)))
+    alone = Clusters(np.array([2, 2, 2]), np.array([0, 1, 2]))
     (expected,) = IndependentSums.of_each(own, targets[:1], alone, [alone.all], cross_products())
     for mine, its in ((found.means, expected.means), (found.across, expected.across), (found.within, expected.within)):
         assert mine == pytest.approx(its, rel=1e-12, abs=1e-12)

@@ -1,6 +1,6 @@
 """Features in parts, and parts in clusters that are independent of each other."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -39,12 +39,12 @@ class Clusters:
     """Features that are cut into parts, such as the regressors of contributors, and parts into clusters.
 
     Args:
-        sizes: features of each part; they follow each other.
-        together: parts of each cluster.
+        sizes: (parts,), features of each; they follow each other.
+        together: (parts,), a number for each, the same of parts of one cluster.
     """
 
-    sizes: tuple[int, ...]
-    together: tuple[tuple[int, ...], ...]
+    sizes: Places
+    together: Places
 
     @cached_property
     def starts(self) -> Places:
@@ -59,12 +59,19 @@ class Clusters:
     @cached_property
     def patterns(self) -> tuple[Pattern, ...]:
         """All clusters, those of one pattern together."""
-        alike: dict[tuple[int, ...], list[tuple[int, ...]]] = {}
-        for cluster in self.together:
-            alike.setdefault(tuple(self.sizes[part] for part in cluster), []).append(cluster)
+        order = np.argsort(self.together, kind="stable")
+        cuts = np.flatnonzero(np.diff(self.together[order])) + 1
+        members = np.diff(np.concatenate([[0], cuts, [len(order)]]))
+        single = np.repeat(members == 1, members)
+        alone, others = np.sort(order[single]), order[~single]
+        alike: dict[tuple[int, ...], list[Places]] = {}
+        for size in np.unique(self.sizes[alone]).tolist():
+            alike[(size,)] = [*alone[self.sizes[alone] == size]]
+        for cluster in np.split(others, np.cumsum(members[members > 1])[:-1]) if len(others) else ():
+            alike.setdefault(tuple(self.sizes[cluster].tolist()), []).append(cluster)
         patterns, pairs = [], 0
         for sizes, clusters in alike.items():
-            parts = np.array(clusters, dtype=np.intp)
+            parts = np.array(clusters, dtype=np.intp).reshape(-1, len(sizes))
             own = [self.starts[parts[:, k], None] + np.arange(size) for k, size in enumerate(sizes)]
             columns = np.concatenate(own, axis=1)
             width = columns.shape[1]
@@ -88,18 +95,20 @@ class Clusters:
         """All of the parts."""
         return Picked(self, np.arange(self.features), np.arange(len(self.pairs[0])))
 
-    def part(self, chosen: Sequence[int]) -> "Picked":
-        """Some of the parts, in their order; what is left of a cluster stays together."""
-        new = {old: place for place, old in enumerate(chosen)}
-        left = [tuple(new[part] for part in cluster if part in new) for cluster in self.together]
-        own = Clusters(tuple(self.sizes[part] for part in chosen), tuple(cluster for cluster in left if cluster))
-        features = [np.arange(self.starts[part], self.starts[part + 1]) for part in chosen]
-        rows = np.concatenate([np.zeros(0, dtype=np.intp), *features])
-        width = self.features
-        first, second = self.pairs
-        order = np.argsort(keys := first * width + second)
-        wanted = rows[own.pairs[0]] * width + rows[own.pairs[1]]
-        return Picked(own, rows, order[np.searchsorted(keys, wanted, sorter=order)])
+    def part(self, chosen: Places) -> "Picked":
+        """Some of the parts (chosen,), in their order; what is left of a cluster stays together."""
+        own = Clusters(self.sizes[chosen], self.together[chosen])
+        rows = np.repeat(self.starts[chosen] - own.starts[:-1], own.sizes) + np.arange(own.features)
+        wanted = rows[own.pairs[0]] * self.features + rows[own.pairs[1]]
+        keys, order = self._sorted_pairs
+        return Picked(own, rows, order[np.searchsorted(keys, wanted)])
+
+    @cached_property
+    def _sorted_pairs(self) -> tuple[Places, Places]:
+        """Numbers of the pairs in their order, and where each pair is among them."""
+        keys = self.pairs[0] * self.features + self.pairs[1]
+        order = np.argsort(keys)
+        return keys[order], order
 
 
 @dataclass(frozen=True, eq=False)

@@ -86,7 +86,7 @@ class _Block:
         """Of targets (targets, trials), and those of the targets among each other where they are known."""
         known = {own.name: own for own in self.own.measures}
         regressed = [self.own.of(known[name]) for _, name in keys]
-        if self.own.clusters is None:
+        if not self.own.apart:
             rows = [own.rows for own in regressed]
             together, among = RegressorSums.with_targets(self.rows, targets, self.products, rows)
             return dict(zip(keys, together, strict=True)), among

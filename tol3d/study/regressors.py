@@ -3,6 +3,7 @@
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property, lru_cache
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -31,20 +32,25 @@ class Regressed:
 
     Args:
         names: of the contributors that act on it.
-        groups: which of its own regressors belong to each.
+        ends: (contributors + 1,), where the regressors of each begin and end.
         rows: its regressors among those of its set.
         picked: of very many contributors how they are cut; None where all are regressed on together.
     """
 
     names: tuple[str, ...]
-    groups: Mapping[str, slice]
+    ends: Places
     rows: Places
     picked: Picked | None
 
     @property
     def parts(self) -> list[slice]:
         """The regressors of each contributor."""
-        return [*self.groups.values()]
+        return [slice(start, end) for start, end in pairwise(self.ends.tolist())]
+
+    @cached_property
+    def groups(self) -> Mapping[str, slice]:
+        """The same by name."""
+        return dict(zip(self.names, self.parts, strict=True))
 
 
 @dataclass(frozen=True, eq=False)
@@ -54,20 +60,18 @@ class RegressorSet:
     Args:
         measures: which.
         contributors: all that act on any of them, in the system's order.
-        clusters: how very many of them are cut; None where all that act on a measure are regressed on together.
+        clusters: how they are cut.
+        apart: whether each cluster is regressed on by itself, or all that act on a measure together.
+        acting: names of those that act on each measure.
         known: what was asked for, by measure.
     """
 
     measures: tuple[Measure, ...]
     contributors: tuple[Contributor, ...]
-    clusters: Clusters | None
+    clusters: Clusters
+    apart: bool
     acting: Mapping[str, tuple[str, ...]]
     known: dict[str, Regressed] = field(default_factory=dict)
-
-    @cached_property
-    def groups(self) -> Mapping[str, slice]:
-        """Which rows belong to each contributor."""
-        return _groups(self.contributors)
 
     def of(self, measure: Measure) -> Regressed:
         """What one of its measures is regressed on."""
@@ -76,25 +80,22 @@ class RegressorSet:
         return self.known[measure.name]
 
     def _of(self, names: tuple[str, ...]) -> Regressed:
-        sizes = [self.groups[name].stop - self.groups[name].start for name in names]
-        ends = np.cumsum(sizes).tolist()
-        groups = {name: slice(end - size, end) for name, size, end in zip(names, sizes, ends, strict=True)}
-        if self.clusters is None:
-            every, none = np.arange(len(self)), np.zeros(0, dtype=np.intp)
-            rows = np.concatenate([none, *(every[self.groups[name]] for name in names)])
-            return Regressed(names, groups, rows, None)
-        places = {own.name: place for place, own in enumerate(self.contributors)}
-        picked = self.clusters.part([places[name] for name in names])
-        return Regressed(names, groups, picked.rows, picked)
+        picked = self.clusters.part(np.array([self._places[name] for name in names], dtype=np.intp))
+        return Regressed(names, picked.clusters.starts, picked.rows, picked if self.apart else None)
+
+    @cached_property
+    def _places(self) -> Mapping[str, int]:
+        return {own.name: place for place, own in enumerate(self.contributors)}
 
     def __len__(self) -> int:
         """How many rows there are."""
-        return max((own.stop for own in self.groups.values()), default=0)
+        return self.clusters.features
 
     def rows(self, system: System, columns: Columns) -> Array:
         """The regressors of a block, a row each, (regressors, trials), over each contributor's sigma."""
         rows = np.empty((len(self), len(next(iter(columns.values())))))
-        views = {name: rows[group] for name, group in self.groups.items()}
+        ends = self.clusters.starts.tolist()
+        views = {own.name: rows[slice(*at)] for own, at in zip(self.contributors, pairwise(ends), strict=True)}
         system.regress(self.measures[0], self.contributors, columns, views)
         return rows
 
@@ -134,9 +135,9 @@ def _sets(system: System) -> Iterator[RegressorSet]:
     for measures in alike.values():
         few = [own for own in measures if len(acting[own.name]) <= MOST_REGRESSED]
         for within in _within_the_largest(few, acting):
-            yield _set(system, within, acting, together=True)
+            yield _set(system, within, acting, apart=False)
         if many := [own for own in measures if len(acting[own.name]) > MOST_REGRESSED]:
-            yield _set(system, many, acting, together=False)
+            yield _set(system, many, acting, apart=True)
 
 
 def _within_the_largest(
@@ -155,19 +156,18 @@ def _within_the_largest(
 
 
 def _set(
-    system: System, measures: Sequence[Measure], acting: Mapping[str, tuple[str, ...]], *, together: bool
+    system: System, measures: Sequence[Measure], acting: Mapping[str, tuple[str, ...]], *, apart: bool
 ) -> RegressorSet:
     names = {name for own in measures for name in acting[own.name]}
     contributors = tuple(own for own in system.contributors if own.name in names)
-    clusters = None
-    if not together:
-        groups = _dependent(system.contributors)
-        places: dict[int, list[int]] = {}
-        for place, own in enumerate(contributors):
-            places.setdefault(groups[own.name], []).append(place)
-        sizes = tuple(regressor_count(own) for own in contributors)
-        clusters = Clusters(sizes, tuple(tuple(own) for own in places.values()))
-    return RegressorSet(tuple(measures), contributors, clusters, {own.name: acting[own.name] for own in measures})
+    groups = _dependent(system.contributors)
+    clusters = Clusters(
+        np.array([regressor_count(own) for own in contributors], dtype=np.intp),
+        np.array([groups[own.name] for own in contributors], dtype=np.intp),
+    )
+    return RegressorSet(
+        tuple(measures), contributors, clusters, apart, {own.name: acting[own.name] for own in measures}
+    )
 
 
 def _dependent(contributors: Sequence[Contributor]) -> Mapping[str, int]:
@@ -177,14 +177,4 @@ def _dependent(contributors: Sequence[Contributor]) -> Mapping[str, int]:
         joined = {groups[own.name], *(groups[name] for name in reads_of(own))}
         if len(joined) > 1:
             groups = {name: min(joined) if group in joined else group for name, group in groups.items()}
-    return groups
-
-
-def _groups(contributors: Sequence[Contributor]) -> dict[str, slice]:
-    groups: dict[str, slice] = {}
-    start = 0
-    for contributor in contributors:
-        end = start + regressor_count(contributor)
-        groups[contributor.name] = slice(start, end)
-        start = end
     return groups
