@@ -46,6 +46,13 @@ class SamplerName(StrEnum):
     LATIN_HYPERCUBE = "latin_hypercube"
 
 
+class PicturesWord(StrEnum):
+    """Measures that a run of many draws."""
+
+    WORST = "worst"
+    ALL = "all"
+
+
 def trials_or_auto(text: str) -> int | str:
     """A number of trials, or auto, as --trials gives it."""
     return text if text == "auto" else whole(1, " or auto")(text)

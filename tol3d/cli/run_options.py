@@ -5,7 +5,7 @@ from typing import Annotated, Any
 
 import typer
 
-from tol3d.cli.arguments import SamplerName, accepted_ppm, trials_or_auto, whole
+from tol3d.cli.arguments import PicturesWord, SamplerName, accepted_ppm, trials_or_auto, whole
 
 PICTURE = "histogram.png"
 
@@ -37,7 +37,14 @@ NoTrials = Annotated[bool, typer.Option("--no-trials", help="Keep statistics onl
 ResumeOption = Annotated[
     bool, typer.Option("--resume", help="Go on with an interrupted run, or mend a damaged one; never start anew.")
 ]
-NoPicture = Annotated[bool, typer.Option("--no-picture", help=f"Draw no {PICTURE}.")]
+NoPicture = Annotated[bool, typer.Option("--no-picture", help="Draw nothing.")]
+PicturesOption = Annotated[
+    PicturesWord | None,
+    typer.Option(
+        "--pictures",
+        help=f"Of more than four measures {PICTURE} shows the four worst; all: an overview, and each by itself.",
+    ),
+]
 AcceptOption = Annotated[
     Any,
     typer.Option(parser=accepted_ppm, metavar="SHARE", help="Share of trials that may be out of limits; 0.27 %."),
@@ -51,5 +58,5 @@ FailOnLimits = Annotated[
 ]
 QuietOption = Annotated[bool, typer.Option("--quiet", "-q", help="Print the verdict and warnings only.")]
 VerboseOption = Annotated[
-    bool, typer.Option("--verbose", "-v", help="Print the tables of every measure, however many there are.")
+    bool, typer.Option("--verbose", "-v", help="Print the tables of every measure, of more than 20 the worst.")
 ]

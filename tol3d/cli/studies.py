@@ -27,6 +27,7 @@ from tol3d.cli.run_options import (
     NoPicture,
     NoTrials,
     OutOption,
+    PicturesOption,
     QuietOption,
     ResumeOption,
     SamplerOption,
@@ -63,6 +64,7 @@ def run(
     no_trials: NoTrials = False,
     resume: ResumeOption = False,
     no_picture: NoPicture = False,
+    pictures: PicturesOption = None,
     accept: AcceptOption = None,
     fail_on_limits: FailOnLimits = False,
     quiet: QuietOption = False,
@@ -74,7 +76,9 @@ def run(
     _refuse(force and resume, "--resume goes on with what --force would replace; leave out one of them")
     _refuse(workers is not None and scheduler is not None, "--scheduler has its own workers; leave out --workers")
     _refuse(quiet and verbose, "--quiet says less and --verbose more; leave out one of them")
-    draw = context.with_resource(_drawing(wanted=not no_picture))  # it loads what it draws with beside all that follows
+    _refuse(no_picture and pictures is not None, "--no-picture draws nothing; leave out --pictures")
+    wanted = None if no_picture else pictures.value if pictures else "worst"
+    draw = context.with_resource(_drawing(wanted))  # it loads what it draws with beside all that follows
 
     from tol3d.execution.pools import Execution
     from tol3d.report.table import Detail, run_report
@@ -107,6 +111,8 @@ def run(
     out_console.print(run_report(finished.found, shown, ACCEPTED_PPM if accept is None else accept))
     if not quiet:
         tell(f"run: {finished.path}{_pictures_text(finished)}")
+        if words := _pictured(finished, wanted):
+            tell(words)
     failed = _out_of_limits(finished) if accept is None else not all_ok(finished.found, accept)
     if fail_on_limits and failed:
         err_console.print("limits failed", style="red")
@@ -150,6 +156,18 @@ def _pictures_text(run: "Run") -> str:
     return f"    picture{'s' if len(drawn) > 1 else ''}: {', '.join(drawn)}" if drawn else ""
 
 
+def _pictured(run: "Run", wanted: str | None) -> str:
+    """Which measures are in the picture of a run of many, and how the others are drawn; "" where all of them are."""
+    from tol3d.report.picture import MOST_TOGETHER
+    from tol3d.report.ranking import WORST_FIRST, shown_measures
+
+    count = len(run.found.measures)
+    if wanted != "worst" or count <= MOST_TOGETHER or not (run.path / PICTURE).exists():
+        return ""
+    names = ", ".join(shown_measures(run.found.measures, MOST_TOGETHER))
+    return f"{PICTURE} shows the {MOST_TOGETHER} worst of {count} measures {WORST_FIRST}: {names}; --pictures all: each"
+
+
 def _how_to_resume(folder: Path) -> str:
     """What is kept of an interrupted run, and the command that goes on with it."""
     import shlex
@@ -164,14 +182,14 @@ def _how_to_resume(folder: Path) -> str:
 
 
 @contextmanager
-def _drawing(*, wanted: bool) -> "Iterator[Callable[[Path, Mapping[str, Any]], None]]":
-    """What draws the picture of a run; one that cannot be drawn costs a warning, not the run."""
-    from tol3d.report.picture import PictureError, drawing
-
-    if not wanted:
+def _drawing(wanted: str | None) -> "Iterator[Callable[[Path, Mapping[str, Any]], None]]":
+    """What draws the pictures of a run, worst or all, None for none; one that fails costs a warning, not the run."""
+    if wanted is None:
         yield lambda place, summary: None
         return
-    with drawing() as draw:
+    from tol3d.report.picture import PictureError, Pictures, drawing
+
+    with drawing(pictures=Pictures(wanted)) as draw:
 
         def finish(place: Path, summary: "Mapping[str, Any]") -> None:
             try:

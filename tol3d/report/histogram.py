@@ -1,8 +1,8 @@
 """The pictures of a run: each measure's histogram with limits and published ranges, its contributors beside."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Final
+from typing import Final, assert_never
 
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
@@ -44,7 +44,8 @@ from tol3d.report.ends import QUANTILES_MEAN, is_bounded
 from tol3d.report.heading import heading
 from tol3d.report.label import widest, wrapped
 from tol3d.report.number import UNIT_SIGNS, share_text, short_text
-from tol3d.report.picture import measure_files
+from tol3d.report.picture import MOST_TOGETHER, Pictures
+from tol3d.report.ranking import shown_measures
 from tol3d.report.shown_unit import shown_run
 from tol3d.runs.summary.measure import MeasureSummary
 from tol3d.runs.summary.run import RunSummary
@@ -60,18 +61,26 @@ OVERVIEW_HEIGHT: Final = 2.9  # inch, a row
 OVERVIEW_WORDS: Final = 3.9
 
 
-def draw_histogram(summary: RunSummary, path: Path) -> None:
-    """Draw the measures of a run, an overview of them where each has a picture of its own (see `measure_files`).
+def draw_histogram(summary: RunSummary, path: Path, pictures: Pictures = Pictures.WORST) -> None:
+    """Draw the measures of a run: of more than MOST_TOGETHER the worst, or an overview of all.
 
     Args:
         summary: of the run.
         path: ends in .png, .svg or .pdf.
+        pictures: which of many measures are drawn; with all of them each has a picture of its own (`measure_files`).
 
     Raises:
         InputError: the picture cannot be written there.
     """
-    draw = overview_figure if measure_files(summary.measures) else histogram_figure
-    save_figure(draw(summary), path)
+    few = len(summary.measures) <= MOST_TOGETHER
+    match pictures:
+        case Pictures.ALL if not few:
+            figure = overview_figure(summary)
+        case Pictures.ALL | Pictures.WORST:
+            figure = histogram_figure(summary)
+        case _:
+            assert_never(pictures)
+    save_figure(figure, path)
 
 
 def draw_measure(summary: RunSummary, name: str, path: Path) -> None:
@@ -80,14 +89,21 @@ def draw_measure(summary: RunSummary, name: str, path: Path) -> None:
     Raises:
         InputError: the picture cannot be written there.
     """
-    save_figure(histogram_figure(summary.model_copy(update={"measures": {name: summary.measures[name]}})), path)
+    save_figure(histogram_figure(_of_measures(summary, [name])), path)
+
+
+def _of_measures(summary: RunSummary, names: Sequence[str]) -> RunSummary:
+    """A summary with some of its measures alone."""
+    return summary.model_copy(update={"measures": {name: summary.measures[name] for name in names}})
 
 
 def histogram_figure(summary: RunSummary) -> Figure:
-    """All measures of a summary one below the other, not yet written."""
-    measures = shown_run(summary).measures
+    """Measures of a summary one below the other, of many the worst, not yet written."""
+    names, count = shown_measures(summary.measures, MOST_TOGETHER), len(summary.measures)
+    measures = shown_run(_of_measures(summary, names)).measures
     heights = [_height(measure) for measure in measures.values()]
-    figure = _headed(summary, sum(heights) + 0.5)
+    worst = f"   ·   the {len(names)} worst of {count} measures" if len(names) < count else ""
+    figure = _headed(summary, sum(heights) + 0.5, worst)
     scalars = [measure for measure in measures.values() if measure.take != "curve"]
     colours = column_colours([column for measure in scalars for column in columns_of(measure)])
     rows = figure.add_gridspec(len(measures), 1, height_ratios=heights, hspace=0.08)
@@ -101,11 +117,11 @@ def histogram_figure(summary: RunSummary) -> Figure:
     return figure
 
 
-def _headed(summary: RunSummary, height: float) -> Figure:
+def _headed(summary: RunSummary, height: float, more: str = "") -> Figure:
     figure = new_figure(WIDTH, height)
     failed = sum(count for status, count in summary.status.items() if status != "ok")
     words = f"{summary.scene}   ·   {summary.trials} trials, seed {summary.seed}"
-    words += f", {failed} failed" if failed else ""
+    words += (f", {failed} failed" if failed else "") + more
     figure.suptitle(wrapped(words, WIDTH - 0.4, HEAD_SIZE, 2), fontsize=HEAD_SIZE, color=BLACK, x=0.01, ha="left")
     return figure
 

@@ -2,10 +2,10 @@
 
 matplotlib takes as long to load as a whole study of 2000 trials takes to run: so it loads beside the study, and what
 is drawn comes at the end, on its standard input, pickled: where modules are found, then the picture's path, the
-presenter's module, the kinds of summaries and the summary as JSON.
+presenter's module, which measures are drawn, the kinds of summaries and the summary as JSON.
 
-The presenter's pictures are drawn beside the histogram, a measure of many as histogram-<measure>.png. It ends quietly
-where nothing comes. What goes wrong with the histogram is the one line on its standard error; what goes wrong with
+The presenter's pictures are drawn beside the histogram; where all of many measures are wanted, each of them as
+histogram-<measure>.png too. It ends quietly where nothing comes. What goes wrong with the histogram is the one line on its standard error; what goes wrong with
 another picture is said on its standard output, {"chain.png": "why"}.
 """
 
@@ -19,7 +19,7 @@ from functools import partial
 from pathlib import Path
 
 from tol3d.report.histogram import draw_histogram, draw_measure
-from tol3d.report.picture import measure_files, named_files
+from tol3d.report.picture import Pictures, measure_files, named_files
 from tol3d.report.presenter import Draw, presenter_of
 from tol3d.runs.summary.run import RunSummary
 from tol3d.runs.summary.text import typed
@@ -32,20 +32,22 @@ def main() -> None:
     if not order.getbuffer():
         return
     sys.path += [path for path in pickle.load(order) if path and path not in sys.path]  # mechanisms may lie anywhere
-    picture, presenter, kinds, found = pickle.load(order)
+    picture, presenter, pictures, kinds, found = pickle.load(order)
     summary = typed(json.loads(found), lambda place, words: ValueError(f"{place}: {words}"), kinds)
-    print(json.dumps(dict(_refused(_further(summary, presenter), picture.parent))), flush=True)
+    print(json.dumps(dict(_refused(_further(summary, presenter, pictures), picture.parent))), flush=True)
     try:
-        draw_histogram(summary, picture)
+        draw_histogram(summary, picture, pictures)
     except Exception as error:
         sys.exit(_reason(error))
 
 
-def _further(summary: RunSummary, presenter: str | None) -> Iterator[tuple[str, Draw]]:
+def _further(summary: RunSummary, presenter: str | None, wanted: Pictures) -> Iterator[tuple[str, Draw]]:
     """Files besides the histogram, and what draws them."""
     pictures = presenter_of(summary, presenter).pictures(summary)
     yield from ((file, pictures[name]) for name, file in named_files(pictures).items())
-    yield from ((file, partial(draw_measure, summary, name)) for name, file in measure_files(summary.measures).items())
+    if wanted is Pictures.ALL:
+        files = measure_files(summary.measures)
+        yield from ((file, partial(draw_measure, summary, name)) for name, file in files.items())
 
 
 def _refused(further: Iterable[tuple[str, Draw]], folder: Path) -> Iterator[tuple[str, str]]:

@@ -16,6 +16,7 @@ from tol3d.report.number import (
 from tol3d.report.page import Heading, Row, Shown, Table
 from tol3d.report.presenter import FurtherRow
 from tol3d.report.published import curve_columns, published_cell, published_counts, published_rows
+from tol3d.report.ranking import MOST_CONTRIBUTORS
 from tol3d.report.shown_unit import Spread
 from tol3d.runs.summary.measure import MeasureSummary
 from tol3d.runs.summary.run import RunSummary
@@ -147,16 +148,18 @@ def _further_rows(further: Sequence[FurtherRow], columns: Sequence[Column], unit
 
 
 def contributors_table(measure: MeasureSummary) -> Table:
-    """Shares of the variance, the largest first; those of the 3D simulation with their standard error."""
+    """Shares of the variance, the largest first, of many the sum of the rest; of the 3D simulation with their error."""
     shares = [
         replace(column, heading=SHARE_HEADINGS.get(column.road, column.heading))
         for column in contributor_columns(measure)
     ]
     errors = {share.name: share.geometric_percent_se for share in measure.contributors}
-    rows = [
-        Row(name, [_share(measure, column, name, errors[name]) for column in shares], unit="%")
-        for name in ranked_contributors(measure)
-    ]
+    ranked = ranked_contributors(measure)
+    shown, rest = ranked[:MOST_CONTRIBUTORS], ranked[MOST_CONTRIBUTORS:]
+    rows = [Row(name, [_share(measure, column, name, errors[name]) for column in shares], unit="%") for name in shown]
+    if rest:
+        sums = [_sum_of(measure, column, rest) for column in shares]
+        rows.append(Row(f"and {len(rest)} more", list(map(percent_cell, sums)), "dim", unit="%"))
     left = not_attributed(measure)
     if left:
         rows.append(Row(NOT_ATTRIBUTED, [percent_cell(rest) for rest in left], "dim", unit="%"))
@@ -167,6 +170,12 @@ def _share(measure: MeasureSummary, column: Column, name: str, error: float | No
     if not _varies(measure, column):
         return percent_cell(None)
     return percent_cell(column.percents.get(name), error if column.road == "geometric" else None)
+
+
+def _sum_of(measure: MeasureSummary, column: Column, names: Sequence[str]) -> float | None:
+    """Share of several contributors together [%]; None where none of theirs is known."""
+    known = [share for name in names if (share := column.percents.get(name)) is not None]
+    return sum(known) if known and _varies(measure, column) else None
 
 
 def _varies(measure: MeasureSummary, column: Column) -> bool:

@@ -7,6 +7,7 @@ import sys
 import warnings
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
+from enum import StrEnum
 from functools import partial
 from itertools import count
 from pathlib import Path
@@ -16,12 +17,19 @@ from tol3d.report.presenter import presenter_of
 from tol3d.runs.summary.kinds import default_kinds
 from tol3d.runs.summary.run import RunSummary
 
-MOST_TOGETHER = 4  # measures in one picture; of more, each has one of its own
+MOST_TOGETHER = 4  # measures in one picture; of more, the worst
 IN_FILE_NAMES = frozenset(" -_.,()+")  # besides letters and digits; anything else would be a folder or a drive
 
 DrawRun = Callable[[Mapping[str, Any], Path], None]
 
 COMMAND = (sys.executable, "-P", "-m", "tol3d.report.histogram_process")  # -P: not from the folder it is called in
+
+
+class Pictures(StrEnum):
+    """Measures that are drawn where there are more than MOST_TOGETHER: the worst, or an overview and each by itself."""
+
+    WORST = "worst"
+    ALL = "all"
 
 
 class PictureError(Exception):
@@ -33,14 +41,15 @@ class PictureWarning(UserWarning):
 
 
 @contextmanager
-def drawing(presenter: str | None = None) -> Iterator[DrawRun]:
+def drawing(presenter: str | None = None, pictures: Pictures = Pictures.WORST) -> Iterator[DrawRun]:
     """Within it a process that can draw gets ready, and draws one run: its summary, and where its histogram goes.
 
-    What the system's presenter draws, and where there are many measures a picture of each, go beside the histogram;
-    one that cannot be drawn is a PictureWarning.
+    What the system's presenter draws, and where all of many measures are wanted a picture of each, go beside the
+    histogram; one that cannot be drawn is a PictureWarning.
 
     Args:
         presenter: import path of what shows the system; by default that of the run's measures.
+        pictures: which of many measures are drawn.
 
     Raises:
         PictureError: by the drawing, which leaves no half of a picture.
@@ -52,13 +61,19 @@ def drawing(presenter: str | None = None) -> Iterator[DrawRun]:
         return
     with process:
         try:
-            yield partial(_draw, process, presenter)
+            yield partial(_draw, process, presenter, pictures)
         finally:
             process.kill()
 
 
-def _draw(process: "subprocess.Popen[bytes]", presenter: str | None, summary: Mapping[str, Any], picture: Path) -> None:
-    order = pickle.dumps(sys.path) + pickle.dumps((picture, presenter, default_kinds(), json.dumps(summary)))
+def _draw(
+    process: "subprocess.Popen[bytes]",
+    presenter: str | None,
+    pictures: Pictures,
+    summary: Mapping[str, Any],
+    picture: Path,
+) -> None:
+    order = pickle.dumps(sys.path) + pickle.dumps((picture, presenter, pictures, default_kinds(), json.dumps(summary)))
     refused, errors = process.communicate(order)
     for name, reason in json.loads(refused or "{}").items():
         words = f"{name} could not be drawn ({reason}); the run is whole without it"
@@ -75,7 +90,7 @@ def _refuse(reason: str, summary: Mapping[str, Any], picture: Path) -> None:
 
 
 def measure_files(measures: Iterable[str]) -> dict[str, str]:
-    """Names of the pictures of a run's measures, where there are too many for one; each another one.
+    """Names of the pictures of single measures of a run, where there are too many for one; each another one.
 
     >>> measure_files(["play", "turn"])
     {}

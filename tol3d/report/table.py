@@ -1,6 +1,6 @@
 """A run's results as tables for the terminal, from its summary alone."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from enum import Enum
 
 from tol3d.report.agreement import agreement_lines, unexplained_lines
@@ -29,6 +29,7 @@ from tol3d.report.page import BLANK, Line, Page, PageItem, line, note, page, tit
 from tol3d.report.presenter import Presenter, presenter_of
 from tol3d.report.published import published_notes
 from tol3d.report.published_whole import published_blocks
+from tol3d.report.ranking import MOST_CONTRIBUTORS, MOST_MEASURES, shown_measures
 from tol3d.report.shown_unit import shown_run
 from tol3d.report.spectrum_table import spectrum_blocks
 from tol3d.report.verdict import ACCEPTED_PPM, verdict_report
@@ -47,6 +48,8 @@ SHARES_MEAN = (
 )
 MOST_TABLES = 4  # measures whose tables are shown unasked; of 6 they took 288 lines
 MORE_TABLES = "tables of every measure: -v, and how they are correlated"
+MORE_CONTRIBUTORS = f"shares: the {MOST_CONTRIBUTORS} largest of each measure and the sum of the others"
+MOST_WARNINGS = 20
 SAMPLER_WORDS = {"sobol": "scrambled Sobol' points", "latin_hypercube": "Latin hypercubes"}
 
 
@@ -78,22 +81,32 @@ def run_report(
         presenter: import path of what shows more of the system; by default that of the run's measures.
     """
     own, shown = presenter_of(run, presenter), shown_run(run)
-    warnings = [*map(warning, run.warnings)]
+    warnings = [*map(warning, _some_warnings(run.warnings))]
     verdict = verdict_report(shown, accepted_ppm, blame=detail is not Detail.MEASURES)
     if detail is Detail.VERDICT:
         return page(*verdict, *warnings)
     blocks: list[PageItem] = [_run_line(run)]
     if detail is Detail.MEASURES:
-        for name, measure in shown.measures.items():
-            blocks += _measure_blocks(name, measure, shown, own)
+        for name in shown_measures(shown.measures):
+            blocks += _measure_blocks(name, shown.measures[name], shown, own)
     blocks += own.sections(run)
     blocks += published_blocks(run)
     blocks += correlation_blocks(run) if detail is Detail.MEASURES else []
     if detail is Detail.MEASURES and (meanings := list(_meanings(shown))):
         blocks += [title("notes"), *map(note, meanings)]
     blocks += verdict
-    blocks += [] if detail is Detail.MEASURES else [note(MORE_TABLES)]
+    blocks += [] if detail is Detail.MEASURES else [note(_more_tables(run))]
     return page(*blocks, _status_line(run), _time_line(run), *warnings)
+
+
+def _more_tables(run: RunSummary) -> str:
+    return MORE_TABLES if len(run.measures) <= MOST_MEASURES else MORE_TABLES.replace("every measure", "these measures")
+
+
+def _some_warnings(warnings: Sequence[str]) -> list[str]:
+    """Warnings that are printed: all, or the first of many and how many more there are."""
+    left = len(warnings) - MOST_WARNINGS
+    return [*warnings] if left <= 0 else [*warnings[:MOST_WARNINGS], f"and {left} more, all in summary.json"]
 
 
 def _run_line(run: RunSummary) -> Line:
@@ -121,6 +134,8 @@ def _meanings(run: RunSummary) -> Iterator[str]:
     scalars = [measure for measure in run.measures.values() if measure.take != "curve"]
     if any(measure.contributors for measure in scalars):
         yield SHARES_MEAN
+    if any(len(measure.contributors) > MOST_CONTRIBUTORS for measure in scalars):
+        yield f"{MORE_CONTRIBUTORS}; all in summary.json"
     if any(map(not_attributed, scalars)):
         yield NOT_ATTRIBUTED_MEANS
     limited = [measure for measure in scalars if limit_rows(measure)]

@@ -1,14 +1,16 @@
 """One row a measure: where it lies, what is out of its limits, and whether that is within what is accepted."""
 
+from collections import Counter
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from typing import Final, Literal
+from typing import Final, Literal, get_args
 
 from tol3d.report.column import columns_of, ranked_contributors, seated_text, shares_of
 from tol3d.report.ends import Ends, is_bounded
 from tol3d.report.joint import yield_lines
 from tol3d.report.number import NOTHING, given_text, limit_text, share_text, short_text, unsigned_zero
-from tol3d.report.page import BLANK, Heading, PageItem, Row, Table, note, title
+from tol3d.report.page import BLANK, Heading, PageItem, Row, Table, line, note, title
+from tol3d.report.ranking import MOST_MEASURES, WORST_FIRST, shown_measures
 from tol3d.runs.summary.measure import MeasureSummary
 from tol3d.runs.summary.run import RunSummary
 from tol3d.runs.summary.sample import PpkBy
@@ -79,17 +81,28 @@ def verdict_report(run: RunSummary, accepted_ppm: float = ACCEPTED_PPM, *, blame
     """
     head = title("verdict", f" · accepted: {share_text(accepted_ppm)} out of limits")
     table = verdict_table(run, accepted_ppm, blame=blame)
-    return [head, BLANK, table, *yield_lines(run), *map(note, _notes(run))]
+    return [head, BLANK, table, *_left_out(run, accepted_ppm), *yield_lines(run), *map(note, _notes(run))]
+
+
+def _left_out(run: RunSummary, accepted_ppm: float) -> Iterator[PageItem]:
+    """How many measures have no row, and what the verdict of all of them is; nothing where each has one."""
+    left = len(run.measures) - MOST_MEASURES
+    if left > 0:
+        found = Counter(JudgedMeasure.of(own, accepted_ppm).verdict for own in run.measures.values())
+        counts = ", ".join(f"{found[verdict]} {verdict}" for verdict in get_args(Verdict) if found[verdict])
+        yield line(f" and {left} more, all in summary.json; the worst are shown, {WORST_FIRST}")
+        yield line(f" all {len(run.measures)} measures: {counts}", "bold")
 
 
 def verdict_table(run: RunSummary, accepted_ppm: float = ACCEPTED_PPM, *, blame: bool = False) -> Table:
-    """A row a measure, by the 3D simulation where there is one."""
+    """A row a measure, of many the worst, by the 3D simulation where there is one."""
+    shown = {name: run.measures[name] for name in shown_measures(run.measures)}
     headings = [Heading("verdict", words=True), *(Heading(word) for word in ("mean", "low", "high"))]
     headings += [Heading("limits"), Heading("out of limits (95 %)", words=True), Heading("Ppk")]
     limited = any(measure.has_limits for measure in run.measures.values())
     headings += [Heading("Ppk by", words=True)] if limited else []
     headings += [Heading("mostly from", words=True, optional=True)] if blame else []
-    rows = [_row(name, measure, accepted_ppm, blame=blame, limited=limited) for name, measure in run.measures.items()]
+    rows = [_row(name, measure, accepted_ppm, blame=blame, limited=limited) for name, measure in shown.items()]
     return Table("measure", headings, rows, repeated=1)
 
 
