@@ -89,6 +89,7 @@ from tol3d.study.overrides import AS_WRITTEN, Overrides, simulation_of
 from tol3d.study.replaying import Replay, replayed
 from tol3d.study.simulation import Simulation
 from tol3d.study.stopping import enough
+from tol3d.study.tables import run_tables
 from tol3d.study.tally import Tally
 from tol3d.study.task import Task, task_of, workers_for
 from tol3d.study.versions import installed_versions
@@ -147,6 +148,7 @@ def _run(order: "_Order", watch: Watch, *, force: bool) -> Run:
         task = order.task(watch)
         outcome = order.run(task, writer, watch)
         found = findings(order.simulation, task.road, outcome.statistics, watch.activity)
+        order.clock.end_findings()
         return order.finished(writer, found, outcome, watch)
 
 
@@ -227,9 +229,11 @@ class _Order:
             "timing": self.clock.timing(outcome),
             "versions": {"python": platform.python_version(), **versions},
         }
+        for name, text in run_tables(self.simulation, outcome.statistics, found):
+            writer.table(name, text)
         with writer.pictures() as place:
             watch.finisher(place, summary)
-        return writer.finish(summary)
+        return writer.finish({**summary, "timing": self.clock.with_pictures(summary["timing"])})
 
 
 def _order(scene: Scene, simulation: Simulation, execution: Execution, out: Path | str | None, clock: Clock) -> _Order:

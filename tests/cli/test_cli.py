@@ -30,6 +30,7 @@ from tol3d.solids.cache import CacheWarning
 from tol3d.study.task import workers_for
 
 SPUR = str(SCENES / "spur_pair.yaml")
+TABLES = ("summary.json", "contributors.csv", "correlations.csv")
 PLAIN = ("--no-picture",)  # where no picture is asked about: drawing one takes two seconds of a processor
 
 
@@ -41,7 +42,7 @@ def test_run_prints_the_table_and_writes_the_run(tol3d: Command, tmp_path: Path)
         assert words in out
     assert "witness: FCL measured 20 of these trials again: at most 0.0" in out
     written = {path.name for path in (tmp_path / "spur").iterdir()}
-    assert written == {"SHA256SUMS", "summary.json", "trials", "scene.yaml", "histogram.png"}
+    assert written == {"SHA256SUMS", "trials", "scene.yaml", "histogram.png", *TABLES}
 
 
 def test_overrides_are_recorded(tol3d: Command, tmp_path: Path) -> None:
@@ -143,7 +144,7 @@ def test_threads_are_as_many_as_blocks_and_processes_are_not_started_for_seconds
 def test_no_trials_keeps_the_statistics_only(tol3d: Command, tmp_path: Path) -> None:
     study = ("--trials", "200", "--engine", "analytic", "--no-trials", *PLAIN)
     assert tol3d("run", SPUR, *study, "--out", str(tmp_path / "bare"))[0] == 0
-    assert {path.name for path in (tmp_path / "bare").iterdir()} == {*("SHA256SUMS", "summary.json", "scene.yaml")}
+    assert {path.name for path in (tmp_path / "bare").iterdir()} == {"SHA256SUMS", "scene.yaml", *TABLES}
     code, _, err = tol3d("export", str(tmp_path / "bare"), "--worst", "--out", str(tmp_path))
     assert code == 2
     assert "this run kept its statistics only" in err
@@ -312,9 +313,7 @@ def test_a_picture_that_fails_costs_a_warning_and_not_the_run(
     assert code == 0
     assert f"warning: histogram.png could not be drawn ({reason}); the run is whole without it\n" in err
     assert "histogram.png" not in out
-    assert {path.name for path in (tmp_path / "run").iterdir()} == {
-        *("SHA256SUMS", "summary.json", "trials", "scene.yaml")
-    }
+    assert {path.name for path in (tmp_path / "run").iterdir()} == {*("SHA256SUMS", "trials", "scene.yaml", *TABLES)}
     assert tol3d("compare", str(tmp_path / "run"), "--out", str(tmp_path / "c.png"))[0] == 0
 
 
@@ -341,9 +340,7 @@ def test_no_picture_starts_no_process(tol3d: Command, tmp_path: Path, monkeypatc
     arguments = ("--trials", "30", "--engine", "analytic", "--no-picture", "--out", str(tmp_path / "run"))
     code, out, err = tol3d("run", SPUR, *arguments)
     assert (code, "picture:" in out, "warning" in err) == (0, False, False)
-    assert {path.name for path in (tmp_path / "run").iterdir()} == {
-        *("SHA256SUMS", "summary.json", "trials", "scene.yaml")
-    }
+    assert {path.name for path in (tmp_path / "run").iterdir()} == {*("SHA256SUMS", "trials", "scene.yaml", *TABLES)}
 
 
 def test_a_run_from_python_starts_no_process_and_draws_nothing(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -1,6 +1,7 @@
 """What the pictures of a run show: held by their artists and the data in them, never by their pixels."""
 
 import math
+from itertools import combinations
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -13,6 +14,7 @@ from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch, Rectangle, StepPatch
 from matplotlib.text import Text
+from matplotlib.transforms import Bbox
 from of_kind import known, of_kind
 from thinned import thinned
 
@@ -26,6 +28,7 @@ from tol3d.report.curve import draw_curve
 from tol3d.report.distribution import column_colours, draw_distribution, draw_ranges
 from tol3d.report.ends import is_bounded
 from tol3d.report.heading import heading
+from tol3d.report.heat_map import heat_map_figure
 from tol3d.report.histogram import histogram_figure, overview_figure
 from tol3d.report.label import legible
 from tol3d.report.picture import measure_files
@@ -256,9 +259,9 @@ def test_each_of_many_measures_has_a_file_and_a_place_in_the_overview() -> None:
 @pytest.mark.slow
 def test_a_run_of_many_measures_draws_a_picture_of_each(tmp_path: Path) -> None:
     measures = {f"play {k}": measure_of(normals(50, k), ("one",)) for k in range(5)}
-    with picture.drawing() as draw:
+    with picture.drawing(pictures=picture.Pictures.ALL) as draw:
         draw(valid(summary_of(measures)), tmp_path / "histogram.png")
-    expected = {"histogram.png", *(f"histogram-play {k}.png" for k in range(5))}
+    expected = {"histogram.png", "contributors.png", *(f"histogram-play {k}.png" for k in range(5))}
     assert {path.name for path in tmp_path.iterdir()} == expected
 
 
@@ -267,12 +270,12 @@ def test_a_measure_that_cannot_be_drawn_costs_a_warning_and_no_other_picture(tmp
     measures = {f"play {k}": measure_of(normals(50, k), ("one",)) for k in range(5)}
     (tmp_path / "histogram-play 3.png").symlink_to(tmp_path / "no such folder" / "picture.png")
     with (
-        picture.drawing() as draw,
+        picture.drawing(pictures=picture.Pictures.ALL) as draw,
         pytest.warns(picture.PictureWarning, match=r"^histogram-play 3\.png could not be drawn"),
     ):
         draw(valid(summary_of(measures)), tmp_path / "histogram.png")
     assert not (tmp_path / "histogram-play 3.png").exists()
-    assert len(list(tmp_path.iterdir())) == 5
+    assert len(list(tmp_path.iterdir())) == 6  # four others, the overview and the heat map
 
 
 def test_lines_of_an_overview_cross_their_whole_histogram_and_those_below_words_end_there() -> None:
@@ -418,3 +421,53 @@ def test_a_train_without_a_motor_is_told_without_one(kind: str, over: str) -> No
 def test_a_cut_name_says_so() -> None:
     assert legible("a" * 40, 34) == "a" * 33 + "…"
     assert math.isclose(len(legible("b" * 34)), 34)
+
+
+def judged(out_ppm: float, ppk: float | None) -> dict[str, Any]:
+    measure = measure_of(normals(500), ("one",), lower_limit=40.0)
+    own = measure["geometric"] | {"out_ppm": out_ppm, "ppk": ppk}
+    return measure | {"geometric": own}
+
+
+def test_of_many_measures_the_picture_shows_the_four_worst_and_says_so() -> None:
+    found = [(0.0, 1.4), (900.0, 1.2), (0.0, 1.1), (0.0, None), (900.0, 1.0), (2000.0, 1.3)]
+    run = typed_summary_of({f"play {k}": judged(*own) for k, own in enumerate(found)})
+    texts = texts_of(histogram_figure(run))
+    shown = [text for text in texts if text in {whole(name) for name in run.measures}]
+    assert list(dict.fromkeys(shown)) == ["play5", "play4", "play1", "play2"]
+    assert any("the4worstof6measures" in text for text in texts)
+
+
+def test_each_share_stands_in_its_row_and_column_of_the_heat_map() -> None:
+    """Row by row 60, 30, 10 % of the first measure; each further measure has its shares one row further on."""
+    names, shares = ("one", "two", "three"), (60.0, 30.0, 10.0)
+    measures = {
+        f"play {k}": measure_of(normals(500), names)
+        | {"contributors": [{"name": n, "geometric_percent": shares[(i - k) % 3]} for i, n in enumerate(names)]}
+        for k in range(2)
+    }
+    (axes, *_) = heat_map_figure(typed_summary_of(measures)).axes
+    rows = [label.get_text() for label in axes.get_yticklabels()]
+    columns = [label.get_text() for label in axes.get_xticklabels()]
+    assert (rows, columns) == (["two", "one", "three"], ["play 0", "play 1"])  # 90, 70 and 40 % in both together
+    cells = {(rows[int(t.get_position()[1])], columns[int(t.get_position()[0])]): t.get_text() for t in axes.texts}
+    first = {("one", "play 0"): "60", ("two", "play 0"): "30", ("three", "play 0"): "10"}
+    assert cells == first | {("one", "play 1"): "10", ("two", "play 1"): "60", ("three", "play 1"): "30"}
+
+
+def test_labels_and_numbers_of_a_large_heat_map_do_not_overlap() -> None:
+    names = tuple(long_name(f"no. {k}") for k in range(120))
+    run = typed_summary_of({long_name(f"measure {k}"): measure_of(normals(50), names) for k in range(45)})
+    figure = heat_map_figure(run)
+    figure.set_dpi(60)
+    axes = figure.axes[0]
+    assert (len(axes.get_yticklabels()), len(axes.get_xticklabels())) == (51, 40)
+    figure.canvas.draw()
+    boxes = [t.get_window_extent() for t in (*figure.texts, *axes.get_yticklabels(), *axes.get_xticklabels())]
+    assert [t.get_text() for t in axes.texts] == [
+        "58"
+    ] * 40  # 70 others of 0.83 % each; less than 1 % has a colour alone
+    boxes += [t.get_window_extent() for t in axes.texts]
+    assert not [pair for pair in combinations(boxes, 2) if Bbox.intersection(*pair) is not None]
+    width, height = figure.canvas.get_width_height()
+    assert all(box.x0 >= 0 and box.y0 >= 0 and box.x1 <= width and box.y1 <= height for box in boxes)

@@ -62,6 +62,7 @@ def test_a_file_from_anywhere_is_kept_inside_the_run(named: str, tmp_path: Path)
     assert {path: path.read_bytes() for path in before} == before
     assert {path.relative_to(run.path).parts[0] for path in run.path.rglob("*")} == {
         "SHA256SUMS",
+        "contributors.csv",
         "scene.yaml",
         "summary.json",
         "trials",

@@ -199,7 +199,8 @@ def test_statistics_without_trials_are_those_with_them(tmp_path: Path) -> None:
     kept = run_scene(SPUR_PAIR, overrides=ANALYTIC, out=tmp_path / "kept")
     bare = run_scene(SPUR_PAIR, overrides=ANALYTIC, out=tmp_path / "bare", execution=STATISTICS_ONLY)
     assert bare.summary["measures"] == kept.summary["measures"]
-    assert sorted(path.name for path in bare.path.iterdir()) == ["SHA256SUMS", "scene.yaml", "summary.json"]
+    files = ["SHA256SUMS", "contributors.csv", "correlations.csv", "scene.yaml", "summary.json"]
+    assert sorted(path.name for path in bare.path.iterdir()) == files
     expected = kept.columns("analytic:normal backlash")["analytic:normal backlash"][4321]
     assert replay(open_run(bare.path), 4321).analytic["normal backlash"] == expected
     for asked in (bare.columns, lambda: worst_trial(bare)):

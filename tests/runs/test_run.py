@@ -205,6 +205,8 @@ def test_pieces_of_an_unfinished_block_are_kept(tmp_path: Path, monkeypatch: pyt
     assert_same_bits(whole.columns(), resumed.columns())
     assert sorted(path.name for path in (tmp_path / "cut").iterdir()) == [
         "SHA256SUMS",
+        "contributors.csv",
+        "correlations.csv",
         "scene.yaml",
         "summary.json",
         "trials",

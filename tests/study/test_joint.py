@@ -1,13 +1,16 @@
 """What measures do together in a study: yield within all limits, and correlations, with failed trials among them."""
 
+import csv
 import math
 from collections.abc import Iterator, Mapping, Sequence
+from itertools import combinations
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 from numpy.typing import NDArray
+from printing import printed
 from schemas import validate
 from scipy import stats
 from toys.parabola import PARABOLA
@@ -15,11 +18,13 @@ from toys.registered import TOYS, known
 
 from tol3d import Overrides, Run, RunError, open_run, run_scene
 from tol3d.execution.pools import Execution
+from tol3d.report import run_report
 from tol3d.runs.summary.kinds import default_kinds
 from tol3d.runs.summary.text import typed
 from tol3d.simulate import Watch
 from tol3d.study import blocks
-from tol3d.study.joint import MOST_CORRELATED
+from tol3d.study import joint as joint_of_study
+from tol3d.study.joint import MOST_IN_SUMMARY
 
 SPRING = TOYS / "parabola" / "spring.yaml"
 TRIALS = 20_000
@@ -191,14 +196,57 @@ def test_springs_have_the_correlations_worked_out_by_hand(run: Run) -> None:
     assert geometric["trials"][0][3] == run.summary["measures"]["room"]["status"]["ok"]
 
 
+def pairs_of(run: Run) -> dict[tuple[str, str], dict[str, str]]:
+    """Lines of a run's correlations.csv by their two measures."""
+    with (run.path / "correlations.csv").open(newline="") as file:
+        return {(line["measure"], line["other"]): line for line in csv.DictReader(file)}
+
+
+def test_the_table_of_correlations_has_numpys_of_every_pair_of_measures_the_largest_first(run: Run) -> None:
+    found = pairs_of(run)
+    assert {frozenset(pair) for pair in found} == {frozenset(pair) for pair in combinations(SCALARS, 2)}
+    assert len(found) == len(SCALARS) * (len(SCALARS) - 1) // 2
+    for (one, other), line in found.items():
+        for road, words in (("analytic", "analytic"), ("geometric", "3D simulation")):
+            x, y = values_of(run, road, one), values_of(run, road, other)
+            both = ~np.isnan(x) & ~np.isnan(y)
+            assert float(line[f"r, {words}"]) == pytest.approx(np.corrcoef(x[both], y[both])[0, 1], abs=ROUNDING)
+            assert int(line[f"trials, {words}"]) == np.count_nonzero(both)
+            bounds = stats.pearsonr(x[both], y[both]).confidence_interval(0.95)
+            assert float(line[f"95 % from, {words}"]) == pytest.approx(bounds.low, abs=1e-6)
+            assert float(line[f"95 % to, {words}"]) == pytest.approx(bounds.high, abs=1e-6)
+    sizes = [abs(float(line["r, 3D simulation"])) for line in found.values()]
+    assert sizes == sorted(sizes, reverse=True)
+
+
+def test_of_more_measures_than_fit_the_summary_has_the_most_correlated(
+    run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(joint_of_study, "MOST_IN_SUMMARY", 2)
+    again = run_scene(scene_with(tmp_path), out=tmp_path / "run")
+    whole, own = run.summary["joint"], again.summary["joint"]
+    first, second = (SCALARS.index(name) for name in next(iter(pairs_of(run))))
+    which = sorted((first, second))
+    assert own["correlated"] == [SCALARS[k] for k in which]
+    assert own["correlated_of"] == len(SCALARS)
+    assert "correlated_of" not in whole
+    for road in ("analytic", "geometric"):
+        matrix = whole["correlations"][road]["r"]
+        assert own["correlations"][road]["r"] == [[matrix[i][j] for j in which] for i in which]
+    assert pairs_of(again) == pairs_of(run)
+    assert f"the largest of {len(SCALARS)} measures" in printed(run_report(again.found))
+
+
 @pytest.mark.slow
-def test_more_measures_than_are_correlated_are_told_of(tmp_path: Path) -> None:
-    more = "".join(f"  h{k}: {{kind: height, of: lift, upper_limit: {90 + k} um}}\n" for k in range(MOST_CORRELATED))
+def test_correlations_of_more_measures_than_fit_the_summary_are_all_in_the_table(tmp_path: Path) -> None:
+    more = "".join(f"  h{k}: {{kind: height, of: lift, upper_limit: {90 + k} um}}\n" for k in range(MOST_IN_SUMMARY))
     scene = scene_with(tmp_path, ("measures:\n", f"measures:\n{more}"))
-    summary = run_scene(scene, overrides=Overrides(trials=400), out=tmp_path / "run").summary
-    assert summary["joint"]["correlated"] == [f"h{k}" for k in range(MOST_CORRELATED)]
-    assert len(summary["joint"]["limited"]) == MOST_CORRELATED + len(LIMITS)
-    assert f"correlations are given of the first 64 of {MOST_CORRELATED + 4} measures" in summary["warnings"]
+    run = run_scene(scene, overrides=Overrides(trials=400), out=tmp_path / "run")
+    own, count = run.summary["joint"], MOST_IN_SUMMARY + len(SCALARS)
+    assert len(own["correlated"]) == MOST_IN_SUMMARY
+    assert own["correlated_of"] == count
+    assert len(pairs_of(run)) == count * (count - 1) // 2
+    assert len(own["limited"]) == MOST_IN_SUMMARY + len(LIMITS)
 
 
 # samplers and bits --------------------------------------------------------------------------------

@@ -7,6 +7,7 @@ Western Windows), and control characters, which may come from a scene or a run o
 import codecs
 import re
 import sys
+import time
 import unicodedata
 from collections.abc import Iterable
 from typing import Final
@@ -14,6 +15,7 @@ from typing import Final
 from rich.console import Console, ConsoleOptions, RenderableType
 from rich.segment import Segment
 
+BEGAN: Final = time.perf_counter() - time.process_time()  # s; of the command, whose start is work of this process
 DONE, LIMITS_FAILED, WRONG_INPUT, FAULT, INTERRUPTED = 0, 1, 2, 3, 130
 
 PLAIN_SIGNS: Final = {
@@ -88,6 +90,11 @@ def _shown(sign: str) -> str:
     if ord(sign) <= LAST_C0:
         return chr(CONTROL_PICTURES + ord(sign))
     return ITS_PICTURE if ord(sign) == DELETE else "\ufffd"
+
+
+def seconds() -> float:
+    """How long the command has taken so far [s]."""
+    return time.perf_counter() - BEGAN
 
 
 class SafeConsole(Console):

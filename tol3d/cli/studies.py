@@ -18,7 +18,7 @@ from tol3d.cli.arguments import (
     TrustParts,
     scene_path,
 )
-from tol3d.cli.console import INTERRUPTED, LIMITS_FAILED, err_console, out_console, tell, warn
+from tol3d.cli.console import INTERRUPTED, LIMITS_FAILED, err_console, out_console, seconds, tell, warn
 from tol3d.cli.run_options import (
     PICTURE,
     AcceptOption,
@@ -81,7 +81,7 @@ def run(
     draw = context.with_resource(_drawing(wanted))  # it loads what it draws with beside all that follows
 
     from tol3d.execution.pools import Execution
-    from tol3d.report.table import Detail, run_report
+    from tol3d.report.table import Detail, Elapsed, run_report
     from tol3d.report.verdict import ACCEPTED_PPM, all_ok
     from tol3d.runs.occupant import numbered
     from tol3d.simulate import Overrides, folder_for, load, run_scene, simulation_of, workers_for
@@ -105,10 +105,12 @@ def run(
         folder, taken = folder_for(loaded, simulation, execution, Path("runs"))
     if taken:
         err_console.print(f"{taken}: this run goes to {folder} (--force would replace the other)")
+    loading = seconds()
     with _watched(simulation, folder, draw) as watch:
         finished = run_scene(loaded, overrides=overrides, out=folder, execution=execution, force=force, watch=watch)
     shown = Detail.VERDICT if quiet else Detail.MEASURES if verbose else Detail.fitting(finished.found)
-    out_console.print(run_report(finished.found, shown, ACCEPTED_PPM if accept is None else accept))
+    accepted, found = ACCEPTED_PPM if accept is None else accept, finished.found
+    out_console.print(run_report(found, shown, accepted, elapsed=Elapsed(loading, seconds())))
     if not quiet:
         tell(f"run: {finished.path}{_pictures_text(finished)}")
         if words := _pictured(finished, wanted):

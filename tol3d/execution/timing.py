@@ -16,11 +16,12 @@ except ImportError:  # Windows has none
 
 @dataclass
 class Clock:
-    """Seconds [s] since a run began, and when its trials began and ended."""
+    """Seconds [s] since a run began, and when its trials, statistics and pictures began and ended."""
 
     began: float = field(default_factory=time.perf_counter)
     trials_began: float = 0.0
     trials_ended: float = 0.0
+    findings_ended: float = 0.0
     slots: int = 1
 
     def start_trials(self) -> None:
@@ -30,6 +31,10 @@ class Clock:
     def end_trials(self, slots: int) -> None:
         """All trials are made, by so many workers."""
         self.trials_ended, self.slots = time.perf_counter(), slots
+
+    def end_findings(self) -> None:
+        """The statistics are found; pictures follow."""
+        self.findings_ended = time.perf_counter()
 
     def timing(self, outcome: StudyOutcome[Any]) -> Mapping[str, float | None]:
         """As summary.json shows it.
@@ -42,11 +47,18 @@ class Clock:
             "setup_s": round(self.trials_began - self.began, 4),
             "simulate_s": round(simulate_s, 4),
             "first_block_s": round(outcome.first_block_s, 4),
+            "findings_s": round(self.findings_ended - self.trials_ended, 4),
+            "pictures_s": 0.0,
             "trials_per_s": round((outcome.trials - outcome.resumed_trials) / simulate_s, 1),
             "resumed_trials": outcome.resumed_trials,
             "workers": self.slots,
             "peak_memory_mb": peak_memory_mb(),
         }
+
+    def with_pictures(self, timing: Mapping[str, float | None]) -> Mapping[str, float | None]:
+        """The same when pictures are drawn."""
+        pictures_s = time.perf_counter() - self.findings_ended
+        return {**timing, "pictures_s": round(pictures_s, 4), "peak_memory_mb": peak_memory_mb()}
 
 
 def peak_memory_mb() -> float | None:

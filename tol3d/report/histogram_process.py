@@ -4,9 +4,9 @@ matplotlib takes as long to load as a whole study of 2000 trials takes to run: s
 is drawn comes at the end, on its standard input, pickled: where modules are found, then the picture's path, the
 presenter's module, which measures are drawn, the kinds of summaries and the summary as JSON.
 
-The presenter's pictures are drawn beside the histogram; where all of many measures are wanted, each of them as
-histogram-<measure>.png too. It ends quietly where nothing comes. What goes wrong with the histogram is the one line on its standard error; what goes wrong with
-another picture is said on its standard output, {"chain.png": "why"}.
+The presenter's pictures are drawn beside the histogram; where all are wanted also contributors.png, and of many
+measures each as histogram-<measure>.png. It ends quietly where nothing comes. What goes wrong with the histogram is the
+one line on its standard error; of another picture it stands on its standard output, {"chain.png": "why"}.
 """
 
 import io
@@ -18,8 +18,9 @@ from collections.abc import Iterable, Iterator
 from functools import partial
 from pathlib import Path
 
+from tol3d.report.heat_map import draw_heat_map, of_scalars
 from tol3d.report.histogram import draw_histogram, draw_measure
-from tol3d.report.picture import Pictures, measure_files, named_files
+from tol3d.report.picture import HEAT_MAP, Pictures, measure_files, named_files
 from tol3d.report.presenter import Draw, presenter_of
 from tol3d.runs.summary.run import RunSummary
 from tol3d.runs.summary.text import typed
@@ -48,6 +49,8 @@ def _further(summary: RunSummary, presenter: str | None, wanted: Pictures) -> It
     if wanted is Pictures.ALL:
         files = measure_files(summary.measures)
         yield from ((file, partial(draw_measure, summary, name)) for name, file in files.items())
+        if len(of_scalars(summary)) > 1:
+            yield HEAT_MAP, partial(draw_heat_map, summary)
 
 
 def _refused(further: Iterable[tuple[str, Draw]], folder: Path) -> Iterator[tuple[str, str]]:

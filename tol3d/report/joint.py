@@ -11,7 +11,7 @@ from tol3d.runs.summary.joint import Correlations, Joint
 from tol3d.runs.summary.run import RunSummary
 from tol3d.runs.summary.values import Road
 
-MOST_PAIRS: Final = 12  # correlations that are printed, the largest; all are in summary.json
+MOST_PAIRS: Final = 12  # correlations that are printed, the largest; all are in correlations.csv
 NORMAL_95: Final = 1.959964  # sigma; a normal's 95 % lie within
 FISHER_FREEDOM: Final = 3  # trials that Fisher's artanh r takes
 YIELD_DECIMALS: Final = 2  # of a yield in %, more where less than a hundredth is lost
@@ -65,9 +65,11 @@ def correlation_blocks(run: RunSummary) -> list[PageItem]:
     if not beyond:
         return []
     shown = f" · the largest {MOST_PAIRS} of {len(beyond)}" if len(beyond) > MOST_PAIRS else ""
+    if joint.correlated_of:
+        shown = f" · the largest of {joint.correlated_of} measures"
     words = (
         "Pearson's r over the trials in which both have a value, where it is larger than 95 % of as many independent "
-        "trials give without any correlation; all in summary.json"
+        "trials give without any correlation; all in correlations.csv"
     )
     return [title("correlation of measures", shown), _table(joint, run.best_road, beyond[:MOST_PAIRS]), note(words)]
 

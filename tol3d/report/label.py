@@ -1,7 +1,9 @@
 """Labels that fit: users' names broken into lines of a width."""
 
 import warnings
+from bisect import bisect_right
 from collections.abc import Sequence
+from functools import lru_cache
 from typing import Final
 
 from matplotlib.font_manager import FontProperties
@@ -36,14 +38,14 @@ def _longest_start(text: str, width: float, size: float, weight: str) -> str:
     """As many words as fit in a line, or as much of the first word."""
     if text_width(text, size, weight) <= width:
         return text
-    ends = [k for k, sign in enumerate(text) if sign == " "] or []
-    fitting = [k for k in ends if text_width(text[:k], size, weight) <= width]
-    if fitting:
-        return text[: fitting[-1]]
-    cut = next(k for k in range(len(text), 0, -1) if k == 1 or text_width(text[:k], size, weight) <= width)
-    return text[:cut]
+    ends = [k for k, sign in enumerate(text) if sign == " "]
+    if fitting := bisect_right(ends, width, key=lambda k: text_width(text[:k], size, weight)):
+        return text[: ends[fitting - 1]]
+    cut = bisect_right(range(1, len(text) + 1), width, key=lambda k: text_width(text[:k], size, weight))
+    return text[: max(cut, 1)]
 
 
+@lru_cache(maxsize=4096)
 def text_width(text: str, size: float, weight: str) -> float:
     """Width of a line of text [inch], in points of `size`."""
     font = FontProperties(size=size, weight=weight)

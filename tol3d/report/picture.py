@@ -18,6 +18,7 @@ from tol3d.runs.summary.kinds import default_kinds
 from tol3d.runs.summary.run import RunSummary
 
 MOST_TOGETHER = 4  # measures in one picture; of more, the worst
+HEAT_MAP = "contributors.png"  # with all pictures
 IN_FILE_NAMES = frozenset(" -_.,()+")  # besides letters and digits; anything else would be a folder or a drive
 
 DrawRun = Callable[[Mapping[str, Any], Path], None]

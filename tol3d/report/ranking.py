@@ -33,6 +33,6 @@ def shown_measures(measures: Mapping[str, MeasureSummary], most: int = MOST_MEAS
 
 
 def largest(items: Iterable[T], sizes: Mapping[T, float], most: int = MOST_CONTRIBUTORS) -> list[T]:
-    """Items that are shown: all in their order, or of more than `most` those of the largest sizes, the largest first."""
+    """Items that are shown: all in their order, or of more than `most` the largest, the largest first."""
     every = list(items)
     return every if len(every) <= most else sorted(every, key=lambda item: -sizes.get(item, 0.0))[:most]

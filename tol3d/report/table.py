@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator, Sequence
 from enum import Enum
+from typing import NamedTuple
 
 from tol3d.report.agreement import agreement_lines, unexplained_lines
 from tol3d.report.column import (
@@ -53,6 +54,13 @@ MOST_WARNINGS = 20
 SAMPLER_WORDS = {"sobol": "scrambled Sobol' points", "latin_hypercube": "Latin hypercubes"}
 
 
+class Elapsed(NamedTuple):
+    """How long a command took [s]: before its run, to load libraries and the scene, and in all until now."""
+
+    loading: float
+    whole: float
+
+
 class Detail(Enum):
     """How much of a run is shown: one row a measure, that and its system's sections, or tables of every measure too."""
 
@@ -71,6 +79,7 @@ def run_report(
     detail: Detail = Detail.MEASURES,
     accepted_ppm: float = ACCEPTED_PPM,
     presenter: str | None = None,
+    elapsed: Elapsed | None = None,
 ) -> Page:
     """A run as tables: measures, contributors, how the roads agree, what failed, the verdict, warnings.
 
@@ -79,6 +88,7 @@ def run_report(
         detail: how much of it is shown.
         accepted_ppm: share of trials that may be out of a measure's limits.
         presenter: import path of what shows more of the system; by default that of the run's measures.
+        elapsed: what the command took besides what the run tells of itself.
     """
     own, shown = presenter_of(run, presenter), shown_run(run)
     warnings = [*map(warning, _some_warnings(run.warnings))]
@@ -96,7 +106,7 @@ def run_report(
         blocks += [title("notes"), *map(note, meanings)]
     blocks += verdict
     blocks += [] if detail is Detail.MEASURES else [note(_more_tables(run))]
-    return page(*blocks, _status_line(run), _time_line(run), *warnings)
+    return page(*blocks, _status_line(run), _time_line(run, elapsed), *warnings)
 
 
 def _more_tables(run: RunSummary) -> str:
@@ -234,10 +244,17 @@ def _status_line(run: RunSummary) -> Line:
     return Line((*pieces, *(() if failed else ((", none failed", ""),))))
 
 
-def _time_line(run: RunSummary) -> Line:
+def _time_line(run: RunSummary, elapsed: Elapsed | None) -> Line:
+    """Where the time went, all of it where it is known what the command took."""
     timing = run.timing
     workers = f" by {timing.workers} workers" if timing.workers != 1 else ""
-    return line(
-        f"time: {timing.setup_s:.1f} s to set up, {timing.simulate_s:.1f} s for the trials{workers}, "
-        f"{timing.trials_per_s:.0f} trials/s"
-    )
+    trials = f"for the trials{workers} ({timing.trials_per_s:.0f} trials/s)"
+    spent = {"to set up": timing.setup_s, trials: timing.simulate_s}
+    known = {"for their statistics": timing.findings_s, "for pictures": timing.pictures_s}  # not in runs made before
+    spent |= {word: seconds for word, seconds in known.items() if seconds is not None}
+    whole = ""
+    if elapsed is not None:
+        spent = {"to load": elapsed.loading, **spent}
+        spent["for files"] = max(elapsed.whole - sum(spent.values()), 0.0)
+        whole = f"{elapsed.whole:.1f} s in all: "
+    return line(f"time: {whole}{', '.join(f'{seconds:.1f} s {word}' for word, seconds in spent.items())}")

@@ -82,6 +82,7 @@ class RunWriter:
         self._lock = FileLock(self.partial / LOCK)
         self._keep_trials = keep_trials
         self._force = force
+        self._tables: list[str] = []
         self._pictures: list[str] = []
         if not resume and (occupant := occupant_of(self.path, self._fingerprint, kinds)):
             occupant.refuse(force=force)
@@ -205,6 +206,11 @@ class RunWriter:
         self._kept = [path.relative_to(self.partial).as_posix() for path, _ in everything.values()]
         return {name: file.sha256 for name, (_, file) in everything.items()}
 
+    def table(self, name: str, text: str) -> None:
+        """Write a table of the run's own, a CSV file in its folder."""
+        write_whole(self.partial / name, text.encode())
+        self._tables.append(name)
+
     @contextmanager
     def pictures(self) -> Iterator[Path]:
         """Within it a folder for pictures, which are the run's own afterwards."""
@@ -227,7 +233,8 @@ class RunWriter:
             self._blocks.clear()
         write_whole(self.partial / SUMMARY, text.encode())
         lists = own_paths_of_trials(self._keep_trials)
-        Manifest.of(self.partial, {SUMMARY, *self._kept, *self._pictures, *lists, *self._older()}).write()
+        own = {SUMMARY, *self._kept, *self._tables, *self._pictures, *lists, *self._older()}
+        Manifest.of(self.partial, own).write()
         self.close()
         self._put_in_place()
         return Run(self.path, json.loads(text), self._kinds)

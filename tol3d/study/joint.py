@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TypeVar, cast
+from typing import Any, Final, TypeVar, cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,7 +15,7 @@ from tol3d.study.replicated import Rows, interval_of_replicates
 from tol3d.study.sample import finite, in_unit, listed
 from tol3d.study.simulation import Simulation
 from tol3d.system.measure import Measure
-from tol3d.system.outcome import ROADS, Mask, Outcome
+from tol3d.system.outcome import ANALYTIC, GEOMETRIC, ROADS, Mask, Outcome
 
 Array = NDArray[np.float64]
 Outcomes = Mapping[tuple[str, str], Outcome]
@@ -23,7 +23,10 @@ Key = TypeVar("Key")
 Among = Mapping[tuple[tuple[str, str], ...], TargetSums]
 """Sums of columns among each other, by their roads and names."""
 
-MOST_CORRELATED = 64  # measures; the products of all pairs grow as the square, 64 take a microsecond a trial
+MOST_IN_SUMMARY = 64  # measures; of more, matrices in summary.json are of those that are correlated most
+
+
+ROAD_WORDS: Final[Mapping[str, str]] = {ANALYTIC: "analytic", GEOMETRIC: "3D simulation"}
 
 
 def limited(measures: Sequence[Measure]) -> list[Measure]:
@@ -32,9 +35,9 @@ def limited(measures: Sequence[Measure]) -> list[Measure]:
 
 
 def correlated(measures: Sequence[Measure]) -> list[Measure]:
-    """The measures whose correlations are found: one number a trial, the first MOST_CORRELATED; none of one alone."""
+    """The measures whose correlations are found: those of one number a trial; none of one alone."""
     scalars = [measure for measure in measures if measure.take != "curve"]
-    return scalars[:MOST_CORRELATED] if len(scalars) > 1 else []
+    return scalars if len(scalars) > 1 else []
 
 
 @dataclass(frozen=True)
@@ -141,21 +144,54 @@ def joint_summary(simulation: Simulation, tally: JointTally) -> summary.Joint | 
         return None
     independent = simulation.study.sampler == "monte_carlo"
     yields = {cast(Road, road): _yield(own, tally.replicates[road]) for road, own in tally.within.items()}
-    pairs = {cast(Road, road): _correlations(own, independent=independent) for road, own in tally.pairs.items()}
+    shown = _most_correlated(tally) if len(paired) > MOST_IN_SUMMARY else range(len(paired))
+    pairs = {
+        cast(Road, road): _correlations(own.of_columns(shown), independent=independent)
+        for road, own in tally.pairs.items()
+    }
     return made(
         summary.Joint,
         limited=[measure.name for measure in judged],
         yields=yields or None,
-        correlated=[measure.name for measure in paired],
+        correlated=[paired[k].name for k in shown],
+        correlated_of=len(paired) if len(shown) < len(paired) else None,
         correlations=pairs or None,
     )
 
 
-def uncorrelated(simulation: Simulation) -> Iterator[str]:
-    """A sentence where there are more measures than have correlations."""
-    scalars = sum(measure.take != "curve" for measure in simulation.system.measures)
-    if scalars > MOST_CORRELATED:
-        yield f"correlations are given of the first {MOST_CORRELATED} of {scalars} measures"
+def _most_correlated(tally: JointTally) -> list[int]:
+    """Which MOST_IN_SUMMARY measures have the largest correlations by the best road, in the scene's order."""
+    first, second = _ranked_pairs([*tally.pairs.values()][-1])
+    found = dict.fromkeys(np.stack([first, second], axis=1).ravel().tolist())
+    return sorted([*found][:MOST_IN_SUMMARY])
+
+
+def _ranked_pairs(own: PairSums) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+    """Both columns of each pair, the largest |r| first, pairs without one last."""
+    first, second = np.triu_indices(len(own.means), 1)
+    size = np.nan_to_num(np.abs(own.correlations[first, second]), nan=-1.0)
+    order = np.argsort(-size, kind="stable")
+    return first[order], second[order]
+
+
+def correlation_rows(simulation: Simulation, tally: JointTally) -> Iterator[list[Any]]:
+    """Lines of a table of all pairs of measures, its head first, the largest correlations on top; none of no pairs."""
+    if not tally.pairs:
+        return
+    names = [measure.name for measure in correlated(simulation.system.measures)]
+    first, second = _ranked_pairs([*tally.pairs.values()][-1])
+    columns: dict[str, list[Any]] = {"measure": [names[i] for i in first], "other": [names[j] for j in second]}
+    independent = simulation.study.sampler == "monte_carlo"
+    for road, own in reversed([*tally.pairs.items()]):
+        words = ROAD_WORDS[road]
+        numbers = {f"r, {words}": own.correlations}
+        if independent:  # what the bounds are worked out for
+            low, high = own.interval()
+            numbers |= {f"95 % from, {words}": low, f"95 % to, {words}": high}
+        columns |= {key: [finite(value) for value in matrix[first, second].tolist()] for key, matrix in numbers.items()}
+        columns[f"trials, {words}"] = own.counts[first, second].tolist()
+    yield [*columns]
+    yield from map(list, zip(*columns.values(), strict=True))
 
 
 def _yield(own: Proportion, replicates: Mapping[int, Proportion]) -> summary.JointYield:

@@ -20,7 +20,7 @@ from tol3d.study.curve_tally import CurveTally
 from tol3d.study.evaluation import Evaluation, evaluations, measures_alike
 from tol3d.study.high_low_mean import Percents, high_low_mean_percents
 from tol3d.study.histograms import histograms
-from tol3d.study.joint import joint_summary, uncorrelated
+from tol3d.study.joint import joint_summary
 from tol3d.study.regressors import MOST_REGRESSED
 from tol3d.study.sample import finite, in_unit, listed, sample_summary
 from tol3d.study.shares import share_percents
@@ -76,7 +76,6 @@ def study_summary(simulation: Simulation, road: Road | None, tally: Tally) -> Fi
         warnings=[
             *failures(simulation, tally),
             *_too_many(simulation),
-            *uncorrelated(simulation),
             *faults(explained),
             *simulation.warnings,
             *_unphysical_draws(simulation, tally),

@@ -50,6 +50,9 @@ class Joint(Section):
     limited: Annotated[list[Label], Field(max_length=MOST_ENTRIES)] = Field(description="measures that have a limit")
     yields: Maybe[Mapping[Road, JointYield]] = LEFT_OUT
     correlated: Names = Field(description="the measures of the matrices, in the order of their rows and columns")
+    correlated_of: Maybe[Count] = Field(
+        default=LEFT_OUT, description="how many measures have correlations in correlations.csv, where that is more"
+    )
     correlations: Maybe[Mapping[Road, Correlations]] = LEFT_OUT
 
     @model_validator(mode="after")

@@ -64,6 +64,8 @@ class Timing(Section):
     setup_s: NotNegative
     simulate_s: NotNegative
     first_block_s: NotNegative
+    findings_s: Maybe[NotNegative] = Field(default=LEFT_OUT, description="statistics after the trials")
+    pictures_s: Maybe[NotNegative] = Field(default=LEFT_OUT, description="pictures, where they are drawn")
     trials_per_s: NotNegative
     resumed_trials: Count
     workers: Count
