@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from tol3d.statistics import IndependentSums, independent_shares
 from tol3d.statistics.clusters import Clusters
-from tol3d.statistics.lazy import cross_products
+from tol3d.statistics.lazy import sparse_products
 from tol3d.statistics.linear_fit import LinearFit
 
 Array = NDArray[np.float64]
@@ -32,7 +32,7 @@ def gathered(features: Array, targets: Array, cuts: list[int]) -> tuple[Independ
     edges = [0, *cuts, features.shape[1]]
     blocks = [
         IndependentSums.of_each(
-            features[:, a:b], targets[:, a:b], CLUSTERS, [CLUSTERS.all] * len(targets), cross_products()
+            features[:, a:b], targets[:, a:b], CLUSTERS, [CLUSTERS.all] * len(targets), sparse_products()
         )
         for a, b in pairwise(edges)
     ]
@@ -88,10 +88,10 @@ def test_a_target_of_one_feature_alone_is_all_its_own_and_others_have_what_chanc
 def test_some_of_the_parts_have_the_sums_of_a_block_of_their_own() -> None:
     features, targets = seen(np.random.default_rng(4), 50)
     picked = CLUSTERS.part(np.array([0, 3, 4]))
-    (found,) = IndependentSums.of_each(features, targets[:1], CLUSTERS, [picked], cross_products())
+    (found,) = IndependentSums.of_each(features, targets[:1], CLUSTERS, [picked], sparse_products())
     own = features[[0, 1, 6, 7, 8, 9]]
     alone = Clusters(np.array([2, 2, 2]), np.array([0, 1, 2]))
-    (expected,) = IndependentSums.of_each(own, targets[:1], alone, [alone.all], cross_products())
+    (expected,) = IndependentSums.of_each(own, targets[:1], alone, [alone.all], sparse_products())
     for mine, its in ((found.means, expected.means), (found.across, expected.across), (found.within, expected.within)):
         assert mine == pytest.approx(its, rel=1e-12, abs=1e-12)
 
@@ -99,9 +99,9 @@ def test_some_of_the_parts_have_the_sums_of_a_block_of_their_own() -> None:
 def test_the_products_of_a_pair_are_the_same_bits_wherever_it_stands() -> None:
     random = np.random.default_rng(5)
     features, targets = random.normal(size=(7, 1300)), random.normal(size=(6, 1300))
-    found = cross_products()(features, targets)
+    found = sparse_products().cross_products(features, targets)
     assert found == pytest.approx(features @ targets.T, rel=1e-12, abs=1e-11)
-    turned = cross_products()(features[::-1], targets[2:])
+    turned = sparse_products().cross_products(features[::-1], targets[2:])
     assert np.array_equal(turned, found[::-1, 2:])
 
 

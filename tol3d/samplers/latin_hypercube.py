@@ -10,7 +10,7 @@ import numpy as np
 
 from tol3d.samplers.monte_carlo import Words, random_words, uniforms
 from tol3d.samplers.replicates import Piece, pieces
-from tol3d.samplers.stream import Array, Stream
+from tol3d.samplers.stream import Array, Counts, Stream, one_by_one
 
 ROUNDS = 8  # of the Feistel network; four are enough for large domains (Luby and Rackoff 1988), small ones need more
 PLACE_BITS = 48  # stratum and place inside it together; five bits fewer than a double's, so that rounding keeps both
@@ -36,6 +36,10 @@ class LatinHypercube:
         inside = uniforms(self.seed, stream.name, stream.component, first, count)
         place = (np.floor(inside * steps) + 0.5) / steps
         return (stratum + place) / self.size
+
+    def uniforms_of(self, stream: Stream, trials: Counts) -> Array:
+        """Uniforms of these trials (trials,), wherever they are."""
+        return one_by_one(self, stream, trials)
 
     def _strata(self, stream: Stream, piece: Piece) -> Array:
         identity = ("latin hypercube", str(piece.replicate), str(self.size))

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.samplers.stream import Array, Stream
+from tol3d.samplers.stream import Array, Counts, Stream, one_by_one
 
 Words = NDArray[np.uint64]
 
@@ -27,6 +27,10 @@ class MonteCarlo:
     def uniforms(self, stream: Stream, first: int, count: int) -> Array:
         """Uniforms of trials first ... first + count - 1, shape (count,), inside (0, 1)."""
         return uniforms(self.seed, stream.name, stream.component, first, count)
+
+    def uniforms_of(self, stream: Stream, trials: Counts) -> Array:
+        """Uniforms of these trials (trials,), wherever they are."""
+        return one_by_one(self, stream, trials)
 
 
 def stream_key(seed: int, name: str, *identity: str) -> int:

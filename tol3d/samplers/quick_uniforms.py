@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from tol3d.numerics.compiled import FULL, high_product, kernel, part
 from tol3d.samplers.monte_carlo import DRAW_BITS, stream_key
-from tol3d.samplers.stream import Stream
+from tol3d.samplers.stream import Counts, Stream
 
 Array = NDArray[np.float64]
 
@@ -33,14 +33,22 @@ class QuickMonteCarlo:
         """Uniforms of trials first ... first + count - 1, shape (count,), inside (0, 1)."""
         return quick_uniforms(self.seed, stream.name, stream.component, first, count)
 
+    def uniforms_of(self, stream: Stream, trials: Counts) -> Array:
+        """Uniforms of these trials (trials,), wherever they are."""
+        values = np.empty(len(trials))
+        _draw_each(_words(stream_key(self.seed, stream.name, stream.component)), trials.astype(np.uint64) + 1, values)
+        return values
+
 
 def quick_uniforms(seed: int, name: str, component: str, first: int, count: int) -> Array:
     """As monte_carlo.uniforms, bit for bit."""
-    key = stream_key(seed, name, component)
-    words = np.array([key & int(LOW), key >> 64], dtype=np.uint64)
     values = np.empty(count)
-    _draw(words, np.array([first + 1], dtype=np.uint64), values)
+    _draw(_words(stream_key(seed, name, component)), np.array([first + 1], dtype=np.uint64), values)
     return values
+
+
+def _words(key: int) -> NDArray[np.uint64]:
+    return np.array([key & int(LOW), key >> 64], dtype=np.uint64)
 
 
 @part
@@ -62,3 +70,10 @@ def _draw(key: Any, first: Any, values: Any) -> None:
     for i in range(len(values)):
         word = first_word(first[0] + np.uint64(i), key)
         values[i] = (float(word >> SHIFT) + 0.5) * STEP
+
+
+@kernel(arrays="uint64[::1], uint64[::1], float64[::1]", level=FULL)
+def _draw_each(key: Any, counters: Any, values: Any) -> None:
+    """Uniforms of counters wherever they are."""
+    for i in range(len(values)):
+        values[i] = (float(first_word(counters[i], key) >> SHIFT) + 0.5) * STEP

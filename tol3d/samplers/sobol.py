@@ -14,7 +14,7 @@ import scipy
 
 from tol3d.samplers.monte_carlo import DRAW_BITS, Words, inside_unit, random_words
 from tol3d.samplers.replicates import Piece, pieces
-from tol3d.samplers.stream import Array, Stream
+from tol3d.samplers.stream import Array, Counts, Stream, one_by_one
 
 SCIPY_BITS = 32  # of scipy's points: exact for the first 2^32; its fast_forward fails with more (seen in 1.17)
 TABLE_BITS = 12  # a table of 2^12 points, 32 kB, serves the low bits of the index
@@ -42,6 +42,10 @@ class Sobol:
         """Uniforms of trials first ... first + count - 1, shape (count,), inside (0, 1)."""
         parts = [self._points(stream, piece) for piece in pieces(self.size, first, count)]
         return inside_unit(np.concatenate([np.empty(0, dtype=np.uint64), *parts]))
+
+    def uniforms_of(self, stream: Stream, trials: Counts) -> Array:
+        """Uniforms of these trials (trials,), wherever they are."""
+        return one_by_one(self, stream, trials)
 
     def _points(self, stream: Stream, piece: Piece) -> Words:
         return _scrambled(self, stream, piece.replicate).points(piece.index, piece.count)

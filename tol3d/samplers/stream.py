@@ -24,9 +24,21 @@ class Stream:
     dimension: int
 
 
+Counts = NDArray[np.int64]
+
+
 class Sampler(Protocol):
     """Draws uniforms; a value depends on the sampler's own fields, the stream and the trial, never on the block."""
 
     def uniforms(self, stream: Stream, first: int, count: int) -> Array:
         """Uniforms of trials first ... first + count - 1, shape (count,), inside (0, 1)."""
         ...
+
+    def uniforms_of(self, stream: Stream, trials: Counts) -> Array:
+        """Uniforms of these trials (trials,), wherever they are."""
+        ...
+
+
+def one_by_one(sampler: Sampler, stream: Stream, trials: Counts) -> Array:
+    """Uniforms of trials (trials,), each drawn alone."""
+    return np.concatenate([np.empty(0), *(sampler.uniforms(stream, trial, 1) for trial in trials.tolist())])

@@ -5,9 +5,9 @@ them are chance, and are left out: each cluster of contributors is regressed on 
 """
 
 import math
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from typing import Self
+from typing import Protocol, Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,10 +17,17 @@ from tol3d.statistics.variance_shares import CONSTANT_RTOL, RANK_RTOL
 
 Array = NDArray[np.float64]
 
-CrossProducts = Callable[[Array, Array], Array]
-"""Sums over the trials of each feature (features, trials) times each target (targets, trials)."""
 
-PAIRS_AT_ONCE = 2**22  # products of pairs that are built at once: pairs times trials, 32 MB
+class Products(Protocol):
+    """Sums of products over trials."""
+
+    def cross_products(self, features: Array, targets: Array) -> Array:
+        """Of each feature (features, trials) and each target (targets, trials): (features, targets)."""
+        ...
+
+    def pair_products(self, rows: Array, first: NDArray[np.intp], second: NDArray[np.intp]) -> Array:
+        """Of pairs of rows (rows, trials): (pairs,)."""
+        ...
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,7 +57,7 @@ class IndependentSums:
         targets: Array,
         clusters: Clusters,
         picked: Sequence[Picked],
-        products: CrossProducts,
+        products: Products,
     ) -> tuple[Self, ...]:
         """The sums of one block for several targets.
 
@@ -59,15 +66,15 @@ class IndependentSums:
             targets: (targets, trials), no nan.
             clusters: of all features.
             picked: those that each target has.
-            products: of features and targets.
+            products: what sums them.
         """
         count = features.shape[1]
         if count == 0:
             return tuple(cls._none(own.clusters) for own in picked)
         rows, means = _centred(features)
         aims, target_means = _centred(targets)
-        across = products(rows, aims)
-        within = _of_pairs(rows, *clusters.pairs)
+        across = products.cross_products(rows, aims)
+        within = products.pair_products(rows, *clusters.pairs)
         squares = np.einsum("ij,ij->i", aims, aims)
         return tuple(
             cls(
@@ -214,12 +221,3 @@ def _centred(rows: Array) -> tuple[Array, Array]:
     means = np.mean(shifted, axis=1)
     shifted -= means[:, None]
     return shifted, means + first
-
-
-def _of_pairs(rows: Array, first: NDArray[np.intp], second: NDArray[np.intp]) -> Array:
-    """Sums of the products of pairs of rows (pairs,)."""
-    step = max(PAIRS_AT_ONCE // rows.shape[1], 1)
-    pieces = [
-        np.einsum("ij,ij->i", rows[first[k : k + step]], rows[second[k : k + step]]) for k in range(0, len(first), step)
-    ]
-    return np.concatenate([np.zeros(0), *pieces])

@@ -1,23 +1,17 @@
 """Lazy import of compiled statistics: numba, which they need, is loaded only where it compiles trials too."""
 
 import importlib
-from typing import Any
+from typing import cast
 
-from tol3d.statistics.independent_sums import CrossProducts
-from tol3d.statistics.variance_shares import Products
+from tol3d.statistics import independent_sums, variance_shares
 
 
-def quick_products() -> Products:
-    """Sums of products, compiled."""
-    products: Products = _compiled().quick_products
+def quick_products() -> variance_shares.Products:
+    """Sums of products of all pairs of rows, compiled."""
+    products: variance_shares.Products = importlib.import_module("tol3d.statistics.quick_products").quick_products
     return products
 
 
-def cross_products() -> CrossProducts:
-    """Sums of products of features and targets, compiled."""
-    products: CrossProducts = _compiled().cross_products
-    return products
-
-
-def _compiled() -> Any:
-    return importlib.import_module("tol3d.statistics.quick_products")
+def sparse_products() -> independent_sums.Products:
+    """Sums of products of some pairs of rows, compiled."""
+    return cast(independent_sums.Products, importlib.import_module("tol3d.statistics.quick_products"))

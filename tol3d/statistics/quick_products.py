@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from tol3d.numerics.compiled import FULL, kernel
 
 Array = NDArray[np.float64]
+Places = NDArray[np.intp]
 
 TILE = 512  # trials; forty rows of them stay in the nearest cache
 
@@ -28,6 +29,13 @@ def cross_products(features: Array, targets: Array) -> Array:
     sums = np.zeros((len(features) + len(features) % 2, len(targets) + -len(targets) % 4))
     _add_cross_products(_padded(features, len(sums)), _padded(targets, sums.shape[1]), sums)
     return sums[: len(features), : len(targets)]
+
+
+def pair_products(rows: Array, first: Places, second: Places) -> Array:
+    """Sums over the trials of the products of pairs of rows (rows, trials): (pairs,)."""
+    sums = np.zeros(len(first))
+    _add_pair_products(np.ascontiguousarray(rows), first, second, sums)
+    return sums
 
 
 def _padded(rows: Array, count: int) -> Array:
@@ -88,3 +96,14 @@ def _add_cross_products(features: Any, targets: Any, sums: Any) -> None:
                 sums[i + 1, j + 1] += two_b
                 sums[i + 1, j + 2] += two_c
                 sums[i + 1, j + 3] += two_d
+
+
+@kernel(arrays="float64[:, ::1], intp[::1], intp[::1], float64[::1]", reassociated=True, level=FULL)
+def _add_pair_products(rows: Any, first: Any, second: Any, sums: Any) -> None:
+    """Add the products of some pairs of rows."""
+    for pair in range(len(first)):
+        one, other = rows[first[pair]], rows[second[pair]]
+        part = 0.0
+        for k in range(len(one)):
+            part += one[k] * other[k]
+        sums[pair] += part

@@ -5,7 +5,7 @@ draws them. A trial depends on (system, seed, trial index) and on nothing else: 
 that read others are drawn after them, from streams of their own.
 """
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,6 +19,8 @@ from tol3d.system.system import StreamKey, System
 from tol3d.system.trials import Trials
 
 Array = NDArray[np.float64]
+
+MANY_STREAMS = 256  # from here on compiling what draws them pays
 
 
 def streams_of(system: System) -> Mapping[StreamKey, Stream]:
@@ -39,30 +41,42 @@ def sampler_of(simulation: Simulation, streams: int) -> Sampler:
         return Sobol(study.seed, study.replicate_trials, streams)
     if study.sampler == "latin_hypercube":
         return LatinHypercube(study.seed, study.replicate_trials)
-    return quick_monte_carlo(study.seed) if simulation.road.compiled else MonteCarlo(study.seed)
+    quick = simulation.road.compiled or streams > MANY_STREAMS
+    return quick_monte_carlo(study.seed) if quick else MonteCarlo(study.seed)
 
 
 def drawn(simulation: Simulation, first: int, count: int) -> Trials:
     """Trials first ... first + count - 1 as the study draws them."""
-    system = simulation.system
-    streams = streams_of(system)
-    sampler = sampler_of(simulation, len(streams))
-    uniforms = {key: sampler.uniforms(streams[key], first, count) for key in system.streams}
-    return Trials(_deviations(system, sampler, streams, first, count), system.positions(uniforms))
+    return _trials(simulation, lambda sampler, stream: sampler.uniforms(stream, first, count), count)
+
+
+def drawn_ones(simulation: Simulation, trials: Sequence[int]) -> Trials:
+    """Some trials as the study draws them, wherever they are."""
+    numbers = np.array(trials, dtype=np.int64)
+    return _trials(simulation, lambda sampler, stream: sampler.uniforms_of(stream, numbers), len(numbers))
 
 
 def deviations(simulation: Simulation, first: int, count: int) -> Array:
     """Deviations of trials first ... first + count - 1: (count, components) [mm, rad or K]."""
-    streams = streams_of(simulation.system)
-    return _deviations(simulation.system, sampler_of(simulation, len(streams)), streams, first, count)
+    system, streams = simulation.system, streams_of(simulation.system)
+    sampler = sampler_of(simulation, len(streams))
+    return _deviations(system, lambda key: sampler.uniforms(streams[key], first, count), count)
 
 
-def _deviations(system: System, sampler: Sampler, streams: Mapping[StreamKey, Stream], first: int, count: int) -> Array:
+def _trials(simulation: Simulation, draw: Callable[[Sampler, Stream], Array], count: int) -> Trials:
+    system = simulation.system
+    streams = streams_of(system)
+    sampler = sampler_of(simulation, len(streams))
+    positions = system.positions({key: draw(sampler, streams[key]) for key in system.streams})
+    return Trials(_deviations(system, lambda key: draw(sampler, streams[key]), count), positions)
+
+
+def _deviations(system: System, uniforms: Callable[[StreamKey], Array], count: int) -> Array:
     columns = np.empty((component_count(system), count))
     slices = component_slices(system)
     for contributor in in_draw_order(system.contributors):
         draw, own = contributor.draw, slices[contributor.name]
-        draws = [sampler.uniforms(streams[contributor.name, str(k)], first, count) for k in range(draw.uniforms)]
+        draws = [uniforms((contributor.name, str(k))) for k in range(draw.uniforms)]
         if isinstance(draw, Dependent):
             found = draw.deviations_given({name: columns[slices[name]] for name in draw.reads}, *draws)
         else:

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.statistics import IndependentSums, RegressorSums
-from tol3d.statistics.lazy import cross_products, quick_products
+from tol3d.statistics.lazy import quick_products, sparse_products
 from tol3d.statistics.variance_shares import Products, TargetSums
 from tol3d.study.joint import Among
 from tol3d.study.regressors import RegressorSet, regressor_sets
@@ -91,5 +91,5 @@ class _Block:
             together, among = RegressorSums.with_targets(self.rows, targets, self.products, rows)
             return dict(zip(keys, together, strict=True)), among
         picked = [own.picked for own in regressed if own.picked is not None]
-        apart = IndependentSums.of_each(self.rows, targets, self.own.clusters, picked, cross_products())
+        apart = IndependentSums.of_each(self.rows, targets, self.own.clusters, picked, sparse_products())
         return dict(zip(keys, apart, strict=True)), None

@@ -1,6 +1,8 @@
 """Moments of a measure without trials, and each contributor's part in them."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cached_property
 
 
 @dataclass(frozen=True)
@@ -37,6 +39,12 @@ class ClosedForm:
 
     def percent(self, name: str) -> float:
         """Share of the variance [%] of a contributor; 0 when nothing varies."""
+        return self._percents.get(name, 0.0)
+
+    @cached_property
+    def _percents(self) -> Mapping[str, float]:
+        variances: dict[str, float] = {}
+        for share in self.shares:
+            variances[share.name] = variances.get(share.name, 0.0) + share.variance
         total = sum(share.variance for share in self.shares)
-        own = sum(share.variance for share in self.shares if share.name == name)
-        return 100.0 * own / total if total > 0.0 else 0.0
+        return {name: 100.0 * own / total if total > 0.0 else 0.0 for name, own in variances.items()}

@@ -13,9 +13,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.statistics import IndependentSums, RegressorSums
-from tol3d.statistics.lazy import cross_products
+from tol3d.statistics.lazy import sparse_products
 from tol3d.study.columns import columns_of
-from tol3d.study.draws import drawn
+from tol3d.study.draws import drawn, drawn_ones
 from tol3d.study.regression import Sums
 from tol3d.study.regressors import Regressed, regressor_sets
 from tol3d.study.simulation import Simulation
@@ -65,7 +65,7 @@ class SecondLook:
         if regressed.picked is None:
             return RegressorSums.of_each(rows, target[None, good])[0]
         own = regressed.picked.clusters
-        return IndependentSums.of_each(rows, target[None, good], own, [own.all], cross_products())[0]
+        return IndependentSums.of_each(rows, target[None, good], own, [own.all], sparse_products())[0]
 
 
 def scalars_of(system: System) -> tuple[Measure, ...]:
@@ -77,7 +77,7 @@ def second_look(simulation: Simulation, road: Road, count: int, others: Sequence
     """Look at a study's first `count` trials again, and after them at some others."""
     system = simulation.system
     measures = scalars_of(system)
-    trials = joined([drawn(simulation, 0, count), *(drawn(simulation, trial, 1) for trial in others)])
+    trials = joined([drawn(simulation, 0, count), drawn_ones(simulation, others)])
     near, far = SHORT_STEPS if road.chord_error == 0.0 else LONG_STEPS
     columns = columns_of(system, road, trials, measures)
     whole = _differences(system, measures, columns)
