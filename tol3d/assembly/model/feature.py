@@ -54,3 +54,8 @@ class Feature:
     is_named: bool = True
     face: str = ""
     plane: str = ""
+
+    @property
+    def is_still(self) -> bool:
+        """Whether it lies in its part as it does nominally, in all trials."""
+        return not (self.parent or self.moved_by or self.grown_by)

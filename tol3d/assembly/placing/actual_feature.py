@@ -164,4 +164,7 @@ def actual_size(feature: Feature, columns: Array) -> Array:
 
 
 def _vector(x: Array | float, y: Array | float, z: Array | float) -> Array:
-    return np.stack(np.broadcast_arrays(np.atleast_1d(x), np.atleast_1d(y), np.atleast_1d(z)))
+    trials = max(1 if isinstance(own, float) else len(own) for own in (x, y, z))
+    found = np.empty((3, trials))
+    found[0], found[1], found[2] = x, y, z
+    return found

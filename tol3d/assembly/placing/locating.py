@@ -45,11 +45,12 @@ class Locating:
         """The world after the move, and what became of it (n,)."""
         move, reference = self.move, world.part_of(self.move.pairs[0].target)
         contacts = [_contact(move, pair, world, reference) for pair in move.pairs]
-        points, normals, heights = (
-            _stacked([point - self.middle for point, _, _, _ in contacts]),
-            _stacked([normal for _, _, normal, _ in contacts]),
-            _stacked([dot(normal, foot - self.origin) + up for _, foot, normal, up in contacts]),
-        )
+        points = _stacked([point for point, _, _, _ in contacts])
+        points -= self.middle
+        normals = _stacked([normal for _, _, normal, _ in contacts])
+        heights = _stacked([dot(normal, foot - self.origin) + up for _, foot, normal, up in contacts])
+        for pair in move.pairs:
+            world.forget(pair.moving)
         turn, shift = np.empty((3, 3, world.trials)), np.empty((3, world.trials))
         met = np.empty(world.trials, dtype=bool)
         contacts_met(points, normals, heights, self.inverse, self.start, self.reach, turn, shift, met)
@@ -136,4 +137,8 @@ def side_of(pair: Pair, move: Locate | Rest, world: World) -> tuple[Array, Array
 
 def _stacked(arrays: Sequence[Array]) -> Array:
     """Of all contacts, (6, ..., n) or (6, ..., 1)."""
-    return np.stack(np.broadcast_arrays(*arrays))
+    trials = max(own.shape[-1] for own in arrays)
+    found = np.empty((len(arrays), *arrays[0].shape[:-1], trials))
+    for place, own in zip(found, arrays, strict=True):
+        place[...] = own
+    return found

@@ -20,22 +20,37 @@ class PartFeatures:
         part: which.
         datum_seats: of its datum frames, by their names.
         columns: the deviations, (width, n) [mm].
+        still: its features that never deviate, by name; what is found of them is kept there for other trials.
     """
 
-    def __init__(self, part: Part, datum_seats: Mapping[str, DatumSeats], columns: Array) -> None:
+    def __init__(
+        self,
+        part: Part,
+        datum_seats: Mapping[str, DatumSeats],
+        columns: Array,
+        still: dict[str, ActualFeature] | None = None,
+    ) -> None:
         self._features = {feature.name: feature for feature in part.features}
         self._datum_seats = datum_seats
         self._columns = columns
+        self._still = {} if still is None else still
         self._actual: dict[str, ActualFeature] = {}
         self._frames: dict[str, tuple[Pose, Codes]] = {}
 
     def feature(self, name: str) -> ActualFeature:
         """A feature."""
-        if name not in self._actual:
+        found = self._actual.get(name) or self._still.get(name)
+        if found is None:
             feature = self._features[name]
             base = self.displacement(feature.parent) @ Pose.of(feature.frame)
-            self._actual[name] = actual(feature, base, self._columns)
-        return self._actual[name]
+            found = actual(feature, base, self._columns)
+            kept = self._still if feature.is_still else self._actual
+            kept[name] = found
+        return found
+
+    def forget(self, name: str) -> None:
+        """Free a feature that nothing is likely to ask for again; it is found anew if something does."""
+        self._actual.pop(name, None)
 
     def displacement(self, frame: str) -> Pose:
         """From where a datum frame is nominally to where it is; none of "", the part's frame."""

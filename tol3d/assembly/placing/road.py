@@ -1,7 +1,8 @@
 """The exact road: where parts are and what measures read, by finite poses, block by block of trials."""
 
+from collections import defaultdict
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property, lru_cache
 
 import numpy as np
@@ -9,6 +10,7 @@ from numpy.typing import NDArray
 
 from tol3d.assembly.model import Assembly, BestFit, Engage, Fix, Locate, Mate, Move, Rest, Touch, Weld
 from tol3d.assembly.model.statuses import NO_BUILD, OK, SINGULAR
+from tol3d.assembly.placing.actual_feature import ActualFeature
 from tol3d.assembly.placing.best_fitting import BestFitting, best_fitting
 from tol3d.assembly.placing.causes import Cause, Causes, causes_of, ordered
 from tol3d.assembly.placing.datum_seats import DatumSeats, datum_seats
@@ -143,6 +145,7 @@ class PlacingPlan:
         moves: in order.
         causes: before the first move and after each, what may have failed.
         solids: reads clearances.
+        still: of each part its features that never deviate, as far as they were asked for.
     """
 
     assembly: Assembly
@@ -150,6 +153,7 @@ class PlacingPlan:
     moves: tuple[Placing, ...]
     causes: tuple[Causes, ...]
     solids: SolidReader | None = None
+    still: Mapping[str, dict[str, ActualFeature]] = field(default_factory=lambda: defaultdict(dict))
 
     @cached_property
     def of_measures(self) -> Mapping[str, tuple[Cause, ...]]:
@@ -201,9 +205,17 @@ def _planned(move: Move, nominal: World) -> Placing:
             return move
 
 
-def _world(assembly: Assembly, seats: Mapping[str, Mapping[str, DatumSeats]], columns: Array) -> World:
+def _world(
+    assembly: Assembly,
+    seats: Mapping[str, Mapping[str, DatumSeats]],
+    columns: Array,
+    still: Mapping[str, dict[str, ActualFeature]] | None = None,
+) -> World:
     """Before the first move."""
-    own = {part.name: PartFeatures(part, seats[part.name], columns) for part in assembly.parts}
+    own = {
+        part.name: PartFeatures(part, seats[part.name], columns, still[part.name] if still is not None else None)
+        for part in assembly.parts
+    }
     return World(assembly, columns, own, {}, {part.name: frozenset([part.name]) for part in assembly.parts})
 
 
@@ -214,24 +226,36 @@ class _Block:
     worlds: tuple[World, ...]
     codes: dict[int, Codes]
 
+    failed: dict[Cause, Codes | None] = field(default_factory=dict)
+
     def first_of(self, causes: Sequence[Cause]) -> Codes:
         """The first code of some causes that is not OK (n,)."""
-        world = self.worlds[-1]
-        first = np.full(world.trials, OK, dtype=np.int8)
+        first = np.full(self.worlds[-1].trials, OK, dtype=np.int8)
         for cause in causes:
+            if (codes := self._failed(cause)) is not None:
+                first = np.where(first == OK, codes, first).astype(np.int8)
+        return first
+
+    def _failed(self, cause: Cause) -> Codes | None:
+        """Codes (n,) or (1,) of a cause; None where all are OK."""
+        if cause not in self.failed:
             if isinstance(cause, str):
+                world = self.worlds[-1]
                 codes = world.own[world.assembly.datum_frames[cause].part].codes(cause)
             else:
                 codes = self.codes[cause]
-            first = np.where(first == OK, codes, first).astype(np.int8)
-        return first
+            self.failed[cause] = codes if codes.any() else None
+        return self.failed[cause]
 
 
 def _placed(plan: PlacingPlan, deviations: Array, instead: Mapping[int, Resting | Engaging] | None = None) -> _Block:
     """Trials as moves place them; `instead` has other moves for some, by their places."""
     assembly = plan.assembly
     _refuse_lost("a deviation", ~np.isfinite(deviations.sum(axis=1)))
-    worlds, codes = [_world(assembly, plan.datum_seats, np.ascontiguousarray(deviations.T))], dict[int, Codes]()
+    worlds, codes = (
+        [_world(assembly, plan.datum_seats, np.ascontiguousarray(deviations.T), plan.still)],
+        dict[int, Codes](),
+    )
     for index, move in enumerate(plan.moves):
         world, codes[index] = _after(instead.get(index, move) if instead else move, worlds[-1])
         worlds.append(world)

@@ -69,6 +69,10 @@ class World:
         """A feature in its part's frame."""
         return self.own[self.part_of(feature)].feature(feature)
 
+    def forget(self, feature: str) -> None:
+        """Free a feature that nothing is likely to ask for again; it is found anew if something does."""
+        self.own[self.part_of(feature)].forget(feature)
+
     def on_body(self, feature: str, part: str) -> ActualFeature:
         """A feature in the frame of a part of the same body."""
         own = self.part_of(feature)
