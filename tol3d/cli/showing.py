@@ -7,12 +7,15 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from tol3d.cli.arguments import RunArgument, RunBuilders, SceneArgument, TrustParts, scene_path, whole
-from tol3d.cli.console import err_console, out_console, tell
+from tol3d.cli.console import err_console, out_console, seconds, tell
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from tol3d.runs.run import Run
+
+
+LONG = 5.0  # s; a check that takes longer says where the time went
 
 
 class MeshFormat(StrEnum):
@@ -24,13 +27,39 @@ class MeshFormat(StrEnum):
     STEP = "step"
 
 
-def check(scene: SceneArgument, trust_parts: TrustParts = False, run_builders: RunBuilders = False) -> None:
+def check(
+    scene: SceneArgument,
+    parts: Annotated[bool, typer.Option("--parts", help="Show instead which move lays which part on which.")] = False,
+    out: Annotated[
+        Path | None, typer.Option(metavar="FILE", help="Write all tables whole, as comma-separated values.")
+    ] = None,
+    trust_parts: TrustParts = False,
+    run_builders: RunBuilders = False,
+) -> None:
     """Read a scene and show what it means: parts, moves, measures, contributors with their coefficients."""
-    from tol3d.report import check_report
+    from tol3d.errors import InputError, unwritable
+    from tol3d.report.check import check_report, parts_report
+    from tol3d.runs.atomic_write import write_whole
     from tol3d.simulate import load, simulation_of
 
+    if parts and out is not None:
+        raise InputError("--out: of --parts leave it out; the tree is no table")
     loaded = load(scene_path(scene), trust_parts=trust_parts, run_builders=run_builders)
-    out_console.print(check_report(simulation_of(loaded)))
+    spent = {"to read the scene": seconds()}
+    simulation = simulation_of(loaded)
+    spent["to build its system"] = seconds() - sum(spent.values())
+    report = parts_report(simulation) if parts else check_report(simulation)
+    spent["for what it shows"] = seconds() - sum(spent.values())
+    out_console.print(report)
+    if out is not None:
+        try:
+            write_whole(out, report.csv().encode())
+        except OSError as error:
+            raise unwritable(out, error, "choose another file") from None
+        tell(str(out))
+    spent["to print it"] = seconds() - sum(spent.values())
+    if sum(spent.values()) > LONG:
+        tell(f"time: {sum(spent.values()):.1f} s in all: {', '.join(f'{s:.1f} s {word}' for word, s in spent.items())}")
 
 
 def scenes(

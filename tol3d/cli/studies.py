@@ -113,7 +113,7 @@ def run(
     out_console.print(run_report(found, shown, accepted, elapsed=Elapsed(loading, seconds())))
     if not quiet:
         tell(f"run: {finished.path}{_pictures_text(finished)}")
-        if words := _pictured(finished, wanted):
+        if words := pictured(finished, wanted):
             tell(words)
     failed = _out_of_limits(finished) if accept is None else not all_ok(finished.found, accept)
     if fail_on_limits and failed:
@@ -158,7 +158,7 @@ def _pictures_text(run: "Run") -> str:
     return f"    picture{'s' if len(drawn) > 1 else ''}: {', '.join(drawn)}" if drawn else ""
 
 
-def _pictured(run: "Run", wanted: str | None) -> str:
+def pictured(run: "Run", wanted: str | None) -> str:
     """Which measures are in the picture of a run of many, and how the others are drawn; "" where all of them are."""
     from tol3d.report.picture import MOST_TOGETHER
     from tol3d.report.ranking import WORST_FIRST, shown_measures

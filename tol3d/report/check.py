@@ -1,9 +1,24 @@
 """What a scene means, before any trial: what its system shows of it, its study, and what should be known of it."""
 
-from tol3d.report.page import Page, line, page, warning
-from tol3d.report.presenter import presenter_at
+from collections.abc import Sequence
+from typing import Final, Protocol, runtime_checkable
+
+from tol3d.report.page import Page, PageItem, Table, line, note, page, some, warning
+from tol3d.report.presenter import Presenter, presenter_at
 from tol3d.study.simulation import Simulation
 from tol3d.system.faults import faults_of
+
+MOST_ROWS: Final = 60  # of a table that says what is written in the scene
+LEFT_OUT: Final = "rows that are left out: check --out FILE.csv writes all of it"
+
+
+@runtime_checkable
+class ShowsParts(Protocol):
+    """A presenter that can say which part lies on which."""
+
+    def parts(self, simulation: Simulation) -> Sequence[PageItem]:
+        """The tree of who locates whom."""
+        ...
 
 
 def check_report(simulation: Simulation) -> Page:
@@ -13,13 +28,33 @@ def check_report(simulation: Simulation) -> Page:
         MechanismError: a mechanism of another package is at fault.
     """
     with faults_of(simulation.mechanism):
-        shown = presenter_at(simulation.presenter).check(simulation)
+        shown = _presenter(simulation).check(simulation)
     study = simulation.study
     words = [f"{study.trials} trials", f"seed {study.seed}", study.sampler, f"engine {study.engine}"]
     words += [f"{value} {name.replace('_', ' ')}" for name, value in study.options.items()]
-    return page(
+    whole = page(
         line(simulation.system.name, "bold"),
-        *shown,
+        *(block.shortened(MOST_ROWS) if isinstance(block, Table) else block for block in shown),
         line(f"\nstudy: {', '.join(words)}"),
-        *map(warning, simulation.warnings),
+        *map(warning, some(simulation.warnings)),
     )
+    return whole if whole.is_whole else page(*whole.blocks, note(LEFT_OUT))
+
+
+def parts_report(simulation: Simulation) -> Page:
+    """Which move places which part on which others, as a tree; a line where parts are not placed one by one.
+
+    Raises:
+        MechanismError: a mechanism of another package is at fault.
+    """
+    presenter = _presenter(simulation)
+    head = line(simulation.system.name, "bold")
+    if not isinstance(presenter, ShowsParts):
+        return page(head, line("no part is placed on another by a move of its own here; check shows what there is"))
+    with faults_of(simulation.mechanism):
+        return page(head, *presenter.parts(simulation))
+
+
+def _presenter(simulation: Simulation) -> Presenter:
+    with faults_of(simulation.mechanism):
+        return presenter_at(simulation.presenter)

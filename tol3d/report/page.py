@@ -2,13 +2,15 @@
 
 import csv
 import io
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, replace
 from importlib import import_module
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from rich.console import RenderableType
+
+MOST_TEXTS = 20  # warnings below each other
 
 Style = str
 """Of a terminal: "bold", "dim", "red" ..., "" for none."""
@@ -47,6 +49,14 @@ class Row:
 
 
 @dataclass(frozen=True)
+class Further:
+    """Rows that are left out where a table is shown: the row that stands for them, and what makes them for files."""
+
+    row: Row
+    rows: Callable[[], Sequence[Row]]
+
+
+@dataclass(frozen=True)
 class Table:
     """A column of labels and one for each heading.
 
@@ -54,20 +64,36 @@ class Table:
         corner: head of the labels.
         headings, rows: as they are.
         repeated: so many columns stand beside the labels in every part of a table that finds no room.
+        further: what is left out behind the rows; None for nothing.
     """
 
     corner: str
     headings: Sequence[Heading]
     rows: Sequence[Row]
     repeated: int = 0
+    further: Further | None = None
+
+    @property
+    def shown(self) -> "Table":
+        """The table as it is shown, with one row for those that are left out."""
+        return self if self.further is None else replace(self, rows=[*self.rows, self.further.row], further=None)
+
+    def shortened(self, most: int) -> "Table":
+        """The table with its first rows alone, where there are more than `most` and none is left out yet."""
+        left = len(self.rows) - most
+        if left <= 0 or self.further is not None:
+            return self
+        row = Row(f"and {left} more", [""] * len(self.headings), "dim")
+        return replace(self, rows=self.rows[:most], further=Further(row, lambda: self.rows[most:]))
 
     def csv(self) -> str:
         """Comma-separated values: texts as they are shown, numbers with all their digits; nothing for one not known."""
         stream = io.StringIO()
         writer = csv.writer(stream, lineterminator="\n")
-        units = [[row.unit] for row in self.rows] if any(row.unit for row in self.rows) else [[]] * len(self.rows)
+        rows = self.rows if self.further is None else [*self.rows, *self.further.rows()]
+        units = [[row.unit] for row in rows] if any(row.unit for row in rows) else [[]] * len(rows)
         writer.writerow([self.corner, *(["unit"] if any(units) else []), *(heading.text for heading in self.headings)])
-        for row, unit in zip(self.rows, units, strict=True):
+        for row, unit in zip(rows, units, strict=True):
             writer.writerow([row.label.strip(), *unit, *map(_csv_cell, row.cells)])
         return stream.getvalue()
 
@@ -77,10 +103,14 @@ class Table:
 
 @dataclass(frozen=True)
 class Line:
-    """Text in pieces, each with its style; `note` sets it in by a blank, wrapped lines too."""
+    """Text in pieces, each with its style; `note` sets it in by a blank, wrapped lines too.
+
+    It may stand for lines and tables that are left out, which `stands_for` makes for files.
+    """
 
     pieces: tuple[tuple[str, Style], ...]
     note: bool = False
+    stands_for: "Callable[[], Sequence[PageItem]] | None" = None
 
     def __str__(self) -> str:
         return "".join(text for text, _ in self.pieces)
@@ -89,7 +119,18 @@ class Line:
         return _rendered(self)
 
 
-PageItem = Line | Table
+@dataclass(frozen=True)
+class Branch:
+    """A node of a tree: its text, and what hangs on it."""
+
+    text: str
+    branches: "tuple[Branch, ...]" = ()
+
+    def __rich__(self) -> "RenderableType":
+        return _rendered(self)
+
+
+PageItem = Line | Table | Branch
 
 
 @dataclass(frozen=True)
@@ -107,14 +148,28 @@ class Page:
         """Its tables as comma-separated values, each below its title, with an empty line between them."""
         return "\n".join(f"{title}\n{table.csv()}" if title else table.csv() for title, table in self._titled())
 
+    @property
+    def is_whole(self) -> bool:
+        """Whether nothing is left out where it is shown."""
+        return not any(
+            block.further if isinstance(block, Table) else isinstance(block, Line) and block.stands_for
+            for block in self.blocks
+        )
+
     def _titled(self) -> Iterator[tuple[str, Table]]:
         title = ""
-        for block in self.blocks:
+        for block in self._whole_blocks():
             if isinstance(block, Table):
                 yield title, block
                 title = ""
-            elif any("bold" in style for _, style in block.pieces):
+            elif isinstance(block, Line) and any("bold" in style for _, style in block.pieces):
                 title = str(block).strip()
+
+    def _whole_blocks(self) -> "Iterator[PageItem]":
+        for block in self.blocks:
+            yield block
+            if isinstance(block, Line) and block.stands_for is not None:
+                yield from block.stands_for()
 
     def __rich__(self) -> "RenderableType":
         return _rendered(self)
@@ -146,6 +201,12 @@ def note(text: str) -> Line:
 def warning(text: str) -> Line:
     """What may spoil a result."""
     return line(f"warning: {text}", "yellow")
+
+
+def some(texts: Sequence[str], where: str = "") -> list[str]:
+    """Texts that are shown: all, or the first of many and how many more there are."""
+    left = len(texts) - MOST_TEXTS
+    return [*texts] if left <= 0 else [*texts[:MOST_TEXTS], f"and {left} more{where}"]
 
 
 def titled(text: str, table: Table) -> list[PageItem]:

@@ -9,8 +9,9 @@ from rich.console import Console, ConsoleOptions, Group, RenderableType, RenderR
 from rich.padding import Padding
 from rich.table import Table as RichTable
 from rich.text import Text
+from rich.tree import Tree
 
-from tol3d.report.page import Heading, Page, PageItem, Table
+from tol3d.report.page import Branch, Heading, Page, PageItem, Table
 
 GAP = 2  # blanks between two columns
 TIGHT_LABELS = 14  # characters; what labels keep before they wrap, where that saves a table below
@@ -22,9 +23,18 @@ def rendered(shown: Page | PageItem) -> RenderableType:
     if isinstance(shown, Page):
         return Group(*map(rendered, shown.blocks))
     if isinstance(shown, Table):
-        return Sheet(shown)
+        return Sheet(shown.shown)
+    if isinstance(shown, Branch):
+        return _tree(shown)
     text = Text.assemble(*shown.pieces)
     return Padding(text, (0, 0, 0, 1)) if shown.note else text
+
+
+def _tree(branch: Branch) -> Tree:
+    tree = Tree(Text(branch.text))
+    for own in branch.branches:
+        tree.children.append(_tree(own))
+    return tree
 
 
 def as_text(shown: Page | PageItem, width: int) -> str:

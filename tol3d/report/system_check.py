@@ -6,8 +6,10 @@ from collections.abc import Collection, Iterator, Mapping, Sequence
 
 from tol3d.distributions import DeviationLaw
 from tol3d.report.number import NOTHING, UM_PER_MM, UNIT_SIGNS, limit_text, measured_text, unsigned_zero, value_text
-from tol3d.report.page import Heading, PageItem, Row, Shown, Table, note, titled, warning
+from tol3d.report.page import Further, Heading, Line, PageItem, Row, Shown, Table, note, some, titled, warning
+from tol3d.report.ranking import MOST_MEASURES, WORST_FIRST, badness, largest
 from tol3d.report.shown_unit import shown_unit
+from tol3d.statistics.limits import normal_share
 from tol3d.study.first_order import FirstOrder, FirstOrderEffect, first_orders
 from tol3d.study.simulation import Simulation
 from tol3d.study.task import materials_of, road_of
@@ -26,6 +28,7 @@ MIDDLE = (
     "an end of the axis; a process draws both ends of an axis, so that the middle has 1/√2 of its sigma"
 )
 NO_SUM = "no sum of effects, so no RSS and no worst case: its slopes are means over two sigma; run draws its trials"
+MEASURE_WORDS = ("kind", "limits")
 BESIDE = 1e-6  # um or arcmin; a value that is nearer to a limit lies on it
 
 
@@ -46,18 +49,56 @@ def system_blocks(simulation: Simulation, long_in_mm: Collection[str] = ()) -> l
         for name, own in ((measure.name, measure) for measure in system.measures)
     }
     kinds = {measure.name: str(system.describe(measure).get("kind", NOTHING)) for measure in system.measures}
-    tables = [
-        block
-        for measure in system.measures
-        if found[measure.name] and system.acting(measure)
-        for block in _coefficients(measure, units[measure.name], found[measure.name], headings)
-    ]
+    shown, left = _worst(system.measures, found)
+
+    def coefficients(measures: Sequence[Measure]) -> list[PageItem]:
+        return [
+            block
+            for measure in measures
+            if found[measure.name] and system.acting(measure)
+            for block in _coefficients(measure, units[measure.name], found[measure.name], headings)
+        ]
+
+    def rows(measures: Sequence[Measure]) -> list[Row]:
+        return [_measure_row(own, units[own.name], kinds[own.name], found[own.name], headings) for own in measures]
+
+    tables, further = coefficients(shown), None
+    if left:
+        words = f"\nand {len(left)} more measures; shown are the {len(shown)} worst, {WORST_FIRST} by first order"
+        tables.append(Line(((words, ""),), stands_for=lambda: coefficients(left)))
+        blank = [""] * (len(MEASURE_WORDS) + 2 * len(headings) + 1)
+        further = Further(Row(f"and {len(left)} more", blank, "dim"), lambda: rows(left))
     sums = any(measure.adds_up and found[measure.name] for measure in system.measures)
     several = any(effect.each > 1 for own in found.values() for road in own.values() for effect in road.effects)
     texts = (SLOPES, *([EACH] if several else []), *([SHARES] if sums else []))
     notes = [note(text) for text in texts] if tables else []
-    shown = _measures(system.measures, units, kinds, found, headings)
-    return [*_contributors(system.contributors), *shown, *tables, *notes]
+    numbers = [Heading(f"{build}, {name}") for build in ("nominal", "mean build") for name in headings.values()]
+    columns = [*(Heading(word, words=True) for word in MEASURE_WORDS), *numbers, Heading("unit")]
+    measures = titled("measures", Table("", columns, rows(shown), further=further))
+    outside = [text for own in system.measures for text in _outside(own, units[own.name], found[own.name])]
+    return [*_contributors(system.contributors), *measures, *map(warning, some(outside)), *tables, *notes]
+
+
+def _worst(
+    measures: Sequence[Measure], found: Mapping[str, Mapping[str, FirstOrder]]
+) -> tuple[Sequence[Measure], Sequence[Measure]]:
+    """The measures that are shown and the others: of many the worst, were they normal with a sigma by first order."""
+    if len(measures) <= MOST_MEASURES:
+        return measures, ()
+    ranked = sorted(measures, key=lambda own: _badness(own, [*found[own.name].values()]))
+    return ranked[:MOST_MEASURES], ranked[MOST_MEASURES:]
+
+
+def _badness(measure: Measure, roads: Sequence[FirstOrder]) -> tuple[float, float]:
+    """A key that sorts the worst first, by the last road that knows its sigma."""
+    known = [own for own in roads if math.isfinite(own.mean) and math.isfinite(own.sigma) and own.sigma > 0.0]
+    if not known:
+        return badness(None, None)
+    own, per = known[-1], measure.per_internal
+    margins = [] if measure.lower_limit is None else [own.mean - measure.lower_limit * per]
+    margins += [] if measure.upper_limit is None else [measure.upper_limit * per - own.mean]
+    ppk = min(margins) / (3 * own.sigma) if margins else None
+    return badness(1e6 * sum(normal_share(margin, own.sigma) for margin in margins), ppk)
 
 
 def _nominal(found: Mapping[str, FirstOrder]) -> float | None:
@@ -96,24 +137,15 @@ def _contributors(contributors: Sequence[Contributor]) -> list[PageItem]:
     return [*titled("contributors", table), *notes] if rows else []
 
 
-def _measures(
-    measures: Sequence[Measure],
-    units: Mapping[str, str],
-    kinds: Mapping[str, str],
-    found: Mapping[str, Mapping[str, FirstOrder]],
-    headings: Mapping[str, str],
-) -> list[PageItem]:
-    rows = []
-    for measure in measures:
-        shown, own = units[measure.name], found[measure.name]
-        values = [_value(measure, getattr(own.get(road), build, None), shown)
-                  for build in ("nominal", "mean") for road in headings]  # fmt: skip
-        unit = "′, ″" if shown == "arcmin" else UNIT_SIGNS[shown]
-        rows.append(Row(measure.name, (kinds[measure.name], _limits(measure, shown), *values, unit)))
-    words = [Heading(word, words=True) for word in ("kind", "limits")]
-    numbers = [Heading(f"{build}, {name}") for build in ("nominal", "mean build") for name in headings.values()]
-    outside = [text for own in measures for text in _outside(own, units[own.name], found[own.name])]
-    return [*titled("measures", Table("", [*words, *numbers, Heading("unit")], rows)), *map(warning, outside)]
+def _measure_row(
+    measure: Measure, shown: str, kind: str, found: Mapping[str, FirstOrder], headings: Mapping[str, str]
+) -> Row:
+    """What a measure is, and its nominal and mean builds by each road."""
+    values = [_value(measure, getattr(found.get(road), build, None), shown)
+              for build in ("nominal", "mean") for road in headings]  # fmt: skip
+    return Row(
+        measure.name, (kind, _limits(measure, shown), *values, "′, ″" if shown == "arcmin" else UNIT_SIGNS[shown])
+    )
 
 
 def _outside(measure: Measure, unit: str, found: Mapping[str, FirstOrder]) -> Iterator[str]:
@@ -152,19 +184,41 @@ def _coefficients(
     measure: Measure, unit: str, found: Mapping[str, FirstOrder], headings: Mapping[str, str]
 ) -> list[PageItem]:
     """Changes by each deviation in the measure's own unit; its ends in the one in which it is shown."""
-    rows = []
-    for effects in zip(*(own.effects for own in found.values()), strict=True):
-        roads = list(zip(found.values(), effects, strict=True))
-        cells = [_slope(own) for own in effects]
-        if measure.adds_up:
-            cells += [_number(road.variance_percent(own), ".1f") for road, own in roads]
-            cells += [_number(road.reach_percent(own), ".1f") for road, own in roads]
-        rows.append(Row(effects[0].name, (f"{UNIT_SIGNS[measure.unit]}/{UNIT_SIGNS[effects[0].unit]}", *cells)))
+    by_road = [own.effects for own in found.values()]
+    wholes = [(sum(own.variance for own in road), sum(own.reach for own in road)) for road in by_road]
+    every = list(zip(*by_road, strict=True))
+    sizes = {k: effects[-1].variance for k, effects in enumerate(every) if not math.isnan(effects[-1].variance)}
+
+    def shares(parts: Sequence[tuple[float, float]]) -> list[str]:
+        """Of variances and reaches by road: in percent of the whole."""
+        kinds = range(2) if measure.adds_up else ()
+        return [
+            _number(_percent(part[k], whole[k]), ".1f")
+            for k in kinds
+            for part, whole in zip(parts, wholes, strict=True)
+        ]
+
+    def row(k: int) -> Row:
+        unit = f"{UNIT_SIGNS[measure.unit]}/{UNIT_SIGNS[every[k][0].unit]}"
+        parts = [(own.variance, own.reach) for own in every[k]]
+        return Row(every[k][0].name, (unit, *map(_slope, every[k]), *shares(parts)))
+
+    shown = largest(range(len(every)), sizes)
+    left, further = sorted({*range(len(every))} - {*shown}), None
+    if left:
+        parts = [(sum(road[k].variance for k in left), sum(road[k].reach for k in left)) for road in by_road]
+        cells = (*[""] * (1 + len(by_road)), *shares(parts))
+        further = Further(Row(f"and {len(left)} more", cells, "dim"), lambda: [*map(row, left)])
     words = ("slope", "RSS [%]", "worst [%]") if measure.adds_up else ("slope",)
     columns = [Heading(f"{word}, {name}") for word in words for name in headings.values()]
-    table = Table("", [Heading("unit"), *columns], rows)
+    table = Table("", [Heading("unit"), *columns], [*map(row, shown)], further=further)
     below = [_sums(measure, unit, headings[road], own) for road, own in found.items()] if measure.adds_up else [NO_SUM]
     return [*titled(f"{measure.name}: change by each deviation", table), *map(note, below)]
+
+
+def _percent(part: float, whole: float) -> float:
+    """A share [%]; 0 where nothing varies."""
+    return 100 * part / whole if whole else 0.0
 
 
 def _slope(own: FirstOrderEffect) -> Shown:

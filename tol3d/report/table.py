@@ -1,6 +1,6 @@
 """A run's results as tables for the terminal, from its summary alone."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from enum import Enum
 from typing import NamedTuple
 
@@ -26,7 +26,7 @@ from tol3d.report.number import (
     limit_text,
     share_text,
 )
-from tol3d.report.page import BLANK, Line, Page, PageItem, line, note, page, title, warning
+from tol3d.report.page import BLANK, Line, Page, PageItem, line, note, page, some, title, warning
 from tol3d.report.presenter import Presenter, presenter_of
 from tol3d.report.published import published_notes
 from tol3d.report.published_whole import published_blocks
@@ -50,7 +50,6 @@ SHARES_MEAN = (
 MOST_TABLES = 4  # measures whose tables are shown unasked; of 6 they took 288 lines
 MORE_TABLES = "tables of every measure: -v, and how they are correlated"
 MORE_CONTRIBUTORS = f"shares: the {MOST_CONTRIBUTORS} largest of each measure and the sum of the others"
-MOST_WARNINGS = 20
 SAMPLER_WORDS = {"sobol": "scrambled Sobol' points", "latin_hypercube": "Latin hypercubes"}
 
 
@@ -91,7 +90,7 @@ def run_report(
         elapsed: what the command took besides what the run tells of itself.
     """
     own, shown = presenter_of(run, presenter), shown_run(run)
-    warnings = [*map(warning, _some_warnings(run.warnings))]
+    warnings = [*map(warning, some(run.warnings, ", all in summary.json"))]
     verdict = verdict_report(shown, accepted_ppm, blame=detail is not Detail.MEASURES)
     if detail is Detail.VERDICT:
         return page(*verdict, *warnings)
@@ -111,12 +110,6 @@ def run_report(
 
 def _more_tables(run: RunSummary) -> str:
     return MORE_TABLES if len(run.measures) <= MOST_MEASURES else MORE_TABLES.replace("every measure", "these measures")
-
-
-def _some_warnings(warnings: Sequence[str]) -> list[str]:
-    """Warnings that are printed: all, or the first of many and how many more there are."""
-    left = len(warnings) - MOST_WARNINGS
-    return [*warnings] if left <= 0 else [*warnings[:MOST_WARNINGS], f"and {left} more, all in summary.json"]
 
 
 def _run_line(run: RunSummary) -> Line:

@@ -3,6 +3,7 @@
 symbols         closed surfaces that stand for features
 shown_assembly  a build's parts, for pictures and files of triangles
 tables          what a scene means
+parts_tree      which part lies on which
 """
 
 from collections.abc import Mapping, Sequence
@@ -43,6 +44,10 @@ class AssemblyPresenter:
     def check(self, simulation: "Simulation") -> "Sequence[PageItem]":
         """Features with their datum frames, moves, and what any system shows."""
         return _lazily("tables").check_blocks(simulation)  # type: ignore[no-any-return]
+
+    def parts(self, simulation: "Simulation") -> "Sequence[PageItem]":
+        """Each part below the one that its move lays it on."""
+        return _lazily("tables").parts_blocks(simulation)  # type: ignore[no-any-return]
 
     def display(self, run: "Run", which: "Which", *, magnify: float) -> "Display":
         """A build with its parts placed again."""

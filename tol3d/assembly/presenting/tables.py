@@ -14,6 +14,7 @@ from tol3d.assembly.placing import road as placing
 from tol3d.assembly.placing.engaging import Engaging
 from tol3d.assembly.placing.resting import Resting
 from tol3d.assembly.presenting.freedom_tables import datum_blocks, freedom_blocks
+from tol3d.assembly.presenting.parts_tree import parts_tree
 from tol3d.assembly.system import AssemblySystem
 from tol3d.report.number import NOTHING
 from tol3d.report.page import Heading, PageItem, Row, Table, note, titled
@@ -32,6 +33,12 @@ def check_blocks(simulation: Simulation) -> Sequence[PageItem]:
     system = simulation.system
     assert isinstance(system, AssemblySystem)
     return (*drawing_blocks(system), *system_blocks(simulation, {own.name for own in system.measures}))
+
+
+def parts_blocks(simulation: Simulation) -> Sequence[PageItem]:
+    """Each part below the one that its move lays it on."""
+    assert isinstance(simulation.system, AssemblySystem)
+    return parts_tree(simulation.system.assembly)
 
 
 def drawing_blocks(system: AssemblySystem) -> Sequence[PageItem]:

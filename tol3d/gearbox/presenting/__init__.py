@@ -27,6 +27,10 @@ class GearboxPresenter(GearPresenter):
         """Features and moves of the parts, gears, meshes, trains, and what any system shows."""
         return _lazily("tables").check_blocks(simulation)  # type: ignore[no-any-return]
 
+    def parts(self, simulation: "Simulation") -> "Sequence[PageItem]":
+        """Each part below the one that its move lays it on, each shaft below the part with its first bore."""
+        return _lazily("tables").parts_blocks(simulation)  # type: ignore[no-any-return]
+
     def display(self, run: "Run", which: "Which", *, magnify: float) -> "Display":
         """A build with its parts placed and its gears seated again."""
         return _lazily("shown_gearbox").display(run, which, magnify=magnify)  # type: ignore[no-any-return]

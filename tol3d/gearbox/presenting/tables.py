@@ -5,6 +5,7 @@ from typing import Final
 
 import numpy as np
 
+from tol3d.assembly.presenting.parts_tree import Laid, parts_tree
 from tol3d.assembly.presenting.tables import drawing_blocks
 from tol3d.gearbox.bores import Bores
 from tol3d.gearbox.system import GearboxSystem
@@ -23,6 +24,18 @@ def check_blocks(simulation: Simulation) -> Sequence[PageItem]:
     shafts, gears = shafts_table(system.bores), mechanics_blocks(system.gears.model)
     parts = {own.name for own in system.drawn.measures}
     return (*drawing_blocks(system.drawn), *shafts, *gears, *system_blocks(simulation, parts))
+
+
+def parts_blocks(simulation: Simulation) -> Sequence[PageItem]:
+    """Parts as their moves lay them, and shafts in their bores."""
+    system = simulation.system
+    assert isinstance(system, GearboxSystem)
+    assembly = system.drawn.assembly
+    shafts = []
+    for own in system.bores.shafts:
+        parts = dict.fromkeys(assembly.features[bore.feature].part for bore in own.bores)
+        shafts.append(Laid(own.shaft, "shaft in bores of", own.move, tuple(parts)))
+    return parts_tree(assembly, shafts)
 
 
 def shafts_table(bores: Bores) -> Sequence[PageItem]:

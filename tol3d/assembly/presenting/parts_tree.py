@@ -1,0 +1,204 @@
+"""The tree of who locates whom: each part below the one that its move lays it on, for any number of parts.
+
+Below a part stand those that lie on it, set in. A tree of more than DEEPEST levels is not set in along its longest
+branch: what lies on a part goes on below it at the same place. Many parts that are laid alike share a line.
+"""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from itertools import groupby, pairwise
+from typing import Final, assert_never
+
+from tol3d.assembly.model import Assembly, Engage, Fix, Locate, Move, Touch
+from tol3d.assembly.model.moves import BestFit, Mate, Rest, Weld
+from tol3d.report.page import Branch
+
+DEEPEST: Final = 8  # levels that are set in
+ALIKE: Final = 4  # parts laid alike that share a line
+KINDS: Final[Mapping[type[Move], str]] = {
+    Fix: "fixed",
+    Locate: "six contacts on",
+    BestFit: "best fit on",
+    Mate: "mate on",
+    Engage: "play on",
+    Rest: "rest on",
+    Touch: "touch on",
+    Weld: "welded to",
+}
+
+
+@dataclass(frozen=True)
+class Laid:
+    """How a part comes to its place.
+
+    Args:
+        part: which.
+        words: by what kind of move, before the parts that it lies on.
+        move: its name; "" for none.
+        on: those parts, in the order in which the move names them.
+        before: how it came to where it was before.
+    """
+
+    part: str
+    words: str
+    move: str
+    on: tuple[str, ...] = ()
+    before: "Laid | None" = None
+
+    @property
+    def text(self) -> str:
+        """In a line."""
+        return f"{self.part}: {self.how}"
+
+    @property
+    def how(self) -> str:
+        """All of it but the part."""
+        own = " ".join([self.words, ", ".join(self.on)]).strip() + (f" (move {self.move})" if self.move else "")
+        return own if self.before is None else f"{self.before.how}, then {own}"
+
+
+def parts_tree(assembly: Assembly, further: Sequence[Laid] = ()) -> tuple[Branch, ...]:
+    """Parts as trees, each with the parts that lie on it.
+
+    Args:
+        assembly: whose parts are laid by its moves.
+        further: what lies on them by other means, such as shafts in bores.
+    """
+    laid = {part.name: Laid(part.name, "where it is drawn, by no move", "") for part in assembly.parts}
+    laid |= {own.part: own for own in (*_laid(assembly), *further)}
+    return _Tree.of(laid).shown()
+
+
+def _laid(assembly: Assembly) -> Iterator[Laid]:
+    """How moves lay parts, in their order; what is welded to a part goes where that is moved again."""
+    before: dict[str, Laid] = {}
+    for part, kind, move, on in _steps(assembly):
+        own = Laid(part, KINDS[kind], move, on, before.get(part))
+        if own.before is None or own.before.move != move:  # a body that is moved again and again is welded once
+            before[part] = own
+    yield from before.values()
+
+
+def _steps(assembly: Assembly) -> Iterator[tuple[str, type[Move], str, tuple[str, ...]]]:
+    """Parts with the kind and name of the move that lays them, and on what."""
+    welded: dict[str, tuple[str, str]] = {}
+    for move in assembly.moves:
+        if isinstance(move, Weld):
+            welded |= dict.fromkeys(move.others, (move.part, move.name))
+            continue
+        body = [move.part]
+        for part in body:  # it grows by what is welded to what was
+            body += [other for other, (leader, _) in welded.items() if leader == part and other not in body]
+        named = dict.fromkeys(assembly.features[name].part for name in _features(move))
+        yield move.part, type(move), move.name, tuple(part for part in named if part not in body)
+        yield from ((part, Weld, welded[part][1], (welded[part][0],)) for part in body[1:])
+
+
+def _features(move: Move) -> list[str]:
+    """The features by which a move lays its part, its own ones too."""
+    match move:
+        case Fix() | Weld():
+            return []
+        case Locate():
+            pairs = [(own.moving, own.target) for own in move.pairs]
+        case BestFit():
+            pairs = [(own.moving, own.target) for own in move.fits]
+        case Mate():
+            pairs = [(own.moving, own.target) for own in move.relations]
+        case Engage():
+            pairs = [(own.moving, own.target) for own in move.relations]
+            pairs += [(own.inner, own.outer) for own in move.engagements]
+        case Rest():
+            pairs = [(own.moving, own.target) for own in move.relations]
+            pairs += [(own.moving, own.target) for own in move.pairs]
+        case Touch():
+            pairs = [(own.moving, own.target) for own in move.contacts]
+        case _:
+            assert_never(move)
+    return [name for pair in pairs for name in pair]
+
+
+@dataclass(frozen=True)
+class _Tree:
+    """Parts below the first of those that they lie on.
+
+    Args:
+        laid: how each part comes to its place.
+        below: the parts below each, in the order of the moves.
+        height: levels below each.
+        roots: parts that lie on no other one.
+    """
+
+    laid: Mapping[str, Laid]
+    below: Mapping[str, Sequence[str]]
+    height: Mapping[str, int]
+    roots: Sequence[str]
+
+    @classmethod
+    def of(cls, laid: Mapping[str, Laid]) -> "_Tree":
+        """The tree; a part that was moved again onto one that lies on itself is a root."""
+        above: dict[str, str] = {}
+        for part, own in laid.items():
+            if own.on and not _reaches(above, own.on[0], part):
+                above[part] = own.on[0]
+        below: dict[str, list[str]] = {part: [] for part in laid}
+        for part, parent in above.items():
+            below[parent].append(part)
+        roots = [part for part in laid if part not in above]
+        order = list(roots)
+        for part in order:
+            order += below[part]
+        height = dict.fromkeys(order, 0)
+        for part in reversed(order):
+            height[part] = max((1 + height[other] for other in below[part]), default=0)
+        return cls(laid, below, height, roots)
+
+    def shown(self) -> tuple[Branch, ...]:
+        """The roots with what is below them."""
+        return self._branches(self.roots)
+
+    def _branches(self, parts: Sequence[str]) -> tuple[Branch, ...]:
+        """Parts below one, with what is below them; alike ones with nothing below in one line."""
+        found: list[Branch] = []
+        for (alone, words, on), group in groupby(parts, key=self._likeness):
+            names = list(group)
+            if alone and len(names) >= ALIKE:
+                found.append(Branch(f"{', '.join(names)}: each {words} {', '.join(on)}".rstrip()))
+            else:
+                found += [branch for name in names for branch in self._branch(name)]
+        return tuple(found)
+
+    def _likeness(self, part: str) -> tuple[bool, str, tuple[str, ...]]:
+        own = self.laid[part]
+        return not self.below[part] and own.before is None, own.words, own.on
+
+    def _branch(self, part: str) -> Iterator[Branch]:
+        """A part with what is below it, or those along its longest branch below each other at the same place."""
+        if self.height[part] < DEEPEST:
+            yield Branch(self.laid[part].text, self._branches(self.below[part]))
+            return
+        path = [part]
+        while below := self.below[path[-1]]:
+            path.append(max(below, key=lambda other: self.height[other]))
+        links = [self._links(lower, upper) for upper, lower in pairwise(path)]
+        for alike, group in groupby(range(len(path)), key=lambda k: links[k - 1] if k else ""):
+            run = list(group)
+            if alike and len(run) >= ALIKE:
+                yield Branch(f"{' → '.join(path[k] for k in run)}: each {alike} the one before")
+                run = []
+            for k in run:
+                beside = [other for other in self.below[path[k]] if other not in path[k + 1 : k + 2]]
+                yield Branch(self.laid[path[k]].text, self._branches(beside))
+
+    def _links(self, part: str, above: str) -> str:
+        """By what a part hangs on the one above alone, where nothing but one part is below it; else nothing."""
+        own = self.laid[part]
+        alone = own.on == (above,) and own.before is None and len(self.below[part]) <= 1
+        return own.words if alone else ""
+
+
+def _reaches(above: Mapping[str, str], part: str, other: str) -> bool:
+    """Whether a part lies on another one, over any number of others, or is it."""
+    while part != other and part in above:
+        part = above[part]
+    return part == other
