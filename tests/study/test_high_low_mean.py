@@ -1,18 +1,25 @@
 """High-low-mean shares against what a first-order stack-up gives by hand."""
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
+from numpy.typing import NDArray
 
-from tol3d import Overrides, Scene, run_scene
+from tol3d import Overrides, Scene, load_scene, run_scene
+from tol3d.study import high_low_mean
+from tol3d.study.evaluation import Evaluation
 from tol3d.study.first_order import first_order
-from tol3d.study.high_low_mean import high_low_mean_percents
+from tol3d.study.high_low_mean import high_low_mean_percents, to_first_order
 from tol3d.study.overrides import simulation_of
+from tol3d.study.task import materials_of, road_of
+from tol3d.system.measure import Measure
 from tol3d.system.stated import mean_deviations
+
+Array = NDArray[np.float64]
 
 ALPHA = math.radians(20)
 SIN, COS = math.sin(ALPHA), math.cos(ALPHA)
@@ -128,3 +135,30 @@ def test_every_one_of_200_contributors_has_its_share(tmp_path: Path) -> None:
     found = {c["name"]: c["high_low_mean_percent"] for c in run.summary["measures"]["play"]["contributors"]}
     expected = {name: 0.2 if name.startswith("small") else 0.8 for name in many}
     assert {name: found[name] for name in many} == {name: pytest.approx(own) for name, own in expected.items()}
+
+
+def test_ends_that_go_with_contributors_times_measures_are_built_for_the_largest_only(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Of four zones three are taken to first order: their shares differ by what is not linear."""
+    simulation = simulation_of(load_scene("cover_on_base"), Overrides())
+    system = simulation.system
+    road = road_of(simulation, materials_of(simulation))
+    assert to_first_order(system, system.measures) == 0
+    rows: list[int] = []
+
+    def read(builds: Array, measures: Sequence[Measure]) -> Mapping[str, Array]:
+        rows.append(len(builds))
+        return Evaluation(system, road).values(builds, measures)
+
+    exact = high_low_mean_percents(system, system.measures, read)
+    built = sum(rows)
+    monkeypatch.setattr(high_low_mean, "MOST_ENDS", 0)
+    monkeypatch.setattr(high_low_mean, "MOST_EXACT", 1)
+    rows.clear()
+    found = high_low_mean_percents(system, system.measures, read)
+    assert to_first_order(system, system.measures) == 4
+    assert sum(rows) <= built - 2 * 3  # both ends of three zones, where they differ by measure for each
+    for name, own in exact.items():
+        assert found[name] == {each: pytest.approx(share, rel=0.01, abs=1e-6) for each, share in own.items()}
+        assert sum(share > 0.1 for share in own.values() if share is not None) > 2

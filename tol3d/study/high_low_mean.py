@@ -3,18 +3,22 @@
 They stand beside shares of the variance because published tables mix the two senses. A length in a random
 direction acts along the direction in which it changes the measure most.
 
-All ends of all contributors are built in one batch for all measures. Which way a draw acts follows from values that it
-asks for: what it asks is noted, answered with that of all others, and handed to it when it is asked again.
+All ends of all contributors are built in one batch for all measures. Which way a draw acts may follow from values that
+it asks for: what it asks is noted, answered with that of all others, and handed to it when it is asked again. Where it
+lies elsewhere for each measure builds go with contributors times measures: beyond MOST_ENDS of them the MOST_EXACT that
+move a measure most have theirs built, the others have what they do to first order.
 """
 
 import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.study.evaluation import Values, batches, of_alike
+from tol3d.study.evaluation import Values, batches, measures_alike, of_alike
 from tol3d.system.contributor import Contributor
 from tol3d.system.measure import Measure
 from tol3d.system.stated import component_slices, mean_deviations
@@ -23,6 +27,13 @@ from tol3d.system.system import System
 Array = NDArray[np.float64]
 
 Percents = Mapping[str, float | None]
+
+MOST_ENDS: Final = 2**14
+"""Builds at ends of contributors that act another way on each measure."""
+MOST_EXACT: Final = 15
+"""Contributors of a measure whose ends are built where all would be more than that."""
+TOGETHER: Final = 4096
+"""Builds for all measures at once; more are made for each measure those that it asks for."""
 
 
 def high_low_mean_percents(system: System, measures: Sequence[Measure], values: Values) -> Mapping[str, Percents]:
@@ -38,6 +49,24 @@ def high_low_mean_percents(system: System, measures: Sequence[Measure], values: 
     return of_alike(system, measures, lambda alike, turning: _percents_of(system, alike, turning, values))
 
 
+def to_first_order(system: System, measures: Sequence[Measure]) -> int:
+    """How many contributors move most measures by what they do to first order, for not all of their ends are built."""
+    found = 0
+    for turning, alike in measures_alike(system, measures):
+        asking = sum(own.plain_ends is None for own in _alone(system, alike, turning))
+        found = max(found, 0 if _all_are_built(asking, len(alike)) else asking)
+    return found
+
+
+def _all_are_built(asking: int, measures: int) -> bool:
+    return asking <= MOST_EXACT or 2 * asking * measures <= MOST_ENDS
+
+
+def _alone(system: System, measures: Sequence[Measure], turning: Mapping[str, bool]) -> list["_Alone"]:
+    mean, slices = mean_deviations(system, measures[0].positions), component_slices(system)
+    return [_Alone(own, slices[own.name], turning[own.name], mean) for own in system.contributors]
+
+
 def _percents_of(
     system: System, measures: Sequence[Measure], turning: Mapping[str, bool], values: Values
 ) -> dict[str, Percents]:
@@ -45,28 +74,98 @@ def _percents_of(
     mean = mean_deviations(system, measures[0].positions)
     middle = {name: float(own[0]) for name, own in values(mean, measures).items()}
     seated = [measure for measure in measures if not math.isnan(middle[measure.name])]
-    ranges: dict[str, dict[str, float]] = {measure.name: {} for measure in seated}
-    slices = component_slices(system)
-    rows = [_rows(own, len(seated)) for own in system.contributors]
-    for contributors in batches(system.contributors, rows, mean.shape[1]):
-        asked = [_Alone(own, slices[own.name], turning[own.name], mean) for own in contributors]
-        for own in asked:
-            own.ask(measure.name for measure in seated)
-        while any(own.waiting for own in asked):
-            _answer(asked, seated, values)
-        for own in asked:
-            for measure in seated:
-                if (states := own.of(measure.name)) is not None:
-                    found = [middle[measure.name], *states]
-                    ranges[measure.name][own.contributor.name] = float(np.max(found) - np.min(found))
+    places = {own.name: k for k, own in enumerate(system.contributors)}
+    alone = _alone(system, measures, turning)
+    plain = [(own, ends) for own in alone if (ends := own.plain_ends) is not None]
+    asking = [own for own in alone if own.plain_ends is None]
+    ranges = {measure.name: np.full(len(alone), np.nan) for measure in seated}
+    if seated:
+        _built_at_once(plain, places, seated, middle, ranges, values)
+    all_exact = _all_are_built(len(asking), len(measures))
+    rows = [2 * (len(own.contributor.draw.components) + len(seated) * all_exact) for own in asking]
+    by_name = {own.contributor.name: own for own in asking}
+    for contributors in batches([own.contributor for own in asking], rows, mean.shape[1]):
+        _asked([by_name[own.name] for own in contributors], places, seated, middle, ranges, values, all_exact=all_exact)
+    if not all_exact:
+        _exact_of_the_largest(asking, places, seated, middle, ranges, values)
     names = [contributor.name for contributor in system.contributors]
-    return {own.name: _percents(names, ranges.get(own.name, {})) for own in measures}
+    return {own.name: _percents(names, ranges.get(own.name)) for own in measures}
 
 
-def _rows(contributor: Contributor, measures: int) -> int:
-    """The number of builds a contributor asks for, about."""
-    count = len(contributor.draw.components)
-    return 2 * count if count == 1 else 2 * (count + measures)
+Ranges = Mapping[str, Array]
+"""By measure the range of each contributor (contributors,), nan where it is not known."""
+
+
+def _built_at_once(
+    plain: Sequence[tuple["_Alone", Array]],
+    places: Mapping[str, int],
+    seated: Sequence[Measure],
+    middle: Mapping[str, float],
+    ranges: Ranges,
+    values: Values,
+) -> None:
+    """Ranges of contributors whose ends are the same for all measures."""
+    ends = {own.contributor.name: (own, both) for own, both in plain}
+    count = plain[0][0].mean.shape[1] if plain else 0
+    for batch in batches([own.contributor for own, _ in plain], [2] * len(plain), count):
+        rows = np.repeat(plain[0][0].mean, 2 * len(batch), axis=0)
+        for k, contributor in enumerate(batch):
+            own, both = ends[contributor.name]
+            rows[2 * k : 2 * k + 2, own.columns] = both
+        at = [places[contributor.name] for contributor in batch]
+        for name, found in values(rows, seated).items():
+            states = np.concatenate([found.reshape(-1, 2), np.full((len(batch), 1), middle[name])], axis=1)
+            ranges[name][at] = states.max(axis=1) - states.min(axis=1)
+
+
+def _asked(
+    asking: Sequence["_Alone"],
+    places: Mapping[str, int],
+    seated: Sequence[Measure],
+    middle: Mapping[str, float],
+    ranges: Ranges,
+    values: Values,
+    *,
+    all_exact: bool,
+) -> None:
+    """Ranges of contributors whose ends follow from what they do to a measure; to first order if not exact."""
+    for own in asking:
+        own.builds_ends = all_exact
+        own.ask(measure.name for measure in seated)
+    while any(own.waiting for own in asking):
+        _answer(asking, seated, values)
+    for own in asking:
+        place = places[own.contributor.name]
+        for measure in seated:
+            found = ranges[measure.name]
+            if not all_exact:
+                found[place] = own.first_order(measure.name, middle[measure.name])
+            elif (states := own.of(measure.name)) is not None:
+                found[place] = np.ptp([middle[measure.name], *states])
+
+
+def _exact_of_the_largest(
+    asking: Sequence["_Alone"],
+    places: Mapping[str, int],
+    seated: Sequence[Measure],
+    middle: Mapping[str, float],
+    ranges: Ranges,
+    values: Values,
+) -> None:
+    """Ranges of the contributors that move a measure most, in place of what they do to first order."""
+    chosen = []
+    for measure in seated:
+        found = ranges[measure.name]
+        known = [own for own in asking if not math.isnan(found[places[own.contributor.name]])]
+        known.sort(key=lambda own: -found[places[own.contributor.name]])
+        for own in known[:MOST_EXACT]:
+            own.want_ends(measure.name)
+            chosen.append((own, measure.name))
+    while any(own.waiting for own in asking):
+        _answer(asking, seated, values)
+    for own, name in chosen:
+        if (states := own.of(name)) is not None:
+            ranges[name][places[own.contributor.name]] = np.ptp([middle[name], *states])
 
 
 class _NotKnownError(Exception):
@@ -85,6 +184,8 @@ class _Alone:
         ends: by measure, where it ends; None where that cannot be known.
         waiting: components that are asked for, with the measures that ask, by their bytes.
         known: by those bytes, values of measures of several builds with the place of this one among them.
+        builds_ends: whether ends are built as soon as they are known.
+        read_at: by measure, components (rows, components) and values (rows,) that were read of it last.
     """
 
     contributor: Contributor
@@ -94,26 +195,41 @@ class _Alone:
     ends: dict[str, Array | None] = field(default_factory=dict)
     waiting: dict[bytes, tuple[Array, list[str]]] = field(default_factory=dict)
     known: dict[bytes, list[tuple[Mapping[str, Array], int]]] = field(default_factory=dict)
+    builds_ends: bool = True
+    read_at: dict[str, tuple[Array, Array]] = field(default_factory=dict)
+
+    @cached_property
+    def plain_ends(self) -> Array | None:
+        """Its ends (2, components) where they are the same for all measures; None where they ask what it does."""
+        try:
+            ends = self.contributor.draw.ends(_refuse_to_read, turning=self.turning)
+        except _NotKnownError:
+            return None
+        return ends if np.isfinite(ends).all() else None
 
     def ask(self, names: Iterable[str]) -> None:
         """Ask for the states of measures, as far as is known where its ends are."""
-        left = list(names)
-        for place, name in enumerate(left):
-            read = _Reading(self, name)
+        for name in names:
             try:
-                ends = self.contributor.draw.ends(read, turning=self.turning)
+                ends = self.contributor.draw.ends(_Reading(self, name), turning=self.turning)
             except _NotKnownError:
                 continue
-            self._ended(name, ends)
-            if not read.asked:  # nor do its ends for any other measure
-                for other in left[place + 1 :]:
-                    self._ended(other, ends)
-                return
+            self.ends[name] = ends if np.isfinite(ends).all() else None  # which way it acts is not known
+            if self.builds_ends:
+                self.want_ends(name)
 
-    def _ended(self, name: str, ends: Array) -> None:
-        self.ends[name] = ends if np.isfinite(ends).all() else None  # which way it acts is not known
-        if self.ends[name] is not None:
+    def want_ends(self, name: str) -> None:
+        """Ask for what a measure is at its ends."""
+        if (ends := self.ends.get(name)) is not None:
             self._want(ends, name)
+
+    def first_order(self, name: str, middle: float) -> float:
+        """How far it moves a measure, by what was read of it about the mean build; nan where its ends are not known."""
+        if (ends := self.ends.get(name)) is None:
+            return math.nan
+        rows, found = self.read_at[name]
+        slopes, *_ = np.linalg.lstsq(rows - self.mean[0, self.columns], found - middle)
+        return abs(float((ends[1] - ends[0]) @ slopes))
 
     def _want(self, rows: Array, name: str) -> None:
         for row in rows:
@@ -139,15 +255,20 @@ class _Alone:
 
 @dataclass
 class _Reading:
-    """A measure as a draw reads it; notes whether it did."""
+    """A measure as a draw reads it."""
 
     alone: _Alone
     name: str
-    asked: bool = False
 
     def __call__(self, rows: Array) -> Array:
-        self.asked = True
-        return self.alone.read(np.asarray(rows, dtype=np.float64), self.name)
+        rows = np.asarray(rows, dtype=np.float64)
+        found = self.alone.read(rows, self.name)
+        self.alone.read_at[self.name] = rows, found
+        return found
+
+
+def _refuse_to_read(rows: Array) -> Array:
+    raise _NotKnownError
 
 
 _Wanted = tuple[_Alone, bytes, Array]
@@ -161,10 +282,15 @@ def _answer(asked: Sequence[_Alone], measures: Sequence[Measure], values: Values
             groups.setdefault(tuple(dict.fromkeys(names)), []).append((own, key, row))
         own.waiting = {}
     if len(groups) > len(measures):  # ends lie elsewhere for each measure
-        groups = {
-            (own.name,): [each for names, wanted in groups.items() if own.name in names for each in wanted]
-            for own in measures
-        }
+        every = [each for wanted in groups.values() for each in wanted]
+        groups = (
+            {tuple(own.name for own in measures): every}
+            if len(every) <= TOGETHER
+            else {
+                (own.name,): [each for names, wanted in groups.items() if own.name in names for each in wanted]
+                for own in measures
+            }
+        )
     known = {measure.name: measure for measure in measures}
     for asking, wanted in groups.items():
         rows = np.repeat(asked[0].mean, len(wanted), axis=0)
@@ -177,10 +303,9 @@ def _answer(asked: Sequence[_Alone], measures: Sequence[Measure], values: Values
         own.ask(name for name in known if name not in own.ends)
 
 
-def _percents(names: Sequence[str], ranges: Mapping[str, float]) -> Percents:
-    if len(ranges) < len(names):  # a build beside the mean does not seat
+def _percents(names: Sequence[str], ranges: Array | None) -> Percents:
+    if ranges is None or np.isnan(ranges).any():  # a build beside the mean does not seat
         return dict.fromkeys(names, None)
-    total = sum(own**2 for own in ranges.values())
-    if math.isnan(total):
-        return dict.fromkeys(names, None)
-    return {name: 100 * own**2 / total if total > 0.0 else 0.0 for name, own in ranges.items()}
+    squares = [own**2 for own in ranges.tolist()]
+    total = sum(squares)
+    return {name: 100 * own / total if total > 0.0 else 0.0 for name, own in zip(names, squares, strict=True)}

@@ -18,7 +18,7 @@ from tol3d.study.agreement.explaining import explanations
 from tol3d.study.agreement.explanation import Explanation, faults
 from tol3d.study.curve_tally import CurveTally
 from tol3d.study.evaluation import Evaluation, evaluations, measures_alike
-from tol3d.study.high_low_mean import Percents, high_low_mean_percents
+from tol3d.study.high_low_mean import MOST_EXACT, Percents, high_low_mean_percents, to_first_order
 from tol3d.study.histograms import histograms
 from tol3d.study.joint import joint_summary
 from tol3d.study.regressors import MOST_REGRESSED
@@ -76,6 +76,7 @@ def study_summary(simulation: Simulation, road: Road | None, tally: Tally) -> Fi
         warnings=[
             *failures(simulation, tally),
             *_too_many(simulation),
+            *_ends_not_built(simulation),
             *faults(explained),
             *simulation.warnings,
             *_unphysical_draws(simulation, tally),
@@ -149,6 +150,16 @@ def _too_many(simulation: Simulation) -> Iterator[str]:
         yield (
             f"{', '.join(names)}: {count} tolerances act, more than the {MOST_REGRESSED} that are regressed on "
             "together; each one's share of the 3D simulation is what it has in common with the measure by itself"
+        )
+
+
+def _ends_not_built(simulation: Simulation) -> Iterator[str]:
+    """A sentence where high-low-mean shares of some contributors are of what they do to first order."""
+    single = [measure for measure in simulation.system.measures if measure.take != "curve"]
+    if count := to_first_order(simulation.system, single):
+        yield (
+            f"high–low–mean: {count} tolerances lie elsewhere at their ends for each of {len(single)} measures; those "
+            f"of the {MOST_EXACT} that move a measure most are built, the others count with what they do to first order"
         )
 
 
