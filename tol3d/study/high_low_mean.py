@@ -224,12 +224,19 @@ class _Alone:
             self._want(ends, name)
 
     def first_order(self, name: str, middle: float) -> float:
-        """How far it moves a measure, by what was read of it about the mean build; nan where its ends are not known."""
+        """How far it moves a measure, by what was read of it about the mean build; nan where its ends are not known.
+
+        As a sum of what each component does to either side: a tilt that the highest point follows acts alike to both.
+        """
         if (ends := self.ends.get(name)) is None:
             return math.nan
         rows, found = self.read_at[name]
-        slopes, *_ = np.linalg.lstsq(rows - self.mean[0, self.columns], found - middle)
-        return abs(float((ends[1] - ends[0]) @ slopes))
+        to_sides, *_ = np.linalg.lstsq(self._sides(rows), found - middle)
+        return float(np.ptp([0.0, *(self._sides(ends) @ to_sides)]))
+
+    def _sides(self, rows: Array) -> Array:
+        off = rows - self.mean[0, self.columns]
+        return np.concatenate([off, np.abs(off)], axis=1)
 
     def _want(self, rows: Array, name: str) -> None:
         for row in rows:
@@ -281,16 +288,14 @@ def _answer(asked: Sequence[_Alone], measures: Sequence[Measure], values: Values
         for key, (row, names) in own.waiting.items():
             groups.setdefault(tuple(dict.fromkeys(names)), []).append((own, key, row))
         own.waiting = {}
-    if len(groups) > len(measures):  # ends lie elsewhere for each measure
-        every = [each for wanted in groups.values() for each in wanted]
-        groups = (
-            {tuple(own.name for own in measures): every}
-            if len(every) <= TOGETHER
-            else {
-                (own.name,): [each for names, wanted in groups.items() if own.name in names for each in wanted]
-                for own in measures
-            }
-        )
+    every = [each for wanted in groups.values() for each in wanted]
+    if len(groups) > 1 and len(every) <= TOGETHER:
+        groups = {tuple(own.name for own in measures): every}
+    elif len(groups) > len(measures):  # ends lie elsewhere for each measure
+        groups = {
+            (own.name,): [each for names, wanted in groups.items() if own.name in names for each in wanted]
+            for own in measures
+        }
     known = {measure.name: measure for measure in measures}
     for asking, wanted in groups.items():
         rows = np.repeat(asked[0].mean, len(wanted), axis=0)
