@@ -161,4 +161,4 @@ def test_ends_that_go_with_contributors_times_measures_are_built_for_the_largest
     assert sum(rows) <= built - 2 * 3  # both ends of three zones, where they differ by measure for each
     for name, own in exact.items():
         assert found[name] == {each: pytest.approx(share, rel=0.01, abs=1e-6) for each, share in own.items()}
-        assert sum(share > 0.1 for share in own.values() if share is not None) > 2
+        assert sum(share > 0.1 for share in own.values() if share is not None) > 1
