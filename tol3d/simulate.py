@@ -39,7 +39,7 @@ Assemblies are another. Theirs:
 
     picks        faces -> numbers           assembly/picking/           settle            (when the scene is read)
     drawing      tolerances, by feature     assembly/grammar/           Drawing
-    assembly     parts, frames, moves       assembly/from_scene/        assembly_of       (model/: what they are)
+    assembly     parts, frames, moves       assembly/from_scene/        understood        (model/: what they are)
     zones        uniforms -> deviations     assembly/zones/             Confined          (catalogue.py: all zones)
     placing      deviations -> finite poses assembly/placing/road.py    values
     torsors      the second road            assembly/torsors/road.py    values

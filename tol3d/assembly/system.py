@@ -10,8 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.assembly.clearances.prepared import clearances_of, reader_of, solid_pairs, with_facing, witness_of
-from tol3d.assembly.from_scene import Meant, assembly_of
+from tol3d.assembly.from_scene import Meant, understood
 from tol3d.assembly.from_scene.datums import place_of
+from tol3d.assembly.from_scene.features import poses_of
 from tol3d.assembly.from_scene.idle import idle_forms
 from tol3d.assembly.grammar.drawing import Drawing
 from tol3d.assembly.model import Assembly
@@ -338,10 +339,11 @@ def _settled(scene: Scene) -> Meant:
 
     A part that cannot be laid so, such as by pins beside their holes, stays where it is drawn.
     """
-    drawn = assembly_of(scene)
-    poses = placing.placed(drawn.assembly, np.zeros((1, drawn.assembly.width)))
-    settled = {name: np.asarray(pose[0]) for name, pose in poses.items() if np.isfinite(pose[0]).all()}
-    return assembly_of(scene, {part.name: part.pose for part in drawn.assembly.parts} | settled)
+    meaning, poses = understood(scene), poses_of(scene)
+    drawn = meaning.at(poses)
+    found = placing.placed(drawn.assembly, np.zeros((1, drawn.assembly.width)))
+    settled = {name: np.asarray(pose[0]) for name, pose in found.items() if np.isfinite(pose[0]).all()}
+    return meaning.at({**poses, **settled})
 
 
 def _asked(scene: Scene, ask: Callable[[], T]) -> T:

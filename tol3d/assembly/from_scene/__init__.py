@@ -13,6 +13,6 @@ warming       parts that are warmer grow
 assembly      all of it together
 """
 
-from tol3d.assembly.from_scene.assembly import Meant, assembly_of
+from tol3d.assembly.from_scene.assembly import Meant, understood
 
-__all__ = ["Meant", "assembly_of"]
+__all__ = ["Meant", "understood"]

@@ -7,15 +7,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.assembly.from_scene.boundaries import shift_frames
-from tol3d.assembly.from_scene.contributors import effects_of
+from tol3d.assembly.from_scene.contributors import Effects, effects_of
 from tol3d.assembly.from_scene.datums import DatumFrames, in_order
-from tol3d.assembly.from_scene.features import TouchedPoints, features_of, poses_of
+from tol3d.assembly.from_scene.features import TouchedPoints, features_of
 from tol3d.assembly.from_scene.measures import add_projected, measured_of, named_by, shown_measures
 from tol3d.assembly.from_scene.moves import moves_of
 from tol3d.assembly.from_scene.warming import warmed
 from tol3d.assembly.grammar.drawing import Drawing
 from tol3d.assembly.grammar.parts import SolidSpec
-from tol3d.assembly.model import Assembly, Part
+from tol3d.assembly.model import Assembly, DatumFrame, Feature, Measured, Part
 from tol3d.assembly.picking.shapes import shapes_of
 from tol3d.scene import Scene
 from tol3d.system.plain import PlainContributor, PlainMeasure
@@ -40,12 +40,48 @@ class Meant:
     named: Mapping[str, tuple[str, ...]]
 
 
-def assembly_of(scene: Scene, settled: Mapping[str, Array] | None = None) -> Meant:
-    """What a scene means.
+@dataclass(frozen=True, eq=False)
+class Understood:
+    """A scene's drawings and measures, wherever its parts lie.
 
     Args:
         scene: the scene.
-        settled: nominal poses of its parts in the world (4, 4); as it says itself, if not given.
+        effects: its tolerances.
+        frames: of its datums.
+        features: those that it names.
+        measured: what its measures read.
+    """
+
+    scene: Scene
+    effects: Effects
+    frames: DatumFrames
+    features: Mapping[str, Feature]
+    measured: Mapping[str, Measured]
+
+    def at(self, poses: Mapping[str, Array]) -> Meant:
+        """What the scene means where its parts lie nominally at some poses in the world (4, 4)."""
+        features, frames = dict(self.features), self.frames
+        moves = moves_of(self.scene, self.effects, TouchedPoints(features, poses))
+        parents = {name: feature.parent for name, feature in features.items()}
+        feature_order, frame_order, _ = in_order(parents, frames.made)  # rings are refused where the scene is checked
+        its_features: dict[str, list[Feature]] = {name: [] for name in poses}
+        its_frames: dict[str, list[DatumFrame]] = {name: [] for name in poses}
+        for own in feature_order:
+            its_features[features[own].part].append(features[own])
+        for own in frame_order:
+            its_frames[frames.made[own].part].append(frames.made[own])
+        solids = shapes_of(self.scene)
+        parts = tuple(
+            Part(name, poses[name], tuple(its_features[name]), tuple(its_frames[name]), solids.get(name))
+            for name in self.scene.of(SolidSpec)
+        )
+        assembly = Assembly(parts, moves, self.measured, self.effects.width)
+        shown = shown_measures(self.scene, self.measured)
+        return Meant(assembly, tuple(self.effects.contributors), shown, named_by(self.scene))
+
+
+def understood(scene: Scene) -> Understood:
+    """What a scene means.
 
     Raises:
         SceneError: tolerances, zones or directions that do not fit what they are of.
@@ -56,22 +92,6 @@ def assembly_of(scene: Scene, settled: Mapping[str, Array] | None = None) -> Mea
     warmed(effects, scene, drawing, frames)
     features = features_of(drawing, effects, frames)
     add_projected(scene, features)
-    measured = measured_of(scene, frames)
-    poses = poses_of(scene) if settled is None else settled
+    measured = measured_of(scene, drawing, frames)
     shift_frames(scene, drawing, effects, frames)
-    moves = moves_of(scene, effects, TouchedPoints(features, poses))
-    parents = {name: feature.parent for name, feature in features.items()}
-    feature_order, frame_order, _ = in_order(parents, frames.made)  # rings are refused where the scene is checked
-    solids = shapes_of(scene)
-    parts = tuple(
-        Part(
-            name,
-            poses[name],
-            tuple(features[own] for own in feature_order if features[own].part == name),
-            tuple(frames.made[own] for own in frame_order if frames.made[own].part == name),
-            solids.get(name),
-        )
-        for name in scene.of(SolidSpec)
-    )
-    assembly = Assembly(parts, moves, measured, effects.width)
-    return Meant(assembly, tuple(effects.contributors), shown_measures(scene, measured), named_by(scene))
+    return Understood(scene, effects, frames, features, measured)

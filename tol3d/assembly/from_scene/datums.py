@@ -89,16 +89,17 @@ def in_order(
     """
     features: list[str] = []
     ordered: list[str] = []
-    done = {""}
+    done, known = {""}, set[str]()
     waiting = list(parents)
     while waiting:
         ready = [name for name in waiting if parents[name] in done]
         if not ready:
             return tuple(features), tuple(ordered), tuple(waiting)
         features += ready
-        waiting = [name for name in waiting if name not in ready]
+        known |= set(ready)
+        waiting = [name for name in waiting if name not in known]
         for name, frame in frames.items():
-            if name not in done and all(own in features for own in _features(frame)):
+            if name not in done and all(own in known for own in _features(frame)):
                 ordered.append(name)
                 done.add(name)
     return tuple(features), tuple(ordered), ()

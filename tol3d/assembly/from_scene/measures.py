@@ -1,6 +1,6 @@
 """Measures of a scene: what each reads, and how it is shown."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 from tol3d.assembly.from_scene.bonus import sized_by
@@ -30,14 +30,14 @@ from tol3d.system.plain import UNITS, PlainMeasure, measures_of
 WORSE_HIGH: frozenset[MeasureKind] = frozenset(("position", "orientation", "flatness", "pattern"))
 
 
-def measured_of(scene: Scene, frames: DatumFrames) -> dict[str, Measured]:
+def measured_of(scene: Scene, drawing: Drawing, frames: DatumFrames) -> dict[str, Measured]:
     """What each measure of a scene reads."""
-    return {name: _measured(scene, _named(scene, name), frames) for name in scene.measures}
+    return {name: _measured(scene, _named(scene, name), drawing, frames) for name in scene.measures}
 
 
-def _measured(scene: Scene, spec: AssemblyMeasureSpec, frames: DatumFrames) -> Measured:
+def _measured(scene: Scene, spec: AssemblyMeasureSpec, drawing: Drawing, frames: DatumFrames) -> Measured:
     if isinstance(spec, DifferenceSpec):
-        own, less = (_measured(scene, _named(scene, name), frames) for name in (spec.of, spec.minus))
+        own, less = (_measured(scene, _named(scene, name), drawing, frames) for name in (spec.of, spec.minus))
         return replace(own, minus=less, rocking=spec.rocking)
     if isinstance(spec, SlackSpec):
         return Measured("slack", (), of_move=list(scene.moves).index(spec.of))
@@ -47,12 +47,12 @@ def _measured(scene: Scene, spec: AssemblyMeasureSpec, frames: DatumFrames) -> M
         return Measured("clearance", (), after=after, rocking=spec.rocking, parts=parts, chord_error=spec.error)
     assert isinstance(spec, FeatureMeasureSpec)
     features = tuple(name for _, name, _ in spec.named())
-    bonuses = _bonuses(scene, spec, features)
+    bonuses = _bonuses(scene, drawing, spec, features)
     if isinstance(spec, InspectedPositionSpec) and spec.projected is not None:
         features = (projected_name(spec.of, spec.projected.internal),)
     direction = None if spec.along is None else unit_vector(spec.along)
     frame = frames.named(part_of(features[0]), spec.named_datums)
-    room = room_of(scene, Drawing(scene), spec.named()[0][1], spec.named_datums)
+    room = room_of(scene, drawing, spec.named()[0][1], spec.named_datums)
     over_gauges = room is None and any(own.mmb is not None for own in spec.named_datums)
     gauge = spec.free if isinstance(spec, InspectedPatternSpec) else "shift"
     over = spec.over_play if isinstance(spec, OverPlaySpec) else None
@@ -74,12 +74,13 @@ def add_projected(scene: Scene, features: dict[str, Feature]) -> None:
             features[own.name] = own
 
 
-def _bonuses(scene: Scene, spec: FeatureMeasureSpec, features: Sequence[str]) -> tuple[MaterialBonus, ...]:
+def _bonuses(
+    scene: Scene, drawing: Drawing, spec: FeatureMeasureSpec, features: Sequence[str]
+) -> tuple[MaterialBonus, ...]:
     """Of each feature; none where no modifier asks for them."""
     modifier = spec.modifier if isinstance(spec, InspectedPositionSpec | InspectedPatternSpec) else None
     if modifier is None:
         return ()
-    drawing = Drawing(scene)
     found = (sized_by(scene, drawing, own, modifier).bonus for own in features)
     return tuple(MaterialBonus(own.low, own.high, own.grows) for own in found)
 
@@ -90,7 +91,7 @@ def _named(scene: Scene, name: str) -> AssemblyMeasureSpec:
     return spec
 
 
-def shown_measures(scene: Scene, read: dict[str, Measured]) -> tuple[PlainMeasure, ...]:
+def shown_measures(scene: Scene, read: Mapping[str, Measured]) -> tuple[PlainMeasure, ...]:
     """The measures as studies see them."""
     found = []
     for own in measures_of(scene):

@@ -27,20 +27,18 @@ class PartTorsors:
         self._columns = columns
         self._features = {feature.name: feature for feature in part.features}
         self._frames = {frame.name: frame for frame in part.datum_frames}
-        self._torsors: dict[str, Array] = {}
         self._displacements: dict[str, Array] = {}
         self._rooms: dict[str, GaugesRoom] = {}
 
     def feature(self, name: str) -> Array:
-        """The torsor (6, columns) of a feature: of the datum frame to which it is toleranced, and its own."""
-        if name not in self._torsors:
-            feature = self._features[name]
-            own = from_components(feature.shape) @ summed(
-                feature.moved_by, len(feature.shape.components), self._columns
-            )
-            own[:3] += summed(feature.grown_by, 3, self._columns)
-            self._torsors[name] = self.datum_frame(feature.parent) + seen_from(feature.frame) @ own
-        return self._torsors[name]
+        """The torsor (6, columns) of a feature: of the datum frame to which it is toleranced, and its own.
+
+        It is not kept: most are asked for once, and those of thousands of features would fill the memory.
+        """
+        feature = self._features[name]
+        own = from_components(feature.shape) @ summed(feature.moved_by, len(feature.shape.components), self._columns)
+        own[:3] += summed(feature.grown_by, 3, self._columns)
+        return self.datum_frame(feature.parent) + seen_from(feature.frame) @ own
 
     def datum_frame(self, name: str) -> Array:
         """The torsor (6, columns) of a datum frame; 0 for "", the part's own."""

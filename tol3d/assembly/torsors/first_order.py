@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.assembly.model import Assembly, BestFit, Engage, Measured, Rest
+from tol3d.assembly.model.measures import MeasureKind
 from tol3d.assembly.torsors.columns import Columns, without_rounding
 from tol3d.assembly.torsors.measures import reading
 from tol3d.assembly.torsors.moves import after
@@ -20,6 +21,8 @@ from tol3d.errors import InputError
 
 Array = NDArray[np.float64]
 
+LINEAR: frozenset[MeasureKind] = frozenset(("gap", "point_plane", "size", "slack"))
+"""Measures whose reading makes no term."""
 UNSEEN = 1e-9
 """Change of a measure by what a part may rock [mm or rad a mm] that is rounding."""
 TOGETHER = 4096
@@ -192,8 +195,9 @@ def _reads(rows: Array) -> NDArray[np.bool_]:
 
 
 def _room(assembly: Assembly) -> int:
-    """How many columns terms may make: of a datum one, of a minimax fit or a rest six, of play seven, of a reading ten.
+    """How many columns terms may make.
 
+    Of a datum one, of a minimax fit or a rest six, of play seven, of a reading one where it is linear, else ten.
     Datums of a frame with gauges are taken twice, and these have play.
 
     Moves are followed once, and twice more for each measure that is read at an end of what parts may rock.
@@ -207,8 +211,9 @@ def _room(assembly: Assembly) -> int:
     played = sum(own.over_play is not None for own in assembly.measures.values())
     rocking = sum(own.rocking is not None for own in assembly.measures.values()) if rests else 0
     moved = 6 * fits + 6 * rests + 7 * plays
-    return datums + moved * (1 + 2 * rocking + played) + 10 * sum(map(_readings, assembly.measures.values()))
+    return datums + moved * (1 + 2 * rocking + played) + sum(map(_readings, assembly.measures.values()))
 
 
 def _readings(measured: Measured) -> int:
-    return 1 + (0 if measured.minus is None else _readings(measured.minus))
+    own = 1 if measured.kind in LINEAR else 10  # where a part may rock, the ends of a linear one are a term
+    return own + (0 if measured.minus is None else _readings(measured.minus))

@@ -1,5 +1,7 @@
 """Nominal frames from what a scene says of them: a place, an axis or normal, which way x points."""
 
+from functools import lru_cache
+from struct import pack, unpack
 from typing import Final
 
 import numpy as np
@@ -8,6 +10,7 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 Triple = tuple[float, float, float]
 
+KEPT: Final = 4096  # ways in which features look; parts have few, which all their features share
 ALONG: Final = 1e-6  # sine; less than that off z, a direction cannot say where x points
 
 
@@ -25,10 +28,23 @@ def is_across(x: Triple, z: Triple) -> bool:
 
 def frame(at: Array, z: Triple, x: Triple | None = None) -> Array:
     """A frame (4, 4) at a place with a z axis; x as near to `x` as it can be, or to the world's x (y where z is x)."""
-    axis = unit(z)
-    wish = unit(x) if x is not None else np.eye(3)[0] if abs(axis[0]) < 0.9 else np.eye(3)[1]
+    made = _turned(pack("3d", *z), None if x is None else pack("3d", *x)).copy()
+    made[:3, 3] = at
+    return made
+
+
+@lru_cache(maxsize=KEPT)
+def _turned(z: bytes, x: bytes | None) -> Array:
+    """That frame at the origin, not to be changed, of directions as bytes: -0.0 is not 0.0."""
+    axis = unit(_triple(z))
+    wish = unit(_triple(x)) if x is not None else np.eye(3)[0] if abs(axis[0]) < 0.9 else np.eye(3)[1]
     first = wish - axis * (wish @ axis)
     first /= np.linalg.norm(first)
     made = np.eye(4)
-    made[:3, 0], made[:3, 1], made[:3, 2], made[:3, 3] = first, np.cross(axis, first), axis, at
+    made[:3, 0], made[:3, 1], made[:3, 2] = first, np.cross(axis, first), axis
     return made
+
+
+def _triple(packed: bytes) -> Triple:
+    x, y, z = unpack("3d", packed)
+    return x, y, z
