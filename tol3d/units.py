@@ -7,7 +7,9 @@ word for a unit: `3 pins`, `1 pin`.
 
 import math
 import re
+from collections.abc import Iterable
 from dataclasses import dataclass
+from decimal import Decimal
 from typing import Any, Final, Literal
 
 from pydantic import GetCoreSchemaHandler, GetJsonSchemaHandler
@@ -135,6 +137,21 @@ class Quantity:
     @classmethod
     def __get_pydantic_json_schema__(cls, schema: Any, handler: GetJsonSchemaHandler) -> dict[str, Any]:
         return _json_schema(*FACTORS)
+
+
+def summed(terms: Iterable[tuple[int, Quantity]]) -> Quantity:
+    """The sum of multiples of quantities, by decimals as one writes them: in their unit, in the base unit of several.
+
+    >>> str(summed([(1, Quantity(0.1, "mm")), (2, Quantity(0.1, "mm"))]))
+    '0.3 mm'
+    """
+    several = [(times, Decimal(repr(own.number)), own) for times, own in terms]
+    units = dict.fromkeys(own.unit for _, _, own in several)
+    if len(units) == 1:
+        return Quantity(float(sum(times * number for times, number, _ in several)), *units)
+    table = FACTORS[several[0][2].dimension]
+    total = sum(times * number * Decimal(repr(table[own.unit])) for times, number, own in several)
+    return Quantity(float(total), next(iter(table)))
 
 
 @dataclass(frozen=True)

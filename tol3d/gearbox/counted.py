@@ -3,6 +3,7 @@
 from collections.abc import Iterator
 
 from tol3d.assembly.grammar.feature_name import part_of
+from tol3d.assembly.grammar.parts import SolidSpec, likes
 from tol3d.assembly.grammar.tolerances import FeatureTolerance, SizeSpec
 from tol3d.gearbox.grammar.shaft_in_bores import ShaftInBoresSpec
 from tol3d.gearbox.system import GearboxSystem
@@ -48,5 +49,6 @@ def _sizes(scene: Scene, spec: BearingClearanceSpec) -> Iterator[str]:
 
 def _is_copy(scene: Scene, bore: str, original: str) -> bool:
     """Whether a bore is that of a part that is like the toleranced one."""
-    like = getattr(scene.parts[part_of(bore)], "like", None)
-    return f"{like}.{bore.partition('.')[2]}" == original
+    solids, feature = scene.of(SolidSpec), bore.partition(".")[2]
+    others = likes(part_of(bore), solids)[1:] if part_of(bore) in solids else ()
+    return any(f"{own}.{feature}" == original for own in others)

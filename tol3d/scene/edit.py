@@ -2,16 +2,17 @@
 
 from collections.abc import Mapping
 from copy import copy
+from dataclasses import replace
 from io import StringIO
 from pathlib import Path
 from typing import Any, Final
 
 from ruamel.yaml import YAML
-from ruamel.yaml.comments import CommentedMap
+from ruamel.yaml.comments import CommentedMap, CommentedSeq
 
 from tol3d.errors import InputError, unwritable
+from tol3d.scene.including import INCLUDE
 from tol3d.scene.load import read_scene
-from tol3d.scene.place import Origin
 from tol3d.scene.schema import Scene
 from tol3d.scene.tolerance import ToleranceSpec
 
@@ -29,9 +30,9 @@ def tolerance_lines(tolerances: Tolerances) -> str:
 
 def with_tolerances(scene: Scene, changed: Tolerances) -> Scene:
     """A scene with some tolerances changed or added, in its text too: results are kept by that."""
-    text = _edited(scene.text, changed)
+    text = _edited(scene, changed)
     own = scene.model_copy(update={"tolerances": {**scene.tolerances, **changed}})
-    return own.read_from(Origin(scene.source, text, scene.places, scene.files))
+    return own.read_from(replace(scene.origin, text=text))
 
 
 def write_scene(scene: Scene, path: Path) -> None:
@@ -56,21 +57,37 @@ def write_scene(scene: Scene, path: Path) -> None:
         raise InputError(f"{path}: {scene.source} is written in a way that cannot be edited; paste the lines instead")
 
 
-def _edited(text: str, changed: Tolerances) -> str:
-    """A scene's text with these tolerances: of one that is there only the distribution is written anew."""
-    data = _yaml().load(text)
+def _edited(scene: Scene, changed: Tolerances) -> str:
+    """A scene's text with these tolerances: of one that is there only the distribution is written anew.
+
+    One of an included file is left out there, and written into the scene.
+    """
+    data = _yaml().load(scene.text)
     if "tolerances" not in data:
-        data.insert(list(data).index("moves"), "tolerances", CommentedMap())
+        data.insert(list(data).index("moves") if "moves" in data else len(data), "tolerances", CommentedMap())
     tolerances = data["tolerances"]
     for name, spec in changed.items():
         plain = _plain(spec)
         if name not in tolerances:
+            if name in scene.tolerances:
+                _leave_out(data[INCLUDE], name)
             tolerances[name] = _flow(plain)
             continue
         entry = copy(tolerances[name])  # another entry may be an alias of it
         entry["distribution"] = _flow(plain["distribution"])
         tolerances[name] = entry
     return _written(data)
+
+
+def _leave_out(includes: CommentedMap, name: str) -> None:
+    """Name an entry of an included file among those that are left out."""
+    prefix = max((own for own in includes if name.startswith(f"{own} ")), key=len)
+    given = includes[prefix]
+    spelt = CommentedMap(file=given) if isinstance(given, str) else copy(given)
+    spelt["without"] = CommentedSeq([*spelt.get("without", ()), name.removeprefix(f"{prefix} ")])
+    spelt["without"].fa.set_flow_style()
+    spelt.fa.set_flow_style()
+    includes[prefix] = spelt
 
 
 def _plain(spec: ToleranceSpec) -> dict[str, Any]:

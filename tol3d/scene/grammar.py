@@ -164,6 +164,11 @@ class Grammar:
         """The class of scenes of these kinds: it validates, and writes their JSON Schema."""
         return _scene_class(self)
 
+    @property
+    def fragment(self) -> type[Scene]:
+        """The class of files that scenes include: no section must be there, and no name."""
+        return _scene_class(self, required=frozenset())
+
     def messages(self, error: ValidationError, data: Any, origin: Origin) -> list[str]:
         """What pydantic finds wrong with the plain values of a scene, in the user's words, each with its place."""
         return messages(error, data, origin, self)
@@ -267,11 +272,12 @@ class Grammar:
 
 
 @lru_cache
-def _scene_class(grammar: Grammar) -> type[Scene]:
-    sections: dict[str, Any] = {}
+def _scene_class(grammar: Grammar, required: frozenset[str] = REQUIRED) -> type[Scene]:
+    sections: dict[str, Any] = {} if required else {"scene": (str, "")}
     for section in SECTIONS:
-        union = _union(grammar, section)
-        sections[section] = (Mapping[Name, union], _field(section))  # type: ignore[valid-type]  # made at run time
+        union, given = _union(grammar, section), section in required
+        field = Field(min_length=1) if given else Field(default_factory=dict)
+        sections[section] = (Mapping[Name, union], field)  # type: ignore[valid-type]  # made at run time
     study = study_spec_class(grammar.engines, tuple(each.options for each in grammar.vocabularies if each.options))
     sections["study"] = (study, Field(default_factory=study))
     column: Any = published_column_class(tuple(each.published for each in grammar.vocabularies if each.published))
@@ -308,10 +314,6 @@ def _union(grammar: Grammar, section: str) -> Any:
     """One of the section's kinds, discriminated by the word."""
     specs = tuple(grammar.kinds(section).values())
     return specs[0] if len(specs) == 1 else Annotated[Union[specs], Field(discriminator="kind")]  # noqa: UP007
-
-
-def _field(section: str) -> Any:
-    return Field(min_length=1) if section in REQUIRED else Field(default_factory=dict)
 
 
 def specs_in(package: ModuleType) -> tuple[type[Any], ...]:

@@ -7,6 +7,8 @@ from pathlib import Path
 from tol3d.files import Files, read_file
 from tol3d.scene.bundled import scene_path
 from tol3d.scene.grammar import Grammar
+from tol3d.scene.include import Includes
+from tol3d.scene.node import Places, plain
 from tol3d.scene.place import Origin
 from tol3d.scene.references import bad_names, loose_ends, refuse, unreadable_files
 from tol3d.scene.schema import Scene
@@ -43,8 +45,12 @@ def read_scene(
     Raises:
         SceneError: one or several messages `file:line: place: what was expected, what came`.
     """
-    data, origin = read_scene_text(scene_path(path))
-    scene = grammar.scene.model_validate(data, context=origin)
+    source = scene_path(path)
+    top, origin = read_scene_text(source)
+    includes = Includes(source, grammar, files)
+    top = includes.expanded(top, origin)
+    origin = replace(origin, places=Places(top), files=includes.files, included=tuple(includes.files))
+    scene = grammar.scene.model_validate(plain(top), context=origin)
     scene = _with_files(scene, origin, files, trust_parts=trust_parts)
     if examine is not None:
         examine(scene)
@@ -69,7 +75,8 @@ def _with_files(scene: Scene, origin: Origin, known: Files | None, *, trust_part
     refuse(scene, problems if known is not None else [*problems, *unreadable_files(scene, trust_parts)])
     files = known
     if files is None:
-        files = {name: read_file(scene.folder / name) for name in scene.file_names}
+        unread = (name for name in scene.file_names if name not in origin.included)
+        files = {**origin.files, **{name: read_file(scene.folder / name) for name in unread}}
     return scene.read_from(replace(origin, files=files))
 
 

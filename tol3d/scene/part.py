@@ -5,6 +5,7 @@ from typing import Annotated, ClassVar
 from pydantic import Field
 
 from tol3d.scene.entry import Entry
+from tol3d.scene.place import KeyPath
 from tol3d.units import Of, Positive, Quantity
 
 Length = Annotated[Quantity, Of("length"), Positive()]
@@ -12,6 +13,9 @@ Length = Annotated[Quantity, Of("length"), Positive()]
 
 class PartSpec(Entry):
     """A part as a scene writes it."""
+
+    origin_field: ClassVar[KeyPath] = ()
+    """The field that says where its origin lies in the world; () where nothing does."""
 
     expansion: Annotated[Quantity, Of("expansion")] | None = Field(
         default=None, description="coefficient of linear thermal expansion"

@@ -3,6 +3,7 @@
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import NamedTuple
 
 from tol3d.errors import SceneError
 from tol3d.files import Files
@@ -13,12 +14,17 @@ KeyPath = tuple[str | int, ...]
 """Keys (and positions in lists) from the top of a scene to a value."""
 
 
-@dataclass(frozen=True)
-class Place:
-    """A line and a column of a file, both from 1."""
+class Place(NamedTuple):
+    """A line and a column of a file, both from 1.
+
+    Args:
+        line, column: where.
+        file: where an included file lies; "" for the scene's own.
+    """
 
     line: int
     column: int
+    file: str = ""
 
 
 @dataclass(frozen=True)
@@ -30,12 +36,14 @@ class Origin:
         text: its content.
         places: where the key of each key path stands (the value, for an item of a list).
         files: the files that it names, as they were when it was read.
+        included: those of them that it includes.
     """
 
     source: Path = Path("scene")
     text: str = ""
     places: Mapping[KeyPath, Place] = field(default_factory=dict)
     files: Files = field(default_factory=dict)
+    included: tuple[str, ...] = ()
 
     def place(self, path: KeyPath) -> Place:
         """Where the key path stands, or the nearest key above it; the top of the file at last."""
@@ -46,8 +54,14 @@ class Origin:
 
     def message(self, path: KeyPath, sentence: str, place: Place | None = None) -> str:
         """`file:line: place: sentence`, on one line."""
-        line = (place or self.place(path)).line
-        return ": ".join(part for part in (f"{self.source}:{line}", path_text(path), printable(sentence)) if part)
+        line, _, file = place or self.place(path)
+        words = (f"{file or self.source}:{line}", path_text(path), printable(sentence))
+        return ": ".join(part for part in words if part)
+
+    def order(self, path: KeyPath) -> tuple[str, int]:
+        """By which messages of key paths are sorted: those of the scene's own file first, by its lines."""
+        place = self.place(path)
+        return place.file, place.line
 
     def error(self, path: KeyPath, sentence: str, place: Place | None = None) -> SceneError:
         """That message as the error to raise."""

@@ -33,7 +33,7 @@ def messages(error: ValidationError, data: Any, origin: Origin, grammar: "Gramma
         origin: where they stand.
         grammar: the kinds that they may be of.
     """
-    found: dict[str, int] = {}
+    found: dict[str, tuple[str, int]] = {}
     for details in error.errors(include_url=False):
         path = _path(details["loc"], data)
         sentence = problem_sentence(details, _dimensions(path, data, grammar))
@@ -45,7 +45,7 @@ def messages(error: ValidationError, data: Any, origin: Origin, grammar: "Gramma
         sentence = _other_word(details, grammar) or sentence
         if context.get("field"):
             path = (*path, *str(context["field"]).split("."))
-        found.setdefault(origin.message(path, sentence), origin.place(path).line)
+        found.setdefault(origin.message(path, sentence), origin.order(path))
     ordered = sorted(found, key=lambda message: found[message])
     return first_few(ordered)
 

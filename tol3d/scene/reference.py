@@ -70,9 +70,11 @@ class Contradiction:
         expected: what would do.
         got: what came.
         known: words that would do, for the hint.
+        leads: whether others may follow from it, which are told once it is mended.
     """
 
     path: KeyPath
     expected: str
     got: str
     known: tuple[str, ...] = ()
+    leads: bool = False

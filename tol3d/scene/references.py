@@ -26,7 +26,7 @@ def refuse(scene: Scene, problems: list[Problem]) -> None:
         SceneError: with the first few of them, in the order of the file.
     """
     if problems:
-        ordered = sorted(problems, key=lambda problem: scene.place(problem[0]).line)
+        ordered = sorted(problems, key=lambda problem: scene.origin.order(problem[0]))
         raise SceneError(*first_few([str(scene.refuse(path, sentence)) for path, sentence in ordered]))
 
 
@@ -34,7 +34,9 @@ def loose_ends(scene: Scene) -> list[Problem]:
     """What does not hold together in a scene that is right field by field: names first, then what they mean."""
     problems = bad_names(scene)
     if not problems:
-        problems = [*scene.grammar.problems(scene), *_contradicted(scene)]
+        contradicted = list(_contradicted(scene))
+        leading = [problem for problem, leads in contradicted if leads]
+        problems = leading or [*scene.grammar.problems(scene), *(problem for problem, _ in contradicted)]
     return [*problems, *_unpublished(scene), *_unstoppable(scene)]
 
 
@@ -100,11 +102,12 @@ def _found(scene: Scene, name: str) -> str:
     return f"is {words}" if words else f"stands in {section}"
 
 
-def _contradicted(scene: Scene) -> Iterator[Problem]:
+def _contradicted(scene: Scene) -> Iterator[tuple[Problem, bool]]:
+    """What entries find wrong in each other, and whether more may follow from it."""
     for (section, name), entry in scene.entries().items():
         for it in entry.contradictions(scene.parts, scene.moves):
             near = hint(it.got.strip("'"), it.known)
-            yield (section, name, *it.path), f"expected {it.expected}, got {it.got}{near}"
+            yield ((section, name, *it.path), f"expected {it.expected}, got {it.got}{near}"), it.leads
 
 
 def _unpublished(scene: Scene) -> Iterator[Problem]:

@@ -28,6 +28,7 @@ from tol3d.files import Files
 from tol3d.samplers.replicates import REPLICATES, SamplerKind, uneven
 from tol3d.scene.engines import THEORY, Engines
 from tol3d.scene.entry import Entry
+from tol3d.scene.including import with_include
 from tol3d.scene.measure import MeasureEntry
 from tol3d.scene.move import MoveSpec
 from tol3d.scene.name import Name
@@ -222,9 +223,9 @@ class Scene(Strict):
 
     @classmethod
     def __get_pydantic_json_schema__(cls, schema: CoreSchema, handler: GetJsonSchemaHandler) -> JsonSchemaValue:
-        """With the laws that its tolerances may have."""
+        """With the laws that its tolerances may have, and files that it may include."""
         with stating(cls.laws):
-            return handler(schema)
+            return with_include(handler(schema), handler)
 
     def model_post_init(self, context: Any) -> None:
         """Keep the origin that validation was given as its context."""
@@ -262,8 +263,9 @@ class Scene(Strict):
 
     @property
     def file_names(self) -> tuple[str, ...]:
-        """Every file that the scene names, as written there."""
-        return tuple(dict.fromkeys(name for entry in self.entries().values() for _, name in entry.file_names()))
+        """Every file that the scene names, as written there, and those that it includes by names from its folder."""
+        named = (name for entry in self.entries().values() for _, name in entry.file_names())
+        return tuple(dict.fromkeys((*self._origin.included, *named)))
 
     @property
     def files(self) -> Files:
@@ -294,7 +296,10 @@ class Scene(Strict):
 
     def of(self, spec: type[E]) -> dict[str, E]:
         """The entries of a kind, or of several that have a class in common, by their names."""
-        return {str(name): entry for (_, name), entry in self.entries().items() if isinstance(entry, spec)}
+        bases = (PartSpec, ToleranceEntry, MoveSpec, MeasureEntry)
+        holding = [s for s, base in zip(SECTIONS, bases, strict=True) if issubclass(spec, base)] or SECTIONS
+        entries = (entry for section in holding for entry in self.section(section).items())
+        return {str(name): entry for name, entry in entries if isinstance(entry, spec)}
 
     @property
     def distributed(self) -> dict[str, ToleranceSpec]:

@@ -7,7 +7,6 @@ takes for something else, and whose messages are told. Plain scalars follow the 
 schema of YAML 1.2.2, 10.3.2 (ruamel's own also takes `1_000` and dates).
 """
 
-import copy
 import difflib
 import os
 import re
@@ -25,19 +24,22 @@ from ruamel.yaml.error import MarkedYAMLError
 from ruamel.yaml.reader import ReaderError
 
 from tol3d.errors import SceneError
+from tol3d.scene.node import Key, Node, Places, branch, plain
 from tol3d.scene.place import KeyPath, Origin, Place
 from tol3d.units import shown
 
-MAX_BYTES: Final = 1_000_000  # thirty times a scene of a hundred parts; parses in seconds
+MAX_BYTES: Final = 4_000_000  # seven times a scene of 300 parts and 1800 tolerances, which takes a second to parse
 MAX_DEPTH: Final = 40  # levels; the grammar needs nine, and pydantic and JSON would recurse
-MAX_NODES: Final = 20_000  # values with every alias written out; a scene of a hundred parts has some 3000
+MAX_NODES: Final = 500_000  # values, aliases written out; that scene has 57 000, each some 3 kB and 50 us until it runs
 KEPT_TEXTS: Final = 16  # whose values are kept; scanning one takes fifty times as long as copying them
+MERGE: Final = "<<"  # the key of YAML 1.1 by which a mapping has the keys of others, as all parsers still read it
 MAX_DIGITS: Final = 300  # a longer number is kept as text and refused by the field
 
 BRACKETS: Final = re.compile(rf"(?:[\[{{]\s*){{{MAX_DEPTH + 1}}}")  # the scanner's work grows with their square
 
 NULL: Final = frozenset(("", "~", "null", "Null", "NULL"))
 TRUTH: Final = {"true": True, "True": True, "TRUE": True, "false": False, "False": False, "FALSE": False}
+SPECIAL: Final = frozenset("~nNtTfF.+-0123456789")  # what plain scalars that are no text begin with
 INTEGER: Final = re.compile(r"[-+]?[0-9]+")
 OCTAL_OR_HEX: Final = re.compile(r"0o[0-7]+|0x[0-9a-fA-F]+")
 FLOAT: Final = re.compile(r"[-+]?(?:\.[0-9]+|[0-9]+(?:\.[0-9]*)?)(?:[eE][-+]?[0-9]+)?")
@@ -66,8 +68,8 @@ HINTS: Final = {
 }
 
 
-def read_scene_text(path: Path) -> tuple[dict[str, Any], Origin]:
-    """Read a scene's file to plain values.
+def read_scene_text(path: Path) -> tuple[Node, Origin]:
+    """Read a scene's file.
 
     Args:
         path: the file, UTF-8.
@@ -79,23 +81,35 @@ def read_scene_text(path: Path) -> tuple[dict[str, Any], Origin]:
     Raises:
         SceneError: it cannot be read, is no YAML 1.2, repeats a key or exceeds a limit above.
     """
-    text = _content(path)
+    return scene_text(path, _content(path))
+
+
+def scene_text(path: Path, content: bytes, *, included: bool = False) -> tuple[Node, Origin]:
+    """The same of a file that was read.
+
+    Args:
+        path: where it lies, for messages.
+        content: its bytes.
+        included: whether another file includes it, so that its places tell its name.
+
+    Raises:
+        SceneError: as of read_scene_text.
+    """
+    text = _decoded(path, content)
     origin = Origin(path, text)
     if brackets := BRACKETS.search(text):
         place = Place(text.count("\n", 0, brackets.start()) + 1, 1)
         raise origin.error((), f"expected at most {MAX_DEPTH} levels of brackets and indents, got more", place)
-    top = _composed(_Source(text, origin))
+    top = _composed(_Source(text, str(path) if included else "", origin))
     if not isinstance(top.value, dict):
-        raise origin.error((), f"expected keys such as scene:, parts:, moves:, measures:, got {shown(top.value)}")
-    places: dict[KeyPath, Place] = {}
-    _collect_places(top, (), places)
-    return copy.deepcopy(top.value), Origin(path, text, places)
+        raise origin.error((), f"expected keys such as scene:, parts:, moves:, measures:, got {shown(plain(top))}")
+    return top, Origin(path, text, Places(top))
 
 
 # the file ---------------------------------------------------------------------------------------
 
 
-def _content(path: Path) -> str:
+def _content(path: Path) -> bytes:
     if os.path.isdir(path):
         raise SceneError(f"{path}: expected a scene file, got a folder{_scene_inside(path)}")
     if os.path.exists(path) and not os.path.isfile(path):  # a pipe would be waited for, a device may never end
@@ -110,6 +124,10 @@ def _content(path: Path) -> str:
         raise SceneError(f"{path}: expected a scene file that can be read, got: {reason}") from None
     if len(content) > MAX_BYTES:
         raise SceneError(f"{path}:1: expected a scene of at most {MAX_BYTES // 10**6} MB, got a larger file")
+    return content
+
+
+def _decoded(path: Path, content: bytes) -> str:
     try:
         return content.decode("utf-8-sig")
     except UnicodeDecodeError as error:
@@ -134,27 +152,6 @@ def _near_file(path: Path) -> str:
 
 
 # its YAML ---------------------------------------------------------------------------------------
-
-
-@dataclass(frozen=True)
-class _Node:
-    """A value and the places of what is in it; `size` and `height` count aliases written out."""
-
-    value: Any
-    place: Place
-    children: tuple[tuple[str | int, Place, "_Node"], ...] = ()
-    size: int = 1
-    height: int = 1
-
-
-def _collect_places(node: _Node, path: KeyPath, places: dict[KeyPath, Place]) -> None:
-    for key, place, child in node.children:
-        places[(*path, key)] = place
-        _collect_places(child, (*path, key), places)
-
-
-def _place(event: Any) -> Place:
-    return Place(event.start_mark.line + 1, event.start_mark.column + 1)
 
 
 class _OtherParserError(Exception):
@@ -196,19 +193,20 @@ def _events(origin: Origin, text: str) -> Iterator[Any]:
 
 @dataclass(frozen=True)
 class _Source:
-    """A text, the same wherever it lies."""
+    """A text, the same wherever it lies; but for the name of an included file, which its places tell."""
 
     text: str
+    file: str
     origin: Origin = field(compare=False)
 
 
 @lru_cache(maxsize=KEPT_TEXTS)
-def _composed(source: _Source) -> _Node:
+def _composed(source: _Source) -> Node:
     """The document of a text, not to be changed: a scene is read again by each replay and comparison."""
     try:
-        return _Composer(source.origin, _quick_events(source.text)).document()
+        return _Composer(source.origin, _quick_events(source.text), source.file).document()
     except (_OtherParserError, SceneError):  # what is wrong is said by one parser
-        return _Composer(source.origin, _events(source.origin, source.text)).document()
+        return _Composer(source.origin, _events(source.origin, source.text), source.file).document()
 
 
 @dataclass
@@ -217,10 +215,11 @@ class _Composer:
 
     origin: Origin
     events: Iterator[Any]
-    anchors: dict[str, _Node] = field(default_factory=dict)
+    file: str = ""
+    anchors: dict[str, Node] = field(default_factory=dict)
     nodes: int = 0
 
-    def document(self) -> _Node:
+    def document(self) -> Node:
         """The only document of the file."""
         next(self.events)  # the start of the stream
         if not isinstance(next(self.events), DOCUMENT):
@@ -229,14 +228,18 @@ class _Composer:
         next(self.events)  # the end of the document
         following = next(self.events)
         if not isinstance(following, END):
-            self._refuse((), 'expected one scene in a file, got a second document ("---")', _place(following))
+            self._refuse((), 'expected one scene in a file, got a second document ("---")', self._place(following))
         return top
+
+    def _place(self, event: Any) -> Place:
+        mark = event.start_mark
+        return Place(mark.line + 1, mark.column + 1, self.file)
 
     def _refuse(self, path: KeyPath, sentence: str, place: Place) -> NoReturn:
         raise self.origin.error(path, sentence, place)
 
-    def _node(self, event: Any, path: KeyPath) -> _Node:
-        place = _place(event)
+    def _node(self, event: Any, path: KeyPath) -> Node:
+        place = self._place(event)
         if isinstance(event, ALIAS):
             return self._alias(event, path)
         assert isinstance(event, SCALAR + LIST + MAPPING)  # the parser's grammar
@@ -247,7 +250,7 @@ class _Composer:
             self._refuse(path[:3], f"expected at most {MAX_DEPTH} levels of brackets and indents, got more", place)
         self._count(1, path, place)
         if isinstance(event, SCALAR):
-            node = _Node(self._scalar(event, path), place)
+            node = Node(self._scalar(event, path), place)
         elif isinstance(event, LIST):
             node = self._list(path, place)
         else:
@@ -261,8 +264,8 @@ class _Composer:
         if self.nodes > MAX_NODES:
             self._refuse(path[:3], f"expected at most {MAX_NODES} values (aliases count written out), got more", place)
 
-    def _alias(self, event: Any, path: KeyPath) -> _Node:
-        place = _place(event)
+    def _alias(self, event: Any, path: KeyPath) -> Node:
+        place = self._place(event)
         node = self.anchors.get(event.anchor)
         if node is None:
             sentence = f"the alias *{event.anchor} has no anchor (&{event.anchor}) before it"
@@ -273,43 +276,50 @@ class _Composer:
         return node
 
     def _scalar(self, event: Any, path: KeyPath) -> Any:
-        text = unicodedata.normalize("NFC", event.value)  # so that names that look equal are equal
-        if any("\ud800" <= c <= "\udfff" for c in text):
-            self._refuse(path, "expected Unicode text, got half of a surrogate pair", _place(event))
+        text: str = event.value
+        if not text.isascii():
+            text = unicodedata.normalize("NFC", text)  # so that names that look equal are equal
+            if any("\ud800" <= c <= "\udfff" for c in text):
+                self._refuse(path, "expected Unicode text, got half of a surrogate pair", self._place(event))
         return core_value(text) if event.implicit[0] else text
 
-    def _list(self, path: KeyPath, place: Place) -> _Node:
-        children: list[tuple[str | int, Place, _Node]] = []
+    def _list(self, path: KeyPath, place: Place) -> Node:
+        children: dict[Key, tuple[Place, Node]] = {}
         while not isinstance(event := next(self.events), LIST_END):
-            children.append((len(children), _place(event), self._node(event, (*path, len(children)))))
-        return self._branch([child.value for _, _, child in children], place, children)
+            children[len(children)] = self._place(event), self._node(event, (*path, len(children)))
+        return branch([], place, children)
 
-    def _mapping(self, path: KeyPath, place: Place) -> _Node:
-        children: list[tuple[str | int, Place, _Node]] = []
+    def _mapping(self, path: KeyPath, place: Place) -> Node:
+        children: dict[Key, tuple[Place, Node]] = {}
         first: dict[str, Place] = {}
         while not isinstance(event := next(self.events), MAPPING_END):
-            key, here = self._key(event, path), _place(event)
+            key, here = self._key(event, path), self._place(event)
             if key in first:
                 lines = f"first in line {first[key].line}, again in line {here.line}"
                 self._refuse((*path, key), f"the key stands twice, {lines}; remove one", here)
             first[key] = here
-            children.append((key, here, self._node(next(self.events), (*path, key))))
-        return self._branch({key: child.value for key, _, child in children}, place, children)
+            node = self._node(next(self.events), (*path, key))
+            if key == MERGE and event.implicit[0]:
+                for own, child in self._merged(node, path, here):
+                    children.setdefault(own, child)
+            else:
+                children[key] = here, node
+        return branch({}, place, children)
+
+    def _merged(self, node: Node, path: KeyPath, place: Place) -> Iterator[tuple[Key, tuple[Place, Node]]]:
+        """The keys that a merge key brings; of several mappings the first that has a key says its value."""
+        mappings = [node] if isinstance(node.value, dict) else [own for _, own in node.children.values()]
+        if not mappings or not all(isinstance(own.value, dict) for own in mappings):
+            words = "expected a mapping beside <<, or a list of them, such as <<: *block"
+            self._refuse((*path, MERGE), f"{words}, got {shown(plain(node))}", place)
+        return (entry for own in mappings for entry in own.children.items())
 
     def _key(self, event: Any, path: KeyPath) -> str:
         key = self._scalar(event, path) if isinstance(event, SCALAR) and event.tag is None else None
         if not isinstance(key, str):
             got = f"{shown(key)}; put it into quotes" if isinstance(event, SCALAR) else "something else"
-            self._refuse(path, f"expected a key that is text, got {got}", _place(event))
-        if key == "<<":
-            self._refuse(path, "merge keys (<<) are not used here; write the keys out", _place(event))
+            self._refuse(path, f"expected a key that is text, got {got}", self._place(event))
         return key
-
-    @staticmethod
-    def _branch(value: Any, place: Place, children: list[tuple[str | int, Place, _Node]]) -> _Node:
-        size = 1 + sum(child.size for _, _, child in children)
-        height = 1 + max((child.height for _, _, child in children), default=0)
-        return _Node(value, place, tuple(children), size, height)
 
 
 def core_value(text: str) -> str | int | float | bool | None:
@@ -318,6 +328,8 @@ def core_value(text: str) -> str | int | float | bool | None:
     >>> core_value("1e-3"), core_value("no"), core_value("0x1F"), core_value("~")
     (0.001, 'no', 31, None)
     """
+    if text and text[0] not in SPECIAL:
+        return text
     if text in NULL:
         return None
     if text in TRUTH:

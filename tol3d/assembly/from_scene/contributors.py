@@ -168,8 +168,9 @@ class Effects:
 
     def _form(self, own: Stated, spec: FormSpec) -> None:
         others = self.touching.get(own.feature, {})
-        if not others and own.name != own.entry:
-            return  # a part that is like the toleranced one, and touches nothing there
+        alike = [each.feature for each in self.drawing.stated if isinstance(each, Stated) and each.entry == own.entry]
+        if not others and (own.alike or any(self.touching.get(feature) for feature in alike)):
+            return  # a part that is like the toleranced one, or one of a pattern, and touches nothing there
         if not others:
             raise self.scene.refuse(("tolerances", own.entry, "law"), self._untouched(own))
         half = 0.5 * spec.zone.size

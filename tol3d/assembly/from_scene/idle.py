@@ -10,7 +10,7 @@ from tol3d.assembly.grammar.tolerances.form import FormSpec
 def idle_forms(drawing: Drawing) -> Iterator[str]:
     """A sentence for each form that neither lifts a point nor narrows a location zone."""
     for own in drawing.stated:
-        if not isinstance(own, Stated) or own.name != own.entry or not isinstance(own.spec, FormSpec):
+        if not isinstance(own, Stated) or not own.is_own or not isinstance(own.spec, FormSpec):
             continue
         if own.spec.law is None and not drawing.of(own.feature, LocationSpec):
             why = f"it has no law, and {own.feature!r} has no location zone that it could narrow"

@@ -10,6 +10,7 @@ from tol3d.assembly.grammar.measures.assembly_measure import TimedSpec
 from tol3d.assembly.grammar.moves import PlacingSpec, WeldSpec
 from tol3d.assembly.grammar.moves.forgotten import how_to_place
 from tol3d.assembly.grammar.parts import SolidSpec
+from tol3d.assembly.grammar.tolerances import FeatureTolerance
 from tol3d.scene import Scene
 from tol3d.scene.nearest import hint
 from tol3d.scene.place import KeyPath
@@ -19,11 +20,12 @@ Problem = tuple[KeyPath, str]
 
 def unknown_features(scene: Scene) -> Iterator[Problem]:
     """Features that are not there, or of a kind that will not do."""
-    parts = Drawing(scene).features
+    drawing = Drawing(scene)
     for (section, name), entry in scene.entries().items():
         if isinstance(entry, UsesFeatures):
+            whole = entry.of if isinstance(entry, FeatureTolerance) else ""
             for use in entry.uses():
-                if sentence := _unfit(use, parts):
+                if sentence := _unfit(use, drawing.toleranced if use.name == whole else drawing.features):
                     yield (section, name, *use.path), sentence
 
 

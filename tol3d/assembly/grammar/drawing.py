@@ -1,27 +1,32 @@
 """What drawings say of each feature: the tolerances of its location, orientation, form and size, and their datums.
 
-A part that is like another has tolerances of its own, named "position of cover 2" where the other's is "position".
+A part that is like another has tolerances of its own, named "position of cover 2" where the other's is "position"; each
+feature of a pattern has, named "position 3".
 """
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import Final
 
 from tol3d.assembly.grammar.datums import DatumSpec
 from tol3d.assembly.grammar.feature_name import part_of
 from tol3d.assembly.grammar.features import AxisSpec, CylinderSpec, FeatureUnion, PointSpec, SphereSpec
 from tol3d.assembly.grammar.features.nominal_frame import Array, unit
-from tol3d.assembly.grammar.parts import SolidSpec
+from tol3d.assembly.grammar.parts import SolidSpec, likes
 from tol3d.assembly.grammar.tolerances import (
     FeatureTolerance,
     LocationSpec,
     LocatorSpec,
     OrientationSpec,
     PlusMinusSpec,
+    SizeSpec,
 )
 from tol3d.assembly.grammar.tolerances.form import FormSpec
 from tol3d.assembly.model.dimension import longer
 from tol3d.scene import Scene
+
+MOST_FEATURES: Final = 100_000  # of a scene, patterns written out: fifty a part of the most parts; 10 kB each
 
 
 @dataclass(frozen=True)
@@ -33,12 +38,21 @@ class Stated:
         entry: what the scene calls it.
         spec: what it says.
         feature: of which, with its part.
+        is_first: whether it is of the only one, or of the first of a pattern.
+        alike: whether it is of a part that is like that of the entry.
     """
 
     name: str
     entry: str
     spec: FeatureTolerance
     feature: str
+    is_first: bool = True
+    alike: bool = False
+
+    @property
+    def is_own(self) -> bool:
+        """Whether it is of the feature that the scene names; each entry is judged by that one alone."""
+        return self.is_first and not self.alike
 
 
 @dataclass(frozen=True)
@@ -48,34 +62,96 @@ class Drawing:
     scene: Scene
 
     @cached_property
-    def features(self) -> Mapping[str, Mapping[str, FeatureUnion]]:
-        """The features of each part, by its name and theirs; those of a part that is like another are the other's."""
+    def written(self) -> Mapping[str, Mapping[str, FeatureUnion]]:
+        """The features of each part as the scene has them, patterns as one: its own, and those of what it is like."""
         solids = self.scene.of(SolidSpec)
-        return {name: (solids[own.like] if own.like else own).features for name, own in solids.items()}
+        found: dict[str, dict[str, FeatureUnion]] = {}
+        for name in solids:
+            found[name] = {}
+            for own in reversed(likes(name, solids)):
+                found[name].update(solids[own].features)
+        return found
+
+    @cached_property
+    def features(self) -> Mapping[str, Mapping[str, FeatureUnion]]:
+        """The features of each part, by its name and theirs; a pattern's each by itself.
+
+        Raises:
+            SceneError: they are too many.
+        """
+        count = 0
+        for part, entries in self.written.items():
+            count += sum(own.pattern.count if own.pattern else 1 for own in entries.values())
+            if count > MOST_FEATURES:
+                words = f"expected at most {MOST_FEATURES} features in a scene, got {count} up to here"
+                raise self.scene.refuse(("parts", part), words)
+        return {
+            part: {name: own for entry in entries for name, own in self._members(part, entry).items()}
+            for part, entries in self.written.items()
+        }
+
+    @cached_property
+    def toleranced(self) -> Mapping[str, Mapping[str, FeatureUnion]]:
+        """What tolerances may name of each part: its features, and patterns as a whole."""
+        return {part: {**self.written[part], **features} for part, features in self.features.items()}
+
+    def _members(self, part: str, entry: str) -> Mapping[str, FeatureUnion]:
+        """What an entry of a part's features stands for: itself, or a pattern's but for those written by themselves."""
+        entries = self.written.get(part, {})
+        if entry not in entries:
+            return {}
+        found: Mapping[str, FeatureUnion] = entries[entry].members(entry)
+        return {name: own for name, own in found.items() if name == entry or name not in entries}
 
     def has_solid(self, part: str) -> bool:
         """Whether a part has a builder, or is like one that has."""
         solids = self.scene.of(SolidSpec)
-        return solids[solids[part].like or part].builder is not None
+        return solids[likes(part, solids)[-1]].builder is not None
 
     @cached_property
     def stated(self) -> tuple[Stated | str, ...]:
-        """Every tolerance, for each part that it holds for, in the scene's order; locators by their names."""
+        """Every tolerance, for each feature and part that it holds for, in the scene's order; locators by their names.
+
+        Those of a feature of a part that is like another stand in place of the other's that say the same of it.
+        """
+        solids = self.scene.of(SolidSpec)
+        chains = {name: likes(name, solids) for name in solids}
         alike: dict[str, list[str]] = {}
-        for name, solid in self.scene.of(SolidSpec).items():
-            if solid.like is not None:
-                alike.setdefault(solid.like, []).append(name)
+        for name, chain in chains.items():
+            for other in chain[1:]:
+                alike.setdefault(other, []).append(name)
+        specs = self.scene.of(FeatureTolerance).values()
+        said = {(own, _group(spec)) for spec in specs for own in self._meant(*_split(spec.of))}
         found: list[Stated | str] = []
         for name, spec in self.scene.tolerances.items():
             if isinstance(spec, LocatorSpec):
                 found.append(name)
             elif isinstance(spec, FeatureTolerance):
-                part, _, feature = spec.of.partition(".")
-                found.append(Stated(name, name, spec, spec.of))
-                found += [
-                    Stated(f"{name} of {other}", name, spec, f"{other}.{feature}") for other in alike.get(part, ())
-                ]
+                part, feature = _split(spec.of)
+                found += self._each(name, spec, part, feature)
+                for other in alike.get(part, ()):
+                    nearer = chains[other][: chains[other].index(part)]
+                    for own in self._each(name, spec, other, feature):
+                        its = _split(own.feature)[1]
+                        instead = any((f"{near}.{its}", _group(spec)) in said for near in nearer)
+                        if its in self.features[other] and not instead:
+                            found.append(replace(own, name=f"{own.name} of {other}", alike=True))
         return tuple(found)
+
+    def _meant(self, part: str, feature: str) -> tuple[str, ...]:
+        """The features of a part that a name in a tolerance means: one, or those of a pattern."""
+        own = self.written.get(part, {}).get(feature)
+        names = (feature,) if own is None or own.pattern is None else own.members(feature)
+        return tuple(f"{part}.{name}" for name in names)
+
+    def _each(self, name: str, spec: FeatureTolerance, part: str, feature: str) -> Iterator[Stated]:
+        features = self._meant(part, feature)
+        if features == (f"{part}.{feature}",):
+            yield Stated(name, name, spec, features[0])
+            return
+        for own in features:
+            number = int(own.rpartition(" ")[2])
+            yield Stated(f"{name} {number}", name, spec, own, is_first=own == features[0])
 
     @cached_property
     def _by_feature(self) -> Mapping[str, Sequence[Stated]]:
@@ -139,5 +215,19 @@ class Drawing:
             yield name, self.datums(name)
 
     def kind(self, feature: str) -> FeatureUnion:
-        """What a scene says of a feature."""
-        return self.features[part_of(feature)][feature.partition(".")[2]]
+        """What a scene says of a feature; of a pattern, of its first."""
+        part, own = _split(feature)
+        features = self.features[part]
+        return features[own] if own in features else next(iter(self._members(part, own).values()))
+
+
+def _split(feature: str) -> tuple[str, str]:
+    part, _, own = feature.partition(".")
+    return part, own
+
+
+def _group(spec: FeatureTolerance) -> type[FeatureTolerance]:
+    """What a tolerance says of its feature: where it lies, how it is turned, its size, its form."""
+    if isinstance(spec, LocationSpec | PlusMinusSpec):
+        return LocationSpec
+    return next((kind for kind in (OrientationSpec, SizeSpec, FormSpec) if isinstance(spec, kind)), type(spec))

@@ -29,8 +29,8 @@ REFINED = "a tilt that it refines is an orientation tolerance beside the other"
 def contradicting_tolerances(scene: Scene) -> Iterator[Problem]:
     """Tolerances of a feature that would count twice, or leave no room for each other."""
     drawing = Drawing(scene)
+    yield from dict.fromkeys(problem for feature in drawing.names for problem in _twice(drawing, feature))
     for feature in drawing.names:
-        yield from _twice(drawing, feature)
         yield from _apart(drawing, feature)
         yield from _zones(drawing, feature)
     yield from _names(drawing)
@@ -45,7 +45,7 @@ def _twice(drawing: Drawing, feature: str) -> Iterator[Problem]:
         (drawing.of(feature, SizeSpec), "its size", ""),
         (drawing.of(feature, FormSpec), "its form", ""),
     ):
-        if len(several) > 1 and _is_own(several[1]):
+        if len(several) > 1 and not several[1].alike:
             first, second = several[0].entry, several[1].entry
             words = f"expected one tolerance of {feature!r} for {what}, got {first!r} too, which would count twice"
             yield ("tolerances", second), f"{words}; remove one{instead}"
@@ -66,16 +66,16 @@ def _counted_once(drawing: Drawing, feature: str) -> tuple[Stated, ...]:
 def _apart(drawing: Drawing, feature: str) -> Iterator[Problem]:
     dimensions = drawing.of(feature, PlusMinusSpec)
     for other in dimensions[1:]:
-        if _is_own(other) and other.spec.named_datums != dimensions[0].spec.named_datums:
+        if other.is_own and other.spec.named_datums != dimensions[0].spec.named_datums:
             first = dimensions[0].entry
             yield ("tolerances", other.entry), f"expected the datums of {first!r}, which is of {feature!r} too"
 
 
 def _zones(drawing: Drawing, feature: str) -> Iterator[Problem]:
-    for own in filter(_is_own, drawing.of(feature, FeatureTolerance)):
+    for own in drawing.of(feature, FeatureTolerance):
         here: KeyPath = ("tolerances", own.entry)
         spec = own.spec
-        if drawing.kind(feature).kind not in spec.applies_to:
+        if not own.is_own or drawing.kind(feature).kind not in spec.applies_to:
             continue  # said already, see unknown_features
         if isinstance(spec, LocationSpec | OrientationSpec):
             yield from _shape_problems(here, spec, drawing.kind(feature).kind)
@@ -154,15 +154,13 @@ def _unclear(spec: PlusMinusSpec, drawing: Drawing, feature: str) -> str:
 
 
 def _names(drawing: Drawing) -> Iterator[Problem]:
-    taken = set(drawing.scene.tolerances)
+    taken = {name: ("tolerances", name) for name in drawing.scene.tolerances}
     for own in drawing.stated:
-        if isinstance(own, Stated) and own.name != own.entry and own.name in taken:
-            yield ("tolerances", own.name), f"expected another name: {own.entry!r} has it for {part_of(own.feature)!r}"
-
-
-def _is_own(stated: Stated) -> bool:
-    """Whether it is of the feature that the scene names, not of a part that is like its."""
-    return stated.name == stated.entry
+        if not isinstance(own, Stated) or own.name == own.entry:
+            continue
+        if own.name in taken:
+            yield taken[own.name], f"expected another name: {own.entry!r} has {own.name!r} for {own.feature!r}"
+        taken[own.name] = ("tolerances", own.entry)
 
 
 def cyclic_datums(drawing: Drawing) -> Iterator[Problem]:
@@ -177,7 +175,7 @@ def cyclic_datums(drawing: Drawing) -> Iterator[Problem]:
     while ends := [name for name in waiting if not any(name in needed for needed in waiting.values())]:
         waiting = {name: needed for name, needed in waiting.items() if name not in ends}
     for name in waiting:
-        own = [stated for stated in drawing.of(name, FeatureTolerance) if stated.spec.named_datums and _is_own(stated)]
+        own = [stated for stated in drawing.of(name, FeatureTolerance) if stated.spec.named_datums and stated.is_own]
         if own:
             ring = " and ".join(repr(other) for other in waiting)
             words = f"expected datums that do not depend on {name!r} themselves, got a ring of {ring}"

@@ -19,7 +19,7 @@ def unfit_modifiers(scene: Scene) -> Iterator[Problem]:
     """Modifiers of features without a size or a tolerance of it, and two that differ on one feature."""
     drawing = Drawing(scene)
     for own in drawing.stated:
-        if isinstance(own, Stated) and own.name == own.entry and isinstance(own.spec, Modified):
+        if isinstance(own, Stated) and own.is_own and isinstance(own.spec, Modified):
             yield from _of_tolerance(drawing, own, own.spec)
     sized = {name for name in drawing.names if drawing.kind(name).kind in SIZED}  # others are said already
     for name, spec in scene.measures.items():

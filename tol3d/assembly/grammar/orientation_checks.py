@@ -34,11 +34,11 @@ def unfit_orientations(scene: Scene) -> Iterator[Problem]:
     drawing = Drawing(scene)
     for feature in drawing.names:
         for own in drawing.of(feature, OrientationSpec):
-            if own.name == own.entry:
+            if own.is_own:
                 yield from _elsewhere(drawing, own)
                 yield from _other_angle(drawing, own)
         for own in drawing.of(feature, LocationSpec):
-            if own.name == own.entry and isinstance(own.spec, CoaxialitySpec | CircularRunOutSpec | TotalRunOutSpec):
+            if own.is_own and isinstance(own.spec, CoaxialitySpec | CircularRunOutSpec | TotalRunOutSpec):
                 yield from _without_axis(drawing, own)
                 yield from _beside(drawing, own)
 

@@ -11,7 +11,7 @@ from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationErr
 
 from tol3d.assembly.grammar.features import FeatureUnion
 from tol3d.assembly.grammar.features.face import FaceKind
-from tol3d.assembly.grammar.parts import SolidSpec
+from tol3d.assembly.grammar.parts import SolidSpec, likes
 from tol3d.errors import SceneError
 from tol3d.files import FileContent, Files
 from tol3d.scene import Scene
@@ -148,6 +148,8 @@ def face_names(scene: Scene) -> dict[str, str]:
     kept = kept_in(scene.files, scene.source)
     return {
         f"{name}.{feature}": " and ".join(face.name for face in faces)
-        for name, own in solids.items()
-        for feature, faces in kept.picks.get(own.like or name, {}).items()
+        for name in solids
+        for first in likes(name, solids)[-1:]
+        for feature, faces in kept.picks.get(first, {}).items()
+        if not any(feature in solids[own].features for own in likes(name, solids)[:-1])
     }

@@ -3,7 +3,7 @@
 from pathlib import Path
 
 from tol3d.assembly.grammar.builders.own_file import OwnFileSpec
-from tol3d.assembly.grammar.parts import SolidSpec
+from tol3d.assembly.grammar.parts import SolidSpec, likes
 from tol3d.assembly.picking.kept_picks import kept_in
 from tol3d.errors import GeometryError
 from tol3d.files import FileContent
@@ -16,8 +16,8 @@ def shapes_of(scene: Scene) -> dict[str, BuiltShape]:
     """The solids of parts, by their names, of a scene that is settled; parts without one are left out."""
     solids = scene.of(SolidSpec)
     found: dict[str, BuiltShape] = {}
-    for name, own in solids.items():
-        part = name if own.like is None else own.like
+    for name in solids:
+        part = likes(name, solids)[-1]
         builder = solids[part].builder
         if isinstance(builder, OwnFileSpec):
             content = scene.files[solid_file(part)].content

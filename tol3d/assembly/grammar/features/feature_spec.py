@@ -9,6 +9,8 @@ from numpy.typing import NDArray
 from pydantic import Field, model_validator
 
 from tol3d.assembly.grammar.features.face import FaceKind, FaceSpec
+from tol3d.assembly.grammar.features.nominal_frame import ALONG
+from tol3d.assembly.grammar.features.pattern import PatternSpec
 from tol3d.assembly.model import Shape
 from tol3d.scene.vector import Direction, Vector
 from tol3d.strict import Strict, refused
@@ -35,6 +37,9 @@ class FeatureSpec(Strict):
 
     kind: str
     at: Vector | None = Field(default=None, description="the middle of it; that of its face if not given")
+    pattern: PatternSpec | None = Field(
+        default=None, description="rows and columns of such features, the first of them here; one alone if not given"
+    )
 
     @property
     def origin(self) -> Array:
@@ -72,6 +77,15 @@ class FeatureSpec(Strict):
             GeometryError: they are no such feature.
         """
 
+    def members(self, name: str) -> "Mapping[str, Self]":
+        """The features that it stands for: itself, or those of its pattern, numbered row by row."""
+        if self.pattern is None:
+            return {name: self}
+        places = self.pattern.places(known(self.at, "at"), self.frame)
+        return {
+            f"{name} {k}": self.model_copy(update={"at": at, "pattern": None}) for k, at in enumerate(places, start=1)
+        }
+
     @model_validator(mode="after")
     def _refuse_missing_numbers(self) -> Self:
         for name in self.numbers if not self.faces_picked else ():
@@ -84,6 +98,17 @@ class FeatureSpec(Strict):
         for field, face in self.faces_picked.items():
             if face.kind is not None and self.face_kinds and face.kind not in self.face_kinds:
                 raise refused(f"{field}.kind", " or ".join(self.face_kinds), repr(face.kind))
+        return self
+
+    @model_validator(mode="after")
+    def _refuse_faces_in_patterns(self) -> Self:
+        if self.pattern is None:
+            return self
+        if self.faces_picked:
+            raise refused("pattern", "none of a face of a solid; write its numbers", "both")
+        x, y = self.pattern.ways(self.frame)
+        if self.pattern.rows > 1 and np.linalg.norm(np.cross(x, y)) <= ALONG:
+            raise refused("pattern", "`across`, from row to row, that is not along the columns", "none")
         return self
 
 

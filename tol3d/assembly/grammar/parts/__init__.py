@@ -1,5 +1,5 @@
 """Kinds of part, one file each."""
 
-from tol3d.assembly.grammar.parts.solid import SolidSpec
+from tol3d.assembly.grammar.parts.solid import SolidSpec, likes
 
-__all__ = ["SolidSpec"]
+__all__ = ["SolidSpec", "likes"]

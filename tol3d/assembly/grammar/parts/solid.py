@@ -1,7 +1,7 @@
 """A part of any shape, of which a scene names features."""
 
 from collections.abc import Iterator, Mapping
-from typing import Any, ClassVar, Literal, Self
+from typing import Any, ClassVar, Final, Literal, Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,6 +17,9 @@ from tol3d.scene.place import KeyPath
 from tol3d.scene.reference import Contradiction, Reference
 from tol3d.scene.vector import Direction, Vector
 from tol3d.strict import Strict, refused
+from tol3d.units import shown
+
+MOST_ALIKE: Final = 8  # parts in sequence that are each like another; what a reader follows
 
 
 class Placement(Strict):
@@ -43,13 +46,15 @@ class SolidSpec(GrowingSpec):
     """A rigid part with features, by numbers or picked from its solid."""
 
     words: ClassVar[str] = "a solid part"
+    origin_field: ClassVar[KeyPath] = ("placed", "at")
 
     kind: Literal["solid"]
     features: Mapping[OwnName, FeatureUnion] = Field(default_factory=dict, description="what its drawing names")
     builder: BuilderUnion | None = Field(default=None, description="its solid by dimensions, for what needs one")
     like: Name | None = Field(
         default=None,
-        description="another part whose features, tolerances and solid it has, with deviations of its own",
+        description="another part whose features, tolerances and solid it has, with deviations of its own; features "
+        "beside it replace those of their names, or are further ones",
     )
     placed: Placement = Field(default_factory=Placement, description="nominal place; moves find theirs near it")
 
@@ -58,9 +63,20 @@ class SolidSpec(GrowingSpec):
         return () if self.like is None else (Reference(("like",), self.like, (SolidSpec,)),)
 
     def contradictions(self, parts: Mapping[str, Any], moves: Mapping[str, Any]) -> Iterator[Contradiction]:
-        """A part that is like one that is like another."""
-        if self.like is not None and parts[self.like].like is not None:
-            yield Contradiction(("like",), "a part with features of its own", repr(self.like))
+        """Parts that are like each other in a ring, told at the first of them, and too many in sequence."""
+        chain: list[str] = []
+        like = self.like
+        while like is not None and like not in chain:
+            chain.append(like)
+            like = parts[like].like
+        if like is not None:
+            ring = chain[chain.index(like) :]
+            if next(own for name, own in parts.items() if name in ring) is self:
+                names = " like ".join((ring[-1], *ring))
+                yield Contradiction(("like",), "a part that is not like itself", f"a ring: {names}", leads=True)
+        elif len(chain) == MOST_ALIKE + 1:
+            expected = f"at most {MOST_ALIKE} parts in sequence that are each like another"
+            yield Contradiction(("like",), expected, f"one more; write like: {chain[-1]}", leads=True)
 
     @property
     def has_solid(self) -> bool:
@@ -81,8 +97,25 @@ class SolidSpec(GrowingSpec):
 
     @model_validator(mode="after")
     def _refuse_contradictions(self) -> Self:
-        if bool(self.features) == (self.like is not None):
-            raise refused("features", "either features or `like: another part`", "both" if self.features else "neither")
+        if not self.features and self.like is None:
+            raise refused("features", "features, or `like: another part`", "neither")
+        for name, feature in self.features.items():
+            if twice := next((own for own in feature.members(name) if own != name and own in self.features), None):
+                expected = f"a name of its own, for the pattern {name!r} has such a feature"
+                raise refused(f"features.{twice}", expected, shown(twice))
         if self.builder is not None and self.like is not None:
             raise refused("builder", "none beside `like`, which brings that part's", self.builder.kind)
         return self
+
+
+def likes(name: str, solids: Mapping[str, SolidSpec]) -> tuple[str, ...]:
+    """A part and those that it is like, the nearest first; the last one has the solid, if any has.
+
+    Args:
+        name: of the part.
+        solids: all of a scene; of a ring, which is refused elsewhere, each is told once.
+    """
+    found = [name]
+    while (like := solids[found[-1]].like) is not None and like not in found:
+        found.append(like)
+    return tuple(found)
