@@ -46,18 +46,23 @@ def columns_of(system: System, road: Road | None, trials: Trials, measures: Sequ
     return {name: np.concatenate([piece[name] for piece in pieces]) for name in pieces[0]}
 
 
+def drawn_columns(system: System, trials: Trials) -> Columns:
+    """Columns of what trials are: their deviations and positions."""
+    columns: Columns = {}
+    for contributor, slots in zip(system.contributors, component_slices(system).values(), strict=True):
+        own = trials.deviations[:, slots]
+        for k, name in enumerate(contributor.columns):
+            columns[name] = own[:, k] / contributor.per_unit
+    return columns | dict(system.columns(trials))
+
+
 def rows_at_once(measures: Sequence[Measure]) -> int:
     """Trials that a road is asked at once, by the positions of its measures."""
     return max(1, ROWS_AT_ONCE // max(measure.positions.in_a_trial for measure in measures))
 
 
 def _columns(system: System, road: Road | None, trials: Trials, measures: Sequence[Measure]) -> Columns:
-    columns: Columns = {}
-    for contributor, slots in zip(system.contributors, component_slices(system).values(), strict=True):
-        own = trials.deviations[:, slots]
-        for k, name in enumerate(contributor.columns):
-            columns[name] = own[:, k] / contributor.per_unit
-    columns |= system.columns(trials)
+    columns = drawn_columns(system, trials)
     analytic = system.road(ANALYTIC_ROAD, None).answers(trials, measures)
     columns |= _values(ANALYTIC, analytic, measures, len(trials)) | _terms(system, ANALYTIC, analytic)
     if road is None:

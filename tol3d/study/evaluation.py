@@ -20,6 +20,7 @@ from tol3d.system.road import ANALYTIC_ROAD, Road
 from tol3d.system.stated import stated
 from tol3d.system.statuses import OK
 from tol3d.system.system import System
+from tol3d.system.trials import Trials
 
 Array = NDArray[np.float64]
 T = TypeVar("T")
@@ -47,27 +48,33 @@ class Evaluation:
         """The road's name in columns."""
         return GEOMETRIC if self.road else ANALYTIC
 
-    def values(
-        self, deviations: Array, measures: Sequence[Measure], *, with_overlaps: bool = False
+    def values(self, deviations: Array, measures: Sequence[Measure]) -> dict[str, Array]:
+        """Values of measures of builds (rows, components) [mm, rad, K] at rest; see `of`."""
+        return self.of(stated(self.system, deviations), measures)
+
+    def of(
+        self, trials: Trials, measures: Sequence[Measure], overlaps: Callable[[Measure], bool] = lambda own: False
     ) -> dict[str, Array]:
-        """Values of measures of builds at rest; a row's do not depend on the others.
+        """Values of measures of trials; one's do not depend on the others.
 
         Args:
-            deviations: (rows, components) [mm, rad, K].
+            trials: stated or drawn.
             measures: of the system.
-            with_overlaps: keep what a road answers of builds that do not seat, such as how deep they overlap.
+            overlaps: whether what a road answers of builds that do not seat is kept, such as how deep they overlap.
 
         Returns:
-            By name (rows,), or (rows, positions) of a curve, in the measure's unit; nan where a build does not seat.
+            By name (trials,), or (trials, positions) of a curve, in the measure's unit; nan where a build does not
+            seat.
         """
         road = self.road or self.system.road(ANALYTIC_ROAD, None)
         pieces = []
-        for first in range(0, len(deviations), step := rows_at_once(measures)):
-            trials = stated(self.system, deviations[first : first + step])
-            answers = road.answers(trials, measures)
-            found = answered(self.name, answers, measures, len(trials))
-            for name, codes in answers.status.items() if self.road and not with_overlaps else ():
-                if name in found and codes.any():
+        judged = {own.name for own in measures if self.road and not overlaps(own)}
+        for first in range(0, len(trials), step := rows_at_once(measures)):
+            piece = trials.part(first, first + step)
+            answers = road.answers(piece, measures)
+            found = answered(self.name, answers, measures, len(piece))
+            for name, codes in answers.status.items():
+                if name in judged and codes.any():
                     found[name] = found[name].copy()
                     found[name][codes != OK] = np.nan
             pieces.append(found)

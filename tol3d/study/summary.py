@@ -35,7 +35,7 @@ from tol3d.system.draw import JudgedDraw
 from tol3d.system.measure import Measure
 from tol3d.system.outcome import ANALYTIC, GEOMETRIC
 from tol3d.system.road import Road
-from tol3d.system.stated import mean_deviations
+from tol3d.system.stated import mean_deviations, stated
 from tol3d.units import FACTORS
 
 FAILURES_NAMED = 1e-3  # of the trials; a third of the 0.27 % that ±3 sigma leave out, in the table all the same
@@ -218,7 +218,8 @@ def _single_builds(simulation: Simulation, road: Road | None) -> dict[str, tuple
         mean = mean_deviations(system, alike[0].positions)
         builds = np.concatenate([np.zeros_like(mean), mean])
         read = {
-            shown: own.values(builds, alike, with_overlaps=True) for shown, own in evaluations(system, road).items()
+            shown: own.of(stated(system, builds), alike, lambda _: True)
+            for shown, own in evaluations(system, road).items()
         }
         for measure in alike:
             found[measure.name] = (_both(read, measure, 0), _both(read, measure, 1))

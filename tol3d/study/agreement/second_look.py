@@ -14,14 +14,14 @@ from numpy.typing import NDArray
 
 from tol3d.statistics import IndependentSums, RegressorSums
 from tol3d.statistics.lazy import sparse_products
-from tol3d.study.columns import columns_of
+from tol3d.study.columns import drawn_columns
 from tol3d.study.draws import drawn, drawn_ones
+from tol3d.study.evaluation import Evaluation
 from tol3d.study.regression import Sums
 from tol3d.study.regressors import Regressed, regressor_sets
 from tol3d.study.simulation import Simulation
 from tol3d.system.draw import component_sigmas
 from tol3d.system.measure import Measure
-from tol3d.system.outcome import ANALYTIC, GEOMETRIC, Columns, outcome_of, value_column
 from tol3d.system.positions import AT_RANDOM
 from tol3d.system.road import Road
 from tol3d.system.stated import component_count, component_slices, mean_deviations
@@ -79,35 +79,26 @@ def second_look(simulation: Simulation, road: Road, count: int, others: Sequence
     measures = scalars_of(system)
     trials = joined([drawn(simulation, 0, count), drawn_ones(simulation, others)])
     near, far = SHORT_STEPS if road.chord_error == 0.0 else LONG_STEPS
-    columns = columns_of(system, road, trials, measures)
-    whole = _differences(system, measures, columns)
+    whole = _differences(system, road, trials, measures)
     nominal, at_near, at_far = (
-        whole
-        if step == 1.0
-        else _differences(system, measures, columns_of(system, road, trials.scaled(step), measures))
-        for step in (0.0, near, far)
+        whole if step == 1.0 else _differences(system, road, trials.scaled(step), measures) for step in (0.0, near, far)
     )
     ratio = far / near  # D(far) - ratio D(near) has no L left
     second_order = {
         name: ((at_far[name] - nominal[name]) - ratio * (at_near[name] - nominal[name])) / (near * far * (ratio - 1))
         for name in whole
     }
-    rows: dict[str, Array] = {}
+    rows, columns = dict[str, Array](), drawn_columns(system, trials)
     for own in regressor_sets(system):
         rows |= dict.fromkeys((measure.name for measure in own.measures), own.rows(system, columns))
     return SecondLook(trials, whole, nominal, second_order, rows)
 
 
-def _differences(system: System, measures: Sequence[Measure], columns: Columns) -> Mapping[str, Array]:
+def _differences(system: System, road: Road, trials: Trials, measures: Sequence[Measure]) -> Mapping[str, Array]:
     """Of builds that seat; of a measure that keeps its overlaps, those of builds that overlap too."""
-    lacking = system.statuses.lacking
-
-    def geometric(measure: Measure) -> Array:
-        if measure.keeps_overlap:
-            return np.asarray(columns[value_column(GEOMETRIC, measure.name)], dtype=np.float64)
-        return outcome_of(columns, GEOMETRIC, measure.name, lacking).values
-
-    return {m.name: geometric(m) - outcome_of(columns, ANALYTIC, m.name, lacking).values for m in measures}
+    analytic = Evaluation(system).of(trials, measures)
+    geometric = Evaluation(system, road).of(trials, measures, lambda own: own.keeps_overlap)
+    return {own.name: geometric[own.name] - analytic[own.name] for own in measures}
 
 
 def bends(simulation: Simulation, road: Road) -> Mapping[str, Mapping[str, float]]:
@@ -125,8 +116,7 @@ def bends(simulation: Simulation, road: Road) -> Mapping[str, Mapping[str, float
     each = []
     for position in range(BEND_POSITIONS if first.positions else 1):  # one by one: builds go with contributors squared
         there = {name: np.full(len(builds), values[position]) for name, values in first.positions.items()}
-        columns = columns_of(system, road, Trials(builds, there), measures)
-        each.append(_differences(system, measures, columns))
+        each.append(_differences(system, road, Trials(builds, there), measures))
     return {m.name: _bends(system, np.stack([found[m.name] for found in each])) for m in measures}
 
 
