@@ -14,7 +14,7 @@ from tol3d.assembly.placing.taken_freedoms import Asked, in_words, taken
 from tol3d.assembly.presenting.tables import drawing_blocks
 from tol3d.assembly.system import AssemblySystem
 from tol3d.gearbox.system import GearboxSystem
-from tol3d.report.page import Table, page
+from tol3d.report.page import Line, page
 from tol3d.simulate import Overrides, load, simulation_of
 
 HOLDS = "upper hinge, lower hinge, striker"
@@ -58,7 +58,7 @@ def drawn(scene: Path) -> AssemblySystem:
 def listed(scene: Path, start: str) -> list[tuple[str, ...]]:
     """Rows of the table whose title begins so."""
     shown = page(*drawing_blocks(drawn(scene)))
-    titles = [str(own).strip() for own in shown.blocks if not isinstance(own, Table) and "cyan" in own.pieces[-1][1]]
+    titles = [str(own).strip() for own in shown.blocks if isinstance(own, Line) and "cyan" in own.pieces[-1][1]]
     (table,) = (own for title, own in zip(titles, shown.tables, strict=True) if title.startswith(start))
     return [(row.label, *row.cells) for row in table.rows]
 
