@@ -10,6 +10,7 @@ import re
 from collections.abc import Iterable
 from dataclasses import dataclass
 from decimal import Decimal
+from functools import lru_cache
 from typing import Any, Final, Literal
 
 from pydantic import GetCoreSchemaHandler, GetJsonSchemaHandler
@@ -74,6 +75,7 @@ NUMBER_UNIT: Final = re.compile(rf"\s*({NUMBER})(?:\s+|(?=[^\s\d.,+-]))(\S+)\s*"
 DECIMAL_COMMA: Final = re.compile(r"\s*([+-]?\d+),(\d+(?:[eE][+-]?\d+)?)\s*(\S*)\s*")
 COMMA_SEPARATES: Final = "decimals have a point, for a comma begins another entry"
 BARE_NUMBER: Final = re.compile(rf"\s*{NUMBER}\s*")
+KEPT: Final = 4096  # quantities of which a text is read once
 LONGEST_TEXT: Final = 100  # characters of a quantity; seventeen digits and a unit are far shorter
 UNITS: Final[dict[str, Dimension]] = {unit: dimension for dimension, table in FACTORS.items() for unit in table}
 
@@ -117,18 +119,7 @@ class Quantity:
             raise ValueError(f"got {shown(text)}")
         if isinstance(text, int | float) or BARE_NUMBER.fullmatch(text[:LONGEST_TEXT]):
             raise ValueError(f"got {shown(text)}, a bare number without its unit")
-        match = NUMBER_UNIT.fullmatch(text) if len(text) <= LONGEST_TEXT else None
-        if match is None:
-            comma = DECIMAL_COMMA.fullmatch(text[:LONGEST_TEXT])
-            advice = f", with a decimal comma: write {comma[1]}.{comma[2]} {comma[3]}".rstrip() if comma else ""
-            raise ValueError(f"got {shown(text)}{advice}")
-        number, unit = float(match[1]), match[2].translate(MICRO_SIGNS)
-        if unit not in UNITS:
-            raise ValueError(f"got {shown(text)}: unknown unit {unit!r}")
-        quantity = cls(number, unit)
-        if not math.isfinite(number) or not math.isfinite(quantity.internal):
-            raise ValueError(f"got {shown(text)}: too large a number")
-        return quantity
+        return _parsed(text) if len(text) <= LONGEST_TEXT else _parsed.__wrapped__(text)
 
     @classmethod
     def __get_pydantic_core_schema__(cls, source: Any, handler: GetCoreSchemaHandler) -> core_schema.CoreSchema:
@@ -137,6 +128,23 @@ class Quantity:
     @classmethod
     def __get_pydantic_json_schema__(cls, schema: Any, handler: GetJsonSchemaHandler) -> dict[str, Any]:
         return _json_schema(*FACTORS)
+
+
+@lru_cache(maxsize=KEPT)
+def _parsed(text: str) -> Quantity:
+    """See Quantity.parse; scenes say the same few lengths over and over."""
+    match = NUMBER_UNIT.fullmatch(text) if len(text) <= LONGEST_TEXT else None
+    if match is None:
+        comma = DECIMAL_COMMA.fullmatch(text[:LONGEST_TEXT])
+        advice = f", with a decimal comma: write {comma[1]}.{comma[2]} {comma[3]}".rstrip() if comma else ""
+        raise ValueError(f"got {shown(text)}{advice}")
+    number, unit = float(match[1]), match[2].translate(MICRO_SIGNS)
+    if unit not in UNITS:
+        raise ValueError(f"got {shown(text)}: unknown unit {unit!r}")
+    quantity = Quantity(number, unit)
+    if not math.isfinite(number) or not math.isfinite(quantity.internal):
+        raise ValueError(f"got {shown(text)}: too large a number")
+    return quantity
 
 
 def summed(terms: Iterable[tuple[int, Quantity]]) -> Quantity:

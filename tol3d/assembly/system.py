@@ -343,6 +343,8 @@ def _settled(scene: Scene) -> Meant:
     drawn = meaning.at(poses)
     found = placing.placed(drawn.assembly, np.zeros((1, drawn.assembly.width)))
     settled = {name: np.asarray(pose[0]) for name, pose in found.items() if np.isfinite(pose[0]).all()}
+    if all(pose.tobytes() == poses[name].tobytes() for name, pose in settled.items()):
+        return drawn  # with what is known of it already
     return meaning.at({**poses, **settled})
 
 

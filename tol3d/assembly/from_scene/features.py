@@ -54,6 +54,8 @@ class TouchedPoints:
     features: dict[str, Feature]
     poses: Mapping[str, Array]
     made: set[str] = field(default_factory=set)
+    _into: dict[str, Array] = field(default_factory=dict)
+    """World to the frame of each plane (4, 4)."""
 
     def on(self, side: str, point: str) -> str:
         """The name of what a point touches: the plane's point there, or the feature itself if it is no plane."""
@@ -108,8 +110,9 @@ class TouchedPoints:
 
     def _seen_from(self, plane: Feature, point: Feature) -> Sequence[float]:
         """Where a point lies in the plane, x and y [mm]."""
-        into = np.linalg.inv(self.poses[plane.part] @ plane.frame)
-        found = into @ self.poses[point.part] @ point.frame
+        if plane.name not in self._into:
+            self._into[plane.name] = np.asarray(np.linalg.inv(self.poses[plane.part] @ plane.frame))
+        found = self._into[plane.name] @ self.poses[point.part] @ point.frame
         return float(found[0, 3]), float(found[1, 3])
 
 

@@ -23,7 +23,8 @@ def shift_at(point: Array) -> Array:
 
 def height_at(point: Array, normal: Array) -> Array:
     """(1, 6): applied to a torsor, how far a point is displaced along a direction [mm]; (n, p x n)."""
-    return np.concatenate([normal, np.cross(point, normal)])[None]
+    (x, y, z), (u, v, w) = point.tolist(), normal.tolist()
+    return np.array([[u, v, w, y * w - z * v, z * u - x * w, x * v - y * u]])
 
 
 def turn_about(directions: Array) -> Array:
