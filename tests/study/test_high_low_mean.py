@@ -127,14 +127,22 @@ def test_no_build_is_asked_for_at_ends_that_are_not_known(mean_seats: bool) -> N
     assert np.isnan(linear.ends).all()
 
 
-def test_every_one_of_200_contributors_has_its_share(tmp_path: Path) -> None:
+def test_every_one_of_200_contributors_has_both_its_shares(tmp_path: Path) -> None:
     """Ranges of 1 and 2 um, a hundred each: squares of 1 and 4 in a sum of 500."""
     small, large = ((normal(f"-{half} um", f"{half} um"), CENTRE) for half in (0.5, 1.0))
     many = {f"{size} {k}": own for k in range(100) for size, own in (("small", small), ("large", large))}
-    run = run_scene(made({**THIN, **many}), overrides=Overrides(trials=4, engine="analytic"), out=tmp_path / "run")
-    found = {c["name"]: c["high_low_mean_percent"] for c in run.summary["measures"]["play"]["contributors"]}
+    run = run_scene(made({**THIN, **many}), overrides=Overrides(trials=500), out=tmp_path / "run")
+    told = {own["name"]: own for own in run.summary["measures"]["play"]["contributors"]}
     expected = {name: 0.2 if name.startswith("small") else 0.8 for name in many}
-    assert {name: found[name] for name in many} == {name: pytest.approx(own) for name, own in expected.items()}
+    found = {name: told[name]["high_low_mean_percent"] for name in many}
+    assert found == {name: pytest.approx(own, rel=1e-4) for name, own in expected.items()}
+    off = [
+        (told[name]["geometric_percent"] - own) / told[name]["geometric_percent_se"] for name, own in expected.items()
+    ]
+    assert len(off) == 200
+    assert max(map(abs, off)) < 5.0  # standard errors; a share of 0.2 % is within what 500 trials see
+    assert sum(told[name]["geometric_percent"] for name in many) == pytest.approx(100.0, abs=5 * 100 * 20 / 500)
+    assert any("201 tolerances act" in warning for warning in run.summary["warnings"])
 
 
 def test_ends_that_go_with_contributors_times_measures_are_built_for_the_largest_only(
