@@ -21,7 +21,7 @@ from tol3d.scene.node import Children, Node, Places, branch, plain
 from tol3d.scene.place import KeyPath, Origin, Place
 from tol3d.scene.references import bad_names, refuse
 from tol3d.scene.schema import SECTIONS, Scene
-from tol3d.scene.text import MAX_BYTES, MAX_NODES, scene_text
+from tol3d.scene.text import MAX_BYTES, MAX_NODES, near_file, scene_text
 from tol3d.scene.vector import Vector
 from tol3d.units import Quantity, shown, summed
 
@@ -130,7 +130,8 @@ class Includes:
         try:
             return FileContent(folder / name, read_contained(folder / name, folder, MAX_BYTES))
         except UnreadableFileError as error:
-            raise origin.error(here, f"expected a scene in the scene's folder, got {shown(name)}: {error}") from None
+            words = f"expected a scene in the scene's folder, got {shown(name)}: {error}{near_file(folder / name)}"
+            raise origin.error(here, words) from None
 
     def _understood(self, name: str, file: FileContent, chain: tuple[str, ...]) -> _Read:
         self.files[name] = file

@@ -118,7 +118,7 @@ def _content(path: Path) -> bytes:
         with path.open("rb") as stream:
             content = stream.read(MAX_BYTES + 1)
     except FileNotFoundError:
-        raise SceneError(f"{path}: expected a scene file, found no file of that name{_near_file(path)}") from None
+        raise SceneError(f"{path}: expected a scene file, found no file of that name{near_file(path)}") from None
     except (OSError, ValueError) as error:  # ValueError: a NUL in the name
         reason = getattr(error, "strerror", None) or error
         raise SceneError(f"{path}: expected a scene file that can be read, got: {reason}") from None
@@ -142,7 +142,8 @@ def _scene_inside(folder: Path) -> str:
     return f"; give a file in it, such as {folder / names[0]}" if names else ""
 
 
-def _near_file(path: Path) -> str:
+def near_file(path: Path) -> str:
+    """The file of the nearest name beside one that is not there, to end a message; "" if none is near."""
     try:
         names = [entry.name for entry in path.parent.iterdir()]
     except OSError:
