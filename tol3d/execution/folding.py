@@ -21,6 +21,7 @@ Progress = Callable[[int], None]
 
 TASK_CONTACTS = 256  # contacts handed out at once: 0.1 s of them, so progress moves and workers end together
 KEEP_EVERY = 5.0  # s; an interrupted run loses no more than what this long has made
+KEPT_WITHIN = 0.25  # s; statistics that take longer to keep are kept as much more seldom
 
 
 class Statistics(Protocol):
@@ -180,7 +181,8 @@ def run_blocks(
         pool: who runs it.
         store: blocks found there are read, not run again; new ones are written before they count. Where `enough`
             ended the run, it may hold blocks after the last one.
-        kept: statistics of an interrupted run's first blocks; written every KEEP_EVERY seconds and when interrupted.
+        kept: statistics of an interrupted run's first blocks; written every KEEP_EVERY seconds or more, and when
+            interrupted.
         on_progress: called with how many trials were finished since it was called last.
         enough: called after each block, in their order, with the statistics so far; True ends the run.
     """
@@ -188,7 +190,7 @@ def run_blocks(
     counted, folded = kept.read() or (0, None)
     if folded is not None and enough(folded):
         plan = replace(plan, trials=min(counted * plan.block_trials, plan.trials))
-    written, trials, resumed, first_block_s = counted, 0, 0, 0.0
+    written, trials, resumed, first_block_s, keep_every = counted, 0, 0, 0.0, KEEP_EVERY
     handed_out = {Concurrency.THREADS: _whole_blocks, Concurrency.PROCESSES: _in_pieces}
     try:
         with closing(handed_out[work.concurrency](_Parts(work, plan, pool, store, counted, on_progress))) as blocks:
@@ -201,9 +203,10 @@ def run_blocks(
                 counted = found.block.index + 1
                 if enough(folded):
                     break
-                if time.monotonic() - kept_at > KEEP_EVERY:
+                if (now := time.monotonic()) - kept_at > keep_every:
                     kept.write(counted, folded)
                     written, kept_at = counted, time.monotonic()
+                    keep_every = KEEP_EVERY * max(1.0, (kept_at - now) / KEPT_WITHIN)
     except BaseException:
         if folded is not None and counted > written:
             with suppress(OSError):  # what is raised says more; without this, blocks are read again

@@ -1,8 +1,9 @@
 """Files that are whole or not there, also after a kill or a power cut; and whose fault it is when they are not."""
 
 import os
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from io import BufferedRandom
 from pathlib import Path
 
 from tol3d.errors import NO_SPACE
@@ -11,7 +12,16 @@ UNFINISHED = ".writing"
 
 
 def write_whole(path: Path, content: bytes | memoryview) -> None:
+    """A file of this content, see `write_by`."""
+    write_by(path, lambda stream: stream.write(content))
+
+
+def write_by(path: Path, write: Callable[[BufferedRandom], object]) -> None:
     """Write beside the file's place, bring it to the disk and rename it there; nothing is left of a failure.
+
+    Args:
+        path: the file.
+        write: writes its content to a stream that it may read again.
 
     Raises:
         OSError: it names the file.
@@ -19,8 +29,8 @@ def write_whole(path: Path, content: bytes | memoryview) -> None:
     beside = path.with_name(path.name + UNFINISHED)
     try:
         with named_in_errors(path):
-            with beside.open("wb") as stream:
-                stream.write(content)
+            with beside.open("w+b") as stream:
+                write(stream)
                 stream.flush()
                 os.fsync(stream.fileno())
             beside.replace(path)

@@ -11,13 +11,14 @@ import typing
 import warnings
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, fields, is_dataclass
+from io import BufferedRandom
 from pathlib import Path
 from typing import Any, Generic, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.runs.atomic_write import write_whole
+from tol3d.runs.atomic_write import write_by
 
 T = TypeVar("T")
 Arrays = dict[str, NDArray[np.generic]]
@@ -45,10 +46,16 @@ class Checkpoint(Generic[T]):
         """Keep the statistics of the first `blocks` blocks, to the last bit."""
         arrays: Arrays = {}
         tree = {"blocks": blocks, "statistics": _written(statistics, arrays, classes_of(self.kind))}
-        stream = io.BytesIO()
-        np.savez(stream, allow_pickle=False, **arrays, **{TREE: np.frombuffer(json.dumps(tree).encode(), np.uint8)})
-        content = stream.getvalue()
-        write_whole(self.path, hashlib.sha256(content).digest() + content)
+        arrays[TREE] = np.frombuffer(json.dumps(tree).encode(), np.uint8)
+
+        def write(stream: BufferedRandom) -> None:  # to the disk array by array: statistics of a large model are large
+            np.savez(stream, allow_pickle=False, **arrays)
+            stream.seek(0)
+            digest = hashlib.file_digest(stream, hashlib.sha256).digest()
+            stream.seek(0, io.SEEK_END)
+            stream.write(digest)
+
+        write_by(self.path, write)
 
     def read(self) -> tuple[int, T] | None:
         """How many blocks, and their statistics; None where there is none. A damaged one is warned of and not used."""
@@ -56,11 +63,11 @@ class Checkpoint(Generic[T]):
             content = self.path.read_bytes()
         except FileNotFoundError:
             return None
-        size = hashlib.sha256().digest_size
-        if hashlib.sha256(content[size:]).digest() != content[:size]:
+        size = len(content) - hashlib.sha256().digest_size
+        if hashlib.sha256(content[:size]).digest() != content[size:]:
             self._not_used("damaged")
             return None
-        with np.load(io.BytesIO(content[size:]), allow_pickle=False) as kept:
+        with np.load(io.BytesIO(content[:size]), allow_pickle=False) as kept:
             arrays = dict(kept)
         tree = json.loads(arrays.pop(TREE).tobytes())
         try:

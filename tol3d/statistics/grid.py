@@ -2,15 +2,16 @@
 
 import math
 from dataclasses import dataclass
-from typing import Self
+from typing import Any, Self
 
 import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
-Counts = NDArray[np.int64]
+Counts = NDArray[np.integer[Any]]
 
 BINS = 2**17  # 1 MB of counts; over 40 sigma one bin is 0.0003 sigma, far under the sampling error of a percentile
+MOST_OF_32_BITS = 2**31 - 1
 FEW = 8  # of so many bins at most one is occupied where the occupied ones alone are kept
 
 
@@ -38,8 +39,9 @@ class Grid:
         lower: lower edge of the first bin.
         width: of a bin, in the unit of the values.
         bins: how many.
-        held: values in each bin (bins,), or in those of `places` alone.
+        held: values in each bin (bins,), or in those of `places` alone; of 32 bits while they need no more.
         places: bins that are occupied (occupied,), in order; None where all are held.
+        inside: values in all bins.
         underflow, overflow: values below the first and above the last bin, infinite ones included.
     """
 
@@ -48,6 +50,7 @@ class Grid:
     bins: int
     held: Counts
     places: Counts | None
+    inside: int = 0
     underflow: int = 0
     overflow: int = 0
 
@@ -61,14 +64,14 @@ class Grid:
         upper = lower + bins * width
         if not (math.isfinite(upper) and lower + width > lower and upper - width < upper):
             raise ValueError(f"a grid of {bins} bins from {lower} to {upper} has no width")
-        return cls(lower, width, bins, np.zeros(0, dtype=np.int64), np.zeros(0, dtype=np.int64))
+        return cls(lower, width, bins, np.zeros(0, dtype=np.int32), np.zeros(0, dtype=np.int32))
 
     @property
     def counts(self) -> Counts:
         """Values in each bin (bins,)."""
         if self.places is None:
             return self.held
-        counts = np.zeros(self.bins, dtype=np.int64)
+        counts = np.zeros(self.bins, dtype=self.held.dtype)
         counts[self.places] = self.held
         return counts
 
@@ -82,13 +85,14 @@ class Grid:
             raise ValueError("NaN has no place on a grid")
         position = np.floor((values - self.lower) / self.width)
         below, above = position < 0, position >= self.bins
-        index = position[~(below | above)].astype(np.int64)
+        index = position[~(below | above)].astype(np.int32)
         if len(index) * FEW < self.bins:
             places, held = np.unique(index, return_counts=True)
         else:
             places, held = None, np.bincount(index, minlength=self.bins)
+        kind = np.int32 if len(index) <= MOST_OF_32_BITS else np.int64
         outside = int(np.count_nonzero(below)), int(np.count_nonzero(above))
-        return self._plus(places, held.astype(np.int64, copy=False), *outside)
+        return self._plus(places, held.astype(kind), len(index), *outside)
 
     def merge(self, other: "Grid") -> Self:
         """The counts of both.
@@ -98,32 +102,42 @@ class Grid:
         """
         if (self.lower, self.width, self.bins) != (other.lower, other.width, other.bins):
             raise ValueError("only counts on the same grid can be merged")
-        return self._plus(other.places, other.held, other.underflow, other.overflow)
+        return self._plus(other.places, other.held, other.inside, other.underflow, other.overflow)
 
-    def _plus(self, places: Counts | None, held: Counts, underflow: int, overflow: int) -> Self:
+    def _plus(self, places: Counts | None, held: Counts, inside: int, underflow: int, overflow: int) -> Self:
         """With more counted: in the bins of `places`, or in all."""
+        kind = np.int32 if self.inside + inside <= MOST_OF_32_BITS else np.int64
+        mine: Counts | None = None
+        its: Counts
         if self.places is None:
-            mine, its = None, self.held.copy()
+            its = self.held.astype(kind)
             its[slice(None) if places is None else places] += held
         elif places is None:
-            mine, its = None, held.copy()
+            its = held.astype(kind)
             its[self.places] += self.held
         elif (len(self.places) + len(places)) * FEW < self.bins:
             mine, which = np.unique(np.concatenate([self.places, places]), return_inverse=True)
-            its = np.zeros(len(mine), dtype=np.int64)
+            its = np.zeros(len(mine), dtype=kind)
             its[which[: len(self.places)]] += self.held
             its[which[len(self.places) :]] += held
         else:
-            mine, its = None, self.counts
+            its = self.counts.astype(kind)
             its[places] += held
         return type(self)(
-            self.lower, self.width, self.bins, its, mine, self.underflow + underflow, self.overflow + overflow
+            self.lower,
+            self.width,
+            self.bins,
+            its,
+            mine,
+            self.inside + inside,
+            self.underflow + underflow,
+            self.overflow + overflow,
         )
 
     @property
     def total(self) -> int:
         """Values counted, wherever they fell."""
-        return int(np.sum(self.held)) + self.underflow + self.overflow
+        return self.inside + self.underflow + self.overflow
 
     def quantile(self, p: float) -> float | None:
         """The value below which a share p of the sample lies, 0 < p < 1; linear inside its bin.
