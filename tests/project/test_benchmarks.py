@@ -30,6 +30,7 @@ FEW: Mapping[str, tuple[str, ...]] = {
     "pairs": ("--trials", "500", "--rounds", "1"),
     "planetary": ("--trials", "1000", "--rounds", "1", "--workers", "1"),
     "rig_records": ("--rows", "4000"),
+    "scale": ("--sizes", "3x2z", "--trials", "100"),
     "stages": ("--trials", "1024", "--rounds", "1"),
     "startup": ("--runs", "1", "--ways", "without both", "--packages", "colorsys", "no_such_package"),
     "studies": ("--naive", "1", "--rounds", "1", "--most", "100", "--warm", "--systems", "spur pair"),
@@ -49,6 +50,7 @@ LONG = (
     "memory",
     "pairs",
     "rig_records",
+    "scale",
     "startup",
     "structure",
     "studies",
@@ -91,6 +93,7 @@ ROWS: Mapping[str, tuple[str, ...]] = {
         rf"programme, placed gears +│ +1 │ +{NUMBER} │ +{NUMBER}",
         rf"whole study, both roads +│ +1 │ +{NUMBER} │ +{NUMBER}",
     ),
+    "scale": (rf"3x2z │ +100 │ +{NUMBER} │ +{NUMBER} │ +{NUMBER} │ +{NUMBER} │ +{NUMBER}",),
     "stages": (rf"draws +│ +{NUMBER} │ +{NUMBER}", rf"statistics, regressors included +│ +{NUMBER} │ +{NUMBER}"),
     "rig_records": (rf"4000 rows a side: +{NUMBER} s, +{NUMBER} s of a processor, the fit +{NUMBER} s",),
     "startup": (

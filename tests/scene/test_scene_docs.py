@@ -84,5 +84,5 @@ def test_every_word_of_the_page_that_looks_like_a_field_is_one() -> None:
     others = {"no", "on", "status", "ok", "interferes", "ppk_reason"}  # of YAML 1.1; of a run's columns and summary
     others |= {"joint", "limited", "yields", "yield_ppm", "yield_ppm_95", "within"}
     others |= {"like", "pattern", "placed", "r1", "b3", "c2"}  # of assemblies, and of the scene of many parts
-    others |= {"correlated", "r", "r_low_95", "r_high_95"}
+    others |= {"correlated", "correlated_of", "r", "r_low_95", "r_high_95"}
     assert words(PAGE.prose) - known - others == set()

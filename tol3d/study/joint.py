@@ -10,7 +10,8 @@ from numpy.typing import NDArray
 from tol3d.runs.summary import joint as summary
 from tol3d.runs.summary.values import Road, made
 from tol3d.statistics import PairSums, Proportion
-from tol3d.statistics.variance_shares import Products, TargetSums
+from tol3d.statistics.variance_shares import Products
+from tol3d.study.regression import Among
 from tol3d.study.replicated import Rows, interval_of_replicates
 from tol3d.study.sample import finite, in_unit, listed
 from tol3d.study.simulation import Simulation
@@ -20,8 +21,6 @@ from tol3d.system.outcome import ANALYTIC, GEOMETRIC, ROADS, Mask, Outcome
 Array = NDArray[np.float64]
 Outcomes = Mapping[tuple[str, str], Outcome]
 Key = TypeVar("Key")
-Among = Mapping[tuple[tuple[str, str], ...], TargetSums]
-"""Sums of columns among each other, by their roads and names."""
 
 MOST_IN_SUMMARY = 64  # measures; of more, matrices in summary.json are of those that are correlated most
 

@@ -8,7 +8,6 @@ from numpy.typing import NDArray
 from tol3d.statistics import IndependentSums, RegressorSums
 from tol3d.statistics.lazy import quick_products, sparse_products
 from tol3d.statistics.variance_shares import Products, TargetSums
-from tol3d.study.joint import Among
 from tol3d.study.regressors import RegressorSet, regressor_sets
 from tol3d.system.measure import Measure
 from tol3d.system.outcome import ROADS
@@ -18,6 +17,8 @@ Array = NDArray[np.float64]
 Sums = RegressorSums | IndependentSums
 Key = tuple[str, str]
 """Road, or DIFFERENCE, and name of a measure."""
+Among = Mapping[tuple[Key, ...], TargetSums]
+"""Sums of columns among each other, by their roads and names."""
 
 DIFFERENCE = "difference"  # of both roads, beside them
 MANY_REGRESSORS = 64  # from here on compiling what multiplies them pays

@@ -13,8 +13,8 @@ from tol3d.statistics.variance_shares import Products, plain_products
 from tol3d.study.agreement.disagreement import Disagreement
 from tol3d.study.breakdowns import merged_terms, pooled_terms
 from tol3d.study.curve_tally import ENDS, CurveTally, end_name, judged_ends
-from tol3d.study.joint import Among, JointTally, limited
-from tol3d.study.regression import DIFFERENCE, Sums, merged, target_sums
+from tol3d.study.joint import JointTally, limited
+from tol3d.study.regression import DIFFERENCE, Among, Sums, merged, target_sums
 from tol3d.study.replicated import rows_of_replicates
 from tol3d.study.sample import Sample
 from tol3d.study.simulation import Simulation
