@@ -471,7 +471,14 @@ def test_help_loads_the_command_line_and_what_prints_it() -> None:
 
 
 NEVER = ("pint", "matplotlib", "scipy.stats", "cadquery", "OCP", "pyvista", "trimesh", "distributed", "pandas")
+FEW = ("--trials", "5", "--witness", "0", "--out", "run")
+COMPILING = ("numba.np.linalg", "numba.typed.typedlist")  # by which numba compiles what is not kept
 LOADED = {
+    "a run without a picture": (
+        ("run", SPUR, *FEW, "--no-picture"),
+        ("numba",),
+        (*NEVER, *COMPILING, "fcl", "numpy.f2py.f2py2e", "unittest"),
+    ),
     "a run": (("run", SPUR, "--trials", "5", "--witness", "0", "--out", "run"), ("numba",), (*NEVER, "fcl")),
     "a run with a witness": (("run", SPUR, "--trials", "5", "--witness", "2", "--out", "run"), ("numba", "fcl"), NEVER),
     "a run by FCL": (("run", SPUR, "--trials", "5", "--engine", "fcl", "--out", "run"), ("fcl",), (*NEVER, "numba")),
@@ -492,6 +499,8 @@ def test_a_command_loads_what_it_needs_and_nothing_heavy_besides(what: str, tmp_
     """What a command has loaded at its end, in a process of its own; strips and kernels are in the cache."""
     arguments, wanted, never = LOADED[what]
     measuring_strips_of_the_spur_pair()
+    if set(COMPILING) <= set(never):
+        run_scene(SPUR, overrides=Overrides(trials=5, witness=0), out=tmp_path / "before")  # keeps its kernels
     code = f"import sys; sys.argv = {['tol3d', *arguments]!r}\nfrom tol3d import cli\n"
     code += "try:\n    cli.main()\nexcept SystemExit as stop:\n    assert not stop.code\n"
     code += f"print([name for name in {(*wanted, *never)!r} if name in sys.modules])"

@@ -12,6 +12,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
+import numba
 import numpy as np
 import pytest
 from filelock import FileLock, Timeout
@@ -19,6 +20,7 @@ from fixtures import Command
 from places import SPUR_PAIR
 
 from tol3d.gears import SpurGear
+from tol3d.numerics import compiled
 from tol3d.numerics.cache_folder import CacheError, cache_folder, read_entry, sole_maker, write_entry
 from tol3d.numerics.compiled import Kernel
 from tol3d.samplers.monte_carlo import uniforms
@@ -362,6 +364,15 @@ def test_a_folder_that_cannot_be_written_leaves_kernels_to_this_process(folder: 
     folder.write_text("a file where the folder should be")
     assert np.array_equal(drawn(fresh(module._draw)), drawn(module._draw))
     assert folder.is_file()
+
+
+def test_what_is_not_kept_is_refused_while_numba_loads_and_compiled_afterwards() -> None:
+    def twice(x: float) -> float:
+        return 2.0 * x
+
+    with compiled._numbas_folder(), compiled._loading_only(), pytest.raises(RuntimeError, match=r"^nothing to load$"):
+        numba.njit("float64(float64)", cache=True)(twice)
+    assert numba.njit("float64(float64)")(twice)(3.5) == 7.0
 
 
 def test_numba_keeps_nothing_of_its_own(folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -1,5 +1,6 @@
 """What kernels are known by in the cache: every source that they are made of, and nothing else."""
 
+import ast
 import importlib
 import os
 import shutil
@@ -201,3 +202,38 @@ def test_kernels_have_the_codes_of_today(tmp_path: Path) -> None:
     assert codes.read_text() != text
     # a kernel with the codes of before would say that trials out of range have no contact
     assert statuses() == before
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "import a.b\nfrom c import d, e as f  # why\n",
+        "from . import x\nfrom ..y import (\n    z,  # one (of two)\n    w,\n)\n",
+        "if a: import b\n",
+        "import a; import b\n",
+        "from a import b, \\\n    c\n",
+        "def f():\n    from a import b\n    return b\n",
+        "from a import *\n",
+        "try:\n    import a\nexcept ImportError: import b\n",
+    ],
+)
+def test_import_statements_alone_name_the_modules_that_the_whole_text_names(text: str) -> None:
+    assert imports_in(sources._import_statements(text)) == imports_in(text)
+
+
+def test_words_between_quotes_that_begin_like_an_import_are_none() -> None:
+    text = '"""A list of what is brought in:\nimport duties and fees\n"""\nfrom tol3d.numerics import frames\n'
+    assert set(sources._imports("tol3d.numerics.loops", text)) == {"tol3d.numerics", "tol3d.numerics.frames"}
+
+
+@pytest.mark.slow
+def test_import_statements_of_this_package_are_all_found() -> None:
+    for path in (ROOT / "tol3d").rglob("*.py"):
+        text = path.read_text("utf-8")
+        assert imports_in(sources._import_statements(text)) == imports_in(text), path
+
+
+def imports_in(text: str) -> list[str]:
+    """Import statements of a text, by Python's own reader."""
+    tree = ast.walk(ast.parse(text))
+    return sorted(ast.unparse(node) for node in tree if isinstance(node, ast.Import | ast.ImportFrom))

@@ -12,6 +12,7 @@ from loose_summaries import typed_measure, typed_run, valid
 from matplotlib.collections import PolyCollection
 from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
+from matplotlib.image import imread
 from matplotlib.patches import Patch, Rectangle, StepPatch
 from matplotlib.text import Text
 from matplotlib.transforms import Bbox
@@ -20,7 +21,7 @@ from thinned import thinned
 
 from tol3d.report import picture
 from tol3d.report.bars import bars_of
-from tol3d.report.canvas import OUTSIDE, new_figure, plain_axes
+from tol3d.report.canvas import OUTSIDE, new_figure, plain_axes, save_figure
 from tol3d.report.column import columns_of
 from tol3d.report.comparison_picture import comparison_figure
 from tol3d.report.contributor_bars import draw_contributors
@@ -421,6 +422,13 @@ def test_a_train_without_a_motor_is_told_without_one(kind: str, over: str) -> No
 def test_a_cut_name_says_so() -> None:
     assert legible("a" * 40, 34) == "a" * 33 + "…"
     assert math.isclose(len(legible("b" * 34)), 34)
+
+
+def test_a_png_has_the_pixels_that_matplotlib_itself_writes(tmp_path: Path) -> None:
+    run = typed_summary_of({"play": measure_of(normals(300), ("one", "two"), lower_limit=45.0)})
+    save_figure(histogram_figure(run), tmp_path / "ours.png")
+    histogram_figure(run).savefig(tmp_path / "theirs.png", facecolor="white")
+    assert np.array_equal(imread(tmp_path / "ours.png"), imread(tmp_path / "theirs.png"))
 
 
 def judged(out_ppm: float, ppk: float | None) -> dict[str, Any]:

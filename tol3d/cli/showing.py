@@ -38,6 +38,10 @@ def check(
 ) -> None:
     """Read a scene and show what it means: parts, moves, measures, contributors with their coefficients."""
     from tol3d.errors import InputError, unwritable
+    from tol3d.numerics.seldom import load_when_used
+
+    load_when_used()
+
     from tol3d.report.check import check_report, parts_report
     from tol3d.runs.atomic_write import write_whole
     from tol3d.simulate import load, simulation_of

@@ -80,6 +80,10 @@ def run(
     wanted = None if no_picture else pictures.value if pictures else "worst"
     draw = context.with_resource(_drawing(wanted))  # it loads what it draws with beside all that follows
 
+    from tol3d.numerics.seldom import load_when_used
+
+    load_when_used()
+
     from tol3d.execution.pools import Execution
     from tol3d.report.table import Detail, Elapsed, run_report
     from tol3d.report.verdict import ACCEPTED_PPM, all_ok

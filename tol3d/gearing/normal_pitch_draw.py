@@ -6,8 +6,8 @@ from dataclasses import dataclass
 from itertools import accumulate
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.special import gammainc, gammaincinv
 
 from tol3d.distributions import standard_normal
 from tol3d.gearing.pitch_draw import PitchDraw, centred
@@ -59,8 +59,8 @@ class NormalPitchDraw(PitchDraw):
     def _size(self, uniform: Array, most: Array) -> Array:
         """Length of all single pitches of a side together [mm], (trials,), below the most that is allowed."""
         half = (self.teeth - 1) / 2
-        allowed = gammainc(half, (most / self._single_sigma) ** 2 / 2)
-        return np.asarray(self._single_sigma * np.sqrt(2 * gammaincinv(half, uniform * allowed)))
+        allowed = scipy.special.gammainc(half, (most / self._single_sigma) ** 2 / 2)
+        return np.asarray(self._single_sigma * np.sqrt(2 * scipy.special.gammaincinv(half, uniform * allowed)))
 
     def ends(self, values: Values, *, turning: bool) -> Array:
         """See Draw: 3 sigma along the steepest direction, within F_p, and its opposite."""

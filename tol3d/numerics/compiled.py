@@ -9,6 +9,7 @@ exact one compile nothing.
 import contextlib
 import hashlib
 import io
+import itertools
 import json
 import platform
 import tempfile
@@ -28,7 +29,8 @@ from numba import types as numba_types
 from numba.core import sigutils as numba_signatures
 from numba.core.caching import FunctionCache
 from numba.core.compiler import Compiler as NumbaCompiler
-from numba.core.registry import CPUDispatcher
+from numba.core.registry import CPUDispatcher, cpu_target
+from numba.core.runtime import nrt as numba_runtime
 from numba.extending import intrinsic, overload
 
 from tol3d.numerics.cache_folder import read_entry, sole_maker, write_entry
@@ -242,7 +244,8 @@ class Kernel:
                 # numba looks in a subfolder named after the source's path; an entry serves copies of it elsewhere too
                 place: Any = FunctionCache
                 zipfile.ZipFile(io.BytesIO(content)).extractall(place(self._function).cache_path)
-                made: Any = self._made(signature, cache=True)
+                with _loading_only():
+                    made: Any = self._made(signature, cache=True)
         except Exception:  # whole, but of no use to this numba: whatever it stumbles over, compiling does without
             return None
         used: Callable[..., None] | None = made if made.stats.cache_hits else None
@@ -313,6 +316,30 @@ def _optimizing(level: int) -> Iterator[None]:
         yield
     finally:
         config.OPT = before
+
+
+@contextmanager
+def _loading_only() -> Iterator[None]:
+    """Within it numba loads what is kept without all that it compiles with: 0.06 s instead of 0.6 s for the first one.
+
+    To load a function, numba has its target refreshed, of which only the runtime is needed. It compiles where there is
+    nothing to load, and has it refreshed again: that is refused.
+    """
+    used: Any = cpu_target
+    runtime: Any = numba_runtime.rtsys
+    target = used.target_context
+    asked = itertools.count()
+
+    def refresh() -> None:
+        if next(asked):
+            raise RuntimeError("nothing to load")
+        runtime.initialize(target)
+
+    target.refresh = refresh
+    try:
+        yield
+    finally:
+        del target.refresh
 
 
 @contextmanager

@@ -2,10 +2,18 @@
 
 import ast
 import importlib.util
+import re
 from collections.abc import Iterator, Mapping
 from functools import cache
 
 PACKAGE = __name__.partition(".")[0]
+WORD = re.compile(r"\bimport\b")
+STATEMENT = re.compile(
+    r"^[ \t]*((?:from[ \t]+[\w.]+[ \t]+import[ \t]+(?:\((?:[^)#]|#.*)*\)|[\w., \t*]+)|import[ \t]+[\w., \t]+))"
+    r"[ \t]*(?:#.*)?$",
+    re.MULTILINE,
+)
+"""An import statement that stands alone in its lines."""
 
 
 def sources_of(*modules: str) -> Mapping[str, str]:
@@ -41,7 +49,25 @@ def source(module: str) -> str:
 def _imports(module: str, text: str) -> tuple[str, ...]:
     """Modules of this package, or of the module's own, that a module names in its imports."""
     own = {PACKAGE, module.partition(".")[0]}
-    return tuple(name for name in _named(module, ast.parse(text)) if name.partition(".")[0] in own)
+    try:
+        statements = ast.parse(_import_statements(text))
+    except SyntaxError:  # words between quotes
+        statements = ast.parse(text)
+    named = _named(module, statements)
+    return tuple(name for name in named if name.partition(".")[0] in own)
+
+
+def _import_statements(text: str) -> str:
+    r"""The import statements of a module alone, which take a tenth of the time to parse; all of it where one may hide.
+
+    A line between quotes that reads as an import counts as one.
+
+    >>> _import_statements("from a import (\n    b,\n)\nif b:\n    import c  # late\n")
+    'from a import (\n    b,\n)\nimport c\n'
+    """
+    found = list(STATEMENT.finditer(text))
+    hidden = len(WORD.findall(text)) - sum(len(WORD.findall(match[0])) for match in found)
+    return text if hidden else "".join(f"{match[1]}\n" for match in found)
 
 
 def _named(module: str, tree: ast.Module) -> Iterator[str]:

@@ -9,6 +9,7 @@ measures each as histogram-<measure>.png. It ends quietly where nothing comes. W
 one line on its standard error; of another picture it stands on its standard output, {"chain.png": "why"}.
 """
 
+import gc
 import io
 import json
 import pickle
@@ -16,6 +17,7 @@ import signal
 import sys
 from collections.abc import Iterable, Iterator
 from functools import partial
+from importlib import import_module
 from pathlib import Path
 
 from tol3d.report.heat_map import draw_heat_map, of_scalars
@@ -25,10 +27,15 @@ from tol3d.report.presenter import Draw, presenter_of
 from tol3d.runs.summary.run import RunSummary
 from tol3d.runs.summary.text import typed
 
+SUMMARIES = tuple(f"tol3d.{mechanism}.summary_types" for mechanism in ("assembly", "gearing", "planetary", "cycloid"))
+"""What runs of this package's mechanisms have in their summaries."""
+
 
 def main() -> None:
     """Wait for what is drawn, and draw it."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # a terminal interrupts both processes; the study says what is done
+    for module in SUMMARIES:  # of which most orders have the kinds: loaded while waiting
+        import_module(module)
     order = io.BytesIO(sys.stdin.buffer.read())
     if not order.getbuffer():
         return
@@ -68,4 +75,7 @@ def _reason(error: Exception) -> str:
 
 
 if __name__ == "__main__":
-    main()
+    try:
+        main()
+    finally:
+        gc.freeze()  # else Python looks through all of it again while it ends
