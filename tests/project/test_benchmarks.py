@@ -93,7 +93,7 @@ ROWS: Mapping[str, tuple[str, ...]] = {
         rf"programme, placed gears +│ +1 │ +{NUMBER} │ +{NUMBER}",
         rf"whole study, both roads +│ +1 │ +{NUMBER} │ +{NUMBER}",
     ),
-    "scale": (rf"3x2z │ +100 │ +{NUMBER} │ +{NUMBER} │ +{NUMBER} │ +{NUMBER} │ +{NUMBER}",),
+    "scale": (rf"3x2z │ +100 │ +{NUMBER} │ +{NUMBER} │ +[\d.]+ │ +[\d.]+ │ +{NUMBER}",),
     "stages": (rf"draws +│ +{NUMBER} │ +{NUMBER}", rf"statistics, regressors included +│ +{NUMBER} │ +{NUMBER}"),
     "rig_records": (rf"4000 rows a side: +{NUMBER} s, +{NUMBER} s of a processor, the fit +{NUMBER} s",),
     "startup": (
