@@ -20,6 +20,7 @@ from tol3d.report.page import Line, Page, Table, some
 from tol3d.report.ranking import MOST_CONTRIBUTORS, MOST_MEASURES, WORST_FIRST
 from tol3d.report.table import Detail
 from tol3d.simulate import simulation_of
+from tol3d.study.summary import _named
 
 TOLERANCES, MEASURES = 18, 24
 SQUARES = sum(k**2 for k in range(1, TOLERANCES + 1))
@@ -136,3 +137,9 @@ def test_seconds_of_a_run_add_up_to_all_of_them(tol3d: Command, scene: Path, tmp
 def test_texts_of_many_are_counted() -> None:
     assert some(["a"] * 20) == ["a"] * 20
     assert some(["a"] * 25, ", all there") == ["a"] * 20 + ["and 5 more, all there"]
+
+
+def test_a_warning_names_six_measures_and_counts_the_others() -> None:
+    names = [f"m{k}" for k in range(MEASURES)]
+    assert _named(names) == "m0, m1, m2, m3, m4, m5 and 18 more measures"
+    assert _named(names[:6]) == "m0, m1, m2, m3, m4, m5"

@@ -39,6 +39,7 @@ from tol3d.system.stated import mean_deviations, stated
 from tol3d.units import FACTORS
 
 FAILURES_NAMED = 1e-3  # of the trials; a third of the 0.27 % that ±3 sigma leave out, in the table all the same
+NAMED_AT_ONCE = 6  # measures in one warning
 
 
 def study_summary(simulation: Simulation, road: Road | None, tally: Tally) -> Findings:
@@ -114,10 +115,16 @@ def failures(simulation: Simulation, tally: Tally) -> Iterator[str]:
         seated = counts.pop(simulation.system.statuses.seated)
         how = ", ".join(f"{count} {words.get(text, text)}" for text, count in counts.items() if count)
         yield (
-            f"{', '.join(names)}: of {tally.trials} builds {how}: {100 * sum(counts.values()) / tally.trials:.3g} % "
+            f"{_named(names)}: of {tally.trials} builds {how}: {100 * sum(counts.values()) / tally.trials:.3g} % "
             f"failed{mostly}; mean, sigma and shares are of the {seated} that seated, what is out of limits is "
             "counted of all"
         )
+
+
+def _named(names: Sequence[str]) -> str:
+    """Names at the begin of a sentence; of many the first and how many more there are."""
+    left = len(names) - NAMED_AT_ONCE
+    return ", ".join(names) if left <= 0 else f"{', '.join(names[:NAMED_AT_ONCE])} and {left} more measures"
 
 
 def _mostly(reasons: Mapping[str, int], failed: int) -> str:
@@ -142,13 +149,13 @@ def _status(measure: Measure, tally: Tally) -> Mapping[str, int]:
 
 def _too_many(simulation: Simulation) -> Iterator[str]:
     """A sentence for measures of more contributors than are regressed on together."""
-    alike: dict[int, list[str]] = {}
-    for measure in simulation.system.measures:
-        if (count := len(simulation.system.acting(measure))) > MOST_REGRESSED:
-            alike.setdefault(count, []).append(measure.name)
-    for count, names in alike.items():
+    acting = {measure.name: len(simulation.system.acting(measure)) for measure in simulation.system.measures}
+    many = {name: count for name, count in acting.items() if count > MOST_REGRESSED}
+    if many:
+        least, most = min(many.values()), max(many.values())
+        count = str(most) if least == most else f"{least} to {most}"
         yield (
-            f"{', '.join(names)}: {count} tolerances act, more than the {MOST_REGRESSED} that are regressed on "
+            f"{_named([*many])}: {count} tolerances act, more than the {MOST_REGRESSED} that are regressed on "
             "together; each one's share of the 3D simulation is what it has in common with the measure by itself"
         )
 
