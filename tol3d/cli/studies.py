@@ -153,9 +153,9 @@ def _watched(simulation: "Simulation", folder: Path, draw: "Finisher") -> Iterat
 
 def _pictures_text(run: "Run") -> str:
     """The pictures that were drawn of a run."""
-    from tol3d.report.picture import measure_files, system_files
+    from tol3d.report.picture import HEAT_MAP, measure_files, system_files
 
-    pictures = [run.path / name for name in (PICTURE, *system_files(run.found).values())]
+    pictures = [run.path / name for name in (PICTURE, HEAT_MAP, *system_files(run.found).values())]
     drawn = [str(picture) for picture in pictures if picture.exists()]
     if any((run.path / name).exists() for name in measure_files(run.found.measures).values()):
         drawn.append(str(run.path / "histogram-*.png"))
