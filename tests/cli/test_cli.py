@@ -444,15 +444,16 @@ def test_view_refuses_options_of_which_one_would_be_left_out(
 
 @pytest.mark.slow
 def test_run_names_every_picture_that_it_drew(tol3d: Command, tmp_path: Path) -> None:
-    arguments = ("--trials", "5", "--engine", "analytic", "--out")
-    for scene, pictures in (("spur_pair", "picture: {0}/histogram.png"), ("three_stage_train", TRAINS_PICTURES)):
+    arguments = ("--trials", "5", "--engine", "analytic", "--pictures", "all", "--out")
+    for scene, pictures in (("spur_pair", PAIRS_PICTURES), ("three_stage_train", TRAINS_PICTURES)):
         folder = tmp_path / scene
         code, out, _ = tol3d("run", str(SCENES / f"{scene}.yaml"), *arguments, str(folder))
         assert code == 0
         assert out.splitlines()[-1] == f"run: {folder}    {pictures.format(folder)}"
 
 
-TRAINS_PICTURES = "pictures: {0}/histogram.png, {0}/chain.png, {0}/histogram-*.png"
+PAIRS_PICTURES = "pictures: {0}/histogram.png, {0}/contributors.png"
+TRAINS_PICTURES = "pictures: {0}/histogram.png, {0}/contributors.png, {0}/chain.png, {0}/histogram-*.png"
 
 
 HANGS = 120  # s; a guard against waiting for ever, no claim

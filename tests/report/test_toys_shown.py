@@ -26,6 +26,7 @@ from tol3d.runs.summary.sample import SpectrumSample
 from tol3d.runs.summary.values import made
 
 SPRING = TOYS / "parabola" / "spring.yaml"
+ALL = ("--pictures", "all")
 HEIGHT = "geometric:height"
 
 
@@ -45,7 +46,7 @@ def run(tol3d: Command, folder: Path) -> Run:
     """A run of the command, once."""
     path = folder / "run"
     if not path.exists():
-        code, out, err = tol3d("run", str(SPRING), "--trials", "3000", "--witness", "20", "--out", str(path), "-v")
+        code, out, err = tol3d("run", str(SPRING), "--trials", "3000", "--witness", "20", "--out", str(path), "-v", *ALL)
         (folder / "printed").write_text(out, "utf-8")
         assert code == 0, err
     return open_run(path)
