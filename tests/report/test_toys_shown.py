@@ -46,7 +46,9 @@ def run(tol3d: Command, folder: Path) -> Run:
     """A run of the command, once."""
     path = folder / "run"
     if not path.exists():
-        code, out, err = tol3d("run", str(SPRING), "--trials", "3000", "--witness", "20", "--out", str(path), "-v", *ALL)
+        code, out, err = tol3d(
+            "run", str(SPRING), "--trials", "3000", "--witness", "20", "--out", str(path), "-v", *ALL
+        )
         (folder / "printed").write_text(out, "utf-8")
         assert code == 0, err
     return open_run(path)
