@@ -8,8 +8,8 @@ from places import SCENES
 from scipy.linalg import null_space
 from scipy.stats import ortho_group
 
-from tol3d.assembly.placing import road as placing
 from tol3d.assembly.placing.holding import held_by
+from tol3d.assembly.placing.plan import planned
 from tol3d.assembly.placing.taken_freedoms import Asked, in_words, taken
 from tol3d.assembly.presenting.tables import drawing_blocks
 from tol3d.assembly.system import AssemblySystem
@@ -290,7 +290,7 @@ def test_datums_take_what_earlier_ones_leave() -> None:
 @pytest.mark.parametrize("scene", ["door", "hole_and_slot", "box_with_discs", "four_pads", "every_assembly_field"])
 def test_what_is_taken_and_left_is_six(scene: str) -> None:
     assembly = drawn(SCENES / f"{scene}.yaml").assembly
-    for plan in placing.planned(assembly).moves:
+    for plan in planned(assembly).moves:
         found = held_by(assembly, plan)
         assert sum(own.count for own in found.taken) + found.left.count == 6
 

@@ -27,8 +27,8 @@ from tol3d.assembly.model import (
 from tol3d.assembly.placing import contact_equations
 from tol3d.assembly.placing.engaging import Engaging
 from tol3d.assembly.placing.mating import asked_of
+from tol3d.assembly.placing.plan import Placing
 from tol3d.assembly.placing.resting import Resting
-from tol3d.assembly.placing.road import Placing
 from tol3d.assembly.placing.taken_freedoms import Asked, Freedoms, taken
 from tol3d.assembly.placing.touching import Touching
 

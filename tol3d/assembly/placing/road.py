@@ -1,30 +1,22 @@
 """The exact road: where parts are and what measures read, by finite poses, block by block of trials."""
 
-from collections import defaultdict
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from functools import cached_property, lru_cache
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.assembly.model import Assembly, BestFit, Engage, Fix, Locate, Mate, Move, Rest, Touch, Weld
+from tol3d.assembly.model import Assembly
 from tol3d.assembly.model.statuses import NO_BUILD, OK, SINGULAR
-from tol3d.assembly.placing.actual_feature import ActualFeature
-from tol3d.assembly.placing.best_fitting import BestFitting, best_fitting
-from tol3d.assembly.placing.causes import Cause, Causes, causes_of, ordered
-from tol3d.assembly.placing.datum_seats import DatumSeats, datum_seats
+from tol3d.assembly.placing.causes import Cause, ordered
 from tol3d.assembly.placing.decided import decided
-from tol3d.assembly.placing.engaging import Engaging, engaging
-from tol3d.assembly.placing.gauged_frames import with_gauges
-from tol3d.assembly.placing.locating import Locating, locating
-from tol3d.assembly.placing.mating import Mating, mating
+from tol3d.assembly.placing.engaging import Engaging
 from tol3d.assembly.placing.measuring import may_lack, reading
-from tol3d.assembly.placing.part_features import PartFeatures
-from tol3d.assembly.placing.poses import Codes, Pose
-from tol3d.assembly.placing.resting import Resting, resting
+from tol3d.assembly.placing.plan import PlacingPlan, after, planned, world_before
+from tol3d.assembly.placing.poses import Codes
+from tol3d.assembly.placing.resting import Resting
 from tol3d.assembly.placing.rocking import over_poses, slope_of, varying
-from tol3d.assembly.placing.touching import Touching, touching
 from tol3d.assembly.placing.world import SolidReader, World
 
 Array = NDArray[np.float64]
@@ -36,10 +28,6 @@ NUDGE = 1e-3
 """Step [mm] from which it follows how a measure changes with a part's play."""
 FLAT = 1e-9
 """Change of a measure with it that is none."""
-
-_MOVED: Codes = np.full(1, OK, dtype=np.int8)
-
-Placing = Fix | Weld | Locating | Mating | BestFitting | Resting | Touching | Engaging
 
 
 def values(
@@ -136,90 +124,6 @@ def features_placed(assembly: Assembly, deviations: Array, after: int = -1) -> d
 
 
 @dataclass(frozen=True, eq=False)
-class PlacingPlan:
-    """An assembly as it is placed, and what its nominal geometry decides once for all trials.
-
-    Args:
-        assembly: the model.
-        datum_seats: of each part its datum frames.
-        moves: in order.
-        causes: before the first move and after each, what may have failed.
-        solids: reads clearances.
-        still: of each part its features that never deviate, as far as they were asked for.
-    """
-
-    assembly: Assembly
-    datum_seats: Mapping[str, Mapping[str, DatumSeats]]
-    moves: tuple[Placing, ...]
-    causes: tuple[Causes, ...]
-    solids: SolidReader | None = None
-    still: Mapping[str, dict[str, ActualFeature]] = field(default_factory=lambda: defaultdict(dict))
-
-    @cached_property
-    def of_measures(self) -> Mapping[str, tuple[Cause, ...]]:
-        """What may fail on the way to each measure, in order."""
-        return {name: causes_of(each, name, self.causes) for name, each in self.assembly.measures.items()}
-
-
-@lru_cache(maxsize=8)
-def planned(assembly: Assembly, solids: SolidReader | None = None) -> PlacingPlan:
-    """What the nominal geometry decides.
-
-    Args:
-        assembly: the model.
-        solids: reads clearances.
-
-    Raises:
-        InputError: see `values`.
-    """
-    seats = {part.name: with_gauges(datum_seats(part)) for part in assembly.parts}
-    bodies = {part.name: frozenset([part.name]) for part in assembly.parts}
-    causes = [Causes(assembly, {}, bodies)]
-    for index, move in enumerate(assembly.moves):
-        causes.append(causes[-1].after(index, move))
-    # before it is placed, a part is at its nominal pose
-    world = _world(assembly, seats, np.zeros((assembly.width, 1)))
-    world = World(assembly, world.columns, world.own, {p.name: Pose.of(p.pose) for p in assembly.parts}, bodies)
-    moves: list[Placing] = []
-    for move in assembly.moves:
-        moves.append(_planned(move, world))
-        world, _ = _after(moves[-1], world)
-    return PlacingPlan(assembly, seats, tuple(moves), tuple(causes), solids)
-
-
-def _planned(move: Move, nominal: World) -> Placing:
-    match move:
-        case Locate():
-            return locating(move, nominal)
-        case Mate():
-            return mating(move, nominal)
-        case BestFit():
-            return best_fitting(move, nominal)
-        case Rest():
-            return resting(move, nominal)
-        case Touch():
-            return touching(move, nominal)
-        case Engage():
-            return engaging(move, nominal)
-        case _:
-            return move
-
-
-def _world(
-    assembly: Assembly,
-    seats: Mapping[str, Mapping[str, DatumSeats]],
-    columns: Array,
-    still: Mapping[str, dict[str, ActualFeature]] | None = None,
-) -> World:
-    """Before the first move."""
-    own = {
-        part.name: PartFeatures(part, seats[part.name], columns, still[part.name] if still is not None else None)
-        for part in assembly.parts
-    }
-    return World(assembly, columns, own, {}, {part.name: frozenset([part.name]) for part in assembly.parts})
-
-
-@dataclass(frozen=True, eq=False)
 class _Block:
     """Trials that are placed: the worlds before the first move and after each, and what became of causes (n,)."""
 
@@ -248,16 +152,30 @@ class _Block:
         return self.failed[cause]
 
 
-def _placed(plan: PlacingPlan, deviations: Array, instead: Mapping[int, Resting | Engaging] | None = None) -> _Block:
-    """Trials as moves place them; `instead` has other moves for some, by their places."""
-    assembly = plan.assembly
+def _placed(
+    plan: PlacingPlan,
+    deviations: Array,
+    instead: Mapping[int, Resting | Engaging] | None = None,
+    otherwise: _Block | None = None,
+) -> _Block:
+    """Trials as moves place them.
+
+    Args:
+        plan: how.
+        deviations: (n, width) [mm].
+        instead: other moves for some, by their places.
+        otherwise: the same trials without these; before the first of them nothing is placed anew.
+    """
     _refuse_lost("a deviation", ~np.isfinite(deviations.sum(axis=1)))
-    worlds, codes = (
-        [_world(assembly, plan.datum_seats, np.ascontiguousarray(deviations.T), plan.still)],
-        dict[int, Codes](),
-    )
-    for index, move in enumerate(plan.moves):
-        world, codes[index] = _after(instead.get(index, move) if instead else move, worlds[-1])
+    if otherwise is not None and instead:
+        first = min(instead)
+        worlds = [*otherwise.worlds[: first + 1]]
+        codes = {index: own for index, own in otherwise.codes.items() if index < first}
+    else:
+        columns, codes = np.ascontiguousarray(deviations.T), dict[int, Codes]()
+        worlds = [world_before(plan.assembly, plan.datum_seats, columns, plan.still)]
+    for index, move in enumerate(plan.moves[len(worlds) - 1 :], len(worlds) - 1):
+        world, codes[index] = after(instead.get(index, move) if instead else move, worlds[-1])
         worlds.append(world)
     block = _Block(tuple(worlds), codes)
     for part, causes in plan.causes[-1].placed.items():
@@ -271,17 +189,6 @@ def _refuse_lost(what: str, lost: NDArray[np.bool_]) -> None:
     """Raise a fault, no status, where a number is lost in a trial (n,) that nothing fails."""
     if lost.any():
         raise FloatingPointError(f"{what} is not a number in {np.count_nonzero(lost)} trials that nothing fails")
-
-
-def _after(move: Placing, world: World) -> tuple[World, Codes]:
-    """The world after a move, and what became of it (n,) or (1,)."""
-    match move:
-        case Fix():
-            return world.with_part_at(move.part, Pose.of(world.assembly.part[move.part].pose)), _MOVED
-        case Weld():
-            return world.with_welded((move.part, *move.others)), _MOVED
-        case _:
-            return move.placed(world)
 
 
 def _read(plan: PlacingPlan, block: _Block, name: str, causes: Sequence[Cause]) -> tuple[Array, Codes]:
@@ -312,7 +219,7 @@ def _apart(plan: PlacingPlan, block: _Block, name: str, codes: Codes) -> tuple[A
 def _over_rests(plan: PlacingPlan, block: _Block, name: str, deviations: Array) -> tuple[Array, Codes]:
     """A measure's values and codes (n,); where parts may rock, over all poses that they may take."""
     if plan.assembly.measures[name].over_play is not None:
-        block = _placed(plan, deviations, _over_play(plan, name))
+        block = _placed(plan, deviations, _over_play(plan, name), block)
     numbers, codes = _read(plan, block, name, plan.of_measures[name])
     leaning, varies = dict[int, Array](), np.zeros(len(numbers), dtype=bool)
     for index in plan.of_measures[name]:

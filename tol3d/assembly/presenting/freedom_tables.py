@@ -4,8 +4,8 @@ from collections.abc import Sequence
 from typing import Final
 
 from tol3d.assembly.model import Assembly, Fix, Weld
-from tol3d.assembly.placing import road as placing
 from tol3d.assembly.placing.holding import held_by, held_by_datums
+from tol3d.assembly.placing.plan import planned
 from tol3d.assembly.placing.taken_freedoms import Freedoms, Taken, in_words
 from tol3d.report.page import Heading, PageItem, Row, Table, note, titled
 
@@ -26,7 +26,7 @@ def datum_blocks(assembly: Assembly) -> Sequence[PageItem]:
 def freedom_blocks(assembly: Assembly) -> Sequence[PageItem]:
     """Which freedoms moves hold, and which they leave."""
     rows: list[Row] = []
-    for move, plan in zip(assembly.moves, placing.planned(assembly).moves, strict=True):
+    for move, plan in zip(assembly.moves, planned(assembly).moves, strict=True):
         match move:
             case Fix():
                 rows.append(Row(move.name, ("all six", "as drawn")))

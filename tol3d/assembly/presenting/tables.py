@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 from tol3d.assembly.model import Axis, Engage, Feature, Locate, Move, Plane, Point, RoundPlane, Slot, Touch
 from tol3d.assembly.model.dimension import longer
 from tol3d.assembly.model.moves import BestFit, Mate, Rest, Weld
-from tol3d.assembly.placing import road as placing
 from tol3d.assembly.placing.engaging import Engaging
+from tol3d.assembly.placing.plan import Placing, planned
 from tol3d.assembly.placing.resting import Resting
 from tol3d.assembly.presenting.freedom_tables import datum_blocks, freedom_blocks
 from tol3d.assembly.presenting.parts_tree import parts_tree
@@ -60,8 +60,8 @@ def drawing_blocks(system: AssemblySystem) -> Sequence[PageItem]:
     columns = ("shape", PLACE, "lies in the frame of", *(("face",) if picked else ()))
     words = [Heading(word, words=word != PLACE) for word in columns]
     features = titled("features, nominally in the world", Table("", words, rows))
-    planned = placing.planned(system.assembly).moves
-    moves = [Row(move.name, _move(move, plan)) for move, plan in zip(system.assembly.moves, planned, strict=True)]
+    plans = planned(system.assembly).moves
+    moves = [Row(move.name, _move(move, plan)) for move, plan in zip(system.assembly.moves, plans, strict=True)]
     steps = titled("moves", Table("", [Heading(word, words=True) for word in ("kind", "part", "by")], moves))
     frames, freedoms = datum_blocks(system.assembly), freedom_blocks(system.assembly)
     return (*_solids(system), *features, *_dimensions(system), *frames, *steps, *freedoms, *_rests(system))
@@ -116,7 +116,7 @@ def _listed(numbers: NDArray[np.float64], between: str) -> str:
 def _rests(system: AssemblySystem) -> Sequence[PageItem]:
     """What contacts of parts at rest may carry of the force."""
     blocks: list[PageItem] = []
-    for move in placing.planned(system.assembly).moves:
+    for move in planned(system.assembly).moves:
         if isinstance(move, Resting):
             least, most = move.carries()
             rows = [
@@ -184,7 +184,7 @@ def _frame(feature: Feature) -> str:
     return "its part" if not feature.parent else feature.parent.partition("|")[2].replace("|", ", ")
 
 
-def _move(move: Move, plan: placing.Placing) -> tuple[str, str, str]:
+def _move(move: Move, plan: Placing) -> tuple[str, str, str]:
     match move:
         case Locate():
             return "six contacts", move.part, f"points ride on the {move.points_on}"

@@ -1,0 +1,126 @@
+"""How an assembly is placed: its moves as their nominal geometry decides them, once for all trials."""
+
+from collections import defaultdict
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from functools import cached_property, lru_cache
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tol3d.assembly.model import Assembly, BestFit, Engage, Fix, Locate, Mate, Move, Rest, Touch, Weld
+from tol3d.assembly.model.statuses import OK
+from tol3d.assembly.placing.actual_feature import ActualFeature
+from tol3d.assembly.placing.best_fitting import BestFitting, best_fitting
+from tol3d.assembly.placing.causes import Cause, Causes, causes_of
+from tol3d.assembly.placing.datum_seats import DatumSeats, datum_seats
+from tol3d.assembly.placing.engaging import Engaging, engaging
+from tol3d.assembly.placing.gauged_frames import with_gauges
+from tol3d.assembly.placing.locating import Locating, locating
+from tol3d.assembly.placing.mating import Mating, mating
+from tol3d.assembly.placing.part_features import PartFeatures
+from tol3d.assembly.placing.poses import Codes, Pose
+from tol3d.assembly.placing.resting import Resting, resting
+from tol3d.assembly.placing.touching import Touching, touching
+from tol3d.assembly.placing.world import SolidReader, World
+
+Array = NDArray[np.float64]
+
+Placing = Fix | Weld | Locating | Mating | BestFitting | Resting | Touching | Engaging
+
+_MOVED: Codes = np.full(1, OK, dtype=np.int8)
+
+
+@dataclass(frozen=True, eq=False)
+class PlacingPlan:
+    """An assembly as it is placed, and what its nominal geometry decides once for all trials.
+
+    Args:
+        assembly: the model.
+        datum_seats: of each part its datum frames.
+        moves: in order.
+        causes: before the first move and after each, what may have failed.
+        solids: reads clearances.
+        still: of each part its features that never deviate, as far as they were asked for.
+    """
+
+    assembly: Assembly
+    datum_seats: Mapping[str, Mapping[str, DatumSeats]]
+    moves: tuple[Placing, ...]
+    causes: tuple[Causes, ...]
+    solids: SolidReader | None = None
+    still: Mapping[str, dict[str, ActualFeature]] = field(default_factory=lambda: defaultdict(dict))
+
+    @cached_property
+    def of_measures(self) -> Mapping[str, tuple[Cause, ...]]:
+        """What may fail on the way to each measure, in order."""
+        return {name: causes_of(each, name, self.causes) for name, each in self.assembly.measures.items()}
+
+
+@lru_cache(maxsize=8)
+def planned(assembly: Assembly, solids: SolidReader | None = None) -> PlacingPlan:
+    """What the nominal geometry decides.
+
+    Args:
+        assembly: the model.
+        solids: reads clearances.
+
+    Raises:
+        InputError: see `values`.
+    """
+    seats = {part.name: with_gauges(datum_seats(part)) for part in assembly.parts}
+    bodies = {part.name: frozenset([part.name]) for part in assembly.parts}
+    causes = [Causes(assembly, {}, bodies)]
+    for index, move in enumerate(assembly.moves):
+        causes.append(causes[-1].after(index, move))
+    # before it is placed, a part is at its nominal pose
+    world = world_before(assembly, seats, np.zeros((assembly.width, 1)))
+    world = World(assembly, world.columns, world.own, {p.name: Pose.of(p.pose) for p in assembly.parts}, bodies)
+    moves: list[Placing] = []
+    for move in assembly.moves:
+        moves.append(_planned(move, world))
+        world, _ = after(moves[-1], world)
+    return PlacingPlan(assembly, seats, tuple(moves), tuple(causes), solids)
+
+
+def _planned(move: Move, nominal: World) -> Placing:
+    match move:
+        case Locate():
+            return locating(move, nominal)
+        case Mate():
+            return mating(move, nominal)
+        case BestFit():
+            return best_fitting(move, nominal)
+        case Rest():
+            return resting(move, nominal)
+        case Touch():
+            return touching(move, nominal)
+        case Engage():
+            return engaging(move, nominal)
+        case _:
+            return move
+
+
+def world_before(
+    assembly: Assembly,
+    seats: Mapping[str, Mapping[str, DatumSeats]],
+    columns: Array,
+    still: Mapping[str, dict[str, ActualFeature]] | None = None,
+) -> World:
+    """Before the first move."""
+    own = {
+        part.name: PartFeatures(part, seats[part.name], columns, still[part.name] if still is not None else None)
+        for part in assembly.parts
+    }
+    return World(assembly, columns, own, {}, {part.name: frozenset([part.name]) for part in assembly.parts})
+
+
+def after(move: Placing, world: World) -> tuple[World, Codes]:
+    """The world after a move, and what became of it (n,) or (1,)."""
+    match move:
+        case Fix():
+            return world.with_part_at(move.part, Pose.of(world.assembly.part[move.part].pose)), _MOVED
+        case Weld():
+            return world.with_welded((move.part, *move.others)), _MOVED
+        case _:
+            return move.placed(world)
