@@ -34,6 +34,9 @@ STATED: Final = {
     "trains.*.stages.*.teeth": "the scene states it",
     "trains.*.stages.*.ways": "the scene states it",
     "joint.correlations.*": "matrices; published by both names",
+    "joint.correlated_of": "how many our own matrices are of",
+    "timing.findings_s": "how long our own statistics took",
+    "timing.pictures_s": "how long our own pictures took",
     "published.*": "what others found",
     "*.published.*": "what others found",
 }

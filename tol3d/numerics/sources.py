@@ -67,7 +67,7 @@ def _import_statements(text: str) -> str:
     """
     found = list(STATEMENT.finditer(text))
     hidden = len(WORD.findall(text)) - sum(len(WORD.findall(match[0])) for match in found)
-    return text if hidden else "".join(f"{match[1]}\n" for match in found)
+    return text if hidden else "".join(f"{match[1].rstrip()}\n" for match in found)
 
 
 def _named(module: str, tree: ast.Module) -> Iterator[str]:

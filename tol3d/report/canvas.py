@@ -140,10 +140,11 @@ def save_figure(figure: Figure, path: Path) -> None:
     try:
         with warnings.catch_warnings():
             warnings.filterwarnings("ignore", r"Glyph \d+ .* missing")  # of a user's name: shown as a box
-            if path.suffix.lower() == PNG:  # laid out here: matplotlib goes through all of it once more for that alone
+            is_png = path.suffix.lower() == PNG
+            if is_png:  # laid out here: matplotlib goes through all of it once more for that alone
                 if engine := figure.get_layout_engine():
                     engine.execute(figure)
                 figure.set_layout_engine(None)
-            figure.savefig(path, facecolor="white", pil_kwargs=QUICK if path.suffix.lower() == PNG else None)
+            figure.savefig(path, facecolor="white", **({"pil_kwargs": QUICK} if is_png else {}))
     except OSError as error:
         raise unwritable(path, error, "choose another file") from None

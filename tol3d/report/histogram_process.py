@@ -27,7 +27,9 @@ from tol3d.report.presenter import Draw, presenter_of
 from tol3d.runs.summary.run import RunSummary
 from tol3d.runs.summary.text import typed
 
-SUMMARIES = tuple(f"tol3d.{mechanism}.summary_types" for mechanism in ("assembly", "gearing", "planetary", "cycloid"))
+SUMMARIES = tuple(
+    f"tol3d.{path.parent.name}.{path.stem}" for path in sorted(Path(__file__).parents[1].glob("*/summary_types.py"))
+)
 """What runs of this package's mechanisms have in their summaries."""
 
 
