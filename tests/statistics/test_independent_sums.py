@@ -61,19 +61,19 @@ def test_each_cluster_has_the_least_squares_fit_of_its_features_alone() -> None:
 
 
 def test_shares_of_independent_parts_are_those_of_the_variance_without_bias() -> None:
-    """Var = 1 + 0.09, 4 + 2.25 and their covariance, 0.26, 0.2 and 1 of noise; 2000 blocks of 100 trials."""
+    """Var = 1 + 0.09, 4 + 2.25 and their covariance, 0.26, 0.2 and 1 of noise; 500 blocks of 100 trials."""
     random = np.random.default_rng(2)
     means = np.zeros(6)
-    for _ in range(2000):
+    for _ in range(500):
         features, targets = seen(random, 100)
         share, error, _ = independent_shares(gathered(features, targets, [])[0])
-        means += share / 2000
+        means += share / 500
         assert error[5] == 0.0  # constant
     # parts 1 and 3: y holds -2 x2 + 1.5 x6, x6 = 0.8 x2 + its own, so (1.2 - 2) x2 + 1.5 of its own
     whole = 1.09 + (0.64 + 2.25) + 0.26 + 0.2 + 1.0
     parts = np.array([1.09, -2.0 * -0.8, 0.26, 1.5 * (0.8 * -0.8 + 1.5), 0.2, 0.0]) / whole
     # sigma of a share of 100 trials is 0.1 at most, and 1 / 100 of second order is left of r^2's own bias
-    assert np.abs(means - parts).max() < 5 * 0.1 / np.sqrt(2000) + 0.01
+    assert np.abs(means - parts).max() < 5 * 0.1 / np.sqrt(500) + 0.01
     assert means[5] == 0.0
 
 
