@@ -2,7 +2,7 @@
 
 import warnings
 from pathlib import Path
-from typing import Final
+from typing import Any, Final
 
 from matplotlib.axes import Axes
 from matplotlib.axis import Axis
@@ -145,6 +145,7 @@ def save_figure(figure: Figure, path: Path) -> None:
                 if engine := figure.get_layout_engine():
                     engine.execute(figure)
                 figure.set_layout_engine(None)
-            figure.savefig(path, facecolor="white", **({"pil_kwargs": QUICK} if is_png else {}))
+            more: dict[str, Any] = {"pil_kwargs": QUICK} if is_png else {}
+            figure.savefig(path, facecolor="white", **more)
     except OSError as error:
         raise unwritable(path, error, "choose another file") from None
