@@ -79,8 +79,9 @@ def test_ci_runs_the_readme_s_commands_one_after_the_other_each_in_a_copy_of_its
     calls: list[tuple[str, str]],
 ) -> None:
     said = [words for _, words in calls]
+    alone = [words for folder, words in calls if Path(folder).name == "first"]  # the oldest versions come meanwhile
+    assert alone[:3] == ["python3 -m venv .venv", "pip install -e .", "tol3d run scenes/spur_pair.yaml"]
     first = said.index("tol3d run scenes/spur_pair.yaml")
-    assert said[first - 2 : first] == ["python3 -m venv .venv", "pip install -e ."]
     second = len(said) - 1 - said[::-1].index("pip install -e .[test]")
     assert said[second - 1 : second + 2] == ["python3 -m venv .venv", "pip install -e .[test]", "pytest "]
     assert first < second
