@@ -74,98 +74,91 @@ def _percents_of(
     mean = mean_deviations(system, measures[0].positions)
     middle = {name: float(own[0]) for name, own in values(mean, measures).items()}
     seated = [measure for measure in measures if not math.isnan(middle[measure.name])]
-    places = {own.name: k for k, own in enumerate(system.contributors)}
+    names = [contributor.name for contributor in system.contributors]
+    found = _Ranges({name: place for place, name in enumerate(names)}, seated, middle, values)
     alone = _alone(system, measures, turning)
-    plain = [(own, ends) for own in alone if (ends := own.plain_ends) is not None]
     asking = [own for own in alone if own.plain_ends is None]
-    ranges = {measure.name: np.full(len(alone), np.nan) for measure in seated}
     if seated:
-        _built_at_once(plain, places, seated, middle, ranges, values)
+        found.build([(own, ends) for own in alone if (ends := own.plain_ends) is not None], mean)
     all_exact = _all_are_built(len(asking), len(measures))
     rows = [2 * (len(own.contributor.draw.components) + len(seated) * all_exact) for own in asking]
     by_name = {own.contributor.name: own for own in asking}
     for contributors in batches([own.contributor for own in asking], rows, mean.shape[1]):
-        _asked([by_name[own.name] for own in contributors], places, seated, middle, ranges, values, all_exact=all_exact)
+        found.ask([by_name[own.name] for own in contributors], all_exact=all_exact)
     if not all_exact:
-        _exact_of_the_largest(asking, places, seated, middle, ranges, values)
-    names = [contributor.name for contributor in system.contributors]
-    return {own.name: _percents(names, ranges.get(own.name)) for own in measures}
+        found.build_the_largest(asking)
+    return {own.name: _percents(names, found.by_measure.get(own.name)) for own in measures}
 
 
-Ranges = Mapping[str, Array]
-"""By measure the range of each contributor (contributors,), nan where it is not known."""
+@dataclass(frozen=True)
+class _Ranges:
+    """How far each contributor moves each measure.
 
+    Args:
+        places: of the contributors.
+        seated: the measures whose mean build seats.
+        middle: of measures, what they are there.
+        values: measures of deviations.
+        by_measure: the range of each contributor (contributors,), nan where it is not known.
+    """
 
-def _built_at_once(
-    plain: Sequence[tuple["_Alone", Array]],
-    places: Mapping[str, int],
-    seated: Sequence[Measure],
-    middle: Mapping[str, float],
-    ranges: Ranges,
-    values: Values,
-) -> None:
-    """Ranges of contributors whose ends are the same for all measures."""
-    ends = {own.contributor.name: (own, both) for own, both in plain}
-    count = plain[0][0].mean.shape[1] if plain else 0
-    for batch in batches([own.contributor for own, _ in plain], [2] * len(plain), count):
-        rows = np.repeat(plain[0][0].mean, 2 * len(batch), axis=0)
-        for k, contributor in enumerate(batch):
-            own, both = ends[contributor.name]
-            rows[2 * k : 2 * k + 2, own.columns] = both
-        at = [places[contributor.name] for contributor in batch]
-        for name, found in values(rows, seated).items():
-            states = np.concatenate([found.reshape(-1, 2), np.full((len(batch), 1), middle[name])], axis=1)
-            ranges[name][at] = states.max(axis=1) - states.min(axis=1)
+    places: Mapping[str, int]
+    seated: Sequence[Measure]
+    middle: Mapping[str, float]
+    values: Values
+    by_measure: dict[str, Array] = field(default_factory=dict)
 
+    def __post_init__(self) -> None:
+        self.by_measure.update({own.name: np.full(len(self.places), np.nan) for own in self.seated})
 
-def _asked(
-    asking: Sequence["_Alone"],
-    places: Mapping[str, int],
-    seated: Sequence[Measure],
-    middle: Mapping[str, float],
-    ranges: Ranges,
-    values: Values,
-    *,
-    all_exact: bool,
-) -> None:
-    """Ranges of contributors whose ends follow from what they do to a measure; to first order if not exact."""
-    for own in asking:
-        own.builds_ends = all_exact
-        own.ask(measure.name for measure in seated)
-    while any(own.waiting for own in asking):
-        _answer(asking, seated, values)
-    for own in asking:
-        place = places[own.contributor.name]
-        for measure in seated:
-            found = ranges[measure.name]
-            if not all_exact:
-                found[place] = own.first_order(measure.name, middle[measure.name])
-            elif (states := own.of(measure.name)) is not None:
-                found[place] = np.ptp([middle[measure.name], *states])
+    def build(self, plain: Sequence[tuple["_Alone", Array]], mean: Array) -> None:
+        """Find those of contributors whose ends are the same for all measures."""
+        known = {own.contributor.name: (own, ends) for own, ends in plain}
+        for batch in batches([own.contributor for own, _ in plain], [2] * len(plain), mean.shape[1]):
+            rows = np.repeat(mean, 2 * len(batch), axis=0)
+            for k, contributor in enumerate(batch):
+                own, ends = known[contributor.name]
+                rows[2 * k : 2 * k + 2, own.columns] = ends
+            at = [self.places[contributor.name] for contributor in batch]
+            for name, found in self.values(rows, self.seated).items():
+                middle = np.full((len(batch), 1), self.middle[name])
+                self.by_measure[name][at] = np.ptp(np.concatenate([found.reshape(-1, 2), middle], axis=1), axis=1)
 
+    def ask(self, asking: Sequence["_Alone"], *, all_exact: bool) -> None:
+        """Find those of contributors whose ends follow from what they do to a measure; to first order if not exact."""
+        for own in asking:
+            own.builds_ends = all_exact
+            own.ask(measure.name for measure in self.seated)
+        self._answer(asking)
+        for own in asking:
+            for measure in self.seated:
+                if all_exact:
+                    self._take(own, measure.name)
+                else:
+                    place = self.places[own.contributor.name]
+                    self.by_measure[measure.name][place] = own.first_order(measure.name, self.middle[measure.name])
 
-def _exact_of_the_largest(
-    asking: Sequence["_Alone"],
-    places: Mapping[str, int],
-    seated: Sequence[Measure],
-    middle: Mapping[str, float],
-    ranges: Ranges,
-    values: Values,
-) -> None:
-    """Ranges of the contributors that move a measure most, in place of what they do to first order."""
-    chosen = []
-    for measure in seated:
-        found = ranges[measure.name]
-        known = [own for own in asking if not math.isnan(found[places[own.contributor.name]])]
-        known.sort(key=lambda own: -found[places[own.contributor.name]])
-        for own in known[:MOST_EXACT]:
-            own.want_ends(measure.name)
-            chosen.append((own, measure.name))
-    while any(own.waiting for own in asking):
-        _answer(asking, seated, values)
-    for own, name in chosen:
+    def build_the_largest(self, asking: Sequence["_Alone"]) -> None:
+        """Find those of the contributors that move a measure most, in place of what they do to first order."""
+        chosen = []
+        for measure in self.seated:
+            sizes = self.by_measure[measure.name][[self.places[own.contributor.name] for own in asking]]
+            largest = [k for k in np.argsort(-sizes, kind="stable").tolist() if not math.isnan(sizes[k])]
+            for own in (asking[k] for k in largest[:MOST_EXACT]):
+                own.want_ends(measure.name)
+                chosen.append((own, measure.name))
+        self._answer(asking)
+        for own, name in chosen:
+            self._take(own, name)
+
+    def _answer(self, asking: Sequence["_Alone"]) -> None:
+        while any(own.waiting for own in asking):
+            _answer(asking, self.seated, self.values)
+
+    def _take(self, own: "_Alone", name: str) -> None:
+        """Take the range between ends that were built."""
         if (states := own.of(name)) is not None:
-            ranges[name][places[own.contributor.name]] = np.ptp([middle[name], *states])
+            self.by_measure[name][self.places[own.contributor.name]] = np.ptp([self.middle[name], *states])
 
 
 class _NotKnownError(Exception):
