@@ -15,13 +15,15 @@ from tol3d.gearing.engines.exact.compiled_displacements import compiled_displace
 from tol3d.gearing.model import Model, model_from_scene
 from tol3d.gearing.system import GearSystem
 from tol3d.gears import SpurGear
+from tol3d.runs.checkpoint import Checkpoint
 from tol3d.simulate import Execution, run_scene
 from tol3d.solids import spur_cad
 from tol3d.solids.spur_cad import sample_flanks
+from tol3d.statistics import IndependentSums, independent_shares
 from tol3d.study.blocks import block_trials
 from tol3d.study.regressors import regressor_set
 from tol3d.study.tally import PILOT_TRIALS, Tally, grids_of
-from tol3d.study.task import Task
+from tol3d.study.task import Task, task_of
 from tol3d.study.versions import installed_versions
 
 HEAD = """scene: many
@@ -151,3 +153,19 @@ def test_a_gear_of_ten_thousand_teeth_has_a_witness(tmp_path: Path) -> None:
     own = run.summary["witness"]["measures"]["normal backlash"]
     assert 0 < own["max_abs_difference"] <= own["expected_at_most"] + own["allowance"]
     assert own["compared"] == 5
+
+
+def test_statistics_of_very_many_contributors_are_kept_and_gone_on_from(tmp_path: Path) -> None:
+    simulation = simulated(model_of(tmp_path, 140))
+    task = task_of(simulation, "many", keep_trials=False)
+    first, second = (task.statistics(at, task.columns(at, 100)) for at in (0, 100))
+    checkpoint = Checkpoint(tmp_path / "checkpoint", Tally)
+    checkpoint.write(1, first)
+    blocks, again = checkpoint.read() or (0, None)
+    assert blocks == 1
+    assert again is not None
+    expected, found = (own.merge(second).measures["normal backlash"].geometric_regressors for own in (first, again))
+    assert isinstance(expected, IndependentSums)
+    assert isinstance(found, IndependentSums)
+    for mine, its in zip(independent_shares(found)[:2], independent_shares(expected)[:2], strict=True):
+        assert np.array_equal(mine, its)
