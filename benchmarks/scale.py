@@ -44,7 +44,7 @@ POINTS: Final = {
 """Locators of a block at the height z, and their normals; sides are touched 5 mm up."""
 ALONG: Final = ("0, 0, 1", "1, 0, 0", "0, 1, 0")
 SIGMA: Final = 0.01
-"""Of each locator [mm]."""
+"""Standard deviation of each locator [mm]."""
 GROWTH: Final = (("parts", ((75, 20), (150, 20), (300, 20))), ("measures", ((100, 50), (100, 100), (100, 200))))
 COMMAND: Final = """
 import resource, sys
@@ -272,7 +272,7 @@ def placing_table(sizes: Sequence[str], rounds: int, folder: Path) -> Table:
 
 
 def slopes_of_heights(parts: int) -> Array:
-    """How the last corner's height changes with each locator (parts - 1, 3), by small rotations, block by block.
+    """Change of the last corner's height with each locator (parts - 1, 3), by small rotations, block by block.
 
     A block's A1, A2, A3 lift and tilt it: over (x, y) by (1, x, y) . inverse of their rows. What lies on a tilted block
     tilts with it, and stands over the same (x, y): each block's part in the corner's height is its own at (100, 100).

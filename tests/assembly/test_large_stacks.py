@@ -23,11 +23,11 @@ LOCATORS = (  # as scale.POINTS: place and normal of the face below, from a bloc
     ((0, 50, 5), (1, 0, 0)),
 )
 DIRECTIONS = np.array([[0, 0, 1], [1, 0, 0], [0, 1, 0]])
-"""Of measures 0, 1 and 2."""
+"""Directions of measures 0, 1 and 2."""
 
 
 def slopes(top: int, reader: int) -> Array:
-    """How a corner of block `top` moves along the direction of a measure by each locator of blocks 1 ... top, (top, 6).
+    """Motion of a corner of block `top` along the direction of a measure by each locator of blocks 1 ... top, (top, 6).
 
     A point that stands out by d lifts its block: N . (t + r x p) = d, r and t the small motion of the block and of all
     that stands on it, N the normal of the face below at p.

@@ -148,7 +148,7 @@ def test_every_one_of_200_contributors_has_both_its_shares(tmp_path: Path) -> No
 def test_ends_that_go_with_contributors_times_measures_are_built_for_the_largest_only(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    """Of four zones three are taken to first order: their shares differ by what is not linear."""
+    """Three of four zones are taken to first order: their shares differ by what is not linear."""
     simulation = simulation_of(load_scene("cover_on_base"), Overrides())
     system = simulation.system
     road = road_of(simulation, materials_of(simulation))
