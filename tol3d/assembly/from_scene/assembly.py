@@ -59,7 +59,7 @@ class Understood:
     measured: Mapping[str, Measured]
 
     def at(self, poses: Mapping[str, Array]) -> Meant:
-        """What the scene means where its parts lie nominally at some poses in the world (4, 4)."""
+        """The assembly whose parts lie nominally at some poses in the world (4, 4)."""
         features, frames = dict(self.features), self.frames
         moves = moves_of(self.scene, self.effects, TouchedPoints(features, poses))
         parents = {name: feature.parent for name, feature in features.items()}

@@ -51,7 +51,7 @@ class Stated:
 
     @property
     def is_own(self) -> bool:
-        """Whether it is of the feature that the scene names; each entry is judged by that one alone."""
+        """True of the feature that the scene names; each entry is judged by that one alone."""
         return self.is_first and not self.alike
 
 
@@ -92,11 +92,11 @@ class Drawing:
 
     @cached_property
     def toleranced(self) -> Mapping[str, Mapping[str, FeatureUnion]]:
-        """What tolerances may name of each part: its features, and patterns as a whole."""
+        """Names that tolerances may use of each part: its features, and patterns as a whole."""
         return {part: {**self.written[part], **features} for part, features in self.features.items()}
 
     def _members(self, part: str, entry: str) -> Mapping[str, FeatureUnion]:
-        """What an entry of a part's features stands for: itself, or a pattern's but for those written by themselves."""
+        """Features that an entry of a part stands for: itself, or a pattern's but for those written by themselves."""
         entries = self.written.get(part, {})
         if entry not in entries:
             return {}
@@ -215,7 +215,7 @@ class Drawing:
             yield name, self.datums(name)
 
     def kind(self, feature: str) -> FeatureUnion:
-        """What a scene says of a feature; of a pattern, of its first."""
+        """Entry of a feature in the scene; of a pattern, of its first."""
         part, own = _split(feature)
         features = self.features[part]
         return features[own] if own in features else next(iter(self._members(part, own).values()))
