@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 SHIPPED: Final = (
     "tol3d.gearing.mechanism:GEARING",
     "tol3d.assembly.mechanism:ASSEMBLY",
-    "tol3d.gearbox.mechanism:GEARBOX",
+    "tol3d.machine.mechanism:MACHINE",
     "tol3d.planetary.mechanism:PLANETARY",
     "tol3d.cycloid.mechanism:CYCLOID",
 )

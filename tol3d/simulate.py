@@ -48,11 +48,11 @@ A feature lies in the datum frame that its location is toleranced to, made of th
 place bodies in order, measures read them at the end or after a move. The torsors are worked out from the nominal
 geometry alone: they never see a pose.
 
-Gears in a machined housing are both, joined at the bores (`gearbox/`):
+Gears in a machined housing are both, joined at the bores (`machine/`):
 
-    bores        where shafts lie nominally gearbox/nominal.py          housed
-    displaced    deviations -> axes         gearbox/bores.py            Bores.exactly     (and to first order)
-    both         placed, then meshed        gearbox/roads.py            GearboxRoad
+    bores        where shafts lie nominally machine/nominal.py          housed
+    displaced    deviations -> axes         machine/bores.py            Bores.exactly     (and to first order)
+    both         placed, then meshed        machine/roads.py            MachineRoad
 
 Each road of the assembly hands the axes of the trial to the same road of the gears, as deviations that nobody draws.
 

@@ -13,7 +13,7 @@ from tol3d.assembly.placing.plan import planned
 from tol3d.assembly.placing.taken_freedoms import Asked, in_words, taken
 from tol3d.assembly.presenting.tables import drawing_blocks
 from tol3d.assembly.system import AssemblySystem
-from tol3d.gearbox.system import GearboxSystem
+from tol3d.machine.system import MachineSystem
 from tol3d.report.page import Line, page
 from tol3d.simulate import Overrides, load, simulation_of
 
@@ -50,7 +50,7 @@ measures:
 def drawn(scene: Path) -> AssemblySystem:
     """The assembly of a scene, also that around gears."""
     system = simulation_of(load(scene), Overrides()).system
-    found = system.drawn if isinstance(system, GearboxSystem) else system
+    found = system.drawn if isinstance(system, MachineSystem) else system
     assert isinstance(found, AssemblySystem)
     return found
 

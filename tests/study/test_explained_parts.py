@@ -16,8 +16,8 @@ from thinned import thinned
 
 from tol3d import Overrides, load_scene
 from tol3d.assembly.roads import TorsorRoad
-from tol3d.gearbox.roads import GearboxRoad
 from tol3d.gearing.roads.analytic import AnalyticRoad
+from tol3d.machine.roads import MachineRoad
 from tol3d.simulate import simulation_of
 from tol3d.study.agreement.explaining import explanations
 from tol3d.study.agreement.explanation import Explanation, faults
@@ -31,7 +31,7 @@ LONG = ("every_assembly_field", "hole_and_slot", "gearbox_in_housing", "housed_g
 ROADS: Mapping[str, Any] = {
     "door": TorsorRoad,
     "cover_on_base": TorsorRoad,
-    "housed_gears": GearboxRoad,
+    "housed_gears": MachineRoad,
     "two_sided_te": AnalyticRoad,
 }
 

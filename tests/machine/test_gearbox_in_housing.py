@@ -5,8 +5,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from gearbox.box_by_hand import FIRST, SECOND, Box, Stage, by_involutes, centre, laid, own_draws, to_first_order
-from gearbox.housed import gearbox_of, values
+from machine.box_by_hand import FIRST, SECOND, Box, Stage, by_involutes, centre, laid, own_draws, to_first_order
+from machine.housed import gearbox_of, values
 from numpy.typing import NDArray
 from places import SCENES
 

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from gearbox.housed import gearbox_of, values
+from machine.housed import gearbox_of, values
 
 from tol3d import Overrides, run_scene
 from tol3d.errors import SceneError

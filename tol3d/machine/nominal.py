@@ -9,11 +9,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.assembly.model import Assembly, Axis
-from tol3d.gearbox.grammar.shaft_in_bores import ShaftInBoresSpec
 from tol3d.gearing.grammar.moves import GearMeshSpec, MeshSpec
 from tol3d.gearing.model.from_scene import meshes_of_scene
 from tol3d.gearing.model.layout import Layout
 from tol3d.gearing.model.mesh import Mesh
+from tol3d.machine.grammar.shaft_in_bores import ShaftInBoresSpec
 from tol3d.scene import Scene
 from tol3d.scene.place import KeyPath
 from tol3d.units import Quantity

@@ -2,18 +2,18 @@
 
 from typing import Final
 
-from tol3d.gearbox.grammar.checks import laid_too_early, laid_twice, shafts_thicker_than_bores
-from tol3d.gearbox.grammar.shaft_in_bores import ShaftInBoresSpec
+from tol3d.machine.grammar.checks import laid_too_early, laid_twice, shafts_thicker_than_bores
+from tol3d.machine.grammar.shaft_in_bores import ShaftInBoresSpec
 from tol3d.system.mechanism import Mechanism
 
-GEARBOX: Final = Mechanism(
-    name="gearbox",
+MACHINE: Final = Mechanism(
+    name="machine",
     moves=(ShaftInBoresSpec,),
     checks=(laid_twice, laid_too_early),
     warnings=(shafts_thicker_than_bores,),
     includes=("gearing", "assembly"),
     engines=("exact", "fcl"),
-    system="tol3d.gearbox.from_scene:gearbox_system",
-    presenter="tol3d.gearbox.presenting",
+    system="tol3d.machine.from_scene:machine_system",
+    presenter="tol3d.machine.presenting",
     requires=("python-fcl", "cadquery"),
 )

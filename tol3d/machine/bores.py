@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.assembly.model import Assembly, Axis, Contribution, Feature, Measured, Point
-from tol3d.gearbox.nominal import HousedShaft
+from tol3d.machine.nominal import HousedShaft
 
 Array = NDArray[np.float64]
 

@@ -5,15 +5,15 @@ from collections.abc import Iterator
 from tol3d.assembly.grammar.feature_name import part_of
 from tol3d.assembly.grammar.parts import SolidSpec, likes
 from tol3d.assembly.grammar.tolerances import FeatureTolerance, SizeSpec
-from tol3d.gearbox.grammar.shaft_in_bores import ShaftInBoresSpec
-from tol3d.gearbox.system import GearboxSystem
 from tol3d.gearing.grammar.parts import BearingSpec
 from tol3d.gearing.grammar.tolerances import BearingClearanceSpec
 from tol3d.gearing.grammar.tolerances.mesh_tolerance import MeshToleranceSpec
+from tol3d.machine.grammar.shaft_in_bores import ShaftInBoresSpec
+from tol3d.machine.system import MachineSystem
 from tol3d.scene import Scene
 
 
-def refuse_counted_twice(scene: Scene, system: GearboxSystem) -> None:
+def refuse_counted_twice(scene: Scene, system: MachineSystem) -> None:
     """Refuse tolerances of axes that deviate as bores do already, and bore sizes beside bearing clearances.
 
     Raises:

@@ -11,7 +11,7 @@ from collections.abc import Sequence
 
 import numpy as np
 import pytest
-from gearbox.box_by_hand import ALPHA, ALUMINIUM, COS, FIRST, SECOND, SIN, STEEL, Box, Stage, apart
+from machine.box_by_hand import ALPHA, ALUMINIUM, COS, FIRST, SECOND, SIN, STEEL, Box, Stage, apart
 from numpy.typing import NDArray
 from places import SCENES
 from scipy.integrate import quad

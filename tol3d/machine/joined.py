@@ -11,11 +11,11 @@ from numpy.typing import NDArray
 from tol3d.assembly.system import AssemblySystem
 from tol3d.assembly.torsors import road as torsors
 from tol3d.assembly.torsors.slopes import Slopes
-from tol3d.gearbox.bores import Bores
 from tol3d.gearing.model import Contributor as GearContributor
 from tol3d.gearing.model.measure import Measure as GearMeasure
 from tol3d.gearing.roads.analytic import analytic_values
 from tol3d.gearing.system import GearSystem
+from tol3d.machine.bores import Bores
 from tol3d.system.contributor import Contributor
 from tol3d.system.stated import component_slices, mean_deviations, stated
 from tol3d.system.trials import Trials

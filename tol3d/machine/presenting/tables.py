@@ -7,9 +7,9 @@ import numpy as np
 
 from tol3d.assembly.presenting.parts_tree import Laid, parts_tree
 from tol3d.assembly.presenting.tables import drawing_blocks
-from tol3d.gearbox.bores import Bores
-from tol3d.gearbox.system import GearboxSystem
 from tol3d.gearing.presenting.scene_check import mechanics_blocks
+from tol3d.machine.bores import Bores
+from tol3d.machine.system import MachineSystem
 from tol3d.report.page import Heading, PageItem, Row, Table, note, titled
 from tol3d.report.system_check import system_blocks
 from tol3d.study.simulation import Simulation
@@ -20,7 +20,7 @@ HELD: Final = "bores hold a shaft across its axis and against tilts; along it an
 def check_blocks(simulation: Simulation) -> Sequence[PageItem]:
     """Features and moves of the parts, shafts in their bores, gears and trains, and what any system shows."""
     system = simulation.system
-    assert isinstance(system, GearboxSystem)
+    assert isinstance(system, MachineSystem)
     shafts, gears = shafts_table(system.bores), mechanics_blocks(system.gears.model)
     parts = {own.name for own in system.drawn.measures}
     return (*drawing_blocks(system.drawn), *shafts, *gears, *system_blocks(simulation, parts))
@@ -29,7 +29,7 @@ def check_blocks(simulation: Simulation) -> Sequence[PageItem]:
 def parts_blocks(simulation: Simulation) -> Sequence[PageItem]:
     """Parts as their moves lay them, and shafts in their bores."""
     system = simulation.system
-    assert isinstance(system, GearboxSystem)
+    assert isinstance(system, MachineSystem)
     assembly = system.drawn.assembly
     shafts = []
     for own in system.bores.shafts:

@@ -6,9 +6,9 @@ from tol3d.assembly.grammar.drawing import Drawing
 from tol3d.assembly.grammar.feature_name import part_of
 from tol3d.assembly.grammar.moves import PlacingSpec
 from tol3d.assembly.model.shape import nominal_size
-from tol3d.gearbox.grammar.shaft_in_bores import ShaftInBoresSpec
 from tol3d.gearing.grammar.checks import too_thick
 from tol3d.gearing.grammar.parts import ShaftSpec
+from tol3d.machine.grammar.shaft_in_bores import ShaftInBoresSpec
 from tol3d.scene import Scene
 from tol3d.scene.place import KeyPath
 

@@ -3,7 +3,7 @@
 from pathlib import Path
 
 import pytest
-from gearbox.housed import FOUR_BORES, GEARS, LAID, SHAFTS, housed_scene, system_of
+from machine.housed import FOUR_BORES, GEARS, LAID, SHAFTS, housed_scene, system_of
 
 from tol3d.errors import SceneError
 

@@ -10,9 +10,9 @@ from numpy.typing import NDArray
 from tol3d.assembly.presenting.labels import unnamed
 from tol3d.assembly.presenting.shown_assembly import RIGID, Placed, bodies, placed_in
 from tol3d.errors import RunError
-from tol3d.gearbox.system import GearboxSystem
 from tol3d.gearing.display import replayed_build, replayed_of, seated_build
 from tol3d.gearing.presenting.gear_display import GearDisplay
+from tol3d.machine.system import MachineSystem
 from tol3d.report.body import World
 from tol3d.report.motion import Motion
 from tol3d.report.presenter import View, Which
@@ -27,7 +27,7 @@ COLOURS: Final = ("#9AA7B4", "#BFA58E", "#9DB5A6", "#B4A5BE")
 
 
 @dataclass(frozen=True, eq=False)
-class ShownGearbox:
+class ShownMachine:
     """Implements Display.
 
     Args:
@@ -37,7 +37,7 @@ class ShownGearbox:
     """
 
     gears: GearDisplay
-    system: GearboxSystem
+    system: MachineSystem
     placed: Placed
 
     @property
@@ -90,7 +90,7 @@ class ShownGearbox:
         return View(notes=unnamed(self.placed.assembly))
 
 
-def display(run: Run, which: Which, *, magnify: float) -> ShownGearbox:
+def display(run: Run, which: Which, *, magnify: float) -> ShownMachine:
     """A build of a run, its deviations magnified as far as the teeth allow.
 
     Raises:
@@ -101,7 +101,7 @@ def display(run: Run, which: Which, *, magnify: float) -> ShownGearbox:
     return _shown(GearDisplay(build), seen, label, build.magnify)
 
 
-def replayed(replay: Replay, label: str) -> ShownGearbox:
+def replayed(replay: Replay, label: str) -> ShownMachine:
     """A trial that was replayed.
 
     Raises:
@@ -110,12 +110,12 @@ def replayed(replay: Replay, label: str) -> ShownGearbox:
     return _shown(GearDisplay(replayed_build(replay, label)), replay, label, 1.0)
 
 
-def _shown(gears: GearDisplay, seen: Replay, label: str, magnify: float) -> ShownGearbox:
+def _shown(gears: GearDisplay, seen: Replay, label: str, magnify: float) -> ShownMachine:
     system = seen.simulation.system
-    assert isinstance(system, GearboxSystem)
+    assert isinstance(system, MachineSystem)
     trials = seen.trials if magnify == 1.0 else magnified(system, seen.trials, magnify)
     deviations = trials.deviations[:1, system.assembly_places]
     placed = placed_in(system.drawn.assembly, deviations)
     if placed is None:
         raise RunError(f"{label}: cannot be shown: {seen.status}")
-    return ShownGearbox(gears, system, placed)
+    return ShownMachine(gears, system, placed)

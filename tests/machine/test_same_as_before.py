@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from gearbox.housed import ALONG, APART, GEARS, LAID, SHAFTS, gearbox_of, housed_scene, plain_scene, system_of, values
+from machine.housed import ALONG, APART, GEARS, LAID, SHAFTS, gearbox_of, housed_scene, plain_scene, system_of, values
 from numpy.typing import NDArray
 
 from tol3d import Overrides, run_scene

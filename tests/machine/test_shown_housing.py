@@ -4,9 +4,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from gearbox.housed import FOUR_BORES, housed_scene
+from machine.housed import FOUR_BORES, housed_scene
 
-from tol3d.gearbox.presenting import PRESENTER
+from tol3d.machine.presenting import PRESENTER
 from tol3d.report.body import Body
 from tol3d.simulate import Overrides, run_scene
 

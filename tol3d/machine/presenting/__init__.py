@@ -33,11 +33,11 @@ class GearboxPresenter(GearPresenter):
 
     def display(self, run: "Run", which: "Which", *, magnify: float) -> "Display":
         """A build with its parts placed and its gears seated again."""
-        return _lazily("shown_gearbox").display(run, which, magnify=magnify)  # type: ignore[no-any-return]
+        return _lazily("shown_machine").display(run, which, magnify=magnify)  # type: ignore[no-any-return]
 
     def replayed(self, replay: "Replay", label: str) -> "Display":
         """A trial that was replayed."""
-        return _lazily("shown_gearbox").replayed(replay, label)  # type: ignore[no-any-return]
+        return _lazily("shown_machine").replayed(replay, label)  # type: ignore[no-any-return]
 
 
 def _lazily(module: str) -> Any:

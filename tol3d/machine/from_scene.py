@@ -7,10 +7,6 @@ from typing import Any
 from tol3d.assembly.mechanism import ASSEMBLY
 from tol3d.assembly.system import AssemblySystem, assembly_system
 from tol3d.distributions.constant import Constant
-from tol3d.gearbox.bores import Bores, bores_of
-from tol3d.gearbox.counted import refuse_counted_twice
-from tol3d.gearbox.nominal import HousedShaft, housed
-from tol3d.gearbox.system import GearboxSystem
 from tol3d.gearing.effects import NOTHING
 from tol3d.gearing.grammar.checks import off_shaft
 from tol3d.gearing.grammar.parts import ShaftSpec
@@ -19,6 +15,10 @@ from tol3d.gearing.grammar.tolerances.lever import Lever
 from tol3d.gearing.mechanism import GEARING
 from tol3d.gearing.model import Contributor, Model
 from tol3d.gearing.system import GearSystem, gear_system
+from tol3d.machine.bores import Bores, bores_of
+from tol3d.machine.counted import refuse_counted_twice
+from tol3d.machine.nominal import HousedShaft, housed
+from tol3d.machine.system import MachineSystem
 from tol3d.scene import Scene, Vocabulary
 from tol3d.scene.implausible import warned
 from tol3d.scene.schema import SECTIONS
@@ -28,7 +28,7 @@ from tol3d.system.draw import Planar
 KIND = "shaft_in_bores"
 
 
-def gearbox_system(scene: Scene) -> GearboxSystem:
+def machine_system(scene: Scene) -> MachineSystem:
     """What a scene of gears in a housing means.
 
     Raises:
@@ -39,7 +39,7 @@ def gearbox_system(scene: Scene) -> GearboxSystem:
     bores = bores_of(drawn.assembly, tuple(place.shafts.values()))
     gears = gear_system(place.scene)
     model = replace(gears.model, contributors=(*gears.model.contributors, *_by_bores(gears.model, bores)))
-    made = GearboxSystem(
+    made = MachineSystem(
         name=scene.scene,
         contributors=_in_order(scene, gears, drawn),
         measures=tuple(own for name in scene.measures for own in _of_name(gears, drawn) if own.name == name),

@@ -11,13 +11,13 @@ from numpy.typing import NDArray
 from tol3d.assembly.clearances.prepared import reader_of
 from tol3d.assembly.system import AssemblySystem, ClearanceSystem
 from tol3d.assembly.zones import laws_told
-from tol3d.gearbox.closed_form import closed_form
-from tol3d.gearbox.joined import Joined
-from tol3d.gearbox.regressors import regress_bores
-from tol3d.gearbox.roads import GearboxRoad
-from tol3d.gearbox.statuses import STATUSES, WITH_CLEARANCES
 from tol3d.gearing.model.measure import Measure as GearMeasure
 from tol3d.gearing.system import EXACT, ROADS, GearSystem
+from tol3d.machine.closed_form import closed_form
+from tol3d.machine.joined import Joined
+from tol3d.machine.regressors import regress_bores
+from tol3d.machine.roads import MachineRoad
+from tol3d.machine.statuses import STATUSES, WITH_CLEARANCES
 from tol3d.system.breakdown import Breakdown
 from tol3d.system.closed_form import ClosedForm
 from tol3d.system.contributor import Contributor
@@ -34,7 +34,7 @@ Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
-class GearboxSystem(Joined):
+class MachineSystem(Joined):
     """Implements System."""
 
     # what it is -------------------------------------------------------------------------------------
@@ -107,7 +107,7 @@ class GearboxSystem(Joined):
 
     def seen_by_gears(self, trials: Trials) -> tuple[Trials, Mapping[str, Codes]]:
         """Trials as the gears see them, on the axes that placed bores give; and what became of these (trials,)."""
-        return GearboxRoad(self, self.gears.road(ANALYTIC_ROAD, {}), exact=True).gear_trials(trials)
+        return MachineRoad(self, self.gears.road(ANALYTIC_ROAD, {}), exact=True).gear_trials(trials)
 
     # its roads --------------------------------------------------------------------------------------
 
@@ -124,14 +124,14 @@ class GearboxSystem(Joined):
         """See System: each system's own, gears by what the assembly's says of the bores."""
         exact = name != ANALYTIC_ROAD
         if not self._is_clearing or not exact:
-            return GearboxRoad(self, self.gears.road(name, materials), exact)
+            return MachineRoad(self, self.gears.road(name, materials), exact)
         own, solids = materials
         gears = self.gears.road(name, own)
         if name == EXACT:
-            return GearboxRoad(self, gears, exact, reader_of(solids))
+            return MachineRoad(self, gears, exact, reader_of(solids))
         given, finer = solids
         chords = {name: given[name].chord_error + pair.chord_error for name, pair in finer.items()}
-        return GearboxRoad(self, gears, exact, reader_of(finer), chords)
+        return MachineRoad(self, gears, exact, reader_of(finer), chords)
 
     def cost(self, measures: Sequence[Measure]) -> int:
         """See System."""
@@ -220,6 +220,6 @@ class GearboxSystem(Joined):
 
     def display(self, trials: Trials, road: Road) -> Any:
         """See System: the seated meshes of the gears."""
-        assert isinstance(road, GearboxRoad)
+        assert isinstance(road, MachineRoad)
         seen, _ = road.gear_trials(trials)
         return self.gears.display(seen, road.gears)

@@ -10,9 +10,9 @@ from numpy.typing import NDArray
 from tol3d.assembly.placing import road as placing
 from tol3d.assembly.placing.world import SolidReader
 from tol3d.assembly.torsors import road as torsors
-from tol3d.gearbox.joined import Joined
-from tol3d.gearbox.statuses import FROM_ASSEMBLIES
 from tol3d.gearing.model.measure import Measure as GearMeasure
+from tol3d.machine.joined import Joined
+from tol3d.machine.statuses import FROM_ASSEMBLIES
 from tol3d.system.measure import Measure
 from tol3d.system.outcome import reason_column
 from tol3d.system.road import Answers, Codes, Road
@@ -22,7 +22,7 @@ Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
-class GearboxRoad:
+class MachineRoad:
     """A road of the gears behind one of the assembly; implements WitnessRoad where the gears' does.
 
     Args:

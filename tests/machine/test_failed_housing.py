@@ -4,8 +4,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from gearbox.housed import FOUR_BORES, gearbox_of, housed_scene
-from gearbox.test_shared_bores import LOCATED, POINTS, TABLE
+from machine.housed import FOUR_BORES, gearbox_of, housed_scene
+from machine.test_shared_bores import LOCATED, POINTS, TABLE
 
 from tol3d import Overrides, open_run, replay, run_scene
 from tol3d.system.trials import Trials

@@ -7,7 +7,7 @@ from fixtures import Command
 from places import ROOT, SCENES
 
 from tol3d import open_run, run_scene
-from tol3d.gearbox.grammar.shaft_in_bores import ShaftInBoresSpec
+from tol3d.machine.grammar.shaft_in_bores import ShaftInBoresSpec
 
 PAGE = (ROOT / "docs" / "gearboxes.md").read_text("utf-8")
 

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tol3d import Overrides, load_scene
-from tol3d.gearbox.system import GearboxSystem
+from tol3d.machine.system import MachineSystem
 from tol3d.study.overrides import simulation_of
 from tol3d.system.system import System
 from tol3d.system.trials import Trials
@@ -84,10 +84,10 @@ def system_of(text: str, folder: Path, name: str = "scene") -> Any:
     return simulation_of(load_scene(path), Overrides()).system
 
 
-def gearbox_of(text: str, folder: Path) -> GearboxSystem:
+def gearbox_of(text: str, folder: Path) -> MachineSystem:
     """What a scene of gears in a housing means."""
     found = system_of(text, folder)
-    assert isinstance(found, GearboxSystem)
+    assert isinstance(found, MachineSystem)
     return found
 
 

@@ -14,7 +14,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.assembly.system import moments_of
-from tol3d.gearbox.joined import Joined
 from tol3d.gearing.model import Contributor as GearContributor
 from tol3d.gearing.model import Measure as GearMeasure
 from tol3d.gearing.model import Model
@@ -22,6 +21,7 @@ from tol3d.gearing.stack_up import closed_form as closed_form_of_gears
 from tol3d.gearing.stack_up import reference_form, stack_of
 from tol3d.gearing.stack_up.closed_form import factored_stacks
 from tol3d.gearing.stack_up.leaning import change_of, shares_by_net
+from tol3d.machine.joined import Joined
 from tol3d.system.closed_form import ClosedForm, Share
 from tol3d.system.contributor import Contributor
 from tol3d.system.dependent import reads_of

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from gearbox.housed import FOUR_BORES, gearbox_of, housed_scene, values
+from machine.housed import FOUR_BORES, gearbox_of, housed_scene, values
 from numpy.typing import NDArray
 
 from tol3d import Overrides, run_scene

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from gearbox.housed import gearbox_of, values
+from machine.housed import gearbox_of, values
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
