@@ -46,13 +46,14 @@ def turned(simulation: Simulation, road: str, trials: int) -> dict[str, Array]:
 
 
 @pytest.mark.slow
-def test_two_hundred_builds_of_a_scene_rest_where_highs_finds_them(tmp_path: Path) -> None:
+@pytest.mark.parametrize("count", [30, 200])
+def test_builds_of_a_scene_rest_where_highs_finds_them(count: int, tmp_path: Path) -> None:
     """Of each by turns with the torque back and on, by both roads."""
     made = simulated(tmp_path, TEXT.replace("\nmoves:", f"{MORE}\nmoves:").replace("\nstudy:", BACK))
-    road, trials = made.system.road("exact", None), drawn(made, 0, 200)
+    road, trials = made.system.road("exact", None), drawn(made, 0, count)
     columns = columns_of(made.system, road, trials)
     for sense, measure in ((-1, "transmission error"), (1, "back")):
-        own = np.arange(200)[(1 - sense) // 2 :: 2]
+        own = np.arange(count)[(1 - sense) // 2 :: 2]
         expected = np.array([PlayingReducer(columns, trial).turned(sense) for trial in own])
         exact, analytic = (columns[f"{road}:{measure}"][own] / ARCMIN for road in ("geometric", "analytic"))
         # teeth are met at the middle of a bearing and along a straight line from there: (5 um)^2 / 63 mm of a planet

@@ -643,31 +643,38 @@ def kept(folder: Path) -> dict[str, tuple[int, int]]:
     return {str(path.relative_to(folder)): (path.stat().st_mtime_ns, path.stat().st_size) for path in files}
 
 
+@pytest.fixture(scope="module")
+def filled(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, str]:
+    """A cache in which a first process has left its kernels, and what it read."""
+    cache = tmp_path_factory.mktemp("cache")
+    return cache, first_read(cache)
+
+
 @pytest.mark.slow
-def test_a_second_process_takes_the_kernels_of_the_first(tmp_path: Path) -> None:
-    first = first_read(tmp_path)
-    before = kept(tmp_path)
+def test_a_second_process_takes_the_kernels_of_the_first(filled: tuple[Path, str]) -> None:
+    cache, first = filled
+    before = kept(cache)
     assert any(name.startswith("kernel-read_rows-") for name in before)
-    assert first_read(tmp_path) == first
+    assert first_read(cache) == first
     # what it had compiled anew it would have written anew
-    assert kept(tmp_path) == before
+    assert kept(cache) == before
 
 
 @pytest.mark.slow
-def test_a_copy_of_the_tree_elsewhere_takes_the_kernels_of_the_first(tmp_path: Path) -> None:
-    first = first_read(tmp_path / "cache")
-    before = kept(tmp_path / "cache")
-    shutil.copytree(ROOT / "tol3d", tmp_path / "tree" / "tol3d", ignore=shutil.ignore_patterns("__pycache__"))
-    assert first_read(tmp_path / "cache", tmp_path / "tree") == first
-    assert kept(tmp_path / "cache") == before
+def test_a_copy_of_the_tree_elsewhere_takes_the_kernels_of_the_first(filled: tuple[Path, str], tmp_path: Path) -> None:
+    cache, first = filled
+    before = kept(cache)
+    shutil.copytree(ROOT / "tol3d", tmp_path / "tol3d", ignore=shutil.ignore_patterns("__pycache__"))
+    assert first_read(cache, tmp_path) == first
+    assert kept(cache) == before
 
 
 @pytest.mark.slow
-def test_kernels_run_where_nothing_can_be_kept(tmp_path: Path) -> None:
+def test_kernels_run_where_nothing_can_be_kept(filled: tuple[Path, str], tmp_path: Path) -> None:
     blocked = tmp_path / "a file, no folder"
     blocked.write_text("")
     beside = Path(engines_exact.__file__).parent / "__pycache__"
     before = {path.name for path in beside.glob("*.nb?")}
-    assert first_read(blocked) == first_read(tmp_path)
+    assert first_read(blocked) == filled[1]
     # beside the sources they would be known by the date of one of them only
     assert {path.name for path in beside.glob("*.nb?")} == before

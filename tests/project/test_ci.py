@@ -79,12 +79,12 @@ def test_ci_runs_the_readme_s_commands_one_after_the_other_each_in_a_copy_of_its
     calls: list[tuple[str, str]],
 ) -> None:
     said = [words for _, words in calls]
-    alone = [words for folder, words in calls if Path(folder).name == "first"]  # the oldest versions come meanwhile
-    assert alone[:3] == ["python3 -m venv .venv", "pip install -e .", "tol3d run scenes/spur_pair.yaml"]
-    first = said.index("tol3d run scenes/spur_pair.yaml")
-    second = len(said) - 1 - said[::-1].index("pip install -e .[test]")
-    assert said[second - 1 : second + 2] == ["python3 -m venv .venv", "pip install -e .[test]", "pytest "]
-    assert first < second
+    first, second = (  # the oldest versions come meanwhile
+        [words for folder, words in calls if Path(folder).name == copy] for copy in ("first", "second")
+    )
+    assert first[:3] == ["python3 -m venv .venv", "pip install -e .", "tol3d run scenes/spur_pair.yaml"]
+    assert second[:3] == ["python3 -m venv .venv", "pip install -e .[test]", "pytest "]
+    assert said.index(first[2]) < said.index(second[1])
     folders = {Path(folder).name for folder, words in calls if words.startswith(("pip", "tol3d", "pytest"))}
     assert folders == {"first", "oldest", "second"}
     assert all("pip install" not in words or "[test]" not in words for f, words in calls if Path(f).name == "first")
@@ -95,6 +95,12 @@ def test_it_checks_style_types_and_layers_and_runs_the_slow_tests(calls: list[tu
     slow = next(words for words in said if words.startswith("pytest -m slow"))
     last = said[said.index("pytest ") + 1 :]
     assert {"ruff check .", "mypy ", "lint-imports --no-cache", slow} <= set(last)
+
+
+def test_the_oldest_versions_are_tested_before_the_default(calls: list[tuple[str, str]]) -> None:
+    tests = " ".join(output(sys.executable, str(OLDEST), "--tests"))
+    said = [(Path(folder).name, words) for folder, words in calls]
+    assert said.index(("oldest", f"pytest {tests}")) < said.index(("second", "pytest "))
 
 
 def test_it_asks_for_the_system_s_libraries_that_the_readme_lists(calls: list[tuple[str, str]]) -> None:

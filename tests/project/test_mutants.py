@@ -26,7 +26,10 @@ from scheduling import GROUP
 LIST = ROOT / "tests" / "mutants.toml"
 FAILED, PASSED = 1, 0  # pytest's exit codes; others mean that it could not run
 HANGS = 900  # s; a guard against waiting for ever, no claim
-HEAVY = "import matplotlib.pyplot, numba, numpy, pyarrow.parquet, pydantic, pytest, rich, scipy.optimize, scipy.stats"
+HEAVY = """
+import cadquery, fcl, matplotlib.pyplot, numba, numpy, pyarrow.parquet, pydantic.json_schema, pytest, pyvista
+import rich.console, ruamel.yaml, scipy.optimize, scipy.stats, trimesh, typer, xdist.scheduler
+"""
 FORKS = f"""
 {HEAVY}
 import json, os, signal, sys
@@ -42,7 +45,7 @@ for line in sys.stdin:  # what a process is to be told, and where it writes
         os._exit(code)
     print(os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]), flush=True)
 """  # libraries are loaded once, of the tree nothing is: each process imports what stands there then
-COPIED = ("tol3d", "parts", "scenes", "tests", "docs", "README.md", "pyproject.toml")
+COPIED = ("tol3d", "parts", "scenes", "tests", "benchmarks", "docs", "README.md", "pyproject.toml")
 
 
 @dataclass(frozen=True)
